@@ -1,0 +1,154 @@
+#include "base/math.h"
+
+#include <cassert>
+#include <cstdint>
+
+namespace gaitpad {
+namespace {
+
+// Polynomials on [-pi/4, pi/4], the classic minimax ones of Sun's fdlibm (k_sin.c, k_cos.c).
+double sin_kernel(double x) noexcept {
+  const double z = x * x;
+  const double p = 8.33333333332248946124e-03 +
+                   z * (-1.98412698298579493134e-04 +
+                        z * (2.75573137070700676789e-06 +
+                             z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
+  return x + x * z * (-1.66666666666666324348e-01 + z * p);
+}
+
+double cos_kernel(double x) noexcept {
+  const double z = x * x;
+  const double p = 4.16666666666666019037e-02 +
+                   z * (-1.38888888888741095749e-03 +
+                        z * (2.48015872894767294178e-05 +
+                             z * (-2.75573143513906633035e-07 +
+                                  z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11))));
+  return 1.0 - 0.5 * z + z * z * p;
+}
+
+// atan on [0, 7/16] (fdlibm s_atan.c).
+double atan_kernel(double x) noexcept {
+  const double z = x * x, w = z * z;
+  const double s1 =
+      z * (3.33333333333329318027e-01 +
+           w * (1.42857142725034663711e-01 +
+                w * (9.09088713343650656196e-02 +
+                     w * (6.66107313738753120669e-02 +
+                          w * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02)))));
+  const double s2 = w * (-1.99999999998764832476e-01 +
+                         w * (-1.11111104054623557880e-01 +
+                              w * (-7.69187620504482999495e-02 +
+                                   w * (-5.83357013379057348645e-02 +
+                                        w * -3.65315727442169155270e-02))));
+  return x - x * (s1 + s2);
+}
+
+// atan for x >= 0: reduced by atan x = atan c + atan((x - c) / (1 + c x)).
+double atan_positive(double x) noexcept {
+  if (x < 0.4375) return atan_kernel(x);
+  if (x < 0.6875) return 4.63647609000806093515e-01 + atan_kernel((2.0 * x - 1.0) / (2.0 + x));
+  if (x < 1.1875) return 7.85398163397448278999e-01 + atan_kernel((x - 1.0) / (x + 1.0));
+  if (x < 2.4375) return 9.82793723247329054082e-01 + atan_kernel((x - 1.5) / (1.0 + 1.5 * x));
+  return 1.57079632679489655800e+00 - atan_kernel(1.0 / x);
+}
+
+}  // namespace
+
+SinCos sin_cos(double angle_rad) noexcept {
+  // Cody-Waite: pi/2 in three parts of 33 bits, so that n * part is exact for |n| < 2^20.
+  constexpr double kTwoOverPi = 6.36619772367581382433e-01;
+  constexpr double kPart1 = 1.57079632673412561417e+00;
+  constexpr double kPart2 = 6.07710050630396597660e-11;
+  constexpr double kPart3 = 2.02226624879595063154e-21;
+  if (!(std::abs(angle_rad) < 1e6)) return {0.0, 1.0};  // never met; bounded also for NaN
+  const double scaled = angle_rad * kTwoOverPi;
+  const auto n = static_cast<std::int64_t>(scaled + (scaled < 0.0 ? -0.5 : 0.5));
+  const double k = static_cast<double>(n);
+  const double x = ((angle_rad - k * kPart1) - k * kPart2) - k * kPart3;
+  const double s = sin_kernel(x), c = cos_kernel(x);
+  switch (n & 3) {
+    case 0: return {s, c};
+    case 1: return {c, -s};
+    case 2: return {-s, -c};
+    default: return {-c, s};
+  }
+}
+
+double atan2(double y, double x) noexcept {
+  const double ax = std::abs(x), ay = std::abs(y);
+  if (ax == 0.0 && ay == 0.0) return 0.0;
+  double a = ax > 0.0 ? atan_positive(ay / ax) : kPi / 2.0;
+  if (x < 0.0) a = kPi - a;
+  return y < 0.0 ? -a : a;
+}
+
+double acos(double x) noexcept {
+  const double c = std::clamp(x, -1.0, 1.0);
+  return gaitpad::atan2(std::sqrt((1.0 - c) * (1.0 + c)), c);
+}
+
+double wrapped(double angle_rad) noexcept {
+  const double turns = std::floor((angle_rad + kPi) / (2.0 * kPi));
+  return angle_rad - turns * 2.0 * kPi;
+}
+
+quat rotation_about(const vec3& unit_axis, double angle_rad) noexcept {
+  const SinCos h = sin_cos(0.5 * angle_rad);
+  return quat(h.cos, unit_axis.x * h.sin, unit_axis.y * h.sin, unit_axis.z * h.sin);
+}
+quat rotation_x(double angle_rad) noexcept {
+  const SinCos h = sin_cos(0.5 * angle_rad);
+  return quat(h.cos, h.sin, 0.0, 0.0);
+}
+quat rotation_y(double angle_rad) noexcept {
+  const SinCos h = sin_cos(0.5 * angle_rad);
+  return quat(h.cos, 0.0, h.sin, 0.0);
+}
+quat rotation_z(double angle_rad) noexcept {
+  const SinCos h = sin_cos(0.5 * angle_rad);
+  return quat(h.cos, 0.0, 0.0, h.sin);
+}
+
+quat rotation_between(const vec3& from, const vec3& to) noexcept {
+  const double c = glm::dot(from, to);
+  if (c < -0.999999) {  // opposite: half a turn about any axis across `from`
+    const vec3 side = std::abs(from.x) < 0.9 ? kLeft : kUp;
+    const vec3 axis = glm::normalize(glm::cross(from, side));
+    return quat(0.0, axis.x, axis.y, axis.z);
+  }
+  const vec3 n = glm::cross(from, to);
+  return glm::normalize(quat(1.0 + c, n.x, n.y, n.z));
+}
+
+vec3 rotation_vector(const quat& q) noexcept {
+  const quat p = q.w < 0.0 ? -q : q;
+  const vec3 v(p.x, p.y, p.z);
+  const double s = glm::length(v);
+  if (s < 1e-12) return 2.0 * v;
+  return v * (2.0 * gaitpad::atan2(s, p.w) / s);
+}
+
+quat from_rotation_vector(const vec3& v) noexcept {
+  const double angle = glm::length(v);
+  if (angle < 1e-12) return glm::normalize(quat(1.0, 0.5 * v.x, 0.5 * v.y, 0.5 * v.z));
+  return rotation_about(v / angle, angle);
+}
+
+quat from_axes(const vec3& x, const vec3& y, const vec3& z) noexcept {
+  // Shepperd's method: divide by the largest component. (glm::quat_cast does the same; written out
+  // so that the order of operations is ours.)
+  const double t = x.x + y.y + z.z;
+  quat q;
+  if (t > 0.0) {
+    q = quat(1.0 + t, y.z - z.y, z.x - x.z, x.y - y.x);
+  } else if (x.x > y.y && x.x > z.z) {
+    q = quat(y.z - z.y, 1.0 + x.x - y.y - z.z, x.y + y.x, z.x + x.z);
+  } else if (y.y > z.z) {
+    q = quat(z.x - x.z, x.y + y.x, 1.0 - x.x + y.y - z.z, y.z + z.y);
+  } else {
+    q = quat(x.y - y.x, z.x + x.z, y.z + z.y, 1.0 - x.x - y.y + z.z);
+  }
+  return glm::normalize(q);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,66 @@
+// Vectors, quaternions and the few transcendental functions of the program.
+// Everything is double: a character that has walked 200 m still has its feet nailed to 0.1 mm.
+// sin, cos and atan2 are our own, because libm's last bits differ between compilers, versions and
+// CPUs, and a replay must give the same bits everywhere (only + - * / and sqrt are exact in IEEE 754).
+// GLM_FORCE_CTOR_INIT stays undefined: with it GLM types are not trivially copyable.
+#pragma once
+#define GLM_FORCE_EXPLICIT_CTOR
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+namespace gaitpad {
+
+using vec2 = glm::dvec2;
+using vec3 = glm::dvec3;
+using mat3 = glm::dmat3;
+using quat = glm::dquat;
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kDegree = kPi / 180.0;             // radians
+inline const quat kIdentity = quat(1.0, 0.0, 0.0, 0.0);    // w, x, y, z
+inline const vec3 kLeft = vec3(1.0, 0.0, 0.0);             // world axes: x to the walker's left at
+inline const vec3 kUp = vec3(0.0, 1.0, 0.0);               // heading 0, y up,
+inline const vec3 kForward = vec3(0.0, 0.0, 1.0);          // z forward
+
+struct SinCos {
+  double sin, cos;
+};
+// Within 1 ulp or so of the true values for |angle| < 1e5 rad.
+SinCos sin_cos(double angle_rad) noexcept;
+double atan2(double y, double x) noexcept;
+double acos(double x) noexcept;  // argument clamped to [-1, 1]
+
+// The same angle in (-pi, pi].
+double wrapped(double angle_rad) noexcept;
+
+quat rotation_about(const vec3& unit_axis, double angle_rad) noexcept;
+quat rotation_x(double angle_rad) noexcept;
+quat rotation_y(double angle_rad) noexcept;
+quat rotation_z(double angle_rad) noexcept;
+// The smallest rotation that turns unit vector `from` to unit vector `to`.
+quat rotation_between(const vec3& from, const vec3& to) noexcept;
+// Axis times angle, angle in [0, pi], and back.
+vec3 rotation_vector(const quat& q) noexcept;
+quat from_rotation_vector(const vec3& v) noexcept;
+// Rotation whose columns are the images of x, y, z (orthonormal, right-handed).
+quat from_axes(const vec3& x, const vec3& y, const vec3& z) noexcept;
+
+// Unit direction on the ground of a heading: 0 along +z, positive to the left (+x).
+inline vec3 heading_direction(double heading_rad) noexcept {
+  const SinCos s = sin_cos(heading_rad);
+  return vec3(s.sin, 0.0, s.cos);
+}
+// Heading of a direction's horizontal part.
+inline double heading_of(const vec3& direction) noexcept { return atan2(direction.x, direction.z); }
+
+// 0 at x <= a, 1 at x >= b, with zero slope at both ends (cubic).
+inline double smoothstep(double a, double b, double x) noexcept {
+  const double u = std::clamp((x - a) / (b - a), 0.0, 1.0);
+  return u * u * (3.0 - 2.0 * u);
+}
+inline double mix(double a, double b, double t) noexcept { return a + (b - a) * t; }
+
+}  // namespace gaitpad

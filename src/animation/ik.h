@@ -35,13 +35,24 @@ using IkAngles = std::array<double, kMaxIkDofs>;
 
 enum class IkStatus : unsigned char {
   converged,
-  unreachable,  // best pose within the limits returned, error_m says how far off
-  not_finite,   // a NaN or infinity came in (or, in paper mode, out): angles are the ones given
+  unreachable,  // not within the tolerance: error_m says how far off the returned pose is
+  singular,     // paper mode: J J^T had no inverse; the last pose before it is returned
+  not_finite,   // a NaN, an infinity or a goal too far to square came in: the angles are untouched
 };
 struct IkResult {
   IkStatus status = IkStatus::converged;
   int iterations = 0;
-  double error_m = 0.0;  // root of the summed squares over all rows
+  double error_m = 0.0;  // root of the summed squares over all rows; infinite for not_finite
+  int halvings = 0;      // paper mode: of step 5, over all iterations
+  int tries = 1;         // robust mode: starts used, the given one included
+};
+
+// The poses that a solve went through: row k is the pose after k iterations, row 0 the start and the
+// last row the answer. Rows beyond the spans' length are dropped.
+struct IkTrace {
+  std::span<IkAngles> angles_rad;
+  std::span<double> error_m;
+  int rows = 0;
 };
 
 // Steps 1-7 to the letter with raw weights: theta += W J^T (J J^T)^-1 dX; halving of dX in step 5;
@@ -53,21 +64,27 @@ struct PaperOptions {
   int max_halvings = 60;
 };
 IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
-                     IkAngles& angles_rad) noexcept;
+                     IkAngles& angles_rad, IkTrace* trace = nullptr) noexcept;
 // One pass of steps 1-6 (for traces and tests): the error before it.
 double paper_iteration(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
                        IkAngles& angles_rad) noexcept;
 
 // theta += W J^T (J W J^T + l^2 I)^-1 dX: the same family of poses, quadratic convergence and no
-// dependence on the weights' scale. Joint limits with freezing, capped steps, best pose kept.
+// dependence on the weights' scale. l grows with the error, so steps stay small near singular poses
+// and far from the goal, and die out in neither. Angles out are always inside their limits, also when
+// the ones given were not; a DOF at its limit is frozen (its column leaves the step, which is solved
+// again) until a step points inwards. The best pose is kept.
 struct RobustOptions {
   double tolerance_m = 1e-6;
-  double damping = 1e-5;        // l, metres: grows by itself near singular poses
-  double max_step_rad = 0.3;    // per DOF and iteration
-  int max_iterations = 50;
+  double damping = 1e-5;      // the least l, metres
+  double max_step_rad = 0.3;  // per DOF and iteration
+  int max_iterations = 150;   // of all tries together; a further start counts as one
+  // Starts: the given one and, only if it fails, others spread through the limits by a fixed table.
+  // 1: never jumps to another branch and costs least when a goal is out of reach.
+  int max_tries = 9;
 };
 IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows, const RobustOptions& options,
-                      IkAngles& angles_rad) noexcept;
+                      IkAngles& angles_rad, IkTrace* trace = nullptr) noexcept;
 
 // Eq. (1): origin and rotation of the last frame.
 struct IkFrame {

@@ -13,4 +13,7 @@ inline constexpr Side other(Side s) noexcept { return s == kLeftSide ? kRightSid
 enum LegDof : int { kHipX, kHipZ, kHipY, kKneeX, kAnkleX, kAnkleZ, kAnkleY, kLegDofs };
 using LegAngles = std::array<double, kLegDofs>;
 
+// Thigh + shank of the adult that constants given in metres and seconds are for.
+inline constexpr double kReferenceLeg_m = 0.84;
+
 }  // namespace gaitpad

@@ -1,0 +1,96 @@
+// The animation module: a character that walks where the gait parameters say.
+// Meredith & Maddock 2005, section 3.3: the two-stage cycle of Table I, feet along the flight paths of
+// the data, legs posed by weighted half-Jacobian IK, the rest of the body from the data by a time-warp.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "animation/walk_model.h"
+#include "control/gait_params.h"
+
+namespace gaitpad {
+
+enum class IkMode : std::uint8_t { paper, robust };
+enum class Stage : std::uint8_t {
+  idle,    // both feet planted
+  flight,  // Table I (a): one heel flies, the other foot's toe is planted
+  roll,    // Table I (b): the landed heel and the other foot's toe are planted
+};
+
+// What one tick did, for export, tests and panels. World frame: y up, floor 0, heading 0 along +z.
+struct WalkFrame {
+  Stage stage = Stage::idle;
+  Side swing = kLeftSide;    // flight: the flying foot; roll: the foot that has just landed
+  double heading_rad = 0.0;  // not wrapped, positive to the left
+  double turn_rate_rad_s = 0.0;
+  double speed_m_s = 0.0;  // (left + right step) / cycle time of the running cycle; 0 when idle
+  vec3 pelvis_m{0.0};
+  std::array<double, 2> stride_m{};  // length in force for that foot's step
+  std::array<bool, 2> heel_planted{true, true}, toe_planted{true, true};
+  std::array<vec3, 2> heel_m{}, toe_m{};
+  std::array<int, 2> ik_iterations{};
+  std::array<double, 2> ik_error_m{};
+  std::array<bool, 2> ik_failed{};
+  std::array<int, 2> steps{};  // landings so far
+};
+
+enum class FootMode : std::uint8_t { support, flight, roll };
+
+// Where a foot is to be: one of its points on a place, its direction and its pitch.
+struct FootPose {
+  vec3 heel_m{0.0}, toe_m{0.0};  // world
+  double yaw_rad = 0.0;          // about the vertical, 0: as in the standing pose at heading 0
+  double pitch_rad = 0.0;        // of the heel-toe line, toe down positive, 0: flat
+  double toe_rad = 0.0;          // toe joint
+};
+
+struct FootState {
+  FootMode mode = FootMode::support;
+  FootPose pose;
+  vec3 heel_anchor_m{0.0}, toe_anchor_m{0.0};  // where they were planted last
+  std::array<vec3, 2> last_heel_m{};           // one and two ticks ago
+  std::array<double, 2> last_pitch_rad{};
+  Fade pitch_fade;          // over the running mode, argument in ticks
+  int mode_ticks = 0;       // since the mode began
+  std::array<double, 2> reach_rad{};  // pitch beyond the plan, one and two ticks ago
+  vec3 lift_m{0.0}, lift_slope_m{0.0};  // heel at lift-off and its slope per flight
+  double lift_yaw_rad = 0.0;
+  LegAngles anchor_rad{};   // even pose when the mode began: what stiff joints hold on to
+};
+
+// Plain, trivially copyable: all that a walk remembers.
+struct WalkState {
+  WalkFrame frame;
+  // Clock. A step is a roll and the flight after it; phases count from the right foot's strike.
+  Stage stage = Stage::idle;
+  Side swing = kLeftSide;
+  int tick = 0, stage_ticks = 1;  // in the stage
+  int roll_ticks = 0, flight_ticks = 0;
+  int last_step_ticks = 0;        // of the step before
+  bool closing = false;           // the running step brings the feet together
+  bool started = false;
+  double phase = 0.0, phase_rate = 0.0;  // per tick
+  double stage_phase = 0.0;              // where the running stage began
+  // Smoothed parameters.
+  std::array<Damped<double>, 2> length_m, flight_height;
+  std::array<double, 2> time_s{};
+  Damped<double> turn_rate, amplitude, bounce, sway, pace;  // pace: step length over the data's
+  std::array<std::array<Damped<double>, kLegDofs>, 2> weight;
+  // Path.
+  double heading_rad = 0.0;
+  vec3 hips_m{0.0}, hips_velocity_m_s{0.0};  // on the ground, without the data's oscillations
+  vec3 landing_m{0.0};
+  double landing_heading_rad = 0.0;
+  std::array<FootState, 2> foot;
+  std::array<LegAngles, 2> even_rad{}, angles_rad{};
+};
+
+// A character standing at `place_m` on the floor, facing +z, and its pose.
+WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept;
+
+// One tick of dt_s seconds (a constant of the run). Total: never fails; what the IK could not reach
+// is flagged in state.frame.
+void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
+             WalkState& state, Pose& pose) noexcept;
+
+}  // namespace gaitpad

@@ -1,0 +1,203 @@
+#include "animation/walk_parts.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kClearance_m = 0.012;      // least toe clearance in flight, at the reference leg
+constexpr double kToeUpAtStrike_m = 0.05;   // toe's height over its rest when the heel strikes
+constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
+constexpr double kReachOnToe = 0.993;       // of the leg: further away, the foot rises on its toe
+constexpr double kSoftPitch = 8.0 * kDegree;
+constexpr double kMaxPitch = 75.0 * kDegree;
+constexpr double kRollEnd = 0.95;           // of the roll: the toe is down
+constexpr double kLiftFade = 0.5;           // of the flight: what the lift-off brought has faded
+
+double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
+
+vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
+  return foot_rotation(leg, pose) * (leg.model.toe_m - leg.model.heel_m);
+}
+
+// Scale of the data's pitch: smaller steps roll less, a lame foot rises less.
+double pitch_scale(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  const double r = pace(model, state, side);
+  return state.amplitude.x * std::min(1.2, 0.25 + 0.75 * r);
+}
+
+double support_pitch(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  if (state.stage == Stage::idle || !state.started || state.closing) {
+    const bool leaves = state.started && state.closing && side == step_foot(state);
+    if (!leaves) return 0.0;
+  }
+  const double own = own_phase(model, state, side);
+  const double gate = smoothstep(kRiseBegin, kRiseEnd, own);
+  const double height = std::min(1.0, state.flight_height[side].x);
+  const double pitch = std::max(0.0, model.leg[side].pitch_rad.at(own));
+  return gate * height * pitch_scale(model, state, side) * pitch;
+}
+
+double flight_pitch(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
+  const LegBuild& leg = model.leg[side];
+  const double scale = pitch_scale(model, state, side);
+  const double own = leg.toe_off + u * (1.0 - leg.toe_off);
+  const double at_strike = scale * leg.pitch_rad.at(1.0);
+  const double wanted = -scale * asin(kToeUpAtStrike_m * model.size / leg.foot_m);
+  return scale * leg.pitch_rad.at(own) +
+         std::min(0.0, wanted - at_strike) * smoothstep(0.4, 1.0, u);
+}
+
+vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
+  const LegBuild& leg = model.leg[side];
+  const FootState& foot = state.foot[side];
+  const vec3 way = state.landing_m - foot.lift_m;
+  const FlightCurve& s = leg.flight.progress;
+  vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
+           way * s.end_slope() * h11(u);
+  const double r = pace(model, state, side);
+  const double k = state.flight_height[side].x * std::min(1.1, 0.35 + 0.65 * r);
+  const FlightCurve& h = leg.flight.height_m;
+  const Fade lift = {foot.lift_m.y - k * h.at(0.0), foot.lift_slope_m.y - k * h.start_slope(),
+                     kLiftFade};
+  p.y = std::max(0.0, k * h.at(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
+  return p;
+}
+
+// Toes stay on the floor while the foot rises over them and straighten after the lift.
+double toe_angle(const LegBuild& leg, const FootPose& pose, double u) noexcept {
+  const double bend = -std::max(0.0, pose.pitch_rad) * (1.0 - smoothstep(0.0, 0.6, u));
+  if (leg.toe_end_m < 1e-6) return bend;
+  const double room = pose.toe_m.y - leg.model.toe_end_rest_m;
+  const double lowest = leg.toe_end_elevation_rad + asin(std::clamp(room / leg.toe_end_m, -1.0, 1.0));
+  const double width = 10.0 * kDegree * smoothstep(0.0, 0.3, u);
+  return soft_min(bend, lowest - pose.pitch_rad, std::max(1e-9, width));
+}
+
+// The pitch at which the ankle, turning about the planted toe, is as far from the hip as the leg
+// reaches: P cos + Q sin = K in the foot's own vertical plane.
+double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m) noexcept {
+  const vec3 d = rotation_y(-pose.yaw_rad) * (hip_m - pose.toe_m), c = -leg.model.toe_m;
+  const double df = glm::dot(d, leg.forward), cf = glm::dot(c, leg.forward);
+  const double ds = glm::dot(d, leg.side), cs = glm::dot(c, leg.side);
+  const double reach = kReachOnToe * leg.model.length_m();
+  const double p = df * cf + d.y * c.y, q = df * c.y - d.y * cf;
+  const double k = 0.5 * (glm::dot(d, d) + glm::dot(c, c) - reach * reach) - ds * cs;
+  const double m = std::sqrt(p * p + q * q);
+  if (m < 1e-9) return 0.0;
+  return std::min(kMaxPitch, atan2(q, p) - acos(k / m));
+}
+
+}  // namespace
+
+quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
+  return rotation_y(pose.yaw_rad) * rotation_about(leg.side, pose.pitch_rad);
+}
+
+double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noexcept {
+  const double low = (leg.model.toe_rest_m + clearance_m - heel_m) / leg.foot_m;
+  return leg.elevation_rad - asin(std::clamp(low, -1.0, 1.0));
+}
+
+void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode mode) noexcept {
+  pose.pitch_rad = pitch_rad;
+  const vec3 line = heel_to_toe(leg, pose);
+  if (mode == FootMode::support) {
+    pose.heel_m = pose.toe_m - line;
+  } else {
+    pose.toe_m = pose.heel_m + line;
+  }
+}
+
+void plan_foot(const WalkModel& model, WalkState& state, Side side) noexcept {
+  const LegBuild& leg = model.leg[side];
+  FootState& foot = state.foot[side];
+  const double fade = foot.pitch_fade.at(foot.mode_ticks);
+  if (foot.mode == FootMode::support) {
+    foot.pose.toe_m = foot.toe_anchor_m;
+    // With what the reach asked for last, run on: the hips' height and the reach depend on each other.
+    const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
+    set_pitch(leg, support_pitch(model, state, side) + fade + reach, foot.pose, foot.mode);
+    foot.pose.toe_rad = toe_angle(leg, foot.pose, 0.0);
+  } else if (foot.mode == FootMode::roll) {
+    foot.pose.heel_m = foot.heel_anchor_m;
+    set_pitch(leg, fade, foot.pose, foot.mode);
+    foot.pose.toe_rad = toe_angle(leg, foot.pose, 1.0);
+  } else {
+    const double u = flight_progress(state);
+    foot.pose.heel_m = flight_heel(model, state, side, u);
+    const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
+    foot.pose.yaw_rad = foot.lift_yaw_rad + turn * (u * u * u * (10.0 - 15.0 * u + 6.0 * u * u));
+    const double open = smoothstep(0.0, 0.25, u) * (1.0 - smoothstep(0.75, 1.0, u));
+    const double limit = highest_pitch(leg, foot.pose.heel_m.y, kClearance_m * model.size * open);
+    const double pitch = flight_pitch(model, state, side, u) + fade;
+    set_pitch(leg, soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open)), foot.pose, foot.mode);
+    foot.pose.toe_rad = toe_angle(leg, foot.pose, u);
+  }
+}
+
+void reach_with_toe(const WalkModel& model, WalkState& state, Side side, const vec3& hip_m) noexcept {
+  FootState& foot = state.foot[side];
+  if (foot.mode != FootMode::support) return;
+  const LegBuild& leg = model.leg[side];
+  const double planned = support_pitch(model, state, side) + foot.pitch_fade.at(foot.mode_ticks);
+  const double gate = state.stage == Stage::idle
+                          ? 0.0
+                          : smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));
+  const double pitch =
+      gate == 0.0 ? planned : mix(planned, soft_max(planned, pitch_in_reach(leg, foot.pose, hip_m),
+                                  std::clamp(0.5 * planned, 1e-3, kSoftPitch)), gate);
+  foot.reach_rad = {pitch - planned, foot.reach_rad[0]};
+  set_pitch(leg, pitch, foot.pose, foot.mode);
+  foot.pose.toe_rad = toe_angle(leg, foot.pose, 0.0);
+}
+void remember_foot(FootState& foot) noexcept {
+  foot.last_heel_m = {foot.pose.heel_m, foot.last_heel_m[0]};
+  foot.last_pitch_rad = {foot.pose.pitch_rad, foot.last_pitch_rad[0]};
+}
+
+void begin_support(FootState& foot, const LegAngles& even_rad) noexcept {
+  foot.mode = FootMode::support;
+  foot.mode_ticks = 0;
+  foot.toe_anchor_m = foot.pose.toe_m;
+  foot.pitch_fade = {};
+  foot.reach_rad = {};
+  foot.anchor_rad = even_rad;
+}
+
+void begin_flight(const WalkModel& model, WalkState& state, Side side) noexcept {
+  FootState& foot = state.foot[side];
+  const double ticks = state.stage_ticks;
+  foot.mode = FootMode::flight;
+  foot.mode_ticks = 0;
+  foot.lift_m = foot.pose.heel_m;
+  foot.lift_slope_m = end_slope(foot.last_heel_m[1], foot.last_heel_m[0], foot.pose.heel_m) * ticks;
+  foot.lift_yaw_rad = foot.pose.yaw_rad;
+  foot.anchor_rad = state.even_rad[side];
+  const double rate = end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], foot.pose.pitch_rad);
+  const double plan = flight_pitch(model, state, side, 0.0);
+  const double plan_rate = (flight_pitch(model, state, side, 1.0 / ticks) - plan);
+  foot.pitch_fade = {foot.pose.pitch_rad - plan, rate - plan_rate, kLiftFade * ticks};
+}
+
+void begin_roll(WalkState& state, Side side) noexcept {
+  FootState& foot = state.foot[side];
+  const double rate = end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], foot.pose.pitch_rad);
+  foot.mode = FootMode::roll;
+  foot.mode_ticks = 0;
+  foot.heel_anchor_m = foot.pose.heel_m;
+  foot.anchor_rad = state.even_rad[side];
+  // A cubic that starts faster than 3 h / T would undershoot: the toe would go through the floor.
+  double ticks = kRollEnd * state.stage_ticks;
+  const double pitch = foot.pose.pitch_rad;
+  if (rate > 0.0) ticks = std::min(ticks, 2.9 * -pitch / rate);
+  foot.pitch_fade = {pitch, rate, std::max(4.0, ticks)};
+}
+
+void hold_pitch(const WalkModel& model, WalkState& state, Side side, int ticks) noexcept {
+  FootState& foot = state.foot[side];
+  if (foot.mode != FootMode::support) return;
+  foot.mode_ticks = 0;
+  foot.pitch_fade = {foot.pose.pitch_rad - support_pitch(model, state, side), 0.0,
+                     static_cast<double>(ticks)};
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,184 @@
+#include "animation/walk_parts.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
+constexpr double kSideLever_m = 0.1;          // third point of the foot, beside the end-effector
+constexpr double kEvenSpread = 1e-9;          // weights closer than this are even
+constexpr RobustOptions kRobust = {.tolerance_m = 1e-6};
+constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
+
+// The angles that the data show at this phase, fading to a stand.
+LegAngles reference(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  LegAngles angles;
+  for (int j = 0; j < kLegDofs; ++j) {
+    angles[j] = state.amplitude.x * model.reference_rad[side][j].at(state.phase);
+  }
+  angles[kKneeX] = std::max(angles[kKneeX], kLeastKnee);
+  return angles;
+}
+
+IkAngles padded(const LegAngles& angles) noexcept {
+  IkAngles all{};
+  std::copy(angles.begin(), angles.end(), all.begin());
+  return all;
+}
+LegAngles leg_angles(const IkAngles& all) noexcept {
+  LegAngles angles;
+  std::copy_n(all.begin(), kLegDofs, angles.begin());
+  return angles;
+}
+
+// Rows that put the whole foot: three of the end-effector, two of the foot's other end, one of a
+// point beside the end-effector. Directions are the foot's own axes, so every row is well conditioned
+// (the height of a steep foot's other end is not). The first three are the paper's half Jacobian.
+struct FootGoal {
+  std::array<IkRow, 6> rows;
+  std::span<const IkRow> effector() const noexcept { return {rows.data(), 3}; }
+  std::span<const IkRow> both_ends() const noexcept { return {rows.data(), 5}; }
+  std::span<const IkRow> all() const noexcept { return rows; }
+};
+
+enum class FootEnd { heel, toe };
+FootEnd end_effector(const FootState& foot) noexcept {  // Table I
+  return foot.mode == FootMode::support ? FootEnd::toe : FootEnd::heel;
+}
+
+FootGoal foot_goal(const LegBuild& leg, const FootState& foot, const Pelvis& pelvis,
+                   FootEnd end) noexcept {
+  const bool on_toe = end == FootEnd::toe;
+  const quat to_pelvis = glm::inverse(pelvis.rotation);
+  const quat rotation = to_pelvis * foot_rotation(leg, foot.pose);
+  const vec3 hip = pelvis.hip(leg);
+  const vec3 effector = to_pelvis * ((on_toe ? foot.pose.toe_m : foot.pose.heel_m) - hip);
+  const vec3 effector_point = on_toe ? leg.model.toe_m : leg.model.heel_m;
+  const vec3 other_point = on_toe ? leg.model.heel_m : leg.model.toe_m;
+  const vec3 line = glm::normalize(leg.model.toe_m - leg.model.heel_m);
+  const vec3 side = rotation * leg.side, along = rotation * line, across = glm::cross(along, side);
+  const vec3 other = effector + rotation * (other_point - effector_point);
+  const vec3 beside_point = effector_point + leg.side * kSideLever_m;
+  const vec3 beside = effector + side * kSideLever_m;
+  return {{IkRow{effector_point, side, glm::dot(side, effector)},
+           IkRow{effector_point, across, glm::dot(across, effector)},
+           IkRow{effector_point, along, glm::dot(along, effector)},
+           IkRow{other_point, side, glm::dot(side, other)},
+           IkRow{other_point, across, glm::dot(across, other)},
+           IkRow{beside_point, across, glm::dot(across, beside)}}};
+}
+
+// When weights may show: in mid-flight and in mid-support, fading out before the foot has to be
+// exactly where the next stage takes it over, so landing and lift-off places do not depend on them.
+double weight_share(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  const FootState& foot = state.foot[side];
+  if (foot.mode == FootMode::roll || state.stage == Stage::idle) return 0.0;
+  double p = flight_progress(state);
+  if (foot.mode == FootMode::support) {
+    const double begin = model.share[side == kRightSide ? 0 : 2];
+    p = (own_phase(model, state, side) - begin) / (model.leg[side].toe_off - begin);
+  }
+  return state.amplitude.x * smoothstep(0.0, 0.35, p) * (1.0 - smoothstep(0.5, 0.9, p));
+}
+
+double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, double yaw_rad, const IkFrame& end) noexcept {
+  const vec3 line = glm::inverse(rotation_y(yaw_rad)) *
+                    (pelvis.rotation * (end.rotation * (leg.model.toe_m - leg.model.heel_m)));
+  return leg.elevation_rad - atan2(line.y, glm::dot(line, leg.forward));
+}
+
+struct Solve {
+  int iterations = 0;
+  double error_m = 0.0;
+  bool failed = false;
+  void add(const IkResult& r) noexcept {
+    iterations += r.iterations;
+    error_m = r.error_m;
+    failed = r.status != IkStatus::converged;
+  }
+};
+
+// Weights of eq. (5): every joint follows the even pose's change since the stage began by its own
+// weight, the solver makes up the rest at the stage's end-effector; the pitch that comes out of it,
+// kept off the floor, becomes the foot's.
+void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, WalkState& state,
+             IkAngles& angles, Solve& solve) noexcept {
+  const LegBuild& leg = tick.model.leg[side];
+  FootState& foot = state.foot[side];
+  IkChain chain = leg.chain;
+  double largest = 1e-6;
+  for (int j = 0; j < kLegDofs; ++j) largest = std::max(largest, state.weight[side][j].x);
+  for (int j = 0; j < kLegDofs; ++j) {
+    const double w = std::clamp(state.weight[side][j].x / largest, 0.0, 1.0);
+    chain.dof[j].weight = w;
+    angles[j] += share * (1.0 - w) * (foot.anchor_rad[j] - angles[j]);
+  }
+  solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(), kRobust, angles));
+  const double free = foot_pitch(leg, pelvis, foot.pose.yaw_rad, end_frame(chain, angles));
+  const double planned = foot.pose.pitch_rad;
+  double pitch = planned + share * (free - planned);
+  const double soft = 6.0 * kDegree * share;
+  if (foot.mode == FootMode::support) {
+    pitch = soft_max(pitch, 0.0, std::min(soft, std::max(1e-9, planned)));
+  } else {
+    const double limit = highest_pitch(leg, foot.pose.heel_m.y, 0.006 * tick.model.size);
+    pitch = soft_min(pitch, std::max(limit, planned), std::max(1e-9, soft));
+  }
+  set_pitch(leg, pitch, foot.pose, foot.mode);
+  solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, FootEnd::heel).all(), kRobust, angles));
+}
+
+bool even(const WalkState& state, Side side) noexcept {
+  double low = 1e9, high = 0.0;
+  for (const Damped<double>& w : state.weight[side]) {
+    low = std::min(low, w.x);
+    high = std::max(high, w.x);
+  }
+  return high - low < kEvenSpread;
+}
+
+void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state, Solve& solve) noexcept {
+  const LegBuild& leg = tick.model.leg[side];
+  IkAngles angles = padded(reference(tick.model, state, side));
+  // Always from the heel: the swivel that the rows leave free must not jump when the effector changes.
+  const FootGoal goal = foot_goal(leg, state.foot[side], pelvis, FootEnd::heel);
+  solve.add(solve_robust(leg.chain, goal.all(), kRobust, angles));
+  state.even_rad[side] = leg_angles(angles);
+  const double share = weight_share(tick.model, state, side);
+  if (share > 0.0 && !even(state, side)) stiffen(tick, side, pelvis, share, state, angles, solve);
+  state.angles_rad[side] = leg_angles(angles);
+}
+
+// Steps 1-7 to the letter from the pose of the tick before, raw weights, the stage's end-effector
+// alone; in the roll the toe is a second position target.
+void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state, Solve& solve) noexcept {
+  const LegBuild& leg = tick.model.leg[side];
+  IkChain chain = leg.chain;
+  for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = state.weight[side][j].x;
+  IkAngles angles = padded(state.angles_rad[side]);
+  const FootGoal goal = foot_goal(leg, state.foot[side], pelvis, end_effector(state.foot[side]));
+  const bool roll = state.foot[side].mode == FootMode::roll;
+  solve.add(solve_paper(chain, roll ? goal.both_ends() : goal.effector(), kPaper, angles));
+  state.angles_rad[side] = state.even_rad[side] = leg_angles(angles);
+}
+
+}  // namespace
+
+void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis, WalkState& state) noexcept {
+  const LegBuild& leg = tick.model.leg[side];
+  Solve solve;
+  if (mode == IkMode::robust) {
+    pose_robust(tick, side, pelvis, state, solve);
+  } else {
+    pose_paper(tick, side, pelvis, state, solve);
+  }
+  const IkFrame end = end_frame(leg.chain, padded(state.angles_rad[side]));
+  const vec3 hip = pelvis.hip(leg);
+  WalkFrame& frame = state.frame;
+  frame.heel_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.heel_m);
+  frame.toe_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.toe_m);
+  frame.ik_iterations[side] = solve.iterations;
+  frame.ik_error_m[side] = solve.error_m;
+  frame.ik_failed[side] = solve.failed;
+}
+
+}  // namespace gaitpad

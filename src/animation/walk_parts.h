@@ -1,0 +1,60 @@
+// The parts of one walking tick, in the order in which walk.cpp calls them. Internal to the walk.
+#pragma once
+#include "animation/walk.h"
+
+namespace gaitpad {
+
+// --- walk_clock.cpp: smoothing, stages, phases -------------------------------------------------
+struct Tick {  // what does not change within a tick
+  const WalkModel& model;
+  const GaitParams& params;
+  double dt_s;
+};
+inline constexpr double kFreeze = 0.55;  // of the flight: from here the landing place stays
+inline constexpr Side rolling_foot(Side swing) noexcept { return other(swing); }
+
+// Smooths the parameters and starts a walk from standing when the parameters ask for one.
+void smooth_parameters(const Tick& tick, WalkState& state) noexcept;
+void advance_clock(const Tick& tick, WalkState& state) noexcept;
+// After the poses of the tick: a stage that is over hands on to the next one.
+void finish_stage(const Tick& tick, WalkState& state) noexcept;
+// Of the flight, 0 before it and in idle.
+double flight_progress(const WalkState& state) noexcept;
+int ticks_to_strike(const WalkState& state) noexcept;
+// The foot that flies in this step (also during the roll before its flight).
+Side step_foot(const WalkState& state) noexcept;
+// How far that foot's step goes compared with the data's.
+double pace(const WalkModel& model, const WalkState& state, Side side) noexcept;
+double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept;
+
+// --- walk_path.cpp: landing place, hips ---------------------------------------------------------
+void plan_landing(const Tick& tick, WalkState& state) noexcept;
+void advance_hips(const Tick& tick, WalkState& state) noexcept;
+struct Pelvis {
+  vec3 position_m{0.0};  // world
+  quat rotation = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation, world
+  vec3 hip(const LegBuild& leg) const noexcept { return position_m + rotation * leg.model.hip_m; }
+};
+// Place and rotation without the height; then the height within both legs' reach.
+Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept;
+double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvis& pelvis) noexcept;
+
+// --- walk_feet.cpp: where the feet are to be -----------------------------------------------------
+quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
+void plan_foot(const WalkModel& model, WalkState& state, Side side) noexcept;
+// A standing foot rises on its toe as far as the hips ask for it.
+void reach_with_toe(const WalkModel& model, WalkState& state, Side side, const vec3& hip_m) noexcept;
+// Pitch limits at the present place of the pivot: heel not below the floor, toe clear of it.
+void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode mode) noexcept;
+double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noexcept;
+// End of the tick: what the next tick's derivatives need.
+void remember_foot(FootState& foot) noexcept;
+void begin_support(FootState& foot, const LegAngles& even_rad) noexcept;
+void begin_flight(const WalkModel& model, WalkState& state, Side side) noexcept;
+void begin_roll(WalkState& state, Side side) noexcept;  // in the roll's stage
+void hold_pitch(const WalkModel& model, WalkState& state, Side side, int ticks) noexcept;
+
+// --- walk_legs.cpp: inverse kinematics ------------------------------------------------------------
+void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis, WalkState& state) noexcept;
+
+}  // namespace gaitpad

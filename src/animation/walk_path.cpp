@@ -1,0 +1,117 @@
+#include "animation/walk_parts.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
+constexpr double kReach = 0.998;         // of the leg: leaves the knee 7 degrees
+constexpr double kSoftReach_m = 0.052;    // at the reference leg
+
+double power(double base, int exponent) noexcept {
+  double result = 1.0;
+  for (int e = exponent; e > 0; e >>= 1, base *= base) {
+    if (e & 1) result *= base;
+  }
+  return result;
+}
+
+// The heading after n more ticks of a turn-rate filter whose goal stays: the filter is a linear
+// recurrence with the double eigenvalue q, so e_k = (e_0 + c k) q^k, and its sum has a closed form.
+double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
+  const double goal =
+      tick.params.walking && !state.closing ? tick.params.turn_rate_rad_s : 0.0;
+  const double w = tick.dt_s / (kTurnSmoothing * tick.model.time_scale), q = 1.0 / (1.0 + w);
+  const double e0 = state.turn_rate.x - goal;
+  if (e0 == 0.0 && state.turn_rate.v == 0.0) return state.heading_rad + goal * n * tick.dt_s;
+  const double e1 = e0 * (1.0 - w * w * q * q) + q * q * state.turn_rate.v * tick.dt_s;
+  const double c = e1 / q - e0, qn = power(q, n);
+  const double s0 = q * (1.0 - qn) / (1.0 - q);
+  const double s1 = q * (1.0 - (n + 1) * qn + n * qn * q) / ((1.0 - q) * (1.0 - q));
+  return state.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
+}
+
+double step_length(const WalkState& state, Side side) noexcept {
+  return state.closing ? 0.0 : state.length_m[side].x;
+}
+
+// beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
+double hips_share(const WalkModel& model) noexcept {
+  return ((1.0 - model.step_front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
+}
+
+// Mean speed of the hips between this step's strike and the one before, and the next one.
+double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
+  if (state.closing) return 0.0;
+  const Side swing = step_foot(state);
+  const double beta = hips_share(tick.model);
+  const double now = step_length(state, swing), before = state.frame.stride_m[other(swing)],
+               next = tick.params.walking ? state.length_m[other(swing)].x : 0.0;
+  const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
+  const double next_s = state.last_step_ticks > 0 ? state.last_step_ticks * tick.dt_s : this_s;
+  return 0.5 * (((1.0 - beta) * before + beta * now) / this_s +
+                ((1.0 - beta) * now + beta * next) / next_s);
+}
+
+}  // namespace
+
+void plan_landing(const Tick& tick, WalkState& state) noexcept {
+  if (state.stage == Stage::idle || !state.started) return;
+  if (flight_progress(state) > kFreeze) return;
+  const Side swing = step_foot(state), stand = other(swing);
+  const double heading = heading_ahead(tick, state, ticks_to_strike(state) + 1);
+  const vec3 forward = heading_direction(heading), left = glm::cross(kUp, forward);
+  const double width = tick.model.leg[swing].track_m - tick.model.leg[stand].track_m;
+  const double length = step_length(state, swing);
+  state.landing_heading_rad = heading;
+  state.landing_m = state.foot[stand].heel_anchor_m + forward * length + left * width;
+  state.frame.stride_m[swing] = length;
+}
+
+void advance_hips(const Tick& tick, WalkState& state) noexcept {
+  if (state.stage == Stage::idle || !state.started) {
+    state.hips_velocity_m_s = vec3(0.0);
+    return;
+  }
+  const WalkModel& model = tick.model;
+  const Side swing = step_foot(state), stand = other(swing);
+  const vec3 forward = heading_direction(state.landing_heading_rad), left = glm::cross(kUp, forward);
+  const double lead = model.rest_lead_m + hips_share(model) * state.frame.stride_m[swing];
+  const vec3 goal =
+      state.foot[stand].heel_anchor_m + forward * lead - left * model.leg[stand].track_m;
+  const vec3 velocity = forward * hips_speed_at_strike(tick, state);
+  const double remaining = (ticks_to_strike(state) + 1) * tick.dt_s;
+  approach(state.hips_m, state.hips_velocity_m_s, goal, velocity, remaining, tick.dt_s);
+}
+
+Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
+  const double a = state.amplitude.x, r = std::clamp(state.pace.x, 0.0, 1.0);
+  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
+  Pelvis pelvis;
+  pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(state.phase)) +
+                      forward * (a * r * model.surge_m.at(state.phase));
+  const double yaw = a * r * state.sway.x * model.yaw_rad.at(state.phase);
+  const vec3 tilt(model.tilt[0].at(state.phase), model.tilt[1].at(state.phase),
+                  model.tilt[2].at(state.phase));
+  pelvis.rotation = rotation_y(state.heading_rad + yaw) * from_rotation_vector(tilt * (a * r));
+  return pelvis;
+}
+
+double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvis& pelvis) noexcept {
+  const double r = state.pace.x, scale = state.amplitude.x * std::clamp(r * r, 0.0, 1.5);
+  double y = model.stand_m + scale * (model.mean_m - model.stand_m +
+                                      state.bounce.x * model.bounce_m.at(state.phase));
+  // The order of the legs must not depend on which one swings, or the sum would jump at the borders.
+  for (Side side : {kLeftSide, kRightSide}) {
+    const LegBuild& leg = model.leg[side];
+    const FootPose& foot = state.foot[side].pose;
+    const vec3 ankle = foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
+    const vec3 hip = pelvis.hip(leg);  // pelvis.position_m.y is 0 here
+    const double dx = hip.x - ankle.x, dz = hip.z - ankle.z;
+    const double reach = kReach * leg.model.length_m();
+    const double rise = std::sqrt(std::max(0.04 * reach * reach, reach * reach - dx * dx - dz * dz));
+    y = soft_min(y, ankle.y + rise - hip.y, kSoftReach_m * model.size);
+  }
+  return y;
+}
+
+}  // namespace gaitpad

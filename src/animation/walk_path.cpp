@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
 constexpr double kReach = 0.998;         // of the leg: leaves the knee 7 degrees
-constexpr double kSoftReach_m = 0.052;    // at the reference leg
+constexpr double kSoftReach_m = 0.057;    // at the reference leg
 
 double power(double base, int exponent) noexcept {
   double result = 1.0;

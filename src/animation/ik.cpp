@@ -19,8 +19,8 @@ inline void turn(vec3& y, vec3& z, const SinCos& s) noexcept {
   z = s.cos * z - s.sin * old;
 }
 
-// Turns about a unit axis that is given in the frame itself, by Rodrigues' formula; returns the axis
-// in the base frame. The usual axes cost a third of it.
+// Turns about a unit axis that is given in the frame itself, by Rodrigues' formula; returns the
+// axis in the base frame. The usual axes cost a third of it.
 inline vec3 turn_about(const vec3& a, const SinCos& s, Axes& f) noexcept {
   vec3 axis;
   if (a.x == 1.0) return axis = f.x, turn(f.y, f.z, s), axis;
@@ -96,8 +96,9 @@ IkFrame end_frame(const IkChain& chain, const IkAngles& angles_rad) noexcept {
   return {pose.end_m, from_axes(pose.x, pose.y, pose.z)};
 }
 
-void position_jacobian(const IkChain& chain, std::span<const IkRow> rows, const IkAngles& angles_rad,
-                       IkJacobian& jacobian, std::array<double, kMaxIkRows>& error_m) noexcept {
+void position_jacobian(const IkChain& chain, std::span<const IkRow> rows,
+                       const IkAngles& angles_rad, IkJacobian& jacobian,
+                       std::array<double, kMaxIkRows>& error_m) noexcept {
   IkPose pose;
   pose_chain(chain, angles_rad, pose);
   IkErrors errors;

@@ -40,9 +40,9 @@ bool invert(Square& a, int n) noexcept {
 
 struct Equations {
   int rows, dofs;
-  IkJacobian j;                                             // J
+  IkJacobian j;                                              // J
   std::array<std::array<double, kMaxIkRows>, kMaxIkDofs> p;  // J^+
-  Square left_over;                                         // I - J J^+
+  Square left_over;                                          // I - J J^+
   Rows dx;
 };
 
@@ -132,8 +132,8 @@ double pose_error(const IkChain& chain, std::span<const IkRow> rows,
 
 }  // namespace
 
-double paper_iteration(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
-                       IkAngles& angles_rad) noexcept {
+double paper_iteration(const IkChain& chain, std::span<const IkRow> rows,
+                       const PaperOptions& options, IkAngles& angles_rad) noexcept {
   return one_pass(chain, rows, options, angles_rad).error_m;
 }
 

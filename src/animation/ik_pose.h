@@ -1,4 +1,5 @@
-// One pose of an IK chain as screws, from which every Jacobian entry is one product. Internal to ik*.
+// One pose of an IK chain as screws, from which every Jacobian entry is one product. Internal to
+// ik*.
 #pragma once
 #include "animation/ik.h"
 

@@ -13,11 +13,11 @@ namespace {
 constexpr double kLeastDampingSquared = 1e-20;
 constexpr double kGrowth = 0.1;
 constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
-constexpr double kFarthest = 0.5;    // metres of dX that one step asks for at most
-constexpr int kPatience = 4;         // iterations that must gain, together,
-constexpr double kLeastGain = 0.05;  // this share of the error
-constexpr double kGainFrom = 0.1;    // or, if it is greater, of this many metres
-constexpr int kCandidates = 16;      // starts looked at before each further try
+constexpr double kFarthest = 0.5;     // metres of dX that one step asks for at most
+constexpr int kPatience = 6;          // iterations that must gain, together,
+constexpr double kLeastGain = 0.001;  // this share of the error
+constexpr double kGainFrom = 0.1;     // or, if it is greater, of this many metres
+constexpr int kCandidates = 16;       // starts looked at before each further try
 constexpr double kWorthAJump = 0.99;  // a later try replaces an earlier one only below this share
 
 // All that stays the same during a solve.
@@ -146,7 +146,8 @@ Try one_try(const Problem& p, const IkAngles& start, int max_iterations, IkTrace
 }
 
 // Start number k: a sequence that fills the box of the limits evenly (Weyl: multiples of an
-// irrational number per DOF, here square roots of primes). Without limits: half a turn to both sides.
+// irrational number per DOF, here square roots of primes). Without limits: half a turn to both
+// sides.
 IkAngles spread_start(const Problem& p, const IkAngles& given, int k) noexcept {
   static constexpr std::array<double, kMaxIkDofs> kIrrational = {
       0.41421356237309515, 0.73205080756887719, 0.23606797749978969, 0.64575131106459072,
@@ -229,8 +230,7 @@ IkResult refused() noexcept {
 }  // namespace
 
 IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
-                      const RobustOptions& options, IkAngles& angles_rad,
-                      IkTrace* trace) noexcept {
+                      const RobustOptions& options, IkAngles& angles_rad, IkTrace* trace) noexcept {
   assert(rows.size() <= kMaxIkRows);
   if (!finite_inputs(chain, angles_rad)) return refused();
   const Problem p{chain, rows, options, relative_weights(chain)};

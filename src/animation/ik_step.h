@@ -14,9 +14,8 @@ using Pair = double __attribute__((vector_size(16)));
 // f(0), f(1) ... with the index as a constant: unrolled on every compiler at -O2.
 template <int kCount, class F>
 inline void unrolled(F&& f) noexcept {
-  [&]<int... i>(std::integer_sequence<int, i...>) {
-    (f(std::integral_constant<int, i>{}), ...);
-  }(std::make_integer_sequence<int, kCount>{});
+  [&]<int... i>(std::integer_sequence<int, i...>) { (f(std::integral_constant<int, i>{}), ...); }
+  (std::make_integer_sequence<int, kCount>{});
 }
 
 // (J W J^T + l^2 I) y = b. kRows is even; where the number of rows is not, the last is all zero.
@@ -27,7 +26,7 @@ class IkStep {
 
   void set_columns(const IkPose& pose, std::span<const IkRow> rows, const IkErrors& errors,
                    int dofs) noexcept;
-  // The greater l^2 > 0, the less there is to check: every pivot is at least that.
+  // l^2 > 0: no pivot is less, so none is checked.
   void factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
   void solve(const Rows& b, Rows& y) const noexcept;
   // Row j of J^T times y, and b -= column j of J times an angle.
@@ -44,7 +43,8 @@ class IkStep {
   Rows reciprocal_;                  // 1 / D
 };
 
-// Entry = direction . (axis x (point - pivot)) = axis . (point x direction) + direction . (pivot x axis)
+// An entry is d . (a x (p - q)) for direction d, point p and an axis a through q, which is
+// a . (p x d) + d . (q x a).
 template <int kRows>
 void IkStep<kRows>::set_columns(const IkPose& pose, std::span<const IkRow> rows,
                                 const IkErrors& errors, int dofs) noexcept {

@@ -40,7 +40,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   const GaitCycle& cycle = model.cycle;
   pose.joint_count = static_cast<int>(cycle.skeleton.joints.size());
   sample_local(cycle, state.phase, pose);
-  const double a = std::clamp(state.amplitude.x, 0.0, 1.0);
+  const double a = presence(state);
   if (a < 1.0) {
     for (int j = 0; j < pose.joint_count; ++j) {
       const quat& rest = cycle.standing_local[j];
@@ -111,7 +111,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   advance_clock(tick, state);
   plan_landing(tick, state);
   advance_hips(tick, state);
-  for (Side side : {kLeftSide, kRightSide}) plan_foot(model, state, side);
+  for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, side);
   Pelvis pelvis = pelvis_over_ground(model, state);
   pelvis.position_m.y = pelvis_height(model, state, pelvis);
   for (Side side : {kLeftSide, kRightSide}) {

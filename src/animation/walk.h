@@ -54,7 +54,7 @@ struct FootState {
   int mode_ticks = 0;       // since the mode began
   std::array<double, 2> reach_rad{};  // pitch beyond the plan, one and two ticks ago
   vec3 lift_m{0.0}, lift_slope_m{0.0};  // heel at lift-off and its slope per flight
-  double lift_yaw_rad = 0.0;
+  double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // and its slope per flight
   LegAngles anchor_rad{};   // even pose when the mode began: what stiff joints hold on to
 };
 
@@ -82,7 +82,7 @@ struct WalkState {
   vec3 landing_m{0.0};
   double landing_heading_rad = 0.0;
   std::array<FootState, 2> foot;
-  std::array<LegAngles, 2> even_rad{}, angles_rad{};
+  std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};  // data's, IK even, IK weighted
 };
 
 // A character standing at `place_m` on the floor, facing +z, and its pose.

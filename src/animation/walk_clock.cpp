@@ -9,6 +9,7 @@ constexpr double kTurnSmoothing = 0.25;
 constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
+constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;    // rad/s: slower than this is straight ahead
 
 double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
@@ -104,6 +105,10 @@ double pace(const WalkModel& model, const WalkState& state, Side side) noexcept 
   return std::clamp(state.length_m[side].x / model.source_step_m, 0.0, 1.5);
 }
 
+double presence(const WalkState& state) noexcept {
+  return std::clamp(state.amplitude.x, 0.0, 1.0) * std::clamp(2.0 * state.pace.x, 0.0, 1.0);
+}
+
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept {
   const double p = state.phase - (side == kRightSide ? 0.0 : model.share[0] + model.share[1]);
   return p - std::floor(p);
@@ -113,7 +118,7 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
   const bool walking = params.walking && !state.closing;
-  if (state.stage == Stage::idle && params.walking) {
+  if (state.stage == Stage::idle && params.walking && presence(state) < kStillPresence) {
     for (int side : {0, 1}) state.time_s[side] = params.stride[side].time_s;
     begin_walk(tick, state);
   }
@@ -170,7 +175,7 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
     begin_support(state.foot[swing], state.even_rad[swing]);
     state.stage_phase = stage_end_phase(tick.model, state);
     begin_stage(Stage::flight, other(swing), state.flight_ticks, state);
-    begin_flight(tick.model, state, other(swing));
+    begin_flight(tick, state, other(swing));
   }
 }
 

@@ -7,9 +7,11 @@ constexpr double kClearance_m = 0.012;      // least toe clearance in flight, at
 constexpr double kToeUpAtStrike_m = 0.05;   // toe's height over its rest when the heel strikes
 constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
 constexpr double kReachOnToe = 0.993;       // of the leg: further away, the foot rises on its toe
-constexpr double kSoftPitch = 8.0 * kDegree;
-constexpr double kMaxPitch = 75.0 * kDegree;
+constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
+constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kRollEnd = 0.95;           // of the roll: the toe is down
+constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
+constexpr double kLameFade = 0.0;
 constexpr double kLiftFade = 0.5;           // of the flight: what the lift-off brought has faded
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
@@ -32,8 +34,9 @@ double support_pitch(const WalkModel& model, const WalkState& state, Side side) 
   const double own = own_phase(model, state, side);
   const double gate = smoothstep(kRiseBegin, kRiseEnd, own);
   const double height = std::min(1.0, state.flight_height[side].x);
-  const double pitch = std::max(0.0, model.leg[side].pitch_rad.at(own));
-  return gate * height * pitch_scale(model, state, side) * pitch;
+  const double pitch =
+      pitch_scale(model, state, side) * std::max(0.0, model.leg[side].pitch_rad.at(own));
+  return gate * height * soft_min(pitch, kMaxPlannedPitch, kWidePitch);
 }
 
 double flight_pitch(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
@@ -42,8 +45,19 @@ double flight_pitch(const WalkModel& model, const WalkState& state, Side side, d
   const double own = leg.toe_off + u * (1.0 - leg.toe_off);
   const double at_strike = scale * leg.pitch_rad.at(1.0);
   const double wanted = -scale * asin(kToeUpAtStrike_m * model.size / leg.foot_m);
-  return scale * leg.pitch_rad.at(own) +
+  return soft_min(scale * leg.pitch_rad.at(own), kMaxPlannedPitch, kWidePitch) +
          std::min(0.0, wanted - at_strike) * smoothstep(0.4, 1.0, u);
+}
+
+// A lame foot does not swing up with the push-off: what the lift brought fades sooner.
+double lift_share(const WalkState& state, Side side) noexcept {
+  return mix(kLameFade, 1.0, std::clamp(state.flight_height[side].x, 0.0, 1.0));
+}
+
+// In a turn the foot pivots on its planted toe as its heel rises.
+double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  if (state.stage == Stage::idle || !state.started) return 0.0;
+  return state.turn_rate.x * smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));
 }
 
 vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
@@ -53,11 +67,12 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   const FlightCurve& s = leg.flight.progress;
   vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
            way * s.end_slope() * h11(u);
-  const double r = pace(model, state, side);
+  // The pace of the longer step: a lame foot's height has a factor of its own.
+  const double r = std::max(pace(model, state, kLeftSide), pace(model, state, kRightSide));
   const double k = state.flight_height[side].x * std::min(1.1, 0.35 + 0.65 * r);
   const FlightCurve& h = leg.flight.height_m;
   const Fade lift = {foot.lift_m.y - k * h.at(0.0), foot.lift_slope_m.y - k * h.start_slope(),
-                     kLiftFade};
+                     kLiftFade * lift_share(state, side)};
   p.y = std::max(0.0, k * h.at(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
   return p;
 }
@@ -83,7 +98,7 @@ double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip
   const double k = 0.5 * (glm::dot(d, d) + glm::dot(c, c) - reach * reach) - ds * cs;
   const double m = std::sqrt(p * p + q * q);
   if (m < 1e-9) return 0.0;
-  return std::min(kMaxPitch, atan2(q, p) - acos(k / m));
+  return soft_min(atan2(q, p) - acos(k / m), kMaxPitch, kWidePitch);
 }
 
 }  // namespace
@@ -107,7 +122,8 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
   }
 }
 
-void plan_foot(const WalkModel& model, WalkState& state, Side side) noexcept {
+void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
+  const WalkModel& model = tick.model;
   const LegBuild& leg = model.leg[side];
   FootState& foot = state.foot[side];
   const double fade = foot.pitch_fade.at(foot.mode_ticks);
@@ -125,7 +141,7 @@ void plan_foot(const WalkModel& model, WalkState& state, Side side) noexcept {
     const double u = flight_progress(state);
     foot.pose.heel_m = flight_heel(model, state, side, u);
     const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
-    foot.pose.yaw_rad = foot.lift_yaw_rad + turn * (u * u * u * (10.0 - 15.0 * u + 6.0 * u * u));
+    foot.pose.yaw_rad = foot.lift_yaw_rad + turn * (1.0 - h00(u)) + foot.lift_turn_rad * h10(u);
     const double open = smoothstep(0.0, 0.25, u) * (1.0 - smoothstep(0.75, 1.0, u));
     const double limit = highest_pitch(leg, foot.pose.heel_m.y, kClearance_m * model.size * open);
     const double pitch = flight_pitch(model, state, side, u) + fade;
@@ -163,7 +179,8 @@ void begin_support(FootState& foot, const LegAngles& even_rad) noexcept {
   foot.anchor_rad = even_rad;
 }
 
-void begin_flight(const WalkModel& model, WalkState& state, Side side) noexcept {
+void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
+  const WalkModel& model = tick.model;
   FootState& foot = state.foot[side];
   const double ticks = state.stage_ticks;
   foot.mode = FootMode::flight;
@@ -171,11 +188,15 @@ void begin_flight(const WalkModel& model, WalkState& state, Side side) noexcept 
   foot.lift_m = foot.pose.heel_m;
   foot.lift_slope_m = end_slope(foot.last_heel_m[1], foot.last_heel_m[0], foot.pose.heel_m) * ticks;
   foot.lift_yaw_rad = foot.pose.yaw_rad;
+  foot.lift_turn_rad = pivot_rate(model, state, side) * tick.dt_s * ticks;
   foot.anchor_rad = state.even_rad[side];
   const double rate = end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], foot.pose.pitch_rad);
   const double plan = flight_pitch(model, state, side, 0.0);
   const double plan_rate = (flight_pitch(model, state, side, 1.0 / ticks) - plan);
-  foot.pitch_fade = {foot.pose.pitch_rad - plan, rate - plan_rate, kLiftFade * ticks};
+  // A cubic that starts with slope s and ends flat after n ticks swings out by 4/27 s n.
+  const double slope = rate - plan_rate;
+  const double longest = 27.0 / 4.0 * kMostOvershoot / std::max(1e-9, std::abs(slope));
+  foot.pitch_fade = {foot.pose.pitch_rad - plan, slope, std::min(kLiftFade * ticks, longest)};
 }
 
 void begin_roll(WalkState& state, Side side) noexcept {

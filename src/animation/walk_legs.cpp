@@ -4,6 +4,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
+constexpr double kLeak_per_s = 4.0;
 constexpr double kSideLever_m = 0.1;          // third point of the foot, beside the end-effector
 constexpr double kEvenSpread = 1e-9;          // weights closer than this are even
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6};
@@ -12,8 +13,9 @@ constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 // The angles that the data show at this phase, fading to a stand.
 LegAngles reference(const WalkModel& model, const WalkState& state, Side side) noexcept {
   LegAngles angles;
+  const double shown = presence(state);
   for (int j = 0; j < kLegDofs; ++j) {
-    angles[j] = state.amplitude.x * model.reference_rad[side][j].at(state.phase);
+    angles[j] = shown * model.reference_rad[side][j].at(state.phase);
   }
   angles[kKneeX] = std::max(angles[kKneeX], kLeastKnee);
   return angles;
@@ -115,7 +117,7 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
   solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(), kRobust, angles));
   const double free = foot_pitch(leg, pelvis, foot.pose.yaw_rad, end_frame(chain, angles));
   const double planned = foot.pose.pitch_rad;
-  double pitch = planned + share * (free - planned);
+  double pitch = free;
   const double soft = 6.0 * kDegree * share;
   if (foot.mode == FootMode::support) {
     pitch = soft_max(pitch, 0.0, std::min(soft, std::max(1e-9, planned)));
@@ -138,7 +140,15 @@ bool even(const WalkState& state, Side side) noexcept {
 
 void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state, Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
-  IkAngles angles = padded(reference(tick.model, state, side));
+  // The data's angles plus what the solver had to add a tick ago. That correction leaks away, so the
+  // swivel, which no row holds, is pulled to the data's and cannot drift.
+  const LegAngles data = reference(tick.model, state, side);
+  const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
+  IkAngles angles{};
+  for (int j = 0; j < kLegDofs; ++j) {
+    angles[j] = data[j] + keep * (state.even_rad[side][j] - state.data_rad[side][j]);
+  }
+  state.data_rad[side] = data;
   // Always from the heel: the swivel that the rows leave free must not jump when the effector changes.
   const FootGoal goal = foot_goal(leg, state.foot[side], pelvis, FootEnd::heel);
   solve.add(solve_robust(leg.chain, goal.all(), kRobust, angles));

@@ -7,8 +7,8 @@ namespace {
 
 // Joint limits of a walker in radians (hip flexion and dorsiflexion are negative): AAOS-type ranges,
 // dorsiflexion under load up to 38 degrees.
-constexpr std::array<double, kLegDofs> kMin = {-120, -45, -60, 1.0, -38, -40, -60};
-constexpr std::array<double, kLegDofs> kMax = {45, 45, 60, 150, 70, 40, 60};
+constexpr std::array<double, kLegDofs> kMin = {-120, -50, -70, 1.0, -40, -60, -80};
+constexpr std::array<double, kLegDofs> kMax = {60, 50, 70, 150, 75, 60, 80};
 constexpr double kMinRollShare = 0.11;  // of the cycle; shorter rolls of the data slap the toe down
 constexpr double kOscillation = 0.8;    // share of the fore-aft oscillation, which FK exaggerates
 

@@ -25,6 +25,8 @@ int ticks_to_strike(const WalkState& state) noexcept;
 Side step_foot(const WalkState& state) noexcept;
 // How far that foot's step goes compared with the data's.
 double pace(const WalkModel& model, const WalkState& state, Side side) noexcept;
+// How much of the data's oscillations and postures shows: none at rest, all from half its pace on.
+double presence(const WalkState& state) noexcept;
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept;
 
 // --- walk_path.cpp: landing place, hips ---------------------------------------------------------
@@ -41,7 +43,7 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvi
 
 // --- walk_feet.cpp: where the feet are to be -----------------------------------------------------
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
-void plan_foot(const WalkModel& model, WalkState& state, Side side) noexcept;
+void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept;
 // A standing foot rises on its toe as far as the hips ask for it.
 void reach_with_toe(const WalkModel& model, WalkState& state, Side side, const vec3& hip_m) noexcept;
 // Pitch limits at the present place of the pivot: heel not below the floor, toe clear of it.
@@ -50,7 +52,7 @@ double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noe
 // End of the tick: what the next tick's derivatives need.
 void remember_foot(FootState& foot) noexcept;
 void begin_support(FootState& foot, const LegAngles& even_rad) noexcept;
-void begin_flight(const WalkModel& model, WalkState& state, Side side) noexcept;
+void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
 void begin_roll(WalkState& state, Side side) noexcept;  // in the roll's stage
 void hold_pitch(const WalkModel& model, WalkState& state, Side side, int ticks) noexcept;
 

@@ -5,6 +5,7 @@ namespace {
 
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
 constexpr double kReach = 0.998;         // of the leg: leaves the knee 7 degrees
+constexpr double kLameDrop_m = 0.05;      // at the reference leg, for a foot that does not lift at all
 constexpr double kSoftReach_m = 0.057;    // at the reference leg
 
 double power(double base, int exponent) noexcept {
@@ -84,7 +85,7 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
 }
 
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
-  const double a = state.amplitude.x, r = std::clamp(state.pace.x, 0.0, 1.0);
+  const double a = presence(state), r = std::clamp(state.pace.x, 0.0, 1.0);
   const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
   Pelvis pelvis;
   pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(state.phase)) +
@@ -100,6 +101,9 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvi
   const double r = state.pace.x, scale = state.amplitude.x * std::clamp(r * r, 0.0, 1.5);
   double y = model.stand_m + scale * (model.mean_m - model.stand_m +
                                       state.bounce.x * model.bounce_m.at(state.phase));
+  // A lame foot hardly rises on its toe: the hips come down to it instead.
+  const double lame = 1.0 - std::min({1.0, state.flight_height[0].x, state.flight_height[1].x});
+  y -= kLameDrop_m * model.size * lame * state.amplitude.x;
   // The order of the legs must not depend on which one swings, or the sum would jump at the borders.
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];

@@ -83,7 +83,7 @@ double toe_angle(const LegBuild& leg, const FootPose& pose, double u) noexcept {
   if (leg.toe_end_m < 1e-6) return bend;
   const double room = pose.toe_m.y - leg.model.toe_end_rest_m;
   const double lowest = leg.toe_end_elevation_rad + asin(std::clamp(room / leg.toe_end_m, -1.0, 1.0));
-  const double width = 10.0 * kDegree * smoothstep(0.0, 0.3, u);
+  const double width = kSoftPitch * smoothstep(0.0, 0.3, u) * (1.0 - smoothstep(0.8, 1.0, u));
   return soft_min(bend, lowest - pose.pitch_rad, std::max(1e-9, width));
 }
 

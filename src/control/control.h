@@ -1,21 +1,37 @@
 // Stick and stylization state to gait parameters (Meredith & Maddock 2005, section 3.1).
 #pragma once
+#include <cmath>
+
 #include "control/gait_params.h"
 #include "control/style.h"
 #include "stick/stick.h"
 
 namespace gaitpad {
 
-// What a character can do at full deflection; lengths scale with its legs.
+// An adult with 0.84 m of leg at full deflection. Step length over cadence, the walk ratio, stays
+// the same at every speed (adults: 0.52 to 0.64 cm per step/min), so length = sqrt(60 s ratio
+// speed).
+inline constexpr double kMaxSpeed_m_s = 1.5;
+inline constexpr double kWalkRatio_m_min = 0.0058;  // metres per step a minute
+inline constexpr double kMaxStepTime_s = 1.1;       // slower walks shorten the step instead
+inline constexpr double kTurnInPlaceStepTime_s = 0.6;
+inline constexpr double kMaxTurnRate_rad_s = 1.0;
+inline constexpr double kFullFatigueLeaves = 0.4;  // of maximum speed and of maximum stride
+
+// What a character can do at full deflection.
 struct GaitLimits {
-  double max_speed_m_s = 1.6;
-  double max_step_m = 0.746;
-  double max_step_time_s = 1.1;
-  double max_turn_rate_rad_s = 1.0;
+  double max_speed_m_s = kMaxSpeed_m_s;
+  double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);
+  double max_step_time_s = kMaxStepTime_s;
+  double turn_step_time_s = kTurnInPlaceStepTime_s;  // of a turn in place, a closing step
+  double max_turn_rate_rad_s = kMaxTurnRate_rad_s;   // the same for all: side by side they stay so
 };
+// Lengths scale with the leg (the paper), speeds and times with its square root (equal Froude
+// number).
 GaitLimits gait_limits(double leg_length_m) noexcept;
 
-// Stateless: the walk smooths what changes between ticks. Only stick.left is read.
+// Stateless: the walk smooths what changes between ticks. Only stick.left is read. Backward
+// deflection counts as none; sideways alone turns in place.
 GaitParams gait_params(const Stick& stick, const Style& style, const GaitLimits& limits) noexcept;
 
 }  // namespace gaitpad

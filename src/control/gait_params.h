@@ -10,8 +10,8 @@ namespace gaitpad {
 
 // One foot's step, from its lift to its landing.
 struct StrideParams {
-  double length_m = 0.0;       // from the standing heel to the landing heel, along the heading
-  double time_s = 0.5;         // half a cycle at this foot's pace; its flight and roll take their share
+  double length_m = 0.0;  // from the standing heel to the landing heel, along the heading
+  double time_s = 0.5;    // half a cycle at this foot's pace; its flight and roll take their share
   double flight_height = 1.0;  // factor on the height that the data give
 };
 

@@ -1,4 +1,5 @@
-// The stylization state: what makes one motion many (Meredith & Maddock 2005, sections 3.1 and 3.3.3).
+// The stylization state: what makes one motion many (Meredith & Maddock 2005, sections 3.1
+// and 3.3.3).
 #pragma once
 #include <array>
 #include <string>

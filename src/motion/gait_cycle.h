@@ -1,10 +1,11 @@
 // One full stride of a walk, made periodic, with its events: the data module's one output format
 // (Meredith & Maddock 2005, section 3.2). Captured and procedural walks look the same from here on.
 //
-// Frames. The walk is seen in its own *travel frame*: x to the walker's left, y up with the floor at
-// 0, z along the direction of travel, moving with the walk's mean speed. Segment rotations are
+// Frames. The walk is seen in its own *travel frame*: x to the walker's left, y up with the floor
+// at 0, z along the direction of travel, moving with the walk's mean speed. Segment rotations are
 // counted from the *standing pose*: feet flat at their natural toe-out, legs straight and vertical,
-// pelvis in its mean orientation, facing +z. In the standing pose every segment rotation is identity.
+// pelvis in its mean orientation, facing +z. In the standing pose every segment rotation is
+// identity.
 //
 // Phase runs 0..1 from one heel strike of the right foot to the next.
 #pragma once
@@ -22,10 +23,10 @@ inline constexpr int kCycleSamples = 128;  // a cycle; sample i stands at phase 
 // The leg's build in the standing pose. Vectors in the standing pose's axes, metres.
 struct LegModel {
   LegJoints joints;
-  vec3 hip_m{0.0};             // from the pelvis joint to the hip joint (pelvis frame)
+  vec3 hip_m{0.0};                  // from the pelvis joint to the hip joint (pelvis frame)
   double thigh_m = 0, shank_m = 0;  // along -y
   vec3 heel_m{0.0}, toe_m{0.0};     // from the ankle joint (foot frame); heel_m.y = -ankle height
-  vec3 toe_end_m{0.0};              // from the toe joint (toe frame)
+  vec3 toe_end_m{0.0};              // from the toe joint (toe frame); 0 if they are one
   double toe_rest_m = 0, toe_end_rest_m = 0;  // height above the floor when standing
   // Standing rotation of each chain joint's own frame: joint world rotation = segment rotation *
   // standing rotation, seen with the walker facing +z. Order: hip, knee, ankle, toe.
@@ -35,8 +36,8 @@ struct LegModel {
 
 struct LegSample {
   LegAngles angles{};
-  double toe_x = 0.0;      // toe = foot Rx(toe_x); lifting the toe end is negative
-  vec3 ankle_m{0.0};       // travel frame
+  double toe_x = 0.0;                    // toe = foot Rx(toe_x); lifting the toe end is negative
+  vec3 ankle_m{0.0};                     // travel frame
   quat foot = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation in the travel frame
 };
 
@@ -48,24 +49,30 @@ struct CycleSample {
 
 struct GaitCycle {
   std::string name;
-  Skeleton skeleton;  // metres; joints between root and pelvis have zero offsets (root at the pelvis)
+  Skeleton
+      skeleton;  // metres; joints between root and pelvis have zero offsets (root at the pelvis)
   int pelvis = 0;
   double metres_per_unit = 1.0;
   quat pelvis_standing = quat(1.0, 0.0, 0.0, 0.0);  // pelvis joint's world rotation when standing
   std::array<LegModel, 2> leg;
 
-  double duration_s = 0.0;           // of the stride in the source
-  double stride_m = 0.0;             // travel in it
-  std::array<double, 2> step_m{};    // heel to heel along the travel, at that foot's strike
-  std::array<double, 2> track_m{};   // that foot's mean sideways place from the pelvis' mean path (+ left)
-  // Events as phases. A foot strikes heel first (or flat), its toe leaves last.
-  std::array<double, 2> strike{};    // right = 0, left about 0.5
-  std::array<double, 2> toe_off{};   // left about 0.12, right about 0.62
+  double duration_s = 0.0;  // of the stride in the source
+  double stride_m = 0.0;    // travel in it
+  // Taken of the heel points while the feet stand flat: from the other foot's along the travel (the
+  // two add up to stride_m), and sideways from the pelvis' mean path (+ left).
+  std::array<double, 2> step_m{};
+  std::array<double, 2> track_m{};
+  // Events as phases. A foot strikes heel first (or flat): the heel point is down to a quarter of
+  // its greatest speed. Its toe leaves last: the toe point exceeds half the walk's speed.
+  std::array<double, 2> strike{};   // right = 0, left about 0.5
+  std::array<double, 2> toe_off{};  // left about 0.12, right about 0.62
 
-  std::vector<CycleSample> samples;             // kCycleSamples, periodic
-  std::vector<quat> local;                      // kCycleSamples x joints: every joint's local rotation,
-                                                // neighbours in the same hemisphere, periodic
-  std::vector<quat> standing_local;             // joints: local rotations of the standing pose
+  std::vector<CycleSample> samples;  // kCycleSamples, periodic
+  // kCycleSamples x joints: every joint's local rotation (joint 0: in the travel frame), neighbours
+  // in the same hemisphere, periodic. The legs' stand as `samples` say. To turn the whole body,
+  // turn local[0]; what hangs on joints between root and pelvis then follows.
+  std::vector<quat> local;
+  std::vector<quat> standing_local;  // joints: local rotations of the standing pose
 };
 
 // Cubic (Catmull-Rom) interpolation at any phase; noexcept, no allocation.
@@ -73,8 +80,11 @@ CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept;
 // Local rotations of all joints at a phase into pose.local (pose.root_m untouched).
 void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept;
 
-// Finds the best full stride of a motion and makes it periodic. Fails with one sentence where there
-// is no walk of both feet in it.
+// Finds the best full stride of a motion and makes it periodic: heading and travel taken out, the
+// seam faded, at most 16 harmonics kept. The model's ankles stand where the captured ones do, but
+// for knees nearer to straight than some 3 degrees (fractions of a millimetre) or bent backwards (a
+// few). Fails with one sentence, `NAME: cause`, where there is no walk of both feet in it (a run is
+// none).
 Result<GaitCycle> gait_cycle(const Motion& motion);
 
 // The embedded default: an adult with 0.84 m of thigh + shank, 120 Hz, one exactly periodic and

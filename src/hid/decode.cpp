@@ -1,0 +1,103 @@
+#include "hid/decode.h"
+
+#include <algorithm>
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::uint32_t bit(int button) { return std::uint32_t{1} << button; }
+constexpr std::uint32_t kDpad = bit(kButtonDpadUp) | bit(kButtonDpadDown) | bit(kButtonDpadLeft) |
+                                bit(kButtonDpadRight);
+
+std::int64_t value_of(const FieldBits& f, std::span<const std::uint8_t> data) noexcept {
+  const std::uint64_t raw = bits_at(data, f.bit_offset, f.bit_size);
+  if (!f.is_signed || f.bit_size == 0 || f.bit_size >= 64) return static_cast<std::int64_t>(raw);
+  const std::uint64_t sign = std::uint64_t{1} << (f.bit_size - 1);
+  return static_cast<std::int64_t>((raw ^ sign) - sign);
+}
+
+float position(const AxisOp& op, std::span<const std::uint8_t> data) noexcept {
+  const std::int64_t value = std::clamp(value_of(op.bits, data), op.bits.min, op.bits.max);
+  const auto low = static_cast<double>(op.bits.min), high = static_cast<double>(op.bits.max);
+  if (high <= low) return 0.0f;
+  const double share = (static_cast<double>(value) - low) / (high - low);
+  if (op.axis == kLeftTrigger || op.axis == kRightTrigger) {
+    return static_cast<float>(op.reversed ? 1.0 - share : share);
+  }
+  // In this form the middle of an odd number of counts is exactly 0, and never -0.
+  const double whole = (2.0 * static_cast<double>(value) - low - high) / (high - low);
+  return static_cast<float>(op.reversed ? 0.0 - whole : whole);
+}
+
+bool is_pressed(const ButtonOp& op, std::int64_t value) noexcept {
+  if (op.mask != 0) return (static_cast<std::uint64_t>(value) & op.mask) != 0;
+  if (op.bits.bit_size == 1) return value != 0;
+  return value > op.bits.min && value >= op.bits.min + (op.bits.max - op.bits.min + 1) / 2;
+}
+
+Hat direction(const HatOp& op, std::int64_t value) noexcept {
+  if (value < op.bits.min || value > op.last) return Hat::released;
+  const std::int64_t steps =
+      ((value - op.bits.min) * op.numerator * 2 + op.denominator) / (2 * op.denominator);
+  return static_cast<Hat>(steps % 8);
+}
+
+std::uint32_t dpad_of(Hat hat) noexcept {
+  constexpr std::uint32_t kUp = bit(kButtonDpadUp), kDown = bit(kButtonDpadDown),
+                          kLeft = bit(kButtonDpadLeft), kRight = bit(kButtonDpadRight);
+  constexpr std::array<std::uint32_t, 9> kButtons = {
+      kUp, kUp | kRight, kRight, kDown | kRight, kDown, kDown | kLeft, kLeft, kUp | kLeft, 0};
+  return kButtons[static_cast<std::size_t>(hat)];
+}
+
+// The hat that four buttons make; opposite ones cancel out.
+Hat hat_of(std::uint32_t buttons) noexcept {
+  const auto down = [buttons](int b) { return (buttons & bit(b)) != 0 ? 1 : 0; };
+  const int x = down(kButtonDpadRight) - down(kButtonDpadLeft);
+  const int y = down(kButtonDpadUp) - down(kButtonDpadDown);
+  constexpr Hat kHats[3][3] = {{Hat::down_left, Hat::down, Hat::down_right},
+                               {Hat::left, Hat::released, Hat::right},
+                               {Hat::up_left, Hat::up, Hat::up_right}};
+  return kHats[y + 1][x + 1];
+}
+
+bool fits(const ReportLayout& layout, const Report& report) noexcept {
+  if (layout.numbered && (report.size == 0 || report.bytes[0] != layout.report_id)) return false;
+  if (layout.exact_sizes.empty()) return report.size >= layout.min_size;
+  return std::find(layout.exact_sizes.begin(), layout.exact_sizes.end(), report.size) !=
+         layout.exact_sizes.end();
+}
+
+void apply(const ReportLayout& layout, std::span<const std::uint8_t> data,
+           PadState& state) noexcept {
+  for (const AxisOp& op : layout.axes) state.axis[op.axis] = position(op, data);
+  std::uint32_t pressed = 0;
+  for (const ButtonOp& op : layout.buttons) {
+    if (is_pressed(op, value_of(op.bits, data))) pressed |= op.button;
+  }
+  for (const HatOp& op : layout.hats) pressed |= dpad_of(direction(op, value_of(op.bits, data)));
+  for (const ArrayOp& op : layout.arrays) {
+    const std::int64_t index = value_of(op.bits, data) - op.bits.min;
+    if (index >= 0 && index < static_cast<std::int64_t>(op.button.size())) {
+      pressed |= op.button[static_cast<std::size_t>(index)];
+    }
+  }
+  state.buttons = (state.buttons & ~layout.covered) | pressed;
+  if ((layout.covered & kDpad) != 0) state.hat = hat_of(state.buttons);
+}
+
+}  // namespace
+
+bool decode(const PadLayout& layout, const Report& report, PadState& state) noexcept {
+  if (report.kind != ReportKind::input || report.size > report.bytes.size()) return false;
+  for (const ReportLayout& r : layout.reports) {
+    if (!fits(r, report)) continue;
+    const std::size_t skip = r.numbered ? 1 : 0;
+    apply(r, {report.bytes.data() + skip, report.size - skip}, state);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,77 @@
+// From a report's bytes to the pad's state. The layout is built once, at set-up; decoding a report
+// is a walk over its bindings, without heap, locks or surprises.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "hid/descriptor.h"
+#include "hid/pad_map.h"
+#include "hid/report.h"
+
+namespace gaitpad {
+
+// A field of a report in the form that the loop reads.
+struct FieldBits {
+  std::uint32_t bit_offset = 0;
+  std::uint8_t bit_size = 0;
+  bool is_signed = false;
+  std::int64_t min = 0, max = 0;
+};
+struct AxisOp {
+  FieldBits bits;
+  PadAxis axis = kLeftX;
+  bool reversed = false;  // towards HID's direction: y of a stick grows towards the thumb's owner
+};
+struct ButtonOp {
+  FieldBits bits;
+  std::uint32_t mask = 0;
+  std::uint32_t button = 0;  // a bit of PadState::buttons
+};
+struct HatOp {
+  FieldBits bits;
+  std::int64_t last = 0;                          // values from min to last are directions
+  std::int64_t numerator = 1, denominator = 1;  // of the step in 45 degrees
+};
+struct ArrayOp {  // a slot of an array whose value names a button
+  FieldBits bits;
+  std::vector<std::uint32_t> button;  // by value - min
+};
+
+struct ReportLayout {
+  std::uint8_t report_id = 0;  // 0: reports are not numbered
+  bool numbered = false;
+  std::uint16_t min_size = 0;             // with the id
+  std::vector<std::uint16_t> exact_sizes;  // of a replaced descriptor; empty: min_size counts
+  std::uint32_t covered = 0;               // buttons that this report tells of
+  std::vector<AxisOp> axes;
+  std::vector<ButtonOp> buttons;
+  std::vector<HatOp> hats;
+  std::vector<ArrayOp> arrays;
+};
+
+// A pressed button that no control is bound to.
+struct UnnamedButton {
+  std::uint8_t report_id = 0;
+  FieldBits bits;
+  std::uint16_t number = 0;
+};
+
+struct PadLayout {
+  bool is_pad = false;
+  bool streams = false;      // at rest too: silence means a broken link
+  std::string override_origin;  // FILE:LINE of the [[pad]] that was used, empty for none
+  ReportDescriptor descriptor;
+  std::vector<ReportLayout> reports;  // replaced ones first
+  std::vector<UnnamedButton> unnamed;
+};
+
+// Error where the device's descriptor is damaged or the override's replacement is.
+Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overrides);
+
+// Updates what the report tells of and leaves the rest. False for a report that is too short, has an
+// unknown id or is no input; `state` is then as before.
+bool decode(const PadLayout& layout, const Report& report, PadState& state) noexcept;
+
+}  // namespace gaitpad

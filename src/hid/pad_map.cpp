@@ -1,0 +1,234 @@
+#include "hid/pad_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/toml_file.h"
+#include "hid/trace_lines.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::size_t kMaxPads = 256;
+constexpr std::size_t kMaxProducts = 64;
+constexpr std::size_t kMaxSources = 8;
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+// Takes the text behind `mark` off the end of `text`.
+std::string_view cut_behind(std::string_view& text, char mark) {
+  const std::size_t at = text.find(mark);
+  if (at == std::string_view::npos) return {};
+  const std::string_view tail = trimmed(text.substr(at + 1));
+  text = trimmed(text.substr(0, at));
+  return tail;
+}
+
+std::optional<ControlSource> source_of(std::string_view text) {
+  ControlSource source;
+  const bool has_mask = text.find('&') != std::string_view::npos;
+  const auto mask = hexadecimal(cut_behind(text, '&'), 0xffffffff);
+  const bool has_occurrence = text.find('/') != std::string_view::npos;
+  const auto occurrence = decimal(cut_behind(text, '/'), 1000);
+  if (has_mask && (!mask || *mask == 0)) return std::nullopt;
+  if (has_occurrence && (!occurrence || *occurrence == 0)) return std::nullopt;
+  source.mask = mask.value_or(0);
+  source.occurrence = static_cast<std::uint32_t>(occurrence.value_or(1));
+  if (text.starts_with('-')) {
+    source.reversed = true;
+    text = trimmed(text.substr(1));
+  }
+  constexpr std::string_view kButton = "button ";
+  if (text.starts_with(kButton)) {
+    const auto number = decimal(trimmed(text.substr(kButton.size())), 0xffff);
+    if (!number || *number == 0) return std::nullopt;
+    source.usage = usage_of(usage::kButtonPage, static_cast<std::uint16_t>(*number));
+    return source;
+  }
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  const auto page = hexadecimal(text.substr(0, colon), 0xffff);
+  const auto id = hexadecimal(text.substr(colon + 1), 0xffff);
+  if (!page || !id) return std::nullopt;
+  source.usage = usage_of(static_cast<std::uint16_t>(*page), static_cast<std::uint16_t>(*id));
+  return source;
+}
+
+template <std::size_t N>
+void read_controls(TomlTable pad, std::string_view key,
+                   const std::array<std::string_view, N>& names,
+                   std::array<std::optional<ControlSources>, N>& controls) {
+  auto table = pad.table(key);
+  if (!table) return;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto text = table->string(names[i]);
+    if (!text) continue;
+    auto sources = parse_sources(*text);
+    if (!sources) {
+      table->reject(names[i], sources.error().message);
+      continue;
+    }
+    controls[i] = std::move(*sources);
+  }
+}
+
+void read_identity(TomlTable& pad, PadOverride& result) {
+  result.name = pad.string("name").value_or("");
+  if (const auto vendor = pad.integer("vendor", 0, 0xffff)) {
+    result.vendor = static_cast<std::uint16_t>(*vendor);
+  }
+  for (const double p : pad.numbers("products", 1, kMaxProducts, 0, 0xffff).value_or(
+           std::vector<double>{})) {
+    if (p != static_cast<double>(static_cast<std::uint16_t>(p))) {
+      pad.reject("products", "a product is a whole number");
+    }
+    result.products.push_back(static_cast<std::uint16_t>(p));
+  }
+  result.drivers = pad.strings("drivers", 16).value_or(std::vector<std::string>{});
+  if (const auto bus = pad.integer("bus", 0, 0xffff)) result.bus = static_cast<BusType>(*bus);
+}
+
+void read_order(TomlTable& pad, PadOverride& result) {
+  const auto order = pad.string("button_order");
+  if (!order) return;
+  if (*order == "direct_input") {
+    result.order = ButtonOrder::direct_input;
+  } else if (*order == "android") {
+    result.order = ButtonOrder::android;
+  } else if (*order == "xinput") {
+    result.order = ButtonOrder::xinput;
+  } else {
+    pad.reject("button_order", "it is direct_input, android or xinput");
+  }
+}
+
+void read_replacement(TomlTable& pad, PadOverride& result) {
+  auto table = pad.table("replace");
+  if (!table) return;
+  table->require("descriptor");
+  table->require("lengths");
+  const std::string hex = table->string("descriptor").value_or("");
+  std::string line(hex);
+  std::replace_if(line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  Words count(line);
+  int words = 0;
+  while (!count.next().empty()) ++words;
+  DescriptorReplacement& replacement = result.replacement;
+  const std::string counted = fmt::format("{} {}", words, line);
+  Words bytes(counted);
+  if (auto cause = append_bytes(bytes, kMaxDescriptorBytes, replacement.descriptor)) {
+    table->reject("descriptor", *cause);
+    return;
+  }
+  if (auto parsed = parse_descriptor(replacement.descriptor); !parsed) {
+    table->reject("descriptor", parsed.error().message);
+  }
+  for (const double n : table->numbers("lengths", 1, 16, 1, kMaxReportBytes)
+                            .value_or(std::vector<double>{})) {
+    replacement.lengths.push_back(static_cast<std::uint16_t>(n));
+  }
+  // The controls of the own descriptor serve here too, unless the replacement has its own.
+  replacement.controls = result.controls;
+  if (table->has("axes")) replacement.controls.axes = {};
+  if (table->has("buttons")) replacement.controls.buttons = {};
+  read_controls(*table, "axes", kAxisNames, replacement.controls.axes);
+  read_controls(*table, "buttons", kButtonNames, replacement.controls.buttons);
+}
+
+PadOverride read_pad(TomlTable pad, const std::string& name) {
+  PadOverride result;
+  result.origin = fmt::format("{}:{}", name, pad.line());
+  read_identity(pad, result);
+  read_order(pad, result);
+  result.is_pad = pad.boolean("pad");
+  result.streams = pad.boolean("streams").value_or(false);
+  read_controls(pad, "axes", kAxisNames, result.controls.axes);
+  read_controls(pad, "buttons", kButtonNames, result.controls.buttons);
+  read_replacement(pad, result);
+  return result;
+}
+
+Result<PadOverrides> read_file(TomlFile file) {
+  PadOverrides result;
+  TomlTable root = file.root();
+  for (TomlTable& pad : root.tables("pad", kMaxPads)) result.push_back(read_pad(pad, file.name()));
+  if (auto problem = file.problem()) return *problem;
+  if (result.empty()) return Error{file.name() + ":1: there is no [[pad]]"};
+  return result;
+}
+
+}  // namespace
+
+Result<ControlSources> parse_sources(std::string_view text) {
+  ControlSources sources;
+  if (trimmed(text).empty()) return sources;  // the control is not there
+  while (true) {
+    const std::size_t end = text.find('|');
+    const std::string_view part = trimmed(text.substr(0, end));
+    const auto source = source_of(part);
+    if (!source) {
+      return Error{in_quotes(part) +
+                   " is neither a usage such as 0001:0030 nor a button such as \"button 3\""};
+    }
+    if (sources.size() >= kMaxSources) {
+      return Error{fmt::format("more than {} sources for one control", kMaxSources)};
+    }
+    sources.push_back(*source);
+    if (end == std::string_view::npos) return sources;
+    text.remove_prefix(end + 1);
+  }
+}
+
+Result<PadOverrides> load_pad_file(const std::string& path) {
+  auto file = TomlFile::load(path);
+  if (!file) return file.error();
+  return read_file(std::move(*file));
+}
+
+Result<PadOverrides> parse_pad_file(std::string_view text, const std::string& name) {
+  auto file = TomlFile::parse(text, name);
+  if (!file) return file.error();
+  return read_file(std::move(*file));
+}
+
+Result<PadOverrides> load_pad_folder(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<std::string> paths;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == ".toml") paths.push_back(it->path().string());
+  }
+  if (error) return Error{folder + ": cannot be read: " + error.message()};
+  std::sort(paths.begin(), paths.end());
+  PadOverrides all;
+  for (const std::string& path : paths) {
+    auto pads = load_pad_file(path);
+    if (!pads) return pads.error();
+    all.insert(all.end(), pads->begin(), pads->end());
+  }
+  return all;
+}
+
+const PadOverride* find_override(const PadOverrides& overrides, const DeviceInfo& device) noexcept {
+  std::string_view driver = device.driver;
+  if (driver.empty()) driver = "hidraw";
+  for (const PadOverride& o : overrides) {
+    if (o.vendor && *o.vendor != device.vendor) continue;
+    if (o.bus && *o.bus != device.bus) continue;
+    const auto& p = o.products;
+    if (!p.empty() && std::find(p.begin(), p.end(), device.product) == p.end()) continue;
+    const auto& d = o.drivers;
+    if (!d.empty() && std::find(d.begin(), d.end(), driver) == d.end()) continue;
+    return &o;
+  }
+  return nullptr;
+}
+
+}  // namespace gaitpad

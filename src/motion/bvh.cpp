@@ -1,0 +1,334 @@
+#include "motion/bvh.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "motion/skeleton.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr std::uintmax_t kMaxFileBytes = 512u << 20;
+constexpr long long kMaxFrameJoints = 10'000'000;  // 100 joints: 14 minutes at 120 Hz
+constexpr double kMaxValue = 1e7;                  // keeps all later arithmetic finite
+constexpr std::size_t kMaxShownChars = 40;
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+std::string_view trimmed(std::string_view s) {
+  while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
+  while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
+  return s;
+}
+
+// What a message shows of a stranger's text: short and printable.
+std::string shown(std::string_view s) {
+  std::string out;
+  for (char c : s.substr(0, kMaxShownChars)) out += (c >= ' ' && c != 0x7f) ? c : '?';
+  return s.size() > kMaxShownChars ? out + "..." : out;
+}
+
+std::optional<double> number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  if (word.empty()) return std::nullopt;
+  double value = 0.0;
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (end != word.data() + word.size()) return std::nullopt;
+  if (code == std::errc::result_out_of_range) {  // 1e-400 is 0, 1e400 is an error
+    const auto e = word.find_first_of("eE");
+    const bool tiny = e != word.npos && word.substr(e + 1).starts_with('-');
+    return tiny ? std::optional(0.0) : std::nullopt;
+  }
+  if (code != std::errc() || !(std::abs(value) <= kMaxValue)) return std::nullopt;
+  return value;
+}
+
+// Words and lines of the text, with the number of the line that the last word stood on.
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : rest_(text) {
+    if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);  // UTF-8 byte order mark
+  }
+  int line() const { return line_; }
+  std::size_t bytes_left() const { return rest_.size(); }
+
+  // Next word across lines; braces are words of their own. Empty at the end.
+  std::string_view word() {
+    skip_blank();
+    if (rest_.empty()) return {};
+    std::size_t n = 1;
+    if (!is_brace(rest_[0])) {
+      while (n < rest_.size() && !is_blank(rest_[n]) && rest_[n] != '\n' && !is_brace(rest_[n]))
+        ++n;
+    }
+    return take(n);
+  }
+  // The rest of this line up to a brace, trimmed: names may hold blanks.
+  std::string_view name() {
+    std::size_t n = 0;
+    while (n < rest_.size() && rest_[n] != '\n' && !is_brace(rest_[n])) ++n;
+    return trimmed(take(n));
+  }
+  // Next line that is not blank, trimmed. Empty at the end.
+  std::string_view full_line() {
+    skip_blank();
+    return trimmed(take(std::min(rest_.find('\n'), rest_.size())));
+  }
+
+ private:
+  static bool is_brace(char c) { return c == '{' || c == '}'; }
+  void skip_blank() {
+    while (!rest_.empty() && (is_blank(rest_[0]) || rest_[0] == '\n')) {
+      if (rest_[0] == '\n') ++line_;
+      rest_.remove_prefix(1);
+    }
+  }
+  std::string_view take(std::size_t n) {
+    const std::string_view taken = rest_.substr(0, n);
+    rest_.remove_prefix(n);
+    return taken;
+  }
+
+  std::string_view rest_;
+  int line_ = 1;
+};
+
+std::optional<BvhChannel> channel_named(std::string_view word) {
+  constexpr std::array<std::string_view, 6> kNames = {"xposition", "yposition", "zposition",
+                                                      "xrotation", "yrotation", "zrotation"};
+  std::string lower;
+  for (char c : word.substr(0, 16)) lower += (c >= 'A' && c <= 'Z') ? static_cast<char>(c + 32) : c;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (lower == kNames[i]) return static_cast<BvhChannel>(i);
+  }
+  return std::nullopt;
+}
+
+// First error wins; every parsing function returns false once there is one.
+class Parser {
+ public:
+  Parser(std::string_view text, const std::string& name) : in_(text), name_(name) {}
+
+  Result<Bvh> bvh() {
+    if (!hierarchy() || !motion_header() || !frames()) return Error{message_};
+    return std::move(bvh_);
+  }
+
+ private:
+  bool fail(const std::string& cause) {
+    message_ = fmt::format("{}:{}: {}", name_, in_.line(), cause);
+    return false;
+  }
+
+  bool hierarchy() {
+    if (in_.word() != "HIERARCHY") return fail("the file does not begin with HIERARCHY");
+    if (in_.word() != "ROOT") return fail("ROOT expected after HIERARCHY");
+    if (!open_joint(-1)) return false;
+    std::vector<int> open = {0};
+    while (!open.empty()) {
+      if (!item(open)) return false;
+    }
+    return true;
+  }
+
+  // One keyword inside the braces of the innermost open joint.
+  bool item(std::vector<int>& open) {
+    const int joint = open.back();
+    const std::string_view word = in_.word();
+    if (word == "OFFSET") return offset(joint);
+    if (word == "CHANNELS") return channels(joint);
+    if (word == "}") {
+      open.pop_back();
+      return true;
+    }
+    if (word == "JOINT" || word == "End") {
+      if (bvh_.joints[joint].is_end_site) return fail("an End Site has children");
+      const bool opened = word == "JOINT" ? open_joint(joint) : open_end_site(joint);
+      if (opened) open.push_back(static_cast<int>(bvh_.joints.size()) - 1);
+      return opened;
+    }
+    if (word.empty()) return fail("the file ends inside the hierarchy");
+    return fail(fmt::format("unexpected \"{}\" in joint \"{}\"", shown(word),
+                            shown(bvh_.joints[joint].name)));
+  }
+
+  bool open_joint(int parent) {
+    const std::string_view name = in_.name();
+    if (name.empty()) return fail("a joint without a name");
+    return open_braces({.name = std::string(name), .parent = parent});
+  }
+
+  bool open_end_site(int parent) {
+    in_.name();  // "Site", sometimes a name
+    int siblings = 0;
+    for (const BvhJoint& joint : bvh_.joints)
+      siblings += joint.is_end_site && joint.parent == parent;
+    std::string name = bvh_.joints[parent].name + "_End";
+    if (siblings > 0) name += std::to_string(siblings + 1);
+    return open_braces({.name = std::move(name), .parent = parent, .is_end_site = true});
+  }
+
+  bool open_braces(BvhJoint joint) {
+    if (bvh_.joints.size() >= static_cast<std::size_t>(kMaxJoints)) {
+      return fail(fmt::format("more than {} joints and end sites", kMaxJoints));
+    }
+    if (in_.word() != "{") return fail(fmt::format("\"{{\" expected after {}", shown(joint.name)));
+    bvh_.joints.push_back(std::move(joint));
+    return true;
+  }
+
+  bool offset(int joint) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view word = in_.word();
+      const auto value = number(word);
+      if (!value) {
+        return fail(fmt::format("OFFSET of \"{}\": \"{}\" is no number",
+                                shown(bvh_.joints[joint].name), shown(word)));
+      }
+      bvh_.joints[joint].offset[axis] = *value;
+    }
+    return true;
+  }
+
+  bool channels(int index) {
+    BvhJoint& joint = bvh_.joints[index];
+    if (joint.is_end_site) return fail("an End Site has CHANNELS");
+    if (joint.channels > 0)
+      return fail(fmt::format("\"{}\" has CHANNELS twice", shown(joint.name)));
+    const std::string_view word = in_.word();
+    const auto count = number(word);
+    if (!count || *count < 0 || *count > 6 || *count != std::floor(*count)) {
+      return fail(fmt::format("CHANNELS of \"{}\": \"{}\" is no count from 0 to 6",
+                              shown(joint.name), shown(word)));
+    }
+    joint.first_value = bvh_.channels;
+    while (joint.channels < static_cast<int>(*count)) {
+      if (!channel(joint)) return false;
+    }
+    bvh_.channels += joint.channels;
+    return true;
+  }
+
+  bool channel(BvhJoint& joint) {
+    const std::string_view word = in_.word();
+    const auto kind = channel_named(word);
+    if (!kind) {
+      return fail(
+          fmt::format("\"{}\" is no channel (joint \"{}\")", shown(word), shown(joint.name)));
+    }
+    for (int i = 0; i < joint.channels; ++i) {
+      if (joint.channel[i] == *kind) {
+        return fail(fmt::format("\"{}\" has {} twice", shown(joint.name), shown(word)));
+      }
+    }
+    joint.channel[joint.channels++] = *kind;
+    return true;
+  }
+
+  bool motion_header() {
+    if (in_.word() != "MOTION") return fail("MOTION expected after the hierarchy");
+    const auto frames = number(behind("Frames:"));
+    if (!frames || *frames < 1 || *frames != std::floor(*frames)) {
+      return fail("\"Frames:\" with a count of 1 or more expected");
+    }
+    const auto time_s = number(behind("Frame Time:"));
+    if (!time_s || *time_s < 1e-5 || *time_s > 10.0) {
+      return fail("\"Frame Time:\" with a time from 0.00001 to 10 s expected");
+    }
+    bvh_.frame_time_s = *time_s;
+    return plausible(static_cast<long long>(*frames));
+  }
+
+  // What stands behind a key on the next line, empty where another key stands there.
+  std::string_view behind(std::string_view key) {
+    const std::string_view line = in_.full_line();
+    return line.starts_with(key) ? trimmed(line.substr(key.size())) : std::string_view();
+  }
+
+  // A number takes two characters with the blank behind it, so the text bounds what may be asked
+  // for.
+  bool plausible(long long frames) {
+    if (bvh_.channels == 0) return fail("no joint has channels");
+    if (frames * bvh_.channels > static_cast<long long>(in_.bytes_left() / 2 + 1)) {
+      return fail(fmt::format("{} frames of {} channels do not fit in the {} bytes left", frames,
+                              bvh_.channels, in_.bytes_left()));
+    }
+    if (frames * static_cast<long long>(bvh_.joints.size()) > kMaxFrameJoints) {
+      return fail(fmt::format("{} frames of {} joints are more than the {} that this program takes",
+                              frames, bvh_.joints.size(), kMaxFrameJoints));
+    }
+    bvh_.frames = static_cast<int>(frames);
+    return true;
+  }
+
+  bool frames() {
+    bvh_.values.reserve(static_cast<std::size_t>(bvh_.frames) * bvh_.channels);
+    for (int frame = 0; frame < bvh_.frames; ++frame) {
+      const std::string_view line = in_.full_line();
+      if (line.empty()) {
+        return fail(fmt::format("the motion ends after {} of {} frames", frame, bvh_.frames));
+      }
+      if (!frame_values(line, frame)) return false;
+    }
+    if (const std::string_view more = in_.full_line(); !more.empty()) {
+      return fail(fmt::format("\"{}\" behind the last of {} frames", shown(more), bvh_.frames));
+    }
+    return true;
+  }
+
+  bool frame_values(std::string_view line, int frame) {
+    int count = 0;
+    while (!line.empty()) {
+      std::size_t n = 0;
+      while (n < line.size() && !is_blank(line[n])) ++n;
+      const auto value = number(line.substr(0, n));
+      if (!value) {
+        return fail(fmt::format("frame {}, value {}: \"{}\" is no usable number", frame, count,
+                                shown(line.substr(0, n))));
+      }
+      if (++count > bvh_.channels) break;
+      bvh_.values.push_back(*value);
+      line = trimmed(line.substr(n));
+    }
+    if (count == bvh_.channels) return true;
+    if (count > bvh_.channels) {
+      return fail(fmt::format("frame {} has more than {} values", frame, bvh_.channels));
+    }
+    return fail(fmt::format("frame {} has {} of {} values", frame, count, bvh_.channels));
+  }
+
+  Reader in_;
+  std::string name_;
+  std::string message_;
+  Bvh bvh_;
+};
+
+}  // namespace
+
+Result<Bvh> parse_bvh(std::string_view text, const std::string& name) {
+  return Parser(text, name).bvh();
+}
+
+Result<Bvh> read_bvh(const std::string& path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) {
+    return Error{fmt::format("{}: no such file", path)};
+  }
+  const std::uintmax_t size = std::filesystem::file_size(path, code);
+  if (code || size > kMaxFileBytes) {
+    return Error{fmt::format("{}: larger than {} MB", path, kMaxFileBytes >> 20)};
+  }
+  std::ifstream in(path, std::ios::binary);
+  std::string text(size, '\0');
+  if (!in.read(text.data(), static_cast<std::streamsize>(size))) {
+    return Error{fmt::format("{}: cannot be read", path)};
+  }
+  return parse_bvh(text, path);
+}
+
+}  // namespace gaitpad

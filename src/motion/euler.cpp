@@ -1,0 +1,80 @@
+#include "motion/euler.h"
+
+namespace gaitpad {
+namespace {
+
+// +1 where first, second, third run x y z x ..., else -1.
+double handedness(const EulerOrder& order) noexcept {
+  return (order[1] - order[0] + 3) % 3 == 1 ? 1.0 : -1.0;
+}
+
+double nearest_turn(double angle_rad, double previous_rad) noexcept {
+  return previous_rad + wrapped(angle_rad - previous_rad);
+}
+
+double distance(const EulerAngles& a, const EulerAngles& b) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+struct PoleParts {
+  double sine, cosine;  // of the second angle
+};
+// With the rotation written in axes named first, second, third: sin(second) = h R[first][third].
+PoleParts second_angle(const EulerOrder& order, const mat3& r) noexcept {
+  const double sine = std::clamp(handedness(order) * r[order[2]][order[0]], -1.0, 1.0);
+  const double a = r[order[2]][order[1]], b = r[order[2]][order[2]];
+  return {sine, std::sqrt(a * a + b * b)};
+}
+
+}  // namespace
+
+quat rotation_about_axis(int axis, double angle_rad) noexcept {
+  return axis == 0   ? rotation_x(angle_rad)
+         : axis == 1 ? rotation_y(angle_rad)
+                     : rotation_z(angle_rad);
+}
+
+quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) noexcept {
+  return rotation_about_axis(order[0], angles_rad[0]) *
+         rotation_about_axis(order[1], angles_rad[1]) *
+         rotation_about_axis(order[2], angles_rad[2]);
+}
+
+double pole_closeness(const EulerOrder& order, const quat& rotation) noexcept {
+  return std::abs(second_angle(order, glm::mat3_cast(rotation)).sine);
+}
+
+EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
+                          const EulerAngles& previous_rad) noexcept {
+  const int i = order[0], j = order[1], k = order[2];
+  const double h = handedness(order);
+  const mat3 r = glm::mat3_cast(rotation);  // r[column][row]
+  const PoleParts second = second_angle(order, r);
+  // Within 1e-7 of the pole the outer angles' sum (or difference) alone is defined.
+  if (second.cosine < 1e-7) {
+    const double pole = second.sine > 0.0 ? 1.0 : -1.0;
+    EulerAngles angles = {previous_rad[0], nearest_turn(pole * 0.5 * kPi, previous_rad[1]), 0.0};
+    // Half of the remaining turn to each outer angle keeps both as near as can be.
+    const double sign = h * pole;
+    const double sum = gaitpad::atan2(pole * r[j][k], r[j][j]);  // of third + sign * first
+    const double before = previous_rad[2] + sign * previous_rad[0];
+    const double rest = wrapped(sum - before);
+    angles[0] = previous_rad[0] + sign * 0.5 * rest;
+    angles[2] = previous_rad[2] + 0.5 * rest;
+    return angles;
+  }
+  const double first = gaitpad::atan2(-h * r[k][j], r[k][k]);
+  const double middle = gaitpad::atan2(second.sine, second.cosine);
+  const double third = gaitpad::atan2(-h * r[j][i], r[i][i]);
+  const EulerAngles one = {nearest_turn(first, previous_rad[0]),
+                           nearest_turn(middle, previous_rad[1]),
+                           nearest_turn(third, previous_rad[2])};
+  const EulerAngles two = {nearest_turn(first + kPi, previous_rad[0]),
+                           nearest_turn(kPi - middle, previous_rad[1]),
+                           nearest_turn(third + kPi, previous_rad[2])};
+  return distance(one, previous_rad) <= distance(two, previous_rad) ? one : two;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,30 @@
+// Three rotations about coordinate axes, as BVH writes them: R = R_first R_second R_third.
+#pragma once
+#include <array>
+
+#include "base/math.h"
+
+namespace gaitpad {
+
+// Axes 0 x, 1 y, 2 z, each once.
+using EulerOrder = std::array<int, 3>;
+inline constexpr EulerOrder kEulerZyx = {2, 1, 0};
+inline constexpr EulerOrder kEulerYxz = {1, 0, 2};
+inline constexpr std::array<EulerOrder, 6> kEulerOrders = {
+    {{2, 1, 0}, {2, 0, 1}, {1, 0, 2}, {1, 2, 0}, {0, 1, 2}, {0, 2, 1}}};
+
+using EulerAngles = std::array<double, 3>;  // radians, in the order's order
+
+quat rotation_about_axis(int axis, double angle_rad) noexcept;
+quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) noexcept;
+
+// Of all triples that give this rotation the one nearest to `previous_rad`, whole turns included.
+// At the pole (second angle +-90 degrees), where only the sum or the difference of the outer angles
+// is defined, the free one stays as near to `previous_rad` as it can.
+EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
+                          const EulerAngles& previous_rad) noexcept;
+
+// Sine of the second angle: 1 is the pole.
+double pole_closeness(const EulerOrder& order, const quat& rotation) noexcept;
+
+}  // namespace gaitpad

@@ -1,0 +1,147 @@
+#include "motion/gait_cycle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "motion/cycle_leg.h"
+#include "motion/cycle_standing.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kLeavingShare = 0.5;   // of the walk's speed: a faster toe has left the floor
+constexpr double kLandingShare = 0.25;  // of the heel's own fastest: a slower heel has landed
+constexpr double kBackwards = 0.5;      // cosine between hips' front and travel
+constexpr double kMostFlight = 0.02;    // of the stride with both feet in the air: else it is a run
+
+// A foot point's track over the samples, in the travel frame.
+std::vector<vec3> foot_track(const GaitCycle& cycle, int side, const vec3 LegPose::*point) {
+  std::vector<vec3> track;
+  for (const CycleSample& at : cycle.samples) {
+    const LegSample& leg = at.leg[side];
+    const LegPose pose = leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
+    track.push_back(pose.*point);
+  }
+  return track;
+}
+
+// From sample `from` in steps of +-1 to where the speed falls below the limit, as a phase.
+double slow_phase(const std::vector<double>& speed, int from, int step, double limit) {
+  for (int n = 0; n < kCycleSamples; ++n) {
+    const double here = speed[wrapped_index(from)], next = speed[wrapped_index(from + step)];
+    if (next < limit) {
+      return (from + step * (here > next ? (here - limit) / (here - next) : 1.0)) / kCycleSamples;
+    }
+    from += step;
+  }
+  return double(from) / kCycleSamples;
+}
+
+double fraction(double phase) { return phase - std::floor(phase); }
+
+void find_events(const CapturedCycle& captured, GaitCycle& cycle) {
+  const double walk_m_s = cycle.stride_m / cycle.duration_s;
+  for (int side = 0; side < 2; ++side) {
+    const auto heel = ground_speed(captured, foot_track(cycle, side, &LegPose::heel_m));
+    const auto toe = ground_speed(captured, foot_track(cycle, side, &LegPose::toe_m));
+    const auto heel_peak = std::ranges::max_element(heel);
+    const auto toe_peak = std::ranges::max_element(toe);
+    cycle.strike[side] = fraction(slow_phase(heel, static_cast<int>(heel_peak - heel.begin()), 1,
+                                             kLandingShare * *heel_peak));
+    cycle.toe_off[side] = fraction(
+        slow_phase(toe, static_cast<int>(toe_peak - toe.begin()), -1, kLeavingShare * walk_m_s));
+  }
+}
+
+// Heel places of the flat feet give steps and tracks.
+void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
+  std::array<double, 2> place_m;
+  for (int side = 0; side < 2; ++side) {
+    const int middle = flat_foot(captured, side).middle;
+    const vec3 heel_m =
+        mean_around(foot_track(cycle, side, &LegPose::heel_m), middle, FlatFoot::reach);
+    const double phase =
+        cycle.strike[side] + fraction(double(middle) / kCycleSamples - cycle.strike[side]);
+    place_m[side] = heel_m.z + phase * cycle.stride_m;
+    cycle.track_m[side] = heel_m.x;
+  }
+  cycle.step_m[kLeftSide] = place_m[kLeftSide] - place_m[kRightSide];
+  cycle.step_m[kRightSide] = cycle.stride_m - cycle.step_m[kLeftSide];
+}
+
+// One sentence's end, empty if it is a walk.
+std::string why_no_walk(const GaitCycle& cycle) {
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const double overlap = fraction(cycle.toe_off[side] - cycle.strike[other(side)] + 0.5) - 0.5;
+    if (overlap < -kMostFlight) return "holds no walk: both feet leave the floor, it is a run";
+    if (!(cycle.step_m[side] > 0.0)) return "holds no walk: one foot never passes the other";
+  }
+  const vec3 across = cycle.leg[kLeftSide].hip_m - cycle.leg[kRightSide].hip_m;
+  if (heading_direction(heading_of(glm::cross(across, kUp))).z < kBackwards) {
+    return "does not walk forwards";
+  }
+  return "";
+}
+
+// The cycle from phase `shift` of the periodic stride on, with its events but not yet its steps.
+struct Build {
+  CapturedCycle captured;
+  GaitCycle cycle;
+};
+Result<Build> built(const Motion& motion, const PeriodicMotion& periodic, double shift) {
+  Build b;
+  b.cycle.name = motion.name;
+  b.cycle.metres_per_unit = motion.metres_per_unit;
+  b.cycle.duration_s = periodic.duration_s;
+  b.cycle.stride_m = periodic.stride_m;
+  b.captured = captured_cycle(motion, periodic, shift);
+  const Result<double> floor_m = build_standing(b.captured, b.cycle);
+  if (!floor_m) return floor_m.error();
+  build_samples(b.captured, *floor_m, b.cycle);
+  find_events(b.captured, b.cycle);
+  return b;
+}
+
+// Built twice: the right foot's strike shows only once there is a heel, and is phase 0 thereafter.
+Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
+  const PeriodicMotion periodic = periodic_motion(motion, window);
+  const Result<Build> first = built(motion, periodic, 0.0);
+  if (!first) return first.error();
+  Result<Build> second = built(motion, periodic, first->cycle.strike[kRightSide]);
+  if (!second) return second.error();
+  GaitCycle& cycle = second->cycle;
+  cycle.strike[kRightSide] = 0.0;
+  measure_steps(second->captured, cycle);
+  const std::string reason = why_no_walk(cycle);
+  if (!reason.empty()) return Error{reason};
+  return std::move(cycle);
+}
+
+// The best window that is a walk; else what was wrong with the very best.
+Result<GaitCycle> cycle_of(const Motion& motion) {
+  constexpr std::size_t kMostTries = 12;
+  const Result<std::vector<StrideWindow>> windows = best_strides(motion);
+  if (!windows) return windows.error();
+  Result<GaitCycle> first = cycle_of(motion, windows->front());
+  for (std::size_t i = 1; !first && i < std::min(windows->size(), kMostTries); ++i) {
+    if (Result<GaitCycle> next = cycle_of(motion, (*windows)[i])) return next;
+  }
+  return first;
+}
+
+}  // namespace
+
+Result<GaitCycle> gait_cycle(const Motion& motion) {
+  Result<GaitCycle> cycle = cycle_of(motion);
+  if (!cycle) {
+    const Motion twice = looped_twice(motion);
+    if (!twice.frames.empty()) {
+      if (Result<GaitCycle> again = cycle_of(twice)) cycle = std::move(again);
+    }
+  }
+  if (!cycle) return Error{fmt::format("{}: {}", motion.name, cycle.error().message)};
+  return cycle;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,159 @@
+#include "session/setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "motion/gait_cycle.h"
+#include "session/motion_source.h"
+#include "session/config_files.h"
+
+namespace gaitpad {
+namespace {
+
+// Files given by hand stand in front, so that they win over equal names in config/.
+Result<std::vector<Style>> all_styles(const SessionOptions& options, std::vector<int>& chosen) {
+  std::vector<Style> styles;
+  const auto load = [&styles](const std::string& path) -> std::optional<Error> {
+    auto style = load_style(path);
+    if (!style) return style.error();
+    style->name = config_name(path);
+    styles.push_back(std::move(*style));
+    return std::nullopt;
+  };
+  for (const std::string& wanted : options.styles) {
+    auto path = config_file(options.config_folders, "styles", wanted);
+    if (!path) return path.error();
+    chosen.push_back(static_cast<int>(styles.size()));
+    if (auto problem = load(*path)) return *problem;
+  }
+  if (chosen.empty()) {
+    chosen.push_back(0);
+    styles.emplace_back().name = "even";
+  }
+  for (const std::string& path : config_files(options.config_folders, "styles")) {
+    if (auto problem = load(path)) return *problem;
+  }
+  return styles;
+}
+
+Result<std::vector<Character>> all_characters(const SessionOptions& options) {
+  std::vector<Character> characters;
+  for (const std::string& wanted : options.characters) {
+    auto path = config_file(options.config_folders, "characters", wanted);
+    if (!path) return path.error();
+    auto character = load_character(*path);
+    if (!character) return character.error();
+    characters.push_back(std::move(*character));
+  }
+  if (characters.empty()) characters.emplace_back();
+  return characters;
+}
+
+// What --map says first, then config/pads.
+Result<PadOverrides> all_overrides(const SessionOptions& options) {
+  PadOverrides all;
+  if (!options.map.empty()) {
+    auto own = load_pad_file(options.map);
+    if (!own) return own.error();
+    all = std::move(*own);
+  }
+  for (const std::string& path : config_files(options.config_folders, "pads")) {
+    auto file = load_pad_file(path);
+    if (!file) return file.error();
+    std::move(file->begin(), file->end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+// --calibration, else the recording's own, else the best fitting file in config/calibration.
+Result<Calibration> calibration_of(const SessionOptions& options, const TraceDevice& device) {
+  if (!options.calibration.empty()) return load_calibration(options.calibration);
+  if (!device.calibration.empty()) {
+    auto own = parse_calibration(device.calibration, "the recording's calibration");
+    if (!own) return own.error();
+    return own->calibration;
+  }
+  std::vector<std::string> folders;
+  for (const std::string& folder : options.config_folders) folders.push_back(folder + "/calibration");
+  const DeviceInfo& info = device.info;
+  auto found = find_calibration(
+      folders, {info.vendor, info.product, info.unique_id, info.physical_path});
+  if (!found) return found.error();
+  return found->calibration;
+}
+
+// Only these hand on every report of a pad that streams; evdev and SDL give changes alone. A foreign
+// recording names no driver: it came from hidraw.
+bool hands_on_everything(const std::string& driver) {
+  return driver.empty() || driver == "hidraw" || driver == "usb";
+}
+
+Result<std::vector<PadConfig>> pad_configs(const SessionOptions& options,
+                                           const std::vector<TraceDevice>& devices) {
+  auto overrides = all_overrides(options);
+  if (!overrides) return overrides.error();
+  std::vector<PadConfig> pads;
+  for (const TraceDevice& device : devices) {
+    auto layout = pad_layout(device.info, *overrides);
+    if (!layout) {
+      return Error{fmt::format("device {} ({}): {}", device.index, device.info.name,
+                               layout.error().message)};
+    }
+    auto calibration = calibration_of(options, device);
+    if (!calibration) return calibration.error();
+    PadConfig& pad = pads.emplace_back();
+    pad.layout = std::move(*layout);
+    pad.calibration = *calibration;
+    pad.is_usable = pad.layout.is_pad;
+    pad.streams = pad.layout.streams && hands_on_everything(device.info.driver);
+  }
+  return pads;
+}
+
+template <class T>
+const T& nth_or_last(const std::vector<T>& list, std::size_t n) {
+  return list[std::min(n, list.size() - 1)];
+}
+
+Result<GaitCycle> cycle_of(const std::string& motion_file) {
+  if (motion_file.empty()) return procedural_gait();
+  auto motion = load_motion_source(motion_file);
+  if (!motion) return motion.error();
+  return gait_cycle(*motion);
+}
+
+}  // namespace
+
+Result<SimulationConfig> simulation_config(const SessionOptions& options,
+                                           const std::vector<TraceDevice>& devices, int rate_hz) {
+  if (!options.terrain.empty() && options.terrain != "flat") {
+    return Error{fmt::format("the terrain \"{}\" is not known: only flat ground exists so far",
+                             options.terrain)};
+  }
+  SimulationConfig config;
+  config.rate_hz = rate_hz;
+  config.ik = options.ik;
+  auto pads = pad_configs(options, devices);
+  if (!pads) return pads.error();
+  config.pads = std::move(*pads);
+  std::vector<int> chosen_styles;
+  auto styles = all_styles(options, chosen_styles);
+  if (!styles) return styles.error();
+  config.styles = std::move(*styles);
+  auto characters = all_characters(options);
+  if (!characters) return characters.error();
+  auto cycle = cycle_of(options.motion);
+  if (!cycle) return cycle.error();
+  config.cycle = std::move(*cycle);
+  const std::size_t count = std::max(characters->size(), chosen_styles.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    config.walkers.push_back({nth_or_last(*characters, i), nth_or_last(chosen_styles, i)});
+  }
+  return config;
+}
+
+}  // namespace gaitpad

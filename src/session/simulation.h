@@ -1,0 +1,83 @@
+// The whole chain for one tick: reports in, poses out. The live loop, the replay, the tests and the
+// benchmark all call step(); what it did depends on its reports alone, never on a clock.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "animation/walk.h"
+#include "base/hash.h"
+#include "base/result.h"
+#include "control/control.h"
+#include "control/style.h"
+#include "hid/report.h"
+#include "session/pads.h"
+
+namespace gaitpad {
+
+inline constexpr int kMaxWalkers = 16;
+
+struct WalkerConfig {
+  Character character;
+  int style = 0;  // index in SimulationConfig::styles
+};
+struct SimulationConfig {
+  int rate_hz = 240;
+  IkMode ik = IkMode::robust;
+  std::vector<PadConfig> pads;  // a report's device is the index here
+  std::vector<Style> styles;    // all that a command may name; of equal names the first one counts
+  GaitCycle cycle;
+  std::vector<WalkerConfig> walkers;  // at least one; side by side, the first at the origin
+};
+
+// What a step has met, since the beginning.
+struct SimulationCounts {
+  std::int64_t ticks = 0;
+  std::int64_t reports = 0;      // input reports, sound or not
+  std::int64_t bad_reports = 0;  // too short, of an unknown id, of no device
+  std::int64_t commands = 0;
+  std::int64_t bad_commands = 0;  // unknown verb, style or character
+};
+
+struct Walker {
+  WalkModel model;
+  GaitLimits limits;
+  int style = 0;
+  WalkState state;
+  Pose pose;
+  std::int64_t ik_failures = 0;  // legs times ticks
+};
+
+class Simulation {
+ public:
+  static Result<Simulation> create(const SimulationConfig& config);
+
+  // One tick with the reports that belong to it, in order of arrival. No heap, lock or clock.
+  void step(std::span<const Report> reports) noexcept;
+
+  const std::vector<Walker>& walkers() const { return walkers_; }
+  const std::vector<Style>& styles() const { return styles_; }
+  const Stick& stick() const { return stick_; }  // of the last tick
+  const SimulationCounts& counts() const { return counts_; }
+  // Over the bits of every pose of every character in every tick so far.
+  std::uint64_t pose_hash() const { return hash_.value(); }
+
+ private:
+  Simulation() = default;
+  void take(const Report& report) noexcept;
+  bool obey(std::string_view command) noexcept;
+  void add_to_hash(const Pose& pose) noexcept;
+
+  double dt_s_ = 0.0;
+  IkMode ik_ = IkMode::robust;
+  Pads pads_;
+  std::vector<Style> styles_;
+  std::vector<Walker> walkers_;
+  Stick stick_;
+  SimulationCounts counts_;
+  Fnv1a hash_;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,59 @@
+#include "stick/calibration.h"
+
+#include <cmath>
+
+namespace gaitpad {
+
+namespace {
+
+double centred(const AxisCalibration& axis, double raw) noexcept {
+  if (!std::isfinite(raw)) return 0.0;
+  const double offset = std::clamp(raw, -1.0, 1.0) - axis.centre;
+  return offset >= 0.0 ? offset / (axis.max - axis.centre) : offset / (axis.centre - axis.min);
+}
+
+// Deflection >= 0 to response: 0 up to `inner`, 1 from `outer` on.
+double response(double deflection, double inner, double outer, double curve) noexcept {
+  if (deflection <= inner) return 0.0;
+  if (deflection >= outer) return 1.0;
+  const double t = std::min((deflection - inner) / (outer - inner), 1.0);
+  // t + curve (t^3 - t), in a form that cannot pass 1 by rounding.
+  return t * (1.0 - curve * (1.0 - t * t));
+}
+
+vec2 radial(const StickCalibration& c, const vec2& p) noexcept {
+  const double length = std::sqrt(p.x * p.x + p.y * p.y);
+  const double r = response(length, c.inner, c.outer, c.curve);
+  return r > 0.0 ? vec2(p.x / length * r, p.y / length * r) : vec2(0.0);
+}
+
+vec2 axial(const StickCalibration& c, const vec2& p) noexcept {
+  const vec2 q(std::copysign(response(std::fabs(p.x), c.inner, c.outer, c.curve), p.x),
+               std::copysign(response(std::fabs(p.y), c.inner, c.outer, c.curve), p.y));
+  // A square gate reaches its corners, the disc does not.
+  const double length = std::sqrt(q.x * q.x + q.y * q.y);
+  return length > 1.0 ? vec2(q.x / length, q.y / length) : q;
+}
+
+double without_middle(double x, double zone) noexcept {
+  const double beyond = std::fabs(x) - zone;
+  return beyond > 0.0 ? std::copysign(std::min(beyond / (1.0 - zone), 1.0), x) : 0.0;
+}
+
+}  // namespace
+
+vec2 stick_position(const StickCalibration& c, const vec2& raw) noexcept {
+  const vec2 p(centred(c.x, raw.x), centred(c.y, raw.y));
+  // Adding zero turns -0 into 0: neutral has one bit pattern.
+  if (c.shape == ZoneShape::axial) return axial(c, p) + vec2(0.0);
+  const vec2 q = radial(c, p);
+  if (c.shape == ZoneShape::radial) return q + vec2(0.0);
+  return vec2(without_middle(q.x, c.sideways), q.y) + vec2(0.0);
+}
+
+Stick stick_position(const Calibration& calibration, const vec2& raw_left,
+                     const vec2& raw_right) noexcept {
+  return {stick_position(calibration.left, raw_left), stick_position(calibration.right, raw_right)};
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,79 @@
+// From raw stick axes to a calibrated position: centre and range per axis, then dead zones and a
+// response curve per stick. The words and rules are those of the interface contract, section
+// Sticks.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "stick/stick.h"
+
+namespace gaitpad {
+
+// Raw axes are fractions of half the logical range from its middle: -1..1, +x right, +y forward.
+struct AxisCalibration {
+  double min = -1.0, centre = 0.0, max = 1.0;  // raw; min < centre < max
+};
+enum class ZoneShape : std::uint8_t {
+  radial,  // one round zone
+  axial,   // each axis by itself
+  both,    // radial, then a narrower zone on the sideways axis alone: straight ahead can be held
+};
+struct StickCalibration {
+  AxisCalibration x, y;
+  ZoneShape shape = ZoneShape::both;
+  double inner = 0.20;  // fractions of the centred, ranged deflection
+  double outer = 0.95;
+  double sideways = 0.08;  // `both` only, fraction of the calibrated deflection
+  double curve = 0.0;      // response: (1 - curve) t + curve t^3
+};
+struct Calibration {
+  StickCalibration left, right;
+};
+
+// Inner zones where nothing was measured; a Sony stick rests within 6 % of its middle.
+inline constexpr double kInnerZoneSony = 0.12;
+inline constexpr double kInnerZoneUnknown = 0.20;
+
+// Inside the inner zone exactly 0, from the outer zone on of length 1, between them continuous and
+// monotone; odd about the centre. Not-a-number counts as the centre.
+vec2 stick_position(const StickCalibration& calibration, const vec2& raw) noexcept;
+Stick stick_position(const Calibration& calibration, const vec2& raw_left,
+                     const vec2& raw_right) noexcept;
+
+// Which devices a calibration file is for; the grammar stands in config/README.md.
+struct DevicePattern {
+  int vendor = -1, product = -1;  // -1: any
+};
+struct DeviceIdentity {
+  std::uint16_t vendor = 0, product = 0;
+  std::string unique_id, port;
+};
+struct CalibrationFile {
+  std::string name;
+  std::string unique_id, port;         // empty: any
+  std::vector<DevicePattern> devices;  // empty: none, unless unique_id tells
+  Calibration calibration;
+};
+
+Result<CalibrationFile> load_calibration_file(const std::string& path);
+Result<Calibration> load_calibration(const std::string& path);
+// The same from text that stands elsewhere (a recording carries its calibration).
+Result<CalibrationFile> parse_calibration(std::string_view text, const std::string& name,
+                                          int first_line = 1);
+// The text that parse_calibration reads back to the same bits.
+std::string calibration_text(const CalibrationFile& file);
+
+// How well a file fits a device: 0 not at all, then `*:*`, `vvvv:*`, `vvvv:pppp`, the same with the
+// port, the unique id.
+int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device);
+// The best fitting *.toml file of the folders; among equals the earlier folder, then the first
+// name. Without any, zones for an unknown stick. A folder need not exist; a damaged file is an
+// error.
+Result<CalibrationFile> find_calibration(std::span<const std::string> folders,
+                                         const DeviceIdentity& device);
+
+}  // namespace gaitpad

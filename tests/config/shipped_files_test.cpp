@@ -1,0 +1,99 @@
+// The files of config/ load, and hold the numbers that they promise.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "animation/character.h"
+#include "control/style.h"
+#include "stick/calibration.h"
+
+namespace gaitpad {
+namespace {
+
+const std::string kConfig = GAITPAD_SOURCE_DIR "/config/";
+
+Style style(const std::string& name) {
+  auto loaded = load_style(kConfig + "styles/" + name + ".toml");
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  if (!loaded) return {};
+  EXPECT_EQ(loaded->name, name);
+  return *loaded;
+}
+Character character(const std::string& name) {
+  auto loaded = load_character(kConfig + "characters/" + name + ".toml");
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  return loaded ? *loaded : Character();
+}
+std::string weights_of(const Style& s, Side side) {
+  std::string text;
+  for (double w : s.weight[side]) text += std::to_string(w).substr(0, 3) + " ";
+  return text;
+}
+constexpr const char* kEven = "1.0 1.0 1.0 1.0 1.0 1.0 1.0 ";
+constexpr const char* kHip = "0.2 0.2 0.2 1.0 1.0 1.0 1.0 ";
+constexpr const char* kKnee = "1.0 1.0 1.0 0.8 1.0 1.0 1.0 ";
+
+TEST(ShippedStyles, EveryFileLoads) {
+  for (const auto& entry : std::filesystem::directory_iterator(kConfig + "styles")) {
+    style(entry.path().stem().string());
+  }
+}
+
+// Fig. 5a: red 1, green hip -80 %, blue knee -20 %.
+TEST(ShippedStyles, WeightsOfFigure5a) {
+  for (const Side side : {kLeftSide, kRightSide}) {
+    EXPECT_EQ(weights_of(style("even"), side), kEven);
+    EXPECT_EQ(weights_of(style("stiff_hip"), side), kHip);
+    EXPECT_EQ(weights_of(style("stiff_knee"), side), kKnee);
+  }
+}
+
+// Fig. 5b: left stride length -50 %, flight height -50 %, speed +30 %, weights on the left leg
+// only.
+TEST(ShippedStyles, FactorsAndWeightsOfFigure5b) {
+  for (const auto& [name, left] : {std::pair("limp_left", kEven), std::pair("limp_left_hip", kHip),
+                                   std::pair("limp_left_knee", kKnee)}) {
+    const Style limp = style(name);
+    EXPECT_EQ(limp.stride[kLeftSide].length, 0.5);
+    EXPECT_EQ(limp.stride[kLeftSide].speed, 1.3);
+    EXPECT_EQ(limp.stride[kLeftSide].flight_height, 0.5);
+    EXPECT_EQ(limp.stride[kRightSide].length, 1.0);
+    EXPECT_EQ(limp.stride[kRightSide].speed, 1.0);
+    EXPECT_EQ(limp.stride[kRightSide].flight_height, 1.0);
+    EXPECT_EQ(weights_of(limp, kLeftSide), left);
+    EXPECT_EQ(weights_of(limp, kRightSide), kEven);
+    EXPECT_EQ(limp.fatigue, 0.0);
+  }
+}
+
+TEST(ShippedStyles, TiredIsFatigued) { EXPECT_GT(style("tired").fatigue, 0.3); }
+
+TEST(ShippedCharacters, EveryFileLoadsAndTheNamedOnesAreThere) {
+  for (const auto& entry : std::filesystem::directory_iterator(kConfig + "characters")) {
+    if (entry.path().extension() == ".toml") character(entry.path().stem().string());
+  }
+  EXPECT_EQ(character("adult").leg_ratio, 1.0);
+  EXPECT_EQ(character("child").scale, 0.62);
+  EXPECT_EQ(character("tall").scale, 1.12);
+  EXPECT_EQ(character("as_in_motion_file").name, Character().name);
+  EXPECT_EQ(character("as_in_motion_file").scale, 1.0);
+}
+
+TEST(ShippedCalibrations, SonyPadsGetTheNarrowZoneAndUnknownOnesTheWide) {
+  const std::string folders[] = {kConfig + "calibration"};
+  const auto inner = [&](std::uint16_t vendor, std::uint16_t product) {
+    auto file = find_calibration(folders, {vendor, product, "", ""});
+    EXPECT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->calibration.left.inner, file->calibration.right.inner);
+    EXPECT_EQ(file->calibration.left.sideways, 0.08);
+    EXPECT_EQ(file->calibration.left.outer, 0.95);
+    EXPECT_EQ(file->calibration.left.shape, ZoneShape::both);
+    return file->calibration.left.inner;
+  };
+  EXPECT_EQ(inner(0x054c, 0x09cc), kInnerZoneSony);
+  EXPECT_EQ(inner(0x054c, 0x0ce6), kInnerZoneSony);
+  EXPECT_EQ(inner(0x045e, 0x028e), kInnerZoneUnknown);
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,334 @@
+// The best stride of a motion as a periodic walk: on the procedural motion, disturbed in ways that
+// captured ones are, and on real clips where they are at hand.
+#include "motion/gait_cycle.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "motion/cycle_leg.h"
+#include "motion/load.h"
+#include "motion/tracks.h"
+
+namespace gaitpad {
+namespace {
+
+LegPose pose_at(const GaitCycle& cycle, int side, double phase) {
+  const CycleSample at = sample_at(cycle, phase);
+  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, at.leg[side].angles, at.leg[side].toe_x);
+}
+
+// The procedural motion cut to frames [first, last].
+Motion cut(int first, int last) {
+  Motion m = procedural_motion();
+  m.name = "cut.bvh";
+  m.frames = std::vector<MotionFrame>(m.frames.begin() + first, m.frames.begin() + last + 1);
+  return m;
+}
+
+// Difference of the leg's sagittal angles from the procedural walk, in degrees, the phases' offset
+// (another definition of the strike) taken out by the best fit.
+double angle_difference(const GaitCycle& cycle) {
+  const GaitCycle own = procedural_gait();
+  double best = 1e9;
+  for (double offset = -0.04; offset <= 0.04; offset += 0.001) {
+    double most = 0.0;
+    for (double phase = 0.0; phase < 1.0; phase += 0.02) {
+      const CycleSample a = sample_at(cycle, phase), b = sample_at(own, phase + offset);
+      for (const int d : {kHipX, kKneeX, kAnkleX}) {
+        const double hip = a.leg[0].angles[d] - b.leg[0].angles[d];
+        most = std::max(most, std::abs(hip) / kDegree);
+      }
+    }
+    best = std::min(best, most);
+  }
+  return best;
+}
+
+TEST(GaitCycle, OfTheProceduralMotionIsTheProceduralGait) {
+  const auto cycle = gait_cycle(procedural_motion());
+  ASSERT_TRUE(cycle);
+  const GaitCycle own = procedural_gait();
+  EXPECT_NEAR(cycle->duration_s, own.duration_s, 0.002);
+  EXPECT_NEAR(cycle->stride_m, own.stride_m, 0.003);
+  for (const int side : {0, 1}) {
+    EXPECT_NEAR(cycle->step_m[side], own.step_m[side], 0.005);
+    EXPECT_NEAR(cycle->track_m[side], own.track_m[side], 0.01);
+    EXPECT_NEAR(cycle->leg[side].thigh_m, own.leg[side].thigh_m, 1e-9);
+    EXPECT_NEAR(cycle->leg[side].toe_end_rest_m, own.leg[side].toe_end_rest_m, 0.012);
+    EXPECT_NEAR(cycle->leg[side].heel_m.y, own.leg[side].heel_m.y, 0.015);
+  }
+  EXPECT_LT(angle_difference(*cycle), 3.0);
+}
+
+TEST(GaitCycle, EventsComeInOrder) {
+  const auto c = gait_cycle(procedural_motion());
+  ASSERT_TRUE(c);
+  EXPECT_EQ(c->strike[kRightSide], 0.0);
+  EXPECT_NEAR(c->strike[kLeftSide], 0.5, 0.01);
+  EXPECT_NEAR(c->toe_off[kLeftSide], 0.13, 0.05);
+  EXPECT_NEAR(c->toe_off[kRightSide] - c->toe_off[kLeftSide], 0.5, 0.01);
+}
+
+TEST(GaitCycle, IsPeriodicInValueAndSlope) {
+  const auto c = gait_cycle(cut(0, 200));
+  ASSERT_TRUE(c);
+  constexpr double kStep = 1e-4;
+  const CycleSample a = sample_at(*c, 1.0 - kStep), b = sample_at(*c, 0.0),
+                    d = sample_at(*c, kStep);
+  for (int k = 0; k < kLegDofs; ++k) {
+    const double before = b.leg[0].angles[k] - a.leg[0].angles[k];
+    const double after = d.leg[0].angles[k] - b.leg[0].angles[k];
+    EXPECT_NEAR(before, after, 2e-5) << k;
+  }
+  EXPECT_LT(glm::distance(a.pelvis_m, b.pelvis_m), 1e-3);
+}
+
+TEST(GaitCycle, NeedsHardlyMoreThanOneStride) {
+  const int stride = static_cast<int>(procedural_gait().duration_s * 120.0 + 0.5);
+  for (const int first : {0, 20, 45, 70, 95}) {
+    const auto cycle = gait_cycle(cut(first, first + stride * 23 / 20));
+    if (!cycle) {
+      ADD_FAILURE() << first << ": " << cycle.error().message;
+      continue;
+    }
+    EXPECT_LT(angle_difference(*cycle), 4.0) << first;
+  }
+}
+
+TEST(GaitCycle, ALoopOfExactlyOneStrideRunsOverItsEnd) {
+  const int stride = static_cast<int>(procedural_gait().duration_s * 120.0 + 0.5);
+  for (const int first : {0, 30, 60, 90}) {
+    const auto cycle = gait_cycle(cut(first, first + stride));
+    ASSERT_TRUE(cycle) << cycle.error().message;
+    EXPECT_LT(angle_difference(*cycle), 3.0) << first;
+  }
+}
+
+TEST(GaitCycle, LosesHeadingPlaceAndHeightOfTheFile) {
+  Motion m = procedural_motion();
+  const quat turn = rotation_y(2.1);
+  for (MotionFrame& frame : m.frames) {
+    frame.root_m = turn * frame.root_m + vec3(12.0, 3.0, -7.0);
+    frame.local[0] = turn * frame.local[0];
+  }
+  const auto moved = gait_cycle(m), still = gait_cycle(procedural_motion());
+  ASSERT_TRUE(moved);
+  ASSERT_TRUE(still);
+  for (double phase = 0.0; phase < 1.0; phase += 0.1) {
+    const CycleSample a = sample_at(*moved, phase), b = sample_at(*still, phase);
+    EXPECT_LT(glm::distance(a.pelvis_m, b.pelvis_m), 1e-6);
+    EXPECT_LT(glm::distance(a.leg[1].ankle_m, b.leg[1].ankle_m), 1e-6);
+  }
+}
+
+TEST(GaitCycle, ACurvedWalkIsStraightened) {
+  Motion m = procedural_motion();
+  const double radius_m = 6.0;
+  for (MotionFrame& frame : m.frames) {
+    const quat turn = rotation_y(frame.root_m.z / radius_m);
+    const vec3 aside(radius_m - frame.root_m.x, 0.0, 0.0);
+    const double height_m = frame.root_m.y;
+    frame.root_m = vec3(radius_m, height_m, 0.0) - turn * aside;
+    frame.local[0] = turn * frame.local[0];
+  }
+  const auto cycle = gait_cycle(m);
+  ASSERT_TRUE(cycle);
+  EXPECT_NEAR(cycle->stride_m, procedural_gait().stride_m, 0.01);
+  EXPECT_LT(angle_difference(*cycle), 4.0);
+}
+
+TEST(GaitCycle, TwentyFourFramesASecondAreEnough) {
+  const Motion fine = procedural_motion();
+  Motion coarse = fine;
+  coarse.frame_time_s = 5.0 * fine.frame_time_s;
+  coarse.frames.clear();
+  for (std::size_t f = 0; f < fine.frames.size(); f += 5) coarse.frames.push_back(fine.frames[f]);
+  const auto cycle = gait_cycle(coarse);
+  ASSERT_TRUE(cycle);
+  EXPECT_LT(angle_difference(*cycle), 4.0);
+}
+
+TEST(GaitCycle, AFarPoseInFrontDoesNotMatter) {
+  Motion m = procedural_motion();
+  MotionFrame pose = m.frames.front();
+  pose.root_m += vec3(2.0, 0.0, 3.0);
+  m.frames.insert(m.frames.begin(), pose);
+  EXPECT_TRUE(gait_cycle(m));
+}
+
+TEST(GaitCycle, ZeroLengthEndSitesBecomeToes) {
+  Motion m = procedural_motion();
+  for (LegJoints& leg : m.legs) {  // as if the foot ended in an End Site of no length
+    m.skeleton.joints[leg.toe].offset_m = vec3(0.0);
+    m.skeleton.joints[leg.toe_end].offset_m = vec3(0.0);
+  }
+  const auto cycle = gait_cycle(m);
+  ASSERT_TRUE(cycle) << cycle.error().message;
+  EXPECT_NEAR(cycle->leg[kLeftSide].toe_m.z, 0.155 * 0.84, 1e-6);
+  EXPECT_LT(pose_at(*cycle, kLeftSide, 0.8).heel_m.y, 0.3);
+}
+
+TEST(GaitCycle, StandingInPlaceIsRefusedByName) {
+  Motion m = cut(0, 200);
+  for (MotionFrame& frame : m.frames) frame = m.frames.front();
+  const auto cycle = gait_cycle(m);
+  ASSERT_FALSE(cycle);
+  EXPECT_EQ(cycle.error().message, "cut.bvh: holds no full walking stride of both feet");
+}
+
+TEST(GaitCycle, WalkingBackwardsIsRefused) {
+  Motion m = procedural_motion();
+  std::ranges::reverse(m.frames);
+  EXPECT_FALSE(gait_cycle(m));
+}
+
+TEST(GaitCycle, HalfAStrideIsRefused) { EXPECT_FALSE(gait_cycle(cut(0, 60))); }
+
+// ---- real clips
+// -----------------------------------------------------------------------------------
+
+std::filesystem::path mocap() { return std::filesystem::path(GAITPAD_SHARED_DATA) / "mocap"; }
+
+// gait-notes' walks but the one in place.
+constexpr const char* kWalks[] = {
+    "bvhtoolbox_walk01", "cmu_006_01_iclone", "cmu_007_01_iclone", "cmu_007_04_iclone",
+    "cmu_007_12_iclone", "cmu_12_01_walk",    "cmu_m21_depressed", "cmu_m21_female_walk",
+    "cmu_m21_happy",     "cmu_m21_old2",      "cmu_m21_sneaky",    "cmu_m21_walk",
+    "dme_example_crlf",  "dpr_walk_simple",   "mass_walk",         "sheffield_swagger"};
+
+class CapturedWalk : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path file = mocap() / (std::string(GetParam()) + ".bvh");
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+    auto loaded = load_motion(file.string());
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    motion = std::move(*loaded);
+    auto made = gait_cycle(motion);
+    ASSERT_TRUE(made) << made.error().message;
+    cycle = std::move(*made);
+  }
+  Motion motion;
+  GaitCycle cycle;
+};
+
+TEST_P(CapturedWalk, IsAWalk) {
+  EXPECT_EQ(cycle.strike[kRightSide], 0.0);
+  EXPECT_NEAR(cycle.strike[kLeftSide], 0.5, 0.1);
+  EXPECT_GT(cycle.duration_s, 0.7);
+  EXPECT_LT(cycle.duration_s, 2.5);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    EXPECT_GT(cycle.step_m[side], 0.3 * cycle.stride_m);
+    const double stance = cycle.toe_off[side] - cycle.strike[side];
+    EXPECT_GT(stance - std::floor(stance), 0.5);
+    EXPECT_LT(stance - std::floor(stance), 0.8);
+    EXPECT_GE(cycle.leg[side].toe_rest_m, 0.0);
+    EXPECT_LT(cycle.leg[side].toe_rest_m, 0.05 * cycle.leg[side].length_m());
+  }
+}
+
+TEST_P(CapturedWalk, ModelPutsAnkleAndFootWhereTheyWereCaptured) {
+  for (const int side : {0, 1}) {
+    double farthest_m = 0.0, widest_rad = 0.0;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const LegSample& leg = cycle.samples[i].leg[side];
+      const LegPose p = pose_at(cycle, side, double(i) / kCycleSamples);
+      farthest_m = std::max(farthest_m, glm::distance(p.ankle_m, leg.ankle_m));
+      widest_rad =
+          std::max(widest_rad, glm::length(rotation_vector(glm::conjugate(p.foot) * leg.foot)));
+    }
+    // Two of the clips bend a knee backwards by 9 degrees, which a hinge does not.
+    EXPECT_LT(farthest_m, 0.0025);
+    EXPECT_LT(widest_rad, 0.1 * kDegree);
+  }
+}
+
+TEST_P(CapturedWalk, BodyPoseAgreesWithTheLegModel) {
+  auto pose = std::make_unique<Pose>();
+  const auto world = std::make_unique<JointFrames>();
+  for (int i = 0; i < kCycleSamples; i += 5) {
+    const double phase = double(i) / kCycleSamples;
+    sample_local(cycle, phase, *pose);
+    pose->root_m = sample_at(cycle, phase).pelvis_m;
+    forward_kinematics(cycle.skeleton, *pose, *world);
+    for (const int side : {0, 1}) {
+      const LegPose leg = pose_at(cycle, side, phase);
+      const LegJoints& j = cycle.leg[side].joints;
+      EXPECT_LT(glm::distance(world->position_m[j.hip], leg.hip_m), 1e-6);
+      EXPECT_LT(glm::distance(world->position_m[j.ankle], leg.ankle_m), 1e-6);
+      EXPECT_LT(glm::distance(world->position_m[j.toe], leg.toe_m), 1e-6);
+    }
+  }
+}
+
+// Angle between two successive turns, degrees.
+double bend(const quat& a, const quat& b, const quat& c) {
+  const vec3 first = rotation_vector(glm::conjugate(a) * b);
+  const vec3 second = rotation_vector(glm::conjugate(b) * c);
+  return glm::length(second - first) / kDegree;
+}
+
+TEST_P(CapturedWalk, NoJointIsRougherThanInTheClip) {
+  const std::size_t joints = cycle.skeleton.joints.size();
+  const double to_ticks = 1.0 / (240.0 * motion.frame_time_s);
+  const int ticks = static_cast<int>(cycle.duration_s * 240.0 + 0.5);
+  std::vector<double> clip(joints, 0.0), made(joints, 0.0);
+  for (std::size_t f = 2; f + 1 < motion.frames.size(); ++f) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      const double here = bend(motion.frames[f - 1].local[j], motion.frames[f].local[j],
+                               motion.frames[f + 1].local[j]);
+      clip[j] = std::max(clip[j], here * to_ticks * to_ticks);
+    }
+  }
+  auto a = std::make_unique<Pose>(), b = std::make_unique<Pose>(), c = std::make_unique<Pose>();
+  for (int k = 0; k < ticks; ++k) {
+    sample_local(cycle, (k - 1.0) / ticks, *a);
+    sample_local(cycle, double(k) / ticks, *b);
+    sample_local(cycle, (k + 1.0) / ticks, *c);
+    for (std::size_t j = 0; j < joints; ++j) {
+      made[j] = std::max(made[j], bend(a->local[j], b->local[j], c->local[j]));
+    }
+  }
+  for (std::size_t j = 0; j < joints; ++j) {
+    EXPECT_LT(made[j], clip[j] + 0.2) << cycle.skeleton.joints[j].name;
+  }
+}
+
+TEST_P(CapturedWalk, StandsOnTheFloor) {
+  Pose pose;
+  pose.joint_count = static_cast<int>(cycle.standing_local.size());
+  std::ranges::copy(cycle.standing_local, pose.local.begin());
+  const auto world = std::make_unique<JointFrames>();
+  for (const int side : {0, 1}) {
+    const LegModel& leg = cycle.leg[side];
+    pose.root_m = vec3(0.0, leg.length_m() - leg.heel_m.y - leg.hip_m.y, 0.0);
+    forward_kinematics(cycle.skeleton, pose, *world);
+    const auto& at = world->position_m;
+    EXPECT_NEAR(at[leg.joints.toe].y, leg.toe_rest_m, 1e-6);
+    EXPECT_NEAR(at[leg.joints.ankle].y, -leg.heel_m.y, 1e-6);
+    const vec3 down = at[leg.joints.ankle] - at[leg.joints.hip];
+    EXPECT_NEAR(down.y, -leg.length_m(), 1e-6);
+    EXPECT_GT(at[leg.joints.toe].z, at[leg.joints.ankle].z);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SharedData, CapturedWalk, testing::ValuesIn(kWalks),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(GaitCycle, OtherClipsAreRefusedInOneSentence) {
+  if (!std::filesystem::exists(mocap())) GTEST_SKIP() << mocap() << " is not here";
+  for (const char* name : {"mass_run", "cmu_01_01", "cmu_m21_old1", "pybvh_example",
+                           "mocapbank_test", "daz3d_170_joints", "makehuman_walk1"}) {
+    const auto motion = load_motion((mocap() / (std::string(name) + ".bvh")).string());
+    ASSERT_TRUE(motion) << name;
+    const auto cycle = gait_cycle(*motion);
+    ASSERT_FALSE(cycle) << name;
+    EXPECT_NE(cycle.error().message.find(name), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

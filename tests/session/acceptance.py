@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+"""Runs `gaitpad replay` over motions x styles x leg ratios x sticks and judges every exported walk.
+
+  acceptance.py PATH/TO/gaitpad [--quick] [--data DIR] [--out DIR] [--json]
+
+Prints one line a bound with the worst figure of all runs, then what failed. Exit status 1 where
+a bound is broken. Captured motions are skipped, with a remark, when the data folder is absent.
+"""
+import argparse
+import json
+import multiprocessing
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+import bvh_fk
+import make_trace
+import walk_check
+import walk_compare
+from walk_bounds import Check
+from walk_data import Walk, trace_changes
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+DATA = os.path.join(HERE, "..", "..", "..", "shared", "data", "mocap")
+MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_12_01_walk")
+STYLES = ("even", "stiff_hip", "stiff_knee", "limp_left", "limp_left_hip", "limp_left_knee", "tired")
+RATIOS = (0.6, 1.0, 1.6)
+
+
+# ---- what is run -----------------------------------------------------------------------------
+def walk_at(x, y, end, start=0.5):
+    return {"stick": [(start, x, y)], "end": end}
+
+
+def start_and_stop(forward=0.8):
+    """From rest, down, up, stop in flight, start again, full, stop."""
+    stick = [(0.5, 0, forward), (4.0, 0, 0.4), (6.5, 0, forward), (9.1, 0, 0), (11.5, 0, forward), (13.0, 0, 1.0),
+             (16.0, 0.5, 0.8), (18.0, -0.3, 0.6), (20.0, 0, 0.6), (22.3, 0, 0)]
+    return {"stick": stick, "end": 25.0}
+
+
+def style_changes():
+    stick = [(0.5, 0, 0.8), (15.0, 0, 0.8)]
+    names = ["limp_left", "even", "stiff_hip", "tired", "stiff_knee", "limp_left_hip", "even"]
+    return {"stick": stick, "commands": [(3.0 + 1.7 * i, f"style {n}") for i, n in enumerate(names)], "end": 18.0}
+
+
+def gentle():
+    """A thumb's ramps instead of jumps."""
+    stick = make_trace.ramp(0.5, 1.3, (0, 0), (0, 0.9)) + make_trace.ramp(5, 6, (0, 0.9), (0.4, 0.5)) + \
+        make_trace.ramp(9, 9.6, (0.4, 0.5), (0, 0))
+    return {"stick": stick, "end": 12.0}
+
+
+def wander(seed):
+    """A thumb that does anything: jumps all over the disc, rests, backward, style keys in between."""
+    chance = random.Random(seed)
+    time_s, stick, commands = 0.3, [], []
+    while time_s < 28.0:
+        x, y = chance.uniform(-0.7, 0.7), chance.uniform(-0.3, 1.0)
+        kind = chance.random()
+        stick.append((time_s, 0.0, y) if kind < 0.3 else (time_s, 0.0, 0.0) if kind < 0.45 else (time_s, x, min(y, 0.7)))
+        if chance.random() < 0.25:
+            commands.append((time_s + 0.1, f"style {chance.choice(STYLES)}"))
+        time_s += chance.uniform(0.1, 2.0)
+    return {"stick": stick, "commands": commands, "end": 30.0}
+
+
+def cases_of(motion, quick):
+    """Dicts: label, motion, ratio, style, stick timeline."""
+    found = []
+
+    def add(label, plan, ratio=1.0, style="even"):
+        found.append({"label": f"{motion} {label}", "motion": motion, "ratio": ratio, "style": style, **plan})
+
+    sticks = (0.4, 1.0) if quick else (0.2, 0.4, 0.6, 0.8, 1.0)
+    for y in sticks:
+        add(f"stick {y}", walk_at(0, y, 12))
+    for ratio in (0.6, 1.6):
+        for y in ((0.8,) if quick else (0.3, 0.6, 1.0)):
+            add(f"leg {ratio} stick {y}", walk_at(0, y, 12), ratio)
+    for style in STYLES if not quick else ("even", "stiff_hip", "stiff_knee", "limp_left"):
+        add(f"style {style}", walk_at(0, 0.8, 12), style=style)
+    for x in (-0.5, 0.5):
+        add(f"turn {x:+}", walk_at(x, 0.7, 26))
+    add("start and stop", start_and_stop())
+    add("style changes", style_changes())
+    if not quick:
+        add("leg 0.6 start and stop", start_and_stop(), 0.6)
+        add("leg 1.6 start and stop", start_and_stop(), 1.6)
+        add("leg 0.6 turn", walk_at(0.5, 0.6, 20), 0.6)
+        add("leg 1.6 turn", walk_at(0.5, 0.6, 26), 1.6)
+        add("gentle", gentle())
+        for ratio in (0.6, 1.6):
+            for style in ("limp_left", "stiff_hip"):
+                add(f"leg {ratio} style {style}", walk_at(0, 0.8, 10), ratio, style)
+        add("turn style limp_left", walk_at(0.5, 0.7, 16), style="limp_left")
+        add("wander 1", wander(1))
+        add("wander 2", wander(2))
+        add("200 strides", walk_at(0, 0.8, 245))
+        add("turn on the spot", walk_at(0.6, 0, 8))
+        add("turn full", walk_at(1.0, 0.4, 16))
+    return found + (weight_cases(quick) if motion == "default" else [])
+
+
+def weight_cases(quick):
+    """Own styles for the weight's monotone effect."""
+    found = []
+    for weight in () if quick else (0.9, 0.8, 0.5):
+        found.append({"label": f"default hip {weight}", "motion": "default", "ratio": 1.0, "hip": weight,
+                      "style": f"hip_{weight}", **walk_at(0, 0.8, 12)})
+    return found
+
+
+# ---- one run ---------------------------------------------------------------------------------
+def folder_of(case, out):
+    return os.path.join(out, case["label"].replace(" ", "_"))
+
+
+def command_of(case, folder, options):
+    command = [options.gaitpad, "replay", os.path.join(folder, "trace.hid"), "--out", folder, "--calibration",
+               os.path.join(options.out, "exact.toml")]
+    if case["motion"] != "default":
+        command += ["--motion", os.path.join(options.data, case["motion"] + ".bvh")]
+    if case["ratio"] != 1.0:
+        character = os.path.join(folder, "character.toml")
+        with open(character, "w", encoding="utf-8") as file:
+            file.write(f"leg_ratio = {case['ratio']}\n")
+        command += ["--character", character]
+    style = case["style"]
+    if "hip" in case:
+        style = os.path.join(folder, "style.toml")
+        with open(style, "w", encoding="utf-8") as file:
+            file.write(f"name = \"hip_{case['hip']}\"\n[legs]\nweight = {{ hip = {case['hip']} }}\n")
+    return command + ["--style", style]
+
+
+def load(case, out):
+    folder = folder_of(case, out)
+    return Walk(folder, changes=trace_changes(os.path.join(folder, "trace.hid")))
+
+
+def run_case(job):
+    """Replays and judges one case: (label, list of check dicts)."""
+    case, options = job
+    folder = folder_of(case, options.out)
+    os.makedirs(folder, exist_ok=True)
+    make_trace.write_trace(os.path.join(folder, "trace.hid"), case["stick"], case.get("commands", ()), case["end"],
+                           comment=case["label"])
+    done = subprocess.run(command_of(case, folder, options), capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        return case["label"], [Check("replay's exit status", done.returncode, 0, "==", note=last)]
+    try:
+        source, raw = None, False
+        if case["motion"] != "default":
+            source = bvh_fk.read_bvh(os.path.join(options.data, case["motion"] + ".bvh"))
+            raw = case["label"].endswith(("stick 1.0", "stick 0.8"))
+        return case["label"], walk_check.check_walk(load(case, options.out), source, raw)
+    except Exception as error:  # a file that cannot be measured is a failure of that run, not of the judge
+        return case["label"], [Check("files can be measured", 1, 0, "==", note=f"{type(error).__name__}: {error}")]
+
+
+# ---- comparisons -----------------------------------------------------------------------------
+def comparisons(motion, options):
+    """(label, job) pairs; each job is run in its own process."""
+    pairs = [("mirror", "turn +0.5", "turn -0.5"), ("limp", "style even", "style limp_left"),
+             ("hip", "style even", "style stiff_hip"), ("knee", "style even", "style stiff_knee")]
+    if not options.quick:
+        pairs += [("hip left", "style limp_left", "style limp_left_hip"),
+                  ("knee left", "style limp_left", "style limp_left_knee")]
+    jobs = [(f"{motion} {kind}", kind, f"{motion} {a}", f"{motion} {b}", options) for kind, a, b in pairs]
+    if motion == "default":
+        jobs.append(("default monotone", "monotone", None, None, options))
+        jobs.append(("default raw", "raw", "default style even", "default leg 0.6 stick 0.8" if options.quick
+                     else "default leg 0.6 stick 1.0", options))
+    return jobs
+
+
+def run_comparison(job):
+    label, kind, first, second, options = job
+    by_label = lambda name: load({"label": name}, options.out)
+    try:
+        if kind == "monotone":
+            return label, [monotone_check(options)]
+        if kind == "raw":  # the default's own walk on shorter legs
+            source = bvh_fk.read_bvh(os.path.join(folder_of({"label": first}, options.out), "pose.bvh"))
+            return label, walk_compare.raw_checks(by_label(second), source)
+        a, b = by_label(first), by_label(second)
+        if kind == "mirror":
+            return label, walk_compare.mirror_checks(a, b)
+        if kind == "limp":
+            return label, walk_compare.limp_checks(a, b)
+        low, high, extremes = walk_check.weight_bounds(kind.split()[0])
+        return label, walk_compare.weight_checks(a, b, low, high, extremes, (0,) if "left" in kind else (0, 1))
+    except Exception as error:  # as in run_case
+        return label, [Check("walks can be compared", 1, 0, "==", note=f"{type(error).__name__}: {error}")]
+
+
+def monotone_check(options):
+    """RMS of the hip's change must grow as its weight falls."""
+    labels = ["default style stiff_hip"] if options.quick else \
+        ["default hip 0.9", "default hip 0.8", "default hip 0.5", "default style stiff_hip"]
+    even = load({"label": "default style even"}, options.out)
+    rms = [walk_compare.weight_figures(even, load({"label": n}, options.out), 0)["rms"] for n in labels]
+    falls = sum(b <= a for a, b in zip(rms[:-1], rms[1:]))
+    return Check("hip RMS not growing with the weight", falls, 0, "==", note=" ".join(f"{v:.2f}" for v in rms))
+
+
+# ---- the table -------------------------------------------------------------------------------
+def badness(check):
+    if check.kind == ">=":
+        return -check.value
+    if check.kind == "in":
+        return abs(check.value - 0.5 * (check.low + check.bound))
+    return check.value
+
+
+def summary_table(results):
+    groups = {}
+    for label, checks in results:
+        for check in checks:
+            if check.value is not None:
+                groups.setdefault((check.name, check.bound_text()), []).append((label, check))
+    lines = [f"{'bound':44s} {'worst':>10s} {'':10s} {'allowed':>12s} {'failed':>8s}  worst run"]
+    for (name, bound), found in groups.items():
+        label, check = max(found, key=lambda f: (f[1].ok is False, badness(f[1])))
+        failed = f"{sum(c.ok is False for _, c in found)}/{len(found)}" if check.ok is not None else f"({len(found)})"
+        lines.append(f"{name:44s} {check.value:10.4g} {check.unit:10s} {bound:>12s} {failed:>8s}  {label}: {check.note}")
+    return "\n".join(line.rstrip(": ") for line in lines)
+
+
+def failures_text(results, most=4):
+    """The worst few runs of each broken bound, and how many are broken in all."""
+    broken = {}
+    for label, checks in results:
+        for check in checks:
+            if check.ok is False:
+                broken.setdefault((check.name, check.bound_text()), []).append((label, check))
+    lines = []
+    for (name, bound), found in broken.items():
+        found.sort(key=lambda f: -badness(f[1]))
+        lines.append(f"{name} ({bound}): {len(found)} broken")
+        lines += [f"    {label}: {c.value:.4g} {c.unit} {c.note}".rstrip() for label, c in found[:most]]
+    return lines, sum(map(len, broken.values()))
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("gaitpad")
+    parser.add_argument("--quick", action="store_true", help="the default and one captured motion, under 40 s")
+    parser.add_argument("--data", default=DATA, help="folder of the BVH files")
+    parser.add_argument("--motions", default=",".join(MOTIONS), help="BVH names without ending; default is always run")
+    parser.add_argument("--out", help="keep traces and exported files there")
+    parser.add_argument("--only", default="", help="only cases whose label contains this")
+    parser.add_argument("--json", action="store_true")
+    return parser.parse_args()
+
+
+def run_all(options):
+    motions = ["default"]
+    for name in [m for m in options.motions.split(",") if m][:1 if options.quick else None]:
+        if os.path.exists(os.path.join(options.data, name + ".bvh")):
+            motions.append(name)
+        else:
+            print(f"skipped: {name}.bvh is not in {options.data}", file=sys.stderr)
+    make_trace.write_exact_calibration(os.path.join(options.out, "exact.toml"))
+    cases = [c for m in motions for c in cases_of(m, options.quick) if options.only in c["label"]]
+    cases.sort(key=lambda c: -c["end"])  # long ones first: two processes end together
+    with multiprocessing.Pool(2) as pool:
+        results = pool.map(run_case, [(c, options) for c in cases], chunksize=1)
+        if not options.only:
+            results += pool.map(run_comparison, [j for m in motions for j in comparisons(m, options)], chunksize=1)
+    return results
+
+
+def main():
+    options = arguments()
+    started = time.time()
+    with tempfile.TemporaryDirectory() as scratch:
+        options.out = os.path.abspath(options.out or scratch)
+        os.makedirs(options.out, exist_ok=True)
+        results = run_all(options)
+    lines, count = failures_text(results)
+    if options.json:
+        print(json.dumps({label: [c.as_dict() for c in checks] for label, checks in results}, indent=1))
+    else:
+        print(summary_table(results))
+        print("\n".join(lines))
+        print(f"{len(results)} runs and comparisons, {count} bounds broken, {time.time() - started:.0f} s")
+    return 1 if count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

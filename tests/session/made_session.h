@@ -1,0 +1,96 @@
+// Made-up pads, reports and sessions for the tests of src/session: no file needed.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "session/simulation.h"
+
+namespace gaitpad {
+
+// A pad of 8-bit X, Y, Z, Rz, a hat and 12 buttons, without report id: six bytes a report.
+inline DeviceInfo made_pad() {
+  DeviceInfo info;
+  info.bus = BusType::usb;
+  info.vendor = 0x1209;
+  info.product = 0x0001;
+  info.name = "Example Walk Pad";
+  info.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff, 0x00,
+                     0x75, 0x08, 0x95, 0x04, 0x09, 0x30, 0x09, 0x31, 0x09, 0x32, 0x09,
+                     0x35, 0x81, 0x02, 0x15, 0x00, 0x25, 0x07, 0x75, 0x04, 0x95, 0x01,
+                     0x09, 0x39, 0x81, 0x42, 0x05, 0x09, 0x15, 0x00, 0x25, 0x01, 0x75,
+                     0x01, 0x95, 0x0c, 0x19, 0x01, 0x29, 0x0c, 0x81, 0x02, 0xc0};
+  return info;
+}
+
+// Its report with these counts of X and Y; 0x80 is the middle, Y grows backwards.
+inline Report made_report(int x, int y, std::uint16_t device = 0) {
+  Report report;
+  report.device = device;
+  report.size = 6;
+  report.bytes = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 0x80, 0x80, 0x08, 0};
+  return report;
+}
+inline Report made_plug(ReportKind kind, std::uint16_t device = 0) {
+  Report report;
+  report.device = device;
+  report.kind = kind;
+  return report;
+}
+inline Report made_command(std::string_view text) {
+  Report report;
+  report.kind = ReportKind::command;
+  report.size = static_cast<std::uint16_t>(text.size());
+  std::copy(text.begin(), text.end(), report.bytes.begin());
+  return report;
+}
+
+// It does not stream; calibration of an unknown stick.
+inline PadConfig made_pad_config() {
+  PadConfig config;
+  if (auto layout = pad_layout(made_pad(), {})) config.layout = *layout;
+  config.is_usable = config.layout.is_pad;
+  return config;
+}
+
+inline Style made_limp() {
+  Style style;
+  style.name = "limp";
+  style.stride[kLeftSide] = {.length = 0.5, .speed = 1.3, .flight_height = 0.5};
+  style.weight[kRightSide][kHipX] = 0.2;
+  return style;
+}
+
+// The procedural walk; styles `even` and `limp`; one made pad.
+inline SimulationConfig made_config(int walkers) {
+  SimulationConfig config;
+  config.pads = {made_pad_config()};
+  config.styles.resize(1);
+  config.styles[0].name = "even";
+  config.styles.push_back(made_limp());
+  config.cycle = procedural_gait();
+  for (int i = 0; i < walkers; ++i) {
+    WalkerConfig& walker = config.walkers.emplace_back();
+    walker.character.leg_ratio = 1.0 + 0.1 * i;
+    walker.style = i % 2;
+  }
+  return config;
+}
+
+// The reports of one tick of a lively walk: standing, straight on, curves, a style, unplugging.
+inline std::vector<Report> made_tick(int tick) {
+  constexpr int kPeriod = 3000;
+  switch (tick % kPeriod) {
+    case 240: return {made_report(0x80, 0x20)};
+    case 700: return {made_report(0x30, 0x20), made_report(0x40, 0x18)};
+    case 1000: return {made_command("style 1 limp")};
+    case 1300: return {made_report(0xd0, 0x30)};
+    case 1700: return {made_report(0x80, 0x00), made_command("style even")};
+    case 2100: return {made_plug(ReportKind::removed)};
+    case 2300: return {made_plug(ReportKind::added), made_report(0x80, 0x80)};
+    case 2301: return {made_report(0x80, 0x40)};
+    case 2800: return {made_report(0x80, 0x80)};
+    default: return {};
+  }
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,117 @@
+#include "session/pads.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/session/made_session.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr int kRateHz = 240;
+constexpr int kForward = 0x00, kMiddle = 0x80;
+
+Pads one_pad(bool streams = false) {
+  PadConfig config = made_pad_config();
+  config.streams = streams;
+  return Pads({config}, kRateHz);
+}
+
+// The stick after so many ticks without a report.
+Stick after_silence(Pads& pads, int ticks) {
+  Stick stick;
+  for (int i = 0; i < ticks; ++i) stick = pads.stick_of_tick();
+  return stick;
+}
+
+TEST(Pads, LastReportOfATickCounts) {
+  Pads pads = one_pad();
+  EXPECT_TRUE(pads.take(made_report(kMiddle, kForward)));
+  EXPECT_TRUE(pads.take(made_report(0xff, kMiddle)));
+  const Stick stick = pads.stick_of_tick();
+  EXPECT_GT(stick.left.x, 0.9);
+  EXPECT_NEAR(stick.left.y, 0.0, 0.01);
+}
+
+TEST(Pads, AHeldStickStaysForAsLongAsItIsSilent) {
+  Pads pads = one_pad();
+  pads.take(made_report(kMiddle, kForward));
+  EXPECT_GT(after_silence(pads, 10 * kRateHz).left.y, 0.9);
+}
+
+TEST(Pads, SilenceOf100MsMakesAStreamingPadNeutralUntilItsNextReport) {
+  Pads pads = one_pad(true);
+  pads.take(made_report(kMiddle, kForward));
+  EXPECT_GT(after_silence(pads, kRateHz / 10).left.y, 0.9);
+  EXPECT_EQ(after_silence(pads, 1).left, vec2(0.0));
+  pads.take(made_report(kMiddle, kForward));
+  EXPECT_GT(after_silence(pads, 1).left.y, 0.9);
+}
+
+TEST(Pads, RemovedIsNeutralAtOnce) {
+  Pads pads = one_pad();
+  pads.take(made_report(kMiddle, kForward));
+  pads.remove(0);
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+}
+
+TEST(Pads, AfterPluggingInAgainItCountsOnceItWasNearItsCentre) {
+  Pads pads = one_pad();
+  pads.remove(0);
+  pads.add(0);
+  pads.take(made_report(kMiddle, kForward));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.take(made_report(kMiddle, 0x7c));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.take(made_report(kMiddle, kForward));
+  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+}
+
+TEST(Pads, PassingTheCentreWhileGoneDoesNotCount) {
+  Pads pads = one_pad();
+  pads.remove(0);
+  pads.take(made_report(kMiddle, kMiddle));
+  pads.remove(0);
+  pads.add(0);
+  pads.take(made_report(kMiddle, kForward));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+}
+
+TEST(Pads, NotYetPluggedInIsNeutral) {
+  PadConfig config = made_pad_config();
+  config.is_present = false;
+  Pads pads({config}, kRateHz);
+  pads.take(made_report(kMiddle, kForward));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.add(0);
+  pads.take(made_report(kMiddle, kForward));
+  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+}
+
+TEST(Pads, TheFirstUsablePadDrives) {
+  PadConfig unusable = made_pad_config();
+  unusable.is_usable = false;
+  Pads pads({unusable, made_pad_config(), made_pad_config()}, kRateHz);
+  pads.take(made_report(kMiddle, kForward, 0));
+  pads.take(made_report(0xff, kMiddle, 2));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.take(made_report(kMiddle, kForward, 1));
+  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+}
+
+TEST(Pads, AShortReportAndAnUnknownDeviceAreRefusedAndChangeNothing) {
+  Pads pads = one_pad();
+  pads.take(made_report(kMiddle, kForward));
+  Report cut = made_report(kMiddle, kMiddle);
+  cut.size = 3;
+  EXPECT_FALSE(pads.take(cut));
+  EXPECT_FALSE(pads.take(made_report(kMiddle, kMiddle, 1)));
+  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+}
+
+TEST(Pads, NoneIsNeutral) {
+  Pads pads({}, kRateHz);
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+}
+
+}  // namespace
+}  // namespace gaitpad

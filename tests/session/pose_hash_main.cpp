@@ -1,0 +1,65 @@
+// For determinism_test.py: walks made-up sessions and prints the pose hash of every tick, so that two
+// builds can be compared. Nothing but arithmetic: no file, but for a motion written and read again in
+// the folder given.
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "motion/bvh_writer.h"
+#include "motion/load.h"
+#include "tests/session/made_session.h"
+
+using namespace gaitpad;
+
+namespace {
+
+constexpr int kTicks = 2600;
+
+int fail(const std::string& message) {
+  fmt::print(stderr, "{}\n", message);
+  return 1;
+}
+
+int walk(const char* name, const SimulationConfig& config) {
+  auto simulation = Simulation::create(config);
+  if (!simulation) return fail(simulation.error().message);
+  for (int tick = 0; tick < kTicks; ++tick) {
+    const std::vector<Report> reports = made_tick(tick);
+    simulation->step(reports);
+    fmt::print("{} tick {} {:016x}\n", name, tick, simulation->pose_hash());
+  }
+  return 0;
+}
+
+// The procedural walk through a BVH file: the reader, the legs found, the cycle made periodic.
+Result<GaitCycle> cycle_through_file(const std::string& path) {
+  const Motion motion = procedural_motion();
+  std::ofstream out(path);
+  BvhWriter writer(out, motion.skeleton, {.frame_time_s = motion.frame_time_s});
+  for (const MotionFrame& frame : motion.frames) {
+    Pose pose;
+    pose.root_m = frame.root_m;
+    pose.joint_count = static_cast<int>(frame.local.size());
+    std::copy(frame.local.begin(), frame.local.end(), pose.local.begin());
+    writer.write(pose);
+  }
+  if (!writer.finish()) return Error{path + ": cannot be written"};
+  auto read = load_motion(path);
+  if (!read) return read.error();
+  return gait_cycle(*read);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return fail("usage: pose_hash_main FOLDER");
+  SimulationConfig config = made_config(4);
+  if (walk("procedural robust", config) != 0) return 1;
+  config.ik = IkMode::paper;
+  if (walk("procedural paper", config) != 0) return 1;
+  auto cycle = cycle_through_file(std::string(argv[1]) + "/procedural.bvh");
+  if (!cycle) return fail(cycle.error().message);
+  config = made_config(2);
+  config.cycle = std::move(*cycle);
+  return walk("captured robust", config);
+}

@@ -1,0 +1,122 @@
+#include "session/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/session/made_session.h"
+
+namespace gaitpad {
+namespace {
+
+Simulation made_simulation(const SimulationConfig& config) {
+  auto simulation = Simulation::create(config);
+  if (!simulation) {
+    ADD_FAILURE() << simulation.error().message;
+    std::abort();
+  }
+  return std::move(*simulation);
+}
+
+void step(Simulation& simulation, const std::vector<Report>& reports, int ticks = 1) {
+  simulation.step(reports);
+  for (int i = 1; i < ticks; ++i) simulation.step({});
+}
+
+// A stick pushed forward and held from tick 0 on.
+Simulation walked(const SimulationConfig& config, int x, int y, int ticks) {
+  Simulation simulation = made_simulation(config);
+  step(simulation, {made_report(x, y)}, ticks);
+  return simulation;
+}
+
+TEST(Simulation, StandsWithoutAReport) {
+  Simulation s = made_simulation(made_config(1));
+  step(s, {}, 480);
+  EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
+  EXPECT_EQ(s.walkers()[0].state.frame.speed_m_s, 0.0);
+}
+
+TEST(Simulation, AForwardStickWalksStraight) {
+  const Simulation s = walked(made_config(1), 0x80, 0x00, 960);
+  const WalkFrame& frame = s.walkers()[0].state.frame;
+  EXPECT_GT(frame.pelvis_m.z, 3.0);
+  EXPECT_EQ(frame.heading_rad, 0.0);
+}
+
+TEST(Simulation, UnpluggingFinishesTheStepAndStands) {
+  Simulation s = walked(made_config(1), 0x80, 0x00, 700);
+  step(s, {made_plug(ReportKind::removed)}, 480);
+  EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
+  EXPECT_EQ(s.stick().left, vec2(0.0));
+}
+
+TEST(Simulation, CharactersStandSideBySideAndDoNotDisturbEachOther) {
+  Simulation one = walked(made_config(1), 0x90, 0x20, 480);
+  Simulation three = walked(made_config(3), 0x90, 0x20, 480);
+  const auto pelvis = [](const Simulation& s, int i) { return s.walkers()[i].state.frame.pelvis_m; };
+  EXPECT_EQ(pelvis(one, 0), pelvis(three, 0));
+  Simulation standing = made_simulation(made_config(3));
+  EXPECT_NEAR(pelvis(standing, 0).x - pelvis(standing, 1).x, 1.2, 1e-9);
+  EXPECT_NEAR(pelvis(standing, 1).x - pelvis(standing, 2).x, 1.2, 1e-9);
+}
+
+TEST(Simulation, AMirroredStickMirrorsTheHeadingAtEveryTick) {
+  Simulation left = made_simulation(made_config(1)), right = made_simulation(made_config(1));
+  // 8-bit counts have no middle: 0x00 and 0xff mirror each other about 127.5.
+  for (int tick = 0; tick < 1920; ++tick) {
+    std::vector<Report> to_left, to_right;
+    if (tick == 0) to_left = {made_report(0x40, 0x20)}, to_right = {made_report(0xbf, 0x20)};
+    if (tick == 900) to_left = {made_report(0x00, 0x70)}, to_right = {made_report(0xff, 0x70)};
+    left.step(to_left);
+    right.step(to_right);
+    const WalkFrame& l = left.walkers()[0].state.frame;
+    const WalkFrame& r = right.walkers()[0].state.frame;
+    ASSERT_EQ(left.stick().left.x, -right.stick().left.x);
+    ASSERT_NEAR(l.heading_rad, -r.heading_rad, 1e-12) << "tick " << tick;
+  }
+  EXPECT_GT(left.walkers()[0].state.frame.heading_rad, 1.0);
+}
+
+TEST(Simulation, AStyleCommandIsForAllOrForOneAndWhatIsUnknownIsCounted) {
+  Simulation s = made_simulation(made_config(3));
+  const auto style = [&s](int i) { return s.styles()[s.walkers()[i].style].name; };
+  step(s, {made_command("style limp")});
+  EXPECT_EQ(style(0) + style(1) + style(2), "limplimplimp");
+  step(s, {made_command("style 2 even")});
+  EXPECT_EQ(style(0) + style(1) + style(2), "limpevenlimp");
+  EXPECT_EQ(s.counts().bad_commands, 0);
+  const char* const bad[] = {"",          "style",        "style none",  "style 0 even", "style 4 even",
+                             "sing even", "style x even", "style -1 even", "style 1 even now", "style 1"};
+  for (const char* text : bad) step(s, {made_command(text)});
+  EXPECT_EQ(s.counts().bad_commands, 10);
+  EXPECT_EQ(s.counts().commands, 12);
+  EXPECT_EQ(style(0) + style(1) + style(2), "limpevenlimp");
+}
+
+TEST(Simulation, BadReportsAreCountedAndChangeNothing) {
+  Simulation sound = walked(made_config(1), 0x80, 0x20, 300);
+  Simulation s = made_simulation(made_config(1));
+  Report cut = made_report(0xff, 0xff);
+  cut.size = 2;
+  step(s, {made_report(0x80, 0x20), cut, made_report(0, 0, 7)}, 300);
+  EXPECT_EQ(s.counts().reports, 3);
+  EXPECT_EQ(s.counts().bad_reports, 2);
+  EXPECT_EQ(s.pose_hash(), sound.pose_hash());
+}
+
+TEST(Simulation, TheHashTellsOneStickCountApart) {
+  const SimulationConfig config = made_config(1);
+  EXPECT_EQ(walked(config, 0x80, 0x20, 400).pose_hash(), walked(config, 0x80, 0x20, 400).pose_hash());
+  EXPECT_NE(walked(config, 0x80, 0x20, 400).pose_hash(), walked(config, 0x80, 0x21, 400).pose_hash());
+}
+
+TEST(Simulation, RefusesNoCharacterAndTooMany) {
+  EXPECT_FALSE(Simulation::create(made_config(0)));
+  SimulationConfig crowd = made_config(1);
+  crowd.walkers.resize(kMaxWalkers + 1);
+  EXPECT_FALSE(Simulation::create(crowd));
+}
+
+}  // namespace
+}  // namespace gaitpad

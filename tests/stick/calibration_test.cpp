@@ -1,0 +1,178 @@
+#include "stick/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace gaitpad {
+namespace {
+
+constexpr ZoneShape kShapes[] = {ZoneShape::radial, ZoneShape::axial, ZoneShape::both};
+
+StickCalibration shaped(ZoneShape shape, double inner = 0.2, double outer = 0.95,
+                        double curve = 0.0) {
+  StickCalibration c;
+  c.shape = shape;
+  c.inner = inner;
+  c.outer = outer;
+  c.curve = curve;
+  return c;
+}
+vec2 polar(double radius, double angle_rad) {
+  return vec2(radius * std::cos(angle_rad), radius * std::sin(angle_rad));
+}
+
+TEST(StickPosition, InsideTheInnerZoneIsExactlyZero) {
+  for (const ZoneShape shape : kShapes) {
+    for (int i = 0; i < 360; ++i) {
+      const vec2 p = stick_position(shaped(shape), polar(0.1999, i * kDegree));
+      EXPECT_EQ(p, vec2(0.0));
+      EXPECT_FALSE(std::signbit(p.x) || std::signbit(p.y));
+    }
+  }
+}
+
+TEST(StickPosition, OuterZoneHasLengthOne) {
+  for (double radius : {0.9501, 1.0, 1.3}) {
+    for (int i = 0; i < 360; ++i) {
+      const vec2 raw = glm::clamp(polar(radius, i * kDegree), -1.0, 1.0);
+      EXPECT_NEAR(glm::length(stick_position(shaped(ZoneShape::radial), raw)), 1.0, 4e-16);
+    }
+    EXPECT_EQ(stick_position(shaped(ZoneShape::both), {0.0, radius}), vec2(0.0, 1.0));
+    EXPECT_EQ(stick_position(shaped(ZoneShape::both), {-radius, 0.0}), vec2(-1.0, 0.0));
+  }
+}
+
+// interface.md: the sideways zone takes up to 2.1 % off the length.
+TEST(StickPosition, SidewaysZoneTakesAtMostTwoPointOnePercentOfTheLength) {
+  double shortest = 1.0;
+  for (int i = 0; i < 36000; ++i) {
+    const vec2 p = stick_position(shaped(ZoneShape::both), polar(1.0, i * 0.01 * kDegree));
+    shortest = std::min(shortest, glm::length(p));
+  }
+  EXPECT_GE(shortest, 1.0 - 0.0215);
+  EXPECT_LE(shortest, 1.0 - 0.0205);
+}
+
+TEST(StickPosition, NearlyStraightIsExactlyStraightWithBothOnly) {
+  for (double x : {-0.07, -1.0 / 255.0, 1.0 / 255.0, 0.07}) {
+    EXPECT_EQ(stick_position(shaped(ZoneShape::both), {x, 0.9}).x, 0.0);
+    EXPECT_NE(stick_position(shaped(ZoneShape::radial), {x, 0.9}).x, 0.0);
+  }
+}
+
+TEST(StickPosition, ScaledLinearlyBetweenTheZones) {
+  EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.0, 0.5}).y, 0.5, 1e-15);
+  EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.0, 0.35}).y, 0.25, 1e-15);
+  // Sideways: radial 0.5, then (0.5 - 0.08) / 0.92.
+  EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.5, 0.0}).x, 0.42 / 0.92, 1e-15);
+  EXPECT_NEAR(stick_position(shaped(ZoneShape::axial, 0.2, 0.8), {0.5, 0.35}).y, 0.25, 1e-15);
+}
+
+TEST(StickPosition, CurveBlendsLinearAndCubic) {
+  EXPECT_NEAR(stick_position(shaped(ZoneShape::radial, 0.2, 0.8, 1.0), {0.0, 0.5}).y, 0.125, 1e-15);
+  EXPECT_NEAR(stick_position(shaped(ZoneShape::radial, 0.2, 0.8, 0.5), {0.0, 0.5}).y, 0.3125,
+              1e-15);
+  EXPECT_EQ(stick_position(shaped(ZoneShape::radial, 0.2, 0.8, 1.0), {0.0, 0.8}).y, 1.0);
+}
+
+TEST(StickPosition, ContinuousOverTheWholeGate) {
+  constexpr double kStep = 1e-3;
+  for (const ZoneShape shape : kShapes) {
+    for (double curve : {0.0, 1.0}) {
+      const StickCalibration c = shaped(shape, 0.12, 0.95, curve);
+      for (double y = -1.0; y <= 1.0; y += 0.01) {
+        vec2 before = stick_position(c, {-1.0, y});
+        for (double x = -1.0; x <= 1.0; x += kStep) {
+          const vec2 now = stick_position(c, {x, y});
+          // Slope at most 3 (cubic) / 0.83 (span) / 0.92 (sideways), twice for direction.
+          ASSERT_LE(glm::length(now - before), 8.0 * kStep) << x << " " << y;
+          before = now;
+        }
+      }
+    }
+  }
+}
+
+TEST(StickPosition, OddAboutTheCentre) {
+  for (const ZoneShape shape : kShapes) {
+    for (double x = -1.0; x <= 1.0; x += 0.037) {
+      for (double y = -1.0; y <= 1.0; y += 0.041) {
+        const StickCalibration c = shaped(shape, 0.12, 0.95, 0.3);
+        EXPECT_EQ(stick_position(c, {-x, -y}), -stick_position(c, {x, y}));
+        EXPECT_EQ(stick_position(c, {-x, y}).y, stick_position(c, {x, y}).y);
+        EXPECT_EQ(stick_position(c, {-x, y}).x, -stick_position(c, {x, y}).x);
+      }
+    }
+  }
+}
+
+TEST(StickPosition, MonotoneAlongEveryDirection) {
+  for (const ZoneShape shape : kShapes) {
+    for (int i = 0; i < 91; ++i) {
+      vec2 before(0.0);
+      for (double radius = 0.0; radius <= 1.0; radius += 0.002) {
+        const vec2 now = stick_position(shaped(shape, 0.12, 0.95, 0.7), polar(radius, i * kDegree));
+        ASSERT_GE(glm::length(now), glm::length(before) - 1e-15);
+        // Axial: the disc's rim turns the direction once one axis is full.
+        if (shape != ZoneShape::axial) {
+          ASSERT_GE(now.x, before.x - 1e-15);
+          ASSERT_GE(now.y, before.y - 1e-15);
+        }
+        before = now;
+      }
+    }
+  }
+}
+
+TEST(StickPosition, StaysInTheUnitDiscForAnyInput) {
+  for (const ZoneShape shape : kShapes) {
+    for (double x = -1.5; x <= 1.5; x += 0.05) {
+      for (double y = -1.5; y <= 1.5; y += 0.05) {
+        StickCalibration c = shaped(shape);
+        c.x = {-0.3, 0.2, 0.4};
+        ASSERT_LE(glm::length(stick_position(c, {x, y})), 1.0 + 4e-16);
+      }
+    }
+  }
+}
+
+TEST(StickPosition, CentreAndUnequalRangesAreTakenOut) {
+  StickCalibration c = shaped(ZoneShape::radial, 0.1, 0.9);
+  c.x = {-0.8, 0.06, 0.96};
+  c.y = {-1.0, -0.04, 0.6};
+  EXPECT_EQ(stick_position(c, {0.06, -0.04}), vec2(0.0));
+  EXPECT_NEAR(stick_position(c, {0.51, -0.04}).x, 0.5, 1e-15);
+  EXPECT_NEAR(stick_position(c, {-0.37, -0.04}).x, -0.5, 1e-15);
+  EXPECT_NEAR(stick_position(c, {0.06, 0.28}).y, 0.5, 1e-15);
+  EXPECT_EQ(stick_position(c, {0.06, 0.6}).y, 1.0);
+}
+
+TEST(StickPosition, NotANumberCountsAsTheCentre) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(stick_position(shaped(ZoneShape::both), {nan, 1.0}), vec2(0.0, 1.0));
+  EXPECT_EQ(stick_position(shaped(ZoneShape::both), {inf, nan}), vec2(0.0));
+}
+
+TEST(StickPosition, BothSticksHaveTheirOwnCalibration) {
+  Calibration c;
+  c.left.inner = 0.5;
+  const Stick stick = stick_position(c, {0.0, 0.4}, {0.0, 0.4});
+  EXPECT_EQ(stick.left.y, 0.0);
+  EXPECT_GT(stick.right.y, 0.0);
+  static_assert(std::is_trivially_copyable_v<Calibration>);
+}
+
+// A worn 8-bit stick: rest 6 % off and 2 counts of noise walk nowhere with Sony's default.
+TEST(StickPosition, RestOfAWornSonyStickIsNeutral) {
+  for (int count = 0; count <= 10; ++count) {
+    const double raw = (128 + count - 127.5) / 127.5;
+    EXPECT_EQ(stick_position(shaped(ZoneShape::both, kInnerZoneSony), {raw, -raw}), vec2(0.0));
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# build.sh FOLDER [CMAKE OPTION...]: configures and builds into FOLDER; silent unless it fails.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+folder=$1
+shift
+mkdir -p "$folder"
+log=$folder/build.log
+
+options=(-G Ninja "$@")
+command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+# CMake by itself only on the first time: ninja reruns it when a CMakeLists.txt or a folder changes.
+if [ ! -f "$folder/build.ninja" ]; then
+  echo "Building into $folder (a few minutes the first time)" >&2
+  if ! cmake -S "$root" -B "$folder" "${options[@]}" >"$log" 2>&1; then
+    cat "$log" >&2
+    rm -f "$folder/CMakeCache.txt"
+    exit 1
+  fi
+fi
+if ! cmake --build "$folder" >"$log" 2>&1; then
+  grep -v '^\[[0-9/]*\] Building\|^\[[0-9/]*\] Linking' "$log" >&2
+  exit 1
+fi

@@ -1,0 +1,203 @@
+// gaitpad bench: how long a tick takes, and its inverse kinematics, beside bare playback.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "animation/walk_parts.h"
+#include "session/config_files.h"
+#include "session/setup.h"
+#include "tools/gaitpad/commands.h"
+
+namespace gaitpad {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kLimit_us = 20.0;  // four characters, one tick, one core
+constexpr int kLimitWalkers = 4;
+constexpr std::int64_t kFirstTick = 480, kLastTick = 2880;  // of the bundled trace: walking, turning
+
+struct Session {
+  SimulationConfig config;
+  std::vector<std::vector<Report>> ticks;
+};
+
+std::string bundled_trace(const std::vector<std::string>& config_folders) {
+  const std::string name = "traces/round.hid";
+  for (const std::string& folder : config_folders) {
+    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) return path.string();
+  }
+  return name;
+}
+
+Result<Session> bench_session(const std::vector<std::string>& styles) {
+  SessionOptions options;
+  options.config_folders = config_folders(GAITPAD_CONFIG_DIR);
+  options.styles = styles;
+  auto trace = read_trace(bundled_trace(options.config_folders));
+  if (!trace) return trace.error();
+  const int rate_hz = replay_rate_hz(*trace, std::nullopt);
+  const auto count = assign_ticks(*trace, rate_hz);
+  if (!count) return count.error();
+  auto config = simulation_config(options, trace->devices, rate_hz);
+  if (!config) return config.error();
+  Session session{std::move(*config), {}};
+  session.ticks.resize(static_cast<std::size_t>(kLastTick));
+  for (const TraceEvent& event : trace->events) {
+    if (event.tick < kLastTick) session.ticks[event.tick].push_back(report_of(*trace, event));
+  }
+  return session;
+}
+
+// What Google Benchmark measures: nanoseconds of one pass of the function.
+class Collected : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) {
+      if (run.run_type == Run::RT_Iteration) time_us = run.GetAdjustedRealTime() / 1e3;
+    }
+  }
+  double time_us = 0.0;
+};
+
+template <class F>
+double measured_us(const std::string& name, F pass) {
+  benchmark::ClearRegisteredBenchmarks();
+  benchmark::RegisterBenchmark(name.c_str(), [&pass](benchmark::State& state) {
+    for (auto _ : state) pass();
+  })->MinTime(0.5);
+  Collected collected;
+  benchmark::RunSpecifiedBenchmarks(&collected);
+  return collected.time_us;
+}
+
+struct StepCost {
+  double time_us = 0.0;
+  double iterations_a_leg = 0.0;
+};
+
+StepCost step_cost(const Session& session, Simulation simulation) {
+  std::int64_t tick = 0;
+  for (; tick < kFirstTick; ++tick) simulation.step(session.ticks[tick]);
+  std::int64_t iterations = 0, legs = 0;
+  StepCost cost;
+  cost.time_us = measured_us("step", [&] {
+    simulation.step(session.ticks[tick]);
+    if (++tick == kLastTick) tick = kFirstTick;
+    for (const Walker& w : simulation.walkers()) {
+      for (const int n : w.state.frame.ik_iterations) iterations += n;
+      legs += 2;
+    }
+  });
+  cost.iterations_a_leg = static_cast<double>(iterations) / static_cast<double>(legs);
+  return cost;
+}
+
+// One leg's inverse kinematics alone, over the states of a walk.
+double leg_ik_us(const Session& session, Simulation simulation) {
+  const Walker& w = simulation.walkers().front();
+  std::vector<WalkState> states;
+  std::vector<Pelvis> pelvises;
+  for (std::int64_t tick = 0; tick < kLastTick; ++tick) {
+    simulation.step(session.ticks[tick]);
+    if (tick < kFirstTick || tick % 8 != 0) continue;
+    states.push_back(w.state);
+    Pelvis& pelvis = pelvises.emplace_back(pelvis_over_ground(w.model, w.state));
+    pelvis.position_m.y = w.state.frame.pelvis_m.y;
+  }
+  const GaitParams params =
+      gait_params(simulation.stick(), simulation.styles()[w.style], w.limits);
+  const Tick tick{w.model, params, 1.0 / session.config.rate_hz};
+  std::size_t i = 0;
+  return measured_us("leg", [&] {
+    pose_leg(tick, session.config.ik, (i & 1) != 0 ? kRightSide : kLeftSide, pelvises[i / 2],
+             states[i / 2]);
+    i = (i + 1) % (2 * states.size());
+  });
+}
+
+// The peer: the same motion played back without feet that hold the ground.
+double playback_us(const Session& session) {
+  Pose pose;
+  double phase = 0.0;
+  return measured_us("playback", [&] {
+    for (int n = 0; n < kLimitWalkers; ++n) sample_local(session.config.cycle, phase, pose);
+    phase += 1.0 / session.config.rate_hz;
+    benchmark::DoNotOptimize(pose);
+  });
+}
+
+Result<ordered_json> measured() {
+  auto one = bench_session({"even"});
+  if (!one) return one.error();
+  auto four = bench_session({"even", "stiff_hip", "stiff_knee", "limp_left"});
+  if (!four) return four.error();
+  auto one_walker = Simulation::create(one->config);
+  if (!one_walker) return one_walker.error();
+  auto four_walkers = Simulation::create(four->config);
+  if (!four_walkers) return four_walkers.error();
+
+  const StepCost single = step_cost(*one, *one_walker);
+  const StepCost many = step_cost(*four, *four_walkers);
+  const double leg_us = leg_ik_us(*one, *one_walker);
+  const double peer_us = playback_us(*four);
+  const auto row = [](const char* name, int characters, double time_us) {
+    return ordered_json{{"name", name}, {"characters", characters}, {"time_us", time_us}};
+  };
+  ordered_json list = {row("step", 1, single.time_us), row("step", kLimitWalkers, many.time_us),
+                       row("leg_ik", 1, leg_us), row("playback", kLimitWalkers, peer_us)};
+  list[0]["iterations_per_leg"] = single.iterations_a_leg;
+  list[1]["iterations_per_leg"] = many.iterations_a_leg;
+  list[1]["limit_us"] = kLimit_us;
+  list[1]["ratio_to_limit"] = many.time_us / kLimit_us;
+  list[1]["peer"] = "playback";
+  list[1]["ratio_to_peer"] = many.time_us / peer_us;
+  return list;
+}
+
+void print_text(const ordered_json& list) {
+  const auto time = [&list](int i) { return list[i]["time_us"].get<double>(); };
+  fmt::print("step, 1 character (even)            {:8.2f} us   {:.1f} IK iterations a leg\n", time(0),
+             list[0]["iterations_per_leg"].get<double>());
+  fmt::print("step, 4 characters (even, 3 styles) {:8.2f} us   {:.1f} IK iterations a leg\n", time(1),
+             list[1]["iterations_per_leg"].get<double>());
+  fmt::print("  of the limit of {:.0f} us            {:8.2f} x\n", kLimit_us,
+             list[1]["ratio_to_limit"].get<double>());
+  fmt::print("  of playback alone (the peer)      {:8.2f} x   (4 characters {:.2f} us)\n",
+             list[1]["ratio_to_peer"].get<double>(), time(3));
+  fmt::print("inverse kinematics of one leg       {:8.2f} us   {:.0f} % of a step with two legs\n",
+             time(2), 200.0 * time(2) / time(0));
+}
+
+int run(bool as_json) {
+  const auto list = measured();
+  if (!list) {
+    fmt::print(stderr, "gaitpad bench: {}\n", list.error().message);
+    return 1;
+  }
+  if (as_json) {
+    fmt::print("{}\n", list->dump(2));
+  } else {
+    print_text(*list);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("bench", "the time that a tick takes, beside its limit");
+  const auto as_json = std::make_shared<bool>(false);
+  command->add_flag("--json", *as_json, "a list of measurements, for machines");
+  command->callback([as_json, &status] { status = run(*as_json); });
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,14 @@
+// The sub-commands of gaitpad. Each adds itself to `app`; where it was the chosen one, it has run
+// when parsing ends, and `status` is the exit status: 0 done, 1 failed (wrong usage, 2, is main's).
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace gaitpad {
+
+void add_replay(CLI::App& app, int& status);
+void add_decode(CLI::App& app, int& status);
+void add_motion(CLI::App& app, int& status);
+void add_ik(CLI::App& app, int& status);
+void add_bench(CLI::App& app, int& status);
+
+}  // namespace gaitpad

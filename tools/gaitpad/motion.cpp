@@ -1,0 +1,152 @@
+// gaitpad motion: what a motion file holds.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "motion/flight.h"
+#include "motion/gait_cycle.h"
+#include "motion/load.h"
+#include "motion/tracks.h"
+#include "tools/gaitpad/commands.h"
+
+namespace gaitpad {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
+
+struct MotionArguments {
+  std::string file;
+  bool as_json = false;
+  LoadOptions load;
+};
+
+// Joints as an export has them: End Sites only where they serve as toes.
+std::vector<std::string> joint_names(const Motion& motion) {
+  std::vector<std::string> names;
+  const auto& joints = motion.skeleton.joints;
+  for (int j = 0; j < static_cast<int>(joints.size()); ++j) {
+    const bool is_toe = j == motion.legs[0].toe || j == motion.legs[1].toe;
+    if (!joints[j].is_end_site || is_toe) names.push_back(joints[j].name);
+  }
+  return names;
+}
+
+ordered_json leg_json(const Motion& motion, Side side) {
+  const LegJoints& leg = motion.legs[side];
+  const auto name = [&](int joint) { return motion.skeleton.joints[joint].name; };
+  return {{"hip", name(leg.hip)},
+          {"knee", name(leg.knee)},
+          {"ankle", name(leg.ankle)},
+          {"toe", name(leg.toe)},
+          {"length_m", leg_length_m(motion, leg)}};
+}
+
+ordered_json flight_json(const std::optional<Swing>& swing) {
+  if (!swing) return nullptr;
+  return {{"heel_off_frame", swing->heel_off},
+          {"lift_frame", swing->lift},
+          {"peak_frame", swing->peak},
+          {"land_frame", swing->land}};
+}
+
+ordered_json paper_json(const std::optional<Swing>& swing) {
+  if (!swing) return nullptr;
+  return {{"lift_frame", swing->lift}, {"peak_frame", swing->peak}, {"land_frame", swing->land}};
+}
+
+ordered_json motion_json(const Motion& motion) {
+  ordered_json out;
+  out["metres_per_unit"] = motion.metres_per_unit;
+  out["frame_rate_hz"] = 1.0 / motion.frame_time_s;
+  out["frames"] = motion.frames.size();
+  out["joints"] = joint_names(motion);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const char* name = kSideNames[side];
+    out["legs"][name] = leg_json(motion, side);
+    out["flight"][name] = flight_json(robust_flight(motion, side));
+    out["flight_paper"][name] = paper_json(paper_flight(motion, side));
+  }
+  return out;
+}
+
+std::string flight_text(const std::optional<Swing>& swing) {
+  if (!swing) return "none found";
+  return fmt::format("lift {}, peak {}, land {}", swing->lift, swing->peak, swing->land);
+}
+
+void print_table(const Motion& motion) {
+  const double rate_hz = 1.0 / motion.frame_time_s;
+  const std::size_t frames = motion.frames.size();
+  fmt::print("motion        {}\n", motion.name);
+  fmt::print("units         1 unit = {:.6g} m\n", motion.metres_per_unit);
+  fmt::print("rate          {:.6g} Hz, {} frames, {:.2f} s\n", rate_hz, frames,
+             static_cast<double>(frames) * motion.frame_time_s);
+  fmt::print("joints        {} (pelvis {})\n", joint_names(motion).size(),
+             motion.skeleton.joints[motion.pelvis].name);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const LegJoints& leg = motion.legs[side];
+    const auto name = [&](int joint) { return motion.skeleton.joints[joint].name; };
+    fmt::print("{:<5} leg     {} - {} - {} - {}, thigh + shank {:.3f} m\n", kSideNames[side],
+               name(leg.hip), name(leg.knee), name(leg.ankle), name(leg.toe),
+               leg_length_m(motion, leg));
+  }
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const auto flight = robust_flight(motion, side);
+    const std::string heel_off = flight ? fmt::format("heel off {}, ", flight->heel_off) : "";
+    fmt::print("{:<5} flight  {}{}; by the paper's rule {}\n", kSideNames[side], heel_off,
+               flight_text(flight), flight_text(paper_flight(motion, side)));
+  }
+}
+
+Result<Motion> chosen_motion(const MotionArguments& arguments) {
+  if (arguments.file == "procedural") return procedural_motion();
+  return load_motion(arguments.file, arguments.load);
+}
+
+int run_motion(const MotionArguments& arguments) {
+  const auto motion = chosen_motion(arguments);
+  if (!motion) {
+    fmt::print(stderr, "gaitpad: {}\n", motion.error().message);
+    return 1;
+  }
+  if (!arguments.as_json) {
+    print_table(*motion);
+    return 0;
+  }
+  // Names are a stranger's bytes: what is no UTF-8 is replaced.
+  fmt::print("{}\n",
+             motion_json(*motion).dump(2, ' ', false, ordered_json::error_handler_t::replace));
+  return 0;
+}
+
+void add_leg_options(CLI::App& command, LegNames& leg, const std::string& side) {
+  command.add_option("--" + side + "-hip", leg.hip, "Joint at the top of the " + side + " thigh");
+  command.add_option("--" + side + "-knee", leg.knee, "Joint at the top of the " + side + " shank");
+  command.add_option("--" + side + "-ankle", leg.ankle,
+                     "Joint at the top of the " + side + " foot");
+  command.add_option("--" + side + "-toe", leg.toe,
+                     "Joint or End Site (NAME_End) of the " + side + " toes");
+}
+
+}  // namespace
+
+void add_motion(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "motion", "What a motion file holds: units, rate, joints, the legs found, the foot flights");
+  const auto arguments = std::make_shared<MotionArguments>();
+  command->add_option("FILE", arguments->file, "BVH file, or `procedural` for the embedded walk")
+      ->required();
+  command->add_flag("--json", arguments->as_json, "One JSON object");
+  command
+      ->add_option("--metres-per-unit", arguments->load.metres_per_unit,
+                   "Length of the file's unit; else found from the legs' length")
+      ->check(CLI::Range(1e-6, 1e3));
+  for (int s = 0; s < 2; ++s) add_leg_options(*command, arguments->load.legs[s], kSideNames[s]);
+  command->callback([arguments, &status] { status = run_motion(*arguments); });
+}
+
+}  // namespace gaitpad

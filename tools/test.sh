@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, runs every test.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+bash "$root/tools/install.sh"
+bash "$root/tools/build.sh" "$root/build" -DCMAKE_BUILD_TYPE=Release
+bash "$root/tools/ctest.sh" "$root/build"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# build.sh FOLDER [CMAKE OPTION...]: configures and builds into FOLDER; silent unless it fails.
+# build.sh FOLDER TARGET [CMAKE OPTION...]: configures, builds into FOLDER; silent unless it fails.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-folder=$1
-shift
+folder=$1 target=$2
+shift 2
 mkdir -p "$folder"
 log=$folder/build.log
 
@@ -18,7 +18,7 @@ if [ ! -f "$folder/build.ninja" ]; then
     exit 1
   fi
 fi
-if ! cmake --build "$folder" >"$log" 2>&1; then
+if ! cmake --build "$folder" --target "$target" >"$log" 2>&1; then
   grep -v '^\[[0-9/]*\] Building\|^\[[0-9/]*\] Linking' "$log" >&2
   exit 1
 fi

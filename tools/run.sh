@@ -4,5 +4,5 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 bash "$root/tools/install.sh"
-bash "$root/tools/build.sh" "$root/build" -DCMAKE_BUILD_TYPE=Release
+bash "$root/tools/build.sh" "$root/build" gaitpad -DCMAKE_BUILD_TYPE=Release
 "$root/build/gaitpad" replay "$root/config/traces/round.hid" --out "$root/out" "$@"

@@ -3,5 +3,5 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 bash "$root/tools/install.sh"
-bash "$root/tools/build.sh" "$root/build" -DCMAKE_BUILD_TYPE=Release
+bash "$root/tools/build.sh" "$root/build" all -DCMAKE_BUILD_TYPE=Release
 bash "$root/tools/ctest.sh" "$root/build"

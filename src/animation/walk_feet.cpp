@@ -8,6 +8,7 @@ constexpr double kToeUpAtStrike_m = 0.05;   // toe's height over its rest when t
 constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
 constexpr double kReachOnToe = 0.993;       // of the leg: further away, the foot rises on its toe
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
+constexpr double kSoftToe = 14.0 * kDegree;
 constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kRollEnd = 0.95;           // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
@@ -77,16 +78,6 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   return p;
 }
 
-// Toes stay on the floor while the foot rises over them and straighten after the lift.
-double toe_angle(const LegBuild& leg, const FootPose& pose, double u) noexcept {
-  const double bend = -std::max(0.0, pose.pitch_rad) * (1.0 - smoothstep(0.0, 0.6, u));
-  if (leg.toe_end_m < 1e-6) return bend;
-  const double room = pose.toe_m.y - leg.model.toe_end_rest_m;
-  const double lowest = leg.toe_end_elevation_rad + asin(std::clamp(room / leg.toe_end_m, -1.0, 1.0));
-  const double width = kSoftPitch * smoothstep(0.0, 0.3, u) * (1.0 - smoothstep(0.8, 1.0, u));
-  return soft_min(bend, lowest - pose.pitch_rad, std::max(1e-9, width));
-}
-
 // The pitch at which the ankle, turning about the planted toe, is as far from the hip as the leg
 // reaches: P cos + Q sin = K in the foot's own vertical plane.
 double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m) noexcept {
@@ -122,6 +113,15 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
   }
 }
 
+void set_toe(const LegBuild& leg, double u, FootPose& pose) noexcept {
+  pose.toe_rad = -std::max(0.0, pose.pitch_rad) * (1.0 - smoothstep(0.0, 0.6, u));
+  if (leg.toe_end_m < 1e-6) return;
+  const double room = pose.toe_m.y - leg.model.toe_end_rest_m;
+  const double lowest = leg.toe_end_elevation_rad + asin(std::clamp(room / leg.toe_end_m, -1.0, 1.0));
+  const double width = kSoftToe * smoothstep(0.0, 0.3, u) * (1.0 - smoothstep(0.8, 1.0, u));
+  pose.toe_rad = soft_min(pose.toe_rad, lowest - pose.pitch_rad, std::max(1e-9, width));
+}
+
 void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
   const LegBuild& leg = model.leg[side];
@@ -132,11 +132,11 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     // With what the reach asked for last, run on: the hips' height and the reach depend on each other.
     const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
     set_pitch(leg, support_pitch(model, state, side) + fade + reach, foot.pose, foot.mode);
-    foot.pose.toe_rad = toe_angle(leg, foot.pose, 0.0);
+    set_toe(leg, 0.0, foot.pose);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, fade, foot.pose, foot.mode);
-    foot.pose.toe_rad = toe_angle(leg, foot.pose, 1.0);
+    set_toe(leg, 1.0, foot.pose);
   } else {
     const double u = flight_progress(state);
     foot.pose.heel_m = flight_heel(model, state, side, u);
@@ -146,7 +146,7 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     const double limit = highest_pitch(leg, foot.pose.heel_m.y, kClearance_m * model.size * open);
     const double pitch = flight_pitch(model, state, side, u) + fade;
     set_pitch(leg, soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open)), foot.pose, foot.mode);
-    foot.pose.toe_rad = toe_angle(leg, foot.pose, u);
+    set_toe(leg, u, foot.pose);
   }
 }
 
@@ -163,7 +163,7 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side, const v
                                   std::clamp(0.5 * planned, 1e-3, kSoftPitch)), gate);
   foot.reach_rad = {pitch - planned, foot.reach_rad[0]};
   set_pitch(leg, pitch, foot.pose, foot.mode);
-  foot.pose.toe_rad = toe_angle(leg, foot.pose, 0.0);
+  set_toe(leg, 0.0, foot.pose);
 }
 void remember_foot(FootState& foot) noexcept {
   foot.last_heel_m = {foot.pose.heel_m, foot.last_heel_m[0]};

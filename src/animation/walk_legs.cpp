@@ -7,7 +7,7 @@ constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way
 constexpr double kLeak_per_s = 4.0;
 constexpr double kSideLever_m = 0.1;          // third point of the foot, beside the end-effector
 constexpr double kEvenSpread = 1e-9;          // weights closer than this are even
-constexpr RobustOptions kRobust = {.tolerance_m = 1e-6};
+constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 
 // The angles that the data show at this phase, fading to a stand.
@@ -79,7 +79,7 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
     const double begin = model.share[side == kRightSide ? 0 : 2];
     p = (own_phase(model, state, side) - begin) / (model.leg[side].toe_off - begin);
   }
-  return state.amplitude.x * smoothstep(0.0, 0.35, p) * (1.0 - smoothstep(0.5, 0.9, p));
+  return state.amplitude.x * smoothstep(0.0, 0.25, p) * (1.0 - smoothstep(0.55, 0.95, p));
 }
 
 double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, double yaw_rad, const IkFrame& end) noexcept {
@@ -126,6 +126,7 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
     pitch = soft_min(pitch, std::max(limit, planned), std::max(1e-9, soft));
   }
   set_pitch(leg, pitch, foot.pose, foot.mode);
+  set_toe(leg, foot.mode == FootMode::flight ? flight_progress(state) : 0.0, foot.pose);
   solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, FootEnd::heel).all(), kRobust, angles));
 }
 

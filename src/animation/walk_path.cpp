@@ -53,6 +53,18 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
                 ((1.0 - beta) * now + beta * next) / next_s);
 }
 
+// Pelvis height at which a leg reaches its planned ankle all but straight.
+double highest_pelvis(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
+                      Side side) noexcept {
+  const LegBuild& leg = model.leg[side];
+  const FootPose& foot = state.foot[side].pose;
+  const vec3 ankle = foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
+  const vec3 hip = pelvis.hip(leg);  // pelvis.position_m.y is 0 here
+  const double dx = hip.x - ankle.x, dz = hip.z - ankle.z;
+  const double reach = kReach * leg.model.length_m();
+  return ankle.y - hip.y + std::sqrt(std::max(0.04 * reach * reach, reach * reach - dx * dx - dz * dz));
+}
+
 }  // namespace
 
 void plan_landing(const Tick& tick, WalkState& state) noexcept {
@@ -104,18 +116,10 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvi
   // A lame foot hardly rises on its toe: the hips come down to it instead.
   const double lame = 1.0 - std::min({1.0, state.flight_height[0].x, state.flight_height[1].x});
   y -= kLameDrop_m * model.size * lame * state.amplitude.x;
-  // The order of the legs must not depend on which one swings, or the sum would jump at the borders.
-  for (Side side : {kLeftSide, kRightSide}) {
-    const LegBuild& leg = model.leg[side];
-    const FootPose& foot = state.foot[side].pose;
-    const vec3 ankle = foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
-    const vec3 hip = pelvis.hip(leg);  // pelvis.position_m.y is 0 here
-    const double dx = hip.x - ankle.x, dz = hip.z - ankle.z;
-    const double reach = kReach * leg.model.length_m();
-    const double rise = std::sqrt(std::max(0.04 * reach * reach, reach * reach - dx * dx - dz * dz));
-    y = soft_min(y, ankle.y + rise - hip.y, kSoftReach_m * model.size);
-  }
-  return y;
+  const double soft = kSoftReach_m * model.size;
+  const double left = highest_pelvis(model, state, pelvis, kLeftSide);
+  const double right = highest_pelvis(model, state, pelvis, kRightSide);
+  return soft_min(y, soft_min(left, right, soft), soft);  // the same whichever leg swings
 }
 
 }  // namespace gaitpad

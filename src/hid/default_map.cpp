@@ -182,7 +182,8 @@ void bind_buttons(const ReportDescriptor& d, const ReportFields& r, ButtonOrder 
                   const KeyRules& rules, std::vector<Binding>& out) {
   for (const std::size_t i : r.all()) {
     const std::uint32_t u = d.fields[i].usage;
-    if (u == usage::kHatSwitch && r.index(u) == i) {
+    if (r.index(u) != i) continue;
+    if (u == usage::kHatSwitch) {
       out.push_back({ControlKind::hat, 0, i, 0, false});
       continue;
     }
@@ -191,7 +192,7 @@ void bind_buttons(const ReportDescriptor& d, const ReportFields& r, ButtonOrder 
       continue;
     }
     int button = key_button(u, rules);
-    if (page_of(u) == usage::kButtonPage && r.index(u) == i) {
+    if (page_of(u) == usage::kButtonPage) {
       button = button_of(order, id_of(u));
       // The key sits in another report than the never pressed button, which must not release it.
       if (button == kButtonGuide && rules.has_home && !rules.home_is_start) button = kNone;

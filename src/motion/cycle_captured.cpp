@@ -94,7 +94,7 @@ std::vector<double> ground_speed(const CapturedCycle& cycle, const std::vector<v
 }
 
 FlatFoot flat_foot(const CapturedCycle& cycle, int side) {
-  constexpr double kRatePerS = 8.0;  // so much height above the lowest counts as so much speed
+  constexpr double kRatePerS = 14.0;  // so much height above the lowest counts as so much speed
   const CapturedLeg& leg = cycle.leg[side];
   const std::vector<double> ankle = ground_speed(cycle, leg.ankle_m);
   const std::vector<double> toe = ground_speed(cycle, leg.toe_m);

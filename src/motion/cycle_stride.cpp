@@ -356,10 +356,10 @@ Motion looped_twice(const Motion& motion) {
   twice.frames = motion.frames;
   close_loop(twice, turn);
   const quat onward = rotation_y(turn);
-  const vec3 start = twice.frames.front().root_m, end = twice.frames.back().root_m;
+  const std::vector<vec3> pelvis = body_track(twice).pelvis_m;  // the root may stand still
   for (int f = 1; f < frames; ++f) {
     MotionFrame frame = twice.frames[f];
-    frame.root_m = end + onward * (frame.root_m - start);
+    frame.root_m = pelvis.back() + onward * (frame.root_m - pelvis.front());
     frame.local[0] = onward * frame.local[0];
     twice.frames.push_back(std::move(frame));
   }

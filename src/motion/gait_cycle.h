@@ -49,8 +49,8 @@ struct CycleSample {
 
 struct GaitCycle {
   std::string name;
-  Skeleton
-      skeleton;  // metres; joints between root and pelvis have zero offsets (root at the pelvis)
+  // Metres. The root stands at the pelvis: joints from the root down to it have no offsets.
+  Skeleton skeleton;
   int pelvis = 0;
   double metres_per_unit = 1.0;
   quat pelvis_standing = quat(1.0, 0.0, 0.0, 0.0);  // pelvis joint's world rotation when standing

@@ -55,7 +55,7 @@ std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pad
     pads[event.device].is_present = event.kind != ReportKind::added;
   }
   if (std::ranges::any_of(pads, &PadConfig::is_usable)) return std::nullopt;
-  return Error{fmt::format("{}: none of its {} devices is a pad with a stick", trace.path, pads.size())};
+  return Error{trace.path + ": none of its devices is a pad with a stick"};
 }
 
 // Every tick with its reports; the path length of each walker comes out.

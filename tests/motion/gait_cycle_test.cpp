@@ -47,6 +47,25 @@ double angle_difference(const GaitCycle& cycle) {
   return best;
 }
 
+// The same walk under a root that stands still: the hips carry the position, as some exports do.
+Motion under_still_root(const Motion& plain) {
+  Motion m = plain;
+  m.skeleton.joints.insert(m.skeleton.joints.begin(), {"Reference", -1, vec3(0.0), false});
+  for (std::size_t j = 1; j < m.skeleton.joints.size(); ++j) ++m.skeleton.joints[j].parent;
+  m.pelvis = plain.pelvis + 1;
+  for (LegJoints& leg : m.legs) {
+    for (int* joint : {&leg.hip, &leg.knee, &leg.ankle, &leg.toe, &leg.toe_end}) ++*joint;
+  }
+  for (MotionFrame& frame : m.frames) {
+    frame.local.insert(frame.local.begin(), rotation_y(0.7));
+    frame.translation_m.clear();
+    for (const Joint& joint : m.skeleton.joints) frame.translation_m.push_back(joint.offset_m);
+    frame.translation_m[1] = frame.root_m;
+    frame.root_m = vec3(0.0);
+  }
+  return m;
+}
+
 TEST(GaitCycle, OfTheProceduralMotionIsTheProceduralGait) {
   const auto cycle = gait_cycle(procedural_motion());
   ASSERT_TRUE(cycle);
@@ -104,6 +123,7 @@ TEST(GaitCycle, ALoopOfExactlyOneStrideRunsOverItsEnd) {
     const auto cycle = gait_cycle(cut(first, first + stride));
     ASSERT_TRUE(cycle) << cycle.error().message;
     EXPECT_LT(angle_difference(*cycle), 3.0) << first;
+    EXPECT_TRUE(gait_cycle(under_still_root(cut(first, first + stride))));
   }
 }
 
@@ -138,6 +158,27 @@ TEST(GaitCycle, ACurvedWalkIsStraightened) {
   ASSERT_TRUE(cycle);
   EXPECT_NEAR(cycle->stride_m, procedural_gait().stride_m, 0.01);
   EXPECT_LT(angle_difference(*cycle), 4.0);
+}
+
+TEST(GaitCycle, MovingHipsUnderAStillRootAreTheSameWalk) {
+  const auto plain = gait_cycle(procedural_motion());
+  const auto under = gait_cycle(under_still_root(procedural_motion()));
+  ASSERT_TRUE(plain);
+  ASSERT_TRUE(under) << under.error().message;
+  EXPECT_EQ(under->skeleton.joints[1].offset_m, vec3(0.0));
+  Pose a, b;
+  const auto world_a = std::make_unique<JointFrames>(), world_b = std::make_unique<JointFrames>();
+  for (double phase = 0.0; phase < 1.0; phase += 0.1) {
+    sample_local(*plain, phase, a);
+    sample_local(*under, phase, b);
+    a.root_m = sample_at(*plain, phase).pelvis_m;
+    b.root_m = sample_at(*under, phase).pelvis_m;
+    forward_kinematics(plain->skeleton, a, *world_a);
+    forward_kinematics(under->skeleton, b, *world_b);
+    for (int j = 0; j < a.joint_count; ++j) {
+      EXPECT_LT(glm::distance(world_a->position_m[j], world_b->position_m[j + 1]), 1e-3);
+    }
+  }
 }
 
 TEST(GaitCycle, TwentyFourFramesASecondAreEnough) {

@@ -62,7 +62,8 @@ def wander(seed):
     while time_s < 28.0:
         x, y = chance.uniform(-0.7, 0.7), chance.uniform(-0.3, 1.0)
         kind = chance.random()
-        stick.append((time_s, 0.0, y) if kind < 0.3 else (time_s, 0.0, 0.0) if kind < 0.45 else (time_s, x, min(y, 0.7)))
+        place = (0.0, y) if kind < 0.3 else (0.0, 0.0) if kind < 0.45 else (x, min(y, 0.7))
+        stick.append((time_s,) + place)
         if chance.random() < 0.25:
             commands.append((time_s + 0.1, f"style {chance.choice(STYLES)}"))
         time_s += chance.uniform(0.1, 2.0)

@@ -11,6 +11,7 @@ import numpy as np
 
 import bvh_fk
 import walk_bounds
+import walk_check
 import walk_compare
 import walk_smooth
 from walk_data import COLUMNS, SIDES, Walk
@@ -214,11 +215,6 @@ class Files:
         return self.bvh.data[:, self.bvh.first[j] + self.bvh.channels[j].index(name)]
 
 
-def all_checks(w):
-    import walk_check
-    return walk_check.check_walk(w)
-
-
 class Spot:
     """Where faults are planted: ticks of the 8th flight and roll of the left foot, and its channels."""
 
@@ -318,13 +314,13 @@ def expect(what, condition, failures, detail=""):
 
 def run_faults(failures):
     sound = Files()
-    broken = [f"{c.name} {c.value:.4g}" for c in all_checks(sound.load()) if c.ok is False]
+    broken = [f"{c.name} {c.value:.4g}" for c in walk_check.check_walk(sound.load()) if c.ok is False]
     expect("the exact walk passes every check", not broken, failures, "; ".join(broken))
     for name, plant in {**FILE_FAULTS, **CONTACT_FAULTS, **JOINT_FAULTS}.items():
         files = copy.deepcopy(sound)
         plant(Spot(files))
         try:
-            hit = [c for c in all_checks(files.load()) if c.name == name]
+            hit = [c for c in walk_check.check_walk(files.load()) if c.name == name]
             seen, detail = bool(hit) and hit[0].ok is False, f"{hit[0].value:.4g}" if hit else "no such check"
         except (ValueError, IndexError) as error:  # damaged beyond measuring counts as seen
             seen, detail = True, f"refused: {error}"
@@ -387,7 +383,8 @@ def run_mathematics(failures):
            np.allclose(bvh_fk.second_differences(turn)[1:-1], 1.0), failures)
     x = np.linspace(0, 6, 61)
     y = walk_smooth._spline(np.sin(x)[:, None], np.arange(200, 400) * 0.1)
-    expect("the spline follows a sine", np.abs(y[:, 0] - np.sin(0.1 * np.arange(200, 400) * 0.1)).max() < 1e-4, failures)
+    expect("the spline follows a sine",
+           np.abs(y[:, 0] - np.sin(0.1 * np.arange(200, 400) * 0.1)).max() < 1e-4, failures)
 
 
 def main():

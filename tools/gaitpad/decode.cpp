@@ -229,7 +229,8 @@ void print_reports(const DecodeArguments& arguments, const Trace& trace,
 
 bool is_live_device(const std::string& path) {
   std::error_code ignored;
-  return std::filesystem::is_character_file(path, ignored);
+  return path.starts_with("/dev/hidraw") || path.starts_with("/dev/input/") ||
+         std::filesystem::is_character_file(path, ignored);
 }
 
 int run(const DecodeArguments& arguments) {

@@ -1,0 +1,70 @@
+#include "session/config_files.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace gaitpad {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ConfigFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    make("own/styles/even.toml");
+    make("own/styles/notes.txt");
+    make("shipped/styles/even.toml");
+    make("shipped/styles/tired.toml");
+  }
+  void TearDown() override {
+    fs::remove_all(folder_);
+    ::unsetenv("GAITPAD_CONFIG");
+  }
+  void make(const std::string& path) {
+    fs::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path) << "\n";
+  }
+  std::string at(const std::string& path) const { return (folder_ / path).string(); }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_config_files_test";
+};
+
+TEST_F(ConfigFiles, TheFirstFolderThatHasANameWins) {
+  const std::vector<std::string> folders = {at("own"), at("shipped")};
+  EXPECT_EQ(*config_file(folders, "styles", "even"), at("own/styles/even.toml"));
+  EXPECT_EQ(*config_file(folders, "styles", "tired"), at("shipped/styles/tired.toml"));
+  EXPECT_EQ(config_files(folders, "styles"),
+            (std::vector{at("own/styles/even.toml"), at("shipped/styles/tired.toml")}));
+}
+
+TEST_F(ConfigFiles, APathStaysAPath) {
+  EXPECT_EQ(*config_file({}, "styles", "some/where"), "some/where");
+  EXPECT_EQ(*config_file({}, "styles", "mine.toml"), "mine.toml");
+}
+
+TEST_F(ConfigFiles, AnUnknownNameListsTheKnownOnes) {
+  const auto file = config_file({at("shipped")}, "styles", "tyred");
+  ASSERT_FALSE(file);
+  EXPECT_EQ(file.error().message, "there is no \"tyred\" in config/styles (known: even, tired)");
+}
+
+TEST_F(ConfigFiles, TheEnvironmentComesFirstAndTheBuiltInFolderLast) {
+  ::setenv("GAITPAD_CONFIG", at("own").c_str(), 1);
+  const std::vector<std::string> folders = config_folders(at("shipped"));
+  ASSERT_GE(folders.size(), 2u);
+  EXPECT_EQ(folders.front(), at("own"));
+  EXPECT_EQ(folders.back(), at("shipped"));
+}
+
+TEST_F(ConfigFiles, FoldersThatDoNotExistAreLeftOut) {
+  ::setenv("GAITPAD_CONFIG", at("nowhere").c_str(), 1);
+  for (const std::string& folder : config_folders(at("nowhere"))) {
+    EXPECT_NE(folder, at("nowhere"));
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

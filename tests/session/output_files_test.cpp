@@ -1,0 +1,76 @@
+#include "session/output_files.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <iterator>
+
+namespace gaitpad {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputFolder : public testing::Test {
+ protected:
+  void SetUp() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string text(const std::string& name) const {
+    std::ifstream in(folder_ / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void write_and_publish(const std::string& content) {
+    auto files = OutputFiles::open(folder_.string());
+    ASSERT_TRUE(files);
+    auto stream = files->add("a.txt");
+    ASSERT_TRUE(stream);
+    **stream << content;
+    EXPECT_FALSE(files->publish());
+  }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_output_files_test" / "deep";
+};
+
+TEST_F(OutputFolder, IsMadeAndHoldsWhatWasPublished) {
+  write_and_publish("one");
+  EXPECT_EQ(text("a.txt"), "one");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(OutputFolder, KeepsTheOldFileUntilTheNewOneIsPublished) {
+  write_and_publish("one");
+  {
+    auto files = OutputFiles::open(folder_.string());
+    ASSERT_TRUE(files);
+    **files->add("a.txt") << "two";
+    EXPECT_EQ(text("a.txt"), "one");
+  }
+  EXPECT_EQ(text("a.txt"), "one");
+  EXPECT_EQ(entries(), 1u) << "a temporary file stayed behind";
+  write_and_publish("three");
+  EXPECT_EQ(text("a.txt"), "three");
+}
+
+TEST_F(OutputFolder, WhereAFileStandsIsRefused) {
+  write_and_publish("one");
+  const auto files = OutputFiles::open((folder_ / "a.txt" / "below").string());
+  ASSERT_FALSE(files);
+  EXPECT_NE(files.error().message.find("a.txt/below"), std::string::npos);
+  EXPECT_FALSE(OutputFiles::open((folder_ / "a.txt").string()));
+}
+
+TEST_F(OutputFolder, AFullDiskIsToldAtPublishing) {
+  fs::create_directories(folder_);
+  auto files = OutputFiles::open(folder_.string());
+  ASSERT_TRUE(files);
+  auto stream = files->add("a.txt");
+  ASSERT_TRUE(stream);
+  (*stream)->setstate(std::ios::badbit);
+  EXPECT_TRUE(files->publish());
+  EXPECT_FALSE(fs::exists(folder_ / "a.txt"));
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -88,6 +88,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   state.hips_m = vec3(place_m.x, 0.0, place_m.z);
   state.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
   state.bounce.x = state.sway.x = 1.0;
+  state.step_time_s.x = 0.5;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
     FootState& foot = state.foot[side];

@@ -131,6 +131,7 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
       state.weight[side][j].advance(params.weight[side][j], kWeightSmoothing * scale, dt);
     }
   }
+  state.step_time_s.advance(0.5 * (state.time_s[0] + state.time_s[1]), kStepSmoothing * scale, dt);
   const double goal = walking ? params.turn_rate_rad_s : 0.0;
   state.turn_rate.advance(goal, kTurnSmoothing * scale, dt);
   if (goal == 0.0 && std::abs(state.turn_rate.x) < kStillTurn) state.turn_rate = {};

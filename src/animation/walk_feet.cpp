@@ -13,6 +13,7 @@ constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kRollEnd = 0.95;           // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
 constexpr double kLameFade = 0.0;
+constexpr double kStopping = 0.6;  // of the flight
 constexpr double kLiftFade = 0.5;           // of the flight: what the lift-off brought has faded
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
@@ -66,8 +67,10 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   const FootState& foot = state.foot[side];
   const vec3 way = state.landing_m - foot.lift_m;
   const FlightCurve& s = leg.flight.progress;
+  // The data's heel still moves when it strikes, ours stops: the difference is made up at the end.
+  const double end = std::max(0.0, (u - kStopping) / (1.0 - kStopping));
   vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
-           way * s.end_slope() * h11(u);
+           way * (s.end_slope() * (1.0 - kStopping) * h11(end));
   // The pace of the longer step: a lame foot's height has a factor of its own.
   const double r = std::max(pace(model, state, kLeftSide), pace(model, state, kRightSide));
   const double k = state.flight_height[side].x * std::min(1.1, 0.35 + 0.65 * r);

@@ -9,6 +9,8 @@ namespace {
 // dorsiflexion under load up to 38 degrees.
 constexpr std::array<double, kLegDofs> kMin = {-120, -50, -70, 1.0, -40, -60, -80};
 constexpr std::array<double, kLegDofs> kMax = {60, 50, 70, 150, 75, 60, 80};
+constexpr double kHeelDown = 0.007;    // of the leg: a heel this low has landed
+constexpr double kLatestDown = 0.05;   // own phase
 constexpr double kMinRollShare = 0.11;  // of the cycle; shorter rolls of the data slap the toe down
 constexpr double kOscillation = 0.8;    // share of the fore-aft oscillation, which FK exaggerates
 
@@ -140,12 +142,25 @@ void fill_pelvis_tables(const GaitCycle& source, double ratio, double scale, Wal
   model.mean_m = (mean + hip_y) * ratio - hip_y * scale;
 }
 
-// At a strike the front heel is alpha of the step before the hips (mean over both feet).
+// At a strike the front heel is alpha of the step before the hips (mean over both feet). The heel of
+// the data still sinks and slides for a moment when it strikes; ours stands at once. So the distance
+// is that of the flat foot, run back to the moment when the heel of the data is down.
 double front_share(const GaitCycle& source, double source_step) {
+  const double down_m = kHeelDown * 0.5 * (source.leg[0].length_m() + source.leg[1].length_m());
   double sum = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
-    const CycleSample sample = sample_at(source, source.strike[side]);
-    sum += foot_point(sample, side, source.leg[side].heel_m).z;
+    const auto heel_at = [&](double own) {
+      return foot_point(sample_at(source, own + source.strike[side]), side, source.leg[side].heel_m);
+    };
+    double down = 0.0;
+    while (down < kLatestDown && heel_at(down).y > down_m) down += 1.0 / (2 * kCycleSamples);
+    double flat = 0.0;
+    constexpr int kCount = 16;
+    for (int i = 0; i < kCount; ++i) {
+      const double own = 0.12 + 0.16 * i / kCount;
+      flat += (heel_at(own).z + source.stride_m * own) / kCount;
+    }
+    sum += flat - source.stride_m * down;
   }
   return std::clamp(0.5 * sum / source_step, 0.3, 0.7);
 }

@@ -4,9 +4,12 @@ namespace gaitpad {
 namespace {
 
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
-constexpr double kReach = 0.998;         // of the leg: leaves the knee 7 degrees
+constexpr double kReach = 0.9985;        // of the leg: leaves the knee 7 degrees
 constexpr double kLameDrop_m = 0.05;      // at the reference leg, for a foot that does not lift at all
-constexpr double kSoftReach_m = 0.057;    // at the reference leg
+constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
+constexpr double kCalmStep_s = 0.52;
+constexpr double kSoftBase_m = 0.02;
+constexpr double kSoftReach_m = 0.03;    // at the reference leg
 
 double power(double base, int exponent) noexcept {
   double result = 1.0;
@@ -53,16 +56,36 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
                 ((1.0 - beta) * now + beta * next) / next_s);
 }
 
-// Pelvis height at which a leg reaches its planned ankle all but straight.
-double highest_pelvis(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
-                      Side side) noexcept {
+// Pelvis height at which a leg is as long from its hip to its planned ankle as `reach_m`.
+double height_over(const WalkModel& model, const WalkState& state, const Pelvis& pelvis, Side side,
+                   double reach_m) noexcept {
   const LegBuild& leg = model.leg[side];
   const FootPose& foot = state.foot[side].pose;
   const vec3 ankle = foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
   const vec3 hip = pelvis.hip(leg);  // pelvis.position_m.y is 0 here
   const double dx = hip.x - ankle.x, dz = hip.z - ankle.z;
-  const double reach = kReach * leg.model.length_m();
-  return ankle.y - hip.y + std::sqrt(std::max(0.04 * reach * reach, reach * reach - dx * dx - dz * dz));
+  const double square = std::max(0.04 * reach_m * reach_m, reach_m * reach_m - dx * dx - dz * dz);
+  return ankle.y - hip.y + std::sqrt(square);
+}
+
+// The height that a leg's knee curve in the data asks for.
+double height_of_knee(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
+                      Side side) noexcept {
+  const LegModel& leg = model.leg[side].model;
+  const double data = model.reference_rad[side][kKneeX].at(state.phase);
+  const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
+  const double a = leg.thigh_m, b = leg.shank_m;
+  const double cosine = sin_cos(kStandingKnee + bend).cos;
+  return height_over(model, state, pelvis, side, std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
+}
+
+// Share of the weight on the left foot: it moves over during the roll.
+double left_load(const WalkState& state) noexcept {
+  if (state.stage == Stage::idle || !state.started) return 0.5;
+  const double on_front =
+      state.stage == Stage::roll ? smoothstep(0.0, 1.0, static_cast<double>(state.tick) / state.stage_ticks) : 0.0;
+  const double on_swing = state.stage == Stage::roll ? on_front : 0.0;
+  return state.swing == kLeftSide ? on_swing : 1.0 - on_swing;
 }
 
 }  // namespace
@@ -110,16 +133,20 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexce
 }
 
 double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvis& pelvis) noexcept {
-  const double r = state.pace.x, scale = state.amplitude.x * std::clamp(r * r, 0.0, 1.5);
-  double y = model.stand_m + scale * (model.mean_m - model.stand_m +
-                                      state.bounce.x * model.bounce_m.at(state.phase));
+  const double load = left_load(state);
+  double y = load * height_of_knee(model, state, pelvis, kLeftSide) +
+             (1.0 - load) * height_of_knee(model, state, pelvis, kRightSide);
+  const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
+  y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(state.phase);
   // A lame foot hardly rises on its toe: the hips come down to it instead.
   const double lame = 1.0 - std::min({1.0, state.flight_height[0].x, state.flight_height[1].x});
-  y -= kLameDrop_m * model.size * lame * state.amplitude.x;
-  const double soft = kSoftReach_m * model.size;
-  const double left = highest_pelvis(model, state, pelvis, kLeftSide);
-  const double right = highest_pelvis(model, state, pelvis, kRightSide);
-  return soft_min(y, soft_min(left, right, soft), soft);  // the same whichever leg swings
+  y -= kLameDrop_m * model.size * lame * presence(state);
+  const double left = height_over(model, state, pelvis, kLeftSide, kReach * model.leg[0].model.length_m());
+  const double right = height_over(model, state, pelvis, kRightSide, kReach * model.leg[1].model.length_m());
+  // Quick steps turn the same corners in less time, so they are cut wider.
+  const double quick = kCalmStep_s / std::max(0.1, state.step_time_s.x);
+  const double soft = model.size * std::clamp(quick * quick * quick, 1.0, 3.0);
+  return soft_min(y, soft_min(left, right, kSoftReach_m * soft), kSoftBase_m * soft);
 }
 
 }  // namespace gaitpad

@@ -7,8 +7,8 @@ namespace gaitpad {
 namespace {
 
 constexpr std::uint32_t bit(int button) { return std::uint32_t{1} << button; }
-constexpr std::uint32_t kDpad = bit(kButtonDpadUp) | bit(kButtonDpadDown) | bit(kButtonDpadLeft) |
-                                bit(kButtonDpadRight);
+constexpr std::uint32_t kDpad =
+    bit(kButtonDpadUp) | bit(kButtonDpadDown) | bit(kButtonDpadLeft) | bit(kButtonDpadRight);
 
 std::int64_t value_of(const FieldBits& f, std::span<const std::uint8_t> data) noexcept {
   const std::uint64_t raw = bits_at(data, f.bit_offset, f.bit_size);

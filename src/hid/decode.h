@@ -31,7 +31,7 @@ struct ButtonOp {
 };
 struct HatOp {
   FieldBits bits;
-  std::int64_t last = 0;                          // values from min to last are directions
+  std::int64_t last = 0;                        // values from min to last are directions
   std::int64_t numerator = 1, denominator = 1;  // of the step in 45 degrees
 };
 struct ArrayOp {  // a slot of an array whose value names a button
@@ -42,7 +42,7 @@ struct ArrayOp {  // a slot of an array whose value names a button
 struct ReportLayout {
   std::uint8_t report_id = 0;  // 0: reports are not numbered
   bool numbered = false;
-  std::uint16_t min_size = 0;             // with the id
+  std::uint16_t min_size = 0;              // with the id
   std::vector<std::uint16_t> exact_sizes;  // of a replaced descriptor; empty: min_size counts
   std::uint32_t covered = 0;               // buttons that this report tells of
   std::vector<AxisOp> axes;
@@ -60,7 +60,7 @@ struct UnnamedButton {
 
 struct PadLayout {
   bool is_pad = false;
-  bool streams = false;      // at rest too: silence means a broken link
+  bool streams = false;         // at rest too: silence means a broken link
   std::string override_origin;  // FILE:LINE of the [[pad]] that was used, empty for none
   ReportDescriptor descriptor;
   std::vector<ReportLayout> reports;  // replaced ones first
@@ -70,8 +70,8 @@ struct PadLayout {
 // Error where the device's descriptor is damaged or the override's replacement is.
 Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overrides);
 
-// Updates what the report tells of and leaves the rest. False for a report that is too short, has an
-// unknown id or is no input; `state` is then as before.
+// Updates what the report tells of and leaves the rest. False for a report that is too short, has
+// an unknown id or is no input; `state` is then as before.
 bool decode(const PadLayout& layout, const Report& report, PadState& state) noexcept;
 
 }  // namespace gaitpad

@@ -68,14 +68,17 @@ bool side_by_side(const ReportFields& r, AxisPair pair) {
 }
 
 // Both pairs exist: one is the right stick, the other the triggers. Xbox has the stick on Rx, Ry,
-// Sony on Z, Rz. The stick is as wide as the left one, its two axes are neighbours, and it comes first.
+// Sony on Z, Rz. The stick is as wide as the left one, its two axes are neighbours, and it comes
+// first.
 AxisPair right_stick_of_two(const ReportFields& r) {
-  const bool z_alike = like_left_stick(r, kZPair), rotation_alike = like_left_stick(r, kRotationPair);
+  const bool z_alike = like_left_stick(r, kZPair),
+             rotation_alike = like_left_stick(r, kRotationPair);
   if (z_alike != rotation_alike) return z_alike ? kZPair : kRotationPair;
   const bool z_near = side_by_side(r, kZPair), rotation_near = side_by_side(r, kRotationPair);
   if (z_near != rotation_near) return z_near ? kZPair : kRotationPair;
   if (!z_near) return kRotationPair;
-  return r.field(kZPair.x).bit_offset < r.field(kRotationPair.x).bit_offset ? kZPair : kRotationPair;
+  return r.field(kZPair.x).bit_offset < r.field(kRotationPair.x).bit_offset ? kZPair
+                                                                            : kRotationPair;
 }
 
 std::optional<AxisPair> right_stick(const ReportFields& r) {
@@ -243,26 +246,53 @@ ButtonOrder likely_button_order(const ReportDescriptor& d, const std::vector<std
   return ButtonOrder::direct_input;
 }
 
+namespace {
+
+// The n-th word names button n, counted from 1.
+constexpr PadButton kEmpty = kButtonCount;
+constexpr PadButton kDirectInput[] = {
+    kButtonX,     kButtonA,    kButtonB,    kButtonY,     kButtonLeftShoulder, kButtonRightShoulder,
+    kEmpty,       kEmpty,      kButtonBack, kButtonStart, kButtonLeftStick,    kButtonRightStick,
+    kButtonGuide, kButtonMisc1};
+constexpr PadButton kTopFirst[] = {kButtonY, kButtonB, kButtonA, kButtonX};
+constexpr PadButton kAndroid[] = {kButtonA,
+                                  kButtonB,
+                                  kEmpty,
+                                  kButtonX,
+                                  kButtonY,
+                                  kEmpty,
+                                  kButtonLeftShoulder,
+                                  kButtonRightShoulder,
+                                  kEmpty,
+                                  kEmpty,
+                                  kButtonBack,
+                                  kButtonStart,
+                                  kButtonGuide,
+                                  kButtonLeftStick,
+                                  kButtonRightStick};
+constexpr PadButton kXinput[] = {kButtonA,
+                                 kButtonB,
+                                 kButtonX,
+                                 kButtonY,
+                                 kButtonLeftShoulder,
+                                 kButtonRightShoulder,
+                                 kButtonBack,
+                                 kButtonStart,
+                                 kButtonLeftStick,
+                                 kButtonRightStick,
+                                 kButtonGuide};
+
+}  // namespace
+
 PadButton button_of(ButtonOrder order, std::uint32_t number) noexcept {
-  static constexpr PadButton kEmpty = kButtonCount;
-  static constexpr PadButton kDirectInput[] = {
-      kButtonX,     kButtonA,         kButtonB,          kButtonY,     kButtonLeftShoulder,
-      kButtonRightShoulder, kEmpty,   kEmpty,            kButtonBack,  kButtonStart,
-      kButtonLeftStick,     kButtonRightStick, kButtonGuide, kButtonMisc1};
-  static constexpr PadButton kAndroid[] = {
-      kButtonA,    kButtonB,     kEmpty,       kButtonX,         kButtonY,
-      kEmpty,      kButtonLeftShoulder, kButtonRightShoulder, kEmpty, kEmpty,
-      kButtonBack, kButtonStart, kButtonGuide, kButtonLeftStick, kButtonRightStick};
-  static constexpr PadButton kXinput[] = {
-      kButtonA,    kButtonB,     kButtonX,         kButtonY,          kButtonLeftShoulder,
-      kButtonRightShoulder, kButtonBack, kButtonStart, kButtonLeftStick, kButtonRightStick,
-      kButtonGuide};
   const auto pick = [number](const auto& table) {
     return number >= 1 && number <= std::size(table) ? table[number - 1] : kEmpty;
   };
   switch (order) {
     case ButtonOrder::direct_input:
       return pick(kDirectInput);
+    case ButtonOrder::top_first:
+      return number <= std::size(kTopFirst) ? pick(kTopFirst) : pick(kDirectInput);
     case ButtonOrder::android:
       return pick(kAndroid);
     case ButtonOrder::xinput:

@@ -22,7 +22,8 @@ struct Binding {
 };
 
 // Indices of the fields that belong to the pad: of the first application collection 1:4, 1:5 or 1:8
-// with X and Y, and the consumer and system keys beside it. Empty where there is no such collection.
+// with X and Y, and the consumer and system keys beside it. Empty where there is no such
+// collection.
 std::vector<std::size_t> pad_fields(const ReportDescriptor& descriptor);
 
 ButtonOrder likely_button_order(const ReportDescriptor& descriptor,

@@ -75,6 +75,8 @@ class Parser {
   std::optional<std::string> add_usage_range();
   std::optional<std::string> add_field_item(FieldKind kind, std::uint32_t flags);
   std::optional<std::string> open_collection(std::uint32_t type);
+  std::optional<std::string> push_globals();
+  std::optional<std::string> pop_globals();
   std::optional<std::string> set_report_id(std::uint32_t id);
   std::optional<std::string> push_usage(UsageRange range, bool extended);
   std::optional<std::string> delimit(std::uint32_t opens);
@@ -165,7 +167,8 @@ std::optional<std::string> Parser::add_global(const ShortItem& item) {
       return std::nullopt;
     case tag::kReportSize:
       if (item.value > kMaxFieldBits) {
-        return fmt::format("report size of {} bits, at most {} are read", item.value, kMaxFieldBits);
+        return fmt::format("report size of {} bits, at most {} are read", item.value,
+                           kMaxFieldBits);
       }
       globals_.report_size = item.value;
       return std::nullopt;
@@ -175,17 +178,25 @@ std::optional<std::string> Parser::add_global(const ShortItem& item) {
       globals_.report_count = item.value;  // bounded where it is used, with the size
       return std::nullopt;
     case tag::kPush:
-      if (pushed_.size() >= kMaxPushed) return fmt::format("more than {} pushes", kMaxPushed);
-      pushed_.push_back(globals_);
-      return std::nullopt;
+      return push_globals();
     case tag::kPop:
-      if (pushed_.empty()) return "a pop without a push";
-      globals_ = pushed_.back();
-      pushed_.pop_back();
-      return std::nullopt;
+      return pop_globals();
     default:
       return std::nullopt;  // unit and unit exponent change no value; others are reserved
   }
+}
+
+std::optional<std::string> Parser::push_globals() {
+  if (pushed_.size() >= kMaxPushed) return fmt::format("more than {} pushes", kMaxPushed);
+  pushed_.push_back(globals_);
+  return std::nullopt;
+}
+
+std::optional<std::string> Parser::pop_globals() {
+  if (pushed_.empty()) return "a pop without a push";
+  globals_ = pushed_.back();
+  pushed_.pop_back();
+  return std::nullopt;
 }
 
 std::optional<std::string> Parser::set_report_id(std::uint32_t id) {
@@ -200,7 +211,8 @@ std::optional<std::string> Parser::add_local(const ShortItem& item) {
     case tag::kUsage: {
       const bool extended = item.size == 4;
       const std::uint32_t full =
-          extended ? item.value : usage_of(globals_.usage_page, static_cast<std::uint16_t>(item.value));
+          extended ? item.value
+                   : usage_of(globals_.usage_page, static_cast<std::uint16_t>(item.value));
       return push_usage({full, full}, extended);
     }
     case tag::kUsageMinimum:
@@ -382,70 +394,6 @@ Result<ReportDescriptor> parse_descriptor(std::span<const std::uint8_t> bytes) {
   }
   if (auto cause = parser.finish()) return Error{fmt::format("byte {}: {}", at, *cause)};
   return parser.take();
-}
-
-std::size_t report_bytes(const ReportDescriptor& descriptor, FieldKind kind,
-                         std::uint8_t report_id) {
-  for (const ReportLength& r : descriptor.reports) {
-    if (r.kind != kind || r.report_id != report_id) continue;
-    return (r.bits + 7) / 8 + (descriptor.numbered ? 1 : 0);
-  }
-  return 0;
-}
-
-std::uint64_t bits_at(std::span<const std::uint8_t> data, std::uint64_t offset,
-                      std::uint32_t size) noexcept {
-  std::uint64_t value = 0;
-  std::uint32_t done = 0;
-  while (done < size && done < 64) {
-    const std::uint64_t byte = (offset + done) / 8;
-    const std::uint32_t shift = (offset + done) % 8;
-    const std::uint32_t take = std::min({8 - shift, size - done, 64 - done});
-    if (byte < data.size()) {
-      const std::uint64_t part = (std::uint64_t{data[byte]} >> shift) & ((1u << take) - 1);
-      value |= part << done;
-    }
-    done += take;
-  }
-  return value;
-}
-
-std::int64_t field_value(const Field& field, std::span<const std::uint8_t> data) noexcept {
-  const std::uint32_t size = std::min<std::uint32_t>(field.bit_size, 64);
-  const std::uint64_t raw = bits_at(data, field.bit_offset, size);
-  if (field.logical_min >= 0 || size == 0 || size == 64) return static_cast<std::int64_t>(raw);
-  const std::uint64_t sign = std::uint64_t{1} << (size - 1);
-  return static_cast<std::int64_t>((raw ^ sign) - sign);
-}
-
-std::uint32_t array_usage(const ReportDescriptor& descriptor, const Field& field,
-                          std::int64_t value) noexcept {
-  if (!field.is_array || value < field.logical_min || value > field.logical_max) return 0;
-  std::uint64_t index = static_cast<std::uint64_t>(value - field.logical_min);
-  for (std::uint32_t i = 0; i < field.range_count; ++i) {
-    const UsageRange& range = descriptor.ranges[field.first_range + i];
-    const std::uint64_t count = std::uint64_t{range.last} - range.first + 1;
-    if (index < count) return range.first + static_cast<std::uint32_t>(index);
-    index -= count;
-  }
-  return 0;
-}
-
-std::optional<std::size_t> pad_application(const ReportDescriptor& descriptor) {
-  constexpr std::uint8_t kHasX = 1, kHasY = 2;
-  std::vector<std::uint8_t> axes(descriptor.applications.size());
-  for (const Field& f : descriptor.fields) {
-    if (f.kind != FieldKind::input || f.is_array || f.application >= axes.size()) continue;
-    if (f.usage == usage::kX) axes[f.application] |= kHasX;
-    if (f.usage == usage::kY) axes[f.application] |= kHasY;
-  }
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const std::uint32_t what = descriptor.applications[i];
-    const bool named_so =
-        what == usage::kJoystick || what == usage::kGamePad || what == usage::kMultiAxis;
-    if (named_so && axes[i] == (kHasX | kHasY)) return i;
-  }
-  return std::nullopt;
 }
 
 }  // namespace gaitpad

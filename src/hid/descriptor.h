@@ -1,5 +1,6 @@
 // HID report-descriptor parser (Device Class Definition for HID 1.11, section 6.2.2), with Linux's
-// answers where the document leaves a choice. Descriptors come from strangers: everything is bounded.
+// answers where the document leaves a choice. Descriptors come from strangers: everything is
+// bounded.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace gaitpad {
 
-inline constexpr std::size_t kMaxDescriptorBytes = 4096;   // HID_MAX_DESCRIPTOR_SIZE
+inline constexpr std::size_t kMaxDescriptorBytes = 4096;  // HID_MAX_DESCRIPTOR_SIZE
 inline constexpr std::uint32_t kMaxFieldBits = 256;
 inline constexpr std::uint32_t kMaxReportBits = 16384 * 8;  // HID_MAX_BUFFER_SIZE
 inline constexpr std::size_t kMaxFields = 32768;            // over all reports together
@@ -66,20 +67,20 @@ struct UsageRange {  // inclusive; both ends on one page
 // One value of a report: an element of a main item, constant and empty ones left out.
 struct Field {
   FieldKind kind = FieldKind::input;
-  std::uint8_t report_id = 0;    // 0 where the report has none
-  bool is_array = false;         // the value is an index into the usages, not a usage's value
-  bool has_null = false;         // the main item's Null State flag
+  std::uint8_t report_id = 0;  // 0 where the report has none
+  bool is_array = false;       // the value is an index into the usages, not a usage's value
+  bool has_null = false;       // the main item's Null State flag
   bool is_relative = false;
-  bool has_odd_range = false;    // minimum above maximum: replaced by the unsigned range of the bits
+  bool has_odd_range = false;  // minimum above maximum: replaced by the unsigned range of the bits
   std::uint32_t bit_offset = 0;  // from the first bit behind the report id
   std::uint32_t bit_size = 0;
-  std::uint32_t usage = 0;       // page and id; of an array the first one that it can name
+  std::uint32_t usage = 0;  // page and id; of an array the first one that it can name
   std::int64_t logical_min = 0;
   std::int64_t logical_max = 0;
   std::int64_t physical_min = 0;
   std::int64_t physical_max = 0;
-  std::uint16_t application = 0;   // index in ReportDescriptor::applications, else kNoApplication
-  std::uint32_t first_range = 0;   // of an array: its usages, in ReportDescriptor::ranges
+  std::uint16_t application = 0;  // index in ReportDescriptor::applications, else kNoApplication
+  std::uint32_t first_range = 0;  // of an array: its usages, in ReportDescriptor::ranges
   std::uint32_t range_count = 0;
 };
 inline constexpr std::uint16_t kNoApplication = 0xffff;
@@ -102,13 +103,15 @@ struct ReportDescriptor {
 Result<ReportDescriptor> parse_descriptor(std::span<const std::uint8_t> bytes);
 
 // Bytes that a report must have, its id included; 0 where there is no such report.
-std::size_t report_bytes(const ReportDescriptor& descriptor, FieldKind kind, std::uint8_t report_id);
+std::size_t report_bytes(const ReportDescriptor& descriptor, FieldKind kind,
+                         std::uint8_t report_id);
 
-// Bits `offset .. offset + size - 1`, least significant first; size <= 64, bits beyond the data are 0.
+// Bits `offset .. offset + size - 1`, least significant first; size <= 64, bits beyond the data are
+// 0.
 std::uint64_t bits_at(std::span<const std::uint8_t> data, std::uint64_t offset,
                       std::uint32_t size) noexcept;
-// The field's raw count, sign-extended if its minimum is negative. `data` starts behind the report id.
-// Fields of more than 64 bits give their lowest 64.
+// The field's raw count, sign-extended if its minimum is negative. `data` starts behind the report
+// id. Fields of more than 64 bits give their lowest 64.
 std::int64_t field_value(const Field& field, std::span<const std::uint8_t> data) noexcept;
 // The usage that an array field names, 0 for none.
 std::uint32_t array_usage(const ReportDescriptor& descriptor, const Field& field,

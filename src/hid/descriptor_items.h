@@ -1,4 +1,5 @@
-// The items of a report descriptor: one prefix byte, 0, 1, 2 or 4 bytes of data (HID 1.11, 6.2.2.2).
+// The items of a report descriptor: one prefix byte, 0, 1, 2 or 4 bytes of data
+// (HID 1.11, 6.2.2.2).
 #pragma once
 #include <cstdint>
 #include <span>
@@ -12,7 +13,8 @@ inline constexpr std::uint8_t kInput = 0x8, kOutput = 0x9, kCollection = 0xa, kF
                               kEndCollection = 0xc;  // main
 inline constexpr std::uint8_t kUsagePage = 0x0, kLogicalMinimum = 0x1, kLogicalMaximum = 0x2,
                               kPhysicalMinimum = 0x3, kPhysicalMaximum = 0x4, kReportSize = 0x7,
-                              kReportId = 0x8, kReportCount = 0x9, kPush = 0xa, kPop = 0xb;  // global
+                              kReportId = 0x8, kReportCount = 0x9, kPush = 0xa,
+                              kPop = 0xb;  // global
 inline constexpr std::uint8_t kUsage = 0x0, kUsageMinimum = 0x1, kUsageMaximum = 0x2,
                               kDelimiter = 0xa;  // local
 }  // namespace tag

@@ -1,12 +1,15 @@
 // The driver contract. A driver finds devices and hands on their reports as bytes; it never
-// interprets them. What its source does not describe it states as a report descriptor that it builds.
+// interprets them. What its source does not describe it states as a report descriptor that it
+// builds.
 //
 // Threads  Every call comes from the I/O thread, and a driver starts none that calls back.
 // Blocking `read` waits at most `timeout`; everything else returns at once. Set-up (making the
 //          driver, `device`) may allocate; `read` may, too: it is not the loop thread.
-// Owning   The caller owns the driver and the reports that it passes in; the driver owns its handles
+// Owning   The caller owns the driver and the reports that it passes in; the driver owns its
+// handles
 //          and closes them in its destructor.
-// Unplug   A device that goes away gives one `removed` report and then nothing, and its index is not
+// Unplug   A device that goes away gives one `removed` report and then nothing, and its index is
+// not
 //          used again for another device. The same device plugged in again gives `added` on its old
 //          index. Only the end of everything that the driver can ever deliver is Status::ended.
 // Time     A report carries the moment of its arrival, taken right after the wait, on a clock that

@@ -10,8 +10,8 @@ namespace gaitpad {
 namespace {
 
 constexpr std::uint32_t bit(int button) { return std::uint32_t{1} << button; }
-constexpr std::uint32_t kDpad = bit(kButtonDpadUp) | bit(kButtonDpadDown) | bit(kButtonDpadLeft) |
-                                bit(kButtonDpadRight);
+constexpr std::uint32_t kDpad =
+    bit(kButtonDpadUp) | bit(kButtonDpadDown) | bit(kButtonDpadLeft) | bit(kButtonDpadRight);
 
 constexpr std::uint32_t kMaxControlBits = 32;  // a wider field is no control
 
@@ -88,7 +88,8 @@ void override_control(const ReportDescriptor& d, ControlKind kind, int control,
   for (const ControlSource& source : sources) {
     for (const ReportLength& report : d.reports) {
       std::size_t index = 0;
-      if (report.kind != FieldKind::input || !nth_field(d, report.report_id, source, index)) continue;
+      if (report.kind != FieldKind::input || !nth_field(d, report.report_id, source, index))
+        continue;
       bindings.push_back({kind, control, index, source.mask, source.reversed});
     }
   }

@@ -79,33 +79,50 @@ void read_controls(TomlTable pad, std::string_view key,
   }
 }
 
+std::optional<std::uint32_t> device_id(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  const auto vendor = hexadecimal(text.substr(0, colon), 0xffff);
+  const auto product = hexadecimal(text.substr(colon + 1), 0xffff);
+  if (!vendor || !product) return std::nullopt;
+  return (*vendor << 16) | *product;
+}
+
 void read_identity(TomlTable& pad, PadOverride& result) {
   result.name = pad.string("name").value_or("");
   if (const auto vendor = pad.integer("vendor", 0, 0xffff)) {
     result.vendor = static_cast<std::uint16_t>(*vendor);
   }
-  for (const double p : pad.numbers("products", 1, kMaxProducts, 0, 0xffff).value_or(
-           std::vector<double>{})) {
+  for (const double p :
+       pad.numbers("products", 1, kMaxProducts, 0, 0xffff).value_or(std::vector<double>{})) {
     if (p != static_cast<double>(static_cast<std::uint16_t>(p))) {
       pad.reject("products", "a product is a whole number");
     }
     result.products.push_back(static_cast<std::uint16_t>(p));
+  }
+  for (const std::string& id :
+       pad.strings("ids", kMaxProducts).value_or(std::vector<std::string>{})) {
+    const auto number = device_id(id);
+    if (!number) pad.reject("ids", in_quotes(id) + " is no vendor:product such as 054c:0268");
+    result.ids.push_back(number.value_or(0));
   }
   result.drivers = pad.strings("drivers", 16).value_or(std::vector<std::string>{});
   if (const auto bus = pad.integer("bus", 0, 0xffff)) result.bus = static_cast<BusType>(*bus);
 }
 
 void read_order(TomlTable& pad, PadOverride& result) {
-  const auto order = pad.string("button_order");
-  if (!order) return;
-  if (*order == "direct_input") {
-    result.order = ButtonOrder::direct_input;
-  } else if (*order == "android") {
-    result.order = ButtonOrder::android;
-  } else if (*order == "xinput") {
-    result.order = ButtonOrder::xinput;
-  } else {
-    pad.reject("button_order", "it is direct_input, android or xinput");
+  constexpr std::pair<std::string_view, ButtonOrder> kOrders[] = {
+      {"direct_input", ButtonOrder::direct_input},
+      {"top_first", ButtonOrder::top_first},
+      {"android", ButtonOrder::android},
+      {"xinput", ButtonOrder::xinput}};
+  const auto text = pad.string("button_order");
+  if (!text) return;
+  for (const auto& [name, order] : kOrders) {
+    if (*text == name) result.order = order;
+  }
+  if (!result.order) {
+    pad.reject("button_order", "it is direct_input, top_first, android or xinput");
   }
 }
 
@@ -116,7 +133,8 @@ void read_replacement(TomlTable& pad, PadOverride& result) {
   table->require("lengths");
   const std::string hex = table->string("descriptor").value_or("");
   std::string line(hex);
-  std::replace_if(line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   Words count(line);
   int words = 0;
   while (!count.next().empty()) ++words;
@@ -130,8 +148,8 @@ void read_replacement(TomlTable& pad, PadOverride& result) {
   if (auto parsed = parse_descriptor(replacement.descriptor); !parsed) {
     table->reject("descriptor", parsed.error().message);
   }
-  for (const double n : table->numbers("lengths", 1, 16, 1, kMaxReportBytes)
-                            .value_or(std::vector<double>{})) {
+  for (const double n :
+       table->numbers("lengths", 1, 16, 1, kMaxReportBytes).value_or(std::vector<double>{})) {
     replacement.lengths.push_back(static_cast<std::uint16_t>(n));
   }
   // The controls of the own descriptor serve here too, unless the replacement has its own.
@@ -216,16 +234,24 @@ Result<PadOverrides> load_pad_folder(const std::string& folder) {
   return all;
 }
 
+namespace {
+
+template <class T, class U>
+bool allows(const std::vector<T>& allowed, const U& value) noexcept {
+  return allowed.empty() || std::find(allowed.begin(), allowed.end(), value) != allowed.end();
+}
+
+}  // namespace
+
 const PadOverride* find_override(const PadOverrides& overrides, const DeviceInfo& device) noexcept {
   std::string_view driver = device.driver;
   if (driver.empty()) driver = "hidraw";
+  const std::uint32_t id = (std::uint32_t{device.vendor} << 16) | device.product;
   for (const PadOverride& o : overrides) {
     if (o.vendor && *o.vendor != device.vendor) continue;
     if (o.bus && *o.bus != device.bus) continue;
-    const auto& p = o.products;
-    if (!p.empty() && std::find(p.begin(), p.end(), device.product) == p.end()) continue;
-    const auto& d = o.drivers;
-    if (!d.empty() && std::find(d.begin(), d.end(), driver) == d.end()) continue;
+    if (!allows(o.products, device.product) || !allows(o.ids, id)) continue;
+    if (!allows(o.drivers, driver)) continue;
     return &o;
   }
   return nullptr;

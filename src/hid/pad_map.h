@@ -15,17 +15,20 @@ namespace gaitpad {
 
 // Which button numbers a pad without an own file is taken to have. Numbers count from 1.
 enum class ButtonOrder {
-  direct_input,  // x a b y, shoulders, triggers, back start, sticks, guide: Logitech, Switch, clones
+  direct_input,  // x a b y, shoulders, triggers, back start, sticks, guide: Logitech, Switch,
+                 // clones
   android,       // a b - x y - shoulders, triggers, back start guide, sticks: Xbox on Bluetooth
+  top_first,     // y b a x, then as direct_input: PlayStation 2 adapters and their heirs
   xinput,        // a b x y, shoulders, back start, sticks, guide: Xbox in Windows mode
 };
 
-// `0001:0031`, `-0001:0031` (reversed), `0001:0030/4` (the fourth X), `000c:0081&1` (a bit), `button 3`.
+// `0001:0031`, `-0001:0031` (reversed), `0001:0030/4` (the fourth X), `000c:0081&1` (a bit),
+// `button 3`.
 struct ControlSource {
   std::uint32_t usage = 0;
   std::uint32_t occurrence = 1;  // the n-th field with that usage in its report
-  std::uint32_t mask = 0;        // of a button: pressed where one of these bits is set; 0: any value
-  bool reversed = false;         // of an axis: against HID's directions (x right, y towards the thumb)
+  std::uint32_t mask = 0;  // of a button: pressed where one of these bits is set; 0: any value
+  bool reversed = false;   // of an axis: against HID's directions (x right, y towards the thumb)
   bool operator==(const ControlSource&) const = default;
 };
 using ControlSources = std::vector<ControlSource>;
@@ -48,6 +51,7 @@ struct PadOverride {
   std::string origin;  // FILE:LINE
   std::optional<std::uint16_t> vendor;
   std::vector<std::uint16_t> products;  // empty: all
+  std::vector<std::uint32_t> ids;       // vendor << 16 | product, beside vendor and products
   std::vector<std::string> drivers;     // empty: all
   std::optional<BusType> bus;
   std::optional<bool> is_pad;

@@ -1,4 +1,5 @@
-// What a driver delivers (a device and its reports) and what a decoder makes of it (the pad's state).
+// What a driver delivers (a device and its reports) and what a decoder makes of it (the pad's
+// state).
 #pragma once
 #include <array>
 #include <cstddef>
@@ -92,10 +93,27 @@ enum PadButton : int {
 
 inline constexpr std::array<std::string_view, kAxisCount> kAxisNames = {
     "left_x", "left_y", "right_x", "right_y", "left_trigger", "right_trigger"};
-inline constexpr std::array<std::string_view, kButtonCount> kButtonNames = {
-    "a",           "b",          "x",            "y",             "back",    "guide",   "start",
-    "leftstick",   "rightstick", "leftshoulder", "rightshoulder", "dpup",    "dpdown",  "dpleft",
-    "dpright",     "misc1",      "paddle1",      "paddle2",       "paddle3", "paddle4", "touchpad"};
+inline constexpr std::array<std::string_view, kButtonCount> kButtonNames = {"a",
+                                                                            "b",
+                                                                            "x",
+                                                                            "y",
+                                                                            "back",
+                                                                            "guide",
+                                                                            "start",
+                                                                            "leftstick",
+                                                                            "rightstick",
+                                                                            "leftshoulder",
+                                                                            "rightshoulder",
+                                                                            "dpup",
+                                                                            "dpdown",
+                                                                            "dpleft",
+                                                                            "dpright",
+                                                                            "misc1",
+                                                                            "paddle1",
+                                                                            "paddle2",
+                                                                            "paddle3",
+                                                                            "paddle4",
+                                                                            "touchpad"};
 
 // Clockwise in steps of 45 degrees.
 enum class Hat : std::uint8_t {

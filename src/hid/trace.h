@@ -1,5 +1,5 @@
-// The trace format `.hid`: hid-recorder's text and the lines that we add (config/README.md, Traces).
-// Set-up code: allocates, returns Result, throws nothing.
+// The trace format `.hid`: hid-recorder's text and the lines that we add (config/README.md,
+// Traces). Set-up code: allocates, returns Result, throws nothing.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -44,8 +44,8 @@ struct Trace {
   std::vector<std::uint8_t> bytes;
   std::optional<std::int64_t> end_time_us;  // of the `Q:` line
   std::optional<std::int64_t> end_ticks;
-  std::int64_t skipped_lines = 0;   // damaged ones, Damage::skip only
-  std::string first_damage;         // the sentence for the first of them
+  std::int64_t skipped_lines = 0;  // damaged ones, Damage::skip only
+  std::string first_damage;        // the sentence for the first of them
 };
 
 // What to do with a damaged line: refuse the file, or skip the line and count it.
@@ -60,8 +60,8 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name,
 // Gives every event its tick and returns the number of ticks that a replay runs: ticks 0 .. n-1.
 // Without `T:` lines an event of time t belongs to the first tick that starts at or after t, where
 // tick k starts k / rate_hz seconds after the first event; compared in whole numbers.
-// The end is `Q:`'s, else one second after the last event. An event whose tick is n or more is not used.
-// Error where the trace states another rate.
+// The end is `Q:`'s, else one second after the last event. An event whose tick is n or more is not
+// used. Error where the trace states another rate.
 Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz);
 // The rate to replay at: the asked one, else the trace's, else kDefaultRateHz.
 int replay_rate_hz(const Trace& trace, std::optional<int> asked);
@@ -70,8 +70,9 @@ int replay_rate_hz(const Trace& trace, std::optional<int> asked);
 void copy_report(const Trace& trace, const TraceEvent& event, Report& report) noexcept;
 Report report_of(const Trace& trace, const TraceEvent& event) noexcept;
 
-// Writes a trace that the reader reads back as the same devices and events, and that hid-replay plays.
-// `T:` lines are written where has_ticks is set, `V:` where rate_hz is, `Q:` where both ends are.
+// Writes a trace that the reader reads back as the same devices and events, and that hid-replay
+// plays. `T:` lines are written where has_ticks is set, `V:` where rate_hz is, `Q:` where both ends
+// are.
 std::string trace_text(const Trace& trace);
 Result<std::int64_t> write_trace(const Trace& trace, const std::string& path);  // bytes written
 

@@ -65,8 +65,8 @@ void append_event(std::string& out, const Trace& trace, const TraceEvent& event)
       append_bytes(out, bytes, event.size);
       return;
     case ReportKind::command:
-      out += "C: " + time + " " +
-             one_line({reinterpret_cast<const char*>(bytes), event.size}) + "\n";
+      out +=
+          "C: " + time + " " + one_line({reinterpret_cast<const char*>(bytes), event.size}) + "\n";
       return;
     case ReportKind::added:
       out += "H: " + time + " add\n";
@@ -118,8 +118,8 @@ Result<std::int64_t> write_trace(const Trace& trace, const std::string& path) {
 
 Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz) {
   if (rate_hz < 1 || rate_hz > kMaxRateHz) {
-    return Error{fmt::format("{}: a rate of {} Hz is not within 1 .. {}", trace.path, rate_hz,
-                             kMaxRateHz)};
+    return Error{
+        fmt::format("{}: a rate of {} Hz is not within 1 .. {}", trace.path, rate_hz, kMaxRateHz)};
   }
   if (trace.rate_hz && *trace.rate_hz != rate_hz) {
     return Error{fmt::format("{}: was recorded at {} Hz and cannot be replayed at {} Hz",

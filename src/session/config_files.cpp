@@ -58,7 +58,8 @@ Result<std::string> config_file(const std::vector<std::string>& folders, const s
     known += (known.empty() ? "" : ", ") + config_name(path);
   }
   if (known.empty()) known = "none found; set GAITPAD_CONFIG to the config folder";
-  return Error{fmt::format("there is no \"{}\" in config/{} (known: {})", file_or_name, kind, known)};
+  return Error{
+      fmt::format("there is no \"{}\" in config/{} (known: {})", file_or_name, kind, known)};
 }
 
 std::string config_name(const std::string& path) { return fs::path(path).stem().string(); }

@@ -7,7 +7,8 @@ namespace gaitpad {
 namespace {
 
 constexpr std::string_view kHeader =
-    "tick,time_s,stick_x,stick_y,stride_left_m,stride_right_m,speed_m_s,turn_rate_rad_s,heading_rad,"
+    "tick,time_s,stick_x,stick_y,stride_left_m,stride_right_m,speed_m_s,turn_rate_rad_s,heading_"
+    "rad,"
     "root_x_m,root_y_m,root_z_m,stage,swing,"
     "left_heel_planted,left_toe_planted,right_heel_planted,right_toe_planted,"
     "left_heel_x_m,left_heel_y_m,left_heel_z_m,left_toe_x_m,left_toe_y_m,left_toe_z_m,"

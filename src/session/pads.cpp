@@ -6,7 +6,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kNearCentre = 0.1;   // of the calibrated deflection
+constexpr double kNearCentre = 0.1;    // of the calibrated deflection
 constexpr int kSilencesInSecond = 10;  // 100 ms each
 
 Stick calibrated(const Calibration& calibration, const PadState& state) noexcept {

@@ -1,5 +1,5 @@
-// Which stick drives the walk: the pads of a session, plugged in and out, each with its layout and its
-// calibration, and the position of the driving one.
+// Which stick drives the walk: the pads of a session, plugged in and out, each with its layout and
+// its calibration, and the position of the driving one.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,8 +18,9 @@ struct PadConfig {
   bool streams = false;    // it reports while at rest too: silence means that it is gone
 };
 
-// The first usable pad drives. A removed one is neutral, and after plugging in again until it has been
-// seen near its centre; a streaming one also while it is silent for 100 ms. Time is counted in ticks.
+// The first usable pad drives. A removed one is neutral, and after plugging in again until it has
+// been seen near its centre; a streaming one also while it is silent for 100 ms. Time is counted in
+// ticks.
 class Pads {
  public:
   Pads() = default;

@@ -46,7 +46,8 @@ Result<std::vector<WalkExport>> opened_exports(std::optional<OutputFiles>& files
   return exports;
 }
 
-// A device that is plugged in later says so in its first event. Without any pad the walk has no stick.
+// A device that is plugged in later says so in its first event. Without any pad the walk has no
+// stick.
 std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pads) {
   std::vector<bool> is_seen(pads.size(), false);
   for (const TraceEvent& event : trace.events) {
@@ -74,7 +75,8 @@ std::vector<double> walked_m(const Run& run, Simulation& simulation,
     }
     simulation.step(reports);
     for (std::size_t i = 0; i < walkers.size(); ++i) {
-      const vec3 way_m = walkers[i].state.hips_m - std::exchange(before_m[i], walkers[i].state.hips_m);
+      const vec3 way_m =
+          walkers[i].state.hips_m - std::exchange(before_m[i], walkers[i].state.hips_m);
       distance_m[i] += glm::length(vec2(way_m.x, way_m.z));
     }
     for (WalkExport& e : exports) e.write(tick, simulation.stick());
@@ -110,8 +112,8 @@ std::vector<std::string> remarks_on(const Run& run, const SimulationCounts& coun
                                   counts.bad_reports, counts.reports));
   }
   if (counts.bad_commands > 0) {
-    remarks.push_back(fmt::format("{} of {} commands were not understood", counts.bad_commands,
-                                  counts.commands));
+    remarks.push_back(
+        fmt::format("{} of {} commands were not understood", counts.bad_commands, counts.commands));
   }
   return remarks;
 }
@@ -121,7 +123,8 @@ std::vector<std::string> remarks_on(const Run& run, const SimulationCounts& coun
 Result<ReplayResult> replay(const ReplayOptions& options) {
   auto run = prepared_run(options);
   if (!run) return run.error();
-  auto config = simulation_config(options.session, run->trace.devices, run->rate_hz);
+  auto config =
+      simulation_config(options.session, run->trace.devices, run->trace.path, run->rate_hz);
   if (!config) return config.error();
   if (auto problem = settle_pads(run->trace, config->pads)) return *problem;
   auto simulation = Simulation::create(*config);

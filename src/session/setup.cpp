@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "motion/gait_cycle.h"
-#include "session/motion_source.h"
 #include "session/config_files.h"
+#include "session/motion_source.h"
 
 namespace gaitpad {
 namespace {
@@ -70,40 +70,41 @@ Result<PadOverrides> all_overrides(const SessionOptions& options) {
 }
 
 // --calibration, else the recording's own, else the best fitting file in config/calibration.
-Result<Calibration> calibration_of(const SessionOptions& options, const TraceDevice& device) {
+Result<Calibration> calibration_of(const SessionOptions& options, const TraceDevice& device,
+                                   const std::string& origin) {
   if (!options.calibration.empty()) return load_calibration(options.calibration);
   if (!device.calibration.empty()) {
-    auto own = parse_calibration(device.calibration, "the recording's calibration");
+    auto own = parse_calibration(device.calibration, origin + ": calibration");
     if (!own) return own.error();
     return own->calibration;
   }
   std::vector<std::string> folders;
-  for (const std::string& folder : options.config_folders) folders.push_back(folder + "/calibration");
+  for (const std::string& folder : options.config_folders)
+    folders.push_back(folder + "/calibration");
   const DeviceInfo& info = device.info;
-  auto found = find_calibration(
-      folders, {info.vendor, info.product, info.unique_id, info.physical_path});
+  auto found =
+      find_calibration(folders, {info.vendor, info.product, info.unique_id, info.physical_path});
   if (!found) return found.error();
   return found->calibration;
 }
 
-// Only these hand on every report of a pad that streams; evdev and SDL give changes alone. A foreign
-// recording names no driver: it came from hidraw.
+// Only these hand on every report of a pad that streams; evdev and SDL give changes alone. A
+// foreign recording names no driver: it came from hidraw.
 bool hands_on_everything(const std::string& driver) {
   return driver.empty() || driver == "hidraw" || driver == "usb";
 }
 
 Result<std::vector<PadConfig>> pad_configs(const SessionOptions& options,
-                                           const std::vector<TraceDevice>& devices) {
+                                           const std::vector<TraceDevice>& devices,
+                                           const std::string& source) {
   auto overrides = all_overrides(options);
   if (!overrides) return overrides.error();
   std::vector<PadConfig> pads;
   for (const TraceDevice& device : devices) {
+    const std::string origin = fmt::format("{}: device {}", source, device.index);
     auto layout = pad_layout(device.info, *overrides);
-    if (!layout) {
-      return Error{fmt::format("device {} ({}): {}", device.index, device.info.name,
-                               layout.error().message)};
-    }
-    auto calibration = calibration_of(options, device);
+    if (!layout) return Error{origin + ": " + layout.error().message};
+    auto calibration = calibration_of(options, device, origin);
     if (!calibration) return calibration.error();
     PadConfig& pad = pads.emplace_back();
     pad.layout = std::move(*layout);
@@ -120,7 +121,7 @@ const T& nth_or_last(const std::vector<T>& list, std::size_t n) {
 }
 
 Result<GaitCycle> cycle_of(const std::string& motion_file) {
-  if (motion_file.empty()) return procedural_gait();
+  if (motion_file.empty() || motion_file == "procedural") return procedural_gait();
   auto motion = load_motion_source(motion_file);
   if (!motion) return motion.error();
   return gait_cycle(*motion);
@@ -129,7 +130,8 @@ Result<GaitCycle> cycle_of(const std::string& motion_file) {
 }  // namespace
 
 Result<SimulationConfig> simulation_config(const SessionOptions& options,
-                                           const std::vector<TraceDevice>& devices, int rate_hz) {
+                                           const std::vector<TraceDevice>& devices,
+                                           const std::string& source, int rate_hz) {
   if (!options.terrain.empty() && options.terrain != "flat") {
     return Error{fmt::format("the terrain \"{}\" is not known: only flat ground exists so far",
                              options.terrain)};
@@ -137,7 +139,7 @@ Result<SimulationConfig> simulation_config(const SessionOptions& options,
   SimulationConfig config;
   config.rate_hz = rate_hz;
   config.ik = options.ik;
-  auto pads = pad_configs(options, devices);
+  auto pads = pad_configs(options, devices, source);
   if (!pads) return pads.error();
   config.pads = std::move(*pads);
   std::vector<int> chosen_styles;

@@ -21,8 +21,10 @@ struct SessionOptions {
   std::vector<std::string> config_folders;  // config_files.h
 };
 
-// Reads every file. `devices` are the session's, with the calibration that a recording carries.
+// Reads every file. `devices` are the session's, with the calibration that a recording carries;
+// sentences about them begin with `source`, the recording's path.
 Result<SimulationConfig> simulation_config(const SessionOptions& options,
-                                           const std::vector<TraceDevice>& devices, int rate_hz);
+                                           const std::vector<TraceDevice>& devices,
+                                           const std::string& source, int rate_hz);
 
 }  // namespace gaitpad

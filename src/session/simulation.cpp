@@ -33,7 +33,8 @@ int position(std::string_view word) noexcept {
 
 Result<Simulation> Simulation::create(const SimulationConfig& config) {
   if (config.walkers.empty() || config.walkers.size() > kMaxWalkers) {
-    return Error{fmt::format("{} characters: 1 to {} can walk", config.walkers.size(), kMaxWalkers)};
+    return Error{
+        fmt::format("{} characters: 1 to {} can walk", config.walkers.size(), kMaxWalkers)};
   }
   Simulation s;
   s.dt_s_ = 1.0 / config.rate_hz;
@@ -72,8 +73,12 @@ void Simulation::take(const Report& report) noexcept {
       ++counts_.commands;
       counts_.bad_commands += !obey(text_of(report));
       return;
-    case ReportKind::added: pads_.add(report.device); return;
-    case ReportKind::removed: pads_.remove(report.device); return;
+    case ReportKind::added:
+      pads_.add(report.device);
+      return;
+    case ReportKind::removed:
+      pads_.remove(report.device);
+      return;
     case ReportKind::input:
       ++counts_.reports;
       counts_.bad_reports += !pads_.take(report);

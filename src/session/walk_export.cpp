@@ -20,7 +20,8 @@ BvhLayout layout_of(const WalkModel& model, int fps) {
   return layout;
 }
 
-// Tick t is shown where a frame's time j / fps falls into (t - 1, t] ticks; the first frame is tick 0.
+// Tick t is shown where a frame's time j / fps falls into (t - 1, t] ticks; the first frame is tick
+// 0.
 bool is_shown(std::int64_t tick, int rate_hz, int fps) {
   const auto frames_until = [=](std::int64_t t) { return (t * fps + rate_hz) / rate_hz; };
   return tick == 0 || frames_until(tick) != frames_until(tick - 1);
@@ -65,7 +66,8 @@ void WalkExport::write(std::int64_t tick, const Stick& stick) {
 }
 
 void WalkExport::finish(const nlohmann::ordered_json& summary) {
-  frames_->write(row_.data(), static_cast<std::streamsize>(row_.size()));  // header of an empty walk
+  frames_->write(row_.data(),
+                 static_cast<std::streamsize>(row_.size()));  // header of an empty walk
   row_.clear();
   poses_->finish();
   *summary_ << summary.dump(2) << '\n';

@@ -14,7 +14,8 @@
 namespace gaitpad {
 
 // `pose.bvh` for the first character, `pose-2.bvh` ... for further ones.
-std::string numbered_name(const std::string& stem, const std::string& extension, std::size_t walker);
+std::string numbered_name(const std::string& stem, const std::string& extension,
+                          std::size_t walker);
 
 // Writes as the walk goes on. The walker and the files outlive it.
 class WalkExport {

@@ -60,8 +60,8 @@ Bytes axes(const Bytes& usages) {
 // One-bit buttons 1..n and padding to the next byte.
 Bytes buttons(std::uint8_t n) {
   const auto rest = static_cast<std::uint8_t>((8 - n % 8) % 8);
-  return Bytes{0x05, 0x09, 0x19, 0x01, 0x29, n,    0x15, 0x00, 0x25, 0x01, 0x75, 0x01,
-               0x95, n,    0x81, 0x02, 0x95, rest, 0x81, 0x03};
+  return Bytes{0x05, 0x09, 0x19, 0x01, 0x29, n,    0x15, 0x00, 0x25, 0x01,
+               0x75, 0x01, 0x95, n,    0x81, 0x02, 0x95, rest, 0x81, 0x03};
 }
 Bytes hat(std::uint8_t min, const Bytes& max_item, std::uint8_t bits, const Bytes& physical = {}) {
   return Bytes{0x05, 0x01, 0x09, 0x39, 0x15, min} + max_item + physical +
@@ -88,14 +88,13 @@ TEST(Decode, SticksSpanMinusOneToOneWithForwardUp) {
 }
 
 TEST(Decode, SignedAndTwoBitAxesHaveAnExactCentre) {
-  const Bytes signed_axes = {0x05, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15, 0x81, 0x25,
-                             0x7f, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
+  const Bytes signed_axes = {0x05, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15, 0x81,
+                             0x25, 0x7f, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
   PadState s = state_of(layout_of(pad(0x04, signed_axes)), {0x00, 0x81});
   EXPECT_EQ(s.axis[kLeftX], 0.0f);
   EXPECT_EQ(s.axis[kLeftY], 1.0f);
-  const Bytes two_bits = {0x05, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15, 0x00, 0x25, 0x02,
-                          0x75, 0x02, 0x95, 0x02, 0x81, 0x02, 0x75, 0x04, 0x95, 0x01,
-                          0x81, 0x03};
+  const Bytes two_bits = {0x05, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15, 0x00, 0x25, 0x02, 0x75,
+                          0x02, 0x95, 0x02, 0x81, 0x02, 0x75, 0x04, 0x95, 0x01, 0x81, 0x03};
   s = state_of(layout_of(pad(0x05, two_bits)), {0b0001});
   EXPECT_EQ(s.axis[kLeftX], 0.0f);
   EXPECT_EQ(s.axis[kLeftY], 1.0f);
@@ -127,9 +126,9 @@ TEST(Decode, ChecksIdAndLengthFirst) {
 
 TEST(Decode, AReportLeavesAloneWhatItDoesNotTell) {
   const PadLayout l = layout_of(pad(0x05, Bytes{0x85, 0x01} + axes({0x30, 0x31}) + buttons(8)) +
-                                Bytes{0x05, 0x0c, 0x09, 0x01, 0xa1, 0x01, 0x85, 0x02, 0x0a, 0x23, 0x02,
-                                      0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x01, 0x81, 0x02, 0x95,
-                                      0x07, 0x81, 0x03, 0xc0});
+                                Bytes{0x05, 0x0c, 0x09, 0x01, 0xa1, 0x01, 0x85, 0x02, 0x0a,
+                                      0x23, 0x02, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95,
+                                      0x01, 0x81, 0x02, 0x95, 0x07, 0x81, 0x03, 0xc0});
   PadState s;
   EXPECT_TRUE(decode(l, report_of({0x02, 0x01}), s));
   EXPECT_TRUE(pressed(s, kButtonGuide));
@@ -164,13 +163,15 @@ TEST(Decode, HatsOfAllKindsPointTheSameWay) {
   for (const Case& c : cases) {
     const PadLayout l = layout_of(pad(0x05, xy + c.descriptor));
     const auto at = [&](int v) {
-      return state_of(l, {0x80, 0x80, static_cast<std::uint8_t>(v & 255), static_cast<std::uint8_t>(v >> 8)});
+      return state_of(
+          l, {0x80, 0x80, static_cast<std::uint8_t>(v & 255), static_cast<std::uint8_t>(v >> 8)});
     };
     for (int d = 0; d < 8; ++d) {
       EXPECT_EQ(static_cast<int>(at(c.first + d * c.step).hat), d) << c.what;
     }
     EXPECT_EQ(at(c.first).buttons, mask({kButtonDpadUp})) << c.what;
-    EXPECT_EQ(at(c.first + 3 * c.step).buttons, mask({kButtonDpadDown, kButtonDpadRight})) << c.what;
+    EXPECT_EQ(at(c.first + 3 * c.step).buttons, mask({kButtonDpadDown, kButtonDpadRight}))
+        << c.what;
     for (const int v : c.released) {
       EXPECT_EQ(at(v).hat, Hat::released) << c.what << " " << v;
       EXPECT_EQ(at(v).buttons, 0u) << c.what << " " << v;
@@ -204,7 +205,8 @@ TEST(DefaultMap, RightStickIsZAndRzOnMostPads) {
 }
 
 TEST(DefaultMap, SonyHasTriggersOnRxAndRy) {
-  const PadLayout l = layout_of(pad(0x05, axes({0x30, 0x31, 0x32, 0x35, 0x33, 0x34}) + buttons(15)));
+  const PadLayout l =
+      layout_of(pad(0x05, axes({0x30, 0x31, 0x32, 0x35, 0x33, 0x34}) + buttons(15)));
   const PadState s = state_of(l, {0, 0, 255, 0, 51, 255, 0x40, 0});
   EXPECT_EQ(s.axis[kRightX], 1.0f);
   EXPECT_FLOAT_EQ(s.axis[kLeftTrigger], 0.2f);
@@ -213,27 +215,29 @@ TEST(DefaultMap, SonyHasTriggersOnRxAndRy) {
 }
 
 TEST(DefaultMap, XboxInWindowsModeHasTheStickOnRxAndRy) {
-  const Bytes narrow = {0x09, 0x32, 0x26, 0xff, 0x03, 0x75, 0x10, 0x95, 0x01, 0x81, 0x02,
-                        0x09, 0x35, 0x81, 0x02};
+  const Bytes narrow = {0x09, 0x32, 0x26, 0xff, 0x03, 0x75, 0x10, 0x95,
+                        0x01, 0x81, 0x02, 0x09, 0x35, 0x81, 0x02};
   const PadLayout l = layout_of(pad(0x05, axes({0x30, 0x31, 0x33, 0x34}) + narrow + buttons(10)));
   const PadState s = state_of(l, {0, 0, 255, 255, 0xff, 0x03, 0, 0, 0xc4, 0x03});
   EXPECT_EQ(s.axis[kRightX], 1.0f);
   EXPECT_EQ(s.axis[kRightY], -1.0f);
   EXPECT_EQ(s.axis[kLeftTrigger], 1.0f);
   EXPECT_EQ(s.axis[kRightTrigger], 0.0f);
-  EXPECT_EQ(s.buttons, mask({kButtonX, kButtonBack, kButtonStart, kButtonLeftStick, kButtonRightStick}));
+  EXPECT_EQ(s.buttons,
+            mask({kButtonX, kButtonBack, kButtonStart, kButtonLeftStick, kButtonRightStick}));
 }
 
 TEST(DefaultMap, BrakeAndAcceleratorMeanAndroidsButtonOrder) {
-  const Bytes pedals = {0x05, 0x02, 0x09, 0xc4, 0x09, 0xc5, 0x15, 0x00, 0x26, 0xff, 0x00,
-                        0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
+  const Bytes pedals = {0x05, 0x02, 0x09, 0xc4, 0x09, 0xc5, 0x15, 0x00, 0x26,
+                        0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
   const PadLayout l = layout_of(pad(0x05, axes({0x30, 0x31, 0x32, 0x35}) + pedals + buttons(15)));
   const PadState s = state_of(l, {0, 0, 0, 0, 255, 0, 0b11011011, 0b01111100});
-  EXPECT_EQ(s.axis[kRightTrigger], 1.0f) << "the accelerator is the right one, whatever comes first";
+  EXPECT_EQ(s.axis[kRightTrigger], 1.0f)
+      << "the accelerator is the right one, whatever comes first";
   EXPECT_EQ(s.axis[kLeftTrigger], 0.0f);
-  EXPECT_EQ(s.buttons, mask({kButtonA, kButtonB, kButtonX, kButtonY, kButtonLeftShoulder,
-                             kButtonRightShoulder, kButtonBack, kButtonStart, kButtonGuide,
-                             kButtonLeftStick, kButtonRightStick}));
+  EXPECT_EQ(s.buttons,
+            mask({kButtonA, kButtonB, kButtonX, kButtonY, kButtonLeftShoulder, kButtonRightShoulder,
+                  kButtonBack, kButtonStart, kButtonGuide, kButtonLeftStick, kButtonRightStick}));
 }
 
 TEST(DefaultMap, OfSeveralXTheOneBesideYCounts) {
@@ -255,8 +259,8 @@ TEST(DefaultMap, OnlyTheFirstPadOfAnAdapterDrives) {
 }
 
 TEST(DefaultMap, ButtonsMayComeAsAnArrayOfNumbers) {
-  const Bytes array = {0x05, 0x09, 0x19, 0x01, 0x29, 0x0c, 0x15, 0x01, 0x25, 0x0c,
-                       0x75, 0x08, 0x95, 0x02, 0x81, 0x00};
+  const Bytes array = {0x05, 0x09, 0x19, 0x01, 0x29, 0x0c, 0x15, 0x01,
+                       0x25, 0x0c, 0x75, 0x08, 0x95, 0x02, 0x81, 0x00};
   const PadLayout l = layout_of(pad(0x04, axes({0x30, 0x31, 0x32, 0x35}) + array));
   EXPECT_EQ(state_of(l, {0, 0, 0, 0, 2, 9}).buttons, mask({kButtonA, kButtonBack}));
   EXPECT_EQ(state_of(l, {0, 0, 0, 0, 0, 0}).buttons, 0u);
@@ -272,10 +276,11 @@ TEST(DefaultMap, MiceAndVendorDevicesAreNoPads) {
 
 TEST(PadOverride, ControlsTakeThePlaceOfTheDefaultOnes) {
   DeviceInfo device = device_of(pad(0x04, axes({0x30, 0x31, 0x32, 0x35}) + buttons(12)));
-  const PadLayout l = with_map(device,
-                               "[[pad]]\n[pad.axes]\nleft_y = \"-0001:0031\"\nright_x = \"0001:0035\"\n"
-                               "right_y = \"\"\n[pad.buttons]\na = \"button 1 | button 12\"\n"
-                               "paddle1 = \"0001:0032&80\"\n");
+  const PadLayout l =
+      with_map(device,
+               "[[pad]]\n[pad.axes]\nleft_y = \"-0001:0031\"\nright_x = \"0001:0035\"\n"
+               "right_y = \"\"\n[pad.buttons]\na = \"button 1 | button 12\"\n"
+               "paddle1 = \"0001:0032&80\"\n");
   const PadState s = state_of(l, {0x80, 0xff, 0x80, 0x00, 0x03, 0x08});
   EXPECT_EQ(s.axis[kLeftY], 1.0f);
   EXPECT_EQ(s.axis[kRightX], -1.0f);
@@ -283,11 +288,19 @@ TEST(PadOverride, ControlsTakeThePlaceOfTheDefaultOnes) {
   EXPECT_EQ(s.buttons, mask({kButtonA, kButtonPaddle1})) << "button 2 lost its control";
 }
 
+TEST(PadOverride, TopFirstIsTheOrderOfPlayStation2Adapters) {
+  const DeviceInfo device = device_of(pad(0x04, axes({0x30, 0x31, 0x32, 0x35}) + buttons(12)));
+  const PadLayout l = with_map(device, "[[pad]]\nbutton_order = \"top_first\"\n");
+  EXPECT_EQ(state_of(l, {0, 0, 0, 0, 0x01, 0}).buttons, mask({kButtonY}));
+  EXPECT_EQ(state_of(l, {0, 0, 0, 0, 0x04, 1}).buttons, mask({kButtonA, kButtonBack}));
+}
+
 TEST(PadOverride, AReplacedDescriptorHoldsOnlyForReportsOfItsRealLength) {
   DeviceInfo device = device_of(pad(0x05, Bytes{0x85, 0x30} + axes({0x30, 0x31})));
   const PadLayout l = with_map(
       device,
-      "[[pad]]\n[pad.replace]\nlengths = [5]\ndescriptor = \"05 01 09 05 a1 01 85 30 75 08 95 02 81 03 "
+      "[[pad]]\n[pad.replace]\nlengths = [5]\ndescriptor = \"05 01 09 05 a1 01 85 30 75 08 95 02 "
+      "81 03 "
       "09 30 09 31 26 ff 00 95 02 81 02 c0\"\n[pad.replace.axes]\nleft_y = \"-0001:0031\"\n");
   PadState s = state_of(l, {0x30, 0x00, 0x00, 0xff, 0xff});
   EXPECT_EQ(s.axis[kLeftX], 1.0f);
@@ -320,7 +333,8 @@ TEST(PadLayout, ADamagedDescriptorIsAnError) {
   device.name = "Broken";
   const auto layout = pad_layout(device, {});
   ASSERT_FALSE(layout);
-  EXPECT_EQ(layout.error().message, "Broken: report descriptor: byte 0: the item runs over the end");
+  EXPECT_EQ(layout.error().message,
+            "Broken: report descriptor: byte 0: the item runs over the end");
 }
 
 }  // namespace

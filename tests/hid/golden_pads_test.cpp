@@ -1,5 +1,6 @@
-// Every file of tests/data/pads: a `# = ` line before a report says the state after it: axes that are
-// not 0 (to 0.01), then `buttons` and the pressed ones. Adding a pad to the tests is adding a file.
+// Every file of tests/data/pads: a `# = ` line before a report says the state after it: axes that
+// are not 0 (to 0.01), then `buttons` and the pressed ones. Adding a pad to the tests is adding a
+// file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,7 +69,8 @@ void check_pad(const std::string& path, const PadOverrides& overrides) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     ASSERT_TRUE(decode(*layout, report_of(*trace, trace->events[i]), state)) << "report " << i;
     for (int a = 0; a < kAxisCount; ++a) {
-      EXPECT_NEAR(state.axis[a], expected[i].axis[a], 0.01) << "report " << i << " " << kAxisNames[a];
+      EXPECT_NEAR(state.axis[a], expected[i].axis[a], 0.01)
+          << "report " << i << " " << kAxisNames[a];
     }
     EXPECT_EQ(names_of(state.buttons), names_of(expected[i].buttons)) << "report " << i;
   }
@@ -78,7 +80,8 @@ TEST(GoldenPads, EveryReportDecodesAsThePadsMakerMeantIt) {
   const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
   ASSERT_TRUE(overrides) << overrides.error().message;
   int pads = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(GAITPAD_SOURCE_DIR "/tests/data/pads")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(GAITPAD_SOURCE_DIR "/tests/data/pads")) {
     if (entry.path().extension() != ".hid") continue;
     check_pad(entry.path().string(), *overrides);
     ++pads;

@@ -60,6 +60,19 @@ TEST(PadFile, TheFirstMatchByIdsBusAndDriverCounts) {
   EXPECT_EQ(find_override(*pads, device)->name, "bt");
 }
 
+TEST(PadFile, IdsNamePadsOfSeveralVendors) {
+  const auto pads = parse_pad_file("[[pad]]\nids = [\"0e8f:0003\", \"2563:0523\"]\n", "p.toml");
+  ASSERT_TRUE(pads) << pads.error().message;
+  DeviceInfo device;
+  device.vendor = 0x2563;
+  device.product = 0x0523;
+  EXPECT_NE(find_override(*pads, device), nullptr);
+  device.product = 0x0003;
+  EXPECT_EQ(find_override(*pads, device), nullptr);
+  EXPECT_EQ(cause("[[pad]]\nids = [\"0e8f\"]\n"),
+            "p.toml:2: \"0e8f\" is no vendor:product such as 054c:0268");
+}
+
 TEST(PadFile, TheShippedFilesAreSound) {
   const auto pads = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
   ASSERT_TRUE(pads) << pads.error().message;

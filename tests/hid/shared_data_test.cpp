@@ -29,10 +29,13 @@ std::vector<std::string> recordings() {
 
 TEST(SharedData, EveryFileParsesAndPadsAreToldFromTheRest) {
   NEEDS_SHARED_DATA();
-  const std::vector<std::string> no_pads = {
-      "legion_go_shortcuts.hid",    "legion_go_vendor_raw.hid",     "msi_claw_main.hid",
-      "rog_ally_nkey_paddles.hid",  "steam_controller_vendor.hid",  "steamdeck_controller.rdesc.hid",
-      "steamdeck_lcd_lizard_mouse.hid"};
+  const std::vector<std::string> no_pads = {"legion_go_shortcuts.hid",
+                                            "legion_go_vendor_raw.hid",
+                                            "msi_claw_main.hid",
+                                            "rog_ally_nkey_paddles.hid",
+                                            "steam_controller_vendor.hid",
+                                            "steamdeck_controller.rdesc.hid",
+                                            "steamdeck_lcd_lizard_mouse.hid"};
   for (const std::string& name : recordings()) {
     const auto trace = read_trace(kFolder + "/" + name);
     ASSERT_TRUE(trace) << trace.error().message;
@@ -101,8 +104,8 @@ TEST(SharedData, ReportLengthsAgreeWithTheIndex) {
   }
 }
 
-// `# ReportID: 1 / X:  129 | Y:  126 | ... | Button: 0  0 ... | 0xff000021: 0 , 0 , ...`: the numbers of
-// all fields in order, as hid-recorder decoded them.
+// `# ReportID: 1 / X:  129 | Y:  126 | ... | Button: 0  0 ... | 0xff000021: 0 , 0 , ...`: the
+// numbers of all fields in order, as hid-recorder decoded them.
 std::vector<std::int64_t> recorded_values(const std::string& line) {
   std::vector<std::int64_t> values;
   std::istringstream parts(line.substr(line.find('/') + 1));
@@ -151,11 +154,17 @@ TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
   NEEDS_SHARED_DATA();
   const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
   ASSERT_TRUE(overrides);
-  for (const auto& [file, button] :
-       {Recorded{"circle", kButtonB}, {"x", kButtonA}, {"square", kButtonX}, {"start", kButtonStart},
-        {"l1.raw", kButtonLeftShoulder}, {"r1", kButtonRightShoulder}, {"l3", kButtonLeftStick},
-        {"dpad_up", kButtonDpadUp}, {"dpad_down", kButtonDpadDown}, {"dpad_left", kButtonDpadLeft},
-        {"dpad_right", kButtonDpadRight}}) {
+  for (const auto& [file, button] : {Recorded{"circle", kButtonB},
+                                     {"x", kButtonA},
+                                     {"square", kButtonX},
+                                     {"start", kButtonStart},
+                                     {"l1.raw", kButtonLeftShoulder},
+                                     {"r1", kButtonRightShoulder},
+                                     {"l3", kButtonLeftStick},
+                                     {"dpad_up", kButtonDpadUp},
+                                     {"dpad_down", kButtonDpadDown},
+                                     {"dpad_left", kButtonDpadLeft},
+                                     {"dpad_right", kButtonDpadRight}}) {
     const auto trace = read_trace(kFolder + "/dualsense_usb_" + file + ".hid");
     ASSERT_TRUE(trace) << trace.error().message;
     const auto layout = pad_layout(trace->devices[0].info, *overrides);
@@ -189,8 +198,12 @@ std::array<std::pair<float, float>, kAxisCount> extremes(const std::string& file
 
 TEST(SharedData, DualSenseSticksAndTriggersMoveAlone) {
   NEEDS_SHARED_DATA();
-  const auto is_still = [](std::pair<float, float> r) { return r.first > -0.15f && r.second < 0.15f; };
-  const auto is_full = [](std::pair<float, float> r) { return r.first < -0.95f && r.second > 0.95f; };
+  const auto is_still = [](std::pair<float, float> r) {
+    return r.first > -0.15f && r.second < 0.15f;
+  };
+  const auto is_full = [](std::pair<float, float> r) {
+    return r.first < -0.95f && r.second > 0.95f;
+  };
   auto r = extremes("dualsense_usb_left_stick.hid");
   EXPECT_TRUE(is_full(r[kLeftX]) && is_full(r[kLeftY]));
   EXPECT_TRUE(is_still(r[kRightX]) && is_still(r[kRightY]) && is_still(r[kLeftTrigger]));

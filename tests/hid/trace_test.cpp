@@ -78,7 +78,8 @@ TEST(Trace, CommandsAndPluggingAreEvents) {
   EXPECT_EQ(t.end_ticks, 480);
 }
 
-// Tick k starts at k/240 s; an event at exactly that time belongs to it, one microsecond later to the next.
+// Tick k starts at k/240 s; an event at exactly that time belongs to it, one microsecond later to
+// the next.
 TEST(Trace, AnEventBelongsToTheFirstTickThatStartsAtOrAfterIt) {
   const Trace t = parsed(kHeader +
                          "E: 000007.000000 1 00\nE: 000007.000001 1 00\nE: 000007.004166 1 00\n"
@@ -144,7 +145,8 @@ TEST(Trace, DamageIsRefusedWithFileAndLine) {
   const std::string good = "R: 1 c0\nE: 000005.000000 1 00\n";
   EXPECT_EQ(cause(good + "E: 000004.999999 1 00\n"),
             "t.hid:3: time goes back from 5.000000 to 4.999999");
-  EXPECT_EQ(cause(good + "E: 000605.000001 1 00\n"), "t.hid:3: a gap of more than ten minutes: 600 s");
+  EXPECT_EQ(cause(good + "E: 000605.000001 1 00\n"),
+            "t.hid:3: a gap of more than ten minutes: 600 s");
   EXPECT_EQ(cause(good + "E: 000605.000000 1 00\n"), "accepted");
   EXPECT_EQ(cause(good + "E: 000006.000000 2 00\n"),
             "t.hid:3: report: the length says 2 but 1 bytes follow");
@@ -160,7 +162,8 @@ TEST(Trace, DamageIsRefusedWithFileAndLine) {
   EXPECT_EQ(cause(good + "H: 000006.000000 gone\n"), "t.hid:3: \"gone\" is neither add nor remove");
   EXPECT_EQ(cause(good + "Q: 000006.000000 240\nE: 000006.000000 1 00\n"),
             "t.hid:4: a line behind the end of the recording (Q:)");
-  EXPECT_EQ(cause(good + "Q: 000001.000000 240\n"), "t.hid:3: the recording ends before its last event");
+  EXPECT_EQ(cause(good + "Q: 000001.000000 240\n"),
+            "t.hid:3: the recording ends before its last event");
   EXPECT_EQ(cause(good + "T: 4\n"), "t.hid:3: the first T: line stands behind events");
   EXPECT_EQ(cause("V: 2 rate_hz=240\n"), "t.hid:1: this version of the format is not known, 1 is");
   EXPECT_EQ(cause("V: 1 rate_hz=0\n"), "t.hid:1: \"rate_hz=0\" is no rate within 1 .. 10000");
@@ -169,9 +172,10 @@ TEST(Trace, DamageIsRefusedWithFileAndLine) {
             "t.hid:2: a gap of more than ten minutes: tick 144001 after tick 0");
   EXPECT_EQ(cause("R: 1 c0\nT: 5\nE: 000000.000000 1 00\nQ: 000001.000000 5\n"),
             "t.hid:4: the recording has 5 ticks but tick 5 has events");
-  EXPECT_EQ(cause("I: 3 12345 0001\n"),
-            "t.hid:1: an I: line holds bus, vendor and product as hexadecimal numbers of up to four "
-            "digits");
+  EXPECT_EQ(
+      cause("I: 3 12345 0001\n"),
+      "t.hid:1: an I: line holds bus, vendor and product as hexadecimal numbers of up to four "
+      "digits");
 }
 
 TEST(Trace, WithTickLinesTimeMayGoBackBetweenDevicesOnly) {
@@ -182,10 +186,11 @@ TEST(Trace, WithTickLinesTimeMayGoBackBetweenDevicesOnly) {
 }
 
 TEST(Trace, LenientSkipsDamagedLinesAndCountsThem) {
-  const Trace t = parsed(kHeader +
-                             "E: 000001.000000 1 00\nE: 000000.000000 1 00\nE: 000002.000000 9 00\n"
-                             "rubbish\nE: 000003.000000 1 00\nD: 1\nR: 3 00\nE: 000004.000000 1 00\n",
-                         Damage::skip);
+  const Trace t =
+      parsed(kHeader +
+                 "E: 000001.000000 1 00\nE: 000000.000000 1 00\nE: 000002.000000 9 00\n"
+                 "rubbish\nE: 000003.000000 1 00\nD: 1\nR: 3 00\nE: 000004.000000 1 00\n",
+             Damage::skip);
   EXPECT_EQ(t.skipped_lines, 5);
   EXPECT_EQ(t.first_damage, "t.hid:6: time goes back from 1.000000 to 0.000000");
   EXPECT_EQ(t.events.size(), 2u);
@@ -211,7 +216,8 @@ TEST(Trace, TheWriterGivesBackWhatTheReaderTook) {
 
 // hid-replay knows D R N P I E, ignores lines with other letters, and reads each word of E: as hex.
 TEST(Trace, ForeignToolsCanReplayWhatWeWrite) {
-  Trace t = parsed("V: 1 rate_hz=240\n" + kHeader + "T: 0\nE: 000000.000001 2 01 80\nQ: 000001.000000 240\n");
+  Trace t = parsed("V: 1 rate_hz=240\n" + kHeader +
+                   "T: 0\nE: 000000.000001 2 01 80\nQ: 000001.000000 240\n");
   t.devices[0].info.name = "two\nlines";
   const std::string text = trace_text(t);
   EXPECT_NE(text.find("\nE: 000000.000001 2 01 80\n"), std::string::npos);

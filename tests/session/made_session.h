@@ -80,16 +80,26 @@ inline SimulationConfig made_config(int walkers) {
 inline std::vector<Report> made_tick(int tick) {
   constexpr int kPeriod = 3000;
   switch (tick % kPeriod) {
-    case 240: return {made_report(0x80, 0x20)};
-    case 700: return {made_report(0x30, 0x20), made_report(0x40, 0x18)};
-    case 1000: return {made_command("style 1 limp")};
-    case 1300: return {made_report(0xd0, 0x30)};
-    case 1700: return {made_report(0x80, 0x00), made_command("style even")};
-    case 2100: return {made_plug(ReportKind::removed)};
-    case 2300: return {made_plug(ReportKind::added), made_report(0x80, 0x80)};
-    case 2301: return {made_report(0x80, 0x40)};
-    case 2800: return {made_report(0x80, 0x80)};
-    default: return {};
+    case 240:
+      return {made_report(0x80, 0x20)};
+    case 700:
+      return {made_report(0x30, 0x20), made_report(0x40, 0x18)};
+    case 1000:
+      return {made_command("style 1 limp")};
+    case 1300:
+      return {made_report(0xd0, 0x30)};
+    case 1700:
+      return {made_report(0x80, 0x00), made_command("style even")};
+    case 2100:
+      return {made_plug(ReportKind::removed)};
+    case 2300:
+      return {made_plug(ReportKind::added), made_report(0x80, 0x80)};
+    case 2301:
+      return {made_report(0x80, 0x40)};
+    case 2800:
+      return {made_report(0x80, 0x80)};
+    default:
+      return {};
   }
 }
 

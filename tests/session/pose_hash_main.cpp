@@ -1,6 +1,6 @@
-// For determinism_test.py: walks made-up sessions and prints the pose hash of every tick, so that two
-// builds can be compared. Nothing but arithmetic: no file, but for a motion written and read again in
-// the folder given.
+// For determinism_test.py: walks made-up sessions and prints the pose hash of every tick, so that
+// two builds can be compared. Nothing but arithmetic: no file, but for a motion written and read
+// again in the folder given.
 #include <fmt/format.h>
 
 #include <fstream>

@@ -54,7 +54,9 @@ TEST(Simulation, UnpluggingFinishesTheStepAndStands) {
 TEST(Simulation, CharactersStandSideBySideAndDoNotDisturbEachOther) {
   Simulation one = walked(made_config(1), 0x90, 0x20, 480);
   Simulation three = walked(made_config(3), 0x90, 0x20, 480);
-  const auto pelvis = [](const Simulation& s, int i) { return s.walkers()[i].state.frame.pelvis_m; };
+  const auto pelvis = [](const Simulation& s, int i) {
+    return s.walkers()[i].state.frame.pelvis_m;
+  };
   EXPECT_EQ(pelvis(one, 0), pelvis(three, 0));
   Simulation standing = made_simulation(made_config(3));
   EXPECT_NEAR(pelvis(standing, 0).x - pelvis(standing, 1).x, 1.2, 1e-9);
@@ -86,8 +88,9 @@ TEST(Simulation, AStyleCommandIsForAllOrForOneAndWhatIsUnknownIsCounted) {
   step(s, {made_command("style 2 even")});
   EXPECT_EQ(style(0) + style(1) + style(2), "limpevenlimp");
   EXPECT_EQ(s.counts().bad_commands, 0);
-  const char* const bad[] = {"",          "style",        "style none",  "style 0 even", "style 4 even",
-                             "sing even", "style x even", "style -1 even", "style 1 even now", "style 1"};
+  const char* const bad[] = {
+      "",          "style",        "style none",    "style 0 even",     "style 4 even",
+      "sing even", "style x even", "style -1 even", "style 1 even now", "style 1"};
   for (const char* text : bad) step(s, {made_command(text)});
   EXPECT_EQ(s.counts().bad_commands, 10);
   EXPECT_EQ(s.counts().commands, 12);
@@ -107,8 +110,10 @@ TEST(Simulation, BadReportsAreCountedAndChangeNothing) {
 
 TEST(Simulation, TheHashTellsOneStickCountApart) {
   const SimulationConfig config = made_config(1);
-  EXPECT_EQ(walked(config, 0x80, 0x20, 400).pose_hash(), walked(config, 0x80, 0x20, 400).pose_hash());
-  EXPECT_NE(walked(config, 0x80, 0x20, 400).pose_hash(), walked(config, 0x80, 0x21, 400).pose_hash());
+  EXPECT_EQ(walked(config, 0x80, 0x20, 400).pose_hash(),
+            walked(config, 0x80, 0x20, 400).pose_hash());
+  EXPECT_NE(walked(config, 0x80, 0x20, 400).pose_hash(),
+            walked(config, 0x80, 0x21, 400).pose_hash());
 }
 
 TEST(Simulation, RefusesNoCharacterAndTooMany) {

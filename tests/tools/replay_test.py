@@ -178,6 +178,14 @@ class Ticks(ReplayCase):
         self.assertTrue(all(y == 0 for y in stick[240:840]))
         self.assertTrue(all(y > 0.9 for y in stick[840:]))
 
+    def test_the_calibration_of_the_recording_counts_unless_another_is_given(self):
+        carried = HEADER + "K: [left]\nK: outer = 0.5\n" + report(0, y=0x38) + end(0.5)
+        full, _ = self.replay(carried)
+        self.assertGreater(float(full[-1]["stick_y"]), 0.99)
+        own = self.write("own.toml", "[left]\nouter = 0.9\n")
+        part, _ = self.replay(carried, "--calibration", own)
+        self.assertLess(float(part[-1]["stick_y"]), 0.7)
+
     def test_short_reports_are_counted_and_change_nothing(self):
         rows, summary = self.replay(HEADER + report(0, y=0) + "E: 000000.500000 2 80 80\n" + end(1))
         self.assertEqual((summary["reports"], summary["bad_reports"]), (2, 1))
@@ -207,7 +215,7 @@ class Refusals(ReplayCase):
     def test_lying_descriptors(self):
         cut = DESCRIPTOR[:20] + ["26", "ff"]
         self.assert_refused(f"R: {len(cut)} {' '.join(cut)}\nN: Made Pad\nI: 3 1209 0001\n" + report(0),
-                            says=("Made Pad",))
+                            says=("made.hid: device 0: Made Pad",))
 
     def test_a_device_that_is_no_pad(self):
         keyboard = [b if k != 3 else "06" for k, b in enumerate(DESCRIPTOR)]
@@ -230,6 +238,13 @@ class Refusals(ReplayCase):
                              "Frames: 1\nFrame Time: 0.01\n0 0 0\n")
         self.assert_refused(WALK, "--motion", legless, says=("legless.bvh", "legs"))
         self.assert_refused(WALK, "--motion", str(self.folder / "none.bvh"), says=("none.bvh",))
+
+    def test_a_file_beside_a_motion_says_its_unit_and_legs(self):
+        notes = self.write("notes.toml", 'file = "none.bvh"\nmetres_per_unit = 0.01\n')
+        self.assert_refused(WALK, "--motion", notes, says=("none.bvh",))
+        notes = self.write("notes.toml", 'file = "none.bvh"\n[left_leg]\nhipp = "a"\n')
+        self.assert_refused(WALK, "--motion", notes, says=("notes.toml:3", "hipp"))
+        self.assert_refused(WALK, "--motion", self.write("empty.toml", ""), says=("empty.toml", "file"))
 
     def test_terrain_and_window_come_later(self):
         self.assert_refused(WALK, "--terrain", "steps", says=("steps",))

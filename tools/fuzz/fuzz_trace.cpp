@@ -17,7 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!again) std::abort();
     if (again->devices != (*trace)->devices) std::abort();
     if (again->events.size() != (*trace)->events.size()) std::abort();
-    if (again->end_ticks != (*trace)->end_ticks || again->rate_hz != (*trace)->rate_hz) std::abort();
+    if (again->end_ticks != (*trace)->end_ticks || again->rate_hz != (*trace)->rate_hz)
+      std::abort();
     const int rate_hz = replay_rate_hz(**trace, {});
     const auto ticks = assign_ticks(**trace, rate_hz);
     const auto ticks_again = assign_ticks(*again, rate_hz);

@@ -20,7 +20,8 @@ using nlohmann::ordered_json;
 
 constexpr double kLimit_us = 20.0;  // four characters, one tick, one core
 constexpr int kLimitWalkers = 4;
-constexpr std::int64_t kFirstTick = 480, kLastTick = 2880;  // of the bundled trace: walking, turning
+constexpr std::int64_t kFirstTick = 480,
+                       kLastTick = 2880;  // of the bundled trace: walking, turning
 
 struct Session {
   SimulationConfig config;
@@ -46,7 +47,7 @@ Result<Session> bench_session(const std::vector<std::string>& styles) {
   const int rate_hz = replay_rate_hz(*trace, std::nullopt);
   const auto count = assign_ticks(*trace, rate_hz);
   if (!count) return count.error();
-  auto config = simulation_config(options, trace->devices, rate_hz);
+  auto config = simulation_config(options, trace->devices, trace->path, rate_hz);
   if (!config) return config.error();
   Session session{std::move(*config), {}};
   session.ticks.resize(static_cast<std::size_t>(kLastTick));
@@ -113,8 +114,7 @@ double leg_ik_us(const Session& session, Simulation simulation) {
     Pelvis& pelvis = pelvises.emplace_back(pelvis_over_ground(w.model, w.state));
     pelvis.position_m.y = w.state.frame.pelvis_m.y;
   }
-  const GaitParams params =
-      gait_params(simulation.stick(), simulation.styles()[w.style], w.limits);
+  const GaitParams params = gait_params(simulation.stick(), simulation.styles()[w.style], w.limits);
   const Tick tick{w.model, params, 1.0 / session.config.rate_hz};
   std::size_t i = 0;
   return measured_us("leg", [&] {
@@ -165,10 +165,10 @@ Result<ordered_json> measured() {
 
 void print_text(const ordered_json& list) {
   const auto time = [&list](int i) { return list[i]["time_us"].get<double>(); };
-  fmt::print("step, 1 character (even)            {:8.2f} us   {:.1f} IK iterations a leg\n", time(0),
-             list[0]["iterations_per_leg"].get<double>());
-  fmt::print("step, 4 characters (even, 3 styles) {:8.2f} us   {:.1f} IK iterations a leg\n", time(1),
-             list[1]["iterations_per_leg"].get<double>());
+  fmt::print("step, 1 character (even)            {:8.2f} us   {:.1f} IK iterations a leg\n",
+             time(0), list[0]["iterations_per_leg"].get<double>());
+  fmt::print("step, 4 characters (even, 3 styles) {:8.2f} us   {:.1f} IK iterations a leg\n",
+             time(1), list[1]["iterations_per_leg"].get<double>());
   fmt::print("  of the limit of {:.0f} us            {:8.2f} x\n", kLimit_us,
              list[1]["ratio_to_limit"].get<double>());
   fmt::print("  of playback alone (the peer)      {:8.2f} x   (4 characters {:.2f} us)\n",

@@ -1,4 +1,6 @@
 // gaitpad decode: what a trace's report descriptors say, and what each report says by them.
+#include "hid/decode.h"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -7,7 +9,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "hid/decode.h"
 #include "hid/trace.h"
 #include "session/config_files.h"
 #include "tools/gaitpad/commands.h"
@@ -110,7 +111,8 @@ std::uint8_t report_id_of(const PadLayout& layout, const Report& report) {
   return layout.descriptor.numbered && report.size > 0 ? report.bytes[0] : 0;
 }
 
-// A usage that occurs several times gives its first field; an array gives a 1 for each usage it names.
+// A usage that occurs several times gives its first field; an array gives a 1 for each usage it
+// names.
 ordered_json values_json(const ReportDescriptor& descriptor, const Report& report,
                          std::uint8_t id) {
   ordered_json values = ordered_json::object();
@@ -154,8 +156,8 @@ ordered_json report_json(const DecodedDevice& device, const Report& report, bool
       {"device", device.source->index},
       {"time_s", static_cast<double>(report.time_ns) / 1e9},
       {"report_id", id},
-      {"values", is_good ? values_json(device.layout.descriptor, report, id)
-                         : ordered_json::object()},
+      {"values",
+       is_good ? values_json(device.layout.descriptor, report, id) : ordered_json::object()},
       {"axes", std::move(axes)},
       {"buttons", is_good ? pressed_names(device, report, id) : std::vector<std::string>{}}};
   if (!is_good) line["bad"] = true;
@@ -199,8 +201,8 @@ Result<std::vector<DecodedDevice>> devices_of(const Trace& trace, const PadOverr
   for (const TraceDevice& source : trace.devices) {
     auto layout = pad_layout(source.info, overrides);
     if (!layout) {
-      return Error{fmt::format("{}: device {}: {}", trace.path, source.index,
-                               layout.error().message)};
+      return Error{
+          fmt::format("{}: device {}: {}", trace.path, source.index, layout.error().message)};
     }
     devices.push_back({&source, std::move(*layout), {}});
   }
@@ -224,7 +226,8 @@ void print_reports(const DecodeArguments& arguments, const Trace& trace,
       print_report(device, report, is_good);
     }
   }
-  if (bad > 0) fmt::print(stderr, "gaitpad decode: {} reports are too short or have an unknown id\n", bad);
+  if (bad > 0)
+    fmt::print(stderr, "gaitpad decode: {} reports are too short or have an unknown id\n", bad);
 }
 
 bool is_live_device(const std::string& path) {
@@ -239,8 +242,7 @@ int run(const DecodeArguments& arguments) {
   }
   const auto overrides = overrides_of(arguments);
   if (!overrides) return fail(overrides.error().message);
-  const auto trace =
-      read_trace(arguments.trace, arguments.lenient ? Damage::skip : Damage::refuse);
+  const auto trace = read_trace(arguments.trace, arguments.lenient ? Damage::skip : Damage::refuse);
   if (!trace) return fail(trace.error().message);
   auto devices = devices_of(*trace, *overrides);
   if (!devices) return fail(devices.error().message);

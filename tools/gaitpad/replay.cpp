@@ -34,18 +34,22 @@ void print_json(const ReplayResult& result) {
 void print_text(const ReplayArguments& arguments, const ReplayResult& result) {
   const auto& first = result.summaries.front();
   const double ticks = first["ticks"].get<double>();
-  fmt::print("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {}\n", arguments.options.trace,
-             first["reports"].get<long>(), first["ticks"].get<long>(), first["rate_hz"].get<int>(),
-             ticks / first["rate_hz"].get<double>(), first["pose_hash"].get<std::string>());
+  fmt::print("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {}\n",
+             arguments.options.trace, first["reports"].get<long>(), first["ticks"].get<long>(),
+             first["rate_hz"].get<int>(), ticks / first["rate_hz"].get<double>(),
+             first["pose_hash"].get<std::string>());
   for (std::size_t i = 0; i < result.summaries.size(); ++i) {
     const auto& s = result.summaries[i];
-    fmt::print("character {}: {}, style {} at the end, leg {:.3f} m: {:.1f} m in {} steps, {} IK failures\n",
-               i + 1, s["motion"].get<std::string>(), s["style"].get<std::string>(),
-               s["leg_length_m"].get<double>(), result.distance_m[i],
-               s["steps_left"].get<int>() + s["steps_right"].get<int>(), s["ik_failures"].get<long>());
+    fmt::print(
+        "character {}: {}, style {} at the end, leg {:.3f} m: {:.1f} m in {} steps, {} IK "
+        "failures\n",
+        i + 1, s["motion"].get<std::string>(), s["style"].get<std::string>(),
+        s["leg_length_m"].get<double>(), result.distance_m[i],
+        s["steps_left"].get<int>() + s["steps_right"].get<int>(), s["ik_failures"].get<long>());
     if (arguments.options.out.empty()) continue;
-    fmt::print("  {0}/{1}  {0}/{2}  {0}/{3}\n", arguments.options.out, numbered_name("pose", ".bvh", i),
-               numbered_name("frames", ".csv", i), numbered_name("summary", ".json", i));
+    fmt::print("  {0}/{1}  {0}/{2}  {0}/{3}\n", arguments.options.out,
+               numbered_name("pose", ".bvh", i), numbered_name("frames", ".csv", i),
+               numbered_name("summary", ".json", i));
   }
 }
 
@@ -59,7 +63,8 @@ int run(ReplayArguments& arguments) {
   if (arguments.fps > 0) options.fps = arguments.fps;
   const auto result = replay(options);
   if (!result) return fail(result.error().message);
-  for (const std::string& remark : result->remarks) fmt::print(stderr, "gaitpad replay: {}\n", remark);
+  for (const std::string& remark : result->remarks)
+    fmt::print(stderr, "gaitpad replay: {}\n", remark);
   if (arguments.json) {
     print_json(*result);
   } else {
@@ -79,15 +84,19 @@ void add_replay(CLI::App& app, int& status) {
   command->add_option("--out", options.out, "folder for pose.bvh, frames.csv and summary.json");
   command->add_option("--motion", session.motion, "motion file; without it the built-in walk");
   command->add_option("--character", session.characters, "FILE|NAME, once for each")
-      ->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--style", session.styles, "FILE|NAME, the n-th for the n-th character")
-      ->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--terrain", session.terrain, "FILE|NAME; only flat so far");
   command->add_option("--ik", arguments->ik, "paper or robust")
-      ->check(CLI::IsMember({"paper", "robust"}))->capture_default_str();
+      ->check(CLI::IsMember({"paper", "robust"}))
+      ->capture_default_str();
   command->add_option("--calibration", session.calibration, "calibration file of the stick");
   command->add_option("--map", session.map, "pad file that overrides config/pads");
-  command->add_option("--rate", arguments->rate_hz, "ticks a second (default: the trace's, else 240)")
+  command
+      ->add_option("--rate", arguments->rate_hz, "ticks a second (default: the trace's, else 240)")
       ->check(CLI::Range(1, kMaxRateHz));
   command->add_option("--fps", arguments->fps, "poses a second in pose.bvh (default: every tick)")
       ->check(CLI::Range(1, kMaxRateHz));

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# ctest.sh FOLDER [CTEST OPTION...]: runs the tests built in FOLDER. Prints what failed and what was
+# ctest.sh FOLDER [CTEST OPTION...]: runs the tests built in FOLDER. Prints what failed, why some were
 # skipped, and ctest's closing line last; the whole log stays in FOLDER/ctest.log.
 set -uo pipefail
 folder=$1
@@ -13,8 +13,9 @@ if [ $status -ne 0 ]; then
 fi
 skipped=$(grep -cE 'Skipped +[0-9.]+ sec$' "$log")
 if [ "$skipped" -ne 0 ]; then
-  echo "$skipped tests were skipped (the reasons: ctest --test-dir $folder -R NAME -V):"
-  grep -E 'Skipped +[0-9.]+ sec$' "$log" | sed -E 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+).*/  \1/'
+  echo "$skipped tests were skipped, because:"
+  awk '/: Skipped$/ { getline; print }' "$folder/Testing/Temporary/LastTest.log" |
+    sed -E 's|/[^/"]*"|/..."|' | sort | uniq -c
 fi
 grep -E '^Total Test time' "$log"
 grep -E 'tests passed, [0-9]+ tests? failed' "$log" || tail -n 1 "$log"

@@ -52,6 +52,7 @@ struct FootState {
   std::array<double, 2> last_pitch_rad{};
   Fade pitch_fade;          // over the running mode, argument in ticks
   int mode_ticks = 0;       // since the mode began
+  double planned_rad = 0.0;            // pitch in support, as the data have it
   std::array<double, 2> reach_rad{};  // pitch beyond the plan, one and two ticks ago
   vec3 lift_m{0.0}, lift_slope_m{0.0};  // heel at lift-off and its slope per flight
   double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // and its slope per flight

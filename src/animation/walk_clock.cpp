@@ -9,6 +9,7 @@ constexpr double kTurnSmoothing = 0.25;
 constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
+constexpr double kShortRoll = 0.085, kBriskRoll = 0.11, kLongRoll = 0.20;
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;    // rad/s: slower than this is straight ahead
 
@@ -18,10 +19,21 @@ double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
   return model.share[swing == kLeftSide ? 1 : 3];
 }
 
+// Share of the cycle's time. The roll is as long as in the data within bounds: shorter ones slap the
+// toe down, longer ones hold the rear foot back until its leg is too short; at full pace the more so.
+double time_share(const WalkModel& model, const WalkState& state, Stage stage, Side swing) noexcept {
+  const Side rolling = stage == Stage::roll ? swing : other(swing);
+  const double roll = stage_share(model, Stage::roll, rolling);
+  const double flight = stage_share(model, Stage::flight, other(rolling));
+  const double longest = mix(kLongRoll, kBriskRoll, smoothstep(0.5, 1.0, state.pace.x));
+  const double bounded = std::clamp(roll, kShortRoll, longest);
+  return stage == Stage::roll ? bounded : roll + flight - bounded;
+}
+
 int stage_length(const WalkModel& model, const WalkState& state, Stage stage, Side swing,
                  double dt_s) noexcept {
   // Whole ticks: a steady gait is then exactly periodic.
-  const double ticks = 2.0 * state.time_s[swing] * stage_share(model, stage, swing) / dt_s;
+  const double ticks = 2.0 * state.time_s[swing] * time_share(model, state, stage, swing) / dt_s;
   return std::max(stage == Stage::roll ? 6 : 12, static_cast<int>(ticks + 0.5));
 }
 

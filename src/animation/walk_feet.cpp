@@ -10,10 +10,12 @@ constexpr double kReachOnToe = 0.993;       // of the leg: further away, the foo
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 constexpr double kSoftToe = 14.0 * kDegree;
 constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
+constexpr double kMinPitch = -28.0 * kDegree;  // toe up
 constexpr double kRollEnd = 0.95;           // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
 constexpr double kLameFade = 0.0;
 constexpr double kStopping = 0.6;  // of the flight
+constexpr double kSteepFoot = 95.0 * kDegree;
 constexpr double kLiftFade = 0.5;           // of the flight: what the lift-off brought has faded
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
@@ -47,8 +49,9 @@ double flight_pitch(const WalkModel& model, const WalkState& state, Side side, d
   const double own = leg.toe_off + u * (1.0 - leg.toe_off);
   const double at_strike = scale * leg.pitch_rad.at(1.0);
   const double wanted = -scale * asin(kToeUpAtStrike_m * model.size / leg.foot_m);
-  return soft_min(scale * leg.pitch_rad.at(own), kMaxPlannedPitch, kWidePitch) +
-         std::min(0.0, wanted - at_strike) * smoothstep(0.4, 1.0, u);
+  const double pitch = soft_min(scale * leg.pitch_rad.at(own), kMaxPlannedPitch, kWidePitch) +
+                       std::min(0.0, wanted - at_strike) * smoothstep(0.4, 1.0, u);
+  return soft_max(pitch, kMinPitch, kSoftPitch);
 }
 
 // A lame foot does not swing up with the push-off: what the lift brought fades sooner.
@@ -133,8 +136,11 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
   if (foot.mode == FootMode::support) {
     foot.pose.toe_m = foot.toe_anchor_m;
     // With what the reach asked for last, run on: the hips' height and the reach depend on each other.
+    // Beyond a steep foot the hips wait.
+    foot.planned_rad = support_pitch(model, state, side) + fade;
     const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
-    set_pitch(leg, support_pitch(model, state, side) + fade + reach, foot.pose, foot.mode);
+    const double pitch = soft_min(foot.planned_rad + reach, kSteepFoot, kSoftPitch);
+    set_pitch(leg, std::max(foot.planned_rad, pitch), foot.pose, foot.mode);
     set_toe(leg, 0.0, foot.pose);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
@@ -157,7 +163,7 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side, const v
   FootState& foot = state.foot[side];
   if (foot.mode != FootMode::support) return;
   const LegBuild& leg = model.leg[side];
-  const double planned = support_pitch(model, state, side) + foot.pitch_fade.at(foot.mode_ticks);
+  const double planned = foot.planned_rad;
   const double gate = state.stage == Stage::idle
                           ? 0.0
                           : smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));

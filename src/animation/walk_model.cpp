@@ -7,11 +7,10 @@ namespace {
 
 // Joint limits of a walker in radians (hip flexion and dorsiflexion are negative): AAOS-type ranges,
 // dorsiflexion under load up to 38 degrees.
-constexpr std::array<double, kLegDofs> kMin = {-120, -50, -70, 1.0, -40, -60, -80};
+constexpr std::array<double, kLegDofs> kMin = {-120, -50, -70, 1.0, -45, -60, -80};
 constexpr std::array<double, kLegDofs> kMax = {60, 50, 70, 150, 75, 60, 80};
 constexpr double kHeelDown = 0.007;    // of the leg: a heel this low has landed
 constexpr double kLatestDown = 0.05;   // own phase
-constexpr double kMinRollShare = 0.11;  // of the cycle; shorter rolls of the data slap the toe down
 constexpr double kOscillation = 0.8;    // share of the fore-aft oscillation, which FK exaggerates
 
 IkChain leg_chain(const LegModel& leg) {
@@ -169,11 +168,6 @@ void fill_shares(const GaitCycle& source, WalkModel& model) {
   const double left_off = source.toe_off[kLeftSide], left_strike = source.strike[kLeftSide],
                right_off = source.toe_off[kRightSide];
   model.share = {left_off, left_strike - left_off, right_off - left_strike, 1.0 - right_off};
-  for (int roll : {0, 2}) {  // too short a roll borrows from the flight that follows it
-    const double missing = std::max(0.0, kMinRollShare - model.share[roll]);
-    model.share[roll] += missing;
-    model.share[roll + 1] -= missing;
-  }
 }
 
 void collect_kept_joints(WalkModel& model) {

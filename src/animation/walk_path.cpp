@@ -56,11 +56,9 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
                 ((1.0 - beta) * now + beta * next) / next_s);
 }
 
-// Pelvis height at which a leg is as long from its hip to its planned ankle as `reach_m`.
-double height_over(const WalkModel& model, const WalkState& state, const Pelvis& pelvis, Side side,
+// Pelvis height at which a leg is as long from its hip to its ankle as `reach_m`.
+double height_over(const LegBuild& leg, const FootPose& foot, const Pelvis& pelvis,
                    double reach_m) noexcept {
-  const LegBuild& leg = model.leg[side];
-  const FootPose& foot = state.foot[side].pose;
   const vec3 ankle = foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
   const vec3 hip = pelvis.hip(leg);  // pelvis.position_m.y is 0 here
   const double dx = hip.x - ankle.x, dz = hip.z - ankle.z;
@@ -72,11 +70,16 @@ double height_over(const WalkModel& model, const WalkState& state, const Pelvis&
 double height_of_knee(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
                       Side side) noexcept {
   const LegModel& leg = model.leg[side].model;
+  // As the data roll the foot: what the reach asks for beyond it follows from the height.
+  FootPose foot = state.foot[side].pose;
+  if (state.foot[side].mode == FootMode::support) {
+    set_pitch(model.leg[side], state.foot[side].planned_rad, foot, FootMode::support);
+  }
   const double data = model.reference_rad[side][kKneeX].at(state.phase);
   const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
   const double a = leg.thigh_m, b = leg.shank_m;
   const double cosine = sin_cos(kStandingKnee + bend).cos;
-  return height_over(model, state, pelvis, side, std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
+  return height_over(model.leg[side], foot, pelvis, std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
 }
 
 // Share of the weight on the left foot: it moves over during the roll.
@@ -141,12 +144,15 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvi
   // A lame foot hardly rises on its toe: the hips come down to it instead.
   const double lame = 1.0 - std::min({1.0, state.flight_height[0].x, state.flight_height[1].x});
   y -= kLameDrop_m * model.size * lame * presence(state);
-  const double left = height_over(model, state, pelvis, kLeftSide, kReach * model.leg[0].model.length_m());
-  const double right = height_over(model, state, pelvis, kRightSide, kReach * model.leg[1].model.length_m());
+  std::array<double, 2> highest;
+  for (int side : {0, 1}) {
+    const LegBuild& leg = model.leg[side];
+    highest[side] = height_over(leg, state.foot[side].pose, pelvis, kReach * leg.model.length_m());
+  }
   // Quick steps turn the same corners in less time, so they are cut wider.
   const double quick = kCalmStep_s / std::max(0.1, state.step_time_s.x);
   const double soft = model.size * std::clamp(quick * quick * quick, 1.0, 3.0);
-  return soft_min(y, soft_min(left, right, kSoftReach_m * soft), kSoftBase_m * soft);
+  return soft_min(y, soft_min(highest[0], highest[1], kSoftReach_m * soft), kSoftBase_m * soft);
 }
 
 }  // namespace gaitpad

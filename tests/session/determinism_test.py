@@ -85,7 +85,7 @@ def build(folder):
         binaries[variant] = folder / variant / "walk"
     (folder / "build.ninja").write_text("\n".join(lines) + "\n")
     done = subprocess.run(["ninja", "-j", "2", "-C", folder], capture_output=True, text=True)
-    return binaries if done.returncode == 0 else done.stdout
+    return binaries if done.returncode == 0 else done.stdout + done.stderr
 
 
 def first_difference(a, b):

@@ -11,10 +11,12 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   const LegJoints& joints = leg.model.joints;
   const LegAngles& q = state.angles_rad[side];
   const Skeleton& skeleton = model.cycle.skeleton;
-  const quat pelvis = frames.rotation[model.cycle.pelvis] * glm::inverse(model.cycle.pelvis_standing);
+  const quat pelvis =
+      frames.rotation[model.cycle.pelvis] * glm::inverse(model.cycle.pelvis_standing);
   const quat thigh = pelvis * (rotation_x(q[kHipX]) * rotation_z(q[kHipZ]) * rotation_y(q[kHipY]));
   const quat shank = thigh * rotation_x(q[kKneeX]);
-  const quat foot = shank * (rotation_x(q[kAnkleX]) * rotation_z(q[kAnkleZ]) * rotation_y(q[kAnkleY]));
+  const quat foot =
+      shank * (rotation_x(q[kAnkleX]) * rotation_z(q[kAnkleZ]) * rotation_y(q[kAnkleY]));
   const quat toes = foot * rotation_about(leg.side, state.foot[side].pose.toe_rad);
   const std::array<int, 4> chain = {joints.hip, joints.knee, joints.ankle, joints.toe};
   const std::array<quat, 4> segment = {thigh, shank, foot, toes};
@@ -36,7 +38,8 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   }
 }
 
-void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pelvis, Pose& pose) noexcept {
+void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
+                Pose& pose) noexcept {
   const GaitCycle& cycle = model.cycle;
   pose.joint_count = static_cast<int>(cycle.skeleton.joints.size());
   sample_local(cycle, state.phase, pose);

@@ -1,6 +1,7 @@
 // The animation module: a character that walks where the gait parameters say.
-// Meredith & Maddock 2005, section 3.3: the two-stage cycle of Table I, feet along the flight paths of
-// the data, legs posed by weighted half-Jacobian IK, the rest of the body from the data by a time-warp.
+// Meredith & Maddock 2005, section 3.3: the two-stage cycle of Table I, feet along the flight paths
+// of the data, legs posed by weighted half-Jacobian IK, the rest of the body from the data by a
+// time-warp.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -50,13 +51,13 @@ struct FootState {
   vec3 heel_anchor_m{0.0}, toe_anchor_m{0.0};  // where they were planted last
   std::array<vec3, 2> last_heel_m{};           // one and two ticks ago
   std::array<double, 2> last_pitch_rad{};
-  Fade pitch_fade;          // over the running mode, argument in ticks
-  int mode_ticks = 0;       // since the mode began
-  double planned_rad = 0.0;            // pitch in support, as the data have it
-  std::array<double, 2> reach_rad{};  // pitch beyond the plan, one and two ticks ago
-  vec3 lift_m{0.0}, lift_slope_m{0.0};  // heel at lift-off and its slope per flight
+  Fade pitch_fade;                                 // over the running mode, argument in ticks
+  int mode_ticks = 0;                              // since the mode began
+  double planned_rad = 0.0;                        // pitch in support, as the data have it
+  std::array<double, 2> reach_rad{};               // pitch beyond the plan, one and two ticks ago
+  vec3 lift_m{0.0}, lift_slope_m{0.0};             // heel at lift-off and its slope per flight
   double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // and its slope per flight
-  LegAngles anchor_rad{};   // even pose when the mode began: what stiff joints hold on to
+  LegAngles anchor_rad{};  // even pose when the mode began: what stiff joints hold on to
 };
 
 // Plain, trivially copyable: all that a walk remembers.
@@ -67,15 +68,15 @@ struct WalkState {
   Side swing = kLeftSide;
   int tick = 0, stage_ticks = 1;  // in the stage
   int roll_ticks = 0, flight_ticks = 0;
-  int last_step_ticks = 0;        // of the step before
-  bool closing = false;           // the running step brings the feet together
+  int last_step_ticks = 0;  // of the step before
+  bool closing = false;     // the running step brings the feet together
   bool started = false;
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
   // Smoothed parameters.
   std::array<Damped<double>, 2> length_m, flight_height;
   std::array<double, 2> time_s{};
-  Damped<double> step_time_s;  // mean of both feet
+  Damped<double> step_time_s;                               // mean of both feet
   Damped<double> turn_rate, amplitude, bounce, sway, pace;  // pace: step length over the data's
   std::array<std::array<Damped<double>, kLegDofs>, 2> weight;
   // Path.

@@ -11,7 +11,7 @@ constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kShortRoll = 0.085, kBriskRoll = 0.11, kLongRoll = 0.20;
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
-constexpr double kStillTurn = 1e-5;    // rad/s: slower than this is straight ahead
+constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 
 double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
   // Walking order: roll right, flight left, roll left, flight right.
@@ -19,9 +19,11 @@ double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
   return model.share[swing == kLeftSide ? 1 : 3];
 }
 
-// Share of the cycle's time. The roll is as long as in the data within bounds: shorter ones slap the
-// toe down, longer ones hold the rear foot back until its leg is too short; at full pace the more so.
-double time_share(const WalkModel& model, const WalkState& state, Stage stage, Side swing) noexcept {
+// Share of the cycle's time. The roll is as long as in the data within bounds: shorter ones slap
+// the toe down, longer ones hold the rear foot back until its leg is too short; at full pace the
+// more so.
+double time_share(const WalkModel& model, const WalkState& state, Stage stage,
+                  Side swing) noexcept {
   const Side rolling = stage == Stage::roll ? swing : other(swing);
   const double roll = stage_share(model, Stage::roll, rolling);
   const double flight = stage_share(model, Stage::flight, other(rolling));
@@ -169,11 +171,10 @@ void advance_clock(const Tick& tick, WalkState& state) noexcept {
   const Stage next = stage == Stage::roll ? Stage::flight : Stage::roll;
   const Side next_swing = stage == Stage::roll ? other(swing) : swing;
   const double rate = stage_share(tick.model, stage, swing) / state.stage_ticks;
-  const double next_rate =
-      stage_share(tick.model, next, next_swing) /
-      stage_length(tick.model, state, next, next_swing, tick.dt_s);
-  approach(state.phase, state.phase_rate, stage_end_phase(tick.model, state), 0.5 * (rate + next_rate),
-           remaining, 1.0);
+  const double next_rate = stage_share(tick.model, next, next_swing) /
+                           stage_length(tick.model, state, next, next_swing, tick.dt_s);
+  approach(state.phase, state.phase_rate, stage_end_phase(tick.model, state),
+           0.5 * (rate + next_rate), remaining, 1.0);
 }
 
 void finish_stage(const Tick& tick, WalkState& state) noexcept {

@@ -3,20 +3,21 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kClearance_m = 0.012;      // least toe clearance in flight, at the reference leg
-constexpr double kToeUpAtStrike_m = 0.05;   // toe's height over its rest when the heel strikes
+constexpr double kClearance_m = 0.012;     // least toe clearance in flight, at the reference leg
+constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when the heel strikes
 constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
-constexpr double kReachOnToe = 0.993;       // of the leg: further away, the foot rises on its toe
+constexpr double kReachOnToe = 0.993,
+                 kReachAtRest = 1.01;  // of the leg: further away, the foot rises on its toe
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 constexpr double kSoftToe = 14.0 * kDegree;
 constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
-constexpr double kMinPitch = -28.0 * kDegree;  // toe up
-constexpr double kRollEnd = 0.95;           // of the roll: the toe is down
+constexpr double kMinPitch = -28.0 * kDegree;      // toe up
+constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
 constexpr double kLameFade = 0.0;
 constexpr double kStopping = 0.6;  // of the flight
 constexpr double kSteepFoot = 95.0 * kDegree;
-constexpr double kLiftFade = 0.5;           // of the flight: what the lift-off brought has faded
+constexpr double kLiftFade = 0.5;  // of the flight: what the lift-off brought has faded
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
 
@@ -86,11 +87,11 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
 
 // The pitch at which the ankle, turning about the planted toe, is as far from the hip as the leg
 // reaches: P cos + Q sin = K in the foot's own vertical plane.
-double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m) noexcept {
+double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m,
+                      double reach) noexcept {
   const vec3 d = rotation_y(-pose.yaw_rad) * (hip_m - pose.toe_m), c = -leg.model.toe_m;
   const double df = glm::dot(d, leg.forward), cf = glm::dot(c, leg.forward);
   const double ds = glm::dot(d, leg.side), cs = glm::dot(c, leg.side);
-  const double reach = kReachOnToe * leg.model.length_m();
   const double p = df * cf + d.y * c.y, q = df * c.y - d.y * cf;
   const double k = 0.5 * (glm::dot(d, d) + glm::dot(c, c) - reach * reach) - ds * cs;
   const double m = std::sqrt(p * p + q * q);
@@ -123,7 +124,8 @@ void set_toe(const LegBuild& leg, double u, FootPose& pose) noexcept {
   pose.toe_rad = -std::max(0.0, pose.pitch_rad) * (1.0 - smoothstep(0.0, 0.6, u));
   if (leg.toe_end_m < 1e-6) return;
   const double room = pose.toe_m.y - leg.model.toe_end_rest_m;
-  const double lowest = leg.toe_end_elevation_rad + asin(std::clamp(room / leg.toe_end_m, -1.0, 1.0));
+  const double lowest =
+      leg.toe_end_elevation_rad + asin(std::clamp(room / leg.toe_end_m, -1.0, 1.0));
   const double width = kSoftToe * smoothstep(0.0, 0.3, u) * (1.0 - smoothstep(0.8, 1.0, u));
   pose.toe_rad = soft_min(pose.toe_rad, lowest - pose.pitch_rad, std::max(1e-9, width));
 }
@@ -135,8 +137,8 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
   const double fade = foot.pitch_fade.at(foot.mode_ticks);
   if (foot.mode == FootMode::support) {
     foot.pose.toe_m = foot.toe_anchor_m;
-    // With what the reach asked for last, run on: the hips' height and the reach depend on each other.
-    // Beyond a steep foot the hips wait.
+    // With what the reach asked for last, run on: the hips' height and the reach depend on each
+    // other. Beyond a steep foot the hips wait.
     foot.planned_rad = support_pitch(model, state, side) + fade;
     const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
     const double pitch = soft_min(foot.planned_rad + reach, kSteepFoot, kSoftPitch);
@@ -159,7 +161,8 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
   }
 }
 
-void reach_with_toe(const WalkModel& model, WalkState& state, Side side, const vec3& hip_m) noexcept {
+void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
+                    const vec3& hip_m) noexcept {
   FootState& foot = state.foot[side];
   if (foot.mode != FootMode::support) return;
   const LegBuild& leg = model.leg[side];
@@ -167,9 +170,14 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side, const v
   const double gate = state.stage == Stage::idle
                           ? 0.0
                           : smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));
-  const double pitch =
-      gate == 0.0 ? planned : mix(planned, soft_max(planned, pitch_in_reach(leg, foot.pose, hip_m),
-                                  std::clamp(0.5 * planned, 1e-3, kSoftPitch)), gate);
+  // At rest the leg may be longer: a standing foot stays flat.
+  const double reach = mix(kReachAtRest, kReachOnToe, presence(state)) * leg.model.length_m();
+  const double pitch = gate == 0.0
+                           ? planned
+                           : mix(planned,
+                                 soft_max(planned, pitch_in_reach(leg, foot.pose, hip_m, reach),
+                                          std::clamp(0.5 * planned, 1e-3, kSoftPitch)),
+                                 gate);
   foot.reach_rad = {pitch - planned, foot.reach_rad[0]};
   set_pitch(leg, pitch, foot.pose, foot.mode);
   set_toe(leg, 0.0, foot.pose);
@@ -199,7 +207,8 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.lift_yaw_rad = foot.pose.yaw_rad;
   foot.lift_turn_rad = pivot_rate(model, state, side) * tick.dt_s * ticks;
   foot.anchor_rad = state.even_rad[side];
-  const double rate = end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], foot.pose.pitch_rad);
+  const double rate =
+      end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], foot.pose.pitch_rad);
   const double plan = flight_pitch(model, state, side, 0.0);
   const double plan_rate = (flight_pitch(model, state, side, 1.0 / ticks) - plan);
   // A cubic that starts with slope s and ends flat after n ticks swings out by 4/27 s n.
@@ -210,7 +219,8 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
 
 void begin_roll(WalkState& state, Side side) noexcept {
   FootState& foot = state.foot[side];
-  const double rate = end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], foot.pose.pitch_rad);
+  const double rate =
+      end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], foot.pose.pitch_rad);
   foot.mode = FootMode::roll;
   foot.mode_ticks = 0;
   foot.heel_anchor_m = foot.pose.heel_m;

@@ -5,8 +5,8 @@ namespace {
 
 constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
 constexpr double kLeak_per_s = 4.0;
-constexpr double kSideLever_m = 0.1;          // third point of the foot, beside the end-effector
-constexpr double kEvenSpread = 1e-9;          // weights closer than this are even
+constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
+constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 
@@ -33,8 +33,9 @@ LegAngles leg_angles(const IkAngles& all) noexcept {
 }
 
 // Rows that put the whole foot: three of the end-effector, two of the foot's other end, one of a
-// point beside the end-effector. Directions are the foot's own axes, so every row is well conditioned
-// (the height of a steep foot's other end is not). The first three are the paper's half Jacobian.
+// point beside the end-effector. Directions are the foot's own axes, so every row is well
+// conditioned (the height of a steep foot's other end is not). The first three are the paper's half
+// Jacobian.
 struct FootGoal {
   std::array<IkRow, 6> rows;
   std::span<const IkRow> effector() const noexcept { return {rows.data(), 3}; }
@@ -82,7 +83,8 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
   return state.amplitude.x * smoothstep(0.0, 0.25, p) * (1.0 - smoothstep(0.55, 0.95, p));
 }
 
-double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, double yaw_rad, const IkFrame& end) noexcept {
+double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, double yaw_rad,
+                  const IkFrame& end) noexcept {
   const vec3 line = glm::inverse(rotation_y(yaw_rad)) *
                     (pelvis.rotation * (end.rotation * (leg.model.toe_m - leg.model.heel_m)));
   return leg.elevation_rad - atan2(line.y, glm::dot(line, leg.forward));
@@ -114,7 +116,8 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
     chain.dof[j].weight = w;
     angles[j] += share * (1.0 - w) * (foot.anchor_rad[j] - angles[j]);
   }
-  solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(), kRobust, angles));
+  solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(),
+                         kRobust, angles));
   const double free = foot_pitch(leg, pelvis, foot.pose.yaw_rad, end_frame(chain, angles));
   const double planned = foot.pose.pitch_rad;
   double pitch = free;
@@ -127,7 +130,8 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
   }
   set_pitch(leg, pitch, foot.pose, foot.mode);
   set_toe(leg, foot.mode == FootMode::flight ? flight_progress(state) : 0.0, foot.pose);
-  solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, FootEnd::heel).all(), kRobust, angles));
+  solve.add(
+      solve_robust(chain, foot_goal(leg, foot, pelvis, FootEnd::heel).all(), kRobust, angles));
 }
 
 bool even(const WalkState& state, Side side) noexcept {
@@ -139,10 +143,11 @@ bool even(const WalkState& state, Side side) noexcept {
   return high - low < kEvenSpread;
 }
 
-void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state, Solve& solve) noexcept {
+void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
+                 Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
-  // The data's angles plus what the solver had to add a tick ago. That correction leaks away, so the
-  // swivel, which no row holds, is pulled to the data's and cannot drift.
+  // The data's angles plus what the solver had to add a tick ago. That correction leaks away, so
+  // the swivel, which no row holds, is pulled to the data's and cannot drift.
   const LegAngles data = reference(tick.model, state, side);
   const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
   IkAngles angles{};
@@ -150,7 +155,8 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
     angles[j] = data[j] + keep * (state.even_rad[side][j] - state.data_rad[side][j]);
   }
   state.data_rad[side] = data;
-  // Always from the heel: the swivel that the rows leave free must not jump when the effector changes.
+  // Always from the heel: the swivel that the rows leave free must not jump when the effector
+  // changes.
   const FootGoal goal = foot_goal(leg, state.foot[side], pelvis, FootEnd::heel);
   solve.add(solve_robust(leg.chain, goal.all(), kRobust, angles));
   state.even_rad[side] = leg_angles(angles);
@@ -161,7 +167,8 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
 
 // Steps 1-7 to the letter from the pose of the tick before, raw weights, the stage's end-effector
 // alone; in the roll the toe is a second position target.
-void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state, Solve& solve) noexcept {
+void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
+                Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   IkChain chain = leg.chain;
   for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = state.weight[side][j].x;
@@ -174,7 +181,8 @@ void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& st
 
 }  // namespace
 
-void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis, WalkState& state) noexcept {
+void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis,
+              WalkState& state) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   Solve solve;
   if (mode == IkMode::robust) {

@@ -5,18 +5,18 @@
 namespace gaitpad {
 namespace {
 
-// Joint limits of a walker in radians (hip flexion and dorsiflexion are negative): AAOS-type ranges,
-// dorsiflexion under load up to 38 degrees.
+// Joint limits of a walker in radians (hip flexion and dorsiflexion are negative): AAOS-type
+// ranges, dorsiflexion under load up to 38 degrees.
 constexpr std::array<double, kLegDofs> kMin = {-120, -50, -70, 1.0, -45, -60, -80};
 constexpr std::array<double, kLegDofs> kMax = {60, 50, 70, 150, 75, 60, 80};
-constexpr double kHeelDown = 0.007;    // of the leg: a heel this low has landed
-constexpr double kLatestDown = 0.05;   // own phase
-constexpr double kOscillation = 0.8;    // share of the fore-aft oscillation, which FK exaggerates
+constexpr double kHeelDown = 0.007;   // of the leg: a heel this low has landed
+constexpr double kLatestDown = 0.05;  // own phase
+constexpr double kOscillation = 0.8;  // share of the fore-aft oscillation, which FK exaggerates
 
 IkChain leg_chain(const LegModel& leg) {
-  constexpr std::array<vec3, kLegDofs> kAxis = {
-      vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0), vec3(1, 0, 0),
-      vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0)};
+  constexpr std::array<vec3, kLegDofs> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0),
+                                                vec3(1, 0, 0), vec3(1, 0, 0), vec3(0, 0, 1),
+                                                vec3(0, 1, 0)};
   IkChain chain;
   chain.dofs = kLegDofs;
   for (int j = 0; j < kLegDofs; ++j) {
@@ -80,6 +80,20 @@ vec3 foot_point(const CycleSample& sample, Side side, const vec3& point_m) {
   return leg.ankle_m + leg.foot * point_m;
 }
 
+// Where a heel stands, from the pelvis' path, mean over the flat part of support.
+vec3 mean_heel(const GaitCycle& source, Side side) {
+  vec3 sum(0.0);
+  constexpr int kCount = 16;
+  for (int i = 0; i < kCount; ++i) {
+    const double own = 0.12 + 0.2 * i / kCount;
+    vec3 heel =
+        foot_point(sample_at(source, own + source.strike[side]), side, source.leg[side].heel_m);
+    heel.z += source.stride_m * own;
+    sum += heel / static_cast<double>(kCount);
+  }
+  return sum;
+}
+
 void fill_foot_tables(const GaitCycle& source, double ratio, Side side, LegBuild& leg) {
   const LegModel& build = source.leg[side];
   const vec3 line = build.toe_m - build.heel_m;
@@ -100,22 +114,13 @@ void fill_foot_tables(const GaitCycle& source, double ratio, Side side, LegBuild
     return p;
   };
   const double start = heel_at(0.0).z, travel = heel_at(1.0).z - start;
+  const double floor = mean_heel(source, side).y;  // the capture's, under this foot
   for (int i = 0; i < kFlightSamples; ++i) {
     const double u = static_cast<double>(i) / (kFlightSamples - 1);
     const vec3 heel = heel_at(u);
     leg.flight.progress.value[i] = (heel.z - start) / travel;
-    leg.flight.height_m.value[i] = std::max(0.0, heel.y) * ratio;
+    leg.flight.height_m.value[i] = std::max(0.0, heel.y - floor) * ratio;
   }
-}
-
-double mean_heel_track(const GaitCycle& source, Side side) {
-  double sum = 0.0;
-  constexpr int kCount = 16;  // over the flat part of support
-  for (int i = 0; i < kCount; ++i) {
-    const double own = 0.15 + 0.25 * i / kCount;
-    sum += foot_point(sample_at(source, own + source.strike[side]), side, source.leg[side].heel_m).x;
-  }
-  return sum / kCount;
 }
 
 void fill_pelvis_tables(const GaitCycle& source, double ratio, double scale, WalkModel& model) {
@@ -141,25 +146,22 @@ void fill_pelvis_tables(const GaitCycle& source, double ratio, double scale, Wal
   model.mean_m = (mean + hip_y) * ratio - hip_y * scale;
 }
 
-// At a strike the front heel is alpha of the step before the hips (mean over both feet). The heel of
-// the data still sinks and slides for a moment when it strikes; ours stands at once. So the distance
-// is that of the flat foot, run back to the moment when the heel of the data is down.
+// At a strike the front heel is alpha of the step before the hips (mean over both feet). The heel
+// of the data still sinks and slides for a moment when it strikes; ours stands at once. So the
+// distance is that of the flat foot, run back to the moment when the heel of the data is down.
 double front_share(const GaitCycle& source, double source_step) {
   const double down_m = kHeelDown * 0.5 * (source.leg[0].length_m() + source.leg[1].length_m());
   double sum = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
     const auto heel_at = [&](double own) {
-      return foot_point(sample_at(source, own + source.strike[side]), side, source.leg[side].heel_m);
+      return foot_point(sample_at(source, own + source.strike[side]), side,
+                        source.leg[side].heel_m);
     };
+    const vec3 flat = mean_heel(source, side);
     double down = 0.0;
-    while (down < kLatestDown && heel_at(down).y > down_m) down += 1.0 / (2 * kCycleSamples);
-    double flat = 0.0;
-    constexpr int kCount = 16;
-    for (int i = 0; i < kCount; ++i) {
-      const double own = 0.12 + 0.16 * i / kCount;
-      flat += (heel_at(own).z + source.stride_m * own) / kCount;
-    }
-    sum += flat - source.stride_m * down;
+    while (down < kLatestDown && heel_at(down).y - flat.y > down_m)
+      down += 1.0 / (2 * kCycleSamples);
+    sum += flat.z - source.stride_m * down;
   }
   return std::clamp(0.5 * sum / source_step, 0.3, 0.7);
 }
@@ -175,7 +177,8 @@ void collect_kept_joints(WalkModel& model) {
   for (const LegModel& leg : model.cycle.leg) {
     for (int j = skeleton.joints[leg.joints.toe].parent; j > model.cycle.pelvis;
          j = skeleton.joints[j].parent) {
-      if (j != leg.joints.hip && j != leg.joints.knee && j != leg.joints.ankle) model.kept.push_back(j);
+      if (j != leg.joints.hip && j != leg.joints.knee && j != leg.joints.ankle)
+        model.kept.push_back(j);
     }
   }
   for (int j = skeleton.joints[model.cycle.pelvis].parent; j >= 0; j = skeleton.joints[j].parent) {
@@ -201,7 +204,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   for (Side side : {kLeftSide, kRightSide}) {
     model.leg[side] = leg_build(model.cycle.leg[side]);
     fill_foot_tables(cycle, ratio, side, model.leg[side]);
-    model.leg[side].track_m = mean_heel_track(cycle, side) * character.scale;
+    model.leg[side].track_m = mean_heel(cycle, side).x * character.scale;
   }
   fill_pelvis_tables(cycle, ratio, character.scale, model);
   fill_shares(cycle, model);

@@ -22,11 +22,11 @@ struct FootFlight {
 };
 
 struct LegBuild {
-  LegModel model;      // character's metres
-  IkChain chain;       // hip joint to foot frame, even weights, joint limits
-  double foot_m = 0;   // heel to toe
-  double elevation_rad = 0;    // of the heel-toe line above the floor when standing
-  double toe_end_elevation_rad = 0, toe_end_m = 0;  // the same of the line toe to toe end
+  LegModel model;            // character's metres
+  IkChain chain;             // hip joint to foot frame, even weights, joint limits
+  double foot_m = 0;         // heel to toe
+  double elevation_rad = 0;  // of the heel-toe line above the floor when standing
+  double toe_end_elevation_rad = 0, toe_end_m = 0;   // the same of the line toe to toe end
   vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};  // foot frame: along and across the foot, level
   FootFlight flight;
   PhaseTable pitch_rad;  // own phase (0 at own strike); of the heel-toe line, toe down positive
@@ -36,23 +36,24 @@ struct LegBuild {
 };
 
 struct WalkModel {
-  GaitCycle cycle;     // of the source; skeleton replaced by the character's
+  GaitCycle cycle;  // of the source; skeleton replaced by the character's
   std::array<LegBuild, 2> leg;
-  double size = 1.0;         // leg length over kReferenceLeg_m
-  double time_scale = 1.0;   // sqrt(size): pendulum time
+  double size = 1.0;        // leg length over kReferenceLeg_m
+  double time_scale = 1.0;  // sqrt(size): pendulum time
   double leg_length_m = 0, source_leg_length_m = 0;
   double source_step_m = 0;  // retargeted: mean step of the data on this character
   double step_front = 0.5;   // alpha: at a strike, front heel to hips over the step, from the data
   double rest_lead_m = 0;    // c0: hips before the heels when standing
   double stand_m = 0;        // pelvis height when standing
   double mean_m = 0;         // mean pelvis height of the data on this character
-  PhaseTable sway_m, bounce_m, surge_m;         // pelvis: sideways, about the mean height, fore-aft
-  PhaseTable yaw_rad;                           // pelvis about the vertical
-  std::array<PhaseTable, 3> tilt;               // the rest of its rotation, as a rotation vector
+  PhaseTable sway_m, bounce_m, surge_m;  // pelvis: sideways, about the mean height, fore-aft
+  PhaseTable yaw_rad;                    // pelvis about the vertical
+  std::array<PhaseTable, 3> tilt;        // the rest of its rotation, as a rotation vector
   std::array<std::array<PhaseTable, kLegDofs>, 2> reference_rad;  // leg angles of the data
   // Shares of the cycle in walking order: roll right, flight left, roll left, flight right.
   std::array<double, 4> share{};
-  std::vector<int> kept;  // joints that the legs' chains pass through: fixed at their standing rotation
+  std::vector<int>
+      kept;  // joints that the legs' chains pass through: fixed at their standing rotation
 };
 
 // Retargets by the leg-length ratio. Fails only on a character that the skeleton cannot be.

@@ -33,7 +33,7 @@ double own_phase(const WalkModel& model, const WalkState& state, Side side) noex
 void plan_landing(const Tick& tick, WalkState& state) noexcept;
 void advance_hips(const Tick& tick, WalkState& state) noexcept;
 struct Pelvis {
-  vec3 position_m{0.0};  // world
+  vec3 position_m{0.0};                      // world
   quat rotation = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation, world
   vec3 hip(const LegBuild& leg) const noexcept { return position_m + rotation * leg.model.hip_m; }
 };
@@ -45,7 +45,8 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvi
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
 void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept;
 // A standing foot rises on its toe as far as the hips ask for it.
-void reach_with_toe(const WalkModel& model, WalkState& state, Side side, const vec3& hip_m) noexcept;
+void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
+                    const vec3& hip_m) noexcept;
 // Pitch limits at the present place of the pivot: heel not below the floor, toe clear of it.
 void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode mode) noexcept;
 // Toes stay on the floor while the foot rises over them and straighten as the flight goes on.
@@ -58,7 +59,9 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
 void begin_roll(WalkState& state, Side side) noexcept;  // in the roll's stage
 void hold_pitch(const WalkModel& model, WalkState& state, Side side, int ticks) noexcept;
 
-// --- walk_legs.cpp: inverse kinematics ------------------------------------------------------------
-void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis, WalkState& state) noexcept;
+// --- walk_legs.cpp: inverse kinematics
+// ------------------------------------------------------------
+void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis,
+              WalkState& state) noexcept;
 
 }  // namespace gaitpad

@@ -5,11 +5,11 @@ namespace {
 
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
 constexpr double kReach = 0.9985;        // of the leg: leaves the knee 7 degrees
-constexpr double kLameDrop_m = 0.05;      // at the reference leg, for a foot that does not lift at all
+constexpr double kLameDrop_m = 0.05;  // at the reference leg, for a foot that does not lift at all
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 constexpr double kCalmStep_s = 0.52;
 constexpr double kSoftBase_m = 0.02;
-constexpr double kSoftReach_m = 0.03;    // at the reference leg
+constexpr double kSoftReach_m = 0.03;  // at the reference leg
 
 double power(double base, int exponent) noexcept {
   double result = 1.0;
@@ -22,8 +22,7 @@ double power(double base, int exponent) noexcept {
 // The heading after n more ticks of a turn-rate filter whose goal stays: the filter is a linear
 // recurrence with the double eigenvalue q, so e_k = (e_0 + c k) q^k, and its sum has a closed form.
 double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
-  const double goal =
-      tick.params.walking && !state.closing ? tick.params.turn_rate_rad_s : 0.0;
+  const double goal = tick.params.walking && !state.closing ? tick.params.turn_rate_rad_s : 0.0;
   const double w = tick.dt_s / (kTurnSmoothing * tick.model.time_scale), q = 1.0 / (1.0 + w);
   const double e0 = state.turn_rate.x - goal;
   if (e0 == 0.0 && state.turn_rate.v == 0.0) return state.heading_rad + goal * n * tick.dt_s;
@@ -79,15 +78,20 @@ double height_of_knee(const WalkModel& model, const WalkState& state, const Pelv
   const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
   const double a = leg.thigh_m, b = leg.shank_m;
   const double cosine = sin_cos(kStandingKnee + bend).cos;
-  return height_over(model.leg[side], foot, pelvis, std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
+  return height_over(model.leg[side], foot, pelvis,
+                     std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
 }
 
-// Share of the weight on the left foot: it moves over during the roll.
+// Share of the weight on the left foot: it moves over during the roll, from and to both feet at
+// rest.
 double left_load(const WalkState& state) noexcept {
-  if (state.stage == Stage::idle || !state.started) return 0.5;
-  const double on_front =
-      state.stage == Stage::roll ? smoothstep(0.0, 1.0, static_cast<double>(state.tick) / state.stage_ticks) : 0.0;
-  const double on_swing = state.stage == Stage::roll ? on_front : 0.0;
+  if (state.stage == Stage::idle) return 0.5;
+  double on_swing = 0.0;
+  if (state.stage == Stage::roll) {
+    const bool first = state.started && state.last_step_ticks == 0, last = !state.started;
+    const double progress = static_cast<double>(state.tick) / state.stage_ticks;
+    on_swing = mix(first ? 0.5 : 0.0, last ? 0.5 : 1.0, smoothstep(0.0, 1.0, progress));
+  }
   return state.swing == kLeftSide ? on_swing : 1.0 - on_swing;
 }
 
@@ -113,7 +117,8 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
   }
   const WalkModel& model = tick.model;
   const Side swing = step_foot(state), stand = other(swing);
-  const vec3 forward = heading_direction(state.landing_heading_rad), left = glm::cross(kUp, forward);
+  const vec3 forward = heading_direction(state.landing_heading_rad),
+             left = glm::cross(kUp, forward);
   const double lead = model.rest_lead_m + hips_share(model) * state.frame.stride_m[swing];
   const vec3 goal =
       state.foot[stand].heel_anchor_m + forward * lead - left * model.leg[stand].track_m;
@@ -135,7 +140,8 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexce
   return pelvis;
 }
 
-double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvis& pelvis) noexcept {
+double pelvis_height(const WalkModel& model, const WalkState& state,
+                     const Pelvis& pelvis) noexcept {
   const double load = left_load(state);
   double y = load * height_of_knee(model, state, pelvis, kLeftSide) +
              (1.0 - load) * height_of_knee(model, state, pelvis, kRightSide);

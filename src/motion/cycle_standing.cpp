@@ -183,10 +183,12 @@ Result<double> build_standing(const CapturedCycle& c, GaitCycle& out) {
     const double lowest = std::min(
         {leg->toe_m.y, leg->toe_m.y + leg->toe_end_m.y, -kLeastAnkle_legs * leg->length_m()});
     const double under_m = flat[side].ankle_m.y + lowest;
-    floor_m = side == 0 ? under_m : std::min(floor_m, under_m);
+    // Each foot stands on its own lowest point: captured floors are uneven by a centimetre or two,
+    // and a character with one foot in the air would stand crooked.
+    floor_m += 0.5 * under_m;
+    build_sole(-lowest, *leg);
     out.leg[side] = *leg;
   }
-  for (int side = 0; side < 2; ++side) build_sole(flat[side].ankle_m.y - floor_m, out.leg[side]);
   build_standing_local(c, local, out);
   return floor_m;
 }

@@ -4,6 +4,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
+constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
 constexpr double kLeak_per_s = 4.0;
 constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
 constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
@@ -70,6 +71,12 @@ FootGoal foot_goal(const LegBuild& leg, const FootState& foot, const Pelvis& pel
            IkRow{beside_point, across, glm::dot(across, beside)}}};
 }
 
+// The whole foot. Always from the heel: the swivel that the rows leave free must not jump when the
+// end-effector changes.
+FootGoal whole_foot(const LegBuild& leg, const FootState& foot, const Pelvis& pelvis) noexcept {
+  return foot_goal(leg, foot, pelvis, FootEnd::heel);
+}
+
 // When weights may show: in mid-flight and in mid-support, fading out before the foot has to be
 // exactly where the next stage takes it over, so landing and lift-off places do not depend on them.
 double weight_share(const WalkModel& model, const WalkState& state, Side side) noexcept {
@@ -131,7 +138,7 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
   set_pitch(leg, pitch, foot.pose, foot.mode);
   set_toe(leg, foot.mode == FootMode::flight ? flight_progress(state) : 0.0, foot.pose);
   solve.add(
-      solve_robust(chain, foot_goal(leg, foot, pelvis, FootEnd::heel).all(), kRobust, angles));
+      solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 
 bool even(const WalkState& state, Side side) noexcept {
@@ -141,6 +148,15 @@ bool even(const WalkState& state, Side side) noexcept {
     high = std::max(high, w.x);
   }
   return high - low < kEvenSpread;
+}
+
+// A foot whose ankle would bend up too far rises at the heel (standing) or points down (flying).
+void ease_ankle(const LegBuild& leg, const Pelvis& pelvis, IkAngles& angles, FootState& foot,
+                Solve& solve) noexcept {
+  const double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], kSoftAnkle);
+  if (excess == 0.0 || foot.mode == FootMode::roll) return;
+  set_pitch(leg, foot.pose.pitch_rad + excess, foot.pose, foot.mode);
+  solve.add(solve_robust(leg.chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 
 void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
@@ -155,10 +171,8 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
     angles[j] = data[j] + keep * (state.even_rad[side][j] - state.data_rad[side][j]);
   }
   state.data_rad[side] = data;
-  // Always from the heel: the swivel that the rows leave free must not jump when the effector
-  // changes.
-  const FootGoal goal = foot_goal(leg, state.foot[side], pelvis, FootEnd::heel);
-  solve.add(solve_robust(leg.chain, goal.all(), kRobust, angles));
+  solve.add(solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+  ease_ankle(leg, pelvis, angles, state.foot[side], solve);
   state.even_rad[side] = leg_angles(angles);
   const double share = weight_share(tick.model, state, side);
   if (share > 0.0 && !even(state, side)) stiffen(tick, side, pelvis, share, state, angles, solve);

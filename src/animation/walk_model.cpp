@@ -7,7 +7,7 @@ namespace {
 
 // Joint limits of a walker in radians (hip flexion and dorsiflexion are negative): AAOS-type
 // ranges, dorsiflexion under load up to 38 degrees.
-constexpr std::array<double, kLegDofs> kMin = {-120, -50, -70, 1.0, -45, -60, -80};
+constexpr std::array<double, kLegDofs> kMin = {-120, -50, -70, 1.0, -60, -60, -80};
 constexpr std::array<double, kLegDofs> kMax = {60, 50, 70, 150, 75, 60, 80};
 constexpr double kHeelDown = 0.007;   // of the leg: a heel this low has landed
 constexpr double kLatestDown = 0.05;  // own phase

@@ -5,6 +5,7 @@ namespace {
 
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
 constexpr double kReach = 0.9985;        // of the leg: leaves the knee 7 degrees
+constexpr double kEvenFront = 0.46;
 constexpr double kLameDrop_m = 0.05;  // at the reference leg, for a foot that does not lift at all
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 constexpr double kCalmStep_s = 0.52;
@@ -38,15 +39,18 @@ double step_length(const WalkState& state, Side side) noexcept {
 }
 
 // beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
-double hips_share(const WalkModel& model) noexcept {
-  return ((1.0 - model.step_front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
+// Steps far longer than the data's take an even stance instead of the data's lean.
+double hips_share(const WalkModel& model, const WalkState& state) noexcept {
+  const double front =
+      mix(model.step_front, kEvenFront, smoothstep(1.05, 1.5, state.pace.x));
+  return ((1.0 - front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
 }
 
 // Mean speed of the hips between this step's strike and the one before, and the next one.
 double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
   if (state.closing) return 0.0;
   const Side swing = step_foot(state);
-  const double beta = hips_share(tick.model);
+  const double beta = hips_share(tick.model, state);
   const double now = step_length(state, swing), before = state.frame.stride_m[other(swing)],
                next = tick.params.walking ? state.length_m[other(swing)].x : 0.0;
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
@@ -119,7 +123,7 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
   const Side swing = step_foot(state), stand = other(swing);
   const vec3 forward = heading_direction(state.landing_heading_rad),
              left = glm::cross(kUp, forward);
-  const double lead = model.rest_lead_m + hips_share(model) * state.frame.stride_m[swing];
+  const double lead = model.rest_lead_m + hips_share(model, state) * state.frame.stride_m[swing];
   const vec3 goal =
       state.foot[stand].heel_anchor_m + forward * lead - left * model.leg[stand].track_m;
   const vec3 velocity = forward * hips_speed_at_strike(tick, state);

@@ -27,7 +27,7 @@ double time_share(const WalkModel& model, const WalkState& state, Stage stage,
   const Side rolling = stage == Stage::roll ? swing : other(swing);
   const double roll = stage_share(model, Stage::roll, rolling);
   const double flight = stage_share(model, Stage::flight, other(rolling));
-  const double longest = mix(kLongRoll, kBriskRoll, smoothstep(0.5, 1.0, state.pace.x));
+  const double longest = mix(kLongRoll, kBriskRoll, smoothstep(0.5, 1.0, full_pace(model, state)));
   const double bounded = std::clamp(roll, kShortRoll, longest);
   return stage == Stage::roll ? bounded : roll + flight - bounded;
 }
@@ -121,6 +121,10 @@ double pace(const WalkModel& model, const WalkState& state, Side side) noexcept 
 
 double presence(const WalkState& state) noexcept {
   return std::clamp(state.amplitude.x, 0.0, 1.0) * std::clamp(2.0 * state.pace.x, 0.0, 1.0);
+}
+
+double full_pace(const WalkModel& model, const WalkState& state) noexcept {
+  return std::max(pace(model, state, kLeftSide), pace(model, state, kRightSide));
 }
 
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept {

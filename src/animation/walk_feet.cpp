@@ -75,9 +75,7 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   const double end = std::max(0.0, (u - kStopping) / (1.0 - kStopping));
   vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
            way * (s.end_slope() * (1.0 - kStopping) * h11(end));
-  // The pace of the longer step: a lame foot's height has a factor of its own.
-  const double r = std::max(pace(model, state, kLeftSide), pace(model, state, kRightSide));
-  const double k = state.flight_height[side].x * std::min(1.1, 0.35 + 0.65 * r);
+  const double k = state.flight_height[side].x * std::min(1.1, 0.35 + 0.65 * full_pace(model, state));
   const FlightCurve& h = leg.flight.height_m;
   const Fade lift = {foot.lift_m.y - k * h.at(0.0), foot.lift_slope_m.y - k * h.start_slope(),
                      kLiftFade * lift_share(state, side)};

@@ -5,6 +5,10 @@ namespace {
 
 constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
+constexpr double kCalmStep_s = 0.52;
+constexpr double kHold = 0.8;  // of the change that a locked joint does not follow by itself
+constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
+constexpr double kFreeReach = 0.9985, kSoftReach_m = 0.006;
 constexpr double kLeak_per_s = 4.0;
 constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
 constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
@@ -87,7 +91,10 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
     const double begin = model.share[side == kRightSide ? 0 : 2];
     p = (own_phase(model, state, side) - begin) / (model.leg[side].toe_off - begin);
   }
-  return state.amplitude.x * smoothstep(0.0, 0.25, p) * (1.0 - smoothstep(0.55, 0.95, p));
+  // Quick steps leave less time to lag behind and catch up.
+  const double calm = std::min(1.0, state.step_time_s.x / kCalmStep_s);
+  return state.amplitude.x * calm * std::sqrt(calm) * smoothstep(0.0, 0.25, p) *
+         (1.0 - smoothstep(0.55, 0.95, p));
 }
 
 double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, double yaw_rad,
@@ -108,6 +115,32 @@ struct Solve {
   }
 };
 
+double leg_span(const LegBuild& leg, const Pelvis& pelvis, FootPose pose, double pitch_rad,
+                FootMode mode) noexcept {
+  set_pitch(leg, pitch_rad, pose, mode);
+  return glm::distance(pelvis.hip(leg), pose.heel_m - foot_rotation(leg, pose) * leg.model.heel_m);
+}
+
+// The pitch that the weights ask for, kept off the floor and within the leg's reach.
+double free_pitch(const WalkModel& model, const LegBuild& leg, const Pelvis& pelvis,
+                  const FootState& foot, double wanted_rad, double share) noexcept {
+  const double planned = foot.pose.pitch_rad, soft = kSoftFree * share;
+  double pitch = wanted_rad;
+  if (foot.mode == FootMode::support) {
+    pitch = soft_max(pitch, 0.0, std::min(soft, std::max(1e-9, planned)));
+  } else {
+    const double limit = highest_pitch(leg, foot.pose.heel_m.y, kFreeClearance_m * model.size);
+    pitch = soft_min(pitch, std::max(limit, planned), std::max(1e-9, soft));
+  }
+  const double span = leg_span(leg, pelvis, foot.pose, planned, foot.mode);
+  const double longer = leg_span(leg, pelvis, foot.pose, pitch, foot.mode) - span;
+  const double room = std::max(0.0, kFreeReach * leg.model.length_m() - span);
+  if (longer <= 1e-9) return pitch;
+  // Of a lengthening, as much as there is room for, rounded off.
+  const double allowed = soft_min(longer, room, std::min(room, kSoftReach_m * model.size));
+  return mix(planned, pitch, std::clamp(allowed / longer, 0.0, 1.0));
+}
+
 // Weights of eq. (5): every joint follows the even pose's change since the stage began by its own
 // weight, the solver makes up the rest at the stage's end-effector; the pitch that comes out of it,
 // kept off the floor, becomes the foot's.
@@ -121,24 +154,16 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
   for (int j = 0; j < kLegDofs; ++j) {
     const double w = std::clamp(state.weight[side][j].x / largest, 0.0, 1.0);
     chain.dof[j].weight = w;
-    angles[j] += share * (1.0 - w) * (foot.anchor_rad[j] - angles[j]);
+    // W multiplies once an iteration, and a solve takes a few of them.
+    const double held = kHold * (1.0 - (w * w) * (w * w));
+    angles[j] += share * held * (foot.anchor_rad[j] - angles[j]);
   }
   solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(),
                          kRobust, angles));
   const double free = foot_pitch(leg, pelvis, foot.pose.yaw_rad, end_frame(chain, angles));
-  const double planned = foot.pose.pitch_rad;
-  double pitch = free;
-  const double soft = 6.0 * kDegree * share;
-  if (foot.mode == FootMode::support) {
-    pitch = soft_max(pitch, 0.0, std::min(soft, std::max(1e-9, planned)));
-  } else {
-    const double limit = highest_pitch(leg, foot.pose.heel_m.y, 0.006 * tick.model.size);
-    pitch = soft_min(pitch, std::max(limit, planned), std::max(1e-9, soft));
-  }
-  set_pitch(leg, pitch, foot.pose, foot.mode);
+  set_pitch(leg, free_pitch(tick.model, leg, pelvis, foot, free, share), foot.pose, foot.mode);
   set_toe(leg, foot.mode == FootMode::flight ? flight_progress(state) : 0.0, foot.pose);
-  solve.add(
-      solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
+  solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 
 bool even(const WalkState& state, Side side) noexcept {

@@ -25,6 +25,8 @@ int ticks_to_strike(const WalkState& state) noexcept;
 Side step_foot(const WalkState& state) noexcept;
 // How far that foot's step goes compared with the data's.
 double pace(const WalkModel& model, const WalkState& state, Side side) noexcept;
+// The same of the longer step: what a limp, which shortens one, leaves as it is.
+double full_pace(const WalkModel& model, const WalkState& state) noexcept;
 // How much of the data's oscillations and postures shows: none at rest, all from half its pace on.
 double presence(const WalkState& state) noexcept;
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept;

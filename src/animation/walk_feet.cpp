@@ -6,15 +6,16 @@ namespace {
 constexpr double kClearance_m = 0.012;     // least toe clearance in flight, at the reference leg
 constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when the heel strikes
 constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
-constexpr double kReachOnToe = 0.993,
-                 kReachAtRest = 1.01;  // of the leg: further away, the foot rises on its toe
+// Of the leg: with the hip further away, a standing foot rises on its toe.
+constexpr double kReachOnToe = 0.993, kReachOfLame = 0.999, kReachAtRest = 1.01;
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 constexpr double kSoftToe = 14.0 * kDegree;
 constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
 constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
-constexpr double kLameFade = 0.0;
+constexpr double kLamePeak = 0.9;  // an able foot's peak lags behind its curve by as much
+constexpr double kLameFade = 0.15;
 constexpr double kStopping = 0.6;  // of the flight
 constexpr double kSteepFoot = 95.0 * kDegree;
 constexpr double kLiftFade = 0.5;  // of the flight: what the lift-off brought has faded
@@ -75,7 +76,9 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   const double end = std::max(0.0, (u - kStopping) / (1.0 - kStopping));
   vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
            way * (s.end_slope() * (1.0 - kStopping) * h11(end));
-  const double k = state.flight_height[side].x * std::min(1.1, 0.35 + 0.65 * full_pace(model, state));
+  const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
+  const double k = mix(kLamePeak, 1.0, able) * state.flight_height[side].x *
+                   std::min(1.1, 0.35 + 0.65 * full_pace(model, state));
   const FlightCurve& h = leg.flight.height_m;
   const Fade lift = {foot.lift_m.y - k * h.at(0.0), foot.lift_slope_m.y - k * h.start_slope(),
                      kLiftFade * lift_share(state, side)};
@@ -119,7 +122,7 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
 }
 
 void set_toe(const LegBuild& leg, double u, FootPose& pose) noexcept {
-  pose.toe_rad = -std::max(0.0, pose.pitch_rad) * (1.0 - smoothstep(0.0, 0.6, u));
+  pose.toe_rad = -std::max(0.0, pose.pitch_rad) * (1.0 - smoothstep(0.1, 0.85, u));
   if (leg.toe_end_m < 1e-6) return;
   const double room = pose.toe_m.y - leg.model.toe_end_rest_m;
   const double lowest =
@@ -169,7 +172,9 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
                           ? 0.0
                           : smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));
   // At rest the leg may be longer: a standing foot stays flat.
-  const double reach = mix(kReachAtRest, kReachOnToe, presence(state)) * leg.model.length_m();
+  const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
+  const double reach = leg.model.length_m() *
+                       mix(kReachAtRest, mix(kReachOfLame, kReachOnToe, able), presence(state));
   const double pitch = gate == 0.0
                            ? planned
                            : mix(planned,

@@ -200,7 +200,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.source_leg_length_m = 0.5 * (cycle.leg[0].length_m() + cycle.leg[1].length_m());
   model.leg_length_m = model.source_leg_length_m * ratio;
   model.size = model.leg_length_m / kReferenceLeg_m;
-  model.time_scale = std::sqrt(model.size);
+  model.time_scale = std::sqrt(std::sqrt(model.size));  // as step times scale
   for (Side side : {kLeftSide, kRightSide}) {
     model.leg[side] = leg_build(model.cycle.leg[side]);
     fill_foot_tables(cycle, ratio, side, model.leg[side]);

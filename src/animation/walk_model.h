@@ -39,7 +39,7 @@ struct WalkModel {
   GaitCycle cycle;  // of the source; skeleton replaced by the character's
   std::array<LegBuild, 2> leg;
   double size = 1.0;        // leg length over kReferenceLeg_m
-  double time_scale = 1.0;  // sqrt(size): pendulum time
+  double time_scale = 1.0;  // how much longer than the adult's its times are
   double leg_length_m = 0, source_leg_length_m = 0;
   double source_step_m = 0;  // retargeted: mean step of the data on this character
   double step_front = 0.5;   // alpha: at a strike, front heel to hips over the step, from the data

@@ -6,7 +6,7 @@ namespace {
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
 constexpr double kReach = 0.9985;        // of the leg: leaves the knee 7 degrees
 constexpr double kEvenFront = 0.46;
-constexpr double kLameDrop_m = 0.05;  // at the reference leg, for a foot that does not lift at all
+constexpr double kLameDrop_m = 0.07;  // at the reference leg, for a foot that does not lift at all
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 constexpr double kCalmStep_s = 0.52;
 constexpr double kSoftBase_m = 0.02;

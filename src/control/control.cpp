@@ -40,12 +40,12 @@ BaseStep base_step(double forward, double sideways, double fatigue,
 
 GaitLimits gait_limits(double leg_length_m) noexcept {
   const double ratio = leg_length_m / kReferenceLeg_m;
-  const double root = std::sqrt(ratio);
+  const double quicker = std::sqrt(std::sqrt(ratio));
   GaitLimits limits;
-  limits.max_speed_m_s *= root;
+  limits.max_speed_m_s *= ratio / quicker;
   limits.max_step_m *= ratio;
-  limits.max_step_time_s *= root;
-  limits.turn_step_time_s *= root;
+  limits.max_step_time_s *= quicker;
+  limits.turn_step_time_s *= quicker;
   return limits;
 }
 

@@ -26,8 +26,9 @@ struct GaitLimits {
   double turn_step_time_s = kTurnInPlaceStepTime_s;  // of a turn in place, a closing step
   double max_turn_rate_rad_s = kMaxTurnRate_rad_s;   // the same for all: side by side they stay so
 };
-// Lengths scale with the leg (the paper), speeds and times with its square root (equal Froude
-// number).
+// Lengths scale with the leg (the paper). Step times scale with its fourth root and speeds with the
+// rest, half-way between the paper's plain proportion and equal Froude numbers, at which a child's
+// legs would have to turn round faster than they can be followed smoothly at 240 Hz.
 GaitLimits gait_limits(double leg_length_m) noexcept;
 
 // Stateless: the walk smooths what changes between ticks. Only stick.left is read. Backward

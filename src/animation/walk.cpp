@@ -76,6 +76,8 @@ void report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
     frame.heel_planted[side] = idle || (frame.stage == Stage::roll && swings);
     frame.toe_planted[side] = idle || !swings;
   }
+  const bool landed = frame.stage == Stage::roll && state.tick == 1 && state.last_step_ticks > 0;
+  if (landed) ++frame.steps[frame.swing];
   frame.speed_m_s = 0.0;
   const int ticks = state.roll_ticks + state.flight_ticks;
   if (!idle && state.started && ticks > 0) {

@@ -83,7 +83,6 @@ void begin_idle(WalkState& state) noexcept {
 
 void land(const Tick& tick, WalkState& state) noexcept {
   const Side landed = state.swing;
-  ++state.frame.steps[landed];
   const bool closed = state.closing;
   state.closing = !tick.params.walking;
   if (closed && state.closing) {  // feet together: the toe comes down, then rest

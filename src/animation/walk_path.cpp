@@ -6,6 +6,7 @@ namespace {
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
 constexpr double kReach = 0.9985;        // of the leg: leaves the knee 7 degrees
 constexpr double kEvenFront = 0.46;
+constexpr double kLongDrop_m = 0.05;  // for steps much longer than the data's
 constexpr double kLameDrop_m = 0.07;  // at the reference leg, for a foot that does not lift at all
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 constexpr double kCalmStep_s = 0.52;
@@ -151,6 +152,8 @@ double pelvis_height(const WalkModel& model, const WalkState& state,
              (1.0 - load) * height_of_knee(model, state, pelvis, kRightSide);
   const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
   y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(state.phase);
+  // Steps longer than the data's need lower hips, or the rear leg is too short for them.
+  y -= kLongDrop_m * model.size * smoothstep(0.95, 1.4, r);
   // A lame foot hardly rises on its toe: the hips come down to it instead.
   const double lame = 1.0 - std::min({1.0, state.flight_height[0].x, state.flight_height[1].x});
   y -= kLameDrop_m * model.size * lame * presence(state);

@@ -7,9 +7,9 @@ constexpr double kClearance_m = 0.012;     // least toe clearance in flight, at 
 constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when the heel strikes
 constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
 // Of the leg: with the hip further away, a standing foot rises on its toe.
-constexpr double kReachOnToe = 0.993, kReachOfLame = 0.999, kReachAtRest = 1.01;
+constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9975, kReachAtRest = 1.01;
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
-constexpr double kSoftToe = 14.0 * kDegree;
+constexpr double kSoftToe = 15.0 * kDegree;
 constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
 constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
@@ -121,14 +121,10 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
   }
 }
 
-void set_toe(const LegBuild& leg, double u, FootPose& pose) noexcept {
-  pose.toe_rad = -std::max(0.0, pose.pitch_rad) * (1.0 - smoothstep(0.1, 0.85, u));
-  if (leg.toe_end_m < 1e-6) return;
-  const double room = pose.toe_m.y - leg.model.toe_end_rest_m;
-  const double lowest =
-      leg.toe_end_elevation_rad + asin(std::clamp(room / leg.toe_end_m, -1.0, 1.0));
-  const double width = kSoftToe * smoothstep(0.0, 0.3, u) * (1.0 - smoothstep(0.8, 1.0, u));
-  pose.toe_rad = soft_min(pose.toe_rad, lowest - pose.pitch_rad, std::max(1e-9, width));
+void set_toe(double flight_progress, FootPose& pose) noexcept {
+  const double width =
+      kSoftToe * smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.8, 1.0, flight_progress));
+  pose.toe_rad = -soft_positive(pose.pitch_rad, std::max(1e-9, width));
 }
 
 void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
@@ -144,11 +140,11 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
     const double pitch = soft_min(foot.planned_rad + reach, kSteepFoot, kSoftPitch);
     set_pitch(leg, std::max(foot.planned_rad, pitch), foot.pose, foot.mode);
-    set_toe(leg, 0.0, foot.pose);
+    set_toe(0.0, foot.pose);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, fade, foot.pose, foot.mode);
-    set_toe(leg, 1.0, foot.pose);
+    set_toe(1.0, foot.pose);
   } else {
     const double u = flight_progress(state);
     foot.pose.heel_m = flight_heel(model, state, side, u);
@@ -158,7 +154,7 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     const double limit = highest_pitch(leg, foot.pose.heel_m.y, kClearance_m * model.size * open);
     const double pitch = flight_pitch(model, state, side, u) + fade;
     set_pitch(leg, soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open)), foot.pose, foot.mode);
-    set_toe(leg, u, foot.pose);
+    set_toe(u, foot.pose);
   }
 }
 
@@ -183,7 +179,7 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
                                  gate);
   foot.reach_rad = {pitch - planned, foot.reach_rad[0]};
   set_pitch(leg, pitch, foot.pose, foot.mode);
-  set_toe(leg, 0.0, foot.pose);
+  set_toe(0.0, foot.pose);
 }
 void remember_foot(FootState& foot) noexcept {
   foot.last_heel_m = {foot.pose.heel_m, foot.last_heel_m[0]};

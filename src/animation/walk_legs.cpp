@@ -162,7 +162,7 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
                          kRobust, angles));
   const double free = foot_pitch(leg, pelvis, foot.pose.yaw_rad, end_frame(chain, angles));
   set_pitch(leg, free_pitch(tick.model, leg, pelvis, foot, free, share), foot.pose, foot.mode);
-  set_toe(leg, foot.mode == FootMode::flight ? flight_progress(state) : 0.0, foot.pose);
+  set_toe(foot.mode == FootMode::flight ? flight_progress(state) : 0.0, foot.pose);
   solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 

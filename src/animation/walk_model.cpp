@@ -69,8 +69,6 @@ LegBuild leg_build(const LegModel& model) {
   leg.elevation_rad = elevation(line);
   leg.forward = glm::normalize(vec3(line.x, 0.0, line.z));
   leg.side = glm::cross(kUp, leg.forward);
-  leg.toe_end_m = glm::length(model.toe_end_m);
-  leg.toe_end_elevation_rad = elevation(model.toe_end_m);
   return leg;
 }
 

@@ -26,7 +26,6 @@ struct LegBuild {
   IkChain chain;             // hip joint to foot frame, even weights, joint limits
   double foot_m = 0;         // heel to toe
   double elevation_rad = 0;  // of the heel-toe line above the floor when standing
-  double toe_end_elevation_rad = 0, toe_end_m = 0;   // the same of the line toe to toe end
   vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};  // foot frame: along and across the foot, level
   FootFlight flight;
   PhaseTable pitch_rad;  // own phase (0 at own strike); of the heel-toe line, toe down positive

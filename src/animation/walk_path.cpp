@@ -104,15 +104,17 @@ double left_load(const WalkState& state) noexcept {
 
 void plan_landing(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::idle || !state.started) return;
-  if (flight_progress(state) > kFreeze) return;
   const Side swing = step_foot(state), stand = other(swing);
   const double heading = heading_ahead(tick, state, ticks_to_strike(state) + 1);
   const vec3 forward = heading_direction(heading), left = glm::cross(kUp, forward);
-  const double width = tick.model.leg[swing].track_m - tick.model.leg[stand].track_m;
-  const double length = step_length(state, swing);
-  state.landing_heading_rad = heading;
-  state.landing_m = state.foot[stand].heel_anchor_m + forward * length + left * width;
-  state.frame.stride_m[swing] = length;
+  const vec3 standing = state.foot[stand].heel_anchor_m;
+  if (flight_progress(state) <= kFreeze) {
+    const double width = tick.model.leg[swing].track_m - tick.model.leg[stand].track_m;
+    state.landing_heading_rad = heading;
+    state.landing_m = standing + forward * step_length(state, swing) + left * width;
+  }
+  // Along the heading that the landing will have, which may still turn after the place is settled.
+  state.frame.stride_m[swing] = glm::dot(state.landing_m - standing, forward);
 }
 
 void advance_hips(const Tick& tick, WalkState& state) noexcept {

@@ -43,7 +43,8 @@ struct Curve {
   double end_slope() const noexcept { return (value[N - 1] - value[N - 2]) * (N - 1); }
 };
 
-// Cubic Hermite basis on [0, 1]: h00 carries the start value, h10 the start slope, h11 the end slope.
+// Cubic Hermite basis on [0, 1]: h00 carries the start value, h10 the start slope, h11 the end
+// slope.
 inline double h00(double s) noexcept { return 1.0 + s * s * (2.0 * s - 3.0); }
 inline double h10(double s) noexcept { return s * (1.0 - s) * (1.0 - s); }
 inline double h11(double s) noexcept { return s * s * (s - 1.0); }
@@ -51,7 +52,8 @@ inline double h11(double s) noexcept { return s * s * (s - 1.0); }
 // A point on its way to a goal: one tick along the cubic from the present position and velocity to
 // the goal's over the remaining time. Constant goals give one cubic; a goal that moves bends it.
 template <class T>
-void approach(T& x, T& v, const T& goal_x, const T& goal_v, double remaining_s, double dt_s) noexcept {
+void approach(T& x, T& v, const T& goal_x, const T& goal_v, double remaining_s,
+              double dt_s) noexcept {
   const double s = dt_s / remaining_s;
   const T d = goal_x - x;
   const T v0 = v * remaining_s, v1 = goal_v * remaining_s;

@@ -7,8 +7,10 @@ constexpr double kClearance_m = 0.012;     // least toe clearance in flight, at 
 constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when the heel strikes
 constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
 // Of the leg: with the hip further away, a standing foot rises on its toe.
-constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9975, kReachAtRest = 1.01;
+constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachAtRest = 1.01;
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
+// Near its highest the ankle hardly rises any more: there the reach is given up softly.
+constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
 constexpr double kSoftToe = 15.0 * kDegree;
 constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
@@ -97,7 +99,8 @@ double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip
   const double k = 0.5 * (glm::dot(d, d) + glm::dot(c, c) - reach * reach) - ds * cs;
   const double m = std::sqrt(p * p + q * q);
   if (m < 1e-9) return 0.0;
-  return soft_min(atan2(q, p) - acos(k / m), kMaxPitch, kWidePitch);
+  return soft_min(atan2(q, p) - acos(soft_min(k / m, kMostUpright, kSoftUpright)), kMaxPitch,
+                  kWidePitch);
 }
 
 }  // namespace
@@ -122,8 +125,8 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
 }
 
 void set_toe(double flight_progress, FootPose& pose) noexcept {
-  const double width =
-      kSoftToe * smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.8, 1.0, flight_progress));
+  const double width = kSoftToe * smoothstep(0.0, 0.2, flight_progress) *
+                       (1.0 - smoothstep(0.8, 1.0, flight_progress));
   pose.toe_rad = -soft_positive(pose.pitch_rad, std::max(1e-9, width));
 }
 

@@ -196,7 +196,8 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
     angles[j] = data[j] + keep * (state.even_rad[side][j] - state.data_rad[side][j]);
   }
   state.data_rad[side] = data;
-  solve.add(solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+  solve.add(
+      solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   ease_ankle(leg, pelvis, angles, state.foot[side], solve);
   state.even_rad[side] = leg_angles(angles);
   const double share = weight_share(tick.model, state, side);

@@ -6,8 +6,8 @@ namespace {
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
 constexpr double kReach = 0.9985;        // of the leg: leaves the knee 7 degrees
 constexpr double kEvenFront = 0.46;
-constexpr double kLongDrop_m = 0.05;  // for steps much longer than the data's
-constexpr double kLameDrop_m = 0.07;  // at the reference leg, for a foot that does not lift at all
+constexpr double kLongDrop_m = 0.05;   // for steps much longer than the data's
+constexpr double kLameDrop_m = 0.085;  // at the reference leg, for a foot that does not lift at all
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 constexpr double kCalmStep_s = 0.52;
 constexpr double kSoftBase_m = 0.02;
@@ -42,8 +42,7 @@ double step_length(const WalkState& state, Side side) noexcept {
 // beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
 // Steps far longer than the data's take an even stance instead of the data's lean.
 double hips_share(const WalkModel& model, const WalkState& state) noexcept {
-  const double front =
-      mix(model.step_front, kEvenFront, smoothstep(1.05, 1.5, state.pace.x));
+  const double front = mix(model.step_front, kEvenFront, smoothstep(1.05, 1.5, state.pace.x));
   return ((1.0 - front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
 }
 

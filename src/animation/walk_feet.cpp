@@ -11,7 +11,6 @@ constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachAtRest = 1.01
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // Near its highest the ankle hardly rises any more: there the reach is given up softly.
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
-constexpr double kSoftToe = 15.0 * kDegree;
 constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
 constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
@@ -124,12 +123,6 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
   }
 }
 
-void set_toe(double flight_progress, FootPose& pose) noexcept {
-  const double width = kSoftToe * smoothstep(0.0, 0.2, flight_progress) *
-                       (1.0 - smoothstep(0.8, 1.0, flight_progress));
-  pose.toe_rad = -soft_positive(pose.pitch_rad, std::max(1e-9, width));
-}
-
 void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
   const LegBuild& leg = model.leg[side];
@@ -143,11 +136,9 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
     const double pitch = soft_min(foot.planned_rad + reach, kSteepFoot, kSoftPitch);
     set_pitch(leg, std::max(foot.planned_rad, pitch), foot.pose, foot.mode);
-    set_toe(0.0, foot.pose);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, fade, foot.pose, foot.mode);
-    set_toe(1.0, foot.pose);
   } else {
     const double u = flight_progress(state);
     foot.pose.heel_m = flight_heel(model, state, side, u);
@@ -157,7 +148,6 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     const double limit = highest_pitch(leg, foot.pose.heel_m.y, kClearance_m * model.size * open);
     const double pitch = flight_pitch(model, state, side, u) + fade;
     set_pitch(leg, soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open)), foot.pose, foot.mode);
-    set_toe(u, foot.pose);
   }
 }
 
@@ -182,7 +172,6 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
                                  gate);
   foot.reach_rad = {pitch - planned, foot.reach_rad[0]};
   set_pitch(leg, pitch, foot.pose, foot.mode);
-  set_toe(0.0, foot.pose);
 }
 void remember_foot(FootState& foot) noexcept {
   foot.last_heel_m = {foot.pose.heel_m, foot.last_heel_m[0]};

@@ -6,6 +6,7 @@ namespace {
 constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
 constexpr double kCalmStep_s = 0.52;
+constexpr double kSoftToe = 15.0 * kDegree;
 constexpr double kHold = 0.8;  // of the change that a locked joint does not follow by itself
 constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
 constexpr double kFreeReach = 0.9985, kSoftReach_m = 0.006;
@@ -104,6 +105,14 @@ double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, double yaw_rad,
   return leg.elevation_rad - atan2(line.y, glm::dot(line, leg.forward));
 }
 
+// Toes stay level while the heel is the higher end, on the floor as in the air: they never dig in.
+// In the air the change is rounded off, on the floor it is exact.
+double level_toe(double pitch_rad, double flight_progress) noexcept {
+  const double air =
+      smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.8, 1.0, flight_progress));
+  return -soft_positive(pitch_rad, std::max(1e-9, kSoftToe * air));
+}
+
 struct Solve {
   int iterations = 0;
   double error_m = 0.0;
@@ -155,14 +164,13 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
     const double w = std::clamp(state.weight[side][j].x / largest, 0.0, 1.0);
     chain.dof[j].weight = w;
     // W multiplies once an iteration, and a solve takes a few of them.
-    const double held = kHold * (1.0 - (w * w) * (w * w));
+    const double held = kHold * (1.0 - (w * w) * (w * w) * (w * w));
     angles[j] += share * held * (foot.anchor_rad[j] - angles[j]);
   }
   solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(),
                          kRobust, angles));
   const double free = foot_pitch(leg, pelvis, foot.pose.yaw_rad, end_frame(chain, angles));
   set_pitch(leg, free_pitch(tick.model, leg, pelvis, foot, free, share), foot.pose, foot.mode);
-  set_toe(foot.mode == FootMode::flight ? flight_progress(state) : 0.0, foot.pose);
   solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 
@@ -231,6 +239,9 @@ void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis,
     pose_paper(tick, side, pelvis, state, solve);
   }
   const IkFrame end = end_frame(leg.chain, padded(state.angles_rad[side]));
+  FootState& foot = state.foot[side];
+  foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose.yaw_rad, end),
+                                foot.mode == FootMode::flight ? flight_progress(state) : 0.0);
   const vec3 hip = pelvis.hip(leg);
   WalkFrame& frame = state.frame;
   frame.heel_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.heel_m);

@@ -51,8 +51,6 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
                     const vec3& hip_m) noexcept;
 // Pitch limits at the present place of the pivot: heel not below the floor, toe clear of it.
 void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode mode) noexcept;
-// Toes stay level while the heel is the higher end, on the floor as in the air: they never dig in.
-void set_toe(double flight_progress, FootPose& pose) noexcept;
 double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noexcept;
 // End of the tick: what the next tick's derivatives need.
 void remember_foot(FootState& foot) noexcept;

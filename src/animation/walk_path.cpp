@@ -6,8 +6,8 @@ namespace {
 constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
 constexpr double kReach = 0.9985;        // of the leg: leaves the knee 7 degrees
 constexpr double kEvenFront = 0.46;
-constexpr double kLongDrop_m = 0.05;   // for steps much longer than the data's
-constexpr double kLameDrop_m = 0.085;  // at the reference leg, for a foot that does not lift at all
+constexpr double kLongDrop_m = 0.05;  // for steps much longer than the data's
+constexpr double kLameDrop_m = 0.1;   // at the reference leg, for a foot that does not lift at all
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 constexpr double kCalmStep_s = 0.52;
 constexpr double kSoftBase_m = 0.02;
@@ -155,9 +155,13 @@ double pelvis_height(const WalkModel& model, const WalkState& state,
   y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(state.phase);
   // Steps longer than the data's need lower hips, or the rear leg is too short for them.
   y -= kLongDrop_m * model.size * smoothstep(0.95, 1.4, r);
-  // A lame foot hardly rises on its toe: the hips come down to it instead.
-  const double lame = 1.0 - std::min({1.0, state.flight_height[0].x, state.flight_height[1].x});
-  y -= kLameDrop_m * model.size * lame * presence(state);
+  // A lame foot hardly rises on its toe: the hips come down to it instead, around its lift-off.
+  for (Side side : {kLeftSide, kRightSide}) {
+    const double lame = 1.0 - std::min(1.0, state.flight_height[side].x);
+    const double own = own_phase(model, state, side), lift = model.leg[side].toe_off;
+    const double near = smoothstep(0.1, lift - 0.1, own) * (1.0 - smoothstep(lift, 1.0, own));
+    y -= kLameDrop_m * model.size * lame * near * presence(state);
+  }
   std::array<double, 2> highest;
   for (int side : {0, 1}) {
     const LegBuild& leg = model.leg[side];

@@ -53,10 +53,15 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
     }
   }
   for (int j : model.kept) pose.local[j] = cycle.standing_local[j];
+  // What hangs between root and pelvis turns with the heading and else moves as in the data.
   JointFrames frames;
   pose.root_m = pelvis.position_m;
+  pose.local[0] = rotation_y(state.heading_rad) * pose.local[0];
   quat above = kIdentity;
-  for (int j = 0; j < cycle.pelvis; ++j) above = above * pose.local[j];
+  for (int j = cycle.skeleton.joints[cycle.pelvis].parent; j >= 0;
+       j = cycle.skeleton.joints[j].parent) {
+    above = pose.local[j] * above;
+  }
   frames.rotation[cycle.pelvis] = pelvis.rotation * cycle.pelvis_standing;
   pose.local[cycle.pelvis] = glm::inverse(above) * frames.rotation[cycle.pelvis];
   for (Side side : {kLeftSide, kRightSide}) write_leg(model, state, side, frames, pose);

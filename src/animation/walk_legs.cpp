@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
-constexpr double kCalmStep_s = 0.52;
+constexpr double kCalmStep_s = 0.46;
 constexpr double kSoftToe = 15.0 * kDegree;
 constexpr double kHold = 0.8;  // of the change that a locked joint does not follow by itself
 constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
@@ -164,7 +164,7 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
     const double w = std::clamp(state.weight[side][j].x / largest, 0.0, 1.0);
     chain.dof[j].weight = w;
     // W multiplies once an iteration, and a solve takes a few of them.
-    const double held = kHold * (1.0 - (w * w) * (w * w) * (w * w));
+    const double held = kHold * (1.0 - (w * w) * (w * w));
     angles[j] += share * held * (foot.anchor_rad[j] - angles[j]);
   }
   solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(),

@@ -179,9 +179,6 @@ void collect_kept_joints(WalkModel& model) {
         model.kept.push_back(j);
     }
   }
-  for (int j = skeleton.joints[model.cycle.pelvis].parent; j >= 0; j = skeleton.joints[j].parent) {
-    model.kept.push_back(j);
-  }
 }
 
 }  // namespace

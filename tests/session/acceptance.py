@@ -25,7 +25,7 @@ from walk_data import Walk, trace_changes
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(HERE, "..", "..", "..", "shared", "data", "mocap")
-MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_12_01_walk")
+MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_006_01_iclone")
 STYLES = ("even", "stiff_hip", "stiff_knee", "limp_left", "limp_left_hip", "limp_left_knee", "tired")
 RATIOS = (0.6, 1.0, 1.6)
 

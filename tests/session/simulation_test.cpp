@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "motion/cycle_retarget.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {
@@ -49,6 +50,24 @@ TEST(Simulation, UnpluggingFinishesTheStepAndStands) {
   step(s, {made_plug(ReportKind::removed)}, 480);
   EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
   EXPECT_EQ(s.stick().left, vec2(0.0));
+}
+
+// A character in a T pose, half as large again, under the procedural walk.
+TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
+  SimulationConfig config = made_config(1);
+  config.walkers[0].character = {};
+  config.walkers[0].character.skeleton = "giant.bvh";
+  Motion giant = procedural_motion();
+  giant.frames.resize(1);
+  for (Joint& joint : giant.skeleton.joints) joint.offset_m *= 1.5;
+  auto own = cycle_on_skeleton(config.cycle, giant);
+  ASSERT_TRUE(own) << own.error().message;
+  config.walkers[0].own_cycle = *own;
+  const Simulation s = walked(config, 0x80, 0x10, 1200);
+  const Walker& w = s.walkers()[0];
+  EXPECT_EQ(w.ik_failures, 0);
+  EXPECT_NEAR(w.model.leg_length_m, 1.5 * w.model.source_leg_length_m, 1e-9);
+  EXPECT_GT(w.state.frame.pelvis_m.z, 4.0);
 }
 
 TEST(Simulation, CharactersStandSideBySideAndDoNotDisturbEachOther) {

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Installs what gaitpad needs from Debian 12: nothing where all is there, apt else (sudo if not root).
+# install.sh [PACKAGE...]: installs what gaitpad needs from Debian 12, and those packages: nothing where
+# all is there, apt else (sudo if not root).
 set -euo pipefail
 
 packages=(g++ clang cmake ninja-build libglm-dev libtomlplusplus-dev libcli11-dev libfmt-dev
-  nlohmann-json3-dev libgtest-dev libbenchmark-dev python3-numpy python3-matplotlib)
+  nlohmann-json3-dev libgtest-dev libbenchmark-dev python3-numpy python3-matplotlib "$@")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,17 +1,17 @@
-// FNV-1a, 64 bit: a hash of pose bits that is the same on every machine of one byte order.
+// A hash of pose bits that is the same on every machine: 64-bit words instead of FNV-1a's bytes,
+// with its offset and prime, and a shift that brings the upper half down, which multiplying alone
+// never does. Eight times fewer steps than FNV-1a; no defence against an adversary.
 #pragma once
 #include <bit>
 #include <cstdint>
 
 namespace gaitpad {
 
-class Fnv1a {
+class WordHash {
  public:
   void add(double value) noexcept {
-    auto bits = std::bit_cast<std::uint64_t>(value);
-    for (int i = 0; i < 8; ++i, bits >>= 8) {
-      state_ = (state_ ^ (bits & 0xff)) * 0x100000001b3ull;
-    }
+    state_ = (state_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3ull;
+    state_ ^= state_ >> 32;
   }
   std::uint64_t value() const noexcept { return state_; }
 

@@ -92,6 +92,7 @@ Cause TraceReader::version(Words words) {
 Cause TraceReader::device_index(Words words) {
   const std::string_view word = words.next();
   const auto index = decimal(word, kMaxDeviceIndex);
+  current_.reset();  // what stands below a damaged D: line belongs to no device
   if (!index || !words.at_end()) return fmt::format("{} is no device index", in_quotes(word));
   for (std::size_t i = 0; i < trace_.devices.size(); ++i) {
     if (trace_.devices[i].index != *index) continue;
@@ -149,8 +150,10 @@ Cause TraceReader::identity(Words words) {
   return std::nullopt;
 }
 
+// hid-recorder's own B: lines are reports as a BPF program left them, beside the E: line of each.
 Cause TraceReader::driver(Words words) {
   const std::string_view name = words.next();
+  if (microseconds(name)) return std::nullopt;
   if (name.empty() || name.size() > kMaxTextBytes) return "a B: line holds a driver's name";
   const std::string_view word = words.next();
   const auto version = hexadecimal(word.empty() ? "0" : word, 0xffff);

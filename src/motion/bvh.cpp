@@ -144,7 +144,8 @@ class Parser {
     if (word == "CHANNELS") return channels(joint);
     if (word == "}") {
       open.pop_back();
-      return true;
+      if (has_offset_[joint] || bvh_.joints[joint].is_end_site) return true;
+      return fail(fmt::format("\"{}\" has no OFFSET", shown(bvh_.joints[joint].name)));
     }
     if (word == "JOINT" || word == "End") {
       if (bvh_.joints[joint].is_end_site) return fail("an End Site has children");
@@ -179,10 +180,15 @@ class Parser {
     }
     if (in_.word() != "{") return fail(fmt::format("\"{{\" expected after {}", shown(joint.name)));
     bvh_.joints.push_back(std::move(joint));
+    has_offset_.push_back(false);
     return true;
   }
 
   bool offset(int joint) {
+    if (has_offset_[joint]) {
+      return fail(fmt::format("\"{}\" has OFFSET twice", shown(bvh_.joints[joint].name)));
+    }
+    has_offset_[joint] = true;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = in_.word();
       const auto value = number(word);
@@ -306,6 +312,7 @@ class Parser {
   std::string name_;
   std::string message_;
   Bvh bvh_;
+  std::vector<bool> has_offset_;  // one a joint
 };
 
 }  // namespace

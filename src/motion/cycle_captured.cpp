@@ -56,29 +56,57 @@ void add_leg(const Skeleton& skeleton, const JointFrames& world, const LegJoints
   leg.toe.push_back(world.rotation[j.toe]);
 }
 
-}  // namespace
-
-CapturedCycle captured_cycle(const Motion& motion, const PeriodicMotion& periodic, double shift) {
+CapturedCycle without_samples(const Motion& motion) {
   CapturedCycle cycle;
   cycle.skeleton = rooted_at_pelvis(motion);
   cycle.pelvis = motion.pelvis;
   cycle.legs = motion.legs;
+  return cycle;
+}
+
+void add_sample(const PeriodicPose& at, JointFrames& world, CapturedCycle& cycle) {
+  Pose pose;
+  pose.joint_count = static_cast<int>(cycle.joints());
+  std::ranges::copy(at.local, pose.local.begin());
+  pose.root_m = at.pelvis_m;
+  forward_kinematics(cycle.skeleton, pose, world);
+  cycle.local.insert(cycle.local.end(), at.local.begin(), at.local.end());
+  cycle.pelvis_m.push_back(at.pelvis_m);
+  cycle.pelvis_rotation.push_back(world.rotation[cycle.pelvis]);
+  for (int side = 0; side < 2; ++side)
+    add_leg(cycle.skeleton, world, cycle.legs[side], cycle.leg[side]);
+}
+
+// About the vertical, then about the direction of view: the hips stand level.
+quat turned_to_left(const vec3& hips) {
+  const double level = std::sqrt(hips.x * hips.x + hips.z * hips.z);
+  return rotation_z(-gaitpad::atan2(hips.y, level)) *
+         rotation_y(-heading_of(glm::cross(hips, kUp)));
+}
+
+}  // namespace
+
+CapturedCycle captured_cycle(const Motion& motion, const PeriodicMotion& periodic, double shift) {
+  CapturedCycle cycle = without_samples(motion);
   cycle.duration_s = periodic.duration_s;
   cycle.stride_m = periodic.stride_m;
   const auto world = std::make_unique<JointFrames>();
-  Pose pose;
-  pose.joint_count = static_cast<int>(cycle.joints());
   for (int i = 0; i < kCycleSamples; ++i) {
-    const PeriodicPose at = pose_at(periodic, shift + double(i) / kCycleSamples);
-    std::ranges::copy(at.local, pose.local.begin());
-    pose.root_m = at.pelvis_m;
-    forward_kinematics(cycle.skeleton, pose, *world);
-    cycle.local.insert(cycle.local.end(), at.local.begin(), at.local.end());
-    cycle.pelvis_m.push_back(at.pelvis_m);
-    cycle.pelvis_rotation.push_back(world->rotation[cycle.pelvis]);
-    for (int side = 0; side < 2; ++side)
-      add_leg(cycle.skeleton, *world, cycle.legs[side], cycle.leg[side]);
+    add_sample(pose_at(periodic, shift + double(i) / kCycleSamples), *world, cycle);
   }
+  return cycle;
+}
+
+CapturedCycle captured_pose(const Motion& motion, const MotionFrame& frame) {
+  CapturedCycle cycle = without_samples(motion);
+  cycle.duration_s = 1.0;
+  const auto world = std::make_unique<JointFrames>();
+  forward_kinematics(motion, frame, *world);
+  const auto& at = world->position_m;
+  const vec3 left = at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip];
+  PeriodicPose pose{vec3(0.0, at[motion.pelvis].y, 0.0), frame.local};
+  pose.local[0] = turned_to_left(left) * frame.local[0];
+  for (int i = 0; i < kCycleSamples; ++i) add_sample(pose, *world, cycle);
   return cycle;
 }
 

@@ -28,6 +28,9 @@ struct CapturedCycle {
 // `shift` is the phase of `periodic` at which sample 0 stands.
 CapturedCycle captured_cycle(const Motion& motion, const PeriodicMotion& periodic, double shift);
 
+// One frame of a motion as a cycle in which nothing moves, turned until the hips' line is +x.
+CapturedCycle captured_pose(const Motion& motion, const MotionFrame& frame);
+
 // Speed over the ground of a point that is periodic in the travel frame, m/s, at each sample.
 std::vector<double> ground_speed(const CapturedCycle& cycle, const std::vector<vec3>& point_m);
 

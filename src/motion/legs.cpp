@@ -47,33 +47,19 @@ int common_ancestor(const Skeleton& skeleton, int a, int b) {
   return a;
 }
 
-// Of the descendants of `toe` the one that reaches furthest along ankle -> toe in the bare offsets:
-// of five toe chains it is the longest. An End Site of the toe joint itself comes first.
-int toe_end_of(const Skeleton& skeleton, int ankle, int toe) {
+// The toe joint's own End Site, else the last of its descendants in the file's order: the rule that
+// readers of an exported pose know.
+int toe_end_of(const Skeleton& skeleton, int toe) {
   const auto& joints = skeleton.joints;
-  if (joints[toe].is_end_site) return toe;
   for (const int child : children_of(skeleton, toe)) {
     if (joints[child].is_end_site) return child;
   }
-  const int count = static_cast<int>(joints.size());
-  std::vector<vec3> from_ankle(joints.size(), vec3(0.0));
-  int best = toe;
-  double reach = -1e300;
-  for (int j = ankle + 1; j < count; ++j) {
-    if (!is_ancestor(skeleton, ankle, j)) break;
-    from_ankle[j] = from_ankle[joints[j].parent] + joints[j].offset_m;
-    if (!is_ancestor(skeleton, toe, j)) continue;
-    const double r = glm::dot(from_ankle[j], from_ankle[toe]);
-    if (r > reach || (r == reach && joints[best].is_end_site < joints[j].is_end_site)) {
-      best = j;
-      reach = r;
-    }
+  int last = toe;
+  for (int j = toe + 1; j < static_cast<int>(joints.size()); ++j) {
+    if (!is_ancestor(skeleton, toe, j)) break;
+    last = j;
   }
-  // The furthest joint's own End Site, where it has no length, ends the chain.
-  for (const int child : children_of(skeleton, best)) {
-    if (joints[child].is_end_site) return child;
-  }
-  return best;
+  return last;
 }
 
 // The toe joint of a foot: named so (the one with the most below it); else the furthest child, else
@@ -103,7 +89,7 @@ int toe_of(const Shape& shape, int ankle) {
 bool complete(const Shape& shape, LegJoints& leg) {
   if (leg.toe < 0) leg.toe = toe_of(shape, leg.ankle);
   if (leg.toe < 0) return false;
-  leg.toe_end = toe_end_of(shape.skeleton, leg.ankle, leg.toe);
+  leg.toe_end = toe_end_of(shape.skeleton, leg.toe);
   return true;
 }
 

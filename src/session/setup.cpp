@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "motion/gait_cycle.h"
+#include "motion/cycle_retarget.h"
 #include "session/config_files.h"
 #include "session/motion_source.h"
 
@@ -127,6 +127,17 @@ Result<GaitCycle> cycle_of(const std::string& motion_file) {
   return gait_cycle(*motion);
 }
 
+Result<WalkerConfig> walker_config(const Character& character, int style, const GaitCycle& cycle) {
+  WalkerConfig walker{character, style, std::nullopt};
+  if (character.skeleton.empty()) return walker;
+  auto motion = load_motion_source(character.skeleton);
+  if (!motion) return motion.error();
+  auto own = cycle_on_skeleton(cycle, *motion);
+  if (!own) return own.error();
+  walker.own_cycle = std::move(*own);
+  return walker;
+}
+
 }  // namespace
 
 Result<SimulationConfig> simulation_config(const SessionOptions& options,
@@ -153,7 +164,10 @@ Result<SimulationConfig> simulation_config(const SessionOptions& options,
   config.cycle = std::move(*cycle);
   const std::size_t count = std::max(characters->size(), chosen_styles.size());
   for (std::size_t i = 0; i < count; ++i) {
-    config.walkers.push_back({nth_or_last(*characters, i), nth_or_last(chosen_styles, i)});
+    auto walker =
+        walker_config(nth_or_last(*characters, i), nth_or_last(chosen_styles, i), config.cycle);
+    if (!walker) return walker.error();
+    config.walkers.push_back(std::move(*walker));
   }
   return config;
 }

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <utility>
 
+#include "motion/cycle_retarget.h"
+
 namespace gaitpad {
 namespace {
 
@@ -29,6 +31,17 @@ int position(std::string_view word) noexcept {
   return result.ec == std::errc() && result.ptr == end && value > 0 ? value : 0;
 }
 
+// On a skeleton of its own the walk is retargeted already; its leg is still compared to the
+// motion's.
+Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& walker) {
+  if (!walker.own_cycle) return walk_model(config.cycle, walker.character);
+  Character build = walker.character;
+  build.skeleton.clear();
+  auto model = walk_model(*walker.own_cycle, build);
+  if (model) model->source_leg_length_m = mean_leg_m(config.cycle);
+  return model;
+}
+
 }  // namespace
 
 Result<Simulation> Simulation::create(const SimulationConfig& config) {
@@ -43,7 +56,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   s.styles_ = config.styles;
   s.walkers_.reserve(config.walkers.size());
   for (const WalkerConfig& walker : config.walkers) {
-    auto model = walk_model(config.cycle, walker.character);
+    auto model = model_of(config, walker);
     if (!model) return model.error();
     Walker& w = s.walkers_.emplace_back();
     w.model = std::move(*model);

@@ -2,6 +2,7 @@
 // benchmark all call step(); what it did depends on its reports alone, never on a clock.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,7 +22,8 @@ inline constexpr int kMaxWalkers = 16;
 
 struct WalkerConfig {
   Character character;
-  int style = 0;  // index in SimulationConfig::styles
+  int style = 0;                       // index in SimulationConfig::styles
+  std::optional<GaitCycle> own_cycle;  // on the character's own skeleton, where it brings one
 };
 struct SimulationConfig {
   int rate_hz = 240;
@@ -77,7 +79,7 @@ class Simulation {
   std::vector<Walker> walkers_;
   Stick stick_;
   SimulationCounts counts_;
-  Fnv1a hash_;
+  WordHash hash_;
 };
 
 }  // namespace gaitpad

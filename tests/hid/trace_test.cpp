@@ -53,6 +53,13 @@ TEST(Trace, CarriageReturnsAndUnknownLettersAreNoHarm) {
   EXPECT_EQ(t.events.size(), 1u);
 }
 
+TEST(Trace, WhatABpfProgramMadeOfAReportIsNoSecondReport) {
+  const Trace t = parsed(kHeader + "B: 000000.000000 2 01 02\nE: 000000.000010 2 01 03\n");
+  ASSERT_EQ(t.events.size(), 1u);
+  EXPECT_EQ(report_of(t, t.events[0]).bytes[1], 0x03);
+  EXPECT_EQ(t.devices[0].info.driver, "");
+}
+
 TEST(Trace, EventsBelongToTheDeviceOfTheLastIndex) {
   const Trace t = parsed(
       "D: 4\nR: 1 c0\nN: a\nI: 3 1 2\nD: 9\nR: 2 c0 c0\nN: b\nI: 5 3 4\n"
@@ -195,6 +202,15 @@ TEST(Trace, LenientSkipsDamagedLinesAndCountsThem) {
   EXPECT_EQ(t.first_damage, "t.hid:6: time goes back from 1.000000 to 0.000000");
   EXPECT_EQ(t.events.size(), 2u);
   EXPECT_EQ(t.devices.size(), 1u) << "the second device has no descriptor";
+}
+
+TEST(Trace, ReportsBelowADamagedDeviceIndexBelongToNoDevice) {
+  const Trace t = parsed(
+      "D: 0\nR: 1 c0\nD: 1\nR: 1 c0\nD: x\nE: 000000.000000 1 01\nD: 0\nE: 000000.000001 1 02\n",
+      Damage::skip);
+  EXPECT_EQ(t.skipped_lines, 2);
+  ASSERT_EQ(t.events.size(), 1u);
+  EXPECT_EQ(t.events[0].device, 0);
 }
 
 TEST(Trace, TheWriterGivesBackWhatTheReaderTook) {

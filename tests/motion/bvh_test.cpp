@@ -124,6 +124,12 @@ TEST(Bvh, DamagedHierarchiesAreRefused) {
   EXPECT_NE(error_of(replaced(kTiny, "MOTION", "ROOT b\n{\n}\nMOTION")), "");
 }
 
+TEST(Bvh, AJointHasOneOffset) {
+  EXPECT_NE(error_of(replaced(kTiny, "OFFSET 0 1 0", "OFFSET 0 1 0\nOFFSET 0 1 0")), "");
+  const std::string text = replaced(WalkerText().text(), "OFFSET 10 -2 0\n", "");
+  EXPECT_NE(error_of(text).find("\"LeftUpLeg\" has no OFFSET"), std::string::npos);
+}
+
 TEST(Bvh, AMissingFileOrAFolderIsOneSentence) {
   EXPECT_EQ(read_bvh("/nowhere/walk.bvh").error().message, "/nowhere/walk.bvh: no such file");
   EXPECT_FALSE(read_bvh(std::filesystem::temp_directory_path().string()));

@@ -143,9 +143,9 @@ constexpr SharedCase kShared[] = {
     {"bvhparser_sample.bvh", "hip", "lThigh lShin lFoot lFoot_End lFoot_End"},
     {"bvhtoolbox_walk01.bvh", "Hips", "LeftUpLeg LeftLeg LeftFoot LeftFoot_End LeftFoot_End"},
     {"cmu_007_01_iclone.bvh", "CC_Base_Pelvis",
-     "CC_Base_L_Thigh CC_Base_L_Calf CC_Base_L_Foot CC_Base_L_ToeBase CC_Base_L_IndexToe1_End"},
+     "CC_Base_L_Thigh CC_Base_L_Calf CC_Base_L_Foot CC_Base_L_ToeBase CC_Base_L_BigToe1_End"},
     {"cmu_12_01_walk.bvh", "Hips", "LeftUpLeg LeftLeg LeftFoot LeftToeBase LeftToeBase_End"},
-    {"daz3d_170_joints.bvh", "pelvis", "lThighBend lShin lFoot lToe lSmallToe1_2_End"},
+    {"daz3d_170_joints.bvh", "pelvis", "lThighBend lShin lFoot lToe lBigToe_2_End"},
     {"freebvh_mixamo_names.bvh", "mixamorig:Hips",
      "mixamorig:LeftUpLeg mixamorig:LeftLeg mixamorig:LeftFoot mixamorig:LeftToeBase "
      "mixamorig:LeftToeBase_End"},

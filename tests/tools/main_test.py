@@ -27,6 +27,14 @@ class Main(unittest.TestCase):
         for command in ("replay", "decode", "motion", "ik", "bench"):
             self.assertIn(f"  {command} ", listed)
 
+    def test_a_full_disk_is_one_sentence(self):
+        for arguments in (["decode", str(ROOT / "config/traces/round.hid")], ["motion", "procedural", "--json"]):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True,
+                                      check=False)
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(done.stderr, "gaitpad: standard output cannot be written\n")
+
     def test_the_bundled_trace_is_what_its_script_writes(self):
         script = subprocess.run(["/usr/bin/python3", ROOT / "tools/make_round_trace.py"],
                                 capture_output=True, text=True, check=True)

@@ -3,6 +3,7 @@
 import csv
 import json
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -246,6 +247,25 @@ class Refusals(ReplayCase):
         self.assert_refused(WALK, "--motion", notes, says=("notes.toml:3", "hipp"))
         self.assert_refused(WALK, "--motion", self.write("empty.toml", ""), says=("empty.toml", "file"))
 
+    def test_a_character_brings_its_own_skeleton(self):
+        # The program's own pose, twice as large, as a stranger's file.
+        self.replay(HEADER + report(0) + end(0.1), "--character", self.write("twice.toml", "scale = 2\n"))
+        (self.out / "pose.bvh").rename(self.folder / "giant.bvh")
+        _, summary = self.replay(WALK, "--character", self.write("giant.toml", 'skeleton = "giant.bvh"\n'))
+        self.assertEqual(summary["ik_failures"], 0)
+        self.assertAlmostEqual(summary["source_leg_length_m"], 0.84)
+        self.assertAlmostEqual(summary["metres_per_unit"], 1.0)
+        self.assertEqual(summary["motion"], "procedural")
+        self.assertGreater(summary["steps_left"], 3)
+
+    def test_a_character_whose_skeleton_is_none(self):
+        self.assert_refused(WALK, "--character", self.write("a.toml", 'skeleton = "none.bvh"\n'),
+                            says=("none.bvh", "no such file"))
+        self.write("pole.bvh", "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation Zrotation\n"
+                               "End Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.01\n0 0 0\n")
+        self.assert_refused(WALK, "--character", self.write("a.toml", 'skeleton = "pole.bvh"\n'),
+                            says=("pole.bvh", "no two legs"))
+
     def test_terrain_and_window_come_later(self):
         self.assert_refused(WALK, "--terrain", "steps", says=("steps",))
         self.assert_refused(WALK, "--view", says=("window",))
@@ -255,6 +275,14 @@ class Refusals(ReplayCase):
         self.write("file", "")
         self.out = self.folder / "file" / "out"
         self.assert_refused(WALK, says=("file/out",))
+
+    def test_too_large_a_file_is_a_failed_write(self):
+        limited = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+        done = subprocess.run([PROGRAM, "replay", self.write("made.hid", WALK), "--out", str(self.out)],
+                              capture_output=True, text=True, check=False, preexec_fn=limited)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("cannot be written", done.stderr)
+        self.assertEqual(list(self.out.iterdir()), [])
 
     def test_a_failure_leaves_the_files_of_an_earlier_run(self):
         self.replay(WALK)

@@ -1,6 +1,4 @@
 // libFuzzer target: any text through the BVH reader, the loader, the flight rules and the writer.
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Isrc -I. tools/fuzz/fuzz_bvh.cpp
-//     src/motion/*.cpp src/base/*.cpp -lfmt -o fuzz_bvh && ./fuzz_bvh -max_len=20000 CORPUS
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,12 +1,16 @@
 // gaitpad: one program with sub-commands. Parses; the commands do the rest.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
+#include <system_error>
 
 #include "tools/gaitpad/commands.h"
 
 namespace {
 
-constexpr int kWrongUsage = 2;
+constexpr int kFailed = 1, kWrongUsage = 2;
+
+bool is_flushed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 }  // namespace
 
@@ -16,7 +20,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("gaitpad COMMAND --help says more. Exit status: 0 done, 1 failed, 2 wrong usage.");
 
+  std::signal(SIGXFSZ, SIG_IGN);  // too large a file is a failed write, told like any other
   int status = 0;
+  bool is_written = true;
   gaitpad::add_replay(app, status);
   gaitpad::add_decode(app, status);
   gaitpad::add_motion(app, status);
@@ -26,10 +32,10 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kWrongUsage;
+  } catch (const std::system_error&) {  // fmt::print on a full disk
+    is_written = false;
   }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    std::fputs("gaitpad: standard output cannot be written\n", stderr);
-    return 1;
-  }
-  return status;
+  if (is_written && is_flushed()) return status;
+  std::fputs("gaitpad: standard output cannot be written\n", stderr);
+  return kFailed;
 }

@@ -1,0 +1,130 @@
+#include "animation/walk_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <numeric>
+
+#include "animation/walk.h"
+
+namespace gaitpad {
+namespace {
+
+WalkModel model_of(double leg_ratio, double scale = 1.0) {
+  Character character;
+  character.leg_ratio = leg_ratio;
+  character.scale = scale;
+  auto model = walk_model(procedural_gait(), character);
+  if (!model) {
+    ADD_FAILURE() << model.error().message;
+    std::abort();
+  }
+  return *model;
+}
+
+const Joint& joint_of(const WalkModel& model, int index) {
+  return model.cycle.skeleton.joints[index];
+}
+
+TEST(WalkModel, LegsGrowByTheRatioAndTheRestByTheScaleAlone) {
+  const WalkModel plain = model_of(1.0), built = model_of(0.7, 1.2);
+  EXPECT_NEAR(built.leg_length_m, 0.7 * 1.2 * plain.leg_length_m, 1e-12);
+  EXPECT_NEAR(built.source_leg_length_m, plain.leg_length_m, 1e-12);
+  for (Side side : {kLeftSide, kRightSide}) {
+    const LegModel &a = plain.leg[side].model, &b = built.leg[side].model;
+    EXPECT_NEAR(b.length_m(), built.leg_length_m, 1e-12);
+    EXPECT_NEAR(b.thigh_m / a.thigh_m, 0.84, 1e-12);
+    EXPECT_NEAR(b.shank_m / a.shank_m, 0.84, 1e-12);
+    EXPECT_NEAR(glm::length(b.toe_m - b.heel_m) / glm::length(a.toe_m - a.heel_m), 0.84, 1e-12);
+    EXPECT_LT(glm::distance(b.hip_m, 1.2 * a.hip_m), 1e-12);
+  }
+  const LegJoints& joints = plain.leg[kLeftSide].model.joints;
+  for (std::size_t j = 0; j < plain.cycle.skeleton.joints.size(); ++j) {
+    const int i = static_cast<int>(j);
+    const bool in_leg = i == joints.knee || i == joints.ankle || i == joints.toe;
+    const bool outside = i < joints.hip && i > 0;
+    if (in_leg || outside) {
+      EXPECT_LT(glm::distance(joint_of(built, i).offset_m,
+                              (in_leg ? 0.84 : 1.2) * joint_of(plain, i).offset_m),
+                1e-12)
+          << joint_of(plain, i).name;
+    }
+  }
+}
+
+TEST(WalkModel, StepsAndFlightsScaleWithTheLeg) {
+  const WalkModel plain = model_of(1.0), tall = model_of(1.44);
+  EXPECT_NEAR(tall.source_step_m, 1.44 * plain.source_step_m, 1e-12);
+  EXPECT_GT(tall.time_scale, plain.time_scale);
+  EXPECT_NEAR(plain.size, plain.leg_length_m / kReferenceLeg_m, 1e-12);
+  EXPECT_NEAR(tall.leg[kLeftSide].flight.height_m.at(0.5),
+              1.44 * plain.leg[kLeftSide].flight.height_m.at(0.5), 1e-12);
+}
+
+TEST(WalkModel, LeavesTheSourcesCycleOfEventsAlone) {
+  const WalkModel plain = model_of(1.0), small = model_of(0.6);
+  EXPECT_EQ(plain.share, small.share);
+  EXPECT_NEAR(std::accumulate(plain.share.begin(), plain.share.end(), 0.0), 1.0, 1e-12);
+  for (double share : plain.share) EXPECT_GT(share, 0.05);
+  EXPECT_EQ(plain.step_front, small.step_front);
+}
+
+TEST(WalkModel, StandsFlatWithItsHeelsOnTheFloorAtEveryLegRatio) {
+  for (double ratio : {0.6, 1.0, 1.6}) {
+    const WalkModel model = model_of(ratio);
+    Pose pose;
+    const WalkState state = standing(model, vec3(3.0, 0.0, -2.0), pose);
+    for (Side side : {kLeftSide, kRightSide}) {
+      const LegBuild& leg = model.leg[side];
+      EXPECT_NEAR(state.frame.heel_m[side].y, 0.0, 1e-6) << ratio;
+      EXPECT_NEAR(state.frame.toe_m[side].y, leg.model.toe_rest_m, 1e-6) << ratio;
+      EXPECT_NEAR(state.frame.heel_m[side].x, 3.0 + leg.track_m, 1e-6) << ratio;
+    }
+    EXPECT_GT(state.frame.pelvis_m.y, 0.9 * model.leg_length_m);
+  }
+}
+
+TEST(WalkModel, ItsTablesRepeatAndAreFinite) {
+  const WalkModel model = model_of(1.0);
+  const auto check = [](const PhaseTable& table) {
+    for (double phase = 0.0; phase < 1.0; phase += 0.03) {
+      EXPECT_TRUE(std::isfinite(table.at(phase)));
+      EXPECT_NEAR(table.at(phase + 2.0), table.at(phase), 1e-12);
+    }
+  };
+  for (const PhaseTable* t : {&model.sway_m, &model.bounce_m, &model.surge_m, &model.yaw_rad})
+    check(*t);
+  for (const PhaseTable& t : model.tilt) check(t);
+  for (int side : {0, 1}) {
+    for (const PhaseTable& t : model.reference_rad[side]) check(t);
+    check(model.leg[side].pitch_rad);
+    check(model.leg[side].toe_rad);
+  }
+}
+
+TEST(WalkModel, AFlightGoesFromLiftToStrikeAndAboveTheFloor) {
+  const WalkModel model = model_of(1.0);
+  for (const LegBuild& leg : model.leg) {
+    EXPECT_NEAR(leg.flight.progress.at(0.0), 0.0, 1e-12);
+    EXPECT_NEAR(leg.flight.progress.at(1.0), 1.0, 1e-12);
+    for (double u = 0.0; u <= 1.0; u += 0.01) EXPECT_GE(leg.flight.height_m.at(u), -1e-3);
+    EXPECT_GT(leg.flight.height_m.at(0.2), leg.flight.height_m.at(0.9));
+    EXPECT_NEAR(leg.toe_off, 0.6, 0.08);
+  }
+}
+
+// The normative walk is symmetric: what the left leg does, the right one does half a cycle later.
+TEST(WalkModel, TheDefaultsSidesMirrorEachOther) {
+  const WalkModel model = model_of(1.0);
+  EXPECT_NEAR(model.leg[kLeftSide].track_m, -model.leg[kRightSide].track_m, 1e-6);
+  EXPECT_NEAR(model.share[0], model.share[2], 1e-6);
+  for (double phase = 0.0; phase < 1.0; phase += 0.02) {
+    for (int j : {kHipX, kKneeX, kAnkleX}) {
+      EXPECT_NEAR(model.reference_rad[kLeftSide][j].at(phase + 0.5),
+                  model.reference_rad[kRightSide][j].at(phase), 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,353 @@
+// Properties of the walk on the built-in motion, without files. tests/session/acceptance.py
+// measures the bounds on exported walks, captured ones too.
+#include "animation/walk.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "control/control.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr int kRate = 240;
+constexpr double kDt = 1.0 / kRate;
+
+WalkModel model_of(double leg_ratio) {
+  Character character;
+  character.leg_ratio = leg_ratio;
+  auto model = walk_model(procedural_gait(), character);
+  if (!model) {
+    ADD_FAILURE() << model.error().message;
+    std::abort();
+  }
+  return *model;
+}
+
+const WalkModel& adult() {
+  static const WalkModel model = model_of(1.0);
+  return model;
+}
+
+// A character with a stick and a style, and the frames of its ticks.
+class Walker {
+ public:
+  explicit Walker(const WalkModel& model = adult(), IkMode mode = IkMode::robust)
+      : model_(model),
+        limits_(gait_limits(model.leg_length_m)),
+        mode_(mode),
+        state_(standing(model, vec3(0.0), pose_)) {}
+
+  void walk(double x, double y, int ticks, const Style& style = {}) {
+    Stick stick;
+    stick.left = vec2(x, y);
+    const GaitParams params = gait_params(stick, style, limits_);
+    for (int i = 0; i < ticks; ++i) {
+      advance(model_, params, mode_, kDt, state_, pose_);
+      frames_.push_back(state_.frame);
+      poses_.push_back(state_.angles_rad);
+    }
+  }
+  const std::vector<WalkFrame>& frames() const { return frames_; }
+  const std::vector<std::array<LegAngles, 2>>& poses() const { return poses_; }
+  const WalkFrame& last() const { return frames_.back(); }
+  const WalkModel& model() const { return model_; }
+  const Pose& pose() const { return pose_; }
+
+ private:
+  const WalkModel& model_;
+  GaitLimits limits_;
+  IkMode mode_;
+  Pose pose_;
+  WalkState state_;
+  std::vector<WalkFrame> frames_;
+  std::vector<std::array<LegAngles, 2>> poses_;
+};
+
+bool is_finite(const Pose& pose) {
+  double sum = pose.root_m.x + pose.root_m.y + pose.root_m.z;
+  for (int j = 0; j < pose.joint_count; ++j) {
+    const quat& q = pose.local[j];
+    sum += q.w + q.x + q.y + q.z;
+  }
+  return std::isfinite(sum);
+}
+
+// How far a planted point strays from where it was when it was planted.
+double drift_m(const std::vector<WalkFrame>& frames) {
+  double farthest = 0.0;
+  for (int point = 0; point < 4; ++point) {
+    const int side = point / 2;
+    const bool heel = point % 2 == 0;
+    vec3 anchor(0.0);
+    bool planted = false;
+    for (const WalkFrame& f : frames) {
+      const bool now = heel ? f.heel_planted[side] : f.toe_planted[side];
+      const vec3& place = heel ? f.heel_m[side] : f.toe_m[side];
+      if (now && !planted) anchor = place;
+      if (now) farthest = std::max(farthest, glm::distance(anchor, place));
+      planted = now;
+    }
+  }
+  return farthest;
+}
+
+Style limp() {
+  Style style;
+  style.stride[kLeftSide] = {.length = 0.5, .speed = 1.3, .flight_height = 0.5};
+  return style;
+}
+Style with_hip_weight(double weight) {
+  Style style;
+  for (LegWeights& w : style.weight) w[kHipX] = w[kHipY] = w[kHipZ] = weight;
+  return style;
+}
+
+TEST(Walk, PlantedPointsStayOnTheirPlaceWhateverTheStickDoes) {
+  Walker walker;
+  walker.walk(0, 0, 60);
+  walker.walk(0, 1.0, 500);
+  walker.walk(0.7, 0.6, 500);
+  walker.walk(-0.5, 0.0, 500);
+  walker.walk(0, 0.3, 500, limp());
+  walker.walk(0, 0, 400);
+  EXPECT_LT(drift_m(walker.frames()), 1e-4);
+}
+
+TEST(Walk, StagesFollowInTheOrderOfTableOne) {
+  Walker walker;
+  walker.walk(0, 0, 10);
+  walker.walk(0, 0.8, 1500);
+  walker.walk(0, 0, 500);
+  using Key = std::pair<Stage, Side>;
+  const std::map<Key, Key> next = {{{Stage::roll, kRightSide}, {Stage::flight, kLeftSide}},
+                                   {{Stage::flight, kLeftSide}, {Stage::roll, kLeftSide}},
+                                   {{Stage::roll, kLeftSide}, {Stage::flight, kRightSide}},
+                                   {{Stage::flight, kRightSide}, {Stage::roll, kRightSide}}};
+  int changes = 0;
+  for (std::size_t k = 1; k < walker.frames().size(); ++k) {
+    const WalkFrame &a = walker.frames()[k - 1], &b = walker.frames()[k];
+    if (a.stage == b.stage && a.swing == b.swing) continue;
+    ++changes;
+    if (a.stage == Stage::idle || b.stage == Stage::idle) {
+      EXPECT_TRUE(a.stage == Stage::roll || b.stage == Stage::roll);
+    } else {
+      EXPECT_EQ((Key{b.stage, b.swing}), next.at({a.stage, a.swing})) << "tick " << k;
+    }
+  }
+  EXPECT_GT(changes, 20);
+}
+
+TEST(Walk, PlantedIsWhatTableOneSays) {
+  Walker walker;
+  walker.walk(0.3, 0.7, 1200);
+  walker.walk(0, 0, 500);
+  for (const WalkFrame& f : walker.frames()) {
+    for (Side side : {kLeftSide, kRightSide}) {
+      const bool swings = f.stage != Stage::idle && f.swing == side;
+      EXPECT_EQ(f.toe_planted[side], !swings);
+      EXPECT_EQ(f.heel_planted[side], f.stage == Stage::idle || (f.stage == Stage::roll && swings));
+    }
+  }
+}
+
+TEST(Walk, AMirroredStickGivesTheMirroredWalk) {
+  Walker left, right;
+  const struct {
+    double x, y;
+    int ticks;
+  } plan[] = {{-0.5, 0.7, 700}, {0.3, 0.5, 500}, {-0.8, 0.0, 400}, {0.0, 0.0, 400}};
+  for (const auto& p : plan) {
+    left.walk(p.x, p.y, p.ticks);
+    right.walk(-p.x, p.y, p.ticks);
+  }
+  const auto mirrored = [](const vec3& v) { return vec3(-v.x, v.y, v.z); };
+  for (std::size_t k = 0; k < left.frames().size(); ++k) {
+    const WalkFrame &l = left.frames()[k], &r = right.frames()[k];
+    ASSERT_NEAR(l.heading_rad, -r.heading_rad, 1e-12) << "tick " << k;
+    ASSERT_EQ(l.stage, r.stage) << "tick " << k;
+    ASSERT_LT(glm::distance(l.pelvis_m, mirrored(r.pelvis_m)), 1e-3) << "tick " << k;
+    for (Side side : {kLeftSide, kRightSide}) {
+      ASSERT_LT(glm::distance(l.heel_m[side], mirrored(r.heel_m[other(side)])), 1e-3)
+          << "tick " << k;
+    }
+  }
+}
+
+TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
+  for (int ticks = 300; ticks < 420; ticks += 13) {  // in every part of a step
+    Walker walker;
+    walker.walk(0, 0.8, ticks);
+    walker.walk(0, 0, 700);
+    const WalkFrame& end = walker.last();
+    EXPECT_EQ(end.stage, Stage::idle);
+    EXPECT_EQ(end.speed_m_s, 0.0);
+    EXPECT_NEAR(end.heel_m[0].z, end.heel_m[1].z, 1e-4);
+    EXPECT_NEAR(end.heel_m[0].x - end.heel_m[1].x, adult().leg[0].track_m - adult().leg[1].track_m,
+                1e-4);
+    for (Side side : {kLeftSide, kRightSide}) {
+      EXPECT_NEAR(end.heel_m[side].y, 0.0, 1e-4);
+      EXPECT_NEAR(end.toe_m[side].y, adult().leg[side].model.toe_rest_m, 1e-4);
+    }
+    const WalkFrame& before = walker.frames()[walker.frames().size() - 2];
+    EXPECT_LT(glm::distance(end.pelvis_m, before.pelvis_m), 1e-6);
+  }
+}
+
+TEST(Walk, StandingStillChangesNothing) {
+  Walker walker;
+  walker.walk(0, 0, 2);
+  const WalkFrame first = walker.last();
+  walker.walk(0, -1.0, 480);
+  EXPECT_LT(glm::distance(walker.last().pelvis_m, first.pelvis_m), 1e-9);
+  EXPECT_EQ(walker.last().stage, Stage::idle);
+}
+
+TEST(Walk, AStepIsAsLongAsItsFrameSays) {
+  for (double ratio : {0.6, 1.0, 1.6}) {
+    const WalkModel model = model_of(ratio);
+    Walker walker(model);
+    walker.walk(0, 0.4, 900);
+    walker.walk(0, 0.9, 1200, limp());
+    for (std::size_t k = 1; k < walker.frames().size(); ++k) {
+      const WalkFrame &a = walker.frames()[k - 1], &b = walker.frames()[k];
+      if (a.stage != Stage::flight || b.stage != Stage::roll) continue;
+      const Side swing = b.swing;
+      double stood_z = 0.0;  // where the standing foot's heel was last on the ground
+      for (std::size_t j = 0; j < k; ++j) {
+        if (walker.frames()[j].heel_planted[other(swing)])
+          stood_z = walker.frames()[j].heel_m[other(swing)].z;
+      }
+      EXPECT_NEAR(b.heel_m[swing].z - stood_z, b.stride_m[swing], 1e-3) << ratio << " tick " << k;
+    }
+  }
+}
+
+TEST(Walk, SpeedIsTheNetDisplacementOverWholeCycles) {
+  for (double y : {0.3, 0.6, 1.0}) {
+    Walker walker;
+    walker.walk(0, y, 2400);
+    std::vector<std::size_t> strikes;
+    for (std::size_t k = 1200; k < walker.frames().size(); ++k) {
+      const WalkFrame &a = walker.frames()[k - 1], &b = walker.frames()[k];
+      if (a.stage == Stage::flight && b.stage == Stage::roll && b.swing == kRightSide)
+        strikes.push_back(k);
+    }
+    ASSERT_GE(strikes.size(), 3u);
+    const WalkFrame &first = walker.frames()[strikes.front()],
+                    &last = walker.frames()[strikes.back()];
+    const double time_s = static_cast<double>(strikes.back() - strikes.front()) * kDt;
+    const double speed_m_s = (last.pelvis_m.z - first.pelvis_m.z) / time_s;
+    EXPECT_NEAR(speed_m_s, last.speed_m_s, 0.01 * last.speed_m_s) << y;
+    EXPECT_NEAR(last.pelvis_m.x, first.pelvis_m.x, 1e-4 * static_cast<double>(strikes.size()));
+  }
+}
+
+TEST(Walk, WeightsChangeTheLegAndNeitherLiftOffNorLandingPlace) {
+  Walker even, stiff;
+  even.walk(0, 0.8, 2000);
+  stiff.walk(0, 0.8, 2000, with_hip_weight(0.2));
+  double square = 0.0;
+  for (std::size_t k = 1; k < even.frames().size(); ++k) {
+    const WalkFrame &a = even.frames()[k], &b = stiff.frames()[k];
+    ASSERT_EQ(a.stage, b.stage) << "tick " << k;
+    const double change = even.poses()[k][0][kHipX] - stiff.poses()[k][0][kHipX];
+    if (k >= 1000) square += change * change / 1000.0;
+    if (even.frames()[k - 1].stage == a.stage) continue;
+    // Into a flight: the foot that lifts; into a roll: the one that has landed.
+    EXPECT_LT(glm::distance(a.heel_m[a.swing], b.heel_m[b.swing]), 1e-3) << "tick " << k;
+  }
+  EXPECT_GT(std::sqrt(square), 1.5 * kDegree);
+}
+
+TEST(Walk, JointsStayWithinTheirLimits) {
+  Walker walker(adult());
+  walker.walk(0, 1.0, 800);
+  walker.walk(0.9, 0.3, 800, limp());
+  walker.walk(0, 0.0, 400, with_hip_weight(0.2));
+  for (const auto& legs : walker.poses()) {
+    for (Side side : {kLeftSide, kRightSide}) {
+      for (int j = 0; j < kLegDofs; ++j) {
+        const IkDof& dof = adult().leg[side].chain.dof[j];
+        ASSERT_GE(legs[side][j], dof.min_rad - 1e-12);
+        ASSERT_LE(legs[side][j], dof.max_rad + 1e-12);
+      }
+    }
+  }
+}
+
+TEST(Walk, NeverFailsOverRandomSticksAndStyles) {
+  const Style styles[] = {{}, limp(), with_hip_weight(0.2)};
+  for (double ratio : {0.6, 1.0, 1.6}) {
+    const WalkModel model = model_of(ratio);
+    Walker walker(model);
+    std::mt19937 chance(7);
+    const auto in = [&chance](double low, double high) {
+      return low + (high - low) * (chance() >> 8) / double(1 << 24);
+    };
+    while (walker.frames().size() < 60 * kRate) {
+      const double y = in(-0.3, 1.0), x = chance() % 3 == 0 ? 0.0 : in(-0.7, 0.7);
+      walker.walk(x, y, 20 + static_cast<int>(chance() % 400), styles[chance() % 3]);
+      ASSERT_TRUE(is_finite(walker.pose()));
+    }
+    int failures = 0;
+    for (const WalkFrame& f : walker.frames()) failures += f.ik_failed[0] + f.ik_failed[1];
+    EXPECT_EQ(failures, 0) << ratio;
+    EXPECT_LT(drift_m(walker.frames()), 1e-4) << ratio;
+  }
+}
+
+TEST(Walk, PaperModeStaysBoundedAndFinite) {
+  for (const Style& style : {Style{}, limp(), with_hip_weight(0.2)}) {
+    Walker walker(adult(), IkMode::paper);
+    walker.walk(0, 0.8, 10 * kRate, style);
+    walker.walk(0.5, 0.6, 10 * kRate, style);
+    ASSERT_TRUE(is_finite(walker.pose()));
+    for (const WalkFrame& f : walker.frames()) {
+      for (Side side : {kLeftSide, kRightSide}) {
+        ASSERT_LT(glm::distance(f.heel_m[side], f.pelvis_m), 1.5 * adult().leg_length_m);
+      }
+    }
+  }
+}
+
+// Whole-tick stages: nothing accumulates.
+TEST(Walk, TheHundredthStrideIsTheTenth) {
+  Walker walker;
+  walker.walk(0, 0.7, 120 * 300);
+  std::vector<std::size_t> strikes;
+  for (std::size_t k = 1; k < walker.frames().size(); ++k) {
+    const WalkFrame &a = walker.frames()[k - 1], &b = walker.frames()[k];
+    if (a.stage == Stage::flight && b.stage == Stage::roll && b.swing == kRightSide)
+      strikes.push_back(k);
+  }
+  ASSERT_GT(strikes.size(), 101u);
+  const std::size_t ticks = strikes[11] - strikes[10];
+  ASSERT_EQ(strikes[101] - strikes[100], ticks);
+  for (std::size_t i = 0; i < ticks; ++i) {
+    for (Side side : {kLeftSide, kRightSide}) {
+      for (int j = 0; j < kLegDofs; ++j) {
+        ASSERT_NEAR(walker.poses()[strikes[10] + i][side][j],
+                    walker.poses()[strikes[100] + i][side][j], 0.1 * kDegree);
+      }
+    }
+  }
+}
+
+TEST(Walk, TheSameTicksGiveTheSameBits) {
+  Walker a, b;
+  for (Walker* walker : {&a, &b}) {
+    walker->walk(0.2, 0.9, 500);
+    walker->walk(0, 0.2, 300, limp());
+  }
+  EXPECT_EQ(a.poses(), b.poses());
+  EXPECT_EQ(a.last().pelvis_m, b.last().pelvis_m);
+}
+
+}  // namespace
+}  // namespace gaitpad

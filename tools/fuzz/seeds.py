@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+"""Writes the fuzzers' first inputs from the repository's own files: seeds.py OUT_FOLDER"""
+import math
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def lines_of(text, letter):
+    return [line for line in text.splitlines() if line.startswith(letter + ":")]
+
+
+def bytes_behind(line, words):
+    return bytes(int(x, 16) for x in line.split()[words:])
+
+
+def write_pads(out):
+    """The traces as they are; fuzz_descriptor's frame (two choosing bytes, length) round their bytes."""
+    for path in sorted((ROOT / "tests/data/pads").glob("*.hid")):
+        text = path.read_text()
+        (out / "fuzz_trace" / path.name).write_text(text)
+        descriptor = bytes_behind(lines_of(text, "R")[0], 2)
+        reports = b"".join(bytes_behind(line, 3) for line in lines_of(text, "E")[:3])
+        for override in (0, 1):
+            head = bytes([3, override, len(descriptor) & 255, len(descriptor) >> 8])
+            (out / "fuzz_descriptor" / f"{path.stem}.{override}").write_bytes(head + descriptor + reports)
+
+
+def leg(side, x):
+    """Hip, knee, ankle, toe of a leg 0.8 m long, in centimetres."""
+    places = (("UpLeg", f"{x} -2 0"), ("Leg", "0 -40 0"), ("Foot", "0 -40 0"), ("ToeBase", "0 -8 12"))
+    opened = "".join(f"JOINT {side}{name}\n{{\nOFFSET {place}\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
+                     for name, place in places)
+    return opened + "End Site\n{\nOFFSET 0 0 6\n}\n" + "}\n" * len(places)
+
+
+def write_walk(out):
+    """Legs that swing against each other while the root travels."""
+    frames = []
+    for k in range(40):
+        swing = [30 * math.sin(0.35 * k + phase) for phase in (0, math.pi)]
+        legs = [f"0 {s:.2f} 0 0 {max(0.0, -s):.2f} 0 0 0 0 0 0 0" for s in swing]
+        frames.append(f"0 90 {4 * k} 0 0 0 " + " ".join(legs))
+    text = ("HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\n"
+            "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n" +
+            leg("Left", 10) + leg("Right", -10) + f"}}\nMOTION\nFrames: {len(frames)}\nFrame Time: 0.0333\n")
+    (out / "fuzz_bvh" / "walk.bvh").write_text(text + "\n".join(frames) + "\n")
+    (out / "fuzz_bvh" / "still.bvh").write_text(text.replace(f"Frames: {len(frames)}", "Frames: 1") + frames[0] + "\n")
+
+
+def main():
+    out = pathlib.Path(sys.argv[1])
+    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh"):
+        (out / name).mkdir(parents=True, exist_ok=True)
+    write_pads(out)
+    write_walk(out)
+
+
+if __name__ == "__main__":
+    main()

@@ -7,7 +7,8 @@ constexpr double kClearance_m = 0.012;     // least toe clearance in flight, at 
 constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when the heel strikes
 constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
 // Of the leg: with the hip further away, a standing foot rises on its toe.
-constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachAtRest = 1.01;
+constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachUpright = 1.01;
+constexpr double kAhead = 0.1;  // of the leg: the hip before the toe
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // Near its highest the ankle hardly rises any more: there the reach is given up softly.
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
@@ -34,16 +35,11 @@ double pitch_scale(const WalkModel& model, const WalkState& state, Side side) no
 }
 
 double support_pitch(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  if (state.stage == Stage::idle || !state.started || state.closing) {
-    const bool leaves = state.started && state.closing && side == step_foot(state);
-    if (!leaves) return 0.0;
-  }
   const double own = own_phase(model, state, side);
-  const double gate = smoothstep(kRiseBegin, kRiseEnd, own);
   const double height = std::min(1.0, state.flight_height[side].x);
   const double pitch =
       pitch_scale(model, state, side) * std::max(0.0, model.leg[side].pitch_rad.at(own));
-  return gate * height * soft_min(pitch, kMaxPlannedPitch, kWidePitch);
+  return heel_rise(model, state, side) * height * soft_min(pitch, kMaxPlannedPitch, kWidePitch);
 }
 
 double flight_pitch(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
@@ -64,8 +60,7 @@ double lift_share(const WalkState& state, Side side) noexcept {
 
 // In a turn the foot pivots on its planted toe as its heel rises.
 double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  if (state.stage == Stage::idle || !state.started) return 0.0;
-  return state.turn_rate.x * smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));
+  return state.turn_rate.x * heel_rise(model, state, side);
 }
 
 vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
@@ -103,6 +98,12 @@ double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip
 }
 
 }  // namespace
+
+double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  const bool stays = state.closing && side != step_foot(state);
+  if (state.stage == Stage::idle || !state.started || stays) return 0.0;
+  return smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));
+}
 
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
   return rotation_y(pose.yaw_rad) * rotation_about(leg.side, pose.pitch_rad);
@@ -157,13 +158,14 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
   if (foot.mode != FootMode::support) return;
   const LegBuild& leg = model.leg[side];
   const double planned = foot.planned_rad;
-  const double gate = state.stage == Stage::idle
-                          ? 0.0
-                          : smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));
-  // At rest the leg may be longer: a standing foot stays flat.
+  const double gate = heel_rise(model, state, side);
+  // Under the hips the leg may be longer: a standing foot stays flat.
+  const vec3 forward = rotation_y(foot.pose.yaw_rad) * leg.forward;
+  const double ahead = glm::dot(hip_m - foot.pose.toe_m, forward) / leg.model.length_m();
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
-  const double reach = leg.model.length_m() *
-                       mix(kReachAtRest, mix(kReachOfLame, kReachOnToe, able), presence(state));
+  const double reach =
+      leg.model.length_m() *
+      mix(kReachUpright, mix(kReachOfLame, kReachOnToe, able), smoothstep(0.0, kAhead, ahead));
   const double pitch = gate == 0.0
                            ? planned
                            : mix(planned,

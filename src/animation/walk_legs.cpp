@@ -183,11 +183,19 @@ bool even(const WalkState& state, Side side) noexcept {
   return high - low < kEvenSpread;
 }
 
-// A foot whose ankle would bend up too far rises at the heel (standing) or points down (flying).
-void ease_ankle(const LegBuild& leg, const Pelvis& pelvis, IkAngles& angles, FootState& foot,
-                Solve& solve) noexcept {
-  const double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], kSoftAnkle);
-  if (excess == 0.0 || foot.mode == FootMode::roll) return;
+// A foot whose ankle would bend up too far points down in flight, as far as the floor allows, and
+// rises at the heel in late support; a foot that is to stand still does not.
+void ease_ankle(const WalkModel& model, const WalkState& state, Side side, const Pelvis& pelvis,
+                IkAngles& angles, FootState& foot, Solve& solve) noexcept {
+  const LegBuild& leg = model.leg[side];
+  double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], kSoftAnkle);
+  if (foot.mode == FootMode::flight) {
+    const double room = highest_pitch(leg, foot.pose.heel_m.y, 0.0) - foot.pose.pitch_rad;
+    excess = std::min(excess, std::max(0.0, room));
+  } else {
+    excess *= foot.mode == FootMode::support ? heel_rise(model, state, side) : 0.0;
+  }
+  if (excess == 0.0) return;
   set_pitch(leg, foot.pose.pitch_rad + excess, foot.pose, foot.mode);
   solve.add(solve_robust(leg.chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
@@ -206,7 +214,7 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
   state.data_rad[side] = data;
   solve.add(
       solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
-  ease_ankle(leg, pelvis, angles, state.foot[side], solve);
+  ease_ankle(tick.model, state, side, pelvis, angles, state.foot[side], solve);
   state.even_rad[side] = leg_angles(angles);
   const double share = weight_share(tick.model, state, side);
   if (share > 0.0 && !even(state, side)) stiffen(tick, side, pelvis, share, state, angles, solve);

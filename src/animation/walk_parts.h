@@ -44,6 +44,8 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexce
 double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvis& pelvis) noexcept;
 
 // --- walk_feet.cpp: where the feet are to be -----------------------------------------------------
+// How far a standing foot may leave the floor with its heel: 0 flat .. 1 freely.
+double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept;
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
 void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept;
 // A standing foot rises on its toe as far as the hips ask for it.

@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kClearance_m = 0.012;     // least toe clearance in flight, at the reference leg
 constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when the heel strikes
-constexpr double kRiseBegin = 0.20, kRiseEnd = 0.38;  // own phase: the heel may rise from / fully
+constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 // Of the leg: with the hip further away, a standing foot rises on its toe.
 constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachUpright = 1.01;
 constexpr double kAhead = 0.1;  // of the leg: the hip before the toe
@@ -102,7 +102,9 @@ double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept {
   const bool stays = state.closing && side != step_foot(state);
   if (state.stage == Stage::idle || !state.started || stays) return 0.0;
-  return smoothstep(kRiseBegin, kRiseEnd, own_phase(model, state, side));
+  const double begin =
+      std::max(kRiseBegin, model.share[side == kRightSide ? 0 : 2]);  // after the roll
+  return smoothstep(begin, begin + kRiseLasts, own_phase(model, state, side));
 }
 
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {

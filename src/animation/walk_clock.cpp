@@ -5,7 +5,6 @@ namespace {
 
 // Time constants in seconds at the reference leg; they scale with pendulum time.
 constexpr double kStepSmoothing = 0.12;
-constexpr double kTurnSmoothing = 0.25;
 constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;

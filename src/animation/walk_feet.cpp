@@ -16,11 +16,10 @@ constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
 constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
-constexpr double kLamePeak = 0.9;  // an able foot's peak lags behind its curve by as much
-constexpr double kLameFade = 0.15;
-constexpr double kStopping = 0.6;  // of the flight
-constexpr double kSteepFoot = 95.0 * kDegree;
-constexpr double kLiftFade = 0.5;  // of the flight: what the lift-off brought has faded
+constexpr double kLamePeak = 0.9;   // an able foot's peak lags behind its curve by as much
+constexpr double kLameFade = 0.15;  // of kLiftFade, for a foot that does not lift at all
+constexpr double kStopping = 0.6;   // of the flight: from here the heel comes to a stop
+constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
 
@@ -134,11 +133,10 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
   if (foot.mode == FootMode::support) {
     foot.pose.toe_m = foot.toe_anchor_m;
     // With what the reach asked for last, run on: the hips' height and the reach depend on each
-    // other. Beyond a steep foot the hips wait.
+    // other.
     foot.planned_rad = support_pitch(model, state, side) + fade;
     const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
-    const double pitch = soft_min(foot.planned_rad + reach, kSteepFoot, kSoftPitch);
-    set_pitch(leg, std::max(foot.planned_rad, pitch), foot.pose, foot.mode);
+    set_pitch(leg, foot.planned_rad + reach, foot.pose, foot.mode);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, fade, foot.pose, foot.mode);

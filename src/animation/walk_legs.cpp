@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
-constexpr double kCalmStep_s = 0.46;
+constexpr double kUnhurriedStep_s = 0.46;
 constexpr double kSoftToe = 15.0 * kDegree;
 constexpr double kHold = 0.8;  // of the change that a locked joint does not follow by itself
 constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
@@ -93,7 +93,7 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
     p = (own_phase(model, state, side) - begin) / (model.leg[side].toe_off - begin);
   }
   // Quick steps leave less time to lag behind and catch up.
-  const double calm = std::min(1.0, state.step_time_s.x / kCalmStep_s);
+  const double calm = std::min(1.0, state.step_time_s.x / kUnhurriedStep_s);
   return state.amplitude.x * calm * std::sqrt(calm) * smoothstep(0.0, 0.25, p) *
          (1.0 - smoothstep(0.55, 0.95, p));
 }

@@ -100,7 +100,6 @@ void fill_foot_tables(const GaitCycle& source, double ratio, Side side, LegBuild
     const double own = static_cast<double>(i) / kCycleSamples;
     const CycleSample sample = sample_at(source, own + source.strike[side]);
     leg.pitch_rad.value[i] = rest - elevation(sample.leg[side].foot * line);
-    leg.toe_rad.value[i] = sample.leg[side].toe_x;
   }
   const double lift = source.toe_off[side] - source.strike[side];
   leg.toe_off = lift - std::floor(lift);
@@ -121,7 +120,7 @@ void fill_foot_tables(const GaitCycle& source, double ratio, Side side, LegBuild
   }
 }
 
-void fill_pelvis_tables(const GaitCycle& source, double ratio, double scale, WalkModel& model) {
+void fill_pelvis_tables(const GaitCycle& source, double ratio, WalkModel& model) {
   double mean = 0.0;
   for (const CycleSample& sample : source.samples) mean += sample.pelvis_m.y / kCycleSamples;
   for (int i = 0; i < kCycleSamples; ++i) {
@@ -139,9 +138,6 @@ void fill_pelvis_tables(const GaitCycle& source, double ratio, double scale, Wal
       }
     }
   }
-  // Hip joints carry over by the leg ratio, what lies between them and the pelvis joint by scale.
-  const double hip_y = 0.5 * (source.leg[0].hip_m.y + source.leg[1].hip_m.y);
-  model.mean_m = (mean + hip_y) * ratio - hip_y * scale;
 }
 
 // At a strike the front heel is alpha of the step before the hips (mean over both feet). The heel
@@ -201,7 +197,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     fill_foot_tables(cycle, ratio, side, model.leg[side]);
     model.leg[side].track_m = mean_heel(cycle, side).x * character.scale;
   }
-  fill_pelvis_tables(cycle, ratio, character.scale, model);
+  fill_pelvis_tables(cycle, ratio, model);
   fill_shares(cycle, model);
   const double source_step = 0.5 * cycle.stride_m;
   model.step_front = front_share(cycle, source_step);

@@ -29,7 +29,6 @@ struct LegBuild {
   vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};  // foot frame: along and across the foot, level
   FootFlight flight;
   PhaseTable pitch_rad;  // own phase (0 at own strike); of the heel-toe line, toe down positive
-  PhaseTable toe_rad;    // own phase; toe joint
   double toe_off = 0.6;  // own phase
   double track_m = 0;    // sideways place of the heel from the pelvis' path, + left
 };
@@ -44,7 +43,6 @@ struct WalkModel {
   double step_front = 0.5;   // alpha: at a strike, front heel to hips over the step, from the data
   double rest_lead_m = 0;    // c0: hips before the heels when standing
   double stand_m = 0;        // pelvis height when standing
-  double mean_m = 0;         // mean pelvis height of the data on this character
   PhaseTable sway_m, bounce_m, surge_m;  // pelvis: sideways, about the mean height, fore-aft
   PhaseTable yaw_rad;                    // pelvis about the vertical
   std::array<PhaseTable, 3> tilt;        // the rest of its rotation, as a rotation vector

@@ -10,7 +10,8 @@ struct Tick {  // what does not change within a tick
   const GaitParams& params;
   double dt_s;
 };
-inline constexpr double kFreeze = 0.55;  // of the flight: from here the landing place stays
+inline constexpr double kTurnSmoothing = 0.25;  // s at the reference leg
+inline constexpr double kFreeze = 0.55;         // of the flight: from here the landing place stays
 inline constexpr Side rolling_foot(Side swing) noexcept { return other(swing); }
 
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.

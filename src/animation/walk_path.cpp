@@ -3,15 +3,17 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kTurnSmoothing = 0.25;  // as in walk_clock.cpp: the same filter, run ahead
-constexpr double kReach = 0.9985;        // of the leg: leaves the knee 7 degrees
-constexpr double kEvenFront = 0.46;
-constexpr double kLongDrop_m = 0.05;  // for steps much longer than the data's
-constexpr double kLameDrop_m = 0.1;   // at the reference leg, for a foot that does not lift at all
+// Lengths in metres at the reference leg.
+constexpr double kReach = 0.9985;  // of the leg: the longest it gets, knee 6 degrees
+constexpr double kEvenFront =
+    0.46;  // of the step: front heel to hips where the data's lean is left
+constexpr double kLongDrop_m = 0.05;  // of the hips in steps much longer than the data's
+constexpr double kLameDrop_m = 0.1;   // of the hips for a foot that does not lift at all
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
+// Rounding of the hips' height: between the knees' curves and the reach, between the legs' reaches.
+// The steps that it suits take this long; quicker ones are rounded more.
+constexpr double kSoftBase_m = 0.02, kSoftReach_m = 0.03;
 constexpr double kCalmStep_s = 0.52;
-constexpr double kSoftBase_m = 0.02;
-constexpr double kSoftReach_m = 0.03;  // at the reference leg
 
 double power(double base, int exponent) noexcept {
   double result = 1.0;

@@ -98,7 +98,6 @@ TEST(WalkModel, ItsTablesRepeatAndAreFinite) {
   for (int side : {0, 1}) {
     for (const PhaseTable& t : model.reference_rad[side]) check(t);
     check(model.leg[side].pitch_rad);
-    check(model.leg[side].toe_rad);
   }
 }
 

@@ -222,7 +222,7 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
 }
 
 // Steps 1-7 to the letter from the pose of the tick before, raw weights, the stage's end-effector
-// alone; in the roll the toe is a second position target.
+// alone; while heel and toe both stand or land, the other end is a second position target.
 void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
                 Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
@@ -230,8 +230,10 @@ void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& st
   for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = state.weight[side][j].x;
   IkAngles angles = padded(state.angles_rad[side]);
   const FootGoal goal = foot_goal(leg, state.foot[side], pelvis, end_effector(state.foot[side]));
-  const bool roll = state.foot[side].mode == FootMode::roll;
-  solve.add(solve_paper(chain, roll ? goal.both_ends() : goal.effector(), kPaper, angles));
+  const FootMode foot = state.foot[side].mode;
+  const bool both = foot == FootMode::roll ||
+                    (foot == FootMode::support && heel_rise(tick.model, state, side) == 0.0);
+  solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
   state.angles_rad[side] = state.even_rad[side] = leg_angles(angles);
 }
 

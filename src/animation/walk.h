@@ -76,8 +76,9 @@ struct WalkState {
   // Smoothed parameters.
   std::array<Damped<double>, 2> length_m, flight_height;
   std::array<double, 2> time_s{};
-  Damped<double> step_time_s;                               // mean of both feet
-  Damped<double> turn_rate, amplitude, bounce, sway, pace;  // pace: step length over the data's
+  Damped<double> step_time_s;  // mean of both feet
+  Damped<double> turn_goal,    // what turn_rate follows: a landing is planned with it
+      turn_rate, amplitude, bounce, sway, pace;  // pace: step length over the data's
   std::array<std::array<Damped<double>, kLegDofs>, 2> weight;
   // Path.
   double heading_rad = 0.0;

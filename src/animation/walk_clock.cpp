@@ -5,6 +5,7 @@ namespace {
 
 // Time constants in seconds at the reference leg; they scale with pendulum time.
 constexpr double kStepSmoothing = 0.12;
+constexpr double kTurnGoalSmoothing = 0.08;
 constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
@@ -149,8 +150,10 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   }
   state.step_time_s.advance(0.5 * (state.time_s[0] + state.time_s[1]), kStepSmoothing * scale, dt);
   const double goal = walking ? params.turn_rate_rad_s : 0.0;
-  state.turn_rate.advance(goal, kTurnSmoothing * scale, dt);
-  if (goal == 0.0 && std::abs(state.turn_rate.x) < kStillTurn) state.turn_rate = {};
+  state.turn_goal.advance(goal, kTurnGoalSmoothing * scale, dt);
+  if (goal == 0.0 && std::abs(state.turn_goal.x) < kStillTurn) state.turn_goal = {};
+  state.turn_rate.advance(state.turn_goal.x, kTurnSmoothing * scale, dt);
+  if (state.turn_goal.x == 0.0 && std::abs(state.turn_rate.x) < kStillTurn) state.turn_rate = {};
   const bool moving = state.started && !state.closing;
   state.amplitude.advance(moving ? 1.0 : 0.0, kAmplitudeSmoothing * scale, dt);
   state.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);

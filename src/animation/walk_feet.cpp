@@ -185,6 +185,7 @@ void begin_support(FootState& foot, const LegAngles& even_rad) noexcept {
   foot.mode_ticks = 0;
   foot.toe_anchor_m = foot.pose.toe_m;
   foot.pitch_fade = {};
+  foot.planned_rad = 0.0;
   foot.reach_rad = {};
   foot.anchor_rad = even_rad;
 }
@@ -228,9 +229,9 @@ void begin_roll(WalkState& state, Side side) noexcept {
 void hold_pitch(const WalkModel& model, WalkState& state, Side side, int ticks) noexcept {
   FootState& foot = state.foot[side];
   if (foot.mode != FootMode::support) return;
+  const double held = foot.planned_rad + foot.reach_rad[0];  // without what the weights made of it
   foot.mode_ticks = 0;
-  foot.pitch_fade = {foot.pose.pitch_rad - support_pitch(model, state, side), 0.0,
-                     static_cast<double>(ticks)};
+  foot.pitch_fade = {held - support_pitch(model, state, side), 0.0, static_cast<double>(ticks)};
 }
 
 }  // namespace gaitpad

@@ -86,7 +86,8 @@ FootGoal whole_foot(const LegBuild& leg, const FootState& foot, const Pelvis& pe
 // exactly where the next stage takes it over, so landing and lift-off places do not depend on them.
 double weight_share(const WalkModel& model, const WalkState& state, Side side) noexcept {
   const FootState& foot = state.foot[side];
-  if (foot.mode == FootMode::roll || state.stage == Stage::idle) return 0.0;
+  const bool stays = (state.closing || !state.started) && side != step_foot(state);
+  if (foot.mode == FootMode::roll || state.stage == Stage::idle || stays) return 0.0;
   double p = flight_progress(state);
   if (foot.mode == FootMode::support) {
     const double begin = model.share[side == kRightSide ? 0 : 2];
@@ -94,7 +95,7 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
   }
   // Quick steps leave less time to lag behind and catch up.
   const double calm = std::min(1.0, state.step_time_s.x / kUnhurriedStep_s);
-  return state.amplitude.x * calm * std::sqrt(calm) * smoothstep(0.0, 0.25, p) *
+  return state.amplitude.x * state.amplitude.x * calm * std::sqrt(calm) * smoothstep(0.0, 0.25, p) *
          (1.0 - smoothstep(0.55, 0.95, p));
 }
 

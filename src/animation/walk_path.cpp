@@ -26,7 +26,7 @@ double power(double base, int exponent) noexcept {
 // The heading after n more ticks of a turn-rate filter whose goal stays: the filter is a linear
 // recurrence with the double eigenvalue q, so e_k = (e_0 + c k) q^k, and its sum has a closed form.
 double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
-  const double goal = tick.params.walking && !state.closing ? tick.params.turn_rate_rad_s : 0.0;
+  const double goal = state.turn_goal.x;
   const double w = tick.dt_s / (kTurnSmoothing * tick.model.time_scale), q = 1.0 / (1.0 + w);
   const double e0 = state.turn_rate.x - goal;
   if (e0 == 0.0 && state.turn_rate.v == 0.0) return state.heading_rad + goal * n * tick.dt_s;

@@ -97,6 +97,20 @@ double drift_m(const std::vector<WalkFrame>& frames) {
   return farthest;
 }
 
+// Of any leg angle, radians per tick squared.
+double largest_second_difference(const std::vector<std::array<LegAngles, 2>>& poses) {
+  double largest = 0.0;
+  for (std::size_t k = 2; k < poses.size(); ++k) {
+    for (int side : {0, 1}) {
+      for (int j = 0; j < kLegDofs; ++j) {
+        largest = std::max(largest, std::abs(poses[k][side][j] - 2.0 * poses[k - 1][side][j] +
+                                             poses[k - 2][side][j]));
+      }
+    }
+  }
+  return largest;
+}
+
 Style limp() {
   Style style;
   style.stride[kLeftSide] = {.length = 0.5, .speed = 1.3, .flight_height = 0.5};
@@ -281,7 +295,7 @@ TEST(Walk, JointsStayWithinTheirLimits) {
   }
 }
 
-TEST(Walk, NeverFailsOverRandomSticksAndStyles) {
+TEST(Walk, NeitherFailsNorJumpsOverRandomSticksAndStyles) {
   const Style styles[] = {{}, limp(), with_hip_weight(0.2)};
   for (double ratio : {0.6, 1.0, 1.6}) {
     const WalkModel model = model_of(ratio);
@@ -299,6 +313,7 @@ TEST(Walk, NeverFailsOverRandomSticksAndStyles) {
     for (const WalkFrame& f : walker.frames()) failures += f.ik_failed[0] + f.ik_failed[1];
     EXPECT_EQ(failures, 0) << ratio;
     EXPECT_LT(drift_m(walker.frames()), 1e-4) << ratio;
+    EXPECT_LT(largest_second_difference(walker.poses()), 1.0 * kDegree) << ratio;
   }
 }
 

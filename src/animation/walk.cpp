@@ -26,9 +26,9 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
     if (skeleton.joints[j].is_end_site) break;
     // Joints between two of the chain keep their standing rotation.
     quat parent = frames.rotation[last];
-    std::array<int, 8> between{};
+    std::array<int, kMaxBetween> between{};
     int n = 0;
-    for (int p = skeleton.joints[j].parent; p != last && n < 8; p = skeleton.joints[p].parent) {
+    for (int p = skeleton.joints[j].parent; p != last && n < kMaxBetween; p = skeleton.joints[p].parent) {
       between[n++] = p;
     }
     while (n > 0) parent = parent * pose.local[between[--n]];

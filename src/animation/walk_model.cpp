@@ -177,12 +177,34 @@ void collect_kept_joints(WalkModel& model) {
   }
 }
 
+// The pose is written without a heap: what stands between two joints of a leg is bounded here.
+bool has_overlong_leg(const GaitCycle& cycle) {
+  for (const LegModel& leg : cycle.leg) {
+    const std::array<int, 5> chain = {cycle.pelvis, leg.joints.hip, leg.joints.knee,
+                                      leg.joints.ankle, leg.joints.toe};
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      int between = 0;
+      for (int j = cycle.skeleton.joints[chain[i]].parent; j > chain[i - 1] && j >= 0;
+           j = cycle.skeleton.joints[j].parent) {
+        ++between;
+      }
+      if (between > kMaxBetween) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character) {
   if (!character.skeleton.empty()) {
     return Error{fmt::format("{}: a character with a skeleton of its own is not supported yet",
                              character.name)};
+  }
+  if (has_overlong_leg(cycle)) {
+    return Error{
+        fmt::format("{}: a leg has more than {} joints between two of hip, knee, ankle and toe",
+                    cycle.name, kMaxBetween)};
   }
   WalkModel model;
   model.cycle = cycle;

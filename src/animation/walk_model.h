@@ -11,6 +11,8 @@
 
 namespace gaitpad {
 
+inline constexpr int kMaxBetween = 8;  // joints between two of a leg's chain
+
 using PhaseTable = PeriodicTable<kCycleSamples>;
 inline constexpr int kFlightSamples = 65;
 using FlightCurve = Curve<kFlightSamples>;

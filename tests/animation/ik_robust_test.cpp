@@ -11,13 +11,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(IkRobust, AMillionColdStartsFailRarelyAndEachIsFlagged) {
-  Random random(21);
-  const IkChain c = human_leg();
+// Cold starts: how many fail, fail unnoticed, or leave the limits.
+struct ColdStarts {
   int failed = 0, unflagged = 0, outside = 0;
-  for (int i = 0; i < kMillion; ++i) {
-    const vec3& point_m = i % 2 ? kHeel : kToe;
-    const auto rows = point_goal(point_m, point_at(c, random_pose(c, random), point_m));
+  void solve(const IkChain& c, std::span<const IkRow> rows) {
     IkAngles q = standing();
     const IkResult result = solve_robust(c, rows, {}, q);
     const bool reached = error_of(c, rows, q) <= 1.01e-6;
@@ -25,10 +22,24 @@ TEST(IkRobust, AMillionColdStartsFailRarelyAndEachIsFlagged) {
     unflagged += !reached && result.status == IkStatus::converged;
     outside += !within_limits(c, q);
   }
-  EXPECT_LT(failed, kMillion / 1000);
-  EXPECT_EQ(unflagged, 0);
-  EXPECT_EQ(outside, 0);
-  RecordProperty("failed", failed);
+  void expect_rare_failures(int count) const {
+    EXPECT_LT(failed, count / 1000);
+    EXPECT_EQ(unflagged, 0);
+    EXPECT_EQ(outside, 0);
+    testing::Test::RecordProperty("failed", failed);
+  }
+};
+
+TEST(IkRobust, AMillionColdStartsFailRarelyAndEachIsFlagged) {
+  Random random(21);
+  const IkChain c = human_leg();
+  ColdStarts starts;
+  for (int i = 0; i < kMillion; ++i) {
+    const vec3& point_m = i % 2 ? kHeel : kToe;
+    const auto rows = point_goal(point_m, point_at(c, random_pose(c, random), point_m));
+    starts.solve(c, rows);
+  }
+  starts.expect_rare_failures(kMillion);
 }
 
 // Heel and toe together, as in the roll stage: five rows.
@@ -36,24 +47,16 @@ TEST(IkRobust, ColdStartsWithFiveRowsFailRarelyAndEachIsFlagged) {
   Random random(22);
   const IkChain c = human_leg();
   const int count = kMillion / 5;
-  int failed = 0, unflagged = 0, outside = 0;
+  ColdStarts starts;
   for (int i = 0; i < count; ++i) {
     const IkAngles pose = random_pose(c, random);
     const auto heel = point_goal(kHeel, point_at(c, pose, kHeel));
     const vec3 toe_m = point_at(c, pose, kToe);
     const std::array<IkRow, 5> rows = {heel[0], heel[1], heel[2], IkRow{kToe, kY, toe_m.y},
                                        IkRow{kToe, kX, toe_m.x}};
-    IkAngles q = standing();
-    const IkResult result = solve_robust(c, rows, {}, q);
-    const bool reached = error_of(c, rows, q) <= 1.01e-6;
-    failed += !reached;
-    unflagged += !reached && result.status == IkStatus::converged;
-    outside += !within_limits(c, q);
+    starts.solve(c, rows);
   }
-  EXPECT_LT(failed, count / 1000);
-  EXPECT_EQ(unflagged, 0);
-  EXPECT_EQ(outside, 0);
-  RecordProperty("failed", failed);
+  starts.expect_rare_failures(count);
 }
 
 // Places of a heel relative to the hip, 1 to 4 cm apart, along strides drawn at random.

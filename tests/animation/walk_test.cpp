@@ -262,6 +262,50 @@ TEST(Walk, SpeedIsTheNetDisplacementOverWholeCycles) {
   }
 }
 
+struct HipMotion {
+  double travel_m, yaw_rad, planted_drift_m;
+};
+HipMotion hips_of(const Style& style) {
+  Walker walker;
+  double low = 1e9, high = -1e9, left = -1e9, right = 1e9;
+  walker.walk(0, 0.8, 1200, style);
+  for (int tick = 0; tick < 600; ++tick) {
+    walker.walk(0, 0.8, 1, style);
+    const double yaw = heading_of(walker.pose().local[0] * kForward);  // the root is the pelvis
+    low = std::min(low, walker.last().pelvis_m.y);
+    high = std::max(high, walker.last().pelvis_m.y);
+    left = std::max(left, yaw);
+    right = std::min(right, yaw);
+  }
+  return {high - low, left - right, drift_m(walker.frames())};
+}
+
+TEST(Walk, HipBounceGrowsTheVerticalTravelAndLeavesPlantedFeet) {
+  double last_m = 0.0;
+  for (double bounce : {0.0, 1.0, 2.0, 3.0}) {
+    Style style;
+    style.hip_bounce = bounce;
+    const HipMotion hips = hips_of(style);
+    RecordProperty("travel_mm_at_" + std::to_string(static_cast<int>(bounce)),
+                   static_cast<int>(1000.0 * hips.travel_m));
+    EXPECT_GT(hips.travel_m, last_m) << bounce;
+    EXPECT_LT(hips.planted_drift_m, 1e-4) << bounce;
+    last_m = hips.travel_m;
+  }
+}
+
+TEST(Walk, HipSwayIsProportionalAndLeavesPlantedFeet) {
+  Style style;
+  const double once = hips_of(style).yaw_rad;
+  EXPECT_GT(once, 2.0 * kDegree);
+  for (double sway : {0.0, 2.0, 3.0}) {
+    style.hip_sway = sway;
+    const HipMotion hips = hips_of(style);
+    EXPECT_NEAR(hips.yaw_rad, sway * once, 0.1 * once) << sway;
+    EXPECT_LT(hips.planted_drift_m, 1e-4) << sway;
+  }
+}
+
 TEST(Walk, WeightsChangeTheLegAndNeitherLiftOffNorLandingPlace) {
   Walker even, stiff;
   even.walk(0, 0.8, 2000);

@@ -1,13 +1,56 @@
 #include "drivers/registry.h"
 
-#include "drivers/trace_driver.h"
+#include "drivers/driver_entries.h"
 
 namespace gaitpad {
 
 namespace {
 
+// The functions of a driver that was compiled, else two null pointers.
+#ifdef GAITPAD_HAS_HIDRAW
+#define GAITPAD_HIDRAW(function) function
+#else
+#define GAITPAD_HIDRAW(function) nullptr
+#endif
+#ifdef GAITPAD_HAS_EVDEV
+#define GAITPAD_EVDEV(function) function
+#else
+#define GAITPAD_EVDEV(function) nullptr
+#endif
+#ifdef GAITPAD_HAS_USB
+#define GAITPAD_USB(function) function
+#else
+#define GAITPAD_USB(function) nullptr
+#endif
+#ifdef GAITPAD_HAS_SDL
+#define GAITPAD_SDL(function) function
+#else
+#define GAITPAD_SDL(function) nullptr
+#endif
+
+// hidraw gives the pad's own bytes; evdev what the kernel made of them; SDL reads evdev; usb has to
+// take the pad from the kernel.
 constexpr DriverEntry kDrivers[] = {
-    {.name = "trace", .make = &make_trace_driver},
+    {.name = "hidraw",
+     .library = "libhidapi-hidraw",
+     .find = GAITPAD_HIDRAW(&find_hidraw_devices),
+     .open = GAITPAD_HIDRAW(&open_hidraw_device)},
+    {.name = "evdev",
+     .library = "libevdev",
+     .find = GAITPAD_EVDEV(&find_evdev_devices),
+     .open = GAITPAD_EVDEV(&open_evdev_device)},
+    {.name = "sdl",
+     .library = "libSDL2",
+     .find = GAITPAD_SDL(&find_sdl_devices),
+     .open = GAITPAD_SDL(&open_sdl_device)},
+    {.name = "usb",
+     .library = "libusb-1.0",
+     .find = GAITPAD_USB(&find_usb_devices),
+     .open = GAITPAD_USB(&open_usb_device)},
+    {.name = "trace",
+     .library = "",
+     .find = &find_trace_devices,
+     .open = &open_trace_device},
 };
 
 }  // namespace
@@ -19,6 +62,15 @@ const DriverEntry* find_driver(std::string_view name) noexcept {
     if (name == entry.name) return &entry;
   }
   return nullptr;
+}
+
+std::string sdl_mapping_of(const DeviceInfo& device) {
+#ifdef GAITPAD_HAS_SDL
+  return sdl_library_mapping(device);
+#else
+  static_cast<void>(device);
+  return {};
+#endif
 }
 
 }  // namespace gaitpad

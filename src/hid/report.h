@@ -30,6 +30,7 @@ struct DeviceInfo {
   std::string unique_id;      // serial number or Bluetooth address, empty where there is none
   std::string physical_path;  // the port it hangs on
   std::vector<std::uint8_t> descriptor;
+  std::string mapping;  // a line of SDL's controller data base (hid/sdl_mapping.h), empty: none
   bool operator==(const DeviceInfo&) const = default;
 };
 

@@ -1,0 +1,12 @@
+#include "drivers/pads/pad_model.h"
+
+namespace gaitpad {
+
+std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device) {
+  for (const auto make : {make_sony_model, make_switch_model}) {
+    if (auto model = make(device)) return model;
+  }
+  return std::make_unique<PadModel>();
+}
+
+}  // namespace gaitpad

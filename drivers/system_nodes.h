@@ -1,0 +1,54 @@
+// What the system (sysfs and udev, through libudev) says about input hardware: nodes, who they
+// belong to, plugging in and out. Shared by the drivers' `find`, the finder and `gaitpad doctor`.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "hid/driver.h"
+
+namespace gaitpad {
+
+// One node of /dev with what sysfs knows of the hardware behind it.
+struct SystemNode {
+  std::string node;           // /dev/hidraw3, /dev/input/event5, /dev/bus/usb/001/004
+  std::string sysfs_path;     // of the node's own device
+  std::string pad_path;       // as in DeviceListing
+  std::string kernel_driver;  // of the HID device or USB interface: hid-generic, playstation, xpad
+  BusType bus = BusType::unknown;
+  std::uint16_t vendor = 0, product = 0;
+  std::uint16_t version = 0;  // of the input device where there is one (SDL's GUID holds it)
+  std::string name, unique_id, physical_path;
+  std::vector<std::uint8_t> descriptor;  // report_descriptor in sysfs, hidraw nodes only
+  double poll_rate_hz = 0.0;  // 1 / bInterval of the interrupt IN endpoint; 0: unknown
+  bool is_joystick = false, is_motion_sensor = false, is_touchpad = false;  // udev's ID_INPUT_*
+};
+
+// "hidraw", "input" (event nodes only) or "usb" (devices; pad_path is empty, they have several
+// interfaces), ordered by node.
+std::vector<SystemNode> system_nodes(std::string_view subsystem);
+// pad_path of a USB interface: `1-1.2:1.0` as in /sys/bus/usb/devices.
+std::string usb_interface_path(const std::string& interface_name);
+// Why the node cannot be opened for reading and writing by this user, empty: it can.
+// `/dev/hidraw3: permission denied (root:root 0600); gaitpad doctor tells the fix`
+std::string access_problem(const std::string& node);
+
+// Tells that something was plugged in or out, after udev has applied its rules to it.
+class HotplugMonitor {
+ public:
+  static Result<HotplugMonitor> create();
+  HotplugMonitor(HotplugMonitor&&) noexcept;
+  HotplugMonitor& operator=(HotplugMonitor&&) noexcept;
+  ~HotplugMonitor();
+  int fd() const noexcept;
+  bool has_changed() noexcept;  // takes what has come; never waits
+
+ private:
+  struct Impl;
+  explicit HotplugMonitor(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gaitpad

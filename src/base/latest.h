@@ -1,0 +1,39 @@
+// The latest value, from one writing to one reading thread: three buffers, wait-free on both sides.
+// The reader never sees a half-written value and never an older one than before.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <type_traits>
+
+namespace gaitpad {
+
+template <class T>
+class Latest {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  // Writer: fill this, then publish().
+  T& writable() noexcept { return values_[writing_]; }
+  void publish() noexcept {
+    writing_ = middle_.exchange(static_cast<std::uint8_t>(writing_ | kFresh),
+                                std::memory_order_acq_rel) &
+               kIndex;
+  }
+
+  // Reader: the newest published value; `is_new` where it was not there at the last call.
+  const T& read(bool& is_new) noexcept {
+    is_new = (middle_.load(std::memory_order_relaxed) & kFresh) != 0;
+    if (is_new) reading_ = middle_.exchange(reading_, std::memory_order_acq_rel) & kIndex;
+    return values_[reading_];
+  }
+
+ private:
+  static constexpr std::uint8_t kIndex = 3, kFresh = 4;
+  std::array<T, 3> values_{};
+  std::uint8_t writing_ = 0;
+  std::uint8_t reading_ = 1;
+  std::atomic<std::uint8_t> middle_{2};
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,75 @@
+// A live session: pads in, poses out, at a fixed rate on a thread of its own.
+//
+// The loop thread sleeps until the tick's moment (absolute, CLOCK_MONOTONIC), takes the reports
+// that have arrived, calls Simulation::step(), publishes the newest frame and hands what it used to
+// the recording. It touches no driver, file, lock, log or heap. A tick that begins late is counted
+// and made up for: the number of ticks is the time times the rate.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "session/pad_stream.h"
+#include "session/setup.h"
+#include "session/simulation.h"
+
+namespace gaitpad {
+
+struct LiveOptions {
+  SessionOptions session;
+  PadWish wish;
+  int rate_hz = kDefaultRateHz;
+  std::string record;  // FILE.hid, empty: none
+  bool rumble = true;  // a beat at each heel strike, as strong as the walk is fast
+};
+
+// What a viewer needs of one tick.
+struct LiveFrame {
+  std::int64_t tick = -1;     // -1: none yet
+  std::int64_t time_ns = 0;   // CLOCK_MONOTONIC, when the tick was due
+  Stick stick;                // calibrated
+  PadState pad;               // of the driving pad, uncalibrated
+  int walker_count = 0;
+  std::array<Pose, kMaxWalkers> poses;
+};
+
+// Since the beginning.
+struct LiveStatus {
+  std::int64_t ticks = 0;
+  std::int64_t overruns = 0;       // ticks that began more than one tick late
+  double tick_us_median = 0.0, tick_us_max = 0.0;  // one step, without the sleep
+  double wait_us_median = 0.0, wait_us_max = 0.0;  // from a report's arrival to the tick using it
+  PadStreamCounts pads;
+  std::int64_t recording_lost = 0;  // reports that the recording missed: it is then no exact one
+};
+
+class LiveSession {
+ public:
+  static Result<std::unique_ptr<LiveSession>> start(const LiveOptions& options);
+  ~LiveSession();
+
+  // From one viewing thread.
+  const LiveFrame& latest(bool& is_new) noexcept;
+  // From any thread.
+  void command(std::string_view text);
+  bool has_ended() const noexcept;  // a recording as a pad, one second behind its end
+  LiveStatus status() const noexcept;
+  // Pads that cannot be opened, real-time scheduling that is not allowed: each once.
+  std::vector<std::string> take_remarks();
+
+  // Ends the threads and the recording. One summary a character, as `replay` writes it.
+  Result<std::vector<nlohmann::ordered_json>> stop();
+
+ private:
+  LiveSession();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,38 @@
+// From a device to a pad that can drive: its layout (config/pads, SDL's data base) and its
+// calibration.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "hid/driver.h"
+#include "hid/pad_map.h"
+#include "hid/trace.h"
+#include "session/pads.h"
+
+namespace gaitpad {
+
+// What stands in files about pads, read once.
+struct PadFiles {
+  PadOverrides overrides;                        // --map first, then config/pads
+  std::optional<CalibrationFile> calibration;    // --calibration
+  std::vector<std::string> calibration_folders;  // else the best fitting file of these
+};
+// `map` and `calibration` are paths, empty for none.
+Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
+                                const std::string& map, const std::string& calibration);
+
+// A device of a recording: calibration is --calibration's, else the recording's own, else the best
+// fitting file's. Sentences begin with `origin`.
+Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
+                             const std::string& origin);
+
+// A live device as a recording will hold it: with SDL's line where config/pads has no entry for the
+// pad, and with the calibration in force as text. A file for this one device (unique id, port)
+// comes before the pad's own factory sticks, these before a file for its model (whose zones they
+// keep).
+Result<TraceDevice> recorded_device(const PadFiles& files, const DeviceInfo& info,
+                                    const std::optional<FactorySticks>& factory);
+
+}  // namespace gaitpad

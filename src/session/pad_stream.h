@@ -1,0 +1,74 @@
+// Pads as one stream of reports: found, opened, kept through unplugging and plugging in again.
+//
+// Two threads work here. The finder waits for udev's word that something was plugged in, looks at
+// the devices, opens the chosen ones (that may take seconds) and hands them over. The I/O thread
+// sleeps in poll() over all open devices, reads them and writes the reports into a wait-free ring;
+// motors are set by it, too. Whoever reads the ring waits for neither of them.
+#pragma once
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "hid/driver.h"
+#include "hid/report.h"
+#include "session/pad_choice.h"
+#include "session/pad_setup.h"
+
+namespace gaitpad {
+
+inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // different ones in one session
+
+struct PadStreamOptions {
+  PadFiles files;
+  PadWish wish;
+};
+
+// Since the beginning; may be read by any thread.
+struct PadStreamCounts {
+  std::int64_t reports = 0;  // written to the ring
+  std::int64_t lost = 0;     // reports that a source lost, and those that found the ring full
+  std::int64_t plugged = 0, unplugged = 0;
+};
+
+class PadStream {
+ public:
+  // Runs from here on. Pads that are there already are announced like those plugged in later.
+  static Result<std::unique_ptr<PadStream>> start(PadStreamOptions options);
+  ~PadStream();  // closes every device, what was taken from the kernel is given back
+
+  // The reading end, for one thread. A device's first report is `added`, also after plugging in
+  // again. Where the ring was full the newest report of each device follows when there is room.
+  const Report* front() noexcept;
+  void pop() noexcept;
+  // Sleeps until there is something to read or the time is over; not for the loop thread.
+  void wait(std::chrono::milliseconds timeout);
+
+  // Both valid once the device's first `added` has been read, and never changed afterwards.
+  const TraceDevice& device(std::uint16_t index) const noexcept;
+  // The reader takes it out of here once (no heap: it is moved).
+  PadConfig& config(std::uint16_t index) noexcept;
+
+  // From the reading thread, wait-free: the motors run for that long. Dropped when too many wait.
+  void rumble(std::uint16_t device, const Rumble& rumble,
+              std::chrono::milliseconds duration) noexcept;
+  // From any thread: a line such as `style limp_left`, as a report of kind command.
+  void command(std::string_view text);
+
+  // True once every device of a recording has come to its end; never for hardware.
+  bool has_ended() const noexcept;
+  PadStreamCounts counts() const noexcept;
+  // What users should know (a pad that cannot be opened and why, a lost one), each once.
+  std::vector<std::string> take_remarks();
+
+ private:
+  PadStream();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gaitpad

@@ -2,6 +2,7 @@
 // belong to, plugging in and out. Shared by the drivers' `find`, the finder and `gaitpad doctor`.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,7 +23,7 @@ struct SystemNode {
   std::uint16_t version = 0;  // of the input device where there is one (SDL's GUID holds it)
   std::string name, unique_id, physical_path;
   std::vector<std::uint8_t> descriptor;  // report_descriptor in sysfs, hidraw nodes only
-  double poll_rate_hz = 0.0;  // 1 / bInterval of the interrupt IN endpoint; 0: unknown
+  double poll_rate_hz = 0.0;             // 1 / bInterval of the interrupt IN endpoint; 0: unknown
   bool is_joystick = false, is_motion_sensor = false, is_touchpad = false;  // udev's ID_INPUT_*
 };
 
@@ -32,7 +33,7 @@ std::vector<SystemNode> system_nodes(std::string_view subsystem);
 // pad_path of a USB interface: `1-1.2:1.0` as in /sys/bus/usb/devices.
 std::string usb_interface_path(const std::string& interface_name);
 // Why the node cannot be opened for reading and writing by this user, empty: it can.
-// `/dev/hidraw3: permission denied (root:root 0600); gaitpad doctor tells the fix`
+// `/dev/hidraw3: permission denied (owner 0, group 0, mode 0600); gaitpad doctor tells the fix`
 std::string access_problem(const std::string& node);
 
 // Tells that something was plugged in or out, after udev has applied its rules to it.

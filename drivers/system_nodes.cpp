@@ -1,0 +1,265 @@
+#include "drivers/system_nodes.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <libudev.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "hid/descriptor.h"
+
+namespace gaitpad {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Unref {
+  void operator()(udev* p) const { udev_unref(p); }
+  void operator()(udev_device* p) const { udev_device_unref(p); }
+  void operator()(udev_enumerate* p) const { udev_enumerate_unref(p); }
+  void operator()(udev_monitor* p) const { udev_monitor_unref(p); }
+};
+using Udev = std::unique_ptr<udev, Unref>;
+using UdevDevice = std::unique_ptr<udev_device, Unref>;
+
+std::string text(const char* value) { return value ? value : ""; }
+std::string attribute(udev_device* device, const char* name) {
+  return text(udev_device_get_sysattr_value(device, name));
+}
+std::string property(udev_device* device, const char* name) {
+  return text(udev_device_get_property_value(device, name));
+}
+bool is_marked(udev_device* device, const char* name) { return property(device, name) == "1"; }
+
+// The kernel puts texts in quotes in places; a name may carry blanks at its end.
+std::string trimmed(std::string value) {
+  const auto is_edge = [](char c) { return c == ' ' || c == '"' || c == '\n'; };
+  while (!value.empty() && is_edge(value.back())) value.pop_back();
+  std::size_t first = 0;
+  while (first < value.size() && is_edge(value[first])) ++first;
+  return value.substr(first);
+}
+
+std::uint16_t hex16(std::string_view digits) {
+  std::uint32_t value = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  return static_cast<std::uint16_t>(value);
+}
+
+std::string first_line(const fs::path& path) {
+  std::ifstream in(path);
+  std::string line;
+  std::getline(in, line);
+  return trimmed(line);
+}
+
+std::vector<std::uint8_t> file_bytes(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+// `4ms`, `125us`: the interval of the interface's interrupt IN endpoint.
+double endpoint_rate_hz(const fs::path& usb_interface) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(usb_interface, error)) {
+    if (!entry.path().filename().string().starts_with("ep_")) continue;
+    if (first_line(entry.path() / "direction") != "in") continue;
+    if (first_line(entry.path() / "type") != "Interrupt") continue;
+    const std::string interval = first_line(entry.path() / "interval");
+    double value = 0.0;
+    const auto end = interval.data() + interval.size();
+    const auto number = std::from_chars(interval.data(), end, value);
+    if (number.ec != std::errc() || value <= 0.0) return 0.0;
+    const std::string_view unit(number.ptr, static_cast<std::size_t>(end - number.ptr));
+    return unit == "us" ? 1e6 / value : unit == "ms" ? 1e3 / value : 0.0;
+  }
+  return 0.0;
+}
+
+// The input device that the kernel made of a HID device; its version is the one in SDL's GUID.
+std::uint16_t input_version(const fs::path& hid_device) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(hid_device / "input", error)) {
+    const std::string version = first_line(entry.path() / "id" / "version");
+    if (!version.empty()) return hex16(version);
+  }
+  return 0;
+}
+
+// What is known of every node below a HID device or a USB interface.
+void add_parents(udev_device* device, SystemNode& node) {
+  udev_device* hid = udev_device_get_parent_with_subsystem_devtype(device, "hid", nullptr);
+  udev_device* usb = udev_device_get_parent_with_subsystem_devtype(device, "usb", "usb_interface");
+  if (usb) {
+    node.pad_path = text(udev_device_get_syspath(usb));
+    node.kernel_driver = text(udev_device_get_driver(usb));
+    node.poll_rate_hz = endpoint_rate_hz(node.pad_path);
+  }
+  if (hid) {
+    if (!usb) node.pad_path = text(udev_device_get_syspath(hid));
+    node.kernel_driver = text(udev_device_get_driver(hid));
+  }
+}
+
+// HID_ID is bus, vendor and product: `0003:0000054C:000009CC`.
+void add_hid_ids(const std::string& hid_id, SystemNode& node) {
+  const std::size_t vendor = hid_id.find(':');
+  const std::size_t product = hid_id.find(':', vendor + 1);
+  if (vendor == std::string::npos || product == std::string::npos) return;
+  node.bus = static_cast<BusType>(hex16(std::string_view(hid_id).substr(0, vendor)));
+  node.vendor = hex16(std::string_view(hid_id).substr(vendor + 1, product - vendor - 1));
+  node.product = hex16(std::string_view(hid_id).substr(product + 1));
+}
+
+bool add_hidraw(udev_device* device, SystemNode& node) {
+  udev_device* hid = udev_device_get_parent_with_subsystem_devtype(device, "hid", nullptr);
+  if (!hid) return false;
+  const std::string path = text(udev_device_get_syspath(hid));
+  add_hid_ids(property(hid, "HID_ID"), node);
+  node.name = trimmed(property(hid, "HID_NAME"));
+  node.unique_id = property(hid, "HID_UNIQ");
+  node.physical_path = property(hid, "HID_PHYS");
+  node.version = input_version(path);
+  node.descriptor = file_bytes(fs::path(path) / "report_descriptor");
+  return true;
+}
+
+bool add_input(udev_device* device, SystemNode& node) {
+  if (!text(udev_device_get_sysname(device)).starts_with("event")) return false;
+  udev_device* input = udev_device_get_parent_with_subsystem_devtype(device, "input", nullptr);
+  if (!input) return false;
+  node.name = trimmed(attribute(input, "name"));
+  node.unique_id = attribute(input, "uniq");
+  node.physical_path = attribute(input, "phys");
+  node.bus = static_cast<BusType>(hex16(attribute(input, "id/bustype")));
+  node.vendor = hex16(attribute(input, "id/vendor"));
+  node.product = hex16(attribute(input, "id/product"));
+  node.version = hex16(attribute(input, "id/version"));
+  node.is_joystick = is_marked(device, "ID_INPUT_JOYSTICK");
+  node.is_motion_sensor = is_marked(device, "ID_INPUT_ACCELEROMETER");
+  node.is_touchpad = is_marked(device, "ID_INPUT_TOUCHPAD");
+  if (node.pad_path.empty()) node.pad_path = text(udev_device_get_syspath(input));
+  return true;
+}
+
+bool add_usb(udev_device* device, SystemNode& node) {
+  if (text(udev_device_get_devtype(device)) != "usb_device") return false;
+  node.bus = BusType::usb;
+  node.vendor = hex16(attribute(device, "idVendor"));
+  node.product = hex16(attribute(device, "idProduct"));
+  node.version = hex16(attribute(device, "bcdDevice"));
+  node.name = trimmed(attribute(device, "manufacturer") + " " + attribute(device, "product"));
+  node.unique_id = attribute(device, "serial");
+  return true;
+}
+
+std::optional<SystemNode> system_node(udev_device* device, std::string_view subsystem) {
+  const char* path = udev_device_get_devnode(device);
+  if (!path) return std::nullopt;
+  SystemNode node;
+  node.node = path;
+  node.sysfs_path = text(udev_device_get_syspath(device));
+  if (subsystem != "usb") add_parents(device, node);
+  const bool is_known = subsystem == "hidraw"  ? add_hidraw(device, node)
+                        : subsystem == "input" ? add_input(device, node)
+                                               : add_usb(device, node);
+  if (!is_known) return std::nullopt;
+  return node;
+}
+
+// event2 before event10.
+bool is_before(const SystemNode& a, const SystemNode& b) {
+  return a.node.size() != b.node.size() ? a.node.size() < b.node.size() : a.node < b.node;
+}
+
+}  // namespace
+
+std::vector<SystemNode> system_nodes(std::string_view subsystem) {
+  std::vector<SystemNode> nodes;
+  const Udev context(udev_new());
+  if (!context) return nodes;
+  const std::unique_ptr<udev_enumerate, Unref> all(udev_enumerate_new(context.get()));
+  if (!all) return nodes;
+  udev_enumerate_add_match_subsystem(all.get(), std::string(subsystem).c_str());
+  udev_enumerate_scan_devices(all.get());
+  for (udev_list_entry* entry = udev_enumerate_get_list_entry(all.get()); entry;
+       entry = udev_list_entry_get_next(entry)) {
+    const UdevDevice device(
+        udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)));
+    if (!device) continue;  // gone since the scan
+    if (auto node = system_node(device.get(), subsystem)) nodes.push_back(std::move(*node));
+  }
+  std::sort(nodes.begin(), nodes.end(), is_before);
+  return nodes;
+}
+
+std::string usb_interface_path(const std::string& interface_name) {
+  std::error_code error;
+  const fs::path path = fs::canonical("/sys/bus/usb/devices/" + interface_name, error);
+  return error ? std::string() : path.string();
+}
+
+std::string access_problem(const std::string& node) {
+  if (::faccessat(AT_FDCWD, node.c_str(), R_OK | W_OK, AT_EACCESS) == 0) return {};
+  if (errno != EACCES && errno != EPERM) return fmt::format("{}: {}", node, std::strerror(errno));
+  struct stat status = {};
+  if (::stat(node.c_str(), &status) != 0) return fmt::format("{}: permission denied", node);
+  return fmt::format(
+      "{}: permission denied (owner {}, group {}, mode {:04o}); gaitpad doctor tells "
+      "the fix",
+      node, status.st_uid, status.st_gid, status.st_mode & 07777);
+}
+
+struct HotplugMonitor::Impl {
+  Udev context;
+  std::unique_ptr<udev_monitor, Unref> monitor;
+};
+
+HotplugMonitor::HotplugMonitor(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+HotplugMonitor::HotplugMonitor(HotplugMonitor&&) noexcept = default;
+HotplugMonitor& HotplugMonitor::operator=(HotplugMonitor&&) noexcept = default;
+HotplugMonitor::~HotplugMonitor() = default;
+
+Result<HotplugMonitor> HotplugMonitor::create() {
+  auto impl = std::make_unique<Impl>();
+  impl->context.reset(udev_new());
+  if (!impl->context) return Error{"udev: cannot be asked for devices"};
+  // Where no udevd runs (containers) nobody but the kernel tells.
+  const bool has_udevd = ::access("/run/udev/control", F_OK) == 0;
+  impl->monitor.reset(
+      udev_monitor_new_from_netlink(impl->context.get(), has_udevd ? "udev" : "kernel"));
+  if (!impl->monitor) return Error{"udev: cannot be listened to, plugging in is not noticed"};
+  for (const char* subsystem : {"hidraw", "input", "usb"})
+    udev_monitor_filter_add_match_subsystem_devtype(impl->monitor.get(), subsystem, nullptr);
+  if (udev_monitor_enable_receiving(impl->monitor.get()) < 0)
+    return Error{"udev: cannot be listened to, plugging in is not noticed"};
+  return HotplugMonitor(std::move(impl));
+}
+
+int HotplugMonitor::fd() const noexcept { return udev_monitor_get_fd(impl_->monitor.get()); }
+
+bool HotplugMonitor::has_changed() noexcept {
+  bool has_changed = false;
+  while (const UdevDevice device{udev_monitor_receive_device(impl_->monitor.get())}) {
+    has_changed = true;
+  }
+  return has_changed;
+}
+
+}  // namespace gaitpad

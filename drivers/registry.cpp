@@ -47,10 +47,7 @@ constexpr DriverEntry kDrivers[] = {
      .library = "libusb-1.0",
      .find = GAITPAD_USB(&find_usb_devices),
      .open = GAITPAD_USB(&open_usb_device)},
-    {.name = "trace",
-     .library = "",
-     .find = &find_trace_devices,
-     .open = &open_trace_device},
+    {.name = "trace", .library = "", .find = &find_trace_devices, .open = &open_trace_device},
 };
 
 }  // namespace

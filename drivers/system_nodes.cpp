@@ -74,24 +74,6 @@ std::vector<std::uint8_t> file_bytes(const fs::path& path) {
   return bytes;
 }
 
-// `4ms`, `125us`: the interval of the interface's interrupt IN endpoint.
-double endpoint_rate_hz(const fs::path& usb_interface) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(usb_interface, error)) {
-    if (!entry.path().filename().string().starts_with("ep_")) continue;
-    if (first_line(entry.path() / "direction") != "in") continue;
-    if (first_line(entry.path() / "type") != "Interrupt") continue;
-    const std::string interval = first_line(entry.path() / "interval");
-    double value = 0.0;
-    const auto end = interval.data() + interval.size();
-    const auto number = std::from_chars(interval.data(), end, value);
-    if (number.ec != std::errc() || value <= 0.0) return 0.0;
-    const std::string_view unit(number.ptr, static_cast<std::size_t>(end - number.ptr));
-    return unit == "us" ? 1e6 / value : unit == "ms" ? 1e3 / value : 0.0;
-  }
-  return 0.0;
-}
-
 // The input device that the kernel made of a HID device; its version is the one in SDL's GUID.
 std::uint16_t input_version(const fs::path& hid_device) {
   std::error_code error;
@@ -109,7 +91,7 @@ void add_parents(udev_device* device, SystemNode& node) {
   if (usb) {
     node.pad_path = text(udev_device_get_syspath(usb));
     node.kernel_driver = text(udev_device_get_driver(usb));
-    node.poll_rate_hz = endpoint_rate_hz(node.pad_path);
+    node.poll_rate_hz = usb_poll_rate_hz(node.pad_path);
   }
   if (hid) {
     if (!usb) node.pad_path = text(udev_device_get_syspath(hid));
@@ -213,6 +195,23 @@ std::string usb_interface_path(const std::string& interface_name) {
   std::error_code error;
   const fs::path path = fs::canonical("/sys/bus/usb/devices/" + interface_name, error);
   return error ? std::string() : path.string();
+}
+
+double usb_poll_rate_hz(const std::string& interface_path) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(interface_path, error)) {
+    if (!entry.path().filename().string().starts_with("ep_")) continue;
+    if (first_line(entry.path() / "direction") != "in") continue;
+    if (first_line(entry.path() / "type") != "Interrupt") continue;
+    const std::string interval = first_line(entry.path() / "interval");
+    double value = 0.0;
+    const auto end = interval.data() + interval.size();
+    const auto number = std::from_chars(interval.data(), end, value);
+    if (number.ec != std::errc() || value <= 0.0) return 0.0;
+    const std::string_view unit(number.ptr, static_cast<std::size_t>(end - number.ptr));
+    return unit == "us" ? 1e6 / value : unit == "ms" ? 1e3 / value : 0.0;
+  }
+  return 0.0;
 }
 
 std::string access_problem(const std::string& node) {

@@ -32,6 +32,9 @@ struct SystemNode {
 std::vector<SystemNode> system_nodes(std::string_view subsystem);
 // pad_path of a USB interface: `1-1.2:1.0` as in /sys/bus/usb/devices.
 std::string usb_interface_path(const std::string& interface_name);
+// How often the interface's interrupt IN endpoint is asked, by its `interval` (`4ms`, `125us`); 0:
+// unknown, or it has none.
+double usb_poll_rate_hz(const std::string& interface_path);
 // Why the node cannot be opened for reading and writing by this user, empty: it can.
 // `/dev/hidraw3: permission denied (owner 0, group 0, mode 0600); gaitpad doctor tells the fix`
 std::string access_problem(const std::string& node);

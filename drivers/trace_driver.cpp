@@ -1,8 +1,194 @@
-// A recording as a device: hands on a trace's events at their own times.
+// A recording as devices: hands on its events at their own times, counted from the moment when the
+// first of its devices was opened.
+#include <fmt/format.h>
+#include <sys/timerfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <utility>
+
 #include "drivers/driver_entries.h"
 #include "hid/trace.h"
+
 namespace gaitpad {
+namespace {
+
+constexpr std::int64_t kTail_us = 1'000'000;  // as a replay: a second more where Q: says nothing
+
+std::int64_t monotonic_ns() noexcept {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+// One run of a file. All its open devices share it, and with it the beginning of time.
+struct Playback {
+  Trace trace;
+  std::int64_t start_ns = 0;              // CLOCK_MONOTONIC
+  std::int64_t first_us = 0, end_us = 0;  // of the file
+
+  std::int64_t due_ns(std::int64_t time_us) const noexcept {
+    return start_ns + (time_us - first_us) * 1000;
+  }
+};
+
+Playback started_playback(Trace trace) {
+  Playback playback;
+  // With T: lines only each device's own times are in order.
+  const auto [first, last] = std::ranges::minmax_element(trace.events, {}, &TraceEvent::time_us);
+  if (first != trace.events.end()) {
+    playback.first_us = first->time_us;
+    playback.end_us = std::max(last->time_us, trace.end_time_us.value_or(last->time_us + kTail_us));
+  }
+  playback.trace = std::move(trace);
+  playback.start_ns = monotonic_ns();
+  return playback;
+}
+
+Result<std::shared_ptr<const Playback>> running_playback(const std::string& path) {
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<const Playback>> running;
+  const std::lock_guard lock(mutex);
+  if (auto known = running[path].lock()) return known;
+  std::erase_if(running, [](const auto& entry) { return entry.second.expired(); });
+  auto trace = read_trace(path);
+  if (!trace) return trace.error();
+  auto playback = std::make_shared<const Playback>(started_playback(std::move(*trace)));
+  running[path] = playback;
+  return playback;
+}
+
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int fd) : fd_(fd) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&&) = delete;
+  ~FileDescriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const noexcept { return fd_; }
+
+ private:
+  int fd_;
+};
+
+class TraceFileDevice final : public Device {
+ public:
+  TraceFileDevice(std::shared_ptr<const Playback> playback, std::uint16_t device,
+                  FileDescriptor timer)
+      : playback_(std::move(playback)),
+        device_(device),
+        end_ns_(playback_->due_ns(playback_->end_us)),
+        timer_(std::move(timer)),
+        poll_fd_{timer_.get(), POLLIN, 0} {
+    find_own();
+    wake_at(due_ns());
+  }
+
+  const DeviceInfo& info() const noexcept override {
+    return playback_->trace.devices[device_].info;
+  }
+  std::span<const pollfd> poll_fds() const noexcept override { return {&poll_fd_, 1}; }
+
+  Status read(Report& report) noexcept override {
+    const std::int64_t due = due_ns();
+    if (monotonic_ns() < due) {
+      std::uint64_t expirations = 0;
+      static_cast<void>(!::read(timer_.get(), &expirations, sizeof(expirations)));
+      wake_at(due);
+      return Status::nothing;
+    }
+    const std::vector<TraceEvent>& events = playback_->trace.events;
+    if (next_ == events.size()) return Status::gone;
+    copy_report(playback_->trace, events[next_], report);
+    report.time_ns = due;
+    ++next_;
+    find_own();
+    return Status::report;
+  }
+
+ private:
+  void find_own() noexcept {
+    const std::vector<TraceEvent>& events = playback_->trace.events;
+    while (next_ < events.size() && events[next_].device != device_) ++next_;
+  }
+  // Of the next event, behind the last one of the end.
+  std::int64_t due_ns() const noexcept {
+    const std::vector<TraceEvent>& events = playback_->trace.events;
+    return next_ < events.size() ? playback_->due_ns(events[next_].time_us) : end_ns_;
+  }
+  void wake_at(std::int64_t time_ns) noexcept {
+    itimerspec moment{};
+    moment.it_value.tv_sec = static_cast<time_t>(time_ns / 1'000'000'000);
+    moment.it_value.tv_nsec = static_cast<long>(time_ns % 1'000'000'000);
+    ::timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &moment, nullptr);
+  }
+
+  const std::shared_ptr<const Playback> playback_;
+  const std::uint16_t device_;
+  const std::int64_t end_ns_;
+  const FileDescriptor timer_;
+  const pollfd poll_fd_;
+  std::size_t next_ = 0;
+};
+
+std::string node_of(const std::string& path, std::size_t device) {
+  return device == 0 ? path : fmt::format("{}#{}", path, device + 1);
+}
+
+// Undoes node_of(); the name of a file may hold a `#` itself.
+std::pair<std::string, std::size_t> path_and_device(const std::string& node) {
+  const std::size_t mark = node.rfind('#');
+  if (mark == std::string::npos) return {node, 0};
+  std::size_t number = 0;
+  const char* end = node.data() + node.size();
+  const auto read = std::from_chars(node.data() + mark + 1, end, number);
+  const bool is_number = read.ec == std::errc() && read.ptr == end;
+  if (!is_number || number < 2 || number > kMaxTraceDevices) return {node, 0};
+  return {node.substr(0, mark), number - 1};
+}
+
+}  // namespace
+
 std::vector<DeviceListing> find_trace_devices() { return {}; }
-Result<std::vector<DeviceListing>> trace_listings(const std::string& path) { return Error{path}; }
-Result<std::unique_ptr<Device>> open_trace_device(const DeviceListing& listing, Detach) { return Error{listing.node}; }
+
+Result<std::vector<DeviceListing>> trace_listings(const std::string& path) {
+  auto trace = read_trace(path);
+  if (!trace) return trace.error();
+  std::vector<DeviceListing> listings;
+  for (std::size_t i = 0; i < trace->devices.size(); ++i) {
+    DeviceListing& listing = listings.emplace_back();
+    listing.info = trace->devices[i].info;
+    listing.node = node_of(path, i);
+    listing.pad_path = listing.node;
+  }
+  return listings;
+}
+
+std::string trace_calibration(const DeviceListing& listing) {
+  const auto [path, device] = path_and_device(listing.node);
+  auto playback = running_playback(path);
+  if (!playback || device >= (*playback)->trace.devices.size()) return {};
+  return (*playback)->trace.devices[device].calibration;
+}
+
+Result<std::unique_ptr<Device>> open_trace_device(const DeviceListing& listing, Detach) {
+  const auto [path, device] = path_and_device(listing.node);
+  auto playback = running_playback(path);
+  if (!playback) return playback.error();
+  if (device >= (*playback)->trace.devices.size())
+    return Error{fmt::format("{}: there are {} devices in it", listing.node,
+                             (*playback)->trace.devices.size())};
+  FileDescriptor timer(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
+  if (timer.get() < 0)
+    return Error{fmt::format("{}: no timer: {}", listing.node, std::strerror(errno))};
+  return std::unique_ptr<Device>(std::make_unique<TraceFileDevice>(
+      std::move(*playback), static_cast<std::uint16_t>(device), std::move(timer)));
+}
+
 }  // namespace gaitpad

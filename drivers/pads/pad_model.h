@@ -30,6 +30,8 @@ class PadPort {
 struct OutPacket {
   std::array<std::uint8_t, 128> bytes{};
   std::size_t size = 0;  // 0: nothing to send
+  // To be sent again after that time, until another packet follows; 0: once does.
+  std::chrono::milliseconds repeat{0};
 };
 
 // How the pad hangs: some start-up packets are only for a pad that no kernel driver has started.
@@ -49,6 +51,8 @@ class PadModel {
   // The packet that sets the motors; size 0 where the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
+  // Input reports that accept() refused because they are damaged (a wrong checksum).
+  virtual std::int64_t lost() const noexcept { return 0; }
   virtual std::vector<std::string> take_remarks() { return {}; }
 };
 
@@ -68,7 +72,8 @@ struct VendorPad {
   std::unique_ptr<PadModel> model;
   std::vector<std::uint8_t> descriptor;
 };
-VendorPad make_xbox_360_pad(const UsbInterfaceClass& interface);  // ff/5d/01
-VendorPad make_gip_pad(const UsbInterfaceClass& interface);       // ff/47/d0: Xbox One, Series
+VendorPad make_xbox_360_pad(const UsbInterfaceClass& interface, const DeviceInfo&);  // ff/5d/01
+VendorPad make_gip_pad(const UsbInterfaceClass& interface,
+                       const DeviceInfo& device);  // ff/47/d0: Xbox One, Series
 
 }  // namespace gaitpad

@@ -21,10 +21,10 @@ float position(const AxisOp& op, std::span<const std::uint8_t> data) noexcept {
   const std::int64_t value = std::clamp(value_of(op.bits, data), op.bits.min, op.bits.max);
   const auto low = static_cast<double>(op.bits.min), high = static_cast<double>(op.bits.max);
   if (high <= low) return 0.0f;
-  const double share = (static_cast<double>(value) - low) / (high - low);
-  if (op.axis == kLeftTrigger || op.axis == kRightTrigger) {
-    return static_cast<float>(op.reversed ? 1.0 - share : share);
-  }
+  double share = (static_cast<double>(value) - low) / (high - low);
+  if (op.reversed) share = 1.0 - share;
+  if (op.axis == kLeftTrigger || op.axis == kRightTrigger) return static_cast<float>(share);
+  if (op.side != 0) return static_cast<float>(op.side < 0 ? 0.0 - share : share);
   // In this form the middle of an odd number of counts is exactly 0, and never -0.
   const double whole = (2.0 * static_cast<double>(value) - low - high) / (high - low);
   return static_cast<float>(op.reversed ? 0.0 - whole : whole);
@@ -33,7 +33,9 @@ float position(const AxisOp& op, std::span<const std::uint8_t> data) noexcept {
 bool is_pressed(const ButtonOp& op, std::int64_t value) noexcept {
   if (op.mask != 0) return (static_cast<std::uint64_t>(value) & op.mask) != 0;
   if (op.bits.bit_size == 1) return value != 0;
-  return value > op.bits.min && value >= op.bits.min + (op.bits.max - op.bits.min + 1) / 2;
+  const std::int64_t half = (op.bits.max - op.bits.min + 1) / 2;
+  if (op.reversed) return value < op.bits.max && value <= op.bits.max - half;
+  return value > op.bits.min && value >= op.bits.min + half;
 }
 
 Hat direction(const HatOp& op, std::int64_t value) noexcept {
@@ -69,14 +71,38 @@ bool fits(const ReportLayout& layout, const Report& report) noexcept {
          layout.exact_sizes.end();
 }
 
+// 1 up, 2 right, 4 down, 8 left.
+std::uint8_t directions_of(Hat hat) noexcept {
+  constexpr std::array<std::uint8_t, 9> kDirections = {1, 3, 2, 6, 4, 12, 8, 9, 0};
+  return kDirections[static_cast<std::size_t>(hat)];
+}
+
+std::uint32_t apply_hat(const HatOp& op, std::span<const std::uint8_t> data,
+                        PadState& state) noexcept {
+  const Hat hat = direction(op, value_of(op.bits, data));
+  if (op.directions == 0) return dpad_of(hat);
+  if ((directions_of(hat) & op.directions) == 0) return 0;
+  if (op.value != 0.0f) {
+    state.axis[op.axis] = std::clamp(state.axis[op.axis] + op.value, -1.0f, 1.0f);
+  }
+  return op.button;
+}
+
 void apply(const ReportLayout& layout, std::span<const std::uint8_t> data,
            PadState& state) noexcept {
-  for (const AxisOp& op : layout.axes) state.axis[op.axis] = position(op, data);
+  for (int i = 0; i < kAxisCount; ++i) {
+    if (((layout.summed >> i) & 1u) != 0) state.axis[i] = 0.0f;
+  }
+  for (const AxisOp& op : layout.axes) {
+    const float value = position(op, data);
+    const bool summed = ((layout.summed >> op.axis) & 1u) != 0;
+    state.axis[op.axis] = summed ? std::clamp(state.axis[op.axis] + value, -1.0f, 1.0f) : value;
+  }
   std::uint32_t pressed = 0;
   for (const ButtonOp& op : layout.buttons) {
     if (is_pressed(op, value_of(op.bits, data))) pressed |= op.button;
   }
-  for (const HatOp& op : layout.hats) pressed |= dpad_of(direction(op, value_of(op.bits, data)));
+  for (const HatOp& op : layout.hats) pressed |= apply_hat(op, data, state);
   for (const ArrayOp& op : layout.arrays) {
     const std::int64_t index = value_of(op.bits, data) - op.bits.min;
     if (index >= 0 && index < static_cast<std::int64_t>(op.button.size())) {

@@ -20,19 +20,25 @@ struct FieldBits {
   std::int64_t min = 0, max = 0;
 };
 struct AxisOp {
-  FieldBits bits;
+  FieldBits bits;  // min, max: of the part that counts
   PadAxis axis = kLeftX;
   bool reversed = false;  // towards HID's direction: y of a stick grows towards the thumb's owner
+  std::int8_t side = 0;   // of a stick's axis: 0 the whole of it, else from 0 to this
 };
 struct ButtonOp {
-  FieldBits bits;
+  FieldBits bits;  // min, max: of the part that counts
   std::uint32_t mask = 0;
   std::uint32_t button = 0;  // a bit of PadState::buttons
+  bool reversed = false;     // pressed at the low end
 };
 struct HatOp {
   FieldBits bits;
   std::int64_t last = 0;                        // values from min to last are directions
   std::int64_t numerator = 1, denominator = 1;  // of the step in 45 degrees
+  std::uint8_t directions = 0;  // 0: all of them, as the D-pad; else one of these does as follows
+  std::uint32_t button = 0;     // presses this
+  float value = 0.0f;           // adds this to `axis`
+  PadAxis axis = kLeftX;
 };
 struct ArrayOp {  // a slot of an array whose value names a button
   FieldBits bits;
@@ -45,6 +51,7 @@ struct ReportLayout {
   std::uint16_t min_size = 0;              // with the id
   std::vector<std::uint16_t> exact_sizes;  // of a replaced descriptor; empty: min_size counts
   std::uint32_t covered = 0;               // buttons that this report tells of
+  std::uint32_t summed = 0;                // axes (bits) that several fields make up
   std::vector<AxisOp> axes;
   std::vector<ButtonOp> buttons;
   std::vector<HatOp> hats;

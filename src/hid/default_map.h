@@ -19,6 +19,9 @@ struct Binding {
   std::size_t field = 0;  // index in ReportDescriptor::fields
   std::uint32_t mask = 0;
   bool reversed = false;
+  AxisPart part = AxisPart::whole;  // these as in ControlSource
+  StickSide side = StickSide::both;
+  std::uint8_t directions = 0;
 };
 
 // Indices of the fields that belong to the pad: of the first application collection 1:4, 1:5 or 1:8

@@ -30,7 +30,8 @@
 
 namespace gaitpad {
 
-// Motor strengths, 0..65535 as in Linux's ff_rumble_effect: the strong motor is the slow, heavy one.
+// Motor strengths, 0..65535 as in Linux's ff_rumble_effect: the strong motor is the slow, heavy
+// one.
 struct Rumble {
   std::uint16_t strong = 0, weak = 0;
 };

@@ -4,6 +4,7 @@
 
 #include "hid/decode.h"
 #include "hid/default_map.h"
+#include "hid/sdl_mapping.h"
 
 namespace gaitpad {
 
@@ -48,12 +49,48 @@ HatOp hat_op(const Field& f) {
   return op;
 }
 
+// Of an odd number of counts the one in the middle belongs to both halves, and is 0 in both.
+FieldBits part_of(const Field& f, AxisPart part) {
+  FieldBits bits = bits_of(f);
+  const std::int64_t span = std::max<std::int64_t>(f.logical_max - f.logical_min, 0);
+  if (part == AxisPart::high) bits.min += (span + 1) / 2;
+  if (part == AxisPart::low) bits.max = bits.min + span / 2;
+  return bits;
+}
+
 // Sticks: HID's y grows towards the thumb's owner, ours away from it.
-AxisOp axis_op(const Field& f, PadAxis axis, bool against_hid) {
+bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
+bool is_trigger(PadAxis axis) { return axis == kLeftTrigger || axis == kRightTrigger; }
+int side_of(PadAxis axis, StickSide side) {
+  if (side == StickSide::both || is_trigger(axis)) return 0;
+  return (side == StickSide::negative) == is_upward(axis) ? 1 : -1;
+}
+
+AxisOp axis_op(const Field& f, PadAxis axis, const Binding& b) {
   AxisOp op;
-  op.bits = bits_of(f);
+  op.bits = part_of(f, b.part);
   op.axis = axis;
-  op.reversed = against_hid != (axis == kLeftY || axis == kRightY);
+  op.side = static_cast<std::int8_t>(side_of(axis, b.side));
+  op.reversed = b.reversed != (b.part == AxisPart::low);
+  if (op.side == 0 && is_upward(axis)) op.reversed = !op.reversed;
+  return op;
+}
+
+ButtonOp button_op(const Field& f, const Binding& b) {
+  const bool reversed = b.reversed != (b.part == AxisPart::low);
+  return {part_of(f, b.part), b.mask, bit(b.control), reversed && b.mask == 0};
+}
+
+// One direction of a hat as a button, or as a side of a stick.
+HatOp direction_op(const Field& f, const Binding& b) {
+  HatOp op = hat_op(f);
+  op.directions = b.directions;
+  if (b.kind == ControlKind::axis) {
+    op.axis = static_cast<PadAxis>(b.control);
+    op.value = side_of(op.axis, b.side) < 0 ? -1.0f : 1.0f;
+  } else {
+    op.button = bit(b.control);
+  }
   return op;
 }
 
@@ -70,10 +107,11 @@ const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const 
   return nullptr;
 }
 
-// What an override asks for, beside the descriptor.
+// What is known of the controls beside the descriptor: of an override, or of SDL's data base.
 struct Wishes {
   std::optional<ButtonOrder> order;
-  const ControlMap* controls = nullptr;
+  const ControlMap* controls = nullptr;      // of an override: the rest is as usual
+  const ControlMap* all_controls = nullptr;  // of SDL: there are no others
 };
 
 bool is_for(const Binding& b, ControlKind kind, int control) {
@@ -81,18 +119,22 @@ bool is_for(const Binding& b, ControlKind kind, int control) {
   return kind == ControlKind::button && b.kind == ControlKind::dpad && b.control == control;
 }
 
+void bind_control(const ReportDescriptor& d, ControlKind kind, int control,
+                  const ControlSources& sources, std::vector<Binding>& bindings) {
+  for (const ControlSource& s : sources) {
+    for (const ReportLength& report : d.reports) {
+      std::size_t index = 0;
+      if (report.kind != FieldKind::input || !nth_field(d, report.report_id, s, index)) continue;
+      bindings.push_back({kind, control, index, s.mask, s.reversed, s.part, s.side, s.directions});
+    }
+  }
+}
+
 // The override's control takes the place of the default one, and its fields serve nothing else.
 void override_control(const ReportDescriptor& d, ControlKind kind, int control,
                       const ControlSources& sources, std::vector<Binding>& bindings) {
   std::erase_if(bindings, [&](const Binding& b) { return is_for(b, kind, control); });
-  for (const ControlSource& source : sources) {
-    for (const ReportLength& report : d.reports) {
-      std::size_t index = 0;
-      if (report.kind != FieldKind::input || !nth_field(d, report.report_id, source, index))
-        continue;
-      bindings.push_back({kind, control, index, source.mask, source.reversed});
-    }
-  }
+  bind_control(d, kind, control, sources, bindings);
 }
 
 void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
@@ -107,7 +149,30 @@ void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
   for (const auto& sources : controls.buttons) drop(sources);
 }
 
+// A pad that has its axes for a D-pad in SDL's data base (no left stick at all) still walks by
+// them.
+std::vector<Binding> sdl_bindings(const ReportDescriptor& d, const ControlMap& controls) {
+  std::vector<Binding> bindings;
+  for (int i = 0; i < kAxisCount; ++i) {
+    if (controls.axes[i]) bind_control(d, ControlKind::axis, i, *controls.axes[i], bindings);
+  }
+  const auto is_left_stick = [](const Binding& b) {
+    return b.kind == ControlKind::axis && (b.control == kLeftX || b.control == kLeftY);
+  };
+  if (std::none_of(bindings.begin(), bindings.end(), is_left_stick)) {
+    for (const Binding& b : default_bindings(d, std::nullopt)) {
+      if (is_left_stick(b)) bindings.push_back(b);
+    }
+  }
+  for (int i = 0; i < kButtonCount; ++i) {
+    if (controls.buttons[i])
+      bind_control(d, ControlKind::button, i, *controls.buttons[i], bindings);
+  }
+  return bindings;
+}
+
 std::vector<Binding> bindings_of(const ReportDescriptor& d, const Wishes& wishes) {
+  if (wishes.all_controls) return sdl_bindings(d, *wishes.all_controls);
   std::vector<Binding> bindings = default_bindings(d, wishes.order);
   if (!wishes.controls) return bindings;
   const ControlMap& controls = *wishes.controls;
@@ -124,9 +189,14 @@ std::vector<Binding> bindings_of(const ReportDescriptor& d, const Wishes& wishes
 }
 
 void add_binding(const Field& f, const Binding& b, ReportLayout& layout) {
+  if (b.kind != ControlKind::hat && b.directions != 0) {
+    layout.hats.push_back(direction_op(f, b));
+    layout.covered |= layout.hats.back().button;
+    return;
+  }
   switch (b.kind) {
     case ControlKind::axis:
-      layout.axes.push_back(axis_op(f, static_cast<PadAxis>(b.control), b.reversed));
+      layout.axes.push_back(axis_op(f, static_cast<PadAxis>(b.control), b));
       return;
     case ControlKind::hat:
       layout.hats.push_back(hat_op(f));
@@ -134,9 +204,21 @@ void add_binding(const Field& f, const Binding& b, ReportLayout& layout) {
       return;
     case ControlKind::button:
     case ControlKind::dpad:
-      layout.buttons.push_back({bits_of(f), b.mask, bit(b.control)});
+      layout.buttons.push_back(button_op(f, b));
       layout.covered |= bit(b.control);
       return;
+  }
+}
+
+// Several fields of one axis add up: two halves of a stick, or a source and its alternative.
+void find_sums(ReportLayout& layout) {
+  std::uint32_t seen = 0;
+  for (const AxisOp& op : layout.axes) {
+    layout.summed |= seen & bit(op.axis);
+    seen |= bit(op.axis);
+  }
+  for (const HatOp& op : layout.hats) {
+    if (op.value != 0.0f) layout.summed |= bit(op.axis);
   }
 }
 
@@ -178,6 +260,7 @@ std::vector<ReportLayout> report_layouts(const ReportDescriptor& d, const Wishes
     const auto it = layout_of(f.report_id);
     if (it != layouts.end() && f.bit_size <= kMaxControlBits) add_binding(f, b, *it);
   }
+  for (ReportLayout& layout : layouts) find_sums(layout);
   const std::vector<std::size_t> fields = pad_fields(d);
   const ButtonOrder order = wishes.order.value_or(likely_button_order(d, fields));
   for (const std::size_t i : fields) {
@@ -216,6 +299,24 @@ bool driver_hands_on_all(const std::string& driver) {
   return driver.empty() || driver == "hidraw" || driver == "usb";
 }
 
+bool names_controls(const PadOverride& o) {
+  const auto is_set = [](const auto& sources) { return sources.has_value(); };
+  const ControlMap& c = o.controls;
+  return o.order || !o.replacement.descriptor.empty() ||
+         std::any_of(c.axes.begin(), c.axes.end(), is_set) ||
+         std::any_of(c.buttons.begin(), c.buttons.end(), is_set);
+}
+
+// What SDL's data base says about the device; a file that names controls knows better, and a
+// damaged line says nothing.
+std::optional<ControlMap> sdl_map(const DeviceInfo& device, const ReportDescriptor& d,
+                                  const PadOverride* o) {
+  if (device.mapping.empty() || (o && names_controls(*o))) return std::nullopt;
+  auto controls = sdl_controls(device.mapping, d, device.driver);
+  if (!controls) return std::nullopt;
+  return std::move(*controls);
+}
+
 }  // namespace
 
 Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overrides) {
@@ -236,7 +337,9 @@ Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overr
     layout.reports = report_layouts(*replaced, {o->order, &o->replacement.controls});
     for (ReportLayout& r : layout.reports) r.exact_sizes = o->replacement.lengths;
   }
-  const Wishes wishes = o ? Wishes{o->order, &o->controls} : Wishes{};
+  Wishes wishes = o ? Wishes{o->order, &o->controls} : Wishes{};
+  const auto sdl = sdl_map(device, layout.descriptor, o);
+  if (sdl) wishes.all_controls = &*sdl;
   std::vector<ReportLayout> own = report_layouts(layout.descriptor, wishes);
   std::move(own.begin(), own.end(), std::back_inserter(layout.reports));
   layout.unnamed = unnamed_buttons(layout);

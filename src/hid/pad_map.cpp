@@ -108,6 +108,15 @@ void read_identity(TomlTable& pad, PadOverride& result) {
   }
   result.drivers = pad.strings("drivers", 16).value_or(std::vector<std::string>{});
   if (const auto bus = pad.integer("bus", 0, 0xffff)) result.bus = static_cast<BusType>(*bus);
+  if (const auto text = pad.string("application")) {
+    result.application = device_id(*text);  // a usage is written as ids are
+    if (!result.application)
+      pad.reject("application", in_quotes(*text) + " is no usage such as ff5d:0001");
+  }
+  if (const auto versions = pad.numbers("versions", 2, 2, 0, 0xffff)) {
+    result.first_version = static_cast<std::uint16_t>((*versions)[0]);
+    result.last_version = static_cast<std::uint16_t>((*versions)[1]);
+  }
 }
 
 void read_order(TomlTable& pad, PadOverride& result) {
@@ -241,6 +250,12 @@ bool allows(const std::vector<T>& allowed, const U& value) noexcept {
   return allowed.empty() || std::find(allowed.begin(), allowed.end(), value) != allowed.end();
 }
 
+bool has_application(const DeviceInfo& device, std::uint32_t application) {
+  const auto parsed = parse_descriptor(device.descriptor);
+  return parsed && std::find(parsed->applications.begin(), parsed->applications.end(),
+                             application) != parsed->applications.end();
+}
+
 }  // namespace
 
 const PadOverride* find_override(const PadOverrides& overrides, const DeviceInfo& device) noexcept {
@@ -250,8 +265,10 @@ const PadOverride* find_override(const PadOverrides& overrides, const DeviceInfo
   for (const PadOverride& o : overrides) {
     if (o.vendor && *o.vendor != device.vendor) continue;
     if (o.bus && *o.bus != device.bus) continue;
+    if (device.version < o.first_version || device.version > o.last_version) continue;
     if (!allows(o.products, device.product) || !allows(o.ids, id)) continue;
     if (!allows(o.drivers, driver)) continue;
+    if (o.application && !has_application(device, *o.application)) continue;
     return &o;
   }
   return nullptr;

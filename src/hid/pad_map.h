@@ -22,6 +22,10 @@ enum class ButtonOrder {
   xinput,        // a b x y, shoulders, back start, sticks, guide: Xbox in Windows mode
 };
 
+// The last three members are for lines of SDL's data base (hid/sdl_mapping.h); no file states them.
+enum class AxisPart : std::uint8_t { whole, low, high };           // counted from the middle
+enum class StickSide : std::uint8_t { both, negative, positive };  // in HID's directions
+
 // `0001:0031`, `-0001:0031` (reversed), `0001:0030/4` (the fourth X), `000c:0081&1` (a bit),
 // `button 3`.
 struct ControlSource {
@@ -29,6 +33,9 @@ struct ControlSource {
   std::uint32_t occurrence = 1;  // the n-th field with that usage in its report
   std::uint32_t mask = 0;  // of a button: pressed where one of these bits is set; 0: any value
   bool reversed = false;   // of an axis: against HID's directions (x right, y towards the thumb)
+  AxisPart part = AxisPart::whole;   // of a field: a half is 0 in the middle and full at the end
+  StickSide side = StickSide::both;  // of a stick's axis: the source moves it to this side alone
+  std::uint8_t directions = 0;       // of a hat, any of: 1 up, 2 right, 4 down, 8 left; 0: no hat
   bool operator==(const ControlSource&) const = default;
 };
 using ControlSources = std::vector<ControlSource>;
@@ -54,6 +61,8 @@ struct PadOverride {
   std::vector<std::uint32_t> ids;       // vendor << 16 | product, beside vendor and products
   std::vector<std::string> drivers;     // empty: all
   std::optional<BusType> bus;
+  std::optional<std::uint32_t> application;  // usage of a collection of the device's descriptor
+  std::uint16_t first_version = 0, last_version = 0xffff;
   std::optional<bool> is_pad;
   bool streams = false;  // sends reports at rest too
   std::optional<ButtonOrder> order;

@@ -12,10 +12,10 @@
 
 namespace gaitpad {
 
-// The controls as usages of this descriptor. `driver` is the device's: an sdl device states its
-// axes, buttons and hats in SDL's own order, all others are counted by evdev codes. Error for a
-// damaged line: `SDL mapping: unknown source "q3"`; a number that the device does not have is left
-// out, as SDL does.
+// The controls as usages of this descriptor. `driver` is the device's: whether its own descriptor
+// or one stated from evdev codes (hid/evdev_codes.h). Error for a damaged line, or one longer than
+// a trace can hold: `SDL mapping: unknown source "q3"`; a number that the device does not have is
+// left out, as SDL does.
 Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor& descriptor,
                                 std::string_view driver);
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,10 @@ inline constexpr int kDefaultRateHz = 240;
 inline constexpr int kMaxRateHz = 10000;
 inline constexpr std::size_t kMaxTraceDevices = 16;
 inline constexpr std::size_t kMaxTraceBytes = std::size_t{512} << 20;  // of the file
+inline constexpr std::size_t kMaxTraceEvents = std::size_t{1} << 24;
+inline constexpr std::size_t kMaxTraceTextBytes = 512;  // of a name, a path, an id, a mapping
+inline constexpr std::int64_t kMaxTraceGapUs = 600'000'000;
+inline constexpr std::int64_t kMaxTraceDurationUs = 1'000'000'000'000;
 
 struct TraceDevice {
   int index = 0;  // as its `D:` line says
@@ -69,6 +74,31 @@ int replay_rate_hz(const Trace& trace, std::optional<int> asked);
 // The event as a driver would have delivered it, time in nanoseconds.
 void copy_report(const Trace& trace, const TraceEvent& event, Report& report) noexcept;
 Report report_of(const Trace& trace, const TraceEvent& event) noexcept;
+
+// Writes a trace line by line, in the order of the calls.
+class TraceWriter {
+ public:
+  void begin(int rate_hz);  // `V:`, first of all
+  void comment(std::string_view sentence);
+  // What tells about the device; texts are cut to what the reader takes. A recording's only device
+  // needs no `D:` line where its index is 0.
+  enum class Index { written, left_out };
+  void device(const TraceDevice& device, Index index);
+  void tick(std::int64_t tick);  // `T:`, where it is another than before
+  // `index` as in device(), which came before; none for a command.
+  void event(ReportKind kind, std::int64_t time_us, std::optional<int> index,
+             std::span<const std::uint8_t> bytes);
+  void end(std::int64_t time_us, std::int64_t ticks);  // `Q:`
+
+  // Whole lines, written since the last call.
+  const std::string& text() const { return text_; }
+  std::string take_text();
+
+ private:
+  std::string text_;
+  std::optional<std::int64_t> tick_;
+  std::optional<int> current_;  // device of the last `D:`
+};
 
 // Writes a trace that the reader reads back as the same devices and events, and that hid-replay
 // plays. `T:` lines are written where has_ticks is set, `V:` where rate_hz is, `Q:` where both ends

@@ -11,12 +11,8 @@ namespace gaitpad {
 
 namespace {
 
-constexpr std::size_t kMaxTextBytes = 512;  // of a name, a path, an id
 constexpr std::size_t kMaxCalibrationBytes = 1 << 16;
-constexpr std::size_t kMaxEvents = 1 << 24;
 constexpr int kMaxDeviceIndex = 9999;
-constexpr std::int64_t kMaxGapUs = 600'000'000;
-constexpr std::int64_t kMaxDurationUs = 1'000'000'000'000;
 
 Cause bad_time(std::string_view word) {
   return fmt::format("{} is no time SECONDS.MICROSECONDS with six digits behind the point",
@@ -56,6 +52,8 @@ Cause TraceReader::add_lettered(char letter, std::string_view text) {
       return set_text(&DeviceInfo::physical_path, text);
     case 'U':
       return set_text(&DeviceInfo::unique_id, text);
+    case 'M':
+      return set_text(&DeviceInfo::mapping, text);
     case 'K':
       return calibration(text);
     case 'T':
@@ -154,7 +152,7 @@ Cause TraceReader::identity(Words words) {
 Cause TraceReader::driver(Words words) {
   const std::string_view name = words.next();
   if (microseconds(name)) return std::nullopt;
-  if (name.empty() || name.size() > kMaxTextBytes) return "a B: line holds a driver's name";
+  if (name.empty() || name.size() > kMaxTraceTextBytes) return "a B: line holds a driver's name";
   const std::string_view word = words.next();
   const auto version = hexadecimal(word.empty() ? "0" : word, 0xffff);
   if (!version || !words.at_end()) {
@@ -168,8 +166,8 @@ Cause TraceReader::driver(Words words) {
 }
 
 Cause TraceReader::set_text(std::string DeviceInfo::*member, std::string_view text) {
-  if (text.size() > kMaxTextBytes) {
-    return fmt::format("a text of {} bytes, at most {} are read", text.size(), kMaxTextBytes);
+  if (text.size() > kMaxTraceTextBytes) {
+    return fmt::format("a text of {} bytes, at most {} are read", text.size(), kMaxTraceTextBytes);
   }
   std::size_t device = 0;
   if (Cause cause = current_device(device)) return cause;
@@ -194,7 +192,7 @@ Cause TraceReader::tick(Words words) {
   if (!tick || !words.at_end()) return fmt::format("{} is no tick", in_quotes(word));
   if (trace_.end_ticks) return "a line behind the end of the recording (Q:)";
   if (*tick < tick_) return fmt::format("tick {} comes after tick {}", *tick, tick_);
-  if (*tick - tick_ > rate() * (kMaxGapUs / 1'000'000)) {
+  if (*tick - tick_ > rate() * (kMaxTraceGapUs / 1'000'000)) {
     return fmt::format("a gap of more than ten minutes: tick {} after tick {}", *tick, tick_);
   }
   if (!trace_.has_ticks && !trace_.events.empty()) return "the first T: line stands behind events";
@@ -205,7 +203,8 @@ Cause TraceReader::tick(Words words) {
 
 Cause TraceReader::check_place(std::int64_t time_us, std::uint16_t device) const {
   if (trace_.end_ticks) return "a line behind the end of the recording (Q:)";
-  if (trace_.events.size() >= kMaxEvents) return fmt::format("more than {} events", kMaxEvents);
+  if (trace_.events.size() >= kMaxTraceEvents)
+    return fmt::format("more than {} events", kMaxTraceEvents);
   return check_order(time_us, device);
 }
 
@@ -217,10 +216,10 @@ Cause TraceReader::check_order(std::int64_t time_us, std::uint16_t device) const
     return fmt::format("time goes back from {}.{:06} to {}.{:06}", before / 1'000'000,
                        before % 1'000'000, time_us / 1'000'000, time_us % 1'000'000);
   }
-  if (time_us - latest_us_ > kMaxGapUs) {
+  if (time_us - latest_us_ > kMaxTraceGapUs) {
     return fmt::format("a gap of more than ten minutes: {} s", (time_us - latest_us_) / 1'000'000);
   }
-  if (time_us - trace_.events.front().time_us > kMaxDurationUs) {
+  if (time_us - trace_.events.front().time_us > kMaxTraceDurationUs) {
     return "a recording of more than a million seconds";
   }
   return std::nullopt;
@@ -303,12 +302,13 @@ Cause TraceReader::end(Words words) {
   if (trace_.end_ticks) return "a second Q: line";
   const bool any = !trace_.events.empty();
   if (any && *time_us < latest_us_) return "the recording ends before its last event";
-  if (any && *time_us - latest_us_ > kMaxGapUs) return "a gap of more than ten minutes at the end";
+  if (any && *time_us - latest_us_ > kMaxTraceGapUs)
+    return "a gap of more than ten minutes at the end";
   if (trace_.has_ticks && *ticks <= tick_) {
     return fmt::format("the recording has {} ticks but tick {} has events", *ticks, tick_);
   }
   const std::int64_t lasted_us = any ? *time_us - trace_.events.front().time_us : 0;
-  if (*ticks > (lasted_us + 2 * kMaxGapUs) / 1'000'000 * rate()) {
+  if (*ticks > (lasted_us + 2 * kMaxTraceGapUs) / 1'000'000 * rate()) {
     return fmt::format("{} ticks do not fit into {} s", *ticks, lasted_us / 1'000'000);
   }
   trace_.end_time_us = *time_us;

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "hid/trace.h"
 
@@ -10,8 +12,8 @@ namespace gaitpad {
 namespace {
 
 // A line break inside a name would begin a line of the trace.
-std::string one_line(std::string_view text) {
-  std::string line(text);
+std::string one_line(std::string_view text, std::size_t max_bytes = kMaxTraceTextBytes) {
+  std::string line(text.substr(0, max_bytes));
   for (char& c : line) {
     if (c == '\n' || c == '\r') c = ' ';
   }
@@ -53,57 +55,78 @@ void append_device(std::string& out, const TraceDevice& device) {
   if (!info.driver.empty()) {
     fmt::format_to(std::back_inserter(out), "B: {} {:04x}\n", one_line(info.driver), info.version);
   }
+  if (!info.mapping.empty()) out += "M: " + one_line(info.mapping) + "\n";
   append_calibration(out, device.calibration);
-}
-
-void append_event(std::string& out, const Trace& trace, const TraceEvent& event) {
-  const std::string time = time_text(event.time_us);
-  const std::uint8_t* bytes = trace.bytes.data() + event.first_byte;
-  switch (event.kind) {
-    case ReportKind::input:
-      out += "E: " + time + " ";
-      append_bytes(out, bytes, event.size);
-      return;
-    case ReportKind::command:
-      out +=
-          "C: " + time + " " + one_line({reinterpret_cast<const char*>(bytes), event.size}) + "\n";
-      return;
-    case ReportKind::added:
-      out += "H: " + time + " add\n";
-      return;
-    case ReportKind::removed:
-      out += "H: " + time + " remove\n";
-      return;
-  }
 }
 
 }  // namespace
 
+void TraceWriter::begin(int rate_hz) { text_ += fmt::format("V: 1 rate_hz={}\n", rate_hz); }
+
+void TraceWriter::comment(std::string_view sentence) {
+  text_ += "# " + one_line(sentence, sentence.size()) + "\n";
+}
+
+void TraceWriter::device(const TraceDevice& device, Index index) {
+  if (index == Index::written) text_ += fmt::format("D: {}\n", device.index);
+  append_device(text_, device);
+  current_ = device.index;
+}
+
+void TraceWriter::tick(std::int64_t tick) {
+  if (tick_ == tick) return;
+  text_ += fmt::format("T: {}\n", tick);
+  tick_ = tick;
+}
+
+void TraceWriter::event(ReportKind kind, std::int64_t time_us, std::optional<int> index,
+                        std::span<const std::uint8_t> bytes) {
+  if (index && index != current_) {
+    text_ += fmt::format("D: {}\n", *index);
+    current_ = index;
+  }
+  const std::string time = time_text(time_us);
+  switch (kind) {
+    case ReportKind::input:
+      text_ += "E: " + time + " ";
+      append_bytes(text_, bytes.data(), bytes.size());
+      return;
+    case ReportKind::command:
+      text_ += "C: " + time + " " +
+               one_line({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, bytes.size()) +
+               "\n";
+      return;
+    case ReportKind::added:
+      text_ += "H: " + time + " add\n";
+      return;
+    case ReportKind::removed:
+      text_ += "H: " + time + " remove\n";
+      return;
+  }
+}
+
+void TraceWriter::end(std::int64_t time_us, std::int64_t ticks) {
+  text_ += fmt::format("Q: {} {}\n", time_text(time_us), ticks);
+}
+
+std::string TraceWriter::take_text() { return std::exchange(text_, {}); }
+
 std::string trace_text(const Trace& trace) {
-  std::string out;
-  if (trace.rate_hz) out += fmt::format("V: 1 rate_hz={}\n", *trace.rate_hz);
+  TraceWriter writer;
+  if (trace.rate_hz) writer.begin(*trace.rate_hz);
   const bool plain = trace.devices.size() == 1 && trace.devices.front().index == 0;
   for (const TraceDevice& device : trace.devices) {
-    if (!plain) out += fmt::format("D: {}\n", device.index);
-    append_device(out, device);
+    writer.device(device, plain ? TraceWriter::Index::left_out : TraceWriter::Index::written);
   }
-  std::size_t current = trace.devices.size() - 1;
-  std::optional<std::int64_t> tick;
   for (const TraceEvent& event : trace.events) {
-    if (trace.has_ticks && tick != event.tick) {
-      out += fmt::format("T: {}\n", event.tick);
-      tick = event.tick;
-    }
-    if (event.device != kNoDevice && event.device != current) {
-      current = event.device;
-      out += fmt::format("D: {}\n", trace.devices[current].index);
-    }
-    append_event(out, trace, event);
+    if (trace.has_ticks) writer.tick(event.tick);
+    std::optional<int> index;
+    if (event.device != kNoDevice) index = trace.devices[event.device].index;
+    writer.event(event.kind, event.time_us, index,
+                 {trace.bytes.data() + event.first_byte, event.size});
   }
-  if (trace.end_time_us && trace.end_ticks) {
-    out += fmt::format("Q: {} {}\n", time_text(*trace.end_time_us), *trace.end_ticks);
-  }
-  return out;
+  if (trace.end_time_us && trace.end_ticks) writer.end(*trace.end_time_us, *trace.end_ticks);
+  return writer.take_text();
 }
 
 Result<std::int64_t> write_trace(const Trace& trace, const std::string& path) {

@@ -1,0 +1,399 @@
+// Pads through Linux's hidraw, by hidapi: the bytes as the pad sent them, while the kernel's own
+// driver goes on serving evdev. hidapi 0.13 gives neither the report descriptor nor anything to
+// wait on, and one error for all that can go wrong; what is missing is asked of the kernel here.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <hidapi/hidapi.h>
+#include <linux/hidraw.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/timerfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "drivers/driver_entries.h"
+#include "drivers/open_descriptors.h"
+#include "drivers/pads/packet_sender.h"
+#include "drivers/pads/pad_model.h"
+#include "drivers/system_nodes.h"
+#include "hid/descriptor.h"
+
+namespace gaitpad {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Status = Device::Status;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr int kMaxRefusedInARow = 64;  // packets looked at before other pads have their turn
+constexpr int kMaxErrorsInARow = 64;   // a source that only fails is given up
+constexpr int kKernelRing = 63;        // reports that hidraw keeps for a slow reader
+constexpr auto kKernelStart = 3s;
+constexpr long kBlindPeriod_ns = 1'000'000;
+
+struct CloseHandle {
+  void operator()(hid_device* handle) const noexcept { hid_close(handle); }
+};
+using Handle = std::unique_ptr<hid_device, CloseHandle>;
+
+class OwnedFd {
+ public:
+  explicit OwnedFd(int fd) noexcept : fd_(fd) {}
+  OwnedFd(const OwnedFd&) = delete;
+  ~OwnedFd() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const noexcept { return fd_; }
+
+ private:
+  int fd_;
+};
+
+std::int64_t now_ns() noexcept {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+// Ready every millisecond; -1: it cannot be had.
+int blind_timer() noexcept {
+  const int timer = ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+  const itimerspec period{{0, kBlindPeriod_ns}, {0, kBlindPeriod_ns}};
+  if (timer >= 0) ::timerfd_settime(timer, 0, &period, nullptr);
+  return timer;
+}
+
+struct OpenNode {
+  Handle handle;
+  int fd = -1;  // the handle's own, -1: not found
+};
+
+// hidapi keeps its descriptor to itself, but without it the I/O thread could not sleep until this
+// pad or another has something: it is looked for among this process's.
+Result<OpenNode> open_node(const std::string& node) {
+  struct stat status {};
+  if (::stat(node.c_str(), &status) != 0)
+    return Error{fmt::format("{}: {}", node, std::strerror(errno))};
+  if (!S_ISCHR(status.st_mode)) return Error{node + ": is no device node"};
+  const OpenDescriptors before = open_descriptors(status.st_rdev);
+  OpenNode opened{Handle(hid_open_path(node.c_str()))};
+  if (!opened.handle) {
+    const std::string problem = access_problem(node);
+    return Error{problem.empty() ? node + ": is no HID device, or it has just gone" : problem};
+  }
+  opened.fd = new_descriptor(before, open_descriptors(status.st_rdev));
+  return opened;
+}
+
+Bytes kernel_descriptor(int fd) {
+  int size = 0;
+  hidraw_report_descriptor descriptor{};
+  if (fd < 0 || ::ioctl(fd, HIDIOCGRDESCSIZE, &size) < 0) return {};
+  if (size <= 0 || size > HID_MAX_DESCRIPTOR_SIZE) return {};
+  descriptor.size = static_cast<unsigned>(size);
+  if (::ioctl(fd, HIDIOCGRDESC, &descriptor) < 0) return {};
+  return Bytes(descriptor.value, descriptor.value + size);
+}
+
+// A node's number is used again: between looking and opening it may have become another device.
+bool is_another(int fd, const DeviceInfo& info) {
+  hidraw_devinfo now{};
+  if (fd < 0 || ::ioctl(fd, HIDIOCGRAWINFO, &now) < 0) return false;
+  std::array<char, 256> port{};
+  if (::ioctl(fd, HIDIOCGRAWPHYS(port.size() - 1), port.data()) < 0) return false;
+  return static_cast<std::uint16_t>(now.vendor) != info.vendor ||
+         static_cast<std::uint16_t>(now.product) != info.product ||
+         (!info.physical_path.empty() && info.physical_path != port.data());
+}
+
+// The kernel takes the report id always, 0 where the pad has none; a pad model gives it only where
+// there is one.
+bool write_packet(hid_device* handle, bool is_numbered, std::span<const std::uint8_t> packet) {
+  if (packet.empty()) return false;
+  if (is_numbered) return hid_write(handle, packet.data(), packet.size()) >= 0;
+  Bytes with_id(packet.size() + 1, 0);
+  std::copy(packet.begin(), packet.end(), with_id.begin() + 1);
+  return hid_write(handle, with_id.data(), with_id.size()) >= 0;
+}
+
+class HidrawPort final : public PadPort {
+ public:
+  HidrawPort(hid_device* handle, bool is_numbered) : handle_(handle), is_numbered_(is_numbered) {}
+  bool write(std::span<const std::uint8_t> packet) noexcept override {
+    return write_packet(handle_, is_numbered_, packet);
+  }
+  std::size_t read(std::span<std::uint8_t> packet,
+                   std::chrono::milliseconds timeout) noexcept override {
+    const int size = hid_read_timeout(handle_, packet.data(), packet.size(),
+                                      static_cast<int>(std::clamp(timeout, 0ms, 2000ms).count()));
+    return size > 0 ? std::min(static_cast<std::size_t>(size), packet.size()) : 0;
+  }
+  std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
+    if (packet.empty()) return 0;
+    packet[0] = id;
+    const int size = hid_get_feature_report(handle_, packet.data(), packet.size());
+    if (size <= 0 || packet[0] != id) return 0;
+    return std::min(static_cast<std::size_t>(size), packet.size());
+  }
+
+ private:
+  hid_device* handle_;
+  bool is_numbered_;
+};
+
+// A sender with a handle of its own, since hidapi writes its error text at reading and writing
+// alike; null where the node cannot be opened again or no thread be started.
+std::unique_ptr<PacketSender> make_sender(const std::string& node, bool is_numbered) {
+  const std::shared_ptr<hid_device> handle(hid_open_path(node.c_str()), CloseHandle());
+  if (!handle) return nullptr;
+  return PacketSender::create([handle, is_numbered](std::span<const std::uint8_t> packet) {
+    return write_packet(handle.get(), is_numbered, packet);
+  });
+}
+
+class HidrawDevice final : public Device {
+ public:
+  HidrawDevice(DeviceInfo info, std::string node, OpenNode opened)
+      : info_(std::move(info)),
+        node_(std::move(node)),
+        handle_(std::move(opened.handle)),
+        fd_(opened.fd),
+        timer_(fd_ < 0 ? blind_timer() : -1),
+        model_(make_pad_model(info_)) {
+    const auto descriptor = parse_descriptor(info_.descriptor);
+    is_numbered_ = descriptor && descriptor->numbered;
+    wait_on_ = {.fd = fd_ >= 0 ? fd_ : timer_.get(), .events = POLLIN, .revents = 0};
+  }
+  ~HidrawDevice() override {
+    if (is_rumbling_) rumble({});
+  }
+
+  void start(StartedBy started) {
+    HidrawPort port(handle_.get(), is_numbered_);
+    model_->start(port, started);
+    OutPacket still;
+    model_->rumble({}, still);
+    if (still.size == 0) return;
+    sender_ = make_sender(node_, is_numbered_);
+    if (!sender_ && access_problem(node_).empty())
+      remarks_.push_back(node_ + ": the motors cannot be reached");
+  }
+
+  const DeviceInfo& info() const noexcept override { return info_; }
+  std::span<const pollfd> poll_fds() const noexcept override { return {&wait_on_, 1}; }
+  Status read(Report& report) noexcept override;
+  bool rumble(const Rumble& rumble) noexcept override {
+    if (!sender_) return false;
+    OutPacket packet;
+    model_->rumble(rumble, packet);
+    is_rumbling_ = rumble.strong != 0 || rumble.weak != 0;
+    return sender_->send(packet);
+  }
+  std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
+  std::int64_t lost() const noexcept override { return lost_ + model_->lost(); }
+  std::vector<std::string> take_remarks() override {
+    std::vector<std::string> remarks = model_->take_remarks();
+    std::move(remarks_.begin(), remarks_.end(), std::back_inserter(remarks));
+    remarks_.clear();
+    return remarks;
+  }
+
+ private:
+  bool take(std::span<const std::uint8_t> packet, Report& report) noexcept;
+  bool has_hung_up(int error) const noexcept;
+  Status after_error(int error) noexcept;
+  void count_waiting() noexcept;
+
+  DeviceInfo info_;
+  std::string node_;
+  Handle handle_;
+  int fd_ = -1;    // the handle's
+  OwnedFd timer_;  // where that is unknown
+  pollfd wait_on_{};
+  std::unique_ptr<PadModel> model_;
+  std::unique_ptr<PacketSender> sender_;  // null: no motors
+  bool is_numbered_ = false;
+  bool is_rumbling_ = false;
+  bool is_unplugged_ = false;  // what came before is still to be read
+  int errors_in_row_ = 0;
+  std::optional<int> waiting_;  // reports read since there were none; nothing before that
+  bool was_late_ = false;
+  std::int64_t lost_ = 0;
+  std::vector<std::string> remarks_;
+  // One byte more than a report may have, to see that one has more.
+  std::array<std::uint8_t, kMaxReportBytes + 1> buffer_{};
+};
+
+Status HidrawDevice::read(Report& report) noexcept {
+  std::uint64_t ticks = 0;
+  if (timer_.get() >= 0 && ::read(timer_.get(), &ticks, sizeof ticks) < 0) ticks = 0;
+  for (int i = 0; i < kMaxRefusedInARow; ++i) {
+    errno = 0;
+    // With a timeout hidapi refuses to read on once the pad is gone; without, an unplugged node
+    // gives what it still holds and then an error, and never waits.
+    const int size =
+        hid_read_timeout(handle_.get(), buffer_.data(), buffer_.size(), is_unplugged_ ? -1 : 0);
+    const int error = errno;
+    if (size <= 0 && is_unplugged_) return Status::gone;
+    if (size == 0) {
+      waiting_ = 0;
+      return Status::nothing;
+    }
+    if (size < 0 && !has_hung_up(error)) return after_error(error);
+    if (size < 0) {
+      is_unplugged_ = true;
+      continue;
+    }
+    errors_in_row_ = 0;
+    count_waiting();
+    if (take(std::span(buffer_).first(static_cast<std::size_t>(size)), report))
+      return Status::report;
+  }
+  return Status::nothing;  // there may be more: the node stays ready
+}
+
+bool HidrawDevice::take(std::span<const std::uint8_t> packet, Report& report) noexcept {
+  if (packet.size() > kMaxReportBytes) {
+    ++lost_;
+    return false;
+  }
+  report.time_ns = now_ns();
+  OutPacket reply;
+  const bool is_input = model_->accept(packet, reply);
+  if (reply.size > 0 && sender_) sender_->send(reply);
+  if (!is_input) return false;
+  report.kind = ReportKind::input;
+  report.size = static_cast<std::uint16_t>(packet.size());
+  std::copy(packet.begin(), packet.end(), report.bytes.begin());
+  return true;
+}
+
+// hidapi answers -1 for the hang-up that its poll() sees (no error number then) and for every
+// failure of a call.
+bool HidrawDevice::has_hung_up(int error) const noexcept {
+  if (fd_ < 0) return error == 0 || error == EBADF;
+  pollfd now{.fd = fd_, .events = POLLIN, .revents = 0};
+  return ::poll(&now, 1, 0) > 0 && (now.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0;
+}
+
+Status HidrawDevice::after_error(int error) noexcept {
+  if (error == EINTR || error == EAGAIN) return Status::nothing;
+  if ((error == ENODEV || error == EIO) && ::access(node_.c_str(), F_OK) != 0) return Status::gone;
+  ++lost_;
+  if (++errors_in_row_ < kMaxErrorsInARow) return Status::nothing;
+  remarks_.push_back(fmt::format("{}: cannot be read: {}", node_, std::strerror(error)));
+  return Status::gone;
+}
+
+// The kernel tells nobody that it drops reports when nobody reads them in time.
+void HidrawDevice::count_waiting() noexcept {
+  if (waiting_ && ++*waiting_ == kKernelRing && !std::exchange(was_late_, true))
+    remarks_.push_back(node_ + ": was read too late; the kernel may have dropped reports");
+}
+
+// While it binds, hid-nintendo asks the pad for its calibration and takes any answer for its own:
+// it is left alone until its input device stands.
+void wait_for_kernel(const std::string& node) {
+  const std::filesystem::path name = std::filesystem::path(node).filename();
+  const std::filesystem::path device = std::filesystem::path("/sys/class/hidraw") / name / "device";
+  const auto end = std::chrono::steady_clock::now() + kKernelStart;
+  std::error_code error;
+  while (std::chrono::steady_clock::now() < end && std::filesystem::exists(device, error) &&
+         !std::filesystem::exists(device / "input", error))
+    std::this_thread::sleep_for(20ms);
+}
+
+StartedBy started_by(const std::string& kernel_driver) {
+  for (const char* name : {"playstation", "sony", "nintendo"})
+    if (kernel_driver == name) return StartedBy::kernel;
+  return StartedBy::us;
+}
+
+struct FreeEnumeration {
+  void operator()(hid_device_info* list) const noexcept { hid_free_enumeration(list); }
+};
+
+BusType bus_of(hid_bus_type bus) {
+  if (bus == HID_API_BUS_USB) return BusType::usb;
+  return bus == HID_API_BUS_BLUETOOTH ? BusType::bluetooth : BusType::unknown;
+}
+
+// hidapi's list names a device once for each pair of usages; only nodes that udev does not tell of
+// are new.
+void add_library_list(std::vector<DeviceListing>& listings) {
+  const std::unique_ptr<hid_device_info, FreeEnumeration> all(hid_enumerate(0, 0));
+  for (const hid_device_info* one = all.get(); one; one = one->next) {
+    if (!one->path) continue;
+    const auto is_same = [one](const DeviceListing& l) { return l.node == one->path; };
+    if (std::any_of(listings.begin(), listings.end(), is_same)) continue;
+    DeviceListing listing;
+    listing.info.bus = bus_of(one->bus_type);
+    listing.info.vendor = one->vendor_id;
+    listing.info.product = one->product_id;
+    listing.node = listing.pad_path = one->path;
+    listings.push_back(std::move(listing));
+  }
+}
+
+}  // namespace
+
+std::vector<DeviceListing> find_hidraw_devices() {
+  std::vector<DeviceListing> listings;
+  for (SystemNode& node : system_nodes("hidraw")) {
+    DeviceListing listing;
+    listing.info = {.bus = node.bus,
+                    .vendor = node.vendor,
+                    .product = node.product,
+                    .version = node.version,
+                    .driver = {},
+                    .name = std::move(node.name),
+                    .unique_id = std::move(node.unique_id),
+                    .physical_path = std::move(node.physical_path),
+                    .descriptor = std::move(node.descriptor),
+                    .mapping = {}};
+    listing.node = std::move(node.node);
+    listing.pad_path = std::move(node.pad_path);
+    listing.kernel_driver = std::move(node.kernel_driver);
+    listing.poll_rate_hz = node.poll_rate_hz;
+    listings.push_back(std::move(listing));
+  }
+  add_library_list(listings);
+  for (DeviceListing& listing : listings) {
+    listing.info.driver = "hidraw";
+    listing.problem = access_problem(listing.node);
+  }
+  return listings;
+}
+
+Result<std::unique_ptr<Device>> open_hidraw_device(const DeviceListing& listing, Detach) {
+  const StartedBy started = started_by(listing.kernel_driver);
+  if (listing.kernel_driver == "nintendo") wait_for_kernel(listing.node);
+  auto opened = open_node(listing.node);
+  if (!opened) return opened.error();
+  if (is_another(opened->fd, listing.info))
+    return Error{listing.node + ": has become another device"};
+  DeviceInfo info = listing.info;
+  info.driver = "hidraw";
+  if (Bytes descriptor = kernel_descriptor(opened->fd); !descriptor.empty())
+    info.descriptor = std::move(descriptor);
+  if (info.descriptor.empty())
+    return Error{listing.node + ": its report descriptor cannot be read"};
+  auto device = std::make_unique<HidrawDevice>(std::move(info), listing.node, std::move(*opened));
+  if (device->poll_fds().front().fd < 0)
+    return Error{listing.node + ": cannot be waited for: too many open files"};
+  device->start(started);
+  return Result<std::unique_ptr<Device>>(std::move(device));
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,160 @@
+// Xbox One and Series pads on a wire speak GIP: command, options, sequence number and length stand
+// before each message. The command is the report's id.
+#include <algorithm>
+
+#include "drivers/pads/pad_model.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::size_t kHeaderBytes = 4;
+constexpr std::uint8_t kAcknowledge = 0x01, kAnnounce = 0x02, kPower = 0x05, kGuide = 0x07,
+                       kRumble = 0x09, kInput = 0x20;
+constexpr std::uint8_t kClient = 0x0f;  // whose message: 0 the pad's, else what is plugged into it
+constexpr std::uint8_t kWantsAnswer = 0x10, kInternal = 0x20, kChunk = 0x80;
+
+// y grows upwards in these packets: config/pads/microsoft.toml says so of every pad with the last
+// line's collection.
+constexpr std::uint8_t kDescriptor[] = {
+    0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                          // game pad
+    0x85, 0x20, 0x75, 0x08, 0x95, 0x03, 0x81, 0x03,              // input: options, number, length
+    0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x02, 0x81, 0x03,  // byte 4: pairing, unused
+    0x05, 0x09, 0x09, 0x08, 0x09, 0x07, 0x81, 0x02,              //   start (menu), back (view)
+    0x19, 0x01, 0x29, 0x04, 0x95, 0x04, 0x81, 0x02,              //   a, b, x, y
+    0x05, 0x01, 0x09, 0x90, 0x09, 0x91, 0x09, 0x93, 0x09, 0x92,  // byte 5: up, down, left, right
+    0x81, 0x02,                                                  //
+    0x05, 0x09, 0x09, 0x05, 0x09, 0x06, 0x09, 0x09, 0x09, 0x0a,  //   shoulders, sticks
+    0x81, 0x02,                                                  //
+    0x05, 0x01, 0x09, 0x32, 0x09, 0x35, 0x26, 0xff, 0x03,        // bytes 6..9: triggers, 10 bits
+    0x75, 0x10, 0x95, 0x02, 0x81, 0x02,                          //
+    0x09, 0x30, 0x09, 0x31, 0x09, 0x33, 0x09, 0x34,              // bytes 10..17: sticks
+    0x16, 0x00, 0x80, 0x26, 0xff, 0x7f, 0x95, 0x04, 0x81, 0x02,  //
+    0x85, 0x07, 0x75, 0x08, 0x95, 0x03, 0x81, 0x03,              // guide: options, number, length
+    0x05, 0x09, 0x09, 0x0b, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01,  // byte 4: pressed
+    0x95, 0x01, 0x81, 0x02, 0x95, 0x0f, 0x81, 0x03, 0xc0,        // byte 5: 5b, the key's name
+    0x06, 0x47, 0xff, 0x09, 0xd0, 0xa1, 0x01, 0xc0,              // ff47:00d0
+};
+
+// Start-up messages; the third byte, the sequence number, is filled in when they leave. What the
+// pads need is known from Linux's xpad.
+struct StartMessage {
+  std::uint32_t only = 0;  // vendor and product; 0: all
+  std::uint8_t size = 0;
+  std::array<std::uint8_t, 13> bytes{};
+};
+constexpr std::uint32_t pad_id(std::uint16_t vendor, std::uint16_t product) {
+  return std::uint32_t{vendor} << 16 | product;
+}
+constexpr StartMessage kStartMessages[] = {
+    // These two wait for an acknowledgement of their announcement.
+    {pad_id(0x0e6f, 0x0165),
+     13,
+     {kAcknowledge, kInternal, 0, 9, 0, 4, kInternal, 0x3a, 0, 0, 0, 0x80}},
+    {pad_id(0x0f0d, 0x0067),
+     13,
+     {kAcknowledge, kInternal, 0, 9, 0, 4, kInternal, 0x3a, 0, 0, 0, 0x80}},
+    {0, 5, {kPower, kInternal, 0, 1, 0}},  // on
+    // Xbox One S and Elite 2 that were on Bluetooth before.
+    {pad_id(0x045e, 0x02ea), 5, {kPower, kInternal, 0, 0x0f, 0x06}},
+    {pad_id(0x045e, 0x0b00), 5, {kPower, kInternal, 0, 0x0f, 0x06}},
+    {0, 7, {0x0a, kInternal, 0, 3, 0, 1, 0x14}},  // the light
+    {0, 6, {0x06, kInternal, 0, 2, 1, 0}},        // no authentication is asked for
+};
+
+// Messages that the protocol lives on.
+bool is_of_protocol(std::uint8_t command) noexcept {
+  constexpr std::uint8_t kCommands[] = {kAcknowledge, kAnnounce, 0x03, 0x04, kPower, 0x06, 0x08,
+                                        0x0a,         0x0b,      0x0c, 0x1e, 0x1f,   0x60};
+  return std::find(std::begin(kCommands), std::end(kCommands), command) != std::end(kCommands);
+}
+
+class GipModel final : public PadModel {
+ public:
+  explicit GipModel(std::uint32_t id) : id_(id) {}
+
+  // A pad announces itself when it gets power, which mostly was before we came: it is not waited
+  // for.
+  void start(PadPort& port, StartedBy) override {
+    for (const StartMessage& message : kStartMessages) {
+      if (message.only != 0 && message.only != id_) continue;
+      OutPacket packet;
+      std::copy_n(message.bytes.begin(), message.size, packet.bytes.begin());
+      packet.size = message.size;
+      number(packet);
+      port.write({packet.bytes.data(), packet.size});
+    }
+  }
+
+  bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
+    reply.size = 0;
+    if (packet.empty()) return false;
+    // Without a header it cannot be told what it is: it is handed on and counted.
+    if (packet.size() < kHeaderBytes) return !is_of_protocol(packet[0]);
+    const std::uint8_t options = packet[1];
+    if ((options & kChunk) != 0) return false;  // a part of a long message: none is of input
+    if ((options & kWantsAnswer) != 0) acknowledge(packet, reply);
+    if (packet[0] == kAnnounce && (options & kClient) == 0) power_on(reply);
+    return (options & kClient) == 0 && !is_of_protocol(packet[0]);
+  }
+
+  void rumble(const Rumble& strengths, OutPacket& packet) noexcept override {
+    packet = {};
+    // All four motors, those of the triggers at rest; strengths are 0..127; on for 255 x 10 ms, no
+    // pause, 255 times: until the next message.
+    packet.bytes = {kRumble,
+                    0,
+                    0,
+                    9,
+                    0,
+                    0x0f,
+                    0,
+                    0,
+                    static_cast<std::uint8_t>(strengths.strong >> 9),
+                    static_cast<std::uint8_t>(strengths.weak >> 9),
+                    0xff,
+                    0,
+                    0xff};
+    packet.size = 13;
+    number(packet);
+  }
+
+ private:
+  void number(OutPacket& packet) noexcept {
+    if (++sequence_ == 0) sequence_ = 1;
+    packet.bytes[2] = sequence_;
+  }
+
+  // The pad has just got power, or started anew.
+  void power_on(OutPacket& reply) noexcept {
+    reply = {};
+    reply.bytes = {kPower, kInternal, 0, 1, 0};
+    reply.size = 5;
+    number(reply);
+  }
+
+  // Under the message's own number: its command, and how many of its bytes have come.
+  static void acknowledge(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept {
+    const auto client = static_cast<std::uint8_t>(packet[1] & kClient);
+    const auto options = static_cast<std::uint8_t>(kInternal | client);
+    reply = {};
+    reply.bytes = {kAcknowledge, options, packet[2], 9, 0, packet[0], options, packet[3]};
+    reply.size = 13;
+  }
+
+  std::uint32_t id_;
+  std::uint8_t sequence_ = 0;
+};
+
+}  // namespace
+
+VendorPad make_gip_pad(const UsbInterfaceClass& interface, const DeviceInfo& device) {
+  if (interface.interface_class != 0xff || interface.subclass != 0x47 ||
+      interface.protocol != 0xd0) {
+    return {};
+  }
+  return {std::make_unique<GipModel>(pad_id(device.vendor, device.product)),
+          {std::begin(kDescriptor), std::end(kDescriptor)}};
+}
+
+}  // namespace gaitpad

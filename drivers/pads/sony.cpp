@@ -1,0 +1,176 @@
+// DualShock 4 and DualSense: their motors, and what Bluetooth adds (full reports on demand, a
+// checksum on every long report). Packet layouts: Linux's hid-playstation.c; on the wire checked
+// against what that driver sends.
+#include <algorithm>
+#include <utility>
+
+#include "drivers/pads/crc32.h"
+#include "drivers/pads/pad_model.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::uint16_t kSony = 0x054c;
+constexpr std::uint16_t kDualSenseEdge = 0x0df2;
+constexpr std::size_t kBluetoothBytes = 78;  // full input and output reports of both families
+constexpr std::size_t kChecksumBytes = 4;
+
+// What the checksum counts in front of the report.
+enum class Direction : std::uint8_t { input = 0xa1, output = 0xa2, feature = 0xa3 };
+
+std::uint32_t checksum(Direction direction, std::span<const std::uint8_t> report) noexcept {
+  const std::uint8_t seed = static_cast<std::uint8_t>(direction);
+  return crc32(report, crc32({&seed, 1}));
+}
+
+std::uint32_t le32(std::span<const std::uint8_t, kChecksumBytes> bytes) noexcept {
+  return bytes[0] | (std::uint32_t{bytes[1]} << 8) | (std::uint32_t{bytes[2]} << 16) |
+         (std::uint32_t{bytes[3]} << 24);
+}
+
+bool is_intact(Direction direction, std::span<const std::uint8_t> report) noexcept {
+  if (report.size() <= kChecksumBytes) return false;
+  const std::size_t covered = report.size() - kChecksumBytes;
+  return checksum(direction, report.first(covered)) == le32(report.last<kChecksumBytes>());
+}
+
+void seal(OutPacket& packet, std::size_t size) noexcept {
+  const std::size_t covered = size - kChecksumBytes;
+  const std::uint32_t sum = checksum(Direction::output, std::span(packet.bytes).first(covered));
+  for (std::size_t i = 0; i < kChecksumBytes; ++i)
+    packet.bytes[covered + i] = static_cast<std::uint8_t>(sum >> (8 * i));
+  packet.size = size;
+}
+
+// The motors take the upper byte; a weak beat is not rounded away.
+std::uint8_t motor(std::uint16_t strength) noexcept {
+  return strength == 0 ? 0 : std::max<std::uint8_t>(1, static_cast<std::uint8_t>(strength >> 8));
+}
+
+// Over Bluetooth both families send a short report 0x01 until a certain feature report is read,
+// from then on a full one with a checksum.
+class SonyModel : public PadModel {
+ public:
+  SonyModel(const DeviceInfo& device, std::uint8_t full_report)
+      : name_(device.name.empty() ? "this pad" : device.name),
+        product_(device.product),
+        is_bluetooth_(device.bus == BusType::bluetooth),
+        full_report_(full_report) {}
+
+  bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept final {
+    reply.size = 0;
+    if (packet.empty()) return false;
+    if (!is_bluetooth_ || packet[0] != full_report_) return true;
+    if (packet.size() == kBluetoothBytes && is_intact(Direction::input, packet)) return true;
+    ++damaged_;
+    return false;
+  }
+  std::int64_t lost() const noexcept final { return damaged_; }
+  std::vector<std::string> take_remarks() final { return std::exchange(remarks_, {}); }
+
+ protected:
+  // Any of the features switches the pad over; its bytes are motion calibration, of no use here.
+  void ask_for_full_reports(PadPort& port, std::span<const std::uint8_t> features) {
+    for (const std::uint8_t id : features) {
+      std::array<std::uint8_t, 64> bytes{};
+      if (port.feature(id, bytes) > 0) return;
+    }
+    remarks_.push_back(name_ + ": does not change to full reports; motion and touch are not sent");
+  }
+
+  std::string name_;
+  std::uint16_t product_;
+  bool is_bluetooth_;
+
+ private:
+  std::uint8_t full_report_;
+  std::int64_t damaged_ = 0;
+  std::vector<std::string> remarks_;
+};
+
+class DualShock4 final : public SonyModel {
+ public:
+  explicit DualShock4(const DeviceInfo& device) : SonyModel(device, 0x11) {}
+
+  // Reading 0x05 does it with every firmware that Linux knows, 0x02 is how it was found first.
+  void start(PadPort& port, StartedBy started) final {
+    if (!is_bluetooth_ || started == StartedBy::kernel) return;
+    ask_for_full_reports(port, std::to_array<std::uint8_t>({0x05, 0x02}));
+  }
+
+  void rumble(const Rumble& rumble, OutPacket& packet) noexcept final {
+    packet = {};
+    const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part that both ways share
+    packet.bytes[0] = is_bluetooth_ ? 0x11 : 0x05;
+    if (is_bluetooth_) packet.bytes[1] = 0xc0;  // a HID report with checksum
+    packet.bytes[at] = 0x01;                    // sets the motors and leaves the light alone
+    packet.bytes[at + 3] = motor(rumble.weak);
+    packet.bytes[at + 4] = motor(rumble.strong);
+    packet.size = 32;
+    if (is_bluetooth_) seal(packet, kBluetoothBytes);
+  }
+};
+
+class DualSense final : public SonyModel {
+ public:
+  explicit DualSense(const DeviceInfo& device)
+      : SonyModel(device, 0x31), has_new_motors_(device.product == kDualSenseEdge) {}
+
+  void start(PadPort& port, StartedBy started) final {
+    if (is_bluetooth_ && started == StartedBy::us)
+      ask_for_full_reports(port, std::to_array<std::uint8_t>({0x05}));
+    if (product_ != kDualSenseEdge) has_new_motors_ = firmware(port) >= kFirstWithNewMotors;
+  }
+
+  void rumble(const Rumble& rumble, OutPacket& packet) noexcept final {
+    packet = {};
+    const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part that both ways share
+    packet.bytes[0] = is_bluetooth_ ? 0x31 : 0x02;
+    if (is_bluetooth_) {
+      packet.bytes[1] = static_cast<std::uint8_t>(sequence_ << 4);
+      packet.bytes[2] = 0x10;
+      sequence_ = (sequence_ + 1) & 0x0f;
+    }
+    // Haptics are chosen for the motors; then which way of driving them, by the firmware.
+    packet.bytes[at] = has_new_motors_ ? 0x02 : 0x03;
+    packet.bytes[at + 2] = motor(rumble.weak);
+    packet.bytes[at + 3] = motor(rumble.strong);
+    if (has_new_motors_) packet.bytes[at + 38] = 0x04;
+    packet.size = 48;  // as the descriptor has it; the kernel sends 63
+    if (is_bluetooth_) seal(packet, kBluetoothBytes);
+  }
+
+ private:
+  static constexpr std::uint16_t kFirstWithNewMotors = 0x0215;  // 2.21
+
+  // The version of the pad's firmware (2.36 is 0x0224); 0 where it does not tell.
+  std::uint16_t firmware(PadPort& port) const {
+    std::array<std::uint8_t, 64> bytes{};
+    if (port.feature(0x20, bytes) < bytes.size() || bytes[0] != 0x20) return 0;
+    if (is_bluetooth_ && !is_intact(Direction::feature, bytes)) return 0;
+    return static_cast<std::uint16_t>(bytes[44] | (bytes[45] << 8));
+  }
+
+  bool has_new_motors_;
+  std::uint8_t sequence_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device) {
+  if (device.vendor != kSony) return nullptr;
+  switch (device.product) {
+    case 0x05c4:  // first DualShock 4
+    case 0x09cc:
+    case 0x0ba0:  // its wireless adapter: USB
+      return std::make_unique<DualShock4>(device);
+    case 0x0ce6:
+    case kDualSenseEdge:
+      return std::make_unique<DualSense>(device);
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace gaitpad

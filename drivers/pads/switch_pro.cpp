@@ -1,0 +1,306 @@
+// Switch Pro Controller: its start over USB, the stick calibration in its flash memory, its motors.
+// Packets, memory map and the coding of vibration: dekuNukem's Nintendo_Switch_Reverse_Engineering
+// (bluetooth_hid_notes.md, USB-HID-Notes.md, spi_flash_notes.md, rumble_data_table.md).
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "drivers/pads/pad_model.h"
+
+namespace gaitpad {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr std::uint16_t kNintendo = 0x057e;
+constexpr std::uint16_t kProController = 0x2009;
+
+enum : std::uint8_t {  // first byte of a packet
+  kOutSubcommand = 0x01,
+  kOutRumble = 0x10,
+  kOutUsb = 0x80,
+  kInReply = 0x21,
+  kInFull = 0x30,
+  kInSimple = 0x3f,
+  kInUsb = 0x81,
+};
+enum : std::uint8_t {  // behind kOutUsb
+  kUsbHandshake = 0x02,
+  kUsbFastSerial = 0x03,
+  kUsbStayHid = 0x04,  // no answer: do not fall back to Bluetooth
+};
+enum : std::uint8_t {  // subcommands
+  kSetReportMode = 0x03,
+  kReadFlash = 0x10,
+  kEnableVibration = 0x48,
+};
+
+// All of the start takes at most this; a request is tried so often, and waits so long for an answer
+// among the input reports, which come every 8 to 15 ms.
+constexpr milliseconds kStart = 1900ms;
+constexpr int kTries = 3;
+constexpr milliseconds kAnswer = 200ms;
+constexpr milliseconds kUsbAnswer = 100ms;
+constexpr int kMaxPacketsAwaited = 512;
+// A motor falls silent by itself unless it is told again.
+constexpr milliseconds kRumbleRepeat = 50ms;
+
+constexpr std::size_t kPacketBytes = 64;
+constexpr std::size_t kAckAt = 13, kSubcommandAt = 14, kAddressAt = 15, kLengthAt = 19,
+                      kFlashAt = 20;
+
+// Where the flash keeps what a stick was calibrated to: 9 bytes a stick.
+constexpr std::uint32_t kFactoryAddress = 0x603d;  // left, right
+constexpr std::size_t kFactoryBytes = 18;
+constexpr std::uint32_t kUserAddress = 0x8010;  // per stick a mark, then the 9 bytes
+constexpr std::size_t kUserBytes = 22;
+constexpr std::size_t kStickBytes = 9, kMarkBytes = 2;
+constexpr std::array<std::uint8_t, kMarkBytes> kMark = {0xb2, 0xa1};
+
+constexpr int kBlank = 0xfff, kMaxCount = 0xfff;
+// What no working stick goes beyond: its middle off by half of the way, a way of an eighth of the
+// range.
+constexpr int kMinCentre = 1024, kMaxCentre = 3072, kMinWay = 256;
+
+struct StickRange {  // counts; x, then y
+  std::array<int, 2> min{}, centre{}, max{};
+};
+// As Linux's hid-nintendo takes a pad without calibration.
+constexpr StickRange kUsualRange = {{500, 500}, {2000, 2000}, {3500, 3500}};
+
+// Two numbers of 12 bits in three bytes.
+std::array<int, 2> unpacked(std::span<const std::uint8_t, 3> bytes) noexcept {
+  return {bytes[0] | ((bytes[1] & 0x0f) << 8), (bytes[1] >> 4) | (bytes[2] << 4)};
+}
+
+enum class Side { left, right };
+
+// The left stick's bytes hold the way up, the centre, the way down; the right one's the centre, the
+// way down, the way up.
+std::optional<StickRange> stick_range(std::span<const std::uint8_t, kStickBytes> bytes,
+                                      Side side) noexcept {
+  const auto first = unpacked(bytes.subspan<0, 3>()), second = unpacked(bytes.subspan<3, 3>()),
+             third = unpacked(bytes.subspan<6, 3>());
+  const auto& up = side == Side::left ? first : third;
+  const auto& centre = side == Side::left ? second : first;
+  const auto& down = side == Side::left ? third : second;
+  StickRange range;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (up[axis] == kBlank || centre[axis] == kBlank || down[axis] == kBlank) return std::nullopt;
+    if (centre[axis] < kMinCentre || centre[axis] > kMaxCentre) return std::nullopt;
+    if (up[axis] < kMinWay || down[axis] < kMinWay) return std::nullopt;
+    range.min[axis] = centre[axis] - down[axis];
+    range.centre[axis] = centre[axis];
+    range.max[axis] = centre[axis] + up[axis];
+    if (range.min[axis] < 0 || range.max[axis] > kMaxCount) return std::nullopt;
+  }
+  return range;
+}
+
+FactoryAxis factory_axis(const StickRange& range, std::size_t axis) noexcept {
+  constexpr double kMiddle = kMaxCount / 2.0;
+  const auto fraction = [](int count) { return (count - kMiddle) / kMiddle; };
+  return {fraction(range.min[axis]), fraction(range.centre[axis]), fraction(range.max[axis])};
+}
+
+// Index in the published table of amplitudes (0..100) of a strength 0..1; the table's own formulas
+// by octaves, below 0.12 a fit to it. Above its end the motors may be damaged.
+int amplitude_index(double strength) noexcept {
+  if (strength <= 0.0) return 0;
+  const double octaves = strength > 0.23   ? 32.0 * std::log2(strength * 8.7)
+                         : strength > 0.12 ? 16.0 * std::log2(strength * 17.0)
+                                           : 4.0 * std::log2(strength * 120.0);
+  return std::clamp(static_cast<int>(std::lround(octaves)), 1, 100);
+}
+
+// 320 Hz with the weak strength and 160 Hz with the strong one, in the four bytes of an actuator.
+std::array<std::uint8_t, 4> vibration(const Rumble& rumble) noexcept {
+  constexpr double kFull = 1.003;  // of the table's last row
+  const int high = amplitude_index(rumble.weak / 65535.0 * kFull);
+  const int low = amplitude_index(rumble.strong / 65535.0 * kFull);
+  return {0x00, static_cast<std::uint8_t>(0x01 + 2 * high),
+          static_cast<std::uint8_t>(0x40 + (low % 2 != 0 ? 0x80 : 0)),
+          static_cast<std::uint8_t>(0x40 + low / 2)};
+}
+
+class SwitchPro final : public PadModel {
+ public:
+  explicit SwitchPro(const DeviceInfo& device)
+      : name_(device.name.empty() ? "this pad" : device.name),
+        is_usb_(device.bus == BusType::usb) {}
+
+  void start(PadPort& port, StartedBy started) override {
+    end_ = Clock::now() + kStart;
+    if (started == StartedBy::us) start_reports(port);
+    // Linux's driver listens too and takes any reply for its own while it is waiting for one, so
+    // the memory is read in as few packets as possible.
+    std::array<std::uint8_t, kFactoryBytes> factory{};
+    std::array<std::uint8_t, kUserBytes> user{};
+    const bool has_factory = read_flash(port, kFactoryAddress, factory);
+    const bool has_user = has_factory && read_flash(port, kUserAddress, user);
+    choose_sticks(has_factory ? std::span<const std::uint8_t>(factory) : std::span<std::uint8_t>(),
+                  has_user ? std::span<const std::uint8_t>(user) : std::span<std::uint8_t>());
+  }
+
+  // Replies hold the sticks as well, but in a layout that no descriptor states.
+  bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
+    reply.size = 0;
+    return !packet.empty() && (packet[0] == kInFull || packet[0] == kInSimple);
+  }
+
+  void rumble(const Rumble& rumble, OutPacket& packet) noexcept override {
+    packet = {};
+    packet.bytes[0] = kOutRumble;
+    packet.bytes[1] = next_count();
+    put_vibration(rumble, packet);
+    packet.size = 10;
+    if (rumble.strong != 0 || rumble.weak != 0) packet.repeat = kRumbleRepeat;
+  }
+
+  std::optional<FactorySticks> factory_sticks() const override { return sticks_; }
+  std::vector<std::string> take_remarks() override { return std::exchange(remarks_, {}); }
+
+ private:
+  std::uint8_t next_count() noexcept { return count_++ & 0x0f; }
+
+  static void put_vibration(const Rumble& rumble, OutPacket& packet) noexcept {
+    const auto bytes = vibration(rumble);
+    std::copy(bytes.begin(), bytes.end(), packet.bytes.begin() + 2);
+    std::copy(bytes.begin(), bytes.end(), packet.bytes.begin() + 6);
+  }
+
+  void start_reports(PadPort& port) {
+    if (is_usb_) {
+      const bool has_answered = ask_usb(port, kUsbHandshake);
+      if (has_answered) {
+        ask_usb(port, kUsbFastSerial);
+        ask_usb(port, kUsbHandshake);
+      }
+      port.write(std::to_array<std::uint8_t>({kOutUsb, kUsbStayHid}));
+      if (!has_answered) remarks_.push_back(name_ + ": does not answer the start over USB");
+    }
+    ask(port, kSetReportMode, std::to_array<std::uint8_t>({kInFull}));
+    ask(port, kEnableVibration, std::to_array<std::uint8_t>({0x01}));
+  }
+
+  // Sends `packet` until an input packet satisfies `is_answer`; its size, 0: none came.
+  template <class IsAnswer>
+  std::size_t exchange_packets(PadPort& port, std::span<const std::uint8_t> packet,
+                               milliseconds patience, std::span<std::uint8_t> answer,
+                               IsAnswer is_answer) {
+    for (int i = 0; i < kTries && Clock::now() < end_; ++i) {
+      if (!port.write(packet)) return 0;
+      const auto until = std::min(Clock::now() + patience, end_);
+      for (int n = 0; n < kMaxPacketsAwaited; ++n) {
+        const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
+        const std::size_t size = left > 0ms ? port.read(answer, left) : 0;
+        if (size == 0) break;
+        if (is_answer(std::span<const std::uint8_t>(answer.first(std::min(size, answer.size())))))
+          return size;
+      }
+    }
+    return 0;
+  }
+
+  bool ask_usb(PadPort& port, std::uint8_t command) {
+    std::array<std::uint8_t, kPacketBytes> answer{};
+    const auto is_answer = [command](std::span<const std::uint8_t> p) {
+      return p.size() >= 2 && p[0] == kInUsb && p[1] == command;
+    };
+    const auto packet = std::to_array<std::uint8_t>({kOutUsb, command});
+    return exchange_packets(port, packet, kUsbAnswer, answer, is_answer) > 0;
+  }
+
+  OutPacket subcommand(std::uint8_t id, std::span<const std::uint8_t> data) noexcept {
+    OutPacket packet;
+    packet.bytes[0] = kOutSubcommand;
+    packet.bytes[1] = next_count();
+    put_vibration(Rumble{}, packet);
+    packet.bytes[10] = id;
+    std::copy(data.begin(), data.end(), packet.bytes.begin() + 11);
+    packet.size = 11 + data.size();
+    return packet;
+  }
+
+  bool ask(PadPort& port, std::uint8_t id, std::span<const std::uint8_t> data) {
+    std::array<std::uint8_t, kPacketBytes> answer{};
+    const auto is_answer = [id](std::span<const std::uint8_t> p) {
+      return p.size() > kSubcommandAt && p[0] == kInReply && (p[kAckAt] & 0x80) != 0 &&
+             p[kSubcommandAt] == id;
+    };
+    const OutPacket packet = subcommand(id, data);
+    return exchange_packets(port, std::span(packet.bytes).first(packet.size), kAnswer, answer,
+                            is_answer) > 0;
+  }
+
+  // An answer counts by what it says it is: another program may be asking the pad as well.
+  bool read_flash(PadPort& port, std::uint32_t address, std::span<std::uint8_t> bytes) {
+    const std::array<std::uint8_t, 5> request = {
+        static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(address >> 8),
+        static_cast<std::uint8_t>(address >> 16), static_cast<std::uint8_t>(address >> 24),
+        static_cast<std::uint8_t>(bytes.size())};
+    const auto is_answer = [&](std::span<const std::uint8_t> p) {
+      return p.size() >= kFlashAt + bytes.size() && p[0] == kInReply && (p[kAckAt] & 0x80) != 0 &&
+             p[kSubcommandAt] == kReadFlash &&
+             std::equal(request.begin(), request.end(), p.begin() + kAddressAt);
+    };
+    static_assert(kAddressAt + 4 == kLengthAt && kLengthAt + 1 == kFlashAt);
+    std::array<std::uint8_t, kPacketBytes> answer{};
+    const OutPacket packet = subcommand(kReadFlash, request);
+    if (exchange_packets(port, std::span(packet.bytes).first(packet.size), kAnswer, answer,
+                         is_answer) == 0)
+      return false;
+    std::copy_n(answer.begin() + kFlashAt, bytes.size(), bytes.begin());
+    return true;
+  }
+
+  // The user's own calibration of a stick comes before the factory's; both may be empty.
+  static std::optional<StickRange> chosen_range(std::span<const std::uint8_t> factory,
+                                                std::span<const std::uint8_t> user, Side side) {
+    const std::size_t number = side == Side::left ? 0 : 1;
+    if (user.size() == kUserBytes) {
+      const auto own = user.subspan(number * (kMarkBytes + kStickBytes));
+      if (std::equal(kMark.begin(), kMark.end(), own.begin())) {
+        if (auto range = stick_range(own.subspan<kMarkBytes, kStickBytes>(), side)) return range;
+      }
+    }
+    if (factory.size() != kFactoryBytes) return std::nullopt;
+    return stick_range(factory.subspan(number * kStickBytes).first<kStickBytes>(), side);
+  }
+
+  void choose_sticks(std::span<const std::uint8_t> factory, std::span<const std::uint8_t> user) {
+    const auto left = chosen_range(factory, user, Side::left);
+    const auto right = chosen_range(factory, user, Side::right);
+    if (!left && !right) {
+      remarks_.push_back(name_ + (factory.empty()
+                                      ? ": does not tell its stick calibration; none is used"
+                                      : ": holds no usable stick calibration; none is used"));
+      return;
+    }
+    if (!left || !right)
+      remarks_.push_back(name_ + ": holds no usable calibration of its " +
+                         (left ? "right" : "left") + " stick; the usual one is taken");
+    const StickRange l = left.value_or(kUsualRange), r = right.value_or(kUsualRange);
+    sticks_ = FactorySticks{factory_axis(l, 0), factory_axis(l, 1), factory_axis(r, 0),
+                            factory_axis(r, 1)};
+  }
+
+  std::string name_;
+  bool is_usb_;
+  Clock::time_point end_;
+  std::uint8_t count_ = 0;
+  std::optional<FactorySticks> sticks_;
+  std::vector<std::string> remarks_;
+};
+
+}  // namespace
+
+std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device) {
+  if (device.vendor != kNintendo || device.product != kProController) return nullptr;
+  return std::make_unique<SwitchPro>(device);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,78 @@
+// Xbox 360 pads on a wire, Microsoft's and others': vendor-class packets of 20 bytes, no HID.
+#include "drivers/pads/pad_model.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::uint8_t kInput = 0x00, kInputBytes = 0x14;
+
+// y grows upwards in these packets: config/pads/microsoft.toml says so of every pad with the last
+// line's collection.
+constexpr std::uint8_t kDescriptor[] = {
+    0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                          // game pad
+    0x75, 0x08, 0x95, 0x02, 0x81, 0x03,                          // bytes 0, 1: 00 14
+    0x15, 0x00, 0x25, 0x01, 0x75, 0x01,                          // byte 2, a bit each:
+    0x09, 0x90, 0x09, 0x91, 0x09, 0x93, 0x09, 0x92,              //   up, down, left, right
+    0x95, 0x04, 0x81, 0x02,                                      //
+    0x05, 0x09, 0x09, 0x08, 0x09, 0x07, 0x09, 0x09, 0x09, 0x0a,  //   start, back, sticks
+    0x81, 0x02,                                                  // byte 3:
+    0x09, 0x05, 0x09, 0x06, 0x09, 0x0b, 0x95, 0x03, 0x81, 0x02,  //   shoulders, guide
+    0x95, 0x01, 0x81, 0x03,                                      //   unused
+    0x19, 0x01, 0x29, 0x04, 0x95, 0x04, 0x81, 0x02,              //   a, b, x, y
+    0x05, 0x01, 0x09, 0x32, 0x09, 0x35,                          // bytes 4, 5: triggers
+    0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02,        //
+    0x09, 0x30, 0x09, 0x31, 0x09, 0x33, 0x09, 0x34,              // bytes 6..13: sticks
+    0x16, 0x00, 0x80, 0x26, 0xff, 0x7f, 0x75, 0x10, 0x95, 0x04,  //
+    0x81, 0x02,                                                  //
+    0x75, 0x08, 0x95, 0x06, 0x81, 0x03, 0xc0,                    // bytes 14..19: 0
+    0x06, 0x5d, 0xff, 0x09, 0x01, 0xa1, 0x01, 0xc0,              // ff5d:0001
+};
+
+class Xbox360Model final : public PadModel {
+ public:
+  void start(PadPort& port, StartedBy) override {
+    constexpr std::uint8_t kLightOne[] = {0x01, 0x03, 0x06};  // the first quarter of the ring
+    port.write(kLightOne);
+  }
+
+  bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
+    reply.size = 0;
+    if (packet.empty()) return false;
+    const bool is_input = packet[0] == kInput && (packet.size() < 2 || packet[1] == kInputBytes);
+    // What is too short for the pad's state cannot be taken for it: it is handed on and counted.
+    if (is_input) return true;
+    // The descriptor has no ids that would tell an unknown packet from an input one.
+    if (!is_status(packet)) ++refused_;
+    return false;
+  }
+
+  void rumble(const Rumble& strengths, OutPacket& packet) noexcept override {
+    packet = {};
+    packet.bytes = {0x00, 0x08, 0x00, static_cast<std::uint8_t>(strengths.strong >> 8),
+                    static_cast<std::uint8_t>(strengths.weak >> 8)};
+    packet.size = 8;
+  }
+
+  std::int64_t lost() const noexcept override { return refused_; }
+
+ private:
+  // `01 03 06` LED, `02 03 00`, `03 03 03` motors, `08 03 00` headset: answers and states.
+  static bool is_status(std::span<const std::uint8_t> packet) noexcept {
+    return packet.size() == 3 && packet[1] == 3 && packet[0] >= 0x01 && packet[0] <= 0x08;
+  }
+
+  std::int64_t refused_ = 0;
+};
+
+}  // namespace
+
+VendorPad make_xbox_360_pad(const UsbInterfaceClass& interface, const DeviceInfo&) {
+  if (interface.interface_class != 0xff || interface.subclass != 0x5d ||
+      interface.protocol != 0x01) {
+    return {};
+  }
+  return {std::make_unique<Xbox360Model>(), {std::begin(kDescriptor), std::end(kDescriptor)}};
+}
+
+}  // namespace gaitpad

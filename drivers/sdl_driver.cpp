@@ -1,0 +1,383 @@
+// Joysticks of SDL2, and its data base of mappings. SDL keeps one list of joysticks and one queue
+// of events for the whole program, a window's included. So nothing is taken off that queue: a watch
+// sees each joystick event when SDL makes it, whichever thread that is, and puts it aside for the
+// open device that it is about. SDL has nothing to wait for: it looks at its joysticks when asked,
+// once a millisecond here.
+#include <SDL2/SDL.h>
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "drivers/driver_entries.h"
+#include "drivers/sdl_reports.h"
+#include "drivers/sdl_timer.h"
+#include "drivers/system_nodes.h"
+#include "hid/evdev_codes.h"
+#include "hid/trace.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr std::size_t kMaxAxes = 64, kMaxButtons = 255, kMaxHats = 4;
+
+using Change = JoystickReports::Change;
+using Control = JoystickReports::Control;
+
+std::int64_t monotonic_ns() noexcept {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+// SDL's joysticks, started when they are first asked for: that takes up to a second.
+class Sdl {
+ public:
+  static Sdl& started() {
+    static Sdl sdl;
+    return sdl;
+  }
+  Sdl(const Sdl&) = delete;
+  ~Sdl() {
+    if (!problem_.empty()) return;
+    SDL_DelEventWatch(&Sdl::watch, this);
+    SDL_QuitSubSystem(SDL_INIT_JOYSTICK);
+  }
+
+  const std::string& problem() const { return problem_; }  // empty: it runs
+  JoystickInboxes inboxes;                                 // of all open devices
+
+ private:
+  Sdl();
+  static int SDLCALL watch(void* self, SDL_Event* event);
+  std::string problem_;
+};
+
+// Only the joysticks. HIDAPI off: its drivers send packets to pads when they look for them. Names
+// by position: the button that Nintendo prints A on is our b.
+Sdl::Sdl() {
+  constexpr std::pair<const char*, const char*> kHints[] = {
+      {SDL_HINT_JOYSTICK_HIDAPI, "0"},
+      {SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1"},
+      {SDL_HINT_NO_SIGNAL_HANDLERS, "1"},
+      {SDL_HINT_LINUX_JOYSTICK_DEADZONES, "0"},
+      {SDL_HINT_GAMECONTROLLER_USE_BUTTON_LABELS, "0"}};
+  for (const auto& [name, value] : kHints) SDL_SetHintWithPriority(name, value, SDL_HINT_OVERRIDE);
+  if (SDL_InitSubSystem(SDL_INIT_JOYSTICK) != 0) {
+    problem_ = fmt::format("SDL does not start: {}", SDL_GetError());
+    return;
+  }
+  SDL_AddEventWatch(&Sdl::watch, this);
+}
+
+// SDL lets go of all controls of a joystick that it has lost, just before it says so, and that to
+// where its axes were first seen: at one end, if the pad had sent nothing yet.
+void forget(JoystickInboxes& inboxes, SDL_JoystickID id) {
+  SDL_Joystick* joystick = SDL_JoystickFromInstanceID(id);
+  inboxes.mark_removed(id, [joystick](const Change& change) {
+    Sint16 rest = 0;
+    if (change.control == Control::axis) {
+      SDL_JoystickGetAxisInitialState(joystick, change.number, &rest);
+    }
+    return change.value == rest;
+  });
+}
+
+// SDL calls this inside SDL_JoystickUpdate(), its joysticks locked.
+int SDLCALL Sdl::watch(void* self, SDL_Event* event) {
+  JoystickInboxes& inboxes = static_cast<Sdl*>(self)->inboxes;
+  const auto put = [&](SDL_JoystickID id, Control control, Uint8 number, Sint16 value) {
+    inboxes.put(id, {monotonic_ns(), control, number, value});
+  };
+  switch (event->type) {
+    case SDL_JOYAXISMOTION:
+      put(event->jaxis.which, Control::axis, event->jaxis.axis, event->jaxis.value);
+      break;
+    case SDL_JOYBUTTONDOWN:
+    case SDL_JOYBUTTONUP:
+      put(event->jbutton.which, Control::button, event->jbutton.button, event->jbutton.state);
+      break;
+    case SDL_JOYHATMOTION:
+      put(event->jhat.which, Control::hat, event->jhat.hat, event->jhat.value);
+      break;
+    case SDL_JOYDEVICEREMOVED:
+      forget(inboxes, event->jdevice.which);
+      break;
+    default:
+      break;
+  }
+  return 1;
+}
+
+struct JoystickLock {
+  JoystickLock() { SDL_LockJoysticks(); }
+  ~JoystickLock() { SDL_UnlockJoysticks(); }
+  JoystickLock(const JoystickLock&) = delete;
+};
+
+// Looks at all joysticks, and for new ones: SDL does both in one call, which waits for the kernel
+// when a joystick was plugged in. The events have been put aside; on SDL's queue nobody waits for
+// them, and without a window nobody would ever empty it.
+void update_joysticks() {
+  SDL_JoystickUpdate();
+  SDL_FlushEvents(SDL_JOYAXISMOTION, SDL_CONTROLLERSENSORUPDATE);
+}
+
+JoystickState current_state(SDL_Joystick* joystick) {
+  const auto sized = [](int count, std::size_t max) {
+    return std::min(static_cast<std::size_t>(std::max(count, 0)), max);
+  };
+  JoystickState state;
+  state.axes.resize(sized(SDL_JoystickNumAxes(joystick), kMaxAxes));
+  state.buttons.resize(sized(SDL_JoystickNumButtons(joystick), kMaxButtons));
+  state.hats.resize(sized(SDL_JoystickNumHats(joystick), kMaxHats));
+  const auto read_all = [joystick](auto& values, auto value_of) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = value_of(joystick, static_cast<int>(i));
+    }
+  };
+  read_all(state.axes, SDL_JoystickGetAxis);
+  read_all(state.buttons, SDL_JoystickGetButton);
+  read_all(state.hats, SDL_JoystickGetHat);
+  return state;
+}
+
+struct JoystickClosing {
+  void operator()(SDL_Joystick* joystick) const noexcept { SDL_JoystickClose(joystick); }
+};
+using JoystickHandle = std::unique_ptr<SDL_Joystick, JoystickClosing>;
+
+class SdlDevice : public Device {
+ public:
+  // SDL's joysticks are locked meanwhile, so that no change falls between state and inbox.
+  SdlDevice(JoystickHandle joystick, const DeviceListing& listing,
+            std::shared_ptr<MillisecondTimer> timer)
+      : joystick_(std::move(joystick)),
+        info_(listing.info),
+        reports_(joystick_reports(current_state(joystick_.get()), listing.node, info_.version)),
+        timer_(std::move(timer)),
+        poll_fd_{timer_->fd(), POLLIN, 0} {
+    info_.descriptor = reports_.layout().descriptor;
+    inbox_.joystick = SDL_JoystickInstanceID(joystick_.get());
+    Sdl::started().inboxes.add(inbox_);
+  }
+  ~SdlDevice() override { Sdl::started().inboxes.remove(inbox_); }
+
+  const DeviceInfo& info() const noexcept override { return info_; }
+  std::span<const pollfd> poll_fds() const noexcept override { return {&poll_fd_, 1}; }
+  std::int64_t lost() const noexcept override { return lost_; }
+  Status read(Report& report) noexcept override;
+  // SDL itself stops the motors after 65 seconds.
+  bool rumble(const Rumble& motors) noexcept override {
+    constexpr std::uint32_t kLongest_ms = 0xffff;
+    return SDL_JoystickRumble(joystick_.get(), motors.strong, motors.weak, kLongest_ms) == 0;
+  }
+
+ private:
+  void fetch() noexcept;
+
+  JoystickHandle joystick_;
+  DeviceInfo info_;
+  JoystickReports reports_;
+  std::shared_ptr<MillisecondTimer> timer_;
+  pollfd poll_fd_;
+  JoystickInbox inbox_;
+  bool has_reported_ = false, removed_ = false;
+  std::int64_t lost_ = 0;
+};
+
+// SDL keeps the first small movement of an axis to itself: it is asked for the axes, too. Locked,
+// so that no event comes between.
+void SdlDevice::fetch() noexcept {
+  if (timer_->take_tick()) update_joysticks();
+  const JoystickLock lock;
+  JoystickInbox inbox = Sdl::started().inboxes.take(inbox_);
+  removed_ = inbox.removed;
+  lost_ = inbox.lost;
+  reports_.changes = std::move(inbox.changes);
+  if (removed_) return;
+  const std::int64_t now_ns = monotonic_ns();
+  for (std::size_t i = 0; i < reports_.state().axes.size(); ++i) {
+    const auto number = static_cast<std::uint8_t>(i);
+    const std::int16_t value = SDL_JoystickGetAxis(joystick_.get(), static_cast<int>(i));
+    reports_.changes.push_back({now_ns, Control::axis, number, value});
+  }
+}
+
+// The state at the opening, if it is known, then every change of it.
+Device::Status SdlDevice::read(Report& report) noexcept {
+  if (!has_reported_ && reports_.is_known()) {
+    has_reported_ = true;
+    reports_.write(monotonic_ns(), report);
+    return Status::report;
+  }
+  if (reports_.changes.empty()) fetch();
+  if (reports_.next(report)) {
+    has_reported_ = true;
+    return Status::report;
+  }
+  return removed_ ? Status::gone : Status::nothing;
+}
+
+// A line of SDL's, freed.
+std::string taken(char* line) {
+  std::string text = line ? line : "";
+  SDL_free(line);
+  if (text.size() > kMaxTraceTextBytes) text.clear();
+  return text;
+}
+
+// SDL guesses a line for a pad that its data base does not have, and adds it there. A guess ends in
+// a checksum of the pad's name.
+bool is_guess(const std::string& line) { return line.find(",crc:") != std::string::npos; }
+
+// SDL's own name for the device with this index; joysticks locked.
+std::string node_of(int index) {
+  const char* path = SDL_JoystickPathForIndex(index);
+  if (path) return path;
+  return fmt::format("sdl joystick {}", SDL_JoystickGetDeviceInstanceID(index));
+}
+
+DeviceListing listing_of(const SystemNode& node) {
+  DeviceListing listing;
+  listing.info.driver = "sdl";
+  listing.info.bus = node.bus;
+  listing.info.vendor = node.vendor;
+  listing.info.product = node.product;
+  listing.info.version = node.version;
+  listing.info.name = node.name;
+  listing.info.unique_id = node.unique_id;
+  listing.info.physical_path = node.physical_path;
+  listing.node = node.node;
+  listing.pad_path = node.pad_path;
+  listing.kernel_driver = node.kernel_driver;
+  listing.poll_rate_hz = node.poll_rate_hz;
+  return listing;
+}
+
+// `system` is null for what has no node; joysticks locked.
+DeviceListing listing_of(int index, const SystemNode* system) {
+  DeviceListing listing = system ? listing_of(*system) : DeviceListing{};
+  const SDL_JoystickGUID guid = SDL_JoystickGetDeviceGUID(index);
+  DeviceInfo& info = listing.info;
+  info.driver = "sdl";
+  info.bus = static_cast<BusType>(guid.data[0] | guid.data[1] << 8);
+  info.vendor = SDL_JoystickGetDeviceVendor(index);
+  info.product = SDL_JoystickGetDeviceProduct(index);
+  info.version = SDL_JoystickGetDeviceProductVersion(index);
+  if (const char* name = SDL_JoystickNameForIndex(index)) info.name = name;
+  // Where the codes of the node are known they tell more than SDL's guess.
+  info.mapping =
+      system ? sdl_library_mapping(info) : taken(SDL_GameControllerMappingForDeviceIndex(index));
+  listing.node = node_of(index);
+  if (listing.pad_path.empty()) listing.pad_path = listing.node;
+  return listing;
+}
+
+// The gyroscope or touchpad of a pad whose buttons are another node's. udev may not yet have said
+// so.
+bool is_part_of_pad(const SystemNode& node) {
+  return node.is_motion_sensor || node.is_touchpad || node.name.ends_with("(IMU)") ||
+         node.name.ends_with(" IMU");
+}
+bool is_joystick(const SystemNode& node) { return node.is_joystick && !is_part_of_pad(node); }
+
+std::vector<DeviceListing> joysticks_among(const std::vector<SystemNode>& nodes) {
+  std::vector<DeviceListing> listings;
+  const JoystickLock lock;
+  for (int i = 0; i < SDL_NumJoysticks(); ++i) {
+    const std::string name = node_of(i);
+    const auto node = std::find_if(nodes.begin(), nodes.end(),
+                                   [&](const SystemNode& n) { return n.node == name; });
+    const bool known = node != nodes.end();
+    if (!known && name.starts_with("/dev/")) continue;  // unplugged, SDL has not heard of it yet
+    if (known && is_part_of_pad(*node)) continue;
+    listings.push_back(listing_of(i, known ? &*node : nullptr));
+  }
+  return listings;
+}
+
+bool is_listed(const std::vector<DeviceListing>& listings, const SystemNode& node) {
+  return std::any_of(listings.begin(), listings.end(),
+                     [&node](const DeviceListing& l) { return l.node == node.node; });
+}
+
+}  // namespace
+
+std::vector<DeviceListing> find_sdl_devices() {
+  const Sdl& sdl = Sdl::started();
+  std::vector<SystemNode> nodes = system_nodes("input");
+  std::vector<DeviceListing> listings;
+  const auto is_missing = [&](const SystemNode& node) {
+    return is_joystick(node) && !is_listed(listings, node) && access_problem(node.node).empty();
+  };
+  // SDL hears of a new node from udev, as we do, perhaps a moment later.
+  constexpr int kTries = 10;
+  constexpr std::uint32_t kPause_ms = 10;
+  for (int i = 0; sdl.problem().empty() && i < kTries; ++i) {
+    if (i > 0) {
+      SDL_Delay(kPause_ms);
+      nodes = system_nodes("input");
+    }
+    update_joysticks();
+    listings = joysticks_among(nodes);
+    if (std::none_of(nodes.begin(), nodes.end(), is_missing)) break;
+  }
+  for (const SystemNode& node : nodes) {
+    if (!is_joystick(node) || is_listed(listings, node)) continue;
+    listings.push_back(listing_of(node));
+    std::string& problem = listings.back().problem;
+    problem = sdl.problem().empty() ? access_problem(node.node) : sdl.problem();
+    if (problem.empty()) problem = node.node + ": SDL does not take it for a pad";
+  }
+  return listings;
+}
+
+Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, Detach) {
+  const Sdl& sdl = Sdl::started();
+  if (!sdl.problem().empty()) return Error{listing.node + ": " + sdl.problem()};
+  auto timer = MillisecondTimer::shared();
+  if (timer->fd() < 0) return Error{listing.node + ": no timer, too many open files"};
+  update_joysticks();
+  const JoystickLock lock;
+  for (int i = 0; i < SDL_NumJoysticks(); ++i) {
+    if (node_of(i) != listing.node) continue;
+    JoystickHandle joystick(SDL_JoystickOpen(i));
+    if (!joystick) return Error{fmt::format("{}: {}", listing.node, SDL_GetError())};
+    return std::unique_ptr<Device>(
+        std::make_unique<SdlDevice>(std::move(joystick), listing, std::move(timer)));
+  }
+  return Error{listing.node + ": SDL has no such joystick"};
+}
+
+// SDL takes the line of another version where there is none of this. But lines with the kernel's
+// mark count codes that its driver for that pad gave out, those without count the pad's own
+// controls.
+std::string sdl_library_mapping(const DeviceInfo& device) {
+  constexpr unsigned kCodesByKernel = 0x8000;
+  constexpr std::size_t kGuidDigits = 32;
+  const Sdl& sdl = Sdl::started();
+  if (!sdl.problem().empty() || device.vendor == 0) return {};
+  const auto part = [](unsigned id) {  // least significant byte first, then 16 bits of 0
+    return fmt::format("{:02x}{:02x}0000", id & 0xff, id >> 8);
+  };
+  const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
+  const unsigned version = is_node ? device.version : device.version & ~kCodesByKernel;
+  const std::string model =
+      part(static_cast<std::uint16_t>(device.bus)) + part(device.vendor) + part(device.product);
+  std::string best;
+  for (int i = 0; i < SDL_GameControllerNumMappings(); ++i) {
+    std::string line = taken(SDL_GameControllerMappingForIndex(i));
+    if (line.size() < kGuidDigits || !line.starts_with(model) || is_guess(line)) continue;
+    const SDL_JoystickGUID guid =
+        SDL_JoystickGetGUIDFromString(line.substr(0, kGuidDigits).c_str());
+    const unsigned of_line = guid.data[12] | guid.data[13] * 256u;
+    if (guid.data[14] != 0 || ((of_line ^ version) & kCodesByKernel) != 0) continue;
+    if (of_line == version) return line;
+    if (best.empty()) best = std::move(line);
+  }
+  return best;
+}
+
+}  // namespace gaitpad

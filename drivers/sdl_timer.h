@@ -1,0 +1,42 @@
+// When to look at SDL's joysticks: it has nothing to wait for.
+#pragma once
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+namespace gaitpad {
+
+// All open devices share it: whoever finds it expired updates SDL for all of them.
+class MillisecondTimer {
+ public:
+  MillisecondTimer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {
+    constexpr timespec kMillisecond{0, 1'000'000};
+    const itimerspec times{kMillisecond, kMillisecond};
+    ::timerfd_settime(fd_, 0, &times, nullptr);
+  }
+  ~MillisecondTimer() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  MillisecondTimer(const MillisecondTimer&) = delete;
+  int fd() const noexcept { return fd_; }  // below 0: there is none
+  bool take_tick() const noexcept {
+    std::uint64_t count = 0;
+    return ::read(fd_, &count, sizeof count) == sizeof count;
+  }
+  static std::shared_ptr<MillisecondTimer> shared() {
+    static std::mutex mutex;
+    static std::weak_ptr<MillisecondTimer> running;
+    const std::lock_guard lock(mutex);
+    auto timer = running.lock();
+    if (!timer) running = timer = std::make_shared<MillisecondTimer>();
+    return timer;
+  }
+
+ private:
+  int fd_ = -1;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,315 @@
+// USB pads without the kernel's input layer: HID-class ones as they describe themselves,
+// vendor-class ones (Xbox) as their pad model states them. The kernel's driver is detached while a
+// pad is open, with the user's consent only.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "drivers/driver_entries.h"
+#include "drivers/pads/pad_model.h"
+#include "drivers/system_nodes.h"
+#include "drivers/usb_claim.h"
+#include "drivers/usb_interfaces.h"
+#include "drivers/usb_transfers.h"
+#include "hid/descriptor.h"
+
+namespace gaitpad {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr unsigned int kControlTimeoutMs = 500;
+constexpr std::uint8_t kFromInterface = 0xa1, kStandardFromInterface = 0x81, kToInterface = 0x21;
+constexpr std::uint8_t kGetReport = 0x01, kSetIdle = 0x0a, kGetDescriptor = 0x06;
+constexpr std::uint16_t kReportDescriptor = 0x2200, kFeatureReport = 0x0300;
+
+struct FreeConfig {
+  void operator()(libusb_config_descriptor* config) const { libusb_free_config_descriptor(config); }
+};
+
+// --- What the pad says of itself
+
+struct PadDescription {
+  UsbEndpoints endpoints;
+  std::uint16_t hid_version = 0;  // bcdHID
+};
+
+void read_endpoint(const libusb_endpoint_descriptor& endpoint, UsbEndpoints& endpoints) {
+  if ((endpoint.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK) != LIBUSB_TRANSFER_TYPE_INTERRUPT) return;
+  if ((endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) == 0) {
+    if (endpoints.out == 0) endpoints.out = endpoint.bEndpointAddress;
+  } else if (endpoints.in == 0) {
+    const int packets = 1 + (endpoint.wMaxPacketSize >> 11 & 3);  // of a high-bandwidth endpoint
+    endpoints.in = endpoint.bEndpointAddress;
+    endpoints.in_packet_bytes =
+        static_cast<std::uint16_t>((endpoint.wMaxPacketSize & 0x7ff) * packets);
+  }
+}
+
+PadDescription read_interface(const libusb_interface_descriptor& interface) {
+  PadDescription pad;
+  pad.endpoints.interface_number = interface.bInterfaceNumber;
+  pad.endpoints.is_hid = interface.bInterfaceClass == kHidClass;
+  for (int i = 0; i < interface.bNumEndpoints; ++i) {
+    read_endpoint(interface.endpoint[i], pad.endpoints);
+  }
+  constexpr std::uint8_t kHidDescriptor = 0x21;
+  if (interface.extra_length >= 4 && interface.extra[1] == kHidDescriptor) {
+    pad.hid_version =
+        static_cast<std::uint16_t>(interface.extra[2] | std::uint16_t{interface.extra[3]} << 8);
+  }
+  return pad;
+}
+
+Result<PadDescription> describe_pad(const std::string& node, libusb_device_handle* handle,
+                                    std::uint8_t interface_number) {
+  libusb_config_descriptor* active = nullptr;
+  const int error = libusb_get_active_config_descriptor(libusb_get_device(handle), &active);
+  if (error != LIBUSB_SUCCESS) return usb_error(node, "no configuration is active", error);
+  const std::unique_ptr<libusb_config_descriptor, FreeConfig> config(active);
+  for (int i = 0; i < config->bNumInterfaces; ++i) {
+    const libusb_interface& interface = config->interface[i];
+    if (interface.num_altsetting < 1) continue;
+    if (interface.altsetting[0].bInterfaceNumber != interface_number) continue;
+    const PadDescription pad = read_interface(interface.altsetting[0]);
+    if (pad.endpoints.in == 0 || pad.endpoints.in_packet_bytes == 0) break;
+    return pad;
+  }
+  return Error{node + ": no endpoint to read reports from"};
+}
+
+// As the pad itself states it; the kernel's copy may have been mended for its own driver.
+std::vector<std::uint8_t> report_descriptor(libusb_device_handle* handle, std::uint8_t interface) {
+  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
+  const int count = libusb_control_transfer(
+      handle, kStandardFromInterface, kGetDescriptor, kReportDescriptor, interface, bytes.data(),
+      static_cast<std::uint16_t>(bytes.size()), kControlTimeoutMs);
+  bytes.resize(static_cast<std::size_t>(std::max(count, 0)));
+  return bytes;
+}
+
+// A report may be longer than a packet (low-speed pads have packets of 8 bytes): it then comes in
+// several, and a transfer takes all of them.
+void fit_transfers(const std::vector<std::uint8_t>& descriptor, UsbEndpoints& endpoints) {
+  std::size_t longest = 1;
+  if (const auto parsed = parse_descriptor(descriptor)) {
+    endpoints.is_numbered = parsed->numbered;
+    for (const ReportLength& report : parsed->reports) {
+      if (report.kind != FieldKind::input) continue;
+      longest = std::max(longest, report_bytes(*parsed, report.kind, report.report_id));
+    }
+  }
+  const std::size_t packet = endpoints.in_packet_bytes;
+  const std::size_t whole = (std::min(longest, kMaxReportBytes) + packet - 1) / packet * packet;
+  endpoints.in_bytes = std::min(whole, std::max(kMaxReportBytes, packet));
+}
+
+// --- An open pad
+
+// The model's way to the pad while it starts: here waiting is allowed.
+class StartPort final : public PadPort {
+ public:
+  StartPort(UsbTransfers& transfers, libusb_device_handle* handle, std::uint8_t interface)
+      : transfers_(transfers), handle_(handle), interface_(interface) {}
+
+  bool write(std::span<const std::uint8_t> packet) noexcept override {
+    OutPacket out;
+    if (packet.size() > out.bytes.size()) return false;
+    std::copy(packet.begin(), packet.end(), out.bytes.begin());
+    out.size = packet.size();
+    return transfers_.send(out) && transfers_.flush(milliseconds(200));
+  }
+
+  std::size_t read(std::span<std::uint8_t> packet, milliseconds timeout) noexcept override {
+    const auto end = std::chrono::steady_clock::now() + timeout;
+    while (!transfers_.take(report_)) {
+      const auto left = std::chrono::ceil<milliseconds>(end - std::chrono::steady_clock::now());
+      if (left.count() <= 0 || transfers_.is_gone()) return 0;
+      transfers_.handle_events(left);
+    }
+    const std::size_t size = std::min<std::size_t>(packet.size(), report_.size);
+    std::copy_n(report_.bytes.begin(), size, packet.begin());
+    return size;
+  }
+
+  std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
+    // Without ids the pad sends none, yet ours begins with it.
+    const std::size_t skip = id == 0 ? 1 : 0;
+    if (packet.size() <= skip || packet.size() > kMaxReportBytes) return 0;
+    packet[0] = id;
+    const int count = libusb_control_transfer(
+        handle_, kFromInterface, kGetReport, static_cast<std::uint16_t>(kFeatureReport | id),
+        interface_, packet.data() + skip, static_cast<std::uint16_t>(packet.size() - skip),
+        kControlTimeoutMs);
+    return count <= 0 ? 0 : static_cast<std::size_t>(count) + skip;
+  }
+
+ private:
+  UsbTransfers& transfers_;
+  libusb_device_handle* handle_;
+  std::uint8_t interface_;
+  Report report_;
+};
+
+class UsbDevice final : public Device {
+ public:
+  UsbDevice(DeviceInfo info, std::unique_ptr<PadModel> model,
+            std::unique_ptr<ClaimedInterface> interface, std::unique_ptr<UsbTransfers> transfers)
+      : info_(std::move(info)),
+        model_(std::move(model)),
+        interface_(std::move(interface)),
+        transfers_(std::move(transfers)) {}
+
+  ~UsbDevice() override {
+    if (is_rumbling_ && rumble(Rumble{})) transfers_->flush(milliseconds(100));
+  }
+
+  void start(std::uint8_t interface_number) {
+    StartPort port(*transfers_, interface_->handle(), interface_number);
+    model_->start(port, StartedBy::us);
+  }
+
+  const DeviceInfo& info() const noexcept override { return info_; }
+  std::span<const pollfd> poll_fds() const noexcept override { return transfers_->poll_fds(); }
+
+  Status read(Report& report) noexcept override {
+    if (take_input(report)) return Status::report;
+    transfers_->handle_events(milliseconds(0));
+    if (take_input(report)) return Status::report;
+    return transfers_->is_gone() ? Status::gone : Status::nothing;
+  }
+
+  bool rumble(const Rumble& strengths) noexcept override {
+    OutPacket packet;
+    model_->rumble(strengths, packet);
+    if (packet.size == 0 || !transfers_->send(packet)) return false;
+    is_rumbling_ = strengths.strong != 0 || strengths.weak != 0;
+    return true;
+  }
+
+  std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
+  std::int64_t lost() const noexcept override { return transfers_->lost() + model_->lost(); }
+  std::vector<std::string> take_remarks() override { return model_->take_remarks(); }
+
+ private:
+  // Of what has arrived the oldest input report; answers what asks for it on the way there.
+  bool take_input(Report& report) noexcept {
+    while (transfers_->take(report)) {
+      const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
+      const bool is_input = model_->accept(packet, reply_);
+      if (reply_.size > 0) transfers_->send(reply_);
+      if (is_input) return true;
+    }
+    return false;
+  }
+
+  DeviceInfo info_;
+  std::unique_ptr<PadModel> model_;
+  std::unique_ptr<ClaimedInterface> interface_;
+  std::unique_ptr<UsbTransfers> transfers_;  // goes before the interface does
+  OutPacket reply_;
+  bool is_rumbling_ = false;
+};
+
+// The model, and what the pad's descriptor is; empty where it gives none.
+VendorPad model_of(const UsbInterfaceClass& ids, const DeviceInfo& info) {
+  for (const auto make : {make_xbox_360_pad, make_gip_pad}) {
+    if (auto pad = make(ids, info); pad.model) return pad;
+  }
+  return {};
+}
+
+Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInterface& interface,
+                                         DeviceInfo info) {
+  auto claimed = ClaimedInterface::claim(node, interface);
+  if (!claimed) return claimed.error();
+  libusb_device_handle* const handle = (*claimed)->handle();
+  auto pad = describe_pad(node, handle, interface.number);
+  if (!pad) return pad.error();
+  VendorPad vendor = model_of(interface.ids, info);
+  if (!vendor.model) {
+    vendor.descriptor = report_descriptor(handle, interface.number);
+    if (vendor.descriptor.empty()) vendor.descriptor = interface.descriptor;
+    if (vendor.descriptor.empty()) return Error{node + ": the pad does not say what it sends"};
+    libusb_control_transfer(handle, kToInterface, kSetIdle, 0, interface.number, nullptr, 0,
+                            kControlTimeoutMs);
+  }
+  info.descriptor = std::move(vendor.descriptor);
+  if (!vendor.model) {
+    if (info.version == 0) info.version = pad->hid_version;
+    vendor.model = make_pad_model(info);
+  }
+  fit_transfers(info.descriptor, pad->endpoints);
+  auto transfers = UsbTransfers::start((*claimed)->context(), handle, pad->endpoints);
+  if (!transfers) return Error{node + ": " + transfers.error().message};
+  auto device = std::make_unique<UsbDevice>(std::move(info), std::move(vendor.model),
+                                            std::move(*claimed), std::move(*transfers));
+  device->start(interface.number);
+  return std::unique_ptr<Device>(std::move(device));
+}
+
+// --- Finding
+
+DeviceListing listing_of(const SystemNode& device, const UsbInterface& interface) {
+  DeviceListing listing;
+  DeviceInfo& info = listing.info;
+  info.bus = BusType::usb;
+  info.vendor = device.vendor;
+  info.product = device.product;
+  info.driver = "usb";
+  info.name = device.name.empty() ? fmt::format("USB {:04x}:{:04x}", device.vendor, device.product)
+                                  : device.name;
+  info.unique_id = device.unique_id;
+  info.physical_path = usb_physical_path(device.sysfs_path, interface.number);
+  info.version = interface.version;
+  info.descriptor = interface.descriptor;
+  if (auto vendor = model_of(interface.ids, info); vendor.model) {
+    info.version = device.version;
+    info.descriptor = std::move(vendor.descriptor);
+  }
+  listing.node = device.node;
+  listing.pad_path = interface.path;
+  listing.kernel_driver =
+      interface.hid_driver.empty() ? interface.kernel_driver : interface.hid_driver;
+  listing.poll_rate_hz = interface.poll_rate_hz;
+  const std::string other = boot_device(interface);
+  listing.problem = other.empty() ? access_problem(device.node)
+                                  : fmt::format("{}: no pad: {}", device.node, other);
+  return listing;
+}
+
+}  // namespace
+
+std::vector<DeviceListing> find_usb_devices() {
+  std::vector<DeviceListing> listings;
+  for (const SystemNode& device : system_nodes("usb")) {
+    std::vector<UsbInterface> interfaces = usb_interfaces(device.sysfs_path);
+    std::erase_if(interfaces, [](const UsbInterface& i) { return !may_be_pad(i); });
+    for (const UsbInterface& interface : interfaces) {
+      DeviceListing listing = listing_of(device, interface);
+      if (interfaces.size() > 1) listing.node += fmt::format(":{}", interface.number);
+      listings.push_back(std::move(listing));
+    }
+  }
+  return listings;
+}
+
+Result<std::unique_ptr<Device>> open_usb_device(const DeviceListing& listing, Detach detach) {
+  const std::string& name = listing.node;
+  const auto interface = usb_interface(listing.pad_path);
+  if (!interface || !may_be_pad(*interface)) return Error{name + ": the pad is gone"};
+  if (const std::string other = boot_device(*interface); !other.empty()) {
+    return Error{fmt::format("{}: no pad: {}", name, other)};
+  }
+  const std::string& holder = interface->kernel_driver;
+  if (holder == "usbfs") return Error{name + ": another program has the pad"};
+  if (!holder.empty() && detach == Detach::never) {
+    return Error{fmt::format(
+        "{}: the kernel's driver {} has the pad; --driver usb takes the pad over while it runs",
+        name, listing.kernel_driver.empty() ? holder : listing.kernel_driver)};
+  }
+  return open_pad(name.substr(0, name.find(':')), *interface, listing.info);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,41 @@
+// What sysfs tells of a USB device's interfaces: which of them may be pads, where they hang, who
+// has them. Nothing here opens or talks to a device.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/pads/pad_model.h"
+#include "hid/driver.h"
+
+namespace gaitpad {
+
+inline constexpr std::uint8_t kHidClass = 3;
+
+struct UsbInterface {
+  std::string path;  // its folder, `.../1-1.2:1.0`
+  std::uint8_t number = 0;
+  UsbInterfaceClass ids;
+  double poll_rate_hz = 0.0;  // of its interrupt IN endpoint; 0: there is none
+  std::string kernel_driver;  // bound to the interface: usbhid, xpad, usbfs (a program); or empty
+  std::string hid_driver;     // of the HID device that usbhid made of it: hid-generic, playstation
+  std::uint16_t version = 0;  // of the input device that the kernel made of it; 0: none
+  std::vector<std::uint8_t> descriptor;  // report descriptor as the kernel has it, else empty
+};
+
+// The interface of that folder; nothing where it is none (any more).
+std::optional<UsbInterface> usb_interface(const std::string& path);
+// Those of a device's folder, by number.
+std::vector<UsbInterface> usb_interfaces(const std::string& device_path);
+
+// HID, Xbox 360 wired (ff/5d/01) or Xbox One and Series (ff/47/d0: of its three interfaces the
+// first), with reports to read.
+bool may_be_pad(const UsbInterface& interface) noexcept;
+// `it is a keyboard`, where the interface says so itself; empty for all others.
+std::string boot_device(const UsbInterface& interface);
+
+// As the kernel writes it (HIDIOCGRAWPHYS, EVIOCGPHYS): `usb-0000:00:14.0-1.2/input0`.
+std::string usb_physical_path(const std::string& device_path, std::uint8_t interface_number);
+
+}  // namespace gaitpad

@@ -1,0 +1,113 @@
+#include "drivers/usb_reattach.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <linux/usbdevice_fs.h>
+#include <signal.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cstring>
+
+namespace gaitpad {
+
+namespace {
+
+// Everything from here to `watch` runs in the child of a process with threads: system calls alone,
+// no heap, no locks, no sanitizer that would need its parent's.
+
+// The dying process holds the interface until its node is closed, a moment after our link was.
+enum class Attempt { again, done };
+
+Attempt try_to_reattach(const char* node, int interface_number) {
+  const int fd = ::open(node, O_RDWR | O_CLOEXEC);
+  if (fd < 0) return errno == EINTR || errno == EMFILE ? Attempt::again : Attempt::done;
+  usbdevfs_ioctl connect = {};
+  connect.ifno = interface_number;
+  connect.ioctl_code = USBDEVFS_CONNECT;
+  Attempt result = Attempt::done;
+  if (::ioctl(fd, USBDEVFS_IOCTL, &connect) < 0 && errno == EBUSY) {
+    usbdevfs_getdriver holder = {};
+    holder.interface = static_cast<unsigned int>(interface_number);
+    const bool is_held = ::ioctl(fd, USBDEVFS_GETDRIVER, &holder) == 0;
+    const bool by_kernel = is_held && std::strcmp(holder.driver, "usbfs") != 0;
+    if (!by_kernel) result = Attempt::again;
+  }
+  ::close(fd);
+  return result;
+}
+
+// Closes all but `kept`: else a pipe or a node of ours would stay open behind our back.
+void close_others(int kept) {
+  bool is_closed = false;
+#ifdef SYS_close_range
+  is_closed = ::syscall(SYS_close_range, kept + 1, ~0u, 0) == 0;
+#endif
+  for (int fd = kept + 1; !is_closed && fd < 4096; ++fd) ::close(fd);
+  for (int fd = 0; fd < kept; ++fd) ::close(fd);
+}
+
+[[noreturn]] void watch(int link, const char* node, int interface_number) {
+  constexpr int kAttempts = 250;
+  constexpr timespec kPause = {0, 20'000'000};
+  ::setsid();  // Ctrl-C in the terminal is not for us
+  close_others(link);
+  char word = 0;
+  ssize_t count = 0;
+  do {
+    count = ::read(link, &word, 1);
+  } while (count < 0 && errno == EINTR);
+  if (count > 0) ::_exit(0);  // dismissed
+  for (int i = 0; i < kAttempts; ++i) {
+    if (try_to_reattach(node, interface_number) == Attempt::done) break;
+    ::nanosleep(&kPause, nullptr);
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+Result<ReattachWatcher> ReattachWatcher::start(const std::string& node,
+                                               std::uint8_t interface_number) {
+  int ends[2] = {-1, -1};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    return Error{fmt::format("{}: nothing can watch over it: {}", node, std::strerror(errno))};
+  }
+  // The child keeps all signals blocked: no handler of ours runs there, and only our end ends it.
+  sigset_t all = {}, before = {};
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t process = ::fork();
+  if (process == 0) watch(ends[0], node.c_str(), interface_number);
+  const int cause = errno;
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  ::close(ends[0]);
+  if (process > 0) return ReattachWatcher(ends[1], process);
+  ::close(ends[1]);
+  return Error{fmt::format("{}: nothing can watch over it: {}", node, std::strerror(cause))};
+}
+
+void ReattachWatcher::dismiss() noexcept {
+  if (link_ < 0) return;
+  constexpr int kAttempts = 100;  // a watcher that somebody has stopped does not stop us
+  constexpr timespec kPause = {0, 1'000'000};
+  const char word = 1;
+  static_cast<void>(::send(link_, &word, 1, MSG_NOSIGNAL));
+  ::close(std::exchange(link_, -1));
+  for (int i = 0; i < kAttempts && ::waitpid(process_, nullptr, WNOHANG) == 0; ++i) {
+    ::nanosleep(&kPause, nullptr);
+  }
+}
+
+ReattachWatcher::~ReattachWatcher() {
+  if (link_ < 0) return;
+  ::close(link_);
+  ::waitpid(process_, nullptr, WNOHANG);
+}
+
+}  // namespace gaitpad

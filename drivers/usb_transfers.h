@@ -1,0 +1,112 @@
+// The packets of a claimed USB interface on libusb's asynchronous transfers: several reads wait at
+// the IN endpoint all the time, so that none of its packets finds nobody; OUT packets leave one by
+// one from a short queue. Only the destructor, a stall (one request to the pad) and a time-out that
+// the caller gives ever wait.
+#pragma once
+#include <libusb.h>
+#include <poll.h>
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "drivers/pads/pad_model.h"
+#include "hid/report.h"
+
+namespace gaitpad {
+
+// Where the packets go: from the interface's descriptor.
+struct UsbEndpoints {
+  std::uint8_t interface_number = 0;
+  std::uint8_t in = 0;
+  std::uint16_t in_packet_bytes = 0;  // wMaxPacketSize
+  std::size_t in_bytes = 0;           // of one transfer: what the longest report needs
+  std::uint8_t out = 0;               // 0: none, HID packets go as SET_REPORT
+  bool is_hid = false;
+  bool is_numbered = false;  // HID packets begin with their report id
+};
+
+class UsbTransfers {
+ public:
+  // The handle is open, the interface claimed; both must outlive this.
+  static Result<std::unique_ptr<UsbTransfers>> start(libusb_context* context,
+                                                     libusb_device_handle* handle,
+                                                     const UsbEndpoints& endpoints);
+  ~UsbTransfers();  // takes all transfers back
+  UsbTransfers(const UsbTransfers&) = delete;
+  UsbTransfers& operator=(const UsbTransfers&) = delete;
+
+  // What to wait for; never changes while the device is there.
+  std::span<const pollfd> poll_fds() const noexcept { return poll_fds_; }
+  // Lets things happen: packets arrive and leave. Waits at most that long.
+  void handle_events(std::chrono::milliseconds timeout) noexcept;
+  // The oldest packet that has arrived: its bytes, their number and the time. False: none.
+  bool take(Report& packet) noexcept;
+  // Queues the packet. False where the pad cannot be written to.
+  bool send(const OutPacket& packet) noexcept;
+  // Until all queued packets have left. False where one did not.
+  bool flush(std::chrono::milliseconds timeout) noexcept;
+
+  bool is_gone() const noexcept { return is_gone_; }
+  std::int64_t lost() const noexcept { return lost_; }  // stalls, overflows, errors on the wire
+
+ private:
+  struct InSlot {
+    UsbTransfers* owner = nullptr;
+    libusb_transfer* transfer = nullptr;
+    std::vector<std::uint8_t> buffer;
+    std::int64_t time_ns = 0;
+    enum class State { idle, waiting, filled } state = State::idle;
+  };
+  static constexpr std::size_t kInSlots = 8;
+  static constexpr std::size_t kOutPackets = 16;
+
+  UsbTransfers(libusb_context* context, libusb_device_handle* handle, const UsbEndpoints& endpoints)
+      : context_(context), handle_(handle), endpoints_(endpoints) {}
+  Result<bool> allocate();
+  static void LIBUSB_CALL on_in(libusb_transfer* transfer);
+  static void LIBUSB_CALL on_out(libusb_transfer* transfer);
+  void finish_in(InSlot& slot) noexcept;
+  void finish_out() noexcept;
+  void submit(InSlot& slot) noexcept;
+  void submit_all() noexcept;
+  void submit_out() noexcept;
+  void fill_out(const OutPacket& packet) noexcept;
+  void begin_recovery() noexcept;
+  void recover() noexcept;
+  void repeat_out() noexcept;
+  void set_timer() noexcept;
+  void cancel_all() noexcept;
+
+  libusb_context* context_;
+  libusb_device_handle* handle_;
+  UsbEndpoints endpoints_;
+  std::vector<pollfd> poll_fds_;
+  int timer_ = -1;               // of recovering and repeating
+  std::int64_t now_ns_ = 0;      // of the last handle_events()
+  std::int64_t arrival_ns_ = 0;  // of the packets that it finds; 0: it is not running
+
+  std::array<InSlot, kInSlots> in_;
+  std::array<InSlot*, kInSlots> filled_{};  // oldest first
+  std::size_t filled_count_ = 0, waiting_count_ = 0;
+
+  std::array<OutPacket, kOutPackets> queue_;  // the first one is on its way
+  std::size_t queued_ = 0;
+  libusb_transfer* out_ = nullptr;
+  std::vector<std::uint8_t> out_buffer_;
+  bool is_out_waiting_ = false, has_out_failed_ = false;
+  OutPacket repeated_;
+  std::int64_t repeat_ns_ = 0;  // when; 0: nothing to repeat
+
+  bool is_gone_ = false, is_closing_ = false;
+  bool is_recovering_ = false, is_out_halted_ = false;
+  std::int64_t recover_ns_ = 0;  // not before
+  std::int64_t lost_ = 0;
+};
+
+}  // namespace gaitpad

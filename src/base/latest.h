@@ -16,9 +16,9 @@ class Latest {
   // Writer: fill this, then publish().
   T& writable() noexcept { return values_[writing_]; }
   void publish() noexcept {
-    writing_ = middle_.exchange(static_cast<std::uint8_t>(writing_ | kFresh),
-                                std::memory_order_acq_rel) &
-               kIndex;
+    writing_ =
+        middle_.exchange(static_cast<std::uint8_t>(writing_ | kFresh), std::memory_order_acq_rel) &
+        kIndex;
   }
 
   // Reader: the newest published value; `is_new` where it was not there at the last call.

@@ -3,7 +3,8 @@
 // The loop thread sleeps until the tick's moment (absolute, CLOCK_MONOTONIC), takes the reports
 // that have arrived, calls Simulation::step(), publishes the newest frame and hands what it used to
 // the recording. It touches no driver, file, lock, log or heap. A tick that begins late is counted
-// and made up for: the number of ticks is the time times the rate.
+// and made up for, so that the number of ticks is the time times the rate; only after a standstill
+// of more than a second the session goes on where it stood.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -31,10 +32,11 @@ struct LiveOptions {
 
 // What a viewer needs of one tick.
 struct LiveFrame {
-  std::int64_t tick = -1;     // -1: none yet
-  std::int64_t time_ns = 0;   // CLOCK_MONOTONIC, when the tick was due
-  Stick stick;                // calibrated
-  PadState pad;               // of the driving pad, uncalibrated
+  std::int64_t tick = -1;             // -1: none yet
+  std::int64_t time_ns = 0;           // CLOCK_MONOTONIC, when the tick was due
+  Stick stick;                        // calibrated
+  std::uint16_t driving = kNoDevice;  // the device that drives, also while it is unplugged
+  PadState pad;                       // of the driving pad, uncalibrated
   int walker_count = 0;
   std::array<Pose, kMaxWalkers> poses;
 };
@@ -42,7 +44,10 @@ struct LiveFrame {
 // Since the beginning.
 struct LiveStatus {
   std::int64_t ticks = 0;
-  std::int64_t overruns = 0;       // ticks that began more than one tick late
+  std::int64_t overruns = 0;     // ticks that began more than one tick late
+  std::int64_t standstills = 0;  // of more than a second, after which the clock was set forward
+  std::int64_t overloads = 0;    // the same because ticks take longer than their time
+  double skipped_s = 0.0;        // by these
   double tick_us_median = 0.0, tick_us_max = 0.0;  // one step, without the sleep
   double wait_us_median = 0.0, wait_us_max = 0.0;  // from a report's arrival to the tick using it
   PadStreamCounts pads;

@@ -1,9 +1,11 @@
 // Which devices there are, which of them are pads, and which driver serves a pad that several see.
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "drivers/registry.h"
 #include "hid/driver.h"
 #include "session/pad_setup.h"
 
@@ -11,7 +13,7 @@ namespace gaitpad {
 
 // What a user asks for; empty: any.
 struct PadWish {
-  std::string pad;     // a path (node or recording), a `vid:pid`, a unique id, a unique part of a name
+  std::string pad;  // a path (node or recording), a `vid:pid`, a unique id, a unique part of a name
   std::string driver;  // hidraw, evdev, sdl, usb; forces it
 };
 
@@ -22,17 +24,29 @@ struct PadSighting {
   std::string problem;  // why it is not usable: one sentence, empty: it is
 };
 
-// Every device that every driver (or the one wished for) sees, pads first. Finder thread. SDL is
-// asked only where it is wished for or `all_drivers`: its start takes up to a second.
+// Every device that every driver (or the one wished for) sees, pads first; where the wish names a
+// recording, its devices alone. Finder thread. SDL is asked only where it is wished for, or for
+// Drivers::all, or where no other driver of kernel devices was built: its start takes up to a
+// second. Error where the wish itself is wrong: an unknown driver, one that was not built, a
+// damaged recording. `table` is for tests.
 enum class Drivers { preferred, all };
-Result<std::vector<PadSighting>> pad_sightings(const PadFiles& files, const PadWish& wish,
-                                               Drivers drivers);
+Result<std::vector<PadSighting>> pad_sightings(
+    const PadFiles& files, const PadWish& wish, Drivers drivers,
+    std::span<const DriverEntry> table = gaitpad::drivers());
 
-// Of the sightings those to open, one for each pad (pad_path), in the order of preference: the first
-// usable one of drivers()'s order; usb only where it is wished for or no kernel driver has the pad.
-// Error where `wish.pad` fits several different pads by a part of a name: it names them.
+// Of the sightings those to open, one for each pad (pad_path), in the order of preference: the
+// first usable one of drivers()'s order; usb only where it is wished for or no kernel driver has
+// the pad. Empty where nothing fits. Error where `wish.pad` fits several different pads by a part
+// of a name: it names them.
 Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sightings,
                                              const PadWish& wish);
+
+// The sightings of pads that `wish.pad` means, usable or not, in the order of preference; all
+// pads where it is empty. Error as above.
+Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sightings,
+                                             const PadWish& wish);
+// Whether PAD names a recording: an existing file, or a path that ends in .hid.
+bool is_recording(const std::string& pad);
 
 // The same device again after unplugging: driver, ids and unique id, else port.
 bool is_same_device(const DeviceInfo& a, const DeviceInfo& b) noexcept;

@@ -27,11 +27,15 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
 // fitting file's. Sentences begin with `origin`.
 Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
                              const std::string& origin);
+// All devices of one recording, `source` being its path.
+Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
+                                           const std::vector<TraceDevice>& devices,
+                                           const std::string& source);
 
 // A live device as a recording will hold it: with SDL's line where config/pads has no entry for the
 // pad, and with the calibration in force as text. A file for this one device (unique id, port)
 // comes before the pad's own factory sticks, these before a file for its model (whose zones they
-// keep).
+// keep). pad_config() of it is the configuration to play with: a replay's is the same bit by bit.
 Result<TraceDevice> recorded_device(const PadFiles& files, const DeviceInfo& info,
                                     const std::optional<FactorySticks>& factory);
 

@@ -9,11 +9,13 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/result.h"
+#include "drivers/registry.h"
 #include "hid/driver.h"
 #include "hid/report.h"
 #include "session/pad_choice.h"
@@ -26,6 +28,12 @@ inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // different ones in 
 struct PadStreamOptions {
   PadFiles files;
   PadWish wish;
+  // For tests: other drivers; a descriptor that is readable when something was plugged in or out
+  // and silent after one read(), in place of udev's word; reports that the ring holds, a power of
+  // two.
+  std::span<const DriverEntry> drivers = gaitpad::drivers();
+  int changes_fd = -1;
+  std::size_t ring_reports = 1024;
 };
 
 // Since the beginning; may be read by any thread.
@@ -37,12 +45,16 @@ struct PadStreamCounts {
 
 class PadStream {
  public:
-  // Runs from here on. Pads that are there already are announced like those plugged in later.
+  // Runs from here on. Pads that are there already are announced like those plugged in later. Error
+  // where the wish is wrong: an unknown driver, a damaged recording, a part of a name that fits
+  // several pads. A wish that nothing fits is waited for.
   static Result<std::unique_ptr<PadStream>> start(PadStreamOptions options);
   ~PadStream();  // closes every device, what was taken from the kernel is given back
 
   // The reading end, for one thread. A device's first report is `added`, also after plugging in
-  // again. Where the ring was full the newest report of each device follows when there is room.
+  // again. Where the ring was full the newest report of each device (and report id) follows when
+  // there is room. The stamps of a device never go back. A blank command never comes, line breaks
+  // in one are blanks.
   const Report* front() noexcept;
   void pop() noexcept;
   // Sleeps until there is something to read or the time is over; not for the loop thread.
@@ -50,7 +62,7 @@ class PadStream {
 
   // Both valid once the device's first `added` has been read, and never changed afterwards.
   const TraceDevice& device(std::uint16_t index) const noexcept;
-  // The reader takes it out of here once (no heap: it is moved).
+  // The reader takes it out of here once (no heap: it is moved). Not present: `added` follows.
   PadConfig& config(std::uint16_t index) noexcept;
 
   // From the reading thread, wait-free: the motors run for that long. Dropped when too many wait.

@@ -18,14 +18,20 @@ struct PadConfig {
   bool streams = false;    // it reports while at rest too: silence means that it is gone
 };
 
-// The first usable pad drives. A removed one is neutral, and after plugging in again until it has
-// been seen near its centre; a streaming one also while it is silent for 100 ms. Time is counted in
-// ticks.
+// The first usable pad drives: of those plugged in from the start, else the first to be added. It
+// drives until it is removed; then another one that is plugged in takes over, but not before it is
+// seen near its centre. Where none has taken over by then, the old one drives again.
+// A removed pad is neutral, and after plugging in again until it has been seen near its centre; a
+// streaming one also while it is silent for 100 ms. Time is counted in ticks. Who drives depends on
+// the order of the reports alone, not on the devices' numbers.
 class Pads {
  public:
   Pads() = default;
   Pads(std::vector<PadConfig> configs, int rate_hz);
 
+  // What is known of a device once it is found, before its first add(). Swaps: `config` is left
+  // with what was known before.
+  void set(std::uint16_t device, PadConfig& config) noexcept;
   // False where the report is not one that its device can send; then nothing changes.
   bool take(const Report& report) noexcept;
   void add(std::uint16_t device) noexcept;
@@ -33,15 +39,28 @@ class Pads {
   // The driving stick after this tick's reports. Once a tick: counts the silence.
   Stick stick_of_tick() noexcept;
 
+  // kNoDevice: none has driven so far. It may be unplugged.
+  std::uint16_t driving() const noexcept { return driving_; }
+  // The driving pad's, uncalibrated; at rest where there is none.
+  const PadState& driving_state() const noexcept;
+
  private:
   struct Pad {
     PadConfig config;
     PadState state;
     bool is_awaited = false;  // plugged in again and not yet seen near its centre
+    bool is_seen = false;     // it has reported since it was plugged in
     int silent_ticks = 0;
+    int turn = 0;  // the lowest goes first among pads that can take over; 0: never plugged in
   };
+  bool is_silent(const Pad& pad) const noexcept;
+  bool is_near_centre(const Pad& pad) const noexcept;
+  bool can_take_over(const Pad& pad) const noexcept;
+  bool has_lost_its_driver() const noexcept;
+
   std::vector<Pad> pads_;
-  std::size_t driving_ = 0;  // pads_.size(): none
+  std::uint16_t driving_ = kNoDevice;
+  int turns_ = 0;
   int silence_ticks_ = 0;
 };
 

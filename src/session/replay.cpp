@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "session/output_files.h"
+#include "session/summary.h"
 #include "session/walk_export.h"
 
 namespace gaitpad {
@@ -84,23 +85,6 @@ std::vector<double> walked_m(const Run& run, Simulation& simulation,
   return distance_m;
 }
 
-nlohmann::ordered_json summary_of(const Run& run, const Simulation& simulation,
-                                  const Walker& walker) {
-  const SimulationCounts& counts = simulation.counts();
-  nlohmann::ordered_json s;
-  s["ticks"] = counts.ticks;
-  s["rate_hz"] = run.rate_hz;
-  s["pose_hash"] = fmt::format("{:016x}", simulation.pose_hash());
-  s.update(walker_summary(walker));
-  s["style"] = simulation.styles()[walker.style].name;
-  s["ik_failures"] = walker.ik_failures;
-  s["reports"] = counts.reports;
-  s["bad_reports"] = counts.bad_reports;
-  s["bad_commands"] = counts.bad_commands;
-  s["damaged_lines"] = run.trace.skipped_lines;
-  return s;
-}
-
 std::vector<std::string> remarks_on(const Run& run, const SimulationCounts& counts) {
   std::vector<std::string> remarks;
   if (run.trace.skipped_lines > 0) {
@@ -141,7 +125,8 @@ Result<ReplayResult> replay(const ReplayOptions& options) {
   ReplayResult result;
   result.distance_m = walked_m(*run, *simulation, *exports);
   for (std::size_t i = 0; i < simulation->walkers().size(); ++i) {
-    result.summaries.push_back(summary_of(*run, *simulation, simulation->walkers()[i]));
+    result.summaries.push_back(
+        run_summary(*simulation, simulation->walkers()[i], run->rate_hz, run->trace.skipped_lines));
     if (files) (*exports)[i].finish(result.summaries.back());
   }
   if (files) {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "motion/cycle_retarget.h"
 #include "session/config_files.h"
 #include "session/motion_source.h"
+#include "session/pad_setup.h"
 
 namespace gaitpad {
 namespace {
@@ -53,68 +53,6 @@ Result<std::vector<Character>> all_characters(const SessionOptions& options) {
   return characters;
 }
 
-// What --map says first, then config/pads.
-Result<PadOverrides> all_overrides(const SessionOptions& options) {
-  PadOverrides all;
-  if (!options.map.empty()) {
-    auto own = load_pad_file(options.map);
-    if (!own) return own.error();
-    all = std::move(*own);
-  }
-  for (const std::string& path : config_files(options.config_folders, "pads")) {
-    auto file = load_pad_file(path);
-    if (!file) return file.error();
-    std::move(file->begin(), file->end(), std::back_inserter(all));
-  }
-  return all;
-}
-
-// --calibration, else the recording's own, else the best fitting file in config/calibration.
-Result<Calibration> calibration_of(const SessionOptions& options, const TraceDevice& device,
-                                   const std::string& origin) {
-  if (!options.calibration.empty()) return load_calibration(options.calibration);
-  if (!device.calibration.empty()) {
-    auto own = parse_calibration(device.calibration, origin + ": calibration");
-    if (!own) return own.error();
-    return own->calibration;
-  }
-  std::vector<std::string> folders;
-  for (const std::string& folder : options.config_folders)
-    folders.push_back(folder + "/calibration");
-  const DeviceInfo& info = device.info;
-  auto found =
-      find_calibration(folders, {info.vendor, info.product, info.unique_id, info.physical_path});
-  if (!found) return found.error();
-  return found->calibration;
-}
-
-// Only these hand on every report of a pad that streams; evdev and SDL give changes alone. A
-// foreign recording names no driver: it came from hidraw.
-bool hands_on_everything(const std::string& driver) {
-  return driver.empty() || driver == "hidraw" || driver == "usb";
-}
-
-Result<std::vector<PadConfig>> pad_configs(const SessionOptions& options,
-                                           const std::vector<TraceDevice>& devices,
-                                           const std::string& source) {
-  auto overrides = all_overrides(options);
-  if (!overrides) return overrides.error();
-  std::vector<PadConfig> pads;
-  for (const TraceDevice& device : devices) {
-    const std::string origin = fmt::format("{}: device {}", source, device.index);
-    auto layout = pad_layout(device.info, *overrides);
-    if (!layout) return Error{origin + ": " + layout.error().message};
-    auto calibration = calibration_of(options, device, origin);
-    if (!calibration) return calibration.error();
-    PadConfig& pad = pads.emplace_back();
-    pad.layout = std::move(*layout);
-    pad.calibration = *calibration;
-    pad.is_usable = pad.layout.is_pad;
-    pad.streams = pad.layout.streams && hands_on_everything(device.info.driver);
-  }
-  return pads;
-}
-
 template <class T>
 const T& nth_or_last(const std::vector<T>& list, std::size_t n) {
   return list[std::min(n, list.size() - 1)];
@@ -150,7 +88,9 @@ Result<SimulationConfig> simulation_config(const SessionOptions& options,
   SimulationConfig config;
   config.rate_hz = rate_hz;
   config.ik = options.ik;
-  auto pads = pad_configs(options, devices, source);
+  auto files = load_pad_files(options.config_folders, options.map, options.calibration);
+  if (!files) return files.error();
+  auto pads = pad_configs(*files, devices, source);
   if (!pads) return pads.error();
   config.pads = std::move(*pads);
   std::vector<int> chosen_styles;

@@ -42,7 +42,17 @@ Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& w
   return model;
 }
 
+int landings(const Walker& walker) noexcept {
+  return walker.state.frame.steps[kLeftSide] + walker.state.frame.steps[kRightSide];
+}
+
 }  // namespace
+
+std::vector<PadConfig> unknown_pads(std::size_t count) {
+  std::vector<PadConfig> pads(count);
+  for (PadConfig& pad : pads) pad.is_usable = pad.is_present = false;
+  return pads;
+}
 
 Result<Simulation> Simulation::create(const SimulationConfig& config) {
   if (config.walkers.empty() || config.walkers.size() > kMaxWalkers) {
@@ -71,12 +81,14 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
 void Simulation::step(std::span<const Report> reports) noexcept {
   for (const Report& report : reports) take(report);
   stick_ = pads_.stick_of_tick();
+  const int landings_before = landings(walkers_.front());
   for (Walker& w : walkers_) {
     const GaitParams params = gait_params(stick_, styles_[w.style], w.limits);
     advance(w.model, params, ik_, dt_s_, w.state, w.pose);
     for (const bool failed : w.state.frame.ik_failed) w.ik_failures += failed;
     add_to_hash(w.pose);
   }
+  heel_struck_ = landings(walkers_.front()) != landings_before;
   ++counts_.ticks;
 }
 
@@ -99,9 +111,12 @@ void Simulation::take(const Report& report) noexcept {
   }
 }
 
-// `style NAME` for every character, `style N NAME` for the n-th one.
+// `style NAME` for every character, `style N NAME` for the n-th one; `mark` marks a place in a
+// recording.
 bool Simulation::obey(std::string_view command) noexcept {
-  if (next_word(command) != "style") return false;
+  const std::string_view verb = next_word(command);
+  if (verb == "mark") return true;
+  if (verb != "style") return false;
   std::string_view name = next_word(command);
   std::size_t first = 0, last = walkers_.size();
   if (const std::string_view second = next_word(command); !second.empty()) {

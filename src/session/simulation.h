@@ -34,6 +34,9 @@ struct SimulationConfig {
   std::vector<WalkerConfig> walkers;  // at least one; side by side, the first at the origin
 };
 
+// Slots for devices that are not known yet.
+std::vector<PadConfig> unknown_pads(std::size_t count);
+
 // What a step has met, since the beginning.
 struct SimulationCounts {
   std::int64_t ticks = 0;
@@ -56,12 +59,19 @@ class Simulation {
  public:
   static Result<Simulation> create(const SimulationConfig& config);
 
+  // What is known of a device that was found while the simulation runs, before its first report. No
+  // heap: it is swapped with the slot of SimulationConfig::pads, which is to be not usable and not
+  // present (unknown_pads()).
+  void set_pad(std::uint16_t device, PadConfig&& config) noexcept { pads_.set(device, config); }
   // One tick with the reports that belong to it, in order of arrival. No heap, lock or clock.
   void step(std::span<const Report> reports) noexcept;
 
   const std::vector<Walker>& walkers() const { return walkers_; }
   const std::vector<Style>& styles() const { return styles_; }
   const Stick& stick() const { return stick_; }  // of the last tick
+  const Pads& pads() const { return pads_; }
+  // A heel of the first character struck the floor in the last tick.
+  bool heel_struck() const { return heel_struck_; }
   const SimulationCounts& counts() const { return counts_; }
   // Over the bits of every pose of every character in every tick so far.
   std::uint64_t pose_hash() const { return hash_.value(); }
@@ -78,6 +88,7 @@ class Simulation {
   std::vector<Style> styles_;
   std::vector<Walker> walkers_;
   Stick stick_;
+  bool heel_struck_ = false;
   SimulationCounts counts_;
   WordHash hash_;
 };

@@ -5,8 +5,13 @@
 
 namespace gaitpad {
 
+void add_play(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
+void add_record(CLI::App& app, int& status);
+void add_pads(CLI::App& app, int& status);
+void add_doctor(CLI::App& app, int& status);
 void add_decode(CLI::App& app, int& status);
+void add_monitor(CLI::App& app, int& status);
 void add_motion(CLI::App& app, int& status);
 void add_ik(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);

@@ -1,199 +1,37 @@
-// gaitpad decode: what a trace's report descriptors say, and what each report says by them.
-#include "hid/decode.h"
-
+// gaitpad decode: what report descriptors say, and what each report says by them, from a trace or
+// from a device as it is used.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "hid/trace.h"
-#include "session/config_files.h"
+#include "session/pad_choice.h"
 #include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/live_run.h"
+#include "tools/gaitpad/pad_options.h"
+#include "tools/gaitpad/report_print.h"
 
 namespace gaitpad {
 namespace {
 
-using nlohmann::ordered_json;
-
 struct DecodeArguments {
-  std::string trace, map;
+  PadWish wish;
+  std::string map;
+  double seconds = 0.0;
   bool descriptor_only = false, as_json = false, lenient = false;
 };
 
-// A device with what decoding needs; the state is that after its last report.
-struct DecodedDevice {
-  const TraceDevice* source = nullptr;
-  PadLayout layout;
-  PadState state;
-};
+OutputForm form_of(const DecodeArguments& arguments) {
+  return arguments.as_json ? OutputForm::json : OutputForm::text;
+}
 
 int fail(const std::string& sentence) {
   fmt::print(stderr, "gaitpad decode: {}\n", sentence);
   return 1;
-}
-
-// Text of a device may hold anything; JSON holds UTF-8.
-void print_line(const ordered_json& object) {
-  fmt::print("{}\n", object.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
-}
-
-const char* kind_name(FieldKind kind) {
-  switch (kind) {
-    case FieldKind::input:
-      return "input";
-    case FieldKind::output:
-      return "output";
-    case FieldKind::feature:
-      return "feature";
-  }
-  return "";
-}
-
-std::string usage_text(std::uint32_t usage) {
-  return fmt::format("{:04x}:{:04x}", page_of(usage), id_of(usage));
-}
-
-ordered_json descriptor_json(const DecodedDevice& device) {
-  const DeviceInfo& info = device.source->info;
-  ordered_json fields = ordered_json::array();
-  for (const Field& f : device.layout.descriptor.fields) {
-    fields.push_back({{"report_id", f.report_id},
-                      {"bit_offset", f.bit_offset},
-                      {"bit_size", f.bit_size},
-                      {"usage_page", page_of(f.usage)},
-                      {"usage", id_of(f.usage)},
-                      {"logical_min", f.logical_min},
-                      {"logical_max", f.logical_max},
-                      {"kind", kind_name(f.kind)}});
-  }
-  return {{"device",
-           {{"name", info.name},
-            {"bus", static_cast<unsigned>(info.bus)},
-            {"vendor", info.vendor},
-            {"product", info.product}}},
-          {"pad", device.layout.is_pad},
-          {"fields", std::move(fields)}};
-}
-
-// Neighbours that differ only in their place are one row.
-bool continues(const Field& a, const Field& b) {
-  return a.kind == b.kind && a.report_id == b.report_id && a.usage == b.usage &&
-         a.bit_size == b.bit_size && a.logical_min == b.logical_min &&
-         a.logical_max == b.logical_max && a.is_array == b.is_array;
-}
-
-void print_descriptor(const DecodedDevice& device) {
-  const DeviceInfo& info = device.source->info;
-  fmt::print("device {}: {} (bus {:x}, {:04x}:{:04x}), {}, {} bytes of descriptor\n",
-             device.source->index, info.name, static_cast<unsigned>(info.bus), info.vendor,
-             info.product, device.layout.is_pad ? "a pad" : "no pad", info.descriptor.size());
-  if (!device.layout.override_origin.empty()) {
-    fmt::print("controls by {}\n", device.layout.override_origin);
-  }
-  fmt::print("{:<8} {:>2} {:>7} {:>5} {:>5}  {:<9} {:>12} {:>12}\n", "kind", "id", "bit", "size",
-             "count", "usage", "min", "max");
-  const std::vector<Field>& fields = device.layout.descriptor.fields;
-  for (std::size_t i = 0; i < fields.size();) {
-    const Field& f = fields[i];
-    std::size_t end = i + 1;
-    while (end < fields.size() && continues(f, fields[end])) ++end;
-    fmt::print("{:<8} {:>2x} {:>7} {:>5} {:>5}  {:<9} {:>12} {:>12}{}\n", kind_name(f.kind),
-               f.report_id, f.bit_offset, f.bit_size, end - i, usage_text(f.usage), f.logical_min,
-               f.logical_max, f.is_array ? "  array" : "");
-    i = end;
-  }
-}
-
-std::uint8_t report_id_of(const PadLayout& layout, const Report& report) {
-  return layout.descriptor.numbered && report.size > 0 ? report.bytes[0] : 0;
-}
-
-// A usage that occurs several times gives its first field; an array gives a 1 for each usage it
-// names.
-ordered_json values_json(const ReportDescriptor& descriptor, const Report& report,
-                         std::uint8_t id) {
-  ordered_json values = ordered_json::object();
-  const std::size_t skip = descriptor.numbered ? 1 : 0;
-  if (report.size < skip) return values;
-  const std::span<const std::uint8_t> data(report.bytes.data() + skip, report.size - skip);
-  for (const Field& f : descriptor.fields) {
-    if (f.kind != FieldKind::input || f.report_id != id || f.bit_size > 64) continue;
-    const std::int64_t value = field_value(f, data);
-    const std::uint32_t usage = f.is_array ? array_usage(descriptor, f, value) : f.usage;
-    if (f.is_array && id_of(usage) == 0) continue;
-    const std::string key = usage_text(usage);
-    if (!values.contains(key)) values[key] = f.is_array ? 1 : value;
-  }
-  return values;
-}
-
-std::vector<std::string> pressed_names(const DecodedDevice& device, const Report& report,
-                                       std::uint8_t id) {
-  std::vector<std::string> names;
-  for (int b = 0; b < kButtonCount; ++b) {
-    if (pressed(device.state, static_cast<PadButton>(b))) names.emplace_back(kButtonNames[b]);
-  }
-  const std::size_t skip = device.layout.descriptor.numbered ? 1 : 0;
-  if (report.size < skip) return names;
-  const std::span<const std::uint8_t> data(report.bytes.data() + skip, report.size - skip);
-  for (const UnnamedButton& u : device.layout.unnamed) {
-    if (u.report_id != id || bits_at(data, u.bits.bit_offset, u.bits.bit_size) == 0) continue;
-    names.push_back(fmt::format("button_{}", u.number));
-  }
-  return names;
-}
-
-ordered_json report_json(const DecodedDevice& device, const Report& report, bool is_good) {
-  const std::uint8_t id = report_id_of(device.layout, report);
-  ordered_json axes = ordered_json::object();
-  for (int a = 0; device.layout.is_pad && a < kAxisCount; ++a) {
-    axes[std::string(kAxisNames[a])] = device.state.axis[a];
-  }
-  ordered_json line = {
-      {"device", device.source->index},
-      {"time_s", static_cast<double>(report.time_ns) / 1e9},
-      {"report_id", id},
-      {"values",
-       is_good ? values_json(device.layout.descriptor, report, id) : ordered_json::object()},
-      {"axes", std::move(axes)},
-      {"buttons", is_good ? pressed_names(device, report, id) : std::vector<std::string>{}}};
-  if (!is_good) line["bad"] = true;
-  return line;
-}
-
-void print_report(const DecodedDevice& device, const Report& report, bool is_good) {
-  const std::uint8_t id = report_id_of(device.layout, report);
-  fmt::print("{:>12.6f} device {} report {:2x}", static_cast<double>(report.time_ns) / 1e9,
-             device.source->index, id);
-  if (!is_good) {
-    fmt::print("  {} bytes: too short, or an unknown id\n", report.size);
-    return;
-  }
-  if (device.layout.is_pad) {
-    const auto& a = device.state.axis;
-    fmt::print("  left {:+.3f} {:+.3f}  right {:+.3f} {:+.3f}  triggers {:.3f} {:.3f} ", a[kLeftX],
-               a[kLeftY], a[kRightX], a[kRightY], a[kLeftTrigger], a[kRightTrigger]);
-    for (const std::string& name : pressed_names(device, report, id)) fmt::print(" {}", name);
-  }
-  fmt::print("\n");
-}
-
-Result<PadOverrides> overrides_of(const DecodeArguments& arguments) {
-  PadOverrides all;
-  if (!arguments.map.empty()) {
-    auto own = load_pad_file(arguments.map);
-    if (!own) return own.error();
-    all = std::move(*own);
-  }
-  for (const std::string& path : config_files(config_folders(GAITPAD_CONFIG_DIR), "pads")) {
-    auto file = load_pad_file(path);
-    if (!file) return file.error();
-    all.insert(all.end(), file->begin(), file->end());
-  }
-  return all;
 }
 
 Result<std::vector<DecodedDevice>> devices_of(const Trace& trace, const PadOverrides& overrides) {
@@ -204,7 +42,7 @@ Result<std::vector<DecodedDevice>> devices_of(const Trace& trace, const PadOverr
       return Error{
           fmt::format("{}: device {}: {}", trace.path, source.index, layout.error().message)};
     }
-    devices.push_back({&source, std::move(*layout), {}});
+    devices.push_back({source, std::move(*layout), {}});
   }
   return devices;
 }
@@ -217,57 +55,129 @@ void print_reports(const DecodeArguments& arguments, const Trace& trace,
   for (const TraceEvent& event : trace.events) {
     if (event.kind != ReportKind::input) continue;
     copy_report(trace, event, report);
-    DecodedDevice& device = devices[event.device];
-    const bool is_good = decode(device.layout, report, device.state);
-    if (!is_good) ++bad;
-    if (arguments.as_json) {
-      print_line(report_json(device, report, is_good));
-    } else {
-      print_report(device, report, is_good);
-    }
+    if (!print_report(devices[event.device], report, form_of(arguments))) ++bad;
   }
   if (bad > 0)
     fmt::print(stderr, "gaitpad decode: {} reports are too short or have an unknown id\n", bad);
 }
 
-bool is_live_device(const std::string& path) {
+// What exists and is no device, and what looks like the path of a file.
+bool is_trace(const std::string& source) {
   std::error_code ignored;
-  return path.starts_with("/dev/hidraw") || path.starts_with("/dev/input/") ||
-         std::filesystem::is_character_file(path, ignored);
+  for (const char* nodes : {"/dev/hidraw", "/dev/input/", "/dev/bus/"}) {
+    if (source.starts_with(nodes)) return false;
+  }
+  if (std::filesystem::is_character_file(source, ignored)) return false;
+  return std::filesystem::exists(source, ignored) || source.ends_with(".hid") ||
+         source.find('/') != std::string::npos;
 }
 
-int run(const DecodeArguments& arguments) {
-  if (is_live_device(arguments.trace)) {
-    return fail(arguments.trace + ": live devices come with a later version; give a trace (.hid)");
-  }
-  const auto overrides = overrides_of(arguments);
-  if (!overrides) return fail(overrides.error().message);
-  const auto trace = read_trace(arguments.trace, arguments.lenient ? Damage::skip : Damage::refuse);
+int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
+  const auto trace =
+      read_trace(arguments.wish.pad, arguments.lenient ? Damage::skip : Damage::refuse);
   if (!trace) return fail(trace.error().message);
-  auto devices = devices_of(*trace, *overrides);
+  auto devices = devices_of(*trace, overrides);
   if (!devices) return fail(devices.error().message);
   if (trace->skipped_lines > 0) {
     fmt::print(stderr, "gaitpad decode: {} damaged lines were skipped, the first: {}\n",
                trace->skipped_lines, trace->first_damage);
   }
-  for (const DecodedDevice& device : *devices) {
-    if (arguments.as_json) {
-      print_line(descriptor_json(device));
-    } else {
-      print_descriptor(device);
-    }
-  }
+  for (const DecodedDevice& device : *devices) print_descriptor(device, form_of(arguments));
   if (!arguments.descriptor_only) print_reports(arguments, *trace, *devices);
   return 0;
+}
+
+// By its node, also where it is no pad; else as play chooses it.
+Result<PadSighting> sighting_of(const PadFiles& files, const PadWish& wish) {
+  auto sightings = pad_sightings(files, wish, Drivers::preferred);
+  if (!sightings) return sightings.error();
+  std::error_code ignored;
+  const std::string node = std::filesystem::canonical(wish.pad, ignored).string();
+  for (const PadSighting& sighting : *sightings) {
+    if (!node.empty() && sighting.listing.node == node) return sighting;
+  }
+  auto chosen = chosen_pads(*sightings, wish);
+  if (!chosen) return chosen.error();
+  if (chosen->empty()) {
+    return Error{
+        fmt::format("{}: no driver sees such a device; gaitpad pads lists them", wish.pad)};
+  }
+  return chosen->front();
+}
+
+// Reports as they come, their time counted from the first one. Returns when the device is gone.
+void print_live(Device& device, DecodedDevice& decoded, OutputForm form, RunEnd& end) {
+  std::optional<std::int64_t> start_ns;
+  Report report;
+  while (!end.is_reached()) {
+    const Device::Status status = device.read(report);
+    print_remarks("decode", device.take_remarks());
+    if (status == Device::Status::gone) {
+      print_remarks("decode", {decoded.source.info.name + ": unplugged"});
+      return;
+    }
+    if (status == Device::Status::report) {
+      if (!start_ns) start_ns = report.time_ns;
+      report.time_ns -= *start_ns;
+      print_report(decoded, report, form);
+      continue;
+    }
+    if (std::fflush(stdout) != 0) return;  // main says so
+    end.wait(std::chrono::milliseconds(200), device.poll_fds());
+  }
+}
+
+// As a recording of it would be decoded.
+Result<DecodedDevice> decoded_device(const DeviceInfo& info, const PadFiles& files) {
+  auto recorded = recorded_device(files, info, std::nullopt);
+  if (!recorded) return recorded.error();
+  auto layout = pad_layout(recorded->info, files.overrides);
+  if (!layout) return Error{fmt::format("{}: {}", info.name, layout.error().message)};
+  return DecodedDevice{std::move(*recorded), std::move(*layout), {}};
+}
+
+int run_live(const DecodeArguments& arguments, const PadFiles& files) {
+  RunEnd end;
+  const auto sighting = sighting_of(files, arguments.wish);
+  if (!sighting) return fail(sighting.error().message);
+  std::unique_ptr<Device> device;
+  // The system shows many a descriptor to those, too, who may not open the device.
+  if (!arguments.descriptor_only || sighting->listing.info.descriptor.empty()) {
+    auto opened = sighting->driver->open(sighting->listing, Detach::allowed);
+    if (!opened) return fail(opened.error().message);
+    device = std::move(*opened);
+  }
+  auto decoded = decoded_device(device ? device->info() : sighting->listing.info, files);
+  if (!decoded) return fail(decoded.error().message);
+  print_descriptor(*decoded, form_of(arguments));
+  if (arguments.descriptor_only) return 0;
+  end.end_after(arguments.seconds);
+  print_live(*device, *decoded, form_of(arguments), end);
+  if (const std::int64_t lost = device->lost(); lost > 0)
+    print_remarks("decode", {fmt::format("{} reports were lost", lost)});
+  return 0;
+}
+
+int run(const DecodeArguments& arguments) {
+  const auto files = pad_files(arguments.map, "");
+  if (!files) return fail(files.error().message);
+  return arguments.wish.driver.empty() && is_trace(arguments.wish.pad)
+             ? run_trace(arguments, files->overrides)
+             : run_live(arguments, *files);
 }
 
 }  // namespace
 
 void add_decode(CLI::App& app, int& status) {
   auto arguments = std::make_shared<DecodeArguments>();
-  CLI::App* command =
-      app.add_subcommand("decode", "Shows a trace's report descriptors and decodes each report");
-  command->add_option("TRACE", arguments->trace, "a recording (.hid)")->required();
+  CLI::App* command = app.add_subcommand(
+      "decode", "Shows report descriptors and decodes each report, of a trace or a live device");
+  command
+      ->add_option("TRACE", arguments->wish.pad,
+                   "a recording (.hid), a node such as /dev/hidraw0, or a pad as for play")
+      ->required();
+  add_driver_option(*command, arguments->wish);
+  add_seconds_option(*command, arguments->seconds);
   command->add_flag("--descriptor", arguments->descriptor_only, "only the descriptors");
   command->add_flag("--json", arguments->as_json, "one JSON object a line");
   command->add_flag("--lenient", arguments->lenient, "skip damaged lines and count them");

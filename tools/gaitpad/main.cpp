@@ -23,8 +23,13 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // too large a file is a failed write, told like any other
   int status = 0;
   bool is_written = true;
+  gaitpad::add_play(app, status);
   gaitpad::add_replay(app, status);
+  gaitpad::add_record(app, status);
+  gaitpad::add_pads(app, status);
+  gaitpad::add_doctor(app, status);
   gaitpad::add_decode(app, status);
+  gaitpad::add_monitor(app, status);
   gaitpad::add_motion(app, status);
   gaitpad::add_ik(app, status);
   gaitpad::add_bench(app, status);

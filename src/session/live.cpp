@@ -1,0 +1,167 @@
+#include "session/live.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <future>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "session/live_loop.h"
+#include "session/realtime.h"
+#include "session/recording.h"
+#include "session/summary.h"
+
+namespace gaitpad {
+
+struct LiveSession::Impl {
+  Impl(const LiveOptions& live_options, Simulation made)
+      : options(live_options), simulation(std::move(made)) {}
+
+  std::optional<Error> open_recording();
+  void start_loop();
+  void stop_loop();
+  void remark_on_time(const LiveStatus& now);
+  Result<std::vector<nlohmann::ordered_json>> summaries();
+
+  LiveOptions options;
+  Simulation simulation;
+  std::unique_ptr<PadStream> pads;
+  std::unique_ptr<Recording> recording;
+  std::unique_ptr<LiveLoop> loop;
+  std::thread thread;
+
+  mutable std::mutex mutex;              // of what follows
+  std::optional<PadStreamCounts> final;  // once it was stopped
+  std::vector<std::string> remarks;
+  LiveStatus remarked;  // what has been said of the loop's time
+};
+
+std::optional<Error> LiveSession::Impl::open_recording() {
+  if (options.record.empty()) return std::nullopt;
+  auto opened = Recording::start(
+      {options.record, options.rate_hz, {}},
+      [p = pads.get()](std::uint16_t i) -> const TraceDevice& { return p->device(i); });
+  if (!opened) return opened.error();
+  recording = std::move(*opened);
+  return std::nullopt;
+}
+
+void LiveSession::Impl::start_loop() {
+  loop = std::make_unique<LiveLoop>(LiveLoop::Options{options.rate_hz, options.rumble}, simulation,
+                                    *pads, recording.get());
+  std::promise<std::optional<std::string>> refused;
+  auto refusal = refused.get_future();
+  thread = std::thread([this, refused = std::move(refused)]() mutable {
+    ::pthread_setname_np(::pthread_self(), "gaitpad-loop");
+    const auto priority = take_priority();
+    // Last of all: the thread's stack is locked, too.
+    refused.set_value(realtime_remark(priority, lock_memory()));
+    loop->run();
+  });
+  if (auto remark = refusal.get()) remarks.push_back(std::move(*remark));
+}
+
+void LiveSession::Impl::stop_loop() {
+  if (!thread.joinable()) return;
+  loop->stop();
+  thread.join();
+  unlock_memory();
+  const std::lock_guard lock(mutex);
+  final = pads->counts();
+}
+
+void LiveSession::Impl::remark_on_time(const LiveStatus& now) {
+  if (now.standstills > remarked.standstills) {
+    remarks.push_back(
+        fmt::format("the program stood still; the session goes on {:.1f} s later than the time",
+                    now.skipped_s));
+  }
+  if (now.overloads > 0 && remarked.overloads == 0) {
+    remarks.push_back(fmt::format(
+        "a tick takes {:.0f} us and there are {} a second: the session is slower than the time; "
+        "fewer characters or a lower --rate help",
+        now.tick_us_median, options.rate_hz));
+  }
+  remarked = now;
+}
+
+Result<std::vector<nlohmann::ordered_json>> LiveSession::Impl::summaries() {
+  std::int64_t lost = 0;
+  if (recording != nullptr) {
+    auto said = recording->finish(simulation.counts().ticks, TickClock::now_ns());
+    if (!said) return said.error();
+    lost = recording->lost();
+    const std::lock_guard lock(mutex);
+    remarks.insert(remarks.end(), said->begin(), said->end());
+  }
+  std::vector<nlohmann::ordered_json> all;
+  for (const Walker& walker : simulation.walkers()) {
+    all.push_back(run_summary(simulation, walker, options.rate_hz, 0));
+    if (lost > 0) all.back()["recording_lost"] = lost;  // it does not replay to this pose_hash
+  }
+  return all;
+}
+
+LiveSession::LiveSession() = default;
+LiveSession::~LiveSession() {
+  if (impl_ && impl_->thread.joinable()) static_cast<void>(stop());
+}
+
+Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& options) {
+  if (options.rate_hz < 1 || options.rate_hz > kMaxRateHz) {
+    return Error{fmt::format("a rate of {} Hz is not within 1 .. {}", options.rate_hz, kMaxRateHz)};
+  }
+  const SessionOptions& session = options.session;
+  auto config = simulation_config(session, {}, "", options.rate_hz);
+  if (!config) return config.error();
+  config->pads = unknown_pads(kMaxPads);
+  auto simulation = Simulation::create(*config);
+  if (!simulation) return simulation.error();
+  auto files = load_pad_files(session.config_folders, session.map, session.calibration);
+  if (!files) return files.error();
+
+  std::unique_ptr<LiveSession> live(new LiveSession());
+  live->impl_ = std::make_unique<Impl>(options, std::move(*simulation));
+  Impl& impl = *live->impl_;
+  auto pads = PadStream::start({std::move(*files), options.wish});
+  if (!pads) return pads.error();
+  impl.pads = std::move(*pads);
+  if (auto problem = impl.open_recording()) return *problem;
+  impl.start_loop();
+  return live;
+}
+
+const LiveFrame& LiveSession::latest(bool& is_new) noexcept { return impl_->loop->latest(is_new); }
+
+void LiveSession::command(std::string_view text) { impl_->pads->command(text); }
+
+bool LiveSession::has_ended() const noexcept { return impl_->loop->has_ended(); }
+
+LiveStatus LiveSession::status() const noexcept {
+  LiveStatus status = impl_->loop->status();
+  const std::lock_guard lock(impl_->mutex);
+  status.pads = impl_->final ? *impl_->final : impl_->pads->counts();
+  if (impl_->recording != nullptr) status.recording_lost = impl_->recording->lost();
+  return status;
+}
+
+std::vector<std::string> LiveSession::take_remarks() {
+  const LiveStatus now = impl_->loop->status();
+  std::vector<std::string> all = impl_->pads->take_remarks();
+  const std::lock_guard lock(impl_->mutex);
+  impl_->remark_on_time(now);
+  std::move(impl_->remarks.begin(), impl_->remarks.end(), std::back_inserter(all));
+  impl_->remarks.clear();
+  return all;
+}
+
+Result<std::vector<nlohmann::ordered_json>> LiveSession::stop() {
+  if (!impl_->thread.joinable()) return Error{"the session was stopped before"};
+  impl_->stop_loop();
+  return impl_->summaries();
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,157 @@
+#include "session/pad_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "drivers/registry.h"
+#include "session/config_files.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kLeastFactoryRange = 0.25;  // raw, from the centre to either end
+
+Result<Calibration> calibration_of(const PadFiles& files, const TraceDevice& device,
+                                   const std::string& origin) {
+  if (files.calibration) return files.calibration->calibration;
+  if (!device.calibration.empty()) {
+    auto own = parse_calibration(device.calibration, origin + ": calibration");
+    if (!own) return own.error();
+    return own->calibration;
+  }
+  const DeviceInfo& info = device.info;
+  auto found = find_calibration(files.calibration_folders,
+                                {info.vendor, info.product, info.unique_id, info.physical_path});
+  if (!found) return found.error();
+  return found->calibration;
+}
+
+// Pads answer with what they like: a range that no stick has is not taken.
+void take_factory_axis(const FactoryAxis& own, AxisCalibration& axis) {
+  if (!std::isfinite(own.min) || !std::isfinite(own.centre) || !std::isfinite(own.max)) return;
+  const double min = std::max(own.min, -1.0), max = std::min(own.max, 1.0);
+  if (own.centre - min < kLeastFactoryRange || max - own.centre < kLeastFactoryRange) return;
+  axis = {min, own.centre, max};
+}
+
+void take_factory_sticks(const FactorySticks& own, Calibration& calibration) {
+  take_factory_axis(own.left_x, calibration.left.x);
+  take_factory_axis(own.left_y, calibration.left.y);
+  take_factory_axis(own.right_x, calibration.right.x);
+  take_factory_axis(own.right_y, calibration.right.y);
+}
+
+// -0 would come back from text as 0.
+void drop_negative_zeros(Calibration& calibration) {
+  for (StickCalibration* stick : {&calibration.left, &calibration.right}) {
+    for (AxisCalibration* axis : {&stick->x, &stick->y}) {
+      for (double* number : {&axis->min, &axis->centre, &axis->max}) *number += 0.0;
+    }
+    for (double* number : {&stick->inner, &stick->sideways, &stick->curve}) *number += 0.0;
+  }
+}
+
+// Only what a replay reads back: whom the file was for does not matter any more.
+std::string text_of_calibration(const CalibrationFile& file) {
+  CalibrationFile own;
+  if (file.name.size() <= kMaxTraceTextBytes) own.name = file.name;
+  own.calibration = file.calibration;
+  drop_negative_zeros(own.calibration);
+  return calibration_text(own);
+}
+
+Result<CalibrationFile> calibration_in_force(const PadFiles& files, const DeviceInfo& info,
+                                             const std::optional<FactorySticks>& factory) {
+  if (files.calibration) return *files.calibration;
+  auto found = find_calibration(files.calibration_folders,
+                                {info.vendor, info.product, info.unique_id, info.physical_path});
+  if (!found) return found.error();
+  const bool is_for_this_one = !found->unique_id.empty() || !found->port.empty();
+  if (factory && !is_for_this_one) take_factory_sticks(*factory, found->calibration);
+  return found;
+}
+
+// SDL's line where nothing better is known; one that no recording can hold or that does not fit the
+// descriptor is none.
+std::string mapping_of(const PadFiles& files, const DeviceInfo& info) {
+  DeviceInfo mapped = info;
+  if (info.mapping.empty() && info.driver != "sdl") {
+    if (find_override(files.overrides, info) != nullptr) return {};
+    mapped.mapping = sdl_mapping_of(info);
+  }
+  if (mapped.mapping.size() > kMaxTraceTextBytes) return {};
+  return pad_layout(mapped, files.overrides) ? mapped.mapping : std::string();
+}
+
+}  // namespace
+
+Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
+                                const std::string& map, const std::string& calibration) {
+  PadFiles files;
+  if (!map.empty()) {
+    auto own = load_pad_file(map);
+    if (!own) return own.error();
+    files.overrides = std::move(*own);
+  }
+  for (const std::string& path : config_files(config_folders, "pads")) {
+    auto file = load_pad_file(path);
+    if (!file) return file.error();
+    std::move(file->begin(), file->end(), std::back_inserter(files.overrides));
+  }
+  if (!calibration.empty()) {
+    auto file = load_calibration_file(calibration);
+    if (!file) return file.error();
+    files.calibration = std::move(*file);
+    drop_negative_zeros(files.calibration->calibration);
+  }
+  for (const std::string& folder : config_folders)
+    files.calibration_folders.push_back(folder + "/calibration");
+  return files;
+}
+
+Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
+                             const std::string& origin) {
+  auto layout = pad_layout(device.info, files.overrides);
+  if (!layout) return Error{origin + ": " + layout.error().message};
+  auto calibration = calibration_of(files, device, origin);
+  if (!calibration) return calibration.error();
+  PadConfig pad;
+  pad.layout = std::move(*layout);
+  pad.calibration = *calibration;
+  pad.is_usable = pad.layout.is_pad;
+  pad.streams = pad.layout.streams;
+  return pad;
+}
+
+Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
+                                           const std::vector<TraceDevice>& devices,
+                                           const std::string& source) {
+  std::vector<PadConfig> pads;
+  for (const TraceDevice& device : devices) {
+    auto pad = pad_config(files, device, fmt::format("{}: device {}", source, device.index));
+    if (!pad) return pad.error();
+    pads.push_back(std::move(*pad));
+  }
+  return pads;
+}
+
+Result<TraceDevice> recorded_device(const PadFiles& files, const DeviceInfo& info,
+                                    const std::optional<FactorySticks>& factory) {
+  auto calibration = calibration_in_force(files, info, factory);
+  if (!calibration) return calibration.error();
+  TraceDevice device;
+  device.info = info;
+  device.info.mapping = mapping_of(files, info);
+  device.calibration = text_of_calibration(*calibration);
+  for (std::string* text : {&device.info.driver, &device.info.name, &device.info.unique_id,
+                            &device.info.physical_path}) {
+    text->resize(std::min(text->size(), kMaxTraceTextBytes));
+  }
+  return device;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,128 @@
+#include "tools/gaitpad/live_run.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/ioctl.h>
+#include <sys/signalfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+
+namespace gaitpad {
+namespace {
+
+constexpr std::size_t kMaxLineBytes = 4096;  // of a command; longer ones are cut
+
+sigset_t ending_signals() noexcept {
+  sigset_t set;
+  sigemptyset(&set);
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
+  return set;
+}
+
+// So long that the sum with the clock stays in range.
+constexpr double kMaxSeconds = 1e9;
+
+}  // namespace
+
+std::int64_t monotonic_ns() noexcept {
+  timespec now = {};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+RunEnd::RunEnd() {
+  const sigset_t set = ending_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  signals_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+}
+
+void RunEnd::end_after(double seconds) noexcept {
+  if (seconds <= 0.0) return;
+  end_ns_ = monotonic_ns() + static_cast<std::int64_t>(std::min(seconds, kMaxSeconds) * 1e9);
+}
+
+RunEnd::~RunEnd() {
+  if (signals_ >= 0) ::close(signals_);
+}
+
+bool RunEnd::is_reached() noexcept {
+  signalfd_siginfo info = {};
+  if (::read(signals_, &info, sizeof info) == sizeof info) has_signal_ = true;
+  return has_signal_ || (end_ns_ != 0 && monotonic_ns() >= end_ns_);
+}
+
+void RunEnd::wait(std::chrono::milliseconds time, std::span<const pollfd> others) {
+  if (is_reached()) return;
+  std::int64_t wait_ms = time.count();
+  if (end_ns_ != 0) {
+    const std::int64_t left_ns = end_ns_ - monotonic_ns();
+    wait_ms = std::clamp<std::int64_t>((left_ns + 999'999) / 1'000'000, 0, wait_ms);
+  }
+  std::vector<pollfd> fds(others.begin(), others.end());
+  fds.push_back({signals_, POLLIN, 0});
+  ::poll(fds.data(), fds.size(), static_cast<int>(wait_ms));
+}
+
+std::vector<std::string> InputLines::take() {
+  std::vector<std::string> lines;
+  pollfd ready = fd();
+  while (is_open_ && ::poll(&ready, 1, 0) > 0) {
+    char bytes[1024];
+    const ssize_t count = ::read(0, bytes, sizeof bytes);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) is_open_ = false;  // the end; a last line without its end counts
+    if (count <= 0 && !rest_.empty()) rest_ += '\n';
+    if (count > 0) rest_.append(bytes, static_cast<std::size_t>(count));
+    for (std::size_t end; (end = rest_.find('\n')) != std::string::npos; rest_.erase(0, end + 1)) {
+      std::string line = rest_.substr(0, std::min(end, kMaxLineBytes));
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      if (!line.empty()) lines.push_back(std::move(line));
+    }
+    if (rest_.size() > kMaxLineBytes) rest_.resize(kMaxLineBytes);
+  }
+  return lines;
+}
+
+StatusLine::StatusLine(int file) : file_(file), is_terminal_(::isatty(file) == 1) {}
+
+void StatusLine::write_all(std::string_view text) const {
+  while (!text.empty()) {
+    const ssize_t count = ::write(file_, text.data(), text.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return;  // a status that nobody can read is no failure
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+void StatusLine::show(std::span<const std::string> lines) {
+  if (!is_terminal_) return;
+  winsize window = {};
+  const bool is_known = ::ioctl(file_, TIOCGWINSZ, &window) == 0 && window.ws_col > 1;
+  const std::size_t width = is_known ? window.ws_col - 1u : 79u;
+  std::string text = shown_ > 1 ? fmt::format("\033[{}A", shown_ - 1) : "";
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += fmt::format("{}\r\033[K{:.{}}", i > 0 ? "\n" : "", lines[i], width);
+  }
+  text += "\033[J";  // fewer lines than before
+  write_all(text);
+  shown_ = lines.size();
+}
+
+void StatusLine::clear() {
+  if (shown_ == 0) return;
+  write_all(shown_ > 1 ? fmt::format("\033[{}A\r\033[J", shown_ - 1) : "\r\033[J");
+  shown_ = 0;
+}
+
+void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
+                   StatusLine* line) {
+  if (line && !remarks.empty()) line->clear();
+  for (const std::string& remark : remarks) fmt::print(stderr, "gaitpad {}: {}\n", command, remark);
+}
+
+}  // namespace gaitpad

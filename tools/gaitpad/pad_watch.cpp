@@ -1,0 +1,120 @@
+#include "tools/gaitpad/pad_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "stick/calibration.h"
+#include "tools/gaitpad/live_run.h"
+#include "tools/gaitpad/report_print.h"
+
+namespace gaitpad {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMaxKept = 20000;  // times of one second: at most so many are looked at
+
+void keep(std::vector<double>& values, double value) {
+  if (values.size() < kMaxKept) values.push_back(value);
+}
+double greatest(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::ranges::max_element(values);
+}
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+// Standard deviation of the intervals.
+double jitter(const std::vector<double>& values) {
+  if (values.size() < 2) return 0.0;
+  double sum = 0.0, squares = 0.0;
+  for (double v : values) sum += v;
+  const double mean = sum / static_cast<double>(values.size());
+  for (double v : values) squares += (v - mean) * (v - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double rate_hz(const Window& window) {
+  return static_cast<double>(window.reports) / window.duration_s;
+}
+
+Stick stick_of(const MonitoredPad& pad) {
+  const auto& axis = pad.state.axis;
+  return stick_position(pad.config.calibration, vec2(axis[kLeftX], axis[kLeftY]),
+                        vec2(axis[kRightX], axis[kRightY]));
+}
+
+}  // namespace
+
+void take(const Report& report, PadStream& stream, MonitoredPads& pads) {
+  if (report.device == kNoDevice) return;
+  if (report.kind == ReportKind::added) {
+    auto [pad, is_first] = pads.try_emplace(report.device);
+    if (is_first) pad->second.config = std::move(stream.config(report.device));
+    pad->second.is_plugged = true;
+    return;
+  }
+  const auto found = pads.find(report.device);
+  if (found == pads.end()) return;
+  MonitoredPad& pad = found->second;
+  if (report.kind == ReportKind::removed) {
+    pad.is_plugged = false;
+    pad.state = {};
+    pad.last_ns = 0;
+    return;
+  }
+  keep(pad.running.latency_us, static_cast<double>(monotonic_ns() - report.time_ns) / 1e3);
+  if (pad.last_ns != 0)
+    keep(pad.running.interval_us, static_cast<double>(report.time_ns - pad.last_ns) / 1e3);
+  pad.last_ns = report.time_ns;
+  ++pad.running.reports;
+  if (!decode(pad.config.layout, report, pad.state)) ++pad.running.bad_reports;
+}
+
+ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream,
+                      double time_s) {
+  const DeviceInfo& info = stream.device(index).info;
+  const Stick stick = stick_of(pad);
+  const Window& w = pad.shown;
+  return {{"device", index},
+          {"name", info.name},
+          {"driver", info.driver},
+          {"time_s", time_s},
+          {"plugged", pad.is_plugged},
+          {"rate_hz", rate_hz(w)},
+          {"interval_us_median", median(w.interval_us)},
+          {"jitter_us", jitter(w.interval_us)},
+          {"longest_gap_us", greatest(w.interval_us)},
+          {"latency_us_median", median(w.latency_us)},
+          {"latency_us_max", greatest(w.latency_us)},
+          {"bad_reports", w.bad_reports},
+          {"lost", stream.counts().lost},
+          {"axes", axes_json(pad.state)},
+          {"sticks",
+           {{"left", {stick.left.x, stick.left.y}}, {"right", {stick.right.x, stick.right.y}}}},
+          {"buttons", button_names(pad.state)}};
+}
+
+std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
+  const DeviceInfo& info = stream.device(index).info;
+  const std::string who = fmt::format("{} ({})", printable(info.name), info.driver);
+  if (!pad.is_plugged) return who + "  unplugged";
+  const Stick stick = stick_of(pad);
+  const Window& w = pad.shown;
+  std::string buttons;
+  for (const std::string& name : button_names(pad.state)) buttons += " " + name;
+  return fmt::format(
+      "left {:+.2f} {:+.2f}  right {:+.2f} {:+.2f}  triggers {:.2f} {:.2f}  {:>4.0f} Hz  jitter "
+      "{:.2f} "
+      "ms  gap {:.1f} ms  latency {:.0f}/{:.0f} us  lost {}  {} {}",
+      stick.left.x, stick.left.y, stick.right.x, stick.right.y, pad.state.axis[kLeftTrigger],
+      pad.state.axis[kRightTrigger], rate_hz(w), jitter(w.interval_us) / 1e3,
+      greatest(w.interval_us) / 1e3, median(w.latency_us), greatest(w.latency_us),
+      stream.counts().lost, who, buttons);
+}
+
+}  // namespace gaitpad

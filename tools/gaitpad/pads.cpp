@@ -1,0 +1,197 @@
+// gaitpad pads: every device that every driver sees, and which of them play would take.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "drivers/registry.h"
+#include "hid/descriptor.h"
+#include "session/pad_choice.h"
+#include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/pad_options.h"
+#include "tools/gaitpad/report_print.h"
+
+namespace gaitpad {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct PadsArguments {
+  PadWish wish;
+  std::string map;
+  bool as_json = false;
+};
+
+struct Row {
+  PadSighting sighting;
+  bool is_chosen = false;
+};
+
+int fail(const std::string& sentence) {
+  fmt::print(stderr, "gaitpad pads: {}\n", sentence);
+  return 1;
+}
+
+bool is_usable(const PadSighting& sighting) { return sighting.is_pad && sighting.problem.empty(); }
+
+std::string bus_name(BusType bus) {
+  switch (bus) {
+    case BusType::usb:
+      return "usb";
+    case BusType::bluetooth:
+      return "bluetooth";
+    case BusType::virtual_bus:
+      return "virtual";
+    case BusType::i2c:
+      return "i2c";
+    case BusType::host:
+      return "host";
+    case BusType::unknown:
+      return "unknown";
+  }
+  return fmt::format("{:04x}", static_cast<unsigned>(bus));
+}
+
+// Of the application collections, `0001:0005`; none where the descriptor is not known yet.
+std::vector<std::string> usages_of(const DeviceInfo& info) {
+  std::vector<std::string> usages;
+  const auto descriptor = parse_descriptor(info.descriptor);
+  if (!descriptor) return usages;
+  for (std::uint32_t usage : descriptor->applications) {
+    std::string text = usage_text(usage);
+    if (std::ranges::find(usages, text) == usages.end()) usages.push_back(std::move(text));
+  }
+  return usages;
+}
+
+std::vector<Row> rows_of(const std::vector<PadSighting>& sightings,
+                         const std::vector<PadSighting>& chosen) {
+  std::vector<Row> rows;
+  for (const PadSighting& sighting : sightings) {
+    const bool is_chosen = !chosen.empty() && chosen.front().driver == sighting.driver &&
+                           chosen.front().listing.node == sighting.listing.node;
+    rows.push_back({sighting, is_chosen});
+  }
+  std::ranges::stable_sort(rows, [](const Row& a, const Row& b) {
+    const auto rank = [](const Row& row) {
+      return row.is_chosen ? 0 : is_usable(row.sighting) ? 1 : row.sighting.is_pad ? 2 : 3;
+    };
+    return rank(a) < rank(b);
+  });
+  return rows;
+}
+
+ordered_json row_json(const Row& row) {
+  const DeviceListing& listing = row.sighting.listing;
+  const DeviceInfo& info = listing.info;
+  ordered_json object = {{"driver", row.sighting.driver->name},
+                         {"path", listing.node},
+                         {"bus", bus_name(info.bus)},
+                         {"vendor", info.vendor},
+                         {"product", info.product},
+                         {"name", info.name},
+                         {"unique_id", info.unique_id},
+                         {"port", info.physical_path},
+                         {"kernel_driver", listing.kernel_driver},
+                         {"usages", usages_of(info)},
+                         {"poll_rate_hz", nullptr},
+                         {"usable", is_usable(row.sighting)},
+                         {"problem", row.sighting.problem},
+                         {"chosen", row.is_chosen}};
+  if (listing.poll_rate_hz > 0.0) object["poll_rate_hz"] = listing.poll_rate_hz;
+  return object;
+}
+
+// Drivers that this program was built without: an object each, as a device that cannot be had.
+std::vector<std::pair<std::string, std::string>> missing_drivers(const PadWish& wish) {
+  std::vector<std::pair<std::string, std::string>> missing;
+  for (const DriverEntry& entry : drivers()) {
+    if (entry.find || (!wish.driver.empty() && wish.driver != entry.name)) continue;
+    missing.emplace_back(entry.name, fmt::format("built without {}", entry.library));
+  }
+  return missing;
+}
+
+void print_json(const std::vector<Row>& rows, const PadWish& wish) {
+  ordered_json list = ordered_json::array();
+  for (const Row& row : rows) list.push_back(row_json(row));
+  for (const auto& [driver, problem] : missing_drivers(wish))
+    list.push_back({{"driver", driver}, {"problem", problem}});
+  fmt::print("{}\n", list.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+std::string joined(const std::vector<std::string>& texts) {
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
+void print_table(const std::vector<std::vector<std::string>>& table) {
+  std::vector<std::size_t> widths(table.front().size(), 0);
+  for (const auto& row : table) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  for (const auto& row : table) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    fmt::print("{}\n", line);
+  }
+}
+
+void print_text(const std::vector<Row>& rows, const PadWish& wish) {
+  std::vector<std::vector<std::string>> table = {{"", "driver", "path", "bus", "vid:pid", "name",
+                                                  "unique id", "usages", "rate", "kernel",
+                                                  "usable"}};
+  for (const Row& row : rows) {
+    const DeviceListing& listing = row.sighting.listing;
+    const DeviceInfo& info = listing.info;
+    const std::string rate =
+        listing.poll_rate_hz > 0.0 ? fmt::format("{:.0f} Hz", listing.poll_rate_hz) : "-";
+    table.push_back({row.is_chosen ? "*" : "", row.sighting.driver->name, listing.node,
+                     bus_name(info.bus), fmt::format("{:04x}:{:04x}", info.vendor, info.product),
+                     printable(info.name), printable(info.unique_id), joined(usages_of(info)), rate,
+                     listing.kernel_driver,
+                     is_usable(row.sighting)        ? "yes"
+                     : row.sighting.problem.empty() ? "no: it has no stick"
+                                                    : "no: " + row.sighting.problem});
+  }
+  if (rows.empty()) {
+    fmt::print("no device is seen by any driver; gaitpad doctor says more\n");
+  } else {
+    print_table(table);
+  }
+  for (const auto& [driver, problem] : missing_drivers(wish))
+    fmt::print("{}: {}\n", driver, problem);
+  if (std::ranges::any_of(rows, &Row::is_chosen)) fmt::print("* is the one that play takes\n");
+}
+
+int run(const PadsArguments& arguments) {
+  const auto files = pad_files(arguments.map, "");
+  if (!files) return fail(files.error().message);
+  auto sightings = pad_sightings(*files, arguments.wish, Drivers::all);
+  if (!sightings) {
+    if (missing_drivers(arguments.wish).empty()) return fail(sightings.error().message);
+    sightings = std::vector<PadSighting>{};
+  }
+  const auto chosen = chosen_pads(*sightings, arguments.wish);
+  if (!chosen) return fail(chosen.error().message);
+  const std::vector<Row> rows = rows_of(*sightings, *chosen);
+  if (arguments.as_json) {
+    print_json(rows, arguments.wish);
+  } else {
+    print_text(rows, arguments.wish);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_pads(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("pads", "lists every device that every driver sees");
+  const auto arguments = std::make_shared<PadsArguments>();
+  add_driver_option(*command, arguments->wish);
+  command->add_option("--map", arguments->map, "pad file that overrides config/pads");
+  command->add_flag("--json", arguments->as_json, "a list of objects");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace gaitpad

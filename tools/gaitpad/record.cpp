@@ -1,0 +1,134 @@
+// gaitpad record [PAD] --out FILE.hid: one device's reports, and its unplugging, as a trace.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "session/pad_stream.h"
+#include "session/recording.h"
+#include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/live_run.h"
+#include "tools/gaitpad/pad_options.h"
+#include "tools/gaitpad/report_print.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr std::chrono::milliseconds kWait{20};  // an end is noticed after this at the latest
+
+struct RecordArguments {
+  PadWish wish;
+  std::string out;
+  double seconds = 0.0;
+  bool as_json = false;
+};
+
+// What was recorded; the device is the first that came.
+struct Recorded {
+  std::uint16_t device = kNoDevice;
+  std::int64_t reports = 0, unplugged = 0;
+  std::int64_t first_ns = 0, last_ns = 0;
+};
+
+int fail(const std::string& sentence) {
+  fmt::print(stderr, "gaitpad record: {}\n", sentence);
+  return 1;
+}
+
+void take(const Report& report, Recording& recording, Recorded& recorded) {
+  if (recorded.device == kNoDevice && report.kind == ReportKind::added)
+    recorded.device = report.device;
+  if (report.device != recorded.device || report.device == kNoDevice) return;
+  recording.add(0, report);
+  if (report.kind == ReportKind::removed) ++recorded.unplugged;
+  if (report.kind != ReportKind::input) return;
+  if (recorded.reports == 0) recorded.first_ns = report.time_ns;
+  recorded.last_ns = report.time_ns;
+  ++recorded.reports;
+}
+
+std::string status_text(const Recorded& recorded, const PadStream& stream) {
+  if (recorded.device == kNoDevice) return "waiting for a pad";
+  const double seconds = static_cast<double>(recorded.last_ns - recorded.first_ns) / 1e9;
+  return fmt::format("{}  {:.1f} s  {} reports  lost {}",
+                     printable(stream.device(recorded.device).info.name), seconds, recorded.reports,
+                     stream.counts().lost);
+}
+
+Recorded record(const PadWish& wish, RunEnd& end, PadStream& stream, Recording& recording) {
+  Recorded recorded;
+  StatusLine line(2);
+  MissingPad missing("record", wish);
+  const auto take_all = [&] {
+    for (; const Report* report = stream.front(); stream.pop()) take(*report, recording, recorded);
+  };
+  while (!end.is_reached() && !stream.has_ended()) {
+    stream.wait(kWait);
+    take_all();
+    print_remarks("record", stream.take_remarks(), &line);
+    missing.look(stream.counts().plugged, line);
+    line.show(status_text(recorded, stream));
+  }
+  take_all();
+  missing.finish(stream.counts().plugged, line);
+  return recorded;
+}
+
+void print_result(const RecordArguments& arguments, const Recorded& recorded,
+                  const PadStream& stream, std::int64_t lost) {
+  const DeviceInfo& info = stream.device(recorded.device).info;
+  const double seconds = static_cast<double>(recorded.last_ns - recorded.first_ns) / 1e9;
+  if (arguments.as_json) {
+    print_json_line({{"file", arguments.out},
+                     {"name", info.name},
+                     {"driver", info.driver},
+                     {"vendor", info.vendor},
+                     {"product", info.product},
+                     {"reports", recorded.reports},
+                     {"seconds", seconds},
+                     {"unplugged", recorded.unplugged},
+                     {"lost", lost}});
+  } else {
+    fmt::print("{}: {} ({:04x}:{:04x}, {}), {} reports in {:.1f} s, {} lost\n", arguments.out,
+               printable(info.name), info.vendor, info.product,
+               info.driver.empty() ? "a recording" : info.driver, recorded.reports, seconds, lost);
+  }
+}
+
+int run(const RecordArguments& arguments) {
+  RunEnd end;
+  auto files = pad_files("", "");
+  if (!files) return fail(files.error().message);
+  // The stream outlives the recording, which asks it for its devices.
+  auto stream = PadStream::start({std::move(*files), arguments.wish});
+  if (!stream) return fail(stream.error().message);
+  auto recording = Recording::start(
+      {arguments.out, std::nullopt, {}},
+      [&](std::uint16_t device) -> const TraceDevice& { return (*stream)->device(device); });
+  if (!recording) return fail(recording.error().message);
+  end.end_after(arguments.seconds);
+
+  const Recorded recorded = record(arguments.wish, end, **stream, **recording);
+  print_remarks("record", (*stream)->take_remarks());
+  const auto remarks = (*recording)->finish(0, std::max(recorded.last_ns, monotonic_ns()));
+  if (!remarks) return fail(remarks.error().message);
+  print_remarks("record", *remarks);
+  if (recorded.device == kNoDevice) return 1;  // the remarks say so
+  print_result(arguments, recorded, **stream, (*stream)->counts().lost + (*recording)->lost());
+  return 0;
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("record", "records a device into a trace (.hid)");
+  const auto arguments = std::make_shared<RecordArguments>();
+  add_pad_options(*command, arguments->wish);
+  command->add_option("--out", arguments->out, "the file to write (.hid)")->required();
+  add_seconds_option(*command, arguments->seconds);
+  command->add_flag("--json", arguments->as_json, "what was recorded, for machines");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace gaitpad

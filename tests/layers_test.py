@@ -37,14 +37,20 @@ EVERY_ROOM = sorted(room.removeprefix("src/") for room in ROOMS)
 # A driver's one file may include its own vendor's headers, and nobody else may.
 DRIVER_VENDORS = {
     "drivers/hidraw_driver.cpp": ["hidapi", "linux/"],
-    "drivers/usb_driver.cpp": ["libusb"],
-    "drivers/evdev_driver.cpp": ["libevdev", "linux/"],
+    "drivers/usb_transfers.h": ["libusb"],
+    "drivers/usb_claim.h": ["libusb"],
+    "drivers/usb_reattach.cpp": ["linux/"],
+    "drivers/evdev_nodes.h": ["libevdev"],
+    "drivers/evdev_nodes.cpp": ["linux/"],
+    "drivers/evdev_driver.cpp": ["linux/"],
     "drivers/sdl_driver.cpp": ["SDL2/", "SDL"],
     "drivers/system_nodes.cpp": ["libudev.h"],
+    "tools/rig/latency.cpp": ["linux/"],
+    "tools/rig/plain_sdl.cpp": ["SDL2/"],
 }
 TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/", "benchmark/"]
 SYSTEM_HEADERS = ("sys/", "unistd.h", "fcntl.h", "dirent.h", "errno.h", "poll.h", "signal.h",
-                  "pthread.h", "sched.h", "time.h")
+                  "pthread.h", "sched.h", "time.h", "pwd.h", "grp.h")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 
 

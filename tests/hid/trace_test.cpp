@@ -217,7 +217,7 @@ TEST(Trace, TheWriterGivesBackWhatTheReaderTook) {
   const std::string text =
       "V: 1 rate_hz=240\n"
       "D: 0\nR: 2 c0 c0\nN:  spaces at both ends \nP: usb-1/input0\nI: 5 054c 0ce6\nU: aa:bb\n"
-      "B: hidraw 0111\nK: [left]\nK: \nK: centre_x = 0.5\n"
+      "B: hidraw 0111\nM: 0300,Pad,a:b0,leftx:a0,\nK: [left]\nK: \nK: centre_x = 0.5\n"
       "D: 3\nR: 1 c0\nN: \nI: 3 0001 0002\n"
       "T: 0\nH: 000000.000000 add\nE: 000000.000100 3 01 02 ff\nD: 0\nE: 000000.000050 0\n"
       "T: 7\nC: 000000.025000 style limp_left\nH: 000000.026000 remove\n"
@@ -227,6 +227,8 @@ TEST(Trace, TheWriterGivesBackWhatTheReaderTook) {
   EXPECT_EQ(t.devices[0].info.unique_id, "aa:bb");
   EXPECT_EQ(t.devices[0].info.driver, "hidraw");
   EXPECT_EQ(t.devices[0].info.version, 0x0111);
+  EXPECT_EQ(t.devices[0].info.mapping, "0300,Pad,a:b0,leftx:a0,");
+  EXPECT_EQ(t.devices[1].info.mapping, "");
   EXPECT_EQ(t.devices[0].calibration, "[left]\n\ncentre_x = 0.5\n");
 }
 

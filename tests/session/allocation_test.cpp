@@ -1,9 +1,10 @@
-// Counts every operator new of this executable while a step runs.
+// Counts every operator new and delete of this executable while a step runs.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <new>
 
+#include "tests/session/heap_use.h"
 #include "tests/session/made_session.h"
 
 namespace {
@@ -17,24 +18,40 @@ void* counted(std::size_t size) {
   throw std::bad_alloc();
 }
 
+void freed(void* memory) {
+  allocations += counting && memory != nullptr;
+  std::free(memory);
+}
+
 }  // namespace
 
 void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept { freed(memory); }
+void operator delete[](void* memory) noexcept { freed(memory); }
+void operator delete(void* memory, std::size_t) noexcept { freed(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { freed(memory); }
 
 namespace gaitpad {
+
+void begin_counting_heap_use() {
+  allocations = 0;
+  counting = true;
+}
+int heap_uses() {
+  counting = false;
+  return allocations;
+}
+
 namespace {
 
 TEST(Allocation, IsCounted) {
-  allocations = 0;
-  counting = true;
-  ::operator delete(::operator new(1));
-  counting = false;
-  EXPECT_EQ(allocations, 1);
+  begin_counting_heap_use();
+  void* memory = ::operator new(1);
+  EXPECT_EQ(heap_uses(), 1);
+  begin_counting_heap_use();
+  ::operator delete(memory);
+  EXPECT_EQ(heap_uses(), 1);
 }
 
 TEST(Allocation, NoneIn10000StepsWithReportsCommandsAndReplugging) {
@@ -43,14 +60,14 @@ TEST(Allocation, NoneIn10000StepsWithReportsCommandsAndReplugging) {
     config.ik = mode;
     auto simulation = Simulation::create(config);
     ASSERT_TRUE(simulation) << simulation.error().message;
-    allocations = 0;
+    int uses = 0;
     for (int tick = 0; tick < 10000; ++tick) {
       const std::vector<Report> reports = made_tick(tick);
-      counting = true;
+      begin_counting_heap_use();
       simulation->step(reports);
-      counting = false;
+      uses += heap_uses();
     }
-    EXPECT_EQ(allocations, 0);
+    EXPECT_EQ(uses, 0);
     EXPECT_EQ(simulation->counts().ticks, 10000);
     EXPECT_GT(simulation->walkers()[0].state.frame.steps[kLeftSide], 10);
   }

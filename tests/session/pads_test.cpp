@@ -108,6 +108,120 @@ TEST(Pads, AShortReportAndAnUnknownDeviceAreRefusedAndChangeNothing) {
   EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
 }
 
+// Two pads, both plugged in; the first drives and is held forward.
+Pads two_pads(int second_y) {
+  Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
+  pads.take(made_report(kMiddle, kForward, 0));
+  pads.take(made_report(kMiddle, second_y, 1));
+  pads.stick_of_tick();
+  return pads;
+}
+
+TEST(Pads, ARestingPadTakesOverWhenTheDrivingOneIsLost) {
+  Pads pads = two_pads(kMiddle);
+  EXPECT_EQ(pads.driving(), 0);
+  pads.remove(0);
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  EXPECT_EQ(pads.driving(), 1);
+  pads.take(made_report(kMiddle, kForward, 1));
+  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  EXPECT_GT(pads.driving_state().axis[kLeftY], 0.9f);
+}
+
+TEST(Pads, AHeldPadTakesOverOnceItIsSeenNearItsCentre) {
+  Pads pads = two_pads(kForward);
+  pads.remove(0);
+  pads.take(made_report(0x10, kForward, 1));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  EXPECT_EQ(pads.driving(), 0);
+  EXPECT_EQ(pads.driving_state(), PadState{});
+  pads.take(made_report(kMiddle, 0x7c, 1));
+  pads.take(made_report(kMiddle, kForward, 1));
+  EXPECT_EQ(pads.driving(), 1);
+  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+}
+
+TEST(Pads, APadThatHasNotReportedYetDoesNotTakeOver) {
+  Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
+  pads.remove(0);
+  pads.take(made_report(kMiddle, kForward, 1));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  EXPECT_EQ(pads.driving(), 0);
+}
+
+TEST(Pads, TheOldPadDrivesAgainIfNoneHasTakenOver) {
+  Pads pads = two_pads(kForward);
+  pads.remove(0);
+  pads.add(0);
+  pads.take(made_report(kMiddle, kMiddle, 1));
+  pads.take(made_report(kMiddle, kForward, 1));
+  EXPECT_EQ(pads.driving(), 0);
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.take(made_report(kMiddle, kMiddle, 0));
+  pads.take(made_report(kMiddle, kForward, 0));
+  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+}
+
+TEST(Pads, WhoHasTakenOverKeepsDrivingUntilItIsLostItself) {
+  Pads pads = two_pads(kMiddle);
+  pads.remove(0);
+  pads.add(0);
+  pads.take(made_report(kMiddle, kMiddle, 0));
+  pads.take(made_report(0xff, kMiddle, 0));
+  EXPECT_EQ(pads.driving(), 1);
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.take(made_report(kMiddle, kMiddle, 0));
+  pads.remove(1);
+  EXPECT_EQ(pads.driving(), 0);
+  pads.take(made_report(0xff, kMiddle, 0));
+  EXPECT_GT(pads.stick_of_tick().left.x, 0.9);
+}
+
+TEST(Pads, WhatIsUnusableUnpluggedOrSilentDoesNotTakeOver) {
+  PadConfig unusable = made_pad_config(), streaming = made_pad_config();
+  unusable.is_usable = false;
+  streaming.streams = true;
+  Pads pads({made_pad_config(), unusable, made_pad_config(), streaming, made_pad_config()},
+            kRateHz);
+  for (std::uint16_t device : {1, 2, 3}) pads.take(made_report(kMiddle, kMiddle, device));
+  pads.remove(2);
+  after_silence(pads, kRateHz);
+  pads.remove(0);
+  EXPECT_EQ(pads.driving(), 0);
+  pads.take(made_report(kMiddle, kMiddle, 4));
+  EXPECT_EQ(pads.driving(), 4);
+}
+
+TEST(Pads, OfSeveralRestingPadsTheOneThatWasPluggedInFirstTakesOver) {
+  PadConfig later = made_pad_config();
+  later.is_present = false;
+  Pads pads({later, later, later}, kRateHz);
+  for (std::uint16_t device : {2, 1, 0}) {
+    pads.add(device);
+    pads.take(made_report(kMiddle, kMiddle, device));
+  }
+  EXPECT_EQ(pads.driving(), 2);
+  pads.remove(2);
+  EXPECT_EQ(pads.driving(), 1);
+}
+
+TEST(Pads, OfPadsPluggedInLaterTheFirstUsableOneDrives) {
+  Pads pads(unknown_pads(3), kRateHz);
+  EXPECT_EQ(pads.driving(), kNoDevice);
+  EXPECT_EQ(pads.driving_state(), PadState{});
+  PadConfig unusable = made_pad_config(), first = made_pad_config(), second = made_pad_config();
+  unusable.is_usable = false;
+  pads.set(0, unusable);
+  pads.set(1, first);
+  pads.set(2, second);
+  pads.set(3, second);
+  EXPECT_EQ(pads.driving(), kNoDevice) << "not plugged in yet";
+  for (std::uint16_t device : {0, 2, 1}) pads.add(device);
+  EXPECT_EQ(pads.driving(), 2);
+  pads.take(made_report(kMiddle, kForward, 2));
+  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+}
+
 TEST(Pads, NoneIsNeutral) {
   Pads pads({}, kRateHz);
   EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));

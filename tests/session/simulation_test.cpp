@@ -135,6 +135,95 @@ TEST(Simulation, TheHashTellsOneStickCountApart) {
             walked(config, 0x80, 0x21, 400).pose_hash());
 }
 
+// Two pads that come and go, the second one held, resting and driving in between; bad reports and
+// a device that is no pad.
+std::vector<Report> plugging_tick(int tick) {
+  switch (tick) {
+    case 30:
+      return {made_plug(ReportKind::added, 0), made_report(0x80, 0x20, 0)};
+    case 100:
+      return {made_plug(ReportKind::added, 1), made_report(0x80, 0x10, 1)};
+    case 120:
+      return {made_plug(ReportKind::added, 2), made_report(0x20, 0x00, 2), made_report(0, 0, 9)};
+    case 500:
+      return {made_plug(ReportKind::removed, 1)};
+    case 560:
+      return {made_report(0x30, 0x20, 2)};
+    case 600:
+      return {made_plug(ReportKind::added, 1), made_report(0x80, 0x80, 1), made_report(0, 0, 0)};
+    case 620:
+      return {made_plug(ReportKind::removed, 1), made_report(0x80, 0x80, 2)};
+    case 640:
+      return {made_report(0x30, 0x00, 2), made_plug(ReportKind::added, 1)};
+    case 900:
+      return {made_report(0x80, 0x80, 1), made_plug(ReportKind::removed, 2),
+              made_report(0x80, 0x10, 1)};
+    default:
+      return {};
+  }
+}
+
+std::vector<PadConfig> plugged_pads() {
+  std::vector<PadConfig> pads(3, made_pad_config());
+  pads[0].is_usable = false;
+  pads[2].streams = true;
+  for (PadConfig& pad : pads) pad.is_present = false;
+  return pads;
+}
+
+TEST(Simulation, PadsThatArriveLaterWalkAsIfTheyHadBeenKnownFromTheStart) {
+  SimulationConfig known = made_config(2), unknown = known;
+  known.pads = plugged_pads();
+  unknown.pads = unknown_pads(16);
+  Simulation replay = made_simulation(known), live = made_simulation(unknown);
+  std::vector<PadConfig> found = plugged_pads();
+  std::vector<bool> is_set(found.size(), false);
+  for (int tick = 0; tick < 1400; ++tick) {
+    const std::vector<Report> reports = plugging_tick(tick);
+    for (const Report& r : reports) {
+      if (r.kind != ReportKind::added || is_set[r.device]) continue;
+      live.set_pad(r.device, std::move(found[r.device]));
+      is_set[r.device] = true;
+    }
+    replay.step(reports);
+    live.step(reports);
+    ASSERT_EQ(live.pads().driving(), replay.pads().driving()) << "tick " << tick;
+    ASSERT_EQ(live.stick().left, replay.stick().left) << "tick " << tick;
+  }
+  EXPECT_EQ(live.pose_hash(), replay.pose_hash());
+  EXPECT_EQ(live.counts().bad_reports, replay.counts().bad_reports);
+  EXPECT_EQ(live.pads().driving(), 1);
+  EXPECT_GT(live.walkers()[0].state.frame.steps[kLeftSide], 3);
+}
+
+TEST(Simulation, AHeelStrikesOnceAStep) {
+  Simulation s = made_simulation(made_config(2));
+  int strikes = 0;
+  Stage before = Stage::idle;
+  s.step(std::vector<Report>{made_report(0x80, 0x00)});
+  for (int tick = 1; tick < 1200; ++tick) {
+    if (tick == 900) s.step(std::vector<Report>{made_report(0x80, 0x80)});
+    s.step({});
+    const WalkFrame& frame = s.walkers()[0].state.frame;
+    EXPECT_EQ(s.heel_struck(), before == Stage::flight && frame.stage == Stage::roll);
+    strikes += s.heel_struck();
+    before = frame.stage;
+  }
+  const WalkFrame& frame = s.walkers()[0].state.frame;
+  EXPECT_EQ(frame.stage, Stage::idle);
+  EXPECT_EQ(strikes, frame.steps[kLeftSide] + frame.steps[kRightSide]);
+  EXPECT_GT(strikes, 6);
+}
+
+TEST(Simulation, AMarkDoesNothing) {
+  const SimulationConfig config = made_config(1);
+  Simulation marked = made_simulation(config);
+  marked.step(std::vector<Report>{made_command("mark"), made_report(0x80, 0x20)});
+  for (int tick = 1; tick < 400; ++tick) marked.step({});
+  EXPECT_EQ(marked.pose_hash(), walked(config, 0x80, 0x20, 400).pose_hash());
+  EXPECT_EQ(marked.counts().bad_commands, 0);
+}
+
 TEST(Simulation, RefusesNoCharacterAndTooMany) {
   EXPECT_FALSE(Simulation::create(made_config(0)));
   SimulationConfig crowd = made_config(1);

@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+"""config/udev: the rules are read in time, jump to labels that follow, and open pads, no other hardware."""
+import pathlib
+import re
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+RULES = ROOT / "config/udev/60-gaitpad.rules"
+LINES = [line for line in RULES.read_text().splitlines() if line and not line.startswith("#")]
+# They make keyboards, mice, phones and more: pads are listed one by one.
+MIXED_VENDORS = {"045e", "046d", "054c", "057e", "0738", "0955", "0b05", "0e6f", "0f0d", "145f", "1532", "18d1",
+                 "1949", "28de", "2dc8"}
+# Under Apple's vendor number, which a maker of pads took: no rule opens anything of Apple's.
+LEFT_OUT = {"05ac:055b"}
+
+
+def values(line, key):
+    return [v for found in re.findall(re.escape(key) + r'=="([^"]*)"', line) for v in found.split("|")]
+
+
+def hidraw_ids():
+    """vendor:product of each hidraw line, product * where the line opens all."""
+    ids = set()
+    for line in LINES:
+        if line.startswith('SUBSYSTEM=="hidraw", KERNELS'):
+            vendor = re.search(r"\*:([0-9A-F]{4}):\*", line)[1]
+            products = re.findall(r"\*:([0-9A-F]{4})\.\*", line) or ["*"]
+            ids |= {f"{vendor}:{product}".lower() for product in products}
+    return ids
+
+
+def usb_ids():
+    ids = set()
+    for line in LINES:
+        for vendor in values(line, "ATTR{idVendor}"):
+            ids |= {f"{vendor}:{product}" for product in values(line, "ATTR{idProduct}") or ["*"]}
+    return ids
+
+
+def config_ids():
+    """Ids that config/pads names: `vendor` with `products`, and `ids`."""
+    ids = set()
+    for file in (ROOT / "config/pads").glob("*.toml"):
+        for entry in file.read_text().split("[[pad]]"):
+            vendor = re.search(r"^vendor = 0x([0-9a-f]{4})$", entry, re.M)
+            products = re.search(r"^products = \[([^]]*)\]", entry, re.M)
+            if vendor and products:
+                ids |= {f"{vendor[1]}:{p}" for p in re.findall(r"0x([0-9a-f]{4})", products[1])}
+            listed = re.search(r"^ids = \[([^]]*)\]", entry, re.M)
+            ids |= set(re.findall(r"[0-9a-f]{4}:[0-9a-f]{4}", listed[1])) if listed else set()
+    return ids
+
+
+class UdevRules(unittest.TestCase):
+    def test_the_number_is_below_that_of_the_seat_rules(self):
+        self.assertLess(int(RULES.name[:2]), 73)  # 73-seat-late.rules acts upon the tag uaccess
+
+    def test_jumps_lead_to_labels_that_follow(self):
+        for number, line in enumerate(LINES):
+            for label in values(line.replace('GOTO="', 'GOTO=="'), "GOTO"):
+                self.assertIn(f'LABEL="{label}"', LINES[number + 1:], line)
+
+    def test_every_line_is_key_operator_value(self):
+        term = re.compile(r'^[A-Z]+(\{\w+\})?(==|!=|=|\+=)"[^"]*"$')
+        for line in LINES:
+            for part in re.split(r",\s*(?=[A-Z])", line):
+                self.assertRegex(part, term)
+
+    def test_one_line_gives_access_by_group_and_by_seat(self):
+        given = [line for line in LINES if "MODE=" in line]
+        self.assertEqual(given, ['MODE="0660", GROUP="input", TAG+="uaccess"'])
+
+    def test_hidraw_and_usb_name_the_same_pads(self):
+        self.assertGreater(len(hidraw_ids()), 100)
+        self.assertEqual(hidraw_ids(), usb_ids())
+
+    def test_no_vendor_of_other_things_is_opened_as_a_whole(self):
+        whole = {i.split(":")[0] for i in hidraw_ids() if i.endswith("*")}
+        self.assertEqual(whole & MIXED_VENDORS, set())
+
+    def test_every_pad_of_config_is_opened(self):
+        missing = {i for i in config_ids() - hidraw_ids() - LEFT_OUT if f"{i[:4]}:*" not in hidraw_ids()}
+        self.assertEqual(missing, set())
+
+    def test_event_nodes_are_asked_what_they_are_and_keyboards_are_not_opened(self):
+        asks = next(n for n, line in enumerate(LINES) if 'IMPORT{builtin}="input_id"' in line)
+        opens = next(n for n, line in enumerate(LINES) if 'ENV{ID_INPUT_JOYSTICK}=="1"' in line)
+        self.assertLess(asks, opens)
+        self.assertIn('ENV{ID_INPUT_KEYBOARD}!="1"', LINES[opens])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,394 @@
+// The hidraw driver over a stand-in for hidapi: the functions below take the library's place in
+// this program. A pseudo-terminal is the node, so that descriptors, poll() and hanging up are real;
+// what a read gives can be scripted. A real hidraw is in the rig.
+#ifdef GAITPAD_HAS_HIDRAW
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <hidapi/hidapi.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <deque>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "drivers/driver_entries.h"
+#include "drivers/open_descriptors.h"
+
+using Packet = std::vector<std::uint8_t>;
+
+namespace {
+
+struct ScriptedRead {
+  Packet bytes;
+  int error = -1;  // -1: none, the bytes are read; else -1 is returned with this errno
+};
+std::deque<ScriptedRead> script;  // empty: the node itself is read
+std::vector<int> timeouts;        // of the reads
+ScriptedRead failure(int error) { return {.bytes = {}, .error = error}; }
+int descriptors_per_opening = 1;
+std::optional<Packet> firmware;  // feature report 0x20
+
+}  // namespace
+
+struct hid_device_ {
+  std::vector<int> fds;
+};
+
+extern "C" {
+
+hid_device* hid_open_path(const char* path) {
+  auto device = std::make_unique<hid_device>();
+  for (int i = 0; i < descriptors_per_opening; ++i) {
+    const int fd = ::open(path, O_RDWR | O_CLOEXEC | O_NOCTTY);
+    if (fd < 0) return nullptr;
+    device->fds.push_back(fd);
+  }
+  return device.release();
+}
+void hid_close(hid_device* device) {
+  if (!device) return;
+  for (const int fd : device->fds) ::close(fd);
+  delete device;
+}
+// As hidapi 0.13.1: an error number only where a call failed.
+int hid_read_timeout(hid_device* device, unsigned char* data, size_t length, int milliseconds) {
+  timeouts.push_back(milliseconds);
+  if (!script.empty()) {
+    const ScriptedRead now = script.front();
+    script.pop_front();
+    if (now.error >= 0) return errno = now.error, -1;
+    const std::size_t size = std::min(length, now.bytes.size());
+    std::copy_n(now.bytes.begin(), size, data);
+    return static_cast<int>(size);
+  }
+  if (milliseconds >= 0) {
+    pollfd ready{.fd = device->fds.front(), .events = POLLIN, .revents = 0};
+    const int count = ::poll(&ready, 1, milliseconds);
+    if (count <= 0) return count;
+    if ((ready.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return -1;
+  }
+  return static_cast<int>(::read(device->fds.front(), data, length));
+}
+int hid_write(hid_device* device, const unsigned char* data, size_t length) {
+  return static_cast<int>(::write(device->fds.front(), data, length));
+}
+int hid_get_feature_report(hid_device*, unsigned char* data, size_t length) {
+  if (data[0] != 0x20 || !firmware) return errno = EPIPE, -1;
+  std::copy_n(firmware->begin(), std::min(length, firmware->size()), data);
+  return static_cast<int>(std::min(length, firmware->size()));
+}
+hid_device_info* hid_enumerate(unsigned short, unsigned short) { return nullptr; }
+void hid_free_enumeration(hid_device_info*) {}
+
+}  // extern "C"
+
+namespace gaitpad {
+namespace {
+
+using Status = Device::Status;
+
+// X and Y of 8 bits, no report id.
+const Packet kDescriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15,
+                            0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0};
+// The same in report 1.
+const Packet kNumbered = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0x01, 0x09, 0x30, 0x09, 0x31,
+                          0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0};
+
+class HidrawDriver : public testing::Test {
+ protected:
+  void SetUp() override {
+    script.clear();
+    timeouts.clear();
+    descriptors_per_opening = 1;
+    firmware.reset();
+    pad_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (pad_ < 0 || ::grantpt(pad_) != 0 || ::unlockpt(pad_) != 0)
+      GTEST_SKIP() << "there is no pseudo-terminal here";
+    std::array<char, 128> name{};
+    ASSERT_EQ(::ptsname_r(pad_, name.data(), name.size()), 0);
+    listing_.node = name.data();
+    keep_open_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios raw{};
+    ::tcgetattr(keep_open_, &raw);
+    ::cfmakeraw(&raw);
+    ::tcsetattr(keep_open_, TCSANOW, &raw);
+    ::fcntl(pad_, F_SETFL, O_NONBLOCK);
+    listing_.info.bus = BusType::usb;
+    listing_.info.name = "Pad";
+    listing_.info.descriptor = kDescriptor;
+  }
+  void TearDown() override {
+    unplug();
+    if (keep_open_ >= 0) ::close(keep_open_);
+  }
+  void unplug() {
+    if (pad_ >= 0) ::close(pad_);
+    pad_ = -1;
+  }
+  void send(const Packet& report) {
+    ASSERT_EQ(::write(pad_, report.data(), report.size()), static_cast<ssize_t>(report.size()));
+  }
+  // All that the driver has written, once there is that much or half a second is over.
+  Packet written(std::size_t size) {
+    Packet bytes(4096);
+    std::size_t count = 0;
+    for (int i = 0; i < 500 && count < size; ++i) {
+      const ssize_t more = ::read(pad_, bytes.data() + count, bytes.size() - count);
+      if (more > 0)
+        count += static_cast<std::size_t>(more);
+      else
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    bytes.resize(count);
+    return bytes;
+  }
+  std::unique_ptr<Device> opened() {
+    auto device = open_hidraw_device(listing_, Detach::never);
+    EXPECT_TRUE(device) << device.error().message;
+    return device ? std::move(*device) : nullptr;
+  }
+  static bool is_ready(const Device& device, int timeout_ms) {
+    pollfd fd = device.poll_fds().front();
+    return ::poll(&fd, 1, timeout_ms) > 0;
+  }
+  static Packet bytes_of(const Report& report) {
+    return Packet(report.bytes.begin(), report.bytes.begin() + report.size);
+  }
+
+  int pad_ = -1, keep_open_ = -1;
+  DeviceListing listing_;
+  Report report_;
+};
+
+TEST_F(HidrawDriver, HandsOnTheBytesAsTheyCame) {
+  const auto device = opened();
+  EXPECT_EQ(device->info().driver, "hidraw");
+  EXPECT_EQ(device->info().descriptor, kDescriptor);
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  send({0x12, 0x34});
+  ASSERT_TRUE(is_ready(*device, 1000));
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{0x12, 0x34}));
+  EXPECT_EQ(report_.kind, ReportKind::input);
+  EXPECT_NEAR(static_cast<double>(report_.time_ns), now.tv_sec * 1e9 + now.tv_nsec, 1e9);
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  EXPECT_EQ(device->lost(), 0);
+}
+
+TEST_F(HidrawDriver, WaitsOnTheLibrarysOwnDescriptor) {
+  const auto device = opened();
+  ASSERT_EQ(device->poll_fds().size(), 1u);
+  struct stat mine {
+  }, node{};
+  ASSERT_EQ(::fstat(device->poll_fds()[0].fd, &mine), 0);
+  ASSERT_EQ(::stat(listing_.node.c_str(), &node), 0);
+  EXPECT_EQ(mine.st_rdev, node.st_rdev);
+  EXPECT_NE(device->poll_fds()[0].fd, keep_open_);
+  EXPECT_FALSE(is_ready(*device, 20));
+}
+
+TEST_F(HidrawDriver, LooksEveryMillisecondWhereTheDescriptorCannotBeTold) {
+  descriptors_per_opening = 2;
+  const auto device = opened();
+  ASSERT_TRUE(is_ready(*device, 1000));
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  send({1, 2});
+  for (int i = 0; i < 1000 && device->read(report_) != Status::report; ++i)
+    ASSERT_TRUE(is_ready(*device, 1000));
+  EXPECT_EQ(bytes_of(report_), (Packet{1, 2}));
+  unplug();
+  ASSERT_TRUE(is_ready(*device, 1000));
+  EXPECT_EQ(device->read(report_), Status::gone);
+}
+
+TEST_F(HidrawDriver, UnpluggingIsTold) {
+  const auto device = opened();
+  unplug();
+  ASSERT_TRUE(is_ready(*device, 1000));
+  EXPECT_EQ(device->read(report_), Status::gone);
+  EXPECT_EQ(device->read(report_), Status::gone);
+  EXPECT_EQ(device->lost(), 0);
+}
+
+TEST_F(HidrawDriver, WhatCameBeforeUnpluggingIsReadFirst) {
+  const auto device = opened();
+  unplug();
+  script = {failure(0), {.bytes = {1, 1}}, {.bytes = {2, 2}}, failure(EIO)};
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{2, 2}));
+  EXPECT_EQ(device->read(report_), Status::gone);
+  EXPECT_EQ(timeouts, (std::vector<int>{0, -1, -1, -1}));
+}
+
+TEST_F(HidrawDriver, AFailureIsNoUnplugging) {
+  const auto device = opened();
+  for (const int error : {EINTR, EAGAIN}) {
+    script = {failure(error)};
+    EXPECT_EQ(device->read(report_), Status::nothing);
+  }
+  EXPECT_EQ(device->lost(), 0);
+  script = {failure(EIO), failure(ENODEV), failure(EPROTO), {.bytes = {5, 6}}};
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(device->read(report_), Status::nothing);
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(device->lost(), 3);
+}
+
+TEST_F(HidrawDriver, ASourceThatOnlyFailsIsGivenUpAndNamed) {
+  const auto device = opened();
+  int calls = 0;
+  do script = {failure(EPROTO)};
+  while (device->read(report_) == Status::nothing && ++calls < 1000);
+  EXPECT_EQ(calls, 63);
+  EXPECT_EQ(device->take_remarks(),
+            std::vector<std::string>{listing_.node + ": cannot be read: Protocol error"});
+  EXPECT_TRUE(device->take_remarks().empty());
+}
+
+TEST_F(HidrawDriver, AReportThatIsTooLongIsRefusedAndCounted) {
+  const auto device = opened();
+  script = {{.bytes = Packet(kMaxReportBytes + 1, 1)},
+            {.bytes = Packet(16384, 2)},
+            {.bytes = Packet(kMaxReportBytes, 3)}};
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(report_.size, kMaxReportBytes);
+  EXPECT_EQ(report_.bytes[kMaxReportBytes - 1], 3);
+  EXPECT_EQ(device->lost(), 2);
+}
+
+TEST_F(HidrawDriver, AFloodOfRefusedPacketsLeavesOtherPadsTheirTurn) {
+  const auto device = opened();
+  for (int i = 0; i < 1000; ++i) script.push_back({.bytes = Packet(2000, 0)});
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  EXPECT_GT(script.size(), 900u);
+}
+
+TEST_F(HidrawDriver, AReaderThatComesTooLateIsToldOnce) {
+  const auto device = opened();
+  const auto read_in_a_row = [&](int count) {
+    for (int i = 0; i < count; ++i) script.push_back({.bytes = {1, 2}});
+    for (int i = 0; i < count; ++i) EXPECT_EQ(device->read(report_), Status::report);
+    EXPECT_EQ(device->read(report_), Status::nothing);
+  };
+  read_in_a_row(100);  // from before the opening's end
+  read_in_a_row(62);
+  EXPECT_TRUE(device->take_remarks().empty());
+  read_in_a_row(63);
+  EXPECT_EQ(device->take_remarks().size(), 1u);
+  read_in_a_row(63);
+  EXPECT_TRUE(device->take_remarks().empty());
+}
+
+TEST_F(HidrawDriver, MotorsRunAndStopWhenTheDeviceIsClosed) {
+  listing_.info.vendor = 0x054c;
+  listing_.info.product = 0x09cc;
+  listing_.info.descriptor = kNumbered;
+  listing_.kernel_driver = "sony";
+  auto device = opened();
+  EXPECT_TRUE(device->rumble({.strong = 0xc000, .weak = 0x4000}));
+  Packet on = written(32);
+  ASSERT_EQ(on.size(), 32u);
+  EXPECT_EQ(Packet(on.begin(), on.begin() + 6), (Packet{0x05, 0x01, 0, 0, 0x40, 0xc0}));
+  device.reset();
+  const Packet off = written(32);
+  ASSERT_EQ(off.size(), 32u);
+  EXPECT_EQ(Packet(off.begin(), off.begin() + 6), (Packet{0x05, 0x01, 0, 0, 0, 0}));
+}
+
+TEST_F(HidrawDriver, WhereReportsHaveNoIdTheKernelGetsAZeroInFront) {
+  listing_.info.vendor = 0x054c;
+  listing_.info.product = 0x09cc;
+  const auto device = opened();
+  EXPECT_TRUE(device->rumble({.strong = 0x8000, .weak = 0}));
+  const Packet on = written(33);
+  ASSERT_EQ(on.size(), 33u);
+  EXPECT_EQ(Packet(on.begin(), on.begin() + 3), (Packet{0x00, 0x05, 0x01}));
+}
+
+TEST_F(HidrawDriver, APlainPadHasNoMotors) {
+  const auto device = opened();
+  EXPECT_FALSE(device->rumble({.strong = 0x8000, .weak = 0}));
+  EXPECT_FALSE(device->factory_sticks());
+  EXPECT_TRUE(device->take_remarks().empty());
+}
+
+TEST_F(HidrawDriver, TheModelIsAskedThroughFeatureReports) {
+  firmware = Packet(64, 0);
+  (*firmware)[0] = 0x20;
+  (*firmware)[45] = 0x03;  // 3.0: the new motors
+  listing_.info.vendor = 0x054c;
+  listing_.info.product = 0x0ce6;
+  listing_.info.descriptor = kNumbered;
+  const auto device = opened();
+  EXPECT_TRUE(device->rumble({.strong = 0x8000, .weak = 0}));
+  const Packet on = written(48);
+  ASSERT_EQ(on.size(), 48u);
+  EXPECT_EQ(on[1], 0x02);
+  EXPECT_EQ(on[39], 0x04);
+}
+
+TEST_F(HidrawDriver, NothingStaysOpen) {
+  listing_.info.vendor = 0x054c;
+  listing_.info.product = 0x09cc;
+  const auto count = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+  };
+  const auto before = count();
+  for (int i = 0; i < 20; ++i) {
+    descriptors_per_opening = 1 + i % 2;
+    const auto device = opened();
+    device->rumble({.strong = 1, .weak = 1});
+  }
+  EXPECT_EQ(count(), before);
+}
+
+TEST(HidrawOpening, ErrorsAreOneSentenceAboutTheNode) {
+  DeviceListing listing;
+  listing.node = "/dev/hidraw_none";
+  auto device = open_hidraw_device(listing, Detach::never);
+  ASSERT_FALSE(device);
+  EXPECT_EQ(device.error().message, "/dev/hidraw_none: No such file or directory");
+  listing.node = GAITPAD_SOURCE_DIR;
+  device = open_hidraw_device(listing, Detach::never);
+  ASSERT_FALSE(device);
+  EXPECT_EQ(device.error().message, listing.node + ": is no device node");
+  listing.node = "/dev/null";  // no descriptor to be had
+  device = open_hidraw_device(listing, Detach::never);
+  ASSERT_FALSE(device);
+  EXPECT_EQ(device.error().message, "/dev/null: its report descriptor cannot be read");
+}
+
+TEST(OpenDescriptors, TheNewOneIsTheOneThatWasNotThere) {
+  EXPECT_EQ(new_descriptor({3, 5}, {3, 5, 8}), 8);
+  EXPECT_EQ(new_descriptor({}, {4}), 4);
+  EXPECT_EQ(new_descriptor({4}, {4}), 4) << "closed by another thread, its number used again";
+  EXPECT_EQ(new_descriptor({3, 4}, {3, 4}), -1);
+  EXPECT_EQ(new_descriptor({3}, {3, 4, 5}), -1);
+  EXPECT_EQ(new_descriptor({3}, {}), -1);
+}
+
+TEST(OpenDescriptors, AreThoseOfTheNode) {
+  struct stat status {};
+  ASSERT_EQ(::stat("/dev/null", &status), 0);
+  const OpenDescriptors before = open_descriptors(status.st_rdev);
+  const int fd = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int other = ::open("/dev/zero", O_RDONLY | O_CLOEXEC);
+  EXPECT_EQ(new_descriptor(before, open_descriptors(status.st_rdev)), fd);
+  ::close(fd);
+  ::close(other);
+}
+
+}  // namespace
+}  // namespace gaitpad
+#endif  // GAITPAD_HAS_HIDRAW

@@ -1,0 +1,54 @@
+// A pad for the tests of pad models: answers by rules, never waits, keeps what was written.
+#pragma once
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "drivers/pads/pad_model.h"
+
+namespace gaitpad {
+
+using Packet = std::vector<std::uint8_t>;
+
+class ScriptedPort final : public PadPort {
+ public:
+  bool write(std::span<const std::uint8_t> packet) noexcept override {
+    if (is_gone) return false;
+    written.emplace_back(packet.begin(), packet.end());
+    if (answer) answer(written.back(), waiting);
+    return true;
+  }
+  std::size_t read(std::span<std::uint8_t> packet, std::chrono::milliseconds) noexcept override {
+    ++reads;
+    if (waiting.empty()) return 0;
+    const std::size_t size = std::min(packet.size(), waiting.front().size());
+    std::copy_n(waiting.front().begin(), size, packet.begin());
+    if (!is_endless) waiting.pop_front();
+    return size;
+  }
+  std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
+    features_asked.push_back(id);
+    const auto found = features.find(id);
+    if (found == features.end()) return 0;
+    const std::size_t size = std::min(packet.size(), found->second.size());
+    std::copy_n(found->second.begin(), size, packet.begin());
+    return size;
+  }
+
+  std::function<void(const Packet&, std::deque<Packet>&)> answer;  // to each packet written
+  std::deque<Packet> waiting;                                      // input packets to come
+  std::map<std::uint8_t, Packet> features;
+  bool is_gone = false;
+  bool is_endless = false;  // the front one comes again and again
+  std::vector<Packet> written;
+  std::vector<std::uint8_t> features_asked;
+  int reads = 0;
+};
+
+inline Packet bytes_of(const OutPacket& packet) {
+  return Packet(packet.bytes.begin(), packet.bytes.begin() + static_cast<long>(packet.size));
+}
+
+}  // namespace gaitpad

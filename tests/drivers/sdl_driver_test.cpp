@@ -1,0 +1,360 @@
+// SDL's virtual joysticks take the place of hardware.
+#ifdef GAITPAD_HAS_SDL
+#include <SDL2/SDL.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "drivers/driver_entries.h"
+#include "hid/decode.h"
+#include "hid/sdl_mapping.h"
+
+namespace gaitpad {
+namespace {
+
+struct Motors {
+  int strong = -1, weak = -1;
+};
+
+// A joystick that is plugged in while the object lives; values count from the next update on.
+class VirtualPad {
+ public:
+  explicit VirtualPad(const char* name, SDL_JoystickType type = SDL_JOYSTICK_TYPE_GAMECONTROLLER) {
+    find_sdl_devices();  // starts SDL
+    SDL_VirtualJoystickDesc desc{};
+    desc.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;
+    desc.type = static_cast<Uint16>(type);
+    desc.naxes = 6;
+    desc.nbuttons = 11;
+    desc.nhats = 1;
+    desc.vendor_id = 0x1209;
+    desc.product_id = 0x0001;
+    desc.button_mask = 0x7ff;
+    desc.axis_mask = 0x3f;
+    desc.name = name;
+    desc.userdata = &motors;
+    desc.Rumble = [](void* to, Uint16 strong, Uint16 weak) {
+      *static_cast<Motors*>(to) = {strong, weak};
+      return 0;
+    };
+    index_ = SDL_JoystickAttachVirtualEx(&desc);
+    joystick = SDL_JoystickOpen(index_);
+    EXPECT_NE(joystick, nullptr) << SDL_GetError();
+  }
+  ~VirtualPad() {
+    unplug();
+    SDL_JoystickClose(joystick);
+  }
+  void unplug() {
+    const SDL_JoystickID id = SDL_JoystickInstanceID(joystick);
+    for (int i = 0; i < SDL_NumJoysticks(); ++i) {
+      if (SDL_JoystickGetDeviceInstanceID(i) == id) SDL_JoystickDetachVirtual(i);
+    }
+  }
+  SDL_Joystick* joystick = nullptr;
+  Motors motors;
+
+ private:
+  int index_ = -1;
+};
+
+std::optional<DeviceListing> listing_of(const std::string& name) {
+  const auto all = find_sdl_devices();
+  const auto it = std::find_if(all.begin(), all.end(),
+                               [&](const DeviceListing& l) { return l.info.name == name; });
+  if (it == all.end()) return std::nullopt;
+  return *it;
+}
+
+std::unique_ptr<Device> opened(const std::string& name) {
+  const auto listing = listing_of(name);
+  EXPECT_TRUE(listing) << name;
+  if (!listing) return nullptr;
+  auto device = open_sdl_device(*listing, Detach::never);
+  EXPECT_TRUE(device) << (device ? "" : device.error().message);
+  return device ? std::move(*device) : nullptr;
+}
+
+// As the I/O thread does it.
+std::vector<Report> reports_of(Device& device) {
+  pollfd fd = device.poll_fds()[0];
+  EXPECT_EQ(::poll(&fd, 1, 1000), 1);
+  std::vector<Report> reports;
+  Report report;
+  while (device.read(report) == Device::Status::report) reports.push_back(report);
+  return reports;
+}
+
+PadState decoded(const Device& device, const std::vector<Report>& reports) {
+  PadState state;
+  const auto layout = pad_layout(device.info(), {});
+  EXPECT_TRUE(layout && !reports.empty() && decode(*layout, reports.back(), state));
+  return state;
+}
+
+TEST(SdlDriver, ListsWhatSdlSees) {
+  VirtualPad pad("Listed Pad");
+  const auto listing = listing_of("Listed Pad");
+  ASSERT_TRUE(listing);
+  EXPECT_EQ(listing->info.driver, "sdl");
+  EXPECT_EQ(listing->info.vendor, 0x1209);
+  EXPECT_EQ(listing->info.product, 0x0001);
+  EXPECT_EQ(listing->problem, "");
+  EXPECT_NE(listing->node, "");
+  EXPECT_NE(listing->info.mapping.find(",leftx:a0,"), std::string::npos);
+  pad.unplug();
+  EXPECT_FALSE(listing_of("Listed Pad"));
+  const auto device = open_sdl_device(*listing, Detach::never);
+  ASSERT_FALSE(device);
+  EXPECT_EQ(device.error().message, listing->node + ": SDL has no such joystick");
+}
+
+TEST(SdlDriver, TheFirstReportIsTheStateAtTheOpening) {
+  VirtualPad pad("First Pad");
+  SDL_JoystickSetVirtualAxis(pad.joystick, 0, 18632);
+  SDL_JoystickUpdate();
+  const auto device = opened("First Pad");
+  ASSERT_TRUE(device);
+  const auto reports = reports_of(*device);
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_FLOAT_EQ(decoded(*device, reports).axis[kLeftX], (2.0f * 18632 + 1) / 65535);
+  Report none;
+  EXPECT_EQ(device->read(none), Device::Status::nothing);
+}
+
+// SDL's own mapping for such a joystick: a:b0 .. and the axes in the order of its game controllers.
+TEST(SdlDriver, AxesButtonsAndHatsAreDecodedByItsMapping) {
+  VirtualPad pad("Moved Pad");
+  const auto device = opened("Moved Pad");
+  ASSERT_TRUE(device);
+  reports_of(*device);
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTX, -32768);
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTY, -32768);
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_RIGHTX, 32767);
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 32767);
+  SDL_JoystickSetVirtualButton(pad.joystick, SDL_CONTROLLER_BUTTON_START, 1);
+  SDL_JoystickSetVirtualButton(pad.joystick, SDL_CONTROLLER_BUTTON_A, 1);
+  const auto reports = reports_of(*device);
+  EXPECT_EQ(reports.size(), 1u) << "one update, one report";
+  const PadState state = decoded(*device, reports);
+  EXPECT_EQ(state.axis[kLeftX], -1.0f);
+  EXPECT_EQ(state.axis[kLeftY], 1.0f);
+  EXPECT_EQ(state.axis[kRightX], 1.0f);
+  EXPECT_EQ(state.axis[kRightTrigger], 1.0f);
+  EXPECT_EQ(state.buttons, 1u << kButtonA | 1u << kButtonStart);
+}
+
+TEST(SdlDriver, AJoystickWithoutMappingHasAWorkingLeftStick) {
+  VirtualPad pad("Plain Joystick", SDL_JOYSTICK_TYPE_UNKNOWN);
+  const auto device = opened("Plain Joystick");
+  ASSERT_TRUE(device);
+  EXPECT_EQ(device->info().mapping, "");
+  SDL_JoystickSetVirtualAxis(pad.joystick, 1, -32768);
+  SDL_JoystickSetVirtualHat(pad.joystick, 0, SDL_HAT_LEFTUP);
+  const PadState state = decoded(*device, reports_of(*device));
+  EXPECT_EQ(state.axis[kLeftY], 1.0f);
+  EXPECT_EQ(state.hat, Hat::up_left);
+}
+
+// Whoever updates SDL meanwhile (a window's loop), every change comes through.
+TEST(SdlDriver, ChangesThatAnotherUpdateFoundAreNotLost) {
+  VirtualPad pad("Hasty Pad");
+  const auto device = opened("Hasty Pad");
+  ASSERT_TRUE(device);
+  reports_of(*device);
+  for (const bool down : {true, false, true}) {
+    SDL_JoystickSetVirtualButton(pad.joystick, 0, down ? 1 : 0);
+    SDL_JoystickUpdate();
+  }
+  SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);
+  const auto reports = reports_of(*device);
+  ASSERT_EQ(reports.size(), 3u);
+  for (std::size_t i = 1; i < reports.size(); ++i) {
+    EXPECT_GE(reports[i].time_ns, reports[i - 1].time_ns);
+  }
+}
+
+TEST(SdlDriver, AReaderThatStaysAwayLosesTheOldestAndKnowsHowMany) {
+  VirtualPad pad("Late Pad");
+  const auto device = opened("Late Pad");
+  ASSERT_TRUE(device);
+  reports_of(*device);
+  constexpr int kChanges = 10000, kKept = 8192;
+  for (int i = 1; i <= kChanges; ++i) {
+    SDL_JoystickSetVirtualAxis(pad.joystick, 0, static_cast<Sint16>(i));
+    SDL_JoystickUpdate();
+  }
+  const auto reports = reports_of(*device);
+  EXPECT_EQ(reports.size(), std::size_t{kKept});
+  EXPECT_EQ(device->lost(), kChanges - kKept);
+  EXPECT_FLOAT_EQ(decoded(*device, reports).axis[kLeftX], (2.0f * kChanges + 1) / 65535);
+}
+
+TEST(SdlDriver, TwoOpenPadsEachGetTheirOwn) {
+  VirtualPad first("Twin A"), second("Twin B");
+  const auto a = opened("Twin A"), b = opened("Twin B");
+  ASSERT_TRUE(a && b);
+  reports_of(*a);
+  reports_of(*b);
+  SDL_JoystickSetVirtualButton(second.joystick, 0, 1);
+  SDL_JoystickSetVirtualButton(first.joystick, 1, 1);
+  EXPECT_EQ(decoded(*a, reports_of(*a)).buttons, 1u << kButtonB);
+  EXPECT_EQ(decoded(*b, reports_of(*b)).buttons, 1u << kButtonA);
+}
+
+TEST(SdlDriver, OtherEventsStayOnSdlsQueue) {
+  VirtualPad pad("Shared Queue Pad");
+  const auto device = opened("Shared Queue Pad");
+  ASSERT_TRUE(device);
+  SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);
+  for (const Uint32 type : {Uint32{SDL_KEYDOWN}, Uint32{SDL_MOUSEMOTION}, Uint32{SDL_USEREVENT}}) {
+    SDL_Event event{};
+    event.type = type;
+    SDL_PushEvent(&event);
+  }
+  SDL_JoystickSetVirtualAxis(pad.joystick, 0, 1234);
+  reports_of(*device);
+  SDL_Event events[16];
+  EXPECT_EQ(SDL_PeepEvents(events, 16, SDL_GETEVENT, SDL_FIRSTEVENT, SDL_LASTEVENT), 3);
+  EXPECT_EQ(events[0].type, Uint32{SDL_KEYDOWN});
+}
+
+TEST(SdlDriver, RumbleRunsUntilItIsStopped) {
+  VirtualPad pad("Shaking Pad");
+  const auto device = opened("Shaking Pad");
+  ASSERT_TRUE(device);
+  EXPECT_TRUE(device->rumble({.strong = 0xc000, .weak = 0x4000}));
+  EXPECT_EQ(pad.motors.strong, 0xc000);
+  EXPECT_EQ(pad.motors.weak, 0x4000);
+  EXPECT_TRUE(device->rumble({}));
+  EXPECT_EQ(pad.motors.strong, 0);
+  EXPECT_EQ(pad.motors.weak, 0);
+}
+
+TEST(SdlDriver, AnUnpluggedPadIsGoneAfterWhatCameBefore) {
+  VirtualPad pad("Lost Pad");
+  const auto device = opened("Lost Pad");
+  ASSERT_TRUE(device);
+  reports_of(*device);
+  SDL_JoystickSetVirtualButton(pad.joystick, 2, 1);
+  SDL_JoystickUpdate();
+  pad.unplug();
+  const auto reports = reports_of(*device);
+  ASSERT_EQ(reports.size(), 1u) << "SDL lets go of all controls, but nobody did";
+  EXPECT_EQ(decoded(*device, {reports.front()}).buttons, 1u << kButtonX);
+  Report none;
+  EXPECT_EQ(device->read(none), Device::Status::gone);
+  EXPECT_EQ(device->read(none), Device::Status::gone);
+  device->rumble({.strong = 1, .weak = 1});
+}
+
+// The finder looks for joysticks and a window's loop updates SDL while the I/O thread reads.
+TEST(SdlDriver, OtherThreadsMayUseSdlMeanwhile) {
+  VirtualPad pad("Busy Pad");
+  const auto device = opened("Busy Pad");
+  ASSERT_TRUE(device);
+  std::atomic<bool> stop{false};
+  std::thread finder([&] {
+    while (!stop) find_sdl_devices();
+  });
+  std::thread window([&] {
+    SDL_Event event;
+    while (!stop) {
+      SDL_JoystickUpdate();
+      SDL_PeepEvents(&event, 1, SDL_GETEVENT, SDL_FIRSTEVENT, SDL_LASTEVENT);
+    }
+  });
+  std::vector<Report> last;
+  for (int i = 1; i <= 300; ++i) {
+    SDL_JoystickSetVirtualAxis(pad.joystick, 0, static_cast<Sint16>(i));
+    const auto reports = reports_of(*device);
+    if (!reports.empty()) last = {reports.back()};
+  }
+  stop = true;
+  finder.join();
+  window.join();
+  const auto rest = reports_of(*device);
+  if (!rest.empty()) last = {rest.back()};
+  EXPECT_FLOAT_EQ(decoded(*device, last).axis[kLeftX], (2.0f * 300 + 1) / 65535);
+  EXPECT_EQ(device->lost(), 0);
+}
+
+DeviceInfo device_with(BusType bus, std::uint16_t vendor, std::uint16_t product,
+                       std::uint16_t version) {
+  DeviceInfo device;
+  device.bus = bus;
+  device.vendor = vendor;
+  device.product = product;
+  device.version = version;
+  return device;
+}
+
+TEST(SdlDriver, TheDataBaseIsAskedByBusIdsAndVersion) {
+  const std::string line = sdl_library_mapping(device_with(BusType::usb, 0x046d, 0xc216, 0x0110));
+  EXPECT_EQ(line.substr(0, 32), "030000006d04000016c2000010010000");
+  EXPECT_NE(line.find(",x:b0,"), std::string::npos) << line;
+  EXPECT_NE(sdl_library_mapping(device_with(BusType::usb, 0x046d, 0xc216, 0x7777)), "")
+      << "an unknown version is served by another's line";
+  EXPECT_EQ(sdl_library_mapping(device_with(BusType::bluetooth, 0x046d, 0xc216, 0x0110)), "");
+}
+
+// A DualSense's own first button is the square, the kernel's first code the cross. What hidraw
+// reads is the pad's own, whatever driver made the input node whose version it is.
+TEST(SdlDriver, LinesThatCountTheKernelsCodesAreForNodesOnly) {
+  DeviceInfo device = device_with(BusType::usb, 0x054c, 0x0ce6, 0x8111);
+  const auto first = [&](const char* driver) {
+    device.driver = driver;
+    const std::string line = sdl_library_mapping(device);
+    return line.find(",a:b0,") != std::string::npos ? "a" : line.empty() ? "none" : "x";
+  };
+  EXPECT_STREQ(first("evdev"), "a");
+  EXPECT_STREQ(first("sdl"), "a");
+  EXPECT_STREQ(first("hidraw"), "x");
+  device.version = 0x0111;
+  EXPECT_STREQ(first("evdev"), "x");
+  EXPECT_STREQ(first("usb"), "x");
+  device = device_with(BusType::usb, 0x057e, 0x2009, 0x8111);
+  EXPECT_STREQ(first("evdev"), "a");
+}
+
+TEST(SdlDriver, NamesAreByPosition) {
+  // Nintendo prints A on the right button; ours, like SDL's by position, is the bottom one.
+  DeviceInfo device = device_with(BusType::usb, 0x057e, 0x2009, 0x8111);
+  device.driver = "evdev";
+  const std::string line = sdl_library_mapping(device);
+  EXPECT_NE(line.find(",a:b0,"), std::string::npos) << line;
+}
+
+TEST(SdlDriver, WhatTheDataBaseDoesNotKnowIsNotGuessed) {
+  VirtualPad pad("Guessed Pad");
+  const auto listing = listing_of("Guessed Pad");
+  ASSERT_TRUE(listing);
+  EXPECT_EQ(sdl_library_mapping(device_with(BusType::usb, 0x1209, 0x0001, 0x0100)), "");
+  EXPECT_EQ(sdl_library_mapping(listing->info), "");
+  EXPECT_EQ(sdl_library_mapping(DeviceInfo{}), "");
+}
+
+TEST(SdlDriver, EveryLineOfTheDataBaseIsUnderstood) {
+  VirtualPad pad("Any Pad");
+  const auto device = opened("Any Pad");
+  ASSERT_TRUE(device);
+  DeviceInfo info = device->info();
+  ASSERT_GT(SDL_GameControllerNumMappings(), 100);
+  for (int i = 0; i < SDL_GameControllerNumMappings(); ++i) {
+    char* line = SDL_GameControllerMappingForIndex(i);
+    info.mapping = line;
+    SDL_free(line);
+    const auto descriptor = parse_descriptor(info.descriptor);
+    ASSERT_TRUE(descriptor);
+    const auto controls = sdl_controls(info.mapping, *descriptor, "sdl");
+    EXPECT_TRUE(controls) << info.mapping << ": " << (controls ? "" : controls.error().message);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad
+#endif  // GAITPAD_HAS_SDL

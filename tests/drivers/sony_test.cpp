@@ -1,0 +1,262 @@
+// Numbers: Linux's hid-playstation.c (6.1) and what it was seen to send to a virtual pad.
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+#include "drivers/pads/crc32.h"
+#include "drivers/scripted_port.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr std::uint16_t kDualShock4 = 0x09cc, kDualSense = 0x0ce6, kEdge = 0x0df2;
+constexpr Rumble kRumble = {.strong = 0xc000, .weak = 0x4000};
+
+std::unique_ptr<PadModel> model(std::uint16_t product, BusType bus) {
+  DeviceInfo device;
+  device.bus = bus;
+  device.vendor = 0x054c;
+  device.product = product;
+  device.name = "Pad";
+  return make_sony_model(device);
+}
+
+// The definition, bit by bit: the reflected polynomial, start and end inverted.
+std::uint32_t crc_by_bits(const Packet& bytes) {
+  std::uint32_t crc = 0xffffffff;
+  for (const std::uint8_t byte : bytes) {
+    for (int i = 0; i < 8; ++i) {
+      const std::uint32_t bit = ((byte >> i) ^ crc) & 1;
+      crc = (crc >> 1) ^ (bit * 0xedb88320u);
+    }
+  }
+  return ~crc;
+}
+
+// The report with its checksum put into the last four bytes.
+Packet sealed(std::uint8_t seed, Packet report) {
+  Packet covered(report.begin(), report.end() - 4);
+  covered.insert(covered.begin(), seed);
+  const std::uint32_t sum = crc_by_bits(covered);
+  for (std::size_t i = 0; i < 4; ++i)
+    report[report.size() - 4 + i] = static_cast<std::uint8_t>(sum >> (8 * i));
+  return report;
+}
+
+Packet rumble_of(PadModel& pad, const Rumble& rumble) {
+  OutPacket packet;
+  pad.rumble(rumble, packet);
+  return bytes_of(packet);
+}
+
+bool accepts(PadModel& pad, const Packet& packet) {
+  OutPacket reply;
+  const bool is_input = pad.accept(packet, reply);
+  EXPECT_EQ(reply.size, 0u);
+  return is_input;
+}
+
+TEST(Crc32, GivesThePublishedCheckValue) {
+  const std::string_view text = "123456789";
+  const Packet bytes(text.begin(), text.end());
+  EXPECT_EQ(crc32(bytes), 0xcbf43926u);
+  EXPECT_EQ(crc32({}), 0u);
+}
+
+TEST(Crc32, IsTheBitwiseOneAndGoesOnInParts) {
+  Packet bytes;
+  std::uint32_t random = 1;
+  for (int i = 0; i < 300; ++i) {
+    random = random * 1664525u + 1013904223u;
+    bytes.push_back(static_cast<std::uint8_t>(random >> 24));
+    EXPECT_EQ(crc32(bytes), crc_by_bits(bytes));
+  }
+  const std::span<const std::uint8_t> all(bytes);
+  EXPECT_EQ(crc32(all.subspan(37), crc32(all.first(37))), crc32(all));
+}
+
+TEST(Sony, KnowsItsPadsAndNoOthers) {
+  for (const std::uint16_t product : {0x05c4, 0x09cc, 0x0ba0, 0x0ce6, 0x0df2})
+    EXPECT_NE(model(product, BusType::usb), nullptr);
+  EXPECT_EQ(model(0x0268, BusType::usb), nullptr);
+  DeviceInfo other;
+  other.vendor = 0x0f0d;
+  other.product = kDualShock4;
+  EXPECT_EQ(make_sony_model(other), nullptr);
+}
+
+TEST(DualShock4, RumblesOverUsbIn32BytesWithoutTouchingTheLight) {
+  const auto pad = model(kDualShock4, BusType::usb);
+  Packet expected(32, 0);
+  expected[0] = 0x05;
+  expected[1] = 0x01;
+  expected[4] = 0x40;
+  expected[5] = 0xc0;
+  EXPECT_EQ(rumble_of(*pad, kRumble), expected);
+  expected[4] = expected[5] = 0;
+  EXPECT_EQ(rumble_of(*pad, {}), expected);
+}
+
+TEST(DualShock4, RumblesOverBluetoothIn78BytesWithChecksum) {
+  const auto pad = model(kDualShock4, BusType::bluetooth);
+  Packet expected(78, 0);
+  expected[0] = 0x11;
+  expected[1] = 0xc0;
+  expected[3] = 0x01;
+  expected[6] = 0x40;
+  expected[7] = 0xc0;
+  EXPECT_EQ(rumble_of(*pad, kRumble), sealed(0xa2, expected));
+}
+
+TEST(DualSense, RumblesOverUsbByItsFirmware) {
+  const auto pad = model(kDualSense, BusType::usb);
+  Packet expected(48, 0);
+  expected[0] = 0x02;
+  expected[1] = 0x03;  // compatible vibration and haptics
+  expected[3] = 0x40;
+  expected[4] = 0xc0;
+  EXPECT_EQ(rumble_of(*pad, kRumble), expected) << "not started: the old way";
+
+  ScriptedPort port;
+  Packet firmware(64, 0);
+  firmware[0] = 0x20;
+  firmware[44] = 0x24;  // 2.36, from 2.21 on the new way
+  firmware[45] = 0x02;
+  port.features[0x20] = firmware;
+  pad->start(port, StartedBy::kernel);
+  expected[1] = 0x02;
+  expected[39] = 0x04;
+  EXPECT_EQ(rumble_of(*pad, kRumble), expected);
+  EXPECT_TRUE(port.written.empty());
+}
+
+TEST(DualSense, TakesTheOldWayUntilFirmware2_20) {
+  for (const auto& [version, flags] : {std::pair(0x0214, 0x03), std::pair(0x0215, 0x02)}) {
+    const auto pad = model(kDualSense, BusType::usb);
+    ScriptedPort port;
+    Packet firmware(64, 0);
+    firmware[0] = 0x20;
+    firmware[44] = static_cast<std::uint8_t>(version);
+    firmware[45] = static_cast<std::uint8_t>(version >> 8);
+    port.features[0x20] = firmware;
+    pad->start(port, StartedBy::us);
+    EXPECT_EQ(rumble_of(*pad, kRumble)[1], flags);
+  }
+}
+
+TEST(DualSense, TheEdgeHasTheNewMotorsWhateverItAnswers) {
+  const auto pad = model(kEdge, BusType::usb);
+  ScriptedPort port;
+  pad->start(port, StartedBy::us);
+  EXPECT_EQ(rumble_of(*pad, kRumble)[39], 0x04);
+}
+
+TEST(DualSense, RumblesOverBluetoothWithSequenceTagAndChecksum) {
+  const auto pad = model(kDualSense, BusType::bluetooth);
+  for (int i = 0; i < 18; ++i) {
+    Packet expected(78, 0);
+    expected[0] = 0x31;
+    expected[1] = static_cast<std::uint8_t>((i % 16) << 4);
+    expected[2] = 0x10;
+    expected[3] = 0x03;
+    expected[5] = 0x40;
+    expected[6] = 0xc0;
+    EXPECT_EQ(rumble_of(*pad, kRumble), sealed(0xa2, expected)) << i;
+  }
+}
+
+TEST(Sony, AWeakBeatIsNotRoundedAway) {
+  const auto pad = model(kDualShock4, BusType::usb);
+  EXPECT_EQ(rumble_of(*pad, {.strong = 200, .weak = 0})[5], 1);
+  EXPECT_EQ(rumble_of(*pad, {.strong = 0xffff, .weak = 0})[5], 0xff);
+}
+
+TEST(Sony, BluetoothFullReportsCountOnlyWithTheirChecksum) {
+  for (const auto& [product, id] : {std::pair(kDualShock4, 0x11), std::pair(kDualSense, 0x31)}) {
+    const auto pad = model(product, BusType::bluetooth);
+    Packet report(78, 0x5a);
+    report[0] = static_cast<std::uint8_t>(id);
+    const Packet good = sealed(0xa1, report);
+    EXPECT_TRUE(accepts(*pad, good));
+    EXPECT_EQ(pad->lost(), 0);
+    std::int64_t lost = 0;
+    for (std::size_t byte = 1; byte < good.size(); ++byte) {
+      Packet wrong = good;
+      wrong[byte] ^= 0x10;
+      EXPECT_FALSE(accepts(*pad, wrong)) << byte;
+      EXPECT_EQ(pad->lost(), ++lost);
+    }
+    EXPECT_FALSE(accepts(*pad, sealed(0xa2, report))) << "the checksum of an output report";
+  }
+}
+
+TEST(Sony, ShortLongAndEmptyBluetoothPacketsAreRefused) {
+  const auto pad = model(kDualSense, BusType::bluetooth);
+  for (std::size_t size = 1; size < 200; ++size) {
+    Packet report(size, 0);
+    report[0] = 0x31;
+    if (size > 5) report = sealed(0xa1, report);
+    EXPECT_EQ(accepts(*pad, report), size == 78) << size;
+  }
+  EXPECT_FALSE(accepts(*pad, {}));
+  EXPECT_EQ(pad->lost(), 198);
+}
+
+TEST(Sony, OtherReportsGoOnAsTheyAre) {
+  const auto usb = model(kDualSense, BusType::usb);
+  EXPECT_TRUE(accepts(*usb, Packet(64, 0x01)));
+  EXPECT_TRUE(accepts(*usb, {0x31})) << "has no checksum on USB";
+  const auto bluetooth = model(kDualSense, BusType::bluetooth);
+  EXPECT_TRUE(accepts(*bluetooth, Packet(10, 0x01))) << "the short report before the change";
+  EXPECT_EQ(usb->lost() + bluetooth->lost(), 0);
+}
+
+TEST(Sony, BluetoothPadsAreAskedForFullReportsOnlyIfTheKernelHasNot) {
+  ScriptedPort port;
+  port.features[0x05] = Packet(41, 0x05);
+  auto pad = model(kDualShock4, BusType::bluetooth);
+  pad->start(port, StartedBy::us);
+  EXPECT_EQ(port.features_asked, (std::vector<std::uint8_t>{0x05}));
+  EXPECT_TRUE(pad->take_remarks().empty());
+
+  port.features_asked.clear();
+  pad = model(kDualShock4, BusType::bluetooth);
+  pad->start(port, StartedBy::kernel);
+  pad = model(kDualShock4, BusType::usb);
+  pad->start(port, StartedBy::us);
+  EXPECT_TRUE(port.features_asked.empty());
+}
+
+TEST(Sony, APadThatRefusesFullReportsIsNamedOnce) {
+  for (const std::uint16_t product : {kDualShock4, kDualSense}) {
+    ScriptedPort port;
+    const auto pad = model(product, BusType::bluetooth);
+    pad->start(port, StartedBy::us);
+    EXPECT_EQ(pad->take_remarks().size(), 1u);
+    EXPECT_TRUE(pad->take_remarks().empty());
+  }
+}
+
+TEST(DualSense, AShortOrDamagedAnswerAboutTheFirmwareIsNone) {
+  Packet firmware(64, 0);
+  firmware[0] = 0x20;
+  firmware[45] = 0x03;
+  ScriptedPort port;
+  for (std::size_t size = 0; size < 64; ++size) {
+    const auto pad = model(kDualSense, BusType::usb);
+    port.features[0x20] = Packet(firmware.begin(), firmware.begin() + static_cast<long>(size));
+    pad->start(port, StartedBy::us);
+    EXPECT_EQ(rumble_of(*pad, kRumble)[1], 0x03) << size;
+  }
+  auto pad = model(kDualSense, BusType::bluetooth);
+  port.features[0x20] = firmware;
+  pad->start(port, StartedBy::kernel);
+  EXPECT_EQ(rumble_of(*pad, kRumble)[3], 0x03) << "no checksum";
+  pad = model(kDualSense, BusType::bluetooth);
+  port.features[0x20] = sealed(0xa3, firmware);
+  pad->start(port, StartedBy::kernel);
+  EXPECT_EQ(rumble_of(*pad, kRumble)[3], 0x02);
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,362 @@
+// Numbers: dekuNukem's Nintendo_Switch_Reverse_Engineering (packets, flash memory, table of
+// amplitudes), Linux's hid-nintendo.c (order of the calibration bytes, range without calibration).
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "drivers/scripted_port.h"
+
+namespace gaitpad {
+namespace {
+
+// (max, centre, min) of 0x600, 0x800, 0x600 on both axes: raw 0x200 .. 0x800 .. 0xe00.
+const Packet kLeft = {0x00, 0x06, 0x60, 0x00, 0x08, 0x80, 0x00, 0x06, 0x60};
+const Packet kRight = {0x00, 0x08, 0x80, 0x00, 0x06, 0x60, 0x00, 0x06, 0x60};
+constexpr std::size_t kUserBytes = 22;
+
+std::unique_ptr<PadModel> model(BusType bus = BusType::usb) {
+  DeviceInfo device;
+  device.bus = bus;
+  device.vendor = 0x057e;
+  device.product = 0x2009;
+  device.name = "Pro Controller";
+  return make_switch_model(device);
+}
+
+double fraction(int count) { return (count - 2047.5) / 2047.5; }
+
+Packet joined(const Packet& a, const Packet& b) {
+  Packet both = a;
+  both.insert(both.end(), b.begin(), b.end());
+  return both;
+}
+
+// Six numbers of 12 bits as the flash holds them.
+Packet packed(const std::array<int, 6>& n) {
+  Packet bytes;
+  for (std::size_t i = 0; i < n.size(); i += 2) {
+    bytes.push_back(static_cast<std::uint8_t>(n[i]));
+    bytes.push_back(static_cast<std::uint8_t>((n[i] >> 8) | (n[i + 1] << 4)));
+    bytes.push_back(static_cast<std::uint8_t>(n[i + 1] >> 4));
+  }
+  return bytes;
+}
+
+// A pad with this flash memory that answers as the real one: 81 to 80, 21 to 01, full reports in
+// between.
+ScriptedPort pad_with(std::map<std::uint32_t, Packet> flash) {
+  ScriptedPort port;
+  port.answer = [flash](const Packet& packet, std::deque<Packet>& waiting) {
+    waiting.push_back(Packet(64, 0x30));
+    Packet reply(64, 0);
+    if (packet[0] == 0x80) {
+      reply[0] = 0x81;
+      reply[1] = packet[1];
+      if (packet[1] != 0x04) waiting.push_back(reply);
+      return;
+    }
+    if (packet[0] != 0x01) return;
+    reply[0] = 0x21;
+    reply[13] = packet[10] == 0x10 ? 0x90 : 0x80;
+    reply[14] = packet[10];
+    if (packet[10] == 0x10) {
+      std::copy_n(packet.begin() + 11, 5, reply.begin() + 15);
+      const std::uint32_t address = packet[11] | (packet[12] << 8);
+      const auto found = flash.find(address);
+      std::fill_n(reply.begin() + 20, packet[15], 0xff);
+      if (found != flash.end())
+        std::copy(found->second.begin(), found->second.end(), reply.begin() + 20);
+    }
+    waiting.push_back(reply);
+  };
+  return port;
+}
+
+void expect_axis(const FactoryAxis& axis, int min, int centre, int max) {
+  EXPECT_DOUBLE_EQ(axis.min, fraction(min));
+  EXPECT_DOUBLE_EQ(axis.centre, fraction(centre));
+  EXPECT_DOUBLE_EQ(axis.max, fraction(max));
+}
+
+TEST(SwitchPro, KnowsThisPadAlone) {
+  EXPECT_NE(model(), nullptr);
+  DeviceInfo other;
+  other.vendor = 0x057e;
+  other.product = 0x2006;
+  EXPECT_EQ(make_switch_model(other), nullptr);
+}
+
+TEST(SwitchPro, StartsOverUsbAsTheConsoleDoes) {
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
+  const auto pad = model();
+  pad->start(port, StartedBy::us);
+  ASSERT_EQ(port.written.size(), 8u);
+  EXPECT_EQ(port.written[0], (Packet{0x80, 0x02}));
+  EXPECT_EQ(port.written[1], (Packet{0x80, 0x03}));
+  EXPECT_EQ(port.written[2], (Packet{0x80, 0x02}));
+  EXPECT_EQ(port.written[3], (Packet{0x80, 0x04}));
+  const Packet still = {0x00, 0x01, 0x40, 0x40, 0x00, 0x01, 0x40, 0x40};
+  EXPECT_EQ(port.written[4], joined(joined({0x01, 0x00}, still), {0x03, 0x30}));
+  EXPECT_EQ(port.written[5], joined(joined({0x01, 0x01}, still), {0x48, 0x01}));
+  EXPECT_EQ(port.written[6],
+            joined(joined({0x01, 0x02}, still), {0x10, 0x3d, 0x60, 0x00, 0x00, 18}));
+  EXPECT_EQ(port.written[7],
+            joined(joined({0x01, 0x03}, still), {0x10, 0x10, 0x80, 0x00, 0x00, 22}));
+  EXPECT_TRUE(pad->take_remarks().empty());
+}
+
+TEST(SwitchPro, OnBluetoothThereIsNoUsbHandshake) {
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
+  model(BusType::bluetooth)->start(port, StartedBy::us);
+  ASSERT_EQ(port.written.size(), 4u);
+  EXPECT_EQ(port.written[0][10], 0x03);
+}
+
+TEST(SwitchPro, APadThatTheKernelDrivesIsOnlyAskedForItsMemory) {
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
+  const auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  ASSERT_EQ(port.written.size(), 2u);
+  EXPECT_EQ(port.written[0][10], 0x10);
+  EXPECT_EQ(port.written[1][10], 0x10);
+  EXPECT_TRUE(pad->factory_sticks());
+}
+
+TEST(SwitchPro, TheTwoSticksKeepTheirNumbersInDifferentOrder) {
+  ScriptedPort port = pad_with({{0x603d, joined(packed({1500, 1400, 2100, 1950, 1300, 1200}),
+                                                packed({2000, 2150, 1250, 1350, 1450, 1550}))}});
+  const auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  const auto sticks = pad->factory_sticks();
+  ASSERT_TRUE(sticks);
+  expect_axis(sticks->left_x, 2100 - 1300, 2100, 2100 + 1500);
+  expect_axis(sticks->left_y, 1950 - 1200, 1950, 1950 + 1400);
+  expect_axis(sticks->right_x, 2000 - 1250, 2000, 2000 + 1450);
+  expect_axis(sticks->right_y, 2150 - 1350, 2150, 2150 + 1550);
+}
+
+TEST(SwitchPro, TheUsersCalibrationOfAStickComesFirst) {
+  Packet user(kUserBytes, 0xff);
+  user[11] = 0xb2;
+  user[12] = 0xa1;
+  const Packet own = packed({2222, 1888, 1100, 1101, 1102, 1103});
+  std::copy(own.begin(), own.end(), user.begin() + 13);
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}, {0x8010, user}});
+  const auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  const auto sticks = pad->factory_sticks();
+  ASSERT_TRUE(sticks);
+  expect_axis(sticks->left_x, 0x200, 0x800, 0xe00);
+  expect_axis(sticks->right_x, 2222 - 1100, 2222, 2222 + 1102);
+  expect_axis(sticks->right_y, 1888 - 1101, 1888, 1888 + 1103);
+}
+
+TEST(SwitchPro, AnImplausibleUserCalibrationGivesWayToTheFactorys) {
+  Packet user(kUserBytes, 0x00);  // marked, all zero
+  user[0] = user[11] = 0xb2;
+  user[1] = user[12] = 0xa1;
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}, {0x8010, user}});
+  const auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  ASSERT_TRUE(pad->factory_sticks());
+  expect_axis(pad->factory_sticks()->left_x, 0x200, 0x800, 0xe00);
+}
+
+TEST(SwitchPro, BlankMemoryIsNoCalibration) {
+  ScriptedPort port = pad_with({});
+  const auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  EXPECT_FALSE(pad->factory_sticks());
+  EXPECT_EQ(
+      pad->take_remarks(),
+      std::vector<std::string>{"Pro Controller: holds no usable stick calibration; none is used"});
+  EXPECT_TRUE(pad->take_remarks().empty());
+}
+
+TEST(SwitchPro, OneBlankStickTakesTheUsualRange) {
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, Packet(9, 0xff))}});
+  const auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  ASSERT_TRUE(pad->factory_sticks());
+  expect_axis(pad->factory_sticks()->right_y, 500, 2000, 3500);
+  EXPECT_EQ(pad->take_remarks().size(), 1u);
+}
+
+TEST(SwitchPro, NumbersThatNoStickHasAreRefused) {
+  const auto is_taken = [](const std::array<int, 6>& left) {
+    ScriptedPort port = pad_with({{0x603d, joined(packed(left), Packet(9, 0xff))}});
+    const auto pad = model();
+    pad->start(port, StartedBy::kernel);
+    return pad->factory_sticks().has_value();
+  };
+  EXPECT_TRUE(is_taken({1500, 1500, 2048, 2048, 1500, 1500}));
+  EXPECT_FALSE(is_taken({0xfff, 1500, 2048, 2048, 1500, 1500})) << "blank";
+  EXPECT_FALSE(is_taken({1500, 1500, 2048, 2048, 1500, 0})) << "no way down";
+  EXPECT_FALSE(is_taken({2200, 1500, 2048, 2048, 1500, 1500})) << "beyond 12 bits";
+  EXPECT_FALSE(is_taken({1500, 1500, 1200, 2048, 1300, 1500})) << "below zero";
+  EXPECT_FALSE(is_taken({500, 500, 3400, 2048, 500, 500})) << "centre at the edge";
+}
+
+TEST(SwitchPro, AnswersToOthersAreNotTakenForOurs) {
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
+  const auto honest = port.answer;
+  port.answer = [&](const Packet& packet, std::deque<Packet>& waiting) {
+    Packet other(64, 0);
+    other[0] = 0x21;
+    other[13] = 0x90;
+    other[14] = 0x10;
+    other[15] = 0x86;  // 9 bytes from 8086
+    other[16] = 0x80;
+    other[19] = 9;
+    waiting.push_back(other);
+    other[15] = 0x3d;  // our address, another length
+    other[16] = 0x60;
+    waiting.push_back(other);
+    other[19] = 18;
+    other[13] = 0x00;  // refused
+    waiting.push_back(other);
+    honest(packet, waiting);
+  };
+  const auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  ASSERT_TRUE(pad->factory_sticks());
+  expect_axis(pad->factory_sticks()->left_x, 0x200, 0x800, 0xe00);
+}
+
+TEST(SwitchPro, ShortRepliesAreNone) {
+  for (std::size_t size = 0; size < 38; ++size) {
+    ScriptedPort port;
+    port.answer = [size](const Packet& packet, std::deque<Packet>& waiting) {
+      Packet reply(64, 0);
+      reply[0] = 0x21;
+      reply[13] = 0x90;
+      reply[14] = 0x10;
+      std::copy_n(packet.begin() + 11, 5, reply.begin() + 15);
+      reply.resize(size);
+      waiting.push_back(reply);
+    };
+    const auto pad = model();
+    pad->start(port, StartedBy::kernel);
+    EXPECT_FALSE(pad->factory_sticks());
+  }
+}
+
+TEST(SwitchPro, ALostAnswerIsAskedForAgain) {
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
+  const auto honest = port.answer;
+  int writes = 0;
+  port.answer = [&](const Packet& packet, std::deque<Packet>& waiting) {
+    if (++writes % 3 == 0) honest(packet, waiting);
+  };
+  const auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  EXPECT_TRUE(pad->factory_sticks());
+  EXPECT_EQ(port.written.size(), 6u);
+}
+
+TEST(SwitchPro, ASilentPadEndsTheStartAndIsNamed) {
+  ScriptedPort port;
+  const auto pad = model();
+  pad->start(port, StartedBy::us);
+  EXPECT_FALSE(pad->factory_sticks());
+  EXPECT_LE(port.written.size(), 16u);
+  EXPECT_EQ(pad->take_remarks(),
+            (std::vector<std::string>{
+                "Pro Controller: does not answer the start over USB",
+                "Pro Controller: does not tell its stick calibration; none is used"}));
+}
+
+TEST(SwitchPro, APadThatTalksWithoutEverAnsweringEndsTheStart) {
+  ScriptedPort port;
+  port.is_endless = true;
+  port.waiting.push_back(Packet(64, 0x30));
+  const auto begin = std::chrono::steady_clock::now();
+  const auto pad = model();
+  pad->start(port, StartedBy::us);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  EXPECT_LT(port.reads, 16 * 512 + 1);
+  EXPECT_FALSE(pad->factory_sticks());
+}
+
+TEST(SwitchPro, APadThatHasGoneIsLeftAlone) {
+  ScriptedPort port;
+  port.is_gone = true;
+  const auto pad = model();
+  pad->start(port, StartedBy::us);
+  EXPECT_EQ(port.reads, 0);
+}
+
+TEST(SwitchPro, OnlyInputReportsAreHandedOn) {
+  const auto pad = model();
+  OutPacket reply;
+  EXPECT_TRUE(pad->accept(Packet(64, 0x30), reply));
+  EXPECT_TRUE(pad->accept(Packet(12, 0x3f), reply));
+  EXPECT_FALSE(pad->accept(Packet(64, 0x21), reply));
+  EXPECT_FALSE(pad->accept(Packet(64, 0x81), reply));
+  EXPECT_FALSE(pad->accept({}, reply));
+  EXPECT_EQ(reply.size, 0u);
+}
+
+Packet rumble_of(PadModel& pad, const Rumble& rumble) {
+  OutPacket packet;
+  pad.rumble(rumble, packet);
+  return bytes_of(packet);
+}
+
+TEST(SwitchPro, RestingMotorsAreTheDocumentedPacketAndTheCounterRunsTo15) {
+  const auto pad = model();
+  for (int i = 0; i < 18; ++i) {
+    const auto count = static_cast<std::uint8_t>(i % 16);
+    EXPECT_EQ(rumble_of(*pad, {}),
+              (Packet{0x10, count, 0x00, 0x01, 0x40, 0x40, 0x00, 0x01, 0x40, 0x40}));
+  }
+}
+
+// Rows of rumble_data_table.md: amplitude, byte of the high band, 16 bits of the low band.
+TEST(SwitchPro, AmplitudesFollowThePublishedTable) {
+  struct Row {
+    double amplitude;
+    int high, low;
+  };
+  for (const Row& row :
+       {Row{0.010, 0x02, 0x8040}, Row{0.112, 0x1e, 0x8047}, Row{0.225, 0x3e, 0x804f},
+        Row{0.230, 0x40, 0x0050}, Row{1.003, 0xc8, 0x0072}}) {
+    const auto strength =
+        static_cast<std::uint16_t>(std::min(65535.0, row.amplitude / 1.003 * 65535 + 0.5));
+    const auto pad = model();
+    const Packet packet = rumble_of(*pad, {.strong = strength, .weak = strength});
+    for (const std::size_t at : {2u, 6u}) {
+      EXPECT_EQ(packet[at], 0x00);
+      EXPECT_EQ(packet[at + 1], 0x01 + row.high);
+      EXPECT_EQ(packet[at + 2], 0x40 + (row.low >> 8));
+      EXPECT_EQ(packet[at + 3], row.low & 0xff);
+    }
+  }
+}
+
+TEST(SwitchPro, StrongerIsNeverWeakerInThePacket) {
+  const auto pad = model();
+  int before = -1;
+  for (int strength = 0; strength <= 65535; strength += 13) {
+    const Packet packet =
+        rumble_of(*pad, {.strong = static_cast<std::uint16_t>(strength), .weak = 0});
+    EXPECT_EQ(packet[3], 0x01) << "the weak motor rests";
+    const int low = (packet[5] - 0x40) * 2 + (packet[4] >> 7);
+    EXPECT_GE(low, before);
+    EXPECT_LE(low, 100);
+    EXPECT_EQ(low > 0, strength > 0);
+    before = low;
+  }
+}
+
+TEST(SwitchPro, RunningMotorsAreToBeToldAgain) {
+  const auto pad = model();
+  OutPacket packet;
+  pad->rumble({.strong = 1, .weak = 0}, packet);
+  EXPECT_EQ(packet.repeat, std::chrono::milliseconds(50));
+  pad->rumble({}, packet);
+  EXPECT_EQ(packet.repeat, std::chrono::milliseconds(0));
+}
+
+}  // namespace
+}  // namespace gaitpad

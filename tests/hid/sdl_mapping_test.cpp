@@ -1,0 +1,399 @@
+// The lines are rows of SDL's gamecontrollerdb or made in its form. Which field a number is was
+// derived by hand: Linux's input-event-codes.h for the codes, SDL's order of them (keys from 0x120
+// on, then those below; axes by code without hats), hid-input for the codes of HID usages.
+#include "hid/sdl_mapping.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hid/decode.h"
+#include "hid/evdev_layout.h"
+
+namespace gaitpad {
+namespace {
+
+using Usages = std::vector<std::uint32_t>;
+
+constexpr std::uint32_t button(std::uint16_t number) {
+  return usage_of(usage::kButtonPage, number);
+}
+Usages buttons(std::uint16_t count) {
+  Usages usages;
+  for (std::uint16_t i = 1; i <= count; ++i) usages.push_back(button(i));
+  return usages;
+}
+
+// A pad whose report is: a byte an axis (0..255), a byte a hat (0..7), a bit a button.
+class MadePad {
+ public:
+  MadePad(std::uint32_t application, Usages axes, int hats, Usages buttons)
+      : axes_(std::move(axes)), hats_(hats), buttons_(std::move(buttons)) {
+    std::vector<std::uint8_t>& d = device.descriptor;
+    usage_item(application);
+    add({0xa1, 0x01, 0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 8, 0x95, 1});
+    for (const std::uint32_t u : axes_) input(u, 0x02);
+    add({0x25, 7, 0x35, 0, 0x46, 0x3b, 0x01, 0x65, 0x14});
+    for (int i = 0; i < hats_; ++i) input(usage::kHatSwitch, 0x42);
+    add({0x45, 0, 0x65, 0, 0x25, 1, 0x75, 1});
+    for (const std::uint32_t u : buttons_) input(u, 0x02);
+    const std::size_t left = (8 - buttons_.size() % 8) % 8;
+    if (left != 0) add({0x95, static_cast<std::uint8_t>(left), 0x81, 0x03});
+    d.push_back(0xc0);
+    device.name = "made";
+    rest();
+  }
+  void rest() {
+    bytes_.assign(axes_.size(), 128);
+    bytes_.insert(bytes_.end(), static_cast<std::size_t>(hats_), 8);
+    bytes_.insert(bytes_.end(), (buttons_.size() + 7) / 8, 0);
+  }
+  void set_axis(std::size_t i, std::uint8_t value) { bytes_[i] = value; }
+  void set_hat(std::size_t i, std::uint8_t value) { bytes_[axes_.size() + i] = value; }
+  void press(std::size_t i) {
+    bytes_[axes_.size() + static_cast<std::size_t>(hats_) + i / 8] |=
+        static_cast<std::uint8_t>(1u << (i % 8));
+  }
+  PadState state(const PadOverrides& overrides = {}) const {
+    const auto layout = pad_layout(device, overrides);
+    EXPECT_TRUE(layout) << (layout ? "" : layout.error().message);
+    Report report;
+    report.size = static_cast<std::uint16_t>(bytes_.size());
+    std::copy(bytes_.begin(), bytes_.end(), report.bytes.begin());
+    PadState state;
+    EXPECT_TRUE(layout && decode(*layout, report, state));
+    return state;
+  }
+  // The name of what is pressed when only this button is; "" for none, "?" for several.
+  std::string name_of_button(std::size_t i) {
+    rest();
+    press(i);
+    return name_of(state());
+  }
+  static std::string name_of(const PadState& state) {
+    std::string name;
+    for (int i = 0; i < kButtonCount; ++i) {
+      if (pressed(state, static_cast<PadButton>(i))) {
+        name = name.empty() ? std::string(kButtonNames[static_cast<std::size_t>(i)]) : "?";
+      }
+    }
+    return name;
+  }
+  std::vector<std::string> names() {
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < buttons_.size(); ++i) all.push_back(name_of_button(i));
+    rest();
+    return all;
+  }
+  // Which of the pad's axes moves to its high end with this field; -1: none.
+  int axis_of(std::size_t i) {
+    rest();
+    const PadState before = state();
+    set_axis(i, 255);
+    const PadState after = state();
+    rest();
+    int found = -1;
+    for (int a = 0; a < kAxisCount; ++a) {
+      if (after.axis[a] != before.axis[a]) found = found < 0 ? a : kAxisCount;
+    }
+    return found;
+  }
+
+  DeviceInfo device;
+
+ private:
+  void add(std::initializer_list<std::uint8_t> bytes) {
+    device.descriptor.insert(device.descriptor.end(), bytes);
+  }
+  void usage_item(std::uint32_t u) {
+    device.descriptor.push_back(0x0b);
+    for (int i = 0; i < 4; ++i) {
+      device.descriptor.push_back(static_cast<std::uint8_t>(u >> (8 * i)));
+    }
+  }
+  void input(std::uint32_t u, std::uint8_t flags) {
+    usage_item(u);
+    add({0x81, flags});
+  }
+  Usages axes_;
+  int hats_ = 0;
+  Usages buttons_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+// As the evdev driver states a node with these codes.
+MadePad evdev_pad(const std::vector<std::uint16_t>& axes, const std::vector<std::uint16_t>& keys) {
+  const auto usages = [](EvdevType type, const std::vector<std::uint16_t>& codes) {
+    Usages all;
+    for (const std::uint16_t code : codes) {
+      all.push_back(usage_of_code({type, code}, usage::kGamePad));
+    }
+    return all;
+  };
+  MadePad pad(usage::kGamePad, usages(EvdevType::absolute, axes), 1, usages(EvdevType::key, keys));
+  pad.device.driver = "evdev";
+  return pad;
+}
+
+const std::string kHat = "dpdown:h0.4,dpleft:h0.8,dpright:h0.2,dpup:h0.1,";
+using Names = std::vector<std::string>;
+
+// 046d:c216, a HID joystick: buttons 1..12 are BTN_JOYSTICK .. 0x12b, X Y Z Rz are a0 .. a3.
+TEST(SdlMapping, NumbersOfAHidPadAreItsButtonsAndAxesInOrder) {
+  MadePad pad(usage::kJoystick, {usage::kX, usage::kY, usage::kZ, usage::kRz}, 1, buttons(12));
+  pad.device.driver = "hidraw";
+  pad.device.mapping =
+      "030000006d04000016c2000010010000,Logitech Dual Action,a:b1,b:b2,back:b8," + kHat +
+      "leftshoulder:b4,leftstick:b10,lefttrigger:b6,leftx:a0,lefty:a1,rightshoulder:b5,"
+      "rightstick:b11,righttrigger:b7,rightx:a2,righty:a3,start:b9,x:b0,y:b3,platform:Linux";
+  EXPECT_EQ(pad.names(), (Names{"x", "a", "b", "y", "leftshoulder", "rightshoulder", "", "", "back",
+                                "start", "leftstick", "rightstick"}));
+  EXPECT_EQ(pad.axis_of(0), kLeftX);
+  EXPECT_EQ(pad.axis_of(1), kLeftY);
+  EXPECT_EQ(pad.axis_of(2), kRightX);
+  EXPECT_EQ(pad.axis_of(3), kRightY);
+  pad.press(6);
+  pad.set_axis(1, 0);
+  pad.set_hat(0, 7);
+  const PadState state = pad.state();
+  EXPECT_EQ(state.axis[kLeftTrigger], 1.0f);
+  EXPECT_EQ(state.axis[kRightTrigger], 0.0f);
+  EXPECT_EQ(state.axis[kLeftY], 1.0f) << "HID's y grows towards the thumb's owner, ours away";
+  EXPECT_EQ(state.hat, Hat::up_left);
+}
+
+// By its usages alone the right stick would be Rx, Ry and button 1 the left one.
+TEST(SdlMapping, APadThatIsWiredOtherwiseIsNamedAsTheDataBaseSays) {
+  MadePad pad(usage::kJoystick, {usage::kX, usage::kY, usage::kZ, usage::kRx, usage::kRz}, 1,
+              buttons(12));
+  pad.device.driver = "hidraw";
+  // Codes X 0, Y 1, Z 2, Rx 3, Rz 5: a3 is Rx, a4 is Rz.
+  pad.device.mapping =
+      "03000000790000000600000010010000,Generic USB "
+      "Joystick,x:b3,a:b2,b:b1,y:b0,back:b8,start:b9," +
+      kHat +
+      "leftshoulder:b4,rightshoulder:b5,lefttrigger:b6,righttrigger:b7,leftstick:b10,"
+      "rightstick:b11,leftx:a0,lefty:a1,rightx:a4,righty:a2,platform:Linux,";
+  EXPECT_EQ(pad.names(), (Names{"y", "b", "a", "x", "leftshoulder", "rightshoulder", "", "", "back",
+                                "start", "leftstick", "rightstick"}));
+  EXPECT_EQ(pad.axis_of(2), kRightY);
+  EXPECT_EQ(pad.axis_of(3), -1) << "no control has a3";
+  EXPECT_EQ(pad.axis_of(4), kRightX);
+}
+
+// xpad: A B X Y TL TR SELECT START MODE THUMBL THUMBR; X Y Z Rx Ry Rz, triggers on Z and Rz.
+TEST(SdlMapping, AnXbox360PadOnEvdevIsCountedByCodes) {
+  MadePad pad =
+      evdev_pad({0x00, 0x01, 0x02, 0x03, 0x04, 0x05},
+                {0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e});
+  pad.device.mapping =
+      "030000005e0400008e02000014010000,X360 Controller,a:b0,b:b1,back:b6," + kHat +
+      "guide:b8,leftshoulder:b4,leftstick:b9,lefttrigger:a2,leftx:a0,lefty:a1,rightshoulder:b5,"
+      "rightstick:b10,righttrigger:a5,rightx:a3,righty:a4,start:b7,x:b2,y:b3,platform:Linux";
+  EXPECT_EQ(pad.names(), (Names{"a", "b", "x", "y", "leftshoulder", "rightshoulder", "back",
+                                "start", "guide", "leftstick", "rightstick"}));
+  EXPECT_EQ(pad.axis_of(2), kLeftTrigger);
+  EXPECT_EQ(pad.axis_of(3), kRightX);
+  EXPECT_EQ(pad.axis_of(4), kRightY);
+  EXPECT_EQ(pad.axis_of(5), kRightTrigger);
+}
+
+// hid-playstation: SOUTH EAST NORTH WEST TL TR TL2 TR2 SELECT START MODE THUMBL THUMBR.
+TEST(SdlMapping, ADualSenseOnEvdevIsCountedByCodes) {
+  MadePad pad = evdev_pad(
+      {0x00, 0x01, 0x02, 0x03, 0x04, 0x05},
+      {0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x138, 0x139, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e});
+  pad.device.mapping =
+      "030000004c050000e60c000011810000,PS5 Controller,a:b0,b:b1,back:b8," + kHat +
+      "guide:b10,leftshoulder:b4,leftstick:b11,lefttrigger:a2,leftx:a0,lefty:a1,rightshoulder:b5,"
+      "rightstick:b12,righttrigger:a5,rightx:a3,righty:a4,start:b9,x:b3,y:b2,platform:Linux";
+  // Triangle is BTN_NORTH 0x133, square BTN_WEST 0x134: the third key is the top one.
+  EXPECT_EQ(pad.names(), (Names{"a", "b", "y", "x", "leftshoulder", "rightshoulder", "", "", "back",
+                                "start", "guide", "leftstick", "rightstick"}));
+  EXPECT_EQ(pad.axis_of(2), kLeftTrigger);
+  EXPECT_EQ(pad.axis_of(5), kRightTrigger);
+}
+
+// hid-nintendo: EAST is A on the right; capture is BTN_Z 0x135, before the shoulders.
+TEST(SdlMapping, ASwitchProOnEvdevIsCountedByCodes) {
+  MadePad pad =
+      evdev_pad({0x00, 0x01, 0x03, 0x04}, {0x130, 0x131, 0x133, 0x134, 0x135, 0x136, 0x137, 0x138,
+                                           0x139, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e});
+  pad.device.mapping =
+      "030000007e0500000920000011810000,Nintendo Switch Pro Controller,a:b0,b:b1,back:b9," + kHat +
+      "guide:b11,leftshoulder:b5,leftstick:b12,lefttrigger:b7,leftx:a0,lefty:a1,misc1:b4,"
+      "rightshoulder:b6,rightstick:b13,righttrigger:b8,rightx:a2,righty:a3,start:b10,x:b3,y:b2,"
+      "hint:!SDL_GAMECONTROLLER_USE_BUTTON_LABELS:=1,platform:Linux";
+  EXPECT_EQ(pad.names(), (Names{"a", "b", "y", "x", "misc1", "leftshoulder", "rightshoulder", "",
+                                "", "back", "start", "guide", "leftstick", "rightstick"}));
+  EXPECT_EQ(pad.axis_of(2), kRightX) << "codes 3 and 4 are the third and the fourth axis";
+  EXPECT_EQ(pad.axis_of(3), kRightY);
+}
+
+// 0x2c0 is BTN_TRIGGER_HAPPY1, 0x100 BTN_0: below BTN_JOYSTICK, so SDL counts it last.
+TEST(SdlMapping, KeysBelowTheJoysticksOwnAreCountedLast) {
+  MadePad pad = evdev_pad({0x00, 0x01}, {0x100, 0x130, 0x2c0});
+  pad.device.mapping = "03000000000000000000000000000000,x,a:b0,x:b1,y:b2,leftx:a0,lefty:a1,";
+  EXPECT_EQ(pad.names(), (Names{"y", "a", "x"}));
+}
+
+// The second hat of a node is stated as two axes that know -1, 0, 1: h1 all the same.
+TEST(SdlMapping, AHatMayBeTwoAxes) {
+  MadePad pad = evdev_pad({0x00, 0x01}, {0x130});
+  pad.device.mapping =
+      "03000000000000000000000000000000,x,a:b0,leftx:a0,lefty:a1,x:h0.8,dpup:h1.1,";
+  const EvdevAbilities abilities{
+      {{0x00, 0, 255}, {0x01, 0, 255}, {0x10, -1, 1}, {0x11, -1, 1}, {0x12, -1, 1}, {0x13, -1, 1}},
+      {0x130}};
+  const EvdevLayout layout = evdev_layout(abilities, {});
+  pad.device.descriptor = layout.descriptor;
+  const auto pad_of = pad_layout(pad.device, {});
+  ASSERT_TRUE(pad_of);
+  const auto name_at = [&](std::int32_t hat0_x, std::int32_t hat1_y) {
+    EvdevState node;
+    node.axis[0x10] = hat0_x;
+    node.axis[0x13] = hat1_y;
+    Report report;
+    put_state(layout, node, report);
+    PadState state;
+    EXPECT_TRUE(decode(*pad_of, report, state));
+    return MadePad::name_of(state);
+  };
+  EXPECT_EQ(name_at(0, 0), "");
+  EXPECT_EQ(name_at(-1, 0), "x");
+  EXPECT_EQ(name_at(1, 0), "");
+  EXPECT_EQ(name_at(0, -1), "dpup");
+  EXPECT_EQ(name_at(0, 1), "");
+}
+
+// Half of an axis is 0 up to its middle and 1 at its end. SDL presses a button from the middle of
+// that half on.
+TEST(SdlMapping, HalvesOfAnAxisAreTriggersAndButtons) {
+  MadePad pad(usage::kGamePad, {usage::kX, usage::kY, usage::kZ}, 0, buttons(2));
+  pad.device.driver = "sdl";
+  pad.device.mapping =
+      "03000000000000000000000000000000,x,dpdown:+a1,dpup:-a1,lefttrigger:+a2,righttrigger:-a2,";
+  const auto at = [&pad](std::size_t axis, std::uint8_t value) {
+    pad.rest();
+    pad.set_axis(axis, value);
+    return pad.state();
+  };
+  EXPECT_EQ(at(2, 128).axis[kLeftTrigger], 0.0f);
+  EXPECT_EQ(at(2, 127).axis[kRightTrigger], 0.0f);
+  EXPECT_EQ(at(2, 255).axis[kLeftTrigger], 1.0f);
+  EXPECT_EQ(at(2, 255).axis[kRightTrigger], 0.0f);
+  EXPECT_EQ(at(2, 0).axis[kRightTrigger], 1.0f);
+  EXPECT_FLOAT_EQ(at(2, 128 + 64).axis[kLeftTrigger], 64.0f / 127.0f);
+  EXPECT_FLOAT_EQ(at(2, 127 - 64).axis[kRightTrigger], 64.0f / 127.0f);
+  EXPECT_EQ(at(1, 191).buttons, 0u);
+  EXPECT_EQ(MadePad::name_of(at(1, 192)), "dpdown");
+  EXPECT_EQ(at(1, 64).buttons, 0u);
+  EXPECT_EQ(MadePad::name_of(at(1, 63)), "dpup");
+}
+
+TEST(SdlMapping, APadWithoutAnyLeftStickInTheLineStillWalksByItsAxes) {
+  MadePad pad(usage::kGamePad, {usage::kX, usage::kY}, 0, buttons(8));
+  pad.device.driver = "hidraw";
+  pad.device.mapping =
+      "030000003512000012ab000010010000,NES30,a:b1,b:b0,dpdown:+a1,dpleft:-a0,dpright:+a0,dpup:-"
+      "a1,";
+  pad.set_axis(1, 0);
+  const PadState state = pad.state();
+  EXPECT_EQ(state.axis[kLeftY], 1.0f);
+  EXPECT_EQ(MadePad::name_of(state), "dpup");
+}
+
+TEST(SdlMapping, AxesMayBeTurnedRoundAndSticksMadeOfButtonsAndHats) {
+  MadePad pad(usage::kGamePad, {usage::kX, usage::kY, usage::kZ}, 1, buttons(4));
+  pad.device.driver = "sdl";
+  pad.device.mapping =
+      "03000000000000000000000000000000,x,leftx:a0~,lefty:a1~,lefttrigger:a2~,-rightx:h0.8,"
+      "+rightx:h0.2,-righty:b0,+righty:b1,";
+  pad.set_axis(0, 255);
+  pad.set_axis(1, 255);
+  pad.set_axis(2, 255);
+  pad.set_hat(0, 6);
+  pad.press(0);
+  PadState state = pad.state();
+  EXPECT_EQ(state.axis[kLeftX], -1.0f);
+  EXPECT_EQ(state.axis[kLeftY], 1.0f);
+  EXPECT_EQ(state.axis[kLeftTrigger], 0.0f);
+  EXPECT_EQ(state.axis[kRightX], -1.0f);
+  EXPECT_EQ(state.axis[kRightY], 1.0f) << "SDL's negative y is up, ours forward is positive";
+  pad.set_hat(0, 2);
+  pad.press(1);
+  state = pad.state();
+  EXPECT_EQ(state.axis[kRightX], 1.0f);
+  EXPECT_EQ(state.axis[kRightY], 0.0f) << "both sides at once";
+  pad.rest();
+  state = pad.state();
+  EXPECT_EQ(state.axis[kRightX], 0.0f);
+  EXPECT_EQ(state.axis[kRightY], 0.0f);
+}
+
+TEST(SdlMapping, AFileThatNamesControlsGoesBeforeIt) {
+  MadePad pad(usage::kGamePad, {usage::kX, usage::kY}, 0, buttons(4));
+  pad.device.mapping = "03000000000000000000000000000000,x,y:b0,leftx:a0,lefty:a1,";
+  const auto name_with = [&pad](const std::string& toml) {
+    const auto overrides = parse_pad_file(toml, "map.toml");
+    EXPECT_TRUE(overrides);
+    pad.rest();
+    pad.press(0);
+    return MadePad::name_of(pad.state(*overrides));
+  };
+  EXPECT_EQ(name_with("[[pad]]\n[pad.buttons]\nb = \"button 1\"\n"), "b");
+  EXPECT_EQ(name_with("[[pad]]\n[pad.buttons]\nguide = \"button 2\"\n"), "x")
+      << "an entry wins wholly";
+  EXPECT_EQ(name_with("[[pad]]\nbutton_order = \"android\"\n"), "a");
+  EXPECT_EQ(name_with("[[pad]]\nstreams = true\n"), "y") << "it says nothing of controls";
+  EXPECT_EQ(name_with("[[pad]]\nvendor = 1\n"), "y") << "another pad's";
+}
+
+TEST(SdlMapping, ADamagedLineIsNamedAndDoesNotCount) {
+  MadePad pad(usage::kGamePad, {usage::kX, usage::kY}, 0, buttons(4));
+  const auto descriptor = parse_descriptor(pad.device.descriptor);
+  ASSERT_TRUE(descriptor);
+  const auto cause = [&](const std::string& line) {
+    const auto map = sdl_controls(line, *descriptor, "hidraw");
+    return map ? "accepted" : map.error().message;
+  };
+  const std::string guid = "03000000000000000000000000000000";
+  EXPECT_EQ(cause(guid + ",x,a:q3,"), "SDL mapping: unknown source \"q3\"");
+  EXPECT_EQ(cause(guid + ",x,a:b,"), "SDL mapping: unknown source \"b\"");
+  EXPECT_EQ(cause(guid + ",x,dpup:h0,"), "SDL mapping: unknown source \"h0\"");
+  EXPECT_EQ(cause(guid + ",x,dpup:h0.16,"), "SDL mapping: unknown source \"h0.16\"");
+  EXPECT_EQ(cause(guid + ",x,dpup:h0.0,"), "SDL mapping: unknown source \"h0.0\"");
+  EXPECT_EQ(cause(guid + ",x,a:b99999999999999999999,"),
+            "SDL mapping: unknown source \"b99999999999999999999\"");
+  EXPECT_EQ(cause(guid + ",x,rubbish"), "SDL mapping: \"rubbish\" is no pair control:source");
+  EXPECT_EQ(cause("xinput,x,a:b0"), "SDL mapping: \"xinput\" is no GUID of 32 hexadecimal digits");
+  EXPECT_EQ(cause(""), "SDL mapping: \"\" is no GUID of 32 hexadecimal digits");
+  EXPECT_EQ(cause(std::string(600, 'a')), "SDL mapping: 600 bytes, at most 512 are read");
+  std::string many = guid + ",x";
+  for (int i = 0; i < 9; ++i) many += ",a:b0";
+  EXPECT_EQ(cause(many), "SDL mapping: more than 8 sources for \"a\"");
+  EXPECT_EQ(cause(guid + ",x,a:b0,sdk>=:16,crc:1234,face:b9,type:z,rightx:,,platform:Linux,"),
+            "accepted");
+  EXPECT_EQ(cause(guid + ",x,a:b700,leftx:a31,dpup:h7.1,"), "accepted")
+      << "numbers that the device does not have";
+  pad.device.mapping = guid + ",x,y:b0,a:q3,";
+  EXPECT_EQ(pad.name_of_button(0), "x") << "as without a line";
+}
+
+TEST(SdlMapping, HostileLinesDoNoHarm) {
+  MadePad pad(usage::kGamePad, {usage::kX, usage::kY, usage::kHatSwitch}, 2, buttons(20));
+  std::mt19937 random(1);
+  constexpr std::string_view kAlphabet = "0123456789abh+-~.:,leftxlefty\x01\xff";
+  for (int i = 0; i < 20000; ++i) {
+    std::string line = "03000000000000000000000000000000,x,";
+    const std::size_t length = random() % 80;
+    for (std::size_t k = 0; k < length; ++k) line += kAlphabet[random() % kAlphabet.size()];
+    pad.device.mapping = line;
+    pad.device.driver = i % 2 == 0 ? "sdl" : "hidraw";
+    pad.set_axis(random() % 3, static_cast<std::uint8_t>(random()));
+    for (const float value : pad.state().axis) EXPECT_LE(std::abs(value), 1.0f);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# rig.sh [--long] [--kernel 6.12] [--only NAME]: builds, boots a Debian kernel in QEMU and proves there, with
+# virtual pads, what needs hardware: tools/rig/test_*.py. Logs and tables in build/rig/results-KERNEL.
+# --long: the long floods and counts too, on 6.1 and 6.12. Without QEMU or a kernel to be had it tests
+# nothing, says so and ends with 0. RIG_BUILD names another build folder than build (one with sanitizers).
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+build=$(realpath -m "${RIG_BUILD:-$root/build}")
+long=0 only= kernels=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --long) long=1 ;;
+    --kernel) kernels=("$2"); shift ;;
+    --only) only=$2; shift ;;
+    *) echo "rig.sh: unknown option $1" >&2; exit 2 ;;
+  esac
+  shift
+done
+if [ ${#kernels[@]} -eq 0 ]; then
+  kernels=(6.1)
+  [ $long -eq 0 ] || kernels+=(6.12)
+fi
+
+skip() {
+  echo "########################################################################"
+  echo "## THE RIG WAS SKIPPED: $1."
+  echo "## Nothing was proved on a real kernel: no driver, no hot-plug, no rumble."
+  echo "########################################################################"
+  exit 0
+}
+
+bash "$root/tools/install.sh"
+bash "$root/tools/build.sh" "$build" all -DCMAKE_BUILD_TYPE=Release
+bash "$root/tools/rig/install.sh" || skip "QEMU or what it needs cannot be installed here"
+
+seconds=870
+[ $long -eq 0 ] || seconds=5400
+status=0
+for kernel in "${kernels[@]}"; do
+  fetched=0
+  bash "$root/tools/rig/kernel.sh" "$kernel" >/dev/null || fetched=$?
+  [ $fetched -ne 3 ] || skip "no Debian kernel $kernel can be had"
+  [ $fetched -eq 0 ] || exit 1
+  results=$root/build/rig/results-$kernel
+  rm -rf "$results"
+  bash "$root/tools/rig/guest.sh" --kernel "$kernel" --memory 1536 --timeout $seconds --results "$results" -- \
+    env RIG_LONG=$long RIG_BUILD="$build" /usr/bin/python3 "$root/tools/rig/guest_tests.py" --only "$only" || status=1
+done
+exit $status

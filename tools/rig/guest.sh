@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# guest.sh [--kernel 6.12] [--memory MB] [--timeout S] [--results FOLDER] -- COMMAND...
+# Boots the kernel in QEMU on the host's own files (changes stay in the guest; /results alone is the host's
+# FOLDER) and runs COMMAND there as root: one argument is a line of bash, several are a program and its
+# arguments. Its output goes to stdout and its exit status is this one's; 124 after S seconds, 125 when the
+# guest ended without a status.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/../.." && pwd)
+series=6.1 memory=1024 seconds=300 results=
+while [ $# -gt 0 ]; do
+  case $1 in
+    --kernel) series=$2 ;;
+    --memory) memory=$2 ;;
+    --timeout) seconds=$2 ;;
+    --results) results=$2 ;;
+    --) shift; break ;;
+    *) echo "guest.sh: unknown option $1" >&2; exit 2 ;;
+  esac
+  shift 2
+done
+[ $# -gt 0 ] || { echo "guest.sh: no command" >&2; exit 2; }
+
+bash "$root/tools/rig/install.sh"
+bash "$root/tools/rig/build.sh"
+kernel=$(bash "$root/tools/rig/kernel.sh" "$series")
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+[ -n "$results" ] || results=$work/results
+mkdir -p "$results"
+rm -f "$results/.status"
+: >"$results/output"
+cp "$root/tools/rig/guest_init.sh" "$results/.guest_init"
+{
+  printf 'cd %q\nexport RIG_ROOT=%q\n' "$PWD" "$root"
+  if [ $# -eq 1 ]; then printf '%s\n' "$1"; else printf '%q ' "$@"; echo; fi
+} >"$results/.run"
+
+share() {
+  echo "local,path=$2,mount_tag=$1,security_model=none,multidevs=remap${3:-}"
+}
+timeout -s KILL "$seconds" qemu-system-x86_64 -accel tcg -smp 1 -m "$memory" -nodefaults -display none \
+  -nic none -no-reboot -kernel "$kernel/vmlinuz" -initrd "$kernel/initramfs" \
+  -append "console=ttyS0 quiet loglevel=4 panic=-1 mitigations=off random.trust_cpu=on" \
+  -serial "file:$results/console" -virtfs "$(share hostroot / ,readonly=on)" \
+  -virtfs "$(share modules "$kernel/modules" ,readonly=on)" -virtfs "$(share results "$results")" \
+  </dev/null 2>"$results/qemu" &
+qemu=$!
+trap 'kill $qemu 2>/dev/null || true; rm -rf "$work"' EXIT
+tail -s 0.2 -c +1 -f --pid=$qemu "$results/output"
+status=0
+wait $qemu 2>/dev/null || status=$?
+
+if [ -f "$results/.status" ]; then exit "$(cat "$results/.status")"; fi
+tail -n 30 "$results/console" "$results/qemu" >&2
+if [ $status -eq 137 ]; then
+  echo "guest.sh: ended after $seconds s" >&2
+  exit 124
+fi
+echo "guest.sh: the guest ended without a status" >&2
+exit 125

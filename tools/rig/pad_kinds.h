@@ -1,0 +1,57 @@
+// The kinds of pad that the rig can be: what each says of itself, its input report, its answers.
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { kMaxPacket = 512, kMaxDescriptor = 4096, kUserFlash = 0x8010 };
+
+struct packet {
+  size_t size;
+  uint8_t bytes[kMaxPacket];
+};
+
+// A little-endian bit field of the input report: `set lx=200` writes it.
+struct field {
+  const char* name;
+  uint16_t bit;
+  uint8_t width;
+};
+
+struct pad;
+struct pad_kind {
+  const char *name, *manufacturer, *product;
+  uint16_t vendor, product_id, version;
+  uint8_t interface_class[3];
+  uint8_t interval_ms;        // claimed by the endpoints
+  uint16_t stream_rate_hz;    // 0: a report at each change only
+  const uint8_t* descriptor;  // none: a vendor class
+  size_t descriptor_size;
+  const struct field* fields;
+  struct field counter;  // width 0: none
+  bool starts_asleep;    // sends input only once an OUT packet has woken it
+  size_t report_size;
+  uint8_t neutral[64];
+  // The reply to GET_REPORT of a feature: its size, 0 to stall.
+  size_t (*feature)(const struct pad* pad, uint8_t id, uint8_t* reply);
+  // What an OUT packet makes the pad do: true if `reply` shall be sent.
+  bool (*answer)(struct pad* pad, const struct packet* out, struct packet* reply);
+  size_t (*announce)(const struct pad* pad, uint8_t* packet);  // sent first, when plugged
+};
+
+// What is common to the pad's threads; pad_gadget.c locks it.
+struct pad {
+  struct pad_kind kind;
+  uint8_t mac[6];  // most significant byte first
+  struct packet state;
+  uint32_t counter;
+  bool awake;
+  uint8_t
+      user_flash[48];  // Switch: from kUserFlash; the user's calibration, ff where there is none
+  bool refuses_features;
+};
+
+const struct pad_kind* find_kind(const char* name);
+const struct pad_kind* find_kind_by_id(uint16_t vendor, uint16_t product);  // null: none
+bool set_field(const struct pad_kind* kind, struct packet* report, const char* name, long value);
+void write_bits(struct packet* report, struct field field, uint32_t value);

@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+"""From the gadget's write to user space, and to the tick that uses it, by every driver.
+
+Reports of the generic pad, 250 a second, each numbered in its left stick. A driver's blocks alternate
+with those of a bare poll() and read() of the node, since the same read differs by a tenth from one run to
+the next. Writes latency.md and latency.csv to the results.
+"""
+import csv
+import json
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import time
+import unittest
+
+from pads import ROOT, Pad
+
+BUILD = pathlib.Path(os.environ.get("RIG_BUILD", f"{ROOT}/build"))
+RESULTS = pathlib.Path(os.environ.get("RIG_RESULTS", "/results"))
+GENERIC = "1209:0001"
+RATE_HZ, SECONDS = 250, 0.8
+BLOCKS = int(os.environ.get("RIG_BLOCKS", "5"))
+WARM_UP = 10  # reports of a block that are not counted: the first was written before anybody polled
+# driver: (the bare read beside it, by how much its median may exceed that one's, in us)
+LIMITS_US = {"hidraw": ("bare_hidraw", 250), "usb": ("bare_hidraw", 250), "evdev": ("bare_evdev", 250),
+             "sdl": ("bare_evdev", 1500)}
+LABELS = {"bare_hidraw": "bare `poll` + `read` of the hidraw node", "bare_evdev": "the same of the event node",
+          "plain_sdl": "a plain SDL2 program (`SDL_WaitEventTimeout`)"}
+
+
+def percentile(values, share):
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]
+
+
+def latencies_us(sent, received):
+    """By number: when it was written, when it was there. The first of equal numbers counts."""
+    arrival = {}
+    for ns, number in received:
+        arrival.setdefault(number, ns)
+    return [(arrival[number] - ns) / 1000 for number, ns in sent if number in arrival]
+
+
+def block(pad, way):
+    """(latencies in us, reports lost) of one block."""
+    program = [BUILD / "tools/rig/rig_plain_sdl"] if way == "plain_sdl" else [BUILD / "tools/rig/rig_latency", way]
+    before = len(pad.sent())
+    with subprocess.Popen([*program, GENERIC, "1000"], stdout=subprocess.PIPE, text=True) as reader:
+        if reader.stdout.readline() != "ready\n":
+            raise RuntimeError(f"{way} did not open the pad")
+        pad.burst(RATE_HZ, SECONDS, at=0)
+        received = [tuple(map(int, line.split())) for line in reader.stdout]
+    if reader.returncode != 0:
+        raise RuntimeError(f"{way} failed")
+    pad.wait_burst()
+    sent = [(s.ns, s.number & 0xffff) for s in pad.sent()[before:] if s.number > 0][WARM_UP:]
+    if way not in LIMITS_US and way != "plain_sdl":
+        pad.wait_ready()
+    found = latencies_us(sent, received)
+    return found, len(sent) - len(found)
+
+
+def tick_latencies_us(pad, driver, folder):
+    """From the write to the beginning of the tick that used it, out of a session's own recording."""
+    path = pathlib.Path(folder) / f"latency_{driver}.hid"
+    session = subprocess.Popen([BUILD / "gaitpad", "play", GENERIC, "--no-window", "--driver", driver, "--record",
+                                path, "--seconds", "6", "--no-rumble"], stdout=subprocess.DEVNULL)
+    before = len(pad.sent())
+    subprocess.run(["sleep", "3"], check=True)
+    pad.burst(RATE_HZ, 2 * SECONDS, at=0)
+    if session.wait() != 0:
+        raise RuntimeError(f"play --driver {driver} failed")
+    sent = [(s.ns, s.number & 0xffff) for s in pad.sent()[before:] if s.number > 0][WARM_UP:]
+    text = path.read_text()
+    start = re.search(r"tick 0 began at CLOCK_MONOTONIC (\d+)\.(\d{9})", text)
+    rate_hz = int(re.search(r"rate_hz=(\d+)", text)[1])
+    start_ns = int(start[1]) * 10**9 + int(start[2])
+    ticks, tick = [], 0
+    for line in text.splitlines():
+        if line.startswith("T: "):
+            tick = int(line[3:])
+        elif line.startswith("E: "):
+            ticks.append(start_ns + tick * 10**9 // rate_hz)
+    decoded = subprocess.run([BUILD / "gaitpad", "decode", path, "--json"], capture_output=True, text=True, check=True)
+    reports = [row for row in map(json.loads, decoded.stdout.splitlines()) if "axes" in row]
+    numbers = [round((row["axes"]["left_x"] + 1) * 127.5) + 256 * round((1 - row["axes"]["left_y"]) * 127.5)
+               for row in reports]
+    return latencies_us(sent, zip(ticks, numbers))
+
+
+class Latency(unittest.TestCase):
+    def test_drivers_are_as_fast_as_the_bare_read(self):
+        ways = [*LIMITS_US, "plain_sdl", "bare_hidraw", "bare_evdev"]
+        found = {way: [] for way in ways}
+        lost = dict.fromkeys(ways, 0)
+        with Pad("generic") as pad:
+            for _ in range(BLOCKS):
+                for way in ("bare_hidraw", "hidraw", "bare_evdev", "evdev", "sdl", "plain_sdl", "usb"):
+                    values, missing = block(pad, way)
+                    print(way, len(values), missing, time.monotonic(), flush=True)
+                    found[way] += values
+                    lost[way] += missing
+                    pad.wait_ready()
+            ticks = {driver: tick_latencies_us(pad, driver, RESULTS) for driver in LIMITS_US}
+        self.write(found, ticks)
+        for driver, (bare, limit_us) in LIMITS_US.items():
+            with self.subTest(driver=driver):
+                self.assertEqual(lost[driver], 0)
+                self.assertGreaterEqual(len(found[driver]), BLOCKS * 180)
+                self.assertLessEqual(statistics.median(found[driver]) - statistics.median(found[bare]), limit_us)
+
+    def write(self, found, ticks):
+        rows = [["way", "reports", "median_us", "p99_us", "over_bare_us", "to_tick_median_us", "to_tick_p99_us"]]
+        text = ["| way | median | 99th percentile | over the bare read | to the tick: median | 99th percentile |",
+                "|---|---|---|---|---|---|"]
+        for way, values in found.items():
+            median, p99 = statistics.median(values), percentile(values, 0.99)
+            over = median - statistics.median(found[LIMITS_US[way][0]]) if way in LIMITS_US else None
+            tick = [statistics.median(ticks[way]), percentile(ticks[way], 0.99)] if ticks.get(way) else [None, None]
+            rows.append([way, len(values), median, p99, over, *tick])
+            cells = [f"{v / 1000:.2f} ms" if v is not None else "-" for v in (median, p99, over, *tick)]
+            text.append(f"| {LABELS.get(way, f'`{way}` driver')} | " + " | ".join(cells) + " |")
+        with open(RESULTS / "latency.csv", "w", newline="") as file:
+            csv.writer(file).writerows(rows)
+        (RESULTS / "latency.md").write_text("\n".join(text) + "\n")
+        print("\n".join(text), file=sys.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

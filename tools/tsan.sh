@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# What threads share (rings, the newest frame, pads plugged in and out, the loop, the recorder) under
+# ThreadSanitizer. A report of it is a failure.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+bash "$root/tools/install.sh"
+for target in test_base test_drivers test_session; do
+  bash "$root/tools/build.sh" "$root/build-tsan" $target -DGAITPAD_TSAN=ON \
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
+done
+export TSAN_OPTIONS="halt_on_error=0 exitcode=66 history_size=4 ${TSAN_OPTIONS:-}"
+bash "$root/tools/ctest.sh" "$root/build-tsan" \
+  -R '^(base\.(SpscRing|Latest)|session\.(Pad|Live|Recording)|drivers\.(Trace|Packet|Usb))'

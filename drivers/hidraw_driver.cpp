@@ -176,7 +176,7 @@ class HidrawDevice final : public Device {
     wait_on_ = {.fd = fd_ >= 0 ? fd_ : timer_.get(), .events = POLLIN, .revents = 0};
   }
   ~HidrawDevice() override {
-    if (is_rumbling_) rumble({});
+    if (is_rumbling_ && !is_unplugged_) rumble({});
   }
 
   void start(StartedBy started) {

@@ -102,7 +102,8 @@ class Live : public testing::Test {
     return result ? result->summaries : std::vector<nlohmann::ordered_json>();
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_live_test";
+  fs::path folder_ =
+      fs::path(testing::TempDir()) / ("gaitpad_live_test." + std::to_string(::getpid()));
   LiveOptions options_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -282,7 +283,8 @@ class RecordingFile : public testing::Test {
     return false;
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_recording_test";
+  fs::path folder_ =
+      fs::path(testing::TempDir()) / ("gaitpad_recording_test." + std::to_string(::getpid()));
   fs::path file_ = folder_ / "walk.hid", part_ = folder_ / "walk.hid.part";
 };
 

@@ -28,14 +28,15 @@ inline bool is_pad_event(const SystemNode& node) {
   return !node.is_motion_sensor && !node.is_touchpad;
 }
 
-// `state`: what a finding of these two is, a problem or, where the pad works otherwise, a note.
+// `state`: what a finding of these is, a problem or, where the pad works otherwise, a note.
 // True where the node can be used.
 bool check_access(const std::string& node, const PadHardware& pad, Finding::State state,
                   Diagnosis& diagnosis);
 void check_events(const PadHardware& pad, Finding::State state, Diagnosis& diagnosis);
 
-void check_binding(const UsbInterface& interface, const PadHardware& pad, Diagnosis& diagnosis);
-void check_missing_nodes(const PadHardware& pad, Diagnosis& diagnosis);
+void check_binding(const UsbInterface& interface, const PadHardware& pad, Finding::State state,
+                   Diagnosis& diagnosis);
+void check_missing_nodes(const PadHardware& pad, Finding::State state, Diagnosis& diagnosis);
 void check_model(const PadHardware& pad, Diagnosis& diagnosis);
 
 }  // namespace gaitpad

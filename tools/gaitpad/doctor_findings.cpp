@@ -17,16 +17,40 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path, ignored);
 }
 
-// `hidraw (/dev/hidraw3), evdev (/dev/input/event5)`.
+bool is_open_to_us(const PadSighting& sighting, const PadHardware& pad) {
+  return sighting.is_pad && sighting.problem.empty() && sighting.listing.pad_path == pad.path;
+}
+// usb would have to take the pad from the kernel: play does that only when told.
+bool needs_consent(const PadSighting& sighting) {
+  return sighting.driver->name == std::string_view("usb") &&
+         !sighting.listing.kernel_driver.empty();
+}
+
+// `hidraw (/dev/hidraw3), evdev (/dev/input/event5)`: by which play would take it.
 std::string ways_to(const PadHardware& pad, const Machine& machine) {
   std::string ways;
   for (const PadSighting& sighting : machine.sightings) {
-    const DeviceListing& listing = sighting.listing;
-    if (listing.pad_path != pad.path || !sighting.is_pad || !sighting.problem.empty()) continue;
-    if (listing.node.starts_with("/dev/input/") && is_grabbed(listing.node)) continue;
-    ways += fmt::format("{}{} ({})", ways.empty() ? "" : ", ", sighting.driver->name, listing.node);
+    const std::string& node = sighting.listing.node;
+    if (!is_open_to_us(sighting, pad) || needs_consent(sighting)) continue;
+    if (node.starts_with("/dev/input/") && is_grabbed(node)) continue;
+    ways += fmt::format("{}{} ({})", ways.empty() ? "" : ", ", sighting.driver->name, node);
   }
   return ways;
+}
+
+// The drivers' own words where nothing else explains, and the way that is left.
+void check_sightings(const PadHardware& pad, bool is_explained, Diagnosis& diagnosis) {
+  for (const PadSighting& sighting : diagnosis.machine.sightings) {
+    const std::string& node = sighting.listing.node;
+    if (is_open_to_us(sighting, pad) && needs_consent(sighting)) {
+      diagnosis.add(Finding::State::note, node, pad,
+                    fmt::format("{}: it can be taken from the kernel", node),
+                    "gaitpad play --driver usb");
+    } else if (!is_explained && sighting.listing.pad_path == pad.path &&
+               !sighting.problem.empty()) {
+      diagnosis.add(Finding::State::problem, node, pad, sighting.problem);
+    }
+  }
 }
 
 void check_pad(const PadHardware& pad, Diagnosis& diagnosis) {
@@ -39,19 +63,15 @@ void check_pad(const PadHardware& pad, Diagnosis& diagnosis) {
   // One way is enough: what closes another one is no problem then.
   const auto state = is_usable ? Finding::State::note : Finding::State::problem;
   const std::size_t before = diagnosis.list.size();
-  if (pad.interface) check_binding(*pad.interface, pad, diagnosis);
+  if (pad.interface) check_binding(*pad.interface, pad, state, diagnosis);
   for (const SystemNode& node : pad.hidraw) check_access(node.node, pad, state, diagnosis);
   check_events(pad, state, diagnosis);
-  check_missing_nodes(pad, diagnosis);
+  check_missing_nodes(pad, state, diagnosis);
   check_model(pad, diagnosis);
   const bool is_explained = std::any_of(
       diagnosis.list.begin() + static_cast<std::ptrdiff_t>(before), diagnosis.list.end(),
       [](const Finding& f) { return f.state == Finding::State::problem; });
-  if (is_usable || is_explained) return;
-  for (const PadSighting& sighting : diagnosis.machine.sightings) {
-    if (sighting.listing.pad_path == pad.path && !sighting.problem.empty())
-      diagnosis.add(Finding::State::problem, sighting.listing.node, pad, sighting.problem);
-  }
+  if (!is_usable) check_sightings(pad, is_explained, diagnosis);
 }
 
 // What lies on no pad of its own.

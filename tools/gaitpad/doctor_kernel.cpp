@@ -30,45 +30,44 @@ std::string module_fix(const std::string& module) {
 }  // namespace
 
 // Nothing serves the interface: its kernel driver is not loaded, or let it go.
-void check_binding(const UsbInterface& interface, const PadHardware& pad, Diagnosis& diagnosis) {
+void check_binding(const UsbInterface& interface, const PadHardware& pad, Finding::State state,
+                   Diagnosis& diagnosis) {
   const std::string name = fs::path(interface.path).filename().string();
   const bool is_hid = interface.ids.interface_class == kHidClass;
   const std::string module = is_hid ? "usbhid" : "xpad";
   if (interface.kernel_driver.empty()) {
     const bool is_loaded = exists("/sys/bus/usb/drivers/" + module);
-    diagnosis.add(Finding::State::problem, name, pad,
+    diagnosis.add(state, name, pad,
                   fmt::format("USB interface {}: no kernel driver is bound", name),
                   is_loaded ? fmt::format("echo {} | sudo tee /sys/bus/usb/drivers_probe", name)
                             : module_fix(module));
   } else if (interface.kernel_driver == "usbfs") {
     const std::string users = users_of(pad.usb_node);
-    diagnosis.add(Finding::State::problem, pad.usb_node, pad,
+    diagnosis.add(state, pad.usb_node, pad,
                   fmt::format("USB interface {}: another program has taken it{}", name,
                               users.empty() ? "" : ": " + users),
                   "end that program");
-  } else if (is_hid && interface.hid_driver.empty() && !interface.descriptor.empty()) {
-    diagnosis.add(Finding::State::problem, name, pad,
-                  fmt::format("USB interface {}: its HID device has no driver", name),
-                  fmt::format("sudo modprobe \"$(cat {}/0003:*/modalias)\"", interface.path));
   } else if (is_hid && interface.hid_driver.empty()) {
-    diagnosis.add(
-        Finding::State::problem, name, pad,
-        fmt::format("USB interface {}: {} gave the pad up while starting it (sudo dmesg says "
-                    "why)",
-                    name, interface.kernel_driver),
-        "plug it in again, or: gaitpad play --driver usb");
+    const std::string load =
+        interface.descriptor.empty()
+            ? ""
+            : fmt::format("sudo modprobe \"$(cat {}/0003:*/modalias)\", or ", interface.path);
+    diagnosis.add(state, name, pad,
+                  fmt::format("USB interface {}: its HID driver is not loaded, or gave the pad up "
+                              "while starting it (sudo dmesg says why)",
+                              name),
+                  load + "plug it in again, or: gaitpad play --driver usb");
   }
 }
 
-void check_missing_nodes(const PadHardware& pad, Diagnosis& diagnosis) {
+void check_missing_nodes(const PadHardware& pad, Finding::State state, Diagnosis& diagnosis) {
   const bool is_bound = !pad.interface || (!pad.interface->kernel_driver.empty() &&
                                            pad.interface->kernel_driver != "usbfs");
   if (!is_bound) return;
   if (std::ranges::any_of(pad.events, is_pad_event)) return;
   if (!pad.hidraw.empty() || (pad.interface && !pad.interface->hid_driver.empty()) ||
       (pad.interface && pad.interface->kernel_driver == "xpad")) {
-    diagnosis.add(pad.hidraw.empty() ? Finding::State::problem : Finding::State::note, pad.path,
-                  pad, "its kernel driver is bound, but it has no event node",
+    diagnosis.add(state, pad.path, pad, "its kernel driver is bound, but it has no event node",
                   exists("/sys/module/evdev") ? "plug it in again" : module_fix("evdev"));
   }
 }

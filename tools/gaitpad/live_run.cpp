@@ -15,6 +15,7 @@ namespace gaitpad {
 namespace {
 
 constexpr std::size_t kMaxLineBytes = 4096;  // of a command; longer ones are cut
+constexpr int kMaxReads = 64;                // at once, of who writes without end
 
 sigset_t ending_signals() noexcept {
   sigset_t set;
@@ -39,6 +40,7 @@ RunEnd::RunEnd() {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
   signals_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+  if (signals_ < 0) pthread_sigmask(SIG_UNBLOCK, &set, nullptr);  // rather cut off than never
 }
 
 void RunEnd::end_after(double seconds) noexcept {
@@ -71,7 +73,7 @@ void RunEnd::wait(std::chrono::milliseconds time, std::span<const pollfd> others
 std::vector<std::string> InputLines::take() {
   std::vector<std::string> lines;
   pollfd ready = fd();
-  while (is_open_ && ::poll(&ready, 1, 0) > 0) {
+  for (int reads = 0; is_open_ && reads<kMaxReads&& ::poll(&ready, 1, 0)> 0; ++reads) {
     char bytes[1024];
     const ssize_t count = ::read(0, bytes, sizeof bytes);
     if (count < 0 && errno == EINTR) continue;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "session/pad_stream.h"
 #include "tools/gaitpad/commands.h"
@@ -39,7 +40,7 @@ class Display {
     }
     if (!is_rewritten_ || now_ns < rewritten_ns_ + kRewriteNs) return;
     rewritten_ns_ = now_ns;
-    std::vector<std::string> lines;
+    std::vector<std::string> lines = {pad_header()};
     for (const auto& [index, pad] : pads) lines.push_back(pad_text(index, pad, stream));
     line_.show(lines);
   }
@@ -62,19 +63,20 @@ class Display {
     second_ns_ = now_ns;
   }
 
-  void print(const MonitoredPads& pads, const PadStream& stream, std::int64_t now_ns) const {
+  void print(const MonitoredPads& pads, const PadStream& stream, std::int64_t now_ns) {
     for (const auto& [index, pad] : pads) {
       if (as_json_) {
         print_json_line(
             pad_json(index, pad, stream, static_cast<double>(now_ns - start_ns_) / 1e9));
       } else {
+        if (!std::exchange(has_header_, true)) fmt::print("{}\n", pad_header());
         fmt::print("{}\n", pad_text(index, pad, stream));
       }
     }
   }
 
   StatusLine line_{1};
-  bool as_json_, is_rewritten_;
+  bool as_json_, is_rewritten_, has_header_ = false;
   std::int64_t start_ns_ = monotonic_ns(), second_ns_ = start_ns_, rewritten_ns_ = 0;
 };
 

@@ -73,7 +73,9 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
   is_told_ = true;
   std::vector<std::string> remarks = {
       fmt::format("{}: {}", wish_.pad.empty() ? "a pad" : wish_.pad, what)};
-  for (const std::string& other : pads_of_system()) remarks.push_back(other);
+  const bool is_choosy = !wish_.pad.empty() || !wish_.driver.empty();
+  for (const std::string& other : is_choosy ? pads_of_system() : std::vector<std::string>())
+    remarks.push_back(other);
   remarks.push_back("gaitpad doctor finds why a pad does not work");
   print_remarks(command_, remarks, &line);
 }

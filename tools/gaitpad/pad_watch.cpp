@@ -99,22 +99,27 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"buttons", button_names(pad.state)}};
 }
 
+std::string pad_header() {
+  return "left         right        triggers     Hz jitter   gap ms latency max us lost buttons, "
+         "pad";
+}
+
 std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
   const DeviceInfo& info = stream.device(index).info;
-  const std::string who = fmt::format("{} ({})", printable(info.name), info.driver);
-  if (!pad.is_plugged) return who + "  unplugged";
+  const std::string who =
+      fmt::format("{} ({})", printable(info.name), info.driver.empty() ? "recording" : info.driver);
+  if (!pad.is_plugged) return "unplugged: " + who;
   const Stick stick = stick_of(pad);
   const Window& w = pad.shown;
   std::string buttons;
-  for (const std::string& name : button_names(pad.state)) buttons += " " + name;
+  for (const std::string& name : button_names(pad.state)) buttons += name + " ";
   return fmt::format(
-      "left {:+.2f} {:+.2f}  right {:+.2f} {:+.2f}  triggers {:.2f} {:.2f}  {:>4.0f} Hz  jitter "
-      "{:.2f} "
-      "ms  gap {:.1f} ms  latency {:.0f}/{:.0f} us  lost {}  {} {}",
+      "{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f} {:>7.0f} "
+      "{:>6.0f} {:>4} {}{}",
       stick.left.x, stick.left.y, stick.right.x, stick.right.y, pad.state.axis[kLeftTrigger],
       pad.state.axis[kRightTrigger], rate_hz(w), jitter(w.interval_us) / 1e3,
       greatest(w.interval_us) / 1e3, median(w.latency_us), greatest(w.latency_us),
-      stream.counts().lost, who, buttons);
+      stream.counts().lost, buttons, who);
 }
 
 }  // namespace gaitpad

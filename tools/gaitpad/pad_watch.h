@@ -31,6 +31,8 @@ void take(const Report& report, PadStream& stream, MonitoredPads& pads);
 
 nlohmann::ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad,
                                 const PadStream& stream, double time_s);
+// A line of a table, and its head.
+std::string pad_header();
 std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream);
 
 }  // namespace gaitpad

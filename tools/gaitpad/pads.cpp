@@ -34,6 +34,10 @@ int fail(const std::string& sentence) {
 
 bool is_usable(const PadSighting& sighting) { return sighting.is_pad && sighting.problem.empty(); }
 
+std::string problem_of(const PadSighting& sighting) {
+  return sighting.problem.empty() && !sighting.is_pad ? "it has no stick" : sighting.problem;
+}
+
 std::string bus_name(BusType bus) {
   switch (bus) {
     case BusType::usb:
@@ -96,7 +100,7 @@ ordered_json row_json(const Row& row) {
                          {"usages", usages_of(info)},
                          {"poll_rate_hz", nullptr},
                          {"usable", is_usable(row.sighting)},
-                         {"problem", row.sighting.problem},
+                         {"problem", problem_of(row.sighting)},
                          {"chosen", row.is_chosen}};
   if (listing.poll_rate_hz > 0.0) object["poll_rate_hz"] = listing.poll_rate_hz;
   return object;
@@ -150,9 +154,7 @@ void print_text(const std::vector<Row>& rows, const PadWish& wish) {
                      bus_name(info.bus), fmt::format("{:04x}:{:04x}", info.vendor, info.product),
                      printable(info.name), printable(info.unique_id), joined(usages_of(info)), rate,
                      listing.kernel_driver,
-                     is_usable(row.sighting)        ? "yes"
-                     : row.sighting.problem.empty() ? "no: it has no stick"
-                                                    : "no: " + row.sighting.problem});
+                     is_usable(row.sighting) ? "yes" : "no: " + problem_of(row.sighting)});
   }
   if (rows.empty()) {
     fmt::print("no device is seen by any driver; gaitpad doctor says more\n");

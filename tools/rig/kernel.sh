@@ -25,7 +25,7 @@ elif [ "$series" != 6.1 ]; then
   exit 2
 fi
 options=(-o "Dir::State::lists=$apt/lists" -o "Dir::Cache=$apt" -o "Dir::Etc::sourceparts=$apt/sources"
-  -o APT::Sandbox::User=root -o Acquire::Languages=none -o Acquire::Retries=3)
+  -o APT::Update::Error-Mode=any -o APT::Sandbox::User=root -o Acquire::Languages=none -o Acquire::Retries=3)
 
 # The number changes with every security update, and old ones leave the archive: ask, never assume. The
 # lists are asked for once in twelve hours; without network the kernel of the last time serves.

@@ -1,0 +1,96 @@
+"""A `gaitpad play` beside the test, and what its recording says: `with Session(...) as session: ...`."""
+import json
+import os
+import signal
+import subprocess
+
+from harness import BUILD, PROGRAM, run
+from pads import wait_for
+
+IDS = {"generic": "1209:0001", "ds4": "054c:09cc", "dualsense": "054c:0ce6", "switch": "057e:2009",
+       "xbox360": "045e:028e", "xboxone": "045e:02ea"}
+HAS_SANITIZERS = BUILD.rstrip("/").endswith(("-asan", "-tsan"))
+TICK_S = 1 / 240
+
+
+class Session:
+    """Plays until the block ends, by Ctrl-C, and then replays its recording. `summary`, `replayed` and `reports`
+    are known afterwards; `reports` are the decoded ones, in order."""
+
+    def __init__(self, *arguments, name="session", awaited=1):
+        self.path = f"/results/{name}.hid"
+        self.awaited = awaited  # pads to wait for
+        self._command = [PROGRAM, "play", *map(str, arguments), "--no-window", "--json", "--record", self.path]
+
+    def __enter__(self):
+        print("$", *self._command, flush=True)
+        self.process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
+        try:
+            wait_for(lambda: self.plugged() >= self.awaited or self.process.poll() is not None, 30, "the session's pad")
+        except BaseException:
+            self.process.kill()
+            self.process.wait()
+            raise
+        return self
+
+    def __exit__(self, kind, *_):
+        if kind is not None:
+            self.process.kill()
+            self.process.communicate()
+            return
+        self.process.send_signal(signal.SIGINT)
+        output, _ = self.process.communicate(timeout=60)
+        assert self.process.returncode == 0, f"play ended with {self.process.returncode}"
+        self.summary = json.loads(output)
+        self.replayed = json.loads(run("gaitpad", "replay", self.path, "--json", seconds=300).stdout)
+        assert self.summary["recording_lost"] == 0, self.summary
+        assert self.summary["pose_hash"] == self.replayed["pose_hash"], "the replay differs from the session"
+
+    def lines(self, start=""):
+        """Of the recording so far."""
+        path = self.path if os.path.exists(self.path) else self.path + ".part"
+        try:
+            with open(path) as file:
+                text = file.read()
+        except FileNotFoundError:
+            return []
+        return [line for line in text[: text.rfind("\n") + 1].splitlines() if line.startswith(start)]
+
+    def plugged(self):
+        return sum(line.endswith(" add") for line in self.lines("H:"))
+
+    def unplugged(self):
+        return sum(line.endswith(" remove") for line in self.lines("H:"))
+
+    def wait_plugged(self, count, seconds=30):
+        wait_for(lambda: self.plugged() >= count, seconds, f"pad number {count} in the recording")
+
+    def wait_unplugged(self, count, seconds=10):
+        wait_for(lambda: self.unplugged() >= count, seconds, f"unplugging number {count} in the recording")
+
+    def handles(self):
+        """Open file descriptors of the program."""
+        return len(os.listdir(f"/proc/{self.process.pid}/fd"))
+
+    def decoded(self):
+        """Every report of the recording as `gaitpad decode` gives it."""
+        rows = map(json.loads, run("gaitpad", "decode", self.path, "--json", seconds=300).stdout.splitlines())
+        return [row for row in rows if "axes" in row]
+
+    def frames(self):
+        """frames.csv of the replay, as a list of dictionaries of texts."""
+        import csv
+        run("gaitpad", "replay", self.path, "--out", "/tmp/frames", seconds=300)
+        with open("/tmp/frames/frames.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+
+def ticks_of(lines, wanted):
+    """The tick of each line of a recording for which wanted(line) is true."""
+    tick, found = 0, []
+    for line in lines:
+        if line.startswith("T: "):
+            tick = int(line[3:])
+        elif wanted(line):
+            found.append(tick)
+    return found

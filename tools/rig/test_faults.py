@@ -1,0 +1,291 @@
+"""What goes wrong with pads: unplugging, silence, stalls, floods, odd packets, missing permission.
+
+Each fault 50 times with --long, a few times otherwise. A session must survive, be neutral in time, leak no handle,
+and replay to the same poses (session.py asserts that at the end of each).
+"""
+import json
+import os
+import random
+import signal
+import subprocess
+import time
+
+import pads
+from harness import PROGRAM, cases, long, remark, run, timeout
+from pads import LONG, Pad, settle, wait_for
+from session import HAS_SANITIZERS, IDS, TICK_S, Session, ticks_of
+from test_matrix import VALUES
+
+TIMES = 50 if LONG else 5
+NOBODY = 65534
+RULES = "/etc/udev/rules.d/60-gaitpad.rules"
+
+
+def push_forward(pad):
+    pad.set(ly=VALUES[pad.kind]["rest"])
+    time.sleep(0.1)
+    pad.set(ly=VALUES[pad.kind]["forward"])
+
+
+def neutral_in_time(frames, ticks, seconds=0.1):
+    """After each of these ticks the stick is neutral within so many seconds."""
+    for tick in ticks:
+        after = frames[min(len(frames) - 1, tick + round(seconds / TICK_S) + 1)]
+        assert float(after["stick_x"]) == float(after["stick_y"]) == 0.0, (tick, after["stick_y"])
+
+
+@timeout(400)
+@cases("generic-hidraw", "dualsense-hidraw", "generic-usb", "xbox360-evdev", "generic-sdl")
+def test_unplugged_while_walking_and_plugged_in_again(case):
+    kind, driver = case.split("-")
+    times = TIMES if case in ("generic-hidraw", "generic-usb", "xbox360-evdev") or not LONG else 10
+    with Pad(kind) as pad, Session(IDS[kind], "--driver", driver, name=f"unplug-{case}") as session:
+        for turn in range(times):
+            push_forward(pad)
+            time.sleep(0.8)
+            pad.unplug()
+            session.wait_unplugged(turn + 1)
+            if turn == 0:
+                handles = session.handles()
+            pad.plug()
+            session.wait_plugged(turn + 2)
+        pad.unplug()
+        session.wait_unplugged(times + 1)
+        time.sleep(2.0)  # it finishes its step and stands
+        assert session.handles() <= handles, f"{session.handles()} handles, {handles} at first"
+    assert session.summary["unplugged"] == times + 1
+    frames = session.frames()
+    neutral_in_time(frames, ticks_of(session.lines(), lambda line: line.startswith("H:") and "remove" in line))
+    assert sum(frame["stage"] != "idle" for frame in frames) > 100 * times
+    assert frames[-1]["stage"] == "idle"
+    remark(f"unplugged while walking, {case}: {times} times, neutral within 0.1 s each time")
+
+
+@timeout(300)
+def test_unplugged_during_open():
+    """Blind flapping under a loop of programs that open whatever there is, and under a session."""
+    chance = random.Random(1)
+    with Pad("dualsense") as pad, Session(IDS["dualsense"], name="flapping") as session:
+        for _ in range(TIMES):
+            pad.command("unplug")
+            time.sleep(chance.uniform(0.02, 0.4))
+            pad.command("plug")
+            opener = subprocess.Popen([PROGRAM, "record", IDS["dualsense"], "--out", "/tmp/opened.hid", "--seconds", "0.5"],
+                                      stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            time.sleep(chance.uniform(0.02, 0.9))
+            pad.command("unplug")
+            time.sleep(chance.uniform(0.02, 0.2))
+            pad.command("plug")
+            _, errors = opener.communicate(timeout=30)
+            assert opener.returncode in (0, 1) and "Sanitizer" not in errors, (opener.returncode, errors)
+        pad.wait_ready(60)
+        reports = len(session.lines("E:"))
+        wait_for(lambda: session.plugged() > session.unplugged() and len(session.lines("E:")) > reports, 30, "the pad back")
+        pad.set(ly=0)
+    remark(f"unplugged during open: {TIMES} times, {session.summary['unplugged']} openings were cut")
+
+
+@timeout(200)
+def test_two_equal_pads_are_kept_apart():
+    with Pad("dualsense", 0) as first, Pad("dualsense", 1) as second:
+        rows = [row for row in json.loads(run("gaitpad", "pads", "--driver", "hidraw", "--json").stdout) if row["usable"]]
+        unique = {row["port"]: row["unique_id"] for row in rows}
+        assert len(unique) == 2 and len(set(unique.values())) == 2, rows
+        ids = {pad: next(name for port, name in unique.items() if f"dummy_hcd.{pad.index}" in port)
+               for pad in (first, second)}
+        for turn in range(TIMES):
+            mine, other = (first, second) if turn % 2 else (second, first)
+            mine.set(lx=40 + turn)
+            other.set(lx=200)
+            path = "/tmp/apart.hid"
+            run("gaitpad", "record", ids[mine], "--out", path, "--seconds", "0.3")
+            values = {line.split()[4] for line in open(path) if line.startswith("E:")}
+            assert values == {f"{40 + turn:02x}"}, (turn, values)
+    with Pad("dualsense", 0) as first, Pad("dualsense", 1) as second, \
+            Session("--driver", "hidraw", name="equal", awaited=2) as session:
+        for turn in range(3):
+            first.unplug()
+            session.wait_unplugged(2 * turn + 1)
+            second.unplug()
+            session.wait_unplugged(2 * turn + 2)
+            second.plug()  # in the other order: still their own numbers
+            session.wait_plugged(3 + 2 * turn)
+            first.plug()
+            session.wait_plugged(4 + 2 * turn)
+    assert sum(line.startswith("R:") for line in session.lines()) == 2, "a known pad got a new number"
+
+
+def numbers_of(session, at):
+    """The numbers in the reports, by the device's unique id."""
+    found, unique, device = {}, {}, "0"
+    for line in session.lines():
+        if line.startswith("D:"):
+            device = line[3:]
+        elif line.startswith("U:"):
+            unique[device] = line[3:]
+        elif line.startswith("E:"):
+            data = bytes.fromhex("".join(line.split()[3:]))
+            found.setdefault(unique.get(device, device), []).append(int.from_bytes(data[at:at + 4], "little"))
+    return found
+
+
+@timeout(400)
+@cases("hidraw", "usb")
+def test_flood_of_four_pads_with_a_paused_reader(driver):
+    """Each report carries its number: every gap is seen, and what came last is right."""
+    rate_hz, seconds = (1000, 60) if LONG and not HAS_SANITIZERS else (250, 6)
+    at = 8  # the vendor bytes of the generic pad
+    with contextlib_stack(4) as pads_, Session("1209:0001", "--driver", driver, "--no-rumble", name=f"flood-{driver}",
+                                               awaited=1) as session:
+        wait_for(lambda: session.plugged() >= 4, 60, "four pads")
+        for pad in pads_:
+            pad.burst(rate_hz, seconds, at=at)
+        for _ in range(3):
+            time.sleep(seconds / 4)
+            session.process.send_signal(signal.SIGSTOP)
+            time.sleep(0.5)
+            session.process.send_signal(signal.SIGCONT)
+        sent = [pad.wait_burst(3 * seconds + 60)[0] for pad in pads_]
+        time.sleep(1.0)
+    found = numbers_of(session, at)
+    assert len(found) == 4, found.keys()
+    gaps = 0
+    for (name, numbers), count in zip(sorted(found.items()), sent):
+        numbers = numbers[numbers.index(0):] if 0 in numbers else numbers
+        assert all(b > a for a, b in zip(numbers, numbers[1:]) if b != 0), f"{name}: out of order or twice"
+        assert numbers[-1] == count - 1, f"{name}: the last report is {numbers[-1]} of {count}"
+        gaps += count - len([n for n in numbers if n < count])
+    remark(f"flood, {driver}: 4 x {rate_hz} Hz x {seconds} s, {sum(sent)} sent, {gaps} lost while the reader was stopped "
+           f"three times, {session.summary['lost']} of them known to the program")
+
+
+class contextlib_stack:
+    """So many generic pads."""
+
+    def __init__(self, count):
+        self.pads = [Pad("generic", index) for index in range(count)]
+
+    def __enter__(self):
+        return [pad.__enter__() for pad in self.pads]
+
+    def __exit__(self, *what):
+        for pad in self.pads:
+            pad.__exit__(*what)
+
+
+@timeout(200)
+@cases("hidraw", "usb")
+def test_a_pad_that_falls_silent_is_neutral(driver):
+    with Pad("dualsense") as pad, Session(IDS["dualsense"], "--driver", driver, name=f"silent-{driver}") as session:
+        for _ in range(TIMES):
+            push_forward(pad)
+            time.sleep(0.3)
+            pad.silence()
+            time.sleep(0.3)
+            pad.silence(False)
+            time.sleep(0.1)
+    frames = session.frames()
+    sticks = [float(frame["stick_y"]) for frame in frames]
+    falls = [k for k in range(1, len(sticks)) if sticks[k] == 0.0 and sticks[k - 1] > 0.9]
+    times_s = [float(line.split()[1]) for line in session.lines("E:")]
+    silences = sum(b - a > 0.2 for a, b in zip(times_s, times_s[1:]))
+    assert silences >= TIMES, f"{silences} silences recorded"
+    assert len(falls) >= TIMES, f"{len(falls)} falls to neutral"
+    remark(f"silent pad, {driver}: {silences} silences, neutral each time")
+
+
+@timeout(200)
+@cases("usb", "hidraw")
+def test_a_stalled_endpoint_recovers(driver):
+    with Pad("dualsense") as pad, Session(IDS["dualsense"], "--driver", driver, name=f"stall-{driver}") as session:
+        for turn in range(TIMES):
+            before = len(pad.lines("stalled"))
+            pad.stall()
+            wait_for(lambda: len(pad.lines("stalled")) > before, 5, "the stall")
+            pad.set(lx=turn + 1)
+            wait_for(lambda: any(line.split()[4] == f"{turn + 1:02x}" for line in session.lines("E:")[-400:]), 10,
+                     f"reports after stall {turn}")
+    assert session.unplugged() == 0
+    remark(f"stalled endpoint, {driver}: {TIMES} times, goes on; {session.summary['lost']} counted as lost")
+
+
+@timeout(200)
+def test_odd_packets_on_usb_change_nothing():
+    """Short, longer than the descriptor says, of an unknown id."""
+    with Pad("dualsense") as pad, Session(IDS["dualsense"], "--driver", "usb", name="odd") as session:
+        pad.stream(0)
+        pad.set(lx=200)
+        time.sleep(0.3)
+        odd = [b"\x01\x00\x00", b"\x01", b"\x77" + bytes(63), b"\x31" + bytes(10)]
+        for turn in range(TIMES):
+            pad.raw(odd[turn % len(odd)])
+            time.sleep(0.02)
+        pad.set(lx=128)
+        time.sleep(0.3)
+    assert session.replayed["bad_reports"] == TIMES, session.replayed
+    assert not [frame for frame in session.frames() if float(frame["stick_x"]) < 0], "an odd packet moved the stick"
+    remark(f"odd packets on usb: {TIMES}, each counted, none moved the stick")
+
+
+def test_no_permission_and_the_rule():
+    group = subprocess.run(["getent", "group", "input"], capture_output=True, text=True, check=True).stdout.split(":")[2]
+    as_user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}"]
+
+    def listed(*groups):
+        done = subprocess.run([*as_user, *groups, PROGRAM, "pads", "--json"], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return [row for row in json.loads(done.stdout) if row.get("product") == 0x0ce6 and row["driver"] in ("hidraw", "evdev", "usb")]
+
+    with Pad("dualsense") as pad:
+        for _ in range(TIMES):
+            rows = [row for row in listed("--clear-groups") if row["path"] in (pad.hidraw, pad.joystick, pad.usb)]
+            assert len(rows) >= 2 and not any(row["usable"] for row in rows), rows
+            assert all("permission denied" in row["problem"] for row in rows), rows
+        done = subprocess.run([*as_user, "--clear-groups", PROGRAM, "doctor"], capture_output=True, text=True)
+        assert done.returncode == 1 and pad.hidraw in done.stdout and "--install-rules" in done.stdout, done
+        done = subprocess.run([PROGRAM, "doctor", "--install-rules"], input="n\n", capture_output=True, text=True)
+        assert not os.path.exists(RULES), "installed without consent"
+        run("gaitpad", "doctor", "--install-rules", "--yes")
+        settle()
+        assert "uaccess" in pads.udev_properties(pad.hidraw).get("TAGS", "") or tagged(pad.hidraw)
+        for _ in range(TIMES):
+            rows = [row for row in listed("--groups", group) if row["path"] in (pad.hidraw, pad.joystick)]
+            assert len(rows) == 2 and all(row["usable"] for row in rows), rows
+        run(*as_user, "--groups", group, PROGRAM, "record", "--out", "/tmp/as_user.hid", "--seconds", "0.5")
+        pad.unplug()
+        pad.plug()  # the rule holds for the node that comes next, too
+        assert [row["usable"] for row in listed("--groups", group) if row["path"] == pad.hidraw] == [True]
+    remark(f"no permission: {TIMES} times said, after the rule {TIMES} times opened by an ordinary user of group input")
+
+
+def tagged(node):
+    return "uaccess" in subprocess.run(["udevadm", "info", "-q", "all", "-n", node], capture_output=True, text=True).stdout
+
+
+@timeout(120)
+@cases("SIGINT", "SIGTERM", "SIGKILL", "SIGSEGV")
+def test_the_kernel_gets_its_pad_back(name):
+    """However the program ends that took it."""
+    with Pad("generic") as pad:
+        for _ in range(TIMES if LONG and name == "SIGKILL" else 2):
+            play = subprocess.Popen([PROGRAM, "play", IDS["generic"], "--driver", "usb", "--no-window"],
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            wait_for(lambda: not pad.hidraws and not pad.events, 20, "the pad's being taken")
+            play.send_signal(getattr(signal, name))
+            play.wait(20)
+            wait_for(lambda: pad.hidraws and pad.events, 20, "the pad's coming back")
+
+
+@long
+@timeout(400)
+def test_four_pads_at_a_kilohertz_undisturbed():
+    with contextlib_stack(4) as pads_, Session("1209:0001", "--driver", "hidraw", "--no-rumble", name="kilohertz") as session:
+        wait_for(lambda: session.plugged() >= 4, 60, "four pads")
+        for pad in pads_:
+            pad.burst(1000, 60, at=8)
+        sent = [pad.wait_burst(240)[0] for pad in pads_]
+        time.sleep(1.0)
+    found = numbers_of(session, 8)
+    missing = [count - len(set(numbers) & set(range(count))) for (_, numbers), count in zip(sorted(found.items()), sent)]
+    assert sum(missing) == 0, missing
+    remark(f"four pads at 1 kHz for 60 s: {sum(sent)} reports, none lost")

@@ -1,0 +1,110 @@
+"""Six pads on every driver that can serve them: found, decoded as sent, recorded, and replayed to the same poses."""
+import json
+import time
+
+from harness import cases, remark, run, timeout
+from pads import Pad
+from session import IDS, Session
+
+DRIVERS = {"generic": ("hidraw", "usb", "evdev", "sdl"), "ds4": ("hidraw", "usb", "evdev", "sdl"),
+           "dualsense": ("hidraw", "usb", "evdev", "sdl"), "switch": ("hidraw", "usb", "evdev", "sdl"),
+           "xbox360": ("usb", "evdev", "sdl"), "xboxone": ("usb", "evdev", "sdl")}
+MATRIX = [f"{kind}-{driver}" for kind, drivers in DRIVERS.items() for driver in drivers]
+
+BYTES = {"rest": 128, "low": 0, "high": 255, "some": (200, 100, 50, 25), "trigger": 255, "forward": 0}
+WORDS = {"rest": 0, "low": -32768, "high": 32767, "some": (20000, 10000, -5000, -20000), "forward": 32767}
+VALUES = {"generic": BYTES, "ds4": BYTES, "dualsense": BYTES,
+          # within what the flash says of the sticks' reach: 2048 +- 1536
+          "switch": {"rest": 2048, "low": 512, "high": 3584, "some": (3200, 1500, 1000, 2500), "trigger": 1,
+                     "forward": 3584},
+          "xbox360": {**WORDS, "trigger": 255}, "xboxone": {**WORDS, "trigger": 1023}}
+STICKS = ("lx", "ly", "rx", "ry")
+BUTTONS = ("a", "b", "x", "y")
+NAMES = {"lx": "left_x", "ly": "left_y", "rx": "right_x", "ry": "right_y", "lt": "left_trigger",
+         "rt": "right_trigger"}
+
+
+def states(kind):
+    """What is sent, one after the other: sticks in both extremes and between, triggers, each button."""
+    v = VALUES[kind]
+    rest = {**dict.fromkeys(STICKS, v["rest"]), "lt": 0, "rt": 0, **dict.fromkeys(BUTTONS, 0)}
+    yield {**rest, **dict(zip(STICKS, v["some"]))}
+    for stick in STICKS:
+        yield {**rest, stick: v["low"]}
+        yield {**rest, stick: v["high"]}
+    if kind != "switch":
+        yield {**rest, "lt": v["trigger"] // 2, "rt": v["trigger"]}
+    yield {**rest, "lt": v["trigger"]}
+    yield {**rest, "rt": v["trigger"]}
+    for button in BUTTONS:
+        yield {**rest, button: 1}
+    yield rest
+
+
+def expected_stick(kind, driver, name, value):
+    """Decoded, +y forward. HID pads have y towards the thumb, Switch and Xbox packets have it forward."""
+    if kind == "switch":
+        if driver in ("hidraw", "usb"):
+            return value / 2047.5 - 1  # as the pad counts, its calibration comes later
+        return max(-1.0, min(1.0, (value - 2048) / 1536))  # hid-nintendo applies it
+    if kind in ("xbox360", "xboxone"):
+        return (value + 32768) / 32767.5 - 1
+    return (value / 127.5 - 1) * (-1 if name.endswith("y") else 1)
+
+
+def expected(kind, driver, state):
+    axes = {NAMES[name]: expected_stick(kind, driver, name, state[name]) for name in STICKS}
+    for name in ("lt", "rt"):
+        axes[NAMES[name]] = state[name] / VALUES[kind]["trigger"]
+    return axes, {button for button in BUTTONS if state[button]}
+
+
+def is_as_sent(row, axes, buttons):
+    return all(abs(row["axes"][name] - value) < 0.002 for name, value in axes.items()) and \
+        {button for button in row["buttons"] if button in BUTTONS} == buttons
+
+
+def check_sequence(rows, wanted):
+    """Every wanted state is met, in this order."""
+    position = 0
+    for number, (axes, buttons) in enumerate(wanted):
+        found = next((i for i in range(position, len(rows)) if is_as_sent(rows[i], axes, buttons)), None)
+        if found is None:
+            near = [(row["axes"], row["buttons"]) for row in rows[position:position + 12]]
+            raise AssertionError(f"state {number} was not decoded: {axes} {buttons}; from there on came {near}")
+        position = found
+
+
+@timeout(90)
+@cases(*MATRIX)
+def test_found_decoded_recorded_and_replayed(case):
+    kind, driver = case.split("-")
+    with Pad(kind) as pad:
+        rows = json.loads(run("gaitpad", "pads", "--driver", driver, "--json").stdout)
+        ids = IDS[kind].split(":")
+        mine = [row for row in rows if row.get("vendor") == int(ids[0], 16) and row["product"] == int(ids[1], 16)]
+        assert [row["usable"] for row in mine].count(True) == 1, mine
+        with Session(IDS[kind], "--driver", driver, name=case) as session:
+            sent = list(states(kind))
+            for state in sent:
+                pad.set(**state)
+                time.sleep(0.02)
+            pad.set(ly=VALUES[kind]["forward"])
+            time.sleep(1.5)
+            pad.set(ly=VALUES[kind]["rest"])
+            time.sleep(0.1)
+            drivers = {line.split()[1] for line in session.lines("B:")}
+        assert drivers == {driver}
+        check_sequence(session.decoded(), [expected(kind, driver, state) for state in sent])
+        steps = session.replayed["steps_left"] + session.replayed["steps_right"]
+        assert steps >= 2, f"{steps} steps"
+        assert session.replayed["bad_reports"] == 0, session.replayed
+        remark(f"{case}: {session.replayed['reports']} reports, pose hash {session.replayed['pose_hash']} twice")
+
+
+@cases("generic", "ds4", "dualsense", "switch", "xbox360", "xboxone")
+def test_without_a_wish_the_best_driver_serves_it(kind):
+    with Pad(kind):
+        rows = json.loads(run("gaitpad", "pads", "--json").stdout)
+        chosen = [row["driver"] for row in rows if row.get("chosen")]
+        assert chosen == [DRIVERS[kind][0] if kind[:4] != "xbox" else "evdev"], rows

@@ -36,6 +36,7 @@ class Sdl {
  public:
   static Sdl& started() {
     static Sdl sdl;
+    static thread_local const ThreadStorage storage;
     return sdl;
   }
   Sdl(const Sdl&) = delete;
@@ -49,6 +50,10 @@ class Sdl {
   JoystickInboxes inboxes;                                 // of all open devices
 
  private:
+  struct ThreadStorage {  // SDL keeps some for each thread that is not its own
+    ThreadStorage() {}
+    ~ThreadStorage() { SDL_TLSCleanup(); }
+  };
   Sdl();
   static int SDLCALL watch(void* self, SDL_Event* event);
   std::string problem_;

@@ -160,15 +160,23 @@ bool UsbTransfers::take(Report& packet) noexcept {
 void UsbTransfers::begin_recovery() noexcept {
   if (is_recovering_ || is_gone_) return;
   is_recovering_ = true;
-  ++lost_;
   for (InSlot& slot : in_) {
     if (slot.state == InSlot::State::waiting) libusb_cancel_transfer(slot.transfer);
   }
 }
 
+// Without a transfer under way only the node itself tells of the unplugging.
+bool UsbTransfers::has_hung_up() noexcept {
+  ::poll(poll_fds_.data(), poll_fds_.size(), 0);
+  return std::any_of(poll_fds_.begin(), poll_fds_.end(),
+                     [](const pollfd& fd) { return (fd.revents & (POLLERR | POLLHUP)) != 0; });
+}
+
 void UsbTransfers::recover() noexcept {
-  if ((!is_recovering_ && !is_out_halted_) || is_gone_ || now_ns_ < recover_ns_) return;
+  if ((!is_recovering_ && !is_out_halted_) || is_gone_) return;
   if (is_recovering_ && waiting_count_ > 0) return;
+  if (has_hung_up()) is_gone_ = true;
+  if (is_gone_ || now_ns_ < recover_ns_) return;
   recover_ns_ = now_ns_ + kRecoverPauseNs;
   int error = LIBUSB_SUCCESS;
   if (is_out_halted_) {
@@ -178,7 +186,10 @@ void UsbTransfers::recover() noexcept {
   if (is_recovering_ && !is_device_lost(error)) {
     error = libusb_clear_halt(handle_, endpoints_.in);
     is_recovering_ = error != LIBUSB_SUCCESS;
-    if (!is_recovering_) submit_all();
+    if (!is_recovering_) {
+      ++lost_;  // only now: the errors of a pad that is being unplugged are no loss
+      submit_all();
+    }
   }
   if (is_device_lost(error)) is_gone_ = true;
 }

@@ -78,6 +78,7 @@ class UsbTransfers {
   void submit_out() noexcept;
   void fill_out(const OutPacket& packet) noexcept;
   void begin_recovery() noexcept;
+  bool has_hung_up() noexcept;
   void recover() noexcept;
   void repeat_out() noexcept;
   void set_timer() noexcept;

@@ -91,12 +91,20 @@ class GipModel final : public PadModel {
     if (packet.empty()) return false;
     // Without a header it cannot be told what it is: it is handed on and counted.
     if (packet.size() < kHeaderBytes) return !is_of_protocol(packet[0]);
+    const bool is_known = packet[0] == kInput || packet[0] == kGuide || is_of_protocol(packet[0]);
+    if (!is_known) return true;  // handed on and counted, too
     const std::uint8_t options = packet[1];
-    if ((options & kChunk) != 0) return false;  // a part of a long message: none is of input
+    const bool is_input = !is_of_protocol(packet[0]);
+    if ((options & kChunk) != 0) {  // a part of a long message, which no input is
+      refused_ += is_input ? 1 : 0;
+      return false;
+    }
     if ((options & kWantsAnswer) != 0) acknowledge(packet, reply);
     if (packet[0] == kAnnounce && (options & kClient) == 0) power_on(reply);
-    return (options & kClient) == 0 && !is_of_protocol(packet[0]);
+    return is_input && (options & kClient) == 0;
   }
+
+  std::int64_t lost() const noexcept override { return refused_; }
 
   void rumble(const Rumble& strengths, OutPacket& packet) noexcept override {
     packet = {};
@@ -144,6 +152,7 @@ class GipModel final : public PadModel {
 
   std::uint32_t id_;
   std::uint8_t sequence_ = 0;
+  std::int64_t refused_ = 0;
 };
 
 }  // namespace

@@ -170,7 +170,9 @@ TEST_F(Gip, PartsOfLongMessagesAreIgnored) {
   EXPECT_EQ(reply_.size, 0u);
   Bytes input = neutral();
   input[1] = 0xa0;
+  EXPECT_EQ(model_->lost(), 0);
   EXPECT_FALSE(model_->accept(input, reply_));
+  EXPECT_EQ(model_->lost(), 1);
 }
 
 TEST_F(Gip, ShortAndUnknownPacketsAreHandedOnAndChangeNothing) {
@@ -181,8 +183,9 @@ TEST_F(Gip, ShortAndUnknownPacketsAreHandedOnAndChangeNothing) {
     EXPECT_TRUE(model_->accept(part, reply_)) << size;
     EXPECT_FALSE(decodes(part)) << size;
   }
-  packet[0] = 0x77;
+  packet[0] = 0x77, packet[1] = 0xff;
   EXPECT_TRUE(model_->accept(packet, reply_));
+  EXPECT_EQ(reply_.size, 0u);
   EXPECT_FALSE(decodes(packet));
   EXPECT_FALSE(model_->accept(Bytes{}, reply_));
   EXPECT_EQ(state_, PadState{});

@@ -60,6 +60,20 @@ TEST(PadFile, TheFirstMatchByIdsBusAndDriverCounts) {
   EXPECT_EQ(find_override(*pads, device)->name, "bt");
 }
 
+TEST(PadFile, VersionsTellWhoArrangedThePad) {
+  const auto pads = parse_pad_file(
+      "[[pad]]\nname = \"special\"\nversions = [0x8000, 0xffff]\n[[pad]]\nname = \"plain\"\n",
+      "p.toml");
+  ASSERT_TRUE(pads) << pads.error().message;
+  DeviceInfo device;
+  device.version = 0x8000;
+  EXPECT_EQ(find_override(*pads, device)->name, "special");
+  device.version = 0x0111;
+  EXPECT_EQ(find_override(*pads, device)->name, "plain");
+  EXPECT_EQ(cause("[[pad]]\nversions = [1]\n").substr(0, 9), "p.toml:2:");
+  EXPECT_EQ(cause("[[pad]]\nversions = [0, 70000]\n").substr(0, 9), "p.toml:2:");
+}
+
 TEST(PadFile, IdsNamePadsOfSeveralVendors) {
   const auto pads = parse_pad_file("[[pad]]\nids = [\"0e8f:0003\", \"2563:0523\"]\n", "p.toml");
   ASSERT_TRUE(pads) << pads.error().message;

@@ -151,6 +151,7 @@ std::vector<DeviceListing> find_sdl() {
 }
 
 TEST_F(PadChoice, SdlIsAskedOnlyWhereItMustBe) {
+  sdl_finds = 0;
   const DriverEntry sdl = {"sdl", "libSDL2", &find_sdl, nullptr};
   const DriverEntry both[] = {FakeBus::table()[kEvdev], sdl}, alone[] = {sdl};
   ASSERT_TRUE(pad_sightings({}, {}, Drivers::preferred, both));

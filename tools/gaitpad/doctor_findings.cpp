@@ -42,7 +42,8 @@ std::string ways_to(const PadHardware& pad, const Machine& machine) {
 void check_sightings(const PadHardware& pad, bool is_explained, Diagnosis& diagnosis) {
   for (const PadSighting& sighting : diagnosis.machine.sightings) {
     const std::string& node = sighting.listing.node;
-    if (is_open_to_us(sighting, pad) && needs_consent(sighting)) {
+    const bool is_taken = sighting.listing.kernel_driver == "usbfs";
+    if (is_open_to_us(sighting, pad) && needs_consent(sighting) && !is_taken) {
       diagnosis.add(Finding::State::note, node, pad,
                     fmt::format("{}: it can be taken from the kernel", node),
                     "gaitpad play --driver usb");

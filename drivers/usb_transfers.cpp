@@ -33,9 +33,8 @@ Result<std::unique_ptr<UsbTransfers>> UsbTransfers::start(libusb_context* contex
   std::unique_ptr<UsbTransfers> transfers(new UsbTransfers(context, handle, endpoints));
   if (auto allocated = transfers->allocate(); !allocated) return allocated.error();
   transfers->submit_all();
-  if (transfers->is_gone_ || transfers->waiting_count_ == 0) {
-    return Error{"no reads can be started"};
-  }
+  if (transfers->is_gone_) return Error{"the pad is gone"};
+  if (transfers->waiting_count_ == 0) return Error{"no reads can be started"};
   return transfers;
 }
 

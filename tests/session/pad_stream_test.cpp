@@ -53,7 +53,6 @@ class PadStreamTest : public testing::Test {
     EXPECT_EQ(report.kind, kind);
     EXPECT_EQ(report.device, device);
   }
-  // The newest of all that is in the stream by now and until a report has this x.
   void expect_x(int device, int x) {
     const Report report = next();
     EXPECT_EQ(report.kind, ReportKind::input);

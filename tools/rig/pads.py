@@ -243,7 +243,7 @@ class Pad(Nodes):
             try:
                 with open(folder + "/busnum") as bus, open(folder + "/devnum") as device:
                     return f"/dev/bus/usb/{int(bus.read()):03}/{int(device.read()):03}"
-            except FileNotFoundError:
+            except OSError:  # it is going away
                 pass
         return None
 

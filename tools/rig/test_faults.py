@@ -141,7 +141,7 @@ def test_flood_of_four_pads_with_a_paused_reader(driver):
         for pad in pads_:
             pad.burst(rate_hz, seconds, at=at)
         for _ in range(3):
-            time.sleep(seconds / 4)
+            time.sleep(seconds / 6)
             session.process.send_signal(signal.SIGSTOP)
             time.sleep(0.5)
             session.process.send_signal(signal.SIGCONT)

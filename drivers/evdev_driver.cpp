@@ -95,6 +95,7 @@ class EvdevDevice final : public Device {
   void resynchronise() noexcept;
   void take_event(const input_event& event) noexcept;
   void take_state() noexcept;
+  bool is_untouched() const noexcept;
   void start_motors();
 
   DeviceInfo info_;
@@ -191,9 +192,20 @@ Device::Status EvdevDevice::next_packet() noexcept {
   }
 }
 
+// A pad that has sent nothing yet: the kernel's axes stand at 0, which of 0..255 is far left and
+// forward. One that is really held there will be seen when it moves.
+bool EvdevDevice::is_untouched() const noexcept {
+  bool is_at_an_end = false;
+  for (const EvdevField& f : layout_.fields) {
+    if (f.code.type != EvdevType::absolute || f.is_hat) continue;
+    if (state_.axis[f.code.code] != 0) return false;
+    is_at_an_end = is_at_an_end || f.min >= 0;
+  }
+  return is_at_an_end;
+}
+
 Device::Status EvdevDevice::read(Report& report) noexcept {
-  if (is_first_) {
-    is_first_ = false;
+  if (std::exchange(is_first_, false) && !is_untouched()) {
     time_ns_ = now_ns();
   } else if (const Status status = next_packet(); status != Status::report) {
     return status;

@@ -178,6 +178,7 @@ std::vector<DeviceListing> find_evdev_devices() {
     }
     listing.info.descriptor = seen->descriptor;
     if (!seen->other.empty()) {
+      listing.is_other = true;
       listing.problem = fmt::format("{}: {} is {}, not a pad", node.node, node.name, seen->other);
     }
     if (seen->descriptor.empty()) continue;

@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstring>
 
@@ -15,21 +14,17 @@ Error usb_error(const std::string& node, std::string_view what, int error) {
   return Error{fmt::format("{}: {}: {}", node, what, libusb_strerror(error))};
 }
 
-OpenNode::OpenNode(const std::string& node) : fd_(::open(node.c_str(), O_RDWR | O_CLOEXEC)) {}
-OpenNode::~OpenNode() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
 Result<std::unique_ptr<ClaimedInterface>> ClaimedInterface::claim(const std::string& node,
                                                                   const UsbInterface& interface) {
-  std::unique_ptr<ClaimedInterface> claimed(new ClaimedInterface(node, interface.number));
+  std::unique_ptr<ClaimedInterface> claimed(new ClaimedInterface(interface.number));
   if (auto opened = claimed->open(node); !opened) return opened.error();
   if (auto taken = claimed->take(node, interface.kernel_driver); !taken) return taken.error();
   return claimed;
 }
 
 Result<bool> ClaimedInterface::open(const std::string& node) {
-  if (node_.fd() < 0) {
+  node_ = OwnedFd(::open(node.c_str(), O_RDWR | O_CLOEXEC));
+  if (node_.get() < 0) {
     const int cause = errno;
     const std::string problem = access_problem(node);
     return Error{problem.empty() ? fmt::format("{}: {}", node, std::strerror(cause)) : problem};
@@ -41,7 +36,7 @@ Result<bool> ClaimedInterface::open(const std::string& node) {
   if (error != LIBUSB_SUCCESS) return usb_error(node, "libusb does not start", error);
   context_.reset(context);
   libusb_device_handle* handle = nullptr;
-  error = libusb_wrap_sys_device(context, node_.fd(), &handle);
+  error = libusb_wrap_sys_device(context, node_.get(), &handle);
   if (error != LIBUSB_SUCCESS) return usb_error(node, "cannot be opened", error);
   handle_.reset(handle);
   return true;

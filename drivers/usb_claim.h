@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "drivers/posix.h"
 #include "drivers/usb_interfaces.h"
 #include "drivers/usb_reattach.h"
 
@@ -24,18 +25,6 @@ struct CloseHandle {
   void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
 };
 
-class OpenNode {
- public:
-  explicit OpenNode(const std::string& node);
-  OpenNode(const OpenNode&) = delete;
-  OpenNode& operator=(const OpenNode&) = delete;
-  ~OpenNode();
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 // One context a pad: no thread of the library, no other pad's events.
 class ClaimedInterface {
  public:
@@ -46,11 +35,11 @@ class ClaimedInterface {
   libusb_device_handle* handle() const { return handle_.get(); }
 
  private:
-  ClaimedInterface(const std::string& path, std::uint8_t number) : node_(path), number_(number) {}
+  explicit ClaimedInterface(std::uint8_t number) : number_(number) {}
   Result<bool> open(const std::string& node);
   Result<bool> take(const std::string& node, const std::string& kernel_driver);
 
-  OpenNode node_;
+  OwnedFd node_;
   std::uint8_t number_;
   std::unique_ptr<libusb_context, ExitContext> context_;
   std::unique_ptr<libusb_device_handle, CloseHandle> handle_;

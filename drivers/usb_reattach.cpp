@@ -87,26 +87,26 @@ Result<ReattachWatcher> ReattachWatcher::start(const std::string& node,
   const int cause = errno;
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(ends[0]);
-  if (process > 0) return ReattachWatcher(ends[1], process);
-  ::close(ends[1]);
+  OwnedFd link(ends[1]);
+  if (process > 0) return ReattachWatcher(std::move(link), process);
   return Error{fmt::format("{}: nothing can watch over it: {}", node, std::strerror(cause))};
 }
 
 void ReattachWatcher::dismiss() noexcept {
-  if (link_ < 0) return;
+  if (link_.get() < 0) return;
   constexpr int kAttempts = 100;  // a watcher that somebody has stopped does not stop us
   constexpr timespec kPause = {0, 1'000'000};
   const char word = 1;
-  static_cast<void>(::send(link_, &word, 1, MSG_NOSIGNAL));
-  ::close(std::exchange(link_, -1));
+  static_cast<void>(::send(link_.get(), &word, 1, MSG_NOSIGNAL));
+  link_ = OwnedFd();
   for (int i = 0; i < kAttempts && ::waitpid(process_, nullptr, WNOHANG) == 0; ++i) {
     ::nanosleep(&kPause, nullptr);
   }
 }
 
 ReattachWatcher::~ReattachWatcher() {
-  if (link_ < 0) return;
-  ::close(link_);
+  if (link_.get() < 0) return;
+  link_ = OwnedFd();
   ::waitpid(process_, nullptr, WNOHANG);
 }
 

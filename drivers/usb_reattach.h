@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/result.h"
+#include "drivers/posix.h"
 
 namespace gaitpad {
 
@@ -17,8 +18,7 @@ class ReattachWatcher {
  public:
   // Before the detaching. `node` is the device's, /dev/bus/usb/BBB/DDD.
   static Result<ReattachWatcher> start(const std::string& node, std::uint8_t interface_number);
-  ReattachWatcher(ReattachWatcher&& other) noexcept
-      : link_(std::exchange(other.link_, -1)), process_(std::exchange(other.process_, -1)) {}
+  ReattachWatcher(ReattachWatcher&&) noexcept = default;
   ReattachWatcher& operator=(ReattachWatcher&&) = delete;
   ~ReattachWatcher();  // as our death: the watcher re-attaches
 
@@ -26,8 +26,8 @@ class ReattachWatcher {
   void dismiss() noexcept;
 
  private:
-  ReattachWatcher(int link, pid_t process) : link_(link), process_(process) {}
-  int link_ = -1;  // its closing is what the watcher waits for
+  ReattachWatcher(OwnedFd link, pid_t process) : link_(std::move(link)), process_(process) {}
+  OwnedFd link_;  // its closing is what the watcher waits for
   pid_t process_ = -1;
 };
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <sys/timerfd.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,12 +15,6 @@ using std::chrono::milliseconds;
 constexpr std::uint8_t kSetReport = 0x09, kToInterface = 0x21, kOutputReport = 2;
 constexpr unsigned int kOutTimeoutMs = 1000;  // a pad that takes no packet does not keep the queue
 constexpr std::int64_t kRecoverPauseNs = 100'000'000;
-
-std::int64_t monotonic_ns() noexcept {
-  timespec now = {};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 bool is_device_lost(int error) noexcept { return error == LIBUSB_ERROR_NO_DEVICE; }
 
@@ -50,9 +43,9 @@ Result<bool> UsbTransfers::allocate() {
   out_buffer_.resize(LIBUSB_CONTROL_SETUP_SIZE + OutPacket{}.bytes.size());
   out_ = libusb_alloc_transfer(0);
   if (!out_) return Error{"out of memory"};
-  timer_ = ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-  if (timer_ < 0) return Error{"no timer"};
-  poll_fds_.push_back({timer_, POLLIN, 0});
+  timer_ = OwnedFd(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
+  if (timer_.get() < 0) return Error{"no timer"};
+  poll_fds_.push_back({timer_.get(), POLLIN, 0});
   const libusb_pollfd** fds = libusb_get_pollfds(context_);
   if (!fds) return Error{"out of memory"};
   for (const libusb_pollfd** fd = fds; *fd; ++fd) {
@@ -65,8 +58,8 @@ Result<bool> UsbTransfers::allocate() {
 UsbTransfers::~UsbTransfers() {
   is_closing_ = true;
   cancel_all();
-  const std::int64_t end_ns = monotonic_ns() + 1'000'000'000;
-  while ((waiting_count_ > 0 || is_out_waiting_) && monotonic_ns() < end_ns) {
+  const std::int64_t end_ns = now_ns() + 1'000'000'000;
+  while ((waiting_count_ > 0 || is_out_waiting_) && now_ns() < end_ns) {
     handle_events(milliseconds(20));
   }
   // What the kernel still holds after a second is not freed below it.
@@ -74,7 +67,6 @@ UsbTransfers::~UsbTransfers() {
     if (slot.transfer && slot.state != InSlot::State::waiting) libusb_free_transfer(slot.transfer);
   }
   if (out_ && !is_out_waiting_) libusb_free_transfer(out_);
-  if (timer_ >= 0) ::close(timer_);
 }
 
 void UsbTransfers::handle_events(milliseconds timeout) noexcept {
@@ -82,12 +74,12 @@ void UsbTransfers::handle_events(milliseconds timeout) noexcept {
     ::poll(poll_fds_.data(), poll_fds_.size(), static_cast<int>(timeout.count()));
   }
   timeval no_wait = {0, 0};
-  now_ns_ = arrival_ns_ = monotonic_ns();
+  now_ns_ = arrival_ns_ = now_ns();
   libusb_handle_events_timeout_completed(context_, &no_wait, nullptr);
   arrival_ns_ = 0;
   if (is_closing_) return;
   std::uint64_t expirations = 0;
-  static_cast<void>(::read(timer_, &expirations, sizeof expirations));
+  static_cast<void>(::read(timer_.get(), &expirations, sizeof expirations));
   recover();
   repeat_out();
   set_timer();
@@ -126,7 +118,7 @@ void UsbTransfers::finish_in(InSlot& slot) noexcept {
   if (is_done && slot.transfer->actual_length > 0) {
     slot.state = InSlot::State::filled;
     // Packets also arrive while libusb waits for the answer to a control request.
-    slot.time_ns = arrival_ns_ != 0 ? arrival_ns_ : monotonic_ns();
+    slot.time_ns = arrival_ns_ != 0 ? arrival_ns_ : now_ns();
     filled_[filled_count_++] = &slot;
   } else if (status == LIBUSB_TRANSFER_COMPLETED) {
     submit(slot);
@@ -204,7 +196,7 @@ bool UsbTransfers::send(const OutPacket& packet) noexcept {
   queue_[queued_++] = packet;
   repeated_ = packet;
   const std::int64_t pause_ns = std::chrono::nanoseconds(packet.repeat).count();
-  repeat_ns_ = pause_ns > 0 ? monotonic_ns() + pause_ns : 0;
+  repeat_ns_ = pause_ns > 0 ? now_ns() + pause_ns : 0;
   submit_out();
   set_timer();
   return !is_gone_;
@@ -257,8 +249,8 @@ void UsbTransfers::finish_out() noexcept {
 }
 
 bool UsbTransfers::flush(milliseconds timeout) noexcept {
-  const std::int64_t end_ns = monotonic_ns() + std::chrono::nanoseconds(timeout).count();
-  while (queued_ > 0 && !is_gone_ && monotonic_ns() < end_ns) handle_events(milliseconds(5));
+  const std::int64_t end_ns = now_ns() + std::chrono::nanoseconds(timeout).count();
+  while (queued_ > 0 && !is_gone_ && now_ns() < end_ns) handle_events(milliseconds(5));
   return queued_ == 0 && !has_out_failed_;
 }
 
@@ -279,7 +271,7 @@ void UsbTransfers::set_timer() noexcept {
   itimerspec when = {};
   when.it_value.tv_sec = static_cast<time_t>(next_ns / 1'000'000'000);
   when.it_value.tv_nsec = static_cast<long>(next_ns % 1'000'000'000);
-  ::timerfd_settime(timer_, TFD_TIMER_ABSTIME, &when, nullptr);
+  ::timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &when, nullptr);
 }
 
 void UsbTransfers::cancel_all() noexcept {

@@ -16,6 +16,7 @@
 
 #include "base/result.h"
 #include "drivers/pads/pad_model.h"
+#include "drivers/posix.h"
 #include "hid/report.h"
 
 namespace gaitpad {
@@ -88,7 +89,7 @@ class UsbTransfers {
   libusb_device_handle* handle_;
   UsbEndpoints endpoints_;
   std::vector<pollfd> poll_fds_;
-  int timer_ = -1;               // of recovering and repeating
+  OwnedFd timer_;                // of recovering and repeating
   std::int64_t now_ns_ = 0;      // of the last handle_events()
   std::int64_t arrival_ns_ = 0;  // of the packets that it finds; 0: it is not running
 

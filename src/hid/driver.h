@@ -78,6 +78,7 @@ struct DeviceListing {
   std::string pad_path;
   std::string kernel_driver;  // bound to it: usbhid, xpad, playstation; empty: none or unknown
   double poll_rate_hz = 0.0;  // as the endpoint claims; 0: unknown
+  bool is_other = false;      // known to be no pad: a keyboard, the motion sensor of a pad
   std::string problem;        // why it cannot be opened or is no pad: one sentence; empty: it can
 };
 

@@ -56,7 +56,8 @@ PadSighting judged(const PadFiles& files, DeviceListing listing, const DriverEnt
   PadSighting sighting{std::move(listing), &driver, true, {}};
   const DeviceListing& seen = sighting.listing;
   sighting.problem = seen.problem;
-  if (seen.info.descriptor.empty()) return sighting;
+  sighting.is_pad = !seen.is_other;
+  if (seen.is_other || seen.info.descriptor.empty()) return sighting;
   const auto layout = pad_layout(seen.info, files.overrides);
   sighting.is_pad = layout && layout->is_pad;
   if (sighting.is_pad || !sighting.problem.empty()) return sighting;
@@ -71,7 +72,8 @@ PadSighting judged(const PadFiles& files, DeviceListing listing, const DriverEnt
 void ask_the_others(std::vector<PadSighting>& sightings) {
   for (PadSighting& unknown : sightings) {
     const std::string& path = unknown.listing.pad_path;
-    if (!unknown.listing.info.descriptor.empty() || path.empty()) continue;
+    const bool is_judged = unknown.listing.is_other || !unknown.listing.info.descriptor.empty();
+    if (is_judged || path.empty()) continue;
     bool is_known = false, is_pad = false;
     for (const PadSighting& other : sightings) {
       if (other.listing.pad_path != path || other.listing.info.descriptor.empty()) continue;

@@ -11,10 +11,10 @@ void add_session_options(CLI::App& command, SessionArguments& arguments,
   SessionOptions& session = arguments.options;
   command.add_option("--motion", session.motion, "motion file; without it the built-in walk");
   command.add_option("--character", session.characters, "FILE|NAME, once for each")
-      ->expected(1)
+      ->allow_extra_args(false)  // what follows the next word may be PAD
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--style", session.styles, "FILE|NAME, the n-th for the n-th character")
-      ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--terrain", session.terrain, "FILE|NAME; only flat so far");
   command.add_option("--ik", arguments.ik, "paper or robust")

@@ -199,7 +199,8 @@ bool EvdevDevice::is_untouched() const noexcept {
   for (const EvdevField& f : layout_.fields) {
     if (f.code.type != EvdevType::absolute || f.is_hat) continue;
     if (state_.axis[f.code.code] != 0) return false;
-    is_at_an_end = is_at_an_end || f.min >= 0;
+    const bool is_left_stick = f.code.code == ABS_X || f.code.code == ABS_Y;
+    is_at_an_end = is_at_an_end || (is_left_stick && f.min >= 0);
   }
   return is_at_an_end;
 }

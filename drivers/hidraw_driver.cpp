@@ -1,14 +1,8 @@
 // Pads through Linux's hidraw, by hidapi: the bytes as the pad sent them, while the kernel's own
 // driver goes on serving evdev. hidapi 0.13 gives neither the report descriptor nor anything to
 // wait on, and one error for all that can go wrong; what is missing is asked of the kernel here.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <hidapi/hidapi.h>
-#include <linux/hidraw.h>
-#include <sys/ioctl.h>
-#include <sys/stat.h>
 #include <sys/timerfd.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,9 +16,8 @@
 #include <utility>
 
 #include "drivers/driver_entries.h"
-#include "drivers/open_descriptors.h"
-#include "drivers/pads/packet_sender.h"
-#include "drivers/pads/pad_model.h"
+#include "drivers/hidraw_node.h"
+#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "hid/descriptor.h"
 
@@ -34,37 +27,12 @@ namespace {
 
 using namespace std::chrono_literals;
 using Status = Device::Status;
-using Bytes = std::vector<std::uint8_t>;
 
 constexpr int kMaxRefusedInARow = 64;  // packets looked at before other pads have their turn
 constexpr int kMaxErrorsInARow = 64;   // a source that only fails is given up
 constexpr int kKernelRing = 63;        // reports that hidraw keeps for a slow reader
 constexpr auto kKernelStart = 3s;
 constexpr long kBlindPeriod_ns = 1'000'000;
-
-struct CloseHandle {
-  void operator()(hid_device* handle) const noexcept { hid_close(handle); }
-};
-using Handle = std::unique_ptr<hid_device, CloseHandle>;
-
-class OwnedFd {
- public:
-  explicit OwnedFd(int fd) noexcept : fd_(fd) {}
-  OwnedFd(const OwnedFd&) = delete;
-  ~OwnedFd() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const noexcept { return fd_; }
-
- private:
-  int fd_;
-};
-
-std::int64_t now_ns() noexcept {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 // Ready every millisecond; -1: it cannot be had.
 int blind_timer() noexcept {
@@ -74,92 +42,9 @@ int blind_timer() noexcept {
   return timer;
 }
 
-struct OpenNode {
-  Handle handle;
-  int fd = -1;  // the handle's own, -1: not found
-};
-
-// hidapi keeps its descriptor to itself, but without it the I/O thread could not sleep until this
-// pad or another has something: it is looked for among this process's.
-Result<OpenNode> open_node(const std::string& node) {
-  struct stat status {};
-  if (::stat(node.c_str(), &status) != 0)
-    return Error{fmt::format("{}: {}", node, std::strerror(errno))};
-  if (!S_ISCHR(status.st_mode)) return Error{node + ": is no device node"};
-  const OpenDescriptors before = open_descriptors(status.st_rdev);
-  OpenNode opened{Handle(hid_open_path(node.c_str()))};
-  if (!opened.handle) {
-    const std::string problem = access_problem(node);
-    return Error{problem.empty() ? node + ": is no HID device, or it has just gone" : problem};
-  }
-  opened.fd = new_descriptor(before, open_descriptors(status.st_rdev));
-  return opened;
-}
-
-Bytes kernel_descriptor(int fd) {
-  int size = 0;
-  hidraw_report_descriptor descriptor{};
-  if (fd < 0 || ::ioctl(fd, HIDIOCGRDESCSIZE, &size) < 0) return {};
-  if (size <= 0 || size > HID_MAX_DESCRIPTOR_SIZE) return {};
-  descriptor.size = static_cast<unsigned>(size);
-  if (::ioctl(fd, HIDIOCGRDESC, &descriptor) < 0) return {};
-  return Bytes(descriptor.value, descriptor.value + size);
-}
-
-// A node's number is used again: between looking and opening it may have become another device.
-bool is_another(int fd, const DeviceInfo& info) {
-  hidraw_devinfo now{};
-  if (fd < 0 || ::ioctl(fd, HIDIOCGRAWINFO, &now) < 0) return false;
-  std::array<char, 256> port{};
-  if (::ioctl(fd, HIDIOCGRAWPHYS(port.size() - 1), port.data()) < 0) return false;
-  return static_cast<std::uint16_t>(now.vendor) != info.vendor ||
-         static_cast<std::uint16_t>(now.product) != info.product ||
-         (!info.physical_path.empty() && info.physical_path != port.data());
-}
-
-// The kernel takes the report id always, 0 where the pad has none; a pad model gives it only where
-// there is one.
-bool write_packet(hid_device* handle, bool is_numbered, std::span<const std::uint8_t> packet) {
-  if (packet.empty()) return false;
-  if (is_numbered) return hid_write(handle, packet.data(), packet.size()) >= 0;
-  Bytes with_id(packet.size() + 1, 0);
-  std::copy(packet.begin(), packet.end(), with_id.begin() + 1);
-  return hid_write(handle, with_id.data(), with_id.size()) >= 0;
-}
-
-class HidrawPort final : public PadPort {
- public:
-  HidrawPort(hid_device* handle, bool is_numbered) : handle_(handle), is_numbered_(is_numbered) {}
-  bool write(std::span<const std::uint8_t> packet) noexcept override {
-    return write_packet(handle_, is_numbered_, packet);
-  }
-  std::size_t read(std::span<std::uint8_t> packet,
-                   std::chrono::milliseconds timeout) noexcept override {
-    const int size = hid_read_timeout(handle_, packet.data(), packet.size(),
-                                      static_cast<int>(std::clamp(timeout, 0ms, 2000ms).count()));
-    return size > 0 ? std::min(static_cast<std::size_t>(size), packet.size()) : 0;
-  }
-  std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
-    if (packet.empty()) return 0;
-    packet[0] = id;
-    const int size = hid_get_feature_report(handle_, packet.data(), packet.size());
-    if (size <= 0 || packet[0] != id) return 0;
-    return std::min(static_cast<std::size_t>(size), packet.size());
-  }
-
- private:
-  hid_device* handle_;
-  bool is_numbered_;
-};
-
-// A sender with a handle of its own, since hidapi writes its error text at reading and writing
-// alike; null where the node cannot be opened again or no thread be started.
-std::unique_ptr<PacketSender> make_sender(const std::string& node, bool is_numbered) {
-  const std::shared_ptr<hid_device> handle(hid_open_path(node.c_str()), CloseHandle());
-  if (!handle) return nullptr;
-  return PacketSender::create([handle, is_numbered](std::span<const std::uint8_t> packet) {
-    return write_packet(handle.get(), is_numbered, packet);
-  });
+bool has_report_ids(const DeviceInfo& info) {
+  const auto descriptor = parse_descriptor(info.descriptor);
+  return descriptor && descriptor->numbered;
 }
 
 class HidrawDevice final : public Device {
@@ -170,10 +55,10 @@ class HidrawDevice final : public Device {
         handle_(std::move(opened.handle)),
         fd_(opened.fd),
         timer_(fd_ < 0 ? blind_timer() : -1),
-        model_(make_pad_model(info_)) {
-    const auto descriptor = parse_descriptor(info_.descriptor);
-    is_numbered_ = descriptor && descriptor->numbered;
-    wait_on_ = {.fd = fd_ >= 0 ? fd_ : timer_.get(), .events = POLLIN, .revents = 0};
+        model_(make_pad_model(info_)),
+        is_numbered_(has_report_ids(info_)),
+        present_(is_numbered_, hidraw_input_request(node_)) {
+    wait_on_[0] = {.fd = fd_ >= 0 ? fd_ : timer_.get(), .events = POLLIN, .revents = 0};
   }
   ~HidrawDevice() override {
     if (is_rumbling_ && !is_unplugged_) rumble({});
@@ -185,13 +70,15 @@ class HidrawDevice final : public Device {
     OutPacket still;
     model_->rumble({}, still);
     if (still.size == 0) return;
-    sender_ = make_sender(node_, is_numbered_);
+    sender_ = hidraw_sender(node_, is_numbered_);
     if (!sender_ && access_problem(node_).empty())
       remarks_.push_back(node_ + ": the motors cannot be reached");
   }
 
   const DeviceInfo& info() const noexcept override { return info_; }
-  std::span<const pollfd> poll_fds() const noexcept override { return {&wait_on_, 1}; }
+  std::span<const pollfd> poll_fds() const noexcept override {
+    return std::span(wait_on_).first(present_.is_waiting() ? wait_on_.size() : 1);
+  }
   Status read(Report& report) noexcept override;
   bool rumble(const Rumble& rumble) noexcept override {
     if (!sender_) return false;
@@ -211,6 +98,7 @@ class HidrawDevice final : public Device {
 
  private:
   bool take(std::span<const std::uint8_t> packet, Report& report) noexcept;
+  Status when_empty(Report& report) noexcept;
   bool has_hung_up(int error) const noexcept;
   Status after_error(int error) noexcept;
   void count_waiting() noexcept;
@@ -220,14 +108,16 @@ class HidrawDevice final : public Device {
   Handle handle_;
   int fd_ = -1;    // the handle's
   OwnedFd timer_;  // where that is unknown
-  pollfd wait_on_{};
+  std::array<pollfd, 3> wait_on_{};
   std::unique_ptr<PadModel> model_;
   std::unique_ptr<PacketSender> sender_;  // null: no motors
-  bool is_numbered_ = false;
+  bool is_numbered_;
+  PresentState present_;
   bool is_rumbling_ = false;
   bool is_unplugged_ = false;  // what came before is still to be read
   int errors_in_row_ = 0;
-  std::optional<int> waiting_;  // reports read since there were none; nothing before that
+  int waiting_ = 0;         // reports read since there were none
+  bool was_empty_ = false;  // once: what waited before that had waited for the opening
   bool was_late_ = false;
   std::int64_t lost_ = 0;
   std::vector<std::string> remarks_;
@@ -246,10 +136,7 @@ Status HidrawDevice::read(Report& report) noexcept {
         hid_read_timeout(handle_.get(), buffer_.data(), buffer_.size(), is_unplugged_ ? -1 : 0);
     const int error = errno;
     if (size <= 0 && is_unplugged_) return Status::gone;
-    if (size == 0) {
-      waiting_ = 0;
-      return Status::nothing;
-    }
+    if (size == 0) return when_empty(report);
     if (size < 0 && !has_hung_up(error)) return after_error(error);
     if (size < 0) {
       is_unplugged_ = true;
@@ -273,6 +160,7 @@ bool HidrawDevice::take(std::span<const std::uint8_t> packet, Report& report) no
   const bool is_input = model_->accept(packet, reply);
   if (reply.size > 0 && sender_) sender_->send(reply);
   if (!is_input) return false;
+  present_.heard(packet);
   report.kind = ReportKind::input;
   report.size = static_cast<std::uint16_t>(packet.size());
   std::copy(packet.begin(), packet.end(), report.bytes.begin());
@@ -296,10 +184,21 @@ Status HidrawDevice::after_error(int error) noexcept {
   return Status::gone;
 }
 
-// The kernel tells nobody that it drops reports when nobody reads them in time.
+// The kernel drops the newest report when nobody has read as many as it keeps, and tells nobody.
 void HidrawDevice::count_waiting() noexcept {
-  if (waiting_ && ++*waiting_ == kKernelRing && !std::exchange(was_late_, true))
+  if (++waiting_ != kKernelRing || !was_empty_) return;
+  ++lost_;
+  if (!std::exchange(was_late_, true))
     remarks_.push_back(node_ + ": was read too late; the kernel may have dropped reports");
+}
+
+// The last moment in which an answer of the pad's is newer than all its reports.
+Status HidrawDevice::when_empty(Report& report) noexcept {
+  was_empty_ = true;
+  if (std::exchange(waiting_, 0) >= kKernelRing) present_.missed();
+  const std::span<const std::uint8_t> answer = present_.take();
+  std::ranges::copy(present_.poll_fds(), wait_on_.begin() + 1);
+  return !answer.empty() && take(answer, report) ? Status::report : Status::nothing;
 }
 
 // While it binds, hid-nintendo asks the pad for its calibration and takes any answer for its own:
@@ -379,13 +278,13 @@ std::vector<DeviceListing> find_hidraw_devices() {
 Result<std::unique_ptr<Device>> open_hidraw_device(const DeviceListing& listing, Detach) {
   const StartedBy started = started_by(listing.kernel_driver);
   if (listing.kernel_driver == "nintendo") wait_for_kernel(listing.node);
-  auto opened = open_node(listing.node);
+  auto opened = open_hidraw_node(listing.node);
   if (!opened) return opened.error();
-  if (is_another(opened->fd, listing.info))
+  if (is_another_hidraw(opened->fd, listing.info))
     return Error{listing.node + ": has become another device"};
   DeviceInfo info = listing.info;
   info.driver = "hidraw";
-  if (Bytes descriptor = kernel_descriptor(opened->fd); !descriptor.empty())
+  if (auto descriptor = hidraw_descriptor(opened->fd); !descriptor.empty())
     info.descriptor = std::move(descriptor);
   if (info.descriptor.empty())
     return Error{listing.node + ": its report descriptor cannot be read"};

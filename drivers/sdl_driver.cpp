@@ -5,12 +5,12 @@
 // once a millisecond here.
 #include <SDL2/SDL.h>
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "drivers/driver_entries.h"
+#include "drivers/posix.h"
 #include "drivers/sdl_reports.h"
 #include "drivers/sdl_timer.h"
 #include "drivers/system_nodes.h"
@@ -24,12 +24,6 @@ constexpr std::size_t kMaxAxes = 64, kMaxButtons = 255, kMaxHats = 4;
 
 using Change = JoystickReports::Change;
 using Control = JoystickReports::Control;
-
-std::int64_t monotonic_ns() noexcept {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 // SDL's joysticks, started when they are first asked for: that takes up to a second.
 class Sdl {
@@ -93,7 +87,7 @@ void forget(JoystickInboxes& inboxes, SDL_JoystickID id) {
 int SDLCALL Sdl::watch(void* self, SDL_Event* event) {
   JoystickInboxes& inboxes = static_cast<Sdl*>(self)->inboxes;
   const auto put = [&](SDL_JoystickID id, Control control, Uint8 number, Sint16 value) {
-    inboxes.put(id, {monotonic_ns(), control, number, value});
+    inboxes.put(id, {now_ns(), control, number, value});
   };
   switch (event->type) {
     case SDL_JOYAXISMOTION:
@@ -202,11 +196,11 @@ void SdlDevice::fetch() noexcept {
   lost_ = inbox.lost;
   reports_.changes = std::move(inbox.changes);
   if (removed_) return;
-  const std::int64_t now_ns = monotonic_ns();
+  const std::int64_t time_ns = now_ns();
   for (std::size_t i = 0; i < reports_.state().axes.size(); ++i) {
     const auto number = static_cast<std::uint8_t>(i);
     const std::int16_t value = SDL_JoystickGetAxis(joystick_.get(), static_cast<int>(i));
-    reports_.changes.push_back({now_ns, Control::axis, number, value});
+    reports_.changes.push_back({time_ns, Control::axis, number, value});
   }
 }
 
@@ -214,7 +208,7 @@ void SdlDevice::fetch() noexcept {
 Device::Status SdlDevice::read(Report& report) noexcept {
   if (!has_reported_ && reports_.is_known()) {
     has_reported_ = true;
-    reports_.write(monotonic_ns(), report);
+    reports_.write(now_ns(), report);
     return Status::report;
   }
   if (reports_.changes.empty()) fetch();

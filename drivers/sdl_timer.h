@@ -1,11 +1,12 @@
 // When to look at SDL's joysticks: it has nothing to wait for.
 #pragma once
 #include <sys/timerfd.h>
-#include <unistd.h>
 
 #include <cstdint>
 #include <memory>
 #include <mutex>
+
+#include "drivers/posix.h"
 
 namespace gaitpad {
 
@@ -15,16 +16,12 @@ class MillisecondTimer {
   MillisecondTimer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {
     constexpr timespec kMillisecond{0, 1'000'000};
     const itimerspec times{kMillisecond, kMillisecond};
-    ::timerfd_settime(fd_, 0, &times, nullptr);
+    ::timerfd_settime(fd(), 0, &times, nullptr);
   }
-  ~MillisecondTimer() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  MillisecondTimer(const MillisecondTimer&) = delete;
-  int fd() const noexcept { return fd_; }  // below 0: there is none
+  int fd() const noexcept { return fd_.get(); }  // below 0: there is none
   bool take_tick() const noexcept {
     std::uint64_t count = 0;
-    return ::read(fd_, &count, sizeof count) == sizeof count;
+    return ::read(fd(), &count, sizeof count) == sizeof count;
   }
   static std::shared_ptr<MillisecondTimer> shared() {
     static std::mutex mutex;
@@ -36,7 +33,7 @@ class MillisecondTimer {
   }
 
  private:
-  int fd_ = -1;
+  OwnedFd fd_;
 };
 
 }  // namespace gaitpad

@@ -2,7 +2,6 @@
 // first of its devices was opened.
 #include <fmt/format.h>
 #include <sys/timerfd.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,18 +12,13 @@
 #include <utility>
 
 #include "drivers/driver_entries.h"
+#include "drivers/posix.h"
 #include "hid/trace.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kTail_us = 1'000'000;  // as a replay: a second more where Q: says nothing
-
-std::int64_t monotonic_ns() noexcept {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 // One run of a file. All its open devices share it, and with it the beginning of time.
 struct Playback {
@@ -46,7 +40,7 @@ Playback started_playback(Trace trace) {
     playback.end_us = std::max(last->time_us, trace.end_time_us.value_or(last->time_us + kTail_us));
   }
   playback.trace = std::move(trace);
-  playback.start_ns = monotonic_ns();
+  playback.start_ns = now_ns();
   return playback;
 }
 
@@ -63,24 +57,9 @@ Result<std::shared_ptr<const Playback>> running_playback(const std::string& path
   return playback;
 }
 
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  FileDescriptor& operator=(FileDescriptor&&) = delete;
-  ~FileDescriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const noexcept { return fd_; }
-
- private:
-  int fd_;
-};
-
 class TraceFileDevice final : public Device {
  public:
-  TraceFileDevice(std::shared_ptr<const Playback> playback, std::uint16_t device,
-                  FileDescriptor timer)
+  TraceFileDevice(std::shared_ptr<const Playback> playback, std::uint16_t device, OwnedFd timer)
       : playback_(std::move(playback)),
         device_(device),
         end_ns_(playback_->due_ns(playback_->end_us)),
@@ -97,7 +76,7 @@ class TraceFileDevice final : public Device {
 
   Status read(Report& report) noexcept override {
     const std::int64_t due = due_ns();
-    if (monotonic_ns() < due) {
+    if (now_ns() < due) {
       std::uint64_t expirations = 0;
       static_cast<void>(!::read(timer_.get(), &expirations, sizeof(expirations)));
       wake_at(due);
@@ -132,7 +111,7 @@ class TraceFileDevice final : public Device {
   const std::shared_ptr<const Playback> playback_;
   const std::uint16_t device_;
   const std::int64_t end_ns_;
-  const FileDescriptor timer_;
+  const OwnedFd timer_;
   const pollfd poll_fd_;
   std::size_t next_ = 0;
 };
@@ -184,7 +163,7 @@ Result<std::unique_ptr<Device>> open_trace_device(const DeviceListing& listing, 
   if (device >= (*playback)->trace.devices.size())
     return Error{fmt::format("{}: there are {} devices in it", listing.node,
                              (*playback)->trace.devices.size())};
-  FileDescriptor timer(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
+  OwnedFd timer(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
   if (timer.get() < 0)
     return Error{fmt::format("{}: no timer: {}", listing.node, std::strerror(errno))};
   return std::unique_ptr<Device>(std::make_unique<TraceFileDevice>(

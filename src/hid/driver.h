@@ -4,9 +4,12 @@
 //
 // Threads  `find` and `open` are called from one thread, the finder's, and may take their time:
 //          they may talk to the device for up to two seconds. A Device then belongs to the I/O
-//          thread, which makes every further call and destroys it. A driver starts no thread that
-//          calls back.
-// Blocking No call of Device waits. The I/O thread sleeps in poll() over `poll_fds` of all devices.
+//          thread, which makes every further call; the finder's thread, or at the end another one,
+//          destroys it. A driver starts no thread that calls back; one that only talks to the pad
+//          it may have (hidraw).
+// Blocking No call of Device waits for a report: the I/O thread sleeps in poll() over `poll_fds` of
+//          all devices. Rare calls take as long as the system takes: mending a stalled endpoint
+//          (usb), a joystick that SDL has just found (sdl), closing.
 // Memory   All of it may allocate: nothing here runs on the loop thread.
 // Owning   A Device owns its handles and closes them in its destructor; what it took from the
 //          kernel (a detached driver, a running rumble) it gives back there.
@@ -14,7 +17,7 @@
 //          packet or an interrupted call is no unplug: the device recovers or counts it as lost.
 //          A device plugged in again is another Device.
 // Time     Report::time_ns is CLOCK_MONOTONIC: the kernel's own stamp where the source has one
-//          (evdev), else the moment right after the wait.
+//          (evdev), else the moment when the report was seen.
 #pragma once
 #include <poll.h>
 
@@ -48,7 +51,8 @@ struct FactorySticks {
 class Device {
  public:
   enum class Status {
-    report,   // `report` is filled: time_ns, size, bytes, kind input (its device is not)
+    report,   // `report` is filled: time_ns, size, bytes, kind input (its device is not); of
+              // a recording also kind added or removed
     nothing,  // nothing more for now
     gone,     // unplugged
   };

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "drivers/posix.h"
 #include "session/live_loop.h"
 #include "session/realtime.h"
 #include "session/recording.h"
@@ -24,6 +25,7 @@ struct LiveSession::Impl {
   void start_loop();
   void stop_loop();
   void remark_on_time(const LiveStatus& now);
+  void remark_on_recording();
   Result<std::vector<nlohmann::ordered_json>> summaries();
 
   LiveOptions options;
@@ -36,7 +38,8 @@ struct LiveSession::Impl {
   mutable std::mutex mutex;              // of what follows
   std::optional<PadStreamCounts> final;  // once it was stopped
   std::vector<std::string> remarks;
-  LiveStatus remarked;  // what has been said of the loop's time
+  LiveStatus remarked;           // what has been said of the loop's time
+  bool is_failure_said = false;  // the recording's
 };
 
 std::optional<Error> LiveSession::Impl::open_recording() {
@@ -88,10 +91,18 @@ void LiveSession::Impl::remark_on_time(const LiveStatus& now) {
   remarked = now;
 }
 
+void LiveSession::Impl::remark_on_recording() {
+  if (is_failure_said || recording == nullptr) return;
+  if (const auto problem = recording->problem()) {
+    remarks.push_back(problem->message + "; the session goes on without being recorded");
+    is_failure_said = true;
+  }
+}
+
 Result<std::vector<nlohmann::ordered_json>> LiveSession::Impl::summaries() {
   std::int64_t lost = 0;
   if (recording != nullptr) {
-    auto said = recording->finish(simulation.counts().ticks, TickClock::now_ns());
+    auto said = recording->finish(simulation.counts().ticks, now_ns());
     if (!said) return said.error();
     lost = recording->lost();
     const std::lock_guard lock(mutex);
@@ -153,6 +164,7 @@ std::vector<std::string> LiveSession::take_remarks() {
   std::vector<std::string> all = impl_->pads->take_remarks();
   const std::lock_guard lock(impl_->mutex);
   impl_->remark_on_time(now);
+  impl_->remark_on_recording();
   std::move(impl_->remarks.begin(), impl_->remarks.end(), std::back_inserter(all));
   impl_->remarks.clear();
   return all;

@@ -3,8 +3,9 @@
 // The loop thread sleeps until the tick's moment (absolute, CLOCK_MONOTONIC), takes the reports
 // that have arrived, calls Simulation::step(), publishes the newest frame and hands what it used to
 // the recording. It touches no driver, file, lock, log or heap. A tick that begins late is counted
-// and made up for, so that the number of ticks is the time times the rate; only after a standstill
-// of more than a second the session goes on where it stood.
+// and made up for, so that the number of ticks is the time times the rate; only when it is more
+// than a second behind (the program stood still, or ticks take longer than their time) the session
+// goes on where it stood.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/posix.h"
 #include "session/realtime.h"
 
 namespace gaitpad {
@@ -47,14 +48,14 @@ LiveLoop::LiveLoop(const Options& options, Simulation& simulation, PadStream& pa
       reports_(kMaxReportsInTick) {}
 
 void LiveLoop::run() noexcept {
-  const std::int64_t start_ns = TickClock::now_ns();
+  const std::int64_t start_ns = now_ns();
   clock_ = TickClock(options_.rate_hz, start_ns);
   if (recording_ != nullptr) recording_->clock(0, start_ns);
   for (std::int64_t tick = 0; sleep_until(clock_.due_ns(tick)); ++tick) {
-    const std::int64_t now_ns = TickClock::now_ns();
-    keep_time(tick, now_ns);
-    run_tick(tick, now_ns);
-    tick_times_.add(TickClock::now_ns() - now_ns);
+    const std::int64_t begin_ns = now_ns();
+    keep_time(tick, begin_ns);
+    run_tick(tick, begin_ns);
+    tick_times_.add(now_ns() - begin_ns);
     ticks_.store(tick + 1, kRelaxed);
   }
 }
@@ -62,9 +63,9 @@ void LiveLoop::run() noexcept {
 // False: to be stopped.
 bool LiveLoop::sleep_until(std::int64_t due_ns) const noexcept {
   while (!is_stopping_.load(kRelaxed)) {
-    const std::int64_t now_ns = TickClock::now_ns();
-    if (now_ns >= due_ns) return true;
-    const std::int64_t until_ns = std::min(due_ns, now_ns + kNap_ns);
+    const std::int64_t time_ns = now_ns();
+    if (time_ns >= due_ns) return true;
+    const std::int64_t until_ns = std::min(due_ns, time_ns + kNap_ns);
     const timespec until = {until_ns / kSecond_ns, until_ns % kSecond_ns};
     ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);  // EINTR: once more
   }

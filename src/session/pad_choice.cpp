@@ -138,12 +138,6 @@ Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
   return name.find(wanted.lower_text) == std::string::npos ? Fit::none : Fit::part_of_name;
 }
 
-// The same for what several drivers see of one pad.
-std::string pad_key(const PadSighting& s) {
-  if (!s.listing.pad_path.empty()) return s.listing.pad_path;
-  return fmt::format("{} {}", s.driver->name, s.listing.node);
-}
-
 bool is_one_pad(const PadSighting& a, const PadSighting& b) {
   if (pad_key(a) == pad_key(b)) return true;
   const std::string& id = a.listing.info.unique_id;
@@ -172,6 +166,11 @@ std::optional<Error> ambiguity(const std::vector<PadSighting>& fitting, const st
 }
 
 }  // namespace
+
+std::string pad_key(const PadSighting& s) {
+  if (!s.listing.pad_path.empty()) return s.listing.pad_path;
+  return fmt::format("{} {}", s.driver->name, s.listing.node);
+}
 
 bool is_recording(const std::string& pad) {
   std::error_code ignored;
@@ -238,7 +237,9 @@ Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sig
     const bool is_wished = wish.driver == kUsb || fit_of(s, wanted) == Fit::node;
     const bool is_taken = s.driver->name == kUsb && !s.listing.kernel_driver.empty();
     if (!s.problem.empty() || (is_taken && !is_wished)) continue;
-    const auto is_served = [&s](const PadSighting& c) { return pad_key(c) == pad_key(s); };
+    const auto is_served = [&s](const PadSighting& c) {
+      return c.driver != s.driver && pad_key(c) == pad_key(s);
+    };
     if (std::ranges::none_of(chosen, is_served)) chosen.push_back(std::move(s));
   }
   return chosen;

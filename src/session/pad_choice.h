@@ -24,6 +24,9 @@ struct PadSighting {
   std::string problem;  // why it is not usable: one sentence, empty: it is
 };
 
+// The same for what several drivers see of one pad.
+std::string pad_key(const PadSighting& sighting);
+
 // Every device that every driver (or the one wished for) sees, pads first; where the wish names a
 // recording, its devices alone. Finder thread. SDL is asked only where it is wished for, or for
 // Drivers::all, or where no other driver of kernel devices was built: its start takes up to a
@@ -34,10 +37,11 @@ Result<std::vector<PadSighting>> pad_sightings(
     const PadFiles& files, const PadWish& wish, Drivers drivers,
     std::span<const DriverEntry> table = gaitpad::drivers());
 
-// Of the sightings those to open, one for each pad (pad_path), in the order of preference: the
-// first usable one of drivers()'s order; usb only where it is wished for or no kernel driver has
-// the pad. Empty where nothing fits. Error where `wish.pad` fits several different pads by a part
-// of a name: it names them.
+// Of the sightings those to open, in the order of preference: each pad (pad_path) by the first
+// driver of drivers()'s order that can; usb only where it is wished for or no kernel driver has the
+// pad. What one driver shows as several, such as an adapter with an input node for each of its
+// plugs, are several pads. Empty where nothing fits. Error where `wish.pad` fits several different
+// pads by a part of a name: it names them.
 Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sightings,
                                              const PadWish& wish);
 

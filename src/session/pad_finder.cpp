@@ -34,9 +34,6 @@ std::string key_of(const PadSighting& s) {
   return fmt::format("{} {} {} {:04x}:{:04x} {}", s.driver->name, s.listing.node,
                      s.listing.pad_path, info.vendor, info.product, info.unique_id);
 }
-std::string pad_key_of(const PadSighting& s) {
-  return s.listing.pad_path.empty() ? key_of(s) : s.listing.pad_path;
-}
 
 std::string name_of(const PadSighting& s) {
   const DeviceInfo& info = s.listing.info;
@@ -73,10 +70,10 @@ std::optional<Error> PadFinder::start() {
   return outcome.get();
 }
 
-void PadFinder::take_gone(std::uint64_t id) {
+void PadFinder::take_gone(std::uint64_t id, std::unique_ptr<Device> device) {
   {
     const std::lock_guard lock(mutex_);
-    gone_.push_back(id);
+    gone_.push_back({id, std::move(device)});
   }
   bell_.ring();
 }
@@ -95,7 +92,7 @@ void PadFinder::run(std::promise<std::optional<Error>> first_look) {
   while (!is_ending_) {
     wait();
     if (is_ending_) return;
-    forget_gone();
+    close_gone();
     if (is_recording_) continue;
     if (auto problem = look(nullptr)) remarks_.add_once(problem->message);
   }
@@ -180,34 +177,37 @@ void PadFinder::remember(std::vector<PadSighting>& sightings) {
   }
 }
 
-void PadFinder::forget_gone() {
-  std::vector<std::uint64_t> gone;
+void PadFinder::close_gone() {
+  std::vector<Gone> gone;
   {
     const std::lock_guard lock(mutex_);
     gone.swap(gone_);
   }
-  const Clock::time_point now = Clock::now();
-  for (const std::uint64_t id : gone) {
-    const auto open = std::ranges::find(open_, id, &Open::id);
-    if (open == open_.end()) continue;
-    known_[open->index].is_present = false;
-    if (const auto entry = candidates_.find(open->key); entry != candidates_.end()) {
-      Candidate& candidate = entry->second;
-      const bool was_short = now - open->since < kShortLife;
-      candidate.failures = was_short ? candidate.failures + 1 : 0;
-      candidate.next_try =
-          now + std::min<std::chrono::milliseconds>(candidate.failures * kRetries[0], kMaxRest);
-    }
-    open_.erase(open);
-    if (is_recording_) --awaited_ends_;
-  }
+  for (const Gone& one : gone) forget(one.id);
 }
 
+void PadFinder::forget(std::uint64_t id) {
+  const auto open = std::ranges::find(open_, id, &Open::id);
+  if (open == open_.end()) return;
+  const Clock::time_point now = Clock::now();
+  known_[open->index].is_present = false;
+  if (const auto entry = candidates_.find(open->key); entry != candidates_.end()) {
+    Candidate& candidate = entry->second;
+    const bool was_short = now - open->since < kShortLife;
+    candidate.failures = was_short ? candidate.failures + 1 : 0;
+    candidate.next_try =
+        now + std::min<std::chrono::milliseconds>(candidate.failures * kRetries[0], kMaxRest);
+  }
+  open_.erase(open);
+  if (is_recording_) --awaited_ends_;
+}
+
+// Itself, or the same pad through another driver.
 bool PadFinder::is_open(const PadSighting& sighting) const {
-  return std::ranges::any_of(open_,
-                             [pad = pad_key_of(sighting), key = key_of(sighting)](const Open& o) {
-                               return o.pad_key == pad || o.key == key;
-                             });
+  const std::string pad = pad_key(sighting), key = key_of(sighting);
+  return std::ranges::any_of(open_, [&](const Open& o) {
+    return o.key == key || (o.pad_key == pad && o.driver != sighting.driver);
+  });
 }
 
 // Plugged in again before the I/O thread has noticed that it was out: it is to get its old index.
@@ -302,16 +302,17 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
   return std::nullopt;
 }
 
-// The index that it had before; among equal ones the one on the same port.
-std::optional<std::uint16_t> PadFinder::index_of(const DeviceInfo& info) {
-  std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < known_.size(); ++i) {
+// The index that it had before; among equal ones the first on the same port.
+std::optional<std::uint16_t> PadFinder::index_of(const DeviceInfo& info) const {
+  std::optional<std::uint16_t> on_other_port;
+  for (std::uint16_t i = 0; i < known_.size(); ++i) {
     const DeviceInfo& known = known_[i].info;
     if (known_[i].is_present || !is_same_device(known, info)) continue;
     if (known.bus != info.bus || known.descriptor != info.descriptor) continue;
-    if (!found || known.physical_path == info.physical_path) found = i;
+    if (known.physical_path == info.physical_path) return i;
+    if (!on_other_port) on_other_port = i;
   }
-  if (found) return static_cast<std::uint16_t>(*found);
+  if (on_other_port) return on_other_port;
   if (known_.size() >= slots_.size()) return std::nullopt;
   return static_cast<std::uint16_t>(known_.size());
 }
@@ -333,8 +334,8 @@ void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> d
     known_[index].is_present = true;
   }
   opened.device = std::move(device);
-  open_.push_back(
-      {opened.id, key_of(sighting), pad_key_of(sighting), index, Clock::now(), std::nullopt});
+  open_.push_back({opened.id, key_of(sighting), pad_key(sighting), sighting.driver, index,
+                   Clock::now(), std::nullopt});
   io_.take_over(std::move(opened));
 }
 
@@ -344,9 +345,9 @@ void PadFinder::tell_problems(const std::vector<PadSighting>& sightings,
   const auto wished = wished_pads(sightings, options_.wish);
   if (!wished) return;
   std::vector<std::string> settled;
-  for (const PadSighting& s : chosen) settled.push_back(pad_key_of(s));
+  for (const PadSighting& s : chosen) settled.push_back(pad_key(s));
   for (const PadSighting& s : *wished) {
-    const std::string pad = pad_key_of(s);
+    const std::string pad = pad_key(s);
     if (s.problem.empty() || is_open(s) || std::ranges::count(settled, pad) > 0) continue;
     const Candidate& candidate = candidates_.at(key_of(s));
     const auto time = candidate.first_seen + kProblemPatience;

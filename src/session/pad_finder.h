@@ -52,8 +52,9 @@ class PadFinder {
 
   // Returns after the first look, before anything is opened. Error where the wish is wrong.
   std::optional<Error> start();
-  void stop();                       // an opening that is on its way is waited for
-  void take_gone(std::uint64_t id);  // any thread: this opening has come to its end
+  void stop();  // an opening that is on its way is waited for
+  // Any thread: this opening has come to its end, its device is to be closed.
+  void take_gone(std::uint64_t id, std::unique_ptr<Device> device);
   bool has_ended() const noexcept { return awaited_ends_.load() == 0; }
 
  private:
@@ -70,9 +71,14 @@ class PadFinder {
   struct Open {
     std::uint64_t id = 0;
     std::string key, pad_key;
+    const DriverEntry* driver = nullptr;
     std::uint16_t index = 0;
     Clock::time_point since;
     std::optional<Clock::time_point> missing_since;  // not seen any more, but not yet gone
+  };
+  struct Gone {
+    std::uint64_t id;
+    std::unique_ptr<Device> device;
   };
   struct Known {  // an index in PadSlots
     DeviceInfo info;
@@ -84,7 +90,8 @@ class PadFinder {
   void let_settle(int changes_fd);
   std::optional<Error> look(std::promise<std::optional<Error>>* first_look);
   void remember(std::vector<PadSighting>& sightings);
-  void forget_gone();
+  void close_gone();
+  void forget(std::uint64_t id);
   void look_no_later_than(Clock::time_point time);
   bool is_open(const PadSighting& sighting) const;
   bool is_awaiting_gone(const PadSighting& sighting) const;
@@ -92,7 +99,7 @@ class PadFinder {
   void consider(const PadSighting& sighting);
   void open(const PadSighting& sighting, Candidate& candidate);
   std::optional<std::string> set_up(const PadSighting& sighting, Device& device, PadSlot& slot);
-  std::optional<std::uint16_t> index_of(const DeviceInfo& info);
+  std::optional<std::uint16_t> index_of(const DeviceInfo& info) const;
   void hand_over(const PadSighting& sighting, std::unique_ptr<Device> device, PadSlot slot,
                  std::uint16_t index);
   void tell_problems(const std::vector<PadSighting>& sightings,
@@ -108,7 +115,7 @@ class PadFinder {
   std::atomic<bool> is_ending_{false};
   std::atomic<int> awaited_ends_{-1};  // of a recording's devices; -1: there is none
   std::mutex mutex_;
-  std::vector<std::uint64_t> gone_;
+  std::vector<Gone> gone_;
 
   // The finder thread's own.
   std::optional<HotplugMonitor> monitor_;

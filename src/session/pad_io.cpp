@@ -52,8 +52,7 @@ bool is_blank(std::string_view text) {
 
 }  // namespace
 
-PadIo::PadIo(PadQueue& queue, PadCounters& counters, Remarks& remarks,
-             std::function<void(std::uint64_t)> gone)
+PadIo::PadIo(PadQueue& queue, PadCounters& counters, Remarks& remarks, Gone gone)
     : queue_(queue), counters_(counters), remarks_(remarks), gone_(std::move(gone)) {}
 
 void PadIo::stop() {
@@ -300,15 +299,13 @@ void PadIo::count_lost(Pad& pad) {
 
 void PadIo::end(Pad& pad, Reading how) {
   announce(pad, ReportKind::removed, now_ns_);
-  queue_.wake_reader();  // closing may take its time
   count_lost(pad);
   take_remarks(pad);
-  pad.opened.device.reset();
   if (how == Reading::failed)
     remarks_.add(pad.opened.name + ": closed, it only reports errors");
   else if (!pad.opened.is_recording)
     remarks_.add(pad.opened.name + ": unplugged");
-  gone_(pad.opened.id);
+  gone_(pad.opened.id, std::move(pad.opened.device));
 }
 
 void PadIo::take_remarks(Pad& pad) {

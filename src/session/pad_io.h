@@ -1,5 +1,5 @@
-// The I/O thread: reads all open devices, stamps and orders their reports, sets motors, ends what
-// is gone.
+// The I/O thread: reads all open devices, stamps and orders their reports, sets motors, lets go of
+// what is gone.
 #pragma once
 #include <poll.h>
 
@@ -40,13 +40,14 @@ struct PadCounters {
 
 class PadIo {
  public:
-  // `gone` is called on the I/O thread, when the device is closed already.
-  PadIo(PadQueue& queue, PadCounters& counters, Remarks& remarks,
-        std::function<void(std::uint64_t id)> gone);
+  // `gone` is called on the I/O thread and closes the device on another one: giving a pad back to
+  // the kernel takes up to half a second, in which the other pads are read.
+  using Gone = std::function<void(std::uint64_t id, std::unique_ptr<Device> device)>;
+  PadIo(PadQueue& queue, PadCounters& counters, Remarks& remarks, Gone gone);
   ~PadIo() { stop(); }
   bool is_open() const noexcept { return bell_.fd() >= 0; }
   void start();
-  void stop();  // ends the thread and closes what is open
+  void stop();  // ends the thread and closes what is still open
 
   void take_over(OpenedPad pad);        // the finder
   void command(std::string_view text);  // any thread
@@ -96,7 +97,7 @@ class PadIo {
   PadQueue& queue_;
   PadCounters& counters_;
   Remarks& remarks_;
-  const std::function<void(std::uint64_t)> gone_;
+  const Gone gone_;
 
   WakeFd bell_;
   std::atomic<bool> is_ending_{false};

@@ -14,7 +14,10 @@ namespace gaitpad {
 struct PadStream::Impl {
   explicit Impl(PadStreamOptions options)
       : queue(options.ring_reports),
-        io(queue, counters, remarks, [this](std::uint64_t id) { finder.take_gone(id); }),
+        io(queue, counters, remarks,
+           [this](std::uint64_t id, std::unique_ptr<Device> device) {
+             finder.take_gone(id, std::move(device));
+           }),
         finder({std::move(options.files), std::move(options.wish), options.drivers,
                 options.changes_fd},
                slots, io, remarks) {}

@@ -1,4 +1,5 @@
 // Pads as one stream of reports: found, opened, kept through unplugging and plugging in again.
+// docs/pads.md draws the whole way.
 //
 // Two threads work here. The finder waits for udev's word that something was plugged in, looks at
 // the devices, opens the chosen ones (that may take seconds) and hands them over. The I/O thread

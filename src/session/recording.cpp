@@ -13,8 +13,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "session/tick_clock.h"
-
 namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
@@ -27,19 +25,15 @@ Error failure(const std::string& path, int number) {
   return Error{fmt::format("{}: cannot be written: {}", path, std::strerror(number))};
 }
 
-// Open and empty, and nobody else's.
-Result<int> opened_part(const std::string& part) {
-  const int file = ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (file < 0) return failure(part, errno);
-  std::optional<Error> problem;
-  if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
-    problem = Error{part + ": another session is recording into it"};
-  } else if (::ftruncate(file, 0) != 0) {
-    problem = failure(part, errno);
-  }
-  if (!problem) return file;
-  ::close(file);
-  return *problem;
+// Open and empty, and nobody else's. A pipe of that name without a reader is an error, no waiting.
+Result<OwnedFd> opened_part(const std::string& part) {
+  OwnedFd file(
+      ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
+  if (file.get() < 0) return failure(part, errno);
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0)
+    return Error{part + ": another session is recording into it"};
+  if (::ftruncate(file.get(), 0) != 0) return failure(part, errno);
+  return file;
 }
 
 }  // namespace
@@ -53,28 +47,26 @@ Result<std::unique_ptr<Recording>> Recording::start(const Options& options,
   }
   auto file = opened_part(options.path + ".part");
   if (!file) return file.error();
-  auto recording = std::unique_ptr<Recording>(new Recording(options, std::move(devices), *file));
+  std::unique_ptr<Recording> recording(
+      new Recording(options, std::move(devices), std::move(*file)));
   recording->thread_ = std::thread([r = recording.get()] { r->run(); });
   return recording;
 }
 
-Recording::Recording(const Options& options, RecordedDevices devices, int file)
+Recording::Recording(const Options& options, RecordedDevices devices, OwnedFd file)
     : path_(options.path),
       part_(options.path + ".part"),
-      file_(file),
+      file_(std::move(file)),
       lines_(options.rate_hz, std::move(devices), options.limits),
       ring_(kRingItems) {}
 
-Recording::~Recording() {
-  end_thread();
-  ::close(file_);
-}
+Recording::~Recording() { end_thread(); }
 
 void Recording::add(std::int64_t tick, const Report& report) noexcept {
   Item item;
   item.tick = tick;
   // No report comes from the future: a wrong stamp would end the recording.
-  item.report.time_ns = std::min(report.time_ns, TickClock::now_ns());
+  item.report.time_ns = std::min(report.time_ns, now_ns());
   item.report.device = report.device;
   item.report.kind = report.kind;
   item.report.size = std::min<std::uint16_t>(report.size, kMaxReportBytes);
@@ -121,13 +113,13 @@ void Recording::write(std::string_view text) {
   if (problem_ != 0) return;
   const auto whole = static_cast<std::int64_t>(text.size());
   while (!text.empty()) {
-    const ssize_t count = ::write(file_, text.data(), text.size());
+    const ssize_t count = ::write(file_.get(), text.data(), text.size());
     if (count >= 0) {
       text.remove_prefix(static_cast<std::size_t>(count));
     } else if (errno != EINTR) {
       problem_ = errno;
       // Half a line would spoil the rest; where even this fails, `replay --lenient` skips it.
-      if (::ftruncate(file_, written_) != 0) return;
+      static_cast<void>(!::ftruncate(file_.get(), written_));
       return;
     }
   }
@@ -148,13 +140,18 @@ Result<std::vector<std::string>> Recording::finish(std::int64_t ticks, std::int6
   end_thread();
   lines_.end(ticks, time_ns);
   write(lines_.take_text());
-  if (problem_ != 0) return failure(part_, problem_);
+  if (auto failed = problem()) return *failed;
   if (!lines_.has_devices()) {
     ::unlink(part_.c_str());
     return std::vector<std::string>{path_ + ": was not written: there was no pad to record"};
   }
   if (std::rename(part_.c_str(), path_.c_str()) != 0) return failure(path_, errno);
   return remarks();
+}
+
+std::optional<Error> Recording::problem() const {
+  if (problem_ == 0) return std::nullopt;
+  return failure(part_, problem_);
 }
 
 std::vector<std::string> Recording::remarks() const {

@@ -12,6 +12,7 @@
 
 #include "base/result.h"
 #include "base/spsc_ring.h"
+#include "drivers/posix.h"
 #include "session/recording_lines.h"
 
 namespace gaitpad {
@@ -36,6 +37,8 @@ class Recording {
 
   // Reports that are missing: found no room here or in the file. It is then no exact recording.
   std::int64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
+  // One sentence once the file could not be written; what stands in it replays. Any thread.
+  std::optional<Error> problem() const;
   // Ends with so many ticks run; sentences that a user should know. Once.
   Result<std::vector<std::string>> finish(std::int64_t ticks, std::int64_t time_ns);
 
@@ -47,7 +50,7 @@ class Recording {
   };
   static constexpr std::int64_t kNoClock = -1;
 
-  Recording(const Options& options, RecordedDevices devices, int file);
+  Recording(const Options& options, RecordedDevices devices, OwnedFd file);
   void push(const Item& item) noexcept;
   void run();
   void take_all();
@@ -56,9 +59,9 @@ class Recording {
   std::vector<std::string> remarks() const;
 
   std::string path_, part_;
-  int file_;
-  std::int64_t written_ = 0;  // bytes, whole lines
-  int problem_ = 0;           // errno of the first write that failed
+  OwnedFd file_;
+  std::int64_t written_ = 0;     // bytes, whole lines
+  std::atomic<int> problem_{0};  // errno of the first write that failed
   RecordingLines lines_;
   SpscRing<Item> ring_;
   std::atomic<std::int64_t> lost_{0};

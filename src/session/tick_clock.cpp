@@ -1,16 +1,8 @@
 #include "session/tick_clock.h"
 
-#include <time.h>
-
 #include <utility>
 
 namespace gaitpad {
-
-std::int64_t TickClock::now_ns() noexcept {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * kSecond_ns + now.tv_nsec;
-}
 
 std::int64_t TickClock::due_ns(std::int64_t tick) const noexcept {
   const std::int64_t ticks = tick - base_tick_;

@@ -13,7 +13,6 @@ inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
 class TickClock {
  public:
   static constexpr std::int64_t kTooLate_ns = kSecond_ns;
-  static std::int64_t now_ns() noexcept;  // CLOCK_MONOTONIC, as every report's time
 
   TickClock(int rate_hz, std::int64_t start_ns) : rate_hz_(rate_hz), base_ns_(start_ns) {}
   std::int64_t due_ns(std::int64_t tick) const noexcept;

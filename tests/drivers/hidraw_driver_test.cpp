@@ -15,6 +15,7 @@
 #include <deque>
 #include <filesystem>
 #include <iterator>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -36,6 +37,12 @@ std::vector<int> timeouts;        // of the reads
 ScriptedRead failure(int error) { return {.bytes = {}, .error = error}; }
 int descriptors_per_opening = 1;
 std::optional<Packet> firmware;  // feature report 0x20
+// Input report by request, the id first; asked for by a thread of the driver's.
+struct PresentReport {
+  std::mutex mutex;
+  std::optional<Packet> answer;
+  std::vector<int> asked;  // ids
+} present;
 
 }  // namespace
 
@@ -86,6 +93,13 @@ int hid_get_feature_report(hid_device*, unsigned char* data, size_t length) {
   std::copy_n(firmware->begin(), std::min(length, firmware->size()), data);
   return static_cast<int>(std::min(length, firmware->size()));
 }
+int hid_get_input_report(hid_device*, unsigned char* data, size_t length) {
+  const std::lock_guard lock(present.mutex);
+  present.asked.push_back(data[0]);
+  if (!present.answer) return errno = EPIPE, -1;
+  std::copy_n(present.answer->begin(), std::min(length, present.answer->size()), data);
+  return static_cast<int>(std::min(length, present.answer->size()));
+}
 hid_device_info* hid_enumerate(unsigned short, unsigned short) { return nullptr; }
 void hid_free_enumeration(hid_device_info*) {}
 
@@ -110,6 +124,7 @@ class HidrawDriver : public testing::Test {
     timeouts.clear();
     descriptors_per_opening = 1;
     firmware.reset();
+    set_present(std::nullopt);
     pad_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
     if (pad_ < 0 || ::grantpt(pad_) != 0 || ::unlockpt(pad_) != 0)
       GTEST_SKIP() << "there is no pseudo-terminal here";
@@ -150,6 +165,31 @@ class HidrawDriver : public testing::Test {
     }
     bytes.resize(count);
     return bytes;
+  }
+  static void set_present(std::optional<Packet> answer) {
+    const std::lock_guard lock(present.mutex);
+    present.answer = std::move(answer);
+    present.asked.clear();
+  }
+  static std::vector<int> asked() {
+    const std::lock_guard lock(present.mutex);
+    return present.asked;
+  }
+  // Reads this many reports in a row, then `nothing`.
+  void read_in_a_row(Device& device, int count, const Packet& bytes = {1, 2}) {
+    for (int i = 0; i < count; ++i) script.push_back({.bytes = bytes});
+    for (int i = 0; i < count; ++i) EXPECT_EQ(device.read(report_), Status::report);
+    EXPECT_EQ(device.read(report_), Status::nothing);
+  }
+  // As the I/O thread does it, that long or until there is a report.
+  Status wait_and_read(Device& device, int timeout_ms) {
+    Status status = Status::nothing;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
+    while (status == Status::nothing && std::chrono::steady_clock::now() < end) {
+      std::vector<pollfd> fds(device.poll_fds().begin(), device.poll_fds().end());
+      if (::poll(fds.data(), fds.size(), 10) > 0) status = device.read(report_);
+    }
+    return status;
   }
   std::unique_ptr<Device> opened() {
     auto device = open_hidraw_device(listing_, Detach::never);
@@ -276,18 +316,77 @@ TEST_F(HidrawDriver, AFloodOfRefusedPacketsLeavesOtherPadsTheirTurn) {
 
 TEST_F(HidrawDriver, AReaderThatComesTooLateIsToldOnce) {
   const auto device = opened();
-  const auto read_in_a_row = [&](int count) {
-    for (int i = 0; i < count; ++i) script.push_back({.bytes = {1, 2}});
-    for (int i = 0; i < count; ++i) EXPECT_EQ(device->read(report_), Status::report);
-    EXPECT_EQ(device->read(report_), Status::nothing);
-  };
-  read_in_a_row(100);  // from before the opening's end
-  read_in_a_row(62);
+  read_in_a_row(*device, 100);  // from before the opening's end
+  read_in_a_row(*device, 62);
   EXPECT_TRUE(device->take_remarks().empty());
-  read_in_a_row(63);
+  EXPECT_EQ(device->lost(), 0);
+  read_in_a_row(*device, 63);
   EXPECT_EQ(device->take_remarks().size(), 1u);
-  read_in_a_row(63);
+  EXPECT_EQ(device->lost(), 1);
+  read_in_a_row(*device, 200);
   EXPECT_TRUE(device->take_remarks().empty());
+  EXPECT_EQ(device->lost(), 2) << "at least one each time";
+}
+
+// The kernel keeps 63 reports (HIDRAW_BUFFER_SIZE of 64, less one) and drops what comes then.
+TEST_F(HidrawDriver, APadThatIsSilentAfterAFullRingIsAskedForItsState) {
+  const auto device = opened();
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  set_present(Packet{0, 0x70, 0x80});
+  EXPECT_EQ(device->poll_fds().size(), 1u);
+  read_in_a_row(*device, 63, {0xff, 0x80});
+  ASSERT_EQ(wait_and_read(*device, 5000), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{0x70, 0x80}));
+  EXPECT_EQ(report_.kind, ReportKind::input);
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  EXPECT_NEAR(static_cast<double>(report_.time_ns), now.tv_sec * 1e9 + now.tv_nsec, 1e9);
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  EXPECT_EQ(device->poll_fds().size(), 1u);
+  EXPECT_EQ(asked(), std::vector<int>{0});
+  EXPECT_EQ(device->lost(), 1);
+}
+
+TEST_F(HidrawDriver, ThePresentStateOfANumberedReportIsAskedForByItsId) {
+  listing_.info.descriptor = kNumbered;
+  const auto device = opened();
+  set_present(Packet{1, 0x70, 0x80});
+  read_in_a_row(*device, 63, {1, 0xff, 0x80});  // while it was opened
+  ASSERT_EQ(wait_and_read(*device, 5000), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{1, 0x70, 0x80}));
+  EXPECT_EQ(asked(), std::vector<int>{1});
+  EXPECT_EQ(device->lost(), 0);
+}
+
+TEST_F(HidrawDriver, APadThatGoesOnAfterAFullRingIsNotAsked) {
+  const auto device = opened();
+  set_present(Packet{0, 0x70, 0x80});
+  read_in_a_row(*device, 63);
+  send({5, 6});
+  ASSERT_EQ(wait_and_read(*device, 1000), Status::report);
+  EXPECT_EQ(wait_and_read(*device, 60), Status::nothing);
+  EXPECT_TRUE(asked().empty());
+}
+
+TEST_F(HidrawDriver, ARefusedOrShortAnswerIsNoReport) {
+  for (const std::optional<Packet>& answer : {std::optional<Packet>(), {Packet{0, 9}}}) {
+    const auto device = opened();
+    set_present(answer);
+    read_in_a_row(*device, 63);
+    EXPECT_EQ(wait_and_read(*device, 100), Status::nothing);
+    EXPECT_EQ(device->poll_fds().size(), 1u);
+    EXPECT_EQ(asked().size(), 1u);
+    send({5, 6});
+    EXPECT_EQ(wait_and_read(*device, 1000), Status::report);
+  }
+}
+
+TEST_F(HidrawDriver, APadThatIsUnpluggedBeforeItsAnswerIsGone) {
+  const auto device = opened();
+  set_present(Packet{0, 0x70, 0x80});
+  read_in_a_row(*device, 63);
+  unplug();
+  EXPECT_EQ(wait_and_read(*device, 1000), Status::gone);
 }
 
 TEST_F(HidrawDriver, MotorsRunAndStopWhenTheDeviceIsClosed) {
@@ -349,7 +448,11 @@ TEST_F(HidrawDriver, NothingStaysOpen) {
     descriptors_per_opening = 1 + i % 2;
     const auto device = opened();
     device->rumble({.strong = 1, .weak = 1});
+    read_in_a_row(*device, 63, Packet(64, 1));
+    EXPECT_EQ(wait_and_read(*device, 45), Status::nothing);
   }
+  for (int i = 0; i < 1000 && count() != before; ++i)  // the threads end a little later
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(count(), before);
 }
 

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <thread>
 
+#include "drivers/posix.h"
 #include "session/tick_clock.h"
 #include "tests/session/made_session.h"
 
@@ -291,12 +292,12 @@ class RecordingFile : public testing::Test {
 TEST_F(RecordingFile, TakesItsNameAtTheEnd) {
   std::ofstream(file_) << "old";
   auto recording = started();
-  recording->clock(0, TickClock::now_ns());
-  recording->add(0, at(TickClock::now_ns(), made_plug(ReportKind::added)));
-  recording->add(1, at(TickClock::now_ns(), made_report(7, 8)));
+  recording->clock(0, now_ns());
+  recording->add(0, at(now_ns(), made_plug(ReportKind::added)));
+  recording->add(1, at(now_ns(), made_report(7, 8)));
   EXPECT_TRUE(is_written("6 07 08"));
   EXPECT_EQ(text(file_), "old");
-  auto remarks = recording->finish(2, TickClock::now_ns());
+  auto remarks = recording->finish(2, now_ns());
   ASSERT_TRUE(remarks) << remarks.error().message;
   EXPECT_TRUE(remarks->empty());
   EXPECT_FALSE(fs::exists(part_));
@@ -309,8 +310,8 @@ TEST_F(RecordingFile, WithoutAnEndLeavesAPartThatReplays) {
   std::ofstream(file_) << "old";
   {
     auto recording = started();
-    recording->add(0, at(TickClock::now_ns(), made_plug(ReportKind::added)));
-    recording->add(1, at(TickClock::now_ns(), made_report(7, 8)));
+    recording->add(0, at(now_ns(), made_plug(ReportKind::added)));
+    recording->add(1, at(now_ns(), made_report(7, 8)));
   }
   EXPECT_EQ(text(file_), "old");
   EXPECT_EQ(parsed(text(part_)).events.size(), 2u);
@@ -321,7 +322,7 @@ TEST_F(RecordingFile, WithoutAnEndLeavesAPartThatReplays) {
 TEST_F(RecordingFile, WithoutAnyPadIsNotWritten) {
   auto recording = started();
   recording->add(0, made_command("style even"));
-  const auto remarks = recording->finish(10, TickClock::now_ns());
+  const auto remarks = recording->finish(10, now_ns());
   ASSERT_TRUE(remarks);
   ASSERT_EQ(remarks->size(), 1u);
   EXPECT_NE(remarks->front().find("no pad"), std::string::npos);
@@ -331,7 +332,7 @@ TEST_F(RecordingFile, WithoutAnyPadIsNotWritten) {
 
 TEST_F(RecordingFile, WhatFindsNoRoomIsCountedAndTold) {
   auto recording = started();
-  const std::int64_t now_ns = TickClock::now_ns();
+  const std::int64_t now_ns = gaitpad::now_ns();
   for (int i = 0; i < 100'000; ++i) recording->add(i / 100, at(now_ns, made_report(1, 2)));
   const auto remarks = recording->finish(1000, now_ns);
   ASSERT_TRUE(remarks);
@@ -352,7 +353,7 @@ TEST_F(RecordingFile, AFullDiskIsToldTheOldFileIsKeptAndThePartIsWhole) {
   ::setrlimit(RLIMIT_FSIZE, &small);
   recording->add(0, made_plug(ReportKind::added));
   for (int i = 0; i < 4000; ++i) recording->add(i, made_report(1, 2));
-  const auto result = recording->finish(4000, TickClock::now_ns());
+  const auto result = recording->finish(4000, now_ns());
   ::setrlimit(RLIMIT_FSIZE, &before);
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().message, part_.string() + ": cannot be written: File too large");

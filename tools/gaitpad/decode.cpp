@@ -98,11 +98,11 @@ Result<PadSighting> sighting_of(const PadFiles& files, const PadWish& wish) {
   }
   auto chosen = chosen_pads(*sightings, wish);
   if (!chosen) return chosen.error();
-  if (chosen->empty()) {
-    return Error{
-        fmt::format("{}: no driver sees such a device; gaitpad pads lists them", wish.pad)};
-  }
-  return chosen->front();
+  if (!chosen->empty()) return chosen->front();
+  const auto wished = wished_pads(*sightings, wish);
+  const bool is_told = wished && !wished->empty() && !wished->front().problem.empty();
+  if (is_told) return wished->front();  // its opening says why not, its descriptor may be readable
+  return Error{fmt::format("{}: no driver sees such a device; gaitpad pads lists them", wish.pad)};
 }
 
 // Reports as they come, their time counted from the first one. Returns when the device is gone.
@@ -171,7 +171,8 @@ int run(const DecodeArguments& arguments) {
 void add_decode(CLI::App& app, int& status) {
   auto arguments = std::make_shared<DecodeArguments>();
   CLI::App* command = app.add_subcommand(
-      "decode", "Shows report descriptors and decodes each report, of a trace or a live device");
+      "decode",
+      "shows report descriptors and each report decoded, of a recording or a live device");
   command
       ->add_option("TRACE", arguments->wish.pad,
                    "a recording (.hid), a node such as /dev/hidraw0, or a pad as for play")
@@ -180,8 +181,9 @@ void add_decode(CLI::App& app, int& status) {
   add_seconds_option(*command, arguments->seconds);
   command->add_flag("--descriptor", arguments->descriptor_only, "only the descriptors");
   command->add_flag("--json", arguments->as_json, "one JSON object a line");
-  command->add_flag("--lenient", arguments->lenient, "skip damaged lines and count them");
-  command->add_option("--map", arguments->map, "an override as in config/pads, before all others");
+  command->add_flag("--lenient", arguments->lenient,
+                    "skip a recording's damaged lines and count them");
+  command->add_option("--map", arguments->map, "pad file that overrides config/pads");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

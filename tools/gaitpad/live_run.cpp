@@ -4,10 +4,10 @@
 #include <signal.h>
 #include <sys/ioctl.h>
 #include <sys/signalfd.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 
@@ -17,63 +17,78 @@ namespace {
 constexpr std::size_t kMaxLineBytes = 4096;  // of a command; longer ones are cut
 constexpr int kMaxReads = 64;                // at once, of who writes without end
 
+constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP};
+
 sigset_t ending_signals() noexcept {
   sigset_t set;
   sigemptyset(&set);
-  for (int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
+  for (int signal : kEndingSignals) sigaddset(&set, signal);
   return set;
 }
 
 // So long that the sum with the clock stays in range.
 constexpr double kMaxSeconds = 1e9;
 
-}  // namespace
+// One that comes with the first (a terminal and `timeout` may both send it) is the same wish.
+constexpr std::int64_t kOneWish_ns = 1'000'000'000;
+std::atomic<std::int64_t> first_signal_ns{0};
 
-std::int64_t monotonic_ns() noexcept {
-  timespec now = {};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+void end_at_once(int signal) {
+  if (now_ns() - first_signal_ns.load() > kOneWish_ns) ::_exit(128 + signal);
 }
+
+// From now on a signal comes through, whatever the calling thread is waiting for.
+void allow_ending_at_once() noexcept {
+  first_signal_ns = now_ns();
+  struct sigaction action = {};
+  action.sa_handler = &end_at_once;
+  action.sa_flags = SA_RESTART;
+  const sigset_t set = ending_signals();
+  for (int signal : kEndingSignals) sigaction(signal, &action, nullptr);
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+}  // namespace
 
 RunEnd::RunEnd() {
   const sigset_t set = ending_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
-  signals_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
-  if (signals_ < 0) pthread_sigmask(SIG_UNBLOCK, &set, nullptr);  // rather cut off than never
+  signals_ = OwnedFd(signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC));
+  if (signals_.get() < 0) pthread_sigmask(SIG_UNBLOCK, &set, nullptr);  // rather cut off than never
 }
 
 void RunEnd::end_after(double seconds) noexcept {
   if (seconds <= 0.0) return;
-  end_ns_ = monotonic_ns() + static_cast<std::int64_t>(std::min(seconds, kMaxSeconds) * 1e9);
-}
-
-RunEnd::~RunEnd() {
-  if (signals_ >= 0) ::close(signals_);
+  end_ns_ = now_ns() + static_cast<std::int64_t>(std::min(seconds, kMaxSeconds) * 1e9);
 }
 
 bool RunEnd::is_reached() noexcept {
   signalfd_siginfo info = {};
-  if (::read(signals_, &info, sizeof info) == sizeof info) has_signal_ = true;
-  return has_signal_ || (end_ns_ != 0 && monotonic_ns() >= end_ns_);
+  if (!has_signal_ && ::read(signals_.get(), &info, sizeof info) == sizeof info) {
+    has_signal_ = true;
+    allow_ending_at_once();
+  }
+  return has_signal_ || (end_ns_ != 0 && now_ns() >= end_ns_);
 }
 
 void RunEnd::wait(std::chrono::milliseconds time, std::span<const pollfd> others) {
   if (is_reached()) return;
   std::int64_t wait_ms = time.count();
   if (end_ns_ != 0) {
-    const std::int64_t left_ns = end_ns_ - monotonic_ns();
+    const std::int64_t left_ns = end_ns_ - now_ns();
     wait_ms = std::clamp<std::int64_t>((left_ns + 999'999) / 1'000'000, 0, wait_ms);
   }
   std::vector<pollfd> fds(others.begin(), others.end());
-  fds.push_back({signals_, POLLIN, 0});
+  fds.push_back({signals_.get(), POLLIN, 0});
   ::poll(fds.data(), fds.size(), static_cast<int>(wait_ms));
 }
 
 std::vector<std::string> InputLines::take() {
   std::vector<std::string> lines;
   pollfd ready = fd();
-  for (int reads = 0; is_open_ && reads<kMaxReads&& ::poll(&ready, 1, 0)> 0; ++reads) {
+  for (int reads = 0; is_open_ && reads < kMaxReads; ++reads) {
+    if (::poll(&ready, 1, 0) <= 0) break;
     char bytes[1024];
     const ssize_t count = ::read(0, bytes, sizeof bytes);
     if (count < 0 && errno == EINTR) continue;
@@ -124,7 +139,8 @@ void StatusLine::clear() {
 void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
                    StatusLine* line) {
   if (line && !remarks.empty()) line->clear();
-  for (const std::string& remark : remarks) fmt::print(stderr, "gaitpad {}: {}\n", command, remark);
+  for (const std::string& remark : remarks)  // one that nobody can read is no failure
+    std::fputs(fmt::format("gaitpad {}: {}\n", command, remark).c_str(), stderr);
 }
 
 }  // namespace gaitpad

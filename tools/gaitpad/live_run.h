@@ -10,25 +10,25 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/posix.h"
+
 namespace gaitpad {
 
 // Ends at SIGINT, SIGTERM, SIGHUP or when the time given to it is over. To be made before any
 // thread starts: the signals are blocked, so that nothing is cut off half-way, and wait here to be
-// asked for. SIGPIPE is ignored: a reader that has gone is a failed write, told like any other.
+// asked for. Somebody who sends another one more than a second later does not want to wait: the
+// process ends at once. SIGPIPE is ignored: a reader that has gone is a failed write, told like any
+// other.
 class RunEnd {
  public:
   RunEnd();
-  ~RunEnd();
-  RunEnd(const RunEnd&) = delete;
-  RunEnd& operator=(const RunEnd&) = delete;
-
   void end_after(double seconds) noexcept;  // from now on; 0: only signals end
   bool is_reached() noexcept;
   // Sleeps until the end, until one of `others` is ready, or for `time`.
   void wait(std::chrono::milliseconds time, std::span<const pollfd> others = {});
 
  private:
-  int signals_ = -1;
+  OwnedFd signals_;
   bool has_signal_ = false;
   std::int64_t end_ns_ = 0;  // 0: none
 };
@@ -61,8 +61,6 @@ class StatusLine {
   bool is_terminal_;
   std::size_t shown_ = 0;  // lines
 };
-
-std::int64_t monotonic_ns() noexcept;
 
 // `gaitpad COMMAND: SENTENCE` on standard error, below which a status line may go on.
 void print_remarks(std::string_view command, const std::vector<std::string>& remarks,

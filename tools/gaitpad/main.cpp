@@ -1,4 +1,6 @@
 // gaitpad: one program with sub-commands. Parses; the commands do the rest.
+#include <fcntl.h>
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
@@ -10,6 +12,15 @@ namespace {
 
 constexpr int kFailed = 1, kWrongUsage = 2;
 
+// A descriptor that the caller has closed would become that of a pad or a recording, and words for
+// the terminal would go there. Opened the wrong way round: using one fails, as on a closed one.
+void hold_standard_descriptors() {
+  for (int fd = 0; fd <= 2; ++fd) {
+    if (::fcntl(fd, F_GETFD) < 0)
+      static_cast<void>(::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY));
+  }
+}
+
 bool is_flushed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 }  // namespace
@@ -20,6 +31,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("gaitpad COMMAND --help says more. Exit status: 0 done, 1 failed, 2 wrong usage.");
 
+  hold_standard_descriptors();
   std::signal(SIGXFSZ, SIG_IGN);  // too large a file is a failed write, told like any other
   int status = 0;
   bool is_written = true;

@@ -33,13 +33,13 @@ class Display {
   StatusLine& line() { return line_; }
 
   void show(MonitoredPads& pads, const PadStream& stream) {
-    const std::int64_t now_ns = monotonic_ns();
-    if (now_ns >= second_ns_ + kSecondNs) {
-      end_second(pads, now_ns);
-      if (!is_rewritten_) print(pads, stream, now_ns);
+    const std::int64_t time_ns = now_ns();
+    if (time_ns >= second_ns_ + kSecondNs) {
+      end_second(pads, time_ns);
+      if (!is_rewritten_) print(pads, stream, time_ns);
     }
-    if (!is_rewritten_ || now_ns < rewritten_ns_ + kRewriteNs) return;
-    rewritten_ns_ = now_ns;
+    if (!is_rewritten_ || time_ns < rewritten_ns_ + kRewriteNs) return;
+    rewritten_ns_ = time_ns;
     std::vector<std::string> lines = {pad_header()};
     for (const auto& [index, pad] : pads) lines.push_back(pad_text(index, pad, stream));
     line_.show(lines);
@@ -48,26 +48,26 @@ class Display {
   // What a last, shorter second has brought.
   void finish(MonitoredPads& pads, const PadStream& stream) {
     const auto is_news = [](const auto& entry) { return entry.second.running.reports > 0; };
-    const std::int64_t now_ns = monotonic_ns();
-    if (is_rewritten_ || now_ns <= second_ns_ || std::ranges::none_of(pads, is_news)) return;
-    end_second(pads, now_ns);
-    print(pads, stream, now_ns);
+    const std::int64_t time_ns = now_ns();
+    if (is_rewritten_ || time_ns <= second_ns_ || std::ranges::none_of(pads, is_news)) return;
+    end_second(pads, time_ns);
+    print(pads, stream, time_ns);
   }
 
  private:
-  void end_second(MonitoredPads& pads, std::int64_t now_ns) {
+  void end_second(MonitoredPads& pads, std::int64_t time_ns) {
     for (auto& [index, pad] : pads) {
       pad.shown = std::exchange(pad.running, {});
-      pad.shown.duration_s = static_cast<double>(now_ns - second_ns_) / 1e9;
+      pad.shown.duration_s = static_cast<double>(time_ns - second_ns_) / 1e9;
     }
-    second_ns_ = now_ns;
+    second_ns_ = time_ns;
   }
 
-  void print(const MonitoredPads& pads, const PadStream& stream, std::int64_t now_ns) {
+  void print(const MonitoredPads& pads, const PadStream& stream, std::int64_t time_ns) {
     for (const auto& [index, pad] : pads) {
       if (as_json_) {
         print_json_line(
-            pad_json(index, pad, stream, static_cast<double>(now_ns - start_ns_) / 1e9));
+            pad_json(index, pad, stream, static_cast<double>(time_ns - start_ns_) / 1e9));
       } else {
         if (!std::exchange(has_header_, true)) fmt::print("{}\n", pad_header());
         fmt::print("{}\n", pad_text(index, pad, stream));
@@ -77,7 +77,7 @@ class Display {
 
   StatusLine line_{1};
   bool as_json_, is_rewritten_, has_header_ = false;
-  std::int64_t start_ns_ = monotonic_ns(), second_ns_ = start_ns_, rewritten_ns_ = 0;
+  std::int64_t start_ns_ = now_ns(), second_ns_ = start_ns_, rewritten_ns_ = 0;
 };
 
 int fail(const std::string& sentence) {

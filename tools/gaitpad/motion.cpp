@@ -124,26 +124,26 @@ int run_motion(const MotionArguments& arguments) {
 }
 
 void add_leg_options(CLI::App& command, LegNames& leg, const std::string& side) {
-  command.add_option("--" + side + "-hip", leg.hip, "Joint at the top of the " + side + " thigh");
-  command.add_option("--" + side + "-knee", leg.knee, "Joint at the top of the " + side + " shank");
+  command.add_option("--" + side + "-hip", leg.hip, "joint at the top of the " + side + " thigh");
+  command.add_option("--" + side + "-knee", leg.knee, "joint at the top of the " + side + " shank");
   command.add_option("--" + side + "-ankle", leg.ankle,
-                     "Joint at the top of the " + side + " foot");
+                     "joint at the top of the " + side + " foot");
   command.add_option("--" + side + "-toe", leg.toe,
-                     "Joint or End Site (NAME_End) of the " + side + " toes");
+                     "joint or End Site (NAME_End) of the " + side + " toes");
 }
 
 }  // namespace
 
 void add_motion(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "motion", "What a motion file holds: units, rate, joints, the legs found, the foot flights");
+      "motion", "shows what a motion file holds: units, rate, joints, legs, when each foot flies");
   const auto arguments = std::make_shared<MotionArguments>();
-  command->add_option("FILE", arguments->file, "BVH file, or `procedural` for the embedded walk")
+  command->add_option("FILE", arguments->file, "BVH file, or `procedural` for the built-in walk")
       ->required();
-  command->add_flag("--json", arguments->as_json, "One JSON object");
+  command->add_flag("--json", arguments->as_json, "one JSON object");
   command
       ->add_option("--metres-per-unit", arguments->load.metres_per_unit,
-                   "Length of the file's unit; else found from the legs' length")
+                   "length of the file's unit (default: found from the legs' length)")
       ->check(CLI::Range(1e-6, 1e3));
   for (int s = 0; s < 2; ++s) add_leg_options(*command, arguments->load.legs[s], kSideNames[s]);
   command->callback([arguments, &status] { status = run_motion(*arguments); });

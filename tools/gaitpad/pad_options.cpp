@@ -40,14 +40,17 @@ std::vector<std::string> pads_of_system() {
 }  // namespace
 
 void add_driver_option(CLI::App& command, PadWish& wish) {
-  command.add_option("--driver", wish.driver, "only this driver's devices")
+  command
+      .add_option("--driver", wish.driver,
+                  "only this driver's devices (usb takes a pad from the kernel while it is open)")
       ->check(CLI::IsMember(driver_names()));
 }
 
 void add_pad_options(CLI::App& command, PadWish& wish) {
   command.add_option(
       "PAD", wish.pad,
-      "a path, a vid:pid, a unique id, or a unique part of a name (default: the first usable)");
+      "a node, a recording (.hid), a vid:pid, a unique id, or a part of one pad's name "
+      "(default: the first usable)");
   add_driver_option(command, wish);
 }
 
@@ -61,7 +64,7 @@ Result<PadFiles> pad_files(const std::string& map, const std::string& calibratio
 }
 
 void MissingPad::look(std::int64_t plugged, StatusLine& line) {
-  if (monotonic_ns() >= start_ns_ + kPatienceNs) tell(plugged, "not there yet, waiting", line);
+  if (now_ns() >= start_ns_ + kPatienceNs) tell(plugged, "not there yet, waiting", line);
 }
 
 void MissingPad::finish(std::int64_t plugged, StatusLine& line) {

@@ -32,7 +32,7 @@ class MissingPad {
 
   std::string command_;
   PadWish wish_;
-  std::int64_t start_ns_ = monotonic_ns();
+  std::int64_t start_ns_ = now_ns();
   bool is_told_ = false;
 };
 

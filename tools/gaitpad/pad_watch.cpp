@@ -67,7 +67,7 @@ void take(const Report& report, PadStream& stream, MonitoredPads& pads) {
     pad.last_ns = 0;
     return;
   }
-  keep(pad.running.latency_us, static_cast<double>(monotonic_ns() - report.time_ns) / 1e3);
+  keep(pad.running.latency_us, static_cast<double>(now_ns() - report.time_ns) / 1e3);
   if (pad.last_ns != 0)
     keep(pad.running.interval_us, static_cast<double>(report.time_ns - pad.last_ns) / 1e3);
   pad.last_ns = report.time_ns;

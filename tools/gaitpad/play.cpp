@@ -120,7 +120,8 @@ void add_play(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("play", "walks characters by a live pad");
   const auto arguments = std::make_shared<PlayArguments>();
   add_pad_options(*command, arguments->wish);
-  command->add_flag("--no-window", arguments->no_window, "walk without a window");
+  command->add_flag("--no-window", arguments->no_window,
+                    "walk without a window (there is none yet)");
   command->add_option("--record", arguments->record, "write the session to this file (.hid)");
   add_seconds_option(*command, arguments->seconds);
   command->add_flag("--no-rumble", arguments->no_rumble, "no beat at each heel strike");

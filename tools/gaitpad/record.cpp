@@ -63,7 +63,7 @@ Recorded record(const PadWish& wish, RunEnd& end, PadStream& stream, Recording& 
   const auto take_all = [&] {
     for (; const Report* report = stream.front(); stream.pop()) take(*report, recording, recorded);
   };
-  while (!end.is_reached() && !stream.has_ended()) {
+  while (!end.is_reached() && !stream.has_ended() && !recording.problem()) {
     stream.wait(kWait);
     take_all();
     print_remarks("record", stream.take_remarks(), &line);
@@ -111,7 +111,7 @@ int run(const RecordArguments& arguments) {
 
   const Recorded recorded = record(arguments.wish, end, **stream, **recording);
   print_remarks("record", (*stream)->take_remarks());
-  const auto remarks = (*recording)->finish(0, std::max(recorded.last_ns, monotonic_ns()));
+  const auto remarks = (*recording)->finish(0, std::max(recorded.last_ns, now_ns()));
   if (!remarks) return fail(remarks.error().message);
   print_remarks("record", *remarks);
   if (recorded.device == kNoDevice) return 1;  // the remarks say so

@@ -10,10 +10,13 @@ void add_session_options(CLI::App& command, SessionArguments& arguments,
                          const std::string& default_rate) {
   SessionOptions& session = arguments.options;
   command.add_option("--motion", session.motion, "motion file; without it the built-in walk");
-  command.add_option("--character", session.characters, "FILE|NAME, once for each")
+  command
+      .add_option("--character", session.characters, "a build, FILE|NAME; once for each character")
       ->allow_extra_args(false)  // what follows the next word may be PAD
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--style", session.styles, "FILE|NAME, the n-th for the n-th character")
+  command
+      .add_option("--style", session.styles,
+                  "a way to walk, FILE|NAME; the n-th for the n-th character")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--terrain", session.terrain, "FILE|NAME; only flat so far");

@@ -101,12 +101,14 @@ std::vector<Reading> read_device(Device& device, const PadLayout& layout, std::s
   readings.reserve(count);
   auto report = std::make_unique<Report>();
   PadState state;
-  while (readings.size() < count) {
+  std::int64_t newest_ns = now_ns();
+  // SDL's timer is always ready: silence is told by the clock.
+  while (readings.size() < count && now_ns() - newest_ns < kPatienceMs * 1'000'000LL) {
     std::vector<pollfd> waiting(device.poll_fds().begin(), device.poll_fds().end());
     if (::poll(waiting.data(), waiting.size(), kPatienceMs) <= 0) break;
     Device::Status status;
     while ((status = device.read(*report)) == Device::Status::report) {
-      const std::int64_t time_ns = now_ns();
+      const std::int64_t time_ns = newest_ns = now_ns();
       if (!decode(layout, *report, state)) continue;
       // Decoded, y grows forward: against the byte.
       readings.push_back(

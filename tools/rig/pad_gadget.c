@@ -58,7 +58,9 @@ static size_t control_reply(const struct usb_ctrlrequest* request, uint8_t* repl
   if (request->bRequestType != 0xa1 || request->bRequest != 1) return 0;  // GET_REPORT
   pthread_mutex_lock(&pad_mutex);
   size_t size = 0;
-  if (high == 1) size = copy(reply, pad.state.bytes, pad.state.size);
+  // Without report ids the id asked for is 0.
+  if (high == 1 && (id == 0 || id == pad.state.bytes[0]))
+    size = copy(reply, pad.state.bytes, pad.state.size);
   if (high == 3 && pad.kind.feature && !pad.refuses_features)
     size = pad.kind.feature(&pad, id, reply);
   pthread_mutex_unlock(&pad_mutex);

@@ -14,7 +14,7 @@ import pads
 from harness import PROGRAM, cases, long, remark, run, timeout
 from pads import LONG, Pad, settle, wait_for
 from session import HAS_SANITIZERS, IDS, TICK_S, Session, ticks_of
-from test_matrix import VALUES
+from test_matrix import NAMES, VALUES, expected_stick
 
 TIMES = 50 if LONG else 5
 NOBODY = 65534
@@ -157,6 +157,47 @@ def test_flood_of_four_pads_with_a_paused_reader(driver):
         gaps += count - len([n for n in numbers if n < count])
     remark(f"flood, {driver}: 4 x {rate_hz} Hz x {seconds} s, {sum(sent)} sent, {gaps} lost while the reader was stopped "
            f"three times, {session.summary['lost']} of them known to the program")
+
+
+@timeout(120)
+@cases("hidraw", "usb", "evdev")
+def test_the_last_state_is_right_after_a_burst_with_a_stopped_reader(driver):
+    """Of a pad that says only once what has changed. Stopped for longer than the kernel keeps reports."""
+    rate_hz, seconds = 250, 1.5
+    get_input_report = bytes.fromhex("a10100010000")
+    lost = 0
+    with Pad("generic") as pad, Session(IDS["generic"], "--driver", driver, "--no-rumble", name=f"last-{driver}") as session:
+        for turn in range(TIMES if LONG else 2):
+            time.sleep(0.3)
+            asked = [packet.data[:6] for packet in pad.setups()].count(get_input_report)
+            ends = len(pad.lines("burst_end"))
+            pad.burst(rate_hz, seconds, at=0)  # the sticks show the number
+            time.sleep(0.5)
+            session.process.send_signal(signal.SIGSTOP)
+            time.sleep(seconds)
+            session.process.send_signal(signal.SIGCONT)
+            wait_for(lambda: len(pad.lines("burst_end")) > ends, 20, "the burst's end")
+            time.sleep(0.3)
+            state = dict(zip(("lx", "ly", "rx", "ry"), pad.sent()[-1].data))
+            wanted = {NAMES[name]: expected_stick("generic", driver, name, value) for name, value in state.items()}
+            row = decoded_last(session)
+            assert all(abs(row[name] - value) < 0.002 for name, value in wanted.items()), (turn, state, row, wanted)
+            asked = [packet.data[:6] for packet in pad.setups()].count(get_input_report) - asked
+            assert asked == (driver == "hidraw"), f"asked {asked} times for its state"
+        pad.set(ly=128, lx=128)
+    if driver == "hidraw":
+        assert session.summary["lost"] >= turn + 1, session.summary
+    remark(f"last state, {driver}: right after {turn + 1} bursts that ended while the reader was stopped, "
+           f"{session.summary['lost']} known to be lost")
+
+
+def decoded_last(session):
+    """The axes of the newest report in the recording so far."""
+    path = "/tmp/so_far.hid"
+    with open(path, "w") as file:
+        file.write("\n".join(session.lines()) + "\n")
+    rows = map(json.loads, run("gaitpad", "decode", path, "--json").stdout.splitlines())
+    return [row["axes"] for row in rows if "axes" in row][-1]
 
 
 class contextlib_stack:

@@ -41,7 +41,7 @@ for kernel in "${kernels[@]}"; do
   bash "$root/tools/rig/kernel.sh" "$kernel" >/dev/null || fetched=$?
   [ $fetched -ne 3 ] || skip "no Debian kernel $kernel can be had"
   [ $fetched -eq 0 ] || exit 1
-  results=$root/build/rig/results-$kernel
+  results=$build/rig/results-$kernel
   rm -rf "$results"
   bash "$root/tools/rig/guest.sh" --kernel "$kernel" --memory 1536 --timeout $seconds --results "$results" -- \
     env RIG_LONG=$long RIG_BUILD="$build" /usr/bin/python3 "$root/tools/rig/guest_tests.py" --only "$only" || status=1

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "hid/driver.h"
@@ -33,6 +34,7 @@ struct FakePad {
   int failing_openings = 0;
   std::optional<std::int64_t> stamp_ns;  // of every report, else the clock's
   std::atomic<int> openings{0}, closings{0};
+  std::atomic<bool> keeps_closing{false};  // its closing waits for the end of this
   std::atomic<std::int64_t> lost{0};
   std::mutex mutex;
   std::vector<Rumble> rumbles;  // under the mutex
@@ -68,7 +70,10 @@ class FakeDevice final : public Device {
     }
     if (pad_->kind == FakeKind::closed_descriptor) fd_.fd = 1 << 20;
   }
-  ~FakeDevice() override { ++pad_->closings; }
+  ~FakeDevice() override {
+    while (pad_->keeps_closing) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ++pad_->closings;
+  }
   const DeviceInfo& info() const noexcept override { return info_; }
   std::span<const pollfd> poll_fds() const noexcept override { return {&fd_, 1}; }
   Status read(Report& report) noexcept override {

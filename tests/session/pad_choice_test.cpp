@@ -66,6 +66,16 @@ TEST_F(PadChoice, AllPadsAreChosenInTheOrderOfTheDrivers) {
   EXPECT_EQ(chosen(), "/dev/hidraw-p2 /dev/hidraw-p1 /dev/evdev-p3 ");
 }
 
+TEST_F(PadChoice, NodesThatOneDriverShowsOfOneAdapterAreAPadEach) {
+  see(kEvdev, "", "p1")->listing.node = "/dev/input/event5";
+  see(kEvdev, "", "p1")->listing.node = "/dev/input/event6";
+  EXPECT_EQ(chosen(), "/dev/input/event5 /dev/input/event6 ");
+  EXPECT_EQ(chosen({"/dev/input/event6", ""}), "/dev/input/event6 ");
+  see(kHidraw, "", "p1");
+  EXPECT_EQ(chosen(), "/dev/hidraw-p1 ");
+  EXPECT_EQ(chosen({"", "evdev"}), "/dev/input/event5 /dev/input/event6 ");
+}
+
 TEST_F(PadChoice, APadIsNamedByNodeModelUniqueIdOrAPartOfItsName) {
   see(kHidraw, "aa:bb:cc", "p1", "Sony Wireless Controller");
   auto other = see(kHidraw, "DD:EE:FF", "p2", "Example Gamepad");

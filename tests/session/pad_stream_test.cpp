@@ -104,7 +104,44 @@ TEST_F(PadStreamTest, UnpluggingComesBehindWhatWasSentBeforeAndIsToldOnce) {
   stream_->wait(20ms);
   EXPECT_EQ(stream_->front(), nullptr);
   EXPECT_EQ(stream_->counts().unplugged, 1);
-  EXPECT_EQ(pad->closings, 1);
+  EXPECT_TRUE(comes_true([&] { return pad->closings == 1; }));
+}
+
+TEST_F(PadStreamTest, APadThatTakesItsTimeToCloseDoesNotKeepTheOthersFromBeingRead) {
+  auto slow = bus_.plug(kHidraw, "A", "port1");
+  start();
+  expect(ReportKind::added, 0);
+  auto other = bus_.plug(kHidraw, "B", "port2");
+  expect(ReportKind::added, 1);
+  slow->keeps_closing = true;
+  bus_.unplug(slow);
+  expect(ReportKind::removed, 0);
+  for (int i = 0; i < 100; ++i) {
+    other->send_axes(i, 0);
+    expect_x(1, i);
+  }
+  EXPECT_EQ(slow->closings, 0);
+  slow->keeps_closing = false;
+  EXPECT_TRUE(comes_true([&] { return slow->closings == 1; }));
+}
+
+TEST_F(PadStreamTest, WhatIsOnItsWayToBeClosedIsClosedAtTheEnd) {
+  auto first = bus_.plug(kHidraw, "A", "port1"), second = bus_.plug(kHidraw, "B", "port2");
+  start();
+  expect(ReportKind::added, 0);
+  expect(ReportKind::added, 1);
+  first->keeps_closing = true;
+  bus_.unplug(first);
+  expect(ReportKind::removed, 0);
+  bus_.unplug(second);
+  expect(ReportKind::removed, 1);
+  std::thread later([&first] {
+    std::this_thread::sleep_for(20ms);
+    first->keeps_closing = false;
+  });
+  stream_.reset();
+  EXPECT_EQ(first->closings + second->closings, 2);
+  later.join();
 }
 
 TEST_F(PadStreamTest, APadThatComesBackHasItsOldIndexOnAnyPort) {
@@ -288,6 +325,32 @@ TEST_F(PadStreamTest, APadIsOpenedThroughOneDriverAlone) {
   auto other = bus_.plug(kHidraw, "B", "port2");
   expect(ReportKind::added, 1);
   EXPECT_EQ(raw->openings + cooked->openings, 1);
+}
+
+// An adapter for two pads: one USB interface with an input node for each of its plugs.
+TEST_F(PadStreamTest, TwoNodesOfOneAdapterAreTwoPadsAndKeepTheirIndexes) {
+  const auto plug = [this](const char* node) {
+    auto pad = bus_.make(kEvdev, "", "port1");
+    pad->listing.node = node;
+    bus_.show(kEvdev, pad);
+    return pad;
+  };
+  auto first = plug("/dev/input/event5"), second = plug("/dev/input/event6");
+  start();
+  for (int i = 0; i < 3; ++i) {
+    expect(ReportKind::added, 0);
+    expect(ReportKind::added, 1);
+    first->send_axes(1, 0);
+    expect_x(0, 1);
+    second->send_axes(2, 0);
+    expect_x(1, 2);
+    bus_.unplug(first);
+    expect(ReportKind::removed, 0);
+    bus_.unplug(second);
+    expect(ReportKind::removed, 1);
+    first = plug("/dev/input/event5");
+    second = plug("/dev/input/event6");
+  }
 }
 
 TEST_F(PadStreamTest, WhatHasNoStickIsNotAnnounced) {

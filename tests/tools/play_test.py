@@ -108,6 +108,23 @@ class Ends(PlayCase):
                 self.assertEqual(os.listdir(self.folder), ["session.hid"])
 
 
+    def test_two_signals_at_once_finish_the_recording_too(self):
+        with subprocess.Popen([PROGRAM, "play", ROUND, "--no-window", "--record", self.record, "--json"],
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as process:
+            time.sleep(2.0)
+            for number in (signal.SIGINT, signal.SIGINT, signal.SIGTERM):
+                process.send_signal(number)
+            out, errors = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, errors)
+        self.assertEqual(self.replay_hash(), json.loads(out)["pose_hash"])
+
+    def test_closed_standard_descriptors_get_nothing_into_the_recording(self):
+        command = f'"{PROGRAM}" play "{ROUND}" --no-window --commands --seconds 2 --record "{self.record}" <&- >&- 2>&-'
+        self.assertEqual(subprocess.run(["sh", "-c", command], check=False, timeout=60).returncode, 1)
+        self.replay_hash()
+
+
 class Refusals(PlayCase):
     def assert_refused(self, *arguments, status=1, says=""):
         done = run("play", *arguments)

@@ -88,6 +88,16 @@ class Record(unittest.TestCase):
         self.assertLess(len(reports(self.out)), count)
         self.assertEqual({p.name for p in self.folder.iterdir()}, {"out.hid"})
 
+    def test_a_full_disk_ends_it_and_leaves_what_was_written(self):
+        start = time.monotonic()
+        command = f'ulimit -f 2; exec "{PROGRAM}" record "{ROUND}" --out "{self.out}" --seconds 60'
+        done = subprocess.run(["sh", "-c", command],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, timeout=120)
+        self.assertLess(time.monotonic() - start, 30)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertEqual(done.stderr, f"gaitpad record: {self.out}.part: cannot be written: File too large\n")
+        self.assertEqual(run("replay", f"{self.out}.part").returncode, 0)
+
     def test_without_a_pad_nothing_is_written(self):
         self.out.write_text("kept")
         done = run("record", "no such pad", "--out", self.out, "--seconds", "0.5")

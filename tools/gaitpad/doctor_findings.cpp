@@ -98,20 +98,22 @@ void check_machine(Diagnosis& diagnosis) {
     diagnosis.add(Finding::State::note, entry.name, none,
                   fmt::format("{}: built without {}", entry.name, entry.library));
   }
-  if (!machine.pads.empty()) {
-    if (::geteuid() == 0) {
-      diagnosis.add(Finding::State::note, "root", none,
-                    "all nodes were tried as root, who may use everything",
-                    "ask again as the user who plays");
-    }
-    return;
+  if (!machine.pads.empty() && ::geteuid() == 0) {
+    diagnosis.add(Finding::State::note, "root", none,
+                  "all nodes were tried as root, who may use everything",
+                  "ask again as the user who plays");
   }
+}
+
+void check_absence(Diagnosis& diagnosis) {
+  const Machine& machine = diagnosis.machine;
+  if (!machine.pads.empty()) return;
   std::string names;
   for (const SystemNode& device : machine.usb_devices)
     names += fmt::format("{}{:04x}:{:04x} {}", names.empty() ? ": " : ", ", device.vendor,
                          device.product, device.name);
   diagnosis.add(
-      Finding::State::problem, "usb", none,
+      Finding::State::problem, "usb", PadHardware(),
       fmt::format("no pad is plugged in: none of the {} USB devices is one{}",
                   machine.usb_devices.size(), names),
       "plug one in (a cable for charging alone carries no data), or pair it by Bluetooth");
@@ -123,6 +125,7 @@ std::vector<Finding> findings(const Machine& machine, const RulesFile& shipped) 
   Diagnosis diagnosis{machine, shipped, {}};
   for (const PadHardware& pad : machine.pads) check_pad(pad, diagnosis);
   check_machine(diagnosis);
+  check_absence(diagnosis);
   std::ranges::stable_sort(diagnosis.list, {}, &Finding::state);
   return std::move(diagnosis.list);
 }

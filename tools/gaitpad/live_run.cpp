@@ -29,17 +29,17 @@ sigset_t ending_signals() noexcept {
 // So long that the sum with the clock stays in range.
 constexpr double kMaxSeconds = 1e9;
 
-// One that comes with the first (a terminal and `timeout` may both send it) is the same wish.
+// A signal that comes with the first (a terminal and `timeout` may both send it) is the same wish.
 constexpr std::int64_t kOneWish_ns = 1'000'000'000;
-std::atomic<std::int64_t> first_signal_ns{0};
+std::atomic<std::int64_t> end_began_ns{0};
 
 void end_at_once(int signal) {
-  if (now_ns() - first_signal_ns.load() > kOneWish_ns) ::_exit(128 + signal);
+  if (now_ns() - end_began_ns.load() > kOneWish_ns) ::_exit(128 + signal);
 }
 
 // From now on a signal comes through, whatever the calling thread is waiting for.
 void allow_ending_at_once() noexcept {
-  first_signal_ns = now_ns();
+  end_began_ns = now_ns();
   struct sigaction action = {};
   action.sa_handler = &end_at_once;
   action.sa_flags = SA_RESTART;
@@ -64,12 +64,12 @@ void RunEnd::end_after(double seconds) noexcept {
 }
 
 bool RunEnd::is_reached() noexcept {
+  if (is_reached_) return true;
   signalfd_siginfo info = {};
-  if (!has_signal_ && ::read(signals_.get(), &info, sizeof info) == sizeof info) {
-    has_signal_ = true;
-    allow_ending_at_once();
-  }
-  return has_signal_ || (end_ns_ != 0 && now_ns() >= end_ns_);
+  is_reached_ = ::read(signals_.get(), &info, sizeof info) == sizeof info ||
+                (end_ns_ != 0 && now_ns() >= end_ns_);
+  if (is_reached_) allow_ending_at_once();
+  return is_reached_;
 }
 
 void RunEnd::wait(std::chrono::milliseconds time, std::span<const pollfd> others) {

@@ -16,7 +16,7 @@ namespace gaitpad {
 
 // Ends at SIGINT, SIGTERM, SIGHUP or when the time given to it is over. To be made before any
 // thread starts: the signals are blocked, so that nothing is cut off half-way, and wait here to be
-// asked for. Somebody who sends another one more than a second later does not want to wait: the
+// asked for. Who sends one more than a second after the end has begun does not want to wait: the
 // process ends at once. SIGPIPE is ignored: a reader that has gone is a failed write, told like any
 // other.
 class RunEnd {
@@ -29,7 +29,7 @@ class RunEnd {
 
  private:
   OwnedFd signals_;
-  bool has_signal_ = false;
+  bool is_reached_ = false;
   std::int64_t end_ns_ = 0;  // 0: none
 };
 

@@ -193,10 +193,11 @@ def test_the_last_state_is_right_after_a_burst_with_a_stopped_reader(driver):
 
 def decoded_last(session):
     """The axes of the newest report in the recording so far."""
-    path = "/tmp/so_far.hid"
-    with open(path, "w") as file:
-        file.write("\n".join(session.lines()) + "\n")
-    rows = map(json.loads, run("gaitpad", "decode", path, "--json").stdout.splitlines())
+    lines = session.lines()
+    newest = max(i for i, line in enumerate(lines) if line.startswith("E:"))
+    with open("/tmp/newest.hid", "w") as file:
+        file.writelines(line + "\n" for i, line in enumerate(lines) if i == newest or not line.startswith("E:"))
+    rows = map(json.loads, run("gaitpad", "decode", "/tmp/newest.hid", "--json").stdout.splitlines())
     return [row["axes"] for row in rows if "axes" in row][-1]
 
 

@@ -64,6 +64,20 @@ def block(pad, way):
     return found, len(sent) - len(found)
 
 
+def tick_times_ns(text):
+    """When the tick began that used it, of each report of a recording."""
+    rate_hz = int(re.search(r"rate_hz=(\d+)", text)[1])
+    times, tick, first_tick, start_ns = [], 0, 0, 0
+    for line in text.splitlines():
+        if clock := re.match(r"# tick (\d+) began at CLOCK_MONOTONIC (\d+)\.(\d{9})", line):
+            first_tick, start_ns = int(clock[1]), int(clock[2]) * 10**9 + int(clock[3])
+        elif line.startswith("T: "):
+            tick = int(line[3:])
+        elif line.startswith("E: "):
+            times.append(start_ns + (tick - first_tick) * 10**9 // rate_hz)
+    return times
+
+
 def tick_latencies_us(pad, driver, folder):
     """From the write to the beginning of the tick that used it, out of a session's own recording."""
     path = pathlib.Path(folder) / f"latency_{driver}.hid"
@@ -75,16 +89,7 @@ def tick_latencies_us(pad, driver, folder):
     if session.wait() != 0:
         raise RuntimeError(f"play --driver {driver} failed")
     sent = written(pad, before)
-    text = path.read_text()
-    start = re.search(r"tick 0 began at CLOCK_MONOTONIC (\d+)\.(\d{9})", text)
-    rate_hz = int(re.search(r"rate_hz=(\d+)", text)[1])
-    start_ns = int(start[1]) * 10**9 + int(start[2])
-    ticks, tick = [], 0
-    for line in text.splitlines():
-        if line.startswith("T: "):
-            tick = int(line[3:])
-        elif line.startswith("E: "):
-            ticks.append(start_ns + tick * 10**9 // rate_hz)
+    ticks = tick_times_ns(path.read_text())
     decoded = subprocess.run([PROGRAM, "decode", path, "--json"], capture_output=True, text=True, check=True)
     reports = [row for row in map(json.loads, decoded.stdout.splitlines()) if "axes" in row]
     numbers = [round((row["axes"]["left_x"] + 1) * 127.5) + 256 * round((1 - row["axes"]["left_y"]) * 127.5)

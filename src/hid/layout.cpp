@@ -94,13 +94,20 @@ HatOp direction_op(const Field& f, const Binding& b) {
   return op;
 }
 
+// Of the second pad in an adapter for two: the same collection once more.
+bool is_of_twin(const ReportDescriptor& d, const Field& f) {
+  const std::optional<std::size_t> pad = pad_application(d);
+  if (!pad || f.application == *pad || f.application >= d.applications.size()) return false;
+  return d.applications[f.application] == d.applications[*pad];
+}
+
 const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const ControlSource& s,
                        std::size_t& index) {
   std::uint32_t seen = 0;
   for (std::size_t i = 0; i < d.fields.size(); ++i) {
     const Field& f = d.fields[i];
     if (f.kind != FieldKind::input || f.is_array || f.report_id != report_id) continue;
-    if (f.usage != s.usage || ++seen != s.occurrence) continue;
+    if (f.usage != s.usage || is_of_twin(d, f) || ++seen != s.occurrence) continue;
     index = i;
     return &f;
   }

@@ -237,6 +237,33 @@ TEST(SdlMapping, KeysBelowTheJoysticksOwnAreCountedLast) {
   EXPECT_EQ(pad.names(), (Names{"y", "a", "x"}));
 }
 
+// One interface with the same joystick twice, a report id each: the second one's stick must not
+// move the first one's.
+TEST(SdlMapping, AnAdapterForTwoPadsIsReadAsItsFirst) {
+  DeviceInfo adapter;
+  for (const std::uint8_t id : {std::uint8_t{1}, std::uint8_t{2}}) {
+    const std::vector<std::uint8_t> joystick = {
+        0x05, 0x01, 0x09, 0x04, 0xa1, 0x01, 0x85, id,   0x15, 0x00, 0x26, 0xff, 0x00,
+        0x75, 0x08, 0x95, 0x02, 0x09, 0x30, 0x09, 0x31, 0x81, 0x02, 0x05, 0x09, 0x19,
+        0x01, 0x29, 0x08, 0x25, 0x01, 0x75, 0x01, 0x95, 0x08, 0x81, 0x02, 0xc0};
+    adapter.descriptor.insert(adapter.descriptor.end(), joystick.begin(), joystick.end());
+  }
+  adapter.mapping = "03000000000000000000000000000000,x,a:b0,b:b1,leftx:a0,lefty:a1,";
+  const auto layout = pad_layout(adapter, {});
+  ASSERT_TRUE(layout);
+  PadState state;
+  Report report;
+  report.size = 4;
+  report.bytes = {1, 255, 0, 1};
+  EXPECT_TRUE(decode(*layout, report, state));
+  report.bytes = {2, 0, 255, 2};
+  EXPECT_TRUE(decode(*layout, report, state));
+  EXPECT_FLOAT_EQ(state.axis[kLeftX], 1.0f);
+  EXPECT_FLOAT_EQ(state.axis[kLeftY], 1.0f);
+  EXPECT_TRUE(pressed(state, kButtonA));
+  EXPECT_FALSE(pressed(state, kButtonB));
+}
+
 // The second hat of a node is stated as two axes that know -1, 0, 1: h1 all the same.
 TEST(SdlMapping, AHatMayBeTwoAxes) {
   MadePad pad = evdev_pad({0x00, 0x01}, {0x130});

@@ -98,7 +98,7 @@ def test_two_equal_pads_are_kept_apart():
             mine.set(lx=40 + turn)
             other.set(lx=200)
             path = "/tmp/apart.hid"
-            run("gaitpad", "record", ids[mine], "--out", path, "--seconds", "0.3")
+            run("gaitpad", "record", ids[mine], "--out", path, "--seconds", "1")
             values = {line.split()[4] for line in open(path) if line.startswith("E:")}
             assert values == {f"{40 + turn:02x}"}, (turn, values)
     with Pad("dualsense", 0) as first, Pad("dualsense", 1) as second, \

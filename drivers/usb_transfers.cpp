@@ -79,7 +79,7 @@ void UsbTransfers::handle_events(milliseconds timeout) noexcept {
   arrival_ns_ = 0;
   if (is_closing_) return;
   std::uint64_t expirations = 0;
-  static_cast<void>(::read(timer_.get(), &expirations, sizeof expirations));
+  if (timer_ns_ != 0 && ::read(timer_.get(), &expirations, sizeof expirations) > 0) timer_ns_ = 0;
   recover();
   repeat_out();
   set_timer();
@@ -268,6 +268,8 @@ void UsbTransfers::set_timer() noexcept {
   const bool must_recover = (is_recovering_ && waiting_count_ == 0) || is_out_halted_;
   std::int64_t next_ns = must_recover && !is_gone_ ? std::max<std::int64_t>(recover_ns_, 1) : 0;
   if (repeat_ns_ != 0 && !is_gone_) next_ns = next_ns ? std::min(next_ns, repeat_ns_) : repeat_ns_;
+  if (next_ns == timer_ns_) return;  // nearly always: a report costs no system call more
+  timer_ns_ = next_ns;
   itimerspec when = {};
   when.it_value.tv_sec = static_cast<time_t>(next_ns / 1'000'000'000);
   when.it_value.tv_nsec = static_cast<long>(next_ns % 1'000'000'000);

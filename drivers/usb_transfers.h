@@ -90,6 +90,7 @@ class UsbTransfers {
   UsbEndpoints endpoints_;
   std::vector<pollfd> poll_fds_;
   OwnedFd timer_;                // of recovering and repeating
+  std::int64_t timer_ns_ = 0;    // when it is set to; 0: not set
   std::int64_t now_ns_ = 0;      // of the last handle_events()
   std::int64_t arrival_ns_ = 0;  // of the packets that it finds; 0: it is not running
 

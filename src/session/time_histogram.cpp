@@ -38,7 +38,7 @@ double TimeHistogram::median_us() const noexcept {
   std::uint64_t below = 0;
   for (std::size_t i = 0; i < kClasses; ++i) {
     below += counts[i];
-    if (2 * below >= all && below > 0) return middle_ns(i) / 1000.0;
+    if (2 * below >= all && below > 0) return std::min(middle_ns(i) / 1000.0, max_us());
   }
   return 0.0;
 }

@@ -8,8 +8,8 @@ from test_matrix import VALUES
 
 # Where the strengths (strong, weak) stand in the packets that begin so, and how many bits they have there.
 PACKETS = {"ds4": (b"\x05", 5, 4), "dualsense": (b"\x02", 4, 3), "xbox360": (b"\x00\x08", 3, 4), "xboxone": (b"\x09", 8, 9)}
-CASES = ("ds4-hidraw", "ds4-usb", "ds4-evdev", "dualsense-hidraw", "dualsense-usb", "dualsense-evdev", "dualsense-sdl",
-         "xbox360-usb", "xbox360-evdev", "xbox360-sdl", "xboxone-usb", "xboxone-evdev")
+CASES = ("ds4-hidraw", "ds4-usb", "ds4-evdev", "ds4-sdl", "dualsense-hidraw", "dualsense-usb", "dualsense-evdev", "dualsense-sdl",
+         "xbox360-usb", "xbox360-evdev", "xbox360-sdl", "xboxone-usb", "xboxone-evdev", "xboxone-sdl")
 
 
 def beats(pad, since_ns):

@@ -152,9 +152,10 @@ def test_flood_of_four_pads_with_a_paused_reader(driver):
     gaps = 0
     for (name, numbers), count in zip(sorted(found.items()), sent):
         numbers = numbers[numbers.index(0):] if 0 in numbers else numbers
-        assert all(b > a for a, b in zip(numbers, numbers[1:]) if b != 0), f"{name}: out of order or twice"
+        # After a pause the pad is asked for its state: that repeats the newest number.
+        assert all(b >= a for a, b in zip(numbers, numbers[1:]) if b != 0), f"{name}: out of order"
         assert numbers[-1] == count - 1, f"{name}: the last report is {numbers[-1]} of {count}"
-        gaps += count - len([n for n in numbers if n < count])
+        gaps += count - len(set(numbers) & set(range(count)))
     remark(f"flood, {driver}: 4 x {rate_hz} Hz x {seconds} s, {sum(sent)} sent, {gaps} lost while the reader was stopped "
            f"three times, {session.summary['lost']} of them known to the program")
 

@@ -144,23 +144,6 @@ Result<Seen> look_at(const SystemNode& node, const Memory& known) {
               input_node_layout(*opened, node.node).descriptor};
 }
 
-DeviceListing listing_of(const SystemNode& node) {
-  DeviceListing listing;
-  listing.info.bus = node.bus;
-  listing.info.vendor = node.vendor;
-  listing.info.product = node.product;
-  listing.info.version = node.version;
-  listing.info.driver = "evdev";
-  listing.info.name = node.name;
-  listing.info.unique_id = node.unique_id;
-  listing.info.physical_path = node.physical_path;
-  listing.node = node.node;
-  listing.pad_path = node.pad_path;
-  listing.kernel_driver = node.kernel_driver;
-  listing.poll_rate_hz = node.poll_rate_hz;
-  return listing;
-}
-
 }  // namespace
 
 std::vector<DeviceListing> find_evdev_devices() {
@@ -170,7 +153,7 @@ std::vector<DeviceListing> find_evdev_devices() {
   std::vector<DeviceListing> listings;
   Memory still_there;
   for (const SystemNode& node : system_nodes("input")) {
-    DeviceListing& listing = listings.emplace_back(listing_of(node));
+    DeviceListing& listing = listings.emplace_back(listing_of(node, "evdev"));
     auto seen = look_at(node, known);
     if (!seen) {
       listing.problem = seen.error().message;

@@ -240,6 +240,7 @@ void add_library_list(std::vector<DeviceListing>& listings) {
     listing.info.bus = bus_of(one->bus_type);
     listing.info.vendor = one->vendor_id;
     listing.info.product = one->product_id;
+    listing.info.driver = "hidraw";
     listing.node = listing.pad_path = one->path;
     listings.push_back(std::move(listing));
   }
@@ -249,29 +250,10 @@ void add_library_list(std::vector<DeviceListing>& listings) {
 
 std::vector<DeviceListing> find_hidraw_devices() {
   std::vector<DeviceListing> listings;
-  for (SystemNode& node : system_nodes("hidraw")) {
-    DeviceListing listing;
-    listing.info = {.bus = node.bus,
-                    .vendor = node.vendor,
-                    .product = node.product,
-                    .version = node.version,
-                    .driver = {},
-                    .name = std::move(node.name),
-                    .unique_id = std::move(node.unique_id),
-                    .physical_path = std::move(node.physical_path),
-                    .descriptor = std::move(node.descriptor),
-                    .mapping = {}};
-    listing.node = std::move(node.node);
-    listing.pad_path = std::move(node.pad_path);
-    listing.kernel_driver = std::move(node.kernel_driver);
-    listing.poll_rate_hz = node.poll_rate_hz;
-    listings.push_back(std::move(listing));
-  }
+  for (const SystemNode& node : system_nodes("hidraw"))
+    listings.push_back(listing_of(node, "hidraw"));
   add_library_list(listings);
-  for (DeviceListing& listing : listings) {
-    listing.info.driver = "hidraw";
-    listing.problem = access_problem(listing.node);
-  }
+  for (DeviceListing& listing : listings) listing.problem = access_problem(listing.node);
   return listings;
 }
 

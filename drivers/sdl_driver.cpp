@@ -238,26 +238,9 @@ std::string node_of(int index) {
   return fmt::format("sdl joystick {}", SDL_JoystickGetDeviceInstanceID(index));
 }
 
-DeviceListing listing_of(const SystemNode& node) {
-  DeviceListing listing;
-  listing.info.driver = "sdl";
-  listing.info.bus = node.bus;
-  listing.info.vendor = node.vendor;
-  listing.info.product = node.product;
-  listing.info.version = node.version;
-  listing.info.name = node.name;
-  listing.info.unique_id = node.unique_id;
-  listing.info.physical_path = node.physical_path;
-  listing.node = node.node;
-  listing.pad_path = node.pad_path;
-  listing.kernel_driver = node.kernel_driver;
-  listing.poll_rate_hz = node.poll_rate_hz;
-  return listing;
-}
-
 // `system` is null for what has no node; joysticks locked.
 DeviceListing listing_of(int index, const SystemNode* system) {
-  DeviceListing listing = system ? listing_of(*system) : DeviceListing{};
+  DeviceListing listing = system ? listing_of(*system, "sdl") : DeviceListing{};
   const SDL_JoystickGUID guid = SDL_JoystickGetDeviceGUID(index);
   DeviceInfo& info = listing.info;
   info.driver = "sdl";
@@ -325,7 +308,7 @@ std::vector<DeviceListing> find_sdl_devices() {
   }
   for (const SystemNode& node : nodes) {
     if (!is_joystick(node) || is_listed(listings, node)) continue;
-    listings.push_back(listing_of(node));
+    listings.push_back(listing_of(node, "sdl"));
     std::string& problem = listings.back().problem;
     problem = sdl.problem().empty() ? access_problem(node.node) : sdl.problem();
     if (problem.empty()) problem = node.node + ": SDL does not take it for a pad";

@@ -191,6 +191,24 @@ std::vector<SystemNode> system_nodes(std::string_view subsystem) {
   return nodes;
 }
 
+DeviceListing listing_of(const SystemNode& node, const char* driver) {
+  DeviceListing listing;
+  listing.info.bus = node.bus;
+  listing.info.vendor = node.vendor;
+  listing.info.product = node.product;
+  listing.info.version = node.version;
+  listing.info.driver = driver;
+  listing.info.name = node.name;
+  listing.info.unique_id = node.unique_id;
+  listing.info.physical_path = node.physical_path;
+  listing.info.descriptor = node.descriptor;
+  listing.node = node.node;
+  listing.pad_path = node.pad_path;
+  listing.kernel_driver = node.kernel_driver;
+  listing.poll_rate_hz = node.poll_rate_hz;
+  return listing;
+}
+
 std::string usb_interface_path(const std::string& interface_name) {
   std::error_code error;
   const fs::path path = fs::canonical("/sys/bus/usb/devices/" + interface_name, error);

@@ -30,6 +30,8 @@ struct SystemNode {
 // "hidraw", "input" (event nodes only) or "usb" (devices; pad_path is empty, they have several
 // interfaces), ordered by node.
 std::vector<SystemNode> system_nodes(std::string_view subsystem);
+// The node as a driver lists it.
+DeviceListing listing_of(const SystemNode& node, const char* driver);
 // pad_path of a USB interface: `1-1.2:1.0` as in /sys/bus/usb/devices.
 std::string usb_interface_path(const std::string& interface_name);
 // How often the interface's interrupt IN endpoint is asked, by its `interval` (`4ms`, `125us`); 0:

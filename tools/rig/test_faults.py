@@ -270,6 +270,7 @@ def test_odd_packets_on_usb_change_nothing():
     remark(f"odd packets on usb: {TIMES}, each counted, none moved the stick")
 
 
+@timeout(400)
 def test_no_permission_and_the_rule():
     group = subprocess.run(["getent", "group", "input"], capture_output=True, text=True, check=True).stdout.split(":")[2]
     as_user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}"]

@@ -115,15 +115,19 @@ void apply(const ReportLayout& layout, std::span<const std::uint8_t> data,
 
 }  // namespace
 
+const ReportLayout* layout_of(const PadLayout& layout, const Report& report) noexcept {
+  if (report.kind != ReportKind::input || report.size > report.bytes.size()) return nullptr;
+  for (const ReportLayout& r : layout.reports)
+    if (fits(r, report)) return &r;
+  return nullptr;
+}
+
 bool decode(const PadLayout& layout, const Report& report, PadState& state) noexcept {
-  if (report.kind != ReportKind::input || report.size > report.bytes.size()) return false;
-  for (const ReportLayout& r : layout.reports) {
-    if (!fits(r, report)) continue;
-    const std::size_t skip = r.numbered ? 1 : 0;
-    apply(r, {report.bytes.data() + skip, report.size - skip}, state);
-    return true;
-  }
-  return false;
+  const ReportLayout* r = layout_of(layout, report);
+  if (r == nullptr) return false;
+  const std::size_t skip = r->numbered ? 1 : 0;
+  apply(*r, {report.bytes.data() + skip, report.size - skip}, state);
+  return true;
 }
 
 }  // namespace gaitpad

@@ -77,6 +77,8 @@ struct PadLayout {
 // Error where the device's descriptor is damaged or the override's replacement is.
 Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overrides);
 
+// How this report is read; null where it is too short, has an unknown id or is no input.
+const ReportLayout* layout_of(const PadLayout& layout, const Report& report) noexcept;
 // Updates what the report tells of and leaves the rest. False for a report that is too short, has
 // an unknown id or is no input; `state` is then as before.
 bool decode(const PadLayout& layout, const Report& report, PadState& state) noexcept;

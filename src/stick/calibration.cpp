@@ -42,8 +42,22 @@ double without_middle(double x, double zone) noexcept {
 
 }  // namespace
 
+vec2 in_frame(const StickFrame& frame, const vec2& raw) noexcept {
+  const auto along = [&raw](RawDirection direction) {
+    switch (direction) {
+      case RawDirection::plus_x: return raw.x;
+      case RawDirection::minus_x: return -raw.x;
+      case RawDirection::plus_y: return raw.y;
+      case RawDirection::minus_y: return -raw.y;
+    }
+    return 0.0;
+  };
+  return {along(frame.right), along(frame.forward)};
+}
+
 vec2 stick_position(const StickCalibration& c, const vec2& raw) noexcept {
-  const vec2 p(centred(c.x, raw.x), centred(c.y, raw.y));
+  const vec2 turned = in_frame(c.frame, raw);
+  const vec2 p(centred(c.x, turned.x), centred(c.y, turned.y));
   // Adding zero turns -0 into 0: neutral has one bit pattern.
   if (c.shape == ZoneShape::axial) return axial(c, p) + vec2(0.0);
   const vec2 q = radial(c, p);
@@ -54,6 +68,11 @@ vec2 stick_position(const StickCalibration& c, const vec2& raw) noexcept {
 Stick stick_position(const Calibration& calibration, const vec2& raw_left,
                      const vec2& raw_right) noexcept {
   return {stick_position(calibration.left, raw_left), stick_position(calibration.right, raw_right)};
+}
+
+double trigger_position(const TriggerCalibration& c, double raw) noexcept {
+  if (!(raw > c.released)) return 0.0;
+  return std::min((raw - c.released) / (c.pressed - c.released), 1.0);
 }
 
 }  // namespace gaitpad

@@ -2,7 +2,9 @@
 // response curve per stick. The words and rules are those of the interface contract, section
 // Sticks.
 #pragma once
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,16 +24,30 @@ enum class ZoneShape : std::uint8_t {
   axial,   // each axis by itself
   both,    // radial, then a narrower zone on the sideways axis alone: straight ahead can be held
 };
+// How the raw axes lie under the thumb: the raw direction that grows when the stick goes right and
+// when it goes forward. One is an x, the other a y.
+enum class RawDirection : std::uint8_t { plus_x, minus_x, plus_y, minus_y };
+struct StickFrame {
+  RawDirection right = RawDirection::plus_x, forward = RawDirection::plus_y;
+  bool operator==(const StickFrame&) const = default;
+};
+vec2 in_frame(const StickFrame& frame, const vec2& raw) noexcept;
+
 struct StickCalibration {
-  AxisCalibration x, y;
+  StickFrame frame;
+  AxisCalibration x, y;  // in that frame
   ZoneShape shape = ZoneShape::both;
   double inner = 0.20;  // fractions of the centred, ranged deflection
   double outer = 0.95;
   double sideways = 0.08;  // `both` only, fraction of the calibrated deflection
   double curve = 0.0;      // response: (1 - curve) t + curve t^3
 };
+struct TriggerCalibration {
+  double released = 0.0, pressed = 1.0;  // raw, 0..1; released < pressed
+};
 struct Calibration {
   StickCalibration left, right;
+  TriggerCalibration left_trigger, right_trigger;
 };
 
 // Inner zones where nothing was measured; a Sony stick rests within 6 % of its middle.
@@ -43,6 +59,8 @@ inline constexpr double kInnerZoneUnknown = 0.20;
 vec2 stick_position(const StickCalibration& calibration, const vec2& raw) noexcept;
 Stick stick_position(const Calibration& calibration, const vec2& raw_left,
                      const vec2& raw_right) noexcept;
+// 0 released .. 1 pressed; not-a-number counts as released.
+double trigger_position(const TriggerCalibration& calibration, double raw) noexcept;
 
 // Which devices a calibration file is for; the grammar stands in config/README.md.
 struct DevicePattern {
@@ -50,13 +68,22 @@ struct DevicePattern {
 };
 struct DeviceIdentity {
   std::uint16_t vendor = 0, product = 0;
-  std::string unique_id, port;
+  std::string unique_id, port, driver;
+};
+// What was measured when the file was made, to compare with a later day; steers nothing. Raw, in
+// the stick's frame; none: not known.
+struct StickMeasured {
+  std::optional<double> sigma, hysteresis, drift_per_s, circularity_error;  // the last in percent
 };
 struct CalibrationFile {
   std::string name;
   std::string unique_id, port;         // empty: any
   std::vector<DevicePattern> devices;  // empty: none, unless unique_id tells
+  std::vector<std::string> drivers;    // empty: any; else where other drivers' values differ
+  std::string measured_on;             // a date, empty: not measured
+  std::string mapping;  // a line of SDL's controller data base that names the controls, or empty
   Calibration calibration;
+  std::array<std::optional<StickMeasured>, 2> measured;  // left, right
 };
 
 Result<CalibrationFile> load_calibration_file(const std::string& path);

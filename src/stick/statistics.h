@@ -1,0 +1,70 @@
+// What a stick's raw reports say about it: where it rests and how quietly, how far it reaches, how
+// regularly it reports. No marks are needed: rest, turning and pushes are found in the tracks.
+// Set-up code. The notes of what is robust against what stand at the functions in statistics.cpp.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "stick/outline.h"
+#include "stick/stick_track.h"
+
+namespace gaitpad {
+
+// A while in which the stick stood still, `first` to `last` inclusive in its track.
+struct Still {
+  std::size_t track = 0, first = 0, last = 0;
+  double duration_s = 0.0;  // with the time that the last position held
+  vec2 mean{0.0};           // raw, weighted by time
+};
+// Found by velocity against the noise at hand, so a noisy or slowly drifting stick still counts.
+// Settling after a release is left out.
+struct Stills {
+  std::vector<Still> rests;   // let go: near the place to which it returns
+  std::vector<Still> pushes;  // held at half of the reach or more
+};
+Stills stills(std::span<const StickTrack> tracks);
+
+// Positions, lengths: raw, as in StickSample. What too little data cannot tell is none.
+struct StickStatistics {
+  std::int64_t samples = 0;  // all reports
+
+  // At rest.
+  std::int64_t rest_samples = 0;
+  double rest_s = 0.0;
+  std::vector<vec2> rests;      // means of the single rests that count, one a release
+  std::optional<vec2> centre;   // robust over the rests, the middle of their spread
+  std::optional<vec2> sigma;    // noise within the rests, without trend and spikes
+  bool is_sigma_hidden = false;  // it is less than a step in x or y: `sigma` is what the steps show
+  std::optional<double> hysteresis;  // greatest distance between two rests; none: fewer than two
+  std::optional<double> drift_per_s;  // trend at rest; exactly 0 where none is significant
+  vec2 drift{0.0};                    // its direction, per second
+  double wander = 0.0;  // slow excursions at rest beyond noise, one standard deviation
+
+  // At the rim, see outline.h.
+  Outline outline;                     // about `centre` (about 0 where that is none)
+  std::optional<double> min_x, max_x, min_y, max_y;
+  std::optional<double> circularity_error;  // percent
+  std::int64_t rim_samples = 0;
+  int turns = 0;  // whole ones
+
+  // Of the values and the reports.
+  double step_x = 0.0, step_y = 0.0;  // quantisation as measured, else as declared; 0: not known
+  std::optional<double> rate_hz;      // of reports that follow each other, gaps left out
+  std::optional<double> jitter_ms;    // standard deviation of the intervals, gaps left out
+  std::int64_t gaps = 0;   // intervals of more than one and a half, on a pad that reports at rest
+  std::int64_t jumps = 0;  // spikes: to another place and back within three reports
+  std::int64_t stuck = 0;  // the stick moved on, its value did not, and then jumped
+};
+// `declared_step` (x, y): of the layout, 0 for not known.
+StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2& declared_step);
+
+struct TriggerStatistics {
+  std::int64_t samples = 0;
+  std::optional<double> released, pressed;  // raw; pressed: none where it was never pressed
+};
+TriggerStatistics trigger_statistics(std::span<const TriggerTrack> tracks);
+
+}  // namespace gaitpad

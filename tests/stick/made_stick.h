@@ -78,7 +78,7 @@ class MadeMoves {
   }
   void rest(double seconds) {  // after release()
     for (int k = 0, n = reports(seconds); k < n; ++k) {
-      const double rest = stick_.creep * std::exp(-k / stick_.rate_hz / 0.3);
+      const double rest = creep_ * std::exp(-k / stick_.rate_hz / 0.3);
       path_.push_back(home_ + vec2(rest * std::cos(angle_), rest * std::sin(angle_)));
     }
     at_ = path_.empty() ? home_ : path_.back();
@@ -90,7 +90,8 @@ class MadeMoves {
   }
   void release() {
     home_ = home_after(angle_);
-    move(home_ + vec2(stick_.creep * std::cos(angle_), stick_.creep * std::sin(angle_)), 0.05);
+    creep_ = stick_.creep;
+    move(home_ + vec2(creep_ * std::cos(angle_), creep_ * std::sin(angle_)), 0.05);
   }
   // Along the rim, counter-clockwise, as unevenly as hands do.
   void turn(double turns, double seconds_a_turn = 1.5, double fraction = 1.0) {
@@ -129,7 +130,7 @@ class MadeMoves {
   std::mt19937 random_;
   std::vector<vec2> path_;
   vec2 home_{0.0}, at_{0.0};
-  double angle_ = 0.0;
+  double angle_ = 0.0, creep_ = 0.0;  // of the last push, after the last release
 };
 
 namespace made {

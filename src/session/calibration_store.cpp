@@ -38,7 +38,8 @@ std::string usable_id(const std::string& unique_id) {
 std::string text_hash(std::string_view text) {
   WordHash hash;
   for (const char c : text) hash.add(static_cast<unsigned char>(c));
-  return fmt::format("{:08x}", static_cast<std::uint32_t>(hash.value() ^ (hash.value() >> 32)));
+  hash.add(static_cast<double>(text.size()));
+  return fmt::format("{:08x}", static_cast<std::uint32_t>(hash.value()));
 }
 
 // Fit for a file's name, and never the same for two texts: what was changed, or could be taken for

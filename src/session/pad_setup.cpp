@@ -61,6 +61,12 @@ void take_factory_sticks(const FactorySticks& own, Calibration& calibration) {
   take_factory_axis(own.right_y, calibration.right.y);
 }
 
+// The pad's own numbers are for its axes as they are.
+bool has_own_axes(const CalibrationFile& file) {
+  const Calibration& c = file.calibration;
+  return file.mapping.empty() && c.left.frame == StickFrame() && c.right.frame == StickFrame();
+}
+
 // -0 would come back from text as 0.
 void drop_negative_zeros(Calibration& calibration) {
   for (StickCalibration* stick : {&calibration.left, &calibration.right}) {
@@ -92,8 +98,10 @@ CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& in
   FoundCalibration found = find_calibration(folders, identity_of(info));
   for (const std::string& problem : found.problems)
     remarks.push_back(problem + "; pads go on without this calibration");
-  const bool is_for_this_one = !found.file.unique_id.empty() || !found.file.port.empty();
-  if (factory && !is_for_this_one) take_factory_sticks(*factory, found.file.calibration);
+  const CalibrationFile& file = found.file;
+  const bool is_for_this_one = !file.unique_id.empty() || !file.port.empty();
+  if (factory && !is_for_this_one && has_own_axes(file))
+    take_factory_sticks(*factory, found.file.calibration);
   return std::move(found.file);
 }
 

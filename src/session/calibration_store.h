@@ -14,21 +14,24 @@ namespace gaitpad {
 // is an absolute path. It need not exist.
 std::string user_calibration_folder();
 
-// For this device alone: by its unique id, else by vendor, product and port. `drivers` is set where
-// another driver's values differ: a pad that corrects its sticks itself (`has_factory_sticks`, or a
-// kernel driver that does so, as its version on evdev tells).
+// For this device alone: by its unique id, else by vendor, product and port (where it has neither,
+// for its model). `drivers` is set where another driver's values differ: a pad that corrects its
+// sticks itself (`has_factory_sticks`, or a kernel driver that does so, as its version on evdev
+// tells).
 CalibrationFile calibration_for(const DeviceInfo& device, bool has_factory_sticks);
 // `FOLDER/054c_0ce6-UNIQUE.toml`: the same for the same device, another one for any other.
 std::string calibration_path(const std::string& folder, const CalibrationFile& file);
 
 // Makes the folder, writes a temporary file beside `path`, puts it in its place at once; what stood
-// there before is kept as PATH.old. On error `path` is as it was. `comments` stand at the top, each a
-// line.
+// there before is kept as PATH.old. Where `path` is a symbolic link, both happen where it points to
+// and it stays one. On error `path` is as it was. `comments` stand at the top, each a line.
 std::optional<Error> save_calibration(const std::string& path, const CalibrationFile& file,
                                       const std::vector<std::string>& comments);
 
 // What has changed from `then` to `now`, a sentence each with both numbers ("left stick: the centre
-// has moved by 0.031, more than half of the inner zone"); empty where nothing counts.
+// has moved by 0.031 ...: more than half of the inner zone"); empty where nothing counts. Of `now`
+// only what was measured is looked at; of `then` also what stands there unmeasured, since it
+// steers.
 std::vector<std::string> changes_since(const CalibrationFile& then, const CalibrationFile& now);
 
 }  // namespace gaitpad

@@ -46,10 +46,16 @@ int milliseconds_until(std::chrono::steady_clock::time_point time) {
   return static_cast<int>(std::clamp(left, 0ms, kIdleLook).count());
 }
 
+// A recording as a pad plays as it replays: what this machine's user has calibrated is not for it.
+PadFinder::Options settled(PadFinder::Options options) {
+  if (is_recording(options.wish.pad)) options.files.user_calibrations.clear();
+  return options;
+}
+
 }  // namespace
 
 PadFinder::PadFinder(Options options, PadSlots& slots, PadIo& io, Remarks& remarks)
-    : options_(std::move(options)),
+    : options_(settled(std::move(options))),
       slots_(slots),
       io_(io),
       remarks_(remarks),
@@ -287,18 +293,21 @@ void PadFinder::open(const PadSighting& sighting, Candidate& candidate) {
 std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device& device,
                                              PadSlot& slot) {
   const DeviceInfo& info = device.info();
-  auto recorded = recorded_device(options_.files, info, device.factory_sticks());
-  if (!recorded) return recorded.error().message;
+  const std::optional<FactorySticks> factory = device.factory_sticks();
+  std::vector<std::string> remarks;
+  TraceDevice recorded = recorded_device(options_.files, info, factory, remarks);
+  for (const std::string& remark : remarks) remarks_.add_once(remark);
   if (is_recording_) {
-    recorded->info.mapping = info.mapping;
+    recorded.info.mapping = info.mapping;
     const std::string own = trace_calibration(sighting.listing);
-    if (!own.empty() && !options_.files.calibration) recorded->calibration = own;
+    if (!own.empty() && !options_.files.calibration) recorded.calibration = own;
   }
-  auto config = pad_config(options_.files, *recorded, name_of(sighting));
+  auto config = pad_config(options_.files, recorded, name_of(sighting));
   if (!config) return config.error().message;
   if (!config->is_usable) return options_.wish.pad.empty() ? "" : name_of(sighting) + ": no stick";
   config->is_present = false;  // until `added` is read
-  slot = {std::move(*recorded), std::move(*config)};
+  config->has_factory_sticks = factory.has_value();
+  slot = {std::move(recorded), std::move(*config)};
   return std::nullopt;
 }
 

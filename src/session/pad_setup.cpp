@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "drivers/registry.h"
+#include "session/calibration_store.h"
 #include "session/config_files.h"
 
 namespace gaitpad {
@@ -15,19 +16,34 @@ namespace {
 
 constexpr double kLeastFactoryRange = 0.25;  // raw, from the centre to either end
 
-Result<Calibration> calibration_of(const PadFiles& files, const TraceDevice& device,
-                                   const std::string& origin) {
-  if (files.calibration) return files.calibration->calibration;
-  if (!device.calibration.empty()) {
-    auto own = parse_calibration(device.calibration, origin + ": calibration");
-    if (!own) return own.error();
-    return own->calibration;
+DeviceIdentity identity_of(const DeviceInfo& info) {
+  return {info.vendor, info.product, info.unique_id, info.physical_path, info.driver};
+}
+
+Result<CalibrationFile> calibration_of(const PadFiles& files, const TraceDevice& device,
+                                       const std::string& origin) {
+  if (files.calibration) return *files.calibration;
+  if (!device.calibration.empty())
+    return parse_calibration(device.calibration, origin + ": calibration");
+  auto found = find_calibration(files.calibration_folders, identity_of(device.info));
+  if (!found.problems.empty()) return Error{found.problems.front()};
+  return std::move(found.file);
+}
+
+// A calibration's mapping takes the place of the controls that config/pads names; what else it says
+// of the pad stays. Where it replaces the descriptor, SDL's numbers mean nothing.
+Result<PadLayout> layout_with(const PadFiles& files, DeviceInfo info, const std::string& mapping) {
+  const PadOverride* own = find_override(files.overrides, info);
+  if (mapping.empty() || (own && !own->replacement.descriptor.empty()))
+    return pad_layout(info, files.overrides);
+  PadOverrides rest;
+  if (own) {
+    rest.push_back(*own);
+    rest.back().order.reset();
+    rest.back().controls = {};
   }
-  const DeviceInfo& info = device.info;
-  auto found = find_calibration(files.calibration_folders,
-                                {info.vendor, info.product, info.unique_id, info.physical_path});
-  if (!found) return found.error();
-  return found->calibration;
+  info.mapping = mapping;
+  return pad_layout(info, rest);
 }
 
 // Pads answer with what they like: a range that no stick has is not taken.
@@ -45,6 +61,12 @@ void take_factory_sticks(const FactorySticks& own, Calibration& calibration) {
   take_factory_axis(own.right_y, calibration.right.y);
 }
 
+// The pad's own numbers are for its axes as they are.
+bool has_own_axes(const CalibrationFile& file) {
+  const Calibration& c = file.calibration;
+  return file.mapping.empty() && c.left.frame == StickFrame() && c.right.frame == StickFrame();
+}
+
 // -0 would come back from text as 0.
 void drop_negative_zeros(Calibration& calibration) {
   for (StickCalibration* stick : {&calibration.left, &calibration.right}) {
@@ -53,31 +75,39 @@ void drop_negative_zeros(Calibration& calibration) {
     }
     for (double* number : {&stick->inner, &stick->sideways, &stick->curve}) *number += 0.0;
   }
+  for (TriggerCalibration* trigger : {&calibration.left_trigger, &calibration.right_trigger})
+    trigger->released += 0.0;
 }
 
 // Only what a replay reads back: whom the file was for does not matter any more.
 std::string text_of_calibration(const CalibrationFile& file) {
   CalibrationFile own;
   if (file.name.size() <= kMaxTraceTextBytes) own.name = file.name;
+  own.mapping = file.mapping;
   own.calibration = file.calibration;
   drop_negative_zeros(own.calibration);
   return calibration_text(own);
 }
 
-Result<CalibrationFile> calibration_in_force(const PadFiles& files, const DeviceInfo& info,
-                                             const std::optional<FactorySticks>& factory) {
+CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& info,
+                                     const std::optional<FactorySticks>& factory,
+                                     std::vector<std::string>& remarks) {
   if (files.calibration) return *files.calibration;
-  auto found = find_calibration(files.calibration_folders,
-                                {info.vendor, info.product, info.unique_id, info.physical_path});
-  if (!found) return found.error();
-  const bool is_for_this_one = !found->unique_id.empty() || !found->port.empty();
-  if (factory && !is_for_this_one) take_factory_sticks(*factory, found->calibration);
-  return found;
+  std::vector<std::string> folders = files.calibration_folders;
+  if (!files.user_calibrations.empty()) folders.insert(folders.begin(), files.user_calibrations);
+  FoundCalibration found = find_calibration(folders, identity_of(info));
+  for (const std::string& problem : found.problems)
+    remarks.push_back(problem + "; pads go on without this calibration");
+  const CalibrationFile& file = found.file;
+  const bool is_for_this_one = !file.unique_id.empty() || !file.port.empty();
+  if (factory && !is_for_this_one && has_own_axes(file))
+    take_factory_sticks(*factory, found.file.calibration);
+  return std::move(found.file);
 }
 
 // SDL's line where nothing better is known; one that no recording can hold or that does not fit the
 // descriptor is none.
-std::string mapping_of(const PadFiles& files, const DeviceInfo& info) {
+std::string sdl_line_of(const PadFiles& files, const DeviceInfo& info) {
   DeviceInfo mapped = info;
   if (info.mapping.empty() && info.driver != "sdl") {
     if (find_override(files.overrides, info) != nullptr) return {};
@@ -110,18 +140,19 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
   }
   for (const std::string& folder : config_folders)
     files.calibration_folders.push_back(folder + "/calibration");
+  files.user_calibrations = user_calibration_folder();
   return files;
 }
 
 Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
                              const std::string& origin) {
-  auto layout = pad_layout(device.info, files.overrides);
-  if (!layout) return Error{origin + ": " + layout.error().message};
   auto calibration = calibration_of(files, device, origin);
   if (!calibration) return calibration.error();
+  auto layout = layout_with(files, device.info, calibration->mapping);
+  if (!layout) return Error{origin + ": " + layout.error().message};
   PadConfig pad;
   pad.layout = std::move(*layout);
-  pad.calibration = *calibration;
+  pad.calibration = calibration->calibration;
   pad.is_usable = pad.layout.is_pad;
   pad.streams = pad.layout.streams;
   return pad;
@@ -139,14 +170,15 @@ Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
   return pads;
 }
 
-Result<TraceDevice> recorded_device(const PadFiles& files, const DeviceInfo& info,
-                                    const std::optional<FactorySticks>& factory) {
-  auto calibration = calibration_in_force(files, info, factory);
-  if (!calibration) return calibration.error();
+TraceDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
+                            const std::optional<FactorySticks>& factory,
+                            std::vector<std::string>& remarks) {
+  const CalibrationFile calibration = calibration_in_force(files, info, factory, remarks);
   TraceDevice device;
   device.info = info;
-  device.info.mapping = mapping_of(files, info);
-  device.calibration = text_of_calibration(*calibration);
+  device.info.mapping =
+      calibration.mapping.empty() ? sdl_line_of(files, info) : calibration.mapping;
+  device.calibration = text_of_calibration(calibration);
   for (std::string* text : {&device.info.driver, &device.info.name, &device.info.unique_id,
                             &device.info.physical_path}) {
     text->resize(std::min(text->size(), kMaxTraceTextBytes));

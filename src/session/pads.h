@@ -13,9 +13,10 @@ namespace gaitpad {
 struct PadConfig {
   PadLayout layout;
   Calibration calibration;
-  bool is_usable = true;   // it has a stick that can drive
-  bool is_present = true;  // plugged in from the start
-  bool streams = false;    // it reports while at rest too: silence means that it is gone
+  bool is_usable = true;            // it has a stick that can drive
+  bool is_present = true;           // plugged in from the start
+  bool streams = false;             // it reports while at rest too: silence means that it is gone
+  bool has_factory_sticks = false;  // live ones: it told its own calibration when it was opened
 };
 
 // The first usable pad drives: of those plugged in from the start, else the first to be added. It

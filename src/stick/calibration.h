@@ -18,6 +18,7 @@ namespace gaitpad {
 // Raw axes are fractions of half the logical range from its middle: -1..1, +x right, +y forward.
 struct AxisCalibration {
   double min = -1.0, centre = 0.0, max = 1.0;  // raw; min < centre < max
+  bool operator==(const AxisCalibration&) const = default;
 };
 enum class ZoneShape : std::uint8_t {
   radial,  // one round zone
@@ -31,6 +32,7 @@ struct StickFrame {
   RawDirection right = RawDirection::plus_x, forward = RawDirection::plus_y;
   bool operator==(const StickFrame&) const = default;
 };
+// A raw position as it is in the frame: +x right, +y forward.
 vec2 in_frame(const StickFrame& frame, const vec2& raw) noexcept;
 
 struct StickCalibration {
@@ -41,13 +43,16 @@ struct StickCalibration {
   double outer = 0.95;
   double sideways = 0.08;  // `both` only, fraction of the calibrated deflection
   double curve = 0.0;      // response: (1 - curve) t + curve t^3
+  bool operator==(const StickCalibration&) const = default;
 };
 struct TriggerCalibration {
   double released = 0.0, pressed = 1.0;  // raw, 0..1; released < pressed
+  bool operator==(const TriggerCalibration&) const = default;
 };
 struct Calibration {
   StickCalibration left, right;
   TriggerCalibration left_trigger, right_trigger;
+  bool operator==(const Calibration&) const = default;
 };
 
 // Inner zones where nothing was measured; a Sony stick rests within 6 % of its middle.
@@ -65,15 +70,18 @@ double trigger_position(const TriggerCalibration& calibration, double raw) noexc
 // Which devices a calibration file is for; the grammar stands in config/README.md.
 struct DevicePattern {
   int vendor = -1, product = -1;  // -1: any
+  bool operator==(const DevicePattern&) const = default;
 };
 struct DeviceIdentity {
   std::uint16_t vendor = 0, product = 0;
-  std::string unique_id, port, driver;
+  std::string unique_id, port;
+  std::string driver;  // empty as in a foreign recording: hidraw
 };
 // What was measured when the file was made, to compare with a later day; steers nothing. Raw, in
 // the stick's frame; none: not known.
 struct StickMeasured {
   std::optional<double> sigma, hysteresis, drift_per_s, circularity_error;  // the last in percent
+  bool operator==(const StickMeasured&) const = default;
 };
 struct CalibrationFile {
   std::string name;
@@ -84,6 +92,7 @@ struct CalibrationFile {
   std::string mapping;  // a line of SDL's controller data base that names the controls, or empty
   Calibration calibration;
   std::array<std::optional<StickMeasured>, 2> measured;  // left, right
+  bool operator==(const CalibrationFile&) const = default;
 };
 
 Result<CalibrationFile> load_calibration_file(const std::string& path);
@@ -91,16 +100,21 @@ Result<Calibration> load_calibration(const std::string& path);
 // The same from text that stands elsewhere (a recording carries its calibration).
 Result<CalibrationFile> parse_calibration(std::string_view text, const std::string& name,
                                           int first_line = 1);
-// The text that parse_calibration reads back to the same bits.
+// The text that parse_calibration reads back to the same bits (-0 to 0; names that are no UTF-8
+// lose what is none). Numbers as short as that allows; never empty.
 std::string calibration_text(const CalibrationFile& file);
 
 // How well a file fits a device: 0 not at all, then `*:*`, `vvvv:*`, `vvvv:pppp`, the same with the
 // port, the unique id.
 int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device);
+struct FoundCalibration {
+  CalibrationFile file;
+  std::vector<std::string> problems;  // a sentence for each file or folder that was left out
+};
 // The best fitting *.toml file of the folders; among equals the earlier folder, then the first
-// name. Without any, zones for an unknown stick. A folder need not exist; a damaged file is an
-// error.
-Result<CalibrationFile> find_calibration(std::span<const std::string> folders,
-                                         const DeviceIdentity& device);
+// name. Without any, zones for an unknown stick. A folder need not exist; a damaged file is left
+// out, since nobody can tell whose it is.
+FoundCalibration find_calibration(std::span<const std::string> folders,
+                                  const DeviceIdentity& device);
 
 }  // namespace gaitpad

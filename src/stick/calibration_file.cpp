@@ -7,6 +7,9 @@
 #include <optional>
 
 #include "base/toml_file.h"
+#include "base/toml_scan.h"
+#include "hid/sdl_mapping.h"
+#include "hid/trace.h"
 #include "stick/calibration.h"
 
 namespace gaitpad {
@@ -17,7 +20,41 @@ constexpr double kLeastHalfRange = 0.1;  // raw, from the centre to either end
 constexpr double kLeastZoneSpan = 0.05;  // from the inner to the outer zone
 constexpr std::size_t kMaxDevices = 256;
 constexpr std::size_t kMaxFolderFiles = 4096;
+constexpr double kLeastTriggerTravel = 0.1;  // raw
+constexpr double kMaxMeasured = 100.0;       // of any measured number, far beyond what sticks do
 constexpr std::string_view kShapeNames[] = {"radial", "axial", "both"};
+constexpr std::string_view kDirectionNames[] = {"x", "-x", "y", "-y"};  // by RawDirection
+constexpr std::string_view kDriverNames[] = {"hidraw", "usb", "evdev", "sdl"};
+constexpr std::string_view kStickNames[] = {"left", "right"};
+
+// The index of the key's value among `names`; none where it is absent or none of them.
+template <std::size_t N>
+std::optional<int> read_word(TomlTable& table, std::string_view key, std::string_view what,
+                             const std::string_view (&names)[N]) {
+  const auto word = table.string(key);
+  if (!word) return std::nullopt;
+  const auto found = std::find(std::begin(names), std::end(names), *word);
+  if (found != std::end(names)) return static_cast<int>(found - std::begin(names));
+  table.reject(
+      key, fmt::format("unknown {} {}; one of {}", what, in_quotes(*word), fmt::join(names, ", ")));
+  return std::nullopt;
+}
+
+bool is_an_x(RawDirection d) { return d == RawDirection::plus_x || d == RawDirection::minus_x; }
+
+void read_frame(TomlTable& stick, StickFrame& frame) {
+  const auto read = [&stick](std::string_view key, RawDirection& direction) {
+    if (const auto found = read_word(stick, key, "direction", kDirectionNames))
+      direction = static_cast<RawDirection>(*found);
+  };
+  read("right", frame.right);
+  read("forward", frame.forward);
+  if (is_an_x(frame.right) != is_an_x(frame.forward)) return;
+  stick.reject(stick.has("right") ? "right" : "forward",
+               fmt::format("right is {} and forward is {}: one must be an x, the other a y",
+                           in_quotes(kDirectionNames[static_cast<int>(frame.right)]),
+                           in_quotes(kDirectionNames[static_cast<int>(frame.forward)])));
+}
 
 void read_axis(TomlTable& stick, std::string_view key, AxisCalibration& axis) {
   auto table = stick.table(key);
@@ -32,22 +69,20 @@ void read_axis(TomlTable& stick, std::string_view key, AxisCalibration& axis) {
   }
 }
 
-void read_shape(TomlTable& stick, ZoneShape& shape) {
-  const auto name = stick.string("shape");
-  if (!name) return;
-  const auto found = std::find(std::begin(kShapeNames), std::end(kShapeNames), *name);
-  if (found == std::end(kShapeNames)) {
-    stick.reject("shape",
-                 fmt::format("unknown shape {}; one of radial, axial, both", in_quotes(*name)));
-    return;
-  }
-  shape = static_cast<ZoneShape>(found - std::begin(kShapeNames));
+StickMeasured read_measured(TomlTable table) {
+  const auto number = [&table](std::string_view key) {
+    return table.number(key, 0.0, kMaxMeasured);
+  };
+  return {number("sigma"), number("hysteresis"), number("drift_per_s"),
+          number("circularity_error")};
 }
 
-void read_stick(TomlTable stick, StickCalibration& c) {
+void read_stick(TomlTable stick, StickCalibration& c, std::optional<StickMeasured>& measured) {
+  read_frame(stick, c.frame);
   read_axis(stick, "x", c.x);
   read_axis(stick, "y", c.y);
-  read_shape(stick, c.shape);
+  if (const auto shape = read_word(stick, "shape", "shape", kShapeNames))
+    c.shape = static_cast<ZoneShape>(*shape);
   c.inner = stick.number("inner", 0.0, 0.9).value_or(c.inner);
   c.outer = stick.number("outer", 0.1, 1.0).value_or(c.outer);
   c.sideways = stick.number("sideways", 0.0, 0.5).value_or(c.sideways);
@@ -56,6 +91,19 @@ void read_stick(TomlTable stick, StickCalibration& c) {
     stick.reject(stick.has("outer") ? "outer" : "inner",
                  fmt::format("the outer zone {} is not {} above the inner zone {}", c.outer,
                              kLeastZoneSpan, c.inner));
+  }
+  if (auto table = stick.table("measured")) measured = read_measured(*table);
+}
+
+void read_trigger(TomlTable& root, std::string_view key, TriggerCalibration& c) {
+  auto table = root.table(key);
+  if (!table) return;
+  c.released = table->number("released", 0.0, 1.0).value_or(c.released);
+  c.pressed = table->number("pressed", 0.0, 1.0).value_or(c.pressed);
+  if (c.pressed - c.released < kLeastTriggerTravel) {
+    table->reject(table->has("pressed") ? "pressed" : "released",
+                  fmt::format("pressed {} is not {} above released {}", c.pressed,
+                              kLeastTriggerTravel, c.released));
   }
 }
 
@@ -89,6 +137,35 @@ void read_devices(TomlTable& root, std::vector<DevicePattern>& devices) {
   }
 }
 
+void read_drivers(TomlTable& root, std::vector<std::string>& drivers) {
+  for (std::string& name : root.strings("drivers", std::size(kDriverNames)).value_or(drivers)) {
+    if (std::find(std::begin(kDriverNames), std::end(kDriverNames), name) ==
+        std::end(kDriverNames)) {
+      root.reject("drivers", fmt::format("unknown driver {}; one of {}", in_quotes(name),
+                                         fmt::join(kDriverNames, ", ")));
+      return;
+    }
+    drivers.push_back(std::move(name));
+  }
+}
+
+// Sound in itself; which of its controls a device has is seen when the file is used.
+void read_mapping(TomlTable& root, std::string& mapping) {
+  auto line = root.string("mapping");
+  if (!line || line->empty()) return;
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (std::any_of(line->begin(), line->end(), is_control)) {
+    root.reject("mapping", "\"mapping\" is more than one line");
+    return;
+  }
+  const auto controls = sdl_controls(*line, ReportDescriptor(), "");
+  if (!controls) {
+    root.reject("mapping", controls.error().message);
+    return;
+  }
+  mapping = std::move(*line);
+}
+
 Result<CalibrationFile> calibration_in(TomlFile& toml) {
   CalibrationFile file;
   TomlTable root = toml.root();
@@ -96,37 +173,82 @@ Result<CalibrationFile> calibration_in(TomlFile& toml) {
   file.unique_id = root.string("unique_id").value_or("");
   file.port = root.string("port").value_or("");
   read_devices(root, file.devices);
-  if (auto stick = root.table("left")) read_stick(*stick, file.calibration.left);
-  if (auto stick = root.table("right")) read_stick(*stick, file.calibration.right);
+  read_drivers(root, file.drivers);
+  file.measured_on = root.string("measured_on").value_or("");
+  read_mapping(root, file.mapping);
+  Calibration& c = file.calibration;
+  if (auto stick = root.table("left")) read_stick(*stick, c.left, file.measured[0]);
+  if (auto stick = root.table("right")) read_stick(*stick, c.right, file.measured[1]);
+  read_trigger(root, "left_trigger", c.left_trigger);
+  read_trigger(root, "right_trigger", c.right_trigger);
   if (auto problem = toml.problem()) return *problem;
   return file;
 }
 
 std::string id_text(int id) { return id < 0 ? "*" : fmt::format("{:04x}", id); }
 
+// In quotes. The names of devices may hold anything, a file only UTF-8.
 std::string string_text(std::string_view text) {
+  const bool is_utf8 = line_of_invalid_utf8(text) == 0;
   std::string quoted = "\"";
   for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
     if (c == '"' || c == '\\') {
       quoted += '\\';
       quoted += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else if (byte < 0x20 || byte == 0x7f) {
+      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
     } else {
-      quoted += c;
+      quoted += byte < 0x80 || is_utf8 ? c : '?';
     }
   }
   return quoted + "\"";
 }
 
+std::string key_text(std::string_view key, const std::string& value) {
+  return value.empty() ? "" : fmt::format("{} = {}\n", key, string_text(value));
+}
+
+std::string list_text(std::string_view key, const std::vector<std::string>& values) {
+  if (values.empty()) return "";
+  std::vector<std::string> quoted;
+  for (const std::string& value : values) quoted.push_back(string_text(value));
+  return fmt::format("{} = [{}]\n", key, fmt::join(quoted, ", "));
+}
+
+std::string measured_text(std::string_view stick, const StickMeasured& m) {
+  std::string text = fmt::format("\n[{}.measured]\n", stick);
+  const auto add = [&text](std::string_view key, const std::optional<double>& number) {
+    if (number) text += fmt::format("{} = {}\n", key, *number);
+  };
+  add("sigma", m.sigma);
+  add("hysteresis", m.hysteresis);
+  add("drift_per_s", m.drift_per_s);
+  add("circularity_error", m.circularity_error);
+  return text;
+}
+
+// What steers is written even where it is the default: the file means the same for ever.
 std::string stick_text(std::string_view name, const StickCalibration& c) {
   const auto axis = [](const AxisCalibration& a) {
     return fmt::format("{{ min = {}, centre = {}, max = {} }}", a.min, a.centre, a.max);
   };
+  const auto direction = [](RawDirection d) { return kDirectionNames[static_cast<int>(d)]; };
+  std::string frame;
+  if (c.frame != StickFrame()) {
+    frame = fmt::format("right = \"{}\"\nforward = \"{}\"\n", direction(c.frame.right),
+                        direction(c.frame.forward));
+  }
   return fmt::format(
-      "\n[{}]\nx = {}\ny = {}\nshape = \"{}\"\ninner = {}\nouter = {}\nsideways = {}\ncurve = {}\n",
-      name, axis(c.x), axis(c.y), kShapeNames[static_cast<int>(c.shape)], c.inner, c.outer,
+      "\n[{}]\n{}x = {}\ny = {}\nshape = \"{}\"\ninner = {}\nouter = {}\nsideways = {}\n"
+      "curve = {}\n",
+      name, frame, axis(c.x), axis(c.y), kShapeNames[static_cast<int>(c.shape)], c.inner, c.outer,
       c.sideways, c.curve);
+}
+
+std::string trigger_text(std::string_view name, const TriggerCalibration& c) {
+  if (c == TriggerCalibration()) return "";
+  return fmt::format("\n[{}]\nreleased = {}\npressed = {}\n", name, c.released, c.pressed);
 }
 
 // Names of the folder's *.toml files, sorted, so that the choice does not hang on the file system.
@@ -169,26 +291,29 @@ Result<CalibrationFile> parse_calibration(std::string_view text, const std::stri
 }
 
 std::string calibration_text(const CalibrationFile& file) {
-  std::string text;
-  if (!file.name.empty()) text += fmt::format("name = {}\n", string_text(file.name));
-  if (!file.unique_id.empty()) text += fmt::format("unique_id = {}\n", string_text(file.unique_id));
-  if (!file.port.empty()) text += fmt::format("port = {}\n", string_text(file.port));
-  if (!file.devices.empty()) {
-    text += "devices = [";
-    for (std::size_t i = 0; i < file.devices.size(); ++i) {
-      text += fmt::format("{}\"{}:{}\"", i ? ", " : "", id_text(file.devices[i].vendor),
-                          id_text(file.devices[i].product));
-    }
-    text += "]\n";
+  std::vector<std::string> devices;
+  for (const DevicePattern& d : file.devices)
+    devices.push_back(id_text(d.vendor) + ":" + id_text(d.product));
+  std::string text = key_text("name", file.name) + key_text("unique_id", file.unique_id) +
+                     key_text("port", file.port) + list_text("devices", devices) +
+                     list_text("drivers", file.drivers) +
+                     key_text("measured_on", file.measured_on) + key_text("mapping", file.mapping);
+  const Calibration& c = file.calibration;
+  const StickCalibration* sticks[] = {&c.left, &c.right};
+  for (int side = 0; side < 2; ++side) {
+    text += stick_text(kStickNames[side], *sticks[side]);
+    if (file.measured[side]) text += measured_text(kStickNames[side], *file.measured[side]);
   }
-  return text + stick_text("left", file.calibration.left) +
-         stick_text("right", file.calibration.right);
+  return text + trigger_text("left_trigger", c.left_trigger) +
+         trigger_text("right_trigger", c.right_trigger);
 }
 
 int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device) {
   constexpr int kPortBonus = 3, kUniqueIdFit = 7;
   if (!file.unique_id.empty() && file.unique_id != device.unique_id) return 0;
   if (!file.port.empty() && file.port != device.port) return 0;
+  const std::string& driver = device.driver.empty() ? "hidraw" : device.driver;
+  if (!file.drivers.empty() && std::ranges::count(file.drivers, driver) == 0) return 0;
   int fit = 0;
   for (const DevicePattern& pattern : file.devices) {
     if (pattern.vendor >= 0 && pattern.vendor != device.vendor) continue;
@@ -199,24 +324,30 @@ int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device) {
   return fit > 0 && !file.port.empty() ? fit + kPortBonus : fit;
 }
 
-Result<CalibrationFile> find_calibration(std::span<const std::string> folders,
-                                         const DeviceIdentity& device) {
-  CalibrationFile best;
-  best.name = "unknown stick";
+FoundCalibration find_calibration(std::span<const std::string> folders,
+                                  const DeviceIdentity& device) {
+  FoundCalibration found;
+  found.file.name = "unknown stick";
   int best_fit = 0;
   for (const std::string& folder : folders) {
     auto paths = toml_files(folder);
-    if (!paths) return paths.error();
+    if (!paths) {
+      found.problems.push_back(paths.error().message);
+      continue;
+    }
     for (const std::string& path : *paths) {
       auto file = load_calibration_file(path);
-      if (!file) return file.error();
+      if (!file) {
+        found.problems.push_back(file.error().message);
+        continue;
+      }
       const int fit = calibration_fit(*file, device);
       if (fit <= best_fit) continue;
       best_fit = fit;
-      best = std::move(*file);
+      found.file = std::move(*file);
     }
   }
-  return best;
+  return found;
 }
 
 }  // namespace gaitpad

@@ -82,8 +82,9 @@ TEST(ShippedCharacters, EveryFileLoadsAndTheNamedOnesAreThere) {
 TEST(ShippedCalibrations, SonyPadsGetTheNarrowZoneAndUnknownOnesTheWide) {
   const std::string folders[] = {kConfig + "calibration"};
   const auto inner = [&](std::uint16_t vendor, std::uint16_t product) {
-    auto file = find_calibration(folders, {vendor, product, "", ""});
-    EXPECT_TRUE(file) << file.error().message;
+    const FoundCalibration found = find_calibration(folders, {vendor, product, "", "", "hidraw"});
+    for (const std::string& problem : found.problems) ADD_FAILURE() << problem;
+    const CalibrationFile* file = &found.file;
     EXPECT_EQ(file->calibration.left.inner, file->calibration.right.inner);
     EXPECT_EQ(file->calibration.left.sideways, 0.08);
     EXPECT_EQ(file->calibration.left.outer, 0.95);

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 namespace gaitpad {
 namespace {
@@ -164,6 +166,91 @@ TEST(StickPosition, BothSticksHaveTheirOwnCalibration) {
   EXPECT_EQ(stick.left.y, 0.0);
   EXPECT_GT(stick.right.y, 0.0);
   static_assert(std::is_trivially_copyable_v<Calibration>);
+}
+
+constexpr RawDirection kXs[] = {RawDirection::plus_x, RawDirection::minus_x};
+constexpr RawDirection kYs[] = {RawDirection::plus_y, RawDirection::minus_y};
+
+// The raw value that shows `value` along `direction`.
+vec2 shown_along(RawDirection direction, double value) {
+  switch (direction) {
+    case RawDirection::plus_x:
+      return {value, 0.0};
+    case RawDirection::minus_x:
+      return {-value, 0.0};
+    case RawDirection::plus_y:
+      return {0.0, value};
+    case RawDirection::minus_y:
+      return {0.0, -value};
+  }
+  return vec2(0.0);
+}
+std::vector<StickFrame> all_frames() {
+  std::vector<StickFrame> frames;
+  for (const RawDirection x : kXs) {
+    for (const RawDirection y : kYs) {
+      frames.push_back({x, y});
+      frames.push_back({y, x});
+    }
+  }
+  return frames;
+}
+
+TEST(StickFrame, HoweverTheAxesLieThePositionIsTheStraightOnes) {
+  ASSERT_EQ(all_frames().size(), 8u);
+  StickCalibration straight = shaped(ZoneShape::both, 0.1, 0.9, 0.2);
+  straight.x = {-0.8, 0.06, 0.96};
+  straight.y = {-1.0, -0.04, 0.6};
+  for (const StickFrame& frame : all_frames()) {
+    StickCalibration turned = straight;
+    turned.frame = frame;
+    for (double x = -1.0; x <= 1.0; x += 0.13) {
+      for (double y = -1.0; y <= 1.0; y += 0.17) {
+        const vec2 raw = shown_along(frame.right, x) + shown_along(frame.forward, y);
+        ASSERT_EQ(in_frame(frame, raw), vec2(x, y));
+        ASSERT_EQ(stick_position(turned, raw), stick_position(straight, {x, y}));
+      }
+    }
+  }
+}
+
+TEST(StickFrame, OddAboutTheCentreAndExactlyZeroInside) {
+  for (const StickFrame& frame : all_frames()) {
+    StickCalibration c = shaped(ZoneShape::both, 0.12);
+    c.frame = frame;
+    for (double x = -1.0; x <= 1.0; x += 0.037) {
+      for (double y = -1.0; y <= 1.0; y += 0.041) {
+        const vec2 there = stick_position(c, {x, y}), opposite = stick_position(c, {-x, -y});
+        ASSERT_EQ(opposite, -there);
+        if (std::sqrt(x * x + y * y) > 0.12) continue;
+        // One bit pattern for neutral, however the axes lie: poses are compared by their bits.
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(there.x), 0u);
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(there.y), 0u);
+      }
+    }
+  }
+}
+
+TEST(StickFrame, NotANumberCountsAsTheCentre) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  StickCalibration c = shaped(ZoneShape::both);
+  c.frame = {RawDirection::minus_y, RawDirection::minus_x};
+  EXPECT_EQ(stick_position(c, {-1.0, nan}), vec2(0.0, 1.0));
+}
+
+TEST(TriggerPosition, FromReleasedToPressedAndNotBeyond) {
+  const TriggerCalibration c{0.125, 0.625};
+  EXPECT_EQ(trigger_position(c, 0.0), 0.0);
+  EXPECT_EQ(trigger_position(c, 0.125), 0.0);
+  EXPECT_EQ(trigger_position(c, 0.25), 0.25);
+  EXPECT_EQ(trigger_position(c, 0.625), 1.0);
+  EXPECT_EQ(trigger_position(c, 1.0), 1.0);
+  EXPECT_EQ(trigger_position(c, std::numeric_limits<double>::infinity()), 1.0);
+  EXPECT_EQ(trigger_position(c, std::numeric_limits<double>::quiet_NaN()), 0.0);
+}
+
+TEST(TriggerPosition, AnUncalibratedTriggerIsAsItIs) {
+  for (double raw = 0.0; raw <= 1.0; raw += 1.0 / 255) EXPECT_EQ(trigger_position({}, raw), raw);
 }
 
 // A worn 8-bit stick: rest 6 % off and 2 counts of noise walk nowhere with Sony's default.

@@ -129,11 +129,11 @@ void print_live(Device& device, DecodedDevice& decoded, OutputForm form, RunEnd&
 
 // As a recording of it would be decoded.
 Result<DecodedDevice> decoded_device(const DeviceInfo& info, const PadFiles& files) {
-  auto recorded = recorded_device(files, info, std::nullopt);
-  if (!recorded) return recorded.error();
-  auto layout = pad_layout(recorded->info, files.overrides);
+  std::vector<std::string> ignored;  // of calibrations, which decoding does not use
+  TraceDevice recorded = recorded_device(files, info, std::nullopt, ignored);
+  auto layout = pad_layout(recorded.info, files.overrides);
   if (!layout) return Error{fmt::format("{}: {}", info.name, layout.error().message)};
-  return DecodedDevice{std::move(*recorded), std::move(*layout), {}};
+  return DecodedDevice{std::move(recorded), std::move(*layout), {}};
 }
 
 int run_live(const DecodeArguments& arguments, const PadFiles& files) {

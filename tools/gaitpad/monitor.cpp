@@ -98,7 +98,10 @@ int run(const MonitorArguments& arguments) {
   while (!end.is_reached() && !(*stream)->has_ended()) {
     (*stream)->wait(std::chrono::milliseconds(20));
     for (; const Report* report = (*stream)->front(); (*stream)->pop()) {
-      take(*report, **stream, pads);
+      if (take(*report, **stream, pads)) {
+        const TraceDevice& device = (*stream)->device(report->device);
+        print_remarks("monitor", {calibration_remark(device)}, &display.line());
+      }
       if (end.is_reached()) break;
     }
     print_remarks("monitor", (*stream)->take_remarks(), &display.line());

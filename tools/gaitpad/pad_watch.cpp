@@ -48,24 +48,45 @@ Stick stick_of(const MonitoredPad& pad) {
                         vec2(axis[kRightX], axis[kRightY]));
 }
 
+struct Triggers {
+  double left, right;
+};
+Triggers triggers_of(const MonitoredPad& pad) {
+  const Calibration& c = pad.config.calibration;
+  return {trigger_position(c.left_trigger, pad.state.axis[kLeftTrigger]),
+          trigger_position(c.right_trigger, pad.state.axis[kRightTrigger])};
+}
+
+std::string pad_name(const DeviceInfo& info) {
+  return fmt::format("{} ({})", printable(info.name),
+                     info.driver.empty() ? "recording" : info.driver);
+}
+
 }  // namespace
 
-void take(const Report& report, PadStream& stream, MonitoredPads& pads) {
-  if (report.device == kNoDevice) return;
+std::string calibration_remark(const TraceDevice& device) {
+  const auto file = parse_calibration(device.calibration, "");
+  const std::string name = file ? printable(file->name) : "";
+  return fmt::format("{}: calibration \"{}\"", pad_name(device.info),
+                     name.empty() ? "without a name" : name);
+}
+
+bool take(const Report& report, PadStream& stream, MonitoredPads& pads) {
+  if (report.device == kNoDevice) return false;
   if (report.kind == ReportKind::added) {
     auto [pad, is_first] = pads.try_emplace(report.device);
     if (is_first) pad->second.config = std::move(stream.config(report.device));
     pad->second.is_plugged = true;
-    return;
+    return is_first;
   }
   const auto found = pads.find(report.device);
-  if (found == pads.end()) return;
+  if (found == pads.end()) return false;
   MonitoredPad& pad = found->second;
   if (report.kind == ReportKind::removed) {
     pad.is_plugged = false;
     pad.state = {};
     pad.last_ns = 0;
-    return;
+    return false;
   }
   keep(pad.running.latency_us, static_cast<double>(now_ns() - report.time_ns) / 1e3);
   if (pad.last_ns != 0)
@@ -73,12 +94,14 @@ void take(const Report& report, PadStream& stream, MonitoredPads& pads) {
   pad.last_ns = report.time_ns;
   ++pad.running.reports;
   if (!decode(pad.config.layout, report, pad.state)) ++pad.running.bad_reports;
+  return false;
 }
 
 ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream,
                       double time_s) {
   const DeviceInfo& info = stream.device(index).info;
   const Stick stick = stick_of(pad);
+  const Triggers triggers = triggers_of(pad);
   const Window& w = pad.shown;
   return {{"device", index},
           {"name", info.name},
@@ -96,6 +119,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"axes", axes_json(pad.state)},
           {"sticks",
            {{"left", {stick.left.x, stick.left.y}}, {"right", {stick.right.x, stick.right.y}}}},
+          {"triggers", {{"left", triggers.left}, {"right", triggers.right}}},
           {"buttons", button_names(pad.state)}};
 }
 
@@ -105,21 +129,19 @@ std::string pad_header() {
 }
 
 std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
-  const DeviceInfo& info = stream.device(index).info;
-  const std::string who =
-      fmt::format("{} ({})", printable(info.name), info.driver.empty() ? "recording" : info.driver);
+  const std::string who = pad_name(stream.device(index).info);
   if (!pad.is_plugged) return "unplugged: " + who;
   const Stick stick = stick_of(pad);
+  const Triggers triggers = triggers_of(pad);
   const Window& w = pad.shown;
   std::string buttons;
   for (const std::string& name : button_names(pad.state)) buttons += name + " ";
   return fmt::format(
       "{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f} {:>7.0f} "
       "{:>6.0f} {:>4} {}{}",
-      stick.left.x, stick.left.y, stick.right.x, stick.right.y, pad.state.axis[kLeftTrigger],
-      pad.state.axis[kRightTrigger], rate_hz(w), jitter(w.interval_us) / 1e3,
-      greatest(w.interval_us) / 1e3, median(w.latency_us), greatest(w.latency_us),
-      stream.counts().lost, buttons, who);
+      stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left, triggers.right,
+      rate_hz(w), jitter(w.interval_us) / 1e3, greatest(w.interval_us) / 1e3, median(w.latency_us),
+      greatest(w.latency_us), stream.counts().lost, buttons, who);
 }
 
 }  // namespace gaitpad

@@ -26,8 +26,10 @@ struct MonitoredPad {
 };
 using MonitoredPads = std::map<std::uint16_t, MonitoredPad>;
 
-// Takes one report of the stream in.
-void take(const Report& report, PadStream& stream, MonitoredPads& pads);
+// Takes one report of the stream in. True where it announces a pad for the first time.
+bool take(const Report& report, PadStream& stream, MonitoredPads& pads);
+// Whose calibration is in force: `PAD (DRIVER): calibration "NAME"`.
+std::string calibration_remark(const TraceDevice& device);
 
 nlohmann::ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad,
                                 const PadStream& stream, double time_s);

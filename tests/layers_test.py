@@ -28,7 +28,7 @@ ROOMS = {
     "src/view": (
         ["base", "hid", "stick", "motion", "control", "animation", "session"],
         {},
-        ["fmt/", "SDL2/", "SDL", "imgui", "epoxy/", "GL/"],
+        ["fmt/", "SDL2/", "SDL", "imgui", "epoxy/", "GL/", "cairo/"],
     ),
     "drivers": (["base", "hid", "drivers/pads"], {}, ["fmt/"]),
     "drivers/pads": (["base", "hid"], {}, ["fmt/"]),

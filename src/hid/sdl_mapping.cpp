@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <utility>
-#include <vector>
 
 #include "base/toml_file.h"
-#include "hid/evdev_codes.h"
+#include "hid/sdl_numbers.h"
 #include "hid/trace.h"
 #include "hid/trace_lines.h"
 
@@ -18,111 +15,6 @@ namespace {
 
 constexpr std::size_t kMaxSources = 8;
 constexpr std::int64_t kMaxNumber = 1000;
-
-enum Direction : std::size_t { kUp, kRight, kDown, kLeft, kDirections };  // bits as SDL's hat mask
-using HatSources = std::array<std::optional<ControlSource>, kDirections>;
-
-// What SDL's numbers stand for on one device.
-struct NumberedControls {
-  std::vector<ControlSource> axes, buttons;
-  std::vector<HatSources> hats;
-};
-
-struct InputField {
-  const Field* field = nullptr;
-  EvdevCode code;
-  ControlSource source;
-};
-
-bool is_hat(const Field& f) { return f.usage == usage::kHatSwitch; }
-bool is_dpad(const Field& f) { return f.usage >= usage::kDpadUp && f.usage <= usage::kDpadLeft; }
-
-// Counts how often a usage has occurred in its report.
-class Occurrences {
- public:
-  ControlSource next(const Field& f) {
-    ControlSource source;
-    source.usage = f.usage;
-    source.occurrence = ++count_[{f.report_id, f.usage}];
-    return source;
-  }
-
- private:
-  std::map<std::pair<std::uint8_t, std::uint32_t>, std::uint32_t> count_;
-};
-
-HatSources all_directions(const ControlSource& hat) {
-  HatSources sources;
-  for (std::size_t i = 0; i < kDirections; ++i) {
-    sources[i] = hat;
-    sources[i]->directions = static_cast<std::uint8_t>(1u << i);
-  }
-  return sources;
-}
-
-std::vector<InputField> coded_fields(const ReportDescriptor& d, StatedBy who) {
-  std::vector<InputField> coded;
-  Occurrences occurrences;
-  const auto codes = evdev_codes(d, who);
-  for (std::size_t i = 0; i < d.fields.size(); ++i) {
-    const Field& f = d.fields[i];
-    if (f.kind != FieldKind::input || f.is_array) continue;
-    const ControlSource source = occurrences.next(f);
-    if (i < codes.size() && codes[i]) coded.push_back({&f, *codes[i], source});
-  }
-  std::stable_sort(coded.begin(), coded.end(), [](const InputField& a, const InputField& b) {
-    return a.code.code < b.code.code;
-  });
-  return coded;
-}
-
-// One field of a hat: a whole one, a D-pad's direction, or one axis that counts -1, 0, 1.
-void add_to_hat(const InputField& part, HatSources& hat) {
-  const auto half = [&part](AxisPart side) {
-    ControlSource source = part.source;
-    source.part = side;
-    return source;
-  };
-  constexpr Direction kOfUsage[] = {kUp, kDown, kRight, kLeft};  // usages 0x90 .. 0x93
-  if (is_hat(*part.field)) {
-    hat = all_directions(part.source);
-  } else if (is_dpad(*part.field)) {
-    hat[kOfUsage[part.field->usage - usage::kDpadUp]] = part.source;
-  } else if (part.code.code % 2 == 0) {
-    hat[kLeft] = half(AxisPart::low);
-    hat[kRight] = half(AxisPart::high);
-  } else {
-    hat[kUp] = half(AxisPart::low);
-    hat[kDown] = half(AxisPart::high);
-  }
-}
-
-bool makes_a_hat(const InputField& f) {
-  if (f.code.code < evdev::kAbsHat0X || f.code.code > evdev::kAbsHat3Y) return false;
-  const Field& field = *f.field;
-  return is_hat(field) || is_dpad(field) || (field.logical_min == -1 && field.logical_max == 1);
-}
-
-// SDL's order of an evdev node's controls (SDL 2.26, ConfigJoystick): keys from BTN_JOYSTICK on,
-// then those below; axes by code without the hats; hats by code.
-NumberedControls evdev_numbers(const ReportDescriptor& d, StatedBy who) {
-  NumberedControls numbered;
-  std::vector<ControlSource> low_keys;
-  std::map<int, HatSources> hats;
-  for (const InputField& f : coded_fields(d, who)) {
-    if (f.code.type == EvdevType::key) {
-      if (f.code.code >= evdev::kKeyMax) continue;  // SDL stops before it
-      (f.code.code >= evdev::kBtnJoystick ? numbered.buttons : low_keys).push_back(f.source);
-    } else if (makes_a_hat(f)) {
-      add_to_hat(f, hats[(f.code.code - evdev::kAbsHat0X) / 2]);
-    } else if (f.code.code < evdev::kAbsMax) {
-      numbered.axes.push_back(f.source);
-    }
-  }
-  numbered.buttons.insert(numbered.buttons.end(), low_keys.begin(), low_keys.end());
-  for (const auto& [number, hat] : hats) numbered.hats.push_back(hat);
-  return numbered;
-}
 
 enum class SourceKind { axis, button, hat };
 // `a2`, `+a2`, `-a2`, `a2~`, `b3`, `h0.8`
@@ -171,11 +63,11 @@ std::optional<NumberedSource> numbered_source(std::string_view text) {
 }
 
 // Where one number is several fields (a D-pad of four buttons), more than one.
-ControlSources sources_of(const NumberedControls& numbered, const NumberedSource& wanted) {
+ControlSources sources_of(const SdlNumbers& numbered, const NumberedSource& wanted) {
   ControlSources sources;
   if (wanted.kind == SourceKind::hat) {
     if (wanted.number >= numbered.hats.size()) return sources;
-    for (std::size_t i = 0; i < kDirections; ++i) {
+    for (std::size_t i = 0; i < kHatDirections; ++i) {
       const auto& direction = numbered.hats[wanted.number][i];
       if (((wanted.directions >> i) & 1u) != 0 && direction) sources.push_back(*direction);
     }
@@ -206,8 +98,7 @@ std::optional<ControlSources>* control_of(std::string_view key, ControlMap& map)
   return nullptr;
 }
 
-std::optional<Error> add_pair(std::string_view pair, const NumberedControls& numbered,
-                              ControlMap& map) {
+std::optional<Error> add_pair(std::string_view pair, const SdlNumbers& numbered, ControlMap& map) {
   const std::size_t colon = pair.find(':');
   if (colon == std::string_view::npos) {
     return Error{fmt::format("SDL mapping: {} is no pair control:source", in_quotes(pair))};
@@ -261,7 +152,7 @@ Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor
         fmt::format("SDL mapping: {} is no GUID of 32 hexadecimal digits", in_quotes(guid))};
   }
   next_part(rest);  // the name
-  const NumberedControls numbered = evdev_numbers(descriptor, stated_by(driver));
+  const SdlNumbers numbered = sdl_numbers(descriptor, stated_by(driver));
   ControlMap map;
   while (!rest.empty()) {
     const std::string_view pair = next_part(rest);

@@ -2,11 +2,13 @@
 // which control. SDL counts what the kernel's evdev node shows, so a HID usage is first turned into
 // the code that hid-input gives it (Linux drivers/hid/hid-input.c, hidinput_configure_usage).
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/result.h"
+#include "hid/decode.h"
 #include "hid/descriptor.h"
 #include "hid/pad_map.h"
 
@@ -18,5 +20,25 @@ namespace gaitpad {
 // left out, as SDL does.
 Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor& descriptor,
                                 std::string_view driver);
+
+// The layout's axis that moves a stick's axis, for sticks that lie otherwise than the layout has
+// it.
+struct StickAxis {
+  PadAxis axis = kLeftX;
+  bool reversed = false;  // against the layout's direction
+};
+using StickAxes = std::array<StickAxis, 4>;  // of kLeftX .. kRightY
+inline constexpr StickAxes kAxesAsLaidOut = {{{kLeftX}, {kLeftY}, {kRightX}, {kRightY}}};
+
+// The layout as such a line, keys in the order of the alphabet, that sdl_controls reads back. Its
+// GUID is the one that SDL 2.26 gives to the pad's event node; controls that are no axis, key or
+// hat of that node (numbers in an array, bits of a byte) are left out. Error where
+// kernel_numbers_problem has one and where nothing is left.
+Result<std::string> sdl_mapping_text(const DeviceInfo& device, const PadLayout& layout,
+                                     const StickAxes& sticks = kAxesAsLaidOut);
+
+// Why the codes of the pad's event node cannot be told from its descriptor: a kernel driver of its
+// own gave them out. One sentence; empty: they can.
+std::string kernel_numbers_problem(const DeviceInfo& device, const ReportDescriptor& descriptor);
 
 }  // namespace gaitpad

@@ -355,6 +355,54 @@ TEST(SdlDriver, EveryLineOfTheDataBaseIsUnderstood) {
   }
 }
 
+// SDL itself reads the line that is written for a pad whose left stick lies on its side, and moves
+// its game controller as the pad's axes move in that frame.
+TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
+  VirtualPad pad("Written Pad");
+  const auto listing = listing_of("Written Pad");
+  const auto device = opened("Written Pad");
+  ASSERT_TRUE(listing && device);
+  const auto layout = pad_layout(device->info(), {});
+  ASSERT_TRUE(layout);
+  StickAxes sticks = kAxesAsLaidOut;
+  sticks[kLeftX] = {kLeftY, false};
+  sticks[kLeftY] = {kLeftX, true};
+  DeviceInfo info = device->info();
+  info.product = 0x0077;  // SDL forgets no line: other tests' pads keep theirs
+  auto line = sdl_mapping_text(info, *layout, sticks);
+  ASSERT_TRUE(line) << line.error().message;
+  Uint16 vendor = 0, product = 0, version = 0, checksum = 1;
+  const SDL_JoystickGUID guid = SDL_JoystickGetGUIDFromString(line->substr(0, 32).c_str());
+  SDL_GetJoystickGUIDInfo(guid, &vendor, &product, &version, &checksum);
+  EXPECT_EQ(vendor, 0x1209);
+  EXPECT_EQ(product, 0x0077);
+  EXPECT_EQ(version, info.version);
+  EXPECT_EQ(checksum, 0);
+  ASSERT_EQ(SDL_GameControllerAddMapping(line->c_str()), 1) << SDL_GetError();
+
+  // A virtual joystick's GUID has a mark that an event node's has not.
+  char own_guid[33] = {};
+  SDL_JoystickGetGUIDString(SDL_JoystickGetGUID(pad.joystick), own_guid, sizeof own_guid);
+  line->replace(0, 32, own_guid);
+  ASSERT_GE(SDL_GameControllerAddMapping(line->c_str()), 0) << SDL_GetError();
+  int index = 0;
+  while (index < SDL_NumJoysticks() &&
+         SDL_JoystickGetDeviceInstanceID(index) != SDL_JoystickInstanceID(pad.joystick)) {
+    ++index;
+  }
+  SDL_GameController* controller = SDL_GameControllerOpen(index);
+  ASSERT_NE(controller, nullptr) << SDL_GetError();
+  SDL_JoystickSetVirtualAxis(pad.joystick, 0, 20000);  // right
+  SDL_JoystickSetVirtualAxis(pad.joystick, 1, 10000);  // towards the thumb's owner
+  SDL_JoystickSetVirtualButton(pad.joystick, 0, 1);
+  SDL_JoystickUpdate();
+  // Right is where the layout says forward, forward where it says left: right is now backwards.
+  EXPECT_NEAR(SDL_GameControllerGetAxis(controller, SDL_CONTROLLER_AXIS_LEFTX), -10000, 1);
+  EXPECT_NEAR(SDL_GameControllerGetAxis(controller, SDL_CONTROLLER_AXIS_LEFTY), 20000, 1);
+  EXPECT_EQ(SDL_GameControllerGetButton(controller, SDL_CONTROLLER_BUTTON_A), 1);
+  SDL_GameControllerClose(controller);
+}
+
 }  // namespace
 }  // namespace gaitpad
 #endif  // GAITPAD_HAS_SDL

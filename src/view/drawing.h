@@ -1,0 +1,68 @@
+// A picture in memory on cairo: colours, text, PNG. Text comes from strangers too (names of
+// devices) and is made fit to be drawn; without any font cairo has one of its own.
+#pragma once
+#include <cairo/cairo.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/math.h"
+
+namespace gaitpad {
+
+struct Colour {
+  double red = 0.0, green = 0.0, blue = 0.0, alpha = 1.0;
+};
+constexpr Colour rgb(unsigned hex, double alpha = 1.0) {
+  return {((hex >> 16) & 0xff) / 255.0, ((hex >> 8) & 0xff) / 255.0, (hex & 0xff) / 255.0, alpha};
+}
+// Okabe and Ito's palette, which every eye tells apart, and greys.
+namespace colour {
+inline constexpr unsigned kOrange = 0xe69f00, kSkyBlue = 0x56b4e9, kGreen = 0x009e73,
+                          kBlue = 0x0072b2, kVermilion = 0xd55e00, kPurple = 0xcc79a7;
+inline constexpr unsigned kPaper = 0xf4f5f7, kCard = 0xffffff, kBorder = 0xd5d9df, kGrid = 0xe6e9ed,
+                          kFaint = 0x6b7480, kInk = 0x1d2430;
+}  // namespace colour
+
+struct SurfaceDeleter {
+  void operator()(cairo_surface_t* s) const noexcept { cairo_surface_destroy(s); }
+};
+struct CairoDeleter {
+  void operator()(cairo_t* c) const noexcept { cairo_destroy(c); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, SurfaceDeleter>;
+using Cairo = std::unique_ptr<cairo_t, CairoDeleter>;
+
+struct Box {  // pixels, y downwards
+  double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
+};
+
+enum class Align { left, centre, right };
+struct TextStyle {
+  double size = 13.0;  // pixels
+  unsigned colour = colour::kInk;
+  Align align = Align::left;
+  bool is_bold = false;
+};
+
+void set_colour(cairo_t* cr, const Colour& c);
+void fill_box(cairo_t* cr, const Box& box, const Colour& c);
+void stroke_box(cairo_t* cr, const Box& box, const Colour& c, double width);
+void line(cairo_t* cr, const vec2& from, const vec2& to);  // adds to the path
+
+// Valid UTF-8 on one line: what is not becomes `?`, control characters blanks.
+std::string drawable(std::string_view text);
+double text_width(cairo_t* cr, const TextStyle& style, const std::string& text);
+// On this baseline. No wider than `max_width` (0: any): what is left out shows as `...`.
+void draw_text(cairo_t* cr, const TextStyle& style, const vec2& baseline, std::string_view text,
+               double max_width = 0.0);
+// Broken between words, at most `max_lines` of them; a last line that goes on ends with `...`.
+std::vector<std::string> wrapped(cairo_t* cr, const TextStyle& style, std::string_view text,
+                                 double max_width, std::size_t max_lines);
+
+// Empty where cairo cannot (memory).
+std::string png_of(cairo_surface_t* surface);
+
+}  // namespace gaitpad

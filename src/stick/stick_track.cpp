@@ -1,6 +1,7 @@
 #include "stick/stick_track.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gaitpad {
 namespace {
@@ -76,6 +77,12 @@ void PadTracker::cut() noexcept {
   is_cut_stick_ = {true, true};
   is_cut_trigger_ = {true, true};
   state_ = PadState{};
+}
+
+PadTracks PadTracker::take_tracks() noexcept {
+  is_cut_stick_ = {true, true};
+  is_cut_trigger_ = {true, true};
+  return std::exchange(tracks_, {});
 }
 
 std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack> tracks) {

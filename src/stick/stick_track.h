@@ -15,8 +15,8 @@ struct StickSample {
   std::int64_t time_ns = 0;
   vec2 raw{0.0};
 };
-// Reports of one uninterrupted stay of the pad, in the order of time. Most pads report changes only,
-// so a position holds until the next sample.
+// Reports of one uninterrupted stay of the pad, in the order of time. Most pads report changes
+// only, so a position holds until the next sample.
 using StickTrack = std::vector<StickSample>;
 
 struct TriggerSample {
@@ -44,6 +44,7 @@ class PadTracker {
   bool take(const Report& report);  // false: does not decode
   void cut() noexcept;              // the pad went, or another recording begins
   const PadTracks& tracks() const noexcept { return tracks_; }
+  PadTracks take_tracks() noexcept;  // and forgets them: the next report begins new ones
   const PadState& state() const noexcept { return state_; }
 
  private:

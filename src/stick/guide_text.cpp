@@ -1,0 +1,168 @@
+// What the guide says: instructions and progress.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "stick/guide.h"
+
+namespace gaitpad {
+namespace {
+
+const char* control_name(int side, bool is_stick) noexcept {
+  if (is_stick) return side == 0 ? "left stick" : "right stick";
+  return side == 0 ? "left trigger" : "right trigger";
+}
+
+const char* push_text(PushWatch::State state) noexcept {
+  switch (state) {
+    case PushWatch::State::waiting:
+      return "waiting for it";
+    case PushWatch::State::out:
+      return "hold it";
+    case PushWatch::State::held:
+      return "now let go";
+  }
+  return "";
+}
+double push_share(PushWatch::State state) noexcept {
+  switch (state) {
+    case PushWatch::State::waiting:
+      return 0.0;
+    case PushWatch::State::out:
+      return 0.3;
+    case PushWatch::State::held:
+      return 0.7;
+  }
+  return 0.0;
+}
+
+const char* direction_words(GuideStep step) noexcept {
+  switch (step) {
+    case GuideStep::forward:
+      return "FORWARD, away from you";
+    case GuideStep::right:
+      return "to the RIGHT";
+    case GuideStep::back:
+      return "BACK, towards you";
+    default:
+      return "to the LEFT";
+  }
+}
+
+}  // namespace
+
+std::string CalibrationGuide::instruction() const {
+  if (is_full() && step() != GuideStep::done)
+    return "This took so long that no more is kept: skip to the end, or repeat the step.";
+  const auto which = [](const auto& controls, bool is_stick) -> std::string {
+    if (controls.size() != 1) return is_stick ? "each stick" : "each trigger";
+    return std::string("the ") + control_name(controls.front().side, is_stick);
+  };
+  const std::string sticks = which(sticks_, true);
+  switch (step()) {
+    case GuideStep::rest:
+      return fmt::format(
+          "Push {} to its rim, let it snap back and wait a second; {} times, to different sides.",
+          sticks, kWantedReleases);
+    case GuideStep::turn:
+      return fmt::format(
+          "Turn {} in full circles, pressed outwards along its rim, slowly, until "
+          "every direction is seen.",
+          sticks);
+    case GuideStep::triggers:
+      return fmt::format("Press {} fully, hold it a moment, let go.", which(triggers_, false));
+    case GuideStep::done:
+      return "Done.";
+    default:
+      return fmt::format("Push {} {}, hold it a moment, let go.", sticks, direction_words(step()));
+  }
+}
+
+std::vector<GuideProgress> CalibrationGuide::progress() const {
+  std::vector<GuideProgress> all;
+  if (step() == GuideStep::done) return all;
+  if (step() == GuideStep::triggers) {
+    for (const Trigger& trigger : triggers_) all.push_back(trigger_progress(trigger));
+    return all;
+  }
+  for (const Stick& stick : sticks_) {
+    if (step() == GuideStep::rest) {
+      all.push_back(rest_progress(stick));
+    } else {
+      all.push_back(step() == GuideStep::turn ? turn_progress(stick) : push_progress(stick));
+    }
+    all.back().control = control_name(stick.side, true);
+    all.back().raw = raw(stick);
+  }
+  return all;
+}
+
+// As the pad's axes have it, until the pushes have told how they lie.
+std::string CalibrationGuide::side_name(const Stick& stick, const vec2& raw) const {
+  static constexpr const char* kNames[] = {"right", "front right", "front", "front left",
+                                           "left",  "back left",   "back",  "back right"};
+  const vec2 told = in_frame(frame(stick.side), raw);
+  return kNames[(std::lround(atan2(told.y, told.x) / (kPi / 4.0)) + 8) % 8];
+}
+
+GuideProgress CalibrationGuide::rest_progress(const Stick& stick) const {
+  static const std::array<vec2, 4> kQuarters = {vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0),
+                                                vec2(0.0, -1.0)};
+  const ReleaseWatch& release = stick.release;
+  const int count = std::min(release.count(), kWantedReleases);
+  const int sides = std::min(release.sides(), kWantedSides);
+  GuideProgress progress;
+  progress.done = static_cast<double>(count + sides) / (kWantedReleases + kWantedSides);
+  progress.text = fmt::format("{} of {} releases", release.count(), kWantedReleases);
+  if (release.is_held()) {
+    progress.text += "; it is held, let go";
+  } else if (release.is_away()) {
+    progress.text += "; let go and wait";
+  } else if (count == kWantedReleases && sides < kWantedSides) {
+    progress.text += "; not yet from";
+    const char* separator = " ";
+    for (int i = 0; i < 4; ++i) {
+      if (release.has_side(i)) continue;
+      progress.text += std::exchange(separator, ", ");
+      progress.text += side_name(stick, kQuarters[static_cast<std::size_t>(i)]);
+    }
+  }
+  return progress;
+}
+
+GuideProgress CalibrationGuide::turn_progress(const Stick& stick) const {
+  const TurnWatch& turn = stick.turn;
+  const double turns = std::min(turn.turns(), kWantedTurns);
+  GuideProgress progress;
+  progress.done = 0.75 * turn.filled() / kTurnBins + 0.25 * turns / kWantedTurns;
+  if (turn.is_complete()) progress.done = 1.0;
+  // Rounded down: what is shown as two turns is two turns.
+  progress.text = fmt::format("{} of {} directions, {:.1f} of {:.0f} turns", turn.filled(),
+                              kTurnBins, std::floor(turns * 10.0) / 10.0, kWantedTurns);
+  const std::optional<vec2> missing = turn.missing();
+  if (missing && turn.filled() > 0) progress.text += "; missing: " + side_name(stick, *missing);
+  return progress;
+}
+
+GuideProgress CalibrationGuide::push_progress(const Stick& stick) const {
+  const auto number =
+      static_cast<std::size_t>(step()) - static_cast<std::size_t>(GuideStep::forward);
+  if (stick.pushed[number]) return {{}, 1.0, "seen", {}};
+  const PushWatch::State state = stick.push.state();
+  const bool is_advised = state == PushWatch::State::waiting && !stick.advice.empty();
+  return {{}, push_share(state), is_advised ? stick.advice : push_text(state), {}};
+}
+
+GuideProgress CalibrationGuide::trigger_progress(const Trigger& trigger) const {
+  GuideProgress progress;
+  progress.control = control_name(trigger.side, false);
+  const PushWatch::State state = trigger.push.state();
+  progress.done = trigger.is_done ? 1.0 : push_share(state);
+  progress.text = trigger.is_done ? "seen" : push_text(state);
+  progress.raw = vec2(tracker_.state().axis[kLeftTrigger + trigger.side], 0.0);
+  return progress;
+}
+
+}  // namespace gaitpad

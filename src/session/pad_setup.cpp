@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kLeastFactoryRange = 0.25;  // raw, from the centre to either end
 
-DeviceIdentity identity_of(const DeviceInfo& info) {
-  return {info.vendor, info.product, info.unique_id, info.physical_path, info.driver};
-}
-
 Result<CalibrationFile> calibration_of(const PadFiles& files, const TraceDevice& device,
                                        const std::string& origin) {
   if (files.calibration) return *files.calibration;
@@ -118,6 +114,10 @@ std::string sdl_line_of(const PadFiles& files, const DeviceInfo& info) {
 }
 
 }  // namespace
+
+DeviceIdentity identity_of(const DeviceInfo& info) {
+  return {info.vendor, info.product, info.unique_id, info.physical_path, info.driver};
+}
 
 Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
                                 const std::string& map, const std::string& calibration) {

@@ -13,6 +13,9 @@
 
 namespace gaitpad {
 
+// What calibrations tell devices apart by.
+DeviceIdentity identity_of(const DeviceInfo& info);
+
 // What stands in files about pads, read once.
 struct PadFiles {
   PadOverrides overrides;                        // --map first, then config/pads

@@ -12,6 +12,7 @@ void add_pads(CLI::App& app, int& status);
 void add_doctor(CLI::App& app, int& status);
 void add_decode(CLI::App& app, int& status);
 void add_monitor(CLI::App& app, int& status);
+void add_calibrate(CLI::App& app, int& status);
 void add_motion(CLI::App& app, int& status);
 void add_ik(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);

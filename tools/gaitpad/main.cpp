@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   gaitpad::add_doctor(app, status);
   gaitpad::add_decode(app, status);
   gaitpad::add_monitor(app, status);
+  gaitpad::add_calibrate(app, status);
   gaitpad::add_motion(app, status);
   gaitpad::add_ik(app, status);
   gaitpad::add_bench(app, status);

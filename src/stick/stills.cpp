@@ -18,8 +18,10 @@ constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // cells
 constexpr std::size_t kShortestStill = 5;                          // cells
 // The window's last half sees a push before it comes; so much of it is still rest.
 constexpr std::size_t kWindowsLead = kHalfWindow - 1;
+constexpr std::size_t kMargin = 2;     // cells
 constexpr double kSlow = 0.006;        // raw, from one half of a window to the other: 0.06 a second
-constexpr double kNoiseLimit = 4.0;    // standard deviations
+constexpr double kNoiseLimit = 4.5;    // standard deviations
+constexpr double kUnseen = 0.0012;     // raw, from cell to cell: drift
 constexpr double kFarthestHome = 0.5;  // raw; a stick that rests farther out looks held
 
 // 20 ms of a track. Weights are reports, see reports_stood().
@@ -30,6 +32,7 @@ struct Cell {
   vec2 sum{0.0};
   double change = 0.0;  // squares of the steps between its reports, summed
   vec2 mean() const noexcept { return sum / weight; }
+  double variance() const noexcept { return 0.5 * change / weight; }  // of one report, both axes
 };
 
 void add(Cell& to, const Cell& cell) noexcept {
@@ -76,8 +79,8 @@ bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexc
     add(after, cells[first + kHalfWindow + k]);
   }
   const double weight = before.weight + after.weight;
-  // Of both axes together, of one report.
-  const double variance = 0.5 * (before.change + after.change) / weight;
+  // A movement that begins or ends here is in one half.
+  const double variance = std::min(before.variance(), after.variance());
   const double limit = kNoiseLimit * kNoiseLimit * variance;
   const vec2 moved = after.mean() - before.mean();
   if (glm::dot(moved, moved) >
@@ -106,7 +109,7 @@ bool is_same_place(std::span<const Cell> cells, const Run& a, const Run& b, doub
   for (std::size_t k = b.begin; k < b.end && k < b.begin + kWindow; ++k) add(other, cells[k]);
   const vec2 place = one.mean();
   if (glm::length(other.mean() - place) > 2.0 * slow) return false;
-  const double variance = 0.5 * (one.change + other.change) / (one.weight + other.weight);
+  const double variance = std::max(one.variance(), other.variance());
   for (std::size_t k = a.end; k < b.begin; ++k) {
     const vec2 off = cells[k].mean() - place;
     const double noise = 36.0 * variance / std::max(cells[k].weight, 1.0);
@@ -115,7 +118,36 @@ bool is_same_place(std::span<const Cell> cells, const Run& a, const Run& b, doub
   return true;
 }
 
-std::vector<Run> still_runs(std::span<const Cell> cells, double slow) {
+// Goes from a run's inside outwards, to where a cell is not like the five before it: the windows
+// do not see where exactly a movement begins. `step` is 1 or -1; returns the last good cell.
+std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, double code) {
+  const std::size_t length = run.end - run.begin;
+  const std::size_t inside = std::min<std::size_t>((length + 1) / 2, 2 * kWindow);
+  const std::size_t outermost = step > 0 ? run.end - 1 : run.begin;
+  std::size_t at = step > 0 ? run.end - inside : run.begin + inside - 1;
+  const std::size_t core = std::min(length, kHalfWindow);
+  Cell noise;
+  for (std::size_t k = 0; k < core; ++k) add(noise, cells[run.begin + (length - core) / 2 + k]);
+  while (at != outermost) {
+    const std::size_t next = step > 0 ? at + 1 : at - 1;
+    Cell inner;
+    for (std::size_t k = 0; k < kHalfWindow; ++k) {
+      const std::size_t cell = step > 0 ? at - std::min(at - run.begin, k) : at + k;
+      if (cell >= run.end) break;
+      add(inner, cells[cell]);
+    }
+    const vec2 off = cells[next].mean() - inner.mean();
+    const double variance = std::max(noise.variance(), inner.variance());
+    const double limit =
+        kNoiseLimit *
+        std::sqrt(variance * (1.0 / std::max(cells[next].weight, 1.0) + 1.0 / inner.weight));
+    if (glm::length(off) > std::max({limit, kUnseen, code})) break;
+    at = next;
+  }
+  return at;
+}
+
+std::vector<Run> still_runs(std::span<const Cell> cells, double slow, double code) {
   std::vector<Run> runs;
   if (cells.size() < kWindow) return runs;
   const std::size_t last = cells.size() - kWindow;  // where the last window begins
@@ -137,6 +169,13 @@ std::vector<Run> still_runs(std::span<const Cell> cells, double slow) {
     } else {
       joined.push_back(run);
     }
+  }
+  for (Run& run : joined) {
+    run = {edge_of(cells, run, -1, code), edge_of(cells, run, 1, code) + 1};
+    // A movement begins in the noise.
+    const std::size_t margin = std::min(kMargin, (run.end - run.begin) / 4);
+    if (run.begin > 0) run.begin += margin;
+    if (run.end < cells.size()) run.end -= margin;
   }
   std::erase_if(joined, [](const Run& run) { return run.end - run.begin < kShortestStill; });
   return joined;
@@ -169,7 +208,7 @@ std::vector<Still> all_stills(std::span<const StickTrack> tracks) {
   std::vector<Still> found;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     const std::vector<Cell> cells = cells_of(tracks[t], interval_s);
-    for (const Run& run : still_runs(cells, slow)) {
+    for (const Run& run : still_runs(cells, slow, std::min(step, 0.05))) {
       found.push_back(still_of(tracks[t], t, cells, run));
     }
   }

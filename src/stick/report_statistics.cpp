@@ -12,11 +12,12 @@ namespace {
 constexpr std::size_t kMostIntervals = std::size_t{1} << 20;  // as many say what all would
 constexpr std::size_t kFewestIntervals = 20;
 constexpr double kSilence_s = 0.1;
+constexpr double kBurst_s = 0.0007;  // pads send 1000 reports a second at most, but for a few
 constexpr double kUnknownInterval_s = 0.004;
 constexpr double kFrozen_s = 0.06;
 
-// Of reports that follow each other; those during quick movements, if there are enough of them:
-// every pad reports each of those.
+// Of reports that follow each other; those during movements, if there are enough of them: every pad
+// reports each of those.
 std::vector<double> intervals(std::span<const StickTrack> tracks) {
   std::vector<double> all, moving;
   for (const StickTrack& track : tracks) {
@@ -57,7 +58,7 @@ std::optional<Spacing> spacing(std::span<const StickTrack> tracks) {
   const double median = *middle;
   const Spacing all = spacing_within(found, 0.0, kSilence_s);
   // Where most reports come in bursts, the time between bursts belongs to the pace.
-  if (all.mean_s > 2.0 * median) return all;
+  if (median < kBurst_s && all.mean_s > 2.0 * median) return all;
   const double mean_s = spacing_within(found, 0.5 * median, 1.5 * median).mean_s;
   if (!(mean_s > 0.0)) return {};
   return Spacing{mean_s, spacing_within(found, 0.0, 1.5 * mean_s).deviation_s};

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+
+#include "stick/report_statistics.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr double kSmallestSpike = 0.03;  // raw; less is noise
-constexpr double kLongestSpike_s =
-    0.04;                          // of two or three reports; a hand's there and back is longer
-constexpr double kFarthest = 4.0;  // raw; nothing lies farther out, whoever made the track
+constexpr double kSmallestSpike = 0.03;    // raw; less is noise
+constexpr double kShortMovement_s = 0.04;  // a hand's there and back is longer
+constexpr double kFarthest = 4.0;          // raw; nothing lies farther out, whoever made the track
 constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;  // sums of times fit
 
 bool is_place(const vec2& p) noexcept {
@@ -36,22 +36,52 @@ double step_length(const StickTrack& track, std::size_t i) noexcept {  // from i
   return glm::length(track[i].raw - track[i - 1].raw);
 }
 
-// Median length of the steps around, those into and out of i .. i + length - 1 left out. Hands move
-// several reports long, so the neighbourhood of a real movement has long steps too.
-double steps_around(const StickTrack& track, std::size_t i, std::size_t length) {
-  std::array<double, 8> steps{};
+// Steps of the reports next to a place, nearest first; a pad that reports changes only was silent
+// where it stood, which is steps of 0.
+struct Steps {
+  std::array<double, 8> length{};
   std::size_t count = 0;
-  for (std::size_t k = 1; k <= 4 && i >= k + 1; ++k) steps[count++] = step_length(track, i - k);
-  for (std::size_t k = 1; k <= 4 && i + length + k < track.size(); ++k) {
-    steps[count++] = step_length(track, i + length + k);
+  void add(double step) noexcept {
+    if (count < length.size()) length[count++] = step;
   }
-  if (count == 0) return 0.0;
-  std::nth_element(steps.begin(), steps.begin() + count / 2, steps.begin() + count);
-  return steps[count / 2];
+};
+
+// Up to four each way, those into and out of i .. i + length - 1 left out.
+std::array<Steps, 2> steps_around(const StickTrack& track, std::size_t i, std::size_t length,
+                                  double interval_s) noexcept {
+  constexpr std::size_t kEach = 4;
+  std::array<Steps, 2> steps;
+  const auto add_silence = [&](Steps& to, std::size_t at) {
+    double silent = reports_stood(hold_s(track, at, interval_s), interval_s) - 1.5;
+    for (; silent > 0.0 && to.count < kEach; silent -= 1.0) to.add(0.0);
+  };
+  for (std::size_t at = i - 1; steps[0].count < kEach; --at) {
+    add_silence(steps[0], at);
+    if (at == 0) break;
+    steps[0].add(step_length(track, at));
+  }
+  for (std::size_t at = i + length; steps[1].count < kEach; ++at) {
+    add_silence(steps[1], at);
+    if (at + 1 >= track.size()) break;
+    steps[1].add(step_length(track, at + 1));
+  }
+  return steps;
+}
+
+// Whether it stands out from all of them. Hands move several reports long, so the neighbourhood of
+// a real movement has long steps too; one or two may belong to another spike.
+bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
+  Steps all = around[0];
+  for (std::size_t k = 0; k < around[1].count; ++k) all.add(around[1].length[k]);
+  const auto end = all.length.begin() + static_cast<std::ptrdiff_t>(all.count);
+  std::sort(all.length.begin(), end);
+  const std::size_t third = all.count > 5 ? all.count - 3 : all.count / 2;
+  return height > 3.0 * around[0].length[0] && height > 3.0 * around[1].length[0] &&
+         height > 7.0 * all.length[all.count / 2] && height > 4.5 * all.length[third];
 }
 
 // A spike has sharp edges on both sides and comes back to about where it left.
-bool is_spike(const StickTrack& track, std::size_t i, std::size_t length) {
+bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, double interval_s) {
   const vec2& before = track[i - 1].raw;
   const vec2& after = track[i + length].raw;
   double least = 2.0 * kFarthest;
@@ -60,29 +90,25 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length) {
         std::min({least, glm::length(track[k].raw - before), glm::length(track[k].raw - after)});
   }
   if (least < kSmallestSpike || least < 2.0 * glm::length(after - before)) return false;
-  if (length > 1 &&
-      seconds_between(track[i].time_ns, track[i + length].time_ns) > kLongestSpike_s) {
+  const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
+  if (lasted_s > std::clamp(3.7 * interval_s, kShortMovement_s, 2.0 * kShortMovement_s))
     return false;
-  }
-  if (i >= 2 && least < 3.0 * step_length(track, i - 1)) return false;
-  if (i + length + 1 < track.size() && least < 3.0 * step_length(track, i + length + 1))
-    return false;
-  return least > 6.0 * steps_around(track, i, length);
+  return stands_out(least, steps_around(track, i, length, interval_s));
 }
 
 // 0 where none begins at i.
-std::size_t spike_length(const StickTrack& track, std::size_t i) {
+std::size_t spike_length(const StickTrack& track, std::size_t i, double interval_s) {
   if (step_length(track, i) < kSmallestSpike) return 0;
   for (std::size_t length = 1; length <= 3 && i + length < track.size(); ++length) {
-    if (is_spike(track, i, length)) return length;
+    if (is_spike(track, i, length, interval_s)) return length;
   }
   return 0;
 }
 
-std::int64_t take_spikes_out(StickTrack& track) {
+std::int64_t take_spikes_out(StickTrack& track, double interval_s) {
   std::int64_t spikes = 0;
   for (std::size_t i = 1; i + 1 < track.size(); ++i) {
-    const std::size_t length = spike_length(track, i);
+    const std::size_t length = spike_length(track, i, interval_s);
     if (length == 0) continue;
     for (std::size_t k = i; k < i + length; ++k) track[k].raw = track[i - 1].raw;
     ++spikes;
@@ -96,11 +122,12 @@ std::int64_t take_spikes_out(StickTrack& track) {
 CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
   CleanTracks clean;
   clean.tracks.reserve(tracks.size());
-  for (const StickTrack& track : tracks) {
-    clean.tracks.push_back(sound_track(track));
+  for (const StickTrack& track : tracks) clean.tracks.push_back(sound_track(track));
+  const double interval_s = typical_interval_s(clean.tracks);
+  for (StickTrack& track : clean.tracks) {
     // One that stands beside another is seen only once that is out of the way.
     for (int pass = 0; pass < 3; ++pass) {
-      const std::int64_t spikes = take_spikes_out(clean.tracks.back());
+      const std::int64_t spikes = take_spikes_out(track, interval_s);
       clean.jumps += spikes;
       if (spikes == 0) break;
     }

@@ -12,11 +12,12 @@ namespace {
 constexpr std::size_t kMostIntervals = std::size_t{1} << 20;  // as many say what all would
 constexpr std::size_t kFewestIntervals = 20;
 constexpr double kSilence_s = 0.1;
+constexpr double kBurst_s = 0.0007;  // pads send 1000 reports a second at most, but for a few
 constexpr double kUnknownInterval_s = 0.004;
 constexpr double kFrozen_s = 0.06;
 
-// Of reports that follow each other; those during quick movements, if there are enough of them:
-// every pad reports each of those.
+// Of reports that follow each other; those during movements, if there are enough of them: every pad
+// reports each of those.
 std::vector<double> intervals(std::span<const StickTrack> tracks) {
   std::vector<double> all, moving;
   for (const StickTrack& track : tracks) {
@@ -24,7 +25,7 @@ std::vector<double> intervals(std::span<const StickTrack> tracks) {
     for (std::size_t i = 1; i < track.size() && all.size() < kMostIntervals; ++i) {
       const double interval_s = seconds_between(track[i - 1].time_ns, track[i].time_ns);
       while (seconds_between(track[back].time_ns, track[i - 1].time_ns) > 0.05) ++back;
-      if (interval_s > kSilence_s) continue;
+      if (interval_s < 0.0 || interval_s > kSilence_s) continue;
       all.push_back(interval_s);
       if (glm::length(track[i - 1].raw - track[back].raw) > 0.05) moving.push_back(interval_s);
     }
@@ -57,7 +58,7 @@ std::optional<Spacing> spacing(std::span<const StickTrack> tracks) {
   const double median = *middle;
   const Spacing all = spacing_within(found, 0.0, kSilence_s);
   // Where most reports come in bursts, the time between bursts belongs to the pace.
-  if (all.mean_s > 2.0 * median) return all;
+  if (median < kBurst_s && all.mean_s > 2.0 * median) return all;
   const double mean_s = spacing_within(found, 0.5 * median, 1.5 * median).mean_s;
   if (!(mean_s > 0.0)) return {};
   return Spacing{mean_s, spacing_within(found, 0.0, 1.5 * mean_s).deviation_s};
@@ -87,22 +88,31 @@ bool reports_at_rest(std::span<const StickTrack> tracks, double interval_s,
       if (pause_s <= 1.5 * interval_s && track[i].raw == track[i - 1].raw) repeats += 1.0;
     }
   }
-  return silent_s <= 0.2 * all_s && repeats >= 0.25 * repeats_expected * count - 3.0;
+  return silent_s <= 0.2 * all_s && repeats >= std::max(0.25 * repeats_expected * count, 1.0);
 }
 
 double value_of(const StickSample& sample, int axis) noexcept {
   return axis == 0 ? sample.raw.x : sample.raw.y;
 }
 
-template <typename Visit>
-void for_each_difference(std::span<const StickTrack> tracks, int axis, const Visit& visit) {
-  constexpr double kRounding = 1e-6;  // axes are decoded to floats
+// Least first, equal ones once.
+std::vector<double> distinct_values(std::span<const StickTrack> tracks, int axis) {
+  constexpr std::size_t kMost = std::size_t{1} << 18;
+  std::size_t all = 0;
+  for (const StickTrack& track : tracks) all += track.size();
+  const std::size_t stride = all / kMost + 1;
+  std::vector<double> values;
   for (const StickTrack& track : tracks) {
-    for (std::size_t i = 1; i < track.size(); ++i) {
-      const double d = std::fabs(value_of(track[i], axis) - value_of(track[i - 1], axis));
-      if (d > kRounding) visit(d);
+    for (std::size_t i = 0; i < track.size(); i += stride) {
+      values.push_back(value_of(track[i], axis));
     }
   }
+  std::sort(values.begin(), values.end());
+  constexpr double kRounding = 1e-6;  // axes are decoded to floats
+  const auto end = std::unique(values.begin(), values.end(),
+                               [](double a, double b) { return b - a <= kRounding; });
+  values.erase(end, values.end());
+  return values;
 }
 
 // Frozen from `first` to `last`, then on in the same direction by a jump.
@@ -134,17 +144,21 @@ ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_ex
 }
 
 double quantisation_step(std::span<const StickTrack> tracks, int axis, double declared) {
+  const std::vector<double> values = distinct_values(tracks, axis);
   double least = 4.0;
-  for_each_difference(tracks, axis, [&least](double d) { least = std::min(least, d); });
-  // Values without steps come as near to each other as one pleases, but seldom.
-  int ones = 0, twos = 0, between = 0;
-  for_each_difference(tracks, axis, [&](double d) {
-    const double steps = d / least;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    least = std::min(least, values[i] - values[i - 1]);
+  // Values without steps come as near to each other as one pleases, but seldom, and at no
+  // multiples.
+  int ones = 0, few = 0, whole = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double steps = (values[i] - values[i - 1]) / least;
+    if (steps > 8.5) continue;
+    ++few;
     ones += steps < 1.2;
-    twos += steps > 1.8 && steps < 2.2;
-    between += steps >= 1.2 && steps <= 1.8;
-  });
-  const bool is_step = least < 0.5 && ones >= 4 && between * 10 <= ones + twos;
+    whole += std::fabs(steps - std::round(steps)) < 0.15;
+  }
+  const bool is_step = least < 0.5 && ones >= 3 && 5 * whole >= 4 * few;
   return is_step ? least : declared;
 }
 
@@ -163,24 +177,32 @@ std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s)
 }
 
 int whole_turns(std::span<const StickTrack> tracks, const vec2& middle, double radius) {
+  constexpr int kStray = 3;  // reports that may be spikes
   int turns = 0;
   for (const StickTrack& track : tracks) {
     double turned = 0.0;  // since it came out here, of one turn
-    bool was_out = false;
+    vec2 before(0.0);     // 0: inside
+    int strays = 0;
     const auto count = [&] {
       // A turn that somebody ends a little early is meant as one.
       turns += static_cast<int>(std::min(std::fabs(turned) + 0.05, 1e6));
       turned = 0.0;
+      before = vec2(0.0);
     };
-    for (std::size_t i = 0; i < track.size(); ++i) {
-      const vec2 p = track[i].raw - middle;
+    for (const StickSample& sample : track) {
+      const vec2 p = sample.raw - middle;
       const bool is_out = glm::length(p) > radius;
-      if (is_out && was_out) {
-        const vec2 q = track[i - 1].raw - middle;
-        turned += atan2(q.x * p.y - q.y * p.x, glm::dot(p, q)) / (2.0 * kPi);
+      const double angle =
+          atan2(before.x * p.y - before.y * p.x, glm::dot(before, p)) / (2.0 * kPi);
+      const bool is_stray = before != vec2(0.0) && (!is_out || std::fabs(angle) > 0.3);
+      if (is_stray && ++strays <= kStray) continue;
+      strays = 0;
+      if (!is_out) {
+        count();
+        continue;
       }
-      if (!is_out) count();
-      was_out = is_out;
+      if (before != vec2(0.0)) turned += angle;
+      before = p;
     }
     count();
   }

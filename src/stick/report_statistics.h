@@ -17,8 +17,8 @@ struct ReportTiming {
   std::int64_t gaps = 0;
 };
 // `repeats_expected`: the chance that a report at rest is the same as the one before, as far as
-// noise and steps tell. A pad that repeats itself less often reports changes only, and its silences
-// are no gaps.
+// noise and steps tell. A pad that repeats itself less often, or never, reports changes only as far
+// as one can see, and its silences are no gaps.
 ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_expected);
 
 // The smallest distance between neighbouring values that is seen often enough to be a step, else

@@ -65,7 +65,8 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   const std::vector<Still> rests = stills(clean.tracks).rests;
   tell_rest(told, rest_statistics(clean.tracks, rests, {told.step_x, told.step_y}, interval_s));
   tell_rim(told, clean.tracks);
-  const ReportTiming timing = report_timing(clean.tracks, repeats_expected(told));
+  // As they came: where a spike is taken out a value repeats.
+  const ReportTiming timing = report_timing(tracks, repeats_expected(told));
   told.rate_hz = timing.rate_hz;
   told.jitter_ms = timing.jitter_ms;
   told.gaps = timing.gaps;

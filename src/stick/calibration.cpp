@@ -45,10 +45,14 @@ double without_middle(double x, double zone) noexcept {
 vec2 in_frame(const StickFrame& frame, const vec2& raw) noexcept {
   const auto along = [&raw](RawDirection direction) {
     switch (direction) {
-      case RawDirection::plus_x: return raw.x;
-      case RawDirection::minus_x: return -raw.x;
-      case RawDirection::plus_y: return raw.y;
-      case RawDirection::minus_y: return -raw.y;
+      case RawDirection::plus_x:
+        return raw.x;
+      case RawDirection::minus_x:
+        return -raw.x;
+      case RawDirection::plus_y:
+        return raw.y;
+      case RawDirection::minus_y:
+        return -raw.y;
     }
     return 0.0;
   };

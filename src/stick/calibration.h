@@ -105,7 +105,8 @@ Result<CalibrationFile> parse_calibration(std::string_view text, const std::stri
 std::string calibration_text(const CalibrationFile& file);
 
 // How well a file fits a device: 0 not at all, then `*:*`, `vvvv:*`, `vvvv:pppp`, the same with the
-// port, the unique id.
+// port, the unique id; among these a file that names the device's driver fits better than one that
+// names none.
 int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device);
 struct FoundCalibration {
   CalibrationFile file;

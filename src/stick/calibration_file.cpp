@@ -320,8 +320,12 @@ int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device) {
     if (pattern.product >= 0 && pattern.product != device.product) continue;
     fit = std::max(fit, 1 + (pattern.vendor >= 0) + (pattern.product >= 0));
   }
-  if (!file.unique_id.empty() && (fit > 0 || file.devices.empty())) return kUniqueIdFit;
-  return fit > 0 && !file.port.empty() ? fit + kPortBonus : fit;
+  if (!file.unique_id.empty() && (fit > 0 || file.devices.empty())) {
+    fit = kUniqueIdFit;
+  } else if (fit > 0 && !file.port.empty()) {
+    fit += kPortBonus;
+  }
+  return fit > 0 ? 2 * fit + (file.drivers.empty() ? 0 : 1) : 0;
 }
 
 FoundCalibration find_calibration(std::span<const std::string> folders,

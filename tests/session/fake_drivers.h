@@ -32,6 +32,7 @@ struct FakePad {
   DeviceListing listing;
   FakeKind kind = FakeKind::sound;
   int failing_openings = 0;
+  std::optional<FactorySticks> factory_sticks;
   std::optional<std::int64_t> stamp_ns;  // of every report, else the clock's
   std::atomic<int> openings{0}, closings{0};
   std::atomic<bool> keeps_closing{false};  // its closing waits for the end of this
@@ -93,6 +94,7 @@ class FakeDevice final : public Device {
     return true;
   }
   std::int64_t lost() const noexcept override { return pad_->lost; }
+  std::optional<FactorySticks> factory_sticks() const override { return pad_->factory_sticks; }
 
  private:
   const std::shared_ptr<FakePad> pad_;

@@ -364,6 +364,41 @@ TEST_F(PadStreamTest, WhatHasNoStickIsNotAnnounced) {
   EXPECT_EQ(keyboard->openings, 0);
 }
 
+std::string user_folder(const std::string& text) {
+  const auto folder = std::filesystem::path(testing::TempDir()) /
+                      ("gaitpad_user_calibrations." + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.toml") << text;
+  return folder.string();
+}
+
+TEST_F(PadStreamTest, APadHasItsUsersCalibrationAndSaysWhetherItBringsItsOwn) {
+  PadStreamOptions options;
+  options.files.user_calibrations = user_folder("unique_id = 'A'\n[left]\ninner = 0.31\n");
+  auto own = bus_.make(kHidraw, "A", "port1");
+  own->factory_sticks = FactorySticks();
+  bus_.show(kHidraw, own);
+  start(options);
+  expect(ReportKind::added, 0);
+  EXPECT_EQ(stream_->config(0).calibration.left.inner, 0.31);
+  EXPECT_TRUE(stream_->config(0).has_factory_sticks);
+  auto other = bus_.plug(kHidraw, "B", "port2");
+  expect(ReportKind::added, 1);
+  EXPECT_EQ(stream_->config(1).calibration.left.inner, kInnerZoneUnknown);
+  EXPECT_FALSE(stream_->config(1).has_factory_sticks);
+  std::filesystem::remove_all(options.files.user_calibrations);
+}
+
+TEST_F(PadStreamTest, ADamagedCalibrationIsToldAndThePadPlays) {
+  PadStreamOptions options;
+  options.files.user_calibrations = user_folder("[left]\ninner = 7\n");
+  bus_.plug(kHidraw, "A", "port1");
+  start(options);
+  expect(ReportKind::added, 0);
+  EXPECT_TRUE(is_told("a.toml:2: \"inner\" is 7, outside [0, 0.9]; pads go on without"));
+  std::filesystem::remove_all(options.files.user_calibrations);
+}
+
 TEST_F(PadStreamTest, ADriverThatIsReadyForEverButHasNothingIsClosed) {
   for (const FakeKind kind : {FakeKind::always_ready, FakeKind::closed_descriptor}) {
     auto pad = bus_.make(kHidraw, "A", "port1");
@@ -599,6 +634,20 @@ TEST_F(RecordingAsPad, KeepsItsOwnCalibration) {
   expect(ReportKind::added, 0);
   EXPECT_EQ(stream_->config(0).calibration.left.inner, 0.31);
   EXPECT_EQ(stream_->device(0).calibration, trace.devices[0].calibration);
+}
+
+// It plays as it replays, on every machine.
+TEST_F(RecordingAsPad, DoesNotSeeTheUsersCalibrations) {
+  write(made_trace());
+  PadStreamOptions options;
+  options.files.user_calibrations = user_folder("devices = ['*:*']\n[left]\ninner = 0.31\n");
+  options.wish.pad = path_;
+  auto started_stream = PadStream::start(options);
+  ASSERT_TRUE(started_stream) << started_stream.error().message;
+  stream_ = std::move(*started_stream);
+  expect(ReportKind::added, 0);
+  EXPECT_EQ(stream_->config(0).calibration.left.inner, kInnerZoneUnknown);
+  std::filesystem::remove_all(options.files.user_calibrations);
 }
 
 TEST_F(RecordingAsPad, WithoutAnyStickIsAnError) {

@@ -206,6 +206,10 @@ TEST(CalibrationFit, AFileForOtherDriversDoesNotFit) {
   // A recording that names no driver came from hidraw.
   EXPECT_GT(fit("", "['hidraw', 'usb']"), 0);
   EXPECT_EQ(fit("", "['evdev']"), 0);
+  // For a pad that was calibrated through two drivers; less than what tells the device itself.
+  EXPECT_GT(fit("evdev", "['evdev']"), fit("evdev", "[]"));
+  const CalibrationFile model = parsed("devices = ['054c:09cc']\nport = '1'\ndrivers = ['evdev']");
+  EXPECT_LT(calibration_fit(model, {0x054c, 0x09cc, "aa", "1", "evdev"}), fit("evdev", "[]"));
 }
 
 class FindCalibration : public testing::Test {

@@ -49,12 +49,46 @@ def write_walk(out):
     (out / "fuzz_bvh" / "still.bvh").write_text(text.replace(f"Frames: {len(frames)}", "Frames: 1") + frames[0] + "\n")
 
 
+EVERY_KEY = """name = "mine"
+unique_id = "a1:b2"
+port = "usb-1/input0"
+devices = ["054c:0ce6", "057e:*"]
+drivers = ["hidraw", "usb"]
+measured_on = "2026-11-21"
+mapping = "030000004c050000e60c000011810000,Pad,a:b0,leftx:a0~,-lefty:+a1,dpup:h0.1,"
+[left]
+right = "-y"
+forward = "x"
+x = { min = -0.98, centre = 0.012, max = 0.97 }
+shape = "axial"
+inner = 0.05
+outer = 0.9
+sideways = 0.1
+curve = 0.3
+[left.measured]
+sigma = 0.002
+hysteresis = 0.01
+drift_per_s = 0
+circularity_error = 8.1
+[left_trigger]
+released = 0.02
+pressed = 0.98
+"""
+
+
+def write_calibrations(out):
+    for path in (ROOT / "config/calibration").glob("*.toml"):
+        (out / "fuzz_calibration" / path.name).write_text(path.read_text())
+    (out / "fuzz_calibration" / "every_key.toml").write_text(EVERY_KEY)
+
+
 def main():
     out = pathlib.Path(sys.argv[1])
-    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh"):
+    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh", "fuzz_calibration"):
         (out / name).mkdir(parents=True, exist_ok=True)
     write_pads(out)
     write_walk(out)
+    write_calibrations(out)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 // What a stick's raw reports say about it: where it rests and how quietly, how far it reaches, how
 // regularly it reports. No marks are needed: rest, turning and pushes are found in the tracks.
-// Set-up code. The notes of what is robust against what stand at the functions in statistics.cpp.
+// Set-up code. What is robust against what stands at the parts: stills, rest_statistics,
+// report_statistics, clean_track.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,22 +11,9 @@
 
 #include "stick/outline.h"
 #include "stick/stick_track.h"
+#include "stick/stills.h"
 
 namespace gaitpad {
-
-// A while in which the stick stood still, `first` to `last` inclusive in its track.
-struct Still {
-  std::size_t track = 0, first = 0, last = 0;
-  double duration_s = 0.0;  // with the time that the last position held
-  vec2 mean{0.0};           // raw, weighted by time
-};
-// Found by velocity against the noise at hand, so a noisy or slowly drifting stick still counts.
-// Settling after a release is left out.
-struct Stills {
-  std::vector<Still> rests;   // let go: near the place to which it returns
-  std::vector<Still> pushes;  // held at half of the reach or more
-};
-Stills stills(std::span<const StickTrack> tracks);
 
 // Positions, lengths: raw, as in StickSample. What too little data cannot tell is none.
 struct StickStatistics {
@@ -34,17 +22,17 @@ struct StickStatistics {
   // At rest.
   std::int64_t rest_samples = 0;
   double rest_s = 0.0;
-  std::vector<vec2> rests;      // means of the single rests that count, one a release
-  std::optional<vec2> centre;   // robust over the rests, the middle of their spread
-  std::optional<vec2> sigma;    // noise within the rests, without trend and spikes
+  std::vector<vec2> rests;       // means of the single rests that count, one a release
+  std::optional<vec2> centre;    // robust over the rests, the middle of their spread
+  std::optional<vec2> sigma;     // noise within the rests, without trend and spikes
   bool is_sigma_hidden = false;  // it is less than a step in x or y: `sigma` is what the steps show
-  std::optional<double> hysteresis;  // greatest distance between two rests; none: fewer than two
+  std::optional<double> hysteresis;   // greatest distance between two rests; none: fewer than two
   std::optional<double> drift_per_s;  // trend at rest; exactly 0 where none is significant
   vec2 drift{0.0};                    // its direction, per second
   double wander = 0.0;  // slow excursions at rest beyond noise, one standard deviation
 
   // At the rim, see outline.h.
-  Outline outline;                     // about `centre` (about 0 where that is none)
+  Outline outline;  // about `centre` (about 0 where that is none)
   std::optional<double> min_x, max_x, min_y, max_y;
   std::optional<double> circularity_error;  // percent
   std::int64_t rim_samples = 0;

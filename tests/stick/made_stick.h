@@ -1,7 +1,9 @@
 // Recordings of sticks whose truth is known: what the analysis must find again.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include "stick/stick_track.h"
@@ -10,31 +12,212 @@ namespace gaitpad {
 
 enum class Gate { circle, square, ellipse };  // square: of half side `reach_x`, corners and all
 
-// A stick as it is, and how it is moved. All positions raw; the stick's own zero is `centre`.
+// A stick as it is. Positions are raw fractions as the thumb means them (+x right, +y forward);
+// `frame` says how the pad reports them. Beyond -1..1 a report shows the end.
 struct MadeStick {
   vec2 centre{0.0};
-  vec2 sigma{0.0};       // Gaussian, of each report
+  vec2 sigma{0.0};          // Gaussian, of each report
   double hysteresis = 0.0;  // it comes to rest half of this towards the side it was let go from
-  vec2 drift_per_s{0.0};
+  vec2 drift_per_s{0.0};    // of everything; `centre` is true in the middle of the time
+  double creep = 0.0;       // this far off right after a release, gone exponentially in 0.3 s
+  double wander = 0.0;      // random walk of everything: standard deviation after one second
   Gate gate = Gate::circle;
-  double reach_x = 1.0, reach_y = 1.0;  // of the gate about `centre`; circle: reach_x
-  int bits = 0;               // of the logical range -1..1; 0: not quantised
-  double rate_hz = 250.0, jitter_ms = 0.0;
-  double drop_chance = 0.0;   // a report is lost
-  double spike_chance = 0.0;  // a report shows another place
-  StickFrame frame;           // raw axes swapped and inverted: in_frame(frame, raw) is the truth
+  double reach_x = 1.0, reach_y = 1.0;      // of the gate about `centre`; circle: reach_x
+  int bits = 0;                             // of the logical range -1..1; 0: not quantised
+  double rate_hz = 250.0, jitter_ms = 0.0;  // standard deviation of the intervals
+  double drop_chance = 0.0;                 // a report is lost
+  double spike_chance = 0.0;                // one to three reports show another place
+  StickFrame frame;  // raw axes swapped and inverted: in_frame(frame, raw) is the truth
   bool reports_changes_only = false;
   std::uint32_t seed = 1;
 };
 
-// Reports of the clean session: rest, then `releases` pushes to the rim from different directions
-// with a rest of `rest_s` after each, then `turns` full circles, one a second and a half, then
-// pushes held half a second forward, right, back, left, then rest.
-StickTrack made_track(const MadeStick& stick, int releases = 8, double rest_s = 0.6,
-                      double turns = 3.0);
-// Radius of the gate about `centre` in a direction, without noise.
-double gate_radius(const MadeStick& stick, double angle_rad);
+// Radius of the gate about `centre` in a direction, without noise, as far as reports can show it.
+inline double gate_radius(const MadeStick& stick, double angle_rad) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  double radius = stick.reach_x;
+  if (stick.gate == Gate::square) radius /= std::max(std::fabs(c), std::fabs(s));
+  if (stick.gate == Gate::ellipse) radius = 1.0 / std::hypot(c / stick.reach_x, s / stick.reach_y);
+  if (c != 0.0) radius = std::min(radius, ((c > 0.0 ? 1.0 : -1.0) - stick.centre.x) / c);
+  if (s != 0.0) radius = std::min(radius, ((s > 0.0 ? 1.0 : -1.0) - stick.centre.y) / s);
+  return radius;
+}
+
 // By the formula, of the gate without noise, densely sampled.
-double true_circularity_error(const MadeStick& stick);
+inline double true_circularity_error(const MadeStick& stick) {
+  std::array<double, 48> greatest{};
+  for (int i = 0; i < 48000; ++i) {
+    const double angle = 2.0 * kPi * i / 48000.0, radius = gate_radius(stick, angle);
+    const double x = stick.centre.x + radius * std::cos(angle);
+    const double y = stick.centre.y + radius * std::sin(angle);
+    const double bin = std::round(std::atan2(y, x) / (2.0 * kPi) * 48.0);
+    double& g = greatest[static_cast<std::size_t>(bin + 48.0) % 48];
+    g = std::max(g, std::hypot(x, y));
+  }
+  double sum = 0.0, bins = 0.0;
+  for (const double g : greatest) {
+    if (g <= 0.2) continue;
+    sum += (g - 1.0) * (g - 1.0);
+    bins += 1.0;
+  }
+  return 100.0 * std::sqrt(sum / bins);
+}
+
+// Where the thumb and the spring have the stick, report by report, before noise and the rest.
+class MadeMoves {
+ public:
+  explicit MadeMoves(const MadeStick& stick) : stick_(stick), random_(stick.seed * 7919u + 1u) {
+    // Nobody knows from where it was let go before the recording.
+    home_ = home_after(std::uniform_real_distribution<double>(-kPi, kPi)(random_));
+    at_ = home_;
+  }
+  const std::vector<vec2>& path() const { return path_; }
+
+  void hold(double seconds) {
+    for (int n = reports(seconds); n > 0; --n) path_.push_back(at_);
+  }
+  void rest(double seconds) {  // after release()
+    for (int k = 0, n = reports(seconds); k < n; ++k) {
+      const double rest = creep_ * std::exp(-k / stick_.rate_hz / 0.3);
+      path_.push_back(home_ + vec2(rest * std::cos(angle_), rest * std::sin(angle_)));
+    }
+    at_ = path_.empty() ? home_ : path_.back();
+  }
+  // To a fraction of the gate's radius there.
+  void push(double angle_rad, double seconds = 0.12, double fraction = 1.0) {
+    angle_ = angle_rad;
+    move(on_gate(angle_rad, fraction), seconds);
+  }
+  void release() {
+    home_ = home_after(angle_);
+    creep_ = stick_.creep;
+    move(home_ + vec2(creep_ * std::cos(angle_), creep_ * std::sin(angle_)), 0.05);
+  }
+  // Along the rim, counter-clockwise, as unevenly as hands do.
+  void turn(double turns, double seconds_a_turn = 1.5, double fraction = 1.0) {
+    const double first = angle_, whole = 2.0 * kPi * turns;
+    const int n = reports(turns * seconds_a_turn);
+    for (int k = 1; k <= n; ++k) {
+      const double u = whole * k / n;
+      angle_ = first + u + 0.1 * std::sin(2.0 * u);
+      path_.push_back(at_ = on_gate(angle_, fraction));
+    }
+  }
+  void move(const vec2& to, double seconds) {
+    const vec2 from = at_;
+    const int n = reports(seconds);
+    for (int k = 1; k <= n; ++k) {
+      const double u = smoothstep(0.0, 1.0, static_cast<double>(k) / n);
+      path_.push_back(from + (to - from) * u);
+    }
+    at_ = to;
+  }
+
+ private:
+  int reports(double seconds) const {
+    return static_cast<int>(std::lround(seconds * stick_.rate_hz));
+  }
+  vec2 on_gate(double angle_rad, double fraction) const {
+    const double radius = fraction * gate_radius(stick_, angle_rad);
+    return stick_.centre + vec2(radius * std::cos(angle_rad), radius * std::sin(angle_rad));
+  }
+  vec2 home_after(double angle_rad) const {
+    const double away = 0.5 * stick_.hysteresis;
+    return stick_.centre + vec2(away * std::cos(angle_rad), away * std::sin(angle_rad));
+  }
+
+  MadeStick stick_;
+  std::mt19937 random_;
+  std::vector<vec2> path_;
+  vec2 home_{0.0}, at_{0.0};
+  double angle_ = 0.0, creep_ = 0.0;  // of the last push, after the last release
+};
+
+namespace made {
+
+inline vec2 raw_of(const StickFrame& frame, const vec2& meant) {
+  // A frame turns and mirrors: what lies along each raw axis is found by asking for both.
+  const vec2 x = in_frame(frame, vec2(1.0, 0.0)), y = in_frame(frame, vec2(0.0, 1.0));
+  return {x.x * meant.x + x.y * meant.y, y.x * meant.x + y.y * meant.y};
+}
+
+inline double quantised(double position, int bits) {
+  const double clamped = std::clamp(position, -1.0, 1.0);
+  if (bits <= 0) return clamped;
+  const double half = 0.5 * (std::exp2(bits) - 1.0);  // 127.5
+  return (std::round((clamped + 1.0) * half) - half) / half;
+}
+
+}  // namespace made
+
+// The path as the stick's reports tell it.
+inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path) {
+  std::mt19937 random(stick.seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> chance;
+  StickTrack track;
+  vec2 walk(0.0), spike(0.0);
+  int spike_left = 0;
+  const double interval_ns = 1e9 / stick.rate_hz;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const double n = static_cast<double>(k), middle = 0.5 * static_cast<double>(path.size() - 1);
+    const double time_s = (n - middle) / stick.rate_hz;
+    const double stride = stick.wander / std::sqrt(stick.rate_hz);
+    walk += vec2(stride * normal(random), stride * normal(random));
+    vec2 at = path[k] + stick.drift_per_s * time_s + walk +
+              vec2(stick.sigma.x * normal(random), stick.sigma.y * normal(random));
+    // Two stamps make an interval.
+    const double late_ns = stick.jitter_ms * 1e6 / std::sqrt(2.0) * normal(random);
+    if (spike_left == 0 && chance(random) < stick.spike_chance) {
+      spike_left = 1 + static_cast<int>(3.0 * chance(random));
+      do {
+        spike = vec2(2.0 * chance(random) - 1.0, 2.0 * chance(random) - 1.0);
+      } while (glm::length(spike - at) < 0.3);
+    }
+    if (spike_left > 0) {
+      --spike_left;
+      at = spike;
+    }
+    if (chance(random) < stick.drop_chance) continue;
+    const vec2 raw = made::raw_of(stick.frame, at);
+    StickSample sample{
+        static_cast<std::int64_t>(n * interval_ns + late_ns),
+        vec2(made::quantised(raw.x, stick.bits), made::quantised(raw.y, stick.bits))};
+    if (!track.empty()) {
+      if (stick.reports_changes_only && sample.raw == track.back().raw) continue;
+      sample.time_ns = std::max(sample.time_ns, track.back().time_ns);
+    }
+    track.push_back(sample);
+  }
+  return track;
+}
+
+// Reports of the clean session: rest, then `releases` pushes to the rim from different directions
+// with a rest of `rest_s` after each, then `turns` full circles, one a second and a half, let go,
+// then pushes held half a second forward, right, back, left with a short rest after each.
+inline StickTrack made_track(const MadeStick& stick, int releases = 8, double rest_s = 0.6,
+                             double turns = 3.0) {
+  MadeMoves moves(stick);
+  moves.rest(rest_s);
+  for (int k = 0; k < releases; ++k) {
+    moves.push(2.0 * kPi * k / releases);
+    moves.hold(0.1);
+    moves.release();
+    moves.rest(rest_s);
+  }
+  if (turns > 0.0) {
+    moves.push(0.0);
+    moves.turn(turns);
+    moves.release();
+    moves.rest(rest_s);
+  }
+  for (const double degrees : {90.0, 0.0, -90.0, 180.0}) {
+    moves.push(degrees * kDegree, 0.15);
+    moves.hold(0.5);
+    moves.release();
+    moves.rest(0.4);
+  }
+  return reported(stick, moves.path());
+}
 
 }  // namespace gaitpad

@@ -1,0 +1,154 @@
+#include "stick/clean_track.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "stick/report_statistics.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kSmallestSpike = 0.03;  // raw; less is noise
+constexpr double kLongestSpike_s =
+    0.04;                          // of two or three reports; a hand's there and back is longer
+constexpr double kFarthest = 4.0;  // raw; nothing lies farther out, whoever made the track
+constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;  // sums of times fit
+
+bool is_place(const vec2& p) noexcept {
+  return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest;  // false for not-a-number
+}
+
+StickTrack sound_track(const StickTrack& track) {
+  StickTrack sound = track;
+  const auto first = std::find_if(track.begin(), track.end(),
+                                  [](const StickSample& sample) { return is_place(sample.raw); });
+  if (first == track.end()) return {};
+  vec2 place = first->raw;
+  std::int64_t time_ns = -kLatest_ns;
+  for (StickSample& sample : sound) {
+    place = sample.raw = is_place(sample.raw) ? sample.raw : place;
+    time_ns = sample.time_ns = std::clamp(sample.time_ns, time_ns, kLatest_ns);
+  }
+  return sound;
+}
+
+double step_length(const StickTrack& track, std::size_t i) noexcept {  // from i - 1 to i
+  return glm::length(track[i].raw - track[i - 1].raw);
+}
+
+// Steps of the reports next to a place, nearest first; a pad that reports changes only was silent
+// where it stood, which is steps of 0.
+struct Steps {
+  std::array<double, 8> length{};
+  std::size_t count = 0;
+  void add(double step) noexcept {
+    if (count < length.size()) length[count++] = step;
+  }
+};
+
+// Up to four each way, those into and out of i .. i + length - 1 left out.
+std::array<Steps, 2> steps_around(const StickTrack& track, std::size_t i, std::size_t length,
+                                  double interval_s) noexcept {
+  constexpr std::size_t kEach = 4;
+  std::array<Steps, 2> steps;
+  const auto add_silence = [&](Steps& to, std::size_t at) {
+    double silent = reports_stood(hold_s(track, at, interval_s), interval_s) - 1.5;
+    for (; silent > 0.0 && to.count < kEach; silent -= 1.0) to.add(0.0);
+  };
+  for (std::size_t at = i - 1; steps[0].count < kEach; --at) {
+    add_silence(steps[0], at);
+    if (at == 0) break;
+    steps[0].add(step_length(track, at));
+  }
+  for (std::size_t at = i + length; steps[1].count < kEach; ++at) {
+    add_silence(steps[1], at);
+    if (at + 1 >= track.size()) break;
+    steps[1].add(step_length(track, at + 1));
+  }
+  return steps;
+}
+
+// Hands move several reports long, so the neighbourhood of a real movement has long steps too.
+double usual_step(const std::array<Steps, 2>& around) noexcept {
+  Steps all = around[0];
+  for (std::size_t k = 0; k < around[1].count; ++k) all.add(around[1].length[k]);
+  if (all.count == 0) return 0.0;
+  const auto middle = all.length.begin() + static_cast<std::ptrdiff_t>(all.count / 2);
+  std::nth_element(all.length.begin(), middle,
+                   all.length.begin() + static_cast<std::ptrdiff_t>(all.count));
+  return *middle;
+}
+
+// A spike has sharp edges on both sides and comes back to about where it left.
+bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, double interval_s) {
+  const vec2& before = track[i - 1].raw;
+  const vec2& after = track[i + length].raw;
+  double least = 2.0 * kFarthest;
+  for (std::size_t k = i; k < i + length; ++k) {
+    least =
+        std::min({least, glm::length(track[k].raw - before), glm::length(track[k].raw - after)});
+  }
+  if (least < kSmallestSpike || least < 2.0 * glm::length(after - before)) return false;
+  const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
+  if (lasted_s > (length > 1 ? kLongestSpike_s : 2.0 * kLongestSpike_s)) return false;
+  const std::array<Steps, 2> around = steps_around(track, i, length, interval_s);
+  return least > 3.0 * around[0].length[0] && least > 3.0 * around[1].length[0] &&
+         least > 7.0 * usual_step(around);
+}
+
+// 0 where none begins at i.
+std::size_t spike_length(const StickTrack& track, std::size_t i, double interval_s) {
+  if (step_length(track, i) < kSmallestSpike) return 0;
+  for (std::size_t length = 1; length <= 3 && i + length < track.size(); ++length) {
+    if (is_spike(track, i, length, interval_s)) return length;
+  }
+  return 0;
+}
+
+std::int64_t take_spikes_out(StickTrack& track, double interval_s) {
+  std::int64_t spikes = 0;
+  for (std::size_t i = 1; i + 1 < track.size(); ++i) {
+    const std::size_t length = spike_length(track, i, interval_s);
+    if (length == 0) continue;
+    for (std::size_t k = i; k < i + length; ++k) track[k].raw = track[i - 1].raw;
+    ++spikes;
+    i += length - 1;
+  }
+  return spikes;
+}
+
+}  // namespace
+
+CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
+  CleanTracks clean;
+  clean.tracks.reserve(tracks.size());
+  for (const StickTrack& track : tracks) clean.tracks.push_back(sound_track(track));
+  const double interval_s = typical_interval_s(clean.tracks);
+  for (StickTrack& track : clean.tracks) {
+    // One that stands beside another is seen only once that is out of the way.
+    for (int pass = 0; pass < 3; ++pass) {
+      const std::int64_t spikes = take_spikes_out(track, interval_s);
+      clean.jumps += spikes;
+      if (spikes == 0) break;
+    }
+  }
+  return clean;
+}
+
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
+  if (to_ns < from_ns) return -seconds_between(to_ns, from_ns);
+  return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to_ns) -
+                                    static_cast<std::uint64_t>(from_ns));
+}
+
+double hold_s(const StickTrack& track, std::size_t i, double interval_s) noexcept {
+  if (i + 1 >= track.size()) return interval_s;
+  return std::min(seconds_between(track[i].time_ns, track[i + 1].time_ns), kMaxHold_s);
+}
+
+double reports_stood(double hold_s, double interval_s) noexcept {
+  return hold_s <= 1.5 * interval_s ? 1.0 : hold_s / interval_s;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,351 @@
+#include "stick/stills.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "stick/clean_track.h"
+#include "stick/report_statistics.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kCell_s = 0.02;
+constexpr std::size_t kMostCells = 86400 * 50;  // a day
+// A place is still if the means of the 0.1 s before and behind it are the same.
+constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // cells
+constexpr std::size_t kShortestStill = 5;                          // cells
+// The window's last half sees a push before it comes; so much of it is still rest.
+constexpr std::size_t kWindowsLead = kHalfWindow - 1;
+constexpr std::size_t kMargin = 2;     // cells
+constexpr double kSlow = 0.006;        // raw, from one half of a window to the other: 0.06 a second
+constexpr double kNoiseLimit = 4.5;    // standard deviations
+constexpr double kUnseen = 0.0012;     // raw, from cell to cell: drift
+constexpr double kFarthestHome = 0.5;  // raw; a stick that rests farther out looks held
+
+// 20 ms of a track. Weights are reports, see reports_stood().
+struct Cell {
+  std::int64_t begin_ns = 0;
+  std::size_t sample = 0;  // the one in force when it begins
+  double weight = 0.0;
+  vec2 sum{0.0};
+  double change = 0.0;  // squares of the steps between its reports, summed
+  vec2 mean() const noexcept { return sum / weight; }
+  double variance() const noexcept { return 0.5 * change / weight; }  // of one report, both axes
+};
+
+void add(Cell& to, const Cell& cell) noexcept {
+  to.weight += cell.weight;
+  to.sum += cell.sum;
+  to.change += cell.change;
+}
+
+std::vector<Cell> cells_of(const StickTrack& track, double interval_s) {
+  std::vector<Cell> cells;
+  double left_s = 0.0;  // of the last cell
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    const double stood_s = hold_s(track, i, interval_s);
+    const double weight = reports_stood(stood_s, interval_s);
+    double done_s = 0.0;
+    do {
+      if (left_s <= 1e-9) {
+        if (cells.size() == kMostCells) return cells;
+        cells.push_back(
+            {.begin_ns = track[i].time_ns + static_cast<std::int64_t>(done_s * 1e9), .sample = i});
+        left_s = kCell_s;
+      }
+      const double part_s = std::min(stood_s - done_s, left_s);
+      const double part = stood_s > 0.0 ? weight * part_s / stood_s : weight;
+      cells.back().weight += part;
+      cells.back().sum += part * track[i].raw;
+      if (done_s == 0.0 && i > 0) {
+        const vec2 step = track[i].raw - track[i - 1].raw;
+        cells.back().change += glm::dot(step, step);
+      }
+      done_s += part_s;
+      left_s -= part_s;
+    } while (done_s < stood_s - 1e-9);
+  }
+  return cells;
+}
+
+// Whether the window of cells that begins at `first` shows one place but for noise. The noise is
+// that of neighbouring reports: a movement's own steps are too small to hide it.
+bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexcept {
+  Cell before, after;
+  for (std::size_t k = 0; k < kHalfWindow; ++k) {
+    add(before, cells[first + k]);
+    add(after, cells[first + kHalfWindow + k]);
+  }
+  const double weight = before.weight + after.weight;
+  // A movement that begins or ends here is in one half.
+  const double variance = std::min(before.variance(), after.variance());
+  const double limit = kNoiseLimit * kNoiseLimit * variance;
+  const vec2 moved = after.mean() - before.mean();
+  if (glm::dot(moved, moved) >
+      std::max(slow * slow, limit * (1.0 / before.weight + 1.0 / after.weight))) {
+    return false;
+  }
+  // Turning fast comes back to where it was.
+  const vec2 middle = (before.sum + after.sum) / weight;
+  for (std::size_t k = first; k < first + kWindow; ++k) {
+    const vec2 off = cells[k].mean() - middle;
+    const double noise = 2.0 * limit / std::max(cells[k].weight, 1.0);
+    if (glm::dot(off, off) > std::max(4.0 * slow * slow, noise)) return false;
+  }
+  return true;
+}
+
+struct Run {
+  std::size_t begin = 0, end = 0;  // cells
+};
+
+// A rare extreme of the noise cuts no rest in two.
+bool is_same_place(std::span<const Cell> cells, const Run& a, const Run& b, double slow) noexcept {
+  if (b.begin > a.end + kWindow) return false;
+  Cell one, other;
+  for (std::size_t k = a.end; k > a.begin && k + kWindow > a.end; --k) add(one, cells[k - 1]);
+  for (std::size_t k = b.begin; k < b.end && k < b.begin + kWindow; ++k) add(other, cells[k]);
+  const vec2 place = one.mean();
+  if (glm::length(other.mean() - place) > 2.0 * slow) return false;
+  const double variance = std::max(one.variance(), other.variance());
+  for (std::size_t k = a.end; k < b.begin; ++k) {
+    const vec2 off = cells[k].mean() - place;
+    const double noise = 36.0 * variance / std::max(cells[k].weight, 1.0);
+    if (glm::dot(off, off) > std::max(4.0 * slow * slow, noise)) return false;
+  }
+  return true;
+}
+
+// Goes from a run's inside outwards, to where a cell is not like the five before it: the windows
+// do not see where exactly a movement begins. `step` is 1 or -1; returns the last good cell.
+std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, double code) {
+  const std::size_t length = run.end - run.begin;
+  const std::size_t inside = std::min<std::size_t>((length + 1) / 2, 2 * kWindow);
+  const std::size_t outermost = step > 0 ? run.end - 1 : run.begin;
+  std::size_t at = step > 0 ? run.end - inside : run.begin + inside - 1;
+  const std::size_t core = std::min(length, kHalfWindow);
+  Cell noise;
+  for (std::size_t k = 0; k < core; ++k) add(noise, cells[run.begin + (length - core) / 2 + k]);
+  while (at != outermost) {
+    const std::size_t next = step > 0 ? at + 1 : at - 1;
+    Cell inner;
+    for (std::size_t k = 0; k < kHalfWindow; ++k) {
+      const std::size_t cell = step > 0 ? at - std::min(at - run.begin, k) : at + k;
+      if (cell >= run.end) break;
+      add(inner, cells[cell]);
+    }
+    const vec2 off = cells[next].mean() - inner.mean();
+    const double variance = std::max(noise.variance(), inner.variance());
+    const double limit =
+        kNoiseLimit *
+        std::sqrt(variance * (1.0 / std::max(cells[next].weight, 1.0) + 1.0 / inner.weight));
+    if (glm::length(off) > std::max({limit, kUnseen, code})) break;
+    at = next;
+  }
+  return at;
+}
+
+std::vector<Run> still_runs(std::span<const Cell> cells, double slow, double code) {
+  std::vector<Run> runs;
+  if (cells.size() < kWindow) return runs;
+  const std::size_t last = cells.size() - kWindow;  // where the last window begins
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const std::size_t window = std::clamp(c, kHalfWindow, last + kHalfWindow) - kHalfWindow;
+    if (!is_still(cells, window, slow)) continue;
+    if (!runs.empty() && runs.back().end == c) {
+      ++runs.back().end;
+    } else {
+      runs.push_back({c, c + 1});
+    }
+  }
+  for (Run& run : runs) run.end = std::min(run.end + kWindowsLead, cells.size());
+  std::vector<Run> joined;
+  for (const Run& run : runs) {
+    if (!joined.empty() &&
+        (run.begin <= joined.back().end || is_same_place(cells, joined.back(), run, slow))) {
+      joined.back().end = run.end;
+    } else {
+      joined.push_back(run);
+    }
+  }
+  for (Run& run : joined) {
+    run = {edge_of(cells, run, -1, code), edge_of(cells, run, 1, code) + 1};
+    // A movement begins in the noise.
+    const std::size_t margin = std::min(kMargin, (run.end - run.begin) / 4);
+    if (run.begin > 0) run.begin += margin;
+    if (run.end < cells.size()) run.end -= margin;
+  }
+  std::erase_if(joined, [](const Run& run) { return run.end - run.begin < kShortestStill; });
+  return joined;
+}
+
+Still still_of(const StickTrack& track, std::size_t index, std::span<const Cell> cells,
+               const Run& run) {
+  Cell sum;
+  for (std::size_t k = run.begin; k < run.end; ++k) add(sum, cells[k]);
+  const Cell& final = cells[run.end - 1];
+  Still still{.track = index,
+              .first = cells[run.begin].sample,
+              .last = final.sample,
+              .begin_ns = cells[run.begin].begin_ns,
+              .end_ns = final.begin_ns + static_cast<std::int64_t>(kCell_s * 1e9),
+              .duration_s = kCell_s * static_cast<double>(run.end - run.begin),
+              .mean = sum.mean()};
+  while (still.last + 1 < track.size() && track[still.last + 1].time_ns < still.end_ns) {
+    ++still.last;
+  }
+  return still;
+}
+
+std::vector<Still> all_stills(std::span<const StickTrack> tracks) {
+  const double interval_s = typical_interval_s(tracks);
+  // A code that flips is no movement.
+  const double step =
+      std::max(quantisation_step(tracks, 0, 0.0), quantisation_step(tracks, 1, 0.0));
+  const double slow = std::max(kSlow, 1.5 * std::min(step, 0.05));
+  std::vector<Still> found;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    const std::vector<Cell> cells = cells_of(tracks[t], interval_s);
+    for (const Run& run : still_runs(cells, slow, std::min(step, 0.05))) {
+      found.push_back(still_of(tracks[t], t, cells, run));
+    }
+  }
+  return found;
+}
+
+// ---- home ----
+
+struct Box {
+  vec2 middle{0.0}, half{0.0};
+};
+
+std::optional<Box> box_of(std::span<const StickTrack> tracks) noexcept {
+  vec2 least(1e9), most(-1e9);
+  for (const StickTrack& track : tracks) {
+    for (const StickSample& sample : track) {
+      least = glm::min(least, sample.raw);
+      most = glm::max(most, sample.raw);
+    }
+  }
+  if (least.x > most.x) return {};
+  return Box{0.5 * (least + most), 0.5 * (most - least)};
+}
+
+// Places are told apart on a grid over +-kFarthestHome; neighbours within 0.125 are one place, so
+// that the rests of a stick that drifts, or returns badly, hang together.
+class Places {
+ public:
+  void add(const Still& still) {
+    const std::size_t bin = bin_of(still.mean);
+    seen_[bin] += std::min(still.duration_s, 0.5);
+    sum_[bin] += still.mean;
+    count_[bin] += 1.0;
+  }
+  // Numbers the places and finds the best: often visited, near the middle.
+  void choose() {
+    double best = 0.0;
+    for (int bin = 0; bin < kBins * kBins; ++bin) {
+      if (count_[bin] == 0.0 || place_[bin] != 0) continue;
+      const double score = flood(bin);
+      if (score > best) {
+        best = score;
+        home_ = places_;
+      }
+    }
+  }
+  bool is_home(const Still& still) const {
+    return is_inside(still.mean) && home_ != 0 && place_[bin_of(still.mean)] == home_;
+  }
+  static bool is_inside(const vec2& p) {
+    return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestHome;
+  }
+
+ private:
+  static constexpr int kBins = 16, kReach = 2;
+  static std::size_t bin_of(const vec2& p) {
+    const auto index = [](double x) {
+      return std::clamp(static_cast<int>((x / kFarthestHome + 1.0) * 0.5 * kBins), 0, kBins - 1);
+    };
+    return static_cast<std::size_t>(index(p.y) * kBins + index(p.x));
+  }
+  // Gives the place of a bin its number and returns how good a home it is.
+  double flood(int first) {
+    ++places_;
+    std::vector<int> open{first};
+    place_[first] = places_;
+    double seen = 0.0, count = 0.0;
+    vec2 sum(0.0);
+    while (!open.empty()) {
+      const int bin = open.back();
+      open.pop_back();
+      seen += seen_[bin];
+      sum += sum_[bin];
+      count += count_[bin];
+      for (int y = bin / kBins - kReach; y <= bin / kBins + kReach; ++y) {
+        for (int x = bin % kBins - kReach; x <= bin % kBins + kReach; ++x) {
+          if (x < 0 || y < 0 || x >= kBins || y >= kBins) continue;
+          const int next = y * kBins + x;
+          if (count_[next] == 0.0 || place_[next] != 0) continue;
+          place_[next] = places_;
+          open.push_back(next);
+        }
+      }
+    }
+    const vec2 middle = sum / count / 0.25;  // worn sticks rest up to that far off
+    return seen * std::exp(-glm::dot(middle, middle));
+  }
+
+  std::array<double, kBins * kBins> seen_{}, count_{};
+  std::array<vec2, kBins * kBins> sum_{};
+  std::array<int, kBins * kBins> place_{};
+  int places_ = 0, home_ = 0;
+};
+
+// Of a stick that was turned round, which lies well inside of where it went.
+bool may_be_home(const Still& still, const std::optional<Box>& turned) noexcept {
+  if (!Places::is_inside(still.mean)) return false;
+  if (!turned) return true;
+  const vec2 off = (still.mean - turned->middle) / turned->half;
+  return glm::length(off) < 0.6;
+}
+
+}  // namespace
+
+Stills stills(std::span<const StickTrack> raw_tracks) {
+  const std::vector<StickTrack> tracks = clean_tracks(raw_tracks).tracks;
+  const std::vector<Still> found = all_stills(tracks);
+  const std::optional<Box> box = box_of(tracks);
+  if (!box) return {};
+  const double least_half = std::min(box->half.x, box->half.y);
+  const bool was_turned =
+      least_half > 0.2 && whole_turns(tracks, box->middle, 0.6 * least_half) > 0;
+  Places places;
+  for (const Still& still : found) {
+    if (may_be_home(still, was_turned ? box : std::nullopt)) places.add(still);
+  }
+  places.choose();
+  Stills sorted;
+  vec2 home(0.0);
+  double weight = 0.0;
+  for (const Still& still : found) {
+    if (!places.is_home(still) || !may_be_home(still, was_turned ? box : std::nullopt)) continue;
+    sorted.rests.push_back(still);
+    home += still.duration_s * still.mean;
+    weight += still.duration_s;
+  }
+  if (weight > 0.0) home /= weight;
+  double reach = 0.5;
+  for (const StickTrack& track : tracks) {
+    for (const StickSample& sample : track) reach = std::max(reach, glm::length(sample.raw - home));
+  }
+  for (const Still& still : found) {
+    if (glm::length(still.mean - home) >= 0.5 * reach && !places.is_home(still)) {
+      sorted.pushes.push_back(still);
+    }
+  }
+  return sorted;
+}
+
+}  // namespace gaitpad

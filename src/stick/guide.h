@@ -30,7 +30,7 @@ const char* name_of(GuideStep step) noexcept;  // "rest", "turning", "push forwa
 struct GuideProgress {
   std::string control;  // "left stick", "right trigger"
   double done = 0.0;    // 0..1
-  std::string text;     // `5 of 6 releases`, `41 of 48 directions, 1.5 of 2 turns; missing: front`
+  std::string text;     // `5 of 6 releases`, `41 of 48 directions, 1.5 of 2 turns; not yet: front`
   vec2 raw{0.0};        // where it is now; a trigger: x
 };
 

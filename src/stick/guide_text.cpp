@@ -142,7 +142,7 @@ GuideProgress CalibrationGuide::turn_progress(const Stick& stick) const {
   progress.text = fmt::format("{} of {} directions, {:.1f} of {:.0f} turns", turn.filled(),
                               kTurnBins, std::floor(turns * 10.0) / 10.0, kWantedTurns);
   const std::optional<vec2> missing = turn.missing();
-  if (missing && turn.filled() > 0) progress.text += "; missing: " + side_name(stick, *missing);
+  if (missing && turn.filled() > 0) progress.text += "; not yet: " + side_name(stick, *missing);
   return progress;
 }
 

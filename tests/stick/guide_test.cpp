@@ -345,7 +345,7 @@ TEST(CalibrationGuide, HalfACircleIsMissingWhereItWasNotTurned) {
       hand.pass();
     }
   }
-  EXPECT_EQ(hand.text(), "25 of 48 directions, 2.0 of 2 turns; missing: back");
+  EXPECT_EQ(hand.text(), "25 of 48 directions, 2.0 of 2 turns; not yet: back");
 }
 
 TEST(CalibrationGuide, ACutCornerIsNotTheRim) {
@@ -354,7 +354,7 @@ TEST(CalibrationGuide, ACutCornerIsNotTheRim) {
   hand.turn(0, 0.75, 1.0);
   for (int i = 0; i < 3; ++i) hand.turn(0, 0.25, 0.55, 0.75), hand.turn(0, 0.75, 1.0);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
-  EXPECT_NE(hand.text().find("missing: back right"), std::string::npos) << hand.text();
+  EXPECT_NE(hand.text().find("not yet: back right"), std::string::npos) << hand.text();
 }
 
 TEST(CalibrationGuide, CirclesInTheMiddleAndAStickHeldAtTheRimAreNoTurns) {

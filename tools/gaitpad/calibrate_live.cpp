@@ -17,6 +17,7 @@ namespace gaitpad {
 namespace {
 
 constexpr std::chrono::milliseconds kWait{20};
+constexpr std::int64_t kOnTheWayNs = 50'000'000;  // silence shorter than that may be none
 constexpr const char* kCommand = "calibrate";
 
 // The pad that is calibrated: the first one that came. It stays where it is, the guide looks at its
@@ -37,7 +38,7 @@ std::string name_of(const DeviceInfo& info) {
 std::vector<std::string> remarks_on(const DeviceInfo& info) {
   if (info.driver != "evdev" && info.driver != "sdl") return {};
   return {
-      fmt::format("{}: through {} the kernel filters small changes (fuzz) and may correct the "
+      fmt::format("{}: through {} the kernel may filter small changes (fuzz) and correct the "
                   "sticks, so noise and centre are not the pad's own; --driver hidraw or usb sees "
                   "more, where the pad has it",
                   name_of(info), info.driver)};
@@ -122,7 +123,7 @@ Result<bool> run_guide(PadStream& stream, const PadWish& wish, RunEnd& end, Subj
         return Error{name_of(subject.info) + ": has no stick to calibrate"};
       print_remarks(kCommand, remarks_on(subject.info), &screen.line());
     }
-    if (subject.guide) subject.guide->tick(now_ns());
+    if (subject.guide) subject.guide->tick(now_ns() - kOnTheWayNs);
     if (has_ended) end_recording(subject, screen);
     if (obey_keys(keys, subject, screen) == Wish::give_up) return false;
     if (!subject.guide && has_ended) return false;

@@ -4,6 +4,7 @@
 #include <sys/ioctl.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "tools/gaitpad/report_print.h"
 
@@ -52,15 +53,23 @@ std::vector<std::string> wrapped_lines(const std::string& text, std::size_t widt
   return lines;
 }
 
-std::string control_line(const GuideProgress& control, bool is_stick, std::size_t width) {
+// One line, or more where its text is longer: `left stick    [####......] +0.012 -0.004  text`.
+std::vector<std::string> control_lines(const GuideProgress& control, bool is_stick,
+                                       std::size_t width) {
   const double share = std::clamp(control.done, 0.0, 1.0);
   if (width < kBarWidth)
-    return fmt::format("{} {:.0f} %: {}", control.control, share * 100.0, control.text);
+    return {fmt::format("{} {:.0f} %: {}", control.control, share * 100.0, control.text)};
   const auto cells = static_cast<std::size_t>(share * kBarCells);
   const std::string bar = std::string(cells, '#') + std::string(kBarCells - cells, '.');
   const std::string place = is_stick ? fmt::format("{:+.3f} {:+.3f}", control.raw.x, control.raw.y)
                                      : fmt::format("{:.3f}", control.raw.x);
-  return fmt::format("  {:<13} [{}] {}  {}", control.control, bar, place, control.text);
+  std::string begin = fmt::format("  {:<13} [{}] {}  ", control.control, bar, place);
+  std::vector<std::string> lines;
+  for (const std::string& part : wrapped_lines(control.text, width - begin.size())) {
+    lines.push_back(begin + part);
+    begin.assign(begin.size(), ' ');
+  }
+  return lines;
 }
 
 }  // namespace
@@ -90,8 +99,10 @@ void GuideScreen::rewrite(const CalibrationGuide& guide, const ShownPad& pad) {
   const Size size = screen_size();
   const std::string instruction = pad.is_plugged ? guide.instruction() : kUnplugged;
   std::vector<std::string> lines = wrapped_lines(instruction, size.columns);
+  const bool is_of_sticks = guide.step() != GuideStep::triggers;
   for (const GuideProgress& control : guide.progress())
-    lines.push_back(control_line(control, guide.step() != GuideStep::triggers, size.columns));
+    for (std::string& text : control_lines(control, is_of_sticks, size.columns))
+      lines.push_back(std::move(text));
   if (lines.size() + 1 <= size.rows) lines.insert(lines.begin(), title(guide, pad));
   if (lines.size() + 1 <= size.rows) lines.push_back(kKeys);
   for (const char* text : kHelp)

@@ -120,7 +120,7 @@ class Monitor(unittest.TestCase):
         self.assertGreaterEqual(len(lines), 3)
         for line in lines:
             self.assertLessEqual({"device", "name", "rate_hz", "jitter_us", "longest_gap_us", "latency_us_median",
-                                  "latency_us_max", "lost", "axes", "sticks", "buttons"}, set(line))
+                                  "latency_us_max", "lost", "axes", "sticks", "triggers", "buttons"}, set(line))
             self.assertEqual(line["name"], "Example Walk Pad")
         self.assertGreater(max(line["rate_hz"] for line in lines), 15)
         self.assertGreater(lines[-1]["sticks"]["left"][1], 0.5)  # forward, from the second second on
@@ -130,6 +130,24 @@ class Monitor(unittest.TestCase):
         self.assertEqual(done.returncode, 0)
         self.assertGreaterEqual(len(done.stdout.splitlines()), 2)
         self.assertNotIn("\033", done.stdout)
+        self.assertEqual(done.stderr, "gaitpad monitor: Example Walk Pad (recording): calibration "
+                         "\"unknown stick, not calibrated\"\n")
+
+
+class GivenCalibration(unittest.TestCase):
+    def test_it_is_used_and_the_recording_holds_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, out = pathlib.Path(folder) / "c.toml", pathlib.Path(folder) / "out.hid"
+            path.write_text('name = "turned"\n[left]\nforward = "-y"\n[left_trigger]\nreleased = 0.25\n')
+            done = run("monitor", ROUND, "--seconds", "3.5", "--json", "--calibration", path)
+            self.assertIn('calibration "turned"', done.stderr)
+            last = json.loads(done.stdout.splitlines()[-1])
+            self.assertLess(last["sticks"]["left"][1], -0.5)  # the thumb goes forward
+            done = run("record", ROUND, "--out", out, "--seconds", "0.5", "--calibration", path)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            held = [line[3:] for line in out.read_text().splitlines() if line.startswith("K:")]
+            for line in ('name = "turned"', 'forward = "-y"', "released = 0.25"):
+                self.assertIn(line, held)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds kWait{20};  // an end is noticed after this 
 
 struct RecordArguments {
   PadWish wish;
-  std::string out;
+  std::string out, map, calibration;
   double seconds = 0.0;
   bool as_json = false;
 };
@@ -98,7 +98,7 @@ void print_result(const RecordArguments& arguments, const Recorded& recorded,
 
 int run(const RecordArguments& arguments) {
   RunEnd end;
-  auto files = pad_files("", "");
+  auto files = pad_files(arguments.map, arguments.calibration);
   if (!files) return fail(files.error().message);
   // The stream outlives the recording, which asks it for its devices.
   auto stream = PadStream::start({std::move(*files), arguments.wish});
@@ -127,6 +127,9 @@ void add_record(CLI::App& app, int& status) {
   add_pad_options(*command, arguments->wish);
   command->add_option("--out", arguments->out, "the file to write (.hid)")->required();
   add_seconds_option(*command, arguments->seconds);
+  command->add_option("--calibration", arguments->calibration,
+                      "calibration file of the stick, which the recording then holds");
+  command->add_option("--map", arguments->map, "pad file that overrides config/pads");
   command->add_flag("--json", arguments->as_json, "what was recorded, for machines");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

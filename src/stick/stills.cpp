@@ -212,19 +212,19 @@ Still still_of(const StickTrack& track, std::size_t index, std::span<const Cell>
   return still;
 }
 
-Limits limits_of(std::span<const StickTrack> tracks, double interval_s) {
-  const double step =
-      std::max(quantisation_step(tracks, 0, 0.0), quantisation_step(tracks, 1, 0.0));
+Limits limits_of(std::span<const StickTrack> tracks, const vec2& declared_step, double interval_s) {
+  const double step = std::max(quantisation_step(tracks, 0, declared_step.x),
+                               quantisation_step(tracks, 1, declared_step.y));
   const double code = std::min(step, 0.05);
   const double margin = std::ceil(2.0 * interval_s / kCell_s);
   return {.slow = std::max(kSlow, 1.5 * code),
-          .code = std::max(kUnseen, code),
+          .code = std::max(kUnseen, 1.2 * code),
           .margin = static_cast<std::size_t>(std::clamp(margin, 1.0, 5.0))};
 }
 
-std::vector<Still> all_stills(std::span<const StickTrack> tracks) {
+std::vector<Still> all_stills(std::span<const StickTrack> tracks, const vec2& declared_step) {
   const double interval_s = typical_interval_s(tracks);
-  const Limits limits = limits_of(tracks, interval_s);
+  const Limits limits = limits_of(tracks, declared_step, interval_s);
   std::vector<Still> found;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     const std::vector<Cell> cells = cells_of(tracks[t], interval_s);
@@ -333,9 +333,9 @@ bool may_be_home(const Still& still, const std::optional<Box>& turned) noexcept 
 
 }  // namespace
 
-Stills stills(std::span<const StickTrack> raw_tracks) {
+Stills stills(std::span<const StickTrack> raw_tracks, const vec2& declared_step) {
   const std::vector<StickTrack> tracks = clean_tracks(raw_tracks).tracks;
-  const std::vector<Still> found = all_stills(tracks);
+  const std::vector<Still> found = all_stills(tracks, declared_step);
   const std::optional<Box> box = box_of(tracks);
   if (!box) return {};
   const double least_half = std::min(box->half.x, box->half.y);

@@ -9,10 +9,9 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kSmallestSpike = 0.03;  // raw; less is noise
-constexpr double kLongestSpike_s =
-    0.04;                          // of two or three reports; a hand's there and back is longer
-constexpr double kFarthest = 4.0;  // raw; nothing lies farther out, whoever made the track
+constexpr double kSmallestSpike = 0.03;    // raw; less is noise
+constexpr double kShortMovement_s = 0.04;  // a hand's there and back is longer
+constexpr double kFarthest = 4.0;          // raw; nothing lies farther out, whoever made the track
 constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;  // sums of times fit
 
 bool is_place(const vec2& p) noexcept {
@@ -69,15 +68,16 @@ std::array<Steps, 2> steps_around(const StickTrack& track, std::size_t i, std::s
   return steps;
 }
 
-// Hands move several reports long, so the neighbourhood of a real movement has long steps too.
-double usual_step(const std::array<Steps, 2>& around) noexcept {
+// Whether it stands out from all of them. Hands move several reports long, so the neighbourhood of
+// a real movement has long steps too; one or two may belong to another spike.
+bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
   Steps all = around[0];
   for (std::size_t k = 0; k < around[1].count; ++k) all.add(around[1].length[k]);
-  if (all.count == 0) return 0.0;
-  const auto middle = all.length.begin() + static_cast<std::ptrdiff_t>(all.count / 2);
-  std::nth_element(all.length.begin(), middle,
-                   all.length.begin() + static_cast<std::ptrdiff_t>(all.count));
-  return *middle;
+  const auto end = all.length.begin() + static_cast<std::ptrdiff_t>(all.count);
+  std::sort(all.length.begin(), end);
+  const std::size_t third = all.count > 5 ? all.count - 3 : all.count / 2;
+  return height > 3.0 * around[0].length[0] && height > 3.0 * around[1].length[0] &&
+         height > 7.0 * all.length[all.count / 2] && height > 4.5 * all.length[third];
 }
 
 // A spike has sharp edges on both sides and comes back to about where it left.
@@ -91,10 +91,9 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, double
   }
   if (least < kSmallestSpike || least < 2.0 * glm::length(after - before)) return false;
   const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
-  if (lasted_s > (length > 1 ? kLongestSpike_s : 2.0 * kLongestSpike_s)) return false;
-  const std::array<Steps, 2> around = steps_around(track, i, length, interval_s);
-  return least > 3.0 * around[0].length[0] && least > 3.0 * around[1].length[0] &&
-         least > 7.0 * usual_step(around);
+  if (lasted_s > std::clamp(3.7 * interval_s, kShortMovement_s, 2.0 * kShortMovement_s))
+    return false;
+  return stands_out(least, steps_around(track, i, length, interval_s));
 }
 
 // 0 where none begins at i.

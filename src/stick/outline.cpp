@@ -2,195 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
+
+#include "stick/rim.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr double kSpacing = 2.0 * kPi / kOutlineDirections;
-constexpr double kLeastRadius = 0.25;    // raw; nearer to the middle no gate is looked for
-constexpr double kGreatestRadius = 4.0;  // from any middle to any corner of the range
-constexpr double kLeastNoise = 0.004;    // raw; half a step of 8 bits
-constexpr double kGreatestNoise = 0.2;   // raw; beyond that nothing is a rim
-constexpr double kInsideHull = 0.85;     // no gate bends inwards by more than this leaves
-// The rim is told from what lies inside it by lines over this half width.
-constexpr double kSelectionWidth = 3.0 * kSpacing;
-constexpr int kSelectionRounds = 6;
-constexpr double kSelectionQuantile = 0.9;  // of the samples' heights: there the search begins
-constexpr double kSigmas = 3.0;             // so far under the line a sample is still on the rim
-// The radius itself comes from the widest line that agrees with all narrower ones.
+constexpr double kSpacing = kOutlineSpacing;
+constexpr double kGreatestNoise = 0.2;  // raw; beyond that nothing is a rim
+// The radius comes from the widest line that agrees with all narrower ones.
 constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.0 * kSpacing,
                               4.0 * kSpacing, 6.0 * kSpacing, 8.0 * kSpacing};
-constexpr double kAgreement = 1.5;  // standard errors
-constexpr double kLeastSpread = 0.1 * kSpacing * kSpacing;
-constexpr double kOwnAgreement = 3.0;
-constexpr double kSeam = 30.0 * kDegree;  // samples are repeated so far beyond a full turn
+// Standard errors: of the estimates among each other (less is noisy, more rounds the corners of a
+// square: 1.5 gives the least circularity error over all made gates), and from the direction's own
+// samples.
+constexpr double kAgreement = 1.5, kOwnAgreement = 3.0;
+constexpr double kGreatestError = 0.025;  // raw, one standard error; beyond it was not seen
 constexpr int kGap = 2;                   // directions that are filled in between seen ones
+constexpr double kSharp = 0.6;            // sine of the angle by which a corner turns at least
+
 // A side's reach is known where the outline was seen this near to it, on both of its sides or
 // straight there.
 constexpr double kOfSide = 15.0 * kDegree, kStraight = 3.0 * kSpacing;
-constexpr double kSharp = 0.6;  // sine of the angle by which a corner turns at least
-constexpr int kParts = 8;       // of each piece of the outline, for the bins
+constexpr int kParts = 8;                        // of each piece of the outline, for the bins
 constexpr double kLeastCircularityRadius = 0.2;  // dualshock-tools'
-constexpr int kLeastFilledBins = 44;
-
-struct Polar {
-  double angle, radius;
-};
-
-// A straight line radius(angle) and what it was fitted to.
-struct Line {
-  double samples = 0.0, angle = 0.0, radius = 0.0, slope = 0.0;  // the means; it passes there
-  double spread = 0.0;    // sum of squared angles about the mean
-  double residual = 0.0;  // mean square
-
-  double at(double a) const noexcept { return radius + slope * (a - angle); }
-};
-
-int direction_of(double angle) noexcept {
-  return static_cast<int>(std::lround(angle / kSpacing) + kOutlineDirections) % kOutlineDirections;
-}
+constexpr int kLeastFilledBins = 44;             // the error of fewer is another number
 
 double cross(const vec2& a, const vec2& b) noexcept { return a.x * b.y - a.y * b.x; }
 
-vec2 unit(double angle) noexcept {
-  const SinCos s = sin_cos(angle);
-  return {s.cos, s.sin};
-}
-
-// At the end of the range noise goes one way only. Beyond it would be half of the samples of a gate
-// that ends there, on average by 0.8 sigma (of a gate further in fewer, by little less).
-double without_end(double raw, double sigma) noexcept {
-  return std::fabs(raw) < 1.0 ? raw : std::copysign(1.0 + 0.8 * sigma, raw);
-}
-
-std::vector<Polar> polar_samples(std::span<const StickTrack> tracks, const vec2& middle,
-                                 double sigma) {
-  std::vector<Polar> samples;
-  for (const StickTrack& track : tracks) {
-    for (const StickSample& sample : track) {
-      if (!std::isfinite(sample.raw.x) || !std::isfinite(sample.raw.y)) continue;
-      const vec2 p =
-          vec2(without_end(sample.raw.x, sigma), without_end(sample.raw.y, sigma)) - middle;
-      const double radius = std::sqrt(p.x * p.x + p.y * p.y);
-      if (!(radius > kLeastRadius)) continue;
-      const double angle = gaitpad::atan2(p.y, p.x);
-      samples.push_back({angle < 0.0 ? angle + 2.0 * kPi : angle, radius});
-    }
-  }
-  return samples;
-}
-
-// Radius by direction of the convex hull of the samples and the middle.
-std::array<double, kOutlineDirections> hull_of(const std::vector<Polar>& samples) {
-  std::array<double, kOutlineDirections> greatest{}, support{}, hull{};
-  for (const Polar& p : samples) {
-    double& g = greatest[direction_of(p.angle)];
-    g = std::max(g, p.radius);
-  }
-  std::array<double, kOutlineDirections> cosine;
-  for (int k = 0; k < kOutlineDirections; ++k) cosine[k] = unit(k * kSpacing).x;
-  for (int k = 0; k < kOutlineDirections; ++k) {
-    for (int n = 0; n < kOutlineDirections; ++n) {
-      support[k] = std::max(support[k], greatest[n] * cosine[std::abs(k - n)]);
-    }
-  }
-  for (int k = 0; k < kOutlineDirections; ++k) {
-    hull[k] = greatest[k] > 0.0 ? 2.0 : 0.0;
-    for (int n = 0; n < kOutlineDirections; ++n) {
-      const double c = cosine[std::abs(k - n)];
-      if (c > 0.0) hull[k] = std::min(hull[k], support[n] / c);
-    }
-  }
-  return hull;
-}
-
-// By angle, and those beside the seam again beyond the other end.
-std::vector<Polar> ordered(std::vector<Polar> samples) {
-  const std::size_t count = samples.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Polar p = samples[i];
-    if (p.angle < kSeam) samples.push_back({p.angle + 2.0 * kPi, p.radius});
-    if (p.angle >= 2.0 * kPi - kSeam) samples.push_back({p.angle - 2.0 * kPi, p.radius});
-  }
-  std::sort(samples.begin(), samples.end(),
-            [](const Polar& a, const Polar& b) { return a.angle < b.angle; });
-  return samples;
-}
-
-std::span<const Polar> between(std::span<const Polar> samples, double from, double to) {
-  const auto is_below = [](const Polar& p, double angle) { return p.angle < angle; };
-  const auto first = std::lower_bound(samples.begin(), samples.end(), from, is_below);
-  return {first, std::lower_bound(first, samples.end(), to, is_below)};
-}
-
-Line line_through(std::span<const Polar> samples) {
-  Line line;
-  if (samples.empty()) return line;
-  line.samples = static_cast<double>(samples.size());
-  for (const Polar& p : samples) {
-    line.angle += p.angle / line.samples;
-    line.radius += p.radius / line.samples;
-  }
-  double product = 0.0;
-  for (const Polar& p : samples) {
-    line.spread += (p.angle - line.angle) * (p.angle - line.angle);
-    product += (p.angle - line.angle) * (p.radius - line.radius);
-  }
-  // Samples of one place have no slope.
-  if (line.spread > kLeastSpread) line.slope = product / line.spread;
-  for (const Polar& p : samples) {
-    const double off = p.radius - line.at(p.angle);
-    line.residual += off * off / line.samples;
-  }
-  return line;
-}
-
-// How far a sample's radius strays from a rim that is not at right angles to it.
-double radial_noise(const Line& line, double sigma) noexcept {
-  const double steepness = line.slope / std::max(line.radius, kLeastRadius);
-  return std::max(sigma * std::sqrt(1.0 + steepness * steepness), kLeastNoise);
-}
-
-// Upper envelope: from high up down until the samples under the line are no longer its noise.
-Line envelope(std::span<const Polar> samples, double sigma) {
-  Line line = line_through(samples);
-  std::vector<double> heights;
-  for (const Polar& p : samples) heights.push_back(p.radius - line.at(p.angle));
-  const auto high =
-      heights.begin() +
-      static_cast<std::ptrdiff_t>(kSelectionQuantile * static_cast<double>(heights.size() - 1));
-  std::nth_element(heights.begin(), high, heights.end());
-  line.radius += *high;
-  std::vector<Polar> chosen;
-  for (int round = 0; round < kSelectionRounds; ++round) {
-    const double allowed = kSigmas * radial_noise(line, sigma);
-    chosen.clear();
-    for (const Polar& p : samples) {
-      if (p.radius >= line.at(p.angle) - allowed) chosen.push_back(p);
-    }
-    if (chosen.empty()) break;
-    line = line_through(chosen);
-  }
-  return line;
-}
-
-std::vector<Polar> rim_of(const std::vector<Polar>& samples, double sigma) {
-  std::vector<Polar> rim;
-  for (int k = 0; k < kOutlineDirections; ++k) {
-    const double angle = k * kSpacing;
-    const auto own = between(samples, angle - 0.5 * kSpacing, angle + 0.5 * kSpacing);
-    if (own.empty()) continue;
-    const Line line =
-        envelope(between(samples, angle - kSelectionWidth, angle + kSelectionWidth), sigma);
-    const double least = -kSigmas * radial_noise(line, sigma);
-    for (const Polar& p : own) {
-      if (p.radius - line.at(p.angle) < least) continue;
-      rim.push_back({p.angle < 0.0 ? p.angle + 2.0 * kPi : p.angle, p.radius});
-    }
-  }
-  return rim;
-}
+int around(int k) noexcept { return (k + kOutlineDirections) % kOutlineDirections; }
 
 // What gates are made of: an arc about the middle is straight as radius over angle, an edge as it
 // is.
@@ -216,7 +57,7 @@ Neighbourhood about(std::span<const Polar> all, double direction) {
   double mean = 0.0;
   for (const Polar& p : n.rim) mean += p.radius / static_cast<double>(n.rim.size());
   for (const Polar& p : n.rim) {
-    const vec2 u = unit(p.angle - direction);
+    const vec2 u = unit_vector(p.angle - direction);
     n.straight[0].push_back({p.angle - direction, p.radius});
     n.straight[1].push_back({p.radius * u.y / mean, p.radius * u.x});
   }
@@ -243,7 +84,7 @@ bool agrees(const Line& line, std::span<const Polar> own, double sigma) noexcept
 Estimate adaptive(const Neighbourhood& n, Piece piece, double left, double right, double sigma) {
   const auto own = n.window(piece, -0.5 * kSpacing, 0.5 * kSpacing);
   Estimate best;
-  double low = 0.0, high = 2.0 * kGreatestRadius;
+  double low = 0.0, high = 1e9;
   for (const double width : kWidths) {
     const Line line = line_through(n.window(piece, std::min(-left * width, -0.5 * kSpacing),
                                             std::max(right * width, 0.5 * kSpacing)));
@@ -262,7 +103,7 @@ Estimate adaptive(const Neighbourhood& n, Piece piece, double left, double right
 
 double radius_at(std::span<const Polar> rim, double direction, double sigma) {
   const Neighbourhood n = about(rim, direction);
-  Estimate best;
+  Estimate best{.error = 1.0};
   for (const auto& [left, right] : {std::pair{1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}}) {
     const Estimate arc = adaptive(n, Piece::arc, left, right, sigma);
     const Estimate edge = adaptive(n, Piece::edge, left, right, sigma);
@@ -271,12 +112,12 @@ double radius_at(std::span<const Polar> rim, double direction, double sigma) {
     const Estimate& fitting = is_arc ? arc : edge;
     if (fitting.error < best.error) best = fitting;
   }
-  return best.radius;
+  return best.error <= kGreatestError ? best.radius : 0.0;
 }
 
-void fill_gaps(std::array<double, kOutlineDirections>& radius) noexcept {
-  const std::array<double, kOutlineDirections> seen = radius;
-  const auto at = [&](int k) { return seen[(k + kOutlineDirections) % kOutlineDirections]; };
+void fill_gaps(Radii& radius) noexcept {
+  const Radii seen = radius;
+  const auto at = [&](int k) { return seen[around(k)]; };
   for (int k = 0; k < kOutlineDirections; ++k) {
     if (seen[k] > 0.0) continue;
     int before = 1, after = 1;
@@ -289,8 +130,8 @@ void fill_gaps(std::array<double, kOutlineDirections>& radius) noexcept {
 }
 
 vec2 point_of(const Outline& outline, int k) noexcept {
-  k = (k + kOutlineDirections) % kOutlineDirections;
-  return outline.middle + outline.radius[k] * unit(k * kSpacing);
+  k = around(k);
+  return outline.middle + outline.radius[k] * unit_vector(k * kSpacing);
 }
 
 // Where the outline turns sharply its sides before and behind, prolonged, meet in a corner that
@@ -299,12 +140,12 @@ vec2 point_of(const Outline& outline, int k) noexcept {
 std::optional<vec2> corner_between(const Outline& outline, const std::array<int, 4>& k) noexcept {
   std::array<vec2, 4> p;
   for (int i = 0; i < 4; ++i) {
-    if (outline.radius[(k[i] + kOutlineDirections) % kOutlineDirections] == 0.0) return {};
+    if (outline.radius[around(k[i])] == 0.0) return {};
     p[i] = point_of(outline, k[i]);
   }
   const vec2 in = p[1] - p[0], out = p[3] - p[2];
   const double turned = cross(in, out);
-  if (turned < kSharp * std::sqrt(glm::dot(in, in) * glm::dot(out, out))) return {};
+  if (turned <= kSharp * std::sqrt(glm::dot(in, in) * glm::dot(out, out))) return {};
   const double beyond = cross(p[2] - p[1], out) / turned;
   const vec2 corner = p[1] + beyond * in, seen = corner - outline.middle;
   const bool is_between = beyond > 0.0 && cross(p[1] - outline.middle, seen) > 0.0 &&
@@ -318,15 +159,14 @@ void sharpen(Outline& outline) noexcept {
   const Outline round = outline;
   for (int k = 0; k < kOutlineDirections; ++k) {
     const auto corner = corner_between(round, {k - 5, k - 2, k + 2, k + 5});
-    if (!corner || std::fabs(cross(unit(k * kSpacing), *corner - outline.middle)) >
-                       0.5 * kSpacing * glm::length(*corner - outline.middle))
-      continue;
+    if (!corner) continue;
+    const vec2 at = *corner - outline.middle;
+    if (direction_of(gaitpad::atan2(at.y, at.x)) != k) continue;  // the next one's
+    const vec2 in = *corner - point_of(round, k - 2), out = point_of(round, k + 2) - *corner;
     for (int n = k - 1; n <= k + 1; ++n) {
-      const vec2 u = unit(n * kSpacing), at = *corner - outline.middle;
-      const vec2 side = cross(u, at) > 0.0 ? at + outline.middle - point_of(round, k - 2)
-                                           : point_of(round, k + 2) - *corner;
-      // The ray meets the line through the corner along that side.
-      double& radius = outline.radius[(n + kOutlineDirections) % kOutlineDirections];
+      // Where the ray meets the side.
+      const vec2 u = unit_vector(n * kSpacing), side = cross(u, at) > 0.0 ? in : out;
+      double& radius = outline.radius[around(n)];
       radius = std::max(radius, cross(at, side) / cross(u, side));
     }
   }
@@ -334,7 +174,7 @@ void sharpen(Outline& outline) noexcept {
 
 void keep_in_range(Outline& outline) noexcept {
   for (int k = 0; k < kOutlineDirections; ++k) {
-    const vec2 u = unit(k * kSpacing);
+    const vec2 u = unit_vector(k * kSpacing);
     for (int i = 0; i < 2; ++i) {
       const double room = std::max(0.0, 1.0 - std::copysign(1.0, u[i]) * outline.middle[i]);
       outline.radius[k] = std::min(outline.radius[k], room / std::max(std::fabs(u[i]), 1e-9));
@@ -348,14 +188,8 @@ Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, doubl
   Outline outline;
   outline.middle = middle;
   sigma = sigma > 0.0 ? std::min(sigma, kGreatestNoise) : 0.0;
-  std::vector<Polar> samples = polar_samples(tracks, middle, sigma);
-  const auto hull = hull_of(samples);
-  std::erase_if(samples, [&](const Polar& p) {
-    return p.radius < kInsideHull * hull[direction_of(p.angle)] - kSigmas * sigma;
-  });
-  std::vector<Polar> rim = rim_of(ordered(std::move(samples)), sigma);
-  outline.samples = static_cast<std::int64_t>(rim.size());
-  rim = ordered(std::move(rim));
+  const std::vector<Polar> rim = rim_samples(tracks, middle, sigma);
+  outline.samples = static_cast<std::int64_t>(between(rim, 0.0, 2.0 * kPi).size());
   for (int k = 0; k < kOutlineDirections; ++k) {
     const double angle = k * kSpacing;
     if (between(rim, angle - 0.5 * kSpacing, angle + 0.5 * kSpacing).empty()) continue;
@@ -373,7 +207,7 @@ int filled_bins(const Outline& outline) noexcept {
   for (int bin = 0; bin < kCircularityBins; ++bin) {
     bool is_seen = false;
     for (int n = -1; n <= 1; ++n) {
-      const int k = (bin * kShare + n + kOutlineDirections) % kOutlineDirections;
+      const int k = around(bin * kShare + n);
       is_seen = is_seen || outline.radius[k] > 0.0;
     }
     filled += is_seen;
@@ -393,7 +227,7 @@ double outwards(const Outline& outline, int k, int side) noexcept {  // right, f
 double supported(const Outline& outline, int k, int side) noexcept {
   double beside = -2.0;
   for (const int n : {k - 1, k + 1}) {
-    if (outline.radius[(n + kOutlineDirections) % kOutlineDirections] == 0.0) continue;
+    if (outline.radius[around(n)] == 0.0) continue;
     beside = std::max(beside, outwards(outline, n, side));
   }
   const double own = outwards(outline, k, side);
@@ -441,7 +275,7 @@ void add_piece(const vec2& a, const vec2& b, Bins& greatest) noexcept {
 std::optional<double> circularity_error(const Outline& outline) noexcept {
   Bins greatest{};
   for (int k = 0; k < kOutlineDirections; ++k) {
-    if (outline.radius[k] == 0.0 || outline.radius[(k + 1) % kOutlineDirections] == 0.0) continue;
+    if (outline.radius[k] == 0.0 || outline.radius[around(k + 1)] == 0.0) continue;
     const vec2 a = point_of(outline, k), b = point_of(outline, k + 1);
     const vec2 corner = corner_between(outline, {k - 2, k, k + 1, k + 3}).value_or(a);
     add_piece(a, corner, greatest);

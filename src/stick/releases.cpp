@@ -3,27 +3,36 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+
+#include "stick/clean_track.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr double kMovement = 0.2;  // raw; less between two rests is no release
-constexpr double kSamePlace = 0.01;
+constexpr double kSamePlace = 0.02;
+constexpr double kOdd = 0.005;          // raw; what is less far off does no harm
 constexpr std::size_t kMostTried = 64;  // releases, one by one left out
 
-// The way from one rest to the next.
+// The way from one rest to the next: how far it led, from where it came back. Both 0 where the
+// stick hardly moved, or only for a report or two.
 struct Excursion {
   double farthest = 0.0;
   vec2 from{0.0};
 };
 
-Excursion excursion(const StickTrack& track, std::size_t first, const Still& to) noexcept {
+Excursion excursion(const StickTrack& track, std::size_t first, const Still& to,
+                    double interval_s) noexcept {
+  constexpr double kFewestReports = 4.0;
   Excursion way;
+  double away = 0.0;  // reports
   for (std::size_t i = first; i < to.first; ++i) {
-    way.farthest = std::max(way.farthest, glm::length(track[i].raw - to.mean));
+    const double distance = glm::length(track[i].raw - to.mean);
+    if (distance < kMovement) continue;
+    away += reports_stood(hold_s(track, i, interval_s), interval_s);
+    way.farthest = std::max(way.farthest, distance);
   }
-  if (way.farthest < kMovement) return way;
+  if (away < kFewestReports) return {};
   // The spring brings it back in a straight line, but may swing over: the side is where it was last
   // half way out.
   for (std::size_t i = to.first; i > first; --i) {
@@ -163,7 +172,7 @@ bool leave_odd_out(std::span<const Release> releases, Explain explain, double no
     }
   }
   const double noise_of_all = std::max(best / freedom, noise * noise);
-  if (before - best < std::max(50.0 * noise_of_all, 0.25 * kSamePlace * kSamePlace)) return false;
+  if (before - best < std::max(50.0 * noise_of_all, kOdd * kOdd)) return false;
   counts[odd] = false;
   return true;
 }
@@ -172,18 +181,20 @@ bool leave_odd_out(std::span<const Release> releases, Explain explain, double no
 
 std::vector<Release> releases_of(std::span<const StickTrack> tracks, std::span<const Still> rests,
                                  double interval_s) {
+  const auto way_to = [&](std::size_t k) {
+    const bool is_first = k == 0 || rests[k - 1].track != rests[k].track;
+    return excursion(tracks[rests[k].track], is_first ? 0 : rests[k - 1].last + 1, rests[k],
+                     interval_s);
+  };
   std::vector<Release> releases;
   for (std::size_t first = 0, end; first < rests.size(); first = end) {
-    const StickTrack& track = tracks[rests[first].track];
-    const bool is_first = first == 0 || rests[first - 1].track != rests[first].track;
-    const Excursion way = excursion(track, is_first ? 0 : rests[first - 1].last + 1, rests[first]);
     end = first + 1;
     while (end < rests.size() && rests[end].track == rests[first].track &&
-           excursion(track, rests[end - 1].last + 1, rests[end]).farthest < kMovement) {
+           way_to(end).from == vec2(0.0)) {
       ++end;
     }
     releases.push_back(release_of(tracks, rests.subspan(first, end - first), interval_s));
-    releases.back().from = way.from;
+    releases.back().from = way_to(first).from;
   }
   return releases;
 }

@@ -12,11 +12,12 @@ namespace {
 constexpr std::size_t kMostIntervals = std::size_t{1} << 20;  // as many say what all would
 constexpr std::size_t kFewestIntervals = 20;
 constexpr double kSilence_s = 0.1;
+constexpr double kBurst_s = 0.0007;  // pads send 1000 reports a second at most, but for a few
 constexpr double kUnknownInterval_s = 0.004;
 constexpr double kFrozen_s = 0.06;
 
-// Of reports that follow each other; those during quick movements, if there are enough of them:
-// every pad reports each of those.
+// Of reports that follow each other; those during movements, if there are enough of them: every pad
+// reports each of those.
 std::vector<double> intervals(std::span<const StickTrack> tracks) {
   std::vector<double> all, moving;
   for (const StickTrack& track : tracks) {
@@ -57,7 +58,7 @@ std::optional<Spacing> spacing(std::span<const StickTrack> tracks) {
   const double median = *middle;
   const Spacing all = spacing_within(found, 0.0, kSilence_s);
   // Where most reports come in bursts, the time between bursts belongs to the pace.
-  if (all.mean_s > 2.0 * median) return all;
+  if (median < kBurst_s && all.mean_s > 2.0 * median) return all;
   const double mean_s = spacing_within(found, 0.5 * median, 1.5 * median).mean_s;
   if (!(mean_s > 0.0)) return {};
   return Spacing{mean_s, spacing_within(found, 0.0, 1.5 * mean_s).deviation_s};
@@ -124,6 +125,25 @@ bool jumps_on(const StickTrack& track, std::size_t first, std::size_t last) noex
   return b > 0.01 && a > std::max(0.1, 3.0 * b) && glm::dot(before, after) > 0.7 * a * b;
 }
 
+// Counts turns either way; who turns back begins anew.
+struct Turning {
+  int turns = 0;
+  double turned = 0.0, farthest = 0.0;  // of one turn, since it began
+  void add(double angle) noexcept {
+    turned += angle;
+    if (std::fabs(turned) > std::fabs(farthest) && turned * farthest >= 0.0) farthest = turned;
+    if (std::fabs(turned - farthest) <= 0.1) return;
+    const double back = turned - farthest;
+    end();
+    turned = farthest = back;
+  }
+  void end() noexcept {
+    // A turn that somebody ends a little early is meant as one.
+    turns += static_cast<int>(std::min(std::fabs(farthest) + 0.05, 1e6));
+    turned = farthest = 0.0;
+  }
+};
+
 }  // namespace
 
 double typical_interval_s(std::span<const StickTrack> tracks) {
@@ -177,35 +197,25 @@ std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s)
 
 int whole_turns(std::span<const StickTrack> tracks, const vec2& middle, double radius) {
   constexpr int kStray = 3;  // reports that may be spikes
-  int turns = 0;
+  Turning turning;
   for (const StickTrack& track : tracks) {
-    double turned = 0.0;  // since it came out here, of one turn
-    vec2 before(0.0);     // 0: inside
+    vec2 before(0.0);  // 0: inside
     int strays = 0;
-    const auto count = [&] {
-      // A turn that somebody ends a little early is meant as one.
-      turns += static_cast<int>(std::min(std::fabs(turned) + 0.05, 1e6));
-      turned = 0.0;
-      before = vec2(0.0);
-    };
     for (const StickSample& sample : track) {
       const vec2 p = sample.raw - middle;
       const bool is_out = glm::length(p) > radius;
       const double angle =
           atan2(before.x * p.y - before.y * p.x, glm::dot(before, p)) / (2.0 * kPi);
-      const bool is_stray = before != vec2(0.0) && (!is_out || std::fabs(angle) > 0.3);
+      const bool is_stray = before != vec2(0.0) && (!is_out || std::fabs(angle) > 0.08);
       if (is_stray && ++strays <= kStray) continue;
       strays = 0;
-      if (!is_out) {
-        count();
-        continue;
-      }
-      if (before != vec2(0.0)) turned += angle;
-      before = p;
+      if (is_out && before != vec2(0.0)) turning.add(angle);
+      if (!is_out) turning.end();
+      before = is_out ? p : vec2(0.0);
     }
-    count();
+    turning.end();
   }
-  return turns;
+  return turning.turns;
 }
 
 }  // namespace gaitpad

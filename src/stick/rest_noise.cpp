@@ -17,7 +17,6 @@ double time_s(const StickTrack& track, std::int64_t time_ns) noexcept {
   return seconds_between(track.front().time_ns, time_ns) - 0.5 * whole_s;
 }
 
-// About the line, both axes, of points that lie within `limit` (standard deviations squared).
 RestNoise noise_about(const RestTrend& line, std::span<const RestPoint> points) noexcept {
   RestNoise noise;
   for (const RestPoint& point : points) {
@@ -29,18 +28,22 @@ RestNoise noise_about(const RestTrend& line, std::span<const RestPoint> points) 
   return noise;
 }
 
-RestNoise piece_noise(std::vector<RestPoint> points) {
-  RestTrend line = rest_trend(points);
-  RestNoise noise = noise_about(line, points);
-  if (noise.freedom < kFewestReports) return {};
+// Leaves out what lies far from the line through all; returns whether there was any.
+bool take_spikes_out(std::vector<RestPoint>& points) {
+  const RestTrend line = rest_trend(points);
+  const RestNoise noise = noise_about(line, points);
+  if (noise.freedom < kFewestReports) return false;
   const vec2 limit = kSpike * kSpike * noise.variance();
-  const auto kept = std::erase_if(points, [&](const RestPoint& point) {
-    const vec2 off = point.place - line.at(point.time_s);
-    return off.x * off.x > limit.x || off.y * off.y > limit.y;
-  });
-  if (kept == 0) return noise;
-  line = rest_trend(points);
-  return noise_about(line, points);
+  return std::erase_if(points, [&](const RestPoint& point) {
+           const vec2 off = point.place - line.at(point.time_s);
+           return off.x * off.x > limit.x || off.y * off.y > limit.y;
+         }) > 0;
+}
+
+RestNoise piece_noise(std::vector<RestPoint> points) {
+  take_spikes_out(points);
+  const RestNoise noise = noise_about(rest_trend(points), points);
+  return noise.freedom < kFewestReports ? RestNoise{} : noise;
 }
 
 }  // namespace
@@ -61,6 +64,7 @@ std::vector<RestPoint> rest_points(std::span<const StickTrack> tracks, const Sti
       points.push_back({at_s, track[i].raw, weight / parts});
     }
   }
+  take_spikes_out(points);
   return points;
 }
 

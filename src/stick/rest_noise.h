@@ -15,7 +15,8 @@ struct RestPoint {
   vec2 place{0.0};
   double weight = 0.0;
 };
-// The still's samples in the order of time, long holds in parts of 20 ms. Tracks are clean ones.
+// The still's samples in the order of time, long holds in parts of 20 ms, without what lies far
+// from all others. Tracks are clean ones.
 std::vector<RestPoint> rest_points(std::span<const StickTrack> tracks, const Still& still,
                                    double interval_s);
 

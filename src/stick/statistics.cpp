@@ -62,7 +62,7 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   told.step_x = quantisation_step(clean.tracks, 0, declared_step.x);
   told.step_y = quantisation_step(clean.tracks, 1, declared_step.y);
   const double interval_s = typical_interval_s(clean.tracks);
-  const std::vector<Still> rests = stills(clean.tracks).rests;
+  const std::vector<Still> rests = stills(clean.tracks, declared_step).rests;
   tell_rest(told, rest_statistics(clean.tracks, rests, {told.step_x, told.step_y}, interval_s));
   tell_rim(told, clean.tracks);
   // As they came: where a spike is taken out a value repeats.

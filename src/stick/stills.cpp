@@ -18,6 +18,8 @@ constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // cells
 constexpr std::size_t kShortestStill = 5;                          // cells
 // The window's last half sees a push before it comes; so much of it is still rest.
 constexpr std::size_t kWindowsLead = kHalfWindow - 1;
+// Of the first half so much counts; the rest, with the margin, is settling.
+constexpr std::size_t kWindowsLag = 2;
 constexpr std::size_t kMargin = 2;     // cells
 constexpr double kSlow = 0.006;        // raw, from one half of a window to the other: 0.06 a second
 constexpr double kNoiseLimit = 4.5;    // standard deviations
@@ -70,9 +72,16 @@ std::vector<Cell> cells_of(const StickTrack& track, double interval_s) {
   return cells;
 }
 
+// What is no movement on this stick.
+struct Limits {
+  double slow = kSlow;     // raw, between the halves of a window; a code that flips is no movement
+  double code = kUnseen;   // raw, from cell to cell
+  std::size_t margin = 1;  // cells at a rest's ends, since a movement begins in the noise
+};
+
 // Whether the window of cells that begins at `first` shows one place but for noise. The noise is
 // that of neighbouring reports: a movement's own steps are too small to hide it.
-bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexcept {
+bool is_still(std::span<const Cell> cells, std::size_t first, const Limits& limits) noexcept {
   Cell before, after;
   for (std::size_t k = 0; k < kHalfWindow; ++k) {
     add(before, cells[first + k]);
@@ -84,7 +93,7 @@ bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexc
   const double limit = kNoiseLimit * kNoiseLimit * variance;
   const vec2 moved = after.mean() - before.mean();
   if (glm::dot(moved, moved) >
-      std::max(slow * slow, limit * (1.0 / before.weight + 1.0 / after.weight))) {
+      std::max(limits.slow * limits.slow, limit * (1.0 / before.weight + 1.0 / after.weight))) {
     return false;
   }
   // Turning fast comes back to where it was.
@@ -92,7 +101,7 @@ bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexc
   for (std::size_t k = first; k < first + kWindow; ++k) {
     const vec2 off = cells[k].mean() - middle;
     const double noise = 2.0 * limit / std::max(cells[k].weight, 1.0);
-    if (glm::dot(off, off) > std::max(4.0 * slow * slow, noise)) return false;
+    if (glm::dot(off, off) > std::max(4.0 * limits.slow * limits.slow, noise)) return false;
   }
   return true;
 }
@@ -102,25 +111,26 @@ struct Run {
 };
 
 // A rare extreme of the noise cuts no rest in two.
-bool is_same_place(std::span<const Cell> cells, const Run& a, const Run& b, double slow) noexcept {
+bool is_same_place(std::span<const Cell> cells, const Run& a, const Run& b,
+                   const Limits& limits) noexcept {
   if (b.begin > a.end + kWindow) return false;
   Cell one, other;
   for (std::size_t k = a.end; k > a.begin && k + kWindow > a.end; --k) add(one, cells[k - 1]);
   for (std::size_t k = b.begin; k < b.end && k < b.begin + kWindow; ++k) add(other, cells[k]);
   const vec2 place = one.mean();
-  if (glm::length(other.mean() - place) > 2.0 * slow) return false;
+  if (glm::length(other.mean() - place) > 2.0 * limits.slow) return false;
   const double variance = std::max(one.variance(), other.variance());
   for (std::size_t k = a.end; k < b.begin; ++k) {
     const vec2 off = cells[k].mean() - place;
     const double noise = 36.0 * variance / std::max(cells[k].weight, 1.0);
-    if (glm::dot(off, off) > std::max(4.0 * slow * slow, noise)) return false;
+    if (glm::dot(off, off) > std::max(4.0 * limits.slow * limits.slow, noise)) return false;
   }
   return true;
 }
 
 // Goes from a run's inside outwards, to where a cell is not like the five before it: the windows
 // do not see where exactly a movement begins. `step` is 1 or -1; returns the last good cell.
-std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, double code) {
+std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, const Limits& limits) {
   const std::size_t length = run.end - run.begin;
   const std::size_t inside = std::min<std::size_t>((length + 1) / 2, 2 * kWindow);
   const std::size_t outermost = step > 0 ? run.end - 1 : run.begin;
@@ -141,39 +151,42 @@ std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, doubl
     const double limit =
         kNoiseLimit *
         std::sqrt(variance * (1.0 / std::max(cells[next].weight, 1.0) + 1.0 / inner.weight));
-    if (glm::length(off) > std::max({limit, kUnseen, code})) break;
+    if (glm::length(off) > limit + limits.code) break;
     at = next;
   }
   return at;
 }
 
-std::vector<Run> still_runs(std::span<const Cell> cells, double slow, double code) {
+std::vector<Run> still_runs(std::span<const Cell> cells, const Limits& limits) {
   std::vector<Run> runs;
   if (cells.size() < kWindow) return runs;
   const std::size_t last = cells.size() - kWindow;  // where the last window begins
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const std::size_t window = std::clamp(c, kHalfWindow, last + kHalfWindow) - kHalfWindow;
-    if (!is_still(cells, window, slow)) continue;
+    if (!is_still(cells, window, limits)) continue;
     if (!runs.empty() && runs.back().end == c) {
       ++runs.back().end;
     } else {
       runs.push_back({c, c + 1});
     }
   }
-  for (Run& run : runs) run.end = std::min(run.end + kWindowsLead, cells.size());
+  for (Run& run : runs) {
+    if (run.begin > 0) run.begin -= std::min(run.begin, kWindowsLag);
+    run.end = std::min(run.end + kWindowsLead, cells.size());
+  }
   std::vector<Run> joined;
   for (const Run& run : runs) {
     if (!joined.empty() &&
-        (run.begin <= joined.back().end || is_same_place(cells, joined.back(), run, slow))) {
+        (run.begin <= joined.back().end || is_same_place(cells, joined.back(), run, limits))) {
       joined.back().end = run.end;
     } else {
       joined.push_back(run);
     }
   }
   for (Run& run : joined) {
-    run = {edge_of(cells, run, -1, code), edge_of(cells, run, 1, code) + 1};
-    // A movement begins in the noise.
-    const std::size_t margin = std::min(kMargin, (run.end - run.begin) / 4);
+    run = {edge_of(cells, run, -1, limits), edge_of(cells, run, 1, limits) + 1};
+    const std::size_t most = (run.end - run.begin) / 4;
+    const std::size_t margin = std::min(most, limits.margin);
     if (run.begin > 0) run.begin += margin;
     if (run.end < cells.size()) run.end -= margin;
   }
@@ -199,16 +212,23 @@ Still still_of(const StickTrack& track, std::size_t index, std::span<const Cell>
   return still;
 }
 
-std::vector<Still> all_stills(std::span<const StickTrack> tracks) {
+Limits limits_of(std::span<const StickTrack> tracks, const vec2& declared_step, double interval_s) {
+  const double step = std::max(quantisation_step(tracks, 0, declared_step.x),
+                               quantisation_step(tracks, 1, declared_step.y));
+  const double code = std::min(step, 0.05);
+  const double margin = std::ceil(2.0 * interval_s / kCell_s);
+  return {.slow = std::max(kSlow, 1.5 * code),
+          .code = std::max(kUnseen, 1.2 * code),
+          .margin = static_cast<std::size_t>(std::clamp(margin, 1.0, 5.0))};
+}
+
+std::vector<Still> all_stills(std::span<const StickTrack> tracks, const vec2& declared_step) {
   const double interval_s = typical_interval_s(tracks);
-  // A code that flips is no movement.
-  const double step =
-      std::max(quantisation_step(tracks, 0, 0.0), quantisation_step(tracks, 1, 0.0));
-  const double slow = std::max(kSlow, 1.5 * std::min(step, 0.05));
+  const Limits limits = limits_of(tracks, declared_step, interval_s);
   std::vector<Still> found;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     const std::vector<Cell> cells = cells_of(tracks[t], interval_s);
-    for (const Run& run : still_runs(cells, slow, std::min(step, 0.05))) {
+    for (const Run& run : still_runs(cells, limits)) {
       found.push_back(still_of(tracks[t], t, cells, run));
     }
   }
@@ -233,7 +253,7 @@ std::optional<Box> box_of(std::span<const StickTrack> tracks) noexcept {
   return Box{0.5 * (least + most), 0.5 * (most - least)};
 }
 
-// Places are told apart on a grid over +-kFarthestHome; neighbours within 0.125 are one place, so
+// Places are told apart on a grid over +-kFarthestHome; neighbours within 0.19 are one place, so
 // that the rests of a stick that drifts, or returns badly, hang together.
 class Places {
  public:
@@ -263,7 +283,7 @@ class Places {
   }
 
  private:
-  static constexpr int kBins = 16, kReach = 2;
+  static constexpr int kBins = 16, kReach = 3;
   static std::size_t bin_of(const vec2& p) {
     const auto index = [](double x) {
       return std::clamp(static_cast<int>((x / kFarthestHome + 1.0) * 0.5 * kBins), 0, kBins - 1);
@@ -313,9 +333,9 @@ bool may_be_home(const Still& still, const std::optional<Box>& turned) noexcept 
 
 }  // namespace
 
-Stills stills(std::span<const StickTrack> raw_tracks) {
+Stills stills(std::span<const StickTrack> raw_tracks, const vec2& declared_step) {
   const std::vector<StickTrack> tracks = clean_tracks(raw_tracks).tracks;
-  const std::vector<Still> found = all_stills(tracks);
+  const std::vector<Still> found = all_stills(tracks, declared_step);
   const std::optional<Box> box = box_of(tracks);
   if (!box) return {};
   const double least_half = std::min(box->half.x, box->half.y);

@@ -13,7 +13,6 @@ namespace gaitpad {
 
 namespace {
 
-constexpr std::size_t kMaxSources = 8;
 constexpr std::int64_t kMaxNumber = 1000;
 
 enum class SourceKind { axis, button, hat };
@@ -117,9 +116,9 @@ std::optional<Error> add_pair(std::string_view pair, const SdlNumbers& numbered,
   for (ControlSource source : sources_of(numbered, *wanted)) {
     source.side = side;
     if (!*control) control->emplace();
-    if ((*control)->size() >= kMaxSources) {
+    if ((*control)->size() >= kMaxSdlSources) {
       return Error{
-          fmt::format("SDL mapping: more than {} sources for {}", kMaxSources, in_quotes(key))};
+          fmt::format("SDL mapping: more than {} sources for {}", kMaxSdlSources, in_quotes(key))};
     }
     (*control)->push_back(source);
   }

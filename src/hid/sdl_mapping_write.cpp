@@ -97,7 +97,10 @@ struct Pair {
 using Pairs = std::set<Pair>;
 
 void add(Pairs& pairs, std::string_view control, std::string_view sign, std::string source) {
-  if (!source.empty()) pairs.insert({std::string(control), std::string(sign), std::move(source)});
+  const auto is_same = [control](const Pair& p) { return p.control == control; };
+  const auto known = std::count_if(pairs.begin(), pairs.end(), is_same);
+  if (source.empty() || known >= static_cast<std::ptrdiff_t>(kMaxSdlSources)) return;
+  pairs.insert({std::string(control), std::string(sign), std::move(source)});
 }
 
 // The axes of a pad that this one of the layout's moves, and which way.

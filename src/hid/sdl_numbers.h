@@ -16,6 +16,8 @@ namespace gaitpad {
 inline constexpr std::size_t kHatDirections = 4;
 using SdlHat = std::array<std::optional<ControlSource>, kHatDirections>;
 
+inline constexpr std::size_t kMaxSdlSources = 8;  // of one control
+
 struct SdlNumbers {
   std::vector<ControlSource> axes, buttons;  // a0, a1 ..., b0, b1 ...
   std::vector<SdlHat> hats;                  // h0.1, h0.2, h0.4, h0.8 ...

@@ -190,8 +190,8 @@ Result<Sticks> apply_ranges(const AbsInfos& infos, const std::string& source, co
                       max,
                       flat > 0.0,
                       false};
-    const auto where = [&](const std::string& cause) {
-      return Error{fmt::format("{}:{}: {}", source, info.line, cause)};
+    const auto where = [&source, line = info.line](const std::string& cause) {
+      return Error{fmt::format("{}:{}: {}", source, line, cause)};
     };
     if (!(min < max)) return where(fmt::format("{}: {} to {} is no range", claim.axis, min, max));
     // Counts of another scale say nothing about this pad's.

@@ -52,6 +52,22 @@ void fill_box(cairo_t* cr, const Box& box, const Colour& c);
 void stroke_box(cairo_t* cr, const Box& box, const Colour& c, double width);
 void line(cairo_t* cr, const vec2& from, const vec2& to);  // adds to the path
 
+// Drawing stays within the box while this lives.
+class Clipped {
+ public:
+  Clipped(cairo_t* cr, const Box& box) : cr_(cr) {
+    cairo_save(cr);
+    cairo_rectangle(cr, box.x, box.y, box.width, box.height);
+    cairo_clip(cr);
+  }
+  ~Clipped() { cairo_restore(cr_); }
+  Clipped(const Clipped&) = delete;
+  Clipped& operator=(const Clipped&) = delete;
+
+ private:
+  cairo_t* cr_;
+};
+
 // Valid UTF-8 on one line: what is not becomes `?`, control characters blanks.
 std::string drawable(std::string_view text);
 double text_width(cairo_t* cr, const TextStyle& style, const std::string& text);

@@ -13,11 +13,11 @@ namespace gaitpad {
 
 namespace {
 
-// Pixels. A row is a card: title, three square plots with their legends, numbers, verdict.
+// Pixels. A row is a card: title, plots with their legends, numbers, verdict.
 constexpr double kPageWidth = 1500.0, kMargin = 40.0, kHeadingHeight = 76.0, kBetweenCards = 24.0;
 constexpr double kPadding = 24.0, kTitleHeight = 44.0, kCaptionHeight = 22.0, kPlot = 396.0,
-                 kGutter = 38.0, kTicksHeight = 26.0, kLegendHeight = 48.0, kNumberRow = 46.0,
-                 kVerdictHeight = 60.0;
+                 kGutter = 38.0, kTicksHeight = 26.0, kLegendHeight = 48.0, kLegendRow = 20.0,
+                 kNumberRow = 46.0, kVerdictHeight = 60.0;
 constexpr double kCardWidth = kPageWidth - 2.0 * kMargin;
 constexpr double kInnerWidth = kCardWidth - 2.0 * kPadding;
 constexpr int kNumberColumns = 6, kNumberRows = 2;
@@ -135,29 +135,38 @@ void draw_verdict(cairo_t* cr, const Box& box, const StickAdvice& advice) {
   }
 }
 
+struct Plot {
+  const char* caption;
+  void (*draw)(cairo_t*, const Box&, const StickPicture&);
+  std::vector<LegendEntry> (*legend)(const StickPicture&);
+};
+
+// Caption above, legend below the place for tick labels.
+void draw_plot(cairo_t* cr, const Box& plot, const Plot& what, const StickPicture& stick) {
+  draw_text(cr, {13.0, colour::kInk, Align::left, true}, {plot.x, plot.y - 9.0}, what.caption,
+            plot.width);
+  what.draw(cr, plot, stick);
+  draw_legend(cr, {plot.x, plot.y + plot.height + kTicksHeight, plot.width, kLegendHeight},
+              what.legend(stick));
+}
+
+// Two square planes, and a column of two plots.
 void draw_plots(cairo_t* cr, const Box& box, const StickPicture& stick) {
-  using Draw = void (*)(cairo_t*, const Box&, const StickPicture&);
-  using Legend = std::vector<LegendEntry> (*)(const StickPicture&);
-  struct Plot {
-    const char* caption;
-    Draw draw;
-    Legend legend;
-  };
-  constexpr Plot kPlots[] = {
-      {"Raw: as the pad reports it", &draw_raw_plane, &raw_legend},
-      {"Calibrated: what the character gets", &draw_calibrated_plane, &calibrated_legend},
-      {"Reach by direction, raw", &draw_reach, &reach_legend}};
-  const double stride = (box.width - kGutter - kPlot) / 2.0;
-  for (int i = 0; i < 3; ++i) {
-    const Box plot{std::round(box.x + kGutter + i * stride), box.y + kCaptionHeight, kPlot, kPlot};
-    draw_text(cr, {13.0, colour::kInk, Align::left, true}, {plot.x, box.y + 13.0},
-              kPlots[i].caption, kPlot);
-    kPlots[i].draw(cr, plot, stick);
-    draw_legend(cr, {plot.x, plot.y + kPlot + kTicksHeight, kPlot, kLegendHeight},
-                kPlots[i].legend(stick));
-  }
-  if (!stick.statistics) return;
-  draw_text(cr, {13.0, colour::kInk, Align::right}, {box.x + box.width, box.y + 13.0},
+  const double stride = (box.width - kGutter - kPlot) / 2.0, top = box.y + kCaptionHeight;
+  const auto left = [&](int column) { return std::round(box.x + kGutter + column * stride); };
+  draw_plot(cr, {left(0), top, kPlot, kPlot},
+            {"Raw: as the pad reports it", &draw_raw_plane, &raw_legend}, stick);
+  draw_plot(cr, {left(1), top, kPlot, kPlot},
+            {"Calibrated: what the character gets", &draw_calibrated_plane, &calibrated_legend},
+            stick);
+  const double below = kTicksHeight + kLegendRow + kCaptionHeight + 10.0;
+  const double half = std::floor((kPlot - below) / 2.0);
+  draw_plot(cr, {left(2), top, kPlot, half}, {"At rest, magnified, raw", &draw_rest, &rest_legend},
+            stick);
+  draw_plot(cr, {left(2), top + kPlot - half, kPlot, half},
+            {"Reach by direction, raw", &draw_reach, &reach_legend}, stick);
+  if (!stick.statistics || !stick.statistics->circularity_error) return;
+  draw_text(cr, {13.0, colour::kInk, Align::right}, {left(2) + kPlot, top + kPlot - half - 9.0},
             "circularity error: " + error_text(*stick.statistics));
 }
 

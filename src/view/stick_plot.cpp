@@ -21,40 +21,27 @@ using PixelOf = std::function<std::optional<vec2>(const vec2& raw)>;
 
 bool is_finite(const vec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
-class Clipped {  // drawing stays within the box while this lives
- public:
-  Clipped(cairo_t* cr, const Box& box) : cr_(cr) {
-    cairo_save(cr);
-    cairo_rectangle(cr, box.x, box.y, box.width, box.height);
-    cairo_clip(cr);
-  }
-  ~Clipped() { cairo_restore(cr_); }
-  Clipped(const Clipped&) = delete;
-  Clipped& operator=(const Clipped&) = delete;
-
- private:
-  cairo_t* cr_;
-};
-
-void draw_plane(cairo_t* cr, const Box& plane) {
-  fill_box(cr, plane, rgb(colour::kCard));
+void draw_plane(cairo_t* cr, const Plane& plane) {
+  fill_box(cr, plane.box, rgb(colour::kCard));
   const auto at = [&plane](double x, double y) { return pixel_in(plane, {x, y}); };
   set_colour(cr, rgb(colour::kGrid));
   cairo_set_line_width(cr, 1.0);
   for (const double v : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
     const vec2 p = at(v, v);
-    line(cr, {std::round(p.x) + 0.5, plane.y}, {std::round(p.x) + 0.5, plane.y + plane.height});
-    line(cr, {plane.x, std::round(p.y) + 0.5}, {plane.x + plane.width, std::round(p.y) + 0.5});
+    line(cr, {std::round(p.x) + 0.5, plane.box.y},
+         {std::round(p.x) + 0.5, plane.box.y + plane.box.height});
+    line(cr, {plane.box.x, std::round(p.y) + 0.5},
+         {plane.box.x + plane.box.width, std::round(p.y) + 0.5});
   }
   cairo_stroke(cr);
   const vec2 middle = at(0.0, 0.0);
   set_colour(cr, rgb(0xaab2bd));
-  cairo_arc(cr, middle.x, middle.y, plane.width * 0.5 / kPlaneHalfWidth, 0.0, kTurn);
+  cairo_arc(cr, middle.x, middle.y, plane.box.height * 0.5 / plane.half_height, 0.0, kTurn);
   cairo_stroke(cr);
 }
 
-void draw_plane_frame(cairo_t* cr, const Box& plane) {
-  stroke_box(cr, plane, rgb(colour::kBorder), 1.0);
+void draw_plane_frame(cairo_t* cr, const Plane& plane) {
+  stroke_box(cr, plane.box, rgb(colour::kBorder), 1.0);
   const TextStyle word{11.0, colour::kFaint, Align::centre};
   const auto at = [&plane](double x, double y) { return pixel_in(plane, {x, y}); };
   draw_text(cr, word, at(0.0, 1.07) + vec2(0.0, 2.0), "forward");
@@ -63,8 +50,8 @@ void draw_plane_frame(cairo_t* cr, const Box& plane) {
   draw_text(cr, word, at(1.1, 0.0) + vec2(0.0, -4.0), "right");
   for (const double v : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
     const std::string number = v == 0.0 ? "0" : fmt::format("{:+g}", v);
-    draw_text(cr, word, vec2(at(v, 0.0).x, plane.y + plane.height + 15.0), number);
-    draw_text(cr, {11.0, colour::kFaint, Align::right}, {plane.x - 6.0, at(0.0, v).y + 4.0},
+    draw_text(cr, word, vec2(at(v, 0.0).x, plane.box.y + plane.box.height + 15.0), number);
+    draw_text(cr, {11.0, colour::kFaint, Align::right}, {plane.box.x - 6.0, at(0.0, v).y + 4.0},
               number);
   }
 }
@@ -121,7 +108,7 @@ void draw_outline(cairo_t* cr, const Outline& outline, const PixelOf& pixel_of) 
 }
 
 // The path of a zone's edge: round, or with `axial` a square.
-void zone_path(cairo_t* cr, const Box& plane, const StickCalibration& c, double deflection) {
+void zone_path(cairo_t* cr, const Plane& plane, const StickCalibration& c, double deflection) {
   for (int i = 0; i < kCurvePoints; ++i) {
     vec2 p = direction(i * kTurn / kCurvePoints);
     if (c.shape == ZoneShape::axial) p = p / std::max(std::fabs(p.x), std::fabs(p.y));
@@ -143,7 +130,7 @@ double response_of(const StickCalibration& c, double deflection) {
 // Where the sideways zone makes the stick straight: its x is within `sideways` of the length that
 // the response gives. One half, forward or back; the edge meets x = 0's side where that length is
 // `sideways`.
-void sideways_path(cairo_t* cr, const Box& plane, const StickCalibration& c, double forward) {
+void sideways_path(cairo_t* cr, const Plane& plane, const StickCalibration& c, double forward) {
   std::vector<vec2> edge;  // right of it
   for (int i = 0; i <= 300; ++i) {
     const double length = c.inner + (kFarDeflection - c.inner) * i * i / (300.0 * 300.0);
@@ -160,25 +147,17 @@ void sideways_path(cairo_t* cr, const Box& plane, const StickCalibration& c, dou
   cairo_close_path(cr);
 }
 
-void draw_zones(cairo_t* cr, const Box& plane, const StickCalibration& c) {
-  if (c.shape == ZoneShape::both && c.sideways > 0.0) {
-    for (const double forward : {1.0, -1.0}) {
-      cairo_new_path(cr);
-      sideways_path(cr, plane, c, forward);
-      set_colour(cr, rgb(colour::kOrange, 0.22));
-      cairo_fill(cr);
-    }
+void draw_sideways_zone(cairo_t* cr, const Plane& plane, const StickCalibration& c) {
+  if (c.shape != ZoneShape::both || !(c.sideways > 0.0)) return;
+  for (const double forward : {1.0, -1.0}) {
+    cairo_new_path(cr);
+    sideways_path(cr, plane, c, forward);
+    set_colour(cr, rgb(colour::kOrange, 0.22));
+    cairo_fill(cr);
   }
-  cairo_new_path(cr);
-  zone_path(cr, plane, c, c.inner);
-  set_colour(cr, rgb(colour::kGreen, 0.25));
-  cairo_fill_preserve(cr);
-  set_colour(cr, rgb(colour::kGreen));
-  cairo_set_line_width(cr, 1.5);
-  cairo_stroke(cr);
 }
 
-void draw_outer_zone(cairo_t* cr, const Box& plane, const StickCalibration& c) {
+void draw_outer_zone(cairo_t* cr, const Plane& plane, const StickCalibration& c) {
   constexpr double kDashes[] = {6.0, 4.0};
   cairo_set_dash(cr, kDashes, 2, 0.0);
   zone_path(cr, plane, c, c.outer);
@@ -188,7 +167,34 @@ void draw_outer_zone(cairo_t* cr, const Box& plane, const StickCalibration& c) {
   cairo_set_dash(cr, nullptr, 0, 0.0);
 }
 
-void draw_rests(cairo_t* cr, const Box& plane, const StickStatistics& s) {
+}  // namespace
+
+vec2 pixel_in(const Plane& plane, const vec2& position) noexcept {
+  constexpr double kFar = 1e5;  // pixels: cairo counts them in 24 bits
+  const double scale = plane.box.height / 2.0 / plane.half_height;
+  const vec2 offset = (position - plane.middle) * scale;
+  return {plane.box.x + plane.box.width / 2.0 + std::clamp(offset.x, -kFar, kFar),
+          plane.box.y + plane.box.height / 2.0 - std::clamp(offset.y, -kFar, kFar)};
+}
+
+vec2 raw_of(const StickCalibration& c, const vec2& p) noexcept {
+  const auto raw = [](const AxisCalibration& axis, double v) {
+    return axis.centre + v * (v >= 0.0 ? axis.max - axis.centre : axis.centre - axis.min);
+  };
+  return {raw(c.x, p.x), raw(c.y, p.y)};
+}
+
+void draw_inner_zone(cairo_t* cr, const Plane& plane, const StickCalibration& c) {
+  cairo_new_path(cr);
+  zone_path(cr, plane, c, c.inner);
+  set_colour(cr, rgb(colour::kGreen, 0.25));
+  cairo_fill_preserve(cr);
+  set_colour(cr, rgb(colour::kGreen));
+  cairo_set_line_width(cr, 1.5);
+  cairo_stroke(cr);
+}
+
+void draw_rests(cairo_t* cr, const Plane& plane, const StickStatistics& s) {
   set_colour(cr, rgb(colour::kInk));
   for (const vec2& rest : s.rests) {
     if (!is_finite(rest)) continue;
@@ -204,30 +210,18 @@ void draw_rests(cairo_t* cr, const Box& plane, const StickStatistics& s) {
   cairo_stroke(cr);
 }
 
-}  // namespace
-
-vec2 pixel_in(const Box& plane, const vec2& position) noexcept {
-  const auto share = [](double v) {
-    return (std::clamp(v, -10.0, 10.0) / kPlaneHalfWidth + 1.0) * 0.5;
-  };
-  return {plane.x + plane.width * share(position.x), plane.y + plane.height * share(-position.y)};
-}
-
-vec2 raw_of(const StickCalibration& c, const vec2& p) noexcept {
-  const auto raw = [](const AxisCalibration& axis, double v) {
-    return axis.centre + v * (v >= 0.0 ? axis.max - axis.centre : axis.centre - axis.min);
-  };
-  return {raw(c.x, p.x), raw(c.y, p.y)};
-}
-
-void draw_raw_plane(cairo_t* cr, const Box& plane, const StickPicture& stick) {
+void draw_raw_plane(cairo_t* cr, const Box& box, const StickPicture& stick) {
+  const Plane plane{box};
   draw_plane(cr, plane);
   {
-    const Clipped clipped(cr, plane);
+    const Clipped clipped(cr, plane.box);
     const PixelOf pixel_of = [&plane](const vec2& raw) {
       return is_finite(raw) ? std::optional<vec2>(pixel_in(plane, raw)) : std::nullopt;
     };
-    if (stick.advice) draw_zones(cr, plane, stick.advice->calibration);
+    if (stick.advice) {
+      draw_sideways_zone(cr, plane, stick.advice->calibration);
+      draw_inner_zone(cr, plane, stick.advice->calibration);
+    }
     draw_track(cr, stick, pixel_of);
     if (stick.advice) draw_outer_zone(cr, plane, stick.advice->calibration);
     if (stick.statistics) {
@@ -238,10 +232,11 @@ void draw_raw_plane(cairo_t* cr, const Box& plane, const StickPicture& stick) {
   draw_plane_frame(cr, plane);
 }
 
-void draw_calibrated_plane(cairo_t* cr, const Box& plane, const StickPicture& stick) {
+void draw_calibrated_plane(cairo_t* cr, const Box& box, const StickPicture& stick) {
+  const Plane plane{box};
   draw_plane(cr, plane);
   if (stick.advice) {
-    const Clipped clipped(cr, plane);
+    const Clipped clipped(cr, plane.box);
     StickCalibration calibration = stick.advice->calibration;
     calibration.frame = {};  // the tracks are in it already
     const PixelOf pixel_of = [&](const vec2& raw) {

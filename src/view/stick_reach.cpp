@@ -1,4 +1,4 @@
-// The third plot, and what explains all three.
+// The plot of the circularity, and what explains all plots.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Range range_of(const Reaches& reaches) {
 
 void draw_reach_grid(cairo_t* cr, const Box& plot, const Range& range) {
   fill_box(cr, plot, rgb(colour::kCard));
-  const double step = range.high - range.low > 0.9 ? 0.2 : 0.1;
+  const double step = range.high - range.low > 0.55 ? 0.2 : 0.1;
   const auto first = static_cast<int>(std::ceil(range.low / step - 1e-9));
   for (int i = first; i * step <= range.high + 1e-9; ++i) {
     const double y = plot.y + plot.height * (range.high - i * step) / (range.high - range.low);

@@ -1,11 +1,14 @@
 // libFuzzer target: two bytes of descriptor length, a descriptor, then reports of up to 64 bytes.
-// Parses, builds the layout with and without the program's overrides, decodes.
+// Parses, builds the layout with and without the program's overrides, decodes. The line of SDL's
+// data base that is written for it is read back.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
 
 #include "hid/decode.h"
+#include "hid/sdl_mapping.h"
+#include "hid/trace.h"
 
 namespace {
 
@@ -40,6 +43,12 @@ void decode_all(const gaitpad::PadLayout& layout, std::span<const std::uint8_t> 
   }
 }
 
+void write_mapping(const gaitpad::DeviceInfo& device, const gaitpad::PadLayout& layout) {
+  const auto line = gaitpad::sdl_mapping_text(device, layout);
+  if (!line || line->size() > gaitpad::kMaxTraceTextBytes) return;
+  if (!gaitpad::sdl_controls(*line, layout.descriptor, device.driver)) std::abort();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -55,6 +64,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t length = std::min<std::size_t>(data[2] | (data[3] << 8), size - 4);
   device.descriptor.assign(data + 4, data + 4 + length);
   const auto layout = gaitpad::pad_layout(device, pads);
-  if (layout) decode_all(*layout, {data + 4 + length, size - 4 - length});
+  if (!layout) return 0;
+  decode_all(*layout, {data + 4 + length, size - 4 - length});
+  write_mapping(device, *layout);
   return 0;
 }

@@ -82,13 +82,28 @@ def write_calibrations(out):
     (out / "fuzz_calibration" / "every_key.toml").write_text(EVERY_KEY)
 
 
+def write_imports(out):
+    """One of each kind that is imported."""
+    broken = "1,0,118,138,5368709,5368709"
+    texts = {
+        "jscal": f"jscal -u 5,1,0,2,5,9,4,304,305,307,308 js0\njscal -s 5,{broken},{broken},0,0,0,0,0,0 js0\n",
+        "evemu": "I: 0003 1209 0001 0111\nA: 00 15 240 0 15 0\nA: 01 10 235 0 10 0\n",
+        "hwdb": " EVDEV_ABS_00=15:240:::15\n EVDEV_ABS_01=10:235:0:0:10\n",
+        "evtest": "Event type 3 (EV_ABS)\nEvent code 0 (ABS_X)\n Value 128\n Min 15\n Max 240\n Flat 15\n",
+        "sdl": "03000000091200000100000011010000,Node,a:b1,b:b0,leftx:a0,lefty:a1~,platform:Linux,\n",
+    }
+    for name, text in texts.items():
+        (out / "fuzz_import" / name).write_text(text)
+
+
 def main():
     out = pathlib.Path(sys.argv[1])
-    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh", "fuzz_calibration"):
+    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh", "fuzz_calibration", "fuzz_import"):
         (out / name).mkdir(parents=True, exist_ok=True)
     write_pads(out)
     write_walk(out)
     write_calibrations(out)
+    write_imports(out)
 
 
 if __name__ == "__main__":

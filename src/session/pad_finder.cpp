@@ -46,16 +46,10 @@ int milliseconds_until(std::chrono::steady_clock::time_point time) {
   return static_cast<int>(std::clamp(left, 0ms, kIdleLook).count());
 }
 
-// A recording as a pad plays as it replays: what this machine's user has calibrated is not for it.
-PadFinder::Options settled(PadFinder::Options options) {
-  if (is_recording(options.wish.pad)) options.files.user_calibrations.clear();
-  return options;
-}
-
 }  // namespace
 
 PadFinder::PadFinder(Options options, PadSlots& slots, PadIo& io, Remarks& remarks)
-    : options_(settled(std::move(options))),
+    : options_(std::move(options)),
       slots_(slots),
       io_(io),
       remarks_(remarks),

@@ -87,6 +87,7 @@ class Calibrate(unittest.TestCase):
         hand = Hand()
         hand.hold(0.5)
         hand.releases(7)
+        hand.hold(2.2)
         hand.turns(2.5)
         hand.pushes()
         hand.triggers()

@@ -150,6 +150,7 @@ Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish
   const CalibrationGuide& guide = *subject->guide;
   GuidedPad pad;
   pad.info = std::move(subject->info);
+  pad.has_factory_sticks = subject->config.has_factory_sticks;
   pad.tracks = guide.tracks();
   pad.frame = {guide.frame(0), guide.frame(1)};
   subject->guide.reset();  // it looks at the layout

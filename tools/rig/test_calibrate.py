@@ -108,6 +108,7 @@ def guide_through(pad, driver, mounted):
         at = len(terminal.text)
         hand.hold(0.5)
         hand.releases(3, 4)
+        hand.hold(2.2)
         hand.do()
         at = terminal.wait_for("Step 2 of 7: turning", 10, at).end()
         assert "0 of 6 releases" not in terminal.text[terminal.text.index("UNPLUGGED"):], "what was seen is lost"

@@ -143,10 +143,7 @@ Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish
   const auto subject = std::make_unique<Subject>();
   const auto is_done = run_guide(**stream, wish, end, *subject);
   if (!is_done) return is_done.error();
-  if (!*is_done) {
-    print_remarks(kCommand, {"given up: nothing is written"});
-    return std::optional<GuidedPad>();
-  }
+  if (!*is_done) return std::optional<GuidedPad>();
   const CalibrationGuide& guide = *subject->guide;
   GuidedPad pad;
   pad.info = std::move(subject->info);

@@ -139,8 +139,8 @@ def files():
 def check_axis(axis, centre, reach, what):
     """`centre`, `reach`: raw. The noise has a sigma of 0.71 counts and moves the rim by one."""
     assert abs(axis["centre"] - centre) < COUNT, (what, axis, centre)
-    assert abs(axis["min"] - (centre - reach)) < 2.5 * COUNT, (what, axis, centre - reach)
-    assert abs(axis["max"] - (centre + reach)) < 2.5 * COUNT, (what, axis, centre + reach)
+    assert abs(axis["min"] - (centre - reach)) < 1.5 * COUNT, (what, axis, centre - reach)
+    assert abs(axis["max"] - (centre + reach)) < 1.5 * COUNT, (what, axis, centre + reach)
 
 
 def check_file(mounted):

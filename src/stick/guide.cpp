@@ -213,9 +213,8 @@ vec2 CalibrationGuide::from_rest(const Stick& stick) const noexcept {
 bool CalibrationGuide::is_complete() const noexcept {
   switch (step()) {
     case GuideStep::rest:
-      return std::ranges::all_of(sticks_, [](const Stick& stick) {
-        return stick.release.count() >= kWantedReleases && stick.release.sides() >= kWantedSides;
-      });
+      return std::ranges::all_of(sticks_,
+                                 [](const Stick& stick) { return stick.release.is_complete(); });
     case GuideStep::turn:
       return std::ranges::all_of(sticks_,
                                  [](const Stick& stick) { return stick.turn.is_complete(); });

@@ -15,12 +15,12 @@
 namespace gaitpad {
 
 enum class GuideStep : std::uint8_t {
-  rest,  // let go, after pushes to different sides
-  turn,  // full circles along the rim
-  forward,
+  rest,     // let go, after pushes to different sides, then left alone
+  turn,     // full circles along the rim
+  forward,  // a push, held a moment, like the next three
   right,
   back,
-  left,  // pushes, held a moment
+  left,
   triggers,
   done,
 };
@@ -105,6 +105,7 @@ class CalibrationGuide {
   GuideProgress push_progress(const Stick& stick) const;
   GuideProgress trigger_progress(const Trigger& trigger) const;
   std::string side_name(const Stick& stick, const vec2& raw) const;
+  std::string missing_sides(const Stick& stick) const;
 
   std::vector<GuideStep> steps_;
   std::size_t index_ = 0;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "stick/guide.h"
 
@@ -64,7 +63,8 @@ std::string CalibrationGuide::instruction() const {
   switch (step()) {
     case GuideStep::rest:
       return fmt::format(
-          "Push {} to its rim, let it snap back and wait a second; {} times, to different sides.",
+          "Push {} to its rim, let it snap back and wait a second; {} times, to different sides. "
+          "Then leave it alone.",
           sticks, kWantedReleases);
     case GuideStep::turn:
       return fmt::format(
@@ -107,27 +107,37 @@ std::string CalibrationGuide::side_name(const Stick& stick, const vec2& raw) con
   return kNames[(std::lround(atan2(told.y, told.x) / (kPi / 4.0)) + 8) % 8];
 }
 
-GuideProgress CalibrationGuide::rest_progress(const Stick& stick) const {
+std::string CalibrationGuide::missing_sides(const Stick& stick) const {
   static const std::array<vec2, 4> kQuarters = {vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0),
                                                 vec2(0.0, -1.0)};
+  std::string names;
+  for (int i = 0; i < 4; ++i) {
+    if (stick.release.has_side(i)) continue;
+    if (!names.empty()) names += ", ";
+    names += side_name(stick, kQuarters[static_cast<std::size_t>(i)]);
+  }
+  return names;
+}
+
+GuideProgress CalibrationGuide::rest_progress(const Stick& stick) const {
   const ReleaseWatch& release = stick.release;
   const int count = std::min(release.count(), kWantedReleases);
   const int sides = std::min(release.sides(), kWantedSides);
+  const double alone_s = static_cast<double>(release.rested_ns()) / 1e9;
+  const double wanted_s = static_cast<double>(kWantedRestNs) / 1e9;
   GuideProgress progress;
-  progress.done = static_cast<double>(count + sides) / (kWantedReleases + kWantedSides);
+  progress.done = 0.9 * (count + sides) / (kWantedReleases + kWantedSides);
   progress.text = fmt::format("{} of {} releases", release.count(), kWantedReleases);
-  if (release.is_held()) {
+  if (release.is_complete()) {
+    progress.done = 1.0;
+  } else if (release.is_held()) {
     progress.text += "; it is held, let go";
   } else if (release.is_away()) {
     progress.text += "; let go and wait";
   } else if (count == kWantedReleases && sides < kWantedSides) {
-    progress.text += "; not yet from";
-    const char* separator = " ";
-    for (int i = 0; i < 4; ++i) {
-      if (release.has_side(i)) continue;
-      progress.text += std::exchange(separator, ", ");
-      progress.text += side_name(stick, kQuarters[static_cast<std::size_t>(i)]);
-    }
+    progress.text += "; not yet from " + missing_sides(stick);
+  } else if (count == kWantedReleases) {
+    progress.text += fmt::format("; leave it alone: {:.1f} of {:.1f} s", alone_s, wanted_s);
   }
   return progress;
 }

@@ -83,6 +83,8 @@ void ReleaseWatch::hold(const vec2& raw, std::int64_t duration_ns) {
     near_sum_ += raw * static_cast<double>(duration_ns);
   }
   if (is_back()) add_release();
+  if (count() >= kWantedReleases && sides() >= kWantedSides && near_ns_ >= kWantedRestNs)
+    is_complete_ = true;
 }
 
 bool ReleaseWatch::is_held() const noexcept {
@@ -113,6 +115,7 @@ void ReleaseWatch::add_release() {
 void ReleaseWatch::restart() {
   rests_.clear();
   sides_ = {};
+  is_complete_ = false;
   lose();
 }
 

@@ -28,6 +28,7 @@ class StillWatch {
 };
 
 inline constexpr int kWantedReleases = 6, kWantedSides = 3;
+inline constexpr std::int64_t kWantedRestNs = 2500 * kMillisecondNs;  // for drift, at the end
 
 // A release: it was away from where it rests, then stood still there for half a second, or was
 // there for one and a half (a stick that wanders at rest).
@@ -41,6 +42,9 @@ class ReleaseWatch {
   int sides() const noexcept;  // quarters that it was let go from
   bool has_side(int quarter) const noexcept { return sides_[static_cast<std::size_t>(quarter)]; }
   bool is_away() const noexcept { return is_away_; }
+  std::int64_t rested_ns() const noexcept { return near_ns_; }  // since the last release
+  // Stays so, whatever the other stick still needs.
+  bool is_complete() const noexcept { return is_complete_; }
   // It stands still, but too far out to be at rest.
   bool is_held() const noexcept;
   // The median of the rests, else where it stood when it was first seen; none: not seen at rest.
@@ -58,7 +62,7 @@ class ReleaseWatch {
   std::int64_t away_ns_ = 0;  // without a break
   std::int64_t near_ns_ = 0;  // since it was away, spikes left out
   vec2 near_sum_{0.0};        // meanwhile, times nanoseconds
-  bool is_away_ = false;
+  bool is_away_ = false, is_complete_ = false;
 };
 
 inline constexpr int kTurnBins = 48;

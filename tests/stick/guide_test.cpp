@@ -136,6 +136,11 @@ struct Hand {
       push(side, vec2(angle.cos, angle.sin), 0.1);
     }
   }
+  // The whole first step, with the rest at its end.
+  void rest_step(int side) {
+    release_around(side, 8);
+    wait(2.0);
+  }
   void turn(int side, double turns, double radius, double start_turn = 0.0) {
     for (double t = 0.0; t < turns; t += period_s / 1.5) {
       const SinCos angle = sin_cos((start_turn + t) * 2.0 * kPi);
@@ -150,7 +155,7 @@ struct Hand {
   }
   // All that the sticks are asked for.
   void steps_of_sticks(int sticks) {
-    for (int side = 0; side < sticks; ++side) release_around(side, 8);
+    for (int side = 0; side < sticks; ++side) rest_step(side);
     for (int side = 0; side < sticks; ++side) full_turns(side);
     for (const vec2& to : {vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(-1, 0)})
       for (int side = 0; side < sticks; ++side) push(side, to);
@@ -240,6 +245,9 @@ TEST(CalibrationGuide, BothSticksMayBeMovedAtOnce) {
     hand.thumb = {vec2(0.0), vec2(0.0)};
     hand.wait(0.8);
   }
+  EXPECT_EQ(hand.guide.step(), GuideStep::rest);
+  EXPECT_EQ(hand.text().substr(0, 32), "8 of 6 releases; leave it alone:") << hand.text();
+  hand.wait(1.9);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 
@@ -278,7 +286,17 @@ TEST(CalibrationGuide, ReleasesFromTwoSidesAreNotEnough) {
   }
   EXPECT_EQ(hand.guide.step(), GuideStep::rest);
   EXPECT_EQ(hand.text(), "8 of 6 releases; not yet from left, back");
-  hand.push(0, vec2(0, -1));
+  hand.push(0, vec2(0, -1), 0.1, 2.7);
+  EXPECT_EQ(hand.guide.step(), GuideStep::turn);
+}
+
+TEST(CalibrationGuide, AStickThatHasRestedEnoughMayBeBumpedWhileTheOtherIsMoved) {
+  Hand hand;
+  hand.rest_step(0);
+  hand.thumb[0] = vec2(0.5, 0.0);
+  hand.wait(0.1);
+  hand.thumb[0] = vec2(0.0);
+  hand.rest_step(1);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 
@@ -299,7 +317,7 @@ TEST(CalibrationGuide, StartingWithTheStickHeldALittleDoesNotHinder) {
   hand.wait(2.0);
   hand.move(0, vec2(0.0), 0.05);
   hand.wait(1.0);
-  hand.release_around(0, 6);
+  hand.rest_step(0);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 
@@ -308,7 +326,7 @@ TEST(CalibrationGuide, AStickThatNeverStandsStillIsReleasedAllTheSame) {
   for (int i = 0; i < 6; ++i) {
     const SinCos side = sin_cos(i * kPi / 3.0 + 0.2);
     hand.move(0, vec2(side.cos, side.sin), 0.1);
-    for (int k = 0; k < 500; ++k) {
+    for (int k = 0; k < 700; ++k) {
       hand.thumb[0] = vec2(0.12 * std::sin(k * 0.025), 0.0);  // once a second
       hand.pass();
     }
@@ -330,6 +348,7 @@ TEST(CalibrationGuide, SilenceIsHoldingStill) {
     hand.time_ns += 700'000'000;
     hand.guide.tick(hand.time_ns);
   }
+  hand.guide.tick(hand.time_ns + 1'900'000'000);
   EXPECT_EQ(hand.samples(), 12u);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
@@ -471,7 +490,7 @@ TEST(CalibrationGuide, TracksAreRawWholeAndUnbroken) {
 
 TEST(CalibrationGuide, ARepeatedStepForgetsWhatItHasSeen) {
   Hand hand(Controls::one_stick);
-  hand.release_around(0, 8);
+  hand.rest_step(0);
   ASSERT_EQ(hand.guide.step(), GuideStep::turn);
   const std::size_t kept = hand.samples();
   hand.turn(0, 0.6, 0.9);
@@ -486,7 +505,7 @@ TEST(CalibrationGuide, ARepeatedStepForgetsWhatItHasSeen) {
 
 TEST(CalibrationGuide, BackBeginsTheStepBeforeAgain) {
   Hand hand(Controls::one_stick);
-  hand.release_around(0, 8);
+  hand.rest_step(0);
   const std::size_t of_rest = hand.samples();
   hand.full_turns(0);
   hand.push(0, vec2(0, 1));
@@ -537,7 +556,7 @@ TEST(CalibrationGuide, UnpluggingCutsTheTrackAndLosesNothing) {
   EXPECT_GT(hand.samples(), samples);
   EXPECT_EQ(hand.guide.tracks().stick[0].size(), 2u);
   hand.push(0, vec2(0, -1));
-  hand.push(0, vec2(1, 0));
+  hand.push(0, vec2(1, 0), 0.1, 2.7);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 

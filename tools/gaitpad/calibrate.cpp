@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <memory>
@@ -77,8 +78,10 @@ void print_changes(const std::vector<std::string>& changes, const std::string& s
   for (const std::string& change : changes) fmt::print("{}\n", change);
 }
 
-// What was measured, on standard output; then the picture, the comparison or the file.
-int finish(const CalibrateArguments& arguments, const PadFiles& files, const GuidedPad& pad) {
+// What was measured, on standard output; then the picture, the comparison or the file. Before that
+// it is asked for, where `asked` is somebody at the terminal.
+int finish(const CalibrateArguments& arguments, const PadFiles& files, const GuidedPad& pad,
+           RunEnd* asked) {
   const PadAnalysis analysis = analysis_of(pad.layout, pad.tracks, pad.frame);
   CalibrationFile file = calibration_for(pad.info, pad.has_factory_sticks);
   std::vector<std::string> changes;
@@ -115,6 +118,10 @@ int finish(const CalibrateArguments& arguments, const PadFiles& files, const Gui
         "no stick was seen at rest, so nothing is known about its centre; nothing written");
   }
   if (!arguments.check.empty()) return 0;
+  std::fflush(stdout);
+  if (asked && arguments.out != "-" &&
+      !confirmed(fmt::format("Enter writes {}, q leaves it as it was.", printable(target)), *asked))
+    return calibrate_failed("left before the end; nothing written");
   return print_or_save(target, file, comments_of(analysis));
 }
 
@@ -128,7 +135,7 @@ int run(const CalibrateArguments& arguments) {
     const auto pad = guided_pad(*files, arguments.wish, end);
     if (!pad) return calibrate_failed(pad.error().message);
     if (!*pad) return calibrate_failed("left before the end; nothing written");
-    return finish(arguments, *files, **pad);
+    return finish(arguments, *files, **pad, &end);
   }
   std::vector<std::string> remarks;
   auto pad = traced_pad(arguments.traces, arguments.is_lenient ? Damage::skip : Damage::refuse,
@@ -137,7 +144,7 @@ int run(const CalibrateArguments& arguments) {
   const auto problem = learn_frames(arguments.pushes, *pad, remarks);
   if (problem) return calibrate_failed(problem->message);
   print_remarks("calibrate", remarks);
-  return finish(arguments, *files, *pad);
+  return finish(arguments, *files, *pad, nullptr);
 }
 
 }  // namespace

@@ -143,13 +143,11 @@ Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish
   const auto subject = std::make_unique<Subject>();
   const auto is_done = run_guide(**stream, wish, end, *subject);
   if (!is_done) return is_done.error();
-  if (!*is_done) {
-    print_remarks(kCommand, {"given up: nothing is written"});
-    return std::optional<GuidedPad>();
-  }
+  if (!*is_done) return std::optional<GuidedPad>();
   const CalibrationGuide& guide = *subject->guide;
   GuidedPad pad;
   pad.info = std::move(subject->info);
+  pad.has_factory_sticks = subject->config.has_factory_sticks;
   pad.tracks = guide.tracks();
   pad.frame = {guide.frame(0), guide.frame(1)};
   subject->guide.reset();  // it looks at the layout

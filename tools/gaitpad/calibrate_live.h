@@ -21,7 +21,7 @@ struct GuidedPad {
   std::array<StickFrame, 2> frame;  // left, right
 };
 // The guided steps on the first wished pad that comes. None where the user gave up (q, Ctrl-C,
-// SIGTERM, end of input; a remark says so): nothing is to be written then. A recording's end skips
+// SIGTERM, end of input): nothing is to be written then. A recording's end skips
 // what is left. Error: the wish is wrong, or the pad has no stick.
 Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish& wish,
                                             RunEnd& end);

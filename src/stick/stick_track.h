@@ -15,8 +15,8 @@ struct StickSample {
   std::int64_t time_ns = 0;
   vec2 raw{0.0};
 };
-// Reports of one uninterrupted stay of the pad, in the order of time. Most pads report changes only,
-// so a position holds until the next sample.
+// Reports of one uninterrupted stay of the pad, in the order of time. Most pads report changes
+// only, so a position holds until the next sample.
 using StickTrack = std::vector<StickSample>;
 
 struct TriggerSample {
@@ -49,6 +49,7 @@ class PadTracker {
  private:
   const PadLayout* layout_;
   PadState state_;
+  std::uint32_t known_ = 0;  // axes (bits) that reports have told of since the last cut
   std::array<bool, 2> is_cut_stick_{true, true}, is_cut_trigger_{true, true};
   PadTracks tracks_;
 };

@@ -228,8 +228,11 @@ vec2 middle_of(std::span<const vec2> places) noexcept {
   if (places.empty()) return vec2(0.0);
   vec2 middle(0.0);
   for (const vec2& place : places) middle += place / static_cast<double>(places.size());
-  // Badoiu and Clarkson: a step towards the farthest, ever smaller; 1 / 1000 of the radius is left.
-  for (int k = 1; k <= 1000; ++k) {
+  // Badoiu and Clarkson: a step towards the farthest, ever smaller; 1 / steps of the radius is
+  // left.
+  const int steps =
+      static_cast<int>(std::clamp(1e7 / static_cast<double>(places.size()), 50.0, 1e3));
+  for (int k = 1; k <= steps; ++k) {
     const vec2* farthest = &places.front();
     for (const vec2& place : places) {
       if (glm::length(place - middle) > glm::length(*farthest - middle)) farthest = &place;

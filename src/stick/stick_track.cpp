@@ -56,9 +56,12 @@ double declared_step(const PadLayout& layout, PadAxis axis) noexcept {
 bool PadTracker::take(const Report& report) {
   const ReportLayout* told = layout_of(*layout_, report);
   if (told == nullptr || !decode(*layout_, report, state_)) return false;
+  // An axis that no report has told of yet would be taken for one at its middle.
+  for (const AxisOp& op : told->axes) known_ |= 1u << op.axis;
+  const auto is_known = [this](PadAxis axis) { return (known_ >> axis & 1u) != 0; };
   for (int side = 0; side < 2; ++side) {
     const PadAxis x = kStickAxes[side][0], y = kStickAxes[side][1];
-    if (tells_of(*told, x) || tells_of(*told, y)) {
+    if ((tells_of(*told, x) || tells_of(*told, y)) && is_known(x) && is_known(y)) {
       append(tracks_.stick[side], is_cut_stick_[side],
              StickSample{report.time_ns, vec2(state_.axis[x], state_.axis[y])});
       is_cut_stick_[side] = false;
@@ -76,6 +79,7 @@ bool PadTracker::take(const Report& report) {
 void PadTracker::cut() noexcept {
   is_cut_stick_ = {true, true};
   is_cut_trigger_ = {true, true};
+  known_ = 0;
   state_ = PadState{};
 }
 

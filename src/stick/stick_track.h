@@ -50,6 +50,7 @@ class PadTracker {
  private:
   const PadLayout* layout_;
   PadState state_;
+  std::uint32_t known_ = 0;  // axes (bits) that reports have told of since the last cut
   std::array<bool, 2> is_cut_stick_{true, true}, is_cut_trigger_{true, true};
   PadTracks tracks_;
 };

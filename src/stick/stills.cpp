@@ -90,7 +90,10 @@ bool is_still(std::span<const Cell> cells, std::size_t first, const Limits& limi
   const double weight = before.weight + after.weight;
   // A movement that begins or ends here is in one half.
   const double variance = std::min(before.variance(), after.variance());
-  const double limit = kNoiseLimit * kNoiseLimit * variance;
+  // A few reports tell their noise badly; still fewer would let a movement pass for it.
+  const double fewer = std::min(before.weight, after.weight);
+  const double doubt = fewer > 4.0 ? std::min(6.0 / fewer, 1.0) : 0.0;
+  const double limit = kNoiseLimit * kNoiseLimit * variance * (1.0 + doubt);
   const vec2 moved = after.mean() - before.mean();
   if (glm::dot(moved, moved) >
       std::max(limits.slow * limits.slow, limit * (1.0 / before.weight + 1.0 / after.weight))) {

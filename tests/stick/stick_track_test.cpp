@@ -1,0 +1,133 @@
+#include "stick/stick_track.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace gaitpad {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// A pad whose reports have ids: 1 tells of the left stick (8 bit each) and the left trigger (10
+// bit), 2 of the right stick's x alone, 3 of its y.
+PadLayout split_pad() {
+  DeviceInfo device;
+  device.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                    // game pad
+                       0x85, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15, 0x00, 0x26,  // id 1: X, Y
+                       0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02,        // 0..255
+                       0x05, 0x02, 0x09, 0xc5, 0x26, 0xff, 0x03, 0x75, 0x0a,  // Brake 0..1023
+                       0x95, 0x01, 0x81, 0x02, 0x75, 0x06, 0x81, 0x03,        //
+                       0x85, 0x02, 0x05, 0x01, 0x09, 0x32, 0x26, 0xff, 0x00,  // id 2: Z
+                       0x75, 0x08, 0x95, 0x01, 0x81, 0x02,                    //
+                       0x85, 0x03, 0x09, 0x35, 0x81, 0x02, 0xc0};             // id 3: Rz
+  const auto pads = parse_pad_file(
+      "[[pad]]\n[pad.axes]\nright_x = \"0001:0032\"\nright_y = \"0001:0035\"\n"
+      "left_trigger = \"0002:00c5\"\nright_trigger = \"\"\n",
+      "split.toml");
+  EXPECT_TRUE(pads) << (pads ? "" : pads.error().message);
+  auto layout = pad_layout(device, pads ? *pads : PadOverrides{});
+  EXPECT_TRUE(layout) << (layout ? "" : layout.error().message);
+  return layout ? *layout : PadLayout{};
+}
+
+Report report_at(std::int64_t time_ns, const Bytes& bytes) {
+  Report report;
+  report.time_ns = time_ns;
+  report.size = static_cast<std::uint16_t>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), report.bytes.begin());
+  return report;
+}
+
+TEST(StickTrack, LayoutSaysWhichControlsThereAre) {
+  const PadLayout pad = split_pad();
+  EXPECT_TRUE(has_stick(pad, 0));
+  EXPECT_TRUE(has_stick(pad, 1));
+  EXPECT_TRUE(has_trigger(pad, 0));
+  EXPECT_FALSE(has_trigger(pad, 1));
+  EXPECT_FALSE(has_stick(PadLayout{}, 0));
+}
+
+TEST(StickTrack, DeclaredStepIsOneCountOfTheField) {
+  const PadLayout pad = split_pad();
+  EXPECT_DOUBLE_EQ(declared_step(pad, kLeftX), 2.0 / 255.0);
+  EXPECT_DOUBLE_EQ(declared_step(pad, kLeftTrigger), 1.0 / 1023.0);
+  EXPECT_EQ(declared_step(pad, kRightTrigger), 0.0);
+}
+
+TEST(StickTrack, EachReportAddsToTheControlsThatItTellsOf) {
+  const PadLayout pad = split_pad();
+  PadTracker tracker(pad);
+  EXPECT_TRUE(tracker.take(report_at(10, {1, 255, 0, 0xff, 0x03})));
+  EXPECT_TRUE(tracker.take(report_at(20, {1, 0, 255, 0x00, 0x00})));
+  const PadTracks& tracks = tracker.tracks();
+  ASSERT_EQ(tracks.stick[0].size(), 1u);
+  ASSERT_EQ(tracks.stick[0][0].size(), 2u);
+  EXPECT_EQ(tracks.stick[0][0][0].time_ns, 10);
+  EXPECT_EQ(tracks.stick[0][0][0].raw, vec2(1.0, 1.0));  // y down in the report, forward here
+  EXPECT_EQ(tracks.stick[0][0][1].raw, vec2(-1.0, -1.0));
+  ASSERT_EQ(tracks.trigger[0].size(), 1u);
+  EXPECT_EQ(tracks.trigger[0][0][0].raw, 1.0);
+  EXPECT_EQ(tracks.trigger[0][0][1].raw, 0.0);
+  EXPECT_TRUE(tracks.stick[1].empty());
+}
+
+TEST(StickTrack, AnAxisCountsOnlyOnceAReportHasToldOfIt) {
+  const PadLayout pad = split_pad();
+  PadTracker tracker(pad);
+  tracker.take(report_at(1, {2, 255}));
+  EXPECT_TRUE(tracker.tracks().stick[1].empty());
+  tracker.take(report_at(2, {3, 255}));
+  tracker.take(report_at(3, {2, 0}));
+  ASSERT_EQ(tracker.tracks().stick[1].size(), 1u);
+  ASSERT_EQ(tracker.tracks().stick[1][0].size(), 2u);
+  EXPECT_EQ(tracker.tracks().stick[1][0][0].raw, vec2(1.0, -1.0));
+  EXPECT_EQ(tracker.tracks().stick[1][0][1].raw, vec2(-1.0, -1.0));
+}
+
+TEST(StickTrack, ReportsThatDoNotDecodeAddNothing) {
+  const PadLayout pad = split_pad();
+  PadTracker tracker(pad);
+  EXPECT_FALSE(tracker.take(report_at(1, {1, 255})));
+  EXPECT_FALSE(tracker.take(report_at(2, {9, 0, 0, 0, 0})));
+  EXPECT_FALSE(tracker.take(report_at(3, {})));
+  EXPECT_TRUE(tracker.tracks().stick[0].empty());
+}
+
+TEST(StickTrack, ATrackEndsWhereThePadWent) {
+  const PadLayout pad = split_pad();
+  PadTracker tracker(pad);
+  tracker.take(report_at(1, {1, 0, 0, 0, 0}));
+  tracker.cut();
+  EXPECT_EQ(tracker.state().axis[kLeftX], PadState{}.axis[kLeftX]);
+  tracker.cut();  // twice is once
+  tracker.take(report_at(2, {1, 0, 0, 0, 0}));
+  tracker.take(report_at(3, {1, 0, 0, 0, 0}));
+  ASSERT_EQ(tracker.tracks().stick[0].size(), 2u);
+  EXPECT_EQ(tracker.tracks().stick[0][0].size(), 1u);
+  EXPECT_EQ(tracker.tracks().stick[0][1].size(), 2u);
+  EXPECT_EQ(tracker.tracks().trigger[0].size(), 2u);
+}
+
+TEST(StickTrack, TimeNeverGoesBackWithinATrack) {
+  const PadLayout pad = split_pad();
+  PadTracker tracker(pad);
+  for (const std::int64_t time_ns : {5, 3, 7}) tracker.take(report_at(time_ns, {1, 0, 0, 0, 0}));
+  const StickTrack& track = tracker.tracks().stick[0][0];
+  EXPECT_EQ(track[1].time_ns, 5);
+  EXPECT_EQ(track[2].time_ns, 7);
+  EXPECT_EQ(tracker.tracks().trigger[0][0][1].time_ns, 5);
+}
+
+TEST(StickTrack, AFrameTurnsEverySample) {
+  const StickFrame frame{RawDirection::minus_y, RawDirection::plus_x};
+  const auto turned = in_frame(frame, {{{1, {0.25, -0.5}}}, {{2, {1.0, 0.0}}, {3, {0.0, 1.0}}}});
+  ASSERT_EQ(turned.size(), 2u);
+  EXPECT_EQ(turned[0][0].raw, vec2(0.5, 0.25));
+  EXPECT_EQ(turned[0][0].time_ns, 1);
+  EXPECT_EQ(turned[1][0].raw, vec2(0.0, 1.0));
+  EXPECT_EQ(turned[1][1].raw, vec2(-1.0, 0.0));
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,180 @@
+#include "stick/stills.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "stick/made_stick.h"
+
+namespace gaitpad {
+namespace {
+
+double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+Stills stills_of(const MadeStick& stick, const MadeMoves& moves) {
+  return stills(std::vector<StickTrack>{reported(stick, moves.path())});
+}
+
+double seconds_of(const std::vector<Still>& stills) {
+  double sum = 0.0;
+  for (const Still& still : stills) sum += still.duration_s;
+  return sum;
+}
+
+// Of all kinds of stick: noisy, worn, drifting, coarse, silent at rest, slow and quick.
+std::vector<MadeStick> every_kind() {
+  std::vector<MadeStick> sticks;
+  for (const int bits : {0, 8, 16}) {
+    for (const double sigma : {0.0, 0.004, 0.04}) {
+      for (const bool is_silent : {false, true}) {
+        for (const double rate_hz : {66.0, 250.0, 1000.0}) {
+          MadeStick stick;
+          stick.bits = bits;
+          stick.sigma = vec2(sigma);
+          stick.reports_changes_only = is_silent;
+          stick.rate_hz = rate_hz;
+          stick.jitter_ms = 200.0 / rate_hz;
+          stick.centre = vec2(0.2, -0.15);
+          stick.hysteresis = 0.15;
+          stick.seed = static_cast<std::uint32_t>(sticks.size() + 1);
+          sticks.push_back(stick);
+        }
+      }
+    }
+  }
+  return sticks;
+}
+
+std::string name_of(const MadeStick& stick) {
+  return std::to_string(stick.bits) + " bits, sigma " + std::to_string(stick.sigma.x) + ", " +
+         std::to_string(stick.rate_hz) + " Hz" +
+         (stick.reports_changes_only ? ", changes only" : "");
+}
+
+TEST(Stills, RestAfterEachReleaseIsFoundWhereItWas) {
+  for (MadeStick stick : every_kind()) {
+    for (const double drift : {0.0, 0.02}) {
+      stick.drift_per_s = vec2(drift, 0.0);
+      MadeMoves moves(stick);
+      std::vector<std::array<double, 2>> truth;
+      for (int k = 0; k < 4; ++k) {
+        moves.push(1.6 * k);
+        moves.hold(0.1);
+        moves.release();
+        const double from_s = static_cast<double>(moves.path().size()) / stick.rate_hz;
+        moves.rest(0.7);
+        truth.push_back({from_s, from_s + 0.7});
+      }
+      moves.push(0.0);
+      const Stills found = stills_of(stick, moves);
+      ASSERT_GE(found.rests.size(), truth.size()) << name_of(stick) << " drift " << drift;
+      EXPECT_GT(seconds_of(found.rests), 0.7 * 4 * 0.7) << name_of(stick);
+      for (const Still& rest : found.rests) {
+        bool is_inside = false;
+        for (const auto& [from_s, to_s] : truth) {
+          // A silent pad's last position holds until the movement shows: a code, or an interval.
+          const double late_s = 2.0 / stick.rate_hz + 0.02;
+          is_inside |= seconds(rest.begin_ns) > from_s && seconds(rest.end_ns) < to_s + late_s;
+        }
+        EXPECT_TRUE(is_inside) << name_of(stick) << " " << seconds(rest.begin_ns) << " to "
+                               << seconds(rest.end_ns);
+      }
+    }
+  }
+}
+
+TEST(Stills, TurningIsNoRest) {
+  for (const MadeStick& stick : every_kind()) {
+    for (const double seconds_a_turn : {0.4, 1.0, 3.0}) {
+      MadeMoves moves(stick);
+      moves.move(stick.centre + vec2(0.75, 0.0), 0.01);
+      moves.turn(3.0, seconds_a_turn);
+      const Stills found = stills_of(stick, moves);
+      EXPECT_TRUE(found.rests.empty())
+          << name_of(stick) << " " << seconds_a_turn << " s a turn, at " << found.rests[0].mean.x
+          << " " << found.rests[0].mean.y;
+    }
+  }
+}
+
+TEST(Stills, AHeldPushIsAPushAndNoRest) {
+  for (const MadeStick& stick : every_kind()) {
+    MadeMoves moves(stick);
+    moves.rest(0.6);
+    for (const double angle : {0.5 * kPi, 0.0, -0.5 * kPi, kPi}) {
+      moves.push(angle, 0.15, 0.8);
+      moves.hold(0.6);
+      moves.release();
+      moves.rest(0.6);
+    }
+    const Stills found = stills_of(stick, moves);
+    EXPECT_GE(found.pushes.size(), 4u) << name_of(stick);
+    for (const Still& push : found.pushes) {
+      EXPECT_GT(glm::length(push.mean - stick.centre), 0.5) << name_of(stick);
+    }
+    for (const Still& rest : found.rests) {
+      EXPECT_LT(glm::length(rest.mean - stick.centre), 0.12) << name_of(stick);
+    }
+  }
+}
+
+TEST(Stills, AThumbThatHoldsHalfWayIsNoRestWhereThereAreTrueOnes) {
+  for (const MadeStick& stick : every_kind()) {
+    MadeMoves moves(stick);
+    moves.rest(0.5);
+    for (int k = 0; k < 3; ++k) {
+      moves.push(1.0, 0.2, 0.5);
+      moves.hold(4.0);
+      moves.release();
+      moves.rest(0.5);
+    }
+    const Stills found = stills_of(stick, moves);
+    ASSERT_GE(found.rests.size(), 3u) << name_of(stick);
+    for (const Still& rest : found.rests) {
+      EXPECT_LT(glm::length(rest.mean - stick.centre), 0.12) << name_of(stick);
+    }
+  }
+}
+
+TEST(Stills, AStickThatWasNeverTouchedRestsAllTheTime) {
+  for (const MadeStick& stick : every_kind()) {
+    if (stick.reports_changes_only && stick.sigma.x == 0.0) continue;  // one report says nothing
+    MadeMoves moves(stick);
+    moves.rest(3.0);
+    const Stills found = stills_of(stick, moves);
+    // A pad that is silent for the last while is not known to be there.
+    EXPECT_GT(seconds_of(found.rests), stick.reports_changes_only ? 2.0 : 2.9) << name_of(stick);
+    EXPECT_TRUE(found.pushes.empty());
+  }
+}
+
+TEST(Stills, AMeanIsOfTimeNotOfReports) {
+  // Two reports of a silent pad: for a second here, for three seconds a code farther.
+  const StickTrack track = {{0, {0.01, 0.0}},
+                            {1'000'000'000, {0.014, 0.0}},
+                            {2'500'000'000, {0.014, 0.01}},
+                            {4'000'000'000, {0.9, 0.0}}};
+  const Stills found = stills(std::vector<StickTrack>{track});
+  ASSERT_EQ(found.rests.size(), 1u);
+  EXPECT_NEAR(found.rests[0].mean.x, (0.01 + 3.0 * 0.014) / 4.0, 1e-4);
+  EXPECT_EQ(found.rests[0].first, 0u);
+  EXPECT_EQ(found.rests[0].last, 2u);
+}
+
+TEST(Stills, AnySamplesAreTaken) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  constexpr auto kFirst = std::numeric_limits<std::int64_t>::min();
+  constexpr auto kLast = std::numeric_limits<std::int64_t>::max();
+  EXPECT_TRUE(stills({}).rests.empty());
+  EXPECT_TRUE(stills(std::vector<StickTrack>(3)).rests.empty());
+  EXPECT_TRUE(stills(std::vector<StickTrack>{{{0, {nan, inf}}, {1, {1e300, 0.0}}}}).rests.empty());
+  const StickTrack wild = {{kLast, {0.0, 0.0}},  {kFirst, {0.0, 0.0}}, {0, {nan, 0.0}},
+                           {kFirst, {0.0, 1e9}}, {kLast, {-inf, 0.1}}, {kLast, {0.1, 0.1}}};
+  stills(std::vector<StickTrack>{wild, wild});
+  // As many at one moment.
+  stills(std::vector<StickTrack>{StickTrack(1000, {7, {0.1, 0.1}})});
+}
+
+}  // namespace
+}  // namespace gaitpad

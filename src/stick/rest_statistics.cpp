@@ -28,6 +28,7 @@ struct Evidence {
   std::vector<std::vector<RestPoint>> blocks;  // by still, of weight 1
   std::size_t longest = 0;                     // the still in `blocks` that stood longest
   double step = 0.0;
+  double step_noise = 0.0;  // of a mean by rounding, where no noise takes it away
 };
 
 void add_still(Evidence& evidence, std::span<const StickTrack> tracks, const Still& still,
@@ -70,6 +71,9 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
   const vec2 variance = evidence.noise.variance();
   evidence.white_noise =
       std::sqrt(0.5 * (variance.x + variance.y) * blocks / std::max(evidence.weight, 1.0));
+  if (std::max(variance.x, variance.y) < 0.5 * evidence.step * evidence.step) {
+    evidence.step_noise = evidence.step / std::sqrt(12.0);
+  }
   const double measured = freedom >= 6.0 ? std::sqrt(squares / freedom) : 0.0;
   // A code that does not flip says only that the place is within a step.
   evidence.block_noise = std::max({evidence.white_noise, measured, 0.02 * evidence.step, 1e-7});
@@ -80,12 +84,16 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
 
 // ---- drift ----
 
-// Twice the logarithm of the odds would be chi-squared; sixteen are one in ten million, and few
-// patterns of chance or of the hand's habits look so much like a line.
-constexpr double kSure = 16.0;
+// How much likelier the rests are with a trend than without, as a logarithm. Sixteen are one in ten
+// million, and few patterns of chance or of the hand's habits look so much like a line. Where noise
+// explains all that the trend leaves, the noise is the measure, else what it leaves.
+constexpr double kSure = 16.0, kSureOfOne = 12.0;
 double log_odds(double without, double with, double freedom, double noise) noexcept {
-  const double floor = freedom * noise * noise;
-  return 0.5 * freedom * std::log((without + floor) / (with + floor));
+  const double variance = noise * noise;
+  const double by_what_is_left =
+      0.5 * freedom * std::log((without + freedom * variance) / (with + freedom * variance));
+  if (with > variance * (freedom + 3.0 * std::sqrt(2.0 * freedom))) return by_what_is_left;
+  return std::max(by_what_is_left, 0.5 * (without - with) / variance);
 }
 
 bool is_worth_telling(const Evidence& evidence, const vec2& drift, double seconds, double steps) {
@@ -111,7 +119,8 @@ Within within_rests(const Evidence& evidence) {
     spread += line.spread;
   }
   if (spread > 0.0) within.drift /= spread;
-  within.error = evidence.block_noise / std::sqrt(std::max(spread, 1e-12));
+  const double noise = std::hypot(evidence.block_noise, evidence.step_noise);
+  within.error = noise / std::sqrt(std::max(spread, 1e-12));
   return within;
 }
 
@@ -170,7 +179,11 @@ vec2 drift_within_rests(const Evidence& evidence) {
     with += part.weight * glm::dot(left, left);
   }
   const double freedom = 2.0 * (static_cast<double>(parts.size()) - 2.0);
-  if (log_odds(without, with, freedom, evidence.block_noise) < kSure) return vec2(0.0);
+  const double blocks_each =
+      static_cast<double>(longest.size()) / static_cast<double>(parts.size());
+  const double noise =
+      std::hypot(evidence.block_noise, evidence.step_noise * std::sqrt(blocks_each));
+  if (log_odds(without, with, freedom, noise) < kSureOfOne) return vec2(0.0);
   const std::span<const RestPoint> all(longest);
   const RestTrend late = rest_trend(all.subspan(all.size() / 2));
   if (glm::dot(late.slope, line.slope) < 0.6 * glm::dot(line.slope, line.slope)) return vec2(0.0);

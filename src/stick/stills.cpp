@@ -151,7 +151,7 @@ std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, const
     const double limit =
         kNoiseLimit *
         std::sqrt(variance * (1.0 / std::max(cells[next].weight, 1.0) + 1.0 / inner.weight));
-    if (glm::length(off) > std::max({limit, limits.code})) break;
+    if (glm::length(off) > limit + limits.code) break;
     at = next;
   }
   return at;
@@ -253,7 +253,7 @@ std::optional<Box> box_of(std::span<const StickTrack> tracks) noexcept {
   return Box{0.5 * (least + most), 0.5 * (most - least)};
 }
 
-// Places are told apart on a grid over +-kFarthestHome; neighbours within 0.125 are one place, so
+// Places are told apart on a grid over +-kFarthestHome; neighbours within 0.19 are one place, so
 // that the rests of a stick that drifts, or returns badly, hang together.
 class Places {
  public:
@@ -283,7 +283,7 @@ class Places {
   }
 
  private:
-  static constexpr int kBins = 16, kReach = 2;
+  static constexpr int kBins = 16, kReach = 3;
   static std::size_t bin_of(const vec2& p) {
     const auto index = [](double x) {
       return std::clamp(static_cast<int>((x / kFarthestHome + 1.0) * 0.5 * kBins), 0, kBins - 1);

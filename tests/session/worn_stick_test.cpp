@@ -1,0 +1,167 @@
+// The worst stick of the generator, measured, calibrated by the advice, and walked with.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "session/made_session.h"
+#include "stick/made_stick.h"
+#include "stick/recommendation.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr int kCounts = 255;
+
+MadeStick worst_stick(std::uint32_t seed) {
+  MadeStick stick;
+  stick.seed = seed;
+  const double away = static_cast<double>(seed) * 2.4;  // to all sides
+  stick.centre = vec2(0.15 * std::cos(away), 0.15 * std::sin(away));
+  stick.sigma = vec2(0.02);
+  stick.hysteresis = 0.1;
+  stick.gate = Gate::ellipse;
+  stick.reach_x = 0.8;
+  stick.reach_y = 0.7;
+  stick.bits = 8;
+  return stick;
+}
+
+StickCalibration calibrated(const MadeStick& stick) {
+  const StickTrack track = made_track(stick);
+  const vec2 step(2.0 / kCounts);
+  const StickAdvice advice = stick_advice(stick_statistics(std::span(&track, 1), step), {});
+  EXPECT_EQ(advice.verdict, Verdict::worn) << advice.reason;
+  return advice.calibration;
+}
+
+// What the stick reports where the thumb and the spring have it.
+class Reported {
+ public:
+  explicit Reported(const MadeStick& stick) : stick_(stick), random_(stick.seed + 100) {}
+  vec2 at(const vec2& place) {
+    return {made::quantised(place.x + stick_.sigma.x * normal_(random_), stick_.bits),
+            made::quantised(place.y + stick_.sigma.y * normal_(random_), stick_.bits)};
+  }
+  vec2 at_gate(double angle_rad) {
+    const double radius = gate_radius(stick_, angle_rad);
+    return at(stick_.centre + radius * vec2(std::cos(angle_rad), std::sin(angle_rad)));
+  }
+  vec2 at_rest(double from_rad) {
+    const double away = 0.5 * stick_.hysteresis;
+    return at(stick_.centre + away * vec2(std::cos(from_rad), std::sin(from_rad)));
+  }
+
+ private:
+  MadeStick stick_;
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+};
+
+Report report_of(const vec2& raw) {
+  const double half = 0.5 * kCounts;
+  return made_report(static_cast<int>(std::lround(half + half * raw.x)),
+                     static_cast<int>(std::lround(half - half * raw.y)));
+}
+
+Simulation simulation_with(const StickCalibration& calibration) {
+  SimulationConfig config = made_config(1);
+  config.pads[0].calibration.left = calibration;
+  auto simulation = Simulation::create(config);
+  EXPECT_TRUE(simulation);
+  return *simulation;
+}
+
+struct Straightness {
+  int strides = 0;
+  double drift_m = 0.0;    // sideways, a stride, on average
+  double longest_m = 0.0;  // sideways, of any one
+  double stride_m = 0.0;   // the last
+};
+// Held for `ticks`, a report a tick; a stride goes from one strike of the left heel to the next.
+template <typename Raw>
+Straightness straightness(const StickCalibration& calibration, int ticks, const Raw& raw) {
+  Simulation simulation = simulation_with(calibration);
+  Straightness found;
+  double first_m = 0.0, last_m = 0.0;
+  bool is_begun = false;
+  for (int tick = 0; tick < ticks; ++tick) {
+    simulation.step(std::vector<Report>{report_of(raw(tick))});
+    const WalkState& state = simulation.walkers()[0].state;
+    if (!simulation.heel_struck() || state.frame.swing != kLeftSide) continue;
+    const double at_m = state.hips_m.x;
+    if (is_begun) {
+      ++found.strides;
+      found.longest_m = std::max(found.longest_m, std::fabs(at_m - last_m));
+    } else {
+      first_m = at_m;
+    }
+    is_begun = true;
+    last_m = at_m;
+  }
+  found.drift_m = std::fabs(last_m - first_m) / std::max(found.strides, 1);
+  found.stride_m = simulation.walkers()[0].state.frame.stride_m[kLeftSide];
+  return found;
+}
+
+constexpr std::uint32_t kSeeds = 12;
+
+TEST(WornStick, WalksStraightWithTheFullStride) {
+  StickCalibration ideal;
+  const Straightness best = straightness(ideal, 9600, [](int) { return vec2(0.0, 1.0); });
+  ASSERT_GE(best.strides, 30);
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    const MadeStick stick = worst_stick(seed);
+    const StickCalibration calibration = calibrated(stick);
+    Reported reported(stick);
+    // The thumb holds it forward, the worn spring up to half of the hysteresis to either side.
+    const Straightness found = straightness(calibration, 9600, [&](int tick) {
+      const double astray = 0.5 * stick.hysteresis * std::sin(0.002 * tick);
+      return reported.at(stick.centre + vec2(astray, gate_radius(stick, 0.5 * kPi)));
+    });
+    EXPECT_GE(found.strides, 30);
+    EXPECT_LE(found.drift_m, 0.001) << "seed " << seed;
+    EXPECT_LE(found.longest_m, 0.001) << "seed " << seed;
+    // Noise to the side takes its cosine off the forward part.
+    EXPECT_GE(found.stride_m, 0.999 * best.stride_m) << "seed " << seed;
+  }
+}
+
+TEST(WornStick, WithoutItsCalibrationItWalksInCurves) {
+  const MadeStick stick = worst_stick(1);
+  Reported reported(stick);
+  const Straightness found =
+      straightness({}, 4800, [&](int) { return reported.at_gate(0.5 * kPi); });
+  EXPECT_GT(found.longest_m, 0.01);
+}
+
+TEST(WornStick, FullDeflectionIsFullInEveryDirection) {
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    const MadeStick stick = worst_stick(seed);
+    const StickCalibration both = calibrated(stick);
+    StickCalibration radial = both;
+    radial.shape = ZoneShape::radial;
+    Reported reported(stick);
+    for (int degrees = 0; degrees < 360; ++degrees) {
+      for (int n = 0; n < 20; ++n) {
+        const vec2 raw = reported.at_gate(degrees * kDegree);
+        EXPECT_GE(glm::length(stick_position(radial, raw)), 0.99) << degrees;
+        EXPECT_GE(glm::length(stick_position(both, raw)), 0.96) << degrees;
+      }
+    }
+  }
+}
+
+TEST(WornStick, RestNeverMovesIt) {
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    const MadeStick stick = worst_stick(seed);
+    const StickCalibration calibration = calibrated(stick);
+    Reported reported(stick);
+    for (int n = 0; n < 20000; ++n) {
+      ASSERT_EQ(stick_position(calibration, reported.at_rest(0.01 * n)), vec2(0.0));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

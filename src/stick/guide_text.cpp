@@ -127,7 +127,7 @@ GuideProgress CalibrationGuide::rest_progress(const Stick& stick) const {
   const double wanted_s = static_cast<double>(kWantedRestNs) / 1e9;
   GuideProgress progress;
   progress.done = 0.9 * (count + sides) / (kWantedReleases + kWantedSides);
-  progress.text = fmt::format("{} of {} releases", release.count(), kWantedReleases);
+  progress.text = fmt::format("{} of {} releases", count, kWantedReleases);
   if (release.is_complete()) {
     progress.done = 1.0;
   } else if (release.is_held()) {

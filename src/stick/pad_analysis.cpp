@@ -1,6 +1,7 @@
 #include "stick/pad_analysis.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace gaitpad {
@@ -42,13 +43,30 @@ void take_centre(const StickCalibration& advice, StickCalibration& calibration) 
   calibration.outer = std::max(calibration.outer, calibration.inner + 0.05);
 }
 
+// A file is for people, too: 0.00001 is a third of a step of 16 bits.
+double readable(double value) noexcept { return std::round(value * 1e5) / 1e5 + 0.0; }
+
+void make_readable(StickCalibration& c) noexcept {
+  for (AxisCalibration* axis : {&c.x, &c.y})
+    for (double* number : {&axis->min, &axis->centre, &axis->max}) *number = readable(*number);
+  for (double* number : {&c.inner, &c.outer, &c.sideways}) *number = readable(*number);
+}
+
+TriggerCalibration readable(const TriggerCalibration& trigger) noexcept {
+  return {readable(trigger.released), readable(trigger.pressed)};
+}
+
+std::optional<double> readable(const std::optional<double>& value) noexcept {
+  return value ? std::optional(readable(*value)) : std::nullopt;
+}
+
 StickMeasured measured(const StickStatistics& s) {
   const auto worse = [](const vec2& v) { return std::max(v.x, v.y); };
   StickMeasured measured;
-  if (s.sigma) measured.sigma = worse(*s.sigma);
-  measured.hysteresis = s.hysteresis;
-  measured.drift_per_s = s.drift_per_s;
-  measured.circularity_error = s.circularity_error;
+  if (s.sigma) measured.sigma = readable(worse(*s.sigma));
+  measured.hysteresis = readable(s.hysteresis);
+  measured.drift_per_s = readable(s.drift_per_s);
+  measured.circularity_error = readable(s.circularity_error);
   return measured;
 }
 
@@ -85,10 +103,11 @@ void take_advice(const PadAnalysis& analysis, CalibrationFile& file) {
       } else {
         take_centre(stick->advice.calibration, *sticks[i]);
       }
+      make_readable(*sticks[i]);
       file.measured[i] = measured(stick->statistics);
     }
     if (analysis.trigger[i] && analysis.trigger[i]->pressed)
-      *triggers[i] = trigger_advice(*analysis.trigger[i]);
+      *triggers[i] = readable(trigger_advice(*analysis.trigger[i]));
   }
 }
 

@@ -29,8 +29,9 @@ constexpr double kSigmasOfForward = 4.0;
 constexpr double kUselessZone = 0.3;     // raw; a third of the way does nothing
 constexpr double kUselessReach = 0.5;    // raw, from the centre
 constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel at the least reach
-constexpr double kUselessDrift = 0.005;  // raw a second: out of a zone of 0.3 within a minute
-constexpr double kUselessStuck = 2;      // once may be a lost report
+constexpr double kUselessDrift = 0.002;  // raw a second: out of a zone of 0.1 within a minute
+constexpr double kDriftTold_s = 5.0;     // at rest, of a stick that was never let go twice
+constexpr int kUselessStuck = 2;      // once may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
@@ -114,7 +115,9 @@ using Reasons = std::vector<std::string>;
 Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   Reasons reasons;
   const double drift = s.drift_per_s.value_or(0.0);
-  if (drift > kUselessDrift) {
+  // A short rest alone may have been a thumb that lay on the stick.
+  const bool is_told = s.rests.size() > 1 || s.rest_s >= kDriftTold_s;
+  if (drift > kUselessDrift && is_told) {
     reasons.push_back(fmt::format(
         "it drifts by {:.3f} a second while nobody touches it, which no dead zone cures", drift));
   }
@@ -134,7 +137,7 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
       reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
     }
   }
-  if (static_cast<double>(s.stuck) >= kUselessStuck) {
+  if (s.stuck >= kUselessStuck) {
     reasons.push_back(fmt::format("its value stuck {} times while it moved", s.stuck));
   }
   return reasons;
@@ -174,7 +177,9 @@ Reasons worn(const StickStatistics& s) {
     reasons.push_back(fmt::format("it jumped to another place and back {} times", s.jumps));
   }
   if (s.drift_per_s.value_or(0.0) > 0.0) {
-    reasons.push_back(fmt::format("it drifts by {:.4f} a second at rest", *s.drift_per_s));
+    reasons.push_back(
+        fmt::format("it drifts by {:.4f} a second at rest, so calibrate it again now and then",
+                    *s.drift_per_s));
   }
   if (s.wander > kWornWander) {
     reasons.push_back(fmt::format("it wanders by {:.3f} at rest", s.wander));
@@ -191,12 +196,15 @@ std::string good(const StickStatistics& s) {
   return text + fmt::format(" and it reaches {:.2f} or more to every side", least);
 }
 
+// `opening` and the reasons, with a capital letter.
 std::string sentence(std::string_view opening, const Reasons& reasons) {
   std::string text(opening);
   for (std::size_t i = 0; i < reasons.size(); ++i) {
-    text += i == 0 ? ": " : i + 1 < reasons.size() ? ", " : " and ";
+    text += i == 0 ? "" : i + 1 < reasons.size() ? ", " : " and ";
     text += reasons[i];
   }
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;
 }
 
@@ -204,16 +212,16 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
   const Reasons useless_for = useless(s, advice), missing_are = missing(s), worn_by = worn(s);
   if (s.centre && !useless_for.empty()) {
     advice.verdict = Verdict::replace;
-    advice.reason = sentence("replace it", useless_for);
+    advice.reason = sentence("", useless_for);
   } else if (!missing_are.empty()) {
     advice.verdict = Verdict::unknown;
-    advice.reason = sentence("too little was seen", missing_are);
+    advice.reason = sentence("too little was seen: ", missing_are);
   } else if (!worn_by.empty()) {
     advice.verdict = Verdict::worn;
-    advice.reason = sentence("worn, but calibration makes up for it", worn_by);
+    advice.reason = sentence("", worn_by) + "; calibration makes up for it";
   } else {
     advice.verdict = Verdict::good;
-    advice.reason = sentence("good", {good(s)});
+    advice.reason = sentence("", {good(s)});
   }
   if (s.centre && !s.hysteresis) {
     advice.reason += fmt::format(

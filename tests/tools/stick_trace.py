@@ -95,3 +95,15 @@ def trace_text(left, right, steps, bits=16, serial="", swap=lambda x, y: (x, y),
         micros = round(time * 1e6)
         lines.append(f"E: {micros // 1000000:06d}.{micros % 1000000:06d} {len(data)} " + " ".join(f"{b:02x}" for b in data))
     return "\n".join(lines) + "\n"
+
+
+def main():
+    """The bundled recording of a worn left and a good right stick, on standard output."""
+    worn = Stick(centre=(0.11, -0.07), reach=(0.82, 0.76), sigma=0.012, hysteresis=0.06)
+    good = Stick(centre=(0.01, 0.005), sigma=0.002, seed=2)
+    print("# Made by tests/tools/stick_trace.py: a worn left stick, a good right one.")
+    print(trace_text(worn, good, thumb(turns=2, rest_s=0.5, rate_hz=125), bits=8, name="Worn pad (made)"), end="")
+
+
+if __name__ == "__main__":
+    main()

@@ -63,7 +63,7 @@ std::vector<std::string> comments_of(const PadAnalysis& analysis) {
 std::optional<Error> draw(const std::string& path, const GuidedPad& pad,
                           const PadAnalysis& analysis) {
   std::vector<StickPicture> pictures;
-  constexpr const char* kTitles[] = {"left stick", "right stick"};
+  constexpr const char* kTitles[] = {"Left stick", "Right stick"};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick) continue;

@@ -637,7 +637,7 @@ TEST_F(RecordingAsPad, KeepsItsOwnCalibration) {
 }
 
 // It plays as it replays, on every machine.
-TEST_F(RecordingAsPad, DoesNotSeeTheUsersCalibrations) {
+TEST_F(RecordingAsPad, IsCalibratedByTheUsersFileAsAnyPad) {
   write(made_trace());
   PadStreamOptions options;
   options.files.user_calibrations = user_folder("devices = ['*:*']\n[left]\ninner = 0.31\n");
@@ -646,7 +646,7 @@ TEST_F(RecordingAsPad, DoesNotSeeTheUsersCalibrations) {
   ASSERT_TRUE(started_stream) << started_stream.error().message;
   stream_ = std::move(*started_stream);
   expect(ReportKind::added, 0);
-  EXPECT_EQ(stream_->config(0).calibration.left.inner, kInnerZoneUnknown);
+  EXPECT_EQ(stream_->config(0).calibration.left.inner, 0.31);
   std::filesystem::remove_all(options.files.user_calibrations);
 }
 

@@ -148,7 +148,16 @@ constexpr Fault kFaults[] = {
     {"jumped", Verdict::worn, [](StickStatistics& s) { s.jumps = 5; }},
     {"drifts", Verdict::worn, [](StickStatistics& s) { s.drift_per_s = 0.002; }},
     {"wanders", Verdict::worn, [](StickStatistics& s) { s.wander = 0.02; }},
-    {"no dead zone cures", Verdict::replace, [](StickStatistics& s) { s.drift_per_s = 0.02; }},
+    {"no dead zone cures", Verdict::replace,
+     [](StickStatistics& s) {
+       s.drift_per_s = 0.02;
+       s.rest_s = 6.0;
+     }},
+    {"drifts", Verdict::worn,
+     [](StickStatistics& s) {  // perhaps a thumb that lay on it
+       s.drift_per_s = 0.02;
+       s.rest_s = 3.0;
+     }},
     {"no dead zone cures", Verdict::replace, [](StickStatistics& s) { s.wander = 0.1; }},
     {"dead zone of 36 %", Verdict::replace, [](StickStatistics& s) { s.hysteresis = 0.354; }},
     {"noise", Verdict::replace, [](StickStatistics& s) { s.sigma = vec2(0.0, 0.06); }},

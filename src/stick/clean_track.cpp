@@ -36,6 +36,24 @@ double step_length(const StickTrack& track, std::size_t i) noexcept {  // from i
   return glm::length(track[i].raw - track[i - 1].raw);
 }
 
+struct Scale {
+  double interval_s = 0.0;
+  double smallest = kSmallestSpike;  // raw
+};
+
+// Noise of a stick held against its end is small and one-sided, so a step counts only if it is long
+// for the whole track.
+double smallest_spike(const StickTrack& track) {
+  constexpr std::size_t kMost = std::size_t{1} << 18;
+  const std::size_t stride = track.size() / kMost + 1;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < track.size(); i += stride) steps.push_back(step_length(track, i));
+  if (steps.empty()) return kSmallestSpike;
+  const auto quarter = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 4);
+  std::nth_element(steps.begin(), quarter, steps.end());
+  return std::max(kSmallestSpike, 5.0 * *quarter);
+}
+
 // Steps of the reports next to a place, nearest first; a pad that reports changes only was silent
 // where it stood, which is steps of 0.
 struct Steps {
@@ -81,7 +99,7 @@ bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
 }
 
 // A spike has sharp edges on both sides and comes back to about where it left.
-bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, double interval_s) {
+bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const Scale& scale) {
   const vec2& before = track[i - 1].raw;
   const vec2& after = track[i + length].raw;
   double least = 2.0 * kFarthest;
@@ -89,26 +107,26 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, double
     least =
         std::min({least, glm::length(track[k].raw - before), glm::length(track[k].raw - after)});
   }
-  if (least < kSmallestSpike || least < 2.0 * glm::length(after - before)) return false;
+  if (least < scale.smallest || least < 2.0 * glm::length(after - before)) return false;
   const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
-  if (lasted_s > std::clamp(3.7 * interval_s, kShortMovement_s, 2.0 * kShortMovement_s))
+  if (lasted_s > std::clamp(3.7 * scale.interval_s, kShortMovement_s, 2.0 * kShortMovement_s))
     return false;
-  return stands_out(least, steps_around(track, i, length, interval_s));
+  return stands_out(least, steps_around(track, i, length, scale.interval_s));
 }
 
 // 0 where none begins at i.
-std::size_t spike_length(const StickTrack& track, std::size_t i, double interval_s) {
-  if (step_length(track, i) < kSmallestSpike) return 0;
+std::size_t spike_length(const StickTrack& track, std::size_t i, const Scale& scale) {
+  if (step_length(track, i) < scale.smallest) return 0;
   for (std::size_t length = 1; length <= 3 && i + length < track.size(); ++length) {
-    if (is_spike(track, i, length, interval_s)) return length;
+    if (is_spike(track, i, length, scale)) return length;
   }
   return 0;
 }
 
-std::int64_t take_spikes_out(StickTrack& track, double interval_s) {
+std::int64_t take_spikes_out(StickTrack& track, const Scale& scale) {
   std::int64_t spikes = 0;
   for (std::size_t i = 1; i + 1 < track.size(); ++i) {
-    const std::size_t length = spike_length(track, i, interval_s);
+    const std::size_t length = spike_length(track, i, scale);
     if (length == 0) continue;
     for (std::size_t k = i; k < i + length; ++k) track[k].raw = track[i - 1].raw;
     ++spikes;
@@ -125,9 +143,10 @@ CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
   for (const StickTrack& track : tracks) clean.tracks.push_back(sound_track(track));
   const double interval_s = typical_interval_s(clean.tracks);
   for (StickTrack& track : clean.tracks) {
+    const Scale scale{interval_s, smallest_spike(track)};
     // One that stands beside another is seen only once that is out of the way.
     for (int pass = 0; pass < 3; ++pass) {
-      const std::int64_t spikes = take_spikes_out(track, interval_s);
+      const std::int64_t spikes = take_spikes_out(track, scale);
       clean.jumps += spikes;
       if (spikes == 0) break;
     }

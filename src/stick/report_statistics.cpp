@@ -132,7 +132,7 @@ struct Turning {
   void add(double angle) noexcept {
     turned += angle;
     if (std::fabs(turned) > std::fabs(farthest) && turned * farthest >= 0.0) farthest = turned;
-    if (std::fabs(turned - farthest) <= 0.1) return;
+    if (std::fabs(turned - farthest) <= 0.25) return;
     const double back = turned - farthest;
     end();
     turned = farthest = back;
@@ -206,7 +206,7 @@ int whole_turns(std::span<const StickTrack> tracks, const vec2& middle, double r
       const bool is_out = glm::length(p) > radius;
       const double angle =
           atan2(before.x * p.y - before.y * p.x, glm::dot(before, p)) / (2.0 * kPi);
-      const bool is_stray = before != vec2(0.0) && (!is_out || std::fabs(angle) > 0.08);
+      const bool is_stray = before != vec2(0.0) && (!is_out || std::fabs(angle) > 0.2);
       if (is_stray && ++strays <= kStray) continue;
       strays = 0;
       if (is_out && before != vec2(0.0)) turning.add(angle);

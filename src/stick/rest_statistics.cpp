@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kBlock_s = 0.1;
 constexpr double kFewestReports = 5.0;
+constexpr double kSettling_s = 1.0;  // some sticks creep home
 constexpr double kShortestForDrift_s = 0.5;
 constexpr double kSlowestDrift_per_s = 0.0005;
 
@@ -22,17 +23,16 @@ struct Evidence {
   double mean_noise = 0.0;   // standard deviation of a release's mean, one axis
   double block_noise = 0.0;  // of a block's mean
   double white_noise = 0.0;  // the same, if all noise were white
-  double block_squares = 0.0, block_freedom = 0.0;  // about the rests' means, drift apart
   double seconds = 0.0, longest_s = 0.0;
   double weight = 0.0;                         // reports
   std::vector<std::vector<RestPoint>> blocks;  // by still, of weight 1
-  std::size_t longest = 0;                     // the still in `blocks` that stood longest
+  std::vector<RestPoint> settled;              // blocks of the longest, some time after a release
   double step = 0.0;
   double step_noise = 0.0;  // of a mean by rounding, where no noise takes it away
 };
 
-void add_still(Evidence& evidence, std::span<const StickTrack> tracks, const Still& still,
-               double interval_s) {
+void add_still(Evidence& evidence, std::span<const StickTrack> tracks, const Release& release,
+               const Still& still, double interval_s) {
   const std::vector<RestPoint> points = rest_points(tracks, still, interval_s);
   add_noise(evidence.noise, points);
   const int count = std::max(static_cast<int>(std::lround(still.duration_s / kBlock_s)), 1);
@@ -42,9 +42,14 @@ void add_still(Evidence& evidence, std::span<const StickTrack> tracks, const Sti
     block.weight = 1.0;
   }
   evidence.seconds += still.duration_s;
-  if (still.duration_s > evidence.longest_s) {
+  if (still.duration_s > evidence.longest_s && !evidence.blocks.back().empty()) {
     evidence.longest_s = still.duration_s;
-    evidence.longest = evidence.blocks.size() - 1;
+    evidence.settled = evidence.blocks.back();
+    const double from_s = evidence.settled.front().time_s + kSettling_s;
+    if (release.from != vec2(0.0)) {
+      std::erase_if(evidence.settled,
+                    [&](const RestPoint& block) { return block.time_s < from_s; });
+    }
   }
 }
 
@@ -54,7 +59,8 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
   evidence.step = std::max(step.x, step.y);
   evidence.releases = releases_of(tracks, rests, interval_s);
   for (const Release& release : evidence.releases) {
-    for (const Still& still : release.stills) add_still(evidence, tracks, still, interval_s);
+    for (const Still& still : release.stills)
+      add_still(evidence, tracks, release, still, interval_s);
   }
   double blocks = 0.0, squares = 0.0, freedom = 0.0;
   for (const std::vector<RestPoint>& still : evidence.blocks) {
@@ -162,40 +168,38 @@ vec2 drift_across_rests(const Evidence& evidence) {
   return with.drift;
 }
 
-// Few rests: the trend must be that of a line over eight parts of the longest one, in its second
-// half as in the first, since settling ends.
-vec2 drift_within_rests(const Evidence& evidence) {
-  const Within within = within_rests(evidence);
-  const double speed = glm::length(within.drift);
-  if (evidence.seconds < kShortestForDrift_s || speed < 5.0 * within.error) return vec2(0.0);
-  const std::vector<RestPoint>& longest = evidence.blocks[evidence.longest];
-  const std::vector<RestPoint> parts = rest_blocks(longest, 8);
+// Few rests: the longest of them must show a line over eight parts, in its second half as in the
+// whole, since settling ends.
+vec2 drift_within_rest(const Evidence& evidence) {
+  const std::span<const RestPoint> blocks = evidence.settled;
+  const std::vector<RestPoint> parts = rest_blocks(blocks, 8);
   if (parts.size() < 5) return vec2(0.0);
-  const RestTrend line = rest_trend(parts);
+  const RestTrend line = rest_trend(blocks);
+  const RestTrend late = rest_trend(blocks.subspan(blocks.size() / 2));
+  const double noise = std::hypot(evidence.block_noise, evidence.step_noise);
+  const double speed = glm::length(line.slope);
+  if (speed * std::sqrt(line.spread) < 5.0 * noise) return vec2(0.0);
+  if (glm::dot(late.slope, line.slope) < 0.6 * speed * speed) return vec2(0.0);
   double without = 0.0, with = 0.0;
   for (const RestPoint& part : parts) {
     const vec2 off = part.place - line.mean.place, left = part.place - line.at(part.time_s);
     without += part.weight * glm::dot(off, off);
     with += part.weight * glm::dot(left, left);
   }
-  const double freedom = 2.0 * (static_cast<double>(parts.size()) - 2.0);
-  const double blocks_each =
-      static_cast<double>(longest.size()) / static_cast<double>(parts.size());
-  const double noise =
+  const double blocks_each = static_cast<double>(blocks.size()) / static_cast<double>(parts.size());
+  const double part_noise =
       std::hypot(evidence.block_noise, evidence.step_noise * std::sqrt(blocks_each));
-  if (log_odds(without, with, freedom, noise) < kSureOfOne) return vec2(0.0);
-  const std::span<const RestPoint> all(longest);
-  const RestTrend late = rest_trend(all.subspan(all.size() / 2));
-  if (glm::dot(late.slope, line.slope) < 0.6 * glm::dot(line.slope, line.slope)) return vec2(0.0);
-  if (!is_worth_telling(evidence, within.drift, evidence.longest_s, 2.0)) return vec2(0.0);
-  return within.drift;
+  const double freedom = 2.0 * (static_cast<double>(parts.size()) - 2.0);
+  if (log_odds(without, with, freedom, part_noise) < kSureOfOne) return vec2(0.0);
+  const double seconds = blocks.back().time_s - blocks.front().time_s;
+  return is_worth_telling(evidence, line.slope, seconds, 2.0) ? line.slope : vec2(0.0);
 }
 
 vec2 drift_of(const Evidence& evidence) {
   int seen = 0;
   for (const Release& release : evidence.releases) seen += release.from != vec2(0.0);
   const bool has_many = seen - tracks_of(evidence.releases) >= 4;
-  return has_many ? drift_across_rests(evidence) : drift_within_rests(evidence);
+  return has_many ? drift_across_rests(evidence) : drift_within_rest(evidence);
 }
 
 // ---- centre ----
@@ -309,8 +313,8 @@ Home home_of(std::span<const Release> releases, const Evidence& evidence) {
 double hysteresis_of(std::span<const vec2> places, double noise) noexcept {
   const double count = static_cast<double>(places.size());
   const double greatest = greatest_distance(places);
-  // Of so many places that noise alone sets apart.
-  const double by_noise = 4.0 * noise * noise * (std::log(0.5 * count * (count - 1.0)) + 1.5);
+  // The square of what noise alone sets so many places apart, and seldom more.
+  const double by_noise = 6.0 * noise * noise * (std::log(0.5 * count * (count - 1.0)) + 1.5);
   return std::sqrt(std::max(greatest * greatest - by_noise, 0.0));
 }
 

@@ -43,13 +43,20 @@ void tell_rim(StickStatistics& to, std::span<const StickTrack> tracks) {
   to.max_y = reach.max_y;
   to.circularity_error = circularity_error(to.outline);
   to.rim_samples = to.outline.samples;
-  double radius = 0.0;
+}
+
+int turns_of(const StickStatistics& s, std::span<const StickTrack> tracks) {
+  vec2 least(4.0), most(-4.0);
   for (const StickTrack& track : tracks) {
     for (const StickSample& sample : track) {
-      radius = std::max(radius, glm::length(sample.raw - middle));
+      least = glm::min(least, sample.raw);
+      most = glm::max(most, sample.raw);
     }
   }
-  if (radius > 0.2) to.turns = whole_turns(tracks, middle, 0.5 * radius);
+  const vec2 middle = s.centre.value_or(0.5 * (least + most));
+  const vec2 reach = glm::min(most - middle, middle - least);
+  const double radius = 0.5 * std::min(reach.x, reach.y);
+  return radius > 0.1 ? whole_turns(tracks, middle, radius) : 0;
 }
 
 }  // namespace
@@ -65,6 +72,7 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   const std::vector<Still> rests = stills(clean.tracks, declared_step).rests;
   tell_rest(told, rest_statistics(clean.tracks, rests, {told.step_x, told.step_y}, interval_s));
   tell_rim(told, clean.tracks);
+  told.turns = turns_of(told, clean.tracks);
   // As they came: where a spike is taken out a value repeats.
   const ReportTiming timing = report_timing(tracks, repeats_expected(told));
   told.rate_hz = timing.rate_hz;

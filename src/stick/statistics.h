@@ -36,13 +36,13 @@ struct StickStatistics {
   std::optional<double> min_x, max_x, min_y, max_y;
   std::optional<double> circularity_error;  // percent
   std::int64_t rim_samples = 0;
-  int turns = 0;  // whole ones
+  int turns = 0;  // whole ones, either way
 
   // Of the values and the reports.
   double step_x = 0.0, step_y = 0.0;  // quantisation as measured, else as declared; 0: not known
   std::optional<double> rate_hz;      // of reports that follow each other, gaps left out
   std::optional<double> jitter_ms;    // standard deviation of the intervals, gaps left out
-  std::int64_t gaps = 0;   // intervals of more than one and a half, on a pad that reports at rest
+  std::int64_t gaps = 0;   // places where reports were lost; 0 on a pad that never repeats itself
   std::int64_t jumps = 0;  // spikes: to another place and back within three reports
   std::int64_t stuck = 0;  // the stick moved on, its value did not, and then jumped
 };

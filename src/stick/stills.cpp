@@ -1,11 +1,10 @@
 #include "stick/stills.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
 
 #include "stick/clean_track.h"
+#include "stick/home_place.h"
 #include "stick/report_statistics.h"
 
 namespace gaitpad {
@@ -20,11 +19,11 @@ constexpr std::size_t kShortestStill = 5;                          // cells
 constexpr std::size_t kWindowsLead = kHalfWindow - 1;
 // Of the first half so much counts; the rest, with the margin, is settling.
 constexpr std::size_t kWindowsLag = 2;
-constexpr std::size_t kMargin = 2;     // cells
-constexpr double kSlow = 0.006;        // raw, from one half of a window to the other: 0.06 a second
-constexpr double kNoiseLimit = 4.5;    // standard deviations
-constexpr double kUnseen = 0.0012;     // raw, from cell to cell: drift
-constexpr double kFarthestHome = 0.5;  // raw; a stick that rests farther out looks held
+constexpr std::size_t kMargin = 2;   // cells
+constexpr double kSlow = 0.006;      // raw, from one half of a window to the other: 0.06 a second
+constexpr double kNoiseLimit = 4.5;  // standard deviations
+constexpr double kUnseen = 0.0012;   // raw, from cell to cell: drift
+constexpr double kNudge = 0.03;      // raw
 
 // 20 ms of a track. Weights are reports, see reports_stood().
 struct Cell {
@@ -79,6 +78,12 @@ struct Limits {
   std::size_t margin = 1;  // cells at a rest's ends, since a movement begins in the noise
 };
 
+// Few reports tell their noise badly: the factor on its square that is allowed for. Still fewer
+// would let a movement pass for noise.
+double doubt(double reports) noexcept {
+  return reports > 4.0 ? 1.0 + std::min(6.0 / reports, 1.0) : 1.0;
+}
+
 // Whether the window of cells that begins at `first` shows one place but for noise. The noise is
 // that of neighbouring reports: a movement's own steps are too small to hide it.
 bool is_still(std::span<const Cell> cells, std::size_t first, const Limits& limits) noexcept {
@@ -90,10 +95,8 @@ bool is_still(std::span<const Cell> cells, std::size_t first, const Limits& limi
   const double weight = before.weight + after.weight;
   // A movement that begins or ends here is in one half.
   const double variance = std::min(before.variance(), after.variance());
-  // A few reports tell their noise badly; still fewer would let a movement pass for it.
-  const double fewer = std::min(before.weight, after.weight);
-  const double doubt = fewer > 4.0 ? std::min(6.0 / fewer, 1.0) : 0.0;
-  const double limit = kNoiseLimit * kNoiseLimit * variance * (1.0 + doubt);
+  const double limit =
+      kNoiseLimit * kNoiseLimit * variance * doubt(std::min(before.weight, after.weight));
   const vec2 moved = after.mean() - before.mean();
   if (glm::dot(moved, moved) >
       std::max(limits.slow * limits.slow, limit * (1.0 / before.weight + 1.0 / after.weight))) {
@@ -113,34 +116,47 @@ struct Run {
   std::size_t begin = 0, end = 0;  // cells
 };
 
-// A rare extreme of the noise cuts no rest in two.
-bool is_same_place(std::span<const Cell> cells, const Run& a, const Run& b,
-                   const Limits& limits) noexcept {
+// A rare extreme of the noise cuts no rest in two, nor do the small steps of a stick that wanders.
+bool is_same_place(std::span<const Cell> cells, const Run& a, const Run& b) noexcept {
   if (b.begin > a.end + kWindow) return false;
   Cell one, other;
   for (std::size_t k = a.end; k > a.begin && k + kWindow > a.end; --k) add(one, cells[k - 1]);
   for (std::size_t k = b.begin; k < b.end && k < b.begin + kWindow; ++k) add(other, cells[k]);
   const vec2 place = one.mean();
-  if (glm::length(other.mean() - place) > 2.0 * limits.slow) return false;
+  if (glm::length(other.mean() - place) > kNudge) return false;
   const double variance = std::max(one.variance(), other.variance());
   for (std::size_t k = a.end; k < b.begin; ++k) {
     const vec2 off = cells[k].mean() - place;
     const double noise = 36.0 * variance / std::max(cells[k].weight, 1.0);
-    if (glm::dot(off, off) > std::max(4.0 * limits.slow * limits.slow, noise)) return false;
+    if (glm::dot(off, off) > std::max(kNudge * kNudge, noise)) return false;
   }
   return true;
 }
 
+// Of one report, both axes: the middle one of the run's parts, so that a spike, or a movement at an
+// end, does not count.
+double usual_variance(std::span<const Cell> cells, const Run& run) {
+  std::vector<double> variances;
+  Cell part;
+  for (std::size_t first = run.begin; first < run.end; first += kHalfWindow) {
+    part = {};
+    const std::size_t end = std::min(first + kHalfWindow, run.end);
+    for (std::size_t k = first; k < end; ++k) add(part, cells[k]);
+    variances.push_back(part.variance());
+  }
+  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>((variances.size() - 1) / 2);
+  std::nth_element(variances.begin(), middle, variances.end());
+  return *middle;
+}
+
 // Goes from a run's inside outwards, to where a cell is not like the five before it: the windows
 // do not see where exactly a movement begins. `step` is 1 or -1; returns the last good cell.
-std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, const Limits& limits) {
+std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, double variance,
+                    const Limits& limits) {
   const std::size_t length = run.end - run.begin;
   const std::size_t inside = std::min<std::size_t>((length + 1) / 2, 2 * kWindow);
   const std::size_t outermost = step > 0 ? run.end - 1 : run.begin;
   std::size_t at = step > 0 ? run.end - inside : run.begin + inside - 1;
-  const std::size_t core = std::min(length, kHalfWindow);
-  Cell noise;
-  for (std::size_t k = 0; k < core; ++k) add(noise, cells[run.begin + (length - core) / 2 + k]);
   while (at != outermost) {
     const std::size_t next = step > 0 ? at + 1 : at - 1;
     Cell inner;
@@ -150,51 +166,69 @@ std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, const
       add(inner, cells[cell]);
     }
     const vec2 off = cells[next].mean() - inner.mean();
-    const double variance = std::max(noise.variance(), inner.variance());
-    const double limit =
-        kNoiseLimit *
+    const double noise =
         std::sqrt(variance * (1.0 / std::max(cells[next].weight, 1.0) + 1.0 / inner.weight));
-    if (glm::length(off) > limit + limits.code) break;
+    if (glm::length(off) > kNoiseLimit * noise + limits.code) break;
     at = next;
   }
   return at;
 }
 
-std::vector<Run> still_runs(std::span<const Cell> cells, const Limits& limits) {
+// Cells whose windows are still, those at one place together.
+std::vector<Run> still_windows(std::span<const Cell> cells, const Limits& limits) {
   std::vector<Run> runs;
   if (cells.size() < kWindow) return runs;
   const std::size_t last = cells.size() - kWindow;  // where the last window begins
+  Run run;
+  const auto end_run = [&] {
+    if (run.begin == run.end) return;
+    if (!runs.empty() && is_same_place(cells, runs.back(), run)) {
+      runs.back().end = run.end;
+    } else {
+      runs.push_back(run);
+    }
+  };
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const std::size_t window = std::clamp(c, kHalfWindow, last + kHalfWindow) - kHalfWindow;
-    if (!is_still(cells, window, limits)) continue;
-    if (!runs.empty() && runs.back().end == c) {
-      ++runs.back().end;
-    } else {
-      runs.push_back({c, c + 1});
+    const bool is_in = is_still(cells, window, limits);
+    if (is_in && run.end == c) {
+      ++run.end;
+    } else if (is_in) {
+      end_run();
+      run = {c, c + 1};
     }
   }
-  for (Run& run : runs) {
-    if (run.begin > 0) run.begin -= std::min(run.begin, kWindowsLag);
-    run.end = std::min(run.end + kWindowsLead, cells.size());
+  end_run();
+  return runs;
+}
+
+// To where the stick began to move, and a little back.
+Run trimmed(std::span<const Cell> cells, const Run& run, const Limits& limits) {
+  const double reports = 0.5 * cells[run.begin].weight * static_cast<double>(run.end - run.begin);
+  const double variance = doubt(reports) * usual_variance(cells, run);
+  Run edges{edge_of(cells, run, -1, variance, limits),
+            edge_of(cells, run, 1, variance, limits) + 1};
+  const std::size_t margin = std::min(limits.margin, (edges.end - edges.begin) / 4);
+  if (edges.begin > 0) edges.begin += margin;
+  if (edges.end < cells.size()) edges.end -= margin;
+  return edges;
+}
+
+std::vector<Run> still_runs(std::span<const Cell> cells, const Limits& limits) {
+  const std::vector<Run> windows = still_windows(cells, limits);
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    // What lies between two places belongs to neither.
+    const std::size_t least = i == 0 ? 0 : (windows[i - 1].end + windows[i].begin + 1) / 2;
+    const std::size_t most =
+        i + 1 == windows.size() ? cells.size() : (windows[i].end + windows[i + 1].begin) / 2;
+    Run run = windows[i];
+    run.begin = std::max(run.begin - std::min(run.begin, kWindowsLag), least);
+    run.end = std::min(run.end + kWindowsLead, most);
+    run = trimmed(cells, run, limits);
+    if (run.end - run.begin >= kShortestStill) runs.push_back(run);
   }
-  std::vector<Run> joined;
-  for (const Run& run : runs) {
-    if (!joined.empty() &&
-        (run.begin <= joined.back().end || is_same_place(cells, joined.back(), run, limits))) {
-      joined.back().end = run.end;
-    } else {
-      joined.push_back(run);
-    }
-  }
-  for (Run& run : joined) {
-    run = {edge_of(cells, run, -1, limits), edge_of(cells, run, 1, limits) + 1};
-    const std::size_t most = (run.end - run.begin) / 4;
-    const std::size_t margin = std::min(most, limits.margin);
-    if (run.begin > 0) run.begin += margin;
-    if (run.end < cells.size()) run.end -= margin;
-  }
-  std::erase_if(joined, [](const Run& run) { return run.end - run.begin < kShortestStill; });
-  return joined;
+  return runs;
 }
 
 Still still_of(const StickTrack& track, std::size_t index, std::span<const Cell> cells,
@@ -219,7 +253,7 @@ Limits limits_of(std::span<const StickTrack> tracks, const vec2& declared_step, 
   const double step = std::max(quantisation_step(tracks, 0, declared_step.x),
                                quantisation_step(tracks, 1, declared_step.y));
   const double code = std::min(step, 0.05);
-  const double margin = std::ceil(2.0 * interval_s / kCell_s);
+  const double margin = std::ceil(3.0 * interval_s / kCell_s);
   return {.slow = std::max(kSlow, 1.5 * code),
           .code = std::max(kUnseen, 1.2 * code),
           .margin = static_cast<std::size_t>(std::clamp(margin, 1.0, 5.0))};
@@ -238,137 +272,11 @@ std::vector<Still> all_stills(std::span<const StickTrack> tracks, const vec2& de
   return found;
 }
 
-// ---- home ----
-
-struct Box {
-  vec2 middle{0.0}, half{0.0};
-};
-
-std::optional<Box> box_of(std::span<const StickTrack> tracks) noexcept {
-  vec2 least(1e9), most(-1e9);
-  for (const StickTrack& track : tracks) {
-    for (const StickSample& sample : track) {
-      least = glm::min(least, sample.raw);
-      most = glm::max(most, sample.raw);
-    }
-  }
-  if (least.x > most.x) return {};
-  return Box{0.5 * (least + most), 0.5 * (most - least)};
-}
-
-// Places are told apart on a grid over +-kFarthestHome; neighbours within 0.19 are one place, so
-// that the rests of a stick that drifts, or returns badly, hang together.
-class Places {
- public:
-  void add(const Still& still) {
-    const std::size_t bin = bin_of(still.mean);
-    seen_[bin] += std::min(still.duration_s, 0.5);
-    sum_[bin] += still.mean;
-    count_[bin] += 1.0;
-  }
-  // Numbers the places and finds the best: often visited, near the middle.
-  void choose() {
-    double best = 0.0;
-    for (int bin = 0; bin < kBins * kBins; ++bin) {
-      if (count_[bin] == 0.0 || place_[bin] != 0) continue;
-      const double score = flood(bin);
-      if (score > best) {
-        best = score;
-        home_ = places_;
-      }
-    }
-  }
-  bool is_home(const Still& still) const {
-    return is_inside(still.mean) && home_ != 0 && place_[bin_of(still.mean)] == home_;
-  }
-  static bool is_inside(const vec2& p) {
-    return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestHome;
-  }
-
- private:
-  static constexpr int kBins = 16, kReach = 3;
-  static std::size_t bin_of(const vec2& p) {
-    const auto index = [](double x) {
-      return std::clamp(static_cast<int>((x / kFarthestHome + 1.0) * 0.5 * kBins), 0, kBins - 1);
-    };
-    return static_cast<std::size_t>(index(p.y) * kBins + index(p.x));
-  }
-  // Gives the place of a bin its number and returns how good a home it is.
-  double flood(int first) {
-    ++places_;
-    std::vector<int> open{first};
-    place_[first] = places_;
-    double seen = 0.0, count = 0.0;
-    vec2 sum(0.0);
-    while (!open.empty()) {
-      const int bin = open.back();
-      open.pop_back();
-      seen += seen_[bin];
-      sum += sum_[bin];
-      count += count_[bin];
-      for (int y = bin / kBins - kReach; y <= bin / kBins + kReach; ++y) {
-        for (int x = bin % kBins - kReach; x <= bin % kBins + kReach; ++x) {
-          if (x < 0 || y < 0 || x >= kBins || y >= kBins) continue;
-          const int next = y * kBins + x;
-          if (count_[next] == 0.0 || place_[next] != 0) continue;
-          place_[next] = places_;
-          open.push_back(next);
-        }
-      }
-    }
-    const vec2 middle = sum / count / 0.25;  // worn sticks rest up to that far off
-    return seen * std::exp(-glm::dot(middle, middle));
-  }
-
-  std::array<double, kBins * kBins> seen_{}, count_{};
-  std::array<vec2, kBins * kBins> sum_{};
-  std::array<int, kBins * kBins> place_{};
-  int places_ = 0, home_ = 0;
-};
-
-// Of a stick that was turned round, which lies well inside of where it went.
-bool may_be_home(const Still& still, const std::optional<Box>& turned) noexcept {
-  if (!Places::is_inside(still.mean)) return false;
-  if (!turned) return true;
-  const vec2 off = (still.mean - turned->middle) / turned->half;
-  return glm::length(off) < 0.6;
-}
-
 }  // namespace
 
 Stills stills(std::span<const StickTrack> raw_tracks, const vec2& declared_step) {
   const std::vector<StickTrack> tracks = clean_tracks(raw_tracks).tracks;
-  const std::vector<Still> found = all_stills(tracks, declared_step);
-  const std::optional<Box> box = box_of(tracks);
-  if (!box) return {};
-  const double least_half = std::min(box->half.x, box->half.y);
-  const bool was_turned =
-      least_half > 0.2 && whole_turns(tracks, box->middle, 0.6 * least_half) > 0;
-  Places places;
-  for (const Still& still : found) {
-    if (may_be_home(still, was_turned ? box : std::nullopt)) places.add(still);
-  }
-  places.choose();
-  Stills sorted;
-  vec2 home(0.0);
-  double weight = 0.0;
-  for (const Still& still : found) {
-    if (!places.is_home(still) || !may_be_home(still, was_turned ? box : std::nullopt)) continue;
-    sorted.rests.push_back(still);
-    home += still.duration_s * still.mean;
-    weight += still.duration_s;
-  }
-  if (weight > 0.0) home /= weight;
-  double reach = 0.5;
-  for (const StickTrack& track : tracks) {
-    for (const StickSample& sample : track) reach = std::max(reach, glm::length(sample.raw - home));
-  }
-  for (const Still& still : found) {
-    if (glm::length(still.mean - home) >= 0.5 * reach && !places.is_home(still)) {
-      sorted.pushes.push_back(still);
-    }
-  }
-  return sorted;
+  return sorted_stills(tracks, all_stills(tracks, declared_step));
 }
 
 }  // namespace gaitpad

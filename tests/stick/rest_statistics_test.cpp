@@ -1,0 +1,252 @@
+#include "stick/rest_statistics.h"
+
+#include <functional>
+
+#include "stick/drawn_stick.h"
+
+namespace gaitpad {
+namespace {
+
+TEST(RestStatistics, CentreSigmaAndRestOfFiveHundredCleanSticksWithoutAFalseAlarm) {
+  int sigmas = 0, hidden = 0, wandering = 0;
+  for (std::uint32_t seed = 1; seed <= 500; ++seed) {
+    const MadeStick stick = Draw(seed).stick();
+    const StickStatistics s = statistics_of(stick);
+    expect_centre(stick, s, stick.centre);
+    ASSERT_TRUE(s.drift_per_s) << name_of(stick);
+    EXPECT_EQ(*s.drift_per_s, 0.0) << name_of(stick);
+    // 14 rests; the last one is not known of where a pad falls silent.
+    EXPECT_GE(s.rests.size(), 12u) << name_of(stick);
+    EXPECT_LE(s.rests.size(), 14u) << name_of(stick);
+    wandering += s.wander > 0.0;
+    ASSERT_TRUE(s.sigma) << name_of(stick);
+    for (int axis = 0; axis < 2; ++axis) {
+      const double truth = stick.sigma[axis], found = (*s.sigma)[axis];
+      if (truth > 1.15 * step_of(stick)) {
+        EXPECT_NEAR(found, truth, 0.15 * truth) << name_of(stick);
+        ++sigmas;
+      }
+      if (truth < 0.8 * step_of(stick)) {
+        EXPECT_TRUE(s.is_sigma_hidden) << name_of(stick);
+        EXPECT_LE(found, step_of(stick)) << name_of(stick);
+        ++hidden;
+      }
+    }
+  }
+  EXPECT_GT(sigmas, 500);
+  EXPECT_GT(hidden, 100);
+  EXPECT_LE(wandering, 5);
+}
+
+TEST(RestStatistics, DriftIsFoundAlwaysWithItsDirection) {
+  for (std::uint32_t seed = 1; seed <= 80; ++seed) {
+    Draw draw(seed);
+    MadeStick stick = draw.stick();
+    const double speed = std::exp(draw.within(std::log(0.003), std::log(0.02)));
+    stick.drift_per_s = speed * draw.direction();
+    const StickStatistics s = statistics_of(stick);
+    ASSERT_TRUE(s.drift_per_s) << name_of(stick);
+    EXPECT_LE(glm::length(s.drift - stick.drift_per_s), 0.0005 + 0.25 * speed)
+        << name_of(stick) << " drift " << speed << " found " << *s.drift_per_s;
+    EXPECT_DOUBLE_EQ(*s.drift_per_s, glm::length(s.drift));
+  }
+}
+
+TEST(RestStatistics, CentreOfADriftingStickIsThatOfTheMiddleOfTheTime) {
+  for (std::uint32_t seed = 1; seed <= 50; ++seed) {
+    Draw draw(seed);
+    MadeStick stick = draw.stick();
+    stick.drift_per_s = 0.01 * draw.direction();
+    stick.spike_chance = 0.0;
+    const StickStatistics s = statistics_of(stick);
+    ASSERT_TRUE(s.centre);
+    // Ten milliseconds of it are the ends of the recording.
+    EXPECT_LE(glm::length(*s.centre - stick.centre), 2.0 * centre_bound(stick, s) + 1e-3)
+        << name_of(stick);
+  }
+}
+
+TEST(RestStatistics, SettlingAfterReleasesIsNoDrift) {
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    Draw draw(seed);
+    MadeStick stick = draw.stick();
+    stick.creep = draw.within(0.005, 0.03);
+    EXPECT_EQ(statistics_of(stick).drift_per_s, 0.0) << name_of(stick) << " creep " << stick.creep;
+    MadeMoves once(stick);
+    once.push(draw.within(-kPi, kPi));
+    once.release();
+    once.rest(draw.within(0.8, 3.0));
+    const StickStatistics s = statistics_of(stick, reported(stick, once.path()));
+    EXPECT_EQ(s.drift_per_s.value_or(0.0), 0.0) << name_of(stick) << " creep " << stick.creep;
+  }
+}
+
+TEST(RestStatistics, DriftOfAStickThatOnlyRests) {
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    Draw draw(seed);
+    MadeStick stick = draw.stick();
+    stick.hysteresis = 0.0;
+    stick.sigma *= 0.3;
+    for (const double speed : {0.0, 0.01}) {
+      stick.drift_per_s = speed * draw.direction();
+      MadeMoves moves(stick);
+      moves.rest(8.0);
+      const StickStatistics s = statistics_of(stick, reported(stick, moves.path()));
+      if (!s.drift_per_s && speed == 0.0) continue;  // a silent pad
+      ASSERT_TRUE(s.drift_per_s) << name_of(stick);
+      EXPECT_NEAR(*s.drift_per_s, speed, 0.2 * speed) << name_of(stick);
+    }
+  }
+}
+
+TEST(RestStatistics, HysteresisIsTheSpreadOfTheRests) {
+  for (std::uint32_t seed = 1; seed <= 80; ++seed) {
+    const MadeStick stick = Draw(seed).stick();
+    const StickStatistics s = statistics_of(stick);
+    ASSERT_TRUE(s.hysteresis) << name_of(stick);
+    const double noise = stick.sigma.x / std::sqrt(0.4 * stick.rate_hz);
+    EXPECT_NEAR(*s.hysteresis, stick.hysteresis,
+                0.08 * stick.hysteresis + 1.5 * step_of(stick) + 4.0 * noise + 1e-4)
+        << name_of(stick);
+    if (stick.hysteresis == 0.0 && stick.bits == 0) {
+      EXPECT_LE(*s.hysteresis, 4.0 * noise + 1e-4) << name_of(stick);
+    }
+  }
+}
+
+// How a made stick is let go, and how far off its centre may then be found.
+struct Handling {
+  std::string name;
+  double hysteresis;
+  std::function<void(MadeMoves&, Draw&)> handle;
+};
+
+TEST(RestStatistics, CentreHoweverTheStickIsHandled) {
+  const std::vector<Handling> handlings = {
+      {"let go mostly from one side", 0.12,
+       [](MadeMoves& moves, Draw& draw) {
+         for (int k = 0; k < 8; ++k) {
+           let_go_from(moves, k < 6 ? draw.within(-0.6, 0.6) : draw.within(2.0, 4.0));
+         }
+       }},
+      {"from one side, then from the other", 0.12,
+       [](MadeMoves& moves, Draw& draw) {
+         for (int k = 0; k < 12; ++k)
+           let_go_from(moves, (k < 6 ? 0.0 : kPi) + draw.within(-0.3, 0.3));
+       }},
+      {"one rest much longer than the others", 0.12,
+       [](MadeMoves& moves, Draw& draw) {
+         for (int k = 0; k < 8; ++k) {
+           let_go_from(moves, 0.25 * kPi * k, k == 3 ? 15.0 : draw.within(0.4, 0.7));
+         }
+       }},
+      {"no hysteresis, rests of all lengths", 0.0,
+       [](MadeMoves& moves, Draw& draw) {
+         for (int k = 0; k < 8; ++k) let_go_from(moves, 0.25 * kPi * k, draw.within(0.3, 3.0));
+       }},
+      {"held half way for long", 0.0,
+       [](MadeMoves& moves, Draw& draw) {
+         for (int k = 0; k < 4; ++k) {
+           let_go_from(moves, draw.within(-kPi, kPi));
+           moves.push(draw.within(-kPi, kPi), 0.2, 0.5);
+           moves.hold(3.0);
+         }
+       }},
+      {"at rest only at the beginning, then turned", 0.0,
+       [](MadeMoves& moves, Draw& draw) {
+         moves.rest(1.0);
+         moves.push(draw.within(-kPi, kPi));
+         moves.turn(4.0, draw.within(0.6, 2.0));
+       }},
+      {"let go twice", 0.12,
+       [](MadeMoves& moves, Draw&) {
+         let_go_from(moves, 0.0, 1.0);
+         let_go_from(moves, kPi, 1.0);
+         moves.push(0.0);  // a silent pad is not known to rest until it moves again
+       }},
+  };
+  for (const Handling& handling : handlings) {
+    SCOPED_TRACE(handling.name);
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+      Draw draw(seed);
+      MadeStick stick = draw.stick();
+      stick.hysteresis = handling.hysteresis;
+      stick.spike_chance = 0.0;
+      MadeMoves moves(stick);
+      moves.rest(0.5);
+      handling.handle(moves, draw);
+      const StickStatistics s = statistics_of(stick, reported(stick, moves.path()));
+      expect_centre(stick, s, stick.centre);
+      EXPECT_EQ(s.drift_per_s.value_or(0.0), 0.0) << name_of(stick);
+    }
+  }
+}
+
+TEST(RestStatistics, AThumbLeftOnTheStickNowAndThenDoesNotMoveTheCentre) {
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    Draw draw(seed);
+    MadeStick stick = draw.stick();
+    stick.hysteresis = 0.0;
+    MadeMoves moves(stick);
+    moves.rest(0.6);
+    for (int k = 0; k < 10; ++k) {
+      moves.push(0.2 * kPi * k);
+      moves.hold(0.1);
+      if (k == 4 || k == 8) {
+        moves.move(stick.centre + 0.1 * draw.direction(), 0.1);
+        moves.hold(draw.within(0.5, 2.0));
+      } else {
+        moves.release();
+        moves.rest(draw.within(0.4, 1.0));
+      }
+    }
+    expect_centre(stick, statistics_of(stick, reported(stick, moves.path())), stick.centre);
+  }
+}
+
+TEST(RestStatistics, NothingButTurningHasNoCentre) {
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    Draw draw(seed);
+    const MadeStick stick = draw.stick();
+    MadeMoves moves(stick);
+    moves.push(draw.within(-kPi, kPi), 0.02);
+    moves.turn(3.2, draw.within(0.5, 3.0));
+    const StickStatistics s = statistics_of(stick, reported(stick, moves.path()));
+    EXPECT_FALSE(s.centre || s.sigma || s.hysteresis || s.drift_per_s) << name_of(stick);
+    EXPECT_EQ(s.rest_samples, 0);
+    EXPECT_EQ(s.turns, 3) << name_of(stick);
+  }
+}
+
+TEST(RestStatistics, OneReleaseHasNoHysteresisHoweverLong) {
+  MadeStick stick;
+  stick.sigma = vec2(0.003);
+  stick.bits = 10;
+  MadeMoves moves(stick);
+  moves.rest(5.0);
+  moves.move(stick.centre + vec2(0.05, 0.0), 0.1);  // touched, not moved
+  moves.hold(1.0);
+  moves.move(stick.centre, 0.1);
+  moves.hold(2.0);
+  const StickStatistics s = statistics_of(stick, reported(stick, moves.path()));
+  EXPECT_EQ(s.rests.size(), 1u);
+  EXPECT_FALSE(s.hysteresis);
+  expect_centre(stick, s, stick.centre);
+}
+
+TEST(RestStatistics, WanderIsToldAndNoiseIsNot) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    MadeStick stick;
+    stick.seed = seed;
+    stick.sigma = vec2(0.005);
+    stick.wander = 0.03;
+    MadeMoves moves(stick);
+    moves.rest(10.0);
+    EXPECT_GT(statistics_of(stick, reported(stick, moves.path())).wander, 0.005) << seed;
+    stick.wander = 0.0;
+    EXPECT_EQ(statistics_of(stick, reported(stick, moves.path())).wander, 0.0) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

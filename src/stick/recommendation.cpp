@@ -18,8 +18,9 @@ constexpr double kGreatestInner = 0.89, kLeastSpan = 0.0501, kGreatestOuter = 0.
 
 constexpr double kLeastInner = 0.05;         // raw; a good stick returns within 5 %
 constexpr double kAssumedHysteresis = 0.05;  // raw, of a stick that was let go only once
-// Of noise in two directions one report in 270,000 is further out: that is once in 20 minutes.
-constexpr double kSigmasOfRest = 5.0;
+// Of noise in two directions one report in four million is further out; less than 1 in 20,000 where
+// the measured sigma is 15 % too small.
+constexpr double kSigmasOfRest = 5.5;
 constexpr double kSigmasOfRim = 4.5;  // one report in 300,000 of a stick at its rim is not full
 // From 0.14 on full deflection is less than 0.96 where the sideways zone takes most off it.
 constexpr double kLeastSideways = 0.08, kGreatestSideways = 0.14;

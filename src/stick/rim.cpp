@@ -8,10 +8,9 @@ namespace {
 
 constexpr double kSpacing = kOutlineSpacing;
 constexpr double kLeastRadius = 0.25;     // raw; nearer to the middle no gate is looked for
-constexpr double kLeastNoise = 0.004;     // raw; half a step of 8 bits
+constexpr double kLeastNoise = 0.003;     // raw; rounding to 8 bits comes to 0.0023
 constexpr double kSeam = 30.0 * kDegree;  // more than any window reaches
-// Of a Gaussian's upper half: the mean.
-constexpr double kMeanOfUpperHalf = 0.8;
+constexpr double kMeanOfUpperHalf = 0.8;  // of a Gaussian, in sigma
 
 constexpr double kGreatestRadius = 4.0;  // more than from any middle to any corner of the range
 constexpr double kInsideHull = 0.85;     // no gate bends inwards by more
@@ -22,6 +21,7 @@ constexpr double kLeastSpread = 0.1 * kSpacing * kSpacing;
 // The rim is told from what lies inside it by lines over this half width: wide enough for two
 // samples of the slowest pad's two turns, narrow enough for a corner.
 constexpr double kSelectionWidth = 3.0 * kSpacing;
+constexpr int kFewOfDirection = 8;
 constexpr int kSelectionRounds = 6;         // it has settled after three or four
 constexpr double kSelectionQuantile = 0.9;  // of the samples' heights: there the search begins
 constexpr double kSigmas = 3.0;             // so far under the line a sample is still on the rim
@@ -29,15 +29,19 @@ constexpr double kSigmas = 3.0;             // so far under the line a sample is
 // At the end of the range noise goes one way only. Beyond it would be half of the samples of a gate
 // that ends there, on average by 0.8 sigma (of a gate further in fewer, by little less).
 double without_end(double raw, double sigma) noexcept {
-  return std::fabs(raw) < 1.0 ? raw : std::copysign(1.0 + 0.8 * sigma, raw);
+  return std::fabs(raw) < 1.0 ? raw : std::copysign(1.0 + kMeanOfUpperHalf * sigma, raw);
 }
 
 std::vector<Polar> polar_samples(std::span<const StickTrack> tracks, const vec2& middle,
                                  double sigma) {
   std::vector<Polar> samples;
   for (const StickTrack& track : tracks) {
+    vec2 before(0.0);
     for (const StickSample& sample : track) {
       if (!std::isfinite(sample.raw.x) || !std::isfinite(sample.raw.y)) continue;
+      // Most pads do not repeat themselves; the others are made alike.
+      if (sample.raw == before) continue;
+      before = sample.raw;
       const vec2 p =
           vec2(without_end(sample.raw.x, sigma), without_end(sample.raw.y, sigma)) - middle;
       const double radius = std::sqrt(p.x * p.x + p.y * p.y);
@@ -130,15 +134,30 @@ Line envelope(std::span<const Polar> samples, double sigma) {
   return line;
 }
 
+// A stick that is held somewhere must not outweigh what lies beside it: so many a direction.
+std::vector<Polar> thinned(const std::vector<Polar>& samples) {
+  std::vector<Polar> few;
+  for (auto first = samples.begin(); first != samples.end();) {
+    const int k = direction_of(first->angle);
+    const auto last = std::find_if(first, samples.end(),
+                                   [k](const Polar& p) { return direction_of(p.angle) != k; });
+    const auto stride = (last - first + kFewOfDirection - 1) / kFewOfDirection;
+    for (auto i = 0 * stride; i < last - first; i += stride) few.push_back(first[i]);
+    first = last;
+  }
+  return few;
+}
+
 // Those that are not the noise of the rim lie inside of it.
 std::vector<Polar> rim_of(const std::vector<Polar>& samples, double sigma) {
+  const std::vector<Polar> few = thinned(samples);
   std::vector<Polar> rim;
   for (int k = 0; k < kOutlineDirections; ++k) {
     const double angle = k * kSpacing;
     const auto own = between(samples, angle - 0.5 * kSpacing, angle + 0.5 * kSpacing);
     if (own.empty()) continue;
     const Line line =
-        envelope(between(samples, angle - kSelectionWidth, angle + kSelectionWidth), sigma);
+        envelope(between(few, angle - kSelectionWidth, angle + kSelectionWidth), sigma);
     const double least = -kSigmas * radial_noise(line, sigma);
     for (const Polar& p : own) {
       if (p.radius - line.at(p.angle) < least) continue;

@@ -33,8 +33,8 @@ struct Line {
 };
 // Least squares, no steeper than a gate can be.
 Line line_through(std::span<const Polar> samples) noexcept;
-// How far a sample's radius strays from a rim that is not at right angles to it; at least half a
-// step of 8 bits.
+// How far a sample's radius strays from a rim that is not at right angles to it; at least that of
+// rounding to 8 bits.
 double radial_noise(const Line& line, double sigma) noexcept;
 
 vec2 unit_vector(double angle) noexcept;

@@ -138,6 +138,25 @@ TEST(Outline, SloppyRoundsDoNotPullTheGateInwards) {
   }
 }
 
+// Held in a corner a streaming pad repeats it hundreds of times.
+TEST(Outline, ALongHoldDoesNotOutweighWhatLiesBesideIt) {
+  for (const Shape& shape : kShapes) {
+    for (const double sigma : {0.0, 0.01}) {
+      const MadeStick stick = made(shape, vec2(0.0), sigma, 8, 4);
+      MadeMoves moves(stick);
+      moves.push(0.0);
+      moves.turn(2.125);
+      moves.hold(4.0);
+      moves.release();
+      SCOPED_TRACE(testing::Message() << shape.name << " sigma " << sigma);
+      const Outline outline = outline_of(reported(stick, moves.path()), stick);
+      ASSERT_TRUE(circularity_error(outline));
+      EXPECT_NEAR(*circularity_error(outline), true_circularity_error(stick), 0.5);
+      expect_ends(outline, stick);
+    }
+  }
+}
+
 TEST(Outline, PushesAloneTellTheReachButNoCircularity) {
   for (const double sigma : {0.0, 0.01, 0.04}) {
     const MadeStick stick = made(kShapes[3], vec2(0.1, -0.05), sigma, 10, 3);

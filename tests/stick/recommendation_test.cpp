@@ -52,11 +52,22 @@ TEST(StickAdvice, InnerZoneIsThreeSigmaAndHysteresisButFivePercentAtLeast) {
   StickStatistics s = measured();
   EXPECT_DOUBLE_EQ(advice_for(s).inner_zone, 0.05);
   s.sigma = vec2(0.01, 0.02);
-  s.hysteresis = 0.09;
-  EXPECT_DOUBLE_EQ(advice_for(s).inner_zone, 0.15);
+  s.hysteresis = 0.12;
+  EXPECT_DOUBLE_EQ(advice_for(s).inner_zone, 0.18);
   // The calibration's is a fraction of the shortest side.
   const double shortest = 0.95 - -0.01;
-  EXPECT_NEAR(advice_for(s).calibration.inner, 0.15 / shortest, 1e-12);
+  EXPECT_NEAR(advice_for(s).calibration.inner, 0.18 / shortest, 1e-12);
+}
+
+// 3 sigma in two directions would let one report in ninety through.
+TEST(StickAdvice, WithoutHysteresisTheCalibrationStillKeepsTheNoiseOut) {
+  StickStatistics s = measured();
+  s.centre = vec2(0.0);
+  s.sigma = vec2(0.02, 0.02);
+  s.hysteresis = 0.0;
+  const StickAdvice advice = advice_for(s);
+  EXPECT_DOUBLE_EQ(advice.inner_zone, 0.06);
+  EXPECT_EQ(stick_position(advice.calibration, vec2(0.06, 0.075)), vec2(0.0));
 }
 
 TEST(StickAdvice, CentreAndEndsAreThoseMeasured) {

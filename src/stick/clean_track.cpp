@@ -103,9 +103,9 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const 
   const vec2& before = track[i - 1].raw;
   const vec2& after = track[i + length].raw;
   double least = 2.0 * kFarthest;
-  for (std::size_t k = i; k < i + length; ++k) {
-    least =
-        std::min({least, glm::length(track[k].raw - before), glm::length(track[k].raw - after)});
+  for (const std::size_t edge : {i, i + length - 1}) {  // a sound report may stand between two
+    least = std::min(
+        {least, glm::length(track[edge].raw - before), glm::length(track[edge].raw - after)});
   }
   if (least < scale.smallest || least < 2.0 * glm::length(after - before)) return false;
   const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
@@ -135,6 +135,20 @@ std::int64_t take_spikes_out(StickTrack& track, const Scale& scale) {
   return spikes;
 }
 
+// The first and the last report have one neighbour; a hand that has just begun to move loses one.
+void take_ends_out(StickTrack& track, const Scale& scale) {
+  if (track.size() < 6) return;
+  const std::size_t last = track.size() - 1;
+  const auto is_out = [&](std::size_t step, const std::array<Steps, 2>& around) {
+    const double height = step_length(track, step);
+    return height >= scale.smallest && stands_out(height, around);
+  };
+  if (is_out(last, steps_around(track, last, 1, scale.interval_s)))
+    track[last].raw = track[last - 1].raw;
+  if (is_out(1, {Steps{}, steps_around(track, 1, 0, scale.interval_s)[1]}))
+    track[0].raw = track[1].raw;
+}
+
 }  // namespace
 
 CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
@@ -150,6 +164,7 @@ CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
       clean.jumps += spikes;
       if (spikes == 0) break;
     }
+    take_ends_out(track, scale);
   }
   return clean;
 }

@@ -189,6 +189,13 @@ class Calibrate(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         left = tomllib.loads(self.written().read_text())["left"]
         self.assertGreater(left["inner"], 0.05)
+        # A mapping names controls and leaves the zones as they were.
+        (self.folder / "sdl").write_text(line.replace("leftx:a0,", "leftx:a2,").replace("rightx:a2,", "rightx:a0,"))
+        done = self.run_program("calibrate", "--trace", trace, "--import", self.folder / "sdl")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        own = tomllib.loads(self.written().read_text())
+        self.assertEqual(own["left"], left)
+        self.assertIn("leftx:a2,", own["mapping"])
         (self.folder / "junk").write_text("hello\n")
         self.refused("--trace", trace, "--import", self.folder / "junk", says="junk")
 

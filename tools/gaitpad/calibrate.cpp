@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -27,23 +26,6 @@ namespace {
 std::string today() {
   const std::time_t now = std::time(nullptr);
   return fmt::format("{:%Y-%m-%d}", fmt::localtime(now));
-}
-
-// `file` gets what holds so far: of the file that is to be replaced, else what config/ says about
-// such pads.
-void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
-                     CalibrationFile& file) {
-  if (std::filesystem::exists(target)) {
-    auto old = load_calibration_file(target);
-    if (!old) print_remarks("calibrate", {old.error().message + "; it counts for nothing"});
-    if (old) {
-      file.calibration = old->calibration;
-      file.mapping = old->mapping;
-      return;
-    }
-  }
-  file.calibration =
-      find_calibration(files.calibration_folders, identity_of(info)).file.calibration;
 }
 
 std::vector<std::string> comments_of(const PadAnalysis& analysis) {

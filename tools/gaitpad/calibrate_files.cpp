@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "base/toml_file.h"
 #include "hid/sdl_mapping.h"
@@ -72,6 +73,21 @@ Result<std::string> calibration_target(const std::string& out, const Calibration
   return Error{"neither XDG_CONFIG_HOME nor HOME names a folder for the file: give --out FILE"};
 }
 
+void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
+                     CalibrationFile& file) {
+  if (std::filesystem::exists(target)) {
+    auto old = load_calibration_file(target);
+    if (!old) print_remarks("calibrate", {old.error().message + "; it counts for nothing"});
+    if (old) {
+      file.calibration = old->calibration;
+      file.mapping = old->mapping;
+      return;
+    }
+  }
+  file.calibration =
+      find_calibration(files.calibration_folders, identity_of(info)).file.calibration;
+}
+
 int print_or_save(const std::string& target, const CalibrationFile& file,
                   const std::vector<std::string>& comments) {
   if (target == "-") {
@@ -93,10 +109,14 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   auto imported = calibration_import(*text, source, pad->info, pad->layout);
   if (!imported) return calibrate_failed(imported.error().message);
   CalibrationFile file = calibration_for(pad->info, pad->has_factory_sticks);
-  file.calibration = imported->calibration;
-  file.mapping = imported->mapping;
   auto target = calibration_target(arguments.out, file);
   if (!target) return calibrate_failed(target.error().message);
+  take_what_holds(files, pad->info, *target, file);
+  if (imported->mapping.empty()) {
+    file.calibration = imported->calibration;
+  } else {
+    file.mapping = imported->mapping;
+  }
   return print_or_save(*target, file, {"Imported from " + printable(source)});
 }
 

@@ -146,4 +146,5 @@ std::string png_of(cairo_surface_t* surface) {
 // Fontconfig keeps what it looked up until the process ends, out of the leak checker's sight.
 #ifdef __SANITIZE_ADDRESS__
 extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
 #endif

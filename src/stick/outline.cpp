@@ -19,7 +19,7 @@ constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.
 // samples.
 constexpr double kAgreement = 1.5, kOwnAgreement = 3.0;
 constexpr double kGreatestError = 0.025;  // raw, one standard error; beyond it was not seen
-constexpr int kGap = 2;                   // directions that are filled in between seen ones
+constexpr int kGap = 3;                   // directions that are filled in between seen ones
 constexpr double kSharp = 0.6;            // sine of the angle by which a corner turns at least
 
 // A side's reach is known where the outline was seen this near to it, on both of its sides or
@@ -196,7 +196,7 @@ Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, doubl
     outline.radius[k] = radius_at(rim, angle, sigma);
   }
   fill_gaps(outline.radius);
-  if (sigma > 0.0) sharpen(outline);
+  sharpen(outline);
   keep_in_range(outline);
   return outline;
 }

@@ -26,7 +26,7 @@ struct StickStatistics {
   std::optional<vec2> centre;    // robust over the rests, the middle of their spread
   std::optional<vec2> sigma;     // noise within the rests, without trend and spikes
   bool is_sigma_hidden = false;  // it is less than a step in x or y: `sigma` is what the steps show
-  std::optional<double> hysteresis;   // greatest distance between two rests; none: fewer than two
+  std::optional<double> hysteresis;   // greatest distance of rests; none: not let go between any
   std::optional<double> drift_per_s;  // trend at rest; exactly 0 where none is significant
   vec2 drift{0.0};                    // its direction, per second
   double wander = 0.0;  // slow excursions at rest beyond noise, one standard deviation

@@ -196,7 +196,7 @@ Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, doubl
     outline.radius[k] = radius_at(rim, angle, sigma);
   }
   fill_gaps(outline.radius);
-  sharpen(outline);
+  if (sigma > 0.0) sharpen(outline);
   keep_in_range(outline);
   return outline;
 }

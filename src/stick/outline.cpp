@@ -115,6 +115,7 @@ double radius_at(std::span<const Polar> rim, double direction, double sigma) {
   return best.error <= kGreatestError ? best.radius : 0.0;
 }
 
+// By straight lines: by radius a side would bulge.
 void fill_gaps(Radii& radius) noexcept {
   const Radii seen = radius;
   const auto at = [&](int k) { return seen[around(k)]; };
@@ -124,8 +125,9 @@ void fill_gaps(Radii& radius) noexcept {
     while (before <= kGap && at(k - before) == 0.0) ++before;
     while (after <= kGap && at(k + after) == 0.0) ++after;
     if (before + after > kGap + 1) continue;
-    const double u = static_cast<double>(before) / (before + after);
-    radius[k] = mix(at(k - before), at(k + after), u);
+    const vec2 a = at(k - before) * unit_vector(-before * kSpacing);
+    const vec2 b = at(k + after) * unit_vector(after * kSpacing);
+    radius[k] = cross(a, b) / (b.y - a.y);
   }
 }
 

@@ -19,7 +19,7 @@ constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.
 // samples.
 constexpr double kAgreement = 1.5, kOwnAgreement = 3.0;
 constexpr double kGreatestError = 0.025;  // raw, one standard error; beyond it was not seen
-constexpr int kGap = 2;                   // directions that are filled in between seen ones
+constexpr int kGap = 3;                   // directions that are filled in between seen ones
 constexpr double kSharp = 0.6;            // sine of the angle by which a corner turns at least
 
 // A side's reach is known where the outline was seen this near to it, on both of its sides or
@@ -115,6 +115,7 @@ double radius_at(std::span<const Polar> rim, double direction, double sigma) {
   return best.error <= kGreatestError ? best.radius : 0.0;
 }
 
+// By straight lines: by radius a side would bulge.
 void fill_gaps(Radii& radius) noexcept {
   const Radii seen = radius;
   const auto at = [&](int k) { return seen[around(k)]; };
@@ -124,8 +125,9 @@ void fill_gaps(Radii& radius) noexcept {
     while (before <= kGap && at(k - before) == 0.0) ++before;
     while (after <= kGap && at(k + after) == 0.0) ++after;
     if (before + after > kGap + 1) continue;
-    const double u = static_cast<double>(before) / (before + after);
-    radius[k] = mix(at(k - before), at(k + after), u);
+    const vec2 a = at(k - before) * unit_vector(-before * kSpacing);
+    const vec2 b = at(k + after) * unit_vector(after * kSpacing);
+    radius[k] = cross(a, b) / (b.y - a.y);
   }
 }
 

@@ -25,14 +25,16 @@ constexpr double kSigmasOfRim = 4.5;  // one report in 300,000 of a stick at its
 // From 0.14 on full deflection is less than 0.96 where the sideways zone takes most off it.
 constexpr double kLeastSideways = 0.08, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
+constexpr double kSigmasOfWander = 3.0;  // as far as a rest shows it; a walk goes on
 
 // Beyond these no calibration helps.
 constexpr double kUselessZone = 0.3;     // raw; a third of the way does nothing
 constexpr double kUselessReach = 0.5;    // raw, from the centre
 constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel at the least reach
 constexpr double kUselessDrift = 0.002;  // raw a second: out of a zone of 0.1 within a minute
+constexpr double kUselessWander = 0.02;  // raw, within seconds: a minute leaves any zone
 constexpr double kDriftTold_s = 5.0;     // at rest, of a stick that was never let go twice
-constexpr int kUselessStuck = 2;      // once may be a lost report
+constexpr int kUselessStuck = 2;         // once may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
@@ -98,8 +100,9 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   StickCalibration& c = advice.calibration;
   const double half = least_half(c), sigma = greatest_sigma(s);
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
-  // Where there is little hysteresis the formula leaves out too much of the noise.
-  const double rest = std::max(advice.inner_zone, 0.5 * hysteresis_of(s) + kSigmasOfRest * sigma);
+  // Where there is little hysteresis the formula leaves out too much of the noise, and all wander.
+  const double rest = std::max(advice.inner_zone, 0.5 * hysteresis_of(s) + kSigmasOfRest * sigma +
+                                                      kSigmasOfWander * s.wander);
   c.inner = std::min(rest / half, kGreatestInner);
   const double margin = (kSigmasOfRim * sigma + step_of(s)) / half;
   // Where so much is noise that the rim is hardly beyond the inner zone the verdict says so.
@@ -122,7 +125,7 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
     reasons.push_back(fmt::format(
         "it drifts by {:.3f} a second while nobody touches it, which no dead zone cures", drift));
   }
-  if (advice.inner_zone + 3.0 * s.wander > kUselessZone && s.wander > kWornWander) {
+  if (s.wander > kUselessWander) {
     reasons.push_back(fmt::format(
         "it wanders by {:.3f} while nobody touches it, which no dead zone cures", s.wander));
   }
@@ -183,7 +186,8 @@ Reasons worn(const StickStatistics& s) {
                     *s.drift_per_s));
   }
   if (s.wander > kWornWander) {
-    reasons.push_back(fmt::format("it wanders by {:.3f} at rest", s.wander));
+    reasons.push_back(
+        fmt::format("it wanders by {:.3f} at rest, so its dead zone is wider", s.wander));
   }
   return reasons;
 }
@@ -226,7 +230,8 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
   }
   if (s.centre && !s.hysteresis) {
     advice.reason += fmt::format(
-        "; it was let go fewer than two times, so a spread of {:.2f} is assumed for the inner zone",
+        "; it was not seen let go between two rests, so a spread of {:.2f} is assumed for the "
+        "inner zone",
         kAssumedHysteresis);
   }
 }

@@ -12,9 +12,9 @@ enum class Verdict : std::uint8_t { good, worn, replace, unknown };
 const char* name_of(Verdict verdict) noexcept;
 
 struct StickAdvice {
-  StickCalibration calibration;   // what is not known is as for an unknown stick
-  double inner_zone = 0.0;        // raw: max(0.05, 3 sigma + hysteresis)
-  double outer_zone = 0.0;        // raw
+  StickCalibration calibration;  // what is not known is as for an unknown stick
+  double inner_zone = 0.0;       // raw: max(0.05, 3 sigma + hysteresis)
+  double outer_zone = 0.0;       // raw
   Verdict verdict = Verdict::unknown;
   std::string reason;  // one sentence with its numbers
 };

@@ -9,7 +9,6 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kMovement = 0.2;  // raw; less between two rests is no release
 constexpr double kSamePlace = 0.02;
 constexpr double kOdd = 0.005;          // raw; what is less far off does no harm
 constexpr std::size_t kMostTried = 64;  // releases, one by one left out
@@ -28,7 +27,7 @@ Excursion excursion(const StickTrack& track, std::size_t first, const Still& to,
   double away = 0.0;  // reports
   for (std::size_t i = first; i < to.first; ++i) {
     const double distance = glm::length(track[i].raw - to.mean);
-    if (distance < kMovement) continue;
+    if (distance < kReleaseMovement) continue;
     away += reports_stood(hold_s(track, i, interval_s), interval_s);
     way.farthest = std::max(way.farthest, distance);
   }

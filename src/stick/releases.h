@@ -10,6 +10,8 @@
 
 namespace gaitpad {
 
+inline constexpr double kReleaseMovement = 0.2;  // raw; less between two rests is no release
+
 // A rest between two movements; what noise or a touch cut in two belongs to one release.
 struct Release {
   std::vector<Still> stills;  // at one place, in the order of time

@@ -158,7 +158,8 @@ ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_ex
   timing.rate_hz = 1.0 / found->mean_s;
   timing.jitter_ms = 1e3 * found->deviation_s;
   if (!reports_at_rest(tracks, found->mean_s, repeats_expected)) return timing;
-  for (const StickTrack& track : tracks) timing.gaps += gaps_of(track, found->mean_s);
+  timing.gaps = 0;
+  for (const StickTrack& track : tracks) *timing.gaps += gaps_of(track, found->mean_s);
   return timing;
 }
 

@@ -14,11 +14,11 @@ double typical_interval_s(std::span<const StickTrack> tracks);
 
 struct ReportTiming {
   std::optional<double> rate_hz, jitter_ms;  // none: too few reports
-  std::int64_t gaps = 0;
+  std::optional<std::int64_t> gaps;          // none: as well where silence tells nothing
 };
 // `repeats_expected`: the chance that a report at rest is the same as the one before, as far as
 // noise and steps tell. A pad that repeats itself less often, or never, reports changes only as far
-// as one can see, and its silences are no gaps.
+// as one can see, and nobody knows its gaps.
 ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_expected);
 
 // The smallest distance between neighbouring values that is seen often enough to be a step, else

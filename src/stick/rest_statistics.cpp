@@ -310,6 +310,18 @@ Home home_of(std::span<const Release> releases, const Evidence& evidence) {
   return home;
 }
 
+// Between two rests: the way was seen, or the first one's track ends away from it. A stick that
+// rests while the pad is unplugged, or from one recording to the next, tells of no return.
+bool was_let_go(std::span<const StickTrack> tracks, std::span<const Release> releases) noexcept {
+  for (std::size_t i = 1; i < releases.size(); ++i) {
+    const Release& before = releases[i - 1];
+    if (releases[i].from != vec2(0.0)) return true;
+    const vec2 off = tracks[before.track].back().raw - before.rest.place;
+    if (before.track != releases[i].track && glm::length(off) >= kReleaseMovement) return true;
+  }
+  return false;
+}
+
 double hysteresis_of(std::span<const vec2> places, double noise) noexcept {
   const double count = static_cast<double>(places.size());
   const double greatest = greatest_distance(places);
@@ -371,7 +383,9 @@ RestStatistics rest_statistics(std::span<const StickTrack> tracks, std::span<con
   const Home home = home_of(steady, evidence);
   told.centre = home.centre;
   told.rests = places_of(steady, home.counts);
-  if (told.rests.size() >= 2) told.hysteresis = hysteresis_of(told.rests, evidence.mean_noise);
+  if (told.rests.size() >= 2 && was_let_go(tracks, evidence.releases)) {
+    told.hysteresis = hysteresis_of(told.rests, evidence.mean_noise);
+  }
   tell_sigma(told, evidence, step);
   told.wander = wander_of(evidence, told.drift);
   return told;

@@ -22,11 +22,11 @@ struct StickStatistics {
   // At rest.
   std::int64_t rest_samples = 0;
   double rest_s = 0.0;
-  std::vector<vec2> rests;       // means of the single rests that count, one a release
+  std::vector<vec2> rests;       // means of the single rests that count, one a release and track
   std::optional<vec2> centre;    // robust over the rests, the middle of their spread
   std::optional<vec2> sigma;     // noise within the rests, without trend and spikes
   bool is_sigma_hidden = false;  // it is less than a step in x or y: `sigma` is what the steps show
-  std::optional<double> hysteresis;   // greatest distance between two rests; none: fewer than two
+  std::optional<double> hysteresis;   // greatest distance of rests; none: not let go between any
   std::optional<double> drift_per_s;  // trend at rest; exactly 0 where none is significant
   vec2 drift{0.0};                    // its direction, per second
   double wander = 0.0;  // slow excursions at rest beyond noise, one standard deviation
@@ -42,9 +42,11 @@ struct StickStatistics {
   double step_x = 0.0, step_y = 0.0;  // quantisation as measured, else as declared; 0: not known
   std::optional<double> rate_hz;      // of reports that follow each other, gaps left out
   std::optional<double> jitter_ms;    // standard deviation of the intervals, gaps left out
-  std::int64_t gaps = 0;   // places where reports were lost; 0 on a pad that never repeats itself
+  // Places where reports were lost; none on a pad that is silent while nothing changes.
+  std::optional<std::int64_t> gaps;
   std::int64_t jumps = 0;  // spikes: to another place and back within three reports
-  std::int64_t stuck = 0;  // the stick moved on, its value did not, and then jumped
+  // The stick moved on, its value did not, and then jumped. Seen where values are repeated.
+  std::int64_t stuck = 0;
 };
 // `declared_step` (x, y): of the layout, 0 for not known.
 StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2& declared_step);

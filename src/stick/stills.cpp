@@ -11,7 +11,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kCell_s = 0.02;
-constexpr std::size_t kMostCells = 86400 * 50;  // a day
+constexpr std::size_t kMostCells = 86400 * 50;  // a day, of all tracks together
 // A place is still if the means of the 0.1 s before and behind it are the same.
 constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // cells
 constexpr std::size_t kShortestStill = 5;                          // cells
@@ -42,7 +42,7 @@ void add(Cell& to, const Cell& cell) noexcept {
   to.change += cell.change;
 }
 
-std::vector<Cell> cells_of(const StickTrack& track, double interval_s) {
+std::vector<Cell> cells_of(const StickTrack& track, double interval_s, std::size_t most) {
   std::vector<Cell> cells;
   double left_s = 0.0;  // of the last cell
   for (std::size_t i = 0; i < track.size(); ++i) {
@@ -51,7 +51,7 @@ std::vector<Cell> cells_of(const StickTrack& track, double interval_s) {
     double done_s = 0.0;
     do {
       if (left_s <= 1e-9) {
-        if (cells.size() == kMostCells) return cells;
+        if (cells.size() == most) return cells;
         cells.push_back(
             {.begin_ns = track[i].time_ns + static_cast<std::int64_t>(done_s * 1e9), .sample = i});
         left_s = kCell_s;
@@ -263,8 +263,10 @@ std::vector<Still> all_stills(std::span<const StickTrack> tracks, const vec2& de
   const double interval_s = typical_interval_s(tracks);
   const Limits limits = limits_of(tracks, declared_step, interval_s);
   std::vector<Still> found;
+  std::size_t left = kMostCells;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
-    const std::vector<Cell> cells = cells_of(tracks[t], interval_s);
+    const std::vector<Cell> cells = cells_of(tracks[t], interval_s, left);
+    left -= cells.size();
     for (const Run& run : still_runs(cells, limits)) {
       found.push_back(still_of(tracks[t], t, cells, run));
     }

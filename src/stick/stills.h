@@ -22,8 +22,8 @@ struct Stills {
   std::vector<Still> rests;   // let go: near the place to which it returns
   std::vector<Still> pushes;  // held at half of the reach or more
 };
-// Spikes do not count. In the order of time, a track after the other; a track counts for its first
-// day. Where the stick only moved or was only held aside there are no rests. `declared_step`: of x
+// Spikes do not count. In the order of time, a track after the other; the first day of all counts.
+// Where the stick only moved or was only held aside there are no rests. `declared_step`: of x
 // and y, for tracks that show too few values to measure it; 0 for not known.
 Stills stills(std::span<const StickTrack> tracks, const vec2& declared_step = vec2(0.0));
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <string>
 
 #include "session/output_files.h"
 #include "view/drawing.h"
@@ -87,7 +88,8 @@ std::vector<Number> numbers_of(const StickStatistics& s, const StickAdvice* advi
        fmt::format("{} ({}, {})", s.samples, s.rest_samples, s.rim_samples)},
       {"inner zone", zone(&StickAdvice::inner_zone)},
       {"outer zone", zone(&StickAdvice::outer_zone)},
-      {"gaps, jumps, stuck", fmt::format("{}, {}, {}", s.gaps, s.jumps, s.stuck)},
+      {"gaps, jumps, stuck",
+       fmt::format("{}, {}, {}", s.gaps ? std::to_string(*s.gaps) : "?", s.jumps, s.stuck)},
   };
 }
 

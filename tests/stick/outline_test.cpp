@@ -109,6 +109,20 @@ TEST(Outline, HoldsAtAnyReportRateAndNumberOfTurnsAndWithLostReports) {
   }
 }
 
+// Some directions next to a corner are then never reported.
+TEST(Outline, CircularityOfASquareGateTurnedQuicklyOnASlowPad) {
+  for (const vec2& centre : {vec2(0.0), vec2(0.05, 0.1), vec2(0.18, 0.16)}) {
+    for (const double reach : {0.8, 0.87, 0.95}) {
+      MadeStick stick = made({"square", Gate::square, reach, reach}, centre, 0.0, 12, 1);
+      stick.rate_hz = 66.0;
+      SCOPED_TRACE(testing::Message() << "at " << centre.x << " reach " << reach);
+      const Outline outline = outline_of(made_track(stick), stick);
+      ASSERT_TRUE(circularity_error(outline));
+      EXPECT_NEAR(*circularity_error(outline), true_circularity_error(stick), 0.5);
+    }
+  }
+}
+
 // The formula's own value for a full square, sqrt(mean over 48 bins of the greatest radius ...).
 TEST(Outline, FullSquareIsTwentyAndAHalfPercentByTheGreatestRadiusOfEachBin) {
   const MadeStick stick = made(kShapes[4], vec2(0.0), 0.0, 16, 1);

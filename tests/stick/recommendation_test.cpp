@@ -59,6 +59,34 @@ TEST(StickAdvice, InnerZoneIsThreeSigmaAndHysteresisButFivePercentAtLeast) {
   EXPECT_NEAR(advice_for(s).calibration.inner, 0.18 / shortest, 1e-12);
 }
 
+TEST(StickAdvice, AWanderingStickRestsInItsZonesUnlessItIsToBeReplaced) {
+  for (const double wander : {0.005, 0.01}) {
+    std::int64_t walking = 0, resting = 0;
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+      MadeStick stick;
+      stick.seed = seed;
+      stick.sigma = vec2(0.003);
+      stick.wander = wander;
+      MadeMoves moves(stick);
+      moves.rest(10.0);
+      for (int k = 0; k < 6; ++k) {
+        moves.push(k);
+        moves.release();
+        moves.rest(0.6);
+      }
+      moves.turn(3.0);
+      const StickTrack track = reported(stick, moves.path());
+      const StickAdvice advice = advice_for(stick, track);
+      if (advice.verdict == Verdict::replace) continue;
+      for (std::size_t i = 0; i < 2500; ++i) {
+        walking += stick_position(advice.calibration, track[i].raw) != vec2(0.0);
+        ++resting;
+      }
+    }
+    EXPECT_LE(static_cast<double>(walking), 0.015 * static_cast<double>(resting)) << wander;
+  }
+}
+
 // 3 sigma in two directions would let one report in ninety through.
 TEST(StickAdvice, WithoutHysteresisTheCalibrationStillKeepsTheNoiseOut) {
   StickStatistics s = measured();
@@ -158,7 +186,7 @@ constexpr Fault kFaults[] = {
     {"front", Verdict::worn, [](StickStatistics& s) { s.max_y = 0.7; }},
     {"jumped", Verdict::worn, [](StickStatistics& s) { s.jumps = 5; }},
     {"drifts", Verdict::worn, [](StickStatistics& s) { s.drift_per_s = 0.002; }},
-    {"wanders", Verdict::worn, [](StickStatistics& s) { s.wander = 0.02; }},
+    {"wanders", Verdict::worn, [](StickStatistics& s) { s.wander = 0.015; }},
     {"no dead zone cures", Verdict::replace,
      [](StickStatistics& s) {
        s.drift_per_s = 0.02;
@@ -169,7 +197,7 @@ constexpr Fault kFaults[] = {
        s.drift_per_s = 0.02;
        s.rest_s = 3.0;
      }},
-    {"no dead zone cures", Verdict::replace, [](StickStatistics& s) { s.wander = 0.1; }},
+    {"no dead zone cures", Verdict::replace, [](StickStatistics& s) { s.wander = 0.03; }},
     {"dead zone of 36 %", Verdict::replace, [](StickStatistics& s) { s.hysteresis = 0.354; }},
     {"noise", Verdict::replace, [](StickStatistics& s) { s.sigma = vec2(0.0, 0.06); }},
     {"back", Verdict::replace, [](StickStatistics& s) { s.min_y = -0.4; }},

@@ -161,6 +161,16 @@ TEST(Stills, AMeanIsOfTimeNotOfReports) {
   EXPECT_EQ(found.rests[0].last, 2u);
 }
 
+// So that no number of recordings, each all silence, takes time and memory without bound.
+TEST(Stills, TheFirstDayOfAllTracksCounts) {
+  StickTrack silent;
+  for (std::int64_t k = 0; k < 30'000; ++k) {
+    silent.push_back({k * 2'000'000'000, {0.01 + 0.001 * static_cast<double>(k % 2), 0.0}});
+  }
+  const Stills found = stills(std::vector<StickTrack>(3, silent));
+  EXPECT_NEAR(seconds_of(found.rests), 86400.0, 10.0);
+}
+
 TEST(Stills, AnySamplesAreTaken) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();

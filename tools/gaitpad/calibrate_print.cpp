@@ -59,7 +59,8 @@ void print_reports(const StickStatistics& s) {
   const std::string from = fmt::format("{} reports", s.samples);
   print_row("steps", fmt::format("{:.5f} {:.5f}", s.step_x, s.step_y), from);
   print_row("rate", s.rate_hz ? fmt::format("{:.1f} Hz", *s.rate_hz) : "not known",
-            s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms, {} gaps", from, *s.jitter_ms, s.gaps)
+            s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms, {}", from, *s.jitter_ms,
+                                      s.gaps ? fmt::format("{} gaps", *s.gaps) : "gaps not known")
                         : from);
   print_row("faults", fmt::format("{} jumps", s.jumps), fmt::format("{} times stuck", s.stuck));
 }
@@ -113,7 +114,7 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"step_x", s.step_x},
           {"step_y", s.step_y},
           {"jitter_ms", value_or_null(s.jitter_ms)},
-          {"gaps", s.gaps},
+          {"gaps", value_or_null(s.gaps)},
           {"jumps", s.jumps},
           {"stuck", s.stuck}};
 }

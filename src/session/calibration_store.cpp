@@ -189,7 +189,8 @@ std::optional<Error> saving_problem(const std::string& path) {
     return Error{path + ": this is no file, a calibration cannot take its place"};
   fs::path folder = fs::absolute(*place, error).parent_path();
   while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) return failure(folder.string(), errno);
+  if (!fs::is_directory(folder, error)) return failure(path, ENOTDIR);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) return failure(path, errno);
   return std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -67,9 +68,12 @@ std::optional<Error> problem_beforehand(const CalibrateArguments& arguments) {
     const auto file = load_calibration_file(arguments.check);
     return file ? std::nullopt : std::optional(file.error());
   }
-  const auto target = calibration_target(arguments.out, CalibrationFile());
-  if (!target) return target.error();
-  return *target == "-" ? std::nullopt : saving_problem(*target);
+  if (arguments.out == "-") return std::nullopt;
+  if (!arguments.out.empty()) return saving_problem(arguments.out);
+  // Which pad it will be is not known yet.
+  const auto any = calibration_target("", CalibrationFile());
+  return any ? saving_problem(std::filesystem::path(*any).replace_filename("*.toml"))
+             : std::optional(any.error());
 }
 
 std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& pad,

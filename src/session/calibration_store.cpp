@@ -179,6 +179,21 @@ std::string calibration_path(const std::string& folder, const CalibrationFile& f
   return folder + "/" + name + (is_for_evdev ? "-evdev" : "") + ".toml";
 }
 
+std::optional<Error> saving_problem(const std::string& path) {
+  const auto place = behind_links(path);
+  if (!place) return place.error();
+  std::error_code error;
+  const fs::file_status status = fs::status(*place, error);
+  if (fs::is_directory(status)) return failure(path, EISDIR);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return Error{path + ": this is no file, a calibration cannot take its place"};
+  fs::path folder = fs::absolute(*place, error).parent_path();
+  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  if (!fs::is_directory(folder, error)) return failure(path, ENOTDIR);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) return failure(path, errno);
+  return std::nullopt;
+}
+
 std::optional<Error> save_calibration(const std::string& path, const CalibrationFile& file,
                                       const std::vector<std::string>& comments) {
   const std::string text =
@@ -186,16 +201,13 @@ std::optional<Error> save_calibration(const std::string& path, const Calibration
   // A file that could not be read back would be lost work, and told only at the next game.
   if (auto again = parse_calibration(text, path); !again)
     return Error{"was not saved, since it could not be read back: " + again.error().message};
+  if (auto problem = saving_problem(path)) return problem;
   std::error_code error;
   const fs::path folder = fs::path(path).parent_path();
   if (!folder.empty()) fs::create_directories(folder, error);
   if (error) return Error{fmt::format("{}: cannot be made: {}", folder.string(), error.message())};
   const auto place = behind_links(path);
   if (!place) return place.error();
-  const fs::file_status status = fs::status(*place, error);
-  if (fs::is_directory(status)) return failure(path, EISDIR);
-  if (fs::exists(status) && !fs::is_regular_file(status))
-    return Error{path + ": this is no file, a calibration cannot take its place"};
   std::string blamed;
   if (const int problem = put_in_place(*place, text, blamed)) return failure(blamed, problem);
   return std::nullopt;

@@ -22,6 +22,9 @@ CalibrationFile calibration_for(const DeviceInfo& device, bool has_factory_stick
 // `FOLDER/054c_0ce6-UNIQUE.toml`: the same for the same device, another one for any other.
 std::string calibration_path(const std::string& folder, const CalibrationFile& file);
 
+// Why nothing could be saved there, as far as that is seen before it is tried.
+std::optional<Error> saving_problem(const std::string& path);
+
 // Makes the folder, writes a temporary file beside `path`, puts it in its place at once; what stood
 // there before is kept as PATH.old. Where `path` is a symbolic link, both happen where it points to
 // and it stays one. On error `path` is as it was. `comments` stand at the top, each a line.

@@ -127,7 +127,7 @@ void CalibrationGuide::take(const Report& report) {
   ++reports_;
   if (!std::exchange(is_placed_, true)) time_ns_ = report.time_ns;
   if (step() != GuideStep::turn) return;
-  for (Stick& stick : sticks_) stick.turn.take(from_rest(stick));
+  for (Stick& stick : sticks_) stick.turn.take(from_rest(stick), stick.release.rim());
   if (is_complete()) finish_step();
 }
 
@@ -166,7 +166,7 @@ void CalibrationGuide::advance(std::int64_t now_ns) {
 
 void CalibrationGuide::hold(Stick& stick, std::int64_t duration_ns) {
   if (step() == GuideStep::rest) stick.release.hold(raw(stick), duration_ns);
-  stick.push.hold(from_rest(stick), duration_ns);
+  stick.push.hold(from_rest(stick), stick.release.rim(), duration_ns);
   const std::optional<vec2> push = stick.push.take_push();
   if (push && is_push(step())) take_push(stick, *push);
 }
@@ -178,7 +178,7 @@ void CalibrationGuide::hold(Trigger& trigger, std::int64_t duration_ns) {
     const double level = trigger.level.mean().x;
     trigger.released = std::min(trigger.released.value_or(level), level);
   }
-  trigger.push.hold(vec2(value - trigger.released.value_or(0.0), 0.0), duration_ns);
+  trigger.push.hold(vec2(value - trigger.released.value_or(0.0), 0.0), kHalfWay, duration_ns);
   if (trigger.push.take_push() && step() == GuideStep::triggers) trigger.is_done = true;
 }
 

@@ -30,7 +30,7 @@ const char* name_of(GuideStep step) noexcept;  // "rest", "turning", "push forwa
 struct GuideProgress {
   std::string control;  // "left stick", "right trigger"
   double done = 0.0;    // 0..1
-  std::string text;     // `5 of 6 releases`, `41 of 48 directions, 1.5 of 2 turns; not yet: front`
+  std::string text;     // `5 of 6 releases`, `41 of 48 directions, 1.5 of 2 turns; not yet: ...`
   vec2 raw{0.0};        // where it is now; a trigger: x
 };
 
@@ -104,8 +104,6 @@ class CalibrationGuide {
   GuideProgress turn_progress(const Stick& stick) const;
   GuideProgress push_progress(const Stick& stick) const;
   GuideProgress trigger_progress(const Trigger& trigger) const;
-  std::string side_name(const Stick& stick, const vec2& raw) const;
-  std::string missing_sides(const Stick& stick) const;
 
   std::vector<GuideStep> steps_;
   std::size_t index_ = 0;

@@ -50,6 +50,14 @@ const char* direction_words(GuideStep step) noexcept {
   }
 }
 
+// How the axes lie under the thumb is learned by the pushes, in later steps.
+std::string side_name(const vec2& raw) {
+  static constexpr const char* kNames[] = {"right", "front right", "front", "front left",
+                                           "left",  "back left",   "back",  "back right"};
+  const long eighth = std::lround(atan2(raw.y, raw.x) / (kPi / 4.0));
+  return std::string(kNames[(eighth + 8) % 8]) + " by its axes";
+}
+
 }  // namespace
 
 std::string CalibrationGuide::instruction() const {
@@ -99,26 +107,6 @@ std::vector<GuideProgress> CalibrationGuide::progress() const {
   return all;
 }
 
-// As the pad's axes have it, until the pushes have told how they lie.
-std::string CalibrationGuide::side_name(const Stick& stick, const vec2& raw) const {
-  static constexpr const char* kNames[] = {"right", "front right", "front", "front left",
-                                           "left",  "back left",   "back",  "back right"};
-  const vec2 told = in_frame(frame(stick.side), raw);
-  return kNames[(std::lround(atan2(told.y, told.x) / (kPi / 4.0)) + 8) % 8];
-}
-
-std::string CalibrationGuide::missing_sides(const Stick& stick) const {
-  static const std::array<vec2, 4> kQuarters = {vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0),
-                                                vec2(0.0, -1.0)};
-  std::string names;
-  for (int i = 0; i < 4; ++i) {
-    if (stick.release.has_side(i)) continue;
-    if (!names.empty()) names += ", ";
-    names += side_name(stick, kQuarters[static_cast<std::size_t>(i)]);
-  }
-  return names;
-}
-
 GuideProgress CalibrationGuide::rest_progress(const Stick& stick) const {
   const ReleaseWatch& release = stick.release;
   const int count = std::min(release.count(), kWantedReleases);
@@ -135,7 +123,7 @@ GuideProgress CalibrationGuide::rest_progress(const Stick& stick) const {
   } else if (release.is_away()) {
     progress.text += "; let go and wait";
   } else if (count == kWantedReleases && sides < kWantedSides) {
-    progress.text += "; not yet from " + missing_sides(stick);
+    progress.text += fmt::format("; only from {} of {} sides", sides, kWantedSides);
   } else if (count == kWantedReleases) {
     progress.text += fmt::format("; leave it alone: {:.1f} of {:.1f} s", alone_s, wanted_s);
   }
@@ -152,7 +140,8 @@ GuideProgress CalibrationGuide::turn_progress(const Stick& stick) const {
   progress.text = fmt::format("{} of {} directions, {:.1f} of {:.0f} turns", turn.filled(),
                               kTurnBins, std::floor(turns * 10.0) / 10.0, kWantedTurns);
   const std::optional<vec2> missing = turn.missing();
-  if (missing && turn.filled() > 0) progress.text += "; not yet: " + side_name(stick, *missing);
+  if (missing && turn.filled() > 0) progress.text += "; not yet: " + side_name(*missing);
+  if (missing && turns == kWantedTurns) progress.text += " (Enter goes on without)";
   return progress;
 }
 

@@ -18,11 +18,12 @@ constexpr double kAwayUnknown = 0.5;    // from the middle, where that is not kn
 constexpr double kFarthestRest = 0.45;  // from the middle; beyond it a stick is held
 constexpr std::size_t kMaxRests = 64;   // further releases are not needed
 
-constexpr double kRim = 0.5;
+constexpr double kOfReach = 0.6;      // of the farthest that was seen: pushed out
 constexpr double kOfMedianRim = 0.6;  // less is a cut corner, not a gate (a square has 0.71)
 constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;  // noise, spikes
 
 constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
+constexpr double kInOfRim = 0.6;  // nearer it is let go
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -73,6 +74,7 @@ void ReleaseWatch::hold(const vec2& raw, std::int64_t duration_ns) {
     away_ = from_rest;
     if (away_ns_ > kSpikeNs) {
       if (!is_away_) still_ = StillWatch();  // how it stood before it went
+      reach_ = std::max(reach_, glm::length(from_rest));
       is_away_ = true;
       near_ns_ = 0;
       near_sum_ = vec2(0.0);
@@ -126,13 +128,18 @@ void ReleaseWatch::lose() noexcept {
   is_away_ = false;
 }
 
+double ReleaseWatch::rim() const noexcept {
+  return reach_ > 0.0 ? std::min(kHalfWay, kOfReach * reach_) : kHalfWay;
+}
+
 int ReleaseWatch::sides() const noexcept {
   return static_cast<int>(std::ranges::count(sides_, true));
 }
 
-void TurnWatch::take(const vec2& from_rest) noexcept {
+void TurnWatch::take(const vec2& from_rest, double rim) noexcept {
+  rim_ = rim;
   const double radius = glm::length(from_rest);
-  if (!(radius > kRim)) return;  // between two circles; not-a-number, too
+  if (!(radius > rim)) return;  // between two circles; not-a-number, too
   const double angle_rad = atan2(from_rest.y, from_rest.x);
   const int bin = static_cast<int>(std::lround(angle_rad / (2.0 * kPi) * kTurnBins));
   double& greatest = radius_[static_cast<std::size_t>((bin + kTurnBins) % kTurnBins)];
@@ -146,10 +153,10 @@ void TurnWatch::take(const vec2& from_rest) noexcept {
 double TurnWatch::least_radius() const noexcept {
   std::array<double, kTurnBins> sorted = radius_;
   const auto end = std::ranges::remove(sorted, 0.0).begin();
-  if (end == sorted.begin()) return kRim;
+  if (end == sorted.begin()) return rim_;
   const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
   std::nth_element(sorted.begin(), middle, end);
-  return std::max(kRim, kOfMedianRim * *middle);
+  return std::max(rim_, kOfMedianRim * *middle);
 }
 
 int TurnWatch::filled() const noexcept {
@@ -173,9 +180,9 @@ std::optional<vec2> TurnWatch::missing() const noexcept {
   return vec2(middle.cos, middle.sin);
 }
 
-void PushWatch::hold(const vec2& from_rest, std::int64_t duration_ns) noexcept {
+void PushWatch::hold(const vec2& from_rest, double rim, std::int64_t duration_ns) noexcept {
   const double radius = glm::length(from_rest);
-  const Zone zone = radius > kRim ? Zone::out : radius < kAway ? Zone::in : Zone::between;
+  const Zone zone = radius > rim ? Zone::out : radius < kInOfRim * rim ? Zone::in : Zone::between;
   zone_ns_ = zone == zone_ ? zone_ns_ + duration_ns : duration_ns;
   zone_ = zone;
   if (zone == Zone::out && is_armed_) {

@@ -27,6 +27,8 @@ class StillWatch {
   std::int64_t still_ns_ = 0;
 };
 
+inline constexpr double kHalfWay = 0.5;  // from rest; beyond it a control is pushed out
+
 inline constexpr int kWantedReleases = 6, kWantedSides = 3;
 inline constexpr std::int64_t kWantedRestNs = 2500 * kMillisecondNs;  // for drift, at the end
 
@@ -40,7 +42,6 @@ class ReleaseWatch {
 
   int count() const noexcept { return static_cast<int>(rests_.size()); }
   int sides() const noexcept;  // quarters that it was let go from
-  bool has_side(int quarter) const noexcept { return sides_[static_cast<std::size_t>(quarter)]; }
   bool is_away() const noexcept { return is_away_; }
   std::int64_t rested_ns() const noexcept { return near_ns_; }  // since the last release
   // Stays so, whatever the other stick still needs.
@@ -49,6 +50,9 @@ class ReleaseWatch {
   bool is_held() const noexcept;
   // The median of the rests, else where it stood when it was first seen; none: not seen at rest.
   std::optional<vec2> rest() const noexcept { return rest_; }
+  // What counts as pushed out in the other steps, as a distance from rest: half of the way, less
+  // where the stick was never seen to reach far.
+  double rim() const noexcept;
 
  private:
   bool is_back() const noexcept;
@@ -59,6 +63,7 @@ class ReleaseWatch {
   std::array<bool, 4> sides_{};  // right, front, left, back, of raw axes
   std::optional<vec2> rest_;
   vec2 away_{0.0};            // from rest, where it was last seen away
+  double reach_ = 0.0;        // the farthest of these, spikes left out
   std::int64_t away_ns_ = 0;  // without a break
   std::int64_t near_ns_ = 0;  // since it was away, spikes left out
   vec2 near_sum_{0.0};        // meanwhile, times nanoseconds
@@ -71,7 +76,7 @@ inline constexpr double kWantedTurns = 2.0;
 // Full circles along the rim.
 class TurnWatch {
  public:
-  void take(const vec2& from_rest) noexcept;
+  void take(const vec2& from_rest, double rim) noexcept;
   void restart() noexcept { *this = TurnWatch(); }
   void lose() noexcept { anchor_rad_.reset(); }
 
@@ -84,16 +89,17 @@ class TurnWatch {
  private:
   double least_radius() const noexcept;
 
+  double rim_ = 0.0;
   std::array<double, kTurnBins> radius_{};  // greatest; bin k is centred on k times 7.5 degrees
   std::optional<double> anchor_rad_;
   double travelled_rad_ = 0.0;
 };
 
-// A push: beyond half of the way for a quarter of a second, then back near the rest.
+// A push: beyond the rim for a quarter of a second, then back near the rest.
 class PushWatch {
  public:
   enum class State : std::uint8_t { waiting, out, held };
-  void hold(const vec2& from_rest, std::int64_t duration_ns) noexcept;
+  void hold(const vec2& from_rest, double rim, std::int64_t duration_ns) noexcept;
   void restart() noexcept;  // what is out now does not count
   void lose() noexcept { *this = PushWatch(); }
 

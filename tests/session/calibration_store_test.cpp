@@ -284,7 +284,8 @@ TEST_F(SaveCalibration, AReadOnlyFolderIsToldAndTheOldFileStays) {
 
 TEST_F(SaveCalibration, WhereNothingCanBeWrittenItSaysSo) {
   std::ofstream(top_ + "/file") << "x";
-  EXPECT_EQ(problem(top_ + "/file/pad.toml", 0.1), top_ + "/file: cannot be made: Not a directory");
+  EXPECT_EQ(problem(top_ + "/file/pad.toml", 0.1),
+            top_ + "/file/pad.toml: cannot be written: Not a directory");
   EXPECT_EQ(problem("/proc/pad.toml", 0.1),
             "/proc/pad.toml: cannot be written: No such file or "
             "directory");

@@ -264,6 +264,19 @@ TEST(CalibrationGuide, ANoisyWornStickGetsThroughLikeANewOne) {
   }
 }
 
+TEST(CalibrationGuide, AStickThatReachesLessThanHalfOfTheWayGetsThroughToo) {
+  for (const double reach : {0.36, 0.45}) {
+    Hand hand(Controls::one_stick);
+    hand.sigma = 0.01;
+    hand.centre = vec2(0.06, -0.05);
+    hand.reach = reach;
+    hand.frame = kFrames[6];
+    hand.steps_of_sticks(1);
+    EXPECT_EQ(hand.guide.step(), GuideStep::done) << hand.text();
+    EXPECT_EQ(hand.guide.frame(0), kFrames[6]);
+  }
+}
+
 TEST(CalibrationGuide, NoiseAndSpikesAreNoReleases) {
   Hand hand;
   hand.sigma = 0.04;
@@ -285,7 +298,7 @@ TEST(CalibrationGuide, ReleasesFromTwoSidesAreNotEnough) {
     hand.push(0, vec2(0, 1));
   }
   EXPECT_EQ(hand.guide.step(), GuideStep::rest);
-  EXPECT_EQ(hand.text(), "6 of 6 releases; not yet from left, back");
+  EXPECT_EQ(hand.text(), "6 of 6 releases; only from 2 of 3 sides");
   hand.push(0, vec2(0, -1), 0.1, 2.7);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
@@ -364,7 +377,9 @@ TEST(CalibrationGuide, HalfACircleIsMissingWhereItWasNotTurned) {
       hand.pass();
     }
   }
-  EXPECT_EQ(hand.text(), "25 of 48 directions, 2.0 of 2 turns; not yet: back");
+  EXPECT_EQ(
+      hand.text(),
+      "25 of 48 directions, 2.0 of 2 turns; not yet: back by its axes (Enter goes on without)");
 }
 
 TEST(CalibrationGuide, ACutCornerIsNotTheRim) {

@@ -32,7 +32,7 @@ class Calibrate(unittest.TestCase):
         own = {"XDG_CONFIG_HOME": str(self.folder / "config")} if environment is None else environment
         kept = {k: v for k, v in os.environ.items() if k not in ("XDG_CONFIG_HOME", "HOME")}
         return subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                              check=False, timeout=120, env={**kept, **own}, preexec_fn=before)
+                              check=False, timeout=120, env={**kept, **own}, preexec_fn=before, cwd=self.folder)
 
     def trace(self, left=None, right=None, steps=None, **options):
         path = self.folder / f"{options.pop('file', 'made')}.hid"
@@ -113,8 +113,11 @@ class Calibrate(unittest.TestCase):
         self.calibrated("--trace", self.trace(Stick(centre=(0.1, 0), reach=(0.8, 0.8)), serial=SERIAL))
         before = tomllib.loads(self.written().read_text())["left"]
         turning = [(t, (math.cos(9 * t), math.sin(9 * t)), (0, 0)) for t in (i / 250 for i in range(800))]
-        self.run_program("calibrate", "--trace", self.trace(Stick(), steps=turning, serial=SERIAL))
-        self.assertEqual(tomllib.loads(self.written().read_text())["left"], before)
+        still = Stick(centre=(0, 0.1), reach=(0, 0))
+        self.calibrated("--trace", self.trace(Stick(), still, steps=turning, serial=SERIAL))
+        after = tomllib.loads(self.written().read_text())
+        self.assertAlmostEqual(after["right"]["y"]["centre"], 0.1, delta=0.001)
+        self.assertEqual(after["left"], before)  # `measured` too
 
     def test_play_and_record_use_it_and_the_recording_carries_it(self):
         trace = self.trace(Stick(centre=(0.3, 0.3), reach=(0.6, 0.6)), serial=SERIAL)
@@ -157,6 +160,20 @@ class Calibrate(unittest.TestCase):
         self.assertFalse(any("right" in c for c in told), told)
         self.assertEqual(self.written().read_text(), before)
 
+    def test_says_that_a_file_is_another_pads_or_that_nothing_could_be_compared(self):
+        own = self.trace(serial=SERIAL)
+        self.calibrated("--trace", own)
+        same = self.run_program("calibrate", "--trace", own, "--check", self.written())
+        self.assertEqual((same.returncode, same.stderr), (0, ""))
+        self.assertIn("nothing that was seen has changed since", same.stdout)
+        other = self.run_program("calibrate", "--trace", self.trace(product=3, file="other"), "--check", self.written())
+        self.assertEqual(other.returncode, 0)
+        self.assertIn(f"{self.written()}: is the file of ", other.stderr)
+        turning = [(t, (math.cos(9 * t), math.sin(9 * t)), (0, 0)) for t in (i / 250 for i in range(800))]
+        unseen = self.refused("--trace", self.trace(steps=turning, serial=SERIAL), "--check", self.written(),
+                              says="no stick was seen at rest")
+        self.assertNotIn("has changed", unseen.stdout)
+
     def test_draws_a_picture_that_others_can_read(self):
         picture = self.folder / "sticks.png"
         self.calibrated("--trace", self.trace(), "--plot", picture)
@@ -172,6 +189,9 @@ class Calibrate(unittest.TestCase):
         done = self.run_program("calibrate", "--trace", trace, "--out", "-")
         self.assertEqual(tomllib.loads(done.stdout)["unique_id"], SERIAL)
         self.assertFalse(self.own.exists())
+        (self.folder / "-").write_text("left = nonsense\n")  # a file of that name is no business of `--out -`
+        again = self.run_program("calibrate", "--trace", trace, "--out", "-")
+        self.assertEqual((again.stdout, again.stderr), (done.stdout, ""))
         out = self.folder / "mine.toml"
         done = self.run_program("calibrate", "--trace", trace, "--out", out)
         self.assertIn("left stick: good.", done.stdout)
@@ -195,6 +215,7 @@ class Calibrate(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         own = tomllib.loads(self.written().read_text())
         self.assertEqual(own["left"], left)
+        self.assertNotIn("measured_on", own)
         self.assertIn("leftx:a2,", own["mapping"])
         (self.folder / "junk").write_text("hello\n")
         self.refused("--trace", trace, "--import", self.folder / "junk", says="junk")
@@ -216,7 +237,15 @@ class Calibrate(unittest.TestCase):
         self.refused("--trace", good, before=full, says=self.written().name)
         self.assertEqual(self.written().read_text(), kept)
         self.assertEqual(sorted(p.name for p in self.own.iterdir() if ".toml" not in p.name), [])
-        self.assertEqual(self.run_program("calibrate", "--trace", good, "--pushes", "up").returncode, 1)
+
+    def test_options_that_contradict_each_other_are_wrong_usage(self):
+        trace = ("--trace", self.trace())
+        for options in (("--trace", "a", "PAD"), ("--trace", "a", "--driver", "evdev"), ("--check", "a", "--out", "b"),
+                        ("--import", "a", "--check", "b"), ("--import", "a", "--json"), ("--export-sdl", "--import", "a"),
+                        ("--export-sdl", "--plot", "a.png"), ("--pushes", "forward,right"), (*trace, "--pushes", "up"),
+                        (*trace, "--plot", "a.jpg"), (*trace, "--json", "--out", "-")):
+            with self.subTest(options=options):
+                self.assertEqual(self.run_program("calibrate", *options).returncode, 2)
 
     def test_a_damaged_file_of_its_own_is_told_and_replaced(self):
         trace = self.trace(serial=SERIAL)

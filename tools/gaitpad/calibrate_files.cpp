@@ -75,14 +75,17 @@ Result<std::string> calibration_target(const std::string& out, const Calibration
 
 void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
                      CalibrationFile& file) {
-  if (std::filesystem::exists(target)) {
+  std::error_code error;
+  if (target != "-" && std::filesystem::exists(target, error)) {
     auto old = load_calibration_file(target);
-    if (!old) print_remarks("calibrate", {old.error().message + "; it counts for nothing"});
     if (old) {
       file.calibration = old->calibration;
       file.mapping = old->mapping;
+      file.measured = old->measured;
+      file.measured_on = old->measured_on;
       return;
     }
+    print_remarks("calibrate", {old.error().message + "; it counts for nothing"});
   }
   file.calibration =
       find_calibration(files.calibration_folders, identity_of(info)).file.calibration;
@@ -114,6 +117,8 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   take_what_holds(files, pad->info, *target, file);
   if (imported->mapping.empty()) {
     file.calibration = imported->calibration;
+    file.measured = {};
+    file.measured_on.clear();
   } else {
     file.mapping = imported->mapping;
   }

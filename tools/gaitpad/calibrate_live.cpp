@@ -35,15 +35,6 @@ std::string name_of(const DeviceInfo& info) {
   return name.empty() ? fmt::format("{:04x}:{:04x}", info.vendor, info.product) : name;
 }
 
-std::vector<std::string> remarks_on(const DeviceInfo& info) {
-  if (info.driver != "evdev" && info.driver != "sdl") return {};
-  return {
-      fmt::format("{}: through {} the kernel may filter small changes (fuzz) and correct the "
-                  "sticks, so noise and centre are not the pad's own; --driver hidraw or usb sees "
-                  "more, where the pad has it",
-                  name_of(info), info.driver)};
-}
-
 void take(const Report& report, PadStream& stream, Subject& subject) {
   if (report.kind == ReportKind::added && subject.device == kNoDevice) {
     subject.device = report.device;
@@ -121,7 +112,7 @@ Result<bool> run_guide(PadStream& stream, const PadWish& wish, RunEnd& end, Subj
     if (subject.guide && !was_there) {
       if (subject.guide->step() == GuideStep::done)
         return Error{name_of(subject.info) + ": has no stick to calibrate"};
-      print_remarks(kCommand, remarks_on(subject.info), &screen.line());
+      print_remarks(kCommand, driver_remarks(subject.info), &screen.line());
     }
     if (subject.guide) subject.guide->tick(now_ns() - kOnTheWayNs);
     if (has_ended) end_recording(subject, screen);
@@ -135,6 +126,15 @@ Result<bool> run_guide(PadStream& stream, const PadWish& wish, RunEnd& end, Subj
 }
 
 }  // namespace
+
+std::vector<std::string> driver_remarks(const DeviceInfo& info) {
+  if (info.driver != "evdev" && info.driver != "sdl") return {};
+  return {
+      fmt::format("{}: through {} the kernel may filter small changes (fuzz) and correct the "
+                  "sticks, so noise and centre are not the pad's own; --driver hidraw or usb sees "
+                  "more, where the pad has it",
+                  name_of(info), info.driver)};
+}
 
 Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish& wish,
                                             RunEnd& end) {

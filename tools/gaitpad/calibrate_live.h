@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "hid/decode.h"
@@ -25,6 +26,9 @@ struct GuidedPad {
 // what is left. Error: the wish is wrong, or the pad has no stick.
 Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish& wish,
                                             RunEnd& end);
+
+// That the driver shows other values than the pad's own, where it may.
+std::vector<std::string> driver_remarks(const DeviceInfo& info);
 
 // Asks and waits: true at Enter; false at q, Ctrl-C, SIGTERM, end of input. Keys that were pressed
 // before the question do not count.

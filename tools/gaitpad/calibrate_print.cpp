@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "tools/gaitpad/report_print.h"
@@ -10,71 +11,78 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kSideNames[] = {"left", "right"};
+constexpr const char* kUnknown = " not known";
 
-std::string position(const std::optional<vec2>& p) {
-  return p ? fmt::format("{:+.4f} {:+.4f}", p->x, p->y) : "not known";
-}
-
-std::string number(const std::optional<double>& value, const char* unit = "") {
-  return value ? fmt::format("{:.4f}{}", *value, unit) : "not known";
-}
-
+// A label, one value or that of x and of y, and what it is from.
 void print_row(const char* what, const std::string& value, const std::string& from) {
-  fmt::print("  {:<14}{:<18}{}\n", what, value, from);
+  fmt::print("  {:<18}{:<20}{}\n", what, value, from);
+}
+
+std::string pair_text(const std::optional<vec2>& p, bool is_signed) {
+  if (!p) return kUnknown;
+  return is_signed ? fmt::format("{:>+9.4f}{:>+9.4f}", p->x, p->y)
+                   : fmt::format("{:>9.4f}{:>9.4f}", p->x, p->y);
+}
+std::string pair_text(const std::optional<double>& x, const std::optional<double>& y) {
+  const auto end = [](const std::optional<double>& v) {
+    return v ? fmt::format("{:>+9.4f}", *v) : "        ?";
+  };
+  return x || y ? end(x) + end(y) : kUnknown;
 }
 
 void print_rest(const StickStatistics& s) {
   const std::string from = fmt::format("{} reports at rest in {:.1f} s", s.rest_samples, s.rest_s);
-  print_row("centre", position(s.centre),
+  print_row("centre", pair_text(s.centre, true),
             fmt::format("{}, {} rest{}", from, s.rests.size(), s.rests.size() == 1 ? "" : "s"));
   if (!s.centre) return;
-  print_row("noise", s.sigma ? fmt::format("{:.4f} {:.4f}", s.sigma->x, s.sigma->y) : "not known",
-            s.is_sigma_hidden
-                ? fmt::format("{}; hidden by the steps of {:.4f} {:.4f}", from, s.step_x, s.step_y)
-                : from);
-  print_row("hysteresis", number(s.hysteresis),
-            s.hysteresis ? fmt::format("distance of the farthest of {} rests", s.rests.size())
+  print_row("noise (sigma)", pair_text(s.sigma, false),
+            s.is_sigma_hidden ? from + ", hidden by the steps" : from);
+  print_row("hysteresis", s.hysteresis ? fmt::format("{:>9.4f}", *s.hysteresis) : kUnknown,
+            s.hysteresis ? fmt::format("between the farthest two of {} rests", s.rests.size())
                          : "needs two rests with a push between them");
-  print_row("drift", number(s.drift_per_s, " /s"),
-            s.wander > 0.0 ? fmt::format("wanders by {:.4f}", s.wander) : from);
+  const std::string trend = s.drift_per_s ? fmt::format("{:>9.4f} a second", *s.drift_per_s) : "";
+  print_row("drift", trend.empty() ? kUnknown : *s.drift_per_s > 0.0 ? trend : "     none", from);
+  if (s.wander > 0.0)
+    print_row("wander", fmt::format("{:>9.4f}", s.wander), "slow excursions at rest, sigma");
 }
 
 void print_rim(const StickStatistics& s) {
-  const auto range = [](const std::optional<double>& low, const std::optional<double>& high) {
-    return fmt::format("{} .. {}", low ? fmt::format("{:.3f}", *low) : "?",
-                       high ? fmt::format("{:.3f}", *high) : "?");
-  };
   const std::string from =
-      fmt::format("{} reports at the rim, {} of {} directions, {} turns", s.rim_samples,
-                  filled_bins(s.outline), kCircularityBins, s.turns);
-  print_row("left, right", range(s.min_x, s.max_x), from);
-  print_row("back, forward", range(s.min_y, s.max_y), from);
-  print_row("circularity",
-            s.circularity_error ? fmt::format("{:.1f} %", *s.circularity_error) : "not known",
+      fmt::format("{} reports at the rim, {} of {} directions, {} whole turn{}", s.rim_samples,
+                  filled_bins(s.outline), kCircularityBins, s.turns, s.turns == 1 ? "" : "s");
+  print_row("reach right, front", pair_text(s.max_x, s.max_y), from);
+  print_row("reach left, back", pair_text(s.min_x, s.min_y), from);
+  print_row("circularity error",
+            s.circularity_error ? fmt::format("{:>9.1f} %", *s.circularity_error) : kUnknown,
             s.circularity_error ? "0 is a circle of radius 1 about the raw middle"
                                 : "needs whole turns along the rim");
 }
 
 void print_reports(const StickStatistics& s) {
   const std::string from = fmt::format("{} reports", s.samples);
-  print_row("steps", fmt::format("{:.5f} {:.5f}", s.step_x, s.step_y), from);
-  print_row("rate", s.rate_hz ? fmt::format("{:.1f} Hz", *s.rate_hz) : "not known",
-            s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms, {}", from, *s.jitter_ms,
-                                      s.gaps ? fmt::format("{} gaps", *s.gaps) : "gaps not known")
-                        : from);
-  print_row("faults", fmt::format("{} jumps", s.jumps), fmt::format("{} times stuck", s.stuck));
+  const double finest = std::min(s.step_x, s.step_y);
+  if (finest > 0.0) {
+    print_row("step", fmt::format("{:>9.5f}{:>9.5f}", s.step_x, s.step_y),
+              fmt::format("{:.0f} from end to end", 2.0 / finest));
+  }
+  print_row("rate", s.rate_hz ? fmt::format("{:>9.1f} Hz", *s.rate_hz) : kUnknown,
+            s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms", from, *s.jitter_ms) : from);
+  const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
+  print_row("gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
 }
 
 void print_advice(const StickAdvice& a) {
   const StickCalibration& c = a.calibration;
-  print_row("zones", fmt::format("{:.3f} .. {:.3f}", a.inner_zone, a.outer_zone),
-            fmt::format("of the deflection {:.3f} .. {:.3f}, sideways {:.3f}", c.inner, c.outer,
-                        c.sideways));
-  if (!(c.frame == StickFrame{})) {
-    constexpr const char* kRaw[] = {"x", "-x", "y", "-y"};
-    print_row("axes", fmt::format("right = {}", kRaw[static_cast<int>(c.frame.right)]),
-              fmt::format("forward = {}", kRaw[static_cast<int>(c.frame.forward)]));
-  }
+  print_row("inner zone", fmt::format("{:>9.3f}", a.inner_zone),
+            fmt::format("{:.3f} of the deflection", c.inner));
+  print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
+            fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
+  if (c.frame == StickFrame{}) return;
+  constexpr const char* kRaw[] = {"x", "-x", "y", "-y"};
+  print_row("axes",
+            fmt::format("right = {}, forward = {}", kRaw[static_cast<int>(c.frame.right)],
+                        kRaw[static_cast<int>(c.frame.forward)]),
+            "");
 }
 
 template <typename T>
@@ -126,19 +134,25 @@ void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick) continue;
-    fmt::print("\n{} stick: {}. {}\n", kSideNames[i], name_of(stick->advice.verdict),
-               stick->advice.reason);
+    fmt::print("\n{} stick: {}. {}\n  {:<18}{:>9}{:>9}\n", kSideNames[i],
+               name_of(stick->advice.verdict), stick->advice.reason, "", "x right", "y front");
     print_rest(stick->statistics);
     print_rim(stick->statistics);
     print_reports(stick->statistics);
     if (stick->statistics.centre) print_advice(stick->advice);
   }
+  if (analysis.trigger[0] || analysis.trigger[1]) fmt::print("\n");
+  const auto number = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.3f}", *value) : "not known";
+  };
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& trigger = analysis.trigger[i];
     if (!trigger) continue;
-    fmt::print("\n{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
+    fmt::print("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
                number(trigger->released), number(trigger->pressed), trigger->samples);
   }
+  fmt::print(
+      "\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
 }
 
 nlohmann::ordered_json analysis_json(const DeviceInfo& device, const PadAnalysis& analysis) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <span>
 
 #include "stick/guide.h"
@@ -84,11 +85,11 @@ Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damag
                                pad.info.name, pad.info.vendor, pad.info.product)};
     }
     if (found->others > 0)
-      remarks.push_back(fmt::format("{}: {} more pads are left out", path, found->others));
+      remarks.push_back(fmt::format("{}: further pads, left out: {}", path, found->others));
     tracker->cut();
     if (const std::int64_t bad = take_reports(*trace, found->device, *tracker); bad > 0) {
       remarks.push_back(
-          fmt::format("{}: {} reports are too short or have an unknown id", path, bad));
+          fmt::format("{}: reports that are too short or have an unknown id: {}", path, bad));
     }
   }
   pad.tracks = tracker->tracks();
@@ -104,10 +105,7 @@ std::optional<Error> learn_frames(const std::vector<std::string>& order, GuidedP
   for (const std::string& word : order) {
     const auto known =
         std::ranges::find_if(kDirections, [&word](const auto& d) { return word == d.first; });
-    if (known == std::end(kDirections)) {
-      return Error{fmt::format(
-          "--pushes: unknown direction \"{}\"; one of forward, right, back, left", word)};
-    }
+    assert(known != std::end(kDirections));
     asked.push_back(known->second);
   }
   for (std::size_t side = 0; side < 2; ++side) {
@@ -115,8 +113,8 @@ std::optional<Error> learn_frames(const std::vector<std::string>& order, GuidedP
     const Stills found = stills(pad.tracks.stick[side]);
     if (found.pushes.size() < asked.size() || found.rests.empty()) {
       remarks.push_back(
-          fmt::format("the {} stick was pushed and held {} times, not {}: its axes "
-                      "are taken as the pad states them",
+          fmt::format("the {} stick was pushed and held {} of {} times: its axes are taken as the "
+                      "pad states them",
                       kSideNames[side], found.pushes.size(), asked.size()));
       continue;
     }
@@ -127,8 +125,10 @@ std::optional<Error> learn_frames(const std::vector<std::string>& order, GuidedP
     }
     const auto frame = frame_of_pushes(pushes, asked);
     if (!frame) {
-      return Error{fmt::format("the last {} pushes of the {} stick do not go to {}", asked.size(),
-                               kSideNames[side], fmt::join(order, ", "))};
+      return Error{
+          fmt::format("--pushes {} does not fit the last ones of the {} stick, or does not "
+                      "tell both of its axes",
+                      fmt::join(order, ","), kSideNames[side])};
     }
     pad.frame[side] = *frame;
   }

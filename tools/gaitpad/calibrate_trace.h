@@ -10,7 +10,7 @@
 namespace gaitpad {
 
 // The first pad with a stick of each recording; all must be the same kind of pad. Remarks: damaged
-// lines, drivers that hide small movements, other pads in the recordings.
+// lines, reports that do not decode, other pads in the recordings.
 Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damage,
                              const PadFiles& files, std::vector<std::string>& remarks);
 // From the last pushes of a recording, when the order in which they were made is known (`forward`,

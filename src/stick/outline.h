@@ -24,7 +24,8 @@ Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, doubl
 
 // How many of the 48 bins about the middle the outline covers.
 int filled_bins(const Outline& outline) noexcept;
-// The ends of the outline to the left, right, back and front, raw; none where it was not seen there.
+// The ends of the outline to the left, right, back and front, raw; none where it was not seen
+// there.
 struct Reach {
   std::optional<double> min_x, max_x, min_y, max_y;
 };

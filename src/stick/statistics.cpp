@@ -32,27 +32,36 @@ void tell_rest(StickStatistics& to, RestStatistics&& rest) {
   to.wander = rest.wander;
 }
 
-void tell_rim(StickStatistics& to, std::span<const StickTrack> tracks) {
+struct Extent {
+  vec2 least{4.0}, most{-4.0};
+};
+Extent extent_of(std::span<const StickTrack> tracks) {
+  Extent extent;
+  for (const StickTrack& track : tracks) {
+    for (const StickSample& sample : track) {
+      extent.least = glm::min(extent.least, sample.raw);
+      extent.most = glm::max(extent.most, sample.raw);
+    }
+  }
+  return extent;
+}
+
+void tell_rim(StickStatistics& to, std::span<const StickTrack> tracks, const Extent& extent) {
   const vec2 middle = to.centre.value_or(vec2(0.0));
   const vec2 sigma = to.sigma.value_or(vec2(0.0));
   to.outline = outline_of(tracks, middle, std::max(sigma.x, sigma.y));
   const Reach reach = reach_of(to.outline);
-  to.min_x = reach.min_x;
-  to.max_x = reach.max_x;
-  to.min_y = reach.min_y;
-  to.max_y = reach.max_y;
+  // A corner that was put together from its two edges goes no farther than the stick was seen.
+  if (reach.min_x) to.min_x = std::max(*reach.min_x, extent.least.x);
+  if (reach.max_x) to.max_x = std::min(*reach.max_x, extent.most.x);
+  if (reach.min_y) to.min_y = std::max(*reach.min_y, extent.least.y);
+  if (reach.max_y) to.max_y = std::min(*reach.max_y, extent.most.y);
   to.circularity_error = circularity_error(to.outline);
   to.rim_samples = to.outline.samples;
 }
 
-int turns_of(const StickStatistics& s, std::span<const StickTrack> tracks) {
-  vec2 least(4.0), most(-4.0);
-  for (const StickTrack& track : tracks) {
-    for (const StickSample& sample : track) {
-      least = glm::min(least, sample.raw);
-      most = glm::max(most, sample.raw);
-    }
-  }
+int turns_of(const StickStatistics& s, std::span<const StickTrack> tracks, const Extent& extent) {
+  const auto& [least, most] = extent;
   const vec2 middle = s.centre.value_or(0.5 * (least + most));
   const vec2 reach = glm::min(most - middle, middle - least);
   const double radius = 0.5 * std::min(reach.x, reach.y);
@@ -71,8 +80,9 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   const double interval_s = typical_interval_s(clean.tracks);
   const std::vector<Still> rests = stills(clean.tracks, declared_step).rests;
   tell_rest(told, rest_statistics(clean.tracks, rests, {told.step_x, told.step_y}, interval_s));
-  tell_rim(told, clean.tracks);
-  told.turns = turns_of(told, clean.tracks);
+  const Extent extent = extent_of(clean.tracks);
+  tell_rim(told, clean.tracks, extent);
+  told.turns = turns_of(told, clean.tracks, extent);
   // As they came: where a spike is taken out a value repeats.
   const ReportTiming timing = report_timing(tracks, repeats_expected(told));
   told.rate_hz = timing.rate_hz;

@@ -28,6 +28,12 @@ enum class ZoneShape : std::uint8_t {
 // How the raw axes lie under the thumb: the raw direction that grows when the stick goes right and
 // when it goes forward. One is an x, the other a y.
 enum class RawDirection : std::uint8_t { plus_x, minus_x, plus_y, minus_y };
+constexpr bool is_along_x(RawDirection d) noexcept {
+  return d == RawDirection::plus_x || d == RawDirection::minus_x;
+}
+constexpr bool is_negative(RawDirection d) noexcept {
+  return d == RawDirection::minus_x || d == RawDirection::minus_y;
+}
 struct StickFrame {
   RawDirection right = RawDirection::plus_x, forward = RawDirection::plus_y;
   bool operator==(const StickFrame&) const = default;
@@ -96,7 +102,6 @@ struct CalibrationFile {
 };
 
 Result<CalibrationFile> load_calibration_file(const std::string& path);
-Result<Calibration> load_calibration(const std::string& path);
 // The same from text that stands elsewhere (a recording carries its calibration).
 Result<CalibrationFile> parse_calibration(std::string_view text, const std::string& name,
                                           int first_line = 1);

@@ -40,8 +40,6 @@ std::optional<int> read_word(TomlTable& table, std::string_view key, std::string
   return std::nullopt;
 }
 
-bool is_an_x(RawDirection d) { return d == RawDirection::plus_x || d == RawDirection::minus_x; }
-
 void read_frame(TomlTable& stick, StickFrame& frame) {
   const auto read = [&stick](std::string_view key, RawDirection& direction) {
     if (const auto found = read_word(stick, key, "direction", kDirectionNames))
@@ -49,7 +47,7 @@ void read_frame(TomlTable& stick, StickFrame& frame) {
   };
   read("right", frame.right);
   read("forward", frame.forward);
-  if (is_an_x(frame.right) != is_an_x(frame.forward)) return;
+  if (is_along_x(frame.right) != is_along_x(frame.forward)) return;
   stick.reject(stick.has("right") ? "right" : "forward",
                fmt::format("right is {} and forward is {}: one must be an x, the other a y",
                            in_quotes(kDirectionNames[static_cast<int>(frame.right)]),
@@ -275,12 +273,6 @@ Result<CalibrationFile> load_calibration_file(const std::string& path) {
   auto toml = TomlFile::load(path);
   if (!toml) return toml.error();
   return calibration_in(*toml);
-}
-
-Result<Calibration> load_calibration(const std::string& path) {
-  auto file = load_calibration_file(path);
-  if (!file) return file.error();
-  return file->calibration;
 }
 
 Result<CalibrationFile> parse_calibration(std::string_view text, const std::string& name,

@@ -314,8 +314,7 @@ StickAxes stick_axes(const Calibration& calibration) noexcept {
   for (std::size_t side = 0; side < 2; ++side) {
     const PadAxis x = side == 0 ? kLeftX : kRightX, y = side == 0 ? kLeftY : kRightY;
     const auto axis_of = [x, y](RawDirection d) {
-      const bool is_x = d == RawDirection::plus_x || d == RawDirection::minus_x;
-      return StickAxis{is_x ? x : y, d == RawDirection::minus_x || d == RawDirection::minus_y};
+      return StickAxis{is_along_x(d) ? x : y, is_negative(d)};
     };
     axes[2 * side] = axis_of(frames[side].right);
     axes[2 * side + 1] = axis_of(frames[side].forward);

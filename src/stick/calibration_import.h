@@ -15,8 +15,7 @@ namespace gaitpad {
 // - jscal's command line, as `jscal -p` prints it (with `jscal -u` before it where the axes were
 //   mapped): centre, ranges, the zone round the centre;
 // - ranges and `flat` of the kernel's axes: evemu's `A:` lines, `EVDEV_ABS_..=` of a hwdb file,
-// what
-//   evtest prints;
+//   what evtest prints;
 // - lines of SDL's controller data base, of which the pad's own is taken: `mapping`.
 // `source` stands in errors: `old.js:3: ...`. Filled are the calibration and the mapping alone, and
 // what the text does not tell is as for an unknown stick. A range beyond what the pad can report

@@ -49,9 +49,6 @@ RawDirection opposite(RawDirection direction) noexcept {
   }
   return direction;
 }
-bool is_along_x(RawDirection direction) noexcept {
-  return direction == RawDirection::plus_x || direction == RawDirection::minus_x;
-}
 
 // Whether two pushes that were asked for, number `a` and `b` of kAsked, can be of one stick.
 bool fits(const vec2& push_a, std::size_t a, const vec2& push_b, std::size_t b) noexcept {
@@ -298,8 +295,7 @@ std::optional<StickFrame> frame_of_pushes(std::span<const vec2> pushes,
   for (std::size_t i = 0; i < std::min(pushes.size(), asked.size()); ++i) {
     const std::optional<RawDirection> went = direction_of(pushes[i]), wish = direction_of(asked[i]);
     if (!went || !wish) continue;
-    const bool is_turned = *wish == RawDirection::minus_x || *wish == RawDirection::minus_y;
-    const RawDirection told = is_turned ? opposite(*went) : *went;
+    const RawDirection told = is_negative(*wish) ? opposite(*went) : *went;
     std::optional<RawDirection>& known = is_along_x(*wish) ? right : forward;
     if (known && *known != told) return std::nullopt;
     known = told;

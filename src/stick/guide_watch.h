@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "stick/outline.h"
 
 namespace gaitpad {
 
@@ -70,7 +71,7 @@ class ReleaseWatch {
   bool is_away_ = false, is_complete_ = false;
 };
 
-inline constexpr int kTurnBins = 48;
+inline constexpr int kTurnBins = kCircularityBins;
 inline constexpr double kWantedTurns = 2.0;
 
 // Full circles along the rim.

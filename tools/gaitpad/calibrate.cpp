@@ -33,10 +33,9 @@ std::vector<std::string> comments_of(const PadAnalysis& analysis) {
   std::vector<std::string> comments = {
       "Made by gaitpad calibrate; config/README.md says what the "
       "keys mean. Edit it as you like."};
-  constexpr const char* kNames[] = {"left", "right"};
   for (std::size_t i = 0; i < 2; ++i) {
     if (!analysis.stick[i]) continue;
-    comments.push_back(fmt::format("{} stick: {}. {}", kNames[i],
+    comments.push_back(fmt::format("{} stick: {}. {}", kSideNames[i],
                                    name_of(analysis.stick[i]->advice.verdict),
                                    analysis.stick[i]->advice.reason));
   }

@@ -14,6 +14,8 @@
 
 namespace gaitpad {
 
+inline constexpr const char* kSideNames[] = {"left", "right"};
+
 struct GuidedPad {
   DeviceInfo info;
   PadLayout layout;

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <optional>
 
+#include "tools/gaitpad/calibrate_live.h"
 #include "tools/gaitpad/report_print.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr const char* kSideNames[] = {"left", "right"};
 constexpr const char* kUnknown = " not known";
 
 // A label, one value or that of x and of y, and what it is from.

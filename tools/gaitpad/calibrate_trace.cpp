@@ -12,8 +12,6 @@
 namespace gaitpad {
 namespace {
 
-constexpr const char* kSideNames[] = {"left", "right"};
-
 bool is_same_kind(const DeviceInfo& a, const DeviceInfo& b) noexcept {
   return a.vendor == b.vendor && a.product == b.product && a.driver == b.driver &&
          a.descriptor == b.descriptor && a.mapping == b.mapping;

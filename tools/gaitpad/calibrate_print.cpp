@@ -159,7 +159,7 @@ nlohmann::ordered_json analysis_json(const DeviceInfo& device, const PadAnalysis
   nlohmann::ordered_json sticks = nlohmann::ordered_json::object();
   nlohmann::ordered_json triggers = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < 2; ++i) {
-    if (analysis.stick[i]) sticks[kSideNames[i]] = stick_json(*analysis.stick[i]);
+    sticks[kSideNames[i]] = analysis.stick[i] ? stick_json(*analysis.stick[i]) : nullptr;
     if (!analysis.trigger[i]) continue;
     triggers[kSideNames[i]] = {{"released", value_or_null(analysis.trigger[i]->released)},
                                {"pressed", value_or_null(analysis.trigger[i]->pressed)},

@@ -26,7 +26,8 @@ std::string sdl_library_mapping(const DeviceInfo& device);
 // file's path, from the second device on with `#2`.
 Result<std::vector<DeviceListing>> trace_listings(const std::string& path);
 std::vector<DeviceListing> find_trace_devices();  // none
-// The calibration that the recording of an open device carries (TOML text), empty where it has none.
+// The calibration that the recording of an open device carries (TOML text), empty where it has
+// none.
 std::string trace_calibration(const DeviceListing& listing);
 // Delivers the device's events at their own times, counted from the first opening of that file;
 // `H:` lines as reports of kind added and removed. `gone` where a replay ends: at `Q:`, else one

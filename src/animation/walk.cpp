@@ -28,7 +28,8 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
     quat parent = frames.rotation[last];
     std::array<int, kMaxBetween> between{};
     int n = 0;
-    for (int p = skeleton.joints[j].parent; p != last && n < kMaxBetween; p = skeleton.joints[p].parent) {
+    for (int p = skeleton.joints[j].parent; p != last && n < kMaxBetween;
+         p = skeleton.joints[p].parent) {
       between[n++] = p;
     }
     while (n > 0) parent = parent * pose.local[between[--n]];

@@ -197,7 +197,11 @@ std::string good(const StickStatistics& s) {
   for (const Side& side : sides_of(s)) least = std::min(least, side.reach.value_or(least));
   std::string text = fmt::format("its noise is {:.4f}{}", greatest_sigma(s),
                                  s.is_sigma_hidden ? " (hidden by its steps)" : "");
-  if (s.hysteresis) text += fmt::format(", it comes back within {:.3f}", *s.hysteresis);
+  if (s.hysteresis && *s.hysteresis < 0.0005) {
+    text += ", it comes back to one place";
+  } else if (s.hysteresis) {
+    text += fmt::format(", it comes back within {:.3f}", *s.hysteresis);
+  }
   return text + fmt::format(" and it reaches {:.2f} or more to every side", least);
 }
 

@@ -142,9 +142,10 @@ int run(const CalibrateArguments& arguments) {
   const auto files = pad_files(arguments.map, "");
   if (!files) return calibrate_failed(files.error().message);
   if (arguments.exports_sdl) return export_sdl(arguments, *files);
-  if (const auto problem = problem_beforehand(arguments)) return calibrate_failed(problem->message);
   if (!arguments.import.empty()) return import_calibration(arguments, *files);
   if (arguments.traces.empty()) {
+    if (const auto problem = problem_beforehand(arguments))
+      return calibrate_failed(problem->message);
     const auto pad = guided_pad(*files, arguments.wish, end);
     if (!pad) return calibrate_failed(pad.error().message);
     if (!*pad) return calibrate_failed("left before the end; nothing written");

@@ -152,7 +152,7 @@ void TurnWatch::take(const vec2& from_rest, double rim) noexcept {
 
 double TurnWatch::least_radius() const noexcept {
   std::array<double, kTurnBins> sorted = radius_;
-  const auto end = std::ranges::remove(sorted, 0.0).begin();
+  const auto end = std::remove(sorted.begin(), sorted.end(), 0.0);
   if (end == sorted.begin()) return rim_;
   const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
   std::nth_element(sorted.begin(), middle, end);

@@ -1,20 +1,19 @@
-// Real DualSense recordings through Sony's default zones. Axes read here by byte: report 1 begins
-// with left x, y, right x, y, 0..255, y downwards.
+// Real DualSense recordings through Sony's default zones and through measured ones. Axes read here
+// by byte: report 1 begins with left x, y, right x, y, 0..255, y downwards.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "stick/calibration.h"
+#include "stick/recommendation.h"
 
 namespace gaitpad {
 namespace {
 
-std::vector<Stick> recorded(const std::string& name) {
-  Calibration calibration;
-  calibration.left.inner = calibration.right.inner = kInnerZoneSony;
-  std::vector<Stick> sticks;
+std::array<StickTrack, 2> tracks_of(const std::string& name) {
+  std::array<StickTrack, 2> tracks;
   std::ifstream file(std::string(GAITPAD_SHARED_DATA "/hid/") + name);
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
@@ -24,9 +23,27 @@ std::vector<Stick> recorded(const std::string& name) {
     for (int& a : axis) words >> a;
     if (tag != "E:" || !words || report != 1) continue;
     const auto raw = [&](int i) { return (axis[i] - 127.5) / 127.5; };
-    sticks.push_back(stick_position(calibration, {raw(0), -raw(1)}, {raw(2), -raw(3)}));
+    const std::int64_t time_ns = std::llround(std::stod(time) * 1e9);
+    tracks[0].push_back({time_ns, {raw(0), -raw(1)}});
+    tracks[1].push_back({time_ns, {raw(2), -raw(3)}});
   }
+  return tracks;
+}
+
+std::vector<Stick> recorded(const std::string& name) {
+  Calibration calibration;
+  calibration.left.inner = calibration.right.inner = kInnerZoneSony;
+  const auto tracks = tracks_of(name);
+  std::vector<Stick> sticks;
+  for (std::size_t i = 0; i < tracks[0].size(); ++i)
+    sticks.push_back(stick_position(calibration, tracks[0][i].raw, tracks[1][i].raw));
   return sticks;
+}
+
+StickCalibration advised(std::initializer_list<const char*> recordings, std::size_t side) {
+  std::vector<StickTrack> tracks;
+  for (const char* name : recordings) tracks.push_back(tracks_of(name)[side]);
+  return stick_advice(stick_statistics(tracks, vec2(2.0 / 255.0)), {}).calibration;
 }
 
 class RecordedSticks : public testing::Test {
@@ -44,6 +61,29 @@ TEST_F(RecordedSticks, RestNeverWalks) {
     const auto sticks = recorded(std::string("dualsense_usb_") + button + ".hid");
     EXPECT_GT(sticks.size(), 700u) << button;
     for (const Stick& s : sticks) ASSERT_EQ(s.left, vec2(0.0)) << button;
+  }
+}
+
+// Of the recording in which the stick is turned alone, and with the one in which it rests.
+TEST_F(RecordedSticks, RestNeverWalksWithTheZonesOfTheRecordingsThatTurn) {
+  constexpr const char* kLeft = "dualsense_usb_left_stick.hid";
+  constexpr const char* kRight = "dualsense_usb_right_stick.hid";
+  const StickCalibration zones[2][2] = {{advised({kLeft}, 0), advised({kLeft, kRight}, 0)},
+                                        {advised({kRight}, 1), advised({kLeft, kRight}, 1)}};
+  for (const char* name :
+       {"circle.hid", "dpad_down.hid", "dpad_left.hid", "dpad_right.hid", "dpad_up.hid",
+        "l1.raw.hid", "l2.hid", "l3.hid", "r1.hid", "r2.hid", "square.hid", "start.hid", "x.hid",
+        "left_stick.hid", "right_stick.hid"}) {
+    const std::string button = name;
+    const auto tracks = tracks_of("dualsense_usb_" + button);
+    ASSERT_GT(tracks[0].size(), 700u) << name;
+    const bool is_moved[2] = {button[0] == 'l' && button[1] != '2', button == "right_stick.hid"};
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (is_moved[side]) continue;
+      for (const StickSample& sample : tracks[side])
+        for (const StickCalibration& c : zones[side])
+          ASSERT_EQ(stick_position(c, sample.raw), vec2(0.0)) << name << side;
+    }
   }
 }
 

@@ -8,7 +8,7 @@ import time
 import tomllib
 
 from harness import PROGRAM, cases, remark, run, timeout
-from pads import Pad, wait_for
+from pads import LONG, Pad, wait_for
 from session import IDS, Session
 from terminal import Terminal
 
@@ -197,8 +197,11 @@ def check_giving_up(kind, driver):
         assert files() == before
 
 
+CASES = ("generic-hidraw", "dualsense-evdev") + (("generic-evdev", "dualsense-hidraw") if LONG else ())
+
+
 @timeout(180)
-@cases("generic-hidraw", "generic-evdev", "dualsense-hidraw", "dualsense-evdev")
+@cases(*CASES)
 def test_a_worn_pad_is_calibrated_at_a_terminal(case):
     kind, driver = case.split("-")
     os.environ["XDG_CONFIG_HOME"] = tempfile.mkdtemp()

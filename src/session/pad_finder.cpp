@@ -24,6 +24,8 @@ constexpr auto kShortLife = 1000ms, kMaxRest = 1000ms;  // of a device that goes
 // How long a pad that was just plugged in may take until the preferred driver sees it, or until the
 // kernel has found its own driver for it.
 constexpr auto kDriverPatience = 700ms, kKernelPatience = 2000ms;
+// The kernel shows the node before its driver has asked the pad for its unique id.
+constexpr auto kIdPatience = 1000ms;
 constexpr auto kGonePatience = 3000ms;
 constexpr auto kProblemPatience = 1500ms;  // permissions come a moment after the node
 constexpr auto kIdleLook = 30'000ms, kLookWithoutPads = 5000ms, kLookWithoutUdev = 1000ms;
@@ -38,6 +40,13 @@ std::string key_of(const PadSighting& s) {
 std::string name_of(const PadSighting& s) {
   const DeviceInfo& info = s.listing.info;
   return fmt::format("{} ({}, {})", in_quotes(info.name), s.driver->name, s.listing.node);
+}
+
+// By drivers that ask the pad for its Bluetooth address.
+bool lacks_its_id(const PadSighting& s) {
+  const std::string& kernel = s.listing.kernel_driver;
+  const bool asks = kernel == "playstation" || kernel == "sony" || kernel == "nintendo";
+  return asks && s.listing.info.unique_id.empty();
 }
 
 int milliseconds_until(std::chrono::steady_clock::time_point time) {
@@ -202,11 +211,12 @@ void PadFinder::forget(std::uint64_t id) {
   if (is_recording_) --awaited_ends_;
 }
 
-// Itself, or the same pad through another driver.
+// Itself, also where its name or unique id came after its opening, or the same pad through another
+// driver.
 bool PadFinder::is_open(const PadSighting& sighting) const {
-  const std::string pad = pad_key(sighting), key = key_of(sighting);
+  const std::string pad = pad_key(sighting);
   return std::ranges::any_of(open_, [&](const Open& o) {
-    return o.key == key || (o.pad_key == pad && o.driver != sighting.driver);
+    return o.pad_key == pad && (o.driver != sighting.driver || o.node == sighting.listing.node);
   });
 }
 
@@ -221,6 +231,7 @@ bool PadFinder::is_awaiting_gone(const PadSighting& sighting) const {
 std::chrono::milliseconds PadFinder::patience(const PadSighting& sighting,
                                               const Candidate& candidate) const {
   const std::string_view driver = sighting.driver->name;
+  if (lacks_its_id(sighting)) return kIdPatience;
   if (is_recording_ || !options_.wish.driver.empty()) return 0ms;
   if (driver == "usb") return kKernelPatience;
   const DeviceInfo& info = sighting.listing.info;
@@ -337,8 +348,8 @@ void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> d
     known_[index].is_present = true;
   }
   opened.device = std::move(device);
-  open_.push_back({opened.id, key_of(sighting), pad_key(sighting), sighting.driver, index,
-                   Clock::now(), std::nullopt});
+  open_.push_back({opened.id, key_of(sighting), pad_key(sighting), sighting.listing.node,
+                   sighting.driver, index, Clock::now(), std::nullopt});
   io_.take_over(std::move(opened));
 }
 

@@ -70,7 +70,7 @@ class PadFinder {
   };
   struct Open {
     std::uint64_t id = 0;
-    std::string key, pad_key;
+    std::string key, pad_key, node;
     const DriverEntry* driver = nullptr;
     std::uint16_t index = 0;
     Clock::time_point since;

@@ -49,7 +49,8 @@ GaitLimits gait_limits(double leg_length_m) noexcept {
   return limits;
 }
 
-GaitParams gait_params(const Stick& stick, const Style& style, const GaitLimits& limits) noexcept {
+GaitParams gait_params(const Stick& stick, const StyleValues& style,
+                       const GaitLimits& limits) noexcept {
   const double forward = std::max(finite_or_zero(stick.left.y), 0.0);
   const double sideways = finite_or_zero(stick.left.x);
   const BaseStep step = base_step(forward, sideways, style.fatigue, limits);

@@ -33,6 +33,7 @@ GaitLimits gait_limits(double leg_length_m) noexcept;
 
 // Stateless: the walk smooths what changes between ticks. Only stick.left is read. Backward
 // deflection counts as none; sideways alone turns in place.
-GaitParams gait_params(const Stick& stick, const Style& style, const GaitLimits& limits) noexcept;
+GaitParams gait_params(const Stick& stick, const StyleValues& style,
+                       const GaitLimits& limits) noexcept;
 
 }  // namespace gaitpad

@@ -2,7 +2,10 @@
 // and 3.3.3).
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/result.h"
 #include "control/gait_params.h"
@@ -13,15 +16,35 @@ struct StrideFactors {
   double length = 1.0;         // on the stride length
   double speed = 1.0;          // on the pace with which that leg's stride is undertaken
   double flight_height = 1.0;  // on the peak height of the flight
+  bool operator==(const StrideFactors&) const = default;
 };
-struct Style {
-  std::string name;
+// Plain, trivially copyable: what a tick reads and a command may change.
+struct StyleValues {
   std::array<StrideFactors, 2> stride;  // left, right
   std::array<LegWeights, 2> weight{kEvenWeights, kEvenWeights};
   double hip_sway = 1.0;
   double hip_bounce = 1.0;
   double fatigue = 0.0;  // 0 fresh .. 1: linear on maximum speed and stride
+  bool operator==(const StyleValues&) const = default;
+};
+struct Style : StyleValues {
+  std::string name;
 };
 Result<Style> load_style(const std::string& path);
+// The text that load_style() reads back to the same values; never empty.
+std::string style_text(const Style& style);
+
+// One value by the name that it has in a file: `left_leg.weight.knee`, `legs.stride_length` (both
+// legs), `right_leg.weight.hip_x`, `hip_sway`. A joint's weight is that of its DOFs.
+struct StyleKey {
+  std::string name;
+  double min = 0.0, max = 1.0;
+};
+const std::vector<StyleKey>& style_keys();  // in the order in which people would read them
+// No heap. False where there is no such name or the value is out of its bounds or would lock a
+// whole leg.
+bool set_value(StyleValues& style, std::string_view name, double value) noexcept;
+// Where several DOFs or legs stand for it and differ: the first one's.
+std::optional<double> value_of(const StyleValues& style, std::string_view name) noexcept;
 
 }  // namespace gaitpad

@@ -145,7 +145,9 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& optio
   return live;
 }
 
-const LiveFrame& LiveSession::latest(bool& is_new) noexcept { return impl_->loop->latest(is_new); }
+const SessionFrame& LiveSession::latest(bool& is_new) noexcept {
+  return impl_->loop->latest(is_new);
+}
 
 void LiveSession::command(std::string_view text) { impl_->pads->command(text); }
 

@@ -18,8 +18,8 @@
 
 #include "base/result.h"
 #include "session/pad_stream.h"
+#include "session/session_frame.h"
 #include "session/setup.h"
-#include "session/simulation.h"
 
 namespace gaitpad {
 
@@ -27,19 +27,11 @@ struct LiveOptions {
   SessionOptions session;
   PadWish wish;
   int rate_hz = kDefaultRateHz;
-  std::string record;  // FILE.hid, empty: none
+  std::string record;     // FILE.hid, empty: none
+  bool keyboard = false;  // a virtual pad that steer() moves; it counts while no pad is deflected
+  // by_hand: no loop thread, ticks run in advance() alone; for pictures and videos.
+  enum class Clock { real_time, by_hand } clock = Clock::real_time;
   bool rumble = true;  // a beat at each heel strike, as strong as the walk is fast
-};
-
-// What a viewer needs of one tick.
-struct LiveFrame {
-  std::int64_t tick = -1;             // -1: none yet
-  std::int64_t time_ns = 0;           // CLOCK_MONOTONIC, when the tick was due
-  Stick stick;                        // calibrated
-  std::uint16_t driving = kNoDevice;  // the device that drives, also while it is unplugged
-  PadState pad;                       // of the driving pad, uncalibrated
-  int walker_count = 0;
-  std::array<Pose, kMaxWalkers> poses;
 };
 
 // Since the beginning.
@@ -51,6 +43,9 @@ struct LiveStatus {
   double skipped_s = 0.0;        // by these
   double tick_us_median = 0.0, tick_us_max = 0.0;  // one step, without the sleep
   double wait_us_median = 0.0, wait_us_max = 0.0;  // from a report's arrival to the tick using it
+  std::array<std::int64_t, 32>
+      wait_counts{};        // the same by quarters of a millisecond, the last: more
+  std::string time_policy;  // "SCHED_FIFO 50", "normal priority": how the loop thread is scheduled
   PadStreamCounts pads;
   std::int64_t recording_lost = 0;  // reports that the recording missed: it is then no exact one
 };
@@ -60,8 +55,21 @@ class LiveSession {
   static Result<std::unique_ptr<LiveSession>> start(const LiveOptions& options);
   ~LiveSession();
 
+  const Cast& cast() const noexcept;
+  // The name of a device that a frame tells of.
+  std::string pad_name(std::uint16_t device) const;
+
   // From one viewing thread.
-  const LiveFrame& latest(bool& is_new) noexcept;
+  const SessionFrame& latest(bool& is_new) noexcept;
+  bool take(TickSample& sample) noexcept;  // the oldest not taken yet; what nobody takes is dropped
+  // Ticks in a second of the clock over the rate: 0 stands still, 1 real time, 0.25 slow motion.
+  // What a tick does is always the same. Any number of ticks while it stands still:
+  void set_pace(double pace) noexcept;
+  void step(int ticks) noexcept;
+  void advance(int ticks) noexcept;  // Clock::by_hand: runs them here and now
+  // The keyboard as a stick: where it is to go, +x right, +y forward, at most 1 long. It moves
+  // there smoothly.
+  void steer(const vec2& wanted) noexcept;
   // From any thread.
   void command(std::string_view text);
   bool has_ended() const noexcept;  // a recording as a pad, one second behind its end

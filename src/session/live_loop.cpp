@@ -124,15 +124,9 @@ bool LiveLoop::is_known(const Report& report) noexcept {
 }
 
 void LiveLoop::publish(std::int64_t tick) noexcept {
-  LiveFrame& frame = frames_.writable();
-  frame.tick = tick;
+  SessionFrame& frame = frames_.writable();
+  copy_frame(simulation_, frame);
   frame.time_ns = clock_.due_ns(tick);
-  frame.stick = simulation_.stick();
-  frame.driving = simulation_.pads().driving();
-  frame.pad = simulation_.pads().driving_state();
-  const std::vector<Walker>& walkers = simulation_.walkers();
-  frame.walker_count = static_cast<int>(walkers.size());
-  for (std::size_t i = 0; i < walkers.size(); ++i) frame.poses[i] = walkers[i].pose;
   frames_.publish();
 }
 

@@ -29,7 +29,7 @@ class LiveLoop {
   void run() noexcept;
   void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
 
-  const LiveFrame& latest(bool& is_new) noexcept { return frames_.read(is_new); }
+  const SessionFrame& latest(bool& is_new) noexcept { return frames_.read(is_new); }
   bool has_ended() const noexcept { return has_ended_.load(std::memory_order_relaxed); }
   // Of LiveStatus what the loop itself knows.
   LiveStatus status() const noexcept;
@@ -53,7 +53,7 @@ class LiveLoop {
   std::size_t report_count_ = 0;
   std::array<bool, kMaxPads> is_known_{};
   std::int64_t ticks_behind_end_ = 0;
-  Latest<LiveFrame> frames_;
+  Latest<SessionFrame> frames_;
 
   std::atomic<bool> is_stopping_{false}, has_ended_{false};
   std::atomic<std::int64_t> ticks_{0}, overruns_{0}, standstills_{0}, overloads_{0}, skipped_ns_{0};

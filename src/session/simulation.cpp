@@ -69,11 +69,13 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
     auto model = model_of(config, walker);
     if (!model) return model.error();
     Walker& w = s.walkers_.emplace_back();
-    w.model = std::move(*model);
-    w.limits = gait_limits(w.model.leg_length_m);
+    w.model = std::make_shared<const WalkModel>(std::move(*model));
+    w.limits = gait_limits(w.model->leg_length_m);
     w.style = walker.style;
+    w.values = s.styles_[walker.style];
     const double right_m = kSpacing_m * static_cast<double>(s.walkers_.size() - 1);
-    w.state = standing(w.model, -right_m * kLeft, w.pose);
+    w.state = standing(*w.model, -right_m * kLeft, w.pose);
+    w.before = w.pose;
   }
   return s;
 }
@@ -83,8 +85,9 @@ void Simulation::step(std::span<const Report> reports) noexcept {
   stick_ = pads_.stick_of_tick();
   const int landings_before = landings(walkers_.front());
   for (Walker& w : walkers_) {
-    const GaitParams params = gait_params(stick_, styles_[w.style], w.limits);
-    advance(w.model, params, ik_, dt_s_, w.state, w.pose);
+    w.before = w.pose;
+    w.params = gait_params(stick_, w.values, w.limits);
+    advance(*w.model, w.params, ik_, dt_s_, w.state, w.pose);
     for (const bool failed : w.state.frame.ik_failed) w.ik_failures += failed;
     add_to_hash(w.pose);
   }
@@ -129,7 +132,10 @@ bool Simulation::obey(std::string_view command) noexcept {
   if (!next_word(command).empty()) return false;
   for (std::size_t i = 0; i < styles_.size(); ++i) {
     if (styles_[i].name != name) continue;
-    for (std::size_t w = first; w < last; ++w) walkers_[w].style = static_cast<int>(i);
+    for (std::size_t w = first; w < last; ++w) {
+      walkers_[w].style = static_cast<int>(i);
+      walkers_[w].values = styles_[i];
+    }
     return true;
   }
   return false;

@@ -2,6 +2,7 @@
 // benchmark all call step(); what it did depends on its reports alone, never on a clock.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "base/hash.h"
 #include "base/result.h"
 #include "control/control.h"
+#include "control/gait_overrides.h"
 #include "control/style.h"
 #include "hid/report.h"
 #include "session/pads.h"
@@ -47,11 +49,14 @@ struct SimulationCounts {
 };
 
 struct Walker {
-  WalkModel model;
+  std::shared_ptr<const WalkModel> model;  // shared with copies of the simulation
   GaitLimits limits;
-  int style = 0;
+  int style = 0;       // index in Simulation::styles()
+  StyleValues values;  // of that style, and what commands have changed since
+  GaitOverrides overrides;
+  GaitParams params;  // of the last tick
   WalkState state;
-  Pose pose;
+  Pose before, pose;             // of the tick before the last and of the last
   std::int64_t ik_failures = 0;  // legs times ticks
 };
 

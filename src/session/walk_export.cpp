@@ -52,8 +52,8 @@ Result<WalkExport> WalkExport::open(OutputFiles& files, const Walker& walker, st
   if (!summary) return summary.error();
   e.frames_ = *frames;
   e.summary_ = *summary;
-  e.poses_ = std::make_unique<BvhWriter>(**poses, walker.model.cycle.skeleton,
-                                         layout_of(walker.model, fps));
+  e.poses_ = std::make_unique<BvhWriter>(**poses, walker.model->cycle.skeleton,
+                                         layout_of(*walker.model, fps));
   append_frames_header(e.row_);
   return e;
 }
@@ -74,7 +74,7 @@ void WalkExport::finish(const nlohmann::ordered_json& summary) {
 }
 
 nlohmann::ordered_json walker_summary(const Walker& walker) {
-  const WalkModel& model = walker.model;
+  const WalkModel& model = *walker.model;
   const auto& joints = model.cycle.skeleton.joints;
   const LegModel& left = model.leg[kLeftSide].model;
   const LegModel& right = model.leg[kRightSide].model;

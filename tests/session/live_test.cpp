@@ -139,11 +139,11 @@ TEST_F(Live, TellsTheNewestTickAndHowItGoes) {
   float forward = 0.0f;
   ASSERT_TRUE(comes_true([&] {
     bool is_new = false;
-    const LiveFrame& frame = session->latest(is_new);
+    const SessionFrame& frame = session->latest(is_new);
     EXPECT_GE(frame.tick, tick);
     tick = frame.tick;
-    driving = frame.driving;
-    forward = std::max(forward, frame.pad.axis[kLeftY]);
+    driving = frame.pad.device;
+    forward = std::max(forward, frame.pad.state.axis[kLeftY]);
     return tick >= 150;
   }));
   EXPECT_EQ(driving, 0);

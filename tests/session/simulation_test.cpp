@@ -66,7 +66,7 @@ TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   const Simulation s = walked(config, 0x80, 0x10, 1200);
   const Walker& w = s.walkers()[0];
   EXPECT_EQ(w.ik_failures, 0);
-  EXPECT_NEAR(w.model.leg_length_m, 1.5 * w.model.source_leg_length_m, 1e-9);
+  EXPECT_NEAR(w.model->leg_length_m, 1.5 * w.model->source_leg_length_m, 1e-9);
   EXPECT_GT(w.state.frame.pelvis_m.z, 4.0);
 }
 

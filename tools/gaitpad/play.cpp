@@ -37,7 +37,7 @@ LiveOptions live_options(const PlayArguments& arguments) {
   return options;
 }
 
-std::string status_text(const LiveStatus& status, const LiveFrame& frame, int rate_hz) {
+std::string status_text(const LiveStatus& status, const SessionFrame& frame, int rate_hz) {
   const PadStreamCounts& pads = status.pads;
   return fmt::format(
       "{:.1f} s  pads {}  stick {:+.2f} {:+.2f}  reports {}  lost {}  tick {:.0f} us  wait {:.0f} "

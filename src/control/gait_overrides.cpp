@@ -1,0 +1,5 @@
+#include "control/gait_overrides.h"
+
+#include "control/control.h"
+
+namespace gaitpad {}

@@ -1,0 +1,55 @@
+// A trace on a time line: any tick of it, exact, from the deterministic core. Snapshots of the
+// simulation's state stand along the way, what is between them is computed again.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "session/session_frame.h"
+#include "session/setup.h"
+
+namespace gaitpad {
+
+struct PlaybackMark {  // for the time line
+  std::int64_t tick = 0;
+  std::string text;  // `style limp_left`, `unplugged`, `plugged in`
+};
+
+class Playback {
+ public:
+  static constexpr int kHistoryTicks = 1440;  // of samples before a place that was jumped to
+
+  // As `replay` opens it, the same errors.
+  static Result<std::unique_ptr<Playback>> open(const SessionOptions& session,
+                                                const std::string& trace,
+                                                std::optional<int> rate_hz, Damage damage);
+  ~Playback();
+
+  const Cast& cast() const noexcept;
+  std::int64_t ticks() const noexcept;  // as replay runs it
+  const std::vector<PlaybackMark>& marks() const noexcept;
+  // What a user should know: damaged lines that were skipped.
+  const std::vector<std::string>& remarks() const noexcept;
+  // The devices of the trace by their index.
+  const std::vector<TraceDevice>& devices() const noexcept;
+
+  // On the way to the state after `tick` (clamped to 0 .. ticks()-1), computing at most `budget`
+  // ticks; false: not there yet, ask again. frame() is then the place that was reached.
+  bool seek(std::int64_t tick, int budget);
+  const SessionFrame& frame() const noexcept;
+  // The oldest sample that was not taken yet; none is left out as long as seek() goes forward.
+  // After a jump they begin again, some ticks before the place (TickSample::tick tells).
+  bool take(TickSample& sample);
+  // Over all ticks up to frame(): at the end the same as replay's.
+  std::uint64_t pose_hash() const noexcept;
+
+ private:
+  Playback();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,88 @@
+#include "session/session_frame.h"
+
+#include <algorithm>
+
+namespace gaitpad {
+namespace {
+
+constexpr std::array<LegDof, 3> kShownJoints = {kHipX, kKneeX, kAnkleX};
+
+void copy_pose(const Pose& from, Pose& to) noexcept {
+  to.root_m = from.root_m;
+  to.joint_count = from.joint_count;
+  std::copy_n(from.local.begin(), from.joint_count, to.local.begin());
+}
+
+void copy_walker(const Walker& walker, WalkerFrame& frame) noexcept {
+  const WalkState& state = walker.state;
+  copy_pose(walker.before, frame.before);
+  copy_pose(walker.pose, frame.pose);
+  frame.walk = state.frame;
+  frame.params = walker.params;
+  frame.style = walker.values;
+  frame.style_index = walker.style;
+  frame.overrides = walker.overrides;
+  frame.angles_rad = state.angles_rad;
+  frame.phase = state.phase;
+  frame.presence = std::clamp(state.amplitude.x, 0.0, 1.0);
+  for (const Side side : {kLeftSide, kRightSide}) frame.lift_m[side] = state.foot[side].lift_m;
+  frame.landing_m = state.landing_m;
+  frame.ik_failures = walker.ik_failures;
+}
+
+}  // namespace
+
+Cast cast_of(const Simulation& simulation, const SimulationConfig& config) {
+  Cast cast;
+  cast.motion = config.cycle.name;
+  cast.source = std::make_shared<const GaitCycle>(config.cycle);
+  cast.rate_hz = config.rate_hz;
+  for (const Style& style : simulation.styles()) cast.styles.push_back(style.name);
+  for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
+    const Walker& w = simulation.walkers()[i];
+    cast.members.push_back({config.walkers[i].character.name, cast.styles[config.walkers[i].style],
+                            w.model, w.limits});
+  }
+  return cast;
+}
+
+void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept {
+  frame.counts = simulation.counts();
+  frame.tick = frame.counts.ticks - 1;
+  frame.stick = simulation.stick();
+  frame.pad.device = simulation.pads().driving();
+  frame.pad.state = simulation.pads().driving_state();
+  const std::vector<Walker>& walkers = simulation.walkers();
+  frame.walker_count = static_cast<int>(walkers.size());
+  for (std::size_t i = 0; i < walkers.size(); ++i) copy_walker(walkers[i], frame.walkers[i]);
+}
+
+void copy_sample(const Simulation& simulation, TickSample& sample) noexcept {
+  const std::vector<Walker>& walkers = simulation.walkers();
+  sample.tick = simulation.counts().ticks - 1;
+  sample.walker_count = static_cast<int>(walkers.size());
+  sample.stick_x = static_cast<float>(simulation.stick().left.x);
+  sample.stick_y = static_cast<float>(simulation.stick().left.y);
+  for (std::size_t i = 0; i < walkers.size(); ++i) {
+    const WalkFrame& walk = walkers[i].state.frame;
+    WalkerSample& s = sample.walkers[i];
+    for (const Side side : {kLeftSide, kRightSide}) {
+      for (std::size_t j = 0; j < kShownJoints.size(); ++j) {
+        // Flexion counts upwards at every joint: hip and ankle are negative in the model.
+        const double angle_rad = walkers[i].state.angles_rad[side][kShownJoints[j]];
+        s.joint_rad[side][j] =
+            static_cast<float>(kShownJoints[j] == kKneeX ? angle_rad : -angle_rad);
+      }
+      s.ik_iterations[side] = static_cast<std::int16_t>(walk.ik_iterations[side]);
+      s.ik_error_m[side] = static_cast<float>(walk.ik_error_m[side]);
+    }
+    s.heel_m = walk.heel_m;
+    s.toe_m = walk.toe_m;
+    s.stage = walk.stage;
+    s.swing = walk.swing;
+    s.heel_planted = walk.heel_planted;
+    s.toe_planted = walk.toe_planted;
+  }
+}
+
+}  // namespace gaitpad

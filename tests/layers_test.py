@@ -28,7 +28,7 @@ ROOMS = {
     "src/view": (
         ["base", "hid", "stick", "motion", "control", "animation", "session"],
         {},
-        ["fmt/", "SDL2/", "SDL", "imgui", "epoxy/", "GL/", "cairo/"],
+        ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"],
     ),
     "drivers": (["base", "hid", "drivers/pads"], {}, ["fmt/"]),
     "drivers/pads": (["base", "hid"], {}, ["fmt/"]),

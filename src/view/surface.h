@@ -1,0 +1,68 @@
+// The window of the display, or a picture in memory where there is none: SDL and its OpenGL 3.3
+// core context; and how what was drawn leaves it, as a PNG or as a video.
+#pragma once
+#include <SDL2/SDL.h>
+#include <sys/types.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace gaitpad {
+
+struct SurfaceOptions {
+  std::string title = "gaitpad";
+  int width = 1280, height = 720;  // pixels at scale 1
+  double scale = 0.0;              // 0: the display's
+  bool is_hidden = false;          // only pictures are wanted: SDL's offscreen driver
+};
+
+class WindowSurface {
+ public:
+  // One sentence where there is neither a display nor EGL, and what to do.
+  static Result<std::unique_ptr<WindowSurface>> open(const SurfaceOptions& options);
+  ~WindowSurface();
+  SDL_Window* window() const noexcept { return window_; }
+  SDL_GLContext context() const noexcept { return context_; }
+  double scale() const noexcept { return scale_; }
+  void size(int& width_px, int& height_px) const noexcept;  // drawable pixels
+  void show();                                              // what was drawn: swaps
+
+ private:
+  WindowSurface() = default;
+  SDL_Window* window_ = nullptr;
+  SDL_GLContext context_ = nullptr;
+  double scale_ = 1.0;
+};
+
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;  // rows from the top, opaque
+};
+// Of the frame buffer that is bound, before show().
+Pixels read_pixels(int width, int height);
+// Written beside `path` first: on error the old file is as it was.
+std::optional<Error> write_png(const std::string& path, const Pixels& pixels);
+
+// H.264 through ffmpeg, a process of its own; where it is missing or fails, one sentence.
+class VideoWriter {
+ public:
+  static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
+                                                   int frames_per_second);
+  ~VideoWriter();  // without finish(): the file is left out
+  std::optional<Error> add(const Pixels& pixels);
+  std::optional<Error> finish();
+
+ private:
+  VideoWriter() = default;
+  std::string path_, part_;
+  int pipe_ = -1;
+  pid_t process_ = -1;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace gaitpad

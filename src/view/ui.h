@@ -1,0 +1,88 @@
+// Everything flat in the window: bars, panels, plots, names above heads, help. It reads what a
+// frame shows and answers with what a person asked for; it changes nothing but its own state.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "session/live.h"
+#include "session/playback.h"
+#include "session/session_frame.h"
+#include "view/actions.h"
+#include "view/history.h"
+#include "view/scene.h"
+#include "view/theme.h"
+
+namespace gaitpad {
+
+enum class Panel : std::uint8_t { pad, control, style, graphs, solver, loop };
+inline constexpr int kPanels = 6;
+inline constexpr std::array<std::string_view, kPanels> kPanelNames = {"pad",    "control", "style",
+                                                                      "graphs", "solver",  "loop"};
+
+// What is remembered from one start to the next (view/layout.h), and what is open now.
+struct UiState {
+  std::array<bool, kPanels> is_open{true, true, false, true, false, false};
+  ThemeName theme = ThemeName::dark;
+  bool has_trails = true, has_grid = true, has_shadows = true, has_source = true, has_names = true;
+  int walker = -1;  // whom panels tell of and the camera follows; -1: all, the first one's numbers
+  bool is_help_open = false;
+};
+
+// The time line of a playback.
+struct UiTimeline {
+  std::int64_t tick = 0, ticks = 0;
+  std::span<const PlaybackMark> marks;
+  double pace = 1.0;
+  bool is_looping = false, is_computing = false;
+};
+struct UiLabel {  // a name above a head: window pixels
+  vec2 place_px{0.0};
+  std::string text;
+  Colour colour;
+};
+struct UiInput {
+  const SessionFrame& frame;
+  const Cast& cast;
+  const History& history;
+  const LiveStatus* status = nullptr;    // live only
+  const UiTimeline* timeline = nullptr;  // playback only
+  std::string pad_name;                  // empty: no pad
+  double pad_rate_hz = 0.0;
+  double pace = 1.0;
+  double frames_per_second = 0.0;  // 0: not to be shown (pictures)
+  std::string recording;           // file, empty: none
+  std::string source;              // the trace, for the bar
+  std::string renderer;
+  std::vector<UiLabel> labels;
+  std::vector<std::string> messages;  // errors and remarks, newest last
+  bool is_modal = false;              // calibration or browser is open: panels take no input
+};
+struct UiOutput {
+  std::vector<Action> actions;
+  std::vector<std::string> commands;  // for the session: `set 2 left_leg.weight.hip 0.4`
+  std::optional<std::int64_t> seek_tick;
+  std::optional<double> pace;
+  std::optional<bool> is_looping;
+  std::optional<std::string> save_style;  // a name: the chosen walker's style as a file of it
+  bool dismisses_messages = false;
+};
+
+// Where the scene goes when these panels are open.
+Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, int height_px,
+                        double scale) noexcept;
+// Between ImGui::NewFrame and ImGui::Render.
+UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, double scale,
+                 UiState& state);
+
+// For tests and for the window's own script of events: rectangles of what can be clicked, in window
+// pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"), of the frame drawn last.
+struct UiItem {
+  std::string name;
+  ImVec2 min, max;
+};
+const std::vector<UiItem>& ui_items() noexcept;
+
+}  // namespace gaitpad

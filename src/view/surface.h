@@ -1,5 +1,6 @@
 // The window of the display, or a picture in memory where there is none: SDL and its OpenGL 3.3
-// core context; and how what was drawn leaves it, as a PNG or as a video.
+// core context; and what was drawn, as a PNG.
+// (As a video: view/video.h.)
 //
 // SDL has one state for the whole program, and drivers/sdl_driver.cpp uses its joysticks on another
 // thread. Both live together by four rules:
@@ -13,7 +14,6 @@
 // - SDL's signal handlers stay out; Ctrl-C is the program's own.
 #pragma once
 #include <SDL2/SDL.h>
-#include <sys/types.h>
 
 #include <cstdint>
 #include <memory>
@@ -66,22 +66,5 @@ struct Pixels {
 Pixels read_pixels(int width, int height);
 // Written beside `path` first: on error the old file is as it was.
 std::optional<Error> write_png(const std::string& path, const Pixels& pixels);
-
-// H.264 through ffmpeg, a process of its own; where it is missing or fails, one sentence.
-class VideoWriter {
- public:
-  static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
-                                                   int frames_per_second);
-  ~VideoWriter();  // without finish(): the file is left out
-  std::optional<Error> add(const Pixels& pixels);
-  std::optional<Error> finish();
-
- private:
-  VideoWriter() = default;
-  std::string path_, part_;
-  int pipe_ = -1;
-  pid_t process_ = -1;
-  int width_ = 0, height_ = 0;
-};
 
 }  // namespace gaitpad

@@ -21,7 +21,10 @@ constexpr const char* kSides[] = {"left", "right"};
 
 Result<std::unique_ptr<GuidedCalibration>> GuidedCalibration::start(const PadFiles& files,
                                                                     const PadWish& wish) {
-  auto stream = PadStream::start({files, wish});
+  PadStreamOptions options;
+  options.files = files;
+  options.wish = wish;
+  auto stream = PadStream::start(std::move(options));
   if (!stream) return stream.error();
   std::unique_ptr<GuidedCalibration> calibration(new GuidedCalibration());
   calibration->stream_ = std::move(*stream);

@@ -36,7 +36,8 @@ struct WindowOptions {
   std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
   std::string layout_file;         // remembered from one start to the next; empty: not
   std::string recent_file;         // the same of files that were opened
-  int frames = 0;                  // drawn, then it ends; 0: until it is closed
+  int frames = 0;                  // drawn, then it ends; 0: until it is closed, or, where pictures
+                                   // are made of a trace, until that ends
   std::string screenshot, video;   // files; with either a frame is 1/60 s of the session
   std::optional<ThemeName> theme;  // else the remembered one
   std::vector<Panel> panels;       // with are_panels_given: these and no others are open
@@ -46,7 +47,8 @@ struct WindowOptions {
   bool is_hidden = false;          // nobody is to see it: SDL's offscreen driver
   // For tests: called before each drawn frame; may push SDL events.
   std::function<void(const WindowGlance& glance)> script;
-  std::function<bool()> is_ended_from_outside;  // Ctrl-C
+  std::function<bool()> is_ended_from_outside;              // Ctrl-C
+  std::function<std::vector<std::string>()> take_commands;  // for the session, from outside
 };
 struct WindowResult {
   std::vector<nlohmann::ordered_json> summaries;  // one a character, of the last session

@@ -41,11 +41,11 @@ void WindowLoop::draw(bool is_last) {
 
   const Viewport viewport =
       scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
-  stage_->fill(show_->frame(), show_->history(), show_->share(now_ns()), show_->cast(), state_,
-               theme, content_);
+  ensemble_->fill(show_->frame(), show_->history(), show_->share(now_ns()), show_->cast(), state_,
+                  theme, content_);
   if (std::exchange(is_camera_new_, false)) see_anew();
   const double passed_s = makes_pictures() ? 1.0 / kPictureRateHz : clock_.passed_s();
-  follow(camera_, stage_->focus_m(state_.walker), passed_s);
+  follow(camera_, ensemble_->focus_m(state_.walker), passed_s);
   if (viewport.width > 0 && viewport.height > 0)
     scene_->draw(content_, camera_, theme, viewport, height_px, surface_->scale());
   obey(draw_panels(width_px, height_px));
@@ -59,22 +59,26 @@ void WindowLoop::see_anew() {
   const Viewport viewport =
       scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
   camera_ = Camera();
-  camera_.target_m = camera_.followed_m = stage_->focus_m(state_.walker);
-  camera_.distance_m = stage_->distance_m(state_.walker, camera_, viewport);
+  camera_.target_m = camera_.followed_m = ensemble_->focus_m(state_.walker);
+  camera_.distance_m = ensemble_->distance_m(state_.walker, camera_, viewport);
 }
 
 UiInput WindowLoop::ui_input() {
   const SessionFrame& frame = show_->frame();
-  UiInput in{frame, show_->cast(), show_->history()};
-  in.timeline = show_->timeline();
-  in.status = in.timeline == nullptr ? show_->status() : nullptr;
-  in.pad_name = show_->pad_name();
-  in.pace = show_->pace();
-  in.recording = show_->options().live.record;
-  in.source = show_->options().trace;
-  in.renderer = scene_->renderer();
-  in.messages = messages_.sentences();
-  in.is_modal = browser_.is_open() || calibration_ != nullptr;
+  const UiTimeline* timeline = show_->timeline();
+  UiInput in{.frame = frame,
+             .cast = show_->cast(),
+             .history = show_->history(),
+             .status = timeline == nullptr ? show_->status() : nullptr,
+             .timeline = timeline,
+             .pad_name = show_->pad_name(),
+             .pace = show_->pace(),
+             .recording = show_->options().live.record,
+             .source = show_->options().trace,
+             .renderer = scene_->renderer(),
+             .labels = {},
+             .messages = messages_.sentences(),
+             .is_modal = browser_.is_open() || calibration_ != nullptr};
   if (makes_pictures()) return in;  // nothing that tells of the machine's speed
   in.pad_rate_hz = clock_.rate_hz(frame.pad.reports);
   in.frames_per_second = clock_.frames_per_second();
@@ -88,7 +92,7 @@ UiOutput WindowLoop::draw_panels(int width_px, int height_px) {
   UiInput in = ui_input();
   const Viewport viewport =
       scene_viewport(state_, in.timeline != nullptr, width_px, height_px, surface_->scale());
-  in.labels = stage_->labels(show_->frame(), show_->cast(), camera_, viewport, state_, theme);
+  in.labels = ensemble_->labels(show_->frame(), show_->cast(), camera_, viewport, state_, theme);
   gui_->begin(controls_.mouse(), makes_pictures() ? 1.0 / kPictureRateHz : 0.0);
   UiOutput out = draw_ui(in, theme, gui_->fonts(), surface_->scale(), state_);
   Ui ui{in, theme, gui_->fonts(), static_cast<float>(surface_->scale()), state_, out};

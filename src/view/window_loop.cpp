@@ -89,6 +89,8 @@ bool WindowLoop::draw_frame() {
   call_script();
   take_events();
   take_wishes(controls_.wishes());
+  if (options_.take_commands)
+    for (const std::string& command : options_.take_commands()) show_->command(command);
   look();
   const bool is_ended =
       is_quitting_ || (options_.is_ended_from_outside && options_.is_ended_from_outside());
@@ -100,6 +102,14 @@ bool WindowLoop::draw_frame() {
   if (!is_seen) SDL_Delay(static_cast<Uint32>(kUnseenFrame_s * 1e3));
   clock_.wait();
   return !is_last;
+}
+
+bool WindowLoop::is_ended() {
+  if (is_quitting_) return true;
+  if (options_.is_ended_from_outside && options_.is_ended_from_outside()) return true;
+  if (options_.frames > 0) return result_.frames + 1 >= options_.frames;
+  const UiTimeline* timeline = show_->timeline();
+  return makes_pictures() && timeline != nullptr && timeline->tick + 1 >= timeline->ticks;
 }
 
 void WindowLoop::end_lost() {

@@ -7,6 +7,7 @@
 
 #include "view/calibration_view.h"
 #include "view/controls.h"
+#include "view/ensemble.h"
 #include "view/file_browser.h"
 #include "view/frame_clock.h"
 #include "view/gui.h"
@@ -14,7 +15,6 @@
 #include "view/opening.h"
 #include "view/scene.h"
 #include "view/show.h"
-#include "view/stage.h"
 #include "view/surface.h"
 #include "view/video.h"
 #include "view/window.h"
@@ -32,6 +32,7 @@ class WindowLoop {
   // window_loop.cpp: the order of a frame.
   bool makes_pictures() const noexcept;
   bool draw_frame();  // false: it was the last one
+  bool is_ended();
   void take_events();
   void take_wishes(Wishes wishes);
   void move_camera(const Wishes& wishes);
@@ -88,7 +89,7 @@ class WindowLoop {
   std::unique_ptr<VideoWriter> video_;
   std::unique_ptr<CalibrationView> calibration_;
   std::unique_ptr<Show> show_;
-  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<Ensemble> ensemble_;
   std::optional<ShowOptions> live_before_;  // a playback: what ran before it
 
   UiState state_;

@@ -44,7 +44,7 @@ void WindowLoop::take_remarks() {
 
 void WindowLoop::install(std::unique_ptr<Show> show) {
   show_ = std::move(show);
-  stage_ = std::make_unique<Stage>(show_->cast());
+  ensemble_ = std::make_unique<Ensemble>(show_->cast());
   presses_.begin_anew();
   pace_before_pause_ = 1.0;
   is_camera_new_ = true;

@@ -11,9 +11,9 @@
 
 namespace gaitpad {
 
-class Stage {
+class Ensemble {
  public:
-  explicit Stage(const Cast& cast);
+  explicit Ensemble(const Cast& cast);
 
   // Every walker between its two latest poses (share 0 .. 1); content is filled anew.
   void fill(const SessionFrame& frame, const History& history, double share, const Cast& cast,

@@ -1,4 +1,4 @@
-#include "view/stage.h"
+#include "view/ensemble.h"
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ std::string label_text(const WalkerFrame& walker, const Cast& cast, std::size_t 
 
 }  // namespace
 
-Stage::Stage(const Cast& cast)
+Ensemble::Ensemble(const Cast& cast)
     : trail_ticks_(std::llround(kTrail_s * cast.rate_hz)),
       point_ticks_(std::max<std::int64_t>(std::llround(kTrailPoint_s * cast.rate_hz), 1)),
       shown_(cast.members.size()) {
@@ -51,7 +51,7 @@ Stage::Stage(const Cast& cast)
         kHeightOverLeg * (cast.source->leg[0].length_m() + cast.source->leg[1].length_m()) / 2;
 }
 
-void Stage::fill(const SessionFrame& frame, const History& history, double share, const Cast& cast,
+void Ensemble::fill(const SessionFrame& frame, const History& history, double share, const Cast& cast,
                  const UiState& state, const Theme& theme, SceneContent& content) {
   content.bodies.clear();
   content.lines.clear();
@@ -74,7 +74,7 @@ void Stage::fill(const SessionFrame& frame, const History& history, double share
   content.focus_m = focus_m(-1);
 }
 
-void Stage::add_trails(const History& history, int walker, const Colour& colour,
+void Ensemble::add_trails(const History& history, int walker, const Colour& colour,
                        SceneContent& content) {
   const std::size_t size = history.size();
   if (size < 2) return;
@@ -96,7 +96,7 @@ void Stage::add_trails(const History& history, int walker, const Colour& colour,
 }
 
 // Beside the first one, on the other side than the rest; it goes where that one goes.
-void Stage::add_source(const SessionFrame& frame, double share, const Cast& cast,
+void Ensemble::add_source(const SessionFrame& frame, double share, const Cast& cast,
                        const Theme& theme, SceneContent& content) {
   const WalkerFrame& first = frame.walkers[0];
   source_place_m_ = first.before.root_m + share * (first.pose.root_m - first.before.root_m) +
@@ -106,7 +106,7 @@ void Stage::add_source(const SessionFrame& frame, double share, const Cast& cast
                    first.walk.heading_rad, theme.bone, content);
 }
 
-vec3 Stage::focus_m(int walker) const noexcept {
+vec3 Ensemble::focus_m(int walker) const noexcept {
   if (shown_.empty()) return vec3(0.0, kLook_m, 0.0);
   const auto n = static_cast<std::size_t>(walker);
   if (walker >= 0 && n < shown_.size()) {
@@ -126,7 +126,7 @@ vec3 Stage::focus_m(int walker) const noexcept {
   return vec3(middle.x, kLook_m, middle.z);
 }
 
-double Stage::distance_m(int walker, const Camera& camera,
+double Ensemble::distance_m(int walker, const Camera& camera,
                          const Viewport& viewport) const noexcept {
   if (walker >= 0 || shown_.empty()) return kOnePerson_m;
   const vec3 middle = focus_m(-1);
@@ -142,7 +142,7 @@ double Stage::distance_m(int walker, const Camera& camera,
   return std::clamp((reach_m + kAside_m) / half_view, kOnePerson_m, 14.0);
 }
 
-std::vector<UiLabel> Stage::labels(const SessionFrame& frame, const Cast& cast,
+std::vector<UiLabel> Ensemble::labels(const SessionFrame& frame, const Cast& cast,
                                    const Camera& camera, const Viewport& viewport,
                                    const UiState& state, const Theme& theme) const {
   std::vector<UiLabel> labels;

@@ -59,6 +59,14 @@ struct ActionInfo {
 };
 // Every action once, in the order of the help page. Walking keys (WASD, arrows) are not among them.
 std::span<const ActionInfo> actions() noexcept;
-std::string_view key_name(SDL_Keycode key) noexcept;  // "Space", "F1", "W"
+const ActionInfo& info_of(Action action) noexcept;
+std::string_view key_name(SDL_Keycode key) noexcept;       // "Space", "F1", "W"; "?": no known one
+std::string_view button_label(PadButton button) noexcept;  // "A", "left shoulder"
+
+// What is no action: `text` by `input`, for the help page.
+struct HelpLine {
+  std::string_view input, text;
+};
+std::span<const HelpLine> walking_help() noexcept;
 
 }  // namespace gaitpad

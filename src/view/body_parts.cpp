@@ -52,9 +52,7 @@ bool Reading::is_named(int j, std::initializer_list<std::string_view> words) con
 
 bool Reading::is_of_leg(int j) const {
   for (const LegBuild& leg : model_.leg) {
-    if (j == leg.model.joints.hip || is_ancestor(model_.cycle.skeleton, leg.model.joints.hip, j)) {
-      return true;
-    }
+    if (is_ancestor(model_.cycle.skeleton, leg.model.joints.hip, j)) return true;
   }
   return false;
 }
@@ -78,8 +76,11 @@ void Reading::stand() {
   pose.joint_count = count();
   for (int j = 0; j < count(); ++j) pose.local[j] = model_.cycle.standing_local[j];
   forward_kinematics(model_.cycle.skeleton, pose, parts_.standing);
-  const double lift_m = model_.stand_m - at(model_.cycle.pelvis).y;
-  for (int j = 0; j < count(); ++j) parts_.standing.position_m[j].y += lift_m;
+  double lowest_m = at(model_.leg[kLeftSide].model.joints.ankle).y;
+  for (const LegBuild& leg : model_.leg) {
+    lowest_m = std::min(lowest_m, at(leg.model.joints.ankle).y + leg.model.heel_m.y);
+  }
+  for (int j = 0; j < count(); ++j) parts_.standing.position_m[j].y -= lowest_m;
   parts_.hip_y_m = 0.5 * (at(model_.leg[kLeftSide].model.joints.hip).y +
                           at(model_.leg[kRightSide].model.joints.hip).y);
   parts_.shoulder_y_m = parts_.hip_y_m + kTrunk_m * model_.size;
@@ -110,15 +111,17 @@ void Reading::find_head() {
 void Reading::find_trunk() {
   if (parts_.head < 0) return;
   for (const int j : path_up_to(parts_.head)) {
-    // Joints in the same place as the next one below add nothing.
-    if (!parts_.trunk.empty() && glm::distance(at(j), at(parts_.trunk.back())) < 1e-4) continue;
+    // Of joints in the same place the last one turns what comes next.
+    if (!parts_.trunk.empty() && glm::distance(at(j), at(parts_.trunk.back())) < 1e-4) {
+      parts_.trunk.pop_back();
+    }
     parts_.trunk.push_back(j);
   }
 }
 
 int Reading::branch_of(int j) const {
   const auto on_trunk = [this](int k) {
-    return k == parts_.head || is_ancestor(model_.cycle.skeleton, k, parts_.head);
+    return is_ancestor(model_.cycle.skeleton, k, parts_.head);
   };
   while (j >= 0 && !on_trunk(j)) j = parent(j);
   return j;

@@ -36,7 +36,7 @@ void GuidedCalibration::take(const Report& report) {
     device_ = report.device;
     info_ = stream_->device(device_).info;
     config_ = std::move(stream_->config(device_));
-    guide_.emplace(config_.layout);
+    guide_.emplace(*config_.layout);
   }
   if (report.device != device_ || device_ == kNoDevice) return;
   if (report.kind == ReportKind::added) is_plugged_ = true;
@@ -73,7 +73,7 @@ GuidedPad GuidedCalibration::finish() {
   pad.has_factory_sticks = config_.has_factory_sticks;
   pad.tracks = guide_->tracks();
   pad.frame = {guide_->frame(0), guide_->frame(1)};
-  pad.layout = config_.layout;
+  if (config_.layout) pad.layout = *config_.layout;
   return pad;
 }
 

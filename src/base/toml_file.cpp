@@ -127,6 +127,23 @@ std::string in_quotes(std::string_view text) {
   return fmt::format("\"{}{}\"", one_line(text.substr(0, kMaxQuotedBytes)), is_cut ? "..." : "");
 }
 
+std::string toml_string(std::string_view text) {
+  const bool is_utf8 = line_of_invalid_utf8(text) == 0;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (byte < 0x20 || byte == 0x7f) {
+      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
+    } else {
+      quoted += byte < 0x80 || is_utf8 ? c : '?';
+    }
+  }
+  return quoted + "\"";
+}
+
 Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   std::error_code code;
   const auto status = std::filesystem::status(path, code);

@@ -28,15 +28,19 @@ double step_time_cap_s(double forward, double sideways, const GaitLimits& limits
 // with the root of speed: their quotient over cadence is constant.
 BaseStep base_step(double forward, double sideways, double fatigue,
                    const GaitLimits& limits) noexcept {
-  const double vigour = 1.0 - (1.0 - kFullFatigueLeaves) * std::clamp(fatigue, 0.0, 1.0);
-  const double speed_m_s = forward * limits.max_speed_m_s * vigour;
+  const double share = vigour(fatigue);
+  const double speed_m_s = forward * limits.max_speed_m_s * share;
   const double cap_s = step_time_cap_s(forward, sideways, limits);
-  const double length_m = limits.max_step_m * vigour * std::sqrt(forward);
+  const double length_m = limits.max_step_m * share * std::sqrt(forward);
   if (!(length_m < speed_m_s * cap_s)) return {speed_m_s * cap_s, cap_s};
   return {length_m, length_m / speed_m_s};
 }
 
 }  // namespace
+
+double vigour(double fatigue) noexcept {
+  return 1.0 - (1.0 - kFullFatigueLeaves) * std::clamp(fatigue, 0.0, 1.0);
+}
 
 GaitLimits gait_limits(double leg_length_m) noexcept {
   const double ratio = leg_length_m / kReferenceLeg_m;

@@ -31,6 +31,9 @@ struct GaitLimits {
 // legs would have to turn round faster than they can be followed smoothly at 240 Hz.
 GaitLimits gait_limits(double leg_length_m) noexcept;
 
+// What fatigue (0 .. 1) leaves of maximum speed and maximum stride.
+double vigour(double fatigue) noexcept;
+
 // Stateless: the walk smooths what changes between ticks. Only stick.left is read. Backward
 // deflection counts as none; sideways alone turns in place.
 GaitParams gait_params(const Stick& stick, const StyleValues& style,

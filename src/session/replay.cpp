@@ -97,7 +97,7 @@ std::vector<std::string> remarks_on(const Run& run, const SimulationCounts& coun
   }
   if (counts.bad_commands > 0) {
     remarks.push_back(
-        fmt::format("{} of {} commands were not understood", counts.bad_commands, counts.commands));
+        fmt::format("{} of {} commands could not be obeyed", counts.bad_commands, counts.commands));
   }
   return remarks;
 }

@@ -2,34 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <utility>
 
 #include "motion/cycle_retarget.h"
+#include "session/commands.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr double kSpacing_m = 1.2;  // between neighbours, to the right of the first
-
-// Cuts the first word off `text`.
-std::string_view next_word(std::string_view& text) noexcept {
-  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  std::size_t size = 0;
-  while (size < text.size() && !blank(text[size])) ++size;
-  const std::string_view word = text.substr(0, size);
-  text.remove_prefix(size);
-  return word;
-}
-
-// The whole word as a number from 1 on, else 0.
-int position(std::string_view word) noexcept {
-  int value = 0;
-  const auto end = word.data() + word.size();
-  const auto result = std::from_chars(word.data(), end, value);
-  return result.ec == std::errc() && result.ptr == end && value > 0 ? value : 0;
-}
 
 // On a skeleton of its own the walk is retargeted already; its leg is still compared to the
 // motion's.
@@ -40,6 +21,42 @@ Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& w
   auto model = walk_model(*walker.own_cycle, build);
   if (model) model->source_leg_length_m = mean_leg_m(config.cycle);
   return model;
+}
+
+// All or none: what a command asks for is possible for each of them.
+bool set_values(std::span<Walker> walkers, std::string_view key, double value) noexcept {
+  for (const Walker& w : walkers) {
+    StyleValues changed = w.values;
+    if (!set_value(changed, key, value)) return false;
+  }
+  for (Walker& w : walkers) set_value(w.values, key, value);
+  return true;
+}
+
+bool set_gait(std::span<Walker> walkers, std::string_view name, double value) noexcept {
+  const auto key = gait_key(name);
+  if (!key || value < info_of(*key).min || value > info_of(*key).max) return false;
+  for (Walker& w : walkers) {
+    w.overrides.value[static_cast<std::size_t>(*key)] = value;
+    w.overrides.is_set[static_cast<std::size_t>(*key)] = true;
+  }
+  return true;
+}
+
+bool give_back(std::span<Walker> walkers, std::string_view name) noexcept {
+  const auto key = gait_key(name);
+  if (!key) return false;
+  for (Walker& w : walkers) w.overrides.is_set[static_cast<std::size_t>(*key)] = false;
+  return true;
+}
+
+// Its style stays, and what is counted since the beginning.
+void restart(const Style& style, Walker& w) noexcept {
+  const std::array<int, 2> steps = w.state.frame.steps;
+  w.values = style;
+  w.overrides = {};
+  w.state = standing(*w.model, w.start_m, w.pose);
+  w.state.frame.steps = steps;
 }
 
 int landings(const Walker& walker) noexcept {
@@ -63,7 +80,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   s.dt_s_ = 1.0 / config.rate_hz;
   s.ik_ = config.ik;
   s.pads_ = Pads(config.pads, config.rate_hz);
-  s.styles_ = config.styles;
+  s.styles_ = std::make_shared<const std::vector<Style>>(config.styles);
   s.walkers_.reserve(config.walkers.size());
   for (const WalkerConfig& walker : config.walkers) {
     auto model = model_of(config, walker);
@@ -72,9 +89,10 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
     w.model = std::make_shared<const WalkModel>(std::move(*model));
     w.limits = gait_limits(w.model->leg_length_m);
     w.style = walker.style;
-    w.values = s.styles_[walker.style];
+    w.values = s.styles()[walker.style];
     const double right_m = kSpacing_m * static_cast<double>(s.walkers_.size() - 1);
-    w.state = standing(*w.model, -right_m * kLeft, w.pose);
+    w.start_m = -right_m * kLeft;
+    w.state = standing(*w.model, w.start_m, w.pose);
     w.before = w.pose;
   }
   return s;
@@ -86,8 +104,11 @@ void Simulation::step(std::span<const Report> reports) noexcept {
   const int landings_before = landings(walkers_.front());
   for (Walker& w : walkers_) {
     w.before = w.pose;
-    w.params = gait_params(stick_, w.values, w.limits);
+    w.params = gait_params(stick_, w.values, w.overrides, w.limits);
+    const vec3 before_m = w.state.hips_m;
     advance(*w.model, w.params, ik_, dt_s_, w.state, w.pose);
+    const vec3 way_m = w.state.hips_m - before_m;
+    w.walked_m += glm::length(vec2(way_m.x, way_m.z));
     for (const bool failed : w.state.frame.ik_failed) w.ik_failures += failed;
     add_to_hash(w.pose);
   }
@@ -114,27 +135,39 @@ void Simulation::take(const Report& report) noexcept {
   }
 }
 
-// `style NAME` for every character, `style N NAME` for the n-th one; `mark` marks a place in a
-// recording.
-bool Simulation::obey(std::string_view command) noexcept {
-  const std::string_view verb = next_word(command);
-  if (verb == "mark") return true;
-  if (verb != "style") return false;
-  std::string_view name = next_word(command);
-  std::size_t first = 0, last = walkers_.size();
-  if (const std::string_view second = next_word(command); !second.empty()) {
-    const int n = position(name);
-    if (n == 0 || n > static_cast<int>(walkers_.size())) return false;
-    first = static_cast<std::size_t>(n) - 1;
-    last = first + 1;
-    name = second;
+bool Simulation::obey(std::string_view text) noexcept {
+  using Verb = Command::Verb;
+  const auto command = parsed_command(text);
+  if (!command || command->walker > static_cast<int>(walkers_.size())) return false;
+  std::span<Walker> walkers = walkers_;
+  if (command->walker > 0) walkers = walkers.subspan(command->walker - 1, 1);
+  switch (command->verb) {
+    case Verb::mark:
+      return true;
+    case Verb::style:
+      return take_style(walkers, command->name);
+    case Verb::set:
+      return set_values(walkers, command->name, command->value);
+    case Verb::gait:
+      return set_gait(walkers, command->name, command->value);
+    case Verb::release:
+      return give_back(walkers, command->name);
+    case Verb::stick:
+      for (Walker& w : walkers) w.overrides = {};
+      return true;
+    case Verb::restart:
+      for (Walker& w : walkers) restart(styles()[w.style], w);
+      return true;
   }
-  if (!next_word(command).empty()) return false;
-  for (std::size_t i = 0; i < styles_.size(); ++i) {
-    if (styles_[i].name != name) continue;
-    for (std::size_t w = first; w < last; ++w) {
-      walkers_[w].style = static_cast<int>(i);
-      walkers_[w].values = styles_[i];
+  return false;
+}
+
+bool Simulation::take_style(std::span<Walker> walkers, std::string_view name) noexcept {
+  for (std::size_t i = 0; i < styles().size(); ++i) {
+    if (styles()[i].name != name) continue;
+    for (Walker& w : walkers) {
+      w.style = static_cast<int>(i);
+      w.values = styles()[i];
     }
     return true;
   }

@@ -45,7 +45,7 @@ struct SimulationCounts {
   std::int64_t reports = 0;      // input reports, sound or not
   std::int64_t bad_reports = 0;  // too short, of an unknown id, of no device
   std::int64_t commands = 0;
-  std::int64_t bad_commands = 0;  // unknown verb, style or character
+  std::int64_t bad_commands = 0;  // malformed, of unknown names, out of bounds: changed nothing
 };
 
 struct Walker {
@@ -57,9 +57,12 @@ struct Walker {
   GaitParams params;  // of the last tick
   WalkState state;
   Pose before, pose;             // of the tick before the last and of the last
+  vec3 start_m{0.0};             // where it stood at first, facing +z
+  double walked_m = 0.0;         // along the path of its hips on the ground, resets left out
   std::int64_t ik_failures = 0;  // legs times ticks
 };
 
+// Copies are cheap, a few kilobytes a walker: what stands still is shared by them.
 class Simulation {
  public:
   static Result<Simulation> create(const SimulationConfig& config);
@@ -72,7 +75,7 @@ class Simulation {
   void step(std::span<const Report> reports) noexcept;
 
   const std::vector<Walker>& walkers() const { return walkers_; }
-  const std::vector<Style>& styles() const { return styles_; }
+  const std::vector<Style>& styles() const { return *styles_; }
   const Stick& stick() const { return stick_; }  // of the last tick
   const Pads& pads() const { return pads_; }
   // A heel of the first character struck the floor in the last tick.
@@ -84,13 +87,14 @@ class Simulation {
  private:
   Simulation() = default;
   void take(const Report& report) noexcept;
-  bool obey(std::string_view command) noexcept;
+  bool obey(std::string_view text) noexcept;
+  bool take_style(std::span<Walker> walkers, std::string_view name) noexcept;
   void add_to_hash(const Pose& pose) noexcept;
 
   double dt_s_ = 0.0;
   IkMode ik_ = IkMode::robust;
   Pads pads_;
-  std::vector<Style> styles_;
+  std::shared_ptr<const std::vector<Style>> styles_;
   std::vector<Walker> walkers_;
   Stick stick_;
   bool heel_struck_ = false;

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "base/toml_file.h"
-#include "base/toml_scan.h"
 #include "hid/sdl_mapping.h"
 #include "hid/trace.h"
 #include "stick/calibration.h"
@@ -185,32 +184,14 @@ Result<CalibrationFile> calibration_in(TomlFile& toml) {
 
 std::string id_text(int id) { return id < 0 ? "*" : fmt::format("{:04x}", id); }
 
-// In quotes. The names of devices may hold anything, a file only UTF-8.
-std::string string_text(std::string_view text) {
-  const bool is_utf8 = line_of_invalid_utf8(text) == 0;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (byte < 0x20 || byte == 0x7f) {
-      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
-    } else {
-      quoted += byte < 0x80 || is_utf8 ? c : '?';
-    }
-  }
-  return quoted + "\"";
-}
-
 std::string key_text(std::string_view key, const std::string& value) {
-  return value.empty() ? "" : fmt::format("{} = {}\n", key, string_text(value));
+  return value.empty() ? "" : fmt::format("{} = {}\n", key, toml_string(value));
 }
 
 std::string list_text(std::string_view key, const std::vector<std::string>& values) {
   if (values.empty()) return "";
   std::vector<std::string> quoted;
-  for (const std::string& value : values) quoted.push_back(string_text(value));
+  for (const std::string& value : values) quoted.push_back(toml_string(value));
   return fmt::format("{} = [{}]\n", key, fmt::join(quoted, ", "));
 }
 

@@ -3,8 +3,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <random>
+
+#include "base/math.h"
 
 namespace gaitpad {
 namespace {
@@ -70,6 +75,105 @@ TEST_F(StyleFile, UnknownKeysAndWrongValuesAreRefused) {
   EXPECT_EQ(refusal("legs = 1"), ":1: \"legs\" is not a table");
   EXPECT_EQ(refusal("name = ''"), ":1: the name is empty");
   EXPECT_EQ(refusal("name = \n").substr(0, 4), ":1: ");
+}
+
+// As many random changes as there are keys: equal and unequal legs, joints and single DOFs.
+TEST_F(StyleFile, TextReadsBackToTheSameValues) {
+  std::mt19937 random(7);
+  for (int round = 0; round < 300; ++round) {
+    Style style;
+    style.name = "a \"quoted\" \\ name\twith \xc3\xa4 and \x01";
+    for (int i = 0; i < round % 20; ++i) {
+      const StyleKey& key = style_keys()[random() % style_keys().size()];
+      const double share = std::generate_canonical<double, 53>(random);
+      set_value(style, key.name, mix(key.min, key.max, share));
+    }
+    auto read = loaded(style_text(style));
+    ASSERT_TRUE(read) << read.error().message << "\n" << style_text(style);
+    EXPECT_TRUE(static_cast<const StyleValues&>(*read) == style) << style_text(style);
+    EXPECT_EQ(read->name, style.name);
+  }
+}
+
+TEST_F(StyleFile, TextIsAsPeopleWouldWriteIt) {
+  Style style;
+  style.name = "mine";
+  style.stride[kLeftSide].length = 0.5;
+  style.weight[kLeftSide] = {0.2, 0.2, 0.2, 1.0, 1.0, 0.3, 1.0};
+  const std::string text = style_text(style);
+  EXPECT_EQ(text.substr(text.find('\n') + 1),
+            "name = \"mine\"\n\n[left_leg]\nstride_length = 0.5\n"
+            "weight = { hip = 0.2, ankle_z = 0.3 }\n");
+  EXPECT_FALSE(style_text(Style{}).empty());
+}
+
+// Every key is what the file's reader takes, with the same bounds.
+TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
+  for (const StyleKey& key : style_keys()) {
+    const auto below = loaded(key.name + " = " + std::to_string(key.min - 0.01));
+    const auto above = loaded(key.name + " = " + std::to_string(key.max + 0.01));
+    EXPECT_FALSE(below) << key.name;
+    EXPECT_FALSE(above) << key.name;
+    const double value = 0.5 * (key.min + key.max);
+    const auto read = loaded(key.name + " = " + std::to_string(value));
+    ASSERT_TRUE(read) << read.error().message;
+    StyleValues set;
+    ASSERT_TRUE(set_value(set, key.name, value)) << key.name;
+    EXPECT_TRUE(set == *read) << key.name;
+    EXPECT_EQ(value_of(set, key.name), value);
+  }
+  EXPECT_EQ(style_keys().size(), 3u + 3u * (3u + 10u));
+}
+
+TEST(StyleValue, OneLegOrBothChange) {
+  StyleValues style;
+  EXPECT_TRUE(set_value(style, "legs.stride_length", 0.8));
+  EXPECT_TRUE(set_value(style, "right_leg.weight.hip", 0.25));
+  EXPECT_TRUE(set_value(style, "right_leg.weight.hip_z", 0.75));
+  EXPECT_EQ(style.stride[kLeftSide].length, 0.8);
+  EXPECT_EQ(style.stride[kRightSide].length, 0.8);
+  EXPECT_EQ(style.weight[kLeftSide], kEvenWeights);
+  EXPECT_EQ(style.weight[kRightSide], (LegWeights{0.25, 0.75, 0.25, 1, 1, 1, 1}));
+  EXPECT_EQ(value_of(style, "legs.weight.hip"), 1.0);
+}
+
+TEST(StyleValue, WhatIsUnknownOrOutOfBoundsChangesNothing) {
+  StyleValues style;
+  const char* const names[] = {"",
+                               ".",
+                               "legs",
+                               "legs.",
+                               "legs.weight",
+                               "legs.weight.",
+                               "legs.hip",
+                               "weight.hip",
+                               "arms.weight.hip",
+                               "legs.weight.hip.x",
+                               "legs.fatigue",
+                               "fatigue.",
+                               "hip_sway.x",
+                               "left_leg.weight.elbow",
+                               " fatigue"};
+  for (const char* name : names) {
+    EXPECT_FALSE(set_value(style, name, 0.5)) << name;
+    EXPECT_FALSE(value_of(style, name)) << name;
+  }
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const StyleKey& key : style_keys()) {
+    for (const double value : {key.min - 1e-9, key.max + 1e-9, nan, HUGE_VAL})
+      EXPECT_FALSE(set_value(style, key.name, value)) << key.name;
+  }
+  EXPECT_TRUE(style == StyleValues{});
+}
+
+TEST(StyleValue, ALegIsNeverLockedAsAWhole) {
+  StyleValues style;
+  EXPECT_TRUE(set_value(style, "left_leg.weight.hip", 0.0));
+  EXPECT_TRUE(set_value(style, "left_leg.weight.knee", 0.0));
+  EXPECT_FALSE(set_value(style, "left_leg.weight.ankle", 0.0));
+  EXPECT_FALSE(set_value(style, "legs.weight.ankle", 0.0)) << "the right one could, the left not";
+  EXPECT_EQ(value_of(style, "right_leg.weight.ankle"), 1.0);
+  EXPECT_TRUE(set_value(style, "left_leg.weight.ankle_y", 0.0));
 }
 
 TEST(LoadStyle, AbsentFileIsNamed) {

@@ -76,6 +76,7 @@ TEST(Allocation, NoneIn10000StepsWithReportsCommandsAndReplugging) {
     }
     EXPECT_EQ(uses, 0);
     EXPECT_EQ(simulation->counts().ticks, 10000);
+    EXPECT_EQ(simulation->counts().bad_commands, 3);
     EXPECT_GT(simulation->walkers()[0].state.frame.steps[kLeftSide], 10);
   }
 }

@@ -47,8 +47,9 @@ inline Report made_command(std::string_view text) {
 // It does not stream; calibration of an unknown stick.
 inline PadConfig made_pad_config() {
   PadConfig config;
-  if (auto layout = pad_layout(made_pad(), {})) config.layout = *layout;
-  config.is_usable = config.layout.is_pad;
+  auto layout = pad_layout(made_pad(), {});
+  if (layout) config.layout = std::make_shared<const PadLayout>(std::move(*layout));
+  config.is_usable = config.layout && config.layout->is_pad;
   return config;
 }
 
@@ -76,7 +77,8 @@ inline SimulationConfig made_config(int walkers) {
   return config;
 }
 
-// The reports of one tick of a lively walk: standing, straight on, curves, a style, unplugging.
+// The reports of one tick of a lively walk: standing, straight on, curves, a style, values changed,
+// unplugging, a reset.
 inline std::vector<Report> made_tick(int tick) {
   constexpr int kPeriod = 3000;
   switch (tick % kPeriod) {
@@ -87,7 +89,9 @@ inline std::vector<Report> made_tick(int tick) {
     case 1000:
       return {made_command("style 1 limp")};
     case 1300:
-      return {made_report(0xd0, 0x30)};
+      return {made_report(0xd0, 0x30), made_command("set 2 legs.weight.knee 0.8")};
+    case 1500:
+      return {made_command("gait 2 stride_left_m 0.3"), made_command("gait hip_bounce 1.5")};
     case 1700:
       return {made_report(0x80, 0x00), made_command("style even")};
     case 2100:
@@ -95,7 +99,9 @@ inline std::vector<Report> made_tick(int tick) {
     case 2300:
       return {made_plug(ReportKind::added), made_report(0x80, 0x80)};
     case 2301:
-      return {made_report(0x80, 0x40)};
+      return {made_report(0x80, 0x40), made_command("gait 1 speed_m_s 0.8")};
+    case 2600:
+      return {made_command("reset"), made_command("gait 1 no_such_key 1")};
     case 2800:
       return {made_report(0x80, 0x80)};
     default:

@@ -106,8 +106,9 @@ TEST(RecordingLines, ReadBackAsTheTicksThatUsedThem) {
   EXPECT_EQ(trace.devices.at(0), made_device(0));
   std::vector<std::int64_t> ticks;
   for (const TraceEvent& e : trace.events) ticks.push_back(e.tick);
-  EXPECT_EQ(ticks, (std::vector<std::int64_t>{240, 240, 700, 700, 1000, 1300, 1700, 1700, 2100,
-                                              2300, 2300, 2301, 2800}));
+  EXPECT_EQ(ticks,
+            (std::vector<std::int64_t>{240, 240, 700, 700, 1000, 1300, 1300, 1500, 1500, 1700, 1700,
+                                       2100, 2300, 2300, 2301, 2301, 2600, 2600, 2800}));
 }
 
 TEST(RecordingLines, TellDevicesApartFromTheSecondOneOn) {

@@ -116,6 +116,108 @@ TEST(Simulation, AStyleCommandIsForAllOrForOneAndWhatIsUnknownIsCounted) {
   EXPECT_EQ(style(0) + style(1) + style(2), "limpevenlimp");
 }
 
+TEST(Simulation, ASetCommandChangesAStyleValueUntilTheNextStyle) {
+  Simulation s = made_simulation(made_config(3));
+  step(s, {made_command("set fatigue 0.5"), made_command("set 3 left_leg.stride_length 0.25")});
+  EXPECT_EQ(s.counts().bad_commands, 0);
+  for (const Walker& w : s.walkers()) EXPECT_EQ(w.values.fatigue, 0.5);
+  EXPECT_EQ(s.walkers()[0].values.stride[kLeftSide].length, 1.0);
+  EXPECT_EQ(s.walkers()[2].values.stride[kLeftSide].length, 0.25);
+  EXPECT_EQ(s.walkers()[2].style, 0) << "it is still that style, changed";
+  step(s, {made_command("style 3 limp")});
+  EXPECT_TRUE(s.walkers()[2].values == made_limp());
+  EXPECT_EQ(s.walkers()[0].values.fatigue, 0.5);
+}
+
+TEST(Simulation, AGaitCommandTakesAParameterFromTheStickAndGivesItBack) {
+  Simulation s = made_simulation(made_config(2));
+  step(s, {made_command("gait 2 speed_m_s 1"), made_command("gait hip_sway 0.5")}, 1200);
+  EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
+  // Stages are whole ticks, of some hundred in a cycle.
+  EXPECT_NEAR(s.walkers()[1].state.frame.speed_m_s, 1.0, 0.01);
+  EXPECT_EQ(s.walkers()[0].params.hip_sway, 0.5);
+  step(s, {made_command("gait 2 speed_m_s stick")}, 480);
+  EXPECT_EQ(s.walkers()[1].state.frame.stage, Stage::idle);
+  EXPECT_EQ(s.walkers()[1].params.hip_sway, 0.5);
+  step(s, {made_command("gait stick")});
+  EXPECT_EQ(s.walkers()[0].params.hip_sway, 1.0);
+  EXPECT_EQ(s.walkers()[1].params.hip_sway, 1.0);
+  EXPECT_EQ(s.counts().bad_commands, 0);
+}
+
+TEST(Simulation, AResetIsTheBeginningAgain) {
+  const SimulationConfig config = made_config(3);
+  const Simulation fresh = walked(config, 0x60, 0x00, 600);
+  Simulation s = made_simulation(config);
+  step(s,
+       {made_report(0x90, 0x10), made_command("gait 1 hip_sway 2"), made_command("style 1 limp"),
+        made_command("set 2 fatigue 1")},
+       777);
+  const std::array<int, 2> steps = s.walkers()[0].state.frame.steps;
+  const double walked_m = s.walkers()[0].walked_m;
+  EXPECT_GT(walked_m, 1.0);
+  // The first one's style stays as chosen: it is no other than at the beginning for the others.
+  step(s, {made_command("style 1 even"), made_report(0x60, 0x00), made_command("reset")}, 600);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Walker &w = s.walkers()[i], &f = fresh.walkers()[i];
+    EXPECT_EQ(w.state.hips_m, f.state.hips_m) << i;
+    EXPECT_EQ(w.state.heading_rad, f.state.heading_rad) << i;
+    for (int j = 0; j < w.pose.joint_count; ++j) ASSERT_EQ(w.pose.local[j], f.pose.local[j]);
+    EXPECT_EQ(w.overrides.is_set, GaitOverrides().is_set);
+    EXPECT_TRUE(w.values == s.styles()[w.style]);
+  }
+  EXPECT_EQ(s.walkers()[0].state.frame.steps[kLeftSide],
+            steps[kLeftSide] + fresh.walkers()[0].state.frame.steps[kLeftSide])
+      << "steps are counted on";
+  EXPECT_NEAR(s.walkers()[0].walked_m, walked_m + fresh.walkers()[0].walked_m, 1e-9)
+      << "the way back is no walk";
+}
+
+TEST(Simulation, AResetKeepsTheStyleThatWasChosenAndDropsItsChanges) {
+  Simulation s = made_simulation(made_config(1));
+  step(s, {made_command("style limp"), made_command("set hip_sway 3"), made_command("reset")});
+  EXPECT_EQ(s.styles()[s.walkers()[0].style].name, "limp");
+  EXPECT_TRUE(s.walkers()[0].values == made_limp());
+}
+
+TEST(Simulation, ACommandThatCannotBeObeyedChangesNothing) {
+  const char* const bad[] = {"set arms 1",          "set fatigue 1.01",      "set 4 fatigue 0.5",
+                             "set fatigue -0.01",   "set fatigue nan",       "set fatigue",
+                             "gait speed 1",        "gait speed_m_s 1e9",    "gait speed_m_s -1",
+                             "gait 4 speed_m_s 1",  "gait wings stick",      "gait 4 stick",
+                             "gait hip_sway three", "gait 2 hip_sway 3.001", "reset 1"};
+  Simulation s = made_simulation(made_config(3));
+  for (const char* text : bad) step(s, {made_command(text)});
+  EXPECT_EQ(s.counts().bad_commands, static_cast<std::int64_t>(std::size(bad)));
+  for (const Walker& w : s.walkers()) {
+    EXPECT_TRUE(w.values == s.styles()[w.style]);
+    EXPECT_EQ(w.overrides.is_set, GaitOverrides().is_set);
+  }
+}
+
+// The second one's leg would be locked, so the others keep theirs, too.
+TEST(Simulation, ASetCommandIsObeyedByAllOrByNone) {
+  Simulation s = made_simulation(made_config(3));
+  step(s, {made_command("set 2 legs.weight.hip 0"), made_command("set 2 legs.weight.knee 0"),
+           made_command("set legs.weight.ankle 0")});
+  EXPECT_EQ(s.counts().bad_commands, 1);
+  for (const Walker& w : s.walkers()) EXPECT_EQ(w.values.weight[kLeftSide][kAnkleX], 1.0);
+}
+
+TEST(Simulation, ACopyGoesItsOwnWayAndSharesWhatStandsStill) {
+  Simulation s = walked(made_config(4), 0x80, 0x20, 333), copy = s;
+  EXPECT_EQ(&s.styles(), &copy.styles());
+  EXPECT_EQ(s.walkers()[3].model, copy.walkers()[3].model);
+  step(s, {made_report(0x20, 0x00)}, 100);
+  const std::uint64_t hash = s.pose_hash();
+  step(copy, {made_report(0x80, 0x80)}, 100);
+  EXPECT_NE(copy.pose_hash(), hash);
+  Simulation again = walked(made_config(4), 0x80, 0x20, 333);
+  copy = again;
+  step(copy, {made_report(0x20, 0x00)}, 100);
+  EXPECT_EQ(copy.pose_hash(), hash);
+}
+
 TEST(Simulation, BadReportsAreCountedAndChangeNothing) {
   Simulation sound = walked(made_config(1), 0x80, 0x20, 300);
   Simulation s = made_simulation(made_config(1));

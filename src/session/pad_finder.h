@@ -36,7 +36,7 @@ namespace gaitpad {
 struct PadSlot {
   TraceDevice device;
   PadConfig config;  // the reader takes it out
-  PadLayout layout;  // the same as in `config`
+  std::shared_ptr<const PadLayout> layout;  // the same as in `config`
 };
 using PadSlots = std::array<PadSlot, kMaxTraceDevices>;
 

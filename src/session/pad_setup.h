@@ -14,9 +14,6 @@
 
 namespace gaitpad {
 
-// DeviceInfo::driver of the keyboard as a pad: live and in a recording it is a fallback.
-inline constexpr std::string_view kKeyboardDriver = "keyboard";
-
 // What calibrations tell devices apart by.
 DeviceIdentity identity_of(const DeviceInfo& info);
 

@@ -35,7 +35,7 @@ namespace gaitpad {
 // has read the device's first `added` may use it.
 struct PadSlot {
   TraceDevice device;
-  PadConfig config;  // the reader takes it out
+  PadConfig config;                         // the reader takes it out
   std::shared_ptr<const PadLayout> layout;  // the same as in `config`
 };
 using PadSlots = std::array<PadSlot, kMaxTraceDevices>;

@@ -73,18 +73,6 @@ void walk_unseen(const PlayArguments& arguments, int rate_hz, RunEnd& end, LiveS
   missing.finish(session.status().pads.plugged, line);
 }
 
-void add_status(const LiveStatus& status, nlohmann::ordered_json& summary) {
-  summary["overruns"] = status.overruns;
-  summary["lost"] = status.pads.lost;
-  summary["plugged"] = status.pads.plugged;
-  summary["unplugged"] = status.pads.unplugged;
-  summary["recording_lost"] = status.recording_lost;
-  summary["tick_us_median"] = status.tick_us_median;
-  summary["tick_us_max"] = status.tick_us_max;
-  summary["wait_us_median"] = status.wait_us_median;
-  summary["wait_us_max"] = status.wait_us_max;
-}
-
 void print_text(const PlayArguments& arguments, const LiveStatus& status,
                 const std::vector<nlohmann::ordered_json>& summaries) {
   print_session(arguments.record.empty() ? "live" : arguments.record, summaries.front());

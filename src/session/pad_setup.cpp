@@ -151,10 +151,11 @@ Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
   auto layout = layout_with(files, device.info, calibration->mapping);
   if (!layout) return Error{origin + ": " + layout.error().message};
   PadConfig pad;
-  pad.layout = std::move(*layout);
+  pad.is_usable = layout->is_pad;
+  pad.streams = layout->streams;
+  pad.is_fallback = device.info.driver == kKeyboardDriver;
+  pad.layout = std::make_shared<const PadLayout>(std::move(*layout));
   pad.calibration = calibration->calibration;
-  pad.is_usable = pad.layout.is_pad;
-  pad.streams = pad.layout.streams;
   return pad;
 }
 

@@ -55,6 +55,7 @@ struct ActionInfo {
   SDL_Keycode second_key;  // the same by another key
   int button;              // PadButton, -1: none
   std::string_view name;   // "pause"
+  std::string_view group;  // heading on the help page
   std::string_view text;   // one line for the help page
 };
 // Every action once, in the order of the help page. Walking keys (WASD, arrows) are not among them.

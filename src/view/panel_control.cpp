@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/control.h"
 #include "view/panels.h"
 
 namespace gaitpad {
@@ -22,20 +21,6 @@ constexpr std::array<KeyLook, kGaitKeys> kLooks = {{
     {"hip sway", "x"},
     {"hip bounce", "x"},
 }};
-
-// What a slider goes to: what may be given, as far as this character can.
-SliderLook range_of(GaitKey key, const GaitLimits& limits) {
-  const GaitKeyInfo& info = info_of(key);
-  SliderLook look;
-  look.min = info.min;
-  look.max = info.max;
-  if (key == GaitKey::speed_m_s) look.max = std::min(info.max, limits.max_speed_m_s);
-  if (key == GaitKey::turn_rate_rad_s) {
-    look.min = std::max(info.min, -limits.max_turn_rate_rad_s);
-    look.max = std::min(info.max, limits.max_turn_rate_rad_s);
-  }
-  return look;
-}
 
 void draw_row_head(Ui& ui, GaitKey key, bool is_set, double from_stick) {
   const auto index = static_cast<std::size_t>(key);
@@ -75,7 +60,10 @@ void draw_row(Ui& ui, GaitKey key, const WalkerFrame& walker, const GaitParams& 
   const bool is_set = walker.overrides.is_set[index];
   const double stick = value_of(key, from_stick);
   draw_row_head(ui, key, is_set, stick);
-  SliderLook look = range_of(key, limits);
+  const GaitRange range = range_of(key, limits);
+  SliderLook look;
+  look.min = range.min;
+  look.max = range.max;
   look.mark = stick;
   look.is_changed = is_set;
   look.is_enabled = ui.is_live();

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
-#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "view/panels.h"
 
@@ -144,6 +142,14 @@ void draw_choice(Ui& ui, const WalkerFrame& walker) {
   ImGui::Dummy({1.0f, ui.px(2)});
 }
 
+// What a file's name may hold anywhere.
+int accept(ImGuiInputTextCallbackData* data) {
+  const ImWchar c = data->EventChar;
+  const bool is_fit = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '_' || c == '-';
+  return is_fit ? 0 : 1;
+}
+
 // A name for the file, and the button that asks for it.
 void draw_save(Ui& ui) {
   auto& name = ui.state.memory.style_name;
@@ -152,9 +158,9 @@ void draw_save(Ui& ui) {
   ImGui::PushFont(ui.fonts.small);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{ui.px(8), ui.px(5)});
   ImGui::SetNextItemWidth(width - save - gap);
-  const bool is_entered =
-      ImGui::InputTextWithHint("##style name", "name of a new style", name.data(), name.size(),
-                               ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool is_entered = ImGui::InputTextWithHint(
+      "##style name", "name of a new style", name.data(), name.size(),
+      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCharFilter, &accept);
   keep_item("style name");
   ImGui::PopStyleVar();
   ImGui::PopFont();

@@ -40,7 +40,7 @@ void take(const Report& report, PadStream& stream, Subject& subject) {
     subject.device = report.device;
     subject.info = stream.device(report.device).info;
     subject.config = std::move(stream.config(report.device));
-    subject.guide.emplace(subject.config.layout);
+    subject.guide.emplace(*subject.config.layout);
   }
   if (report.device != subject.device || subject.device == kNoDevice) return;
   if (report.kind == ReportKind::added) subject.is_plugged = true;
@@ -151,7 +151,7 @@ Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish
   pad.tracks = guide.tracks();
   pad.frame = {guide.frame(0), guide.frame(1)};
   subject->guide.reset();  // it looks at the layout
-  pad.layout = std::move(subject->config.layout);
+  pad.layout = *subject->config.layout;
   return std::optional(std::move(pad));
 }
 

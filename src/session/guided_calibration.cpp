@@ -73,7 +73,7 @@ GuidedPad GuidedCalibration::finish() {
   pad.has_factory_sticks = config_.has_factory_sticks;
   pad.tracks = guide_->tracks();
   pad.frame = {guide_->frame(0), guide_->frame(1)};
-  pad.layout = *config_.layout;
+  if (config_.layout) pad.layout = *config_.layout;
   return pad;
 }
 

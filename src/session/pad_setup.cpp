@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "drivers/keyboard_device.h"
 #include "drivers/registry.h"
 #include "session/calibration_store.h"
 #include "session/config_files.h"
@@ -18,7 +19,8 @@ constexpr double kLeastFactoryRange = 0.25;  // raw, from the centre to either e
 
 Result<CalibrationFile> calibration_of(const PadFiles& files, const TraceDevice& device,
                                        const std::string& origin) {
-  if (files.calibration) return *files.calibration;
+  // A file that is given for the user's pad would bend the keyboard's stick.
+  if (files.calibration && device.info.driver != kKeyboardDriver) return *files.calibration;
   if (!device.calibration.empty())
     return parse_calibration(device.calibration, origin + ": calibration");
   auto found = find_calibration(files.calibration_folders, identity_of(device.info));

@@ -219,40 +219,14 @@ StartedBy started_by(const std::string& kernel_driver) {
   return StartedBy::us;
 }
 
-struct FreeEnumeration {
-  void operator()(hid_device_info* list) const noexcept { hid_free_enumeration(list); }
-};
-
-BusType bus_of(hid_bus_type bus) {
-  if (bus == HID_API_BUS_USB) return BusType::usb;
-  return bus == HID_API_BUS_BLUETOOTH ? BusType::bluetooth : BusType::unknown;
-}
-
-// hidapi's list names a device once for each pair of usages; only nodes that udev does not tell of
-// are new.
-void add_library_list(std::vector<DeviceListing>& listings) {
-  const std::unique_ptr<hid_device_info, FreeEnumeration> all(hid_enumerate(0, 0));
-  for (const hid_device_info* one = all.get(); one; one = one->next) {
-    if (!one->path) continue;
-    const auto is_same = [one](const DeviceListing& l) { return l.node == one->path; };
-    if (std::any_of(listings.begin(), listings.end(), is_same)) continue;
-    DeviceListing listing;
-    listing.info.bus = bus_of(one->bus_type);
-    listing.info.vendor = one->vendor_id;
-    listing.info.product = one->product_id;
-    listing.info.driver = "hidraw";
-    listing.node = listing.pad_path = one->path;
-    listings.push_back(std::move(listing));
-  }
-}
-
 }  // namespace
 
+// Not by hid_enumerate(): it sees the same nodes and tells less of them, and a pad that was plugged
+// in between two lists would look like another one without a name.
 std::vector<DeviceListing> find_hidraw_devices() {
   std::vector<DeviceListing> listings;
   for (const SystemNode& node : system_nodes("hidraw"))
     listings.push_back(listing_of(node, "hidraw"));
-  add_library_list(listings);
   for (DeviceListing& listing : listings) listing.problem = access_problem(listing.node);
   return listings;
 }

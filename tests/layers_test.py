@@ -51,7 +51,7 @@ DRIVER_VENDORS = {
 }
 TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/", "benchmark/"]
 SYSTEM_HEADERS = ("sys/", "unistd.h", "fcntl.h", "dirent.h", "errno.h", "poll.h", "signal.h",
-                  "pthread.h", "sched.h", "termios.h", "time.h", "pwd.h", "grp.h")
+                  "pthread.h", "sched.h", "spawn.h", "termios.h", "time.h", "pwd.h", "grp.h")
 C_PROGRAM = "tools/rig/pad_"  # the virtual pads: a C program that includes nothing of ours
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 

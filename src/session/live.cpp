@@ -17,12 +17,33 @@
 
 namespace gaitpad {
 
-struct LiveSession::Impl {
-  Impl(const LiveOptions& live_options, Simulation made)
-      : options(live_options), simulation(std::move(made)) {}
+void add_status(const LiveStatus& status, nlohmann::ordered_json& summary) {
+  summary["time_s"] = status.time_s;
+  summary["time_policy"] = status.time_policy;
+  summary["overruns"] = status.overruns;
+  summary["standstills"] = status.standstills;
+  summary["overloads"] = status.overloads;
+  summary["skipped_s"] = status.skipped_s;
+  summary["late_us_median"] = status.late_us_median;
+  summary["late_us_max"] = status.late_us_max;
+  summary["tick_us_median"] = status.tick_us_median;
+  summary["tick_us_max"] = status.tick_us_max;
+  summary["wait_us_median"] = status.wait_us_median;
+  summary["wait_us_max"] = status.wait_us_max;
+  summary["lost"] = status.pads.lost;
+  summary["plugged"] = status.pads.plugged;
+  summary["unplugged"] = status.pads.unplugged;
+  summary["recording_lost"] = status.recording_lost;
+}
 
+struct LiveSession::Impl {
+  Impl(const LiveOptions& live_options, Simulation made, Cast of_it)
+      : options(live_options), simulation(std::move(made)), cast(std::move(of_it)) {}
+
+  bool is_by_hand() const { return options.clock == LiveOptions::Clock::by_hand; }
   std::optional<Error> open_recording();
   void start_loop();
+  void start_thread();
   void stop_loop();
   void remark_on_time(const LiveStatus& now);
   void remark_on_recording();
@@ -30,10 +51,15 @@ struct LiveSession::Impl {
 
   LiveOptions options;
   Simulation simulation;
+  Cast cast;
+  std::shared_ptr<KeyboardStick> keyboard;  // may be null
   std::unique_ptr<PadStream> pads;
   std::unique_ptr<Recording> recording;
   std::unique_ptr<LiveLoop> loop;
   std::thread thread;
+  std::string time_policy;  // of the thread, as it began
+  bool is_memory_locked = false;
+  bool is_stopped = false;
 
   mutable std::mutex mutex;              // of what follows
   std::optional<PadStreamCounts> final;  // once it was stopped
@@ -55,23 +81,36 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 void LiveSession::Impl::start_loop() {
   loop = std::make_unique<LiveLoop>(LiveLoop::Options{options.rate_hz, options.rumble}, simulation,
                                     *pads, recording.get());
+  if (is_by_hand()) {
+    time_policy = "by hand";
+    loop->begin();
+  } else {
+    start_thread();
+  }
+}
+
+void LiveSession::Impl::start_thread() {
   std::promise<std::optional<std::string>> refused;
   auto refusal = refused.get_future();
   thread = std::thread([this, refused = std::move(refused)]() mutable {
     ::pthread_setname_np(::pthread_self(), "gaitpad-loop");
-    const auto priority = take_priority();
-    // Last of all: the thread's stack is locked, too.
-    refused.set_value(realtime_remark(priority, lock_memory()));
+    const auto priority = take_priority(RealtimeRank::loop);
+    time_policy = gaitpad::time_policy();
+    const auto memory = lock_memory();
+    is_memory_locked = !memory;
+    refused.set_value(realtime_remark(priority, memory));
     loop->run();
   });
   if (auto remark = refusal.get()) remarks.push_back(std::move(*remark));
 }
 
 void LiveSession::Impl::stop_loop() {
-  if (!thread.joinable()) return;
-  loop->stop();
-  thread.join();
-  unlock_memory();
+  is_stopped = true;
+  if (thread.joinable()) {
+    loop->stop();
+    thread.join();
+  }
+  if (is_memory_locked) unlock_memory();
   const std::lock_guard lock(mutex);
   final = pads->counts();
 }
@@ -118,7 +157,7 @@ Result<std::vector<nlohmann::ordered_json>> LiveSession::Impl::summaries() {
 
 LiveSession::LiveSession() = default;
 LiveSession::~LiveSession() {
-  if (impl_ && impl_->thread.joinable()) static_cast<void>(stop());
+  if (impl_ && impl_->loop && !impl_->is_stopped) static_cast<void>(stop());
 }
 
 Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& options) {
@@ -135,9 +174,11 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& optio
   if (!files) return files.error();
 
   std::unique_ptr<LiveSession> live(new LiveSession());
-  live->impl_ = std::make_unique<Impl>(options, std::move(*simulation));
+  Cast cast = cast_of(*simulation, *config);
+  live->impl_ = std::make_unique<Impl>(options, std::move(*simulation), std::move(cast));
   Impl& impl = *live->impl_;
-  auto pads = PadStream::start({std::move(*files), options.wish});
+  if (options.keyboard) impl.keyboard = std::make_shared<KeyboardStick>();
+  auto pads = PadStream::start({std::move(*files), options.wish, impl.keyboard});
   if (!pads) return pads.error();
   impl.pads = std::move(*pads);
   if (auto problem = impl.open_recording()) return *problem;
@@ -145,8 +186,26 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& optio
   return live;
 }
 
+const Cast& LiveSession::cast() const noexcept { return impl_->cast; }
+
+std::string LiveSession::pad_name(std::uint16_t device) const {
+  if (!impl_->loop->is_known(device)) return {};
+  return impl_->pads->device(device).info.name;
+}
+
 const SessionFrame& LiveSession::latest(bool& is_new) noexcept {
   return impl_->loop->latest(is_new);
+}
+
+bool LiveSession::take(TickSample& sample) noexcept { return impl_->loop->take(sample); }
+
+void LiveSession::set_pace(double pace) noexcept { impl_->loop->set_pace(pace); }
+void LiveSession::step(int ticks) noexcept { impl_->loop->step(ticks); }
+void LiveSession::advance(int ticks) noexcept {
+  if (impl_->is_by_hand() && !impl_->is_stopped) impl_->loop->advance(ticks);
+}
+void LiveSession::steer(const vec2& wanted) noexcept {
+  if (impl_->keyboard) impl_->keyboard->steer(wanted);
 }
 
 void LiveSession::command(std::string_view text) { impl_->pads->command(text); }
@@ -155,6 +214,8 @@ bool LiveSession::has_ended() const noexcept { return impl_->loop->has_ended(); 
 
 LiveStatus LiveSession::status() const noexcept {
   LiveStatus status = impl_->loop->status();
+  // After an overload the loop has given it up.
+  status.time_policy = status.overloads > 0 ? "normal priority" : impl_->time_policy;
   const std::lock_guard lock(impl_->mutex);
   status.pads = impl_->final ? *impl_->final : impl_->pads->counts();
   if (impl_->recording != nullptr) status.recording_lost = impl_->recording->lost();
@@ -173,7 +234,7 @@ std::vector<std::string> LiveSession::take_remarks() {
 }
 
 Result<std::vector<nlohmann::ordered_json>> LiveSession::stop() {
-  if (!impl_->thread.joinable()) return Error{"the session was stopped before"};
+  if (impl_->is_stopped) return Error{"the session was stopped before"};
   impl_->stop_loop();
   return impl_->summaries();
 }

@@ -34,21 +34,30 @@ struct LiveOptions {
   bool rumble = true;  // a beat at each heel strike, as strong as the walk is fast
 };
 
-// Since the beginning.
+// Since the beginning. Standing still (set_pace) is no lateness and no wait.
 struct LiveStatus {
+  static constexpr std::size_t kWaitClasses = 32;
+  static constexpr std::int64_t kWaitClass_ns = 250'000;
+
   std::int64_t ticks = 0;
+  double time_s = 0.0;           // of the clock since tick 0 was due, until the stop; 0: by hand
   std::int64_t overruns = 0;     // ticks that began more than one tick late
   std::int64_t standstills = 0;  // of more than a second, after which the clock was set forward
   std::int64_t overloads = 0;    // the same because ticks take longer than their time
   double skipped_s = 0.0;        // by these
+  double late_us_median = 0.0, late_us_max = 0.0;  // from when a tick was due to its begin
   double tick_us_median = 0.0, tick_us_max = 0.0;  // one step, without the sleep
-  double wait_us_median = 0.0, wait_us_max = 0.0;  // from a report's arrival to the tick using it
-  std::array<std::int64_t, 32>
-      wait_counts{};        // the same by quarters of a millisecond, the last: more
-  std::string time_policy;  // "SCHED_FIFO 50", "normal priority": how the loop thread is scheduled
+  // From a report's arrival to the tick using it, at pace 1.
+  double wait_us_median = 0.0, wait_us_max = 0.0;
+  std::array<std::int64_t, kWaitClasses> wait_counts{};  // by kWaitClass_ns; the last: more
+  // How the loop thread is scheduled: `SCHED_FIFO 20`, `normal priority`, `by hand`.
+  std::string time_policy;
   PadStreamCounts pads;
   std::int64_t recording_lost = 0;  // reports that the recording missed: it is then no exact one
 };
+
+// Behind what run_summary() writes, units in the keys.
+void add_status(const LiveStatus& status, nlohmann::ordered_json& summary);
 
 class LiveSession {
  public:
@@ -56,17 +65,18 @@ class LiveSession {
   ~LiveSession();
 
   const Cast& cast() const noexcept;
-  // The name of a device that a frame tells of.
+  // The name of a device that a frame tells of; empty: there is none.
   std::string pad_name(std::uint16_t device) const;
 
   // From one viewing thread.
   const SessionFrame& latest(bool& is_new) noexcept;
   bool take(TickSample& sample) noexcept;  // the oldest not taken yet; what nobody takes is dropped
-  // Ticks in a second of the clock over the rate: 0 stands still, 1 real time, 0.25 slow motion.
-  // What a tick does is always the same. Any number of ticks while it stands still:
+  // Ticks in a second of the clock over the rate: 0 stands still, 1 real time, 0.25 slow motion, at
+  // most 8; less than 1/1024 stands still. What a tick does is always the same. Counts within 20
+  // ms. While it stands still latest() goes on to show the driving pad's state and its presses.
   void set_pace(double pace) noexcept;
-  void step(int ticks) noexcept;
-  void advance(int ticks) noexcept;  // Clock::by_hand: runs them here and now
+  void step(int ticks) noexcept;     // so many at pace 8, while it stands still; else nothing
+  void advance(int ticks) noexcept;  // Clock::by_hand: runs them here and now; else nothing
   // The keyboard as a stick: where it is to go, +x right, +y forward, at most 1 long. It moves
   // there smoothly.
   void steer(const vec2& wanted) noexcept;
@@ -77,7 +87,7 @@ class LiveSession {
   // Pads that cannot be opened, real-time scheduling that is not allowed: each once.
   std::vector<std::string> take_remarks();
 
-  // Ends the threads and the recording. One summary a character, as `replay` writes it.
+  // Ends the threads and the recording. Once. One summary a character, as `replay` writes it.
   Result<std::vector<nlohmann::ordered_json>> stop();
 
  private:

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <utility>
 
 #include "drivers/posix.h"
@@ -13,19 +12,21 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxReportsInTick = 256;  // what is more waits for the next tick
-constexpr std::int64_t kNap_ns = 100'000'000;   // a sleep's longest piece: stop() waits for it
+constexpr std::int64_t kNap_ns = 20'000'000;  // a sleep's longest piece: orders wait for its end
+constexpr std::size_t kSamples = 1024;        // that nobody took yet, four seconds
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
 constexpr double kFeltBeat = 0.25;  // of full strength; much less does not turn a motor in 80 ms
 constexpr auto kRelaxed = std::memory_order_relaxed;
 
-void copy(const Report& from, std::int64_t now_ns, Report& to) noexcept {
-  to.time_ns = std::min(from.time_ns, now_ns);
-  to.device = from.device;
-  to.kind = from.kind;
-  to.size = std::min<std::uint16_t>(from.size, kMaxReportBytes);
-  std::memcpy(to.bytes.data(), from.bytes.data(), to.size);
+static_assert(std::atomic<double>::is_always_lock_free);
+
+// By the one thread that counts.
+void count(std::atomic<std::int64_t>& n) noexcept { n.store(n.load(kRelaxed) + 1, kRelaxed); }
+
+void sleep_until(std::int64_t time_ns) noexcept {
+  const timespec until = {time_ns / kSecond_ns, time_ns % kSecond_ns};
+  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);  // EINTR: the caller looks
 }
 
 }  // namespace
@@ -45,40 +46,88 @@ LiveLoop::LiveLoop(const Options& options, Simulation& simulation, PadStream& pa
       pads_(pads),
       recording_(recording),
       clock_(options.rate_hz, 0),
-      reports_(kMaxReportsInTick) {}
+      reports_(pads, simulation),
+      samples_(kSamples) {}
 
-void LiveLoop::run() noexcept {
+void LiveLoop::begin() noexcept {
   const std::int64_t start_ns = now_ns();
   clock_ = TickClock(options_.rate_hz, start_ns);
   if (recording_ != nullptr) recording_->clock(0, start_ns);
-  for (std::int64_t tick = 0; sleep_until(clock_.due_ns(tick)); ++tick) {
+}
+
+void LiveLoop::run() noexcept {
+  begin();
+  start_ns_.store(clock_.due_ns(0), kRelaxed);
+  while (wait_for_tick()) {
     const std::int64_t begin_ns = now_ns();
-    keep_time(tick, begin_ns);
-    run_tick(tick, begin_ns);
-    tick_times_.add(now_ns() - begin_ns);
-    ticks_.store(tick + 1, kRelaxed);
+    const bool has_steps = clock_.pace() == 0.0;
+    if (has_steps) {
+      --steps_left_;
+    } else {
+      keep_time(begin_ns);
+    }
+    run_tick(begin_ns, has_steps ? begin_ns : clock_.due_ns(tick_));
   }
+  end_ns_.store(now_ns(), kRelaxed);
+}
+
+void LiveLoop::advance(int ticks) noexcept {
+  for (int i = 0; i < ticks; ++i) run_tick(now_ns(), 0);
 }
 
 // False: to be stopped.
-bool LiveLoop::sleep_until(std::int64_t due_ns) const noexcept {
+bool LiveLoop::wait_for_tick() noexcept {
   while (!is_stopping_.load(kRelaxed)) {
-    const std::int64_t time_ns = now_ns();
-    if (time_ns >= due_ns) return true;
-    const std::int64_t until_ns = std::min(due_ns, time_ns + kNap_ns);
-    const timespec until = {until_ns / kSecond_ns, until_ns % kSecond_ns};
-    ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);  // EINTR: once more
+    follow_orders();
+    const std::int64_t due = due_ns(), time_ns = now_ns();
+    if (time_ns >= due) return true;
+    if (clock_.pace() == 0.0) look_at_pads(time_ns);
+    sleep_until(std::min(due, time_ns + kNap_ns));
   }
   return false;
 }
 
-void LiveLoop::keep_time(std::int64_t tick, std::int64_t now_ns) noexcept {
-  const auto count = [](std::atomic<std::int64_t>& n) { n.store(n.load(kRelaxed) + 1, kRelaxed); };
-  const TickClock::Begin begin = clock_.begin(tick, now_ns);
+void LiveLoop::set_pace(double pace) noexcept {
+  wanted_pace_.store(TickClock::usable_pace(pace), std::memory_order_release);
+}
+
+void LiveLoop::step(int ticks) noexcept {
+  if (ticks > 0) wanted_steps_.fetch_add(ticks, std::memory_order_release);
+}
+
+// Steps first: whoever sees them sees the pace that was set before they were asked for, too.
+void LiveLoop::follow_orders() noexcept {
+  const std::int64_t steps = wanted_steps_.exchange(0, std::memory_order_acquire);
+  const double pace = wanted_pace_.load(std::memory_order_acquire);
+  if (pace != clock_.pace()) {
+    const std::int64_t time_ns = now_ns();
+    clock_.set_pace(pace, tick_, time_ns);
+    real_time_ns_ = time_ns;
+    if (recording_ != nullptr)
+      recording_->clock(tick_, pace > 0.0 ? clock_.due_ns(tick_) : time_ns, pace);
+  }
+  steps_left_ = pace > 0.0 ? 0 : steps_left_ + steps;
+}
+
+std::int64_t LiveLoop::due_ns() const noexcept {
+  if (clock_.pace() > 0.0) return clock_.due_ns(tick_);
+  if (steps_left_ == 0) return TickClock::kNever_ns;
+  const double step_ns = kSecond_ns / (options_.rate_hz * TickClock::kMaxPace);
+  return last_begin_ns_ + static_cast<std::int64_t>(step_ns);
+}
+
+// What comes while ticks stand still is seen, though no tick uses it yet.
+void LiveLoop::look_at_pads(std::int64_t now_ns) noexcept {
+  if (reports_.gather(now_ns)) publish(shown_ns_);
+}
+
+void LiveLoop::keep_time(std::int64_t now_ns) noexcept {
+  late_times_.add(now_ns - clock_.due_ns(tick_));
+  const TickClock::Begin begin = clock_.begin(tick_, now_ns);
   if (begin == TickClock::Begin::on_time) return;
   count(overruns_);
   if (begin == TickClock::Begin::late) return;
-  if (recording_ != nullptr) recording_->clock(tick, now_ns);
+  if (recording_ != nullptr) recording_->clock(tick_, now_ns, clock_.pace());
   skipped_ns_.store(clock_.skipped_ns(), kRelaxed);
   if (begin == TickClock::Begin::after_standstill) {
     count(standstills_);
@@ -88,46 +137,50 @@ void LiveLoop::keep_time(std::int64_t tick, std::int64_t now_ns) noexcept {
   }
 }
 
-void LiveLoop::run_tick(std::int64_t tick, std::int64_t now_ns) noexcept {
-  take_reports(tick, now_ns);
-  simulation_.step(std::span(reports_.data(), report_count_));
-  publish(tick);
+void LiveLoop::run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept {
+  const std::span<const Report> reports = reports_.take(now_ns);
+  use(reports, now_ns);
+  simulation_.step(reports);
+  publish(shown_ns);
   if (options_.rumble && simulation_.heel_struck()) beat();
-  look_for_the_end();
+  look_for_the_end(!reports.empty());
+  last_begin_ns_ = now_ns;
+  ++tick_;
+  sample(gaitpad::now_ns() - now_ns);
+  ticks_.store(tick_, kRelaxed);
 }
 
-void LiveLoop::take_reports(std::int64_t tick, std::int64_t now_ns) noexcept {
-  report_count_ = 0;
-  while (report_count_ < kMaxReportsInTick) {
-    const Report* oldest = pads_.front();
-    if (oldest == nullptr) return;
-    Report& report = reports_[report_count_];
-    copy(*oldest, now_ns, report);
-    pads_.pop();
-    if (!is_known(report)) continue;
-    if (report.kind == ReportKind::input) wait_times_.add(now_ns - report.time_ns);
-    if (recording_ != nullptr) recording_->add(tick, report);
-    ++report_count_;
+void LiveLoop::use(std::span<const Report> reports, std::int64_t now_ns) noexcept {
+  const bool is_real_time = clock_.pace() == 1.0;
+  for (const Report& report : reports) {
+    if (recording_ != nullptr) recording_->add(tick_, report);
+    if (report.kind != ReportKind::input) continue;
+    if (is_real_time && report.time_ns >= real_time_ns_) count_wait(now_ns - report.time_ns);
   }
 }
 
-// A device becomes known when it is added for the first time; nothing else of it counts before.
-bool LiveLoop::is_known(const Report& report) noexcept {
-  if (report.kind == ReportKind::command) return true;
-  if (report.device >= is_known_.size()) return false;
-  bool& is_known = is_known_[report.device];
-  if (!is_known && report.kind == ReportKind::added) {
-    simulation_.set_pad(report.device, std::move(pads_.config(report.device)));
-    is_known = true;
-  }
-  return is_known;
+void LiveLoop::count_wait(std::int64_t wait_ns) noexcept {
+  wait_times_.add(wait_ns);
+  const std::int64_t last = static_cast<std::int64_t>(wait_counts_.size()) - 1;
+  const std::int64_t place = std::clamp<std::int64_t>(wait_ns / LiveStatus::kWaitClass_ns, 0, last);
+  count(wait_counts_[static_cast<std::size_t>(place)]);
 }
 
-void LiveLoop::publish(std::int64_t tick) noexcept {
+void LiveLoop::publish(std::int64_t shown_ns) noexcept {
+  shown_ns_ = shown_ns;
   SessionFrame& frame = frames_.writable();
   copy_frame(simulation_, frame);
-  frame.time_ns = clock_.due_ns(tick);
+  frame.time_ns = shown_ns;
+  reports_.show(frame);
   frames_.publish();
+}
+
+// A full ring: nobody takes them, or not fast enough.
+void LiveLoop::sample(std::int64_t took_ns) noexcept {
+  tick_times_.add(took_ns);
+  copy_sample(simulation_, sample_);
+  sample_.step_us = static_cast<float>(took_ns) / 1000.0f;
+  static_cast<void>(samples_.push(sample_));
 }
 
 void LiveLoop::beat() noexcept {
@@ -138,8 +191,8 @@ void LiveLoop::beat() noexcept {
 }
 
 // A recording as a pad: a second behind its end, as a replay without an end line.
-void LiveLoop::look_for_the_end() noexcept {
-  const bool is_over = pads_.has_ended() && report_count_ == 0;
+void LiveLoop::look_for_the_end(bool has_reports) noexcept {
+  const bool is_over = pads_.has_ended() && !has_reports;
   if (is_over || ticks_behind_end_ > 0) ++ticks_behind_end_;
   if (ticks_behind_end_ >= options_.rate_hz) has_ended_.store(true, kRelaxed);
 }
@@ -147,14 +200,21 @@ void LiveLoop::look_for_the_end() noexcept {
 LiveStatus LiveLoop::status() const noexcept {
   LiveStatus status;
   status.ticks = ticks_.load(kRelaxed);
+  const std::int64_t start_ns = start_ns_.load(kRelaxed), end_ns = end_ns_.load(kRelaxed);
+  if (start_ns != 0)
+    status.time_s = static_cast<double>((end_ns != 0 ? end_ns : now_ns()) - start_ns) * 1e-9;
   status.overruns = overruns_.load(kRelaxed);
   status.standstills = standstills_.load(kRelaxed);
   status.overloads = overloads_.load(kRelaxed);
   status.skipped_s = static_cast<double>(skipped_ns_.load(kRelaxed)) * 1e-9;
+  status.late_us_median = late_times_.median_us();
+  status.late_us_max = late_times_.max_us();
   status.tick_us_median = tick_times_.median_us();
   status.tick_us_max = tick_times_.max_us();
   status.wait_us_median = wait_times_.median_us();
   status.wait_us_max = wait_times_.max_us();
+  for (std::size_t i = 0; i < wait_counts_.size(); ++i)
+    status.wait_counts[i] = wait_counts_[i].load(kRelaxed);
   return status;
 }
 

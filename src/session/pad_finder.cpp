@@ -62,7 +62,9 @@ PadFinder::PadFinder(Options options, PadSlots& slots, PadIo& io, Remarks& remar
       slots_(slots),
       io_(io),
       remarks_(remarks),
-      is_recording_(is_recording(options_.wish.pad)) {}
+      is_recording_(is_recording(options_.wish.pad)) {
+  if (options_.first) known_.push_back({*options_.first, true});
+}
 
 void PadFinder::stop() {
   is_ending_ = true;
@@ -312,7 +314,8 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
   if (!config->is_usable) return options_.wish.pad.empty() ? "" : name_of(sighting) + ": no stick";
   config->is_present = false;  // until `added` is read
   config->has_factory_sticks = factory.has_value();
-  slot = {std::move(recorded), std::move(*config)};
+  slot = {std::move(recorded), std::move(*config), {}};
+  slot.layout = slot.config.layout;
   return std::nullopt;
 }
 

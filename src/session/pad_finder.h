@@ -35,7 +35,8 @@ namespace gaitpad {
 // has read the device's first `added` may use it.
 struct PadSlot {
   TraceDevice device;
-  PadConfig config;
+  PadConfig config;                         // the reader takes it out
+  std::shared_ptr<const PadLayout> layout;  // the same as in `config`
 };
 using PadSlots = std::array<PadSlot, kMaxTraceDevices>;
 
@@ -46,6 +47,7 @@ class PadFinder {
     PadWish wish;
     std::span<const DriverEntry> drivers;
     int changes_fd = -1;  // in place of udev's word, for tests; one read() makes it silent
+    std::optional<DeviceInfo> first;  // has index 0 and is opened by somebody else
   };
   PadFinder(Options options, PadSlots& slots, PadIo& io, Remarks& remarks);
   ~PadFinder() { stop(); }

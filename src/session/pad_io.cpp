@@ -98,7 +98,8 @@ void PadIo::rumble(std::uint16_t device, const Rumble& rumble,
 }
 
 void PadIo::run() {
-  static_cast<void>(take_priority());  // what is refused, the loop thread says too
+  static_cast<void>(
+      take_priority(RealtimeRank::pads));  // what is refused, the loop thread says too
   while (!is_ending_) {
     wait_for_fds();
     if ((fds_[0].revents & POLLIN) != 0) {
@@ -285,7 +286,8 @@ void PadIo::announce(Pad& pad, ReportKind kind, std::int64_t time_ns) {
   if (kind == ReportKind::command || is_present == pad.is_present) return;
   pad.is_present = is_present;
   pad.last_ns = std::max(time_ns, pad.last_ns);
-  (is_present ? counters_.plugged : counters_.unplugged).fetch_add(1, std::memory_order_relaxed);
+  if (!pad.opened.is_keyboard)
+    (is_present ? counters_.plugged : counters_.unplugged).fetch_add(1, std::memory_order_relaxed);
   Report report;
   make_event(report, kind, pad.opened.index, pad.last_ns);
   queue_.push(report, 0);

@@ -30,6 +30,7 @@ struct OpenedPad {
   std::uint64_t id = 0;         // of this opening
   bool has_report_ids = false;  // the first byte of a report is its id
   bool is_recording = false;    // its end is no unplugging that needs a word
+  bool is_keyboard = false;     // no pad: it is not counted as one that was plugged in
   std::string name;             // for sentences
 };
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "drivers/keyboard_device.h"
 #include "drivers/registry.h"
 #include "hid/driver.h"
 #include "hid/report.h"
@@ -29,6 +30,7 @@ inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // different ones in 
 struct PadStreamOptions {
   PadFiles files;
   PadWish wish;
+  std::shared_ptr<KeyboardStick> keyboard = nullptr;  // a further device, index 0, there from the start
   // For tests: other drivers; a descriptor that is readable when something was plugged in or out
   // and silent after one read(), in place of udev's word; reports that the ring holds, a power of
   // two.
@@ -41,7 +43,7 @@ struct PadStreamOptions {
 struct PadStreamCounts {
   std::int64_t reports = 0;  // written to the ring
   std::int64_t lost = 0;     // reports that a source lost, and those that found the ring full
-  std::int64_t plugged = 0, unplugged = 0;
+  std::int64_t plugged = 0, unplugged = 0;  // pads, the keyboard is none
 };
 
 class PadStream {
@@ -61,8 +63,9 @@ class PadStream {
   // Sleeps until there is something to read or the time is over; not for the loop thread.
   void wait(std::chrono::milliseconds timeout);
 
-  // Both valid once the device's first `added` has been read, and never changed afterwards.
+  // All valid once the device's first `added` has been read, and never changed afterwards.
   const TraceDevice& device(std::uint16_t index) const noexcept;
+  const PadLayout& layout(std::uint16_t index) const noexcept;
   // The reader takes it out of here once (no heap: it is moved). Not present: `added` follows.
   PadConfig& config(std::uint16_t index) noexcept;
 

@@ -71,18 +71,16 @@ void Recording::add(std::int64_t tick, const Report& report) noexcept {
   item.report.kind = report.kind;
   item.report.size = std::min<std::uint16_t>(report.size, kMaxReportBytes);
   std::memcpy(item.report.bytes.data(), report.bytes.data(), item.report.size);
-  push(item);
+  if (!ring_.push(item)) lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Recording::clock(std::int64_t tick, std::int64_t time_ns) noexcept {
+// A remark for people: where it finds no room the recording is still an exact one.
+void Recording::clock(std::int64_t tick, std::int64_t time_ns, double pace) noexcept {
   Item item;
   item.tick = tick;
   item.clock_ns = time_ns;
-  push(item);
-}
-
-void Recording::push(const Item& item) noexcept {
-  if (!ring_.push(item)) lost_.fetch_add(1, std::memory_order_relaxed);
+  item.pace = pace;
+  static_cast<void>(ring_.push(item));
 }
 
 void Recording::run() {
@@ -100,7 +98,7 @@ void Recording::run() {
 void Recording::take_all() {
   while (const Item* item = ring_.front()) {
     if (item->clock_ns != kNoClock) {
-      lines_.clock(item->tick, item->clock_ns);
+      lines_.clock(item->tick, item->clock_ns, item->pace);
     } else if (problem_ != 0 || !lines_.add(item->tick, item->report)) {
       lost_.fetch_add(1, std::memory_order_relaxed);
     }

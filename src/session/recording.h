@@ -31,9 +31,9 @@ class Recording {
   ~Recording();
 
   // All from one thread, wait-free: `tick` used the report; it began at that time and the next ones
-  // follow at the rate.
+  // follow at the rate times the pace (0: they stand still).
   void add(std::int64_t tick, const Report& report) noexcept;
-  void clock(std::int64_t tick, std::int64_t time_ns) noexcept;
+  void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0) noexcept;
 
   // Reports that are missing: found no room here or in the file. It is then no exact recording.
   std::int64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
@@ -46,12 +46,12 @@ class Recording {
   struct Item {
     std::int64_t tick = 0;
     std::int64_t clock_ns = kNoClock;  // else there is no report
+    double pace = 1.0;
     Report report;
   };
   static constexpr std::int64_t kNoClock = -1;
 
   Recording(const Options& options, RecordedDevices devices, OwnedFd file);
-  void push(const Item& item) noexcept;
   void run();
   void take_all();
   void write(std::string_view text);

@@ -33,10 +33,17 @@ RecordingLines::RecordingLines(std::optional<int> rate_hz, RecordedDevices devic
   writer_.comment(rate_hz_ ? "recorded by gaitpad: a session" : "recorded by gaitpad: pads alone");
 }
 
-void RecordingLines::clock(std::int64_t tick, std::int64_t time_ns) {
+void RecordingLines::clock(std::int64_t tick, std::int64_t time_ns, double pace) {
   if (!start_ns_) start_ns_ = time_ns;
-  if (is_full_) return;
-  writer_.comment(fmt::format("tick {} began at CLOCK_MONOTONIC {}", tick, seconds(time_ns)));
+  if (is_full_ || bytes_ + text_size() >= limits_.bytes) return;
+  const std::string when = seconds(time_ns);
+  if (pace == 0.0) {
+    writer_.comment(
+        fmt::format("before tick {} it stood still from CLOCK_MONOTONIC {}", tick, when));
+  } else {
+    const std::string how = pace == 1.0 ? "" : fmt::format(", pace {} from here", pace);
+    writer_.comment(fmt::format("tick {} began at CLOCK_MONOTONIC {}{}", tick, when, how));
+  }
 }
 
 bool RecordingLines::add(std::int64_t tick, const Report& report) {
@@ -130,6 +137,7 @@ void RecordingLines::end(std::int64_t ticks, std::int64_t time_ns) {
   const std::int64_t last = is_full_ ? end_tick_ : ticks;
   std::int64_t time_us = latest_us_;
   if (!is_full_) time_us = std::max(time_us, (time_ns - *zero_ns_) / 1000);
+  time_us = std::max(time_us, last * 1'000'000 / *rate_hz_ - kMaxTraceGapUs);
   if (time_us <= kMaxTraceDurationUs) bridge(std::max(tick_, last - 1), time_us);
   writer_.end(time_us, std::max(last, events_ > 0 ? tick_ + 1 : 0));
 }

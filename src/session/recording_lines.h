@@ -15,7 +15,8 @@ namespace gaitpad {
 using RecordedDevices = std::function<const TraceDevice&(std::uint16_t device)>;
 
 // Keeps within what the reader takes: times that do not go back, no gap of ten minutes (a command
-// `mark`, which does nothing, stands in a longer one), and an end before the file is too large.
+// `mark`, which does nothing, stands in a longer one), an end that is late enough for its ticks
+// (they may have run faster than the time), and one before the file is too large.
 class RecordingLines {
  public:
   struct Limits {  // with room for what one tick and the devices' lines may add
@@ -25,9 +26,9 @@ class RecordingLines {
   // Without a rate there are no ticks: times alone count.
   RecordingLines(std::optional<int> rate_hz, RecordedDevices devices, const Limits& limits);
 
-  // `tick` began at `time_ns` and the next ones follow at the rate: of tick 0, and where the clock
-  // was set forward.
-  void clock(std::int64_t tick, std::int64_t time_ns);
+  // `tick` began at `time_ns` and the next ones follow at the rate times the pace: of tick 0, where
+  // the clock was set forward, and where the pace is another from then on (0: it is still to come).
+  void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0);
   // False: it has no place in the recording.
   bool add(std::int64_t tick, const Report& report);
   void end(std::int64_t ticks, std::int64_t time_ns);

@@ -47,7 +47,10 @@ Cast cast_of(const Simulation& simulation, const SimulationConfig& config) {
   cast.motion = config.cycle.name;
   cast.source = std::make_shared<const GaitCycle>(config.cycle);
   cast.rate_hz = config.rate_hz;
-  for (const Style& style : simulation.styles()) cast.styles.push_back(style.name);
+  for (const Style& style : simulation.styles()) {
+    cast.styles.push_back(style.name);
+    cast.style_values.push_back(style);
+  }
   for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
     const Walker& w = simulation.walkers()[i];
     cast.members.push_back({config.walkers[i].character.name, cast.styles[config.walkers[i].style],

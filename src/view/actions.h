@@ -55,10 +55,19 @@ struct ActionInfo {
   SDL_Keycode second_key;  // the same by another key
   int button;              // PadButton, -1: none
   std::string_view name;   // "pause"
+  std::string_view group;  // heading on the help page
   std::string_view text;   // one line for the help page
 };
 // Every action once, in the order of the help page. Walking keys (WASD, arrows) are not among them.
 std::span<const ActionInfo> actions() noexcept;
-std::string_view key_name(SDL_Keycode key) noexcept;  // "Space", "F1", "W"
+const ActionInfo& info_of(Action action) noexcept;
+std::string_view key_name(SDL_Keycode key) noexcept;       // "Space", "F1", "W"; "?": no known one
+std::string_view button_label(PadButton button) noexcept;  // "A", "left shoulder"
+
+// What is no action: `text` by `input`, for the help page.
+struct HelpLine {
+  std::string_view input, text;
+};
+std::span<const HelpLine> walking_help() noexcept;
 
 }  // namespace gaitpad

@@ -10,16 +10,22 @@ namespace gaitpad {
 // A ring; 0 is the oldest. A sample that does not follow the newest one begins it anew.
 class History {
  public:
-  explicit History(std::size_t capacity = 2400) : samples_(capacity) {}
+  explicit History(std::size_t capacity = 2400) : samples_(capacity > 0 ? capacity : 1) {}
   void add(const TickSample& sample);
   void clear() noexcept { size_ = 0; }
   std::size_t size() const noexcept { return size_; }
   const TickSample& operator[](std::size_t i) const noexcept {
     return samples_[(begin_ + i) % samples_.size()];
   }
-  // Begin of the newest `cycles` complete cycles of a walker (from its right foot's landings), as
-  // an index; size() where it has not walked so many.
-  std::size_t cycle_begin(int walker, int cycles) const noexcept;
+  // The newest `cycles` complete cycles of a walker without a rest in them (from its right foot's
+  // landings), as indices [begin, end); both are size() where it has not walked so many.
+  struct Span {
+    std::size_t begin = 0, end = 0;
+  };
+  Span newest_cycles(int walker, int cycles) const noexcept;
+  std::size_t cycle_begin(int walker, int cycles) const noexcept {
+    return newest_cycles(walker, cycles).begin;
+  }
 
  private:
   std::vector<TickSample> samples_;

@@ -1,8 +1,19 @@
 // The window of the display, or a picture in memory where there is none: SDL and its OpenGL 3.3
-// core context; and how what was drawn leaves it, as a PNG or as a video.
+// core context; and what was drawn, as a PNG.
+// (As a video: view/video.h.)
+//
+// SDL has one state for the whole program, and drivers/sdl_driver.cpp uses its joysticks on another
+// thread. Both live together by four rules:
+// - Starting and stopping SDL's parts is safe from one thread at a time only: a surface is opened
+//   before the first LiveSession starts and closed after the last one was stopped.
+// - Each stops what it started (SDL_QuitSubSystem), nobody calls SDL_Quit().
+// - Only the window's thread takes events off SDL's queue. It looks at no joystick while doing so
+//   (SDL_HINT_AUTO_UPDATE_JOYSTICKS is off: looking waits for the kernel when one was plugged in);
+//   the driver looks at them on its own thread, sees them by a watch, and throws away what it finds
+//   of them on the queue: a window does not count on SDL's joystick events.
+// - SDL's signal handlers stay out; Ctrl-C is the program's own.
 #pragma once
 #include <SDL2/SDL.h>
-#include <sys/types.h>
 
 #include <cstdint>
 #include <memory>
@@ -18,51 +29,42 @@ struct SurfaceOptions {
   std::string title = "gaitpad";
   int width = 1280, height = 720;  // pixels at scale 1
   double scale = 0.0;              // 0: the display's
-  bool is_hidden = false;          // only pictures are wanted: SDL's offscreen driver
+  bool is_hidden = false;          // only pictures are wanted: SDL's offscreen driver, at scale 1
 };
 
 class WindowSurface {
  public:
-  // One sentence where there is neither a display nor EGL, and what to do.
+  // One sentence where there is neither a display nor EGL, and what to do. Without a display only
+  // what is hidden opens, or what $SDL_VIDEODRIVER asks for: a window that nobody sees would never
+  // be closed. One at a time.
   static Result<std::unique_ptr<WindowSurface>> open(const SurfaceOptions& options);
   ~WindowSurface();
   SDL_Window* window() const noexcept { return window_; }
   SDL_GLContext context() const noexcept { return context_; }
   double scale() const noexcept { return scale_; }
   void size(int& width_px, int& height_px) const noexcept;  // drawable pixels
-  void show();                                              // what was drawn: swaps
+  // Before anything of a frame is drawn: binds the frame buffer that it goes into, of that size.
+  // The window's own, or, as SDL's offscreen windows do not grow, one in memory.
+  void begin();
+  void show();  // what was drawn: swaps
 
  private:
   WindowSurface() = default;
   SDL_Window* window_ = nullptr;
   SDL_GLContext context_ = nullptr;
   double scale_ = 1.0;
+  // Offscreen: frame buffer, its picture, their size.
+  unsigned frame_buffer_ = 0, picture_ = 0;
+  int width_px_ = 0, height_px_ = 0;
 };
 
 struct Pixels {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;  // rows from the top, opaque
 };
-// Of the frame buffer that is bound, before show().
+// Of the frame buffer that is bound, between begin() and show().
 Pixels read_pixels(int width, int height);
 // Written beside `path` first: on error the old file is as it was.
 std::optional<Error> write_png(const std::string& path, const Pixels& pixels);
-
-// H.264 through ffmpeg, a process of its own; where it is missing or fails, one sentence.
-class VideoWriter {
- public:
-  static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
-                                                   int frames_per_second);
-  ~VideoWriter();  // without finish(): the file is left out
-  std::optional<Error> add(const Pixels& pixels);
-  std::optional<Error> finish();
-
- private:
-  VideoWriter() = default;
-  std::string path_, part_;
-  int pipe_ = -1;
-  pid_t process_ = -1;
-  int width_ = 0, height_ = 0;
-};
 
 }  // namespace gaitpad

@@ -29,6 +29,7 @@ struct Fonts {
   ImFont* body = nullptr;
   ImFont* small = nullptr;
   ImFont* tick = nullptr;
+  ImFont* heading = nullptr;  // of a panel: as high as body, heavier
   ImFont* title = nullptr;
   std::string family;  // what was found: "Inter", "DejaVu Sans", "built in"
 };

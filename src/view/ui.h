@@ -1,6 +1,7 @@
 // Everything flat in the window: bars, panels, plots, names above heads, help. It reads what a
 // frame shows and answers with what a person asked for; it changes nothing but its own state.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,13 +23,37 @@ inline constexpr int kPanels = 6;
 inline constexpr std::array<std::string_view, kPanels> kPanelNames = {"pad",    "control", "style",
                                                                       "graphs", "solver",  "loop"};
 
+// What draw_ui() keeps from frame to frame for itself.
+struct UiMemory {
+  // A slider that was moved shows the person's value until the session has it.
+  struct Wish {
+    std::string name;
+    int walker = -1;
+    double value = 0.0;
+    std::int64_t tick = 0;  // of the frame when it was sent
+  };
+  struct StickPlace {
+    std::array<vec2, 2> raw{}, calibrated{};  // left, right; raw in the stick's frame
+  };
+  std::vector<Wish> wishes;
+  double held = 0.0;                    // what the slider in the person's hand was moved to last
+  std::vector<StickPlace> stick_trail;  // oldest first
+  std::int64_t stick_tick = -1;
+  std::array<bool, kPanels> was_open{};
+  bool has_drawn = false;
+  std::array<char, 64> style_name{};
+  bool has_axis_weights = false;  // the style panel shows each axis of a joint
+};
+
 // What is remembered from one start to the next (view/layout.h), and what is open now.
 struct UiState {
   std::array<bool, kPanels> is_open{true, true, false, true, false, false};
   ThemeName theme = ThemeName::dark;
   bool has_trails = true, has_grid = true, has_shadows = true, has_source = true, has_names = true;
+  Side graph_leg = kLeftSide;
   int walker = -1;  // whom panels tell of and the camera follows; -1: all, the first one's numbers
   bool is_help_open = false;
+  UiMemory memory;
 };
 
 // The time line of a playback.
@@ -53,6 +78,7 @@ struct UiInput {
   double pad_rate_hz = 0.0;
   double pace = 1.0;
   double frames_per_second = 0.0;  // 0: not to be shown (pictures)
+  double memory_mib = 0.0;         // of the whole program; 0: not known
   std::string recording;           // file, empty: none
   std::string source;              // the trace, for the bar
   std::string renderer;
@@ -70,6 +96,14 @@ struct UiOutput {
   bool dismisses_messages = false;
 };
 
+// Indices in Cast::styles of those that a `style` command reaches: of equal names the first. The
+// n-th of them is what Action::style_1 + n - 1 chooses.
+std::vector<int> style_choices(const Cast& cast);
+
+// What an action means to the flat picture alone: panels, theme, trails, source, help, whom the
+// panels tell of. False: it is for somebody else. draw_ui() only asks for actions, those included.
+bool obey(Action action, int walker_count, UiState& state) noexcept;
+
 // Where the scene goes when these panels are open.
 Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, int height_px,
                         double scale) noexcept;
@@ -78,7 +112,9 @@ UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, d
                  UiState& state);
 
 // For tests and for the window's own script of events: rectangles of what can be clicked, in window
-// pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"), of the frame drawn last.
+// pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"), of the frame drawn last;
+// what is scrolled out of sight is not among them. "area pad" ... are the panels themselves, "left
+// column", "top bar" ... what they lie in.
 struct UiItem {
   std::string name;
   ImVec2 min, max;

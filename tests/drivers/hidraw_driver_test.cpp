@@ -100,8 +100,6 @@ int hid_get_input_report(hid_device*, unsigned char* data, size_t length) {
   std::copy_n(present.answer->begin(), std::min(length, present.answer->size()), data);
   return static_cast<int>(std::min(length, present.answer->size()));
 }
-hid_device_info* hid_enumerate(unsigned short, unsigned short) { return nullptr; }
-void hid_free_enumeration(hid_device_info*) {}
 
 }  // extern "C"
 

@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <string>
 
 #include "stick/made_stick.h"
@@ -242,35 +239,6 @@ TEST(Outline, NeverLeavesTheRange) {
       const vec2 p = outline.middle + outline.radius[k] * vec2(std::cos(angle), std::sin(angle));
       EXPECT_LE(std::max(std::fabs(p.x), std::fabs(p.y)), 1.0 + 1e-12);
     }
-  }
-}
-
-// Both sticks of a real DualSense saturate in both axes and are round at the corners; axes by byte,
-// y downwards. By every report's greatest radius they come to 8.5 and 7.4 %.
-TEST(Outline, OfARealDualSense) {
-  for (const bool is_left : {true, false}) {
-    const std::string name = is_left ? "left" : "right";
-    std::ifstream file(GAITPAD_SHARED_DATA "/hid/dualsense_usb_" + name + "_stick.hid");
-    if (!file) GTEST_SKIP() << "no recordings at " GAITPAD_SHARED_DATA "/hid";
-    StickTrack track;
-    for (std::string line; std::getline(file, line);) {
-      std::istringstream words(line);
-      std::string tag, time, size;
-      int report = 0, axis[4] = {};
-      words >> tag >> time >> size >> std::hex >> report;
-      for (int& a : axis) words >> a;
-      if (tag != "E:" || !words || report != 1) continue;
-      const auto raw = [&](int i) { return (axis[i] - 127.5) / 127.5; };
-      track.push_back({0, is_left ? vec2(raw(0), -raw(1)) : vec2(raw(2), -raw(3))});
-    }
-    const Outline outline = gaitpad::outline_of(std::span(&track, 1), vec2(0.01, 0.0), 0.0);
-    EXPECT_EQ(filled_bins(outline), kCircularityBins);
-    EXPECT_NEAR(circularity_error(outline).value_or(0.0), is_left ? 8.5 : 7.4, 0.6);
-    const Reach reach = reach_of(outline);
-    EXPECT_NEAR(reach.min_x.value_or(0.0), -1.0, 0.005);
-    EXPECT_NEAR(reach.max_x.value_or(0.0), 1.0, 0.005);
-    EXPECT_NEAR(reach.min_y.value_or(0.0), -1.0, 0.005);
-    EXPECT_NEAR(reach.max_y.value_or(0.0), 1.0, 0.005);
   }
 }
 

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <sstream>
 
+#include "stick/outline.h"
 #include "stick/recommendation.h"
 
 namespace gaitpad {
@@ -61,6 +63,23 @@ TEST_F(RecordedSticks, RestNeverWalks) {
     const auto sticks = recorded(std::string("dualsense_usb_") + button + ".hid");
     EXPECT_GT(sticks.size(), 700u) << button;
     for (const Stick& s : sticks) ASSERT_EQ(s.left, vec2(0.0)) << button;
+  }
+}
+
+// Both sticks saturate in both axes and are round at the corners. By every report's greatest radius
+// they come to 8.5 and 7.4 %.
+TEST_F(RecordedSticks, OutlineOfARealDualSense) {
+  for (const std::size_t side : {0, 1}) {
+    const std::string name = side == 0 ? "left" : "right";
+    const StickTrack track = tracks_of("dualsense_usb_" + name + "_stick.hid")[side];
+    const Outline outline = outline_of(std::span(&track, 1), vec2(0.01, 0.0), 0.0);
+    EXPECT_EQ(filled_bins(outline), kCircularityBins);
+    EXPECT_NEAR(circularity_error(outline).value_or(0.0), side == 0 ? 8.5 : 7.4, 0.6);
+    const Reach reach = reach_of(outline);
+    EXPECT_NEAR(reach.min_x.value_or(0.0), -1.0, 0.005);
+    EXPECT_NEAR(reach.max_x.value_or(0.0), 1.0, 0.005);
+    EXPECT_NEAR(reach.min_y.value_or(0.0), -1.0, 0.005);
+    EXPECT_NEAR(reach.max_y.value_or(0.0), 1.0, 0.005);
   }
 }
 

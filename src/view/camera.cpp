@@ -1,0 +1,112 @@
+#include "view/camera.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kNearest_m = 1.0, kFarthest_m = 40.0;
+constexpr double kLowestEye_m = 0.1, kHighestTarget_m = 4.0;
+constexpr double kSteepest_rad = 1.5;  // short of straight down, where there is no "up"
+constexpr double kNearPlane_m = 0.1, kFarPlane_m = 200.0;
+constexpr double kFollowTime_s = 0.25;
+constexpr double kJump_m = 1.0;  // nobody walks so far between two frames: set back, or another one
+
+bool is_finite(const vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Unit vectors of the picture in the world.
+struct Axes {
+  vec3 right, up, back;
+};
+Axes axes_of(const Camera& camera) noexcept {
+  const double sy = std::sin(camera.yaw_rad), cy = std::cos(camera.yaw_rad);
+  const double sp = std::sin(camera.pitch_rad), cp = std::cos(camera.pitch_rad);
+  return {{cy, 0.0, -sy}, {-sy * sp, cp, -cy * sp}, {sy * cp, sp, cy * cp}};
+}
+
+void keep_bounds(Camera& camera) noexcept {
+  camera.target_m.y = std::clamp(camera.target_m.y, 0.0, kHighestTarget_m);
+  camera.distance_m = std::clamp(camera.distance_m, kNearest_m, kFarthest_m);
+  const double floor = (kLowestEye_m - camera.target_m.y) / camera.distance_m;
+  const double lowest_rad = std::asin(std::clamp(floor, -1.0, 1.0));
+  camera.pitch_rad =
+      std::clamp(camera.pitch_rad, std::max(lowest_rad, -kSteepest_rad), kSteepest_rad);
+}
+
+}  // namespace
+
+vec3 Camera::eye_m() const noexcept { return target_m + axes_of(*this).back * distance_m; }
+
+mat4 Camera::view() const noexcept {
+  const Axes axes = axes_of(*this);
+  const vec3 eye = eye_m();
+  mat4 m(1.0);
+  const vec3* rows[] = {&axes.right, &axes.up, &axes.back};
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) m[c][r] = (*rows[r])[c];
+    m[3][r] = -glm::dot(*rows[r], eye);
+  }
+  return m;
+}
+
+mat4 Camera::projection(double aspect) const noexcept {
+  const double scale = 1.0 / std::tan(0.5 * field_of_view_rad);
+  const double depth = kNearPlane_m - kFarPlane_m;
+  mat4 m(0.0);
+  m[0][0] = scale / std::max(aspect, 1e-3);
+  m[1][1] = scale;
+  m[2][2] = (kFarPlane_m + kNearPlane_m) / depth;
+  m[2][3] = -1.0;
+  m[3][2] = 2.0 * kFarPlane_m * kNearPlane_m / depth;
+  return m;
+}
+
+void orbit(Camera& camera, double yaw_rad, double pitch_rad) noexcept {
+  if (!std::isfinite(yaw_rad) || !std::isfinite(pitch_rad)) return;
+  camera.yaw_rad = std::remainder(camera.yaw_rad + yaw_rad, 2.0 * kPi);
+  camera.pitch_rad += pitch_rad;
+  keep_bounds(camera);
+}
+
+void dolly(Camera& camera, double factor) noexcept {
+  if (!std::isfinite(factor) || factor <= 0.0) return;
+  camera.distance_m *= factor;
+  keep_bounds(camera);
+}
+
+void pan(Camera& camera, const vec2& pixels, double viewport_height_px) noexcept {
+  if (!std::isfinite(pixels.x) || !std::isfinite(pixels.y) || !(viewport_height_px >= 1.0)) return;
+  const Axes axes = axes_of(camera);
+  const double metres =
+      2.0 * camera.distance_m * std::tan(0.5 * camera.field_of_view_rad) / viewport_height_px;
+  camera.target_m += (axes.up * pixels.y - axes.right * pixels.x) * metres;
+  camera.is_following = false;
+  keep_bounds(camera);
+}
+
+// The place moves evenly from the last call's to this one's; this is the exact answer of a first
+// order lag to that, so that two short frames come to where one long frame does.
+void follow(Camera& camera, const vec3& place_m, double dt_s) noexcept {
+  if (!is_finite(place_m) || !(dt_s > 0.0) || !std::isfinite(dt_s)) return;
+  vec3 lag_m = (place_m - camera.followed_m) * (kFollowTime_s / dt_s);
+  vec3 from_m = camera.followed_m;
+  if (glm::distance(place_m, camera.followed_m) > kJump_m) {
+    lag_m = vec3(0.0);
+    from_m = place_m;
+  }
+  camera.followed_m = place_m;
+  if (!camera.is_following) return;
+  const double kept = std::exp(-dt_s / kFollowTime_s);
+  camera.target_m = place_m - lag_m + (camera.target_m - from_m + lag_m) * kept;
+  keep_bounds(camera);
+}
+
+vec3 projected(const Camera& camera, const vec3& world_m, int width_px, int height_px) noexcept {
+  const double width = std::max(width_px, 1), height = std::max(height_px, 1);
+  const glm::dvec4 at =
+      camera.projection(width / height) * camera.view() * glm::dvec4(world_m, 1.0);
+  if (!(at.w >= kNearPlane_m)) return {0.0, 0.0, std::min(at.w, 0.0)};
+  return {(0.5 + 0.5 * at.x / at.w) * width, (0.5 - 0.5 * at.y / at.w) * height, at.w};
+}
+
+}  // namespace gaitpad

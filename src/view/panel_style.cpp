@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "view/panels.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr std::string_view kLeftLeg = "left_leg.", kRightLeg = "right_leg.", kBothLegs = "legs.";
+
+// A key, or the same key of both legs.
+struct StyleRow {
+  std::string label;
+  const StyleKey* left = nullptr;   // or the only one
+  const StyleKey* right = nullptr;  // null: no leg's
+};
+
+// "weight.hip_x" -> "hip x weight", "stride_length" -> "stride length"
+std::string label_of(std::string_view key) {
+  constexpr std::string_view kWeight = "weight.";
+  const bool is_weight = key.starts_with(kWeight);
+  std::string label(is_weight ? key.substr(kWeight.size()) : key);
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return is_weight ? label + " weight" : label;
+}
+
+bool is_axis_weight(std::string_view key) {
+  return key.find("weight.") != std::string_view::npos &&
+         (key.ends_with("_x") || key.ends_with("_y") || key.ends_with("_z"));
+}
+
+std::vector<StyleRow> rows_of(bool has_axis_weights) {
+  std::vector<StyleRow> rows;
+  const std::vector<StyleKey>& keys = style_keys();
+  for (const StyleKey& key : keys) {
+    const std::string_view name = key.name;
+    if (name.starts_with(kBothLegs) || name.starts_with(kRightLeg)) continue;
+    if (!has_axis_weights && is_axis_weight(name)) continue;
+    if (!name.starts_with(kLeftLeg)) {
+      rows.push_back({label_of(name), &key, nullptr});
+      continue;
+    }
+    const std::string_view part = name.substr(kLeftLeg.size());
+    const auto right = std::find_if(keys.begin(), keys.end(), [part](const StyleKey& k) {
+      return std::string_view(k.name).starts_with(kRightLeg) &&
+             std::string_view(k.name).substr(kRightLeg.size()) == part;
+    });
+    rows.push_back({label_of(part), &key, right == keys.end() ? nullptr : &*right});
+  }
+  return rows;
+}
+
+// The chosen style's own value; none where it is not known.
+std::optional<double> own_value(const Ui& ui, const WalkerFrame& walker, const StyleKey& key) {
+  const auto& all = ui.in.cast.style_values;
+  const auto index = static_cast<std::size_t>(walker.style_index);
+  if (walker.style_index < 0 || index >= all.size()) return std::nullopt;
+  return value_of(all[index], key.name);
+}
+
+void draw_value(Ui& ui, const WalkerFrame& walker, const StyleKey& key, float width,
+                std::string_view letter) {
+  const double now = value_of(walker.style, key.name).value_or(key.min);
+  const std::optional<double> own = own_value(ui, walker, key);
+  SliderLook look;
+  look.min = key.min;
+  look.max = key.max;
+  look.mark = own;
+  look.is_changed = own && *own != now;
+  look.is_enabled = ui.is_live();
+  look.width = width;
+  look.letter = letter;
+  double value = wished(ui, key.name, now);
+  if (slider(ui, "slider " + key.name, value, look)) {
+    send(ui, "set", key.name, value);
+    wish(ui, key.name, value);
+  }
+}
+
+bool is_changed(const Ui& ui, const WalkerFrame& walker, const StyleKey* key) {
+  if (key == nullptr) return false;
+  const auto own = own_value(ui, walker, *key);
+  const auto now = value_of(walker.style, key->name);
+  return own && now && *own != *now;
+}
+
+void give_own_back(Ui& ui, const WalkerFrame& walker, const StyleKey* key) {
+  if (!is_changed(ui, walker, key)) return;
+  send(ui, "set", key->name, *own_value(ui, walker, *key));
+  forget_wish(ui, key->name);
+}
+
+void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float y = at.y + ui.px(2);
+  put_text(list, ui.fonts.small, ui.theme.text, {at.x, y}, row.label, width * 0.6f);
+  if (is_changed(ui, walker, row.left) || is_changed(ui, walker, row.right)) {
+    const float x = at.x + text_width(ui.fonts.small, row.label) + ui.px(8);
+    put_text(list, ui.fonts.small, ui.theme.warning, {x, y}, "changed",
+             at.x + width - x - ui.px(48));
+    ButtonLook back;
+    back.width = std::round(ui.px(44));
+    back.height = std::round(ui.px(18));
+    back.is_enabled = ui.is_live();
+    ImGui::SetCursorScreenPos({at.x + width - back.width, at.y - ui.px(1)});
+    if (button(ui, "own " + row.left->name, "back", back)) {
+      give_own_back(ui, walker, row.left);
+      give_own_back(ui, walker, row.right);
+    }
+  }
+  ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(18))});
+  const float cell = row.right != nullptr ? std::floor((width - gap) / 2.0f) : width;
+  draw_value(ui, walker, *row.left, cell, row.right != nullptr ? "L" : "");
+  if (row.right != nullptr) {
+    ImGui::SameLine(0.0f, gap);
+    draw_value(ui, walker, *row.right, cell, "R");
+  }
+  ImGui::Dummy({1.0f, 1.0f});
+}
+
+void draw_choice(Ui& ui, const WalkerFrame& walker) {
+  const std::vector<int> choices = style_choices(ui.in.cast);
+  const std::string now = style_name(ui, walker.style_index);
+  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (i % 2 == 1) ImGui::SameLine(0.0f, gap);
+    const std::string name = style_name(ui, choices[i]);
+    ButtonLook look;
+    look.width = std::floor((width - gap) / 2.0f);
+    look.height = std::round(ui.px(22));
+    look.is_on = name == now;
+    look.is_enabled = ui.is_live();
+    const std::string label = i < 9 ? fmt::format("{}  {}", i + 1, name) : name;
+    if (button(ui, fmt::format("style {}", i + 1), label, look)) {
+      send(ui, "style", name);
+      forget_wish(ui, "");
+    }
+  }
+  ImGui::Dummy({1.0f, ui.px(2)});
+}
+
+// What a file's name may hold anywhere.
+int accept(ImGuiInputTextCallbackData* data) {
+  const ImWchar c = data->EventChar;
+  const bool is_fit = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '_' || c == '-';
+  return is_fit ? 0 : 1;
+}
+
+// A name for the file, and the button that asks for it.
+void draw_save(Ui& ui) {
+  auto& name = ui.state.memory.style_name;
+  const float save = std::round(ui.px(60)), gap = std::round(ui.px(6));
+  const float width = ImGui::GetContentRegionAvail().x;
+  ImGui::PushFont(ui.fonts.small);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{ui.px(8), ui.px(5)});
+  ImGui::SetNextItemWidth(width - save - gap);
+  const bool is_entered = ImGui::InputTextWithHint(
+      "##style name", "name of a new style", name.data(), name.size(),
+      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCharFilter, &accept);
+  keep_item("style name");
+  ImGui::PopStyleVar();
+  ImGui::PopFont();
+  ImGui::SameLine(0.0f, gap);
+  ButtonLook look;
+  look.width = save;
+  look.height = std::round(ui.px(24));
+  look.is_enabled = name[0] != '\0';
+  const bool is_pressed = button(ui, "save style", "Save", look);
+  if ((is_pressed || is_entered) && name[0] != '\0') ui.out.save_style = std::string(name.data());
+}
+
+void draw_buttons(Ui& ui, const WalkerFrame& walker) {
+  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
+  const float cell = std::floor((width - gap) / 2.0f);
+  const std::vector<StyleKey>& keys = style_keys();
+  ButtonLook look;
+  look.width = cell;
+  look.height = std::round(ui.px(22));
+  look.is_enabled = ui.is_live() && std::any_of(keys.begin(), keys.end(), [&](const StyleKey& k) {
+                      return is_changed(ui, walker, &k);
+                    });
+  if (button(ui, "own all", "all back", look)) {
+    send(ui, "style", style_name(ui, walker.style_index));
+    forget_wish(ui, "");
+  }
+  ImGui::SameLine(0.0f, gap);
+  look.is_enabled = true;
+  look.is_on = ui.state.memory.has_axis_weights;
+  if (button(ui, "axis weights", "each axis", look)) {
+    ui.state.memory.has_axis_weights = !ui.state.memory.has_axis_weights;
+  }
+}
+
+}  // namespace
+
+void draw_style_panel(Ui& ui) {
+  const int index = ui.walker();
+  if (index < 0) return note(ui, "nobody walks yet");
+  const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
+  draw_choice(ui, walker);
+  for (const StyleRow& row : rows_of(ui.state.memory.has_axis_weights)) draw_row(ui, walker, row);
+  draw_buttons(ui, walker);
+  draw_save(ui);
+  ImGui::PopStyleVar();
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,14 @@
+// The panels' contents, below their headings, over the width that is there.
+#pragma once
+#include "view/ui_parts.h"
+
+namespace gaitpad {
+
+void draw_pad_panel(Ui& ui);
+void draw_control_panel(Ui& ui);
+void draw_style_panel(Ui& ui);
+void draw_graphs_panel(Ui& ui);
+void draw_solver_panel(Ui& ui);
+void draw_loop_panel(Ui& ui);
+
+}  // namespace gaitpad

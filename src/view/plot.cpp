@@ -1,0 +1,232 @@
+#include "view/plot.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gaitpad {
+namespace {
+
+constexpr double kLeftGutterPixels = 30.0, kRightGutterPixels = 14.0, kTickRowPixels = 14.0;
+constexpr float kTolerancePixels = 0.15f;  // not to be seen, whatever the scale
+constexpr double kTickSpacePixels = 18.0, kTickWidthPixels = 46.0;
+
+// The part of a plot's box where its curves are.
+struct Field {
+  ImVec2 min, max;
+  PlotRange x, y;
+  float width() const noexcept { return max.x - min.x; }
+  float height() const noexcept { return max.y - min.y; }
+  float px(double value) const noexcept {
+    const double share = (value - x.min) / (x.max - x.min);
+    return min.x + static_cast<float>(std::clamp(share, -0.1, 1.1)) * width();
+  }
+  float py(double value) const noexcept {
+    const double share = (value - y.min) / (y.max - y.min);
+    return max.y - static_cast<float>(std::clamp(share, -0.1, 1.1)) * height();
+  }
+};
+
+ImU32 faint(Colour colour, double alpha) {
+  colour.alpha *= alpha;
+  return packed(colour);
+}
+
+enum class TextPlace { left, centre, right };
+
+void tick_label(ImDrawList& list, const PlotStyle& style, ImVec2 at, TextPlace place,
+                const std::string& text, const Colour& colour) {
+  const ImFont* font = style.fonts->tick;
+  const float width =
+      font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, text.data(), text.data() + text.size()).x;
+  if (place == TextPlace::centre) at.x -= width / 2.0f;
+  if (place == TextPlace::right) at.x -= width;
+  list.AddText(font, font->FontSize, {std::floor(at.x), std::floor(at.y)}, packed(colour),
+               text.data(), text.data() + text.size());
+}
+
+void draw_y_axis(ImDrawList& list, const Field& field, const PlotStyle& style) {
+  const int steps =
+      std::max(1, static_cast<int>(field.height() / (kTickSpacePixels * style.scale)));
+  const double step = nice_step(field.y.max - field.y.min, steps);
+  const float half = style.fonts->tick->FontSize / 2.0f;
+  for (const double tick : nice_ticks(field.y.min, field.y.max, steps)) {
+    const float y = std::round(field.py(tick));
+    list.AddLine({field.min.x, y}, {field.max.x, y},
+                 faint(style.theme->border, tick == 0.0 ? 1.0 : 0.6));
+    const float text_y = std::clamp(y - half, field.min.y - half * 0.5f, field.max.y - half * 1.5f);
+    tick_label(list, style, {field.min.x - 5.0f * style.scale, text_y}, TextPlace::right,
+               tick_text(tick, step), style.theme->tick);
+  }
+}
+
+void draw_x_axis(ImDrawList& list, const Field& field, const PlotStyle& style, bool has_labels) {
+  const int steps = std::max(1, static_cast<int>(field.width() / (kTickWidthPixels * style.scale)));
+  const double step = nice_step(field.x.max - field.x.min, steps);
+  for (const double tick : nice_ticks(field.x.min, field.x.max, steps)) {
+    const float x = std::round(field.px(tick));
+    list.AddLine({x, field.min.y}, {x, field.max.y}, faint(style.theme->border, 0.6));
+    if (!has_labels) continue;
+    const float edge = 10.0f * style.scale;
+    const float text_x = std::clamp(x, field.min.x + edge, field.max.x - edge * 0.2f);
+    tick_label(list, style, {text_x, field.max.y + 2.0f * style.scale}, TextPlace::centre,
+               tick_text(tick, step), style.theme->tick);
+  }
+}
+
+void draw_curve(ImDrawList& list, const Field& field, const PlotSeries& series, float scale) {
+  static thread_local std::vector<PlotPoint> shown;
+  static thread_local std::vector<ImVec2> pixels;
+  decimate(series.points, field.x, static_cast<int>(field.width()), shown);
+  // Whole pixels: such lines are drawn from ImGui's texture, with a third of the triangles.
+  const float width = std::max(1.0f, std::round(static_cast<float>(series.width_px) * scale));
+  const auto flush = [&] {
+    thin_out(pixels, kTolerancePixels);
+    if (pixels.size() > 1) {
+      list.AddPolyline(pixels.data(), static_cast<int>(pixels.size()), packed(series.colour), 0,
+                       width);
+    }
+    pixels.clear();
+  };
+  pixels.clear();
+  for (const PlotPoint& p : shown) {
+    if (!std::isfinite(p.y)) {
+      flush();
+    } else {
+      pixels.push_back({field.px(p.x), field.py(p.y)});
+    }
+  }
+  flush();
+}
+
+void draw_mark(ImDrawList& list, const Field& field, const PlotMark& mark, float scale) {
+  if (!std::isfinite(mark.place.x) || !std::isfinite(mark.place.y)) return;
+  const ImVec2 p{field.px(mark.place.x), field.py(mark.place.y)};
+  const float r = 3.6f * scale;
+  const ImU32 colour = packed(mark.colour);
+  switch (mark.shape) {
+    case PlotMark::Shape::up:
+      list.AddTriangleFilled({p.x - r, p.y + r}, {p.x + r, p.y + r}, {p.x, p.y - r}, colour);
+      return;
+    case PlotMark::Shape::down:
+      list.AddTriangleFilled({p.x - r, p.y - r}, {p.x, p.y + r}, {p.x + r, p.y - r}, colour);
+      return;
+    case PlotMark::Shape::dot:
+      list.AddCircleFilled(p, r, colour, 12);
+      return;
+  }
+}
+
+struct EndLabel {
+  float y = 0.0f;
+  const PlotSeries* series = nullptr;
+};
+
+// Letters at the curves' ends, moved apart where they would cover each other.
+void draw_ends(ImDrawList& list, const Field& field, const Plot& plot, const PlotStyle& style) {
+  std::vector<EndLabel> ends;
+  for (const PlotSeries& series : plot.series) {
+    if (series.points.empty() || !std::isfinite(series.points.back().y)) continue;
+    const PlotPoint& end = series.points.back();
+    const ImVec2 p{field.px(end.x), std::clamp(field.py(end.y), field.min.y, field.max.y)};
+    list.AddCircleFilled(p, 2.6f * style.scale, packed(series.colour), 12);
+    ends.push_back({p.y, &series});
+  }
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const EndLabel& a, const EndLabel& b) { return a.y < b.y; });
+  const float height = style.fonts->tick->FontSize;
+  const float bottom = field.max.y - height * 0.4f;
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    ends[i].y = std::max(ends[i].y, ends[i - 1].y + height);
+  }
+  for (std::size_t i = ends.size(); i-- > 0;) {
+    const float limit = i + 1 < ends.size() ? ends[i + 1].y - height : bottom;
+    ends[i].y = std::min(ends[i].y, limit);
+  }
+  for (const EndLabel& end : ends) {
+    tick_label(list, style, {field.max.x + 5.0f * style.scale, end.y - height / 2.0f},
+               TextPlace::left, end.series->letter, end.series->colour);
+  }
+}
+
+bool is_drawn(const Plot& plot) noexcept {
+  return plot.x.max > plot.x.min && plot.y.max > plot.y.min &&
+         std::any_of(plot.series.begin(), plot.series.end(),
+                     [](const PlotSeries& s) { return s.points.size() > 1; });
+}
+
+void draw_nothing(ImDrawList& list, const Field& field, const std::string& text,
+                  const PlotStyle& style) {
+  tick_label(list, style,
+             {(field.min.x + field.max.x) / 2.0f,
+              (field.min.y + field.max.y - style.fonts->tick->FontSize) / 2.0f},
+             TextPlace::centre, text, style.theme->tick);
+}
+
+}  // namespace
+
+void draw_plot(ImDrawList& list, const ImVec2& min, const ImVec2& max, const Plot& plot,
+               const PlotStyle& style) {
+  const float scale = style.scale;
+  const float tick_row = plot.has_x_ticks ? static_cast<float>(kTickRowPixels) * scale : 0.0f;
+  const Field field{{min.x + static_cast<float>(kLeftGutterPixels) * scale, min.y},
+                    {max.x - static_cast<float>(kRightGutterPixels) * scale, max.y - tick_row},
+                    plot.x,
+                    plot.y};
+  if (field.width() < 8.0f || field.height() < 8.0f) return;
+  list.AddRectFilled(field.min, field.max, packed(style.theme->plot), 3.0f * scale);
+  if (!is_drawn(plot)) return draw_nothing(list, field, plot.nothing, style);
+  list.PushClipRect(field.min, field.max, true);
+  for (const PlotBand& band : plot.bands) {
+    list.AddRectFilled({field.px(band.from), field.min.y}, {field.px(band.to), field.max.y},
+                       packed(band.colour));
+  }
+  list.PopClipRect();
+  draw_y_axis(list, field, style);
+  draw_x_axis(list, field, style, plot.has_x_ticks);
+  list.PushClipRect(field.min, field.max, true);
+  for (const double x : plot.lines) {
+    list.AddLine({field.px(x), field.min.y}, {field.px(x), field.max.y},
+                 faint(style.theme->tick, 0.7));
+  }
+  for (const PlotSeries& series : plot.series) draw_curve(list, field, series, scale);
+  for (const PlotMark& mark : plot.marks) draw_mark(list, field, mark, scale);
+  list.PopClipRect();
+  draw_ends(list, field, plot, style);
+}
+
+void draw_spans(ImDrawList& list, const ImVec2& min, const ImVec2& max, const SpanPlot& plot,
+                const PlotStyle& style) {
+  const float scale = style.scale;
+  const Field field{{min.x + 46.0f * scale, min.y},
+                    {max.x - static_cast<float>(kRightGutterPixels) * scale,
+                     max.y - static_cast<float>(kTickRowPixels) * scale},
+                    plot.x,
+                    {}};
+  if (plot.rows.empty() || field.width() < 8.0f || field.height() < 8.0f) return;
+  list.AddRectFilled(field.min, field.max, packed(style.theme->plot), 3.0f * scale);
+  if (!(plot.x.max > plot.x.min)) return draw_nothing(list, field, "nothing yet", style);
+  const float row = field.height() / static_cast<float>(plot.rows.size());
+  const ImFont* font = style.fonts->tick;
+  draw_x_axis(list, field, style, true);
+  for (std::size_t i = 0; i < plot.rows.size(); ++i) {
+    const float top = field.min.y + row * static_cast<float>(i);
+    const float text_y = top + (row - font->FontSize) / 2.0f;
+    tick_label(list, style, {field.min.x - 5.0f * scale, text_y}, TextPlace::right,
+               plot.rows[i].label, style.theme->tick);
+    for (const SpanRow::Part& part : plot.rows[i].parts) {
+      const float from = std::max(field.px(part.from), field.min.x);
+      const float to = std::min(field.px(part.to), field.max.x);
+      if (!(to > from)) continue;
+      list.AddRectFilled({from, top + 2.0f * scale}, {to, top + row - 2.0f * scale},
+                         packed(part.colour), 2.0f * scale);
+      const char* end = part.letter.data() + part.letter.size();
+      const float width =
+          font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, part.letter.data(), end).x;
+      if (part.letter.empty() || width + 4.0f * scale > to - from) continue;
+      tick_label(list, style, {(from + to) / 2.0f, text_y}, TextPlace::centre, part.letter,
+                 style.theme->text);
+    }
+  }
+}
+
+}  // namespace gaitpad

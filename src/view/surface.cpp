@@ -1,0 +1,168 @@
+#include "view/surface.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+#include <utility>
+
+#include "view/theme.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr int kSmallest_px = 64, kLargest_px = 16384;
+constexpr int kSmallestWindowWidth = 640, kSmallestWindowHeight = 400;  // at scale 1
+constexpr int kNeededGl = 33;                                           // 3.3
+constexpr const char* kWithoutDisplay =
+    "--screenshot FILE.png and --video FILE.mp4 draw without a display";
+
+bool is_offscreen(const char* driver) {
+  const std::string_view name = driver ? driver : "";
+  return name == "offscreen" || name == "dummy";
+}
+
+void set_hints(bool is_hidden) {
+  constexpr std::pair<const char*, const char*> kHints[] = {
+      {SDL_HINT_NO_SIGNAL_HANDLERS, "1"},
+      {SDL_HINT_AUTO_UPDATE_JOYSTICKS, "0"},
+      {SDL_HINT_APP_NAME, "gaitpad"},
+      {SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0"}};
+  for (const auto& [name, value] : kHints) SDL_SetHintWithPriority(name, value, SDL_HINT_OVERRIDE);
+  if (is_hidden) {
+    SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, "offscreen", SDL_HINT_OVERRIDE);
+  } else {
+    SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // back to $SDL_VIDEODRIVER
+  }
+}
+
+// Why the video driver that SDL has started is none to open a window on, or empty.
+std::string display_problem(bool is_hidden) {
+  if (is_hidden || !is_offscreen(SDL_GetCurrentVideoDriver())) return {};
+  const char* wish = std::getenv("SDL_VIDEODRIVER");
+  if (wish && is_offscreen(wish)) return {};
+  return fmt::format("no display to open a window on; {}", kWithoutDisplay);
+}
+
+std::string video_problem(bool is_hidden) {
+  const std::string cause = SDL_GetError();
+  if (is_hidden) return fmt::format("nothing to draw on without a display: {}", cause);
+  return fmt::format("no display to open a window on: {}; {}", cause, kWithoutDisplay);
+}
+
+// What the scene wants besides is made in frame buffers of its own: anti-aliasing, depth.
+void set_gl_attributes() {
+  SDL_GL_ResetAttributes();
+  SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, kNeededGl / 10);
+  SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, kNeededGl % 10);
+  SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_CORE);
+  SDL_GL_SetAttribute(SDL_GL_DOUBLEBUFFER, 1);
+  SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
+}
+
+double scale_of_display(const SurfaceOptions& options) {
+  float dots_per_inch = 0.0f;
+  if (options.is_hidden || SDL_GetDisplayDPI(0, &dots_per_inch, nullptr, nullptr) != 0) {
+    dots_per_inch = 0.0f;
+  }
+  return display_scale(options.scale, static_cast<double>(dots_per_inch));
+}
+
+int scaled(int pixels, double scale) {
+  return static_cast<int>(
+      std::lround(std::clamp(pixels * scale, 1.0 * kSmallest_px, 1.0 * kLargest_px)));
+}
+
+SDL_Window* new_window(const SurfaceOptions& options, double scale) {
+  int width = scaled(options.width, scale), height = scaled(options.height, scale);
+  SDL_Rect usable{};
+  if (!options.is_hidden && SDL_GetDisplayUsableBounds(0, &usable) == 0 && usable.w > 0) {
+    width = std::min(width, std::max(usable.w, kSmallest_px));
+    height = std::min(height, std::max(usable.h, kSmallest_px));
+  }
+  // Without SDL_WINDOW_ALLOW_HIGHDPI a window's unit is the drawable pixel, on every driver.
+  const Uint32 flags = SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE;
+  SDL_Window* window = SDL_CreateWindow(options.title.c_str(), SDL_WINDOWPOS_CENTERED,
+                                        SDL_WINDOWPOS_CENTERED, width, height, flags);
+  if (window && !options.is_hidden) {
+    SDL_SetWindowMinimumSize(window, std::min(width, scaled(kSmallestWindowWidth, scale)),
+                             std::min(height, scaled(kSmallestWindowHeight, scale)));
+  }
+  return window;
+}
+
+Error gl_problem(const char* what) {
+  return Error{
+      fmt::format("no OpenGL 3.3: {}: {}; Debian has a renderer for every machine in "
+                  "libgl1-mesa-dri",
+                  what, SDL_GetError())};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions& options) {
+  set_hints(options.is_hidden);
+  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return Error{video_problem(options.is_hidden)};
+  std::unique_ptr<WindowSurface> surface(new WindowSurface);  // stops it from here on
+  if (std::string problem = display_problem(options.is_hidden); !problem.empty()) {
+    return Error{std::move(problem)};
+  }
+  surface->scale_ = scale_of_display(options);
+  set_gl_attributes();
+  surface->window_ = new_window(options, surface->scale_);
+  if (!surface->window_) return gl_problem("no window");
+  surface->context_ = SDL_GL_CreateContext(surface->window_);
+  if (!surface->context_) return gl_problem("no context");
+  if (SDL_GL_MakeCurrent(surface->window_, surface->context_) != 0) {
+    return gl_problem("the context is refused");
+  }
+  if (epoxy_gl_version() < kNeededGl) {
+    return Error{fmt::format("no OpenGL 3.3: {} has {}.{}",
+                             reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
+                             epoxy_gl_version() / 10, epoxy_gl_version() % 10)};
+  }
+  // In step with the display; where that cannot be, who draws takes care of the rate.
+  SDL_GL_SetSwapInterval(options.is_hidden ? 0 : 1);
+  return surface;
+}
+
+WindowSurface::~WindowSurface() {
+  if (frame_buffer_ != 0) {
+    glDeleteRenderbuffers(1, &picture_);
+    glDeleteFramebuffers(1, &frame_buffer_);
+  }
+  if (context_) SDL_GL_DeleteContext(context_);
+  if (window_) SDL_DestroyWindow(window_);
+  SDL_QuitSubSystem(SDL_INIT_VIDEO);
+}
+
+void WindowSurface::size(int& width_px, int& height_px) const noexcept {
+  SDL_GL_GetDrawableSize(window_, &width_px, &height_px);
+}
+
+void WindowSurface::begin() {
+  int width_px = 0, height_px = 0;
+  size(width_px, height_px);
+  if (!is_offscreen(SDL_GetCurrentVideoDriver())) {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return;
+  }
+  if (frame_buffer_ == 0) {
+    glGenFramebuffers(1, &frame_buffer_);
+    glGenRenderbuffers(1, &picture_);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, frame_buffer_);
+  if (width_px == width_px_ && height_px == height_px_) return;
+  glBindRenderbuffer(GL_RENDERBUFFER, picture_);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_px, height_px);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, picture_);
+  width_px_ = width_px;
+  height_px_ = height_px;
+}
+
+void WindowSurface::show() { SDL_GL_SwapWindow(window_); }
+
+}  // namespace gaitpad

@@ -1,0 +1,38 @@
+// Frames as a video: H.264 in MP4 through ffmpeg, a process of its own that is there or not.
+#pragma once
+#include <sys/types.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/result.h"
+#include "view/surface.h"
+
+namespace gaitpad {
+
+// Written beside `path`; finish() puts it there. Until then, and on error, the old file is as it
+// was. A sentence about a failure ends with ffmpeg's own words.
+class VideoWriter {
+ public:
+  static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
+                                                   int frames_per_second);
+  ~VideoWriter();                                  // without finish(): the file is left out
+  std::optional<Error> add(const Pixels& pixels);  // waits while ffmpeg is behind
+  std::optional<Error> finish();                   // waits for ffmpeg's end
+
+ private:
+  VideoWriter() = default;
+  std::optional<Error> start(int frames_per_second);
+  Error failure();
+  bool has_ended_well();
+
+  std::string path_, part_;
+  int link_ = -1;       // to ffmpeg's standard input
+  int log_ = -1;        // what it says on standard error
+  pid_t process_ = -1;  // -1: none, or waited for
+  int exit_status_ = -1;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace gaitpad

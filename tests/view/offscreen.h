@@ -1,0 +1,24 @@
+// A surface in memory for tests that draw. Where no OpenGL can be had they are skipped, with why.
+#pragma once
+#include <gtest/gtest.h>
+
+#include "view/surface.h"
+
+namespace gaitpad {
+
+inline SurfaceOptions hidden(int width, int height, double scale = 1.0) {
+  SurfaceOptions options;
+  options.width = width;
+  options.height = height;
+  options.scale = scale;
+  options.is_hidden = true;
+  return options;
+}
+
+// Declares `name`, a reference to a surface, or skips the test.
+#define GAITPAD_OFFSCREEN(name, ...)                                 \
+  auto name##_opened = WindowSurface::open(hidden(__VA_ARGS__));     \
+  if (!name##_opened) GTEST_SKIP() << name##_opened.error().message; \
+  WindowSurface& name = **name##_opened
+
+}  // namespace gaitpad

@@ -1,0 +1,211 @@
+// What a surface shows is what was drawn on it, and its PNG holds the same pixels, read here by
+// cairo's own reader.
+#include "view/surface.h"
+
+#include <cairo/cairo.h>
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#include "view/drawing.h"
+#include "view/offscreen.h"
+
+namespace gaitpad {
+namespace {
+
+namespace fs = std::filesystem;
+using Rgb = std::array<int, 3>;
+
+Rgb at(const Pixels& pixels, int x, int y) {
+  const std::uint8_t* p = pixels.rgba.data() + 4 * (y * pixels.width + x);
+  return {p[0], p[1], p[2]};
+}
+
+// Three bars on top of each other in the lower left quarter, red on green; the rest blue.
+Pixels drawn_corner(int width, int height) {
+  const auto fill = [](int x, int y, int w, int h, float red, float green, float blue) {
+    glScissor(x, y, w, h);
+    glClearColor(red, green, blue, 0.25f);
+    glClear(GL_COLOR_BUFFER_BIT);
+  };
+  glEnable(GL_SCISSOR_TEST);
+  fill(0, 0, width, height, 0, 0, 1);
+  fill(0, 0, width / 2, height / 2, 0, 1, 0);
+  fill(0, 0, width / 2, height / 4, 1, 0, 0);
+  glDisable(GL_SCISSOR_TEST);
+  return read_pixels(width, height);
+}
+
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("surface_test." + std::to_string(::getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
+  }
+
+ private:
+  fs::path path_;
+};
+
+TEST(Surface, PixelsAreReadFromTheTopAndAreOpaque) {
+  GAITPAD_OFFSCREEN(surface, 101, 80);
+  int width = 0, height = 0;
+  surface.size(width, height);
+  ASSERT_EQ(width, 101);
+  ASSERT_EQ(height, 80);
+  surface.begin();
+  const Pixels pixels = drawn_corner(width, height);
+  EXPECT_EQ(at(pixels, 2, 2), (Rgb{0, 0, 255}));
+  EXPECT_EQ(at(pixels, 2, 45), (Rgb{0, 255, 0}));
+  EXPECT_EQ(at(pixels, 2, 79), (Rgb{255, 0, 0}));
+  EXPECT_EQ(at(pixels, 98, 79), (Rgb{0, 0, 255}));
+  for (std::size_t i = 3; i < pixels.rgba.size(); i += 4) ASSERT_EQ(pixels.rgba[i], 255);
+}
+
+TEST(Surface, ScaleMultipliesThePixels) {
+  GAITPAD_OFFSCREEN(surface, 320, 180, 2.0);
+  int width = 0, height = 0;
+  surface.size(width, height);
+  EXPECT_EQ(width, 640);
+  EXPECT_EQ(height, 360);
+  EXPECT_EQ(surface.scale(), 2.0);
+}
+
+TEST(Surface, AWindowThatIsMadeLargerHasMorePixels) {
+  GAITPAD_OFFSCREEN(surface, 320, 180);
+  surface.begin();
+  EXPECT_EQ(at(drawn_corner(320, 180), 319, 0), (Rgb{0, 0, 255}));
+  surface.show();
+  SDL_SetWindowSize(surface.window(), 500, 300);
+  SDL_PumpEvents();
+  surface.begin();
+  int width = 0, height = 0;
+  surface.size(width, height);
+  EXPECT_EQ(width, 500);
+  EXPECT_EQ(height, 300);
+  EXPECT_EQ(at(drawn_corner(500, 300), 499, 0), (Rgb{0, 0, 255}));
+}
+
+TEST(Surface, OneAfterTheOtherOpens) {
+  for (int i = 0; i < 3; ++i) {
+    GAITPAD_OFFSCREEN(surface, 64, 64);
+    surface.begin();
+    EXPECT_EQ(at(drawn_corner(64, 64), 0, 63), (Rgb{255, 0, 0}));
+  }
+}
+
+// As the program does it: the driver starts and asks SDL's joysticks on its own thread, at any
+// moment after the window was opened, and they outlive the window.
+TEST(Surface, JoysticksOnAnotherThreadOutliveTheWindow) {
+  {
+    GAITPAD_OFFSCREEN(surface, 64, 64);
+    std::thread driver([] {
+      ASSERT_EQ(SDL_InitSubSystem(SDL_INIT_JOYSTICK), 0);
+      for (int i = 0; i < 20; ++i) SDL_JoystickUpdate();
+      SDL_TLSCleanup();
+    });
+    for (int i = 0; i < 20; ++i) {
+      SDL_Event event;
+      while (SDL_PollEvent(&event)) continue;
+      surface.show();
+    }
+    driver.join();
+  }
+  EXPECT_EQ(SDL_WasInit(SDL_INIT_VIDEO), 0u);
+  EXPECT_NE(SDL_WasInit(SDL_INIT_JOYSTICK), 0u);
+  SDL_QuitSubSystem(SDL_INIT_JOYSTICK);
+}
+
+// Sets a variable of the environment while it lives; null: takes it away.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    value ? ::setenv(name, value, 1) : ::unsetenv(name);
+  }
+  ~Environment() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+TEST(Surface, WithoutADisplayAWindowIsRefusedAndItSaysWhatWorks) {
+  const Environment x11("DISPLAY", nullptr), wayland("WAYLAND_DISPLAY", nullptr),
+      folder("XDG_RUNTIME_DIR", "/nowhere"), driver("SDL_VIDEODRIVER", nullptr);
+  SurfaceOptions options;
+  options.width = options.height = 64;
+  const auto surface = WindowSurface::open(options);
+  if (surface) GTEST_SKIP() << "this machine's console is a display";
+  EXPECT_NE(surface.error().message.find("no display"), std::string::npos);
+  EXPECT_NE(surface.error().message.find("--screenshot"), std::string::npos);
+  EXPECT_EQ(SDL_WasInit(SDL_INIT_VIDEO), 0u);
+}
+
+TEST(Surface, AnUnknownDisplayIsNamed) {
+  const Environment driver("SDL_VIDEODRIVER", "no_such_driver");
+  const auto surface = WindowSurface::open(SurfaceOptions{});
+  ASSERT_FALSE(surface);
+  EXPECT_NE(surface.error().message.find("no_such_driver"), std::string::npos)
+      << surface.error().message;
+}
+
+TEST(PictureFile, HoldsThePixelsThatWereGiven) {
+  const Folder folder;
+  Pixels pixels{3, 2, {}};
+  for (int i = 0; i < 6; ++i) {
+    for (const int v : {i * 40, 255 - i * 40, 7 * i, 255}) {
+      pixels.rgba.push_back(static_cast<std::uint8_t>(v));
+    }
+  }
+  const std::string path = folder.file("a.png");
+  const auto error = write_png(path, pixels);
+  ASSERT_FALSE(error) << error->message;
+  const Surface read(cairo_image_surface_create_from_png(path.c_str()));
+  ASSERT_EQ(cairo_image_surface_get_width(read.get()), 3);
+  ASSERT_EQ(cairo_image_surface_get_height(read.get()), 2);
+  for (int i = 0; i < 6; ++i) {
+    std::uint32_t pixel = 0;
+    std::memcpy(&pixel,
+                cairo_image_surface_get_data(read.get()) +
+                    i / 3 * cairo_image_surface_get_stride(read.get()) + i % 3 * 4,
+                4);
+    EXPECT_EQ(pixel >> 16 & 0xff, static_cast<unsigned>(i * 40));
+    EXPECT_EQ(pixel >> 8 & 0xff, static_cast<unsigned>(255 - i * 40));
+    EXPECT_EQ(pixel & 0xff, static_cast<unsigned>(7 * i));
+  }
+}
+
+TEST(PictureFile, WhatCannotBeWrittenLeavesTheOldFileAndSaysWhy) {
+  const Folder folder;
+  const Pixels pixels{1, 1, {1, 2, 3, 255}};
+  fs::create_directory(folder.file("folder.png"));
+  const auto is_folder = write_png(folder.file("folder.png"), pixels);
+  ASSERT_TRUE(is_folder);
+  EXPECT_NE(is_folder->message.find("folder.png: "), std::string::npos);
+  const auto below_file = write_png("/dev/null/a.png", pixels);
+  ASSERT_TRUE(below_file);
+  EXPECT_NE(below_file->message.find("/dev/null"), std::string::npos);
+  EXPECT_TRUE(write_png(folder.file("empty.png"), Pixels{}));
+  EXPECT_TRUE(write_png(folder.file("short.png"), Pixels{2, 2, {1, 2, 3, 4}}));
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -74,17 +74,17 @@ struct UiInput {
   const History& history;
   const LiveStatus* status = nullptr;    // live only
   const UiTimeline* timeline = nullptr;  // playback only
-  std::string pad_name;                  // empty: no pad
+  std::string pad_name{};                // empty: no pad
   double pad_rate_hz = 0.0;
   double pace = 1.0;
   double frames_per_second = 0.0;  // 0: not to be shown (pictures)
   double memory_mib = 0.0;         // of the whole program; 0: not known
-  std::string recording;           // file, empty: none
-  std::string source;              // the trace, for the bar
-  std::string renderer;
-  std::vector<UiLabel> labels;
-  std::vector<std::string> messages;  // errors and remarks, newest last
-  bool is_modal = false;              // calibration or browser is open: panels take no input
+  std::string recording{};         // file, empty: none
+  std::string source{};            // the trace, for the bar
+  std::string renderer{};
+  std::vector<UiLabel> labels{};
+  std::vector<std::string> messages{};  // errors and remarks, newest last
+  bool is_modal = false;                // calibration or browser is open: panels take no input
 };
 struct UiOutput {
   std::vector<Action> actions;

@@ -109,9 +109,11 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, 0.0, foot.pose, FootMode::roll);
     foot.toe_anchor_m = foot.pose.toe_m;
+    foot.lift_m = foot.heel_anchor_m;
     remember_foot(foot);
     remember_foot(foot);
   }
+  state.landing_m = state.foot[kLeftSide].heel_anchor_m;
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
   return state;
 }

@@ -97,4 +97,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept;
 
+// How much of the data's oscillations and postures shows: none at rest, all from half its pace on.
+double presence(const WalkState& state) noexcept;
+
 }  // namespace gaitpad

@@ -28,8 +28,6 @@ Side step_foot(const WalkState& state) noexcept;
 double pace(const WalkModel& model, const WalkState& state, Side side) noexcept;
 // The same of the longer step: what a limp, which shortens one, leaves as it is.
 double full_pace(const WalkModel& model, const WalkState& state) noexcept;
-// How much of the data's oscillations and postures shows: none at rest, all from half its pace on.
-double presence(const WalkState& state) noexcept;
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept;
 
 // --- walk_path.cpp: landing place, hips ---------------------------------------------------------

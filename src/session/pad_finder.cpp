@@ -337,7 +337,7 @@ std::optional<std::uint16_t> PadFinder::index_of(const DeviceInfo& info) const {
 void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> device, PadSlot slot,
                           std::uint16_t index) {
   OpenedPad opened;
-  opened.has_report_ids = slot.config.layout.descriptor.numbered;
+  opened.has_report_ids = slot.config.layout->descriptor.numbered;
   opened.is_recording = is_recording_;
   opened.index = index;
   opened.id = ++openings_;

@@ -24,10 +24,20 @@ void copy_walker(const Walker& walker, WalkerFrame& frame) noexcept {
   frame.overrides = walker.overrides;
   frame.angles_rad = state.angles_rad;
   frame.phase = state.phase;
-  frame.presence = std::clamp(state.amplitude.x, 0.0, 1.0);
+  frame.presence = presence(state);
   for (const Side side : {kLeftSide, kRightSide}) frame.lift_m[side] = state.foot[side].lift_m;
   frame.landing_m = state.landing_m;
   frame.ik_failures = walker.ik_failures;
+}
+
+void copy_pad(const Pads& pads, SessionFrame& frame) noexcept {
+  frame.pad.device = pads.driving();
+  frame.pad.state = pads.driving_state();
+  frame.pad.reports = pads.driving_reports();
+  frame.presses = pads.presses();
+  const PadConfig* config = pads.driving_pad();
+  frame.pad.is_present = config != nullptr && config->is_present;
+  frame.pad.calibration = config != nullptr ? config->calibration : Calibration{};
 }
 
 }  // namespace
@@ -53,8 +63,7 @@ void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept {
   frame.counts = simulation.counts();
   frame.tick = frame.counts.ticks - 1;
   frame.stick = simulation.stick();
-  frame.pad.device = simulation.pads().driving();
-  frame.pad.state = simulation.pads().driving_state();
+  copy_pad(simulation.pads(), frame);
   const std::vector<Walker>& walkers = simulation.walkers();
   frame.walker_count = static_cast<int>(walkers.size());
   for (std::size_t i = 0; i < walkers.size(); ++i) copy_walker(walkers[i], frame.walkers[i]);

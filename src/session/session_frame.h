@@ -36,10 +36,10 @@ struct WalkerFrame {
   int style_index = 0;
   GaitOverrides overrides;
   std::array<LegAngles, 2> angles_rad{};  // posed; signs as in base/leg.h
-  double phase = 0.0;                     // of the source's cycle
-  double presence = 0.0;                  // 0 standing .. 1 walking: how much of the source shows
-  std::array<vec3, 2> lift_m{};           // heel where the running or last flight began, world
-  vec3 landing_m{0.0};                    // heel where the step under way is to land, world
+  double phase = 0.0;            // of the source's cycle, 0 .. 1 from the right foot's strike on
+  double presence = 0.0;         // 0 standing .. 1 walking: how much of the source shows
+  std::array<vec3, 2> lift_m{};  // heel where the running or last flight began, world
+  vec3 landing_m{0.0};           // heel where the running or last step is to land, world
   std::int64_t ik_failures = 0;
 };
 

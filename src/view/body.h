@@ -1,6 +1,7 @@
 // A skeleton as something to look at: which bones it has, how thick they are, where they are in a
 // pose. Any skeleton of any file: legs are known, the rest is told by its shape.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "motion/gait_cycle.h"
@@ -9,22 +10,31 @@
 
 namespace gaitpad {
 
+// A tapered capsule between two places, each fixed to a joint. Across, along `wide`, it is `width`
+// times as thick.
 struct BodyBone {
-  int from = 0, to = 0;  // joints
+  int from = 0, to = 0;         // joints
+  vec3 from_m{0.0}, to_m{0.0};  // in these joints' frames
   double radius_from_m = 0.05, radius_to_m = 0.05;
+  vec3 wide{0.0};  // in the frame of `from`
+  double width_from = 1.0, width_to = 1.0;
   bool is_pale = false;  // forearm, hand, head, foot: mixed with grey, so that a figure reads
 };
 struct Body {
   std::shared_ptr<const WalkModel> model;
   std::vector<BodyBone> bones;
-  double height_m = 0.0;  // standing, to the highest joint
+  int top = 0;            // joint that carries the highest place
+  vec3 top_m{0.0};        // that place, in its frame
+  double height_m = 0.0;  // of it, standing
 };
+// Allocates; once a character. What cannot be told (arms, a head) is left out.
 Body body_of(std::shared_ptr<const WalkModel> model);
 
 // Between the two latest poses; 0: the earlier one.
 void interpolate(const Pose& before, const Pose& pose, double share, Pose& shown) noexcept;
+// Nothing of it is below the floor.
 void add_body(const Body& body, const Pose& pose, const Colour& colour, SceneContent& content);
-// Its highest point, for a name above it; the place on the ground under its root.
+// Its highest point, for a name above it.
 vec3 head_m(const Body& body, const Pose& pose) noexcept;
 
 // The motion as it was captured, unadapted, as a stick figure: the source's pose at `phase`,

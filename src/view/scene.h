@@ -13,12 +13,16 @@
 
 namespace gaitpad {
 
+// The hull of two balls. A trunk is wider than deep: across, along `wide` as far as that is at
+// right angles to a-b, it is stretched by a factor.
 struct Capsule {
   vec3 a_m{0.0}, b_m{0.0};  // world
   double radius_a_m = 0.05, radius_b_m = 0.05;
+  vec3 wide{0.0};  // zero: round
+  double width_a = 1.0, width_b = 1.0;
   Colour colour;
 };
-struct SceneLine {  // a round bar of constant width in pixels, for stick figures
+struct SceneLine {  // a round bar of constant width in pixels, for stick figures; a faint shadow
   vec3 a_m{0.0}, b_m{0.0};
   Colour colour;
   double width_px = 3.0;  // at scale 1
@@ -44,12 +48,15 @@ struct Viewport {
 
 class Scene {
  public:
-  // anti-aliasing where the renderer affords it: none on a software rasterizer.
+  // automatic: anti-aliasing and fine meshes where the renderer affords them, not on a software
+  // rasterizer. high: for pictures that may take their time.
   enum class Quality { automatic, low, high };
+  // One sentence where a shader does not compile or the renderer lacks something.
   static Result<std::unique_ptr<Scene>> create(Quality quality);
   ~Scene();
 
-  // Into the window's frame buffer, which is `height_px` high. `scale`: of the display.
+  // Into the frame buffer that is bound, which is `window_height_px` high; it stays bound, outside
+  // the viewport nothing changes. `scale`: of the display. Leaves depth test and blending off.
   void draw(const SceneContent& content, const Camera& camera, const Theme& theme,
             const Viewport& viewport, int window_height_px, double scale);
   // "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3, 4x anti-aliasing"

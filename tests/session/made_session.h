@@ -47,8 +47,9 @@ inline Report made_command(std::string_view text) {
 // It does not stream; calibration of an unknown stick.
 inline PadConfig made_pad_config() {
   PadConfig config;
-  if (auto layout = pad_layout(made_pad(), {})) config.layout = *layout;
-  config.is_usable = config.layout.is_pad;
+  auto layout = pad_layout(made_pad(), {});
+  if (layout) config.layout = std::make_shared<const PadLayout>(std::move(*layout));
+  config.is_usable = config.layout && config.layout->is_pad;
   return config;
 }
 

@@ -97,6 +97,19 @@ TEST_F(PadSetup, AReplayHasTheCalibrationOfTheLiveSessionBitByBit) {
   }
 }
 
+TEST_F(PadSetup, TheKeyboardIsAFallbackLiveAndInAReplay) {
+  const PadFiles all = files();
+  DeviceInfo info = made_pad();
+  info.driver = "keyboard";
+  const TraceDevice device = recorded(all, info);
+  auto live = pad_config(all, device, "live");
+  ASSERT_TRUE(live);
+  EXPECT_TRUE(live->is_fallback);
+  EXPECT_TRUE(replayed_pad(all, device).is_fallback);
+  info.driver = "evdev";
+  EXPECT_FALSE(replayed_pad(all, recorded(all, info)).is_fallback);
+}
+
 TEST_F(PadSetup, FactorySticksComeBeforeTheModelsFileAndKeepItsZones) {
   write("calibration/a.toml",
         "devices = ['1209:0001']\n[left]\ninner = 0.3\nx = { min = -0.5, max = 0.5 }\n");
@@ -194,7 +207,7 @@ PadState decoded(const PadConfig& pad) {
   Report report = made_report(0xff, 0x80);
   report.bytes[4] = 0x18;  // button 1
   PadState state;
-  EXPECT_TRUE(decode(pad.layout, report, state));
+  EXPECT_TRUE(decode(*pad.layout, report, state));
   return state;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+
 #include "tests/session/made_session.h"
 
 namespace gaitpad {
@@ -220,6 +222,126 @@ TEST(Pads, OfPadsPluggedInLaterTheFirstUsableOneDrives) {
   EXPECT_EQ(pads.driving(), 2);
   pads.take(made_report(kMiddle, kForward, 2));
   EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+}
+
+PadConfig made_keyboard() {
+  PadConfig config = made_pad_config();
+  config.is_fallback = true;
+  return config;
+}
+constexpr std::uint16_t kKeys = 0, kPad = 1;
+
+// The keyboard is there first and held to the right, the pad comes later and rests.
+Pads keys_and_pad() {
+  PadConfig pad = made_pad_config();
+  pad.is_present = false;
+  Pads pads({made_keyboard(), pad, pad}, kRateHz);
+  pads.take(made_report(0xff, kMiddle, kKeys));
+  return pads;
+}
+
+TEST(Pads, AFallbackDrivesWhereNoOtherPadIs) {
+  Pads pads = keys_and_pad();
+  EXPECT_EQ(pads.driving(), kKeys);
+  EXPECT_GT(pads.stick_of_tick().left.x, 0.9);
+}
+
+TEST(Pads, APadThatIsPluggedInDrivesInPlaceOfTheFallback) {
+  Pads pads = keys_and_pad();
+  pads.add(kPad);
+  EXPECT_EQ(pads.driving(), kPad);
+  pads.take(made_report(kMiddle, kForward, kPad));
+  const Stick stick = pads.stick_of_tick();
+  EXPECT_GT(stick.left.y, 0.9);
+  EXPECT_NEAR(stick.left.x, 0.0, 0.01) << "the keys do not count";
+  Pads other_order({made_keyboard(), made_pad_config()}, kRateHz);
+  EXPECT_EQ(other_order.driving(), kPad);
+}
+
+TEST(Pads, BothSticksOfAFallbackCountWhileTheDrivingOneRestsExactly) {
+  Pads pads = keys_and_pad();
+  pads.add(kPad);
+  Report right = made_report(kMiddle, kMiddle, kPad);
+  right.bytes[2] = 0xff;
+  pads.take(right);
+  EXPECT_GT(pads.stick_of_tick().left.x, 0.9);
+  EXPECT_EQ(pads.stick_of_tick().right.x, 0.0) << "the right one is the fallback's, too";
+  pads.take(made_report(kMiddle, kMiddle, kKeys));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  EXPECT_GT(pads.stick_of_tick().right.x, 0.9);
+  pads.take(made_report(0xff, kMiddle, kKeys));
+  pads.take(made_report(kMiddle, 0x60, kPad));  // hardly beyond the inner zone
+  const Stick stick = pads.stick_of_tick();
+  EXPECT_GT(stick.left.y, 0.0);
+  EXPECT_EQ(stick.left.x, 0.0);
+  EXPECT_EQ(pads.driving(), kPad) << "whose buttons are shown";
+}
+
+TEST(Pads, AFallbackDrivesAgainWhenTheLastPadIsLostAndNotBefore) {
+  Pads pads = keys_and_pad();
+  pads.add(kPad);
+  pads.add(kPad + 1);
+  pads.take(made_report(kMiddle, kForward, kPad + 1));
+  pads.remove(kPad);
+  EXPECT_EQ(pads.driving(), kPad) << "the other pad is held, but it is there";
+  EXPECT_GT(pads.stick_of_tick().left.x, 0.9) << "the keys count";
+  pads.take(made_report(0xff, kMiddle, kKeys));
+  EXPECT_EQ(pads.driving(), kPad);
+  pads.remove(kPad + 1);
+  EXPECT_EQ(pads.driving(), kKeys);
+  pads.add(kPad);
+  EXPECT_EQ(pads.driving(), kPad);
+  pads.take(made_report(kMiddle, kForward, kPad));
+  EXPECT_NEAR(pads.stick_of_tick().left.y, 0.0, 0.01) << "not yet seen near its centre";
+}
+
+TEST(Pads, AnUnusableOrUnpluggedFallbackDoesNotCount) {
+  PadConfig unusable = made_keyboard(), absent = made_keyboard();
+  unusable.is_usable = false;
+  absent.is_present = false;
+  Pads pads({unusable, absent, made_pad_config()}, kRateHz);
+  for (std::uint16_t device : {0, 1}) pads.take(made_report(0xff, kMiddle, device));
+  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+}
+
+Report made_buttons(std::uint16_t pressed, std::uint16_t device = 0) {
+  Report report = made_report(kMiddle, kMiddle, device);
+  report.bytes[4] = static_cast<std::uint8_t>(0x08 | (pressed & 0x0f) << 4);
+  report.bytes[5] = static_cast<std::uint8_t>(pressed >> 4);
+  return report;
+}
+
+TEST(Pads, PressesOfTheDrivingPadAreCountedByEveryReport) {
+  Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
+  PadState first;
+  ASSERT_TRUE(decode(*made_pad_config().layout, made_buttons(1), first));
+  const int button = std::countr_zero(first.buttons);
+  for (int i = 0; i < 3; ++i) {
+    pads.take(made_buttons(1));
+    pads.take(made_buttons(1));
+    pads.take(made_buttons(0));
+    pads.take(made_buttons(1, 1));
+    pads.take(made_buttons(0, 1));
+  }
+  for (int b = 0; b < kButtonCount; ++b) EXPECT_EQ(pads.presses()[b], b == button ? 3u : 0u) << b;
+}
+
+TEST(Pads, WhatIsKnownOfTheDrivingPadIsItsOwn) {
+  PadConfig second = made_pad_config();
+  second.calibration.left.inner = 0.3;
+  Pads pads({made_pad_config(), second}, kRateHz);
+  for (int i = 0; i < 5; ++i) pads.take(made_report(kMiddle, kMiddle, 1));
+  Report cut = made_report(kMiddle, kMiddle);
+  cut.size = 1;
+  pads.take(cut);
+  EXPECT_EQ(pads.driving_reports(), 1u);
+  EXPECT_TRUE(pads.driving_pad()->is_present);
+  pads.remove(0);
+  EXPECT_EQ(pads.driving_reports(), 5u);
+  EXPECT_EQ(pads.driving_pad()->calibration.left.inner, 0.3);
+  pads.remove(1);
+  EXPECT_FALSE(pads.driving_pad()->is_present);
+  EXPECT_EQ(Pads({}, kRateHz).driving_pad(), nullptr);
 }
 
 TEST(Pads, NoneIsNeutral) {

@@ -93,7 +93,7 @@ bool take(const Report& report, PadStream& stream, MonitoredPads& pads) {
     keep(pad.running.interval_us, static_cast<double>(report.time_ns - pad.last_ns) / 1e3);
   pad.last_ns = report.time_ns;
   ++pad.running.reports;
-  if (!decode(pad.config.layout, report, pad.state)) ++pad.running.bad_reports;
+  if (!decode(*pad.config.layout, report, pad.state)) ++pad.running.bad_reports;
   return false;
 }
 

@@ -1,0 +1,283 @@
+// The shaders of the scene: GLSL 3.30, nothing newer. Light is reckoned in linear colours.
+#pragma once
+
+namespace gaitpad::shader {
+
+// --- bodies --------------------------------------------------------------------------------------
+// A vertex: direction round the axis (cosine, sine), place between a cap's pole and its seam, which
+// cap. The caps meet the cone between them at a tangent.
+inline constexpr const char* kBodyVertex = R"(#version 330 core
+layout(location = 0) in vec4 spot;
+layout(location = 1) in vec4 a_radius;
+layout(location = 2) in vec4 b_radius;
+layout(location = 3) in vec4 across_width_a;
+layout(location = 4) in vec4 colour_width_b;
+uniform mat4 to_clip;
+out vec3 place;
+out vec3 normal;
+flat out vec3 colour;
+void main() {
+  vec3 along = b_radius.xyz - a_radius.xyz;
+  float span = length(along);
+  vec3 axis = span > 1e-6 ? along / span : vec3(0.0, 1.0, 0.0);
+  vec3 side = across_width_a.xyz;
+  vec3 deep = cross(axis, side);
+  float seam = asin(clamp((a_radius.w - b_radius.w) / max(span, 1e-6), -1.0, 1.0));
+  bool at_b = spot.w > 0.5;
+  float latitude = at_b ? mix(1.5707963, seam, spot.z) : mix(-1.5707963, seam, spot.z);
+  vec3 round = vec3(cos(latitude) * spot.xy, sin(latitude));
+  float radius = at_b ? b_radius.w : a_radius.w;
+  float width = at_b ? colour_width_b.w : across_width_a.w;
+  place = (at_b ? b_radius.xyz : a_radius.xyz) +
+          radius * (side * (round.x * width) + deep * round.y + axis * round.z);
+  normal = side * (round.x / width) + deep * round.y + axis * round.z;
+  colour = colour_width_b.rgb;
+  gl_Position = to_clip * vec4(place, 1.0);
+}
+)";
+
+inline constexpr const char* kBodyFragment = R"(#version 330 core
+in vec3 place;
+in vec3 normal;
+flat in vec3 colour;
+uniform vec3 eye;
+uniform vec3 light;
+uniform vec3 sky_light;
+uniform vec3 ground_light;
+uniform float key_strength;
+uniform float rim_strength;
+out vec4 shown;
+void main() {
+  vec3 n = normalize(normal);
+  vec3 to_eye = normalize(eye - place);
+  float near_floor = mix(0.55, 1.0, smoothstep(0.0, 0.35, place.y));
+  vec3 ambient = mix(ground_light, sky_light, 0.5 + 0.5 * n.y) * near_floor;
+  float key = smoothstep(-0.25, 1.0, dot(n, light)) * key_strength;
+  float edge = 1.0 - max(dot(n, to_eye), 0.0);
+  float rim = edge * edge * edge * rim_strength * near_floor;
+  float gloss = 0.16 * pow(max(dot(n, normalize(light + to_eye)), 0.0), 46.0);
+  vec3 base = colour * colour * (0.25 + 0.75 * colour);  // nearly the power 2.2
+  vec3 lit = base * (ambient + key * vec3(1.0, 0.975, 0.93)) +
+             rim * vec3(0.55, 0.68, 0.85) + gloss * key;
+  shown = vec4(pow(lit, vec3(1.0 / 2.2)), 1.0);
+}
+)";
+
+// --- shadows -------------------------------------------------------------------------------------
+// One square a bone into a picture of the floor. Each end goes down to the floor along `slide` and
+// becomes a disc whose edge is the softer the higher it stood.
+inline constexpr const char* kShadowVertex = R"(#version 330 core
+layout(location = 1) in vec4 a_radius;
+layout(location = 2) in vec4 b_radius;
+layout(location = 3) in vec4 across_width_a;
+layout(location = 4) in vec4 colour_width_b;
+uniform vec2 slide;     // metres on the floor per metre of height
+uniform vec2 softness;  // of an edge: at the floor, more per metre of height
+uniform vec2 centre;
+uniform float half_size;
+uniform float fading;  // per metre of edge
+out vec2 spot;          // from a
+flat out vec2 along;
+flat out float per_span;
+flat out vec4 discs;  // radius and edge at a, at b
+flat out vec2 dark;   // at a, at b
+void main() {
+  vec2 a = a_radius.xz - slide * a_radius.y, b = b_radius.xz - slide * b_radius.y;
+  vec2 radius = vec2(a_radius.w * (0.5 + 0.5 * across_width_a.w),
+                     b_radius.w * (0.5 + 0.5 * colour_width_b.w));
+  vec2 height = max(vec2(a_radius.y - a_radius.w, b_radius.y - b_radius.w), 0.0);
+  vec2 edge = softness.x + softness.y * height;
+  float reach = max(radius.x + edge.x, radius.y + edge.y);
+  along = b - a;
+  float span = length(along);
+  per_span = 1.0 / max(span * span, 1e-8);
+  vec2 u = span > 1e-5 ? along / span : vec2(1.0, 0.0);
+  vec2 v = vec2(-u.y, u.x);
+  vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
+  spot = 0.5 * along + u * corner.x * (0.5 * span + reach) + v * corner.y * reach;
+  discs = vec4(radius.x, edge.x, radius.y, edge.y);
+  // What is thin hardly hides a light that has a size.
+  dark = min(vec2(1.0), 0.45 + radius / edge) * exp(-fading * edge);
+  gl_Position = vec4((a + spot - centre) / half_size, 0.0, 1.0);
+}
+)";
+
+inline constexpr const char* kShadowFragment = R"(#version 330 core
+in vec2 spot;
+flat in vec2 along;
+flat in float per_span;
+flat in vec4 discs;
+flat in vec2 dark;
+out vec4 shown;
+void main() {
+  float share = clamp(dot(spot, along) * per_span, 0.0, 1.0);
+  vec2 disc = mix(discs.xy, discs.zw, share);
+  float inside = clamp(0.5 + 0.5 * (disc.x - length(spot - share * along)) / disc.y, 0.0, 1.0);
+  shown = vec4(inside * inside * (3.0 - 2.0 * inside) * mix(dark.x, dark.y, share));
+}
+)";
+
+// --- floor and background ------------------------------------------------------------------------
+// Both end with the same background, so that the floor fades into it without being blended. `spot`
+// goes from -1 to 1 over the picture.
+inline constexpr const char* kBackground = R"(#version 330 core
+uniform vec3 sky_top;
+uniform vec3 sky_bottom;
+uniform float vignette;
+uniform vec2 size_px;
+out vec4 shown;
+vec3 background() {
+  vec2 spot = gl_FragCoord.xy / size_px * 2.0 - 1.0;
+  return mix(sky_bottom, sky_top, 0.5 + 0.5 * spot.y) * (1.0 - vignette * dot(spot, spot));
+}
+// Half a step of noise, against bands.
+void show(vec3 colour) {
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  shown = vec4(colour + (noise - 0.5) / 255.0, 1.0);
+}
+)";
+
+inline constexpr const char* kSkyVertex = R"(#version 330 core
+void main() {
+  vec2 spot = vec2(float((gl_VertexID & 1) * 4), float((gl_VertexID >> 1) * 4)) - 1.0;
+  gl_Position = vec4(spot, 1.0, 1.0);
+}
+)";
+
+inline constexpr const char* kSkyFragment = R"(
+void main() { show(background()); }
+)";
+
+inline constexpr const char* kFloorVertex = R"(#version 330 core
+uniform mat4 to_clip;
+uniform vec2 focus;
+uniform vec2 world_origin;
+uniform vec2 shadow_centre;
+uniform float per_shadow;
+uniform float half_size;
+out vec2 from_focus;
+out vec2 world;
+out vec2 in_shadow;
+void main() {
+  vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
+  from_focus = corner * half_size;
+  vec2 place = focus + from_focus;
+  world = place - world_origin;
+  in_shadow = 0.5 + 0.5 * (place - shadow_centre) * per_shadow;
+  // Behind everything but the background: what lies on it or stands there is never hidden by it.
+  gl_Position = to_clip * vec4(place.x, 0.0, place.y, 1.0);
+  gl_Position.z = 0.99999 * gl_Position.w;
+}
+)";
+
+inline constexpr const char* kFloorFragment = R"(
+in vec2 from_focus;
+in vec2 world;
+in vec2 in_shadow;
+uniform vec3 floor_near;
+uniform vec3 floor_far;
+uniform vec3 grid;
+uniform float fade_from;
+uniform float half_size;
+uniform vec2 shadow_depth;  // of the light's shadow, of the contact
+uniform vec2 grid_depth;    // of the metre lines, of the 20 cm lines
+uniform float pixel;        // of scale 1
+uniform sampler2D shadow;
+
+// How much of a pixel lines `width_px` wide, one a cell, cover. Gone where they would be too dense.
+float lines(vec2 place, vec2 cell_px, float width_px) {
+  vec2 apart_px = abs(fract(place - 0.5) - 0.5) * cell_px;
+  vec2 cover = clamp(0.5 * width_px + 0.5 - apart_px, 0.0, 1.0) *
+               clamp((cell_px - 2.5) * 0.15, 0.0, 1.0);
+  return max(cover.x, cover.y);
+}
+void main() {
+  vec2 metre_px = 1.0 / max(fwidth(world), vec2(1e-5));
+  float distance_m = length(from_focus);
+  vec3 ground = mix(floor_near, floor_far, min(distance_m / half_size, 1.0));
+  float fine = lines(world * 5.0, metre_px * 0.2, pixel) * grid_depth.y;
+  float coarse = lines(world, metre_px, 1.9 * pixel) * grid_depth.x;
+  ground = mix(ground, grid, max(fine, coarse));
+  vec2 dark = textureLod(shadow, in_shadow, 0.0).rg * shadow_depth;
+  ground *= (1.0 - dark.r) * (1.0 - dark.g);
+  show(mix(ground, background(), smoothstep(fade_from, half_size, distance_m)));
+}
+)";
+
+// --- lines and trails ----------------------------------------------------------------------------
+// A line is a square in the picture, wide enough for its round ends and half a pixel of edge. It
+// leaves the perspective behind: what is linear then is linear in pixels.
+inline constexpr const char* kLineVertex = R"(#version 330 core
+layout(location = 1) in vec4 a_radius;  // pixels
+layout(location = 2) in vec3 b;
+layout(location = 3) in vec4 colour_in;
+uniform mat4 to_clip;
+uniform vec2 size_px;
+out vec2 spot;
+flat out float span;
+flat out float radius;
+flat out vec4 colour;
+const float kNear = 0.1;
+void main() {
+  vec4 from = to_clip * vec4(a_radius.xyz, 1.0), to = to_clip * vec4(b, 1.0);
+  colour = colour_in;
+  radius = a_radius.w;
+  span = 0.0;
+  spot = vec2(0.0);
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  if (from.w < kNear && to.w < kNear) return;  // behind the eye
+  if (from.w < kNear) from = mix(from, to, (kNear - from.w) / (to.w - from.w));
+  if (to.w < kNear) to = mix(to, from, (kNear - to.w) / (from.w - to.w));
+  vec3 start = from.xyz / from.w, end = to.xyz / to.w;
+  vec2 along = (end.xy - start.xy) * 0.5 * size_px;
+  span = length(along);
+  vec2 u = span > 1e-3 ? along / span : vec2(1.0, 0.0);
+  float reach = radius + 1.0;
+  bool at_end = (gl_VertexID & 1) == 1;
+  spot = vec2(at_end ? span + reach : -reach, (gl_VertexID >> 1) == 1 ? reach : -reach);
+  vec2 moved = u * (at_end ? reach : -reach) + vec2(-u.y, u.x) * spot.y;
+  vec3 place = at_end ? end : start;
+  gl_Position = vec4(place.xy + moved * 2.0 / size_px, place.z, 1.0);
+}
+)";
+
+inline constexpr const char* kLineFragment = R"(#version 330 core
+in vec2 spot;
+flat in float span;
+flat in float radius;
+flat in vec4 colour;
+out vec4 shown;
+void main() {
+  float off = length(vec2(spot.x - clamp(spot.x, 0.0, span), spot.y));
+  float cover = clamp(radius + 0.5 - off, 0.0, 1.0);
+  if (cover <= 0.0) discard;
+  float round = 1.0 - 0.28 * smoothstep(0.25, 1.0, off / max(radius, 0.5));
+  shown = vec4(colour.rgb * round, colour.a * cover);
+}
+)";
+
+// A ribbon, made to face the eye before it comes here.
+inline constexpr const char* kTrailVertex = R"(#version 330 core
+layout(location = 0) in vec4 clip;
+layout(location = 1) in vec3 edge_in;  // pixels from the middle, half width, strength
+layout(location = 2) in vec3 colour_in;
+out vec3 edge;
+out vec3 colour;
+void main() {
+  edge = edge_in;
+  colour = colour_in;
+  gl_Position = clip;
+}
+)";
+
+inline constexpr const char* kTrailFragment = R"(#version 330 core
+in vec3 edge;
+in vec3 colour;
+out vec4 shown;
+void main() {
+  float cover = clamp(edge.y + 0.5 - abs(edge.x), 0.0, 1.0);
+  shown = vec4(colour, cover * edge.z);
+}
+)";
+
+}  // namespace gaitpad::shader

@@ -1,0 +1,174 @@
+#include "session/session_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <type_traits>
+
+#include "tests/session/made_session.h"
+
+namespace gaitpad {
+namespace {
+
+// They go through wait-free buffers.
+static_assert(std::is_trivially_copyable_v<SessionFrame>);
+static_assert(std::is_trivially_copyable_v<TickSample>);
+
+class SessionFrameTest : public testing::Test {
+ protected:
+  void start(int walkers) {
+    config_ = made_config(walkers);
+    auto simulation = Simulation::create(config_);
+    ASSERT_TRUE(simulation) << simulation.error().message;
+    simulation_.emplace(std::move(*simulation));
+    copy_frame(*simulation_, frame_);
+  }
+  void step(const std::vector<Report>& reports = {}) {
+    simulation_->step(reports);
+    copy_frame(*simulation_, frame_);
+  }
+
+  SimulationConfig config_;
+  std::optional<Simulation> simulation_;
+  SessionFrame frame_;
+};
+
+TEST_F(SessionFrameTest, BeforeTheFirstTickTheCastStands) {
+  start(3);
+  EXPECT_EQ(frame_.tick, -1);
+  EXPECT_EQ(frame_.walker_count, 3);
+  EXPECT_EQ(frame_.pad.device, 0) << "it is plugged in from the start";
+  EXPECT_EQ(frame_.pad.reports, 0u);
+  for (int i = 0; i < 3; ++i) {
+    const WalkerFrame& w = frame_.walkers[i];
+    EXPECT_EQ(w.presence, 0.0);
+    EXPECT_EQ(w.walk.stage, Stage::idle);
+    // The heels stand; no flight has begun anywhere else.
+    EXPECT_NEAR(glm::length(w.lift_m[kLeftSide] - w.walk.heel_m[kLeftSide]), 0.0, 1e-6);
+    EXPECT_NEAR(w.landing_m.x, w.walk.heel_m[kLeftSide].x, 1e-6);
+  }
+}
+
+TEST_F(SessionFrameTest, TellsTheStateAfterATickAndThePoseBefore) {
+  start(2);
+  step({made_report(0x80, 0x20)});
+  for (int tick = 1; tick < 600; ++tick) {
+    const Pose last = frame_.walkers[1].pose;
+    step();
+    ASSERT_EQ(frame_.tick, tick);
+    ASSERT_EQ(frame_.walkers[1].before.root_m, last.root_m);
+    ASSERT_EQ(frame_.walkers[1].before.local[5], last.local[5]);
+  }
+  EXPECT_EQ(frame_.stick.left, simulation_->stick().left);
+  EXPECT_EQ(frame_.walkers[1].pose.root_m, simulation_->walkers()[1].pose.root_m);
+  EXPECT_EQ(frame_.walkers[1].style_index, 1);
+  EXPECT_TRUE(frame_.walkers[1].style == made_limp());
+  EXPECT_GT(frame_.walkers[0].presence, 0.99);
+  EXPECT_EQ(frame_.counts.ticks, 600);
+}
+
+// All steps of a walk: what was said about the flight before it landed is what happened.
+TEST_F(SessionFrameTest, LiftAndLandingAreWhereTheHeelLeavesAndComesDown) {
+  start(1);
+  step({made_report(0x60, 0x10)});
+  int landings = 0;
+  for (int tick = 1; tick < 1500; ++tick) {
+    const WalkerFrame before = frame_.walkers[0];
+    step();
+    const WalkerFrame& w = frame_.walkers[0];
+    const Side swing = before.walk.swing;
+    if (before.walk.stage == Stage::roll && w.walk.stage == Stage::flight) {
+      EXPECT_NEAR(glm::length(w.lift_m[w.walk.swing] - before.walk.heel_m[w.walk.swing]), 0.0,
+                  1e-6);
+    }
+    if (before.walk.stage != Stage::flight || w.walk.stage != Stage::roll) continue;
+    ++landings;
+    EXPECT_NEAR(before.landing_m.x, w.walk.heel_m[swing].x, 0.005);
+    EXPECT_NEAR(before.landing_m.z, w.walk.heel_m[swing].z, 0.005);
+  }
+  EXPECT_GT(landings, 6);
+}
+
+TEST_F(SessionFrameTest, ThePhaseRunsWithTheCycleFromTheRightFootsStrike) {
+  start(1);
+  step({made_report(0x80, 0x00)});
+  double before = 0.0;
+  for (int tick = 1; tick < 1500; ++tick) {
+    const bool had_landed = frame_.walkers[0].walk.stage == Stage::roll;
+    step();
+    const WalkerFrame& w = frame_.walkers[0];
+    ASSERT_GE(w.phase, 0.0);
+    ASSERT_LE(w.phase, 1.0);
+    const bool strikes = !had_landed && w.walk.stage == Stage::roll && w.walk.swing == kRightSide;
+    if (strikes) {
+      EXPECT_LT(w.phase, 0.02);
+    }
+    if (!strikes && tick > 1 && w.phase < before) {
+      EXPECT_GT(before, 0.98) << tick;
+    }
+    before = w.phase;
+  }
+}
+
+TEST_F(SessionFrameTest, KnowsTheDrivingPad) {
+  start(1);
+  Report pressed = made_report(0x80, 0x20);
+  pressed.bytes[4] = 0x18;
+  step({made_report(0x80, 0x20), pressed, made_report(0x80, 0x20), pressed});
+  EXPECT_EQ(frame_.pad.device, 0);
+  EXPECT_TRUE(frame_.pad.is_present);
+  EXPECT_EQ(frame_.pad.reports, 4u);
+  EXPECT_TRUE(frame_.pad.calibration == config_.pads[0].calibration);
+  EXPECT_GT(frame_.pad.state.axis[kLeftY], 0.7f);
+  std::uint32_t presses = 0;
+  for (const std::uint32_t n : frame_.presses) presses += n;
+  EXPECT_EQ(presses, 2u);
+  step({made_plug(ReportKind::removed)});
+  EXPECT_FALSE(frame_.pad.is_present);
+}
+
+TEST_F(SessionFrameTest, CommandsShowInTheFrame) {
+  start(2);
+  step({made_command("set 2 fatigue 0.5"), made_command("gait 1 speed_m_s 1")});
+  EXPECT_EQ(frame_.walkers[1].style.fatigue, 0.5);
+  EXPECT_TRUE(frame_.walkers[0].overrides.is_set[static_cast<int>(GaitKey::speed_m_s)]);
+  EXPECT_NEAR(value_of(GaitKey::speed_m_s, frame_.walkers[0].params), 1.0, 1e-12);
+}
+
+TEST_F(SessionFrameTest, TheCastIsToldOnce) {
+  start(2);
+  const Cast cast = cast_of(*simulation_, config_);
+  ASSERT_EQ(cast.members.size(), 2u);
+  EXPECT_EQ(cast.members[1].style, "limp");
+  EXPECT_EQ(cast.members[1].model, simulation_->walkers()[1].model);
+  EXPECT_EQ(cast.styles, (std::vector<std::string>{"even", "limp"}));
+  EXPECT_EQ(cast.source->skeleton.joints.size(), config_.cycle.skeleton.joints.size());
+}
+
+// Flexion is positive everywhere: a knee never bends forward, hip and ankle go both ways.
+TEST_F(SessionFrameTest, SamplesTellFlexionAndPlants) {
+  start(1);
+  TickSample sample;
+  simulation_->step(std::vector<Report>{made_report(0x80, 0x10)});
+  double knee_rad = 0.0, hip_min_rad = 1.0, hip_max_rad = -1.0;
+  for (int tick = 1; tick < 1200; ++tick) {
+    simulation_->step({});
+    copy_sample(*simulation_, sample);
+    ASSERT_EQ(sample.tick, tick);
+    const WalkerSample& w = sample.walkers[0];
+    ASSERT_GE(w.joint_rad[kLeftSide][1], -0.01f);
+    knee_rad = std::max<double>(knee_rad, w.joint_rad[kLeftSide][1]);
+    hip_min_rad = std::min<double>(hip_min_rad, w.joint_rad[kLeftSide][0]);
+    hip_max_rad = std::max<double>(hip_max_rad, w.joint_rad[kLeftSide][0]);
+    // A swinging heel is in the air, a flexed hip before the body.
+    if (w.stage == Stage::flight) {
+      ASSERT_FALSE(w.heel_planted[w.swing]);
+    }
+  }
+  EXPECT_GT(knee_rad, 0.7);
+  EXPECT_GT(hip_max_rad, 0.3);
+  EXPECT_LT(hip_min_rad, -0.05);
+}
+
+}  // namespace
+}  // namespace gaitpad

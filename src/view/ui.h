@@ -100,14 +100,11 @@ struct UiOutput {
 // n-th of them is what Action::style_1 + n - 1 chooses.
 std::vector<int> style_choices(const Cast& cast);
 
-// What an action means to the flat picture alone: panels, theme, trails, source, help, whom the
-// panels tell of. False: it is for somebody else. draw_ui() only asks for actions, those included.
-bool obey(Action action, int walker_count, UiState& state) noexcept;
-
 // Where the scene goes when these panels are open.
 Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, int height_px,
                         double scale) noexcept;
-// Between ImGui::NewFrame and ImGui::Render.
+// Between ImGui::NewFrame and ImGui::Render. What has an action is asked for by it, not done:
+// panels, theme, help.
 UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, double scale,
                  UiState& state);
 

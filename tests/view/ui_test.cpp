@@ -32,20 +32,18 @@ TEST_F(UiTest, EachButtonOfTheBarGivesItsAction) {
     EXPECT_EQ(click(name).actions, Actions{action}) << name;
 }
 
-TEST_F(UiTest, EachPanelIsClosedByItsButtonAndAgainByItsAction) {
+TEST_F(UiTest, EachPanelAsksToBeClosedByItsButtonAndIsGoneWhenItIs) {
   walk();
   for (std::size_t i = 0; i < kPanels; ++i) {
     state.is_open.fill(false);
     state.is_open[i] = true;
     const std::string name(kPanelNames[i]);
-    const UiOutput out = click("close " + name);
-    ASSERT_EQ(out.actions.size(), 1u) << name;
-    EXPECT_TRUE(obey(out.actions[0], frame->walker_count, state));
+    const auto action = static_cast<Action>(static_cast<std::size_t>(Action::panel_pad) + i);
+    EXPECT_EQ(click("close " + name).actions, Actions{action}) << name;
+    EXPECT_NE(find("area " + name), nullptr);
+    state.is_open[i] = false;
     draw();
     EXPECT_EQ(find("area " + name), nullptr);
-    EXPECT_TRUE(obey(out.actions[0], frame->walker_count, state));
-    draw();
-    EXPECT_NE(find("area " + name), nullptr);
   }
 }
 
@@ -200,20 +198,6 @@ TEST_F(UiTest, NamesAboveHeadsStayInTheSceneAndApart) {
     bottom = std::max(bottom, vertex.pos.y);
   }
   EXPECT_GE(bottom - top, 4 * 20.0f);  // four chips in one place stand one above the other
-}
-
-TEST(UiState, AnActionIsObeyedWhereItIsTheUisOwn) {
-  UiState state;
-  EXPECT_FALSE(obey(Action::pause, 4, state));
-  EXPECT_FALSE(obey(Action::back, 4, state));  // nothing is open
-  EXPECT_TRUE(obey(Action::help, 4, state));
-  EXPECT_TRUE(state.is_help_open);
-  EXPECT_TRUE(obey(Action::back, 4, state));
-  EXPECT_FALSE(state.is_help_open);
-  for (const int expected : {0, 1, -1, 0}) {
-    EXPECT_TRUE(obey(Action::next_walker, 2, state));
-    EXPECT_EQ(state.walker, expected);
-  }
 }
 
 TEST(UiState, StylesOfEqualNamesAreOneChoice) {

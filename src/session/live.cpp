@@ -17,6 +17,25 @@
 
 namespace gaitpad {
 
+void add_status(const LiveStatus& status, nlohmann::ordered_json& summary) {
+  summary["time_s"] = status.time_s;
+  summary["time_policy"] = status.time_policy;
+  summary["overruns"] = status.overruns;
+  summary["standstills"] = status.standstills;
+  summary["overloads"] = status.overloads;
+  summary["skipped_s"] = status.skipped_s;
+  summary["late_us_median"] = status.late_us_median;
+  summary["late_us_max"] = status.late_us_max;
+  summary["tick_us_median"] = status.tick_us_median;
+  summary["tick_us_max"] = status.tick_us_max;
+  summary["wait_us_median"] = status.wait_us_median;
+  summary["wait_us_max"] = status.wait_us_max;
+  summary["lost"] = status.pads.lost;
+  summary["plugged"] = status.pads.plugged;
+  summary["unplugged"] = status.pads.unplugged;
+  summary["recording_lost"] = status.recording_lost;
+}
+
 struct LiveSession::Impl {
   Impl(const LiveOptions& live_options, Simulation made, Cast of_it)
       : options(live_options), simulation(std::move(made)), cast(std::move(of_it)) {}

@@ -56,6 +56,9 @@ struct LiveStatus {
   std::int64_t recording_lost = 0;  // reports that the recording missed: it is then no exact one
 };
 
+// Behind what run_summary() writes, units in the keys.
+void add_status(const LiveStatus& status, nlohmann::ordered_json& summary);
+
 class LiveSession {
  public:
   static Result<std::unique_ptr<LiveSession>> start(const LiveOptions& options);

@@ -35,8 +35,8 @@ namespace gaitpad {
 // has read the device's first `added` may use it.
 struct PadSlot {
   TraceDevice device;
-  PadConfig config;  // the reader takes it out
-  PadLayout layout;  // the same as in `config`
+  PadConfig config;                         // the reader takes it out
+  std::shared_ptr<const PadLayout> layout;  // the same as in `config`
 };
 using PadSlots = std::array<PadSlot, kMaxTraceDevices>;
 

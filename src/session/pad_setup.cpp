@@ -7,9 +7,11 @@
 #include <iterator>
 #include <utility>
 
+#include "drivers/keyboard_device.h"
 #include "drivers/registry.h"
 #include "session/calibration_store.h"
 #include "session/config_files.h"
+#include "session/user_files.h"
 
 namespace gaitpad {
 namespace {
@@ -18,7 +20,8 @@ constexpr double kLeastFactoryRange = 0.25;  // raw, from the centre to either e
 
 Result<CalibrationFile> calibration_of(const PadFiles& files, const TraceDevice& device,
                                        const std::string& origin) {
-  if (files.calibration) return *files.calibration;
+  // A file that is given for the user's pad would bend the keyboard's stick.
+  if (files.calibration && device.info.driver != kKeyboardDriver) return *files.calibration;
   if (!device.calibration.empty())
     return parse_calibration(device.calibration, origin + ": calibration");
   auto found = find_calibration(files.calibration_folders, identity_of(device.info));
@@ -121,13 +124,16 @@ DeviceIdentity identity_of(const DeviceInfo& info) {
 
 Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
                                 const std::string& map, const std::string& calibration) {
+  // A recording's pads are the same on every machine: none of the user's own files.
+  std::vector<std::string> folders = config_folders;
+  std::erase(folders, user_config_folder());
   PadFiles files;
   if (!map.empty()) {
     auto own = load_pad_file(map);
     if (!own) return own.error();
     files.overrides = std::move(*own);
   }
-  for (const std::string& path : config_files(config_folders, "pads")) {
+  for (const std::string& path : config_files(folders, "pads")) {
     auto file = load_pad_file(path);
     if (!file) return file.error();
     std::move(file->begin(), file->end(), std::back_inserter(files.overrides));
@@ -138,7 +144,7 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
     files.calibration = std::move(*file);
     drop_negative_zeros(files.calibration->calibration);
   }
-  for (const std::string& folder : config_folders)
+  for (const std::string& folder : folders)
     files.calibration_folders.push_back(folder + "/calibration");
   files.user_calibrations = user_calibration_folder();
   return files;

@@ -3,7 +3,6 @@
 #pragma once
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -13,9 +12,6 @@
 #include "session/pads.h"
 
 namespace gaitpad {
-
-// DeviceInfo::driver of the keyboard as a pad: live and in a recording it is a fallback.
-inline constexpr std::string_view kKeyboardDriver = "keyboard";
 
 // What calibrations tell devices apart by.
 DeviceIdentity identity_of(const DeviceInfo& info);

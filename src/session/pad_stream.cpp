@@ -112,7 +112,7 @@ const TraceDevice& PadStream::device(std::uint16_t index) const noexcept {
 }
 const PadLayout& PadStream::layout(std::uint16_t index) const noexcept {
   assert(index < impl_->slots.size());
-  return impl_->slots[index].layout;
+  return *impl_->slots[index].layout;
 }
 PadConfig& PadStream::config(std::uint16_t index) noexcept {
   assert(index < impl_->slots.size());

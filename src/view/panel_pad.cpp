@@ -66,8 +66,9 @@ std::string signed_pair(const vec2& v) {
 }
 
 void draw_sticks(Ui& ui) {
-  const float gap = ui.px(10), width = ImGui::GetContentRegionAvail().x;
-  const float side = std::floor(std::min((width - gap) / 2.0f, ui.px(150)));
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float side = std::floor(std::min((width - ui.px(10)) / 2.0f, ui.px(106)));
+  const float gap = width - 2.0f * side;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const Calibration& c = ui.in.frame.pad.calibration;
   const UiMemory::StickPlace place = place_of(ui.in.frame);
@@ -90,7 +91,8 @@ void draw_sticks(Ui& ui) {
 void draw_trigger(Ui& ui, const ImVec2& at, float width, std::string_view label, double value) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const double share = std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 0.0;
-  const float label_width = ui.px(40), height = ui.px(7), number = ui.px(26);
+  const float label_width = std::max(ui.px(40), text_width(ui.fonts.tick, label) + ui.px(4));
+  const float height = ui.px(7), number = text_width(ui.fonts.tick, "0.00") + ui.px(4);
   put_text(list, ui.fonts.tick, ui.theme.tick, at, label, label_width);
   const ImVec2 min{at.x + label_width, at.y + ui.px(3)};
   const float room = width - label_width - number;
@@ -101,7 +103,7 @@ void draw_trigger(Ui& ui, const ImVec2& at, float width, std::string_view label,
                        packed(ui.theme.left), height / 2.0f);
   }
   put_text(list, ui.fonts.tick, ui.theme.secondary, {at.x + width - number + ui.px(4), at.y},
-           fmt::format("{:.2f}", share), number);
+           fmt::format("{:.2f}", share), number - ui.px(3));
 }
 
 void draw_triggers(Ui& ui) {
@@ -142,7 +144,7 @@ void draw_waits(Ui& ui) {
             fmt::format("median {:.1f}, most {:.1f} ms", status.wait_us_median / 1000.0,
                         status.wait_us_max / 1000.0));
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x, height = std::round(ui.px(34));
+  const float width = ImGui::GetContentRegionAvail().x, height = std::round(ui.px(28));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, {at.x + width, at.y + height}, packed(ui.theme.plot), ui.px(3));
   const float bar = width / static_cast<float>(counts.size());
@@ -166,7 +168,7 @@ void draw_waits(Ui& ui) {
 
 void draw_pad_panel(Ui& ui) {
   keep_trail(ui);
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(5)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(4)});
   draw_name(ui);
   draw_sticks(ui);
   draw_triggers(ui);

@@ -72,10 +72,10 @@ void draw_value(Ui& ui, const WalkerFrame& walker, const StyleKey& key, float wi
   look.is_enabled = ui.is_live();
   look.width = width;
   look.letter = letter;
-  double value = wished(ui, key.name, now);
-  if (slider(ui, "slider " + key.name, value, look)) {
+  double value = wished(ui, "set " + key.name, now);
+  if (slider(ui, "style slider " + key.name, value, look)) {
     send(ui, "set", key.name, value);
-    wish(ui, key.name, value);
+    wish(ui, "set " + key.name, value);
   }
 }
 
@@ -89,7 +89,7 @@ bool is_changed(const Ui& ui, const WalkerFrame& walker, const StyleKey* key) {
 void give_own_back(Ui& ui, const WalkerFrame& walker, const StyleKey* key) {
   if (!is_changed(ui, walker, key)) return;
   send(ui, "set", key->name, *own_value(ui, walker, *key));
-  forget_wish(ui, key->name);
+  forget_wish(ui, "set " + key->name);
 }
 
 void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
@@ -119,23 +119,23 @@ void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
     ImGui::SameLine(0.0f, gap);
     draw_value(ui, walker, *row.right, cell, "R");
   }
-  ImGui::Dummy({1.0f, 1.0f});
 }
 
 void draw_choice(Ui& ui, const WalkerFrame& walker) {
-  const auto& styles = ui.in.cast.styles;
-  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(5));
-  const float cell = std::floor((width - gap) / 2.0f);
-  for (std::size_t i = 0; i < styles.size(); ++i) {
+  const std::vector<int> choices = style_choices(ui.in.cast);
+  const std::string now = style_name(ui, walker.style_index);
+  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
+  for (std::size_t i = 0; i < choices.size(); ++i) {
     if (i % 2 == 1) ImGui::SameLine(0.0f, gap);
+    const std::string name = style_name(ui, choices[i]);
     ButtonLook look;
-    look.width = cell;
-    look.height = std::round(ui.px(24));
-    look.is_on = walker.style_index == static_cast<int>(i);
+    look.width = std::floor((width - gap) / 2.0f);
+    look.height = std::round(ui.px(22));
+    look.is_on = name == now;
     look.is_enabled = ui.is_live();
-    const std::string label = i < 9 ? fmt::format("{}  {}", i + 1, styles[i]) : styles[i];
+    const std::string label = i < 9 ? fmt::format("{}  {}", i + 1, name) : name;
     if (button(ui, fmt::format("style {}", i + 1), label, look)) {
-      send(ui, "style", styles[i]);
+      send(ui, "style", name);
       forget_wish(ui, "");
     }
   }

@@ -63,7 +63,7 @@ void draw_message_card(Ui& ui, float width) {
     for (const std::string& line : text_lines(ui.fonts.body, all[i], room, kMaxMessageLines)) {
       text_line(ui, ui.fonts.body, ui.theme.text, line, room);
     }
-    ImGui::Dummy({1.0f, ui.px(1)});
+    if (i + 1 < all.size()) ImGui::Dummy({1.0f, ui.px(2)});
   }
   if (all.size() > shown) note(ui, fmt::format("and {} before", all.size() - shown), 1);
   const ImVec2 end = ImGui::GetCursorScreenPos();
@@ -73,6 +73,29 @@ void draw_message_card(Ui& ui, float width) {
   look.width = look.height = close;
   if (button(ui, "dismiss", "", look)) ui.out.dismisses_messages = true;
   ImGui::SetCursorScreenPos(end);
+}
+
+}  // namespace
+
+namespace {
+
+// A line where another part begins: below the bar at the top, above what lies at the bottom, at the
+// sides of the scene.
+void draw_edge(Ui& ui, const UiRect& rect) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 size = ImGui::GetIO().DisplaySize, min = rect.min(), max = rect.max();
+  const ImU32 colour = packed(ui.theme.border);
+  list.PushClipRect(min, max);
+  if (rect.width < size.x && rect.x > 0.0f) {
+    list.AddRectFilled(min, {min.x + 1.0f, max.y}, colour);
+  } else if (rect.width < size.x) {
+    list.AddRectFilled({max.x - 1.0f, min.y}, max, colour);
+  } else if (rect.y > 0.0f) {
+    list.AddRectFilled(min, {max.x, min.y + 1.0f}, colour);
+  } else {
+    list.AddRectFilled({min.x, max.y - 1.0f}, max, colour);
+  }
+  list.PopClipRect();
 }
 
 }  // namespace
@@ -91,13 +114,8 @@ void begin_area(Ui& ui, const char* id, const UiRect& rect, const Colour& back,
   ImGui::Begin(id, nullptr, flags);
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
-  keep_item(id, rect.min(), rect.max());
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.PushClipRect(rect.min(), rect.max());
-  list.AddRect({rect.x - 1.0f, rect.y - 1.0f},
-               {rect.x + rect.width + (rect.x > 0.0f ? 1.0f : 0.0f), rect.y + rect.height},
-               packed(ui.theme.border));
-  list.PopClipRect();
+  keep_area(id, rect.min(), rect.max());
+  draw_edge(ui, rect);
 }
 
 void end_area() { ImGui::End(); }
@@ -131,15 +149,18 @@ void draw_messages(Ui& ui, const UiRect& scene) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(6));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{ui.px(14), ui.px(10)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   ImGui::Begin("messages", nullptr, flags);
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-  ImGui::GetWindowDrawList()->AddRectFilled({at.x + 1.0f, at.y + ui.px(6)},
-                                            {at.x + ui.px(4), at.y + size.y - ui.px(6)},
-                                            packed(ui.theme.warning), ui.px(2));
-  keep_item("messages", at, {at.x + size.x, at.y + size.y});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(at, {at.x + size.x, at.y + size.y});
+  list.AddRectFilled({at.x + 1.0f, at.y + ui.px(6)}, {at.x + ui.px(4), at.y + size.y - ui.px(6)},
+                     packed(ui.theme.warning), ui.px(2));
+  list.PopClipRect();
+  keep_area("messages", at, {at.x + size.x, at.y + size.y});
   draw_message_card(ui, width - ui.px(28));
   ImGui::End();
-  ImGui::PopStyleVar(3);
+  ImGui::PopStyleVar(4);
   ImGui::PopStyleColor();
 }
 

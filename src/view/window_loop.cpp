@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "drivers/posix.h"
-#include "view/display_guard.h"
 #include "view/layout.h"
 
 namespace gaitpad {
@@ -35,7 +34,7 @@ WindowLoop::WindowLoop(const WindowOptions& options)
 
 WindowLoop::~WindowLoop() {
   show_.reset();  // before SDL's parts are stopped
-  if (!is_display_lost()) return;
+  if (surface_ == nullptr || !surface_->is_lost()) return;
   // Closing what lies on a display that has gone could wait for it: the end of the program does it.
   static_cast<void>(calibration_.release());
   static_cast<void>(scene_.release());
@@ -62,7 +61,6 @@ std::optional<Error> WindowLoop::open() {
       {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
   if (!surface) return surface.error();
   surface_ = std::move(*surface);
-  watch_display(surface_->window());
   auto scene = Scene::create(Scene::Quality::automatic);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
@@ -96,8 +94,8 @@ bool WindowLoop::draw_frame() {
       is_quitting_ || (options_.is_ended_from_outside && options_.is_ended_from_outside());
   const bool is_last = is_ended || (options_.frames > 0 && result_.frames + 1 >= options_.frames);
   const bool is_seen = (SDL_GetWindowFlags(surface_->window()) & SDL_WINDOW_MINIMIZED) == 0;
-  if (!is_display_lost() && (is_seen || makes_pictures())) draw(is_last);
-  if (is_display_lost()) end_lost();
+  if (!surface_->is_lost() && (is_seen || makes_pictures())) draw(is_last);
+  if (surface_->is_lost()) end_lost();
   ++result_.frames;
   if (!is_seen) SDL_Delay(static_cast<Uint32>(kUnseenFrame_s * 1e3));
   clock_.wait();
@@ -124,7 +122,7 @@ void WindowLoop::call_script() {
 }
 
 void WindowLoop::take_events() {
-  for (SDL_Event event; !is_display_lost() && SDL_PollEvent(&event) != 0;) {
+  for (SDL_Event event; !surface_->is_lost() && SDL_PollEvent(&event) != 0;) {
     gui_->take(event);
     controls_.take(event, gui_->taken());
     if (event.type == SDL_DROPFILE) SDL_free(event.drop.file);

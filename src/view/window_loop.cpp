@@ -3,6 +3,7 @@
 #include <SDL2/SDL.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "drivers/posix.h"
@@ -46,15 +47,24 @@ bool WindowLoop::makes_pictures() const noexcept {
   return !options_.screenshot.empty() || !options_.video.empty();
 }
 
-std::optional<Error> WindowLoop::open() {
-  Layout layout = load_layout(options_.layout_file);
-  state_ = remembered_ = layout.state;
+// As it was left, but for what was asked for this once.
+void WindowLoop::take_layout(const UiState& layout) {
+  state_ = remembered_ = layout;
   if (options_.theme) state_.theme = *options_.theme;
   if (options_.are_panels_given) {
     state_.is_open.fill(false);
     for (const Panel panel : options_.panels)
       state_.is_open[static_cast<std::size_t>(panel)] = true;
   }
+  bool* const shown[] = {&state_.has_trails, &state_.has_grid, &state_.has_shadows,
+                         &state_.has_source, &state_.has_names};
+  for (std::size_t i = 0; i < std::size(kScenePartNames); ++i)
+    if (std::ranges::count(options_.hidden, kScenePartNames[i]) > 0) *shown[i] = false;
+}
+
+std::optional<Error> WindowLoop::open() {
+  Layout layout = load_layout(options_.layout_file);
+  take_layout(layout.state);
   // Words of files before anything is opened for them.
   if (auto problem = Show::problem(show_options(options_))) return problem;
   auto surface = WindowSurface::open(
@@ -176,6 +186,13 @@ void WindowLoop::remember_layout() {
   // What was asked for this once is not remembered.
   if (options_.theme == state_.theme) state_.theme = remembered_.theme;
   if (options_.are_panels_given) state_.is_open = remembered_.is_open;
+  if (!options_.hidden.empty()) {
+    state_.has_trails = remembered_.has_trails;
+    state_.has_grid = remembered_.has_grid;
+    state_.has_shadows = remembered_.has_shadows;
+    state_.has_source = remembered_.has_source;
+    state_.has_names = remembered_.has_names;
+  }
   if (auto problem = save_layout(options_.layout_file, state_))
     result_.remarks.push_back(problem->message);
 }

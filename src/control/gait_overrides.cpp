@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;  // of giants; limits bound them
 constexpr double kMostFactor = 3.0;                            // as in a style
-constexpr double kLongestStride = 1.5;                         // of the stick's, as in a style
+// Of the stick's: what legs reach at any speed and in any turn.
+constexpr double kLongestStride = 1.3;
 constexpr double kQuickest = 0.5, kSlowest = 2.0;  // of the stick's shortest and longest step time
 
 constexpr std::array<GaitKeyInfo, kGaitKeys> kKeys = {{
@@ -38,12 +39,18 @@ double deflection_of(double speed_m_s, double fatigue, const GaitLimits& limits)
   return std::min(1.0, speed_m_s / (limits.max_speed_m_s * vigour(fatigue)));
 }
 
-void meet_speed(double speed_m_s, const GaitLimits& limits,
-                std::array<StrideParams, 2>& stride) noexcept {
+// Slow steps in a sharp turn would end beside the hips.
+double slowest_step_s(double turn_rate_rad_s, const GaitLimits& limits) noexcept {
+  const double sharp = std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s;
+  return limits.max_step_time_s / std::max(sharp, 1.0 / kSlowest);
+}
+
+void meet_speed(double speed_m_s, const GaitLimits& limits, GaitParams& params) noexcept {
+  std::array<StrideParams, 2>& stride = params.stride;
   const double cycle_s = (stride[0].length_m + stride[1].length_m) / speed_m_s;
   const double stretch = cycle_s / (stride[0].time_s + stride[1].time_s);
   const double quickest_s = kQuickest * limits.max_step_m / limits.max_speed_m_s;
-  const double slowest_s = kSlowest * limits.max_step_time_s;
+  const double slowest_s = slowest_step_s(params.turn_rate_rad_s, limits);
   for (StrideParams& step : stride)
     step.time_s = std::clamp(step.time_s * stretch, quickest_s, slowest_s);
 }
@@ -118,7 +125,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitO
       step.length_m = given(overrides, kStrides[side], limits).value_or(step.length_m);
     step.flight_height = given(overrides, kFlights[side], limits).value_or(step.flight_height);
   }
-  if (speed_m_s && asks_for_strides) meet_speed(*speed_m_s, limits, params.stride);
+  if (speed_m_s && asks_for_strides) meet_speed(*speed_m_s, limits, params);
   params.hip_sway = given(overrides, GaitKey::hip_sway, limits).value_or(params.hip_sway);
   params.hip_bounce = given(overrides, GaitKey::hip_bounce, limits).value_or(params.hip_bounce);
   return params;

@@ -46,7 +46,8 @@ struct GaitOverrides {
 // taken over, others are bounded by range_of().
 // - Speed takes the place of the forward deflection: strides as at that speed by stick, style and
 //   fatigue, both step times stretched alike until the speed is met or a foot would step quicker or
-//   slower than any stick and style let it. 0 stands, whatever else is given.
+//   slower than any stick and style let it (in the sharpest turn: than a stick). 0 stands, whatever
+//   else is given.
 // - The turn rate takes the place of the sideways deflection. Without speed and with a neutral
 //   stick it turns in place.
 // - A stride holds wherever one is asked for, by stick or speed: standing and turning in place ask

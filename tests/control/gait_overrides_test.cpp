@@ -133,6 +133,10 @@ TEST(GaitOverrides, StepTimesStayWithinWhatAStickAndAStyleCanGive) {
       {{GaitKey::speed_m_s, 0.01}, {GaitKey::stride_left_m, 0.7}, {GaitKey::stride_right_m, 0.7}});
   EXPECT_NEAR(quick.stride[0].time_s, 0.5 * std::sqrt(0.348 / 1.5), 1e-12);
   EXPECT_NEAR(slow.stride[0].time_s, 2.2, 1e-12);
+  const GaitParams sharp = with(
+      pushed(1, 0),
+      {{GaitKey::speed_m_s, 0.01}, {GaitKey::stride_left_m, 0.7}, {GaitKey::stride_right_m, 0.7}});
+  EXPECT_NEAR(sharp.stride[0].time_s, 1.1, 1e-12);
 }
 
 TEST(GaitOverrides, AStrideWithoutSpeedKeepsTheSticksTime) {
@@ -174,7 +178,7 @@ TEST(GaitOverrides, ValuesAreBoundedByTheCharacter) {
   EXPECT_NEAR(value_of(GaitKey::speed_m_s, p), child.max_speed_m_s, 1e-12);
   EXPECT_EQ(p.turn_rate_rad_s, -kMaxTurnRate_rad_s);
   EXPECT_EQ(range_of(GaitKey::speed_m_s, child).max, child.max_speed_m_s);
-  EXPECT_NEAR(range_of(GaitKey::stride_left_m, child).max, 0.75 * kAdult.max_step_m, 1e-12);
+  EXPECT_NEAR(range_of(GaitKey::stride_left_m, child).max, 0.65 * kAdult.max_step_m, 1e-12);
 }
 
 TEST(GaitOverrides, WhatIsNoNumberCountsAsNotTakenOver) {
@@ -188,7 +192,7 @@ TEST(GaitOverrides, WhatIsNoNumberCountsAsNotTakenOver) {
 
 void expect_sane(const GaitParams& p, const GaitLimits& limits) {
   for (const StrideParams& step : p.stride) {
-    EXPECT_TRUE(step.length_m >= 0.0 && step.length_m <= 1.5 * limits.max_step_m);
+    EXPECT_TRUE(step.length_m >= 0.0 && step.length_m <= 1.3 * limits.max_step_m);
     EXPECT_TRUE(step.time_s >= 0.1 && step.time_s <= 2.0 * limits.max_step_time_s);
     EXPECT_TRUE(step.flight_height >= 0.0 && step.flight_height <= 3.0);
   }

@@ -1,8 +1,10 @@
 #include "session/simulation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <random>
 
 #include "motion/cycle_retarget.h"
 #include "tests/session/made_session.h"
@@ -202,6 +204,76 @@ TEST(Simulation, ASetCommandIsObeyedByAllOrByNone) {
            made_command("set legs.weight.ankle 0")});
   EXPECT_EQ(s.counts().bad_commands, 1);
   for (const Walker& w : s.walkers()) EXPECT_EQ(w.values.weight[kLeftSide][kAnkleX], 1.0);
+}
+
+std::string any_value(std::mt19937& random, double min, double max) {
+  return fmt::format("{}", mix(min, max, static_cast<double>(random() % 9) / 8.0));
+}
+
+std::string any_gait_command(std::mt19937& random) {
+  const std::string who = random() % 2 == 0 ? "1 " : "";
+  if (random() % 12 == 0) return "gait " + who + "stick";
+  const GaitKeyInfo& key = info_of(static_cast<GaitKey>(random() % kGaitKeys));
+  return fmt::format("gait {}{} {}", who, key.name,
+                     any_value(random, std::max(key.min, -2.0), std::min(key.max, 2.0)));
+}
+
+std::string any_command(std::mt19937& random) {
+  const std::string who = random() % 2 == 0 ? "1 " : "";
+  const StyleKey& key = style_keys()[random() % style_keys().size()];
+  switch (random() % 12) {
+    case 0:
+      return random() % 4 == 0 ? "reset" : "style " + who + "even";
+    case 1:
+    case 2:
+    case 3:
+      return fmt::format("set {}{} {}", who, key.name, any_value(random, key.min, key.max));
+    default:
+      return any_gait_command(random);
+  }
+}
+
+// Every quarter of a second a command, every two seconds another stick; `check` sees each walker.
+template <class Check>
+void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Check& check) {
+  std::mt19937 random(11);
+  SimulationConfig config = made_config(2);
+  config.walkers[1].style = 0;
+  config.ik = mode;
+  Simulation s = made_simulation(config);
+  for (int tick = 0; tick < 40000; ++tick) {
+    std::vector<Report> reports;
+    if (tick % 60 == 0) reports.push_back(made_command(command(random)));
+    if (tick % 500 == 0) reports.push_back(made_report(random() % 256, random() % 256));
+    s.step(reports);
+    for (const Walker& w : s.walkers()) {
+      check(w);
+      if (testing::Test::HasFailure()) FAIL() << "tick " << tick;
+    }
+  }
+  EXPECT_LT(s.counts().bad_commands, s.counts().commands / 10) << "a leg is not locked";
+}
+
+// All at once and in the middle of a step, which no stick can do: a lunge, a centimetre, no more.
+TEST(Simulation, WhateverParametersAreTakenOverTheLegsFollow) {
+  walk_at_random(IkMode::robust, any_gait_command, [](const Walker& w) {
+    EXPECT_GT(w.state.frame.pelvis_m.y, 0.45 * w.model->stand_m);
+    for (const Side side : {kLeftSide, kRightSide}) {
+      EXPECT_GT(w.state.frame.heel_m[side].y, -0.02);
+      EXPECT_LT(w.state.frame.ik_error_m[side], 0.02);
+    }
+  });
+}
+
+TEST(Simulation, WhateverIsChangedThePoseIsAPose) {
+  for (const IkMode mode : {IkMode::robust, IkMode::paper}) {
+    walk_at_random(mode, any_command, [](const Walker& w) {
+      EXPECT_GT(w.state.frame.pelvis_m.y, 0.3 * w.model->stand_m);
+      EXPECT_LT(w.state.frame.pelvis_m.y, 1.15 * w.model->stand_m);
+      for (int j = 0; j < w.pose.joint_count; ++j)
+        ASSERT_NEAR(glm::length(w.pose.local[j]), 1.0, 1e-9);
+    });
+  }
 }
 
 TEST(Simulation, ACopyGoesItsOwnWayAndSharesWhatStandsStill) {

@@ -47,9 +47,14 @@ class WindowSurface {
   // The window's own, or, as SDL's offscreen windows do not grow, one in memory.
   void begin();
   void show();  // what was drawn: swaps
+  // The X server has gone: nothing can be shown or asked any more, no further call here or of SDL's
+  // video is to be made, the program is to come to its end. (Xlib would have ended it at once, in
+  // the middle of a recording.)
+  bool is_lost() const noexcept;
 
  private:
   WindowSurface() = default;
+  void outlive_x_server();
   SDL_Window* window_ = nullptr;
   SDL_GLContext context_ = nullptr;
   double scale_ = 1.0;

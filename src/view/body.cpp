@@ -137,8 +137,8 @@ void Builder::add_foot(const LegModel& leg) {
   add(instep, ball, 0.036 * leg_, 0.026 * leg_, side, 1.0).width_to = 1.45;
   add(instep, back, 0.034 * leg_, heel_m);
   for (auto bone = body_.bones.end() - 3; bone != body_.bones.end(); ++bone) bone->is_pale = true;
-  if (j.toe_end == j.toe) return;
   const vec3 tip = on_floor(end - ahead * tip_m, tip_m);
+  if (glm::dot(tip - ball.at_m, ahead) < 0.01 * leg_) return;  // no toes, or toes that end nowhere
   BodyBone& toes = add({j.toe, ball.at_m}, {j.toe, tip}, ball_m, tip_m, side, 1.55);
   toes.width_to = 1.7;
   toes.is_pale = true;

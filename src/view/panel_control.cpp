@@ -37,7 +37,7 @@ void give_back(Ui& ui, const Controlled& c, std::optional<GaitKey> key) {
   if (!c.is_set(key)) return;
   const std::string name(info_of(*key).name);
   send(ui, "gait", name + " stick");
-  forget_wish(ui, name);
+  forget_wish(ui, "gait " + name);
 }
 
 std::string stick_text(const ControlRow& row, const Controlled& c) {
@@ -88,10 +88,10 @@ void draw_slider(Ui& ui, GaitKey key, const Controlled& c, float width, std::str
   look.letter = letter;
   const double now = c.is_set(key) ? c.walker.overrides.value[static_cast<std::size_t>(key)]
                                    : value_of(key, c.walker.params);
-  double value = wished(ui, name, now);
+  double value = wished(ui, "gait " + name, now);
   if (slider(ui, "slider " + name, value, look)) {
     send(ui, "gait", name, value);
-    wish(ui, name, value);
+    wish(ui, "gait " + name, value);
   }
 }
 

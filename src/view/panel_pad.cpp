@@ -91,7 +91,8 @@ void draw_sticks(Ui& ui) {
 void draw_trigger(Ui& ui, const ImVec2& at, float width, std::string_view label, double value) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const double share = std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 0.0;
-  const float label_width = ui.px(40), height = ui.px(7), number = ui.px(26);
+  const float label_width = std::max(ui.px(40), text_width(ui.fonts.tick, label) + ui.px(4));
+  const float height = ui.px(7), number = text_width(ui.fonts.tick, "0.00") + ui.px(4);
   put_text(list, ui.fonts.tick, ui.theme.tick, at, label, label_width);
   const ImVec2 min{at.x + label_width, at.y + ui.px(3)};
   const float room = width - label_width - number;
@@ -102,7 +103,7 @@ void draw_trigger(Ui& ui, const ImVec2& at, float width, std::string_view label,
                        packed(ui.theme.left), height / 2.0f);
   }
   put_text(list, ui.fonts.tick, ui.theme.secondary, {at.x + width - number + ui.px(4), at.y},
-           fmt::format("{:.2f}", share), number);
+           fmt::format("{:.2f}", share), number - ui.px(3));
 }
 
 void draw_triggers(Ui& ui) {

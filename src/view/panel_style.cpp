@@ -72,10 +72,10 @@ void draw_value(Ui& ui, const WalkerFrame& walker, const StyleKey& key, float wi
   look.is_enabled = ui.is_live();
   look.width = width;
   look.letter = letter;
-  double value = wished(ui, key.name, now);
-  if (slider(ui, "slider " + key.name, value, look)) {
+  double value = wished(ui, "set " + key.name, now);
+  if (slider(ui, "style slider " + key.name, value, look)) {
     send(ui, "set", key.name, value);
-    wish(ui, key.name, value);
+    wish(ui, "set " + key.name, value);
   }
 }
 
@@ -89,7 +89,7 @@ bool is_changed(const Ui& ui, const WalkerFrame& walker, const StyleKey* key) {
 void give_own_back(Ui& ui, const WalkerFrame& walker, const StyleKey* key) {
   if (!is_changed(ui, walker, key)) return;
   send(ui, "set", key->name, *own_value(ui, walker, *key));
-  forget_wish(ui, key->name);
+  forget_wish(ui, "set " + key->name);
 }
 
 void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
@@ -119,7 +119,6 @@ void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
     ImGui::SameLine(0.0f, gap);
     draw_value(ui, walker, *row.right, cell, "R");
   }
-  ImGui::Dummy({1.0f, 1.0f});
 }
 
 void draw_choice(Ui& ui, const WalkerFrame& walker) {

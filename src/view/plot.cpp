@@ -33,20 +33,39 @@ ImU32 faint(Colour colour, double alpha) {
 
 enum class TextPlace { left, centre, right };
 
+float label_width(const PlotStyle& style, const std::string& text) {
+  const ImFont* font = style.fonts->tick;
+  return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, text.data(), text.data() + text.size())
+      .x;
+}
+
 void tick_label(ImDrawList& list, const PlotStyle& style, ImVec2 at, TextPlace place,
                 const std::string& text, const Colour& colour) {
   const ImFont* font = style.fonts->tick;
-  const float width =
-      font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, text.data(), text.data() + text.size()).x;
+  const float width = label_width(style, text);
   if (place == TextPlace::centre) at.x -= width / 2.0f;
   if (place == TextPlace::right) at.x -= width;
   list.AddText(font, font->FontSize, {std::floor(at.x), std::floor(at.y)}, packed(colour),
                text.data(), text.data() + text.size());
 }
 
+int y_steps(float height, float scale) {
+  return std::max(1, static_cast<int>(height / (kTickSpacePixels * scale)));
+}
+
+// What is left of the field: as wide as its longest number needs.
+float left_gutter(const Plot& plot, float height, const PlotStyle& style) {
+  const int steps = y_steps(height, style.scale);
+  const double step = nice_step(plot.y.max - plot.y.min, steps);
+  float width = static_cast<float>(kLeftGutterPixels) * style.scale;
+  for (const double tick : nice_ticks(plot.y.min, plot.y.max, steps)) {
+    width = std::max(width, label_width(style, tick_text(tick, step)) + 6.0f * style.scale);
+  }
+  return std::ceil(width);
+}
+
 void draw_y_axis(ImDrawList& list, const Field& field, const PlotStyle& style) {
-  const int steps =
-      std::max(1, static_cast<int>(field.height() / (kTickSpacePixels * style.scale)));
+  const int steps = y_steps(field.height(), style.scale);
   const double step = nice_step(field.y.max - field.y.min, steps);
   const float half = style.fonts->tick->FontSize / 2.0f;
   for (const double tick : nice_ticks(field.y.min, field.y.max, steps)) {
@@ -168,7 +187,7 @@ void draw_plot(ImDrawList& list, const ImVec2& min, const ImVec2& max, const Plo
                const PlotStyle& style) {
   const float scale = style.scale;
   const float tick_row = plot.has_x_ticks ? static_cast<float>(kTickRowPixels) * scale : 0.0f;
-  const Field field{{min.x + static_cast<float>(kLeftGutterPixels) * scale, min.y},
+  const Field field{{min.x + left_gutter(plot, max.y - min.y - tick_row, style), min.y},
                     {max.x - static_cast<float>(kRightGutterPixels) * scale, max.y - tick_row},
                     plot.x,
                     plot.y};
@@ -219,9 +238,7 @@ void draw_spans(ImDrawList& list, const ImVec2& min, const ImVec2& max, const Sp
       if (!(to > from)) continue;
       list.AddRectFilled({from, top + 2.0f * scale}, {to, top + row - 2.0f * scale},
                          packed(part.colour), 2.0f * scale);
-      const char* end = part.letter.data() + part.letter.size();
-      const float width =
-          font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, part.letter.data(), end).x;
+      const float width = label_width(style, part.letter);
       if (part.letter.empty() || width + 4.0f * scale > to - from) continue;
       tick_label(list, style, {(from + to) / 2.0f, text_y}, TextPlace::centre, part.letter,
                  style.theme->text);

@@ -166,3 +166,9 @@ void WindowSurface::begin() {
 void WindowSurface::show() { SDL_GL_SwapWindow(window_); }
 
 }  // namespace gaitpad
+
+// Parts of a renderer keep what they allocated once until the process ends. SDL unloads them with
+// the display, and the leak checker then no longer sees who holds it.
+#ifdef __SANITIZE_ADDRESS__
+extern "C" int dlclose(void*) { return 0; }
+#endif

@@ -7,11 +7,6 @@
 namespace gaitpad {
 namespace {
 
-// The next one after whom panels tell of; behind the last one all.
-void choose_next(UiState& state, int walker_count) {
-  state.walker = state.walker + 1 < walker_count ? state.walker + 1 : -1;
-}
-
 void keep_sound(const UiInput& input, UiState& state) {
   if (input.frame.walker_count > 0 && state.walker >= input.frame.walker_count) state.walker = -1;
   if (state.walker < -1) state.walker = -1;
@@ -28,38 +23,6 @@ std::vector<int> style_choices(const Cast& cast) {
     }
   }
   return choices;
-}
-
-bool obey(Action action, int walker_count, UiState& state) noexcept {
-  if (action >= Action::panel_pad && action <= Action::panel_loop) {
-    const auto panel =
-        static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::panel_pad);
-    state.is_open[panel] = !state.is_open[panel];
-    return true;
-  }
-  switch (action) {
-    case Action::next_walker:
-      choose_next(state, walker_count);
-      return true;
-    case Action::theme:
-      state.theme = state.theme == ThemeName::dark ? ThemeName::light : ThemeName::dark;
-      return true;
-    case Action::trails:
-      state.has_trails = !state.has_trails;
-      return true;
-    case Action::source:
-      state.has_source = !state.has_source;
-      return true;
-    case Action::help:
-      state.is_help_open = !state.is_help_open;
-      return true;
-    case Action::back:
-      if (!state.is_help_open) return false;
-      state.is_help_open = false;
-      return true;
-    default:
-      return false;
-  }
 }
 
 UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, double scale,

@@ -74,17 +74,17 @@ struct UiInput {
   const History& history;
   const LiveStatus* status = nullptr;    // live only
   const UiTimeline* timeline = nullptr;  // playback only
-  std::string pad_name;                  // empty: no pad
+  std::string pad_name{};                // empty: no pad
   double pad_rate_hz = 0.0;
   double pace = 1.0;
   double frames_per_second = 0.0;  // 0: not to be shown (pictures)
   double memory_mib = 0.0;         // of the whole program; 0: not known
-  std::string recording;           // file, empty: none
-  std::string source;              // the trace, for the bar
-  std::string renderer;
-  std::vector<UiLabel> labels;
-  std::vector<std::string> messages;  // errors and remarks, newest last
-  bool is_modal = false;              // calibration or browser is open: panels take no input
+  std::string recording{};         // file, empty: none
+  std::string source{};            // the trace, for the bar
+  std::string renderer{};
+  std::vector<UiLabel> labels{};
+  std::vector<std::string> messages{};  // errors and remarks, newest last
+  bool is_modal = false;                // calibration or browser is open: panels take no input
 };
 struct UiOutput {
   std::vector<Action> actions;
@@ -100,14 +100,11 @@ struct UiOutput {
 // n-th of them is what Action::style_1 + n - 1 chooses.
 std::vector<int> style_choices(const Cast& cast);
 
-// What an action means to the flat picture alone: panels, theme, trails, source, help, whom the
-// panels tell of. False: it is for somebody else. draw_ui() only asks for actions, those included.
-bool obey(Action action, int walker_count, UiState& state) noexcept;
-
 // Where the scene goes when these panels are open.
 Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, int height_px,
                         double scale) noexcept;
-// Between ImGui::NewFrame and ImGui::Render.
+// Between ImGui::NewFrame and ImGui::Render. What has an action is asked for by it, not done:
+// panels, theme, help.
 UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, double scale,
                  UiState& state);
 

@@ -97,7 +97,7 @@ void draw_panel(Ui& ui, const PanelPart& part, bool has_just_opened) {
   part.draw(ui);
   ImGui::PopID();
   const float end = ImGui::GetCursorScreenPos().y;
-  keep_item(fmt::format("area {}", kPanelNames[index]), begin, {begin.x + width, end});
+  keep_area(fmt::format("area {}", kPanelNames[index]), begin, {begin.x + width, end});
   // What was opened is to be seen: its whole, at least its beginning.
   if (!has_just_opened) return;
   const ImRect seen = ImGui::GetCurrentWindow()->InnerRect;

@@ -152,7 +152,7 @@ void draw_help(Ui& ui, const UiRect& room) {
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoNav);
-  keep_item("help page", room.min(), room.max());
+  keep_area("help page", room.min(), room.max());
   const float width = ImGui::GetContentRegionAvail().x;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   put_text(*ImGui::GetWindowDrawList(), ui.fonts.title, ui.theme.text, at, "Keys and pad buttons",

@@ -20,12 +20,25 @@ int Ui::walker() const noexcept {
 
 void clear_items() { items.clear(); }
 
-void keep_item(std::string_view name, const ImVec2& min, const ImVec2& max) {
-  const ImRect clip = ImGui::GetCurrentWindow()->ClipRect;
+namespace {
+
+void keep(std::string_view name, const ImVec2& min, const ImVec2& max, const ImRect& clip) {
   ImRect rect(min, max);
   rect.ClipWithFull(clip);
   if (rect.GetWidth() < 1.0f || rect.GetHeight() < 1.0f) return;
   items.push_back({std::string(name), rect.Min, rect.Max});
+}
+
+}  // namespace
+
+void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max) {
+  ImRect clip = ImGui::GetCurrentWindow()->Rect();
+  clip.ClipWithFull(ImRect({0.0f, 0.0f}, ImGui::GetIO().DisplaySize));
+  keep(name, min, max, clip);
+}
+
+void keep_item(std::string_view name, const ImVec2& min, const ImVec2& max) {
+  keep(name, min, max, ImGui::GetCurrentWindow()->ClipRect);
 }
 
 void keep_item(std::string_view name) {

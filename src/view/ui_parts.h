@@ -55,6 +55,7 @@ std::vector<std::string> text_lines(const ImFont* font, std::string_view text, f
 void clear_items();
 void keep_item(std::string_view name);
 void keep_item(std::string_view name, const ImVec2& min, const ImVec2& max);
+void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max);  // no widget
 
 enum class Icon { none, play, pause, record, stop, close, to_begin, step, loop };
 void draw_icon(ImDrawList& list, Icon icon, const ImVec2& middle, float radius, ImU32 colour);

@@ -77,6 +77,29 @@ void draw_message_card(Ui& ui, float width) {
 
 }  // namespace
 
+namespace {
+
+// A line where another part begins: below the bar at the top, above what lies at the bottom, at the
+// sides of the scene.
+void draw_edge(Ui& ui, const UiRect& rect) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 size = ImGui::GetIO().DisplaySize, min = rect.min(), max = rect.max();
+  const ImU32 colour = packed(ui.theme.border);
+  list.PushClipRect(min, max);
+  if (rect.width < size.x && rect.x > 0.0f) {
+    list.AddRectFilled(min, {min.x + 1.0f, max.y}, colour);
+  } else if (rect.width < size.x) {
+    list.AddRectFilled({max.x - 1.0f, min.y}, max, colour);
+  } else if (rect.y > 0.0f) {
+    list.AddRectFilled(min, {max.x, min.y + 1.0f}, colour);
+  } else {
+    list.AddRectFilled({min.x, max.y - 1.0f}, max, colour);
+  }
+  list.PopClipRect();
+}
+
+}  // namespace
+
 void begin_area(Ui& ui, const char* id, const UiRect& rect, const Colour& back,
                 const ImVec2& padding, ImGuiWindowFlags flags) {
   flags |= ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
@@ -91,13 +114,8 @@ void begin_area(Ui& ui, const char* id, const UiRect& rect, const Colour& back,
   ImGui::Begin(id, nullptr, flags);
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
-  keep_item(id, rect.min(), rect.max());
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.PushClipRect(rect.min(), rect.max());
-  list.AddRect({rect.x - 1.0f, rect.y - 1.0f},
-               {rect.x + rect.width + (rect.x > 0.0f ? 1.0f : 0.0f), rect.y + rect.height},
-               packed(ui.theme.border));
-  list.PopClipRect();
+  keep_area(id, rect.min(), rect.max());
+  draw_edge(ui, rect);
 }
 
 void end_area() { ImGui::End(); }
@@ -139,7 +157,7 @@ void draw_messages(Ui& ui, const UiRect& scene) {
   list.AddRectFilled({at.x + 1.0f, at.y + ui.px(6)}, {at.x + ui.px(4), at.y + size.y - ui.px(6)},
                      packed(ui.theme.warning), ui.px(2));
   list.PopClipRect();
-  keep_item("messages", at, {at.x + size.x, at.y + size.y});
+  keep_area("messages", at, {at.x + size.x, at.y + size.y});
   draw_message_card(ui, width - ui.px(28));
   ImGui::End();
   ImGui::PopStyleVar(4);

@@ -19,6 +19,7 @@ namespace gaitpad {
 struct WindowGlance {
   std::int64_t frame = 0;  // the number of the one that is drawn next
   const SessionFrame& session;
+  const Cast& cast;
   const UiState& ui;
   const Camera& camera;
   double pace = 1.0;

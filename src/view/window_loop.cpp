@@ -118,7 +118,7 @@ void WindowLoop::end_lost() {
 
 void WindowLoop::call_script() {
   if (!options_.script) return;
-  options_.script({result_.frames, show_->frame(), state_, camera_, show_->pace(),
+  options_.script({result_.frames, show_->frame(), show_->cast(), state_, camera_, show_->pace(),
                    !show_->is_live(), browser_.is_open(), calibration_ != nullptr,
                    show_->options().live.record, messages_.sentences()});
 }

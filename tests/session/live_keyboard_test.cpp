@@ -114,6 +114,44 @@ TEST_F(LiveKeyboard, ARecordingAsPadEndsTheSessionAsEver) {
   EXPECT_EQ(session->status().pads.plugged, 4) << "two pads, each twice";
 }
 
+// A pad that rests for three seconds and is held to the right from the second one on.
+Trace late_pad_trace() {
+  Trace trace;
+  trace.devices.emplace_back().info = made_pad();
+  for (int ms = 0; ms <= 3000; ms += 8) {
+    const Report report = made_report(ms < 2000 ? 0x80 : 0xff, 0x80);
+    TraceEvent event;
+    event.time_us = ms * 1000;
+    event.device = 0;
+    event.first_byte = static_cast<std::uint32_t>(trace.bytes.size());
+    event.size = report.size;
+    trace.bytes.insert(trace.bytes.end(), report.bytes.begin(), report.bytes.begin() + report.size);
+    trace.events.push_back(event);
+  }
+  return trace;
+}
+
+TEST_F(LiveKeyboard, CountsWhileThePadRests) {
+  options_.wish.pad = (folder_ / "late.hid").string();
+  ASSERT_TRUE(write_trace(late_pad_trace(), options_.wish.pad));
+  auto session = started();
+  session->steer(vec2(0.0, 1.0));
+  vec2 stick(0.0);
+  std::string driving;
+  const auto look = [&] {
+    bool is_new = false;
+    const SessionFrame& frame = session->latest(is_new);
+    stick = frame.stick.left;
+    driving = session->pad_name(frame.pad.device);
+  };
+  EXPECT_TRUE(comes_true([&] { return look(), stick == vec2(0.0, 1.0); }));
+  EXPECT_TRUE(comes_true([&] { return look(), stick.x > 0.99; }));
+  EXPECT_EQ(driving, "Example Walk Pad");
+  const auto summaries = session->stop();
+  ASSERT_TRUE(summaries) << summaries.error().message;
+  EXPECT_EQ(*summaries, replayed());
+}
+
 TEST_F(LiveKeyboard, WithoutOneSteeringDoesNothing) {
   options_.keyboard = false;
   options_.record.clear();

@@ -57,6 +57,12 @@ TEST_F(LiveLoopTest, TheLoopThreadUsesNoHeap) {
   });
   sleep_for(300);
   parts.pads->command("style limp");
+  for (const double pace : {0.0, 0.5, 0.0, 2.0}) {
+    parts.loop->set_pace(pace);
+    parts.loop->step(3);
+    sleep_for(60);
+  }
+  parts.loop->set_pace(1.0);
   EXPECT_TRUE(comes_true([&] { return parts.loop->has_ended(); }));
   parts.loop->stop();
   loop.join();

@@ -1,5 +1,6 @@
 #include "session/recording.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -137,6 +138,29 @@ TEST(RecordingLines, KeepTheOrderOfPluggingWhateverTheIndex) {
   ASSERT_EQ(trace.devices.size(), 2u);
   EXPECT_EQ(trace.devices[0].index, 4);
   EXPECT_EQ(trace.events[0].device, 0);
+}
+
+// A whole day by hand in a second; a pause of three hours before the last report.
+TEST(RecordingLines, TicksFasterOrSlowerThanTheTimeReadBack) {
+  Lines l(240);
+  const std::int64_t day = 24 * 3600 * 240;
+  l.lines.clock(0, kStart_ns);
+  l.lines.add(0, at(kStart_ns, made_plug(ReportKind::added)));
+  l.lines.clock(5, kStart_ns + 20'000'000, 8.0);
+  l.lines.add(day - 10, at(kStart_ns + kSecond_ns, made_report(1, 2)));
+  l.lines.clock(day - 9, kStart_ns + 2 * kSecond_ns, 0.0);
+  l.lines.clock(day - 9, kStart_ns + 3 * kHour_ns, 0.25);
+  l.lines.add(day - 9, at(kStart_ns + 3 * kHour_ns, made_report(3, 4)));
+  l.lines.end(day, kStart_ns + 3 * kHour_ns + kSecond_ns);
+  const std::string text = l.text();
+  EXPECT_NE(text.find(fmt::format("# before tick {} it stood still from", day - 9)), text.npos);
+  Trace trace = parsed(text);
+  EXPECT_EQ(*assign_ticks(trace, 240), day);
+  std::vector<std::int64_t> ticks;
+  for (const TraceEvent& e : trace.events) {
+    if (e.kind == ReportKind::input) ticks.push_back(e.tick);
+  }
+  EXPECT_EQ(ticks, (std::vector<std::int64_t>{day - 10, day - 9}));
 }
 
 // The kernel's stamp of one device may lie before the other's that was read earlier.

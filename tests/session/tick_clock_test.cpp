@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace gaitpad {
 namespace {
 
@@ -37,6 +39,46 @@ TEST(TickClock, AfterMoreThanASecondItIsSetForward) {
   EXPECT_EQ(clock.due_ns(50), now_ns);
   EXPECT_EQ(clock.due_ns(51), now_ns + 10'000'000);
   EXPECT_EQ(clock.begin(51, clock.due_ns(51)), TickClock::Begin::on_time);
+}
+
+TEST(TickClock, APaceStretchesTheTimeBetweenTicks) {
+  TickClock clock(100, kStart_ns);
+  clock.set_pace(0.25, 10, clock.due_ns(9));
+  EXPECT_EQ(clock.due_ns(10), kStart_ns + 100'000'000) << "as it was";
+  EXPECT_EQ(clock.due_ns(11), kStart_ns + 140'000'000);
+  EXPECT_EQ(clock.due_ns(10 + 1'000'000), kStart_ns + 100'000'000 + 40'000'000'000'000);
+  EXPECT_EQ(clock.begin(11, clock.due_ns(11) + 39'000'000), TickClock::Begin::on_time);
+  EXPECT_EQ(clock.begin(12, clock.due_ns(12) + 41'000'000), TickClock::Begin::late);
+  // Quicker again: not as late as at the old pace.
+  clock.set_pace(1.0, 13, clock.due_ns(12) + 1'000'000);
+  EXPECT_EQ(clock.due_ns(13), kStart_ns + 100'000'000 + 2 * 40'000'000 + 11'000'000);
+}
+
+TEST(TickClock, WhatIsLateStaysLateAtAnotherPace) {
+  TickClock clock(100, kStart_ns);
+  const std::int64_t now_ns = clock.due_ns(20);
+  clock.set_pace(0.5, 15, now_ns);
+  EXPECT_EQ(clock.due_ns(15), now_ns - 50'000'000);
+  EXPECT_EQ(clock.begin(15, now_ns), TickClock::Begin::late);
+}
+
+TEST(TickClock, StandingStillIsNeitherLateNorSkipped) {
+  TickClock clock(100, kStart_ns);
+  clock.set_pace(0.0, 7, clock.due_ns(7));
+  EXPECT_EQ(clock.due_ns(7), TickClock::kNever_ns);
+  const std::int64_t now_ns = kStart_ns + 3600 * kSecond_ns;
+  clock.set_pace(1.0, 9, now_ns);  // two ticks were stepped meanwhile
+  EXPECT_EQ(clock.due_ns(9), now_ns);
+  EXPECT_EQ(clock.begin(9, now_ns), TickClock::Begin::on_time);
+  EXPECT_EQ(clock.skipped_ns(), 0);
+}
+
+TEST(TickClock, OnlyPacesThatMakeSenseAreUsable) {
+  EXPECT_EQ(TickClock::usable_pace(0.25), 0.25);
+  EXPECT_EQ(TickClock::usable_pace(-1.0), 0.0);
+  EXPECT_EQ(TickClock::usable_pace(std::nan("")), 0.0);
+  EXPECT_EQ(TickClock::usable_pace(1e-9), 0.0);
+  EXPECT_EQ(TickClock::usable_pace(1e300), TickClock::kMaxPace);
 }
 
 TEST(TickClock, TicksThatTakeTooLongAreNoStandstill) {

@@ -1,0 +1,86 @@
+#include "session/style_store.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "session/config_files.h"
+#include "session/pad_setup.h"
+#include "session/user_files.h"
+
+namespace gaitpad {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StyleStore : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "shipped/styles");
+    std::ofstream(folder_ / "shipped/styles/even.toml") << "\n";
+    if (const char* old = std::getenv("XDG_CONFIG_HOME")) old_ = old;
+    ::setenv("XDG_CONFIG_HOME", folder_.c_str(), 1);
+    values_.fatigue = 0.25;
+    values_.weight[kLeftSide][kKneeX] = 0.3;
+  }
+  void TearDown() override {
+    fs::remove_all(folder_);
+    old_ ? ::setenv("XDG_CONFIG_HOME", old_->c_str(), 1) : ::unsetenv("XDG_CONFIG_HOME");
+  }
+  std::string shipped() const { return (folder_ / "shipped").string(); }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_style_store_test";
+  std::optional<std::string> old_;
+  StyleValues values_;
+};
+
+TEST_F(StyleStore, ASavedStyleIsFoundByItsNameAndReadBackTheSame) {
+  const auto path = save_style({shipped()}, "my limp", values_);
+  ASSERT_TRUE(path) << path.error().message;
+  const auto folders = config_folders(shipped());
+  const auto found = config_file(folders, "styles", "my_limp");
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(*found, *path);
+  const auto style = load_style(*found);
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_EQ(static_cast<const StyleValues&>(*style), values_);
+}
+
+TEST_F(StyleStore, AShippedStyleIsNeverHidden) {
+  const auto path = save_style({shipped()}, "even", values_);
+  ASSERT_FALSE(path);
+  EXPECT_NE(path.error().message.find("even"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "gaitpad/styles/even.toml"));
+}
+
+TEST_F(StyleStore, TheOwnOneIsReplacedAndTheOldOneKept) {
+  ASSERT_TRUE(save_style({shipped()}, "mine", StyleValues()));
+  const auto path = save_style(config_folders(shipped()), "mine", values_);
+  ASSERT_TRUE(path) << path.error().message;
+  EXPECT_EQ(load_style(*path)->fatigue, 0.25);
+  EXPECT_TRUE(fs::exists(*path + ".old"));
+}
+
+TEST_F(StyleStore, ANameIsNoPath) {
+  for (const char* name : {"", "  ", "../x", "a/b", ".hidden", "\xff", "tab\there"})
+    EXPECT_FALSE(save_style({shipped()}, name, values_)) << name;
+  EXPECT_FALSE(save_style({shipped()}, std::string(49, 'a'), values_));
+  EXPECT_FALSE(fs::exists(folder_ / "gaitpad"));
+}
+
+TEST_F(StyleStore, PadsOfTheUsersFolderSteerNoReplay) {
+  fs::create_directories(folder_ / "gaitpad/pads");
+  fs::create_directories(folder_ / "gaitpad/calibration");
+  std::ofstream(folder_ / "gaitpad/pads/mine.toml") << "not = a pad file\n";
+  const auto files = load_pad_files(config_folders(shipped()), "", "");
+  ASSERT_TRUE(files) << files.error().message;
+  for (const std::string& folder : files->calibration_folders)
+    EXPECT_EQ(folder.find("gaitpad/calibration"), std::string::npos) << folder;
+  EXPECT_EQ(files->user_calibrations, user_config_folder() + "/calibration");
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,105 @@
+#include "view/opening.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace gaitpad {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Opening : public testing::Test {
+ protected:
+  void SetUp() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string make(const std::string& path, const std::string& text = "") {
+    fs::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path) << text;
+    return (folder_ / path).string();
+  }
+  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_opening_test";
+};
+
+TEST_F(Opening, TheEndingTellsMotionsAndRecordings) {
+  EXPECT_EQ(*kind_of_file(make("a.bvh")), FileKind::motion);
+  EXPECT_EQ(*kind_of_file(make("b.BVH")), FileKind::motion);
+  EXPECT_EQ(*kind_of_file(make("c.hid")), FileKind::recording);
+}
+
+TEST_F(Opening, TheFolderTellsWhatATomlFileIs) {
+  EXPECT_EQ(*kind_of_file(make("styles/x.toml")), FileKind::style);
+  EXPECT_EQ(*kind_of_file(make("characters/x.toml")), FileKind::character);
+  EXPECT_EQ(*kind_of_file(make("calibration/x.toml")), FileKind::calibration);
+  EXPECT_EQ(*kind_of_file(make("motions/x.toml")), FileKind::motion);
+}
+
+TEST_F(Opening, ElseItsContentTells) {
+  EXPECT_EQ(*kind_of_file(make("x.toml", "fatigue = 0.5\n")), FileKind::style);
+  EXPECT_EQ(*kind_of_file(make("x.toml", "leg_ratio = 0.6\n")), FileKind::character);
+  EXPECT_EQ(*kind_of_file(make("x.toml", "devices = [\"*:*\"]\n[left]\ninner = 0.1\n")),
+            FileKind::calibration);
+}
+
+TEST_F(Opening, WhatCannotBeToldApartSaysWhatToDo) {
+  const auto kind = kind_of_file(make("x.toml", "name = \"which\"\n"));
+  ASSERT_FALSE(kind);
+  EXPECT_NE(kind.error().message.find("a folder named styles"), std::string::npos);
+}
+
+TEST_F(Opening, WhatIsNoneOfTheseIsOneSentenceWithItsName) {
+  make("folder.bvh/inside");
+  ::mkfifo((folder_ / "pipe.bvh").c_str(), 0600);
+  for (const std::string& path :
+       {make("x.txt"), make("x.toml", "nonsense = 1\n"), make("y.toml", "= broken"),
+        (folder_ / "none.bvh").string(), (folder_ / "folder.bvh").string(),
+        (folder_ / "pipe.bvh").string()}) {
+    const auto kind = kind_of_file(path);
+    ASSERT_FALSE(kind) << path;
+    EXPECT_NE(kind.error().message.find(path), std::string::npos) << kind.error().message;
+    EXPECT_EQ(kind.error().message.find('\n'), std::string::npos);
+  }
+}
+
+ShowOptions four() {
+  ShowOptions options;
+  options.live.session.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
+  options.live.record = "session.hid";
+  return options;
+}
+
+TEST(WithFile, AStyleIsForTheChosenOneOrForAll) {
+  using List = std::vector<std::string>;
+  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::style, 2, 4).live.session.styles,
+            (List{"even", "stiff_hip", "/x.toml", "limp_left"}));
+  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::style, -1, 4).live.session.styles,
+            (List{"/x.toml"}));
+}
+
+TEST(WithFile, AListThatRepeatsItsLastKeepsTheOthersAsTheyAre) {
+  using List = std::vector<std::string>;
+  ShowOptions options = four();
+  options.live.session.characters = {"adult", "child"};
+  EXPECT_EQ(with_file(options, "/x.toml", FileKind::character, 2, 4).live.session.characters,
+            (List{"adult", "child", "/x.toml", "child"}));
+  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::character, 0, 2).live.session.characters,
+            (List{"/x.toml", "as_in_motion_file"}));
+}
+
+TEST(WithFile, NothingIsRecordedOverTheOldRecording) {
+  for (const FileKind kind : {FileKind::motion, FileKind::style, FileKind::recording})
+    EXPECT_EQ(with_file(four(), "/x", kind, -1, 4).live.record, "");
+}
+
+TEST(WithFile, ARecordingIsPlayedAndAMotionGoesOnBeingLive) {
+  EXPECT_EQ(with_file(four(), "/x.hid", FileKind::recording, -1, 4).trace, "/x.hid");
+  const ShowOptions motion = with_file(four(), "/x.bvh", FileKind::motion, -1, 4);
+  EXPECT_EQ(motion.trace, "");
+  EXPECT_EQ(motion.live.session.motion, "/x.bvh");
+  EXPECT_EQ(motion.live.session.styles, four().live.session.styles);
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,334 @@
+// What the panels ask for, and that what they draw stays in its place.
+#include "view/panels.h"
+
+#include <cmath>
+#include <limits>
+
+#include "ui_fixture.h"
+
+namespace gaitpad {
+namespace {
+
+using Commands = std::vector<std::string>;
+
+class PanelTest : public UiTest {
+ protected:
+  void show(Panel panel) {
+    state.is_open.fill(false);
+    state.is_open[static_cast<std::size_t>(panel)] = true;
+    draw();
+  }
+  // Puts the mouse down on the item at a share of its width; it stays down.
+  UiOutput press_at(const std::string& name, double share) {
+    draw();
+    const UiItem item = *find(name);
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = {item.min.x + static_cast<float>(share) * (item.max.x - item.min.x),
+                   middle(item).y};
+    UiOutput all = draw();
+    io.MouseDown[0] = true;
+    add(draw(), all);
+    return all;
+  }
+  UiOutput move_to(const std::string& name, double share) {
+    const UiItem item = *find(name);
+    ImGui::GetIO().MousePos.x = item.min.x + static_cast<float>(share) * (item.max.x - item.min.x);
+    return draw();
+  }
+  UiOutput release() {
+    ImGui::GetIO().MouseDown[0] = false;
+    return draw();
+  }
+};
+
+double last_number(const std::string& command) {
+  return std::stod(command.substr(command.rfind(' ') + 1));
+}
+
+TEST_F(PanelTest, ASliderSendsEachNewValueOnceForTheChosenCharacter) {
+  walk();
+  state.walker = 1;
+  show(Panel::control);
+  const double most = range_of(GaitKey::speed_m_s, cast.members[1].limits).max;
+  const UiOutput first = press_at("slider speed_m_s", 0.5);
+  ASSERT_EQ(first.commands.size(), 1u);
+  EXPECT_EQ(first.commands[0].rfind("gait 2 speed_m_s ", 0), 0u) << first.commands[0];
+  EXPECT_NEAR(last_number(first.commands[0]), most / 2.0, 0.02);
+  EXPECT_LE(first.commands[0].size(), std::string("gait 2 speed_m_s 0.75").size());
+  EXPECT_TRUE(draw().commands.empty());  // held still
+  EXPECT_EQ(move_to("slider speed_m_s", 1.0).commands.size(), 1u);
+  EXPECT_TRUE(move_to("slider speed_m_s", 1.0).commands.empty());
+  EXPECT_TRUE(release().commands.empty());
+}
+
+TEST_F(PanelTest, ForAllCharactersACommandNamesNone) {
+  walk();
+  show(Panel::control);
+  const UiOutput out = press_at("slider hip_sway", 0.5);
+  ASSERT_EQ(out.commands.size(), 1u);
+  EXPECT_EQ(out.commands[0], "gait hip_sway 1.5");
+}
+
+TEST_F(PanelTest, ASliderStaysWhereItWasLetGoUntilTheSessionFollows) {
+  walk();
+  show(Panel::control);
+  press_at("slider hip_bounce", 1.0 / 3.0);
+  move_to("slider hip_bounce", 0.75);
+  release();
+  draw();  // the session has not run since
+  ASSERT_EQ(state.memory.wishes.size(), 1u);
+  const double asked = state.memory.wishes[0].value;
+  step(2, {"gait hip_bounce " + std::to_string(asked)});
+  draw();
+  EXPECT_TRUE(state.memory.wishes.empty());
+  EXPECT_NEAR(frame->walkers[0].overrides.value[static_cast<std::size_t>(GaitKey::hip_bounce)],
+              asked, 1e-9);
+}
+
+TEST_F(PanelTest, WhatASessionRefusesIsNotShownForEver) {
+  walk();
+  show(Panel::control);
+  press_at("slider hip_bounce", 0.9);
+  release();
+  step(240);
+  draw();
+  EXPECT_TRUE(state.memory.wishes.empty());
+}
+
+TEST_F(PanelTest, WhatIsOverriddenCanBeGivenBack) {
+  start({"even", "stiff_hip"});
+  show(Panel::control);
+  EXPECT_EQ(find("give back speed_m_s"), nullptr);
+  EXPECT_EQ(find("give back all"), nullptr);
+  step(5, {"gait 2 speed_m_s 1", "gait 2 flight_right 2"});
+  state.walker = 1;
+  EXPECT_EQ(click("give back speed_m_s").commands, Commands{"gait 2 speed_m_s stick"});
+  EXPECT_EQ(click("give back flight_left").commands, Commands{"gait 2 flight_right stick"});
+  EXPECT_EQ(click("give back all").commands, Commands{"gait 2 stick"});
+  state.walker = 0;
+  draw();
+  EXPECT_EQ(find("give back speed_m_s"), nullptr);
+}
+
+TEST_F(PanelTest, EveryGaitKeyHasASlider) {
+  walk();
+  show(Panel::control);
+  for (int k = 0; k < kGaitKeys; ++k) {
+    const std::string name(info_of(static_cast<GaitKey>(k)).name);
+    EXPECT_NE(find("slider " + name), nullptr) << name;
+  }
+}
+
+TEST_F(PanelTest, EveryStyleKeyOfALegAndOfTheWholeHasASlider) {
+  open(1280, 1600, 1.0);
+  walk();
+  show(Panel::style);
+  state.memory.has_axis_weights = true;
+  draw();
+  int seen = 0;
+  for (const StyleKey& key : style_keys()) {
+    if (key.name.rfind("legs.", 0) == 0) continue;  // each leg has its own
+    EXPECT_NE(find("style slider " + key.name), nullptr) << key.name;
+    ++seen;
+  }
+  EXPECT_GE(seen, 23);
+}
+
+TEST_F(PanelTest, AStyleIsChosenByItsName) {
+  walk();
+  state.walker = 2;
+  show(Panel::style);
+  const UiOutput out = click("style 4");
+  EXPECT_EQ(out.commands, Commands{"style 3 limp_left"});
+}
+
+TEST_F(PanelTest, AChangedValueGoesBackToTheStylesOwn) {
+  open(1280, 1200, 1.0);
+  start({"even", "limp_left"});
+  state.walker = 1;
+  show(Panel::style);
+  EXPECT_EQ(find("own left_leg.stride_length"), nullptr);
+  step(2, {"set 2 left_leg.stride_length 1.25", "set 2 fatigue 0.5"});
+  EXPECT_EQ(click("own left_leg.stride_length").commands,
+            Commands{"set 2 left_leg.stride_length 0.5"});
+  EXPECT_EQ(click("own all").commands, Commands{"style 2 limp_left"});
+}
+
+TEST_F(PanelTest, AStyleSliderSetsTheValueOfItsKey) {
+  open(1280, 1200, 1.0);
+  walk();
+  state.walker = 1;
+  show(Panel::style);
+  const UiOutput out = press_at("style slider right_leg.weight.knee", 0.5);
+  ASSERT_EQ(out.commands.size(), 1u);
+  EXPECT_EQ(out.commands[0], "set 2 right_leg.weight.knee 0.5");
+}
+
+TEST_F(PanelTest, AStyleIsSavedUnderANameThatFitsAFile) {
+  open(1280, 1200, 1.0);
+  walk();
+  show(Panel::style);
+  EXPECT_EQ(find("save style"), nullptr);  // without a name there is nothing to save
+  click("style name");
+  for (const char c : std::string("../my walk_2")) {
+    ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(c));
+  }
+  draw();
+  const UiOutput out = click("save style");
+  ASSERT_TRUE(out.save_style);
+  EXPECT_EQ(*out.save_style, "mywalk_2");
+}
+
+TEST_F(PanelTest, APlaybackTakesNoCommands) {
+  walk();
+  timeline = UiTimeline{};
+  timeline->ticks = 1000;
+  for (const Panel panel : {Panel::control, Panel::style}) {
+    show(panel);
+    draw();
+    for (const UiItem& item : ui_items()) EXPECT_EQ(item.name.find("slider"), std::string::npos);
+    EXPECT_EQ(find("style 1"), nullptr);
+  }
+}
+
+TEST_F(PanelTest, TheChosenCharacterIsOneOrAll) {
+  walk();
+  click("walker 3");
+  EXPECT_EQ(state.walker, 2);
+  click("walker all");
+  EXPECT_EQ(state.walker, -1);
+  state.walker = 9;  // of an earlier session
+  draw();
+  EXPECT_EQ(state.walker, -1);
+}
+
+// Names as bad as they come, everywhere a stranger's name is shown.
+void make_hostile(Cast& cast, std::string& pad, std::string& renderer, std::string& source,
+                  std::vector<std::string>& messages, std::vector<UiLabel>& labels) {
+  const std::string bad = "%s%n%999999d##x###y \xff\xfe\n\t\x01 " + std::string(5000, 'W');
+  for (std::string& style : cast.styles) style = bad;
+  cast.motion = bad;
+  pad = renderer = source = bad;
+  messages = {bad, std::string(100000, 'x'), "", "a b " + bad};
+  labels = {{{600.0, 300.0}, bad, {}}};
+}
+
+struct Look {
+  double scale;
+  int width, height;
+  ThemeName theme;
+  bool is_hostile;
+};
+class Looks : public PanelTest, public ::testing::WithParamInterface<Look> {};
+
+// Not a line's and not a surface's, which the atlas keeps in places of their own.
+bool is_letter(const ImDrawVert& v) {
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  for (const int place : {atlas.PackIdLines, atlas.PackIdMouseCursors}) {
+    const ImFontAtlasCustomRect& r = *atlas.GetCustomRectByIndex(place);
+    const float x = v.uv.x * static_cast<float>(atlas.TexWidth);
+    const float y = v.uv.y * static_cast<float>(atlas.TexHeight);
+    if (x >= r.X && x <= r.X + r.Width && y >= r.Y && y <= r.Y + r.Height) return false;
+  }
+  return true;
+}
+
+// Everything within the area; letters beside its scroll bar and inside its margins, too.
+void expect_inside(const ImDrawList& list, const UiItem& area, const UiItem* panel, int panels) {
+  for (const ImDrawVert& v : list.VtxBuffer) {
+    const UiItem& limits = panel != nullptr && is_letter(v) ? *panel : area;
+    ASSERT_TRUE(std::isfinite(v.pos.x) && std::isfinite(v.pos.y)) << list._OwnerName;
+    ASSERT_GE(v.pos.x, limits.min.x - 1.5f) << list._OwnerName << " panels " << panels;
+    ASSERT_LE(v.pos.x, limits.max.x + 1.5f) << list._OwnerName << " panels " << panels;
+  }
+}
+
+// The scissor cuts what leaves a panel, so a picture would not tell. The list before it does.
+TEST_P(Looks, NothingLeavesItsPanel) {
+  const Look& look = GetParam();
+  open(look.width, look.height, look.scale, look.theme);
+  walk();
+  status.time_policy = "SCHED_FIFO 50";
+  status.overruns = status.standstills = 123456789;
+  status.wait_counts.fill(1000000);
+  if (look.is_hostile) make_hostile(cast, pad_name, renderer, source, messages, labels);
+  for (const bool is_playback : {false, true}) {
+    if (is_playback) timeline = UiTimeline{};
+    for (int panels = 1; panels <= 64; panels *= 2) {
+      for (std::size_t i = 0; i < kPanels; ++i) state.is_open[i] = panels == 64 || panels >> i & 1;
+      draw();
+      draw();
+      int seen = 0;
+      const ImDrawData* data = ImGui::GetDrawData();
+      for (int l = 0; l < data->CmdListsCount; ++l) {
+        const ImDrawList& list = *data->CmdLists[l];
+        const UiItem* area = find(list._OwnerName);
+        if (area == nullptr) continue;
+        ++seen;
+        const UiItem* panel = nullptr;
+        for (const std::string_view name : kPanelNames) {
+          const UiItem* item = find("area " + std::string(name));
+          if (item != nullptr && std::string(list._OwnerName).ends_with("column") &&
+              item->min.x >= area->min.x && item->max.x <= area->max.x)
+            panel = item;
+        }
+        expect_inside(list, *area, panel, panels);
+      }
+      EXPECT_GE(seen, 1);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Looks,
+                         ::testing::Values(Look{1.0, 1280, 720, ThemeName::dark, false},
+                                           Look{1.0, 1280, 720, ThemeName::dark, true},
+                                           Look{1.0, 640, 480, ThemeName::light, true},
+                                           Look{1.5, 1920, 1080, ThemeName::light, false},
+                                           Look{2.0, 2560, 1440, ThemeName::dark, true},
+                                           Look{2.0, 1280, 720, ThemeName::light, false},
+                                           Look{1.0, 320, 200, ThemeName::dark, true}));
+
+TEST_F(PanelTest, WhatIsNoNumberIsDrawnAsNone) {
+  walk();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  frame->stick.left = frame->stick.right = vec2(kNone);
+  frame->pad.state.axis.fill(std::numeric_limits<float>::quiet_NaN());
+  frame->walkers[0].walk.ik_error_m = {kNone, kNone};
+  frame->walkers[0].params.stride[0].length_m = kNone;
+  frame->walkers[0].params.hip_sway = std::numeric_limits<double>::infinity();
+  status.tick_us_median = status.wait_us_median = kNone;
+  TickSample sample = history[history.size() - 1];
+  ++sample.tick;
+  sample.step_us = std::numeric_limits<float>::infinity();
+  sample.walkers[0].joint_rad[0][0] = std::numeric_limits<float>::quiet_NaN();
+  sample.walkers[0].heel_m[0] = vec3(kNone);
+  history.add(sample);
+  state.is_open.fill(true);
+  draw();
+  draw();
+  const ImDrawData* data = ImGui::GetDrawData();
+  for (int l = 0; l < data->CmdListsCount; ++l) {
+    for (const ImDrawVert& v : data->CmdLists[l]->VtxBuffer) {
+      ASSERT_TRUE(std::isfinite(v.pos.x) && std::isfinite(v.pos.y));
+    }
+  }
+}
+
+TEST_F(PanelTest, BeforeTheFirstTickThereIsNobody) {
+  state.is_open.fill(true);
+  draw();
+  EXPECT_EQ(find("slider speed_m_s"), nullptr);
+  EXPECT_NE(find("area control"), nullptr);
+}
+
+// A software rasterizer pays by the triangle: 45,000 indices are 10 ms of one.
+TEST_F(PanelTest, AllPanelsTogetherAreFewTriangles) {
+  walk();
+  state.is_open.fill(true);
+  draw();
+  draw();
+  EXPECT_LT(ImGui::GetDrawData()->TotalIdxCount, 60000);
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,160 @@
+// The flat picture without a display: ImGui draws into memory, a walk of the simulation stands
+// behind it, a mouse clicks on what ui_items() names.
+#pragma once
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "session/setup.h"
+#include "view/ui.h"
+
+namespace gaitpad {
+
+class UiTest : public ::testing::Test {
+ protected:
+  void SetUp() override { open(1280, 720, 1.0); }
+  void TearDown() override { close(); }
+
+  // A window of that many pixels.
+  void open(int width, int height, double scale, ThemeName theme = ThemeName::dark) {
+    close();
+    context_ = ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+    io.DeltaTime = 1.0f / 60.0f;
+    io.MousePos = {-1.0f, -1.0f};
+    scale_ = scale;
+    fonts = load_fonts(scale);
+    unsigned char* pixels = nullptr;
+    int w = 0, h = 0;
+    io.Fonts->GetTexDataAsAlpha8(&pixels, &w, &h);
+    state = UiState{};
+    state.theme = theme;
+    apply_style(theme_of(theme), scale);
+  }
+  void close() {
+    if (context_ != nullptr) ImGui::DestroyContext(context_);
+    context_ = nullptr;
+  }
+
+  // These characters, in these styles, all from the program's own files.
+  void start(const std::vector<std::string>& styles) {
+    SessionOptions options;
+    options.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    options.styles = styles;
+    options.characters.assign(styles.size(), "adult");
+    auto config = simulation_config(options, {}, "", 240);
+    ASSERT_TRUE(config) << config.error().message;
+    auto made = Simulation::create(*config);
+    ASSERT_TRUE(made) << made.error().message;
+    simulation_ = std::make_unique<Simulation>(std::move(*made));
+    cast = cast_of(*simulation_, *config);
+    frame = std::make_unique<SessionFrame>();
+    history = History();
+    step(1);
+  }
+  void step(int ticks, const std::vector<std::string>& commands = {}) {
+    std::vector<Report> reports;
+    for (const std::string& text : commands) {
+      Report& report = reports.emplace_back();
+      report.kind = ReportKind::command;
+      report.size = static_cast<std::uint16_t>(text.size());
+      std::copy(text.begin(), text.end(), report.bytes.begin());
+    }
+    for (int i = 0; i < ticks; ++i) {
+      simulation_->step(reports);
+      reports.clear();
+      TickSample sample;
+      copy_sample(*simulation_, sample);
+      sample.step_us = 150.0f + static_cast<float>(i % 7);
+      history.add(sample);
+    }
+    copy_frame(*simulation_, *frame);
+  }
+  // The paper's four, walking.
+  void walk() {
+    start({"even", "stiff_hip", "stiff_knee", "limp_left"});
+    step(1200, {"gait speed_m_s 1.2"});
+  }
+
+  UiOutput draw() {
+    UiInput input{*frame, cast, history};
+    input.status = timeline ? nullptr : &status;
+    input.timeline = timeline ? &*timeline : nullptr;
+    input.pad_name = pad_name;
+    input.pad_rate_hz = 250.0;
+    input.frames_per_second = 30.0;
+    input.memory_mib = 100.0;
+    input.renderer = renderer;
+    input.source = source;
+    input.recording = recording;
+    input.labels = labels;
+    input.messages = messages;
+    input.is_modal = is_modal;
+    ImGui::NewFrame();
+    UiOutput out = draw_ui(input, theme_of(state.theme), fonts, scale_, state);
+    ImGui::Render();
+    return out;
+  }
+
+  static const UiItem* find(const std::string& name) {
+    for (const UiItem& item : ui_items()) {
+      if (item.name == name) return &item;
+    }
+    return nullptr;
+  }
+  static ImVec2 middle(const UiItem& item) {
+    return {(item.min.x + item.max.x) / 2.0f, (item.min.y + item.max.y) / 2.0f};
+  }
+  // Moves there, presses, lets go: what came of it in all these frames.
+  UiOutput click_at(const ImVec2& place) {
+    UiOutput all;
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = place;
+    add(draw(), all);
+    io.MouseDown[0] = true;
+    add(draw(), all);
+    io.MouseDown[0] = false;
+    for (int i = 0; i < 3; ++i) add(draw(), all);  // a menu is there one frame later
+    return all;
+  }
+  UiOutput click(const std::string& name) {
+    draw();
+    draw();  // scroll bars come one frame later
+    const UiItem* item = find(name);
+    EXPECT_NE(item, nullptr) << "nothing to click on: " << name;
+    return item == nullptr ? UiOutput{} : click_at(middle(*item));
+  }
+  static void add(const UiOutput& out, UiOutput& all) {
+    all.actions.insert(all.actions.end(), out.actions.begin(), out.actions.end());
+    all.commands.insert(all.commands.end(), out.commands.begin(), out.commands.end());
+    if (out.seek_tick) all.seek_tick = out.seek_tick;
+    if (out.pace) all.pace = out.pace;
+    if (out.is_looping) all.is_looping = out.is_looping;
+    if (out.save_style) all.save_style = out.save_style;
+    all.dismisses_messages = all.dismisses_messages || out.dismisses_messages;
+  }
+
+  Fonts fonts;
+  UiState state;
+  Cast cast;
+  std::unique_ptr<SessionFrame> frame = std::make_unique<SessionFrame>();
+  History history;
+  LiveStatus status;
+  std::optional<UiTimeline> timeline;
+  std::string pad_name = "Wireless Controller", renderer = "llvmpipe", source, recording;
+  std::vector<UiLabel> labels;
+  std::vector<std::string> messages;
+  bool is_modal = false;
+
+ private:
+  ImGuiContext* context_ = nullptr;
+  double scale_ = 1.0;
+  std::unique_ptr<Simulation> simulation_;
+};
+
+}  // namespace gaitpad

@@ -40,7 +40,6 @@ void SceneFloor::draw_floor(const SceneContent& content, const SceneView& view,
   floor_.set("to_clip", view.to_clip);
   floor_.set("focus",
              vec2(content.focus_m.x - view.origin_m.x, content.focus_m.z - view.origin_m.z));
-  floor_.set("world_origin", -vec2(view.origin_m.x, view.origin_m.z));
   floor_.set("half_size", kFadesTo_m * size);
   floor_.set("fade_from", kFadesFrom_m * size);
   floor_.set("floor_near", view.theme->floor);

@@ -151,7 +151,6 @@ void main() { show(background()); }
 inline constexpr const char* kFloorVertex = R"(#version 330 core
 uniform mat4 to_clip;
 uniform vec2 focus;
-uniform vec2 world_origin;
 uniform vec2 shadow_centre;
 uniform float per_shadow;
 uniform float half_size;
@@ -162,7 +161,7 @@ void main() {
   vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
   from_focus = corner * half_size;
   vec2 place = focus + from_focus;
-  world = place - world_origin;
+  world = place;  // counted from whole metres
   in_shadow = 0.5 + 0.5 * (place - shadow_centre) * per_shadow;
   // Behind everything but the background: what lies on it or stands there is never hidden by it.
   gl_Position = to_clip * vec4(place.x, 0.0, place.y, 1.0);

@@ -27,7 +27,7 @@ class PlaybackShow final : public Show {
   const SessionFrame& frame() const noexcept override { return playback_->frame(); }
 
   void look(double passed_s) override {
-    if (is_there_) go_on(passed_s);
+    if (is_there_) go_on(passed_s * cast().rate_hz);
     const std::int64_t end_ns = now_ns() + kComputing_ns;
     do {
       is_there_ = playback_->seek(tick(), kTicksAtOnce);
@@ -36,13 +36,12 @@ class PlaybackShow final : public Show {
   }
 
   void look_for_picture() override {
-    // In whole ticks where they are: a picture shows the same state on every machine.
-    go_on(1.0 / kPictureRateHz);
+    if (!std::exchange(is_for_pictures_, true)) position_ = -1.0;  // the first one shows as many
+    go_on(static_cast<double>(cast().rate_hz) / kPictureRateHz);
     do {
       is_there_ = playback_->seek(tick(), kTicksAtOnce);
       take_samples();
     } while (!is_there_);
-    is_for_pictures_ = true;
   }
 
   double share(std::int64_t) const noexcept override {
@@ -89,11 +88,11 @@ class PlaybackShow final : public Show {
   }
 
  private:
-  std::int64_t tick() const noexcept { return static_cast<std::int64_t>(position_); }
+  std::int64_t tick() const noexcept { return static_cast<std::int64_t>(std::max(position_, 0.0)); }
 
-  void go_on(double passed_s) {
+  void go_on(double ticks) {
     const auto last = static_cast<double>(playback_->ticks() - 1);
-    position_ += passed_s * pace_ * cast().rate_hz;
+    position_ += ticks * pace_;
     if (position_ >= last) position_ = timeline_.is_looping && pace_ > 0.0 ? 0.0 : last;
   }
   void take_samples() {

@@ -174,9 +174,13 @@ void draw_labels(Ui& ui, const UiRect& scene) {
     const float text =
         std::min(text_width(ui.fonts.small, drawable(label.text)) + 1.0f, ui.px(140));
     const ImVec2 place(static_cast<float>(label.place_px.x), static_cast<float>(label.place_px.y));
-    const float half = (text + ui.px(28)) / 2.0f, height = std::round(ui.px(20));
-    chips.emplace_back(ImVec2{std::round(place.x - half), std::round(place.y - height)},
-                       ImVec2{std::round(place.x + half), std::round(place.y)});
+    // Whole, also where the head is near the scene's edge.
+    const float width = std::min(text + ui.px(28), scene.width);
+    const float height = std::min(std::round(ui.px(20)), scene.height);
+    const float x =
+        std::clamp(std::round(place.x - width / 2.0f), scene.x, scene.x + scene.width - width);
+    const float y = std::max(std::round(place.y - height), scene.y);
+    chips.emplace_back(ImVec2{x, y}, ImVec2{x + width, y + height});
     labels.push_back(&label);
   }
   spread(chips);

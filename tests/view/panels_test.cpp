@@ -219,6 +219,9 @@ struct Look {
   ThemeName theme;
   bool is_hostile;
 };
+void PrintTo(const Look& look, std::ostream* out) {
+  *out << look.width << " x " << look.height << " at scale " << look.scale;
+}
 class Looks : public PanelTest, public ::testing::WithParamInterface<Look> {};
 
 // Not a line's and not a surface's, which the atlas keeps in places of their own.

@@ -69,7 +69,7 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
   has_source_ = state.has_source && cast.source != nullptr && count > 0;
   if (has_source_) add_source(frame, share, cast, theme, content);
   content.joint_colour = theme.bone;
-  content.has_grid = state.has_grid;
+  content.has_grid = content.has_axes = state.has_grid;
   content.has_shadows = state.has_shadows;
   content.focus_m = focus_m(-1);
 }

@@ -1,5 +1,7 @@
 #include "view/show.h"
 
+#include <algorithm>
+
 #include "session/simulation.h"
 
 namespace gaitpad {
@@ -18,6 +20,11 @@ std::optional<Error> Show::problem(const ShowOptions& options) {
   const auto simulation = Simulation::create(*config);
   if (!simulation) return simulation.error();
   return std::nullopt;
+}
+
+void Show::add_config_folder(const std::string& folder) {
+  std::vector<std::string>& folders = options_.live.session.config_folders;
+  if (std::ranges::count(folders, folder) == 0) folders.push_back(folder);
 }
 
 }  // namespace gaitpad

@@ -38,6 +38,8 @@ class Show {
   virtual const SessionFrame& frame() const noexcept = 0;
   const History& history() const noexcept { return history_; }
   const ShowOptions& options() const noexcept { return options_; }
+  // For shows that are opened with these options from now on.
+  void add_config_folder(const std::string& folder);
   bool is_live() const noexcept { return options_.trace.empty(); }
 
   // Takes in what has come, once a drawn frame. `passed_s`: of the wall's time since the last call;

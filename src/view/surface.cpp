@@ -37,6 +37,9 @@ void set_hints(bool is_hidden) {
     SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, "offscreen", SDL_HINT_OVERRIDE);
   } else {
     SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // back to $SDL_VIDEODRIVER
+    // Wayland's library would complain on standard error; without this folder there is none.
+    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+    if (!runtime || *runtime == '\0') SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,KMSDRM,offscreen");
   }
 }
 

@@ -198,6 +198,7 @@ void WindowLoop::save_walkers_style(const std::string& name) {
   const auto walker = static_cast<std::size_t>(std::max(state_.walker, 0));
   const auto& folders = show_->options().live.session.config_folders;
   const auto path = save_style(folders, name, show_->frame().walkers[walker].style);
+  if (path) show_->add_config_folder(user_config_folder());  // it may be new
   say(path ? fmt::format("kept as {}: the next session knows it", *path) : path.error().message);
 }
 

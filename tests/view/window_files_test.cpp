@@ -40,7 +40,8 @@ TEST_F(WindowFiles, DroppedFilesChangeTheSessionAndDamagedOnesDoNot) {
   const std::string build = make("characters/small.toml", "scale = 0.5\n");
   Script script;
   script.drop(walk);
-  script.until("it walks by the motion", [](const Glance& g) { return g.cast.motion != "procedural"; });
+  script.until("it walks by the motion",
+               [](const Glance& g) { return g.cast.motion != "procedural"; });
   for (const std::string& bad : {damaged, bad_style, make("notes.txt", "x"), folder_.string(),
                                  make("cut.hid", "R: 3 05\n"), (folder_ / "none.bvh").string()}) {
     script.drop(bad);

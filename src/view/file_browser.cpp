@@ -111,8 +111,11 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
       const FolderEntry& entry = list_.entries[static_cast<std::size_t>(i)];
       ImGui::PushID(i);
       if (ImGui::Selectable("##entry", i == chosen_, ImGuiSelectableFlags_AllowDoubleClick)) {
+        // A second click counts for the entry of the first one: not for what stands there since a
+        // folder was entered.
+        const bool is_second = chosen_ == i && ImGui::IsMouseDoubleClicked(0);
         chosen_ = i;
-        const bool is_wanted = entry.is_folder || ImGui::IsMouseDoubleClicked(0);
+        const bool is_wanted = entry.is_folder || is_second;
         if (is_wanted) entered = (fs::path(folder_) / entry.name).string();
       }
       keep_item("browser entry " + drawable(entry.name));

@@ -1,10 +1,12 @@
 // The window: a live session or a playback, drawn, steered and looked into.
 #pragma once
+#include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -28,6 +30,10 @@ struct WindowGlance {
   std::vector<std::string> messages;
 };
 
+// What can be left out of the scene.
+inline constexpr std::array<std::string_view, 5> kScenePartNames = {"trails", "grid", "shadows",
+                                                                    "source", "names"};
+
 struct WindowOptions {
   LiveOptions live;   // its wish too
   std::string trace;  // a playback of this instead
@@ -43,9 +49,10 @@ struct WindowOptions {
   std::optional<ThemeName> theme;  // else the remembered one
   std::vector<Panel> panels;       // with are_panels_given: these and no others are open
   bool are_panels_given = false;
-  double scale = 0.0;              // 0: the display's
-  int width = 1280, height = 720;  // at scale 1
-  bool is_hidden = false;          // nobody is to see it: SDL's offscreen driver
+  std::vector<std::string> hidden;  // of kScenePartNames: left out of the scene
+  double scale = 0.0;               // 0: the display's
+  int width = 1280, height = 720;   // at scale 1
+  bool is_hidden = false;           // nobody is to see it: SDL's offscreen driver
   // For tests: called before each drawn frame; may push SDL events.
   std::function<void(const WindowGlance& glance)> script;
   std::function<bool()> is_ended_from_outside;              // Ctrl-C

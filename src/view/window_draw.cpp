@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "view/display_guard.h"
 #include "view/drawing.h"
 #include "view/window_loop.h"
 

@@ -3,10 +3,10 @@
 #include <SDL2/SDL.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "drivers/posix.h"
-#include "view/display_guard.h"
 #include "view/layout.h"
 
 namespace gaitpad {
@@ -35,7 +35,7 @@ WindowLoop::WindowLoop(const WindowOptions& options)
 
 WindowLoop::~WindowLoop() {
   show_.reset();  // before SDL's parts are stopped
-  if (!is_display_lost()) return;
+  if (surface_ == nullptr || !surface_->is_lost()) return;
   // Closing what lies on a display that has gone could wait for it: the end of the program does it.
   static_cast<void>(calibration_.release());
   static_cast<void>(scene_.release());
@@ -47,22 +47,30 @@ bool WindowLoop::makes_pictures() const noexcept {
   return !options_.screenshot.empty() || !options_.video.empty();
 }
 
-std::optional<Error> WindowLoop::open() {
-  Layout layout = load_layout(options_.layout_file);
-  state_ = remembered_ = layout.state;
+// As it was left, but for what was asked for this once.
+void WindowLoop::take_layout(const UiState& layout) {
+  state_ = remembered_ = layout;
   if (options_.theme) state_.theme = *options_.theme;
   if (options_.are_panels_given) {
     state_.is_open.fill(false);
     for (const Panel panel : options_.panels)
       state_.is_open[static_cast<std::size_t>(panel)] = true;
   }
+  bool* const shown[] = {&state_.has_trails, &state_.has_grid, &state_.has_shadows,
+                         &state_.has_source, &state_.has_names};
+  for (std::size_t i = 0; i < std::size(kScenePartNames); ++i)
+    if (std::ranges::count(options_.hidden, kScenePartNames[i]) > 0) *shown[i] = false;
+}
+
+std::optional<Error> WindowLoop::open() {
+  Layout layout = load_layout(options_.layout_file);
+  take_layout(layout.state);
   // Words of files before anything is opened for them.
   if (auto problem = Show::problem(show_options(options_))) return problem;
   auto surface = WindowSurface::open(
       {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
   if (!surface) return surface.error();
   surface_ = std::move(*surface);
-  watch_display(surface_->window());
   auto scene = Scene::create(Scene::Quality::automatic);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
@@ -96,8 +104,8 @@ bool WindowLoop::draw_frame() {
       is_quitting_ || (options_.is_ended_from_outside && options_.is_ended_from_outside());
   const bool is_last = is_ended || (options_.frames > 0 && result_.frames + 1 >= options_.frames);
   const bool is_seen = (SDL_GetWindowFlags(surface_->window()) & SDL_WINDOW_MINIMIZED) == 0;
-  if (!is_display_lost() && (is_seen || makes_pictures())) draw(is_last);
-  if (is_display_lost()) end_lost();
+  if (!surface_->is_lost() && (is_seen || makes_pictures())) draw(is_last);
+  if (surface_->is_lost()) end_lost();
   ++result_.frames;
   if (!is_seen) SDL_Delay(static_cast<Uint32>(kUnseenFrame_s * 1e3));
   clock_.wait();
@@ -124,7 +132,7 @@ void WindowLoop::call_script() {
 }
 
 void WindowLoop::take_events() {
-  for (SDL_Event event; !is_display_lost() && SDL_PollEvent(&event) != 0;) {
+  for (SDL_Event event; !surface_->is_lost() && SDL_PollEvent(&event) != 0;) {
     gui_->take(event);
     controls_.take(event, gui_->taken());
     if (event.type == SDL_DROPFILE) SDL_free(event.drop.file);
@@ -178,6 +186,13 @@ void WindowLoop::remember_layout() {
   // What was asked for this once is not remembered.
   if (options_.theme == state_.theme) state_.theme = remembered_.theme;
   if (options_.are_panels_given) state_.is_open = remembered_.is_open;
+  if (!options_.hidden.empty()) {
+    state_.has_trails = remembered_.has_trails;
+    state_.has_grid = remembered_.has_grid;
+    state_.has_shadows = remembered_.has_shadows;
+    state_.has_source = remembered_.has_source;
+    state_.has_names = remembered_.has_names;
+  }
   if (auto problem = save_layout(options_.layout_file, state_))
     result_.remarks.push_back(problem->message);
 }

@@ -37,6 +37,7 @@ class WindowLoop {
   void take_wishes(Wishes wishes);
   void move_camera(const Wishes& wishes);
   void call_script();
+  void take_layout(const UiState& layout);
   void end_lost();
   void remember_layout();
   Result<WindowResult> result();

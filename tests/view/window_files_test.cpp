@@ -202,7 +202,7 @@ TEST_F(WindowFiles, ASavedStyleIsKnownToTheNextSession) {
   Script script;
   script.tap(SDLK_TAB);
   script.until("the first one is chosen", [](const Glance& g) { return g.ui.walker == 0; });
-  script.click("slider fatigue", 0.75f);
+  script.click("style slider fatigue", 0.75f);
   script.until("it is tired", [](const Glance& g) {
     return g.session.walkers[0].style.fatigue > 0.5 && g.session.walkers[1].style.fatigue == 0.0;
   });

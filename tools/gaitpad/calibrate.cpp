@@ -23,8 +23,10 @@
 namespace gaitpad {
 namespace {
 
-std::optional<Error> draw(const std::string& path, const GuidedPad& pad,
+std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& pad,
                           const PadAnalysis& analysis) {
+  // When a recording was made is not known.
+  const std::string date = arguments.traces.empty() ? ", " + today() : "";
   std::vector<StickPicture> pictures;
   constexpr const char* kTitles[] = {"Left stick", "Right stick"};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -32,8 +34,7 @@ std::optional<Error> draw(const std::string& path, const GuidedPad& pad,
     if (!stick) continue;
     pictures.push_back({kTitles[i], stick->tracks, &stick->statistics, &stick->advice});
   }
-  return write_stick_picture(path, fmt::format("{}, {}", printable(pad.info.name), today()),
-                             pictures);
+  return write_stick_picture(arguments.plot, printable(pad.info.name) + date, pictures);
 }
 
 void print_changes(const std::vector<std::string>& changes, const std::string& since) {
@@ -69,7 +70,7 @@ std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& 
   }
   std::fflush(stdout);
   if (!arguments.plot.empty()) {
-    if (auto problem = draw(arguments.plot, pad, analysis)) return problem;
+    if (auto problem = draw(arguments, pad, analysis)) return problem;
   }
   if (is_useful(analysis)) return std::nullopt;
   return Error{"no stick was seen at rest, so no centre is known; nothing written"};

@@ -51,6 +51,14 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(known_panel),
+      command
+          .add_option(
+              "--hide", arguments.hidden,
+              fmt::format("leave these out of the scene: {}", fmt::join(kScenePartNames, ",")))
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(CLI::IsMember(
+              std::vector<std::string>(kScenePartNames.begin(), kScenePartNames.end()))),
   };
 }
 
@@ -72,6 +80,7 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
     const std::string_view name = kPanelNames[static_cast<std::size_t>(i)];
     if (std::ranges::count(arguments.panels, name) > 0) options.panels.push_back(panel);
   }
+  options.hidden = arguments.hidden;
   options.calibration_folder = user_calibration_folder();
   // Somebody who asks SDL for a driver of its own gets that one.
   const char* driver = std::getenv("SDL_VIDEODRIVER");

@@ -11,7 +11,7 @@ namespace gaitpad {
 struct WindowArguments {
   int frames = 0;
   std::string screenshot, video, theme;
-  std::vector<std::string> panels;
+  std::vector<std::string> panels, hidden;
   double scale = 0.0;
 };
 // The options that were added, for further rules.

@@ -109,7 +109,7 @@ Result<std::unique_ptr<Scene>> Scene::create(Quality quality) {
   const bool is_fine = quality == Quality::high || (quality == Quality::automatic && !is_software);
   GLint most = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
-  auto bodies = SceneBodies::create(is_fine ? MeshDetail{24, 6, 1024} : MeshDetail{16, 4, 384});
+  auto bodies = SceneBodies::create(is_fine ? MeshDetail{36, 8, 1024} : MeshDetail{16, 4, 384});
   if (!bodies) return bodies.error();
   auto strokes = SceneStrokes::create();
   if (!strokes) return strokes.error();

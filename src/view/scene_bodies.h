@@ -9,7 +9,7 @@
 namespace gaitpad {
 
 struct MeshDetail {
-  int segments = 24, rings = 6;  // round the axis; of each cap
+  int segments = 36, rings = 8;  // round the axis; of each cap
   int shadow_px = 1024;          // the shadows' picture
 };
 // Where on the floor the shadows' picture lies, counted from the view's origin.

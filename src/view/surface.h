@@ -54,7 +54,6 @@ class WindowSurface {
 
  private:
   WindowSurface() = default;
-  void outlive_x_server();
   SDL_Window* window_ = nullptr;
   SDL_GLContext context_ = nullptr;
   double scale_ = 1.0;

@@ -13,8 +13,6 @@
 
 namespace gaitpad {
 
-inline constexpr std::string_view kKeyboardDriver = "keyboard";  // DeviceInfo::driver
-
 // What is shared by the thread that reads the keys and the device.
 class KeyboardStick {
  public:

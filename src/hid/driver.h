@@ -26,12 +26,17 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
 #include "hid/report.h"
 
 namespace gaitpad {
+
+// DeviceInfo::driver of the keyboard as a pad: live and in a recording it counts while no other pad
+// is deflected.
+inline constexpr std::string_view kKeyboardDriver = "keyboard";
 
 // Motor strengths, 0..65535 as in Linux's ff_rumble_effect: the strong motor is the slow, heavy
 // one.

@@ -10,8 +10,7 @@
 
 namespace gaitpad {
 
-// $XDG_CONFIG_HOME/gaitpad/calibration, else $HOME/.config/gaitpad/calibration; empty where neither
-// is an absolute path. It need not exist.
+// In user_config_folder(); empty where there is none. It need not exist.
 std::string user_calibration_folder();
 
 // For this device alone: by its unique id, else by vendor, product and port (where it has neither,
@@ -22,12 +21,8 @@ CalibrationFile calibration_for(const DeviceInfo& device, bool has_factory_stick
 // `FOLDER/054c_0ce6-UNIQUE.toml`: the same for the same device, another one for any other.
 std::string calibration_path(const std::string& folder, const CalibrationFile& file);
 
-// Why nothing could be saved there, as far as that is seen before it is tried.
-std::optional<Error> saving_problem(const std::string& path);
-
-// Makes the folder, writes a temporary file beside `path`, puts it in its place at once; what stood
-// there before is kept as PATH.old. Where `path` is a symbolic link, both happen where it points to
-// and it stays one. On error `path` is as it was. `comments` stand at the top, each a line.
+// As save_text() does it, once it is sure that it can be read back. `comments` stand at the top,
+// each a line.
 std::optional<Error> save_calibration(const std::string& path, const CalibrationFile& file,
                                       const std::vector<std::string>& comments);
 

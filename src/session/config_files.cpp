@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <map>
 
+#include "session/user_files.h"
+
 namespace gaitpad {
 namespace fs = std::filesystem;
 
@@ -14,6 +16,7 @@ std::vector<std::string> config_folders(const std::string& built_in) {
   if (const char* own = std::getenv("GAITPAD_CONFIG"); own != nullptr && *own != '\0') {
     candidates.emplace_back(own);
   }
+  if (const std::string user = user_config_folder(); !user.empty()) candidates.emplace_back(user);
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   if (!program.empty()) {

@@ -7,8 +7,10 @@
 
 namespace gaitpad {
 
-// Folders laid out like config/, the first one that has a file wins: $GAITPAD_CONFIG, then beside
-// the program (../share/gaitpad, ../config), then `built_in`. Only those that exist.
+// Folders laid out like config/, the first one that has a file wins: $GAITPAD_CONFIG, the user's
+// (user_files.h; what stands there of pads and calibrations is no configuration, load_pad_files()
+// leaves it out), then beside the program (../share/gaitpad, ../config), then `built_in`. Only
+// those that exist.
 std::vector<std::string> config_folders(const std::string& built_in);
 
 // A path where `file_or_name` has a slash or ends in .toml, else KIND/NAME.toml of the first folder

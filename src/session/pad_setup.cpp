@@ -11,6 +11,7 @@
 #include "drivers/registry.h"
 #include "session/calibration_store.h"
 #include "session/config_files.h"
+#include "session/user_files.h"
 
 namespace gaitpad {
 namespace {
@@ -123,13 +124,16 @@ DeviceIdentity identity_of(const DeviceInfo& info) {
 
 Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
                                 const std::string& map, const std::string& calibration) {
+  // A recording's pads are the same on every machine: none of the user's own files.
+  std::vector<std::string> folders = config_folders;
+  std::erase(folders, user_config_folder());
   PadFiles files;
   if (!map.empty()) {
     auto own = load_pad_file(map);
     if (!own) return own.error();
     files.overrides = std::move(*own);
   }
-  for (const std::string& path : config_files(config_folders, "pads")) {
+  for (const std::string& path : config_files(folders, "pads")) {
     auto file = load_pad_file(path);
     if (!file) return file.error();
     std::move(file->begin(), file->end(), std::back_inserter(files.overrides));
@@ -140,7 +144,7 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
     files.calibration = std::move(*file);
     drop_negative_zeros(files.calibration->calibration);
   }
-  for (const std::string& folder : config_folders)
+  for (const std::string& folder : folders)
     files.calibration_folders.push_back(folder + "/calibration");
   files.user_calibrations = user_calibration_folder();
   return files;

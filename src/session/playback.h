@@ -21,6 +21,7 @@ struct PlaybackMark {  // for the time line
 class Playback {
  public:
   static constexpr int kHistoryTicks = 1440;  // of samples before a place that was jumped to
+  static constexpr std::size_t kMaxMarks = 4096;
 
   // As `replay` opens it, the same errors.
   static Result<std::unique_ptr<Playback>> open(const SessionOptions& session,
@@ -30,6 +31,7 @@ class Playback {
 
   const Cast& cast() const noexcept;
   std::int64_t ticks() const noexcept;  // as replay runs it
+  // Commands (but for a bare `mark`) and plugging, in order of time; the first kMaxMarks.
   const std::vector<PlaybackMark>& marks() const noexcept;
   // What a user should know: damaged lines that were skipped.
   const std::vector<std::string>& remarks() const noexcept;
@@ -38,10 +40,13 @@ class Playback {
 
   // On the way to the state after `tick` (clamped to 0 .. ticks()-1), computing at most `budget`
   // ticks; false: not there yet, ask again. frame() is then the place that was reached.
+  // Up to kHistoryTicks ahead it goes on, everything else is a jump: from the snapshot before the
+  // history, so about kHistoryTicks and a second's ticks are computed where it has been before.
   bool seek(std::int64_t tick, int budget);
-  const SessionFrame& frame() const noexcept;
-  // The oldest sample that was not taken yet; none is left out as long as seek() goes forward.
-  // After a jump they begin again, some ticks before the place (TickSample::tick tells).
+  const SessionFrame& frame() const noexcept;  // tick -1, standing, before the first seek()
+  // The oldest sample that was not taken yet; none is left out as long as seek() goes on and they
+  // are taken before there are more than kHistoryTicks. After a jump they begin again,
+  // kHistoryTicks before the place (TickSample::tick tells).
   bool take(TickSample& sample);
   // Over all ticks up to frame(): at the end the same as replay's.
   std::uint64_t pose_hash() const noexcept;

@@ -73,6 +73,8 @@ class Simulation {
   void set_pad(std::uint16_t device, PadConfig&& config) noexcept { pads_.set(device, config); }
   // One tick with the reports that belong to it, in order of arrival. No heap, lock or clock.
   void step(std::span<const Report> reports) noexcept;
+  // A report of the tick that the next step() ends, ahead of it: a recording may have millions.
+  void take(const Report& report) noexcept;
 
   const std::vector<Walker>& walkers() const { return walkers_; }
   const std::vector<Style>& styles() const { return *styles_; }
@@ -86,7 +88,6 @@ class Simulation {
 
  private:
   Simulation() = default;
-  void take(const Report& report) noexcept;
   bool obey(std::string_view text) noexcept;
   bool take_style(std::span<Walker> walkers, std::string_view name) noexcept;
   void add_to_hash(const Pose& pose) noexcept;

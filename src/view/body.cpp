@@ -10,13 +10,14 @@ namespace gaitpad {
 namespace {
 
 constexpr double kAdultTrunk_m = 0.50;  // hip joints to shoulder joints
+constexpr double kAdultArm_m = 0.57;    // shoulder to elbow to wrist
 // A trunk's half depth, and how many times wider it is, from the hips (0) to the shoulders (1).
 struct Girth {
   double height, radius_m, width;
 };
-constexpr Girth kTrunk[] = {{-0.02, 0.092, 1.50}, {0.18, 0.094, 1.42}, {0.40, 0.086, 1.38},
-                            {0.72, 0.104, 1.48},  {0.93, 0.082, 1.62}, {1.02, 0.050, 1.30},
-                            {1.12, 0.047, 1.0}};
+constexpr Girth kTrunk[] = {{-0.02, 0.094, 1.62}, {0.18, 0.091, 1.48}, {0.40, 0.086, 1.38},
+                            {0.70, 0.106, 1.54},  {0.90, 0.090, 1.70}, {1.02, 0.054, 1.40},
+                            {1.14, 0.047, 1.0}};
 
 Girth girth_at(double height) {
   if (height <= kTrunk[0].height) return kTrunk[0];
@@ -30,6 +31,8 @@ Girth girth_at(double height) {
   return kTrunk[std::size(kTrunk) - 1];
 }
 
+vec3 mix(const vec3& a, const vec3& b, double t) { return a + (b - a) * t; }
+
 // A place that a joint carries.
 struct Held {
   int joint = 0;
@@ -40,8 +43,10 @@ class Builder {
  public:
   explicit Builder(Body& body)
       : body_(body), model_(*body.model), parts_(body_parts(*body.model)), leg_(model_.size) {
-    const double trunk = (parts_.shoulder_y_m - parts_.hip_y_m) / kAdultTrunk_m;
-    size_ = std::clamp(trunk, 0.4 * leg_, 2.5 * leg_);
+    const vec3 trunk = parts_.shoulders_m - parts_.hips_m;
+    size_ = std::clamp((glm::length(trunk) / kAdultTrunk_m + arm_size() + leg_) / 3.0, 0.4 * leg_,
+                       2.5 * leg_);
+    along_ = glm::length(trunk) > 1e-3 ? trunk / glm::dot(trunk, trunk) : kUp / kAdultTrunk_m;
   }
   void build();
 
@@ -66,8 +71,23 @@ class Builder {
   Body& body_;
   const WalkModel& model_;
   const BodyParts parts_;
-  double leg_, size_;  // times an adult's, of the legs and of the rest
+  double leg_, size_;  // times an adult's: of the legs, of the rest by trunk, arms and legs
+  vec3 along_{0.0};    // dot product with a place above the hips: 0 .. 1 at the shoulders
+
+  double arm_size() const;
+  double height_of(const vec3& at_m) const { return glm::dot(at_m - parts_.hips_m, along_); }
 };
+
+// Of the longer arm, as the leg's where there is none.
+double Builder::arm_size() const {
+  double longest_m = 0.0;
+  for (const ArmJoints& arm : parts_.arm) {
+    if (!arm.is_known()) continue;
+    longest_m = std::max(longest_m, glm::distance(at(arm.shoulder), at(arm.elbow)) +
+                                        glm::distance(at(arm.elbow), at(arm.wrist)));
+  }
+  return longest_m > 0.0 ? longest_m / kAdultArm_m : leg_;
+}
 
 BodyBone& Builder::add(const Held& from, const Held& to, double radius_from_m, double radius_to_m,
                        const vec3& wide, double width) {
@@ -88,7 +108,7 @@ void Builder::add_leg(Side side) {
   const LegModel& leg = model_.leg[side].model;
   const Held hip = held(leg.joints.hip), knee = held(leg.joints.knee),
              ankle = held(leg.joints.ankle);
-  add(hip, knee, 0.079 * leg_, 0.049 * leg_);
+  add(hip, knee, 0.082 * leg_, 0.049 * leg_);
   const vec3 behind(0.0, 0.0, -0.010 * leg_);
   const Held calf{leg.joints.knee, knee.at_m + (ankle.at_m - knee.at_m) * 0.30 + behind};
   add(knee, calf, 0.047 * leg_, 0.053 * leg_);
@@ -125,35 +145,36 @@ void Builder::add_foot(const LegModel& leg) {
 }
 
 void Builder::add_pelvis() {
-  const vec3 up(0.0, 0.018 * size_, 0.0);
+  const vec3 up(0.0, 0.026 * size_, 0.0);
   const int pelvis = model_.cycle.pelvis;
   const auto hip = [&](Side side) {
     return Held{pelvis, at(model_.leg[side].model.joints.hip) + up};
   };
-  const double radius_m = 0.5 * (leg_ + size_) * 0.088;
+  const double radius_m = 0.5 * (leg_ + size_) * 0.084;
   add(hip(kLeftSide), hip(kRightSide), radius_m, radius_m);
 }
 
 // Along the spine, cut where its girth changes. Short pieces of spine go together.
 void Builder::add_trunk() {
   if (parts_.trunk.empty()) return;
-  const double whole_m = parts_.shoulder_y_m - parts_.hip_y_m;
   const double shortest_m = 0.05 * size_;
   const auto add_piece = [&](const Held& from, const Held& to) {
-    const Girth a = girth_at((from.at_m.y - parts_.hip_y_m) / whole_m);
-    const Girth b = girth_at((to.at_m.y - parts_.hip_y_m) / whole_m);
-    BodyBone& bone = add(from, to, a.radius_m * size_, b.radius_m * size_, kLeft, a.width);
-    bone.width_to = b.width;
+    const Girth a = girth_at(height_of(from.at_m)), b = girth_at(height_of(to.at_m));
+    add(from, to, a.radius_m * size_, b.radius_m * size_, kLeft, a.width).width_to = b.width;
   };
   Held from = held(parts_.trunk.front());
   for (std::size_t i = 1; i < parts_.trunk.size(); ++i) {
     const Held to = held(parts_.trunk[i]);
     const bool is_last = i + 1 == parts_.trunk.size();
     if (!is_last && glm::distance(from.at_m, to.at_m) < shortest_m) continue;
+    const int joint = from.joint;
+    const vec3 start = from.at_m, way = to.at_m - start;
+    const double below = height_of(start), rise = height_of(to.at_m) - below;
+    const double margin = shortest_m / std::max(glm::length(way), shortest_m);
     for (const Girth& cut : kTrunk) {
-      const double y = parts_.hip_y_m + cut.height * whole_m, rise = to.at_m.y - from.at_m.y;
-      if (y < from.at_m.y + shortest_m || y > to.at_m.y - shortest_m) continue;
-      const Held middle{from.joint, from.at_m + (to.at_m - from.at_m) * ((y - from.at_m.y) / rise)};
+      const double share = (cut.height - below) / std::max(rise, 1e-3);
+      if (share < margin || share > 1.0 - margin) continue;
+      const Held middle{joint, start + way * share};
       add_piece(from, middle);
       from = middle;
     }
@@ -166,19 +187,19 @@ void Builder::add_trunk() {
 // likely; a head joint between the shoulders carries it on a neck.
 void Builder::add_head() {
   if (parts_.head < 0) return;
-  constexpr double kHeight_m = 0.215;
+  constexpr double kHeight_m = 0.224;
   const double wish_m = at(parts_.top).y - at(parts_.head).y;
   const bool is_likely = wish_m > 0.16 * size_ && wish_m < 0.27 * size_;
-  const double part = (is_likely ? wish_m : 0.205 * size_) / kHeight_m;
+  const double part = (is_likely ? wish_m : 0.222 * size_) / kHeight_m;
   vec3 base = at(parts_.head);
-  base.y = std::max(base.y, parts_.shoulder_y_m + 0.075 * size_);
+  base.y = std::max(base.y, parts_.shoulders_m.y + 0.075 * size_);
   const auto place = [&](double y, double z) {
     return Held{parts_.head, base + vec3(0.0, y, z) * part};
   };
-  const Held jaw = place(0.052, 0.036), skull = place(0.127, 0.012);
+  const Held jaw = place(0.050, 0.034), skull = place(0.130, 0.010);
   add(held(parts_.head), place(0.045, 0.004), 0.047 * size_, 0.045 * size_);
-  add(jaw, skull, 0.050 * part, 0.088 * part, kLeft, 0.90).width_to = 0.86;
-  add(place(0.085, 0.088), place(0.072, 0.100), 0.010 * part, 0.012 * part);
+  add(jaw, skull, 0.054 * part, 0.094 * part, kLeft, 0.92).width_to = 0.86;
+  add(place(0.095, 0.088), place(0.080, 0.102), 0.008 * part, 0.011 * part);
   for (auto bone = body_.bones.end() - 3; bone != body_.bones.end(); ++bone) bone->is_pale = true;
   body_.top = parts_.head;
   const vec3 top = base + vec3(0.0, kHeight_m * part, 0.0);
@@ -189,19 +210,24 @@ void Builder::add_head() {
 void Builder::add_arm(Side side) {
   const ArmJoints& arm = parts_.arm[side];
   if (!arm.is_known()) return;
-  const Held shoulder = held(arm.shoulder), elbow = held(arm.elbow), wrist = held(arm.wrist);
+  const Held elbow = held(arm.elbow), wrist = held(arm.wrist);
   // From the root of the neck, carried by what carries the arm.
   int chest = parts_.trunk.front();
   for (const int j : parts_.trunk) {
     if (is_ancestor(model_.cycle.skeleton, j, arm.shoulder)) chest = j;
   }
-  const vec3 spine = at(chest);
-  const Held neck{chest, vec3(mix(spine.x, shoulder.at_m.x, 0.22), shoulder.at_m.y + 0.012 * size_,
-                              mix(spine.z, shoulder.at_m.z, 0.6))};
-  add(neck, shoulder, 0.052 * size_, 0.051 * size_);
-  add(shoulder, elbow, 0.052 * size_, 0.037 * size_);
-  BodyBone& forearm = add(elbow, wrist, 0.037 * size_, 0.026 * size_);
-  forearm.is_pale = true;
+  // Flesh lies inside the joint's place in most skeletons: they are measured from outside.
+  vec3 inwards = parts_.shoulders_m - at(arm.shoulder);
+  inwards *= 0.016 * size_ / std::max(glm::length(inwards), 0.016 * size_);
+  const Held shoulder = held(arm.shoulder, inwards - kUp * (0.008 * size_));
+  const vec3 neck = mix(at(chest), shoulder.at_m, 0.28);
+  const Held collar{
+      chest, vec3(neck.x, shoulder.at_m.y + 0.026 * size_, 0.5 * (neck.z + shoulder.at_m.z))};
+  add(collar, shoulder, 0.046 * size_, 0.050 * size_);
+  add(shoulder, elbow, 0.050 * size_, 0.036 * size_);
+  const Held bulge{arm.elbow, mix(elbow.at_m, wrist.at_m, 0.26)};
+  add(elbow, bulge, 0.035 * size_, 0.038 * size_).is_pale = true;
+  add(bulge, wrist, 0.038 * size_, 0.025 * size_).is_pale = true;
   add_hand(arm);
 }
 

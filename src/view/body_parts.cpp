@@ -10,8 +10,8 @@ namespace gaitpad {
 namespace {
 
 // An adult's measures in metres, for a leg of kReferenceLeg_m.
-constexpr double kTrunk_m = 0.50;          // hip joints to shoulder joints
-constexpr double kShoulderReach_m = 0.11;  // a shoulder joint is farther from the spine than that
+constexpr double kTrunk_m = 0.50;           // hip joints to shoulder joints
+constexpr double kShoulderReach_m = 0.075;  // a shoulder joint is farther from the spine than that
 constexpr double kShortestArm_m = 0.25, kUpperShare = 0.54, kWristShare = 0.78;
 
 class Reading {
@@ -81,9 +81,9 @@ void Reading::stand() {
     lowest_m = std::min(lowest_m, at(leg.model.joints.ankle).y + leg.model.heel_m.y);
   }
   for (int j = 0; j < count(); ++j) parts_.standing.position_m[j].y -= lowest_m;
-  parts_.hip_y_m = 0.5 * (at(model_.leg[kLeftSide].model.joints.hip).y +
-                          at(model_.leg[kRightSide].model.joints.hip).y);
-  parts_.shoulder_y_m = parts_.hip_y_m + kTrunk_m * model_.size;
+  parts_.hips_m = 0.5 * (at(model_.leg[kLeftSide].model.joints.hip) +
+                         at(model_.leg[kRightSide].model.joints.hip));
+  parts_.shoulders_m = parts_.hips_m + kUp * (kTrunk_m * model_.size);
 }
 
 // By its name, else the highest joint that is not far to the side.
@@ -96,7 +96,7 @@ void Reading::find_head() {
       break;
     }
     const double aside_m = std::abs(at(j).x - at(model_.cycle.pelvis).x);
-    if (aside_m > 0.1 * model_.leg_length_m || at(j).y < parts_.hip_y_m) continue;
+    if (aside_m > 0.1 * model_.leg_length_m || at(j).y < parts_.hips_m.y) continue;
     if (highest < 0 || at(j).y > at(highest).y) highest = j;
   }
   if (parts_.head < 0 && highest > 0) parts_.head = highest;
@@ -189,7 +189,7 @@ void Reading::find_arms() {
   }
   const ArmJoints &left = parts_.arm[kLeftSide], &right = parts_.arm[kRightSide];
   if (!left.is_known() || !right.is_known()) return;
-  parts_.shoulder_y_m = 0.5 * (at(left.shoulder).y + at(right.shoulder).y);
+  parts_.shoulders_m = 0.5 * (at(left.shoulder) + at(right.shoulder));
 }
 
 BodyParts Reading::parts() {

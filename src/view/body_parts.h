@@ -18,7 +18,7 @@ struct BodyParts {
   std::vector<int> trunk;        // from the pelvis or the root upwards to the head
   int head = -1, top = -1;       // top: the highest joint on the head, or the head itself; -1: none
   std::array<ArmJoints, 2> arm;  // by Side
-  double hip_y_m = 0.0, shoulder_y_m = 0.0;  // standing; of the shoulders, else a guess
+  vec3 hips_m{0.0}, shoulders_m{0.0};  // standing, between left and right; else a guess
 };
 BodyParts body_parts(const WalkModel& model);
 

@@ -7,6 +7,8 @@ namespace {
 constexpr Colour kPale = {0.83, 0.84, 0.86};
 constexpr double kPaleShare = 0.48;
 constexpr double kStickLine_px = 3.2;
+constexpr double kLongestEnd = 0.5,
+                 kLongestLine = 0.9;  // of the leg: joints of meshes lie anywhere
 constexpr double kShortestLine = 0.015, kShortestDotted = 0.045;  // of the leg: fingers have none
 
 Colour mixed(const Colour& a, const Colour& b, double share) {
@@ -87,7 +89,8 @@ void add_stick_figure(const GaitCycle& source, double phase, double presence, co
   for (int j = 1; j < pose.joint_count; ++j) {
     const vec3 a = frames.position_m[source.skeleton.joints[j].parent], b = frames.position_m[j];
     const double length_m = glm::distance(a, b);
-    if (length_m < kShortestLine * leg_m) continue;
+    const double longest = source.skeleton.joints[j].is_end_site ? kLongestEnd : kLongestLine;
+    if (length_m < kShortestLine * leg_m || length_m > longest * leg_m) continue;
     content.lines.push_back({a, b, colour, kStickLine_px});
     if (length_m > kShortestDotted * leg_m) content.joints_m.push_back(b);
   }

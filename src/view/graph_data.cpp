@@ -170,6 +170,7 @@ Plot heel_plot(const History& history, const GraphSpan& span, int walker, const 
   Plot plot = leg_plot(
       history, span, walker, theme,
       [](const WalkerSample& s, Side side) { return s.heel_m[side].y * 100.0; }, 4.0);
+  plot.y.min -= 0.06 * (plot.y.max - plot.y.min);  // room for what lies on the floor
   if (!has_walker(history, walker)) return plot;
   for (const Side side : {kLeftSide, kRightSide}) {
     add_marks(history, span, walker, side, theme, plot);
@@ -234,6 +235,7 @@ Plot tick_time_plot(const History& history, int rate_hz, const Theme& theme) {
   add_series(
       span, "", theme.left,
       [&](std::size_t i) { return static_cast<double>(history[i].step_us) / 1000.0; }, plot);
+  plot.series.back().width_px = 1.0;
   fit_y(plot, 0.1);
   plot.y.min = 0.0;
   return plot;

@@ -52,7 +52,7 @@ void draw_leg_choice(Ui& ui) {
   const float cell = std::round(ui.px(58));
   const ImVec2 at = ImGui::GetCursorScreenPos();
   put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.secondary, {at.x, at.y + ui.px(4)},
-           "joint angles, last two cycles", width - 2.0f * cell - 2.0f * gap);
+           "last two cycles (s)", width - 2.0f * cell - 2.0f * gap);
   for (const Side side : {kLeftSide, kRightSide}) {
     ButtonLook look;
     look.width = cell;
@@ -123,7 +123,7 @@ void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
                stage_plot(ui.in.history, span, walker, ui.theme), ui.plot_style());
   }
   ImGui::Dummy({max.x - at.x, max.y - at.y});
-  note(ui, "F flight, R roll (from the left or right foot), dark: planted", 1);
+  note(ui, "F flight, R roll, each of the left or right foot", 1);
 }
 
 }  // namespace

@@ -66,8 +66,9 @@ std::string signed_pair(const vec2& v) {
 }
 
 void draw_sticks(Ui& ui) {
-  const float gap = ui.px(10), width = ImGui::GetContentRegionAvail().x;
-  const float side = std::floor(std::min((width - gap) / 2.0f, ui.px(150)));
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float side = std::floor(std::min((width - ui.px(10)) / 2.0f, ui.px(106)));
+  const float gap = width - 2.0f * side;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const Calibration& c = ui.in.frame.pad.calibration;
   const UiMemory::StickPlace place = place_of(ui.in.frame);
@@ -142,7 +143,7 @@ void draw_waits(Ui& ui) {
             fmt::format("median {:.1f}, most {:.1f} ms", status.wait_us_median / 1000.0,
                         status.wait_us_max / 1000.0));
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x, height = std::round(ui.px(34));
+  const float width = ImGui::GetContentRegionAvail().x, height = std::round(ui.px(28));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, {at.x + width, at.y + height}, packed(ui.theme.plot), ui.px(3));
   const float bar = width / static_cast<float>(counts.size());
@@ -166,7 +167,7 @@ void draw_waits(Ui& ui) {
 
 void draw_pad_panel(Ui& ui) {
   keep_trail(ui);
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(5)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(4)});
   draw_name(ui);
   draw_sticks(ui);
   draw_triggers(ui);

@@ -89,7 +89,7 @@ void draw_solver_panel(Ui& ui) {
     value_row(ui, "a tick takes",
               fmt::format("median {:.0f}, most {:.0f} us", ui.in.status->tick_us_median,
                           ui.in.status->tick_us_max));
-    value_row(ui, "of that a leg at most",
+    value_row(ui, "a leg's share, at most",
               fmt::format("{:.1f} us", ui.in.status->tick_us_median / legs));
   }
   ImGui::PopStyleVar();

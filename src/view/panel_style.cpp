@@ -123,19 +123,20 @@ void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
 }
 
 void draw_choice(Ui& ui, const WalkerFrame& walker) {
-  const auto& styles = ui.in.cast.styles;
-  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(5));
-  const float cell = std::floor((width - gap) / 2.0f);
-  for (std::size_t i = 0; i < styles.size(); ++i) {
+  const std::vector<int> choices = style_choices(ui.in.cast);
+  const std::string now = style_name(ui, walker.style_index);
+  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
+  for (std::size_t i = 0; i < choices.size(); ++i) {
     if (i % 2 == 1) ImGui::SameLine(0.0f, gap);
+    const std::string name = style_name(ui, choices[i]);
     ButtonLook look;
-    look.width = cell;
-    look.height = std::round(ui.px(24));
-    look.is_on = walker.style_index == static_cast<int>(i);
+    look.width = std::floor((width - gap) / 2.0f);
+    look.height = std::round(ui.px(22));
+    look.is_on = name == now;
     look.is_enabled = ui.is_live();
-    const std::string label = i < 9 ? fmt::format("{}  {}", i + 1, styles[i]) : styles[i];
+    const std::string label = i < 9 ? fmt::format("{}  {}", i + 1, name) : name;
     if (button(ui, fmt::format("style {}", i + 1), label, look)) {
-      send(ui, "style", styles[i]);
+      send(ui, "style", name);
       forget_wish(ui, "");
     }
   }

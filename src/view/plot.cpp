@@ -7,7 +7,8 @@ namespace gaitpad {
 namespace {
 
 constexpr double kLeftGutterPixels = 30.0, kRightGutterPixels = 14.0, kTickRowPixels = 14.0;
-constexpr double kTickSpacePixels = 26.0, kTickWidthPixels = 46.0;
+constexpr float kTolerancePixels = 0.15f;  // not to be seen, whatever the scale
+constexpr double kTickSpacePixels = 18.0, kTickWidthPixels = 46.0;
 
 // The part of a plot's box where its curves are.
 struct Field {
@@ -76,10 +77,13 @@ void draw_curve(ImDrawList& list, const Field& field, const PlotSeries& series, 
   static thread_local std::vector<PlotPoint> shown;
   static thread_local std::vector<ImVec2> pixels;
   decimate(series.points, field.x, static_cast<int>(field.width()), shown);
+  // Whole pixels: such lines are drawn from ImGui's texture, with a third of the triangles.
+  const float width = std::max(1.0f, std::round(static_cast<float>(series.width_px) * scale));
   const auto flush = [&] {
+    thin_out(pixels, kTolerancePixels);
     if (pixels.size() > 1) {
       list.AddPolyline(pixels.data(), static_cast<int>(pixels.size()), packed(series.colour), 0,
-                       static_cast<float>(series.width_px) * scale);
+                       width);
     }
     pixels.clear();
   };

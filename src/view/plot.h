@@ -34,10 +34,15 @@ struct PlotPoint {
 void decimate(std::span<const PlotPoint> points, const PlotRange& x, int columns,
               std::vector<PlotPoint>& out);
 
+// Leaves out points of a line from left to right, pixels, that lie within `tolerance` of the
+// straight line between those that stay, measured upright: software rasterizers pay by the
+// triangle.
+void thin_out(std::vector<ImVec2>& line, float tolerance);
+
 struct PlotSeries {
   std::string letter;  // beside its end: what tells it apart without its colour
   Colour colour;
-  double width_px = 1.6;  // at scale 1
+  double width_px = 1.6;  // at scale 1; drawn in whole pixels
   std::vector<PlotPoint> points;
 };
 struct PlotBand {  // from x to x over the whole height

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 
@@ -109,6 +110,30 @@ void decimate(std::span<const PlotPoint> points, const PlotRange& x, int columns
     column.last = i;
   }
   finish();
+}
+
+// From each point that stays, the slopes under which all points since are met within the tolerance;
+// a point that lies outside of them ends the stretch.
+void thin_out(std::vector<ImVec2>& line, float tolerance) {
+  if (line.size() < 3) return;
+  std::size_t kept = 1;
+  ImVec2 anchor = line[0];
+  float low = -FLT_MAX, high = FLT_MAX;
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    const ImVec2 here = line[i], next = line[i + 1];
+    const float dx = here.x - anchor.x, next_dx = next.x - anchor.x;
+    if (dx > 0.0f) {
+      low = std::max(low, (here.y - tolerance - anchor.y) / dx);
+      high = std::min(high, (here.y + tolerance - anchor.y) / dx);
+    }
+    const float slope = next_dx > 0.0f ? (next.y - anchor.y) / next_dx : FLT_MAX;
+    if (dx > 0.0f && slope >= low && slope <= high) continue;
+    line[kept++] = anchor = here;
+    low = -FLT_MAX;
+    high = FLT_MAX;
+  }
+  line[kept++] = line.back();
+  line.resize(kept);
 }
 
 }  // namespace gaitpad

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "view/scene_bodies.h"
-#include "view/scene_shaders.h"
+#include "view/scene_floor.h"
 #include "view/scene_strokes.h"
 
 namespace gaitpad {
@@ -15,8 +15,6 @@ namespace {
 
 constexpr int kSamples = 4;
 constexpr int kLargest_px = 16384;
-constexpr double kFloorFadesFrom_m = 3.0, kFloorFadesTo_m = 9.0;  // at the camera's usual distance
-constexpr double kUsualDistance_m = 6.0;
 
 // Software rasterizers of Mesa, of Google and of Windows under a layer.
 bool is_software_renderer(const std::string& name) {
@@ -87,15 +85,12 @@ SceneView view_of(const Camera& camera, const SceneContent& content, const Theme
 }  // namespace
 
 struct Scene::Impl {
-  Impl(SceneBodies&& b, SceneStrokes&& s, GlProgram&& f)
-      : bodies(std::move(b)), strokes(std::move(s)), floor(std::move(f)) {}
-  void set_floor(const SceneContent& content, const SceneView& view, const ShadowPlace& shadow);
-  void draw_floor(const SceneContent& content, const SceneView& view, const ShadowPlace& shadow);
+  Impl(SceneBodies&& b, SceneFloor&& f, SceneStrokes&& s)
+      : bodies(std::move(b)), floor(std::move(f)), strokes(std::move(s)) {}
 
   SceneBodies bodies;
+  SceneFloor floor;
   SceneStrokes strokes;
-  GlProgram floor;
-  GlVertexArray nothing = new_vertex_array();  // the floor's corners are counted, not stored
   Target target, resolved;
   std::string renderer;
   int samples = 1;
@@ -114,14 +109,14 @@ Result<std::unique_ptr<Scene>> Scene::create(Quality quality) {
   const bool is_fine = quality == Quality::high || (quality == Quality::automatic && !is_software);
   GLint most = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
-  auto bodies = SceneBodies::create(is_fine ? MeshDetail{24, 6, 1024} : MeshDetail{14, 3, 384});
+  auto bodies = SceneBodies::create(is_fine ? MeshDetail{24, 6, 1024} : MeshDetail{16, 4, 384});
   if (!bodies) return bodies.error();
   auto strokes = SceneStrokes::create();
   if (!strokes) return strokes.error();
-  auto floor = GlProgram::link("floor", shader::kFloorVertex, shader::kFloorFragment);
+  auto floor = SceneFloor::create();
   if (!floor) return floor.error();
   std::unique_ptr<Scene> scene(new Scene);
-  scene->impl_ = std::make_unique<Impl>(std::move(*bodies), std::move(*strokes), std::move(*floor));
+  scene->impl_ = std::make_unique<Impl>(std::move(*bodies), std::move(*floor), std::move(*strokes));
   scene->impl_->samples = is_fine ? std::clamp(most, 1, kSamples) : 1;
   scene->impl_->is_software = is_software;
   const int version = epoxy_gl_version();
@@ -130,49 +125,6 @@ Result<std::unique_ptr<Scene>> Scene::create(Quality quality) {
   scene->impl_->renderer = fmt::format("{}, OpenGL {}.{}, {} anti-aliasing", drawable(name),
                                        version / 10, version % 10, smoothing);
   return scene;
-}
-
-void Scene::Impl::set_floor(const SceneContent& content, const SceneView& view,
-                            const ShadowPlace& shadow) {
-  const Theme& theme = *view.theme;
-  const mat4 turn = view.camera.view();
-  const double up = std::tan(0.5 * view.camera.field_of_view_rad);
-  const double right = up * view.size_px.x / view.size_px.y;
-  floor.set("ahead", -vec3(turn[0][2], turn[1][2], turn[2][2]));
-  floor.set("right", vec3(turn[0][0], turn[1][0], turn[2][0]) * right);
-  floor.set("up", vec3(turn[0][1], turn[1][1], turn[2][1]) * up);
-  floor.set("eye", view.eye_m());
-  floor.set("sky_top", theme.sky_top);
-  floor.set("sky_bottom", theme.sky_bottom);
-  floor.set("floor_near", theme.floor);
-  floor.set("floor_far", theme.floor_far);
-  floor.set("grid", theme.grid);
-  floor.set("axis_x", theme.axis_x);
-  floor.set("axis_z", theme.axis_z);
-  floor.set("focus",
-            vec2(content.focus_m.x - view.origin_m.x, content.focus_m.z - view.origin_m.z));
-  floor.set("world_origin", -vec2(view.origin_m.x, view.origin_m.z));
-  const double size = std::max(1.0, view.camera.distance_m / kUsualDistance_m);
-  floor.set("fade", vec2(kFloorFadesFrom_m, kFloorFadesTo_m) * size);
-  floor.set("shadow_centre", shadow.centre_m);
-  floor.set("shadow_half", shadow.half_m);
-  floor.set("shadow_depth", view.is_light() ? vec2(0.36, 0.42) : vec2(0.50, 0.55));
-  floor.set("grid_depth", content.has_grid ? vec2(0.75, 0.36) : vec2(0.0));
-  floor.set("axes", content.has_axes ? 1.0 : 0.0);
-  floor.set("pixel", view.scale);
-  floor.set("vignette", view.is_light() ? 0.02 : 0.07);
-}
-
-// Where no body is, at the farthest depth.
-void Scene::Impl::draw_floor(const SceneContent& content, const SceneView& view,
-                             const ShadowPlace& shadow) {
-  floor.use();
-  set_floor(content, view, shadow);
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, bodies.shadow_texture());
-  glBindVertexArray(nothing.get());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindTexture(GL_TEXTURE_2D, 0);
 }
 
 void Scene::draw(const SceneContent& content, const Camera& camera, const Theme& theme,
@@ -198,7 +150,7 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
     glDepthMask(GL_TRUE);
     glClear(GL_DEPTH_BUFFER_BIT);
     s.bodies.draw(view);
-    s.draw_floor(content, view, shadow);
+    s.floor.draw(content, view, shadow, s.bodies.shadow_texture());
     s.strokes.draw(content, view);
     glDisable(GL_DEPTH_TEST);
     GLuint ready = s.target.name();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "view/scene_shaders.h"
 
@@ -9,6 +10,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's line in its shadow
+constexpr double kContact_m = 0.55;      // what is higher leaves no shadow straight below
 constexpr double kShadowStep_m = 2.0;    // the shadows' picture grows in such steps: no flicker
 constexpr double kLargestShadow_m = 16.0;
 
@@ -109,15 +111,25 @@ void SceneBodies::make_shadow_target(int size_px) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shadow_.get(), 0);
 }
 
-void SceneBodies::load(const SceneContent& content, const SceneView& view) {
-  rows_.clear();
+// Those bodies whose lower end is at such a height.
+void SceneBodies::add_rows(const SceneContent& content, const SceneView& view, double from_m,
+                           double to_m) {
   for (const Capsule& c : content.bodies) {
-    if (!is_drawable(c)) continue;
+    const double low_m = std::min(c.a_m.y - c.radius_a_m, c.b_m.y - c.radius_b_m);
+    if (!is_drawable(c) || low_m < from_m || low_m >= to_m) continue;
     const vec3 colour(c.colour.red, c.colour.green, c.colour.blue);
     rows_.push_back({row(c.a_m - view.origin_m, c.radius_a_m),
                      row(c.b_m - view.origin_m, c.radius_b_m),
                      row(across(c.b_m - c.a_m, c.wide), c.width_a), row(colour, c.width_b)});
   }
+}
+
+void SceneBodies::load(const SceneContent& content, const SceneView& view) {
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  rows_.clear();
+  add_rows(content, view, -kAnywhere, kContact_m);
+  low_bodies_ = rows_.size();
+  add_rows(content, view, kContact_m, kAnywhere);
   bodies_ = rows_.size();
   for (const SceneLine& l : content.lines) {
     if (!is_finite(l.a_m) || !is_finite(l.b_m)) continue;
@@ -167,16 +179,18 @@ ShadowPlace SceneBodies::draw_shadows() {
   shadow_program_.use();
   shadow_program_.set("centre", place.centre_m);
   shadow_program_.set("half_size", place.half_m);
-  const auto draw = [this](const vec2& slide, const vec2& softness, double fading) {
+  const auto draw = [this](const vec2& slide, const vec2& softness, double fading,
+                           std::size_t count) {
     shadow_program_.set("slide", slide);
     shadow_program_.set("softness", softness);
     shadow_program_.set("fading", fading);
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(rows_.size()));
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
   };
   glColorMask(GL_TRUE, GL_FALSE, GL_FALSE, GL_FALSE);
-  draw(vec2(kLightDirection.x, kLightDirection.z) / kLightDirection.y, {0.02, 0.075}, 0.0);
+  draw(vec2(kLightDirection.x, kLightDirection.z) / kLightDirection.y, {0.02, 0.075}, 0.0,
+       rows_.size());
   glColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE);
-  draw({0.0, 0.0}, {0.02, 0.55}, 6.0);
+  draw({0.0, 0.0}, {0.02, 0.55}, 6.0, low_bodies_);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);

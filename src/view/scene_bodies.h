@@ -44,8 +44,10 @@ class SceneBodies {
   GlFrameBuffer shadow_target_;
   GLsizei index_count_ = 0;
   int shadow_px_ = 0;
-  std::vector<Instance> rows_;  // bodies, then lines
-  std::size_t bodies_ = 0;
+  void add_rows(const SceneContent& content, const SceneView& view, double from_m, double to_m);
+
+  std::vector<Instance> rows_;  // bodies near the floor, the others, lines
+  std::size_t low_bodies_ = 0, bodies_ = 0;
 };
 
 }  // namespace gaitpad

@@ -75,128 +75,132 @@ uniform vec2 slide;     // metres on the floor per metre of height
 uniform vec2 softness;  // of an edge: at the floor, more per metre of height
 uniform vec2 centre;
 uniform float half_size;
-out vec2 spot;
-flat out vec4 ends;
+uniform float fading;  // per metre of edge
+out vec2 spot;          // from a
+flat out vec2 along;
+flat out float per_span;
 flat out vec4 discs;  // radius and edge at a, at b
+flat out vec2 dark;   // at a, at b
 void main() {
   vec2 a = a_radius.xz - slide * a_radius.y, b = b_radius.xz - slide * b_radius.y;
-  float radius_a = a_radius.w * (0.5 + 0.5 * across_width_a.w);
-  float radius_b = b_radius.w * (0.5 + 0.5 * colour_width_b.w);
-  float edge_a = softness.x + softness.y * max(a_radius.y - a_radius.w, 0.0);
-  float edge_b = softness.x + softness.y * max(b_radius.y - b_radius.w, 0.0);
-  float reach = max(radius_a + edge_a, radius_b + edge_b);
-  vec2 along = b - a;
+  vec2 radius = vec2(a_radius.w * (0.5 + 0.5 * across_width_a.w),
+                     b_radius.w * (0.5 + 0.5 * colour_width_b.w));
+  vec2 height = max(vec2(a_radius.y - a_radius.w, b_radius.y - b_radius.w), 0.0);
+  vec2 edge = softness.x + softness.y * height;
+  float reach = max(radius.x + edge.x, radius.y + edge.y);
+  along = b - a;
   float span = length(along);
+  per_span = 1.0 / max(span * span, 1e-8);
   vec2 u = span > 1e-5 ? along / span : vec2(1.0, 0.0);
   vec2 v = vec2(-u.y, u.x);
   vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
-  spot = 0.5 * (a + b) + u * corner.x * (0.5 * span + reach) + v * corner.y * reach;
-  ends = vec4(a, b);
-  discs = vec4(radius_a, edge_a, radius_b, edge_b);
-  gl_Position = vec4((spot - centre) / half_size, 0.0, 1.0);
+  spot = 0.5 * along + u * corner.x * (0.5 * span + reach) + v * corner.y * reach;
+  discs = vec4(radius.x, edge.x, radius.y, edge.y);
+  // What is thin hardly hides a light that has a size.
+  dark = min(vec2(1.0), 0.45 + radius / edge) * exp(-fading * edge);
+  gl_Position = vec4((a + spot - centre) / half_size, 0.0, 1.0);
 }
 )";
 
 inline constexpr const char* kShadowFragment = R"(#version 330 core
 in vec2 spot;
-flat in vec4 ends;
+flat in vec2 along;
+flat in float per_span;
 flat in vec4 discs;
-uniform float fading;  // per metre of edge
+flat in vec2 dark;
 out vec4 shown;
 void main() {
-  vec2 along = ends.zw - ends.xy;
-  float share = clamp(dot(spot - ends.xy, along) / max(dot(along, along), 1e-8), 0.0, 1.0);
+  float share = clamp(dot(spot, along) * per_span, 0.0, 1.0);
   vec2 disc = mix(discs.xy, discs.zw, share);
-  float outside = length(spot - ends.xy - share * along) - disc.x;
-  float thin = min(1.0, 0.45 + disc.x / disc.y);  // hardly hides a light that has a size
-  float dark = 1.0 - smoothstep(-disc.y, disc.y, outside);
-  shown = vec4(dark * thin * exp(-fading * disc.y));
+  float inside = clamp(0.5 + 0.5 * (disc.x - length(spot - share * along)) / disc.y, 0.0, 1.0);
+  shown = vec4(inside * inside * (3.0 - 2.0 * inside) * mix(dark.x, dark.y, share));
 }
 )";
 
-// --- background and floor ------------------------------------------------------------------------
-inline constexpr const char* kFloorVertex = R"(#version 330 core
-uniform vec3 ahead;
-uniform vec3 right;  // to the picture's edge
-uniform vec3 up;
-out vec3 ray;
-out vec2 spot;
+// --- floor and background ------------------------------------------------------------------------
+// Both end with the same background, so that the floor fades into it without being blended. `spot`
+// goes from -1 to 1 over the picture.
+inline constexpr const char* kBackground = R"(#version 330 core
+uniform vec3 sky_top;
+uniform vec3 sky_bottom;
+uniform float vignette;
+uniform vec2 size_px;
+out vec4 shown;
+vec3 background() {
+  vec2 spot = gl_FragCoord.xy / size_px * 2.0 - 1.0;
+  return mix(sky_bottom, sky_top, 0.5 + 0.5 * spot.y) * (1.0 - vignette * dot(spot, spot));
+}
+// Half a step of noise, against bands.
+void show(vec3 colour) {
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  shown = vec4(colour + (noise - 0.5) / 255.0, 1.0);
+}
+)";
+
+inline constexpr const char* kSkyVertex = R"(#version 330 core
 void main() {
-  spot = vec2(float((gl_VertexID & 1) * 4) - 1.0, float((gl_VertexID >> 1) * 4) - 1.0);
-  ray = ahead + spot.x * right + spot.y * up;
+  vec2 spot = vec2(float((gl_VertexID & 1) * 4), float((gl_VertexID >> 1) * 4)) - 1.0;
   gl_Position = vec4(spot, 1.0, 1.0);
 }
 )";
 
-// No place on the floor can hide anything: the eye and all bodies are above it. So it is part of
-// the background, and needs no depth.
-inline constexpr const char* kFloorFragment = R"(#version 330 core
-in vec3 ray;
-in vec2 spot;
-uniform vec3 eye;
-uniform vec3 sky_top;
-uniform vec3 sky_bottom;
+inline constexpr const char* kSkyFragment = R"(
+void main() { show(background()); }
+)";
+
+inline constexpr const char* kFloorVertex = R"(#version 330 core
+uniform mat4 to_clip;
+uniform vec2 focus;
+uniform vec2 world_origin;
+uniform vec2 shadow_centre;
+uniform float per_shadow;
+uniform float half_size;
+out vec2 from_focus;
+out vec2 world;
+out vec2 in_shadow;
+void main() {
+  vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
+  from_focus = corner * half_size;
+  vec2 place = focus + from_focus;
+  world = place - world_origin;
+  in_shadow = 0.5 + 0.5 * (place - shadow_centre) * per_shadow;
+  // Behind everything but the background: what lies on it or stands there is never hidden by it.
+  gl_Position = to_clip * vec4(place.x, 0.0, place.y, 1.0);
+  gl_Position.z = 0.99999 * gl_Position.w;
+}
+)";
+
+inline constexpr const char* kFloorFragment = R"(
+in vec2 from_focus;
+in vec2 world;
+in vec2 in_shadow;
 uniform vec3 floor_near;
 uniform vec3 floor_far;
 uniform vec3 grid;
-uniform vec3 axis_x;
-uniform vec3 axis_z;
-uniform vec2 focus;
-uniform vec2 world_origin;
-uniform vec2 fade;          // from, to: metres from the focus
-uniform vec2 shadow_centre;
-uniform float shadow_half;  // 0: none
+uniform float fade_from;
+uniform float half_size;
 uniform vec2 shadow_depth;  // of the light's shadow, of the contact
-uniform vec2 grid_depth;    // of the metre lines, of the 20 cm lines; 0: no grid
-uniform float axes;
+uniform vec2 grid_depth;    // of the metre lines, of the 20 cm lines
 uniform float pixel;        // of scale 1
-uniform float vignette;
 uniform sampler2D shadow;
-out vec4 shown;
 
 // How much of a pixel lines `width_px` wide, one a cell, cover. Gone where they would be too dense.
-float lines(vec2 place, vec2 metres, float cell, float width_px) {
-  vec2 apart = abs(fract(place / cell - 0.5) - 0.5) * cell;
-  vec2 cover = clamp((0.5 * width_px + 0.5) - apart / metres, 0.0, 1.0);
-  cover *= smoothstep(2.5, 9.0, cell / metres);
+float lines(vec2 place, vec2 cell_px, float width_px) {
+  vec2 apart_px = abs(fract(place - 0.5) - 0.5) * cell_px;
+  vec2 cover = clamp(0.5 * width_px + 0.5 - apart_px, 0.0, 1.0) *
+               clamp((cell_px - 2.5) * 0.15, 0.0, 1.0);
   return max(cover.x, cover.y);
 }
-// A line from the world's origin along its first coordinate, a metre long.
-float axis(vec2 place, vec2 metres, float width_px) {
-  float cover = clamp((0.5 * width_px + 0.5) - abs(place.y) / metres.y, 0.0, 1.0);
-  float ends = clamp(0.5 + place.x / metres.x, 0.0, 1.0) *
-               clamp(0.5 + (1.0 - place.x) / metres.x, 0.0, 1.0);
-  return cover * ends;
-}
 void main() {
-  float far_off = -eye.y / min(ray.y, -1e-4);
-  vec2 place = eye.xz + far_off * ray.xz;
-  vec2 metres = max(fwidth(place), vec2(1e-5));
-  vec3 colour = mix(sky_bottom, sky_top, 0.5 + 0.5 * spot.y);
-  colour *= 1.0 - vignette * dot(spot, spot);
-  float distance_m = length(place - focus);
-  if (ray.y < -1e-4 && distance_m < fade.y) {
-    vec3 ground = mix(floor_near, floor_far, smoothstep(0.0, fade.y, distance_m));
-    if (grid_depth.x > 0.0) {
-      vec2 world = place - world_origin;
-      float fine = lines(world, metres, 0.2, pixel) * grid_depth.y;
-      float coarse = lines(world, metres, 1.0, 1.9 * pixel) * grid_depth.x;
-      ground = mix(ground, grid, max(fine, coarse));
-    }
-    if (axes > 0.0) {
-      vec2 world = place - world_origin;
-      ground = mix(ground, axis_x, axis(world, metres, 3.0 * pixel));
-      ground = mix(ground, axis_z, axis(world.yx, metres.yx, 3.0 * pixel));
-    }
-    vec2 in_shadow = (place - shadow_centre) / max(shadow_half, 1e-3);
-    if (max(abs(in_shadow.x), abs(in_shadow.y)) < 1.0 && shadow_half > 0.0) {
-      vec2 dark = textureLod(shadow, 0.5 + 0.5 * in_shadow, 0.0).rg;
-      ground *= (1.0 - shadow_depth.x * dark.r) * (1.0 - shadow_depth.y * dark.g);
-    }
-    colour = mix(ground, colour, smoothstep(fade.x, fade.y, distance_m));
-  }
-  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-  shown = vec4(colour + (noise - 0.5) / 255.0, 1.0);
+  vec2 metre_px = 1.0 / max(fwidth(world), vec2(1e-5));
+  float distance_m = length(from_focus);
+  vec3 ground = mix(floor_near, floor_far, min(distance_m / half_size, 1.0));
+  float fine = lines(world * 5.0, metre_px * 0.2, pixel) * grid_depth.y;
+  float coarse = lines(world, metre_px, 1.9 * pixel) * grid_depth.x;
+  ground = mix(ground, grid, max(fine, coarse));
+  vec2 dark = textureLod(shadow, in_shadow, 0.0).rg * shadow_depth;
+  ground *= (1.0 - dark.r) * (1.0 - dark.g);
+  show(mix(ground, background(), smoothstep(fade_from, half_size, distance_m)));
 }
 )";
 

@@ -7,7 +7,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kDotRadius_px = 3.6, kTrailHalf_px = 2.4, kTrailTail_px = 1.0;
+constexpr double kAxisRadius_px = 1.5, kDotRadius_px = 3.6, kTrailHalf_px = 2.4,
+                 kTrailTail_px = 1.0;
 constexpr double kTrailStrength = 0.95;
 constexpr double kNear_m = 0.1;
 
@@ -22,6 +23,17 @@ std::optional<Spot> spot_of(const vec3& world_m, const SceneView& view) {
   if (clip.w < kNear_m) return std::nullopt;
   const vec3 ndc = vec3(clip) / clip.w;
   return Spot{ndc, vec2(ndc.x, ndc.y) * 0.5 * view.size_px};
+}
+
+// From the point before; what is not finite takes no length.
+double step_m(const Trail& trail, std::size_t i) {
+  const double length_m = glm::distance(trail.points_m[i - 1], trail.points_m[i]);
+  return std::isfinite(length_m) ? length_m : 0.0;
+}
+double length_m(const Trail& trail) {
+  double sum_m = 0.0;
+  for (std::size_t i = 1; i < trail.points_m.size(); ++i) sum_m += step_m(trail, i);
+  return sum_m;
 }
 
 vec2 direction(const vec2& from, const vec2& to, const vec2& otherwise) {
@@ -66,15 +78,19 @@ void SceneStrokes::draw(const SceneContent& content, const SceneView& view) {
   glDisable(GL_BLEND);
 }
 
+// It fades by its length, not by time: a foot that stands does not cut it in two.
 // Two triangles between each point and the next, with shared edges: nothing overlaps, so a corner
 // is not darker than the rest.
 void SceneStrokes::add_ribbon(const Trail& trail, const SceneView& view) {
   const std::size_t count = trail.points_m.size();
   const glm::vec3 colour(trail.colour.red, trail.colour.green, trail.colour.blue);
+  const double whole_m = std::max(length_m(trail), 1e-6);
+  double passed_m = 0.0;
   std::optional<Spot> last;
   std::array<Edge, 2> before;
   vec2 along(1.0, 0.0);
   for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) passed_m += step_m(trail, i);
     const auto spot = spot_of(trail.points_m[i], view);
     if (!spot) {
       last.reset();
@@ -83,14 +99,15 @@ void SceneStrokes::add_ribbon(const Trail& trail, const SceneView& view) {
     const auto next = i + 1 < count ? spot_of(trail.points_m[i + 1], view) : std::nullopt;
     along = direction(last ? last->px : spot->px, next ? next->px : spot->px, along);
     const vec2 aside(-along.y, along.x);
-    const double age = static_cast<double>(i + 1) / static_cast<double>(count);  // 1: the newest
-    const double half = mix(kTrailTail_px, kTrailHalf_px, age) * view.scale, reach = half + 1.0;
+    const double share = passed_m / whole_m;  // 1: the newest
+    const double half = mix(kTrailTail_px, kTrailHalf_px, share) * view.scale, reach = half + 1.0;
     std::array<Edge, 2> edges;
     for (const int side : {0, 1}) {
       const double off = side == 0 ? -reach : reach;
       const vec2 at = vec2(spot->ndc.x, spot->ndc.y) + aside * off * 2.0 / view.size_px;
       edges[side] = {glm::vec4(at.x, at.y, spot->ndc.z, 1.0),
-                     glm::vec3(off, half, kTrailStrength * trail.colour.alpha * age * age), colour};
+                     glm::vec3(off, half, kTrailStrength * trail.colour.alpha * share * share),
+                     colour};
     }
     if (last) {
       for (const Edge& e : {before[0], before[1], edges[0], edges[0], before[1], edges[1]}) {
@@ -120,6 +137,10 @@ void SceneStrokes::draw_lines(const SceneContent& content, const SceneView& view
                         glm::vec3(b_m - view.origin_m),
                         glm::vec4(c.red, c.green, c.blue, c.alpha)});
   };
+  if (content.has_axes) {
+    add(vec3(0.0), kLeft, kAxisRadius_px, view.theme->axis_x);
+    add(vec3(0.0), kForward, kAxisRadius_px, view.theme->axis_z);
+  }
   for (const SceneLine& l : content.lines) add(l.a_m, l.b_m, 0.5 * l.width_px, l.colour);
   for (const vec3& joint : content.joints_m) {
     add(joint, joint, kDotRadius_px, content.joint_colour);

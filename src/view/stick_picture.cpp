@@ -191,13 +191,15 @@ void draw_card(cairo_t* cr, const Box& card, const StickPicture& stick) {
   if (stick.advice) draw_verdict(cr, box, *stick.advice);
 }
 
-// The whole picture as PNG, empty where there is no memory for it.
-std::string picture_png(const std::string& heading, std::span<const StickPicture> sticks) {
+}  // namespace
+
+Surface stick_picture(const std::string& heading, std::span<const StickPicture> sticks) {
+  sticks = sticks.first(std::min(sticks.size(), kMaxSticks));
   const double height = kHeadingHeight +
                         static_cast<double>(sticks.size()) * (kCardHeight + kBetweenCards) +
                         kMargin - kBetweenCards;
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kPageWidth),
-                                                   static_cast<int>(std::ceil(height))));
+  Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kPageWidth),
+                                             static_cast<int>(std::ceil(height))));
   const Cairo cr(cairo_create(surface.get()));
   fill_box(cr.get(), {0.0, 0.0, kPageWidth, height}, rgb(colour::kPaper));
   draw_text(cr.get(), {24.0, colour::kInk, Align::left, true}, {kMargin, 50.0}, heading,
@@ -207,14 +209,14 @@ std::string picture_png(const std::string& heading, std::span<const StickPicture
     draw_card(cr.get(), card, stick);
     card.y += kCardHeight + kBetweenCards;
   }
-  return cairo_status(cr.get()) == CAIRO_STATUS_SUCCESS ? png_of(surface.get()) : std::string();
+  return surface;
 }
-
-}  // namespace
 
 std::optional<Error> write_stick_picture(const std::string& path, const std::string& heading,
                                          std::span<const StickPicture> sticks) {
-  const std::string png = picture_png(heading, sticks.first(std::min(sticks.size(), kMaxSticks)));
+  const Surface surface = stick_picture(heading, sticks);
+  const bool is_drawn = cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS;
+  const std::string png = is_drawn ? png_of(surface.get()) : std::string();
   if (png.empty()) return Error{path + ": cannot be drawn: cairo has no memory"};
   const std::filesystem::path file(path);
   const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";

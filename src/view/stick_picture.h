@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "stick/recommendation.h"
 #include "stick/statistics.h"
+#include "view/drawing.h"
 
 namespace gaitpad {
 
@@ -17,7 +18,9 @@ struct StickPicture {
   const StickStatistics* statistics = nullptr;
   const StickAdvice* advice = nullptr;
 };
-// A PNG with one row a stick. Written beside `path` first; on error nothing stands there or the old
+// One row a stick, opaque (CAIRO_FORMAT_RGB24); without memory cairo's own broken surface.
+Surface stick_picture(const std::string& heading, std::span<const StickPicture> sticks);
+// The same as a PNG. Written beside `path` first; on error nothing stands there or the old
 // file is as it was.
 std::optional<Error> write_stick_picture(const std::string& path, const std::string& heading,
                                          std::span<const StickPicture> sticks);

@@ -1,6 +1,6 @@
 #include "view/ui.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "view/ui_bars.h"
 
@@ -18,6 +18,17 @@ void keep_sound(const UiInput& input, UiState& state) {
 }
 
 }  // namespace
+
+std::vector<int> style_choices(const Cast& cast) {
+  std::vector<int> choices;
+  for (std::size_t i = 0; i < cast.styles.size(); ++i) {
+    const auto first = std::find(cast.styles.begin(), cast.styles.end(), cast.styles[i]);
+    if (first == cast.styles.begin() + static_cast<std::ptrdiff_t>(i)) {
+      choices.push_back(static_cast<int>(i));
+    }
+  }
+  return choices;
+}
 
 bool obey(Action action, int walker_count, UiState& state) noexcept {
   if (action >= Action::panel_pad && action <= Action::panel_loop) {
@@ -66,7 +77,9 @@ UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, d
   draw_timeline(ui, layout.timeline);
   draw_status(ui, layout.status);
   draw_messages(ui, layout.scene);
-  if (state.is_help_open) draw_help(ui, width, height);
+  if (state.is_help_open) {
+    draw_help(ui, {0.0f, layout.top.height, size.x, size.y - layout.top.height});
+  }
   return out;
 }
 

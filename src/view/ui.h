@@ -96,6 +96,10 @@ struct UiOutput {
   bool dismisses_messages = false;
 };
 
+// Indices in Cast::styles of those that a `style` command reaches: of equal names the first. The
+// n-th of them is what Action::style_1 + n - 1 chooses.
+std::vector<int> style_choices(const Cast& cast);
+
 // What an action means to the flat picture alone: panels, theme, trails, source, help, whom the
 // panels tell of. False: it is for somebody else. draw_ui() only asks for actions, those included.
 bool obey(Action action, int walker_count, UiState& state) noexcept;

@@ -15,7 +15,7 @@ void draw_timeline(Ui& ui, const UiRect& rect);
 void draw_status(Ui& ui, const UiRect& rect);
 void draw_messages(Ui& ui, const UiRect& scene);
 void draw_labels(Ui& ui, const UiRect& scene);
-void draw_help(Ui& ui, int width_px, int height_px);
+void draw_help(Ui& ui, const UiRect& room);  // over everything in there
 void draw_columns(Ui& ui, const UiLayout& layout);
 
 }  // namespace gaitpad

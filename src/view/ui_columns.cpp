@@ -47,16 +47,15 @@ void draw_heading(Ui& ui, const PanelPart& part) {
              look)) {
     ui.out.actions.push_back(part.action);
   }
-  ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(24))});
+  ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(23))});
 }
 
 void draw_separator(Ui& ui) {
-  ImGui::Dummy({1.0f, ui.px(2)});
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float pad = ImGui::GetStyle().WindowPadding.x;
-  ImGui::GetWindowDrawList()->AddLine({at.x - pad, at.y},
-                                      {at.x + ImGui::GetContentRegionAvail().x + pad, at.y},
-                                      packed(ui.theme.border));
+  ImGui::GetWindowDrawList()->AddLine(
+      {at.x - pad, at.y + ui.px(1)},
+      {at.x + ImGui::GetContentRegionAvail().x + pad, at.y + ui.px(1)}, packed(ui.theme.border));
   ImGui::Dummy({1.0f, ui.px(4)});
 }
 
@@ -81,7 +80,7 @@ void draw_cast(Ui& ui) {
     look.is_on = ui.state.walker == i;
     look.dot = walker_colour(ui, i);
     look.width = cell;
-    look.height = std::round(ui.px(24));
+    look.height = std::round(ui.px(22));
     if (button(ui, fmt::format("walker {}", i + 1), walker_name(ui, i), look)) {
       ui.state.walker = i;
     }
@@ -114,7 +113,8 @@ void draw_column(Ui& ui, const UiLayout& layout, Column column) {
   if (rect.is_empty()) return;
   const bool has_both = !layout.left.is_empty() && !layout.right.is_empty();
   const char* id = is_left_one ? "left column" : "right column";
-  begin_area(ui, id, rect, ui.theme.panel, {14.0f, 12.0f});
+  begin_area(ui, id, rect, ui.theme.panel, {14.0f, 10.0f});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), std::round(ui.px(5))});
   if (is_left_one || !has_both) draw_cast(ui);
   bool is_first = true;
   for (const PanelPart& part : kParts) {
@@ -125,6 +125,7 @@ void draw_column(Ui& ui, const UiLayout& layout, Column column) {
     is_first = false;
     draw_panel(ui, part, !ui.state.memory.was_open[index]);
   }
+  ImGui::PopStyleVar();
   end_area();
 }
 

@@ -9,29 +9,47 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kRowPixels = 24.0, kHeadingPixels = 32.0, kColumnPixels = 410.0;
+constexpr double kRowPixels = 24.0, kHeadingPixels = 32.0, kColumnPixels = 420.0;
 constexpr double kKeysPixels = 124.0, kButtonPixels = 86.0;
 
 // A heading and the rows below it, as one column holds them together.
 struct Row {
   std::string_view heading;  // not empty: this and nothing else
-  std::vector<std::string_view> keys;
-  std::string_view button, text, name;
+  std::vector<std::string> keys;
+  std::string_view button, text;
+  std::vector<std::string_view> names;  // of the actions that it tells of
 };
+
+bool is_numbered_style(Action action) {
+  return action >= Action::style_1 && action <= Action::style_9;
+}
+
+// The nine keys of the styles in one row: "1 .. 9".
+void add_style(const ActionInfo& info, Row& row) {
+  row.names.push_back(info.name);
+  if (info.action != Action::style_9) return;
+  row.keys[0] += fmt::format(" .. {}", key_name(info.key));
+  row.keys[1] += fmt::format(" .. {}", key_name(info.key));
+  row.text = "the style with that number";
+}
 
 std::vector<Row> rows() {
   std::vector<Row> all;
   all.push_back({"Walk and look", {}, {}, {}, {}});
   for (const HelpLine& line : walking_help()) {
-    all.push_back({{}, {line.input}, {}, line.text, "walking"});
+    all.push_back({{}, {std::string(line.input)}, {}, line.text, {"walking"}});
   }
   std::string_view group;
   for (const ActionInfo& info : actions()) {
     if (info.group != group) all.push_back({info.group, {}, {}, {}, {}});
     group = info.group;
-    Row row{{}, {}, {}, info.text, info.name};
+    if (is_numbered_style(info.action) && info.action != Action::style_1) {
+      add_style(info, all.back());
+      continue;
+    }
+    Row row{{}, {}, {}, info.text, {info.name}};
     for (const SDL_Keycode key : {info.key, info.second_key}) {
-      if (key != SDLK_UNKNOWN) row.keys.push_back(key_name(key));
+      if (key != SDLK_UNKNOWN) row.keys.emplace_back(key_name(key));
     }
     if (info.button >= 0) row.button = button_label(static_cast<PadButton>(info.button));
     all.push_back(std::move(row));
@@ -64,7 +82,7 @@ void draw_row(Ui& ui, const ImVec2& at, const Row& row, float width) {
   }
   float x = at.x;
   const float keys = ui.px(kKeysPixels);
-  for (const std::string_view key : row.keys) {
+  for (const std::string& key : row.keys) {
     x = draw_key(ui, {x, at.y + ui.px(2)}, key, at.x + keys - x - ui.px(6));
   }
   float right = at.x + width;
@@ -74,7 +92,9 @@ void draw_row(Ui& ui, const ImVec2& at, const Row& row, float width) {
   }
   put_text(list, ui.fonts.body, ui.theme.text, {at.x + keys, at.y + ui.px(4)}, row.text,
            right - at.x - keys - ui.px(6));
-  keep_item(fmt::format("help {}", row.name), at, {at.x + width, at.y + height_of(ui, row)});
+  for (const std::string_view name : row.names) {
+    keep_item(fmt::format("help {}", name), at, {at.x + width, at.y + height_of(ui, row)});
+  }
 }
 
 // Where the columns end, so that none is higher than need be and none begins below its heading.
@@ -100,7 +120,7 @@ void draw_rows(Ui& ui, float width) {
   const std::vector<Row> all = rows();
   const float gap = ui.px(28);
   const int columns =
-      std::clamp(static_cast<int>((width + gap) / (ui.px(kColumnPixels * 0.86) + gap)), 1, 3);
+      std::clamp(static_cast<int>((width + gap) / (ui.px(kColumnPixels) + gap)), 1, 3);
   const float column = std::min(
       (width - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns), ui.px(520));
   const ImVec2 begin = ImGui::GetCursorScreenPos();
@@ -121,23 +141,18 @@ void draw_rows(Ui& ui, float width) {
 
 }  // namespace
 
-void draw_help(Ui& ui, int width_px, int height_px) {
-  const float margin = std::round(ui.px(width_px > static_cast<int>(ui.px(900)) ? 28 : 8));
-  const ImVec2 size{static_cast<float>(width_px) - 2.0f * margin,
-                    static_cast<float>(height_px) - 2.0f * margin};
-  if (size.x < ui.px(80) || size.y < ui.px(60)) return;
-  ImGui::SetNextWindowPos({margin, margin});
-  ImGui::SetNextWindowSize(size);
+void draw_help(Ui& ui, const UiRect& room) {
+  if (room.width < ui.px(80) || room.height < ui.px(60)) return;
+  ImGui::SetNextWindowPos(room.min());
+  ImGui::SetNextWindowSize({room.width, room.height});
   if (!ui.in.is_modal) ImGui::SetNextWindowFocus();
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_colour(with_alpha(ui.theme.card, 0.985)));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(8));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_colour(ui.theme.card));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{ui.px(24), ui.px(18)});
   ImGui::Begin("help page", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoNav);
-  keep_item("help page", {margin, margin}, {margin + size.x, margin + size.y});
+  keep_item("help page", room.min(), room.max());
   const float width = ImGui::GetContentRegionAvail().x;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   put_text(*ImGui::GetWindowDrawList(), ui.fonts.title, ui.theme.text, at, "Keys and pad buttons",
@@ -149,7 +164,7 @@ void draw_help(Ui& ui, int width_px, int height_px) {
   ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(24))});
   draw_rows(ui, width);
   ImGui::End();
-  ImGui::PopStyleVar(3);
+  ImGui::PopStyleVar();
   ImGui::PopStyleColor();
 }
 

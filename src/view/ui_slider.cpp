@@ -60,7 +60,9 @@ void draw_slider(Ui& ui, const ImVec2& min, const ImVec2& max, double value,
   const float grab = place(value);
   list.AddRectFilled(min, {grab, max.y}, packed(with_alpha(ui.theme.accent, 0.45 * strength)),
                      ui.px(4));
-  if (look.mark && std::isfinite(*look.mark)) draw_notch(ui, place(*look.mark), min, max);
+  if (look.mark && std::isfinite(*look.mark) && *look.mark != value) {
+    draw_notch(ui, place(*look.mark), min, max);
+  }
   const bool is_hot = ImGui::IsItemHovered() || ImGui::IsItemActive();
   Colour knob = is_hot && look.is_enabled ? ui.theme.text : ui.theme.left;
   list.AddRectFilled({grab - ui.px(3.5), min.y + ui.px(2)}, {grab + ui.px(3.5), max.y - ui.px(2)},
@@ -78,7 +80,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   if (!std::isfinite(value)) value = look.min;
   ImGui::PushID(id.data(), id.data() + id.size());
   ImGui::BeginDisabled(!look.is_enabled);
-  ImGui::InvisibleButton("s", {std::max(width, ui.px(20)), std::round(ui.px(20))});
+  ImGui::InvisibleButton("s", {std::max(width, ui.px(20)), std::round(ui.px(19))});
   const bool is_held = ImGui::IsItemActive();
   const bool is_taken = ImGui::IsItemActivated();
   ImGui::EndDisabled();

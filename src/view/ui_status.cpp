@@ -63,7 +63,7 @@ void draw_message_card(Ui& ui, float width) {
     for (const std::string& line : text_lines(ui.fonts.body, all[i], room, kMaxMessageLines)) {
       text_line(ui, ui.fonts.body, ui.theme.text, line, room);
     }
-    ImGui::Dummy({1.0f, ui.px(1)});
+    if (i + 1 < all.size()) ImGui::Dummy({1.0f, ui.px(2)});
   }
   if (all.size() > shown) note(ui, fmt::format("and {} before", all.size() - shown), 1);
   const ImVec2 end = ImGui::GetCursorScreenPos();
@@ -131,15 +131,18 @@ void draw_messages(Ui& ui, const UiRect& scene) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(6));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{ui.px(14), ui.px(10)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   ImGui::Begin("messages", nullptr, flags);
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-  ImGui::GetWindowDrawList()->AddRectFilled({at.x + 1.0f, at.y + ui.px(6)},
-                                            {at.x + ui.px(4), at.y + size.y - ui.px(6)},
-                                            packed(ui.theme.warning), ui.px(2));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(at, {at.x + size.x, at.y + size.y});
+  list.AddRectFilled({at.x + 1.0f, at.y + ui.px(6)}, {at.x + ui.px(4), at.y + size.y - ui.px(6)},
+                     packed(ui.theme.warning), ui.px(2));
+  list.PopClipRect();
   keep_item("messages", at, {at.x + size.x, at.y + size.y});
   draw_message_card(ui, width - ui.px(28));
   ImGui::End();
-  ImGui::PopStyleVar(3);
+  ImGui::PopStyleVar(4);
   ImGui::PopStyleColor();
 }
 

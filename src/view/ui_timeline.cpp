@@ -11,6 +11,8 @@ namespace {
 constexpr std::array<double, 5> kPaces = {0.1, 0.25, 0.5, 1.0, 2.0};
 constexpr float kFullWidth = 980.0f;  // at scale 1; below it two rows and one button for the pace
 
+constexpr float kTrackWithSeconds = 28.0f;
+
 std::string clock_text(double seconds) {
   const auto ms = static_cast<std::int64_t>(std::max(seconds, 0.0) * 1000.0 + 0.5);
   return fmt::format("{:02d}:{:02d}.{:03d}", ms / 60000, ms / 1000 % 60, ms % 1000);
@@ -95,7 +97,7 @@ void draw_track(Ui& ui, const UiRect& rect) {
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float y = std::round(rect.y + rect.height / 2.0f), half = ui.px(3);
-  draw_seconds(ui, track);
+  if (rect.height >= ui.px(kTrackWithSeconds)) draw_seconds(ui, track);
   list.AddRectFilled({rect.x, y - half}, {rect.x + rect.width, y + half}, packed(ui.theme.frame),
                      half);
   const float x = track.x_of(shown);

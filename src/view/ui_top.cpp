@@ -9,6 +9,8 @@
 namespace gaitpad {
 namespace {
 
+constexpr std::size_t kBarButtons = 6;  // before those of the panels
+
 // What a button of the bar does: an action, or a switch of the state that has none, or a menu.
 struct Entry {
   std::string_view id, label;
@@ -189,20 +191,21 @@ void draw_top_bar(Ui& ui, const UiRect& rect) {
   float wanted = x + ui.px(10);
   for (const Entry& entry : all) wanted += button_width(ui, entry.label, entry.look) + gap;
   const bool fits = wanted <= rect.width;
-  const float menu = fits ? 0.0f : button_width(ui, "Menu", {}) + gap;
+  const float menu = fits ? 0.0f : button_width(ui, "Panels", {}) + gap;
   const float end = rect.width - ui.px(8) - menu;
+  const std::size_t most = fits ? all.size() : kBarButtons;  // panels: all in the bar or none
   std::size_t i = 0;
-  for (; i < all.size(); ++i) {
-    if (i == 6) x += ui.px(10);  // panels stand apart
+  for (; i < most; ++i) {
+    if (i == kBarButtons) x += ui.px(10);
     const float width = button_width(ui, all[i].label, all[i].look);
     if (x + width > end) break;
     ImGui::SetCursorPos({x, y});
     if (button(ui, all[i].id, all[i].label, all[i].look)) press(ui, all[i]);
     x += width + gap;
   }
-  if (i < all.size()) {
+  if (i < all.size() && x + menu <= rect.width) {
     ImGui::SetCursorPos({x, y});
-    if (button(ui, "menu", "Menu")) ImGui::OpenPopup("menu");
+    if (button(ui, "menu", i == kBarButtons ? "Panels" : "Menu")) ImGui::OpenPopup("menu");
     x += menu;
   }
   draw_facts(ui, rect, rect.x + x + ui.px(10));

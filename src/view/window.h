@@ -3,15 +3,29 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "session/live.h"
 #include "session/replay.h"
+#include "view/camera.h"
 #include "view/ui.h"
 
 namespace gaitpad {
+
+// What a script of a test sees of the window.
+struct WindowGlance {
+  std::int64_t frame = 0;  // the number of the one that is drawn next
+  const SessionFrame& session;
+  const UiState& ui;
+  const Camera& camera;
+  double pace = 1.0;
+  bool is_playback = false, is_browsing = false, is_calibrating = false;
+  std::string recording;  // file, empty: none
+  std::vector<std::string> messages;
+};
 
 struct WindowOptions {
   LiveOptions live;   // its wish too
@@ -21,20 +35,24 @@ struct WindowOptions {
       false;  // live.rate_hz was asked for: an error where a trace says another
   std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
   std::string layout_file;         // remembered from one start to the next; empty: not
-  int frames = 0;                  // drawn, then it ends; 0: until it is closed
+  std::string recent_file;         // the same of files that were opened
+  int frames = 0;                  // drawn, then it ends; 0: until it is closed, or, where pictures
+                                   // are made of a trace, until that ends
   std::string screenshot, video;   // files; with either a frame is 1/60 s of the session
   std::optional<ThemeName> theme;  // else the remembered one
   std::vector<Panel> panels;       // with are_panels_given: these and no others are open
   bool are_panels_given = false;
   double scale = 0.0;              // 0: the display's
   int width = 1280, height = 720;  // at scale 1
-  // For tests: called before each drawn frame with its number; may push SDL events.
-  std::function<void(std::int64_t frame)> script;
-  std::function<bool()> is_ended_from_outside;  // Ctrl-C
+  bool is_hidden = false;          // nobody is to see it: SDL's offscreen driver
+  // For tests: called before each drawn frame; may push SDL events.
+  std::function<void(const WindowGlance& glance)> script;
+  std::function<bool()> is_ended_from_outside;              // Ctrl-C
+  std::function<std::vector<std::string>()> take_commands;  // for the session, from outside
 };
 struct WindowResult {
   std::vector<nlohmann::ordered_json> summaries;  // one a character, of the last session
-  LiveStatus status;                              // of it
+  std::optional<LiveStatus> status;               // of it; none: it was a playback
   std::int64_t frames = 0;
   double frames_per_second = 0.0;
   std::vector<std::string> remarks;

@@ -137,6 +137,14 @@ class FakeBus {
     show(driver, pad);
     return pad;
   }
+  // As the kernel does once its driver has asked the pad.
+  void name_id(const Pad& pad, const std::string& unique_id) {
+    {
+      const std::lock_guard lock(mutex_);
+      pad->listing.info.unique_id = unique_id;
+    }
+    tell();
+  }
   void unplug(const Pad& pad) {
     {
       const std::lock_guard lock(mutex_);

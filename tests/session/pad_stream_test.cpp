@@ -178,6 +178,53 @@ TEST_F(PadStreamTest, AnUnplugThatNobodyHadTimeToNoticeKeepsTheIndexToo) {
   EXPECT_EQ(report.bytes[0], 77);
 }
 
+TEST_F(PadStreamTest, APadWhoseUniqueIdComesLateIsOpenedOnceAndWithIt) {
+  start();
+  auto pad = bus_.make(kHidraw, "", "port1");
+  pad->listing.kernel_driver = "playstation";
+  const auto shown = std::chrono::steady_clock::now();
+  bus_.show(kHidraw, pad);
+  bus_.plug(kHidraw, "B", "port2");
+  expect(ReportKind::added, 0);  // the other one: both have been seen
+  EXPECT_EQ(stream_->device(0).info.unique_id, "B");
+  bus_.name_id(pad, "A");
+  const bool is_in_time = std::chrono::steady_clock::now() - shown < 900ms;
+  expect(ReportKind::added, 1);
+  if (is_in_time) {
+    EXPECT_EQ(stream_->device(1).info.unique_id, "A");
+  }
+  bus_.plug(kHidraw, "C", "port3");
+  expect(ReportKind::added, 2);
+  EXPECT_EQ(pad->openings, 1);
+  EXPECT_EQ(stream_->counts().plugged, 3);
+}
+
+TEST_F(PadStreamTest, APadThatNeverTellsItsUniqueIdIsOpenedAllTheSame) {
+  auto pad = bus_.make(kHidraw, "", "port1");
+  pad->listing.kernel_driver = "sony";
+  bus_.show(kHidraw, pad);
+  const auto before = std::chrono::steady_clock::now();
+  start();
+  expect(ReportKind::added, 0);
+  EXPECT_GE(std::chrono::steady_clock::now() - before, 900ms);
+  EXPECT_EQ(pad->openings, 1);
+}
+
+TEST_F(PadStreamTest, ANodeWhoseUniqueIdChangesWhileItIsOpenIsNotOpenedAgain) {
+  auto pad = bus_.plug(kHidraw, "", "port1");
+  start();
+  expect(ReportKind::added, 0);
+  bus_.name_id(pad, "A");
+  auto other = bus_.plug(kHidraw, "B", "port2");
+  expect(ReportKind::added, 1);
+  EXPECT_EQ(pad->openings, 1);
+  pad->send_axes(7, 0);
+  expect_x(0, 7);
+  bus_.unplug(pad);
+  expect(ReportKind::removed, 0);
+  EXPECT_EQ(stream_->counts().plugged, 2);
+}
+
 TEST_F(PadStreamTest, TwoEqualPadsAreKeptApartByTheirUniqueIds) {
   auto a = bus_.plug(kHidraw, "A", "port1");
   auto b = bus_.plug(kHidraw, "B", "port2");

@@ -1,16 +1,15 @@
 // gaitpad calibrate [PAD]: measures a pad's sticks, guided at the terminal or out of recordings,
 // says what it found and keeps it for play, record and monitor.
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <utility>
 
 #include "session/calibration_store.h"
+#include "session/user_files.h"
 #include "stick/pad_analysis.h"
 #include "tools/gaitpad/calibrate_files.h"
 #include "tools/gaitpad/calibrate_live.h"
@@ -23,24 +22,6 @@
 
 namespace gaitpad {
 namespace {
-
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  return fmt::format("{:%Y-%m-%d}", fmt::localtime(now));
-}
-
-std::vector<std::string> comments_of(const PadAnalysis& analysis) {
-  std::vector<std::string> comments = {
-      "Made by gaitpad calibrate; config/README.md says what the "
-      "keys mean. Edit it as you like."};
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (!analysis.stick[i]) continue;
-    comments.push_back(fmt::format("{} stick: {}. {}", kSideNames[i],
-                                   name_of(analysis.stick[i]->advice.verdict),
-                                   analysis.stick[i]->advice.reason));
-  }
-  return comments;
-}
 
 std::optional<Error> draw(const std::string& path, const GuidedPad& pad,
                           const PadAnalysis& analysis) {
@@ -118,7 +99,9 @@ int keep(const CalibrateArguments& arguments, const PadFiles& files, const Guide
   CalibrationFile file = calibration_for(pad.info, pad.has_factory_sticks);
   const auto target = calibration_target(arguments.out, file);
   if (!target) return calibrate_failed(target.error().message);
-  take_what_holds(files, pad.info, *target, file);
+  std::vector<std::string> remarks;
+  take_what_holds(files, pad.info, *target, file, remarks);
+  print_remarks("calibrate", remarks);
   take_advice(analysis, file);
   file.measured_on = today();
   if (const auto problem = show(arguments, pad, analysis, std::nullopt))
@@ -127,7 +110,7 @@ int keep(const CalibrateArguments& arguments, const PadFiles& files, const Guide
       !confirmed(fmt::format("Enter writes {}, q leaves it as it was.", printable(*target)),
                  *asked))
     return calibrate_failed("left before the end; nothing written");
-  return print_or_save(*target, file, comments_of(analysis));
+  return print_or_save(*target, file, calibration_comments(analysis));
 }
 
 int finish(const CalibrateArguments& arguments, const PadFiles& files, const GuidedPad& pad,

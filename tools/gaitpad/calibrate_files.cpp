@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 
 #include "base/toml_file.h"
 #include "hid/sdl_mapping.h"
@@ -66,31 +65,6 @@ int calibrate_failed(const std::string& sentence) {
   return 1;
 }
 
-Result<std::string> calibration_target(const std::string& out, const CalibrationFile& file) {
-  if (!out.empty()) return out;
-  const std::string folder = user_calibration_folder();
-  if (!folder.empty()) return calibration_path(folder, file);
-  return Error{"neither XDG_CONFIG_HOME nor HOME names a folder for the file: give --out FILE"};
-}
-
-void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
-                     CalibrationFile& file) {
-  std::error_code error;
-  if (target != "-" && std::filesystem::exists(target, error)) {
-    auto old = load_calibration_file(target);
-    if (old) {
-      file.calibration = old->calibration;
-      file.mapping = old->mapping;
-      file.measured = old->measured;
-      file.measured_on = old->measured_on;
-      return;
-    }
-    print_remarks("calibrate", {old.error().message + "; it counts for nothing"});
-  }
-  file.calibration =
-      find_calibration(files.calibration_folders, identity_of(info)).file.calibration;
-}
-
 int print_or_save(const std::string& target, const CalibrationFile& file,
                   const std::vector<std::string>& comments) {
   if (target == "-") {
@@ -114,7 +88,9 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   CalibrationFile file = calibration_for(pad->info, pad->has_factory_sticks);
   auto target = calibration_target(arguments.out, file);
   if (!target) return calibrate_failed(target.error().message);
-  take_what_holds(files, pad->info, *target, file);
+  std::vector<std::string> remarks;
+  take_what_holds(files, pad->info, *target, file, remarks);
+  print_remarks("calibrate", remarks);
   if (imported->mapping.empty()) {
     file.calibration = imported->calibration;
     file.measured = {};

@@ -19,12 +19,6 @@ struct CalibrateArguments {
 
 int calibrate_failed(const std::string& sentence);  // says it; the exit status
 
-// --out, else the device's own file.
-Result<std::string> calibration_target(const std::string& out, const CalibrationFile& file);
-// `file` gets what holds so far: of the file that is to be replaced, else what config/ says about
-// such pads.
-void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
-                     CalibrationFile& file);
 // To the target; `-` is standard output. The exit status.
 int print_or_save(const std::string& target, const CalibrationFile& file,
                   const std::vector<std::string>& comments);

@@ -1,20 +1,25 @@
-// gaitpad replay TRACE: a recorded stick walks characters; files and a summary come out.
+// gaitpad replay TRACE: a recorded stick walks characters; files and a summary come out, or a
+// window shows it on a time line.
 #include "session/replay.h"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <memory>
 
 #include "session/walk_export.h"
 #include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/live_run.h"
 #include "tools/gaitpad/session_options.h"
+#include "tools/gaitpad/window_options.h"
 
 namespace gaitpad {
 namespace {
 
 struct ReplayArguments {
   SessionArguments session;
+  WindowArguments window;
   std::string trace, out;
   bool json = false, lenient = false, view = false;
   int fps = 0;  // 0: not given
@@ -35,8 +40,8 @@ void print_text(const ReplayArguments& arguments, const ReplayResult& result) {
   }
 }
 
-int run(const ReplayArguments& arguments) {
-  if (arguments.view) return fail("--view: the window comes with a later version");
+// The files and the summary; without a window always.
+int run_through(const ReplayArguments& arguments) {
   ReplayOptions options;
   options.session = session_options(arguments.session);
   options.trace = arguments.trace;
@@ -46,14 +51,37 @@ int run(const ReplayArguments& arguments) {
   if (arguments.fps > 0) options.fps = arguments.fps;
   const auto result = replay(options);
   if (!result) return fail(result.error().message);
-  for (const std::string& remark : result->remarks)
-    fmt::print(stderr, "gaitpad replay: {}\n", remark);
+  print_remarks("replay", result->remarks);
   if (arguments.json) {
     print_summaries_json(result->summaries);
   } else {
     print_text(arguments, *result);
   }
+  std::fflush(stdout);
   return 0;
+}
+
+int view(const ReplayArguments& arguments) {
+  RunEnd end;
+  WindowOptions options = window_options(arguments.window, true);
+  options.live.session = session_options(arguments.session);
+  options.trace = arguments.trace;
+  options.damage = arguments.lenient ? Damage::skip : Damage::refuse;
+  options.is_trace_rate_given = arguments.session.rate_hz > 0;
+  if (options.is_trace_rate_given) options.live.rate_hz = arguments.session.rate_hz;
+  options.is_ended_from_outside = [&end] { return end.is_reached(); };
+  const auto result = run_window(options);
+  if (!result) return fail(result.error().message);
+  print_remarks("replay", result->remarks);
+  return 0;
+}
+
+int run(const ReplayArguments& arguments) {
+  const bool wants_result = !arguments.view || !arguments.out.empty() || arguments.json;
+  if (wants_result) {
+    if (const int status = run_through(arguments); status != 0 || !arguments.view) return status;
+  }
+  return view(arguments);
 }
 
 }  // namespace
@@ -67,7 +95,10 @@ void add_replay(CLI::App& app, int& status) {
   command->add_option("--fps", arguments->fps, "poses a second in pose.bvh (default: every tick)")
       ->check(CLI::Range(1, kMaxRateHz));
   command->add_flag("--lenient", arguments->lenient, "skip damaged lines and count them");
-  command->add_flag("--view", arguments->view, "open the window (comes later)");
+  auto* in_window = command->add_flag("--view", arguments->view,
+                                      "open the window: a time line to scrub, any speed");
+  for (CLI::Option* option : add_window_options(*command, arguments->window))
+    option->needs(in_window);
   command->add_flag("--json", arguments->json, "the summary, for machines");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

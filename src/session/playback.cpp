@@ -1,0 +1,170 @@
+#include "session/playback.h"
+
+#include <algorithm>
+#include <deque>
+#include <string_view>
+#include <utility>
+
+#include "session/trace_run.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr std::size_t kMaxSnapshots = 1024;
+
+std::optional<std::string> mark_of(const Trace& trace, const TraceEvent& event) {
+  switch (event.kind) {
+    case ReportKind::command: {
+      const char* text = reinterpret_cast<const char*>(trace.bytes.data()) + event.first_byte;
+      const std::string_view command(text, event.size);
+      if (command == "mark") return std::nullopt;  // long pauses are recorded with one
+      return std::string(command);
+    }
+    case ReportKind::added:
+      return "plugged in";
+    case ReportKind::removed:
+      return "unplugged";
+    case ReportKind::input:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::vector<PlaybackMark> marks_of(const PreparedTrace& prepared) {
+  std::vector<PlaybackMark> marks;
+  for (const TraceEvent& event : prepared.trace.events) {
+    if (event.tick >= prepared.ticks || marks.size() == Playback::kMaxMarks) break;
+    if (auto text = mark_of(prepared.trace, event)) marks.push_back({event.tick, std::move(*text)});
+  }
+  return marks;
+}
+
+// Where the samples begin that a jump to there needs.
+std::int64_t history_of(std::int64_t ticks) {
+  return std::max<std::int64_t>(0, ticks - Playback::kHistoryTicks);
+}
+
+// States along the way, the first one before tick 0: evenly spaced, and farther apart when there
+// are many.
+class Snapshots {
+ public:
+  Snapshots(TraceRun start, int spacing_ticks) : spacing_ticks_(spacing_ticks) {
+    runs_.push_back(std::move(start));
+  }
+  // Keeps the state if it is due.
+  void look_at(const TraceRun& run) {
+    if (run.ticks() < runs_.back().ticks() + spacing_ticks_) return;
+    if (runs_.size() == kMaxSnapshots) thin_out();
+    if (run.ticks() % spacing_ticks_ == 0) runs_.push_back(run);
+  }
+  // The latest one after at most so many ticks.
+  const TraceRun& before(std::int64_t ticks) const {
+    const auto next = std::ranges::upper_bound(runs_, ticks, {}, &TraceRun::ticks);
+    return *std::prev(next);
+  }
+
+ private:
+  void thin_out() {
+    spacing_ticks_ *= 2;
+    std::erase_if(runs_, [this](const TraceRun& r) { return r.ticks() % spacing_ticks_ != 0; });
+  }
+  std::vector<TraceRun> runs_;
+  std::int64_t spacing_ticks_;
+};
+
+}  // namespace
+
+struct Playback::Impl {
+  Impl(PreparedTrace prepared_trace, TraceRun start)
+      : prepared(std::move(prepared_trace)),
+        cast(cast_of(start.simulation(), prepared.config)),
+        marks(marks_of(prepared)),
+        run(std::move(start)),
+        snapshots(run, prepared.config.rate_hz) {
+    if (auto remark = damage_remark(prepared.trace)) remarks.push_back(std::move(*remark));
+    copy_frame(run.simulation(), frame);
+  }
+
+  bool goes_on(std::int64_t ticks) const;
+  void jump(std::int64_t ticks);
+  void step();
+
+  const PreparedTrace prepared;
+  const Cast cast;
+  const std::vector<PlaybackMark> marks;
+  std::vector<std::string> remarks;
+
+  TraceRun run;
+  Snapshots snapshots;
+  std::int64_t first_sample = 0;  // ticks before it belong to no history that is asked for
+  std::deque<TickSample> samples;
+  SessionFrame frame;
+};
+
+// The history may be that of a later place, on the way to which this one is asked for.
+bool Playback::Impl::goes_on(std::int64_t ticks) const {
+  const std::int64_t ahead = ticks - run.ticks();
+  return ahead >= 0 && ahead <= kHistoryTicks && first_sample <= history_of(ticks);
+}
+
+void Playback::Impl::jump(std::int64_t ticks) {
+  first_sample = history_of(ticks);
+  samples.clear();
+  const TraceRun& nearest = snapshots.before(first_sample);
+  const bool is_on_the_way = run.ticks() <= first_sample && run.ticks() >= nearest.ticks();
+  if (!is_on_the_way) run = nearest;
+}
+
+void Playback::Impl::step() {
+  run.step(prepared.trace);
+  snapshots.look_at(run);
+  if (run.ticks() <= first_sample) return;
+  if (samples.size() == kHistoryTicks) samples.pop_front();
+  copy_sample(run.simulation(), samples.emplace_back());
+}
+
+Playback::Playback() = default;
+Playback::~Playback() = default;
+
+Result<std::unique_ptr<Playback>> Playback::open(const SessionOptions& session,
+                                                 const std::string& trace,
+                                                 std::optional<int> rate_hz, Damage damage) {
+  auto prepared = prepared_trace(session, trace, rate_hz, damage);
+  if (!prepared) return prepared.error();
+  auto start = TraceRun::begin(*prepared);
+  if (!start) return start.error();
+  std::unique_ptr<Playback> playback(new Playback());
+  playback->impl_ = std::make_unique<Impl>(std::move(*prepared), std::move(*start));
+  return playback;
+}
+
+const Cast& Playback::cast() const noexcept { return impl_->cast; }
+std::int64_t Playback::ticks() const noexcept { return impl_->prepared.ticks; }
+const std::vector<PlaybackMark>& Playback::marks() const noexcept { return impl_->marks; }
+const std::vector<std::string>& Playback::remarks() const noexcept { return impl_->remarks; }
+const std::vector<TraceDevice>& Playback::devices() const noexcept {
+  return impl_->prepared.trace.devices;
+}
+
+bool Playback::seek(std::int64_t tick, int budget) {
+  Impl& impl = *impl_;
+  if (ticks() == 0) return true;
+  const std::int64_t wanted = std::clamp<std::int64_t>(tick, 0, ticks() - 1) + 1;
+  if (!impl.goes_on(wanted)) impl.jump(wanted);
+  for (; budget > 0 && impl.run.ticks() < wanted; --budget) impl.step();
+  copy_frame(impl.run.simulation(), impl.frame);
+  return impl.run.ticks() == wanted;
+}
+
+const SessionFrame& Playback::frame() const noexcept { return impl_->frame; }
+
+bool Playback::take(TickSample& sample) {
+  if (impl_->samples.empty()) return false;
+  sample = impl_->samples.front();
+  impl_->samples.pop_front();
+  return true;
+}
+
+std::uint64_t Playback::pose_hash() const noexcept { return impl_->run.simulation().pose_hash(); }
+
+}  // namespace gaitpad

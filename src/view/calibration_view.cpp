@@ -1,0 +1,267 @@
+#include "view/calibration_view.h"
+
+#include <SDL2/SDL_scancode.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+
+#include "session/calibration_store.h"
+#include "view/stick_picture.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kWidth = 900.0, kHeight = 640.0;  // at scale 1
+constexpr double kPlane = 150.0;                   // of a control's place, at scale 1
+constexpr const char* kTitles[] = {"Left stick", "Right stick"};
+
+std::string shown_name(const DeviceInfo& info) {
+  const std::string name = drawable(info.name);
+  return name.empty() ? fmt::format("{:04x}:{:04x}", info.vendor, info.product) : name;
+}
+
+ImVec2 operator+(const ImVec2& a, const ImVec2& b) { return {a.x + b.x, a.y + b.y}; }
+
+// Where a stick is (a disc), or a trigger (a bar): raw, as the pad reports it.
+void draw_place(Ui& ui, const GuideProgress& control, bool is_stick, const ImVec2& at, float size) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto clamped = [](double v) { return static_cast<float>(std::clamp(v, -1.0, 1.0)); };
+  list.AddRectFilled(at, at + ImVec2(size, size), packed(ui.theme.plot), ui.px(5));
+  const ImVec2 middle = at + ImVec2(size / 2, size / 2);
+  const float reach = size * 0.44f;
+  if (is_stick) {
+    list.AddCircle(middle, reach, packed(ui.theme.border), 48, ui.px(1.5));
+    list.AddLine(middle + ImVec2(-reach, 0), middle + ImVec2(reach, 0), packed(ui.theme.border));
+    list.AddLine(middle + ImVec2(0, -reach), middle + ImVec2(0, reach), packed(ui.theme.border));
+    list.AddCircleFilled(
+        middle + ImVec2(clamped(control.raw.x) * reach, -clamped(control.raw.y) * reach), ui.px(6),
+        packed(ui.theme.left));
+    return;
+  }
+  const float filled = 2.0f * reach * std::max(clamped(control.raw.x), 0.0f);
+  const ImVec2 low = middle + ImVec2(-ui.px(14), reach), high = middle + ImVec2(ui.px(14), -reach);
+  list.AddRectFilled(ImVec2(low.x, high.y), ImVec2(high.x, low.y), packed(ui.theme.frame),
+                     ui.px(4));
+  list.AddRectFilled(ImVec2(low.x, low.y - filled), ImVec2(high.x, low.y), packed(ui.theme.left),
+                     ui.px(4));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<CalibrationView>> CalibrationView::start(const Options& options) {
+  auto files = load_pad_files(options.config_folders, options.map, "");
+  if (!files) return files.error();
+  auto guided = GuidedCalibration::start(*files, options.wish);
+  if (!guided) return guided.error();
+  std::unique_ptr<CalibrationView> view(new CalibrationView());
+  view->options_ = options;
+  view->files_ = std::move(*files);
+  view->guided_ = std::move(*guided);
+  return view;
+}
+
+CalibrationView::~CalibrationView() {
+  if (texture_ != 0) glDeleteTextures(1, &texture_);
+}
+
+void CalibrationView::look(std::vector<std::string>& messages) {
+  if (!guided_) return;
+  guided_->look(std::chrono::milliseconds(0));
+  std::ranges::move(guided_->take_remarks(), std::back_inserter(messages));
+  CalibrationGuide* guide = guided_->guide();
+  if (guide == nullptr) {
+    if (!guided_->has_ended()) return;
+    messages.emplace_back("no pad came that could be calibrated");
+    state_ = State::given_up;
+    return;
+  }
+  if (!is_pad_told_) {
+    is_pad_told_ = true;
+    const std::string remark = driver_remark(guided_->pad());
+    if (!remark.empty()) messages.push_back(shown_name(guided_->pad()) + ": " + remark);
+    if (guide->steps().size() <= 1) {  // nothing but `done`
+      messages.push_back(shown_name(guided_->pad()) + ": has no stick to calibrate");
+      state_ = State::given_up;
+      return;
+    }
+  }
+  if (guide->step() == GuideStep::done) finish(messages);
+}
+
+// What was seen is measured; the pad is let go.
+void CalibrationView::finish(std::vector<std::string>& messages) {
+  pad_ = guided_->finish();
+  guided_.reset();
+  analysis_ = analysis_of(pad_.layout, pad_.tracks, pad_.frame);
+  if (!is_useful(*analysis_)) problem_ = "no stick was seen at rest, so no centre is known";
+  file_ = calibration_for(pad_.info, pad_.has_factory_sticks);
+  const std::string own = options_.calibration_folder.empty()
+                              ? ""
+                              : calibration_path(options_.calibration_folder, file_);
+  const auto target = calibration_target(own, file_);
+  if (target) {
+    target_ = *target;
+    take_what_holds(files_, pad_.info, target_, file_, messages);
+  } else {
+    problem_ = target.error().message;
+  }
+  take_advice(*analysis_, file_);
+  file_.measured_on = today();
+  upload_picture();
+}
+
+void CalibrationView::upload_picture() {
+  std::vector<StickPicture> pictures;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& stick = analysis_->stick[i];
+    if (stick) pictures.push_back({kTitles[i], stick->tracks, &stick->statistics, &stick->advice});
+  }
+  const Surface surface =
+      stick_picture(fmt::format("{}, {}", shown_name(pad_.info), today()), pictures);
+  cairo_surface_flush(surface.get());
+  const unsigned char* bytes = cairo_image_surface_get_data(surface.get());
+  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS || bytes == nullptr) return;
+  picture_width_ = cairo_image_surface_get_width(surface.get());
+  picture_height_ = cairo_image_surface_get_height(surface.get());
+  glGenTextures(1, &texture_);
+  glBindTexture(GL_TEXTURE_2D, texture_);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  // Of cairo's native numbers; what stands in the upper byte is not drawn.
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture_width_, picture_height_, 0, GL_BGRA,
+               GL_UNSIGNED_INT_8_8_8_8_REV, bytes);
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+void CalibrationView::draw_control(Ui& ui, const GuideProgress& control, bool is_stick) {
+  const float size = ui.px(kPlane);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  draw_place(ui, control, is_stick, at, size);
+  ImGui::Dummy(ImVec2(size, size));
+  ImGui::SameLine(0.0f, ui.px(16));
+  ImGui::BeginGroup();
+  text_line(ui, ui.fonts.heading, ui.theme.text, control.control);
+  const float width = ImGui::GetContentRegionAvail().x;
+  const ImVec2 bar = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float done = static_cast<float>(std::clamp(control.done, 0.0, 1.0));
+  list.AddRectFilled(bar, bar + ImVec2(width, ui.px(10)), packed(ui.theme.frame), ui.px(5));
+  const bool is_done = control.done >= 1.0;
+  if (done > 0.0f)
+    list.AddRectFilled(bar, bar + ImVec2(std::max(width * done, ui.px(10)), ui.px(10)),
+                       packed(is_done ? ui.theme.good : ui.theme.accent), ui.px(5));
+  ImGui::Dummy(ImVec2(width, ui.px(16)));
+  note(ui, control.text, 4);
+  ImGui::EndGroup();
+}
+
+void CalibrationView::draw_guide(Ui& ui, CalibrationGuide& guide) {
+  text_line(ui, ui.fonts.title, ui.theme.text,
+            fmt::format("Step {} of {}: {}", guide.index() + 1, guide.steps().size() - 1,
+                        name_of(guide.step())));
+  text_line(ui, ui.fonts.small, ui.theme.secondary, shown_name(guided_->pad()));
+  ImGui::Dummy(ImVec2(0.0f, ui.px(6)));
+  ImGui::PushFont(ui.fonts.body);
+  ImGui::PushTextWrapPos(0.0f);
+  const bool is_plugged = guided_->is_plugged();
+  ImGui::TextUnformatted(is_plugged ? guide.instruction().c_str()
+                                    : "Unplugged: plug it in again, it goes on from here.");
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+  ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
+  const bool is_of_sticks = guide.step() != GuideStep::triggers;
+  for (const GuideProgress& control : guide.progress()) {
+    draw_control(ui, control, is_of_sticks);
+    ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
+  }
+}
+
+void CalibrationView::draw_result(Ui& ui, float height_px) {
+  text_line(ui, ui.fonts.title, ui.theme.text, "What was measured");
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!analysis_->stick[i]) continue;
+    const StickAdvice& advice = analysis_->stick[i]->advice;
+    note(ui, fmt::format("{}: {}. {}", kTitles[i], name_of(advice.verdict), advice.reason), 3);
+  }
+  if (texture_ == 0) return;
+  const float left_px = height_px - ImGui::GetCursorPosY();
+  const ImVec2 room(ImGui::GetContentRegionAvail().x, std::max(left_px, ui.px(60)));
+  ImGui::BeginChild("picture", room, true);
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float height =
+      width * static_cast<float>(picture_height_) / static_cast<float>(picture_width_);
+  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)),
+               ImVec2(width, height));
+  ImGui::EndChild();
+}
+
+void CalibrationView::draw_guide_buttons(Ui& ui, CalibrationGuide& guide) {
+  const auto is_key = [](int key) {
+    return !ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(key, false);
+  };
+  ButtonLook next;
+  next.is_primary = true;
+  const bool is_entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+  if (button(ui, "calibration skip", "Next  (Enter)", next) || is_entered) guide.skip();
+  ImGui::SameLine();
+  if (button(ui, "calibration repeat", "Repeat  (R)") || is_key(SDL_SCANCODE_R)) guide.repeat();
+  ImGui::SameLine();
+  if (button(ui, "calibration back", "Back  (B)") || is_key(SDL_SCANCODE_B)) guide.back();
+}
+
+void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& messages) {
+  ButtonLook save;
+  save.is_primary = true;
+  save.is_enabled = problem_.empty();
+  if (button(ui, "calibration save", "Save", save) && problem_.empty()) {
+    if (auto wrong = save_calibration(target_, file_, calibration_comments(*analysis_))) {
+      messages.push_back(wrong->message);
+    } else {
+      messages.push_back("the calibration is kept in " + target_);
+      state_ = State::saved;
+    }
+  }
+}
+
+CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
+                                             std::vector<std::string>& messages) {
+  look(messages);
+  const ImVec2 size(std::min(ui.px(kWidth), window_px.x), std::min(ui.px(kHeight), window_px.y));
+  ImGui::SetNextWindowPos(ImVec2((window_px.x - size.x) / 2, (window_px.y - size.y) / 2));
+  ImGui::SetNextWindowSize(size);
+  ImGui::SetNextWindowFocus();
+  ImGui::Begin("##calibration", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+  CalibrationGuide* guide = guided_ ? guided_->guide() : nullptr;
+  const float buttons_y = size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y;
+  if (guide != nullptr) {
+    draw_guide(ui, *guide);
+  } else if (analysis_) {
+    draw_result(ui, buttons_y - ui.px(8));
+  } else {
+    text_line(ui, ui.fonts.title, ui.theme.text, "Calibrate the sticks");
+    note(ui,
+         "No pad is there yet: plug one in. In a terminal `gaitpad doctor` finds why one does "
+         "not work.");
+  }
+  ImGui::SetCursorPosY(buttons_y);
+  if (guide != nullptr) draw_guide_buttons(ui, *guide);
+  if (analysis_) draw_result_buttons(ui, messages);
+  if (guide != nullptr || analysis_) ImGui::SameLine();
+  if (button(ui, "calibration give up", "Give up  (Esc)")) state_ = State::given_up;
+  if (!problem_.empty()) {
+    ImGui::SameLine();
+    text_line(ui, ui.fonts.small, ui.theme.warning, problem_);
+  }
+  const ImVec2 at = ImGui::GetWindowPos();
+  keep_item("area calibration", at, at + size);
+  ImGui::End();
+  return state_;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,168 @@
+#include "view/ensemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "session/simulation.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kTrail_s = 3.0;         // of the past that trails show
+constexpr double kTrailPoint_s = 0.025;  // between two of its points
+constexpr double kLook_m = 0.95;         // height of what a camera follows, of an adult
+constexpr double kSourceAside_m = 1.2;   // as far as neighbours stand apart
+constexpr double kAdult_m = 1.8;
+constexpr double kHeightOverLeg = 2.1;  // of a person, thigh + shank
+constexpr double kAside_m = 0.9;        // room beside the outermost
+constexpr double kOnePerson_m = 4.2;    // off to see one
+constexpr double kLabelAbove_m = 0.14;  // a name, above the head
+
+std::string with_blanks(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+bool have_one_build(const Cast& cast) {
+  return std::ranges::all_of(cast.members, [&](const CastMember& member) {
+    return member.character == cast.members.front().character;
+  });
+}
+
+// What tells it from the others: its style, and its build where they differ.
+std::string label_text(const WalkerFrame& walker, const Cast& cast, std::size_t index) {
+  const auto style = static_cast<std::size_t>(std::max(walker.style_index, 0));
+  const std::string name = style < cast.styles.size() ? with_blanks(cast.styles[style]) : "?";
+  if (have_one_build(cast)) return name;
+  return fmt::format("{}, {}", with_blanks(cast.members[index].character), name);
+}
+
+}  // namespace
+
+Ensemble::Ensemble(const Cast& cast)
+    : trail_ticks_(std::llround(kTrail_s * cast.rate_hz)),
+      point_ticks_(std::max<std::int64_t>(std::llround(kTrailPoint_s * cast.rate_hz), 1)),
+      shown_(cast.members.size()) {
+  for (const CastMember& member : cast.members) bodies_.push_back(body_of(member.model));
+  if (cast.source != nullptr)
+    source_height_m_ =
+        kHeightOverLeg * (cast.source->leg[0].length_m() + cast.source->leg[1].length_m()) / 2;
+}
+
+void Ensemble::fill(const SessionFrame& frame, const History& history, double share, const Cast& cast,
+                 const UiState& state, const Theme& theme, SceneContent& content) {
+  content.bodies.clear();
+  content.lines.clear();
+  content.joints_m.clear();
+  content.trails.clear();
+  const std::size_t count =
+      std::min(bodies_.size(), static_cast<std::size_t>(std::max(frame.walker_count, 0)));
+  for (std::size_t i = 0; i < count; ++i) {
+    const WalkerFrame& walker = frame.walkers[i];
+    interpolate(walker.before, walker.pose, share, shown_[i]);
+    const Colour& colour = series_colour(theme, i);
+    add_body(bodies_[i], shown_[i], colour, content);
+    if (state.has_trails) add_trails(history, static_cast<int>(i), colour, content);
+  }
+  has_source_ = state.has_source && cast.source != nullptr && count > 0;
+  if (has_source_) add_source(frame, share, cast, theme, content);
+  content.joint_colour = theme.bone;
+  content.has_grid = state.has_grid;
+  content.has_shadows = state.has_shadows;
+  content.focus_m = focus_m(-1);
+}
+
+void Ensemble::add_trails(const History& history, int walker, const Colour& colour,
+                       SceneContent& content) {
+  const std::size_t size = history.size();
+  if (size < 2) return;
+  const auto w = static_cast<std::size_t>(walker);
+  // Points stay where they are while the trail grows: counted from the first tick, not from now.
+  const auto last_tick = history[size - 1].tick;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    Trail trail;
+    trail.colour = colour;
+    for (std::size_t i = 0; i < size; ++i) {
+      const TickSample& sample = history[i];
+      const bool is_old = last_tick - sample.tick > trail_ticks_;
+      const bool is_between = sample.tick % point_ticks_ != 0 && i + 1 != size;
+      if (is_old || is_between || sample.walker_count <= walker) continue;
+      trail.points_m.push_back(sample.walkers[w].heel_m[side]);
+    }
+    if (trail.points_m.size() > 1) content.trails.push_back(std::move(trail));
+  }
+}
+
+// Beside the first one, on the other side than the rest; it goes where that one goes.
+void Ensemble::add_source(const SessionFrame& frame, double share, const Cast& cast,
+                       const Theme& theme, SceneContent& content) {
+  const WalkerFrame& first = frame.walkers[0];
+  source_place_m_ = first.before.root_m + share * (first.pose.root_m - first.before.root_m) +
+                    kSourceAside_m * kLeft;
+  source_place_m_.y = 0.0;
+  add_stick_figure(*cast.source, first.phase, first.presence, source_place_m_,
+                   first.walk.heading_rad, theme.bone, content);
+}
+
+vec3 Ensemble::focus_m(int walker) const noexcept {
+  if (shown_.empty()) return vec3(0.0, kLook_m, 0.0);
+  const auto n = static_cast<std::size_t>(walker);
+  if (walker >= 0 && n < shown_.size()) {
+    const vec3& root = shown_[n].root_m;
+    return vec3(root.x, kLook_m * std::min(bodies_[n].height_m / kAdult_m, 1.5), root.z);
+  }
+  vec3 low = shown_.front().root_m, high = low;
+  for (const Pose& pose : shown_) {
+    low = glm::min(low, pose.root_m);
+    high = glm::max(high, pose.root_m);
+  }
+  if (has_source_) {
+    low = glm::min(low, source_place_m_);
+    high = glm::max(high, source_place_m_);
+  }
+  const vec3 middle = (low + high) / 2.0;
+  return vec3(middle.x, kLook_m, middle.z);
+}
+
+double Ensemble::distance_m(int walker, const Camera& camera,
+                         const Viewport& viewport) const noexcept {
+  if (walker >= 0 || shown_.empty()) return kOnePerson_m;
+  const vec3 middle = focus_m(-1);
+  double reach_m = 0.0;
+  const auto reach = [&](const vec3& place) {
+    reach_m = std::max(reach_m, std::hypot(place.x - middle.x, place.z - middle.z));
+  };
+  for (const Pose& pose : shown_) reach(pose.root_m);
+  if (has_source_) reach(source_place_m_);
+  const double aspect =
+      static_cast<double>(std::max(viewport.width, 1)) / std::max(viewport.height, 1);
+  const double half_view = std::tan(camera.field_of_view_rad / 2.0) * std::min(aspect, 2.0);
+  return std::clamp((reach_m + kAside_m) / half_view, kOnePerson_m, 14.0);
+}
+
+std::vector<UiLabel> Ensemble::labels(const SessionFrame& frame, const Cast& cast,
+                                   const Camera& camera, const Viewport& viewport,
+                                   const UiState& state, const Theme& theme) const {
+  std::vector<UiLabel> labels;
+  if (!state.has_names) return labels;
+  const auto add = [&](vec3 place_m, std::string text, const Colour& colour) {
+    place_m.y += kLabelAbove_m;
+    const vec3 place = projected(camera, place_m, viewport.width, viewport.height);
+    if (place.z <= 0.0 || place.x < 0.0 || place.x > viewport.width || place.y < 0.0 ||
+        place.y > viewport.height)
+      return;
+    labels.push_back({vec2(viewport.x + place.x, viewport.y + place.y), std::move(text), colour});
+  };
+  const std::size_t count =
+      std::min({bodies_.size(), cast.members.size(), static_cast<std::size_t>(frame.walker_count)});
+  for (std::size_t i = 0; i < count; ++i) {
+    add(head_m(bodies_[i], shown_[i]), label_text(frame.walkers[i], cast, i),
+        series_colour(theme, i));
+  }
+  if (has_source_) add(source_place_m_ + vec3(0.0, source_height_m_, 0.0), "source", theme.bone);
+  return labels;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,43 @@
+// Who stands where in the scene: the characters of a session with their trails and names, the
+// source motion beside them.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "view/body.h"
+#include "view/camera.h"
+#include "view/history.h"
+#include "view/ui.h"
+
+namespace gaitpad {
+
+class Ensemble {
+ public:
+  explicit Ensemble(const Cast& cast);
+
+  // Every walker between its two latest poses (share 0 .. 1); content is filled anew.
+  void fill(const SessionFrame& frame, const History& history, double share, const Cast& cast,
+            const UiState& state, const Theme& theme, SceneContent& content);
+  // Of what was filled last: the place that a camera follows, of one walker or of all (-1).
+  vec3 focus_m(int walker) const noexcept;
+  // How far a camera stands off to see that.
+  double distance_m(int walker, const Camera& camera, const Viewport& viewport) const noexcept;
+  // Names above heads, window pixels.
+  std::vector<UiLabel> labels(const SessionFrame& frame, const Cast& cast, const Camera& camera,
+                              const Viewport& viewport, const UiState& state,
+                              const Theme& theme) const;
+
+ private:
+  void add_trails(const History& history, int walker, const Colour& colour, SceneContent& content);
+  void add_source(const SessionFrame& frame, double share, const Cast& cast, const Theme& theme,
+                  SceneContent& content);
+
+  std::int64_t trail_ticks_, point_ticks_;  // how far trails go back, between two of their points
+  std::vector<Body> bodies_;
+  std::vector<Pose> shown_;  // one a body
+  double source_height_m_ = 0.0;
+  vec3 source_place_m_{0.0};  // on the floor under it
+  bool has_source_ = false;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,176 @@
+#include "view/file_browser.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+namespace gaitpad {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kWidth = 720.0, kHeight = 500.0;  // at scale 1
+constexpr std::pair<FileFilter, const char*> kFilters[] = {{FileFilter::all, "All"},
+                                                           {FileFilter::motions, "Motions"},
+                                                           {FileFilter::recordings, "Recordings"},
+                                                           {FileFilter::settings, "Settings"}};
+
+std::string home_folder() {
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home == '/' ? home : "/";
+}
+
+}  // namespace
+
+void FileBrowser::open() {
+  is_open_ = has_just_opened_ = true;
+  problem_.clear();
+  std::error_code error;
+  if (folder_.empty()) folder_ = fs::current_path(error).string();
+  go_to(folder_);
+}
+
+void FileBrowser::go_to(std::string folder) {
+  folder_ = folder.empty() ? "/" : std::move(folder);
+  list_ = list_folder(folder_, filter_);
+  chosen_ = -1;
+  const std::size_t size = std::min(folder_.size(), path_.size() - 1);
+  std::memcpy(path_.data(), folder_.data(), size);
+  path_[size] = '\0';
+}
+
+// A folder is gone into, anything else is the answer.
+void FileBrowser::enter(const std::string& path) {
+  problem_.clear();
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    go_to(fs::path(path).lexically_normal().string());
+  } else if (fs::exists(path, error)) {
+    result_ = path;
+  } else {
+    problem_ = path + ": there is no such file";
+  }
+}
+
+void FileBrowser::draw_path(Ui& ui) {
+  ImGui::PushFont(ui.fonts.body);
+  const float up_px = button_width(ui, "Up", {}) + ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - up_px);
+  const bool is_entered =
+      ImGui::InputText("##path", path_.data(), path_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  keep_item("browser path");
+  ImGui::PopFont();
+  if (is_entered && path_[0] != '\0') {
+    const fs::path typed = path_.data();
+    enter(typed.is_absolute() ? typed.string() : (fs::path(folder_) / typed).string());
+  }
+  ImGui::SameLine();
+  if (button(ui, "browser up", "Up")) go_to(fs::path(folder_).parent_path().string());
+}
+
+void FileBrowser::draw_places(Ui& ui) {
+  text_line(ui, ui.fonts.small, ui.theme.secondary, "Opened last");
+  int number = 0;
+  for (const std::string& path : std::vector<std::string>(recent_.paths())) {
+    ImGui::PushID(number);
+    const bool is_clicked = ImGui::Selectable("##recent");
+    keep_item(fmt::format("browser recent {}", number++));
+    const ImVec2 at = ImGui::GetItemRectMin();
+    put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.text, at,
+             fs::path(path).filename().string(), ImGui::GetItemRectSize().x);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", drawable(path).c_str());
+    ImGui::PopID();
+    if (is_clicked) enter(path);
+  }
+  if (number == 0) text_line(ui, ui.fonts.small, ui.theme.tick, "nothing yet");
+}
+
+void FileBrowser::draw_filters(Ui& ui) {
+  for (const auto& [filter, name] : kFilters) {
+    if (filter != FileFilter::all) ImGui::SameLine();
+    ButtonLook look;
+    look.is_on = filter == filter_;
+    if (!button(ui, fmt::format("browser filter {}", name), name, look)) continue;
+    filter_ = filter;
+    go_to(folder_);
+  }
+}
+
+void FileBrowser::draw_entries(Ui& ui, float height_px) {
+  ImGui::BeginChild("entries", ImVec2(0.0f, height_px), true);
+  ImGui::PushFont(ui.fonts.body);
+  std::optional<std::string> entered;
+  ImGuiListClipper clipper;  // thousands of rows: only those to be seen
+  clipper.Begin(static_cast<int>(list_.entries.size()));
+  while (clipper.Step()) {
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const FolderEntry& entry = list_.entries[static_cast<std::size_t>(i)];
+      ImGui::PushID(i);
+      if (ImGui::Selectable("##entry", i == chosen_, ImGuiSelectableFlags_AllowDoubleClick)) {
+        chosen_ = i;
+        const bool is_wanted = entry.is_folder || ImGui::IsMouseDoubleClicked(0);
+        if (is_wanted) entered = (fs::path(folder_) / entry.name).string();
+      }
+      keep_item("browser entry " + drawable(entry.name));
+      const Colour& colour = entry.is_folder ? ui.theme.secondary : ui.theme.text;
+      put_text(*ImGui::GetWindowDrawList(), ui.fonts.body, colour, ImGui::GetItemRectMin(),
+               entry.is_folder ? entry.name + "/" : entry.name, ImGui::GetItemRectSize().x);
+      ImGui::PopID();
+    }
+  }
+  if (list_.entries.empty() && list_.problem.empty())
+    text_line(ui, ui.fonts.small, ui.theme.tick, "nothing here that the window can open");
+  ImGui::PopFont();
+  ImGui::EndChild();
+  if (entered) enter(*entered);
+}
+
+void FileBrowser::draw_buttons(Ui& ui) {
+  const bool can_open = chosen_ >= 0 && chosen_ < static_cast<int>(list_.entries.size());
+  ButtonLook open;
+  open.is_primary = true;
+  open.is_enabled = can_open;
+  if (button(ui, "browser open", "Open", open) && can_open) {
+    const std::string& name = list_.entries[static_cast<std::size_t>(chosen_)].name;
+    enter((fs::path(folder_) / name).string());
+  }
+  ImGui::SameLine();
+  if (button(ui, "browser cancel", "Cancel")) close();
+  ImGui::SameLine();
+  if (button(ui, "browser home", "Home")) go_to(home_folder());
+  const std::string& told = problem_.empty() ? list_.problem : problem_;
+  if (told.empty()) return;
+  ImGui::SameLine();
+  text_line(ui, ui.fonts.small, ui.theme.warning, told);
+}
+
+std::optional<std::string> FileBrowser::draw(Ui& ui, const ImVec2& window_px) {
+  result_.reset();
+  const ImVec2 size(std::min(ui.px(kWidth), window_px.x), std::min(ui.px(kHeight), window_px.y));
+  ImGui::SetNextWindowPos(ImVec2((window_px.x - size.x) / 2, (window_px.y - size.y) / 2));
+  ImGui::SetNextWindowSize(size);
+  if (std::exchange(has_just_opened_, false)) ImGui::SetNextWindowFocus();
+  ImGui::Begin("##browser", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+  text_line(ui, ui.fonts.title, ui.theme.text, "Open a file");
+  draw_path(ui);
+  draw_filters(ui);
+  const float below_px = ImGui::GetFrameHeightWithSpacing() + ui.px(10);
+  const float height_px = ImGui::GetContentRegionAvail().y - below_px;
+  ImGui::BeginChild("places", ImVec2(ui.px(190), height_px));
+  draw_places(ui);
+  ImGui::EndChild();
+  ImGui::SameLine();
+  draw_entries(ui, height_px);
+  draw_buttons(ui);
+  keep_item("area browser", ImGui::GetWindowPos(),
+            ImVec2(ImGui::GetWindowPos().x + size.x, ImGui::GetWindowPos().y + size.y));
+  ImGui::End();
+  if (result_) close();
+  return std::exchange(result_, std::nullopt);
+}
+
+}  // namespace gaitpad

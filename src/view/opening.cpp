@@ -1,0 +1,115 @@
+#include "view/opening.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "animation/character.h"
+#include "control/style.h"
+#include "session/motion_source.h"
+#include "stick/calibration.h"
+
+namespace gaitpad {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kWhatOpens =
+    "motions (.bvh), recordings (.hid), and .toml files of styles, characters, calibrations and "
+    "motions can be opened";
+
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+std::optional<FileKind> kind_of_folder(const fs::path& path) {
+  const std::string folder = path.parent_path().filename().string();
+  if (folder == "styles") return FileKind::style;
+  if (folder == "characters") return FileKind::character;
+  if (folder == "calibration") return FileKind::calibration;
+  if (folder == "motions") return FileKind::motion;
+  return std::nullopt;
+}
+
+// As what its keys and values make sense.
+Result<FileKind> kind_of_content(const std::string& path) {
+  std::vector<FileKind> kinds;
+  std::string problem;
+  const auto look = [&](FileKind kind, const auto& loaded) {
+    if (loaded) kinds.push_back(kind);
+    if (!loaded && problem.empty()) problem = loaded.error().message;
+  };
+  look(FileKind::style, load_style(path));
+  look(FileKind::character, load_character(path));
+  look(FileKind::calibration, load_calibration_file(path));
+  if (kinds.empty()) look(FileKind::motion, load_motion_source(path));
+  if (kinds.size() == 1) return kinds.front();
+  if (!kinds.empty()) {
+    return Error{path +
+                 ": may be a style or a character: put it into a folder named styles or "
+                 "characters"};
+  }
+  return Error{fmt::format("{}: is no style, character, calibration or motion; as a style: {}",
+                           path, problem)};
+}
+
+// `list` (a shorter one repeats its last) with this one in place n of `count`, or alone.
+void put(std::vector<std::string>& list, const std::string& path, int n, int count) {
+  if (n < 0 || list.empty() || n >= count) {
+    list = {path};
+    return;
+  }
+  const std::string last = list.back();
+  list.resize(static_cast<std::size_t>(count), last);
+  list[static_cast<std::size_t>(n)] = path;
+}
+
+}  // namespace
+
+Result<FileKind> kind_of_file(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) return Error{path + ": there is no such file"};
+  if (fs::is_directory(status)) return Error{path + ": is a folder; " + kWhatOpens};
+  if (!fs::is_regular_file(status)) return Error{path + ": is no file that can be read"};
+  const std::string ending = lower_case(fs::path(path).extension().string());
+  if (ending == ".bvh") return FileKind::motion;
+  if (ending == ".hid") return FileKind::recording;
+  if (ending != ".toml") return Error{path + ": cannot be opened: " + kWhatOpens};
+  if (const auto kind = kind_of_folder(fs::absolute(path, error))) return *kind;
+  return kind_of_content(path);
+}
+
+ShowOptions with_file(ShowOptions options, const std::string& path, FileKind kind, int walker,
+                      int walker_count) {
+  SessionOptions& session = options.live.session;
+  options.live.record.clear();
+  switch (kind) {
+    case FileKind::motion:
+      session.motion = path;
+      break;
+    case FileKind::character:
+      // Without a list there is one character for each style: the motion's own.
+      if (session.characters.empty() && walker >= 0) session.characters = {"as_in_motion_file"};
+      put(session.characters, path, walker, walker_count);
+      break;
+    case FileKind::style:
+      if (session.styles.empty() && walker >= 0) session.styles = {"even"};
+      put(session.styles, path, walker, walker_count);
+      break;
+    case FileKind::calibration:
+      session.calibration = path;
+      break;
+    case FileKind::recording:
+      options.trace = path;
+      options.is_rate_given = false;
+      break;
+  }
+  return options;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,23 @@
+#include "view/show.h"
+
+#include "session/simulation.h"
+
+namespace gaitpad {
+
+Result<std::unique_ptr<Show>> Show::open(const ShowOptions& options) {
+  return options.trace.empty() ? open_live_show(options) : open_playback_show(options);
+}
+
+std::optional<Error> Show::problem(const ShowOptions& options) {
+  if (!options.trace.empty()) {
+    const auto playback = open_playback_show(options);
+    return playback ? std::nullopt : std::optional(playback.error());
+  }
+  const auto config = simulation_config(options.live.session, {}, "", options.live.rate_hz);
+  if (!config) return config.error();
+  const auto simulation = Simulation::create(*config);
+  if (!simulation) return simulation.error();
+  return std::nullopt;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,87 @@
+#include "tools/gaitpad/window_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "session/calibration_store.h"
+#include "session/user_files.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr int kMaxFrames = 100'000'000;
+
+CLI::Validator ends_with(const std::string& ending) {
+  return CLI::Validator(
+      [ending](const std::string& path) {
+        return path.ends_with(ending) ? std::string() : "the file's name ends with " + ending;
+      },
+      "FILE" + ending);
+}
+
+std::string known_panel(const std::string& name) {
+  if (name == "none" || std::ranges::count(kPanelNames, name) > 0) return "";
+  return fmt::format("\"{}\" is none of {}, none", name, fmt::join(kPanelNames, ", "));
+}
+
+}  // namespace
+
+std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments& arguments) {
+  return {
+      command.add_option("--frames", arguments.frames, "end after so many drawn frames")
+          ->check(CLI::Range(1, kMaxFrames)),
+      command
+          .add_option("--screenshot", arguments.screenshot,
+                      "write the last frame; a frame is then 1/60 s of the session")
+          ->check(ends_with(".png")),
+      command
+          .add_option("--video", arguments.video,
+                      "write all frames, 60 a second of the session (needs ffmpeg)")
+          ->check(ends_with(".mp4")),
+      command.add_option("--theme", arguments.theme, "dark or light (default: as it was left)")
+          ->check(CLI::IsMember({"dark", "light"})),
+      command.add_option("--scale", arguments.scale, "of type and lines (default: the display's)")
+          ->check(CLI::Range(0.5, 4.0)),
+      command
+          .add_option("--panels", arguments.panels,
+                      fmt::format("open these alone: {}; or none", fmt::join(kPanelNames, ",")))
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(known_panel),
+  };
+}
+
+bool makes_pictures(const WindowArguments& arguments) {
+  return !arguments.screenshot.empty() || !arguments.video.empty();
+}
+
+WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
+  WindowOptions options;
+  options.frames = arguments.frames;
+  options.screenshot = arguments.screenshot;
+  options.video = arguments.video;
+  options.scale = arguments.scale;
+  if (!arguments.theme.empty())
+    options.theme = arguments.theme == "light" ? ThemeName::light : ThemeName::dark;
+  options.are_panels_given = !arguments.panels.empty();
+  for (int i = 0; i < kPanels; ++i) {
+    const auto panel = static_cast<Panel>(i);
+    const std::string_view name = kPanelNames[static_cast<std::size_t>(i)];
+    if (std::ranges::count(arguments.panels, name) > 0) options.panels.push_back(panel);
+  }
+  options.calibration_folder = user_calibration_folder();
+  // Somebody who asks SDL for a driver of its own gets that one.
+  const char* driver = std::getenv("SDL_VIDEODRIVER");
+  options.is_hidden =
+      makes_pictures(arguments) && has_end && (driver == nullptr || *driver == '\0');
+  const std::string folder = user_config_folder();
+  if (makes_pictures(arguments) || folder.empty()) return options;
+  options.layout_file = folder + "/window.toml";
+  options.recent_file = folder + "/recent";
+  return options;
+}
+
+}  // namespace gaitpad

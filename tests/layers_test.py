@@ -26,8 +26,8 @@ ROOMS = {
         ["fmt/", "nlohmann/"],
     ),
     "src/view": (
-        ["base", "hid", "stick", "motion", "control", "animation", "session"],
-        {},
+        ["base", "hid", "stick", "motion", "control", "animation", "session", "drivers"],
+        {"drivers": ["drivers/posix.h"]},
         ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"],
     ),
     "drivers": (["base", "hid", "drivers/pads"], {}, ["fmt/"]),
@@ -48,6 +48,7 @@ DRIVER_VENDORS = {
     "drivers/system_nodes.cpp": ["libudev.h"],
     "tools/rig/latency.cpp": ["linux/"],
     "tools/rig/plain_sdl.cpp": ["SDL2/"],
+    "tools/soak/soak.cpp": ["SDL2/", "malloc.h"],
 }
 TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/", "benchmark/"]
 SYSTEM_HEADERS = ("sys/", "unistd.h", "fcntl.h", "dirent.h", "errno.h", "poll.h", "signal.h",

@@ -1,18 +1,32 @@
 #!/usr/bin/env bash
-# pictures.sh: draws the pictures of README and docs/ anew from the bundled traces, without a display.
-# The same program and fonts draw the same.
+# pictures.sh [FOLDER]: makes the README's pictures of the window and of the calibration out of the
+# bundled recordings, without a display, the same each time. FOLDER: docs.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 bash "$root/tools/install.sh" fonts-inter
 bash "$root/tools/build.sh" "$root/build" gaitpad -DCMAKE_BUILD_TYPE=Release
+folder=${1:-$root/docs}
 gaitpad=$root/build/gaitpad
-trace=$root/config/traces/round.hid
+mkdir -p "$folder"
+unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG
 
-"$gaitpad" play "$trace" --frames 420 --screenshot "$root/docs/window.png"
-"$gaitpad" replay "$trace" --view --style limp_left --panels graphs --frames 330 \
-  --screenshot "$root/docs/limp.png"
-"$gaitpad" play "$trace" --panels graphs,solver --theme light --frames 600 \
-  --screenshot "$root/docs/graphs.png"
-"$gaitpad" calibrate --trace "$root/config/traces/worn.hid" --out - --plot "$root/docs/sticks.png" >/dev/null
-/usr/bin/python3 "$root/tools/contact_sheet.py" "$gaitpad" "$root/docs/walk.png" --motions "" \
-  --styles even,limp_left
+# The paper's four on the same stick, 7.5 s into the recording: a curve to the right.
+"$gaitpad" replay "$root/config/traces/round.hid" --view --frames 450 --theme dark \
+  --style even --style stiff_hip --style stiff_knee --style limp_left \
+  --screenshot "$folder/window.png"
+
+# An injured left leg beside a sound walk, alone in the window.
+"$gaitpad" replay "$root/config/traces/round.hid" --view --frames 330 --theme light --panels none \
+  --style even --style limp_left --screenshot "$folder/limp.png"
+
+# Why it limps: joint angles, heights, stages; what the solver needs.
+"$gaitpad" replay "$root/config/traces/round.hid" --view --frames 420 --theme dark \
+  --panels graphs,solver --style even --style limp_left --screenshot "$folder/graphs.png"
+
+# A worn stick, measured.
+"$gaitpad" calibrate --trace "$root/config/traces/worn.hid" --out - --plot "$folder/sticks.png" \
+  >/dev/null
+
+# Both walks as strips of stick figures, with their knees.
+/usr/bin/python3 "$root/tools/contact_sheet.py" "$gaitpad" "$folder/walk.png" --motions "" \
+  --styles even,limp_left >/dev/null

@@ -3,8 +3,8 @@
 # what it can? Four characters walk for SECONDS (300) along the stick of config/traces/round.hid, again
 # and again. Fewer than 1 in 1000 ticks may begin more than one period late, none is skipped or run
 # twice. That is judged where the thread runs under SCHED_FIFO (as root, or where limits.d allows it) and
-# the machine kept its own time: no `steal` in /proc/stat, and threads that only sleep (tools/
-# realtime_control.py) were on time. Else the numbers are printed with that reason.
+# no `steal` was counted in /proc/stat; else the numbers are printed with that reason. Beside them stands
+# how often threads that only sleep (tools/realtime_control.py) were late on this machine.
 #   tools/realtime.sh 60 --no-window
 # REALTIME_BUILD names another build folder than build, which is then taken as it is.
 # Ends with 0 where it passed or was not judged, 1 where it failed.

@@ -10,4 +10,4 @@ for target in test_base test_drivers test_session; do
 done
 export TSAN_OPTIONS="halt_on_error=0 exitcode=66 history_size=4 ${TSAN_OPTIONS:-}"
 bash "$root/tools/ctest.sh" "$root/build-tsan" \
-  -R '^(base\.(SpscRing|Latest)|session\.(Pad|Live|Recording)|drivers\.(Trace|Packet|Present|Hidraw|Usb))'
+  -R '^(base\.(SpscRing|Latest)|session\.(Pad|Live|Recording)|drivers\.(Trace|Packet|Present|Hidraw|Usb|Keyboard))'

@@ -18,7 +18,7 @@ constexpr double kToeOut = 7.0 * kDegree;
 constexpr double kShoulderHalf = 0.1295 * kStature;
 constexpr double kUpperArm = 0.186 * kStature, kForearm = 0.146 * kStature,
                  kHand = 0.108 * kStature;
-constexpr double kTrunk = 0.288 * kStature + kHipDrop;  // pelvis joint to shoulder height
+constexpr double kTrunk = 0.288 * kStature - kHipDrop;  // pelvis joint to shoulder height
 
 struct Builder {
   Skeleton skeleton;

@@ -98,8 +98,8 @@ void PadIo::rumble(std::uint16_t device, const Rumble& rumble,
 }
 
 void PadIo::run() {
-  static_cast<void>(
-      take_priority(RealtimeRank::pads));  // what is refused, the loop thread says too
+  // What is refused, the loop thread says too.
+  static_cast<void>(take_priority(RealtimeRank::pads));
   while (!is_ending_) {
     wait_for_fds();
     if ((fds_[0].revents & POLLIN) != 0) {

@@ -1,15 +1,16 @@
 #include "view/surface.h"
 
+#include <SDL2/SDL_syswm.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 #include <utility>
 
-#include "view/display_guard.h"
 #include "view/theme.h"
 
 namespace gaitpad {
@@ -20,6 +21,8 @@ constexpr int kSmallestWindowWidth = 640, kSmallestWindowHeight = 400;  // at sc
 constexpr int kNeededGl = 33;                                           // 3.3
 constexpr const char* kWithoutDisplay =
     "--screenshot FILE.png and --video FILE.mp4 draw without a display";
+
+std::atomic<bool> is_display_lost = false;  // outlives every surface, as Xlib's connection does
 
 bool is_offscreen(const char* driver) {
   const std::string_view name = driver ? driver : "";
@@ -128,16 +131,39 @@ Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions&
                              reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
                              epoxy_gl_version() / 10, epoxy_gl_version() % 10)};
   }
-  watch_display(surface->window_);
+  surface->outlive_x_server();
   // In step with the display; where that cannot be, who draws takes care of the rate.
   SDL_GL_SetSwapInterval(options.is_hidden ? 0 : 1);
   return surface;
 }
 
-bool WindowSurface::is_lost() const noexcept { return is_display_lost(); }
+// Xlib ends the program, first in the handler of the error, then behind it; versions before 1.7
+// know no other way.
+void WindowSurface::outlive_x_server() {
+#ifdef SDL_VIDEO_DRIVER_X11
+  using SetHandler = void (*)(int (*)(Display*));
+  using SetExit = void (*)(Display*, void (*)(Display*, void*), void*);
+  SDL_SysWMinfo info;
+  SDL_VERSION(&info.version);
+  if (!SDL_GetWindowWMInfo(window_, &info) || info.subsystem != SDL_SYSWM_X11) return;
+  void* xlib = SDL_LoadObject("libX11.so.6");  // which SDL has loaded
+  if (!xlib) return;
+  const auto set_exit = reinterpret_cast<SetExit>(SDL_LoadFunction(xlib, "XSetIOErrorExitHandler"));
+  const auto set_handler =
+      reinterpret_cast<SetHandler>(SDL_LoadFunction(xlib, "XSetIOErrorHandler"));
+  if (set_exit && set_handler) {
+    set_handler([](Display*) { return 0; });
+    set_exit(
+        info.info.x11.display, [](Display*, void*) { is_display_lost = true; }, nullptr);
+  }
+  SDL_UnloadObject(xlib);
+#endif
+}
+
+bool WindowSurface::is_lost() const noexcept { return is_display_lost; }
 
 WindowSurface::~WindowSurface() {
-  if (is_display_lost()) return;  // SDL would wait for an answer for ever
+  if (is_display_lost) return;  // SDL would wait for an answer for ever
   if (frame_buffer_ != 0) {
     glDeleteRenderbuffers(1, &picture_);
     glDeleteFramebuffers(1, &frame_buffer_);

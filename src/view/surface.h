@@ -54,6 +54,7 @@ class WindowSurface {
 
  private:
   WindowSurface() = default;
+  void outlive_x_server();
   SDL_Window* window_ = nullptr;
   SDL_GLContext context_ = nullptr;
   double scale_ = 1.0;

@@ -292,8 +292,7 @@ TEST_F(SaveCalibration, WhereNothingCanBeWrittenItSaysSo) {
   fs::create_directories(path_);
   EXPECT_EQ(problem(path_, 0.1), path_ + ": cannot be written: Is a directory");
   EXPECT_EQ(problem("/dev/null", 0.1),
-            "/dev/null: this is no file, a calibration cannot take its "
-            "place");
+            "/dev/null: this is no file, none can take its place");
   EXPECT_EQ(files_in(top_), 2);
 }
 

@@ -146,7 +146,6 @@ TEST(RecordingLines, TicksFasterOrSlowerThanTheTimeReadBack) {
   const std::int64_t day = 24 * 3600 * 240;
   l.lines.clock(0, kStart_ns);
   l.lines.add(0, at(kStart_ns, made_plug(ReportKind::added)));
-  l.lines.clock(5, kStart_ns + 20'000'000, 8.0);
   l.lines.add(day - 10, at(kStart_ns + kSecond_ns, made_report(1, 2)));
   l.lines.clock(day - 9, kStart_ns + 2 * kSecond_ns, 0.0);
   l.lines.clock(day - 9, kStart_ns + 3 * kHour_ns, 0.25);
@@ -156,11 +155,10 @@ TEST(RecordingLines, TicksFasterOrSlowerThanTheTimeReadBack) {
   EXPECT_NE(text.find(fmt::format("# before tick {} it stood still from", day - 9)), text.npos);
   Trace trace = parsed(text);
   EXPECT_EQ(*assign_ticks(trace, 240), day);
-  std::vector<std::int64_t> ticks;
-  for (const TraceEvent& e : trace.events) {
-    if (e.kind == ReportKind::input) ticks.push_back(e.tick);
-  }
-  EXPECT_EQ(ticks, (std::vector<std::int64_t>{day - 10, day - 9}));
+  std::erase_if(trace.events, [](const auto& e) { return e.kind != ReportKind::input; });
+  ASSERT_EQ(trace.events.size(), 2u);
+  EXPECT_EQ(trace.events[0].tick, day - 10);
+  EXPECT_EQ(trace.events[1].tick, day - 9);
 }
 
 // The kernel's stamp of one device may lie before the other's that was read earlier.

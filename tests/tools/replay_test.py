@@ -266,9 +266,8 @@ class Refusals(ReplayCase):
         self.assert_refused(WALK, "--character", self.write("a.toml", 'skeleton = "pole.bvh"\n'),
                             says=("pole.bvh", "no two legs"))
 
-    def test_terrain_and_window_come_later(self):
+    def test_terrain_comes_later(self):
         self.assert_refused(WALK, "--terrain", "steps", says=("steps",))
-        self.assert_refused(WALK, "--view", says=("window",))
         self.replay(WALK, "--terrain", "flat")
 
     def test_an_unwritable_folder(self):

@@ -134,8 +134,12 @@ class Refusals(PlayCase):
         if status == 1:
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
 
-    def test_the_window_comes_later(self):
-        self.assert_refused(says="--no-window")
+    def test_without_a_display_there_is_no_window(self):
+        bare = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")}
+        done = run("play", env=bare)
+        self.assertEqual((done.returncode, done.stdout), (1, ""), done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertIn("display", done.stderr)
 
     def test_what_cannot_be_is_one_sentence(self):
         self.assert_refused(str(self.folder / "none.hid"), "--no-window", "--seconds", "1", says="none.hid")

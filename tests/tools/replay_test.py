@@ -2,12 +2,14 @@
 """gaitpad replay as a user meets it: what it writes, when an event counts, and what it refuses."""
 import csv
 import json
+import os
 import pathlib
 import resource
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
 RATE_HZ = 240
@@ -266,8 +268,10 @@ class Refusals(ReplayCase):
         self.assert_refused(WALK, "--character", self.write("a.toml", 'skeleton = "pole.bvh"\n'),
                             says=("pole.bvh", "no two legs"))
 
-    def test_terrain_comes_later(self):
+    def test_terrain_comes_later_and_a_window_needs_a_display(self):
         self.assert_refused(WALK, "--terrain", "steps", says=("steps",))
+        with unittest.mock.patch.dict(os.environ, {"SDL_VIDEODRIVER": "x11", "DISPLAY": ""}):
+            self.assert_refused(WALK, "--view", says=("window",))
         self.replay(WALK, "--terrain", "flat")
 
     def test_an_unwritable_folder(self):

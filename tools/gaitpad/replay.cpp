@@ -40,7 +40,7 @@ void print_text(const ReplayArguments& arguments, const ReplayResult& result) {
   }
 }
 
-// The files and the summary; without a window always.
+// The files and the summary.
 int run_through(const ReplayArguments& arguments) {
   ReplayOptions options;
   options.session = session_options(arguments.session);
@@ -77,11 +77,10 @@ int view(const ReplayArguments& arguments) {
 }
 
 int run(const ReplayArguments& arguments) {
-  const bool wants_result = !arguments.view || !arguments.out.empty() || arguments.json;
-  if (wants_result) {
-    if (const int status = run_through(arguments); status != 0 || !arguments.view) return status;
-  }
-  return view(arguments);
+  if (!arguments.view) return run_through(arguments);
+  const int status = view(arguments);
+  const bool wants_result = !arguments.out.empty() || arguments.json;
+  return status == 0 && wants_result ? run_through(arguments) : status;
 }
 
 }  // namespace

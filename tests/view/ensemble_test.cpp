@@ -1,0 +1,139 @@
+#include "view/ensemble.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "session/setup.h"
+
+namespace gaitpad {
+namespace {
+
+// Two characters of the bundled configuration walking ahead, every tick in a history.
+class Walking : public testing::Test {
+ protected:
+  void SetUp() override {
+    SessionOptions options;
+    options.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    options.styles = {"even", "limp_left"};
+    auto config = simulation_config(options, {}, "", 240);
+    ASSERT_TRUE(config) << config.error().message;
+    auto made = Simulation::create(*config);
+    ASSERT_TRUE(made) << made.error().message;
+    simulation_ = std::make_unique<Simulation>(std::move(*made));
+    cast_ = cast_of(*simulation_, *config);
+    ensemble_ = std::make_unique<Ensemble>(cast_);
+    run(1);
+  }
+  void run(int ticks) {
+    Report walk;
+    walk.kind = ReportKind::command;
+    const std::string_view text = "gait speed_m_s 1.2";
+    walk.size = static_cast<std::uint16_t>(text.size());
+    std::copy(text.begin(), text.end(), walk.bytes.begin());
+    for (int i = 0; i < ticks; ++i) {
+      simulation_->step(std::span(&walk, 1));
+      TickSample sample;
+      copy_sample(*simulation_, sample);
+      history_.add(sample);
+    }
+    copy_frame(*simulation_, *frame_);
+  }
+  void fill(double share = 1.0) {
+    ensemble_->fill(*frame_, history_, share, cast_, state_, theme_of(ThemeName::dark), content_);
+  }
+  double length_m(const Trail& trail) const {
+    double sum_m = 0.0;
+    for (std::size_t i = 1; i < trail.points_m.size(); ++i)
+      sum_m += glm::length(trail.points_m[i] - trail.points_m[i - 1]);
+    return sum_m;
+  }
+
+  std::unique_ptr<Simulation> simulation_;
+  Cast cast_;
+  std::unique_ptr<SessionFrame> frame_ = std::make_unique<SessionFrame>();
+  History history_;
+  std::unique_ptr<Ensemble> ensemble_;
+  UiState state_;
+  SceneContent content_;
+};
+
+TEST_F(Walking, TrailsOfBothFeetGrowUpToWhatIsRemembered) {
+  run(240);
+  fill();
+  ASSERT_EQ(content_.trails.size(), 4u);
+  const double after_one_s = length_m(content_.trails[0]);
+  run(240);
+  fill();
+  EXPECT_GT(length_m(content_.trails[0]), after_one_s + 0.5);  // 1.2 m/s
+  run(1200);
+  fill();
+  const double after_seven_s = length_m(content_.trails[0]);
+  run(240);
+  fill();
+  EXPECT_NEAR(length_m(content_.trails[0]), after_seven_s, 0.7);
+  EXPECT_LT(after_seven_s, 1.2 * 3.0 * 1.6);  // three seconds of a foot that also rises
+}
+
+TEST_F(Walking, PointsOfATrailStayWhereTheyAre) {
+  run(243);
+  fill();
+  const std::vector<vec3> before = content_.trails[0].points_m;
+  run(1);
+  fill();
+  for (std::size_t i = 0; i + 2 < before.size(); ++i)
+    EXPECT_EQ(content_.trails[0].points_m[i], before[i]) << i;
+}
+
+TEST_F(Walking, WhatIsSwitchedOffIsNotThere) {
+  run(240);
+  state_.has_trails = state_.has_source = state_.has_names = false;
+  fill();
+  EXPECT_TRUE(content_.trails.empty());
+  EXPECT_TRUE(content_.lines.empty());
+  EXPECT_FALSE(content_.bodies.empty());
+  const Viewport viewport{0, 0, 800, 600};
+  EXPECT_TRUE(
+      ensemble_->labels(*frame_, cast_, Camera(), viewport, state_, theme_of(ThemeName::dark))
+          .empty());
+}
+
+TEST_F(Walking, AMomentBetweenTwoTicksIsDrawnBetweenTheirPoses) {
+  run(300);
+  const auto z_at = [this](double share) {
+    fill(share);
+    return ensemble_->focus_m(0).z;
+  };
+  const double from = z_at(0.0), to = z_at(1.0);
+  EXPECT_EQ(from, frame_->walkers[0].before.root_m.z);
+  EXPECT_EQ(to, frame_->walkers[0].pose.root_m.z);
+  EXPECT_NEAR(z_at(0.25), from + 0.25 * (to - from), 1e-12);
+  EXPECT_GT(to - from, 0.001);
+}
+
+TEST_F(Walking, FromItsDistanceTheCameraSeesEverybodyWithTheirNames) {
+  for (const Viewport& viewport : {Viewport{232, 44, 744, 612}, Viewport{0, 0, 1280, 600}}) {
+    fill();
+    Camera camera;
+    camera.target_m = ensemble_->focus_m(-1);
+    camera.distance_m = ensemble_->distance_m(-1, camera, viewport);
+    const auto labels =
+        ensemble_->labels(*frame_, cast_, camera, viewport, state_, theme_of(ThemeName::dark));
+    ASSERT_EQ(labels.size(), 3u);
+    EXPECT_EQ(labels[0].text, "even");
+    EXPECT_EQ(labels[1].text, "limp left");
+    EXPECT_EQ(labels[2].text, "source");
+    for (const Capsule& bone : content_.bodies) {
+      const vec3 place = projected(camera, bone.a_m, viewport.width, viewport.height);
+      EXPECT_GT(place.z, 0.0);
+      EXPECT_GT(place.x, 0.0);
+      EXPECT_LT(place.x, viewport.width);
+      EXPECT_GT(place.y, 0.0);
+      EXPECT_LT(place.y, viewport.height);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

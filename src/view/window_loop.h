@@ -35,6 +35,7 @@ class WindowLoop {
   bool is_ended();
   void take_events();
   void take_wishes(Wishes wishes);
+  void take_buttons(std::vector<Action>& wanted);
   void move_camera(const Wishes& wishes);
   void call_script();
   void take_layout(const UiState& layout);

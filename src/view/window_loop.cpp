@@ -47,6 +47,10 @@ bool WindowLoop::makes_pictures() const noexcept {
   return !options_.screenshot.empty() || !options_.video.empty();
 }
 
+bool WindowLoop::makes_still() const noexcept {
+  return makes_pictures() && options_.video.empty() && options_.frames > 0;
+}
+
 // As it was left, but for what was asked for this once.
 void WindowLoop::take_layout(const UiState& layout) {
   state_ = remembered_ = layout;
@@ -71,7 +75,7 @@ std::optional<Error> WindowLoop::open() {
       {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
   if (!surface) return surface.error();
   surface_ = std::move(*surface);
-  auto scene = Scene::create(Scene::Quality::automatic);
+  auto scene = Scene::create(makes_still() ? Scene::Quality::high : Scene::Quality::automatic);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
   gui_ = std::make_unique<Gui>(*surface_);
@@ -100,9 +104,7 @@ bool WindowLoop::draw_frame() {
   if (options_.take_commands)
     for (const std::string& command : options_.take_commands()) show_->command(command);
   look();
-  const bool is_ended =
-      is_quitting_ || (options_.is_ended_from_outside && options_.is_ended_from_outside());
-  const bool is_last = is_ended || (options_.frames > 0 && result_.frames + 1 >= options_.frames);
+  const bool is_last = is_ended();
   const bool is_seen = (SDL_GetWindowFlags(surface_->window()) & SDL_WINDOW_MINIMIZED) == 0;
   if (!surface_->is_lost() && (is_seen || makes_pictures())) draw(is_last);
   if (surface_->is_lost()) end_lost();

@@ -31,6 +31,7 @@ class WindowLoop {
  private:
   // window_loop.cpp: the order of a frame.
   bool makes_pictures() const noexcept;
+  bool makes_still() const noexcept;  // only the last frame is to be seen
   bool draw_frame();  // false: it was the last one
   bool is_ended();
   void take_events();

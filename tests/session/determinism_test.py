@@ -19,7 +19,7 @@ ROOMS = ["base", "hid", "stick", "motion", "control", "animation", "session"]
 # What reads and writes files and cannot reach a pose comes from the ordinary build's libraries.
 NO_POSE = re.compile(
     r"toml_file|trace|_file|_files|style|character|bvh_writer|frames_csv|replay|setup|walk_export"
-    r"|motion_source|pad_|live|recording|realtime|summary")
+    r"|motion_source|pad_|live|recording|realtime|summary|guided|tick_reports|playback|user_files")
 MAIN = ROOT / "tests/session/pose_hash_main.cpp"
 FLAGS = f"-std=c++20 -ffp-contract=off -w -I {ROOT}/src -I {ROOT}"
 

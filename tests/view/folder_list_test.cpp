@@ -29,7 +29,8 @@ class Folder : public testing::Test {
       all.push_back(entry.name);
     return all;
   }
-  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_folder_list_test";
+  fs::path folder_ =
+      fs::path(testing::TempDir()) / ("gaitpad_folder_list_" + std::to_string(::getpid()));
 };
 using Names = std::vector<std::string>;
 

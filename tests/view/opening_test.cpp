@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -20,7 +21,8 @@ class Opening : public testing::Test {
     std::ofstream(folder_ / path) << text;
     return (folder_ / path).string();
   }
-  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_opening_test";
+  fs::path folder_ =
+      fs::path(testing::TempDir()) / ("gaitpad_opening_" + std::to_string(::getpid()));
 };
 
 TEST_F(Opening, TheEndingTellsMotionsAndRecordings) {

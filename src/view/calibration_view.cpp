@@ -10,12 +10,13 @@
 #include <iterator>
 
 #include "session/calibration_store.h"
+#include "view/modal.h"
 #include "view/stick_picture.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr double kWidth = 900.0, kHeight = 640.0;  // at scale 1
+constexpr double kWidth = 900.0, kHeight = 600.0;  // at scale 1
 constexpr double kPlane = 150.0;                   // of a control's place, at scale 1
 constexpr const char* kTitles[] = {"Left stick", "Right stick"};
 
@@ -232,11 +233,7 @@ void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& mess
 CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
                                              std::vector<std::string>& messages) {
   look(messages);
-  const ImVec2 size(std::min(ui.px(kWidth), window_px.x), std::min(ui.px(kHeight), window_px.y));
-  ImGui::SetNextWindowPos(ImVec2((window_px.x - size.x) / 2, (window_px.y - size.y) / 2));
-  ImGui::SetNextWindowSize(size);
-  ImGui::SetNextWindowFocus();
-  ImGui::Begin("##calibration", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+  const ImVec2 size = begin_modal(ui, "calibration", kWidth, kHeight, window_px);
   CalibrationGuide* guide = guided_ ? guided_->guide() : nullptr;
   const float buttons_y = size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y;
   if (guide != nullptr) {
@@ -258,9 +255,7 @@ CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
     ImGui::SameLine();
     text_line(ui, ui.fonts.small, ui.theme.warning, problem_);
   }
-  const ImVec2 at = ImGui::GetWindowPos();
-  keep_item("area calibration", at, at + size);
-  ImGui::End();
+  end_modal();
   return state_;
 }
 

@@ -91,7 +91,7 @@ void Controls::take_button(const SDL_MouseButtonEvent& button, const Taken& take
   mouse_.is_down[static_cast<std::size_t>(index)] = is_down;
   if (!is_down) drag_ = Drag::none;
   if (!is_down || taken.mouse) return;
-  drag_ = index == 2 || is_shifted_ ? Drag::pan : Drag::orbit;
+  drag_ = index > 0 || is_shifted_ ? Drag::pan : Drag::orbit;
 }
 
 void Controls::take_motion(const SDL_MouseMotionEvent& motion) {

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "view/modal.h"
+
 namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
@@ -27,7 +29,7 @@ std::string home_folder() {
 }  // namespace
 
 void FileBrowser::open() {
-  is_open_ = has_just_opened_ = true;
+  is_open_ = true;
   problem_.clear();
   std::error_code error;
   if (folder_.empty()) folder_ = fs::current_path(error).string();
@@ -77,9 +79,9 @@ void FileBrowser::draw_places(Ui& ui) {
   int number = 0;
   for (const std::string& path : std::vector<std::string>(recent_.paths())) {
     ImGui::PushID(number);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool is_clicked = ImGui::Selectable("##recent");
     keep_item(fmt::format("browser recent {}", number++));
-    const ImVec2 at = ImGui::GetItemRectMin();
     put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.text, at,
              fs::path(path).filename().string(), ImGui::GetItemRectSize().x);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", drawable(path).c_str());
@@ -101,7 +103,10 @@ void FileBrowser::draw_filters(Ui& ui) {
 }
 
 void FileBrowser::draw_entries(Ui& ui, float height_px) {
-  ImGui::BeginChild("entries", ImVec2(0.0f, height_px), true);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(10), ui.px(8)));
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, imgui_colour(ui.theme.plot));
+  ImGui::BeginChild("entries", ImVec2(0.0f, height_px), false,
+                    ImGuiWindowFlags_AlwaysUseWindowPadding);
   ImGui::PushFont(ui.fonts.body);
   std::optional<std::string> entered;
   ImGuiListClipper clipper;  // thousands of rows: only those to be seen
@@ -110,6 +115,7 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
       const FolderEntry& entry = list_.entries[static_cast<std::size_t>(i)];
       ImGui::PushID(i);
+      const ImVec2 at = ImGui::GetCursorScreenPos();
       if (ImGui::Selectable("##entry", i == chosen_, ImGuiSelectableFlags_AllowDoubleClick)) {
         // A second click counts for the entry of the first one: not for what stands there since a
         // folder was entered.
@@ -120,7 +126,7 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
       }
       keep_item("browser entry " + drawable(entry.name));
       const Colour& colour = entry.is_folder ? ui.theme.secondary : ui.theme.text;
-      put_text(*ImGui::GetWindowDrawList(), ui.fonts.body, colour, ImGui::GetItemRectMin(),
+      put_text(*ImGui::GetWindowDrawList(), ui.fonts.body, colour, at,
                entry.is_folder ? entry.name + "/" : entry.name, ImGui::GetItemRectSize().x);
       ImGui::PopID();
     }
@@ -129,6 +135,8 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
     text_line(ui, ui.fonts.small, ui.theme.tick, "nothing here that the window can open");
   ImGui::PopFont();
   ImGui::EndChild();
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
   if (entered) enter(*entered);
 }
 
@@ -153,25 +161,19 @@ void FileBrowser::draw_buttons(Ui& ui) {
 
 std::optional<std::string> FileBrowser::draw(Ui& ui, const ImVec2& window_px) {
   result_.reset();
-  const ImVec2 size(std::min(ui.px(kWidth), window_px.x), std::min(ui.px(kHeight), window_px.y));
-  ImGui::SetNextWindowPos(ImVec2((window_px.x - size.x) / 2, (window_px.y - size.y) / 2));
-  ImGui::SetNextWindowSize(size);
-  if (std::exchange(has_just_opened_, false)) ImGui::SetNextWindowFocus();
-  ImGui::Begin("##browser", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+  begin_modal(ui, "browser", kWidth, kHeight, window_px);
   text_line(ui, ui.fonts.title, ui.theme.text, "Open a file");
   draw_path(ui);
   draw_filters(ui);
   const float below_px = ImGui::GetFrameHeightWithSpacing() + ui.px(10);
   const float height_px = ImGui::GetContentRegionAvail().y - below_px;
-  ImGui::BeginChild("places", ImVec2(ui.px(190), height_px));
+  ImGui::BeginChild("places", ImVec2(ui.px(170), height_px));
   draw_places(ui);
   ImGui::EndChild();
   ImGui::SameLine();
   draw_entries(ui, height_px);
   draw_buttons(ui);
-  keep_item("area browser", ImGui::GetWindowPos(),
-            ImVec2(ImGui::GetWindowPos().x + size.x, ImGui::GetWindowPos().y + size.y));
-  ImGui::End();
+  end_modal();
   if (result_) close();
   return std::exchange(result_, std::nullopt);
 }

@@ -32,7 +32,7 @@ class FileBrowser {
   void draw_entries(Ui& ui, float height_px);
   void draw_buttons(Ui& ui);
 
-  bool is_open_ = false, has_just_opened_ = false;
+  bool is_open_ = false;
   std::string folder_;
   FileFilter filter_ = FileFilter::all;
   FolderList list_;

@@ -21,7 +21,10 @@ class LiveShow final : public Show {
   void look(double) override {
     bool is_new = false;
     frame_ = &session_->latest(is_new);
-    for (TickSample sample; session_->take(sample);) history_.add(sample);
+    for (TickSample sample; session_->take(sample);) {
+      if (is_by_hand()) sample.step_us = 0.0f;  // a picture does not tell of the machine's speed
+      history_.add(sample);
+    }
   }
 
   void look_for_picture() override {

@@ -63,13 +63,24 @@ void WindowLoop::see_anew() {
   camera_.distance_m = ensemble_->distance_m(state_.walker, camera_, viewport);
 }
 
+// In pictures without what tells of the machine's speed.
+const LiveStatus* WindowLoop::shown_status() {
+  const LiveStatus* status = show_->status();
+  if (status == nullptr || !makes_pictures()) return status;
+  picture_status_ = LiveStatus();
+  picture_status_.ticks = status->ticks;
+  picture_status_.time_policy = status->time_policy;
+  picture_status_.pads = status->pads;
+  return &picture_status_;
+}
+
 UiInput WindowLoop::ui_input() {
   const SessionFrame& frame = show_->frame();
   const UiTimeline* timeline = show_->timeline();
   UiInput in{.frame = frame,
              .cast = show_->cast(),
              .history = show_->history(),
-             .status = timeline == nullptr ? show_->status() : nullptr,
+             .status = timeline == nullptr ? shown_status() : nullptr,
              .timeline = timeline,
              .pad_name = show_->pad_name(),
              .pace = show_->pace(),
@@ -79,7 +90,7 @@ UiInput WindowLoop::ui_input() {
              .labels = {},
              .messages = messages_.sentences(),
              .is_modal = browser_.is_open() || calibration_ != nullptr};
-  if (makes_pictures()) return in;  // nothing that tells of the machine's speed
+  if (makes_pictures()) return in;
   in.pad_rate_hz = clock_.rate_hz(frame.pad.reports);
   in.frames_per_second = clock_.frames_per_second();
   in.memory_mib = memory_mib();

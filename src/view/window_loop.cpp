@@ -143,7 +143,7 @@ void WindowLoop::take_events() {
 
 void WindowLoop::take_wishes(Wishes wishes) {
   const bool is_modal = browser_.is_open() || calibration_ != nullptr;
-  if (show_->is_live() && !makes_pictures()) presses_.take(show_->frame(), wishes.actions);
+  if (show_->is_live() && !makes_pictures()) take_buttons(wishes.actions);
   for (const Action action : wishes.actions) {
     const bool is_always = action == Action::back || action == Action::quit ||
                            action == Action::screenshot || action == Action::fullscreen;
@@ -153,6 +153,20 @@ void WindowLoop::take_wishes(Wishes wishes) {
   if (is_modal) controls_.let_go();
   show_->steer(controls_.walk());
   move_camera(wishes);
+}
+
+// The buttons of a recording that is the pad walk and look as they did, but begin and end nothing:
+// its last press may be the one that ended it.
+void WindowLoop::take_buttons(std::vector<Action>& wanted) {
+  std::vector<Action> pressed;
+  presses_.take(show_->frame(), pressed);
+  if (is_recording(show_->options().live.wish.pad)) {
+    std::erase_if(pressed, [](Action action) {
+      return action == Action::record || action == Action::screenshot ||
+             action == Action::open_file || action == Action::calibrate || action == Action::quit;
+    });
+  }
+  wanted.insert(wanted.end(), pressed.begin(), pressed.end());
 }
 
 void WindowLoop::move_camera(const Wishes& wishes) {

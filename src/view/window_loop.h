@@ -32,10 +32,11 @@ class WindowLoop {
   // window_loop.cpp: the order of a frame.
   bool makes_pictures() const noexcept;
   bool makes_still() const noexcept;  // only the last frame is to be seen
-  bool draw_frame();  // false: it was the last one
+  bool draw_frame();                  // false: it was the last one
   bool is_ended();
   void take_events();
   void take_wishes(Wishes wishes);
+  void take_buttons(std::vector<Action>& wanted);
   void move_camera(const Wishes& wishes);
   void call_script();
   void take_layout(const UiState& layout);
@@ -48,6 +49,7 @@ class WindowLoop {
   void draw(bool is_last);
   UiOutput draw_panels(int width_px, int height_px);
   UiInput ui_input();
+  const LiveStatus* shown_status();
   void draw_browser(Ui& ui, const ImVec2& window_px);
   void draw_calibration(Ui& ui, const ImVec2& window_px);
   void see_anew();  // the camera, as at the beginning
@@ -105,6 +107,7 @@ class WindowLoop {
   FileBrowser browser_;
   Messages messages_;
   FrameClock clock_;
+  LiveStatus picture_status_;
   double pace_before_pause_ = 1.0;
   std::optional<std::string> chosen_file_;  // by the browser, in this frame
   CalibrationView::State calibration_state_ = CalibrationView::State::goes_on;

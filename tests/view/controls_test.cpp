@@ -109,7 +109,7 @@ TEST(Controls, FocusLossLetsEverythingGo) {
   }
 }
 
-TEST(Controls, ADragOrbitsWithTheMiddleButtonOrShiftItPans) {
+TEST(Controls, ADragOrbitsWithAnotherButtonOrShiftItPans) {
   const auto dragged = [](Uint8 number, bool is_shifted) {
     Controls controls;
     if (is_shifted) controls.take(key(SDLK_LSHIFT), {});
@@ -123,6 +123,7 @@ TEST(Controls, ADragOrbitsWithTheMiddleButtonOrShiftItPans) {
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, false).orbit_px, vec2(30, -10));
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, false).pan_px, vec2(0, 0));
   EXPECT_EQ(dragged(SDL_BUTTON_MIDDLE, false).pan_px, vec2(30, -10));
+  EXPECT_EQ(dragged(SDL_BUTTON_RIGHT, false).pan_px, vec2(30, -10));
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, true).pan_px, vec2(30, -10));
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, true).orbit_px, vec2(0, 0));
 }

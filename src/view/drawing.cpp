@@ -143,8 +143,11 @@ std::string png_of(cairo_surface_t* surface) {
 
 }  // namespace gaitpad
 
-// Fontconfig keeps what it looked up until the process ends, out of the leak checker's sight.
+// Fontconfig and D-Bus (through SDL) keep what they looked up until the process ends, out of the leak checker's sight.
 #ifdef __SANITIZE_ADDRESS__
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libdbus-1\n"
+         "leak:libfontconfig";
+}
 extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
 #endif

@@ -143,7 +143,8 @@ std::string png_of(cairo_surface_t* surface) {
 
 }  // namespace gaitpad
 
-// Fontconfig and D-Bus (through SDL) keep what they looked up until the process ends, out of the leak checker's sight.
+// Fontconfig and D-Bus (through SDL) keep what they looked up until the process ends, out of the leak
+// checker's sight.
 #ifdef __SANITIZE_ADDRESS__
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libdbus-1\n"

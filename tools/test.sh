@@ -2,6 +2,6 @@
 # Installs what is missing, builds, runs every test.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-bash "$root/tools/install.sh"
+bash "$root/tools/install.sh" xvfb ffmpeg # a display and an encoder for the window's tests
 bash "$root/tools/build.sh" "$root/build" all -DCMAKE_BUILD_TYPE=Release
 bash "$root/tools/ctest.sh" "$root/build"

@@ -1,6 +1,7 @@
 #include "session/config_files.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -29,7 +30,8 @@ class ConfigFiles : public testing::Test {
   }
   std::string at(const std::string& path) const { return (folder_ / path).string(); }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_config_files_test";
+  fs::path folder_ =
+      fs::path(testing::TempDir()) / ("gaitpad_config_files_" + std::to_string(::getpid()));
 };
 
 TEST_F(ConfigFiles, TheFirstFolderThatHasANameWins) {

@@ -1,6 +1,7 @@
 #include "session/output_files.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <iterator>
@@ -13,7 +14,7 @@ namespace fs = std::filesystem;
 class OutputFolder : public testing::Test {
  protected:
   void SetUp() override { fs::remove_all(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(folder_.parent_path()); }
   std::string text(const std::string& name) const {
     std::ifstream in(folder_ / name);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -30,7 +31,9 @@ class OutputFolder : public testing::Test {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_output_files_test" / "deep";
+  // A folder of its own: tests of one file run side by side.
+  fs::path folder_ = fs::path(testing::TempDir()) /
+                     ("gaitpad_output_files_" + std::to_string(::getpid())) / "deep";
 };
 
 TEST_F(OutputFolder, IsMadeAndHoldsWhatWasPublished) {

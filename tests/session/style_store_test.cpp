@@ -1,6 +1,7 @@
 #include "session/style_store.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -32,7 +33,8 @@ class StyleStore : public testing::Test {
   }
   std::string shipped() const { return (folder_ / "shipped").string(); }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "gaitpad_style_store_test";
+  fs::path folder_ =
+      fs::path(testing::TempDir()) / ("gaitpad_style_store_" + std::to_string(::getpid()));
   std::optional<std::string> old_;
   StyleValues values_;
 };

@@ -62,4 +62,15 @@ OutputFiles::~OutputFiles() {
   }
 }
 
+std::optional<Error> write_file(const std::string& path, const std::string& bytes) {
+  const std::filesystem::path file(path);
+  if (!file.has_filename()) return Error{path + ": is no file's name"};
+  auto files = OutputFiles::open(file.has_parent_path() ? file.parent_path().string() : ".");
+  if (!files) return files.error();
+  auto stream = files->add(file.filename().string());
+  if (!stream) return stream.error();
+  **stream << bytes;
+  return files->publish();
+}
+
 }  // namespace gaitpad

@@ -36,4 +36,7 @@ class OutputFiles {
   std::vector<File> files_;
 };
 
+// One file alone, the same way; its folder is made.
+std::optional<Error> write_file(const std::string& path, const std::string& bytes);
+
 }  // namespace gaitpad

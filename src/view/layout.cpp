@@ -99,14 +99,7 @@ Layout load_layout(const std::string& path) {
 }
 
 std::optional<Error> save_layout(const std::string& path, const UiState& state) {
-  const fs::path file(path);
-  if (!file.has_filename()) return Error{fmt::format("{}: is no file's name", path)};
-  auto files = OutputFiles::open(file.has_parent_path() ? file.parent_path().string() : ".");
-  if (!files) return files.error();
-  auto stream = files->add(file.filename().string());
-  if (!stream) return stream.error();
-  **stream << text_of(state);
-  return files->publish();
+  return write_file(path, text_of(state));
 }
 
 }  // namespace gaitpad

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <filesystem>
 
 #include "session/output_files.h"
 #include "view/drawing.h"
@@ -60,13 +59,7 @@ std::optional<Error> write_png(const std::string& path, const Pixels& pixels) {
   }
   const std::string png = encoded(pixels);
   if (png.empty()) return Error{path + ": cannot be written: cairo has no memory"};
-  const std::filesystem::path file(path);
-  auto files = OutputFiles::open(file.has_parent_path() ? file.parent_path().string() : ".");
-  if (!files) return files.error();
-  auto stream = files->add(file.filename().string());
-  if (!stream) return stream.error();
-  **stream << png;
-  return files->publish();
+  return write_file(path, png);
 }
 
 }  // namespace gaitpad

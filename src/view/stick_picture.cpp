@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include "session/output_files.h"
@@ -218,14 +217,7 @@ std::optional<Error> write_stick_picture(const std::string& path, const std::str
   const bool is_drawn = cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS;
   const std::string png = is_drawn ? png_of(surface.get()) : std::string();
   if (png.empty()) return Error{path + ": cannot be drawn: cairo has no memory"};
-  const std::filesystem::path file(path);
-  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-  auto files = OutputFiles::open(folder);
-  if (!files) return files.error();
-  auto stream = files->add(file.filename().string());
-  if (!stream) return stream.error();
-  **stream << png;
-  return files->publish();
+  return write_file(path, png);
 }
 
 }  // namespace gaitpad

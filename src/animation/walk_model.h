@@ -2,11 +2,13 @@
 // cycle retargeted to the character's legs (Meredith & Maddock 2005, sections 3.2 and 3.3).
 #pragma once
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "animation/character.h"
 #include "animation/curve.h"
 #include "animation/ik.h"
+#include "animation/terrain.h"
 #include "motion/gait_cycle.h"
 
 namespace gaitpad {
@@ -36,6 +38,7 @@ struct LegBuild {
 };
 
 struct WalkModel {
+  std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
   GaitCycle cycle;  // of the source; skeleton replaced by the character's
   std::array<LegBuild, 2> leg;
   double size = 1.0;        // leg length over kReferenceLeg_m

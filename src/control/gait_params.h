@@ -20,7 +20,8 @@ using LegWeights = std::array<double, kLegDofs>;
 inline constexpr LegWeights kEvenWeights = {1, 1, 1, 1, 1, 1, 1};
 
 struct GaitParams {
-  bool walking = false;  // false: stand (finish the step, bring the feet together)
+  bool walking = false;   // false: stand (finish the step, bring the feet together)
+  bool backward = false;  // the steps lead backwards; a change takes effect from standing alone
   std::array<StrideParams, 2> stride;
   double turn_rate_rad_s = 0.0;  // positive to the left
   double hip_sway = 1.0;         // factor on the pelvis' rotation about the vertical axis

@@ -1,6 +1,6 @@
 // The spine by weighted half-Jacobian IK: its joints share the way to where the data carry the neck
-// and turn the shoulders. Four rows, all of positions: the neck's sideways and fore-aft place, the
-// same of a point beside it.
+// and turn the shoulders. Three rows, all of positions: the neck's sideways and fore-aft place, and
+// how far ahead a point beside it is.
 #include "animation/walk_body_parts.h"
 #include "motion/cycle_leg.h"
 
@@ -57,9 +57,9 @@ void pose_spine(const BodyModel& body, const Skeleton& skeleton, const SpineWeig
   const vec3 last = to_base * (world.position_m[body.spine.back().joint] - origin);
   const vec3 neck_point = body.neck_m, side_point = body.neck_m + vec3(kSideLever_m, 0.0, 0.0);
   const vec3 neck = last + own[count - 1] * neck_point, beside = last + own[count - 1] * side_point;
-  const std::array<IkRow, 4> rows = {
-      IkRow{neck_point, vec3(1, 0, 0), neck.x}, IkRow{neck_point, vec3(0, 0, 1), neck.z},
-      IkRow{side_point, vec3(0, 1, 0), beside.y}, IkRow{side_point, vec3(0, 0, 1), beside.z}};
+  const std::array<IkRow, 3> rows = {IkRow{neck_point, vec3(1, 0, 0), neck.x},
+                                     IkRow{neck_point, vec3(0, 0, 1), neck.z},
+                                     IkRow{side_point, vec3(0, 0, 1), beside.z}};
   solve_robust(chain, rows, kRobust, angles);
   quat segment = kIdentity;
   for (int i = 0, k = 0; i < count; ++i) {

@@ -472,14 +472,15 @@ TEST(WalkBody, OfRealWalksReachesAndStaysSound) {
     const WalkModel model = model_of(*cycle);
     EXPECT_TRUE(model.body.arm[0].is_there && model.body.arm[1].is_there);
     const StyleValues carry = style({{"hands.carry", 1.0}, {"head.look", 1.0}});
-    const StyleValues rail = style({{"left_hand.rail", 1.0}, {"arms.weight.elbow", 0.3}});
+    const StyleValues rail = style(
+        {{"left_hand.rail", 1.0}, {"left_hand.rail_height_m", 1.0}, {"arms.weight.elbow", 0.3}});
     Walker walker(model);
     walker.walk(700, carry, 0.7);
     EXPECT_NEAR(walker.hand(kLeftSide).y, walker.hand(kRightSide).y, 0.001);
     EXPECT_LT(std::abs(heading_of(walker.gaze())) / kDegree, 1.0);
     walker.walk(700, rail, 0.7);
-    EXPECT_NEAR(walker.hand(kLeftSide).y, 0.9 * model.body.shoulder_height_m / kReferenceShoulder_m,
-                0.002);
+    EXPECT_NEAR(walker.hand(kLeftSide).y, 1.0 * model.body.shoulder_height_m / kReferenceShoulder_m,
+                0.001);
   }
   EXPECT_GT(walks, 0);
 }

@@ -16,10 +16,11 @@ constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
 constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
-constexpr double kLamePeak = 0.9;   // an able foot's peak lags behind its curve by as much
-constexpr double kLameFade = 0.15;  // of kLiftFade, for a foot that does not lift at all
-constexpr double kStopping = 0.6;   // of the flight: from here the heel comes to a stop
-constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
+constexpr double kLamePeak = 0.9;       // an able foot's peak lags behind its curve by as much
+constexpr double kLameFade = 0.15;      // of kLiftFade, for a foot that does not lift at all
+constexpr double kBackwardPitch = 0.6;  // of the data's: the foot reaches back, toe down
+constexpr double kStopping = 0.6;       // of the flight: from here the heel comes to a stop
+constexpr double kLiftFade = 0.5;       // of the flight: what the lift-off brought has faded
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
 
@@ -34,6 +35,7 @@ double pitch_scale(const WalkModel& model, const WalkState& state, Side side) no
 }
 
 double support_pitch(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  if (state.backward) return 0.0;  // the front foot leaves the ground as a whole
   const double own = own_phase(model, state, side);
   const double height = std::min(1.0, state.flight_height[side].x);
   const double pitch =
@@ -44,6 +46,12 @@ double support_pitch(const WalkModel& model, const WalkState& state, Side side) 
 double flight_pitch(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
   const LegBuild& leg = model.leg[side];
   const double scale = pitch_scale(model, state, side);
+  if (state.backward) {
+    // It lands flat, the toe a moment ahead of the heel.
+    const double share = kBackwardPitch * scale * (1.0 - smoothstep(0.55, 1.0, u));
+    const double pitch = share * leg.pitch_rad.at(1.0 - u * (1.0 - leg.toe_off));
+    return soft_max(soft_min(pitch, kMaxPlannedPitch, kWidePitch), kMinPitch, kSoftPitch);
+  }
   const double own = leg.toe_off + u * (1.0 - leg.toe_off);
   const double at_strike = scale * leg.pitch_rad.at(1.0);
   const double wanted = -scale * asin(kToeUpAtStrike_m * model.size / leg.foot_m);
@@ -62,22 +70,42 @@ double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noe
   return state.turn_rate.x * heel_rise(model, state, side);
 }
 
+// The data's flight, or the same run back.
+struct FlightPath {
+  const FootFlight& data;
+  bool backward;
+  double progress(double u) const noexcept {
+    return backward ? 1.0 - data.progress.at(1.0 - u) : data.progress.at(u);
+  }
+  double start_slope() const noexcept {
+    return backward ? data.progress.end_slope() : data.progress.start_slope();
+  }
+  double end_slope() const noexcept {
+    return backward ? data.progress.start_slope() : data.progress.end_slope();
+  }
+  double height_m(double u) const noexcept { return data.height_m.at(backward ? 1.0 - u : u); }
+  double start_climb_m() const noexcept {
+    return backward ? 0.0 - data.height_m.end_slope() : data.height_m.start_slope();
+  }
+};
+
 vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
   const LegBuild& leg = model.leg[side];
   const FootState& foot = state.foot[side];
   const vec3 way = state.landing_m - foot.lift_m;
-  const FlightCurve& s = leg.flight.progress;
+  const FlightPath path = {leg.flight, state.backward};
   // The data's heel still moves when it strikes, ours stops: the difference is made up at the end.
   const double end = std::max(0.0, (u - kStopping) / (1.0 - kStopping));
-  vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
-           way * (s.end_slope() * (1.0 - kStopping) * h11(end));
+  vec3 p = foot.lift_m + way * path.progress(u) +
+           (foot.lift_slope_m - way * path.start_slope()) * h10(u) -
+           way * (path.end_slope() * (1.0 - kStopping) * h11(end));
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
   const double k = mix(kLamePeak, 1.0, able) * state.flight_height[side].x *
                    std::min(1.1, 0.35 + 0.65 * full_pace(model, state));
-  const FlightCurve& h = leg.flight.height_m;
-  const Fade lift = {foot.lift_m.y - k * h.at(0.0), foot.lift_slope_m.y - k * h.start_slope(),
+  const Fade lift = {foot.lift_m.y - k * path.height_m(0.0),
+                     foot.lift_slope_m.y - k * path.start_climb_m(),
                      kLiftFade * lift_share(state, side)};
-  p.y = std::max(0.0, k * h.at(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
+  p.y = std::max(0.0, k * path.height_m(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
   return p;
 }
 

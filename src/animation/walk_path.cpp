@@ -37,10 +37,6 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
   return state.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
 }
 
-double step_length(const WalkState& state, Side side) noexcept {
-  return state.closing ? 0.0 : state.length_m[side].x;
-}
-
 // beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
 // Steps far longer than the data's take an even stance instead of the data's lean.
 double hips_share(const WalkModel& model, const WalkState& state) noexcept {
@@ -53,12 +49,28 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
   if (state.closing) return 0.0;
   const Side swing = step_foot(state);
   const double beta = hips_share(tick.model, state);
-  const double now = step_length(state, swing), before = state.frame.stride_m[other(swing)],
-               next = tick.params.walking ? state.length_m[other(swing)].x : 0.0;
+  double now = step_length(state, swing), before = state.frame.stride_m[other(swing)],
+         next = tick.params.walking ? state.length_m[other(swing)].x : 0.0;
+  if (!tick.flat) {
+    now = state.frame.stride_m[swing];
+    next = tick.params.walking ? state.landing.next_m : 0.0;
+  }
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
   const double next_s = state.last_step_ticks > 0 ? state.last_step_ticks * tick.dt_s : this_s;
   return 0.5 * (((1.0 - beta) * before + beta * now) / this_s +
                 ((1.0 - beta) * now + beta * next) / next_s);
+}
+
+// The ground that the hips go over rises and falls along a cubic from strike to strike, as they go.
+void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexcept {
+  const Side swing = step_foot(state), stand = other(swing);
+  const double standing = state.foot[stand].plane.place_m.y, landing = state.landing_m.y;
+  const double goal = base_at_strike(standing, landing);
+  const double before = base_at_strike(state.foot[swing].plane.place_m.y, standing);
+  const double next = base_at_strike(landing, state.landing.next_base_m);
+  const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
+  const double velocity = state.closing ? 0.0 : 0.5 * (next - before) / this_s;
+  approach(state.base_m, state.base_velocity_m_s, goal, velocity, remaining_s, tick.dt_s);
 }
 
 // Pelvis height at which a leg is as long from its hip to its ankle as `reach_m`.
@@ -84,7 +96,8 @@ double height_of_knee(const WalkModel& model, const WalkState& state, const Pelv
   const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
   const double a = leg.thigh_m, b = leg.shank_m;
   const double cosine = sin_cos(kStandingKnee + bend).cos;
-  return height_over(model.leg[side], foot, pelvis,
+  return state.base_m - state.foot[side].base_m +
+         height_over(model.leg[side], foot, pelvis,
                      std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
 }
 
@@ -103,6 +116,10 @@ double left_load(const WalkState& state) noexcept {
 
 }  // namespace
 
+double step_length(const WalkState& state, Side side) noexcept {
+  return state.closing ? 0.0 : state.length_m[side].x;
+}
+
 void plan_landing(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::idle || !state.started) return;
   const Side swing = step_foot(state), stand = other(swing);
@@ -113,6 +130,7 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
     const double width = tick.model.leg[swing].track_m - tick.model.leg[stand].track_m;
     state.landing_heading_rad = heading;
     state.landing_m = standing + forward * step_length(state, swing) + left * width;
+    if (!tick.flat) choose_foothold(tick, state, forward, left * width);
   }
   // Along the heading that the landing will have, which may still turn after the place is settled.
   state.frame.stride_m[swing] = glm::dot(state.landing_m - standing, forward);
@@ -128,11 +146,12 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
   const vec3 forward = heading_direction(state.landing_heading_rad),
              left = glm::cross(kUp, forward);
   const double lead = model.rest_lead_m + hips_share(model, state) * state.frame.stride_m[swing];
-  const vec3 goal =
-      state.foot[stand].heel_anchor_m + forward * lead - left * model.leg[stand].track_m;
+  vec3 goal = state.foot[stand].heel_anchor_m + forward * lead - left * model.leg[stand].track_m;
+  goal.y = 0.0;
   const vec3 velocity = forward * hips_speed_at_strike(tick, state);
   const double remaining = (ticks_to_strike(state) + 1) * tick.dt_s;
   approach(state.hips_m, state.hips_velocity_m_s, goal, velocity, remaining, tick.dt_s);
+  if (!tick.flat) advance_base(tick, state, remaining);
 }
 
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {

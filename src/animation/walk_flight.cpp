@@ -10,8 +10,9 @@ namespace {
 
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
-constexpr double kRoomBeside_m = 0.008, kMostShift_m = 0.14, kRiser_m = 0.01;
+constexpr double kRoomBeside_m = 0.005, kMostShift_m = 0.14, kRiser_m = 0.01;
 constexpr double kFirstKnot = 0.35;  // of the next one: the least jerk at both ends
+constexpr double kLeastWanted_m = 0.004, kMostRaiseGain = 1.2, kMostShiftGain = 2.5;
 constexpr double kRoomSmoothing_s = 0.04;
 constexpr double kReplan_m = 0.005;  // of the landing
 
@@ -34,8 +35,9 @@ double spline_at(const FlightSpline& knots, double u) noexcept {
   return spline_at(knots, u, [](double k) { return k; });
 }
 
-// At each knot the value of the largest magnitude within its reach.
-FlightSpline envelope(const std::array<double, kProbes + 1>& wanted) noexcept {
+// At each knot the value of the largest magnitude within its reach; near the ends, where a spline
+// that ends gently falls short of it, all of it times at most `most_gain`.
+FlightSpline envelope(const std::array<double, kProbes + 1>& wanted, double most_gain) noexcept {
   FlightSpline knots{};
   for (int k = 1; k < kFlightKnots; ++k) {
     for (int i = 0; i <= kProbes; ++i) {
@@ -49,6 +51,13 @@ FlightSpline envelope(const std::array<double, kProbes + 1>& wanted) noexcept {
   };
   knots.front() = gentle(knots.front(), knots[1]);
   knots.back() = gentle(knots.back(), knots[kFlightKnots - 3]);
+  double gain = 1.0;
+  for (int i = 1; i < kProbes; ++i) {
+    if (std::abs(wanted[i]) < kLeastWanted_m) continue;
+    const double got = spline_at(knots, static_cast<double>(i) / kProbes);
+    gain = std::max(gain, got * wanted[i] > 0.0 ? wanted[i] / got : 1.0);
+  }
+  for (double& knot : knots) knot *= std::min(gain, most_gain);
   return knots;
 }
 
@@ -107,7 +116,7 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
       over = std::max(over, ground_at(terrain, p.x, p.z).height_m - base_under(point, p));
     above[i] = over + std::min(over, kRoomAbove_m * model.size);
   }
-  room.raise_m = envelope(above);
+  room.raise_m = envelope(above, kMostRaiseGain);
   const Stretch begin = piece_at(terrain, foot.plane.place_m.z), end = piece_at(terrain, state.landing_m.z);
   for (int i = 1; i < kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
@@ -116,7 +125,7 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
                     ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, model.size)
                     : way_back(terrain, sole[i], end, state.landing_m.y, model.size);
   }
-  room.shift_m = envelope(beside);
+  room.shift_m = envelope(beside, kMostShiftGain);
   if (!begins) return;
   for (int k = 0; k < kFlightKnots - 1; ++k) {
     room.raise[k] = {room.raise_m[k], 0.0};

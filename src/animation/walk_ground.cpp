@@ -5,14 +5,14 @@ namespace {
 
 constexpr double kMostRise = 0.37;      // of the leg, from the standing foot up or down
 constexpr double kSlopeShortens = 1.0;  // steps per grade
-constexpr double kBaseShare = 0.3;      // of the way up from the lower foot: the hips' ground at a strike
+constexpr double kBaseShare = 0.0;      // of the way up from the lower foot: the hips' ground at a strike
 // Of the leg: what the sole keeps from an edge where there is room, and it takes at most this share
 // of the room.
 constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
 constexpr int kMostPieces = 8;     // looked at from the wanted one to the standing foot's
 constexpr double kStay = 0.03;     // of the leg: a better piece must be this much better
 constexpr double kSkew = 0.25;     // cost of leaving the heading sideways, against along it
-constexpr double kLengthened = 2.0, kTooHigh = 4.0, kOverhang = 10.0;  // costs per metre
+constexpr double kLengthened = 2.0, kTooHigh = 30.0, kOverhang = 10.0;  // costs per metre
 constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
 

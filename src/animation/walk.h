@@ -123,6 +123,7 @@ struct WalkState {
   FootPlane landing_plane;
   Foothold landing;
   double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
+  Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;
   std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};  // data's, IK even, IK weighted
 };

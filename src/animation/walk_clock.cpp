@@ -115,7 +115,7 @@ int ticks_to_strike(const WalkState& state) noexcept {
 }
 
 double pace(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  return std::clamp(state.length_m[side].x / model.source_step_m, 0.0, 1.5);
+  return std::clamp(state.length_m[side].x * state.ground_share.x / model.source_step_m, 0.0, 1.5);
 }
 
 double presence(const WalkState& state) noexcept {
@@ -159,7 +159,7 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   state.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
   state.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
   const double mean = 0.5 * (state.length_m[0].x + state.length_m[1].x);
-  state.pace.advance(mean / tick.model.source_step_m, kStepSmoothing * scale, dt);
+  state.pace.advance(mean * state.ground_share.x / tick.model.source_step_m, kStepSmoothing * scale, dt);
 }
 
 void advance_clock(const Tick& tick, WalkState& state) noexcept {

@@ -19,6 +19,8 @@ constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch ra
 constexpr double kLamePeak = 0.9;   // an able foot's peak lags behind its curve by as much
 constexpr double kLameFade = 0.15;  // of kLiftFade, for a foot that does not lift at all
 constexpr double kStopping = 0.6;   // of the flight: from here the heel comes to a stop
+// A foot that goes down is lifted less: as much of it over a fall of this share of the leg.
+constexpr double kLiftDown = 0.4, kDown = 0.2;
 constexpr double kInPlace_m = 0.1;  // a way shorter than this is gone by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
 
@@ -86,10 +88,11 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
            way * (s.end_slope() * (1.0 - kStopping) * h11(end));
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
-  const double k = mix(kLamePeak, 1.0, able) * state.flight_height[side].x *
-                   std::min(1.1, 0.35 + 0.65 * full_pace(model, state));
-  const FlightCurve& h = leg.flight.height_m;
   const double begin_m = height_on(foot.plane, foot.lift_m), rise = state.landing_m.y - begin_m;
+  const double k = mix(kLamePeak, 1.0, able) * state.flight_height[side].x *
+                   std::min(1.1, 0.35 + 0.65 * full_pace(model, state)) *
+                   mix(1.0, kLiftDown, smoothstep(0.0, kDown * model.leg_length_m, -rise));
+  const FlightCurve& h = leg.flight.height_m;
   const Way course = way_of(model, way);
   const double base_slope = rise * glm::dot(foot.lift_slope_m, course.along);
   base_m = begin_m + rise * (glm::dot(p - foot.lift_m, course.along) + course.by_time * (1.0 - h00(u)));

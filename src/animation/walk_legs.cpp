@@ -214,9 +214,16 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
     angles[j] = data[j] + keep * (state.even_rad[side][j] - state.data_rad[side][j]);
   }
   state.data_rad[side] = data;
+  IkChain chain = leg.chain;
+  // At its limit the ankle would turn the knee aside. It is eased from where it would have to go.
+  if (!tick.flat) chain.dof[kAnkleX].min_rad = -kPi;
   solve.add(
-      solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+      solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   ease_ankle(tick.model, state, side, pelvis, angles, state.foot[side], solve);
+  if (angles[kAnkleX] < leg.chain.dof[kAnkleX].min_rad) {
+    solve.add(
+        solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+  }
   state.even_rad[side] = leg_angles(angles);
   const double share = weight_share(tick.model, state, side);
   if (share > 0.0 && !even(state, side)) stiffen(tick, side, pelvis, share, state, angles, solve);

@@ -9,6 +9,9 @@ constexpr double kEvenFront =
     0.46;  // of the step: front heel to hips where the data's lean is left
 constexpr double kLongDrop_m = 0.05;  // of the hips in steps much longer than the data's
 constexpr double kLameDrop_m = 0.1;   // of the hips for a foot that does not lift at all
+constexpr double kShortStep = 0.1, kLeastShare = 0.3;  // of the data's step; of the wanted one
+constexpr double kGroundSmoothing_s = 0.1;
+constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 // Rounding of the hips' height: between the knees' curves and the reach, between the legs' reaches.
 // The steps that it suits take this long; quicker ones are rounded more.
@@ -69,7 +72,7 @@ void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexce
   const double before = base_at_strike(state.foot[swing].plane.place_m.y, standing);
   const double next = base_at_strike(landing, state.landing.next_base_m);
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
-  const double velocity = state.closing ? 0.0 : 0.5 * (next - before) / this_s;
+  const double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
   approach(state.base_m, state.base_velocity_m_s, goal, velocity, remaining_s, tick.dt_s);
 }
 
@@ -120,6 +123,16 @@ double step_length(const WalkState& state, Side side) noexcept {
   return state.closing ? 0.0 : state.length_m[side].x;
 }
 
+// Steps that the ground makes shorter roll and rise like short ones.
+void follow_ground(const Tick& tick, WalkState& state, Side swing) noexcept {
+  const double wanted = std::abs(step_length(state, swing));
+  const double share =
+      wanted < kShortStep * tick.model.source_step_m
+          ? 1.0
+          : std::clamp(std::abs(state.frame.stride_m[swing]) / wanted, kLeastShare, 1.0);
+  state.ground_share.advance(share, kGroundSmoothing_s * tick.model.time_scale, tick.dt_s);
+}
+
 void plan_landing(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::idle || !state.started) return;
   const Side swing = step_foot(state), stand = other(swing);
@@ -134,6 +147,7 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
   }
   // Along the heading that the landing will have, which may still turn after the place is settled.
   state.frame.stride_m[swing] = glm::dot(state.landing_m - standing, forward);
+  if (!tick.flat) follow_ground(tick, state, swing);
 }
 
 void advance_hips(const Tick& tick, WalkState& state) noexcept {

@@ -23,6 +23,8 @@ struct TerrainWorst {
   double knee_min_deg = 180, knee_max_deg = 0;
   int failures = 0, landings = 0;
   int jump_tick = 0, sunk_tick = 0, height_tick = 0;
+  int jump_joint = 0;
+  double jump_z_m = 0, sunk_z_m = 0;
   double end_z_m = 0;
 };
 
@@ -114,7 +116,7 @@ class TerrainJudge {
                                : s.ball + (s.tip - s.ball) * ((i - 8) / 4.0);
       for (double c : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const double deep = depth_mm(line + s.across * c);
-        if (deep > worst.sunk_mm) worst.sunk_mm = deep, worst.sunk_tick = tick_;
+        if (deep > worst.sunk_mm) worst.sunk_mm = deep, worst.sunk_tick = tick_, worst.sunk_z_m = s.heel.z;
       }
     }
     // Flat on the ground: as long as the toe has been down and the heel has not left.
@@ -141,7 +143,7 @@ class TerrainJudge {
         if (tick_ < 2) continue;
         const double jump =
             std::abs(now - 2.0 * angles_[0][side][j] + angles_[1][side][j]) / kDegree;
-        if (jump > worst.jump_deg) worst.jump_deg = jump, worst.jump_tick = tick_;
+        if (jump > worst.jump_deg) worst.jump_deg = jump, worst.jump_tick = tick_, worst.jump_joint = side * 10 + j, worst.jump_z_m = pose.root_m.z;
       }
     }
     if (tick_ >= 2) {

@@ -91,6 +91,10 @@ TerrainWorst walk(WalkModel& model, double ratio, double stick_y, const Style& s
         for (double v : {hip.y, hip.z, hip.y - leg.model.thigh_m * t.cos, hip.z + leg.model.thigh_m * t.sin, s.heel.y, s.heel.z, s.toe.y, s.toe.z, s.ball.y, s.ball.z, s.tip.y, s.tip.z})
           fmt::print(trace, " {:.5f}", v);
         for (double a : q) fmt::print(trace, " {:.3f}", a / kDegree);
+        if (getenv("DEBUG")) {
+          fmt::print(trace, " # it {} err {:.1e} pitch {:.3f} yaw {:.3f} |", state.frame.ik_iterations[side], state.frame.ik_error_m[side], state.foot[side].pose.pitch_rad/kDegree, state.foot[side].pose.yaw_rad/kDegree);
+          for (double a : state.data_rad[side]) fmt::print(trace, " {:.3f}", a / kDegree);
+        }
       }
       fmt::print(trace, "\n");
     }
@@ -134,10 +138,10 @@ int main(int argc, char** argv) {
       for (double y : sticks) {
         for (const char* style : styles) {
           const TerrainWorst w = walk(*model, ratio, y, styled(style), trace);
-          fmt::print("{:12} {:4} {:4} {:14} {:6.2f} {:6.3f} {:6.2f} {:6.1f} {:6.3f} {:6.2f} {:5.1f} {:5.1f} {:3} {:3} {:6.2f} h{} s{} j{}\n",
+          fmt::print("{:12} {:4} {:4} {:14} {:6.2f} {:6.3f} {:6.2f} {:6.1f} {:6.3f} {:6.2f} {:5.1f} {:5.1f} {:3} {:3} {:6.2f} h{} s{} {:.2f} j{} {} {:.2f}\n",
                      std::filesystem::path(file).stem().string().substr(0, 12), ratio, y, style, w.height_mm, w.slide_mm,
                      w.sunk_mm, w.overhang_mm, w.jump_deg, w.pelvis_mm, w.knee_min_deg, w.knee_max_deg, w.failures,
-                     w.landings, w.end_z_m, w.height_tick, w.sunk_tick, w.jump_tick);
+                     w.landings, w.end_z_m, w.height_tick, w.sunk_tick, w.sunk_z_m, w.jump_tick, w.jump_joint, w.jump_z_m);
         }
       }
     }

@@ -81,6 +81,7 @@ struct FootState {
   LegAngles anchor_rad{};  // even pose when the mode began: what stiff joints hold on to
   FootPlane plane;         // stood on last
   double base_m = 0.0;     // height of the ground that the pose is planned over
+  bool crosses_riser = false;  // the running flight
   FlightRoom room;
 };
 

@@ -21,6 +21,7 @@ constexpr double kLameFade = 0.15;  // of kLiftFade, for a foot that does not li
 constexpr double kStopping = 0.6;   // of the flight: from here the heel comes to a stop
 // A foot that goes down is lifted less: as much of it over a fall of this share of the leg.
 constexpr double kLiftDown = 0.4, kDown = 0.2;
+constexpr double kRisen = 0.55;     // of the flight: over a riser the foot has its height
 constexpr double kInPlace_m = 0.1;  // a way shorter than this is gone by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
 
@@ -65,15 +66,28 @@ double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noe
   return state.turn_rate.x * heel_rise(model, state, side);
 }
 
-// Of the way from lift-off to landing, as far as the heel has gone; in place, by the time.
-struct Way {
-  vec3 along{0.0};  // its progress per metre
-  double by_time = 0.0;
+// How much of the way from one plane's height to the other's is behind a flying foot: over a slope
+// as much as of its way over the ground (in place, by the time); up a riser early, down one late.
+struct Ascent {
+  vec3 along_1_m{0.0};
+  double by_time = 0.0, early = 0.0, late = 0.0;
+  double at(const vec3& gone_m, double u) const noexcept {
+    return glm::dot(gone_m, along_1_m) + by_time * (1.0 - h00(u)) +
+           early * smoothstep(0.0, kRisen, u) + late * smoothstep(1.0 - kRisen, 1.0, u);
+  }
 };
-Way way_of(const WalkModel& model, const vec3& way_m) noexcept {
+Ascent ascent(const WalkModel& model, const WalkState& state, const FootState& foot,
+              const vec3& way_m) noexcept {
+  Ascent a;
+  if (foot.crosses_riser) {
+    (state.landing_m.y > foot.plane.place_m.y ? a.early : a.late) = 1.0;
+    return a;
+  }
   const double square = way_m.x * way_m.x + way_m.z * way_m.z;
   const double in_place = kInPlace_m * kInPlace_m * model.size * model.size;
-  return {vec3(way_m.x, 0.0, way_m.z) / (square + in_place), in_place / (square + in_place)};
+  a.along_1_m = vec3(way_m.x, 0.0, way_m.z) / (square + in_place);
+  a.by_time = in_place / (square + in_place);
+  return a;
 }
 
 // The heel's place, and the height of the ground line below it from one plane to the other.
@@ -93,9 +107,9 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
                    std::min(1.1, 0.35 + 0.65 * full_pace(model, state)) *
                    mix(1.0, kLiftDown, smoothstep(0.0, kDown * model.leg_length_m, -rise));
   const FlightCurve& h = leg.flight.height_m;
-  const Way course = way_of(model, way);
-  const double base_slope = rise * glm::dot(foot.lift_slope_m, course.along);
-  base_m = begin_m + rise * (glm::dot(p - foot.lift_m, course.along) + course.by_time * (1.0 - h00(u)));
+  const Ascent risen = ascent(model, state, foot, way);
+  const double base_slope = rise * glm::dot(foot.lift_slope_m, risen.along_1_m);
+  base_m = begin_m + rise * risen.at(p - foot.lift_m, u);
   const Fade lift = {foot.lift_m.y - begin_m - k * h.at(0.0),
                      foot.lift_slope_m.y - base_slope - k * h.start_slope(),
                      kLiftFade * lift_share(state, side)};
@@ -251,6 +265,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.lift_m = foot.pose.heel_m;
   foot.lift_slope_m = end_slope(foot.last_heel_m[1], foot.last_heel_m[0], foot.pose.heel_m) * ticks;
   foot.lift_yaw_rad = foot.pose.yaw_rad;
+  foot.crosses_riser = !tick.flat && crosses_riser(*model.terrain, foot.plane, state.landing_plane);
   foot.lift_turn_rad = pivot_rate(model, state, side) * tick.dt_s * ticks;
   foot.anchor_rad = state.even_rad[side];
   const double rate =

@@ -166,6 +166,10 @@ FootPlane plane_under(const Terrain& terrain, const LegBuild& leg, const vec3& h
   return plane;
 }
 
+bool crosses_riser(const Terrain& terrain, const FootPlane& a, const FootPlane& b) noexcept {
+  return piece_at(terrain, a.place_m.z).from_m != piece_at(terrain, b.place_m.z).from_m;
+}
+
 FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
                          double yaw_rad) noexcept {
   const LegBuild& leg = model.leg[side];

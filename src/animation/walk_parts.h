@@ -36,6 +36,8 @@ double height_on(const FootPlane& plane, const vec3& place_m) noexcept;
 // Between risers, as level as its terrain lets it; the ground's height strays to both sides alike.
 FootPlane plane_under(const Terrain& terrain, const LegBuild& leg, const vec3& heel_m,
                       double yaw_rad, const Stretch& piece) noexcept;
+// Between two footholds.
+bool crosses_riser(const Terrain& terrain, const FootPlane& a, const FootPlane& b) noexcept;
 // Where a foot alone would stand nearest to `heel_m` without an edge under it.
 FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
                          double yaw_rad) noexcept;

@@ -3,16 +3,19 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kMostRise = 0.37;      // of the leg, from the standing foot up or down
 constexpr double kSlopeShortens = 1.0;  // steps per grade
 constexpr double kBaseShare = 0.0;      // of the way up from the lower foot: the hips' ground at a strike
 // Of the leg: what the sole keeps from an edge where there is room, and it takes at most this share
 // of the room.
 constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
 constexpr int kMostPieces = 8;     // looked at from the wanted one to the standing foot's
-constexpr double kStay = 0.03;     // of the leg: a better piece must be this much better
-constexpr double kSkew = 0.25;     // cost of leaving the heading sideways, against along it
-constexpr double kLengthened = 2.0, kTooHigh = 30.0, kOverhang = 10.0;  // costs per metre
+constexpr double kSkew = 0.25;     // of leaving the heading sideways, against along it
+// What a piece costs: about the logarithm of how much longer or shorter it makes the step (a step of
+// less than kLeastStep legs counts as one), and for what it does besides. Rises are in legs.
+constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
+constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
+constexpr double kOverhang = 30.0;
+constexpr double kStay = 0.1;  // another piece than before must be this much better
 constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
 
@@ -57,11 +60,17 @@ double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) n
   const vec3 move = shifted(step, dz), place = step.wanted_m + move;
   const double middle = std::clamp(place.z + 0.5 * (step.sole.back_m + step.sole.front_m),
                                    piece.from_m + kBeside_m, piece.to_m - kBeside_m);
-  const double rise = ground_at(terrain, place.x, middle).height_m - step.from_m.y;
-  const double longer = std::max(0.0, glm::dot(move, step.wanted_m - step.from_m));
-  return glm::length(move) + (longer > 0.0 ? (kLengthened - 1.0) * glm::length(move) : 0.0) +
-         kTooHigh * std::max(0.0, std::abs(rise) - kMostRise * step.leg_m) +
-         kOverhang * room.lacks_m;
+  const double rise =
+      std::abs(ground_at(terrain, place.x, middle).height_m - step.from_m.y) / step.leg_m;
+  const double wanted = glm::dot(step.wanted_m - step.from_m, step.forward),
+               length = wanted + glm::dot(move, step.forward), sign = wanted < 0.0 ? -1.0 : 1.0;
+  const double least = kLeastStep * step.leg_m;
+  const double ratio = std::max(0.0, sign * length + least) / (sign * wanted + least);
+  const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
+  const bool stuck = sign * wanted > least && sign * length < kStuck * sign * wanted;
+  return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside + (stuck ? kStuckCosts : 0.0) +
+         kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
+         kOverhang * room.lacks_m / step.leg_m;
 }
 
 // From the piece that the wanted place is on back to the standing foot's.
@@ -72,7 +81,7 @@ Stretch best_piece(const Terrain& terrain, const Step& step, const Stretch* sett
   double least = std::numeric_limits<double>::infinity();
   for (int n = 0; n < kMostPieces; ++n) {
     double cost = cost_of(terrain, step, piece);
-    if (settled && piece.from_m == settled->from_m) cost -= kStay * step.leg_m;
+    if (settled && piece.from_m == settled->from_m) cost -= kStay;
     if (cost < least) {
       least = cost;
       best = piece;

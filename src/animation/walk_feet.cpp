@@ -21,7 +21,6 @@ constexpr double kLameFade = 0.15;  // of kLiftFade, for a foot that does not li
 constexpr double kStopping = 0.6;   // of the flight: from here the heel comes to a stop
 // A foot that goes down is lifted less: as much of it over a fall of this share of the leg.
 constexpr double kLiftDown = 0.4, kDown = 0.2;
-constexpr double kRisen = 0.55;     // of the flight: over a riser the foot has its height
 constexpr double kInPlace_m = 0.1;  // a way shorter than this is gone by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
 
@@ -66,23 +65,18 @@ double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noe
   return state.turn_rate.x * heel_rise(model, state, side);
 }
 
-// How much of the way from one plane's height to the other's is behind a flying foot: over a slope
-// as much as of its way over the ground (in place, by the time); up a riser early, down one late.
+// How much of the way from one plane's height to the other's is behind a flying foot: as much as of
+// its way over the ground (in place, by the time); nothing where a riser is between, see FlightRoom.
 struct Ascent {
   vec3 along_1_m{0.0};
-  double by_time = 0.0, early = 0.0, late = 0.0;
+  double by_time = 0.0;
   double at(const vec3& gone_m, double u) const noexcept {
-    return glm::dot(gone_m, along_1_m) + by_time * (1.0 - h00(u)) +
-           early * smoothstep(0.0, kRisen, u) + late * smoothstep(1.0 - kRisen, 1.0, u);
+    return glm::dot(gone_m, along_1_m) + by_time * (1.0 - h00(u));
   }
 };
-Ascent ascent(const WalkModel& model, const WalkState& state, const FootState& foot,
-              const vec3& way_m) noexcept {
+Ascent ascent(const WalkModel& model, const FootState& foot, const vec3& way_m) noexcept {
   Ascent a;
-  if (foot.crosses_riser) {
-    (state.landing_m.y > foot.plane.place_m.y ? a.early : a.late) = 1.0;
-    return a;
-  }
+  if (foot.crosses_riser) return a;
   const double square = way_m.x * way_m.x + way_m.z * way_m.z;
   const double in_place = kInPlace_m * kInPlace_m * model.size * model.size;
   a.along_1_m = vec3(way_m.x, 0.0, way_m.z) / (square + in_place);
@@ -107,7 +101,7 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
                    std::min(1.1, 0.35 + 0.65 * full_pace(model, state)) *
                    mix(1.0, kLiftDown, smoothstep(0.0, kDown * model.leg_length_m, -rise));
   const FlightCurve& h = leg.flight.height_m;
-  const Ascent risen = ascent(model, state, foot, way);
+  const Ascent risen = ascent(model, foot, way);
   const double base_slope = rise * glm::dot(foot.lift_slope_m, risen.along_1_m);
   base_m = begin_m + rise * risen.at(p - foot.lift_m, u);
   const Fade lift = {foot.lift_m.y - begin_m - k * h.at(0.0),

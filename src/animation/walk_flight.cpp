@@ -1,8 +1,9 @@
-// How a flying foot clears what lies between two footholds. Its flight is planned over a line from
-// one plane to the other; where the ground below the sole is higher than that line, the line is
-// raised by a spline whose control points are the greatest such heights in their neighbourhood: a
-// B-spline stays within the hull of its control points, so it lies above them all. At a riser close
-// to a foothold, where height comes too late (or goes too early), the foot keeps away from it.
+// How a flying foot clears what lies between two footholds. Its flight is planned over a ground line;
+// the control points of a spline that makes this line are the greatest heights of the ground below
+// the sole in their neighbourhood, and a B-spline stays within the hull of its control points: above
+// all of that ground and never higher than its highest. Between footholds without a riser the line is
+// straight, and the spline is what it lacks. At a riser close to a foothold, where height comes too
+// late (or goes too early), the foot keeps away from it.
 #include "animation/walk_parts.h"
 
 namespace gaitpad {
@@ -12,18 +13,18 @@ constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
 constexpr double kRoomBeside_m = 0.005, kMostShift_m = 0.14, kRiser_m = 0.01;
 constexpr double kFirstKnot = 0.35;  // of the next one: the least jerk at both ends
-constexpr double kLeastWanted_m = 0.004, kMostRaiseGain = 1.2, kMostShiftGain = 2.5;
+constexpr double kLeastWanted_m = 0.004, kMostGain = 2.5;
 constexpr double kRoomSmoothing_s = 0.04;
 constexpr double kReplan_m = 0.005;  // of the landing
 
-// The spline's control points, the ends' such that value and slope are 0 there.
+// The spline through 0 and `end` with slope 0 there.
 template <class Knots, class Value>
-double spline_at(const Knots& knots, double u, const Value& value) noexcept {
+double spline_at(const Knots& knots, double end, double u, const Value& value) noexcept {
   constexpr int n = kFlightKnots;
   const auto control = [&](int k) {
     if (k <= 0) return value(knots[0]) * (k == 0 ? -0.5 : 1.0);
-    if (k >= n) return value(knots[n - 2]) * (k == n ? -0.5 : 1.0);
-    return value(knots[k - 1]);
+    if (k < n) return value(knots[k - 1]);
+    return k == n ? 1.5 * end - 0.5 * value(knots[n - 2]) : value(knots[n - 2]);
   };
   const double x = std::clamp(u, 0.0, 1.0) * n;
   const int i = std::min(static_cast<int>(x), n - 1);
@@ -31,33 +32,48 @@ double spline_at(const Knots& knots, double u, const Value& value) noexcept {
   return (control(i - 1) * (1.0 - 3.0 * t + 3.0 * t2 - t3) + control(i) * (4.0 - 6.0 * t2 + 3.0 * t3) +
           control(i + 1) * (1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3) + control(i + 2) * t3) / 6.0;
 }
-double spline_at(const FlightSpline& knots, double u) noexcept {
-  return spline_at(knots, u, [](double k) { return k; });
+double spline_at(const FlightSpline& knots, double end, double u) noexcept {
+  return spline_at(knots, end, u, [](double k) { return k; });
 }
 
-// At each knot the value of the largest magnitude within its reach; near the ends, where a spline
-// that ends gently falls short of it, all of it times at most `most_gain`.
-FlightSpline envelope(const std::array<double, kProbes + 1>& wanted, double most_gain) noexcept {
-  FlightSpline knots{};
+using Wanted = std::array<double, kProbes + 1>;
+
+// At each knot the greatest value within its reach; the outer ones end the spline gently.
+FlightSpline envelope(const Wanted& wanted) noexcept {
+  FlightSpline knots;
   for (int k = 1; k < kFlightKnots; ++k) {
+    double& knot = knots[k - 1];
+    knot = wanted[k * kProbes / kFlightKnots];
     for (int i = 0; i <= kProbes; ++i) {
-      const double off = static_cast<double>(i * kFlightKnots) / kProbes - k;
-      if (std::abs(off) < 2.0 && std::abs(wanted[i]) > std::abs(knots[k - 1]))
-        knots[k - 1] = wanted[i];
+      if (std::abs(i * kFlightKnots - k * kProbes) < 2 * kProbes) knot = std::max(knot, wanted[i]);
     }
   }
-  const auto gentle = [](double end, double next) {
-    return std::clamp(end, -kFirstKnot * std::abs(next), kFirstKnot * std::abs(next));
+  const auto gentle = [](double knot, double end, double next) {
+    const double most = kFirstKnot * std::abs(next - end);
+    return std::clamp(knot, end - most, end + most);
   };
-  knots.front() = gentle(knots.front(), knots[1]);
-  knots.back() = gentle(knots.back(), knots[kFlightKnots - 3]);
+  knots.front() = gentle(knots.front(), 0.0, knots[1]);
+  knots.back() = gentle(knots.back(), wanted.back(), knots[kFlightKnots - 3]);
+  return knots;
+}
+
+// The same of the greatest magnitudes; where it falls short of them, all of it times a gain.
+FlightSpline wide_envelope(const Wanted& wanted) noexcept {
+  Wanted positive, negative;
+  for (int i = 0; i <= kProbes; ++i) {
+    positive[i] = std::max(0.0, wanted[i]);
+    negative[i] = std::max(0.0, -wanted[i]);
+  }
+  FlightSpline knots = envelope(positive);
+  const FlightSpline other = envelope(negative);
+  for (int k = 0; k < kFlightKnots - 1; ++k) knots[k] -= other[k];
   double gain = 1.0;
   for (int i = 1; i < kProbes; ++i) {
     if (std::abs(wanted[i]) < kLeastWanted_m) continue;
-    const double got = spline_at(knots, static_cast<double>(i) / kProbes);
+    const double got = spline_at(knots, 0.0, static_cast<double>(i) / kProbes);
     gain = std::max(gain, got * wanted[i] > 0.0 ? wanted[i] / got : 1.0);
   }
-  for (double& knot : knots) knot *= std::min(gain, most_gain);
+  for (double& knot : knots) knot *= std::min(gain, kMostGain);
   return knots;
 }
 
@@ -94,6 +110,11 @@ double way_back(const Terrain& terrain, const Sole& sole, const Stretch& piece, 
   return std::clamp(shift, -kMostShift_m * size, kMostShift_m * size);
 }
 
+// Of the ground line, from lift-off to landing, where the spline has to make it.
+double climb(const WalkState& state, const FootState& foot) noexcept {
+  return foot.crosses_riser ? state.landing_m.y - height_on(foot.plane, foot.lift_m) : 0.0;
+}
+
 }  // namespace
 
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
@@ -103,29 +124,33 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   FlightRoom& room = foot.room;
   const bool begins = foot.mode_ticks == 0;
   room.planned_for_m = state.landing_m;
-  std::array<double, kProbes + 1> above{}, beside{};
+  Wanted above{}, beside{};
   std::array<Sole, kProbes + 1> sole;
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
     const FlightPoint point =
         flight_point(model, state, side, u, foot.pitch_fade.at(u * state.stage_ticks));
     sole[i] = sole_of(model.leg[side], point.pose);
-    if (i == 0 || i == kProbes) continue;
-    double over = 0.0;
+    double over = -model.leg_length_m;
     for (const vec3& p : sole[i])
       over = std::max(over, ground_at(terrain, p.x, p.z).height_m - base_under(point, p));
-    above[i] = over + std::min(over, kRoomAbove_m * model.size);
+    const double above_m = kRoomAbove_m * model.size;
+    above[i] = foot.crosses_riser
+                   ? over + above_m * smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.8, 1.0, u))
+                   : std::max(0.0, over) + std::clamp(over, 0.0, above_m);
   }
-  room.raise_m = envelope(above, kMostRaiseGain);
+  above.front() = 0.0;
+  above.back() = climb(state, foot);
+  room.raise_m = envelope(above);
   const Stretch begin = piece_at(terrain, foot.plane.place_m.z), end = piece_at(terrain, state.landing_m.z);
   for (int i = 1; i < kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
-    if (above[i] <= spline_at(room.raise_m, u)) continue;
+    if (above[i] <= spline_at(room.raise_m, above.back(), u)) continue;
     beside[i] = 2 * i < kProbes
                     ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, model.size)
                     : way_back(terrain, sole[i], end, state.landing_m.y, model.size);
   }
-  room.shift_m = envelope(beside, kMostShiftGain);
+  room.shift_m = wide_envelope(beside);
   if (!begins) return;
   for (int k = 0; k < kFlightKnots - 1; ++k) {
     room.raise[k] = {room.raise_m[k], 0.0};
@@ -144,8 +169,8 @@ void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept
     room.shift[k].advance(room.shift_m[k], time_s, tick.dt_s);
   }
   const auto in_force = [](const Damped<double>& k) { return k.x; };
-  const double raise = spline_at(room.raise, u, in_force);
-  const vec3 move(0.0, raise, spline_at(room.shift, u, in_force));
+  const double raise = spline_at(room.raise, climb(state, foot), u, in_force);
+  const vec3 move(0.0, raise, spline_at(room.shift, 0.0, u, in_force));
   foot.base_m += raise;
   foot.pose.heel_m += move;
   foot.pose.toe_m += move;

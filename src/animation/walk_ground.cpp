@@ -14,7 +14,7 @@ constexpr double kSkew = 0.25;     // of leaving the heading sideways, against a
 // less than kLeastStep legs counts as one), and for what it does besides. Rises are in legs.
 constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
 constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
-constexpr double kOverhang = 30.0;
+constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
 constexpr double kStay = 0.1;  // another piece than before must be this much better
 constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
@@ -68,7 +68,9 @@ double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) n
   const double ratio = std::max(0.0, sign * length + least) / (sign * wanted + least);
   const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
   const bool stuck = sign * wanted > least && sign * length < kStuck * sign * wanted;
+  const double longer = sign * length - std::max(sign * wanted, kLongStep * step.leg_m);
   return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside + (stuck ? kStuckCosts : 0.0) +
+         kLongCosts * std::max(0.0, longer) / step.leg_m +
          kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
          kOverhang * room.lacks_m / step.leg_m;
 }

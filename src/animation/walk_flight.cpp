@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
-constexpr double kRoomBeside_m = 0.005, kMostShift_m = 0.14, kRiser_m = 0.01;
-constexpr double kFirstKnot = 0.35;  // of the next one: the least jerk at both ends
-constexpr double kLeastWanted_m = 0.004, kMostGain = 2.5;
+constexpr double kRoomBeside_m = 0.005, kMostShift_m = .25, kRiser_m = 0.01;
+constexpr double kFirstKnot = .25;  // of the next one: the least jerk at both ends
+constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;
 constexpr double kReplan_m = 0.005;  // of the landing
 
@@ -57,8 +57,9 @@ FlightSpline envelope(const Wanted& wanted) noexcept {
   return knots;
 }
 
-// The same of the greatest magnitudes; where it falls short of them, all of it times a gain.
-FlightSpline wide_envelope(const Wanted& wanted) noexcept {
+// The same of the greatest magnitudes; where it falls short of them, all of it times a gain,
+// up to `most`.
+FlightSpline wide_envelope(const Wanted& wanted, double most) noexcept {
   Wanted positive, negative;
   for (int i = 0; i <= kProbes; ++i) {
     positive[i] = std::max(0.0, wanted[i]);
@@ -73,7 +74,7 @@ FlightSpline wide_envelope(const Wanted& wanted) noexcept {
     const double got = spline_at(knots, 0.0, static_cast<double>(i) / kProbes);
     gain = std::max(gain, got * wanted[i] > 0.0 ? wanted[i] / got : 1.0);
   }
-  for (double& knot : knots) knot *= std::min(gain, kMostGain);
+  for (double& knot : knots) knot = std::clamp(knot * std::min(gain, kMostGain), -most, most);
   return knots;
 }
 
@@ -150,7 +151,7 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
                     ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, model.size)
                     : way_back(terrain, sole[i], end, state.landing_m.y, model.size);
   }
-  room.shift_m = wide_envelope(beside);
+  room.shift_m = wide_envelope(beside, kMostShift_m * model.size);
   if (!begins) return;
   for (int k = 0; k < kFlightKnots - 1; ++k) {
     room.raise[k] = {room.raise_m[k], 0.0};

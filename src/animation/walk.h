@@ -93,6 +93,7 @@ struct Foothold {
   double share = 1.0;        // of the wanted length that a slope leaves
   double next_m = 0.0;       // length of the step after it
   double next_base_m = 0.0;  // and the height of that one's landing
+  double next_rise = 0.0;    // up or down to it, over the leg length
   bool fits = true;
 };
 
@@ -107,6 +108,7 @@ struct WalkState {
   int last_step_ticks = 0;  // of the step before
   bool closing = false;     // the running step brings the feet together
   bool started = false;
+  double slowness = 1.0;    // of the running step: times are as much longer on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
   // Smoothed parameters.

@@ -11,8 +11,10 @@ namespace {
 
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
-constexpr double kRoomBeside_m = 0.005, kMostShift_m = .25, kRiser_m = 0.01;
-constexpr double kFirstKnot = .25;  // of the next one: the least jerk at both ends
+constexpr double kRoomBeside_m = 0.005, kMostShift_m = .22, kRiser_m = 0.01;
+// The outer knot over its neighbour: the less, the gentler the ends.
+constexpr std::array<double, 3> kFirstKnots = {0.25, 0.4, 0.6};
+constexpr double kEasyShift_m = .06;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;
 constexpr double kReplan_m = 0.005;  // of the landing
@@ -39,7 +41,7 @@ double spline_at(const FlightSpline& knots, double end, double u) noexcept {
 using Wanted = std::array<double, kProbes + 1>;
 
 // At each knot the greatest value within its reach; the outer ones end the spline gently.
-FlightSpline envelope(const Wanted& wanted) noexcept {
+FlightSpline envelope(const Wanted& wanted, double end_share) noexcept {
   FlightSpline knots;
   for (int k = 1; k < kFlightKnots; ++k) {
     double& knot = knots[k - 1];
@@ -48,8 +50,8 @@ FlightSpline envelope(const Wanted& wanted) noexcept {
       if (std::abs(i * kFlightKnots - k * kProbes) < 2 * kProbes) knot = std::max(knot, wanted[i]);
     }
   }
-  const auto gentle = [](double knot, double end, double next) {
-    const double most = kFirstKnot * std::abs(next - end);
+  const auto gentle = [end_share](double knot, double end, double next) {
+    const double most = end_share * std::abs(next - end);
     return std::clamp(knot, end - most, end + most);
   };
   knots.front() = gentle(knots.front(), 0.0, knots[1]);
@@ -65,8 +67,8 @@ FlightSpline wide_envelope(const Wanted& wanted, double most) noexcept {
     positive[i] = std::max(0.0, wanted[i]);
     negative[i] = std::max(0.0, -wanted[i]);
   }
-  FlightSpline knots = envelope(positive);
-  const FlightSpline other = envelope(negative);
+  FlightSpline knots = envelope(positive, kFirstKnots[0]);
+  const FlightSpline other = envelope(negative, kFirstKnots[0]);
   for (int k = 0; k < kFlightKnots - 1; ++k) knots[k] -= other[k];
   double gain = 1.0;
   for (int i = 1; i < kProbes; ++i) {
@@ -142,16 +144,24 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   }
   above.front() = 0.0;
   above.back() = climb(state, foot);
-  room.raise_m = envelope(above);
-  const Stretch begin = piece_at(terrain, foot.plane.place_m.z), end = piece_at(terrain, state.landing_m.z);
-  for (int i = 1; i < kProbes; ++i) {
-    const double u = static_cast<double>(i) / kProbes;
-    if (above[i] <= spline_at(room.raise_m, above.back(), u)) continue;
-    beside[i] = 2 * i < kProbes
-                    ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, model.size)
-                    : way_back(terrain, sole[i], end, state.landing_m.y, model.size);
+  const Stretch begin = piece_at(terrain, foot.plane.place_m.z),
+                end = piece_at(terrain, state.landing_m.z);
+  // As gently as it does without a long way back.
+  for (const double end_share : kFirstKnots) {
+    room.raise_m = envelope(above, end_share);
+    double farthest = 0.0;
+    for (int i = 1; i < kProbes; ++i) {
+      const double u = static_cast<double>(i) / kProbes;
+      beside[i] = 0.0;
+      if (above[i] <= spline_at(room.raise_m, above.back(), u)) continue;
+      beside[i] = 2 * i < kProbes
+                      ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, model.size)
+                      : way_back(terrain, sole[i], end, state.landing_m.y, model.size);
+      farthest = std::max(farthest, std::abs(beside[i]));
+    }
+    room.shift_m = wide_envelope(beside, kMostShift_m * model.size);
+    if (farthest < kEasyShift_m * model.size) break;
   }
-  room.shift_m = wide_envelope(beside, kMostShift_m * model.size);
   if (!begins) return;
   for (int k = 0; k < kFlightKnots - 1; ++k) {
     room.raise[k] = {room.raise_m[k], 0.0};

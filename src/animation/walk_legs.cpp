@@ -185,15 +185,35 @@ bool even(const WalkState& state, Side side) noexcept {
   return high - low < kEvenSpread;
 }
 
+// Points a flying foot down beyond what the ground allows by lifting it over its toe.
+void point_down(const LegBuild& leg, double room_rad, double more_rad, double flight_progress,
+                FootPose& pose) noexcept {
+  const double open = smoothstep(0.0, 0.2, flight_progress) *
+                      (1.0 - smoothstep(0.7, 0.95, flight_progress));
+  set_pitch(leg, pose.pitch_rad + room_rad, pose, FootMode::flight);
+  const double toe_m = pose.toe_m.y;
+  set_pitch(leg, pose.pitch_rad + open * more_rad, pose, FootMode::flight);
+  const double lift_m = toe_m - pose.toe_m.y;
+  pose.heel_m.y += lift_m;
+  pose.toe_m.y += lift_m;
+}
+
 // A foot whose ankle would bend up too far points down in flight, as far as the floor allows, and
 // rises at the heel in late support; a foot that is to stand still does not.
-void ease_ankle(const WalkModel& model, const WalkState& state, Side side, const Pelvis& pelvis,
+void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvis& pelvis,
                 IkAngles& angles, FootState& foot, Solve& solve) noexcept {
+  const WalkModel& model = tick.model;
   const LegBuild& leg = model.leg[side];
   double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], kSoftAnkle);
   if (foot.mode == FootMode::flight) {
     const double room = highest_pitch(leg, heel_height(foot), 0.0) - foot.pose.pitch_rad;
-    excess = std::min(excess, std::max(0.0, room));
+    const double allowed = std::min(excess, std::max(0.0, room));
+    if (!tick.flat && excess > allowed) {
+      point_down(leg, allowed, excess - allowed, flight_progress(state), foot.pose);
+      solve.add(solve_robust(leg.chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
+      return;
+    }
+    excess = allowed;
   } else {
     excess *= foot.mode == FootMode::support ? heel_rise(model, state, side) : 0.0;
   }
@@ -219,7 +239,7 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
   if (!tick.flat) chain.dof[kAnkleX].min_rad = -kPi;
   solve.add(
       solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
-  ease_ankle(tick.model, state, side, pelvis, angles, state.foot[side], solve);
+  ease_ankle(tick, state, side, pelvis, angles, state.foot[side], solve);
   if (angles[kAnkleX] < leg.chain.dof[kAnkleX].min_rad) {
     solve.add(
         solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));

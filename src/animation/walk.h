@@ -79,9 +79,9 @@ struct FootState {
   std::array<double, 2> reach_rad{};               // pitch beyond the plan, one and two ticks ago
   vec3 lift_m{0.0}, lift_slope_m{0.0};             // heel at lift-off and its slope per flight
   double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // and its slope per flight
-  LegAngles anchor_rad{};  // even pose when the mode began: what stiff joints hold on to
-  FootPlane plane;         // stood on last
-  double base_m = 0.0;     // height of the ground that the pose is planned over
+  LegAngles anchor_rad{};      // even pose when the mode began: what stiff joints hold on to
+  FootPlane plane;             // stood on last
+  double base_m = 0.0;         // height of the ground that the pose is planned over
   bool crosses_riser = false;  // the running flight
   FlightRoom room;
 };
@@ -109,7 +109,7 @@ struct WalkState {
   int last_step_ticks = 0;  // of the step before
   bool closing = false;     // the running step brings the feet together
   bool started = false;
-  double slowness = 1.0;    // of the running step: times are as much longer on steep ground
+  double slowness = 1.0;  // of the running step: times are as much longer on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
   // Smoothed parameters.

@@ -164,7 +164,8 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   state.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
   state.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
   const double mean = 0.5 * (state.length_m[0].x + state.length_m[1].x);
-  state.pace.advance(mean * state.ground_share.x / tick.model.source_step_m, kStepSmoothing * scale, dt);
+  state.pace.advance(mean * state.ground_share.x / tick.model.source_step_m, kStepSmoothing * scale,
+                     dt);
 }
 
 void advance_clock(const Tick& tick, WalkState& state) noexcept {

@@ -66,7 +66,8 @@ double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noe
 }
 
 // How much of the way from one plane's height to the other's is behind a flying foot: as much as of
-// its way over the ground (in place, by the time); nothing where a riser is between, see FlightRoom.
+// its way over the ground (in place, by the time); nothing where a riser is between, see
+// FlightRoom.
 struct Ascent {
   vec3 along_1_m{0.0};
   double by_time = 0.0;
@@ -107,8 +108,7 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   const Fade lift = {foot.lift_m.y - begin_m - k * h.at(0.0),
                      foot.lift_slope_m.y - base_slope - k * h.start_slope(),
                      kLiftFade * lift_share(state, side)};
-  p.y = base_m +
-        std::max(0.0, k * h.at(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
+  p.y = base_m + std::max(0.0, k * h.at(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
   return p;
 }
 
@@ -179,8 +179,7 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, Side si
   const double height = (pose.heel_m.y - point.base_m) * foot.plane.normal.y;
   const double limit = highest_pitch(leg, height, kClearance_m * model.size * open);
   const double pitch = flight_pitch(model, state, side, u) + pitch_fade_rad;
-  set_pitch(leg, soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open)), pose,
-            FootMode::flight);
+  set_pitch(leg, soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open)), pose, FootMode::flight);
   return point;
 }
 

@@ -1,9 +1,9 @@
-// How a flying foot clears what lies between two footholds. Its flight is planned over a ground line;
-// the control points of a spline that makes this line are the greatest heights of the ground below
-// the sole in their neighbourhood, and a B-spline stays within the hull of its control points: above
-// all of that ground and never higher than its highest. Between footholds without a riser the line is
-// straight, and the spline is what it lacks. At a riser close to a foothold, where height comes too
-// late (or goes too early), the foot keeps away from it.
+// How a flying foot clears what lies between two footholds. Its flight is planned over a ground
+// line; the control points of a spline that makes this line are the greatest heights of the ground
+// below the sole in their neighbourhood, and a B-spline stays within the hull of its control
+// points: above all of that ground and never higher than its highest. Between footholds without a
+// riser the line is straight, and the spline is what it lacks. At a riser close to a foothold,
+// where height comes too late (or goes too early), the foot keeps away from it.
 #include "animation/walk_parts.h"
 
 namespace gaitpad {
@@ -31,8 +31,10 @@ double spline_at(const Knots& knots, double end, double u, const Value& value) n
   const double x = std::clamp(u, 0.0, 1.0) * n;
   const int i = std::min(static_cast<int>(x), n - 1);
   const double t = x - i, t2 = t * t, t3 = t2 * t;
-  return (control(i - 1) * (1.0 - 3.0 * t + 3.0 * t2 - t3) + control(i) * (4.0 - 6.0 * t2 + 3.0 * t3) +
-          control(i + 1) * (1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3) + control(i + 2) * t3) / 6.0;
+  return (control(i - 1) * (1.0 - 3.0 * t + 3.0 * t2 - t3) +
+          control(i) * (4.0 - 6.0 * t2 + 3.0 * t3) +
+          control(i + 1) * (1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3) + control(i + 2) * t3) /
+         6.0;
 }
 double spline_at(const FlightSpline& knots, double end, double u) noexcept {
   return spline_at(knots, end, u, [](double k) { return k; });
@@ -104,7 +106,8 @@ double way_back(const Terrain& terrain, const Sole& sole, const Stretch& piece, 
   const double room = kRoomBeside_m * size;
   double shift = 0.0;
   for (const vec3& p : sole) {
-    const bool ahead_up = ground_at(terrain, p.x, piece.to_m + kRiser_m).height_m > height_m + kRiser_m;
+    const bool ahead_up =
+        ground_at(terrain, p.x, piece.to_m + kRiser_m).height_m > height_m + kRiser_m;
     const bool behind_up =
         ground_at(terrain, p.x, piece.from_m - kRiser_m).height_m > height_m + kRiser_m;
     if (ahead_up) shift = std::min(shift, piece.to_m - room - p.z);

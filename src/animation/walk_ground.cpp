@@ -4,18 +4,19 @@ namespace gaitpad {
 namespace {
 
 constexpr double kSlopeShortens = 1.0;  // steps per grade
-constexpr double kBaseShare = 0.0;      // of the way up from the lower foot: the hips' ground at a strike
+constexpr double kBaseShare =
+    0.0;  // of the way up from the lower foot: the hips' ground at a strike
 // Of the leg: what the sole keeps from an edge where there is room, and it takes at most this share
 // of the room.
 constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
-constexpr int kMostPieces = 8;     // looked at from the wanted one to the standing foot's
-constexpr double kSkew = 0.25;     // of leaving the heading sideways, against along it
-// What a piece costs: about the logarithm of how much longer or shorter it makes the step (a step of
-// less than kLeastStep legs counts as one), and for what it does besides. Rises are in legs.
+constexpr int kMostPieces = 8;  // looked at from the wanted one to the standing foot's
+constexpr double kSkew = 0.25;  // of leaving the heading sideways, against along it
+// What a piece costs: about the logarithm of how much longer or shorter it makes the step (a step
+// of less than kLeastStep legs counts as one), and for what it does besides. Rises are in legs.
 constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
 constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
-constexpr double kStay = 0.1;  // another piece than before must be this much better
+constexpr double kStay = 0.1;       // another piece than before must be this much better
 constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
 
@@ -69,8 +70,8 @@ double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) n
   const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
   const bool stuck = sign * wanted > least && sign * length < kStuck * sign * wanted;
   const double longer = sign * length - std::max(sign * wanted, kLongStep * step.leg_m);
-  return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside + (stuck ? kStuckCosts : 0.0) +
-         kLongCosts * std::max(0.0, longer) / step.leg_m +
+  return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside +
+         (stuck ? kStuckCosts : 0.0) + kLongCosts * std::max(0.0, longer) / step.leg_m +
          kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
          kOverhang * room.lacks_m / step.leg_m;
 }
@@ -112,8 +113,7 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   const Side next = other(step_foot(state));
   Step step = landing;
   step.from_m = state.landing_m;
-  const double wanted =
-      tick.params.walking ? state.length_m[next].x * state.landing.share : 0.0;
+  const double wanted = tick.params.walking ? state.length_m[next].x * state.landing.share : 0.0;
   step.wanted_m = step.from_m + step.forward * wanted - across_m;
   const Terrain& terrain = *tick.model.terrain;
   bool fits = false;
@@ -127,12 +127,11 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
 
 // What a slope between here and there leaves of a step.
 double slope_share(const Terrain& terrain, const Step& step, const Stretch& stands) noexcept {
-  const double length = glm::distance(vec2(step.wanted_m.x, step.wanted_m.z),
-                                      vec2(step.from_m.x, step.from_m.z));
+  const double length =
+      glm::distance(vec2(step.wanted_m.x, step.wanted_m.z), vec2(step.from_m.x, step.from_m.z));
   if (length < kMoved_m || step.wanted_m.z < stands.from_m || step.wanted_m.z > stands.to_m)
     return 1.0;
-  const double rise =
-      ground_at(terrain, step.wanted_m.x, step.wanted_m.z).height_m - step.from_m.y;
+  const double rise = ground_at(terrain, step.wanted_m.x, step.wanted_m.z).height_m - step.from_m.y;
   return 1.0 / (1.0 + kSlopeShortens * std::abs(rise) / length);
 }
 
@@ -201,7 +200,8 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   const Terrain& terrain = *tick.model.terrain;
   const Side swing = step_foot(state), stand = other(swing);
   Foothold& landing = state.landing;
-  const bool flies = state.stage == Stage::flight, first = state.stage == Stage::roll && state.tick <= 1;
+  const bool flies = state.stage == Stage::flight,
+             first = state.stage == Stage::roll && state.tick <= 1;
   Step step;
   step.from_m = state.foot[stand].plane.place_m;
   step.forward = forward;
@@ -223,8 +223,7 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
     landing.yaw_rad = yaw;
     if (!flies) landing.piece = best_piece(terrain, step, first ? nullptr : &landing.piece);
     const vec3 place = place_on(step, landing.piece, landing.fits);
-    state.landing_plane =
-        plane_under(terrain, tick.model.leg[swing], place, yaw, landing.piece);
+    state.landing_plane = plane_under(terrain, tick.model.leg[swing], place, yaw, landing.piece);
   }
   state.landing_m = state.landing_plane.place_m;
   if (moved) look_ahead(tick, step, across_m, state);

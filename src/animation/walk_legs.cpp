@@ -188,8 +188,8 @@ bool even(const WalkState& state, Side side) noexcept {
 // Points a flying foot down beyond what the ground allows by lifting it over its toe.
 void point_down(const LegBuild& leg, double room_rad, double more_rad, double flight_progress,
                 FootPose& pose) noexcept {
-  const double open = smoothstep(0.0, 0.2, flight_progress) *
-                      (1.0 - smoothstep(0.7, 0.95, flight_progress));
+  const double open =
+      smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.7, 0.95, flight_progress));
   set_pitch(leg, pose.pitch_rad + room_rad, pose, FootMode::flight);
   const double toe_m = pose.toe_m.y;
   set_pitch(leg, pose.pitch_rad + open * more_rad, pose, FootMode::flight);
@@ -237,8 +237,7 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
   IkChain chain = leg.chain;
   // At its limit the ankle would turn the knee aside. It is eased from where it would have to go.
   if (!tick.flat) chain.dof[kAnkleX].min_rad = -kPi;
-  solve.add(
-      solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+  solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   ease_ankle(tick, state, side, pelvis, angles, state.foot[side], solve);
   if (angles[kAnkleX] < leg.chain.dof[kAnkleX].min_rad) {
     solve.add(

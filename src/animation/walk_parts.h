@@ -48,7 +48,8 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
 // Height of the ground that the hips go over when one foot stands and the other strikes.
 double base_at_strike(double standing_m, double striking_m) noexcept;
 
-// --- walk_flight.cpp: over what lies between two footholds ----------------------------------------
+// --- walk_flight.cpp: over what lies between two footholds
+// ----------------------------------------
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept;
 // The flying foot's pose of this tick, moved by what its room asks for.
 void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept;

@@ -1,5 +1,5 @@
-// Judges a walk over terrain from its poses alone: own forward kinematics, the whole sole on a grid,
-// the ground asked point by point. What the walk says of itself is read for its stages only.
+// Judges a walk over terrain from its poses alone: own forward kinematics, the whole sole on a
+// grid, the ground asked point by point. What the walk says of itself is read for its stages only.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -116,7 +116,8 @@ class TerrainJudge {
                                : s.ball + (s.tip - s.ball) * ((i - 8) / 4.0);
       for (double c : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const double deep = depth_mm(line + s.across * c);
-        if (deep > worst.sunk_mm) worst.sunk_mm = deep, worst.sunk_tick = tick_, worst.sunk_z_m = s.heel.z;
+        if (deep > worst.sunk_mm)
+          worst.sunk_mm = deep, worst.sunk_tick = tick_, worst.sunk_z_m = s.heel.z;
       }
     }
     // Flat on the ground: as long as the toe has been down and the heel has not left.
@@ -143,7 +144,9 @@ class TerrainJudge {
         if (tick_ < 2) continue;
         const double jump =
             std::abs(now - 2.0 * angles_[0][side][j] + angles_[1][side][j]) / kDegree;
-        if (jump > worst.jump_deg) worst.jump_deg = jump, worst.jump_tick = tick_, worst.jump_joint = side * 10 + j, worst.jump_z_m = pose.root_m.z;
+        if (jump > worst.jump_deg)
+          worst.jump_deg = jump, worst.jump_tick = tick_, worst.jump_joint = side * 10 + j,
+          worst.jump_z_m = pose.root_m.z;
       }
     }
     if (tick_ >= 2) {

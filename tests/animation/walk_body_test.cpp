@@ -171,6 +171,32 @@ TEST(WalkBody, AHandSlidesAlongARailOfConstantHeight) {
   }
 }
 
+// Twelve steps up: the rail is a straight line of the stairs' slope, the hand on it does not bump.
+TEST(WalkBody, ARailRisesEvenlyOverStairs) {
+  Terrain stairs;
+  ASSERT_FALSE(add_section(stairs, FlatSection{3.0}));
+  ASSERT_FALSE(add_section(stairs, StairsSection{0.17, 0.28, 12}));
+  WalkModel model = adult();
+  model.terrain = std::make_shared<const Terrain>(stairs);
+  const StyleValues rail = style({{"right_hand.rail", 1.0}});
+  Walker walker(model);
+  const double scale = model.body.shoulder_height_m / kReferenceShoulder_m;
+  std::vector<double> height;
+  int on_stairs = 0;
+  for (int i = 0; i < 4800; ++i) {
+    walker.step(rail, 0.5);
+    const vec3 hips = walker.state().hips_m;
+    if (hips.z < 4.0 || hips.z > 5.5) continue;
+    ++on_stairs;
+    const double line = 0.17 / 0.28 * (hips.z - 3.0) + 0.085;  // the treads' mean
+    EXPECT_NEAR(walker.hand(kRightSide).y, line + 0.9 * scale, 0.03);
+    height.push_back(walker.hand(kRightSide).y);
+  }
+  EXPECT_GT(on_stairs, 200);
+  for (std::size_t i = 2; i < height.size(); ++i)
+    EXPECT_LT(std::abs(height[i] - 2.0 * height[i - 1] + height[i - 2]), 0.0005);
+}
+
 TEST(WalkBody, WhatIsOutOfReachIsReachedFor) {
   const StyleValues far =
       style({{"hands.carry", 1.0}, {"hands.x_m", 1.0}, {"hands.y_m", 1.0}, {"hands.z_m", 1.0}});

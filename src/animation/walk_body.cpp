@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSmoothing = 0.22;  // s at the reference leg
 constexpr double kSettled = 40.0;    // of these: what is left is no number any more
-constexpr double kMostExtra = 0.6;   // swing beyond the data's that pace alone can give
+constexpr double kMostExtra = 0.4;   // swing beyond the data's that pace alone can give
 constexpr double kLeastPace = 0.5;   // below it the data's posture fades, and the swing with it
 constexpr double kSoftElbow = 0.1;
 constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail;

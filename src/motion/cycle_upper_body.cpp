@@ -132,6 +132,8 @@ class Matcher {
       if (from_end < 0) aim_at_only_child(from.back(), to.back());
       return;
     }
+    // A head looks ahead however its neck is bent.
+    if (from_end < 0) body_.aim[to.back()] = kAsItStood;
     const int last_from = from_end >= 0 ? from_end : from.back();
     const int last_to = to_end >= 0 ? to_end : to.back();
     if (last_from != from.front() && last_to != to.front())
@@ -171,7 +173,8 @@ class Matcher {
   }
 
  public:
-  static constexpr int kChildren = -2;  // aim: the mean of the children
+  // Aims: the mean of the children; none, but the joint stays as it stood.
+  static constexpr int kChildren = -2, kAsItStood = -3;
 
  private:
   Part from_, to_;
@@ -208,11 +211,16 @@ UpperBody upper_body(const GaitCycle& source, const GaitCycle& character) {
 void stand_alike(const UpperBody& body, GaitCycle& character) {
   constexpr double kLeastBone_m = 1e-4;
   const auto& joints = character.skeleton.joints;
-  std::vector<quat> world = world_rotations(character.skeleton, character.standing_local.data());
+  const auto stood = world_rotations(character.skeleton, character.standing_local.data());
+  std::vector<quat> world = stood;
   for (std::size_t j = 1; j < joints.size(); ++j) {
     const quat above = world[joints[j].parent];
     world[j] = above * character.standing_local[j];
-    if (body.aim[j] == -1) continue;
+    if (body.aim[j] == Matcher::kAsItStood) {
+      world[j] = stood[j];
+      character.standing_local[j] = glm::normalize(glm::conjugate(above) * world[j]);
+    }
+    if (body.aim[j] == -1 || body.aim[j] == Matcher::kAsItStood) continue;
     const vec3 bone = world[j] * bone_of(character, static_cast<int>(j), body.aim[j]);
     const vec3 wanted = body.direction[j];
     if (glm::length(bone) < kLeastBone_m || glm::length(wanted) < kLeastBone_m) continue;

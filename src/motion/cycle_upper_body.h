@@ -17,14 +17,15 @@ struct Counterpart {
 };
 struct UpperBody {
   std::vector<Counterpart> from;  // one a joint
-  std::vector<int> aim;           // whose place each joint's bone points to, or -1
-  std::vector<vec3> direction;    // where it points, as the source stands
+  std::vector<int> aim;         // whose place each joint's bone points to; -1: none; others inside
+  std::vector<vec3> direction;  // where it points, as the source stands
 };
 UpperBody upper_body(const GaitCycle& source, const GaitCycle& character);
 
 // A T pose hangs its arms: bones that both bodies have point as they do in the source's standing
 // pose. Arms and hands do so bone by bone; spine and neck as wholes, unless their joints have the
-// source's names, because backs are curved in different ways; collar bones only then, too.
+// source's names, because backs are curved in different ways (the head then looks ahead as it did);
+// collar bones only then, too.
 void stand_alike(const UpperBody& body, GaitCycle& character);
 
 // World rotations of the joints in `from` at sample i: away from the standing pose as the source's.

@@ -3,7 +3,9 @@
 #include <filesystem>
 
 #include "base/toml_file.h"
+#include "motion/keyframe.h"
 #include "motion/load.h"
+#include "session/config_files.h"
 
 namespace gaitpad {
 namespace {
@@ -24,10 +26,20 @@ void fill_leg(TomlTable& root, const char* key, LegNames& names) {
 
 }  // namespace
 
+Result<std::string> motion_path(const std::vector<std::string>& folders,
+                                const std::string& file_or_name) {
+  std::error_code error;
+  const bool is_path = file_or_name.find_first_of("./") != std::string::npos ||
+                       std::filesystem::exists(file_or_name, error);
+  if (is_path) return file_or_name;
+  return config_file(folders, "motions", file_or_name);
+}
+
 Result<Motion> load_motion_source(const std::string& path, const LoadOptions& given) {
   if (!path.ends_with(".toml")) return load_motion(path, given);
   auto file = TomlFile::load(path);
   if (!file) return file.error();
+  if (is_keyframe_file(*file)) return keyframe_motion(*file);
   TomlTable root = file->root();
   root.require("file");
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();

@@ -8,6 +8,7 @@
 #include "motion/flight.h"
 #include "motion/gait_cycle.h"
 #include "motion/tracks.h"
+#include "session/config_files.h"
 #include "session/motion_source.h"
 #include "tools/gaitpad/commands.h"
 
@@ -104,7 +105,9 @@ void print_table(const Motion& motion) {
 
 Result<Motion> chosen_motion(const MotionArguments& arguments) {
   if (arguments.file == "procedural") return procedural_motion();
-  return load_motion_source(arguments.file, arguments.load);
+  const auto path = motion_path(config_folders(GAITPAD_CONFIG_DIR), arguments.file);
+  if (!path) return path.error();
+  return load_motion_source(*path, arguments.load);
 }
 
 int run_motion(const MotionArguments& arguments) {
@@ -140,7 +143,8 @@ void add_motion(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<MotionArguments>();
   command
       ->add_option("FILE", arguments->file,
-                   "motion (.bvh; .amc with its .asf; .asf; .toml), or `procedural`")
+                   "motion (.bvh, .amc with its .asf, .asf, .toml), a NAME of config/motions, or "
+                   "`procedural`")
       ->required();
   command->add_flag("--json", arguments->as_json, "one JSON object");
   command

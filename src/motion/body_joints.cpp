@@ -1,203 +1,201 @@
 #include "motion/body_joints.h"
 
 #include <algorithm>
-#include <optional>
 
-#include "motion/arm_names.h"
+#include "motion/body_names.h"
 #include "motion/legs.h"
 
 namespace gaitpad {
 namespace {
 
-using Arms = std::array<ArmJoints, 2>;
+constexpr std::size_t kMostLeaves = 96;  // looked at for a shape: fingers and faces have many
 
 struct Body {
   const Skeleton& skeleton;
-  const std::array<int, 2>& hips;
+  const std::array<LegJoints, 2>& legs;
   std::span<const vec3> at;
-  int parent(int joint) const { return skeleton.joints[joint].parent; }
-  bool is_in_leg(int joint) const {
-    return is_ancestor(skeleton, hips[0], joint) || is_ancestor(skeleton, hips[1], joint);
+
+  int parent(int j) const { return skeleton.joints[static_cast<std::size_t>(j)].parent; }
+  int count() const { return static_cast<int>(skeleton.joints.size()); }
+  double distance(int a, int b) const {
+    return glm::distance(at[static_cast<std::size_t>(a)], at[static_cast<std::size_t>(b)]);
+  }
+  bool in_leg(int j) const {
+    return is_ancestor(skeleton, legs[0].hip, j) || is_ancestor(skeleton, legs[1].hip, j);
   }
 };
 
-int common_ancestor(const Skeleton& skeleton, int a, int b) {
-  while (a >= 0 && !is_ancestor(skeleton, a, b)) a = skeleton.joints[a].parent;
+int common_ancestor(const Body& body, int a, int b) {
+  while (a >= 0 && !is_ancestor(body.skeleton, a, b)) a = body.parent(a);
   return a;
 }
 
-// The hand's own joint: a wrist above a joint named hand is a twist joint (CMU's lwrist).
-int hand_of(const Body& body, NamedSide side) {
-  const auto& joints = body.skeleton.joints;
-  for (const ArmPart wanted : {ArmPart::hand, ArmPart::wrist}) {
-    for (int j = 0; j < static_cast<int>(joints.size()); ++j) {
-      const NamedArm named = named_arm(joints[j].name);
-      if (!joints[j].is_end_site && named.side == side && named.part == wanted) return j;
-    }
+// From below `top` down to `joint`, both as given: empty where top is no ancestor.
+std::vector<int> path_below(const Body& body, int top, int joint) {
+  std::vector<int> path;
+  for (int j = joint; j > top && j >= 0; j = body.parent(j)) path.push_back(j);
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+// Upper arm and forearm of like length, as all arms have.
+bool is_arm(const Body& body, const ArmChain& arm) {
+  const double upper = body.distance(arm.shoulder, arm.elbow);
+  const double fore = body.distance(arm.elbow, arm.wrist);
+  return upper > 0.0 && fore > 0.0 && upper < 2.5 * fore && fore < 2.5 * upper;
+}
+
+int above(const Body& body, int joint, NamedSide side, BodyPart wanted) {
+  for (int j = body.parent(joint); j >= 0; j = body.parent(j)) {
+    const BodyName n = body_name(body.skeleton.joints[static_cast<std::size_t>(j)].name);
+    if (n.side == side && n.part == wanted) return j;
   }
   return -1;
 }
 
-// Upwards from the hand. "Shoulder" is the upper arm where nothing nearer to the elbow is, else the
-// collar bone.
-std::optional<ArmJoints> named_arm_of(const Body& body, NamedSide side) {
-  ArmJoints arm;
-  arm.wrist = hand_of(body, side);
-  if (arm.wrist < 0) return std::nullopt;
-  for (int j = body.parent(arm.wrist); j >= 0; j = body.parent(j)) {
-    const NamedArm named = named_arm(body.skeleton.joints[j].name);
-    if (named.side != side) continue;
-    const bool is_upper = named.part == ArmPart::upper_arm || named.part == ArmPart::shoulder;
-    const bool is_collar = named.part == ArmPart::clavicle || named.part == ArmPart::shoulder;
-    if (arm.shoulder < 0 && named.part == ArmPart::forearm) {
-      arm.elbow = j;
-    } else if (arm.elbow >= 0 && arm.shoulder < 0 && is_upper) {
-      arm.shoulder = j;
-    } else if (arm.shoulder >= 0 && is_collar) {
-      arm.clavicle = j;
-      break;
-    }
+// Of the joints below the elbow the lowest one named a wrist or a hand: above it such a joint turns
+// the forearm (CMU's lwrist). Without one the farthest child.
+int wrist_below(const Body& body, int elbow, NamedSide side) {
+  int farthest = -1, named = -1;
+  for (int j = elbow + 1; j < body.count(); ++j) {
+    if (!is_ancestor(body.skeleton, elbow, j)) break;
+    const BodyName n = body_name(body.skeleton.joints[static_cast<std::size_t>(j)].name);
+    const bool is_lower = named < 0 || is_ancestor(body.skeleton, named, j);
+    if (n.side == side && n.part == BodyPart::wrist && is_lower) named = j;
+    const bool is_child = body.parent(j) == elbow;
+    if (is_child && (farthest < 0 || body.distance(elbow, j) > body.distance(elbow, farthest)))
+      farthest = j;
   }
-  return arm.shoulder >= 0 ? std::optional(arm) : std::nullopt;
+  return named >= 0 ? named : farthest;
 }
 
-std::optional<Arms> named_arms(const Body& body) {
-  const auto left = named_arm_of(body, NamedSide::left);
-  const auto right = named_arm_of(body, NamedSide::right);
-  if (!left || !right) return std::nullopt;
-  return Arms{*left, *right};
-}
-
-// Joints from below `ancestor` down to `leaf`, those at one place only once, and their length.
-struct Chain {
-  std::vector<int> joints;
-  double length_m = 0.0;
-};
-Chain chain_to(const Body& body, int ancestor, int leaf) {
-  Chain chain;
-  for (int j = leaf; j != ancestor; j = body.parent(j)) {
-    if (!chain.joints.empty()) {
-      const double bone_m = glm::distance(body.at[j], body.at[chain.joints.back()]);
-      if (bone_m <= 0.0) continue;
-      chain.length_m += bone_m;
-    }
-    chain.joints.push_back(j);
+ArmChain named_arm(const Body& body, NamedSide side) {
+  for (int j = 0; j < body.count(); ++j) {
+    const BodyName n = body_name(body.skeleton.joints[static_cast<std::size_t>(j)].name);
+    if (n.side != side || n.part != BodyPart::elbow || body.in_leg(j)) continue;
+    ArmChain arm;
+    arm.elbow = j;
+    arm.wrist = wrist_below(body, j, side);
+    arm.shoulder = above(body, j, side, BodyPart::upper_arm);
+    if (arm.shoulder < 0) arm.shoulder = above(body, j, side, BodyPart::shoulder);
+    if (arm.shoulder < 0 || arm.wrist < 0 || !is_arm(body, arm)) continue;
+    arm.collar = above(body, arm.shoulder, side, BodyPart::collar);
+    if (arm.collar < 0) arm.collar = above(body, arm.shoulder, side, BodyPart::shoulder);
+    return arm;
   }
-  std::ranges::reverse(chain.joints);
-  return chain;
+  return {};
 }
 
-// The chain's two longest neighbouring bones are upper arm and forearm; of two such pairs the one
-// nearer to the hand: a collar bone may be as long as a forearm.
-ArmJoints arm_of(const Body& body, const Chain& chain) {
-  ArmJoints arm;
+// The two longest neighbouring bones of like length on the way from below `top` to a leaf.
+ArmChain chain_arm(const Body& body, int top, int leaf) {
+  std::vector<int> chain;  // from the top, joints at one place only once
+  for (const int j : path_below(body, top, leaf)) {
+    if (chain.empty() || body.distance(j, chain.back()) > 0.0) chain.push_back(j);
+  }
+  ArmChain best;
   double longest = 0.0;
-  for (std::size_t i = 0; i + 2 < chain.joints.size(); ++i) {
-    const int a = chain.joints[i], b = chain.joints[i + 1], c = chain.joints[i + 2];
-    const double upper = glm::distance(body.at[a], body.at[b]);
-    const double lower = glm::distance(body.at[b], body.at[c]);
-    if (upper + lower <= 0.9 * longest || upper > 2.5 * lower || lower > 2.5 * upper) continue;
-    longest = std::max(longest, upper + lower);
-    arm = {i > 0 ? chain.joints[i - 1] : -1, a, b, body.skeleton.joints[c].is_end_site ? -1 : c};
-  }
-  return arm;
-}
-
-// Leaves outside the legs, at most so many: hands and faces may have a hundred.
-std::vector<int> upper_leaves(const Body& body) {
-  constexpr std::size_t kMostLeaves = 160;
-  const int joints = static_cast<int>(body.skeleton.joints.size());
-  std::vector<bool> has_child(static_cast<std::size_t>(joints), false);
-  for (int j = 1; j < joints; ++j) has_child[static_cast<std::size_t>(body.parent(j))] = true;
-  std::vector<int> leaves;
-  for (int j = 1; j < joints && leaves.size() < kMostLeaves; ++j) {
-    if (!has_child[static_cast<std::size_t>(j)] && !body.is_in_leg(j)) leaves.push_back(j);
-  }
-  return leaves;
-}
-
-std::optional<Arms> shaped_arms(const Body& body) {
-  const std::vector<int> leaves = upper_leaves(body);
-  std::optional<Arms> best;
-  double longest = 0.0;
-  for (const int a : leaves) {
-    for (const int b : leaves) {
-      const int ancestor = common_ancestor(body.skeleton, a, b);
-      const double middle_m = body.at[ancestor].x;
-      if (!(body.at[a].x > middle_m) || !(body.at[b].x < middle_m)) continue;
-      const Chain left = chain_to(body, ancestor, a), right = chain_to(body, ancestor, b);
-      const bool is_pair =
-          left.length_m < 1.3 * right.length_m && right.length_m < 1.3 * left.length_m;
-      if (!is_pair || left.length_m + right.length_m <= longest) continue;
-      const Arms arms = {arm_of(body, left), arm_of(body, right)};
-      if (arms[0].shoulder < 0 || arms[1].shoulder < 0) continue;
-      longest = left.length_m + right.length_m;
-      best = arms;
-    }
+  for (std::size_t i = 0; i + 2 < chain.size(); ++i) {
+    ArmChain arm;
+    arm.collar = i > 0 ? chain[i - 1] : -1;
+    arm.shoulder = chain[i], arm.elbow = chain[i + 1], arm.wrist = chain[i + 2];
+    const double length =
+        body.distance(arm.shoulder, arm.elbow) + body.distance(arm.elbow, arm.wrist);
+    if (length <= longest || !is_arm(body, arm)) continue;
+    longest = length;
+    best = arm;
   }
   return best;
 }
 
-bool is_in_arm(const Body& body, const BodyJoints& found, int joint) {
-  return std::ranges::any_of(found.arm, [&](const ArmJoints& arm) {
-    const int top = arm.clavicle >= 0 ? arm.clavicle : arm.shoulder;
-    return top >= 0 && is_ancestor(body.skeleton, top, joint);
-  });
+double arm_length(const Body& body, const ArmChain& arm) {
+  return body.distance(arm.shoulder, arm.elbow) + body.distance(arm.elbow, arm.wrist);
 }
 
-bool is_fork(const Body& body, int joint) {
-  return std::ranges::count(body.skeleton.joints, joint, &Joint::parent) > 1;
+// The joint that ends the trunk: of all that is not in a leg the highest.
+int highest(const Body& body) {
+  int top = -1;
+  for (int j = 0; j < body.count(); ++j) {
+    if (body.in_leg(j)) continue;
+    if (top < 0 ||
+        body.at[static_cast<std::size_t>(j)].y > body.at[static_cast<std::size_t>(top)].y)
+      top = j;
+  }
+  return top;
 }
 
-// From below the common ancestor of both down to `to`.
-std::vector<int> path(const Body& body, int from, int to) {
-  std::vector<int> joints;
-  const int ancestor = common_ancestor(body.skeleton, from, to);
-  for (int j = to; j >= 0 && j != ancestor; j = body.parent(j)) joints.push_back(j);
-  std::ranges::reverse(joints);
-  return joints;
+// On each side of the trunk the longest arm that leaves it. Left is where the left hip is.
+void shaped_arms(const Body& body, int top, std::array<ArmChain, 2>& arms) {
+  const vec3 left = body.at[static_cast<std::size_t>(body.legs[0].hip)] -
+                    body.at[static_cast<std::size_t>(body.legs[1].hip)];
+  std::vector<bool> is_parent(static_cast<std::size_t>(body.count()), false);
+  for (int j = 1; j < body.count(); ++j) is_parent[static_cast<std::size_t>(body.parent(j))] = true;
+  std::size_t looked_at = 0;
+  for (int j = 0; j < body.count() && looked_at < kMostLeaves; ++j) {
+    if (is_parent[static_cast<std::size_t>(j)] || body.in_leg(j) || j == top) continue;
+    ++looked_at;
+    const ArmChain arm = chain_arm(body, common_ancestor(body, j, top), j);
+    if (!arm.is_found()) continue;
+    const vec3 out =
+        body.at[static_cast<std::size_t>(arm.shoulder)] - body.at[static_cast<std::size_t>(top)];
+    ArmChain& place = arms[glm::dot(out, left) > 0.0 ? kLeftSide : kRightSide];
+    if (!place.is_found() || arm_length(body, arm) > arm_length(body, place)) place = arm;
+  }
 }
 
-// The topmost joint so named, else the one that carries the highest end or a face, else -1.
-int head_of(const Body& body, const BodyJoints& found, int chest) {
-  const auto& joints = body.skeleton.joints;
-  const auto is_free = [&](int j) { return !body.is_in_leg(j) && !is_in_arm(body, found, j); };
-  for (int j = 1; j < static_cast<int>(joints.size()); ++j) {
-    if (!joints[j].is_end_site && is_free(j) && is_head_name(joints[j].name)) return j;
+bool is_pair(const Body& body, const std::array<ArmChain, 2>& arms) {
+  if (!arms[0].is_found() || !arms[1].is_found()) return false;
+  const double left = arm_length(body, arms[0]), right = arm_length(body, arms[1]);
+  return left < 1.5 * right && right < 1.5 * left &&
+         !is_ancestor(body.skeleton, arms[0].shoulder, arms[1].shoulder) &&
+         !is_ancestor(body.skeleton, arms[1].shoulder, arms[0].shoulder);
+}
+
+int named_head(const Body& body) {
+  for (int j = 0; j < body.count(); ++j) {
+    const Joint& joint = body.skeleton.joints[static_cast<std::size_t>(j)];
+    if (!joint.is_end_site && !body.in_leg(j) && body_name(joint.name).part == BodyPart::head)
+      return j;
   }
-  int highest = -1;
-  for (const int leaf : upper_leaves(body)) {
-    if (!is_free(leaf) || !is_ancestor(body.skeleton, chest, leaf)) continue;
-    if (highest < 0 || body.at[leaf].y > body.at[highest].y) highest = leaf;
-  }
-  if (highest < 0) return -1;
-  const int last = joints[highest].is_end_site ? body.parent(highest) : highest;
-  for (const int j : path(body, chest, last)) {
-    if (j == last || is_fork(body, j)) return j;
-  }
+  return -1;
+}
+
+// The joint whose end is the highest of all.
+int shaped_head(const Body& body, int top) {
+  if (top <= 0) return -1;
+  return body.skeleton.joints[static_cast<std::size_t>(top)].is_end_site ? body.parent(top) : top;
+}
+
+// What carries the arms; with one arm, what carries it and the head.
+int chest_of(const Body& body, const BodyJoints& found) {
+  const auto& [left, right] = found.arm;
+  if (left.is_found() && right.is_found())
+    return common_ancestor(body, left.shoulder, right.shoulder);
+  const ArmChain& arm = left.is_found() ? left : right;
+  if (arm.is_found() && found.head >= 0) return common_ancestor(body, arm.shoulder, found.head);
   return -1;
 }
 
 }  // namespace
 
-BodyJoints body_joints(const Skeleton& skeleton, int pelvis, const std::array<int, 2>& hips,
-                       std::span<const vec3> standing_m) {
-  const Body body{skeleton, hips, standing_m};
+BodyJoints find_body(const Skeleton& skeleton, const std::array<LegJoints, 2>& legs, int pelvis,
+                     std::span<const vec3> position_m) {
   BodyJoints found;
-  auto arms = named_arms(body);
-  if (!arms) arms = shaped_arms(body);
-  if (arms) found.arm = *arms;
-  const auto top = [](const ArmJoints& arm) {
-    return arm.clavicle >= 0 ? arm.clavicle : arm.shoulder;
-  };
-  int chest = pelvis;
-  if (arms) chest = common_ancestor(skeleton, top(found.arm[0]), top(found.arm[1]));
-  if (arms) found.spine = path(body, pelvis, chest);
-  const int head = head_of(body, found, chest);
-  if (head >= 0) found.neck = path(body, chest, head);
-  if (!arms && !found.neck.empty()) {  // without arms all below the head is spine
-    found.spine.assign(found.neck.begin(), found.neck.end() - 1);
-    found.neck = {head};
+  if (position_m.size() < skeleton.joints.size() || skeleton.joints.empty()) return found;
+  const Body body{skeleton, legs, position_m};
+  const int top = highest(body);
+  found.head = named_head(body);
+  if (found.head < 0) found.head = shaped_head(body, top);
+  found.arm = {named_arm(body, NamedSide::left), named_arm(body, NamedSide::right)};
+  if (!found.arm[0].is_found() && !found.arm[1].is_found() && top > 0) {
+    shaped_arms(body, found.head >= 0 ? found.head : top, found.arm);
+    if (!is_pair(body, found.arm)) found.arm = {};
+  }
+  const int chest = chest_of(body, found);
+  if (chest < 0) return found;
+  found.spine = path_below(body, common_ancestor(body, pelvis, chest), chest);
+  if (found.head >= 0 && is_ancestor(skeleton, chest, found.head)) {
+    found.neck = path_below(body, chest, found.head);
+    if (!found.neck.empty()) found.neck.pop_back();
   }
   return found;
 }

@@ -1,31 +1,33 @@
-// Which joints are spine, neck, head and arms: by name where names are known, else by the
-// skeleton's shape. The legs are legs.h's.
+// Which joints are arms, spine, neck and head: by name where the names are known, else by the
+// skeleton's shape.
 #pragma once
 #include <array>
 #include <span>
 #include <vector>
 
-#include "motion/motion.h"
+#include "motion/skeleton.h"
 
 namespace gaitpad {
 
-// -1 where there is none. Between two of them further joints may stand (twist joints).
-struct ArmJoints {
-  int clavicle = -1;
-  int shoulder = -1, elbow = -1, wrist = -1;  // tops of upper arm, forearm, hand
+// Joint indices of one arm; all but `collar` are set or none is. Between two of them further joints
+// may stand (twist joints). wrist is an End Site where the skeleton has no hand.
+struct ArmChain {
+  int collar = -1;  // the lowest one above the shoulder
+  int shoulder = -1, elbow = -1, wrist = -1;
+  bool is_found() const noexcept { return shoulder >= 0; }
 };
 
+// What is not there is empty or -1.
 struct BodyJoints {
-  std::array<ArmJoints, 2> arm;  // by Side; all -1 where the skeleton has no two arms
-  std::vector<int> spine;        // above the pelvis, upwards; the last one is the chest
-  std::vector<int> neck;         // above the chest, upwards; the last one is the head
-  bool has_arms() const { return arm[kLeftSide].shoulder >= 0; }
+  std::vector<int> spine;  // from above the pelvis up to the joint that carries arms and neck
+  std::vector<int> neck;   // from above that joint to below the head
+  int head = -1;
+  std::array<ArmChain, 2> arm;  // indexed by Side
 };
 
-// `standing_m`: where the joints are when the body stands and faces +z, for skeletons whose names
-// say nothing: the longest pair of chains to the two sides are the arms, the highest one the neck.
-// `hips` are the tops of the legs.
-BodyJoints body_joints(const Skeleton& skeleton, int pelvis, const std::array<int, 2>& hips,
-                       std::span<const vec3> standing_m);
+// `position_m`: world positions of all joints in some pose, upright along +y if names say nothing.
+// Total: an odd skeleton has no arms.
+BodyJoints find_body(const Skeleton& skeleton, const std::array<LegJoints, 2>& legs, int pelvis,
+                     std::span<const vec3> position_m);
 
 }  // namespace gaitpad

@@ -24,10 +24,14 @@ struct Part {
   const GaitCycle& cycle;
   std::vector<vec3> at;
   BodyJoints joints;
+  std::vector<int> neck;  // the head is its last
   explicit Part(const GaitCycle& c)
       : cycle(c),
         at(standing_places(c)),
-        joints(body_joints(c.skeleton, c.pelvis, {c.leg[0].joints.hip, c.leg[1].joints.hip}, at)) {}
+        joints(find_body(c.skeleton, {c.leg[0].joints, c.leg[1].joints}, c.pelvis, at)),
+        neck(joints.neck) {
+    if (joints.head >= 0) neck.push_back(joints.head);
+  }
   const std::string& name(int joint) const { return cycle.skeleton.joints[joint].name; }
   int chest() const { return joints.spine.empty() ? cycle.pelvis : joints.spine.back(); }
   bool is_in_leg(int joint) const {
@@ -71,14 +75,11 @@ class Matcher {
 
   UpperBody matched() {
     match_chain(from_.joints.spine, to_.joints.spine, from_.cycle.pelvis);
-    match_chain(from_.joints.neck, to_.joints.neck, from_.chest());
-    if (from_.joints.has_arms() && to_.joints.has_arms()) {
-      for (int side = 0; side < 2; ++side) match_arm(from_.joints.arm[side], to_.joints.arm[side]);
-    }
+    match_chain(from_.neck, to_.neck, from_.chest());
+    for (int side = 0; side < 2; ++side) match_arm(from_.joints.arm[side], to_.joints.arm[side]);
     match_names();
-    aim_chain(from_.joints.spine, to_.joints.spine, first(from_.joints.neck),
-              first(to_.joints.neck));
-    aim_chain(from_.joints.neck, to_.joints.neck, -1, -1);
+    aim_chain(from_.joints.spine, to_.joints.spine, first(from_.neck), first(to_.neck));
+    aim_chain(from_.neck, to_.neck, -1, -1);
     return std::move(body_);
   }
 
@@ -95,19 +96,19 @@ class Matcher {
   }
 
   void match(int from, int to) {
-    if (from >= 0 && to >= 0) body_.from[to] = {from, from, 0.0};
+    if (from < 0 || to < 0 || to_.cycle.skeleton.joints[to].is_end_site) return;
+    body_.from[to] = {from, from, 0.0};
   }
 
-  void match_arm(const ArmJoints& from, const ArmJoints& to) {
-    match(from.clavicle, to.clavicle);
+  void match_arm(const ArmChain& from, const ArmChain& to) {
+    if (!from.is_found() || !to.is_found()) return;
+    match(from.collar, to.collar);
     match(from.shoulder, to.shoulder);
     match(from.elbow, to.elbow);
     match(from.wrist, to.wrist);
-    if (from.clavicle >= 0 && to.clavicle >= 0 &&
-        from_.name(from.clavicle) == to_.name(to.clavicle))
-      aim(from.clavicle, from.shoulder, to.clavicle, to.shoulder);
+    if (from.collar >= 0 && to.collar >= 0 && from_.name(from.collar) == to_.name(to.collar))
+      aim(from.collar, from.shoulder, to.collar, to.shoulder);
     aim(from.shoulder, from.elbow, to.shoulder, to.elbow);
-    if (from.wrist < 0 || to.wrist < 0) return;
     aim(from.elbow, from.wrist, to.elbow, to.wrist);
     body_.aim[to.wrist] = kChildren;
     body_.direction[to.wrist] = from_.below(from.wrist) - from_.at[from.wrist];
@@ -145,13 +146,13 @@ class Matcher {
     if (from_child >= 0 && to_child >= 0) aim(from, from_child, to, to_child);
   }
 
-  bool is_part(const BodyJoints& joints, int joint) const {
+  static bool is_part(const Part& part, int joint) {
     const auto has = [joint](const std::vector<int>& list) {
       return std::ranges::find(list, joint) != list.end();
     };
-    return has(joints.spine) || has(joints.neck) ||
-           std::ranges::any_of(joints.arm, [joint](const ArmJoints& arm) {
-             return joint == arm.clavicle || joint == arm.shoulder || joint == arm.elbow ||
+    return has(part.joints.spine) || has(part.neck) ||
+           std::ranges::any_of(part.joints.arm, [joint](const ArmChain& arm) {
+             return joint == arm.collar || joint == arm.shoulder || joint == arm.elbow ||
                     joint == arm.wrist;
            });
   }
@@ -162,7 +163,7 @@ class Matcher {
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const int joint = static_cast<int>(j);
       const int found = from_.cycle.skeleton.find(joints[j].name);
-      if (found < 0 || is_part(to_.joints, joint) || is_part(from_.joints, found)) continue;
+      if (found < 0 || is_part(to_, joint) || is_part(from_, found)) continue;
       if (to_.is_upper(joint) && from_.is_upper(found)) same[j] = found;
     }
     for (std::size_t j = 0; j < joints.size(); ++j) {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "motion/joint_words.h"
 #include "motion/legs.h"
+#include "motion/name_words.h"
 
 namespace gaitpad {
 namespace {
@@ -24,11 +24,17 @@ NamedPart part_of(std::string_view word) {
   return NamedPart::none;
 }
 
+// Helper joints beside or inside a bone, never its end.
+bool is_helper(std::string_view word) {
+  return word == "twist" || word == "share" || word == "roll" || word == "rigmesh" ||
+         word == "pole" || word == "ik" || word == "metatarsals" || word == "end" || word == "nub";
+}
+
 // "lfoot", "rightankle": a side and a part in one word.
 bool joined(const std::string& word, NamedJoint& joint) {
   for (const std::size_t n : {std::size_t{5}, std::size_t{4}, std::size_t{1}}) {
     if (word.size() <= n) continue;
-    const NamedSide side = side_of_word(word.substr(0, n));
+    const NamedSide side = named_side(std::string_view(word).substr(0, n));
     const NamedPart part = part_of(std::string_view(word).substr(n));
     if (side == NamedSide::none || part == NamedPart::none) continue;
     joint = {side, part};
@@ -44,8 +50,8 @@ NamedJoint named_joint(std::string_view name) {
   const std::vector<std::string> all = name_words(name);
   bool is_upper_part = false, is_buttock = false;
   for (const std::string& word : all) {
-    if (is_helper_word(word)) return {};
-    if (joint.side == NamedSide::none) joint.side = side_of_word(word);
+    if (is_helper(word)) return {};
+    if (joint.side == NamedSide::none) joint.side = named_side(word);
     is_upper_part |= word == "up" || word == "upper";
     is_buttock |= word == "buttock" || word == "buttocks";
     if (joint.part == NamedPart::none) joint.part = part_of(word);

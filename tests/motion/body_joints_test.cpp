@@ -5,124 +5,212 @@
 #include <filesystem>
 #include <memory>
 
-#include "motion/arm_names.h"
-#include "motion/gait_cycle.h"
 #include "motion/load.h"
-#include "motion/tracks.h"
+#include "motion/motion.h"
 
 namespace gaitpad {
 namespace {
 
-TEST(ArmNames, AreUnderstoodInEveryHouseStyle) {
-  const auto is = [](const char* name, NamedSide side, ArmPart part) {
-    const NamedArm arm = named_arm(name);
-    EXPECT_TRUE(arm.side == side && arm.part == part) << name;
-  };
-  constexpr NamedSide kL = NamedSide::left, kR = NamedSide::right;
-  is("mixamorig:LeftArm", kL, ArmPart::upper_arm);
-  is("mixamorig:LeftForeArm", kL, ArmPart::forearm);
-  is("RightHand", kR, ArmPart::hand);
-  is("lhumerus", kL, ArmPart::upper_arm);
-  is("rradius", kR, ArmPart::forearm);
-  is("rwrist", kR, ArmPart::wrist);
-  is("lclavicle", kL, ArmPart::clavicle);
-  is("lshoulderjoint", kL, ArmPart::shoulder);
-  is("rShldrBend", kR, ArmPart::shoulder);
-  is("lForearmBend", kL, ArmPart::forearm);
-  is("UpArm_L", kL, ArmPart::upper_arm);
-  is("LoArm_R", kR, ArmPart::forearm);
-  is("UpperArm_L", kL, ArmPart::upper_arm);
-  is("LeftLowArm", kL, ArmPart::forearm);
-  is("LeftCollar", kL, ArmPart::clavicle);
-  is("LeftElbowJoint", kL, ArmPart::forearm);
-  is("CC_Base_R_Clavicle", kR, ArmPart::clavicle);
-  is("J_L_Elbow", kL, ArmPart::forearm);
-  for (const char* none :
-       {"LeftForearmTwistJoint", "CC_Base_L_UpperarmTwist01", "LeftHandThumb1", "LeftFingerBase",
-        "L_Humerus_RIGMESH", "LeftUpLeg", "Spine", "lCarpal1"}) {
-    EXPECT_TRUE(named_arm(none).part == ArmPart::none) << none;
-  }
-  EXPECT_TRUE(is_head_name("mixamorig:Head"));
-  EXPECT_FALSE(is_head_name("HeadTop_End"));
-}
-
-BodyJoints joints_of(const Motion& m) {
-  const auto world = std::make_unique<JointFrames>();
-  forward_kinematics(m, m.frames.back(), *world);
-  const auto& place = world->position_m;
-  const vec3 across = place[m.legs[0].hip] - place[m.legs[1].hip];
-  const quat ahead = rotation_y(-heading_of(glm::cross(across, kUp)));
+// A skeleton given as name, parent, place in the world; the legs are the last six of it.
+struct Made {
+  Skeleton skeleton;
   std::vector<vec3> at;
-  for (std::size_t j = 0; j < m.skeleton.joints.size(); ++j) at.push_back(ahead * place[j]);
-  return body_joints(m.skeleton, m.pelvis, {m.legs[0].hip, m.legs[1].hip}, at);
-}
+  std::array<LegJoints, 2> legs;
+  int pelvis = 0;
 
-std::vector<int> all_of(const BodyJoints& b) {
-  std::vector<int> all = b.spine;
-  all.insert(all.end(), b.neck.begin(), b.neck.end());
-  for (const ArmJoints& a : b.arm)
-    all.insert(all.end(), {a.clavicle, a.shoulder, a.elbow, a.wrist});
-  return all;
-}
-
-TEST(BodyJoints, WithoutNamesTheShapeSaysTheSame) {
-  Motion m = procedural_motion();
-  const BodyJoints named = joints_of(m);
-  EXPECT_EQ(m.skeleton.joints[named.spine.back()].name, "Chest");
-  EXPECT_EQ(m.skeleton.joints[named.neck.back()].name, "Head");
-  EXPECT_EQ(m.skeleton.joints[named.arm[kRightSide].elbow].name, "RightForeArm");
-  EXPECT_EQ(m.skeleton.joints[named.arm[kRightSide].clavicle].name, "RightShoulder");
-  for (Joint& joint : m.skeleton.joints) joint.name = "bone";
-  EXPECT_EQ(all_of(joints_of(m)), all_of(named));
-}
-
-TEST(BodyJoints, ABodyWithoutArmsOrHeadIsNoError) {
-  Motion m = procedural_motion();
-  auto& joints = m.skeleton.joints;
-  joints.resize(static_cast<std::size_t>(m.skeleton.find("Spine")));  // two legs on the hips
-  for (MotionFrame& frame : m.frames) frame.local.resize(joints.size());
-  const BodyJoints none = joints_of(m);
-  EXPECT_FALSE(none.has_arms());
-  EXPECT_TRUE(none.spine.empty() && none.neck.empty());
-}
-
-TEST(BodyJoints, AreFoundInTheSharedSkeletons) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
-  const std::pair<const char*, std::array<std::string, 6>> kKnown[] = {
-      {"cmu_07_01.amc", {"thorax", "head", "lclavicle", "lhumerus", "lradius", "lhand"}},
-      {"endorphin_walking.amc",
-       {"UpperSpineJoint", "UpperNeckJoint", "LeftClavicleJoint", "LeftShoulderJoint",
-        "LeftElbowJoint", "LeftWristJoint"}},
-      {"makehuman_walk1.bvh", {"Spine3", "Head", "Clavicle_L", "UpArm_L", "LoArm_L", "Hand_L"}},
-      {"daz3d_170_joints.bvh",
-       {"chestUpper", "head", "lCollar", "lShldrBend", "lForearmBend", "lHand"}},
-      {"bvhfiles_example.bvh",
-       {"J_T1", "J_Atlas", "J_L_Clavicle", "J_L_Shoulder", "J_L_Elbow", "J_L_Hand"}},
-      {"mocapbank_test.bvh",
-       {"Chest2", "Head", "LeftCollar", "LeftShoulder", "LeftElbow", "LeftWrist"}},
-      {"cmu_006_01_iclone.bvh",
-       {"CC_Base_Spine02", "CC_Base_Head", "CC_Base_L_Clavicle", "CC_Base_L_Upperarm",
-        "CC_Base_L_Forearm", "CC_Base_L_Hand"}},
-      {"sheffield_swagger.bvh",
-       {"upperback", "head", "lshoulderjoint", "lhumerus", "lradius", "lhand"}},
-      {"cmu_m21_walk.bvh",
-       {"Spine1", "Head", "LeftShoulder", "LeftArm", "LeftForeArm", "LeftHand"}},
-      {"bvhparser_sample.bvh", {"chest", "head", "lCollar", "lShldr", "lForeArm", "lHand"}},
-  };
-  for (const auto& [file, names] : kKnown) {
-    const auto m = load_motion(folder + file);
-    ASSERT_TRUE(m) << m.error().message;
-    const BodyJoints b = joints_of(*m);
-    ASSERT_TRUE(b.has_arms() && !b.spine.empty() && !b.neck.empty()) << file;
-    const ArmJoints& l = b.arm[kLeftSide];
-    const std::array<int, 6> found = {b.spine.back(), b.neck.back(), l.clavicle,
-                                      l.shoulder,     l.elbow,       l.wrist};
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      EXPECT_EQ(m->skeleton.joints[static_cast<std::size_t>(found[i])].name, names[i]) << file;
+  int add(const std::string& name, int parent, const vec3& place_m, bool is_end = false) {
+    const vec3 offset = parent < 0 ? vec3(0.0) : place_m - at[parent];
+    skeleton.joints.push_back({name, parent, offset, is_end});
+    at.push_back(place_m);
+    return static_cast<int>(at.size()) - 1;
+  }
+  void add_legs(int hips) {
+    for (int side = 0; side < 2; ++side) {
+      const double x = side == 0 ? 0.1 : -0.1;
+      LegJoints& leg = legs[side];
+      leg.hip = add("a", hips, {x, 0.9, 0.0});
+      leg.knee = add("b", leg.hip, {x, 0.5, 0.0});
+      leg.ankle = add("c", leg.knee, {x, 0.1, 0.0});
+      leg.toe = leg.toe_end = add("d", leg.ankle, {x, 0.0, 0.1});
     }
   }
+  BodyJoints found() const { return find_body(skeleton, legs, pelvis, at); }
+};
+
+struct Names {
+  std::string collar, shoulder, elbow, wrist;  // of the left; "L" stands for the side
+};
+std::string sided(std::string name, char side) {
+  for (char& c : name) c = c == '#' ? side : c;
+  return name;
+}
+std::string sided(std::string name, const std::string& side) {
+  const auto at = name.find('#');
+  return at == std::string::npos ? name : name.replace(at, 1, side);
+}
+
+template <class Side>
+Made made(const Names& names, const Side& left, const Side& right) {
+  Made m;
+  const int hips = m.add("Hips", -1, {0.0, 1.0, 0.0});
+  const int spine = m.add("Spine", hips, {0.0, 1.2, 0.0});
+  for (int side = 0; side < 2; ++side) {
+    const double x = side == 0 ? 1.0 : -1.0;
+    int above = spine;
+    const auto name = [&](const std::string& n) { return sided(n, side == 0 ? left : right); };
+    if (!names.collar.empty()) above = m.add(name(names.collar), spine, {0.05 * x, 1.45, 0.0});
+    const int shoulder = m.add(name(names.shoulder), above, {0.2 * x, 1.45, 0.0});
+    const int elbow = m.add(name(names.elbow), shoulder, {0.2 * x, 1.15, 0.0});
+    m.add(name(names.wrist), elbow, {0.2 * x, 0.9, 0.0});
+  }
+  const int neck = m.add("Neck", spine, {0.0, 1.5, 0.0});
+  m.add("Head", neck, {0.0, 1.6, 0.0});
+  m.add_legs(hips);
+  return m;
+}
+
+TEST(BodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
+  const std::vector<Names> all = {
+      {"#Shoulder", "#Arm", "#ForeArm", "#Hand"},
+      {"mixamorig:#Shoulder", "mixamorig:#Arm", "mixamorig:#ForeArm", "mixamorig:#Hand"},
+      {"#Collar", "#Shoulder", "#Elbow", "#Wrist"},
+      {"#Collar", "#UpArm", "#LowArm", "#Hand"},
+      {"", "#Shoulder", "#Elbow", "#Hand"},
+  };
+  for (const Names& names : all) {
+    const Made m = made(names, std::string("Left"), std::string("Right"));
+    const BodyJoints found = m.found();
+    for (int side = 0; side < 2; ++side) {
+      const auto name = [&](const std::string& n) {
+        return sided(n, side == 0 ? std::string("Left") : std::string("Right"));
+      };
+      EXPECT_EQ(found.arm[side].shoulder, m.skeleton.find(name(names.shoulder))) << names.shoulder;
+      EXPECT_EQ(found.arm[side].elbow, m.skeleton.find(name(names.elbow)));
+      EXPECT_EQ(found.arm[side].wrist, m.skeleton.find(name(names.wrist)));
+      EXPECT_EQ(found.arm[side].collar, m.skeleton.find(name(names.collar)));
+    }
+    EXPECT_EQ(found.head, m.skeleton.find("Head"));
+    EXPECT_EQ(found.neck, std::vector<int>{m.skeleton.find("Neck")});
+    EXPECT_EQ(found.spine, std::vector<int>{m.skeleton.find("Spine")});
+  }
+}
+
+TEST(BodyJoints, AreFoundWhereTheSideIsALetter) {
+  const std::vector<Names> all = {
+      {"#clavicle", "#humerus", "#radius", "#wrist"},
+      {"#collar", "#Shldr", "#ForeArm", "#Hand"},
+      {"CC_Base_#_Clavicle", "CC_Base_#_Upperarm", "CC_Base_#_Forearm", "CC_Base_#_Hand"},
+      {"Clavicle_#", "UpArm_#", "LoArm_#", "Hand_#"},
+      {"Bip01 # Clavicle", "Bip01 # UpperArm", "Bip01 # Forearm", "Bip01 # Hand"},
+      {"shoulder.#", "upper_arm.#", "forearm.#", "hand.#"},
+      {"clavicle_#", "upperarm_#", "lowerarm_#", "hand_#"},
+      {"J_#_Clavicle", "J_#_Shoulder", "J_#_Elbow", "J_#_Hand"},
+  };
+  for (const Names& names : all) {
+    const bool is_small = names.shoulder[0] == '#';
+    const char left = is_small ? 'l' : 'L', right = is_small ? 'r' : 'R';
+    const Made m = made(names, left, right);
+    const BodyJoints found = m.found();
+    EXPECT_EQ(found.arm[0].shoulder, m.skeleton.find(sided(names.shoulder, left)))
+        << names.shoulder;
+    EXPECT_EQ(found.arm[1].elbow, m.skeleton.find(sided(names.elbow, right))) << names.elbow;
+    EXPECT_EQ(found.arm[1].wrist, m.skeleton.find(sided(names.wrist, right))) << names.wrist;
+    EXPECT_EQ(found.arm[0].collar, m.skeleton.find(sided(names.collar, left))) << names.collar;
+  }
+}
+
+TEST(BodyJoints, AreFoundByShapeWhereNamesSayNothing) {
+  const Made m = made({"p#", "q#", "s#", "t#"}, '1', '2');
+  const BodyJoints found = m.found();
+  EXPECT_EQ(found.arm[0].shoulder, m.skeleton.find("q1"));
+  EXPECT_EQ(found.arm[0].elbow, m.skeleton.find("s1"));
+  EXPECT_EQ(found.arm[0].wrist, m.skeleton.find("t1"));
+  EXPECT_EQ(found.arm[1].shoulder, m.skeleton.find("q2"));
+}
+
+TEST(BodyJoints, OfOneThatIsOnlyLegsAreNone) {
+  Made m;
+  m.add("Hips", -1, {0.0, 1.0, 0.0});
+  m.add_legs(0);
+  const BodyJoints found = m.found();
+  EXPECT_FALSE(found.arm[0].is_found() || found.arm[1].is_found());
+  EXPECT_TRUE(found.spine.empty());
+  EXPECT_TRUE(found.neck.empty());
+}
+
+TEST(BodyJoints, TwistJointsAndFingersAreNotTheArm) {
+  Made m;
+  const int hips = m.add("hip", -1, {0.0, 1.0, 0.0});
+  const int chest = m.add("chestUpper", hips, {0.0, 1.3, 0.0});
+  for (const char side : {'l', 'r'}) {
+    const double x = side == 'l' ? 1.0 : -1.0;
+    const auto name = [side](const std::string& n) { return side + n; };
+    const int collar = m.add(name("Collar"), chest, {0.05 * x, 1.45, 0.0});
+    const int bend = m.add(name("ShldrBend"), collar, {0.2 * x, 1.45, 0.0});
+    const int twist = m.add(name("ShldrTwist"), bend, {0.2 * x, 1.3, 0.0});
+    const int fore = m.add(name("ForearmBend"), twist, {0.2 * x, 1.15, 0.0});
+    const int roll = m.add(name("ForearmTwist"), fore, {0.2 * x, 1.0, 0.0});
+    const int hand = m.add(name("Hand"), roll, {0.2 * x, 0.9, 0.0});
+    m.add(name("Thumb1"), hand, {0.2 * x, 0.85, 0.05});
+  }
+  m.add("head", chest, {0.0, 1.6, 0.0});
+  m.add_legs(hips);
+  const BodyJoints found = m.found();
+  EXPECT_EQ(found.arm[0].shoulder, m.skeleton.find("lShldrBend"));
+  EXPECT_EQ(found.arm[0].elbow, m.skeleton.find("lForearmBend"));
+  EXPECT_EQ(found.arm[1].wrist, m.skeleton.find("rHand"));
+  EXPECT_TRUE(found.neck.empty());
+}
+
+// Every motion that there is: two arms with joints of the right order, a head above them.
+TEST(BodyJoints, OfRealMotionsAreArmsSpineAndHead) {
+  const char* shared = std::getenv("GAITPAD_SHARED_DATA");
+  if (shared == nullptr) GTEST_SKIP() << "GAITPAD_SHARED_DATA is not set: no real motions";
+  const std::filesystem::path folder = std::filesystem::path(shared) / "mocap";
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
+  int count = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.path().extension() != ".bvh") continue;
+    const auto motion = load_motion(file.path().string());
+    if (!motion) continue;
+    const auto world = std::make_unique<JointFrames>();
+    Pose pose;
+    pose.joint_count = static_cast<int>(motion->skeleton.joints.size());
+    const MotionFrame& frame = motion->frames[motion->frames.size() / 2];
+    std::copy(frame.local.begin(), frame.local.end(), pose.local.begin());
+    forward_kinematics(motion->skeleton, pose, *world);
+    const BodyJoints found =
+        find_body(motion->skeleton, motion->legs, motion->pelvis,
+                  std::span(world->position_m.data(), motion->skeleton.joints.size()));
+    SCOPED_TRACE(file.path().filename().string());
+    ++count;
+    for (const ArmChain& arm : found.arm) {
+      EXPECT_TRUE(arm.is_found());
+      if (!arm.is_found()) continue;
+      EXPECT_LT(arm.shoulder, arm.elbow);
+      EXPECT_LT(arm.elbow, arm.wrist);
+    }
+    EXPECT_GE(found.head, 0);
+    EXPECT_FALSE(found.spine.empty());
+  }
+  EXPECT_GT(count, 0);
+}
+
+TEST(BodyJoints, AJointNamedWristAboveTheHandTurnsTheForearm) {
+  Made m = made({"#clavicle", "#humerus", "#radius", "#wrist"}, 'l', 'r');
+  const int wrist = m.skeleton.find("lwrist");
+  Joint hand{"lhand", wrist, vec3(0.0, -0.1, 0.0), false};
+  m.skeleton.joints.insert(m.skeleton.joints.begin() + wrist + 1, hand);
+  m.at.insert(m.at.begin() + wrist + 1, m.at[wrist] + hand.offset_m);
+  for (std::size_t j = wrist + 2; j < m.skeleton.joints.size(); ++j) {
+    int& parent = m.skeleton.joints[j].parent;
+    if (parent > wrist) ++parent;
+  }
+  for (LegJoints& leg : m.legs) {
+    for (int* j : {&leg.hip, &leg.knee, &leg.ankle, &leg.toe, &leg.toe_end}) ++*j;
+  }
+  EXPECT_EQ(m.found().arm[0].wrist, m.skeleton.find("lhand"));
+  EXPECT_EQ(m.found().arm[1].wrist, m.skeleton.find("rwrist"));
 }
 
 }  // namespace

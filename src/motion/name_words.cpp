@@ -1,4 +1,4 @@
-#include "motion/joint_words.h"
+#include "motion/name_words.h"
 
 namespace gaitpad {
 namespace {
@@ -9,7 +9,6 @@ bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 
 }  // namespace
 
-// "CC_Base_L_ToeBase" -> cc base l toe base; "LHipJoint" -> l hip joint; digits and marks separate.
 std::vector<std::string> name_words(std::string_view name) {
   if (const auto colon = name.rfind(':'); colon != name.npos) name.remove_prefix(colon + 1);
   std::vector<std::string> out(1);
@@ -29,15 +28,10 @@ std::vector<std::string> name_words(std::string_view name) {
   return out;
 }
 
-NamedSide side_of_word(std::string_view word) {
+NamedSide named_side(std::string_view word) {
   if (word == "l" || word == "left" || word == "lft") return NamedSide::left;
   if (word == "r" || word == "right" || word == "rgt") return NamedSide::right;
   return NamedSide::none;
-}
-
-bool is_helper_word(std::string_view word) {
-  return word == "twist" || word == "share" || word == "roll" || word == "rigmesh" ||
-         word == "pole" || word == "ik" || word == "metatarsals" || word == "end" || word == "nub";
 }
 
 }  // namespace gaitpad

@@ -45,6 +45,7 @@ void WindowLoop::draw(bool is_last) {
   if (std::exchange(is_camera_new_, false)) see_anew();
   const double passed_s = makes_pictures() ? 1.0 / kPictureRateHz : clock_.passed_s();
   follow(camera_, ensemble_->focus_m(state_.walker), passed_s);
+  ensemble_->stand_on_ground(camera_);
   const bool is_kept = !makes_still() || is_last || wants_screenshot_;
   if (is_kept && viewport.width > 0 && viewport.height > 0)
     scene_->draw(content_, camera_, theme, viewport, height_px, surface_->scale());

@@ -122,7 +122,7 @@ TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
     EXPECT_TRUE(set == *read) << key.name;
     EXPECT_EQ(value_of(set, key.name), value);
   }
-  EXPECT_EQ(style_keys().size(), 3u + 3u * (3u + 10u));
+  EXPECT_EQ(style_keys().size(), 6u + 3u * (3u + 10u));
 }
 
 TEST(StyleValue, OneLegOrBothChange) {

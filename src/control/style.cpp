@@ -25,8 +25,8 @@ constexpr StyleNumber kStyleNumbers[] = {
     {"hip_sway", &StyleValues::hip_sway, 0.0, 3.0},
     {"hip_bounce", &StyleValues::hip_bounce, 0.0, 3.0},
     {"blend_s", &StyleValues::blend_s, 0.0, 10.0},
-    {"fatigue_model.per_100_m", &StyleValues::fatigue_per_100_m, 0.0, 100.0},
-    {"fatigue_model.recovery_per_s", &StyleValues::fatigue_recovery_per_s, 0.0, 10.0},
+    {"fatigue_model.per_100_m", &StyleValues::fatigue_per_100_m, 0.0, 10.0},
+    {"fatigue_model.recovery_per_s", &StyleValues::fatigue_recovery_per_s, 0.0, 1.0},
 };
 
 struct LegNumber {

@@ -8,6 +8,12 @@
 namespace gaitpad {
 namespace {
 
+TerrainZone zone(double from_m, double to_m, const std::string& style) {
+  TerrainZone zone;
+  zone.from_m = from_m, zone.to_m = to_m, zone.style = style;
+  return zone;
+}
+
 // Zones of the style `limp`: z from 2 to 4 m everywhere; from 6 to 8 m for who walks left of x =
 // -0.5.
 SimulationConfig zoned(int walkers = 1) {
@@ -16,8 +22,8 @@ SimulationConfig zoned(int walkers = 1) {
   config.styles.emplace_back().name = "slow";
   config.styles[2].fatigue = 0.5;
   auto terrain = std::make_shared<Terrain>();
-  terrain->zones.push_back({.from_m = 2.0, .to_m = 4.0, .style = "limp"});
-  terrain->zones.push_back({.from_m = 6.0, .to_m = 8.0, .right_m = -0.5, .style = "limp"});
+  terrain->zones = {zone(2.0, 4.0, "limp"), zone(6.0, 8.0, "limp")};
+  terrain->zones[1].right_m = -0.5;
   config.terrain = terrain;
   return config;
 }
@@ -94,7 +100,7 @@ TEST(Zones, AResetLeavesThemWithTheChosenStyle) {
 TEST(Zones, OverlappingOnesTheLastCounts) {
   SimulationConfig config = zoned();
   auto terrain = std::make_shared<Terrain>(*config.terrain);
-  terrain->zones.push_back({.from_m = 3.0, .to_m = 5.0, .style = "slow"});
+  terrain->zones.push_back(zone(3.0, 5.0, "slow"));
   config.terrain = terrain;
   Simulation s = made(config);
   walk_to(s, 2.5);
@@ -108,7 +114,8 @@ TEST(Zones, OverlappingOnesTheLastCounts) {
 TEST(Zones, AStyleThatIsNotThereIsNamedWithItsPlace) {
   SimulationConfig config = zoned();
   auto terrain = std::make_shared<Terrain>();
-  terrain->zones.push_back({.from_m = 0.0, .to_m = 1.0, .style = "strut", .where = "a.toml:7"});
+  terrain->zones = {zone(0.0, 1.0, "strut")};
+  terrain->zones[0].where = "a.toml:7";
   config.terrain = terrain;
   const auto simulation = Simulation::create(config);
   ASSERT_FALSE(simulation);

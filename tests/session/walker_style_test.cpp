@@ -164,6 +164,35 @@ TEST(Tiring, SlowsAWalkWithItsWayAndRestHelps) {
   EXPECT_LT(w.tired, 1e-9);
 }
 
+// Mean square difference of the left leg's angles at the same ticks of the same walk, degrees.
+double difference_deg(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size())) / kDegree;
+}
+
+TEST(Builds, AreSeenInTheKnee) {
+  const auto knee_of = [](const std::string& name) {
+    SimulationConfig config = made_config(1);
+    auto style = load_style(GAITPAD_SOURCE_DIR "/config/styles/" + name + ".toml");
+    EXPECT_TRUE(style) << style.error().message;
+    config.styles[0] = *style;
+    Simulation s = made(config);
+    walk_to(s, 3.0);
+    std::vector<double> knee_rad;
+    for (int k = 0; k < 720; ++k) {
+      s.step({});
+      knee_rad.push_back(s.walkers()[0].state.angles_rad[kLeftSide][kKneeX]);
+    }
+    EXPECT_EQ(s.walkers()[0].ik_failures, 0);
+    return knee_rad;
+  };
+  const auto even = knee_of("even"), heavy = knee_of("heavy_slack"), strong = knee_of("muscular");
+  EXPECT_GT(difference_deg(heavy, even), 3.0);
+  EXPECT_GT(difference_deg(strong, even), 1.0);
+  EXPECT_GT(difference_deg(heavy, strong), 4.0);
+}
+
 TEST(Tiring, AStyleWithoutAModelWalksAsEver) {
   Simulation s = made(made_config(1));
   walk_to(s, 6.0);

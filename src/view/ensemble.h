@@ -20,6 +20,7 @@ class Ensemble {
             const UiState& state, const Theme& theme, SceneContent& content);
   // Of what was filled last: the place that a camera follows, of one walker or of all (-1).
   vec3 focus_m(int walker) const noexcept;
+  bool is_on_uneven_ground() const noexcept { return terrain_ != nullptr; }
   // Below the camera and what it looks at; to be called when it has moved.
   void stand_on_ground(Camera& camera) const noexcept;
   // How far a camera stands off to see that.

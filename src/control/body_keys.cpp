@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <span>
 
+#include "base/math.h"
+
 namespace gaitpad {
 namespace {
 
@@ -226,6 +228,26 @@ bool set_body_value(BodyParams& body, std::string_view name, double value) noexc
   }
   body = changed;
   return true;
+}
+
+BodyParams mixed(const BodyParams& from, const BodyParams& to, double share) noexcept {
+  BodyParams values = from, end = to;
+  for (const BodyTable& entry : kTables) {
+    const bool is_single = entry.name == "spine" || entry.name == "head";
+    if (!is_single && entry.first == entry.last) continue;  // the tables of both sides have all
+    for (int side = entry.first; side <= entry.last; ++side) {
+      for (const BodyNumber& n : entry.numbers) {
+        double& value = n.at(values, side);
+        value = mix(value, n.at(end, side), share);
+      }
+      if (entry.weights_of == nullptr) continue;
+      const std::span<double> weights = entry.weights_of(values, side);
+      const std::span<double> goals = entry.weights_of(end, side);
+      for (std::size_t i = 0; i < weights.size(); ++i)
+        weights[i] = mix(weights[i], goals[i], share);
+    }
+  }
+  return values;
 }
 
 std::optional<double> body_value(const BodyParams& body, std::string_view name) noexcept {

@@ -62,9 +62,8 @@ Result<ReplayResult> replay(const ReplayOptions& options) {
   const int rate_hz = prepared->config.rate_hz;
   auto fps = written_fps(options, rate_hz);
   if (!fps) return fps.error();
-  auto run = TraceRun::begin(*prepared);
-  if (!run) return run.error();
-  const Simulation& simulation = run->simulation();
+  TraceRun run = TraceRun::begin(*prepared);
+  const Simulation& simulation = run.simulation();
   std::optional<OutputFiles> files;
   if (!options.out.empty()) {
     auto opened = OutputFiles::open(options.out);
@@ -74,7 +73,7 @@ Result<ReplayResult> replay(const ReplayOptions& options) {
   auto exports = opened_exports(files, simulation, {rate_hz, *fps, options.gltf});
   if (!exports) return exports.error();
 
-  run_to_end(*prepared, *run, *exports);
+  run_to_end(*prepared, run, *exports);
   ReplayResult result;
   for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
     const Walker& walker = simulation.walkers()[i];

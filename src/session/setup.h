@@ -15,6 +15,7 @@ struct SessionOptions {
   std::vector<std::string> characters;  // FILE|NAME
   std::vector<std::string> styles;      // FILE|NAME; a list shorter than the other repeats its last
   std::string terrain;                  // FILE|NAME
+  std::string script;                   // FILE, empty: none
   std::string calibration;              // FILE
   std::string map;                      // FILE
   IkMode ik = IkMode::robust;

@@ -123,7 +123,7 @@ TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
     EXPECT_EQ(value_of(set, key.name), value);
   }
   constexpr std::size_t kLegKeys = 3 + 10, kArmKeys = 1 + 9, kHandKeys = 7, kSpineAndHead = 2 + 8;
-  EXPECT_EQ(style_keys().size(), 3 + 3 * (kLegKeys + kArmKeys + kHandKeys) + kSpineAndHead);
+  EXPECT_EQ(style_keys().size(), 6 + 3 * (kLegKeys + kArmKeys + kHandKeys) + kSpineAndHead);
 }
 
 TEST(StyleValue, OneLegOrBothChange) {

@@ -27,6 +27,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(HERE, "..", "..", "..", "shared", "data", "mocap")
 MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_006_01_iclone")
 STYLES = ("even", "stiff_hip", "stiff_knee", "limp_left", "limp_left_hip", "limp_left_knee", "tired")
+BUILDS = ("heavy_slack", "muscular")
 RATIOS = (0.6, 1.0, 1.6)
 
 
@@ -90,7 +91,7 @@ def cases_of(motion, quick):
     for ratio in (0.6, 1.6):
         for y in ((0.8,) if quick else (0.3, 0.6, 1.0)):
             add(f"leg {ratio} stick {y}", walk_at(0, y, 12), ratio)
-    for style in STYLES if not quick else ("even", "stiff_hip", "stiff_knee", "limp_left"):
+    for style in STYLES + BUILDS if not quick else ("even", "stiff_hip", "stiff_knee", "limp_left"):
         add(f"style {style}", walk_at(0, 0.8, 12), style=style)
     for x in (-0.5, 0.5):
         add(f"turn {x:+}", walk_at(x, 0.7, 26))

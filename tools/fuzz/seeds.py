@@ -117,13 +117,16 @@ def write_imports(out):
 
 def main():
     out = pathlib.Path(sys.argv[1])
-    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh", "fuzz_acclaim", "fuzz_calibration", "fuzz_import"):
+    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh", "fuzz_acclaim", "fuzz_calibration", "fuzz_import",
+                 "fuzz_terrain"):
         (out / name).mkdir(parents=True, exist_ok=True)
     write_pads(out)
     write_walk(out)
     write_acclaim(out)
     write_calibrations(out)
     write_imports(out)
+    for path in (ROOT / "config/terrain").iterdir():
+        (out / "fuzz_terrain" / path.name).write_bytes(path.read_bytes())
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ void add_session_options(CLI::App& command, SessionArguments& arguments,
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--terrain", session.terrain, "the ground, FILE|NAME; without it flat");
+  command.add_option("--script", session.script, "commands at given times, FILE");
   command.add_option("--ik", arguments.ik, "paper or robust")
       ->check(CLI::IsMember({"paper", "robust"}))
       ->capture_default_str();

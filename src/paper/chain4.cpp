@@ -4,7 +4,8 @@ namespace gaitpad {
 namespace {
 
 constexpr std::size_t kMaxRows = 512;
-constexpr double kNear = 0.6;  // of a link
+constexpr double kChainReach =
+    0.98;  // of its length: beyond it a goal is not near, but out of reach
 
 std::array<IkRow, 2> plane_rows(const vec2& goal_m) {
   return {IkRow{vec3(0.0), vec3(1.0, 0.0, 0.0), goal_m.x},
@@ -42,11 +43,11 @@ vec2 plane_end(const IkChain& chain, const IkAngles& angles_rad) {
 
 ChainTask figure_4_task() {
   ChainTask task;
-  const std::array<double, kChainLinks> start_deg = {70.0, -35.0, -30.0, -25.0};
+  const std::array<double, kChainLinks> start_deg = {50.0, -30.0, -20.0, -40.0};
   for (int j = 0; j < kChainLinks; ++j) {
     task.start_rad[j] = start_deg[static_cast<std::size_t>(j)] * kDegree;
   }
-  task.goal_m = vec2(0.62, 0.42);
+  task.goal_m = vec2(0.70, -0.25);
   return task;
 }
 
@@ -71,13 +72,17 @@ ChainSolve solve_chain(const IkChain& chain, const ChainTask& task, IkMode mode)
   return solve;
 }
 
-ChainTask near_task(Lcg& random) {
+ChainTask near_task(Lcg& random, const NearGoals& what) {
   ChainTask task;
-  for (int j = 0; j < kChainLinks; ++j) task.start_rad[j] = random.between(-1.2, 1.2);
-  const vec2 end = plane_end(plane_chain({1.0, 1.0, 1.0, 1.0}), task.start_rad);
-  const double reach = kNear * kChainLink_m;
-  task.goal_m.x = end.x + random.between(-reach, reach);
-  task.goal_m.y = end.y + random.between(-reach, reach);
+  const double reach = what.reach_links * kChainLink_m;
+  do {
+    for (int j = 0; j < kChainLinks; ++j) {
+      task.start_rad[j] = random.between(-what.bend_rad, what.bend_rad);
+    }
+    const vec2 end = plane_end(plane_chain({1.0, 1.0, 1.0, 1.0}), task.start_rad);
+    task.goal_m.x = end.x + random.between(-reach, reach);
+    task.goal_m.y = end.y + random.between(-reach, reach);
+  } while (glm::length(task.goal_m) > kChainReach * kChainLinks * kChainLink_m);
   return task;
 }
 

@@ -47,7 +47,12 @@ class Lcg {
  private:
   std::uint64_t state_;
 };
-// A bent chain and a goal within +-0.6 of a link of its end on both axes.
-ChainTask near_task(Lcg& random);
+// A chain bent by up to `bend_rad` at each joint, and a goal no farther than `reach_links` from its
+// end on both axes.
+struct NearGoals {
+  double bend_rad = kPi;
+  double reach_links = 0.6;
+};
+ChainTask near_task(Lcg& random, const NearGoals& what);
 
 }  // namespace gaitpad

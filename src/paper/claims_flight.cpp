@@ -19,7 +19,8 @@ constexpr const char* kNotAdult = "the notes have this number for the built-in a
 
 double percent(int index) { return 100.0 * index / kSamples; }
 Bound near_frame(double at_percent) {
-  return within(at_percent - 1.01 * kFrame, at_percent + 1.01 * kFrame);
+  constexpr double kRounding = 0.05;  // the notes have one decimal
+  return within(at_percent - kFrame - kRounding, at_percent + kFrame + kRounding);
 }
 FlightRule rule_of(IkMode mode) { return {true, mode == IkMode::robust}; }
 const char* kLastNote = "last low before the peak";
@@ -49,7 +50,8 @@ void target_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
         continue;
       }
       const FlightTargets t = targets.value_or(FlightTargets{-1, -1, -1});
-      list.add(name, percent(std::array<int, 3>{t.lift, t.peak, t.land}[i]), bound,
+      const int at = std::array<int, 3>{t.lift, t.peak, t.land}[i];
+      list.add(name, percent(at < 0 ? at : at % kSamples), bound,
                mode == IkMode::robust ? kLastNote : "the first low there is");
     }
     if (row.point != FootPoint::ankle) continue;
@@ -134,8 +136,8 @@ void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
              within(35.0, 60.0), std::string(kLastNote) + "; prototype 44.2");
   }
   const auto toe = flight_targets(
-      stride_heights(source.cycle, kRightSide, FootPoint::toe, kSamples), rule_of(mode));
-  const std::string name = "4 second target of the toe's height, % of the stride";
+      stride_heights(source.cycle, kRightSide, FootPoint::toe_tip, kSamples), rule_of(mode));
+  const std::string name = "4 second target of the toe tip's height, % of the stride";
   if (source.is_adult) {
     list.add(name, toe ? percent(toe->peak) : 1.0 / 0.0, more_than(90.0),
              "late swing lifts the toe highest, so its height is no foot height; prototype 100.8");

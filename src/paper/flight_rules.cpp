@@ -26,6 +26,17 @@ std::vector<Turn> turns_of(const std::vector<double>& heights) {
   return turns;
 }
 
+// In the sagittal plane: flexions and the pelvis' tilt alone.
+LegPose flat_pose(const GaitCycle& cycle, const CycleSample& at, Side side) {
+  const vec3 ahead = at.pelvis * kForward;
+  const double tilt = atan2(-ahead.y, std::sqrt(ahead.x * ahead.x + ahead.z * ahead.z));
+  LegAngles angles = at.leg[side].angles;
+  for (const int j : {kHipZ, kHipY, kAnkleZ, kAnkleY}) angles[j] = 0.0;
+  return leg_pose(cycle.leg[side], vec3(0.0), rotation_x(tilt), angles, at.leg[side].toe_x);
+}
+
+double lowest_m(const LegPose& p) { return std::min({p.heel_m.y, p.toe_m.y, p.toe_end_m.y}); }
+
 }  // namespace
 
 std::optional<FlightTargets> flight_targets(const std::vector<double>& heights,
@@ -48,14 +59,15 @@ std::optional<FlightTargets> flight_targets(const std::vector<double>& heights,
 std::vector<double> stride_heights(const GaitCycle& cycle, Side side, FootPoint point,
                                    int samples_a_stride) {
   std::vector<double> heights;
-  const LegModel& leg = cycle.leg[side];
   for (int i = 0; i <= 2 * samples_a_stride; ++i) {
     const double own = static_cast<double>(i) / samples_a_stride;
-    const LegSample foot = sample_at(cycle, own + cycle.strike[side]).leg[side];
-    const vec3 at = point == FootPoint::ankle  ? vec3(0.0)
-                    : point == FootPoint::heel ? leg.heel_m
-                                               : leg.toe_m;
-    heights.push_back((foot.ankle_m + foot.foot * at).y);
+    const CycleSample sample = sample_at(cycle, own + cycle.strike[side]);
+    const LegPose mine = flat_pose(cycle, sample, side),
+                  rival = flat_pose(cycle, sample, other(side));
+    const vec3& at = point == FootPoint::ankle  ? mine.ankle_m
+                     : point == FootPoint::heel ? mine.heel_m
+                                                : mine.toe_end_m;
+    heights.push_back(at.y - std::min(lowest_m(mine), lowest_m(rival)));
   }
   return heights;
 }

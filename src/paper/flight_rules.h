@@ -21,8 +21,9 @@ inline constexpr double kFlightBand = 0.10;
 std::optional<FlightTargets> flight_targets(const std::vector<double>& heights,
                                             const FlightRule& rule);
 
-enum class FootPoint { ankle, heel, toe };
-// Heights over two strides of the motion, from that foot's strike on, metres.
+enum class FootPoint { ankle, heel, toe_tip };
+// Heights over two strides of the motion, from that foot's strike on, metres above the lowest point
+// of both feet: forward kinematics in the sagittal plane that stands on the ground by itself.
 std::vector<double> stride_heights(const GaitCycle& cycle, Side side, FootPoint point,
                                    int samples_a_stride);
 // What a standing foot of captured data does: lows of a few millimetres while it should be flat.

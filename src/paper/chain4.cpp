@@ -43,11 +43,11 @@ vec2 plane_end(const IkChain& chain, const IkAngles& angles_rad) {
 
 ChainTask figure_4_task() {
   ChainTask task;
-  const std::array<double, kChainLinks> start_deg = {50.0, -30.0, -20.0, -40.0};
+  const std::array<double, kChainLinks> start_deg = {40.0, 40.0, -50.0, -40.0};
   for (int j = 0; j < kChainLinks; ++j) {
     task.start_rad[j] = start_deg[static_cast<std::size_t>(j)] * kDegree;
   }
-  task.goal_m = vec2(0.70, -0.25);
+  task.goal_m = vec2(0.842, 0.447);
   return task;
 }
 

@@ -44,6 +44,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   const GaitCycle& cycle = model.cycle;
   pose.joint_count = static_cast<int>(cycle.skeleton.joints.size());
   sample_local(cycle, state.phase, pose);
+  swing_arms(model, state, pose);
   const double a = presence(state);
   if (a < 1.0) {
     for (int j = 0; j < pose.joint_count; ++j) {
@@ -66,6 +67,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   frames.rotation[cycle.pelvis] = pelvis.rotation * cycle.pelvis_standing;
   pose.local[cycle.pelvis] = glm::inverse(above) * frames.rotation[cycle.pelvis];
   for (Side side : {kLeftSide, kRightSide}) write_leg(model, state, side, frames, pose);
+  pose_body(model, state, pose);
 }
 
 void report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
@@ -122,6 +124,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
              WalkState& state, Pose& pose) noexcept {
   const Tick tick = {model, params, dt_s};
   smooth_parameters(tick, state);
+  smooth_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);
   advance_hips(tick, state);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "animation/walk_body.h"
 #include "animation/walk_model.h"
 #include "control/gait_params.h"
 
@@ -87,6 +88,7 @@ struct WalkState {
   double landing_heading_rad = 0.0;
   std::array<FootState, 2> foot;
   std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};  // data's, IK even, IK weighted
+  BodyState body;
 };
 
 // A character standing at `place_m` on the floor, facing +z, and its pose.

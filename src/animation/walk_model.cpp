@@ -229,6 +229,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.stand_m += 0.5 * (0.998 * leg.model.length_m() - leg.model.heel_m.y - leg.model.hip_m.y);
   }
   collect_kept_joints(model);
+  model.body = body_model(model.cycle, ratio, model.stand_m);
   return model;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "animation/body_model.h"
 #include "animation/character.h"
 #include "animation/curve.h"
 #include "animation/ik.h"
@@ -56,6 +57,7 @@ struct WalkModel {
   std::array<double, 4> share{};
   std::vector<int>
       kept;  // joints that the legs' chains pass through: fixed at their standing rotation
+  BodyModel body;
 };
 
 // Retargets by the leg-length ratio. Fails only on a character that the skeleton cannot be.

@@ -72,6 +72,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   params.hip_sway = style.hip_sway;
   params.hip_bounce = style.hip_bounce;
   params.weight = style.weight;
+  params.body = style.body;
   return params;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/toml_file.h"
+#include "control/body_keys.h"
 
 namespace gaitpad {
 
@@ -167,6 +168,7 @@ std::vector<StyleKey> made_style_keys() {
     for (const WeightName& joint : kJointWeights) add_weight(joint);
     for (const WeightName& dof : kDofWeights) add_weight(dof);
   }
+  for (BodyKey& key : body_keys()) keys.push_back({std::move(key.name), key.min, key.max});
   return keys;
 }
 
@@ -185,13 +187,14 @@ Result<Style> load_style(const std::string& path) {
       if (auto leg = root.table(legs.name)) read_leg(*leg, style.stride[side], style.weight[side]);
     }
   }
+  read_body(root, style.body);
   if (style.name.empty()) root.reject("name", "the name is empty");
   if (auto problem = file->problem()) return *problem;
   return style;
 }
 
 std::string style_text(const Style& style) {
-  std::string text = "# A style: how a character walks. What is left out is 1, fatigue 0.\n";
+  std::string text = "# A style: how a character walks. What is left out is plain.\n";
   if (!style.name.empty()) text += fmt::format("name = {}\n", toml_string(style.name));
   const StyleValues plain;
   for (const StyleNumber& n : kStyleNumbers) {
@@ -203,6 +206,7 @@ std::string style_text(const Style& style) {
     if ((legs.first != legs.last) == is_even)
       text += leg_text(legs.name, style.stride[legs.first], style.weight[legs.first]);
   }
+  text += body_text(style.body);
   return text;
 }
 
@@ -212,6 +216,7 @@ const std::vector<StyleKey>& style_keys() {
 }
 
 bool set_value(StyleValues& style, std::string_view name, double value) noexcept {
+  if (set_body_value(style.body, name, value)) return true;
   const auto target = target_of(name);
   if (!target || !(value >= target->min && value <= target->max)) return false;
   value += 0.0;  // -0 would come back from a file as 0
@@ -228,7 +233,7 @@ bool set_value(StyleValues& style, std::string_view name, double value) noexcept
 
 std::optional<double> value_of(const StyleValues& style, std::string_view name) noexcept {
   const auto target = target_of(name);
-  if (!target) return std::nullopt;
+  if (!target) return body_value(style.body, name);
   if (target->number) return style.*target->number->value;
   if (target->leg_number) return style.stride[target->first].*target->leg_number->value;
   return style.weight[target->first][target->weight->first];

@@ -25,6 +25,7 @@ struct StyleValues {
   double hip_sway = 1.0;
   double hip_bounce = 1.0;
   double fatigue = 0.0;  // 0 fresh .. 1: linear on maximum speed and stride
+  BodyParams body;       // above the hips
   bool operator==(const StyleValues&) const = default;
 };
 struct Style : StyleValues {
@@ -35,16 +36,17 @@ Result<Style> load_style(const std::string& path);
 std::string style_text(const Style& style);
 
 // One value by the name that it has in a file: `left_leg.weight.knee`, `legs.stride_length` (both
-// legs), `right_leg.weight.hip_x`, `hip_sway`. A joint's weight is that of its DOFs.
+// legs), `right_leg.weight.hip_x`, `hip_sway`, `hands.carry`, `head.yaw_deg`. A joint's weight is
+// that of its DOFs.
 struct StyleKey {
   std::string name;
   double min = 0.0, max = 1.0;
 };
 const std::vector<StyleKey>& style_keys();  // in the order in which people would read them
 // No heap. False where there is no such name or the value is out of its bounds or would lock a
-// whole leg.
+// whole leg or arm or the spine.
 bool set_value(StyleValues& style, std::string_view name, double value) noexcept;
-// Where several DOFs or legs stand for it and differ: the first one's.
+// Where several DOFs, legs or arms stand for it and differ: the first one's.
 std::optional<double> value_of(const StyleValues& style, std::string_view name) noexcept;
 
 }  // namespace gaitpad

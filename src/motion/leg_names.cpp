@@ -2,39 +2,10 @@
 #include <vector>
 
 #include "motion/legs.h"
+#include "motion/name_words.h"
 
 namespace gaitpad {
 namespace {
-
-char lower(char c) { return (c >= 'A' && c <= 'Z') ? static_cast<char>(c + 32) : c; }
-bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
-bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
-
-// "CC_Base_L_ToeBase" -> cc base l toe base; "LHipJoint" -> l hip joint; digits and marks separate.
-std::vector<std::string> words(std::string_view name) {
-  if (const auto colon = name.rfind(':'); colon != name.npos) name.remove_prefix(colon + 1);
-  std::vector<std::string> out(1);
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const char c = name[i];
-    if (!is_upper(c) && !is_lower(c)) {
-      out.emplace_back();
-      continue;
-    }
-    const bool starts_word =
-        is_upper(c) && i > 0 &&
-        (is_lower(name[i - 1]) || (i + 1 < name.size() && is_lower(name[i + 1])));
-    if (starts_word) out.emplace_back();
-    out.back() += lower(c);
-  }
-  std::erase_if(out, [](const std::string& w) { return w.empty(); });
-  return out;
-}
-
-NamedSide side_of(const std::string& word) {
-  if (word == "l" || word == "left" || word == "lft") return NamedSide::left;
-  if (word == "r" || word == "right" || word == "rgt") return NamedSide::right;
-  return NamedSide::none;
-}
 
 constexpr std::string_view kHipWords[] = {"thigh", "femur", "hip", "upleg", "upperleg", "buttock"};
 constexpr std::string_view kKneeWords[] = {"knee",   "shin",     "calf",  "tibia", "leg",
@@ -63,7 +34,7 @@ bool is_helper(std::string_view word) {
 bool joined(const std::string& word, NamedJoint& joint) {
   for (const std::size_t n : {std::size_t{5}, std::size_t{4}, std::size_t{1}}) {
     if (word.size() <= n) continue;
-    const NamedSide side = side_of(word.substr(0, n));
+    const NamedSide side = named_side(std::string_view(word).substr(0, n));
     const NamedPart part = part_of(std::string_view(word).substr(n));
     if (side == NamedSide::none || part == NamedPart::none) continue;
     joint = {side, part};
@@ -76,11 +47,11 @@ bool joined(const std::string& word, NamedJoint& joint) {
 
 NamedJoint named_joint(std::string_view name) {
   NamedJoint joint;
-  const std::vector<std::string> all = words(name);
+  const std::vector<std::string> all = name_words(name);
   bool is_upper_part = false, is_buttock = false;
   for (const std::string& word : all) {
     if (is_helper(word)) return {};
-    if (joint.side == NamedSide::none) joint.side = side_of(word);
+    if (joint.side == NamedSide::none) joint.side = named_side(word);
     is_upper_part |= word == "up" || word == "upper";
     is_buttock |= word == "buttock" || word == "buttocks";
     if (joint.part == NamedPart::none) joint.part = part_of(word);

@@ -47,6 +47,7 @@ Cast cast_of(const Simulation& simulation, const SimulationConfig& config) {
   cast.motion = config.cycle.name;
   cast.source = std::make_shared<const GaitCycle>(config.cycle);
   cast.rate_hz = config.rate_hz;
+  cast.terrain = simulation.terrain();
   for (const Style& style : simulation.styles()) {
     cast.styles.push_back(style.name);
     cast.style_values.push_back(style);

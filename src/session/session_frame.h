@@ -22,8 +22,9 @@ struct Cast {
   std::string motion;  // its name
   std::shared_ptr<const GaitCycle> source;
   std::vector<CastMember> members;
-  std::vector<std::string> styles;        // all that a `style` command may name
-  std::vector<StyleValues> style_values;  // of these, as their files have them
+  std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
+  std::vector<std::string> styles;                          // all that a `style` command may name
+  std::vector<StyleValues> style_values;                    // of these, as their files have them
   int rate_hz = 240;
 };
 Cast cast_of(const Simulation& simulation, const SimulationConfig& config);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "animation/terrain_file.h"
 #include "motion/cycle_retarget.h"
 #include "session/config_files.h"
 #include "session/motion_source.h"
@@ -58,6 +59,15 @@ const T& nth_or_last(const std::vector<T>& list, std::size_t n) {
   return list[std::min(n, list.size() - 1)];
 }
 
+Result<std::shared_ptr<const Terrain>> terrain_of(const SessionOptions& options) {
+  if (options.terrain.empty()) return flat_terrain();
+  auto path = config_file(options.config_folders, "terrain", options.terrain);
+  if (!path) return path.error();
+  auto terrain = load_terrain(*path);
+  if (!terrain) return terrain.error();
+  return std::shared_ptr<const Terrain>(std::make_shared<Terrain>(std::move(*terrain)));
+}
+
 Result<GaitCycle> cycle_of(const std::string& motion_file) {
   if (motion_file.empty() || motion_file == "procedural") return procedural_gait();
   auto motion = load_motion_source(motion_file);
@@ -81,10 +91,6 @@ Result<WalkerConfig> walker_config(const Character& character, int style, const 
 Result<SimulationConfig> simulation_config(const SessionOptions& options,
                                            const std::vector<TraceDevice>& devices,
                                            const std::string& source, int rate_hz) {
-  if (!options.terrain.empty() && options.terrain != "flat") {
-    return Error{fmt::format("the terrain \"{}\" is not known: only flat ground exists so far",
-                             options.terrain)};
-  }
   SimulationConfig config;
   config.rate_hz = rate_hz;
   config.ik = options.ik;
@@ -93,6 +99,9 @@ Result<SimulationConfig> simulation_config(const SessionOptions& options,
   auto pads = pad_configs(*files, devices, source);
   if (!pads) return pads.error();
   config.pads = std::move(*pads);
+  auto terrain = terrain_of(options);
+  if (!terrain) return terrain.error();
+  config.terrain = std::move(*terrain);
   std::vector<int> chosen_styles;
   auto styles = all_styles(options, chosen_styles);
   if (!styles) return styles.error();

@@ -23,6 +23,26 @@ Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& w
   return model;
 }
 
+// From the heel to the tip of the toes.
+double sole_m(const LegModel& leg) noexcept {
+  const vec3 sole = leg.toe_m + leg.toe_end_m - leg.heel_m;
+  return glm::length(vec2(sole.x, sole.z));
+}
+
+// Where a sole does not lie on the shortest tread, all the ground grows by the ratio of that
+// walker's leg to the adult's, and farther if need be.
+double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept {
+  constexpr double kSpare_m = 0.02;
+  const double tread_m = least_tread_m(terrain);
+  double scale = 1.0;
+  for (const LegBuild& leg : model.leg) {
+    const double needed_m = sole_m(leg.model) + kSpare_m;
+    if (needed_m <= tread_m) continue;
+    scale = std::max({scale, model.leg_length_m / kReferenceLeg_m, needed_m / tread_m});
+  }
+  return scale;
+}
+
 // All or none: what a command asks for is possible for each of them.
 bool set_values(std::span<Walker> walkers, std::string_view key, double value) noexcept {
   for (const Walker& w : walkers) {
@@ -82,20 +102,39 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   s.pads_ = Pads(config.pads, config.rate_hz);
   s.styles_ = std::make_shared<const std::vector<Style>>(config.styles);
   s.walkers_.reserve(config.walkers.size());
-  for (const WalkerConfig& walker : config.walkers) {
-    auto model = model_of(config, walker);
-    if (!model) return model.error();
+  auto models = s.models_of(config);
+  if (!models) return models.error();
+  for (std::size_t i = 0; i < models->size(); ++i) {
+    const WalkerConfig& walker = config.walkers[i];
     Walker& w = s.walkers_.emplace_back();
-    w.model = std::make_shared<const WalkModel>(std::move(*model));
+    w.model = (*models)[i];
     w.limits = gait_limits(w.model->leg_length_m);
     w.style = walker.style;
     w.values = s.styles()[walker.style];
     const double right_m = kSpacing_m * static_cast<double>(s.walkers_.size() - 1);
     w.start_m = -right_m * kLeft;
+    w.start_m.y = ground_at(*s.terrain_, w.start_m.x, w.start_m.z).height_m;
     w.state = standing(*w.model, w.start_m, w.pose);
     w.before = w.pose;
   }
   return s;
+}
+
+// All on the same ground.
+Result<std::vector<std::shared_ptr<const WalkModel>>> Simulation::models_of(
+    const SimulationConfig& config) {
+  std::vector<std::shared_ptr<WalkModel>> models;
+  for (const WalkerConfig& walker : config.walkers) {
+    auto model = model_of(config, walker);
+    if (!model) return model.error();
+    terrain_scale_ = std::max(terrain_scale_, gaitpad::terrain_scale(*config.terrain, *model));
+    models.push_back(std::make_shared<WalkModel>(std::move(*model)));
+  }
+  const bool grows = terrain_scale_ > 1.0;
+  terrain_ = grows ? std::make_shared<const Terrain>(scaled(*config.terrain, terrain_scale_))
+                   : config.terrain;
+  for (const auto& model : models) model->terrain = terrain_;
+  return std::vector<std::shared_ptr<const WalkModel>>(models.begin(), models.end());
 }
 
 void Simulation::step(std::span<const Report> reports) noexcept {

@@ -34,6 +34,7 @@ struct SimulationConfig {
   std::vector<Style> styles;    // all that a command may name; of equal names the first one counts
   GaitCycle cycle;
   std::vector<WalkerConfig> walkers;  // at least one; side by side, the first at the origin
+  std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
 };
 
 // Slots for devices that are not known yet.
@@ -78,6 +79,9 @@ class Simulation {
 
   const std::vector<Walker>& walkers() const { return walkers_; }
   const std::vector<Style>& styles() const { return *styles_; }
+  // What they walk on: the configuration's, larger where a foot would not fit its treads.
+  const std::shared_ptr<const Terrain>& terrain() const { return terrain_; }
+  double terrain_scale() const { return terrain_scale_; }
   const Stick& stick() const { return stick_; }  // of the last tick
   const Pads& pads() const { return pads_; }
   // A heel of the first character struck the floor in the last tick.
@@ -88,6 +92,7 @@ class Simulation {
 
  private:
   Simulation() = default;
+  Result<std::vector<std::shared_ptr<const WalkModel>>> models_of(const SimulationConfig& config);
   bool obey(std::string_view text) noexcept;
   bool take_style(std::span<Walker> walkers, std::string_view name) noexcept;
   void add_to_hash(const Pose& pose) noexcept;
@@ -97,6 +102,8 @@ class Simulation {
   Pads pads_;
   std::shared_ptr<const std::vector<Style>> styles_;
   std::vector<Walker> walkers_;
+  std::shared_ptr<const Terrain> terrain_;
+  double terrain_scale_ = 1.0;
   Stick stick_;
   bool heel_struck_ = false;
   SimulationCounts counts_;

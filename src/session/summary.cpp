@@ -14,6 +14,8 @@ nlohmann::ordered_json run_summary(const Simulation& simulation, const Walker& w
   s["rate_hz"] = rate_hz;
   s["pose_hash"] = fmt::format("{:016x}", simulation.pose_hash());
   s.update(walker_summary(walker));
+  s["terrain"] = simulation.terrain()->name;
+  s["terrain_scale"] = simulation.terrain_scale();
   s["style"] = simulation.styles()[walker.style].name;
   s["ik_failures"] = walker.ik_failures;
   s["reports"] = counts.reports;

@@ -1,9 +1,11 @@
 // The files of config/ load, and hold the numbers that they promise.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "animation/character.h"
+#include "animation/terrain_file.h"
 #include "control/style.h"
 #include "stick/calibration.h"
 
@@ -77,6 +79,42 @@ TEST(ShippedCharacters, EveryFileLoadsAndTheNamedOnesAreThere) {
   EXPECT_EQ(character("tall").scale, 1.12);
   EXPECT_EQ(character("as_in_motion_file").name, Character().name);
   EXPECT_EQ(character("as_in_motion_file").scale, 1.0);
+}
+
+Terrain terrain(const std::string& name) {
+  auto loaded = load_terrain(kConfig + "terrain/" + name + ".toml");
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  if (!loaded) return {};
+  EXPECT_EQ(loaded->name, name);
+  return *loaded;
+}
+template <class Shape>
+int count_of(const Terrain& t) {
+  return static_cast<int>(std::ranges::count_if(
+      t.sections, [](const TerrainSection& s) { return std::holds_alternative<Shape>(s.shape); }));
+}
+
+TEST(ShippedTerrains, EveryFileLoadsAndTheNamedOnesAreWhatTheySay) {
+  for (const auto& entry : std::filesystem::directory_iterator(kConfig + "terrain"))
+    if (entry.path().extension() == ".toml") terrain(entry.path().stem().string());
+  EXPECT_TRUE(is_flat(terrain("flat")));
+  EXPECT_GT(ground_at(terrain("slope_up"), 0.0, 1e3).height_m, 1.0);
+  EXPECT_LT(ground_at(terrain("slope_down"), 0.0, 1e3).height_m, -1.0);
+  const Terrain stairs = terrain("stairs");
+  EXPECT_NEAR(least_tread_m(stairs), 0.28, 1e-9);
+  const double riser_m = piece_at(stairs, 0.0).to_m;
+  EXPECT_NEAR(ground_at(stairs, 0.0, riser_m).height_m, 0.17, 1e-12);
+  EXPECT_GT(count_of<RoughSection>(terrain("rough")), 0);
+}
+
+TEST(ShippedTerrains, TheCourseHasAllKindsInARow) {
+  const Terrain course = terrain("course");
+  EXPECT_GT(count_of<FlatSection>(course), 0);
+  EXPECT_GE(count_of<SlopeSection>(course), 2);
+  EXPECT_GE(count_of<StairsSection>(course), 2);
+  EXPECT_GT(count_of<RoughSection>(course), 0);
+  EXPECT_GT(count_of<FieldSection>(course), 0);
+  EXPECT_TRUE(std::holds_alternative<FlatSection>(course.sections.front().shape));  // a run-in
 }
 
 TEST(ShippedCalibrations, SonyPadsGetTheNarrowZoneAndUnknownOnesTheWide) {

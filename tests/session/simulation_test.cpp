@@ -72,6 +72,32 @@ TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   EXPECT_GT(w.state.frame.pelvis_m.z, 4.0);
 }
 
+TEST(Simulation, OneGroundForAllGrowsWithTheLongestFoot) {
+  SimulationConfig config = made_config(2);
+  auto stairs = std::make_shared<Terrain>();
+  ASSERT_FALSE(add_section(*stairs, FlatSection{2.0}));
+  ASSERT_FALSE(add_section(*stairs, StairsSection{0.17, 0.28, 3}));
+  config.terrain = stairs;
+  config.walkers[1].character.leg_ratio = 0.8;
+  Simulation s = made_simulation(config);
+  EXPECT_EQ(s.terrain_scale(), 1.0);
+  EXPECT_EQ(s.terrain(), config.terrain);
+  config.walkers[1].character.leg_ratio = 1.5;
+  s = made_simulation(config);
+  EXPECT_NEAR(s.terrain_scale(), s.walkers()[1].model->leg_length_m / kReferenceLeg_m, 1e-12);
+  EXPECT_NEAR(least_tread_m(*s.terrain()), 0.28 * s.terrain_scale(), 1e-12);
+  for (const Walker& w : s.walkers()) EXPECT_EQ(w.model->terrain, s.terrain());
+}
+
+TEST(Simulation, CharactersBeginOnTheGroundThatIsThere) {
+  SimulationConfig config = made_config(2);
+  auto step_up = std::make_shared<Terrain>();
+  ASSERT_FALSE(add_section(*step_up, StairsSection{0.2, 2.0, 1}));  // its line is z = 0
+  config.terrain = step_up;
+  const Simulation s = made_simulation(config);
+  for (const Walker& w : s.walkers()) EXPECT_EQ(w.start_m.y, 0.2);
+}
+
 TEST(Simulation, CharactersStandSideBySideAndDoNotDisturbEachOther) {
   Simulation one = walked(made_config(1), 0x90, 0x20, 480);
   Simulation three = walked(made_config(3), 0x90, 0x20, 480);

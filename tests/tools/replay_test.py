@@ -268,11 +268,24 @@ class Refusals(ReplayCase):
         self.assert_refused(WALK, "--character", self.write("a.toml", 'skeleton = "pole.bvh"\n'),
                             says=("pole.bvh", "no two legs"))
 
-    def test_terrain_comes_later_and_a_window_needs_a_display(self):
-        self.assert_refused(WALK, "--terrain", "steps", says=("steps",))
+    def test_terrains_are_read_strictly_and_a_window_needs_a_display(self):
+        self.assert_refused(WALK, "--terrain", "steps", says=("steps", "stairs"))
+        broken = self.write("broken.toml", '[[section]]\nkind = "hole"\n')
+        self.assert_refused(WALK, "--terrain", broken, says=("broken.toml:2:", "hole"))
         with unittest.mock.patch.dict(os.environ, {"SDL_VIDEODRIVER": "x11", "DISPLAY": ""}):
             self.assert_refused(WALK, "--view", says=("window",))
-        self.replay(WALK, "--terrain", "flat")
+        flat, without = self.replay(WALK, "--terrain", "flat")[1], self.replay(WALK)[1]
+        self.assertEqual(flat, without)
+        self.assertEqual((flat["terrain"], flat["terrain_scale"]), ("flat", 1))
+
+    def test_the_ground_grows_where_the_longest_foot_does_not_fit_its_treads(self):
+        long_legs = self.write("long.toml", "leg_ratio = 1.5")
+        summary = self.replay(WALK, "--terrain", "stairs", "--character", "adult",
+                              "--character", long_legs)[1]
+        self.assertEqual(summary["terrain"], "stairs")
+        self.assertAlmostEqual(summary["terrain_scale"], 1.5, 9)
+        summary = self.replay(WALK, "--terrain", "stairs", "--character", "child")[1]
+        self.assertEqual(summary["terrain_scale"], 1)
 
     def test_an_unwritable_folder(self):
         self.write("file", "")

@@ -19,7 +19,7 @@ void add_session_options(CLI::App& command, SessionArguments& arguments,
                   "a way to walk, FILE|NAME; the n-th for the n-th character")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--terrain", session.terrain, "FILE|NAME; only flat so far");
+  command.add_option("--terrain", session.terrain, "the ground, FILE|NAME; without it flat");
   command.add_option("--ik", arguments.ik, "paper or robust")
       ->check(CLI::IsMember({"paper", "robust"}))
       ->capture_default_str();

@@ -99,12 +99,14 @@ void threshold_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   const FlightRule rule = rule_of(mode);
   const auto on = flight_targets(heights, rule), off = flight_targets(heights, {false, false});
   const std::string name = "2 targets without the 10 % bands off those with them, % of the stride";
-  if (on && off) {
+  if (!on || !off) {
+    list.add_untested(name, more_than(kFrame), "no three targets in this motion's stride");
+  } else if (*on == *off) {
+    list.add_untested(name, more_than(kFrame), "no blip in this motion's stride");
+  } else {
     list.add(name, apart_percent(*on, *off), more_than(kFrame),
              fmt::format("without: {:.1f} / {:.1f} / {:.1f}; prototype 8.3 / 9.2 / 44.2",
                          percent(off->lift), percent(off->peak), percent(off->land)));
-  } else {
-    list.add_untested(name, more_than(kFrame), "no three targets in this motion's stride");
   }
   for (const double blip_m : {0.0, 0.003}) {
     const auto curve = blip_curve(blip_m);

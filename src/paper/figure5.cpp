@@ -10,10 +10,10 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kWidth = 1500, kHeight = 1130;
+constexpr int kWidth = 1500, kHeight = 1070;
 constexpr int kPoses = 7;  // of a stride
-constexpr double kPanelTop = 104.0, kPanelHeight = 330.0, kPlotTop = 510.0, kPlotHeight = 300.0,
-                 kTableTop = 900.0, kTableHeight = 190.0;
+constexpr double kPanelTop = 104.0, kPanelHeight = 280.0, kPlotTop = 456.0, kPlotHeight = 300.0,
+                 kTableTop = 842.0, kTableHeight = 190.0;
 constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
 
 struct Character3 {

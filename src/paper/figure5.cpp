@@ -211,8 +211,7 @@ Table table_of(const Figure5& f) {
                                              "51.6 / 60.6 / 49.0; green with limits 50.6",
                                              "25.5 / 46.3 / 30.4"};
   const std::array<const char*, 3> solid = {"green over red .994 to .997 pinned, .85 to .94 free",
-                                            "knee + ankle, green over red: .90 to .96 pinned,",
-                                            ".92 to 1.07 free"};
+                                            "knee + ankle .90 to .96 pinned, .92 to 1.07 free", ""};
   for (const LegJoint joint : {LegJoint::hip, LegJoint::knee, LegJoint::ankle}) {
     const auto j = static_cast<std::size_t>(joint);
     std::vector<std::string> row = {fmt::format("{} {} range, deg", leg, kLegJointNames[j])};

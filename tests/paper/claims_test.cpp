@@ -30,7 +30,7 @@ TEST(PaperClaims, EveryNumberOfTheThirtyIsThere) {
     EXPECT_EQ(c.name.rfind(std::to_string(number) + " ", 0), 0u) << c.name;
     EXPECT_FALSE(c.section.empty());
     EXPECT_FALSE(c.bound.empty());
-    if (!c.pass) EXPECT_FALSE(c.note.empty()) << c.name;
+    EXPECT_TRUE(c.pass || !c.note.empty()) << c.name;
     numbers.insert(number);
   }
   EXPECT_EQ(numbers.size(), 30u);

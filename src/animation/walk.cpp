@@ -43,7 +43,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
                 Pose& pose) noexcept {
   const GaitCycle& cycle = model.cycle;
   pose.joint_count = static_cast<int>(cycle.skeleton.joints.size());
-  sample_local(cycle, state.phase, pose);
+  sample_local(cycle, data_phase(model, state), pose);
   swing_arms(model, state, pose);
   const double a = presence(state);
   if (a < 1.0) {
@@ -70,6 +70,16 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   pose_body(model, state, pose);
 }
 
+void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
+  if (tick.flat) return;
+  const Terrain& terrain = *tick.model.terrain;
+  for (int side : {0, 1}) {
+    const vec3 &heel = frame.heel_m[side], &toe = frame.toe_m[side];
+    frame.heel_ground_m[side] = ground_at(terrain, heel.x, heel.z).height_m;
+    frame.toe_ground_m[side] = ground_at(terrain, toe.x, toe.z).height_m;
+  }
+}
+
 void report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
   WalkFrame& frame = state.frame;
   frame.stage = state.stage;
@@ -85,7 +95,10 @@ void report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
     frame.toe_planted[side] = idle || !swings;
   }
   const bool landed = frame.stage == Stage::roll && state.tick == 1 && state.last_step_ticks > 0;
-  if (landed) ++frame.steps[frame.swing];
+  if (landed) {
+    ++frame.steps[frame.swing];
+    frame.overhangs += !state.landing.fits;
+  }
   frame.speed_m_s = 0.0;
   const int ticks = state.roll_ticks + state.flight_ticks;
   if (!idle && state.started && ticks > 0) {
@@ -108,6 +121,11 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     for (Damped<double>& w : state.weight[side]) w.x = 1.0;
     state.time_s[side] = 0.5;
     foot.heel_anchor_m = state.hips_m + vec3(leg.track_m, 0.0, -model.rest_lead_m);
+    if (!is_flat(*model.terrain)) {
+      foot.plane = standing_plane(model, side, foot.heel_anchor_m, 0.0);
+      foot.heel_anchor_m = foot.plane.place_m;
+      foot.pose.tilt = foot.plane.tilt;
+    }
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, 0.0, foot.pose, FootMode::roll);
     foot.toe_anchor_m = foot.pose.toe_m;
@@ -116,13 +134,16 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     remember_foot(foot);
   }
   state.landing_m = state.foot[kLeftSide].heel_anchor_m;
+  state.landing_plane = state.foot[kLeftSide].plane;
+  state.base_m =
+      base_at_strike(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
   return state;
 }
 
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept {
-  const Tick tick = {model, params, dt_s};
+  const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
   smooth_parameters(tick, state);
   smooth_body(tick, mode, state);
   advance_clock(tick, state);
@@ -137,6 +158,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   }
   write_pose(model, state, pelvis, pose);
   report(pelvis, dt_s, state);
+  report_ground(tick, state.frame);
   finish_stage(tick, state);
   for (FootState& foot : state.foot) remember_foot(foot);
 }

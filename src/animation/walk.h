@@ -27,23 +27,44 @@ struct WalkFrame {
   double turn_rate_rad_s = 0.0;
   double speed_m_s = 0.0;  // (left + right step) / cycle time of the running cycle; 0 when idle
   vec3 pelvis_m{0.0};
-  std::array<double, 2> stride_m{};  // length in force for that foot's step
+  std::array<double, 2> stride_m{};  // length in force for that foot's step; backwards negative
   std::array<bool, 2> heel_planted{true, true}, toe_planted{true, true};
   std::array<vec3, 2> heel_m{}, toe_m{};
   std::array<int, 2> ik_iterations{};
   std::array<double, 2> ik_error_m{};
   std::array<bool, 2> ik_failed{};
   std::array<int, 2> steps{};  // landings so far
+  // Height of the ground under the points, planted or not.
+  std::array<double, 2> heel_ground_m{}, toe_ground_m{};
+  int overhangs = 0;  // landings so far on a tread too short for the foot
 };
 
 enum class FootMode : std::uint8_t { support, flight, roll };
 
+// The plane that a foot stands on or flies to: the ground under its sole.
+struct FootPlane {
+  vec3 place_m{0.0};      // of the heel
+  vec3 normal = kUp;      // unit
+  quat tilt = kIdentity;  // from level ground
+};
+
 // Where a foot is to be: one of its points on a place, its direction and its pitch.
 struct FootPose {
   vec3 heel_m{0.0}, toe_m{0.0};  // world
+  quat tilt = kIdentity;         // from level ground to the foot's own
   double yaw_rad = 0.0;          // about the vertical, 0: as in the standing pose at heading 0
-  double pitch_rad = 0.0;        // of the heel-toe line, toe down positive, 0: flat
+  double pitch_rad = 0.0;        // of the heel-toe line, toe down positive, 0: flat on its ground
   double toe_rad = 0.0;          // toe joint
+};
+
+// What keeps a flying foot off the ground that lies between its two planes: the inner control
+// points of two uniform cubic B-splines over the flight.
+inline constexpr int kFlightKnots = 8;
+using FlightSpline = std::array<double, kFlightKnots - 1>;
+struct FlightRoom {
+  FlightSpline raise_m{}, shift_m{};  // wanted: up; along z, away from a riser
+  std::array<Damped<double>, kFlightKnots - 1> raise, shift;  // in force
+  vec3 planned_for_m{0.0};                                    // landing
 };
 
 struct FootState {
@@ -58,7 +79,23 @@ struct FootState {
   std::array<double, 2> reach_rad{};               // pitch beyond the plan, one and two ticks ago
   vec3 lift_m{0.0}, lift_slope_m{0.0};             // heel at lift-off and its slope per flight
   double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // and its slope per flight
-  LegAngles anchor_rad{};  // even pose when the mode began: what stiff joints hold on to
+  LegAngles anchor_rad{};      // even pose when the mode began: what stiff joints hold on to
+  FootPlane plane;             // stood on last
+  double base_m = 0.0;         // height of the ground that the pose is planned over
+  bool crosses_riser = false;  // the running flight
+  FlightRoom room;
+};
+
+// What terrain makes of a step; on flat ground all of it stays as it is here.
+struct Foothold {
+  vec3 wanted_m{0.0};        // heel's place as stick and heading have it
+  double yaw_rad = 0.0;      // of the foot
+  Stretch piece;             // the landing's, settled when the flight begins
+  double share = 1.0;        // of the wanted length that a slope leaves
+  double next_m = 0.0;       // length of the step after it
+  double next_base_m = 0.0;  // and the height of that one's landing
+  double next_rise = 0.0;    // up or down to it, over the leg length
+  bool fits = true;
 };
 
 // Plain, trivially copyable: all that a walk remembers.
@@ -72,6 +109,8 @@ struct WalkState {
   int last_step_ticks = 0;  // of the step before
   bool closing = false;     // the running step brings the feet together
   bool started = false;
+  bool backward = false;  // the running walk's steps lead backwards
+  double slowness = 1.0;  // of the running step: times are as much longer on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
   // Smoothed parameters.
@@ -86,6 +125,10 @@ struct WalkState {
   vec3 hips_m{0.0}, hips_velocity_m_s{0.0};  // on the ground, without the data's oscillations
   vec3 landing_m{0.0};
   double landing_heading_rad = 0.0;
+  FootPlane landing_plane;
+  Foothold landing;
+  double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
+  Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;
   std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};  // data's, IK even, IK weighted
   BodyState body;

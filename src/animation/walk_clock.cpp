@@ -10,6 +10,8 @@ constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kShortRoll = 0.085, kBriskRoll = 0.11, kLongRoll = 0.20;
+// Steps up and down take longer: 100 a minute on stairs where 125 do on level ground.
+constexpr double kSlowerOnStairs = 1.3, kSlowestRise = 0.4;
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 
@@ -35,7 +37,8 @@ double time_share(const WalkModel& model, const WalkState& state, Stage stage,
 int stage_length(const WalkModel& model, const WalkState& state, Stage stage, Side swing,
                  double dt_s) noexcept {
   // Whole ticks: a steady gait is then exactly periodic.
-  const double ticks = 2.0 * state.time_s[swing] * time_share(model, state, stage, swing) / dt_s;
+  const double ticks =
+      2.0 * state.time_s[swing] * state.slowness * time_share(model, state, stage, swing) / dt_s;
   return std::max(stage == Stage::roll ? 6 : 12, static_cast<int>(ticks + 0.5));
 }
 
@@ -53,6 +56,7 @@ void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept 
 // A step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   state.last_step_ticks = state.roll_ticks + state.flight_ticks;
+  state.slowness = 1.0 + kSlowerOnStairs * std::min(state.landing.next_rise, kSlowestRise);
   state.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
   state.flight_ticks = stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
   state.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];
@@ -66,6 +70,7 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
   const Side first = tick.params.turn_rate_rad_s < 0.0 ? kRightSide : kLeftSide;
   state.started = true;
   state.closing = false;
+  state.backward = tick.params.backward;
   state.flight_ticks = 0;
   state.roll_ticks = 0;
   begin_step(tick, other(first), state);
@@ -78,13 +83,14 @@ void begin_idle(WalkState& state) noexcept {
   begin_stage(Stage::idle, state.swing, 1, state);
   state.started = false;
   state.roll_ticks = state.flight_ticks = 0;
+  state.landing.next_rise = 0.0;
   for (FootState& foot : state.foot) foot.pitch_fade = {};
 }
 
 void land(const Tick& tick, WalkState& state) noexcept {
   const Side landed = state.swing;
   const bool closed = state.closing;
-  state.closing = !tick.params.walking;
+  state.closing = !walks_on(tick.params, state);
   if (closed && state.closing) {  // feet together: the toe comes down, then rest
     const int ticks = state.roll_ticks;
     begin_stage(Stage::roll, landed, std::max(ticks, 12), state);
@@ -115,7 +121,7 @@ int ticks_to_strike(const WalkState& state) noexcept {
 }
 
 double pace(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  return std::clamp(state.length_m[side].x / model.source_step_m, 0.0, 1.5);
+  return std::clamp(state.length_m[side].x * state.ground_share.x / model.source_step_m, 0.0, 1.5);
 }
 
 double presence(const WalkState& state) noexcept {
@@ -131,17 +137,28 @@ double own_phase(const WalkModel& model, const WalkState& state, Side side) noex
   return p - std::floor(p);
 }
 
+double data_phase(const WalkModel& model, const WalkState& state) noexcept {
+  if (!state.backward) return state.phase;
+  return model.share[0] + model.share[1] + model.share[2] - state.phase;
+}
+
+bool walks_on(const GaitParams& params, const WalkState& state) noexcept {
+  const bool on_the_spot = params.stride[0].length_m == 0.0 && params.stride[1].length_m == 0.0;
+  return params.walking && (!state.started || on_the_spot || params.backward == state.backward);
+}
+
 void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
-  const bool walking = params.walking && !state.closing;
-  if (state.stage == Stage::idle && params.walking && presence(state) < kStillPresence) {
+  const bool walking = walks_on(params, state) && !state.closing;
+  const bool stood = state.stage == Stage::idle && state.frame.stage == Stage::idle;
+  if (stood && params.walking && presence(state) < kStillPresence) {
     for (int side : {0, 1}) state.time_s[side] = params.stride[side].time_s;
     begin_walk(tick, state);
   }
   for (int side : {0, 1}) {
     const StrideParams& stride = params.stride[side];
-    if (params.walking) state.time_s[side] = stride.time_s;
+    if (walks_on(params, state)) state.time_s[side] = stride.time_s;
     state.length_m[side].advance(walking ? stride.length_m : 0.0, kStepSmoothing * scale, dt);
     state.flight_height[side].advance(stride.flight_height, kStepSmoothing * scale, dt);
     for (int j = 0; j < kLegDofs; ++j) {
@@ -159,7 +176,8 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   state.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
   state.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
   const double mean = 0.5 * (state.length_m[0].x + state.length_m[1].x);
-  state.pace.advance(mean / tick.model.source_step_m, kStepSmoothing * scale, dt);
+  state.pace.advance(mean * state.ground_share.x / tick.model.source_step_m, kStepSmoothing * scale,
+                     dt);
 }
 
 void advance_clock(const Tick& tick, WalkState& state) noexcept {

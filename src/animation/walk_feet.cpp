@@ -16,9 +16,13 @@ constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
 constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
-constexpr double kLamePeak = 0.9;   // an able foot's peak lags behind its curve by as much
-constexpr double kLameFade = 0.15;  // of kLiftFade, for a foot that does not lift at all
-constexpr double kStopping = 0.6;   // of the flight: from here the heel comes to a stop
+constexpr double kLamePeak = 0.9;       // an able foot's peak lags behind its curve by as much
+constexpr double kLameFade = 0.15;      // of kLiftFade, for a foot that does not lift at all
+constexpr double kBackwardPitch = 0.6;  // of the data's: the foot reaches back, toe down
+constexpr double kStopping = 0.6;       // of the flight: from here the heel comes to a stop
+// A foot that goes down is lifted less: as much of it over a fall of this share of the leg.
+constexpr double kLiftDown = 0.4, kDown = 0.2;
+constexpr double kInPlace_m = 0.1;  // a way shorter than this is gone by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
@@ -34,6 +38,7 @@ double pitch_scale(const WalkModel& model, const WalkState& state, Side side) no
 }
 
 double support_pitch(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  if (state.backward) return 0.0;  // the front foot leaves the ground as a whole
   const double own = own_phase(model, state, side);
   const double height = std::min(1.0, state.flight_height[side].x);
   const double pitch =
@@ -44,6 +49,12 @@ double support_pitch(const WalkModel& model, const WalkState& state, Side side) 
 double flight_pitch(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
   const LegBuild& leg = model.leg[side];
   const double scale = pitch_scale(model, state, side);
+  if (state.backward) {
+    // It lands flat, the toe a moment ahead of the heel.
+    const double share = kBackwardPitch * scale * (1.0 - smoothstep(0.55, 1.0, u));
+    const double pitch = share * leg.pitch_rad.at(1.0 - u * (1.0 - leg.toe_off));
+    return soft_max(soft_min(pitch, kMaxPlannedPitch, kWidePitch), kMinPitch, kSoftPitch);
+  }
   const double own = leg.toe_off + u * (1.0 - leg.toe_off);
   const double at_strike = scale * leg.pitch_rad.at(1.0);
   const double wanted = -scale * asin(kToeUpAtStrike_m * model.size / leg.foot_m);
@@ -62,22 +73,70 @@ double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noe
   return state.turn_rate.x * heel_rise(model, state, side);
 }
 
-vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
+// The data's flight, or the same run back.
+struct FlightPath {
+  const FootFlight& data;
+  bool backward;
+  double progress(double u) const noexcept {
+    return backward ? 1.0 - data.progress.at(1.0 - u) : data.progress.at(u);
+  }
+  double start_slope() const noexcept {
+    return backward ? data.progress.end_slope() : data.progress.start_slope();
+  }
+  double end_slope() const noexcept {
+    return backward ? data.progress.start_slope() : data.progress.end_slope();
+  }
+  double height_m(double u) const noexcept { return data.height_m.at(backward ? 1.0 - u : u); }
+  double start_climb_m() const noexcept {
+    return backward ? 0.0 - data.height_m.end_slope() : data.height_m.start_slope();
+  }
+};
+
+// How much of the way from one plane's height to the other's is behind a flying foot: as much as of
+// its way over the ground (in place, by the time); nothing where a riser is between, see
+// FlightRoom.
+struct Ascent {
+  vec3 along_1_m{0.0};
+  double by_time = 0.0;
+  double at(const vec3& gone_m, double u) const noexcept {
+    return glm::dot(gone_m, along_1_m) + by_time * (1.0 - h00(u));
+  }
+};
+Ascent ascent(const WalkModel& model, const FootState& foot, const vec3& way_m) noexcept {
+  Ascent a;
+  if (foot.crosses_riser) return a;
+  const double square = way_m.x * way_m.x + way_m.z * way_m.z;
+  const double in_place = kInPlace_m * kInPlace_m * model.size * model.size;
+  a.along_1_m = vec3(way_m.x, 0.0, way_m.z) / (square + in_place);
+  a.by_time = in_place / (square + in_place);
+  return a;
+}
+
+// The heel's place, and the height of the ground line below it from one plane to the other.
+vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, double u,
+                 double& base_m) noexcept {
   const LegBuild& leg = model.leg[side];
   const FootState& foot = state.foot[side];
   const vec3 way = state.landing_m - foot.lift_m;
-  const FlightCurve& s = leg.flight.progress;
+  const FlightPath path = {leg.flight, state.backward};
   // The data's heel still moves when it strikes, ours stops: the difference is made up at the end.
   const double end = std::max(0.0, (u - kStopping) / (1.0 - kStopping));
-  vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
-           way * (s.end_slope() * (1.0 - kStopping) * h11(end));
+  vec3 p = foot.lift_m + way * path.progress(u) +
+           (foot.lift_slope_m - way * path.start_slope()) * h10(u) -
+           way * (path.end_slope() * (1.0 - kStopping) * h11(end));
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
+  const double begin_m = height_on(foot.plane, foot.lift_m), rise = state.landing_m.y - begin_m;
   const double k = mix(kLamePeak, 1.0, able) * state.flight_height[side].x *
-                   std::min(1.1, 0.35 + 0.65 * full_pace(model, state));
-  const FlightCurve& h = leg.flight.height_m;
-  const Fade lift = {foot.lift_m.y - k * h.at(0.0), foot.lift_slope_m.y - k * h.start_slope(),
+                   std::min(1.1, 0.35 + 0.65 * full_pace(model, state)) *
+                   mix(1.0, kLiftDown, smoothstep(0.0, kDown * model.leg_length_m, -rise));
+  const Ascent risen = ascent(model, foot, way);
+  const double base_slope = rise * glm::dot(foot.lift_slope_m, risen.along_1_m);
+  base_m = begin_m + rise * risen.at(p - foot.lift_m, u);
+  const Fade lift = {foot.lift_m.y - begin_m - k * path.height_m(0.0),
+                     foot.lift_slope_m.y - base_slope - k * path.start_climb_m(),
                      kLiftFade * lift_share(state, side)};
-  p.y = std::max(0.0, k * h.at(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
+  p.y =
+      base_m + std::max(0.0, k * path.height_m(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
   return p;
 }
 
@@ -85,7 +144,8 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
 // reaches: P cos + Q sin = K in the foot's own vertical plane.
 double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m,
                       double reach) noexcept {
-  const vec3 d = rotation_y(-pose.yaw_rad) * (hip_m - pose.toe_m), c = -leg.model.toe_m;
+  const vec3 d = rotation_y(-pose.yaw_rad) * (glm::inverse(pose.tilt) * (hip_m - pose.toe_m)),
+             c = -leg.model.toe_m;
   const double df = glm::dot(d, leg.forward), cf = glm::dot(c, leg.forward);
   const double ds = glm::dot(d, leg.side), cs = glm::dot(c, leg.side);
   const double p = df * cf + d.y * c.y, q = df * c.y - d.y * cf;
@@ -107,7 +167,11 @@ double heel_rise(const WalkModel& model, const WalkState& state, Side side) noex
 }
 
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
-  return rotation_y(pose.yaw_rad) * rotation_about(leg.side, pose.pitch_rad);
+  return pose.tilt * (rotation_y(pose.yaw_rad) * rotation_about(leg.side, pose.pitch_rad));
+}
+
+double heel_height(const FootState& foot) noexcept {
+  return (foot.pose.heel_m.y - foot.base_m) * foot.plane.normal.y;
 }
 
 double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noexcept {
@@ -125,11 +189,35 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
   }
 }
 
+FlightPoint flight_point(const WalkModel& model, const WalkState& state, Side side, double u,
+                         double pitch_fade_rad) noexcept {
+  const LegBuild& leg = model.leg[side];
+  const FootState& foot = state.foot[side];
+  FlightPoint point;
+  FootPose& pose = point.pose;
+  pose.heel_m = flight_heel(model, state, side, u, point.base_m);
+  const double gone = 1.0 - h00(u);
+  const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
+  pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u);
+  pose.tilt = foot.plane.tilt;
+  if (pose.tilt != state.landing_plane.tilt) {
+    pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.landing_plane.tilt * gone);
+  }
+  const double open = smoothstep(0.0, 0.25, u) * (1.0 - smoothstep(0.75, 1.0, u));
+  const double height = (pose.heel_m.y - point.base_m) * foot.plane.normal.y;
+  const double limit = highest_pitch(leg, height, kClearance_m * model.size * open);
+  const double pitch = flight_pitch(model, state, side, u) + pitch_fade_rad;
+  set_pitch(leg, soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open)), pose, FootMode::flight);
+  return point;
+}
+
 void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
   const LegBuild& leg = model.leg[side];
   FootState& foot = state.foot[side];
   const double fade = foot.pitch_fade.at(foot.mode_ticks);
+  foot.pose.tilt = foot.plane.tilt;
+  foot.base_m = foot.plane.place_m.y;
   if (foot.mode == FootMode::support) {
     foot.pose.toe_m = foot.toe_anchor_m;
     // With what the reach asked for last, run on: the hips' height and the reach depend on each
@@ -142,13 +230,12 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     set_pitch(leg, fade, foot.pose, foot.mode);
   } else {
     const double u = flight_progress(state);
-    foot.pose.heel_m = flight_heel(model, state, side, u);
-    const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
-    foot.pose.yaw_rad = foot.lift_yaw_rad + turn * (1.0 - h00(u)) + foot.lift_turn_rad * h10(u);
-    const double open = smoothstep(0.0, 0.25, u) * (1.0 - smoothstep(0.75, 1.0, u));
-    const double limit = highest_pitch(leg, foot.pose.heel_m.y, kClearance_m * model.size * open);
-    const double pitch = flight_pitch(model, state, side, u) + fade;
-    set_pitch(leg, soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open)), foot.pose, foot.mode);
+    const double toe_rad = foot.pose.toe_rad;
+    const FlightPoint point = flight_point(model, state, side, u, fade);
+    foot.pose = point.pose;
+    foot.pose.toe_rad = toe_rad;
+    foot.base_m = point.base_m;
+    if (!tick.flat) keep_room(tick, state, side, u);
   }
 }
 
@@ -199,6 +286,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.lift_m = foot.pose.heel_m;
   foot.lift_slope_m = end_slope(foot.last_heel_m[1], foot.last_heel_m[0], foot.pose.heel_m) * ticks;
   foot.lift_yaw_rad = foot.pose.yaw_rad;
+  foot.crosses_riser = !tick.flat && crosses_riser(*model.terrain, foot.plane, state.landing_plane);
   foot.lift_turn_rad = pivot_rate(model, state, side) * tick.dt_s * ticks;
   foot.anchor_rad = state.even_rad[side];
   const double rate =
@@ -209,6 +297,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   const double slope = rate - plan_rate;
   const double longest = 27.0 / 4.0 * kMostOvershoot / std::max(1e-9, std::abs(slope));
   foot.pitch_fade = {foot.pose.pitch_rad - plan, slope, std::min(kLiftFade * ticks, longest)};
+  if (!tick.flat) plan_room(tick, state, side);
 }
 
 void begin_roll(WalkState& state, Side side) noexcept {
@@ -218,6 +307,7 @@ void begin_roll(WalkState& state, Side side) noexcept {
   foot.mode = FootMode::roll;
   foot.mode_ticks = 0;
   foot.heel_anchor_m = foot.pose.heel_m;
+  foot.plane = state.landing_plane;
   foot.anchor_rad = state.even_rad[side];
   // A cubic that starts faster than 3 h / T would undershoot: the toe would go through the floor.
   double ticks = kRollEnd * state.stage_ticks;

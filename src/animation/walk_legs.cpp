@@ -19,9 +19,9 @@ constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 // The angles that the data show at this phase, fading to a stand.
 LegAngles reference(const WalkModel& model, const WalkState& state, Side side) noexcept {
   LegAngles angles;
-  const double shown = presence(state);
+  const double shown = presence(state), phase = data_phase(model, state);
   for (int j = 0; j < kLegDofs; ++j) {
-    angles[j] = shown * model.reference_rad[side][j].at(state.phase);
+    angles[j] = shown * model.reference_rad[side][j].at(phase);
   }
   angles[kKneeX] = std::max(angles[kKneeX], kLeastKnee);
   return angles;
@@ -99,10 +99,11 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
          (1.0 - smoothstep(0.55, 0.95, p));
 }
 
-double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, double yaw_rad,
+double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, const FootPose& pose,
                   const IkFrame& end) noexcept {
-  const vec3 line = glm::inverse(rotation_y(yaw_rad)) *
-                    (pelvis.rotation * (end.rotation * (leg.model.toe_m - leg.model.heel_m)));
+  const vec3 line = glm::inverse(rotation_y(pose.yaw_rad)) *
+                    (glm::inverse(pose.tilt) *
+                     (pelvis.rotation * (end.rotation * (leg.model.toe_m - leg.model.heel_m))));
   return leg.elevation_rad - atan2(line.y, glm::dot(line, leg.forward));
 }
 
@@ -139,7 +140,7 @@ double free_pitch(const WalkModel& model, const LegBuild& leg, const Pelvis& pel
   if (foot.mode == FootMode::support) {
     pitch = soft_max(pitch, 0.0, std::min(soft, std::max(1e-9, planned)));
   } else {
-    const double limit = highest_pitch(leg, foot.pose.heel_m.y, kFreeClearance_m * model.size);
+    const double limit = highest_pitch(leg, heel_height(foot), kFreeClearance_m * model.size);
     pitch = soft_min(pitch, std::max(limit, planned), std::max(1e-9, soft));
   }
   const double span = leg_span(leg, pelvis, foot.pose, planned, foot.mode);
@@ -170,7 +171,7 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
   }
   solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(),
                          kRobust, angles));
-  const double free = foot_pitch(leg, pelvis, foot.pose.yaw_rad, end_frame(chain, angles));
+  const double free = foot_pitch(leg, pelvis, foot.pose, end_frame(chain, angles));
   set_pitch(leg, free_pitch(tick.model, leg, pelvis, foot, free, share), foot.pose, foot.mode);
   solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
@@ -184,15 +185,35 @@ bool even(const WalkState& state, Side side) noexcept {
   return high - low < kEvenSpread;
 }
 
+// Points a flying foot down beyond what the ground allows by lifting it over its toe.
+void point_down(const LegBuild& leg, double room_rad, double more_rad, double flight_progress,
+                FootPose& pose) noexcept {
+  const double open =
+      smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.7, 0.95, flight_progress));
+  set_pitch(leg, pose.pitch_rad + room_rad, pose, FootMode::flight);
+  const double toe_m = pose.toe_m.y;
+  set_pitch(leg, pose.pitch_rad + open * more_rad, pose, FootMode::flight);
+  const double lift_m = toe_m - pose.toe_m.y;
+  pose.heel_m.y += lift_m;
+  pose.toe_m.y += lift_m;
+}
+
 // A foot whose ankle would bend up too far points down in flight, as far as the floor allows, and
 // rises at the heel in late support; a foot that is to stand still does not.
-void ease_ankle(const WalkModel& model, const WalkState& state, Side side, const Pelvis& pelvis,
+void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvis& pelvis,
                 IkAngles& angles, FootState& foot, Solve& solve) noexcept {
+  const WalkModel& model = tick.model;
   const LegBuild& leg = model.leg[side];
   double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], kSoftAnkle);
   if (foot.mode == FootMode::flight) {
-    const double room = highest_pitch(leg, foot.pose.heel_m.y, 0.0) - foot.pose.pitch_rad;
-    excess = std::min(excess, std::max(0.0, room));
+    const double room = highest_pitch(leg, heel_height(foot), 0.0) - foot.pose.pitch_rad;
+    const double allowed = std::min(excess, std::max(0.0, room));
+    if (!tick.flat && excess > allowed) {
+      point_down(leg, allowed, excess - allowed, flight_progress(state), foot.pose);
+      solve.add(solve_robust(leg.chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
+      return;
+    }
+    excess = allowed;
   } else {
     excess *= foot.mode == FootMode::support ? heel_rise(model, state, side) : 0.0;
   }
@@ -213,9 +234,15 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
     angles[j] = data[j] + keep * (state.even_rad[side][j] - state.data_rad[side][j]);
   }
   state.data_rad[side] = data;
-  solve.add(
-      solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
-  ease_ankle(tick.model, state, side, pelvis, angles, state.foot[side], solve);
+  IkChain chain = leg.chain;
+  // At its limit the ankle would turn the knee aside. It is eased from where it would have to go.
+  if (!tick.flat) chain.dof[kAnkleX].min_rad = -kPi;
+  solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+  ease_ankle(tick, state, side, pelvis, angles, state.foot[side], solve);
+  if (angles[kAnkleX] < leg.chain.dof[kAnkleX].min_rad) {
+    solve.add(
+        solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+  }
   state.even_rad[side] = leg_angles(angles);
   const double share = weight_share(tick.model, state, side);
   if (share > 0.0 && !even(state, side)) stiffen(tick, side, pelvis, share, state, angles, solve);
@@ -251,7 +278,7 @@ void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis,
   }
   const IkFrame end = end_frame(leg.chain, padded(state.angles_rad[side]));
   FootState& foot = state.foot[side];
-  foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose.yaw_rad, end),
+  foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose, end),
                                 foot.mode == FootMode::flight ? flight_progress(state) : 0.0);
   const vec3 hip = pelvis.hip(leg);
   WalkFrame& frame = state.frame;

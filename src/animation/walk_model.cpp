@@ -11,6 +11,7 @@ constexpr std::array<double, kLegDofs> kMin = {-120, -50, -70, 1.0, -60, -60, -8
 constexpr std::array<double, kLegDofs> kMax = {60, 50, 70, 150, 75, 60, 80};
 constexpr double kHeelDown = 0.007;   // of the leg: a heel this low has landed
 constexpr double kLatestDown = 0.05;  // own phase
+constexpr double kHalfWidth = 0.054;  // of the leg: half a foot's breadth, 9 cm of an adult's
 constexpr double kOscillation = 0.8;  // share of the fore-aft oscillation, which FK exaggerates
 
 IkChain leg_chain(const LegModel& leg) {
@@ -69,6 +70,9 @@ LegBuild leg_build(const LegModel& model) {
   leg.elevation_rad = elevation(line);
   leg.forward = glm::normalize(vec3(line.x, 0.0, line.z));
   leg.side = glm::cross(kUp, leg.forward);
+  leg.ball_m = vec3(model.toe_m.x, model.heel_m.y, model.toe_m.z);
+  leg.tip_m = leg.ball_m + vec3(model.toe_end_m.x, 0.0, model.toe_end_m.z);
+  leg.half_width_m = kHalfWidth * model.length_m();
   return leg;
 }
 

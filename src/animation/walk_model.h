@@ -32,6 +32,9 @@ struct LegBuild {
   double foot_m = 0;         // heel to toe
   double elevation_rad = 0;  // of the heel-toe line above the floor when standing
   vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};  // foot frame: along and across the foot, level
+  // The sole, foot frame: on the floor when standing, from the heel under the ball to the tip.
+  vec3 ball_m{0.0}, tip_m{0.0};
+  double half_width_m = 0;
   FootFlight flight;
   PhaseTable pitch_rad;  // own phase (0 at own strike); of the heel-toe line, toe down positive
   double toe_off = 0.6;  // own phase

@@ -9,6 +9,7 @@ struct Tick {  // what does not change within a tick
   const WalkModel& model;
   const GaitParams& params;
   double dt_s;
+  bool flat;  // the terrain
 };
 inline constexpr double kTurnSmoothing = 0.25;  // s at the reference leg
 inline constexpr double kFreeze = 0.55;         // of the flight: from here the landing place stays
@@ -29,10 +30,39 @@ double pace(const WalkModel& model, const WalkState& state, Side side) noexcept;
 // The same of the longer step: what a limp, which shortens one, leaves as it is.
 double full_pace(const WalkModel& model, const WalkState& state) noexcept;
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept;
+// Where the data are asked: walking backwards is walking forwards run back (Thorstensson 1986), so
+// that a foot lands where the data lift it.
+double data_phase(const WalkModel& model, const WalkState& state) noexcept;
+// The parameters ask for the walk that runs or may begin: standing lies between the directions.
+bool walks_on(const GaitParams& params, const WalkState& state) noexcept;
+
+// --- walk_ground.cpp: footholds ------------------------------------------------------------------
+double height_on(const FootPlane& plane, const vec3& place_m) noexcept;
+// Between risers, as level as its terrain lets it; the ground's height strays to both sides alike.
+FootPlane plane_under(const Terrain& terrain, const LegBuild& leg, const vec3& heel_m,
+                      double yaw_rad, const Stretch& piece) noexcept;
+// Between two footholds.
+bool crosses_riser(const Terrain& terrain, const FootPlane& a, const FootPlane& b) noexcept;
+// Where a foot alone would stand nearest to `heel_m` without an edge under it.
+FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
+                         double yaw_rad) noexcept;
+// The landing place that the ground offers nearest to where the step would go on level ground:
+// along `forward`, the heading at landing, and `across_m` from the standing heel.
+void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
+                     const vec3& across_m) noexcept;
+// Height of the ground that the hips go over when one foot stands and the other strikes.
+double base_at_strike(double standing_m, double striking_m) noexcept;
+
+// --- walk_flight.cpp: over what lies between two footholds
+// ----------------------------------------
+void plan_room(const Tick& tick, WalkState& state, Side side) noexcept;
+// The flying foot's pose of this tick, moved by what its room asks for.
+void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept;
 
 // --- walk_path.cpp: landing place, hips ---------------------------------------------------------
 void plan_landing(const Tick& tick, WalkState& state) noexcept;
 void advance_hips(const Tick& tick, WalkState& state) noexcept;
+double step_length(const WalkState& state, Side side) noexcept;
 struct Pelvis {
   vec3 position_m{0.0};                      // world
   quat rotation = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation, world
@@ -47,6 +77,15 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Pelvi
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept;
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
 void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept;
+// The flying foot as on level ground between its two planes, and the height of that ground.
+struct FlightPoint {
+  FootPose pose;
+  double base_m = 0.0;
+};
+FlightPoint flight_point(const WalkModel& model, const WalkState& state, Side side, double u,
+                         double pitch_fade_rad) noexcept;
+// Of the heel, over the plane that the foot is planned on.
+double heel_height(const FootState& foot) noexcept;
 // A standing foot rises on its toe as far as the hips ask for it.
 void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
                     const vec3& hip_m) noexcept;

@@ -7,8 +7,12 @@ namespace {
 constexpr double kReach = 0.9985;  // of the leg: the longest it gets, knee 6 degrees
 constexpr double kEvenFront =
     0.46;  // of the step: front heel to hips where the data's lean is left
-constexpr double kLongDrop_m = 0.05;  // of the hips in steps much longer than the data's
-constexpr double kLameDrop_m = 0.1;   // of the hips for a foot that does not lift at all
+constexpr double kBackwardHips = 0.45;  // of a backward step: the weight follows the foot late
+constexpr double kLongDrop_m = 0.05;    // of the hips in steps much longer than the data's
+constexpr double kLameDrop_m = 0.1;     // of the hips for a foot that does not lift at all
+constexpr double kShortStep = 0.1, kLeastShare = 0.3;  // of the data's step; of the wanted one
+constexpr double kGroundSmoothing_s = 0.1;
+constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 // Rounding of the hips' height: between the knees' curves and the reach, between the legs' reaches.
 // The steps that it suits take this long; quicker ones are rounded more.
@@ -37,13 +41,10 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
   return state.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
 }
 
-double step_length(const WalkState& state, Side side) noexcept {
-  return state.closing ? 0.0 : state.length_m[side].x;
-}
-
 // beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
 // Steps far longer than the data's take an even stance instead of the data's lean.
 double hips_share(const WalkModel& model, const WalkState& state) noexcept {
+  if (state.backward) return kBackwardHips;
   const double front = mix(model.step_front, kEvenFront, smoothstep(1.05, 1.5, state.pace.x));
   return ((1.0 - front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
 }
@@ -53,12 +54,29 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
   if (state.closing) return 0.0;
   const Side swing = step_foot(state);
   const double beta = hips_share(tick.model, state);
-  const double now = step_length(state, swing), before = state.frame.stride_m[other(swing)],
-               next = tick.params.walking ? state.length_m[other(swing)].x : 0.0;
+  const bool goes_on = walks_on(tick.params, state);
+  double now = step_length(state, swing), before = state.frame.stride_m[other(swing)],
+         next = goes_on ? step_length(state, other(swing)) : 0.0;
+  if (!tick.flat) {
+    now = state.frame.stride_m[swing];
+    next = goes_on ? state.landing.next_m : 0.0;
+  }
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
   const double next_s = state.last_step_ticks > 0 ? state.last_step_ticks * tick.dt_s : this_s;
   return 0.5 * (((1.0 - beta) * before + beta * now) / this_s +
                 ((1.0 - beta) * now + beta * next) / next_s);
+}
+
+// The ground that the hips go over rises and falls along a cubic from strike to strike, as they go.
+void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexcept {
+  const Side swing = step_foot(state), stand = other(swing);
+  const double standing = state.foot[stand].plane.place_m.y, landing = state.landing_m.y;
+  const double goal = base_at_strike(standing, landing);
+  const double before = base_at_strike(state.foot[swing].plane.place_m.y, standing);
+  const double next = base_at_strike(landing, state.landing.next_base_m);
+  const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
+  const double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
+  approach(state.base_m, state.base_velocity_m_s, goal, velocity, remaining_s, tick.dt_s);
 }
 
 // Pelvis height at which a leg is as long from its hip to its ankle as `reach_m`.
@@ -80,11 +98,12 @@ double height_of_knee(const WalkModel& model, const WalkState& state, const Pelv
   if (state.foot[side].mode == FootMode::support) {
     set_pitch(model.leg[side], state.foot[side].planned_rad, foot, FootMode::support);
   }
-  const double data = model.reference_rad[side][kKneeX].at(state.phase);
+  const double data = model.reference_rad[side][kKneeX].at(data_phase(model, state));
   const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
   const double a = leg.thigh_m, b = leg.shank_m;
   const double cosine = sin_cos(kStandingKnee + bend).cos;
-  return height_over(model.leg[side], foot, pelvis,
+  return state.base_m - state.foot[side].base_m +
+         height_over(model.leg[side], foot, pelvis,
                      std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
 }
 
@@ -103,6 +122,21 @@ double left_load(const WalkState& state) noexcept {
 
 }  // namespace
 
+double step_length(const WalkState& state, Side side) noexcept {
+  if (state.closing) return 0.0;
+  return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
+}
+
+// Steps that the ground makes shorter roll and rise like short ones.
+void follow_ground(const Tick& tick, WalkState& state, Side swing) noexcept {
+  const double wanted = std::abs(step_length(state, swing));
+  const double share =
+      wanted < kShortStep * tick.model.source_step_m
+          ? 1.0
+          : std::clamp(std::abs(state.frame.stride_m[swing]) / wanted, kLeastShare, 1.0);
+  state.ground_share.advance(share, kGroundSmoothing_s * tick.model.time_scale, tick.dt_s);
+}
+
 void plan_landing(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::idle || !state.started) return;
   const Side swing = step_foot(state), stand = other(swing);
@@ -113,9 +147,11 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
     const double width = tick.model.leg[swing].track_m - tick.model.leg[stand].track_m;
     state.landing_heading_rad = heading;
     state.landing_m = standing + forward * step_length(state, swing) + left * width;
+    if (!tick.flat) choose_foothold(tick, state, forward, left * width);
   }
   // Along the heading that the landing will have, which may still turn after the place is settled.
   state.frame.stride_m[swing] = glm::dot(state.landing_m - standing, forward);
+  if (!tick.flat) follow_ground(tick, state, swing);
 }
 
 void advance_hips(const Tick& tick, WalkState& state) noexcept {
@@ -128,22 +164,23 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
   const vec3 forward = heading_direction(state.landing_heading_rad),
              left = glm::cross(kUp, forward);
   const double lead = model.rest_lead_m + hips_share(model, state) * state.frame.stride_m[swing];
-  const vec3 goal =
-      state.foot[stand].heel_anchor_m + forward * lead - left * model.leg[stand].track_m;
+  vec3 goal = state.foot[stand].heel_anchor_m + forward * lead - left * model.leg[stand].track_m;
+  goal.y = 0.0;
   const vec3 velocity = forward * hips_speed_at_strike(tick, state);
   const double remaining = (ticks_to_strike(state) + 1) * tick.dt_s;
   approach(state.hips_m, state.hips_velocity_m_s, goal, velocity, remaining, tick.dt_s);
+  if (!tick.flat) advance_base(tick, state, remaining);
 }
 
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
   const double a = presence(state), r = std::clamp(state.pace.x, 0.0, 1.0);
+  const double phase = data_phase(model, state);
   const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
   Pelvis pelvis;
-  pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(state.phase)) +
-                      forward * (a * r * model.surge_m.at(state.phase));
-  const double yaw = a * r * state.sway.x * model.yaw_rad.at(state.phase);
-  const vec3 tilt(model.tilt[0].at(state.phase), model.tilt[1].at(state.phase),
-                  model.tilt[2].at(state.phase));
+  pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(phase)) +
+                      forward * (a * r * model.surge_m.at(phase));
+  const double yaw = a * r * state.sway.x * model.yaw_rad.at(phase);
+  const vec3 tilt(model.tilt[0].at(phase), model.tilt[1].at(phase), model.tilt[2].at(phase));
   pelvis.rotation = rotation_y(state.heading_rad + yaw) * from_rotation_vector(tilt * (a * r));
   return pelvis;
 }
@@ -154,7 +191,7 @@ double pelvis_height(const WalkModel& model, const WalkState& state,
   double y = load * height_of_knee(model, state, pelvis, kLeftSide) +
              (1.0 - load) * height_of_knee(model, state, pelvis, kRightSide);
   const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
-  y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(state.phase);
+  y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
   // Steps longer than the data's need lower hips, or the rear leg is too short for them.
   y -= kLongDrop_m * model.size * smoothstep(0.95, 1.4, r);
   // A lame foot hardly rises on its toe: the hips come down to it instead, around its lift-off.

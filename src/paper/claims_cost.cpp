@@ -1,9 +1,10 @@
-// Assertion 21: "no extra computational cost". Times are medians over blocks that take turns in one
-// run, so that whatever else the machine does meets both sides alike.
+// Assertion 21: "no extra computational cost". Times are medians of processor time over blocks that
+// take turns in one run, so that whatever else the machine does meets both sides alike.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 #include "paper/claims.h"
 #include "paper/made_pad.h"
@@ -19,6 +20,8 @@ double seconds_now() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
   return std::chrono::duration<double>(now).count();
 }
+// Of this process alone: what else runs on the machine is left out.
+double cpu_seconds_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 double median(std::vector<double> v) {
   std::ranges::sort(v);
   return v[v.size() / 2];
@@ -33,11 +36,11 @@ Pair in_turns(A even, B weighted) {
   std::vector<double> a, b, ratio;
   even(), weighted();
   for (int n = 0; n < kRounds; ++n) {
-    const double t0 = seconds_now();
+    const double t0 = cpu_seconds_now();
     even();
-    const double t1 = seconds_now();
+    const double t1 = cpu_seconds_now();
     weighted();
-    const double t2 = seconds_now();
+    const double t2 = cpu_seconds_now();
     a.push_back(t1 - t0), b.push_back(t2 - t1), ratio.push_back((t2 - t1) / (t1 - t0));
   }
   return {median(a), median(b), median(ratio)};
@@ -188,7 +191,7 @@ std::vector<Claim> cost_claims(Study& study) {
   for (ClaimList* list : {&paper, &robust}) {
     const IkMode mode = list == &paper ? IkMode::paper : IkMode::robust;
     list->add("21 99th percentile of a tick of four characters, ms", p99_ms(study, mode),
-              less_than(1000.0 / 60.0), "the paper: real time; aim 1 ms");
+              less_than(1000.0 / 60.0), "the paper: real time; aim 1 ms; by the clock on the wall");
   }
   const HeelPath path = heel_path(study.model(), study.walk("even", IkMode::robust));
   if (!path.goal_m.empty()) solver_claims(path, paper, robust);

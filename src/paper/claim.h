@@ -1,5 +1,6 @@
 // One sentence of the paper as a number: what was measured, what it has to be.
 #pragma once
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,8 @@
 #include "animation/walk.h"
 
 namespace gaitpad {
+
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 struct Bound {
   enum class Kind { at_most, less, at_least, more, within, equal } kind = Kind::at_most;

@@ -170,7 +170,7 @@ double p99_ms(const Study& study, IkMode mode) {
     styles.push_back(style_of(study.source(), name));
   }
   auto simulation = Simulation::create(paper_session(study.source().cycle, styles, mode));
-  if (!simulation) return 1.0 / 0.0;
+  if (!simulation) return kNoNumber;
   std::vector<double> times;
   for (int k = 0; k < kCostTicks; ++k) {
     std::vector<Report> reports;

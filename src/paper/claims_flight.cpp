@@ -56,7 +56,7 @@ void target_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
     }
     if (row.point != FootPoint::ankle) continue;
     if (!targets) {
-      list.add("1 peak below the greatest height, % of the range", 1.0 / 0.0, at_most(0.0));
+      list.add("1 peak below the greatest height, % of the range", kNoNumber, at_most(0.0));
       continue;
     }
     const auto share = [&](int i) {
@@ -113,10 +113,10 @@ void threshold_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
     const auto with = flight_targets(curve, rule), without = flight_targets(curve, {false, false});
     const char* kind = blip_m > 0.0 ? "a rise of 3 mm" : "a stand-still";
     list.add(fmt::format("3 third target of a curve with {} near frame 25, frame", kind),
-             with ? with->land : 1.0 / 0.0, equal_to(40));
+             with ? with->land : kNoNumber, equal_to(40));
     if (blip_m > 0.0) {
       list.add("3 third target of that curve without the bands, frame",
-               without ? without->land : 1.0 / 0.0, within(kBlipFrame - 2, kBlipFrame + 2),
+               without ? without->land : kNoNumber, within(kBlipFrame - 2, kBlipFrame + 2),
                "the blip is taken for the landing: what the bands are there for");
     }
   }
@@ -127,7 +127,7 @@ void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   add_standing_jitter(heights, kSamples);
   const auto targets = flight_targets(heights, rule_of(mode));
-  const double first = targets ? percent(targets->lift) : 1.0 / 0.0;
+  const double first = targets ? percent(targets->lift) : kNoNumber;
   if (mode == IkMode::paper) {
     list.add("4 first target on a standing foot that jitters by 4 mm, % of the stride", first,
              less_than(20.0),
@@ -141,7 +141,7 @@ void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
       stride_heights(source.cycle, kRightSide, FootPoint::toe_tip, kSamples), rule_of(mode));
   const std::string name = "4 second target of the toe tip's height, % of the stride";
   if (source.is_adult) {
-    list.add(name, toe ? percent(toe->peak) : 1.0 / 0.0, more_than(90.0),
+    list.add(name, toe ? percent(toe->peak) : kNoNumber, more_than(90.0),
              "late swing lifts the toe highest, so its height is no foot height; prototype 100.8");
   } else {
     list.add_untested(name, more_than(90.0), kNotAdult);

@@ -39,7 +39,7 @@ FootHeight foot_height(const PaperSource& source, Side side) {
   const auto [low, high] = std::ranges::minmax(f.height_m);
   f.low_m = low + kFlightBand * (high - low);
   f.high_m = high - kFlightBand * (high - low);
-  f.gradient_m_s.push_back(0.0 / 0.0);
+  f.gradient_m_s.push_back(kNoNumber);
   for (std::size_t i = 1; i < f.height_m.size(); ++i) {
     f.gradient_m_s.push_back((f.height_m[i] - f.height_m[i - 1]) / f.frame_s);
   }

@@ -23,50 +23,56 @@ Bound near_frame(double at_percent) {
   return within(at_percent - kFrame - kRounding, at_percent + kFrame + kRounding);
 }
 FlightRule rule_of(IkMode mode) { return {true, mode == IkMode::robust}; }
-const char* kLastNote = "last low before the peak";
+constexpr const char* kLastNote = "last low before the peak";
+constexpr const char* kNoTargets = "no three targets in this motion's stride";
+
+struct Wanted {
+  FootPoint point;
+  const char* name;
+  std::array<double, 3> percent;  // of the stride; 0: not stated
+};
+constexpr std::array<Wanted, 2> kWanted = {Wanted{FootPoint::ankle, "ankle", {44.2, 71.7, 94.2}},
+                                           Wanted{FootPoint::heel, "heel", {0.0, 70.8, 95.0}}};
 
 // 1: where the targets are.
-void target_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
-  struct Row {
-    FootPoint point;
-    const char* name;
-    std::array<double, 3> wanted;  // percent of the stride; 0: not stated
-  };
-  const std::array<Row, 2> rows = {Row{FootPoint::ankle, "ankle", {44.2, 71.7, 94.2}},
-                                   Row{FootPoint::heel, "heel", {0.0, 70.8, 95.0}}};
-  for (const Row& row : rows) {
-    const auto heights = stride_heights(source.cycle, kRightSide, row.point, kSamples);
-    const auto targets = flight_targets(heights, rule_of(mode));
-    const double low = *std::ranges::min_element(heights),
-                 high = *std::ranges::max_element(heights);
-    const std::array<const char*, 3> what = {"first", "second", "third"};
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (row.wanted[i] == 0.0) continue;
-      const std::string name =
-          fmt::format("1 {} target of the {}'s height, % of the stride", what[i], row.name);
-      const Bound bound = near_frame(row.wanted[i]);
-      if (!source.is_adult) {
-        list.add_untested(name, bound, kNotAdult);
-        continue;
-      }
-      const FlightTargets t = targets.value_or(FlightTargets{-1, -1, -1});
-      const int at = std::array<int, 3>{t.lift, t.peak, t.land}[i];
-      list.add(name, percent(at < 0 ? at : at % kSamples), bound,
+void target_claims(const PaperSource& source, const Wanted& wanted, IkMode mode, ClaimList& list) {
+  const auto heights = stride_heights(source.cycle, kRightSide, wanted.point, kSamples);
+  const FlightTargets t =
+      flight_targets(heights, rule_of(mode)).value_or(FlightTargets{-1, -1, -1});
+  const std::array<int, 3> at = {t.lift, t.peak, t.land};
+  const std::array<const char*, 3> what = {"first", "second", "third"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (wanted.percent[i] == 0.0) continue;
+    const std::string name =
+        fmt::format("1 {} target of the {}'s height, % of the stride", what[i], wanted.name);
+    const Bound bound = near_frame(wanted.percent[i]);
+    if (source.is_adult) {
+      list.add(name, percent(at[i] < 0 ? at[i] : at[i] % kSamples), bound,
                mode == IkMode::robust ? kLastNote : "the first low there is");
+    } else {
+      list.add_untested(name, bound, kNotAdult);
     }
-    if (row.point != FootPoint::ankle) continue;
-    if (!targets) {
-      list.add("1 peak below the greatest height, % of the range", kNoNumber, at_most(0.0));
-      continue;
-    }
-    const auto share = [&](int i) {
-      return 100.0 * (heights[static_cast<std::size_t>(i)] - low) / (high - low);
-    };
-    list.add("1 peak below the greatest height, % of the range", 100.0 - share(targets->peak),
-             at_most(1e-9));
-    list.add("1 ends of the flight above the least height, % of the range",
-             std::max(share(targets->lift), share(targets->land)), at_most(100.0 * kFlightBand));
   }
+}
+
+// 1: in which bands they lie.
+void band_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
+  const auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
+  const auto targets = flight_targets(heights, rule_of(mode));
+  const auto [low, high] = std::ranges::minmax(heights);
+  const auto share = [&heights, low = low, high = high](int i) {
+    return 100.0 * (heights[static_cast<std::size_t>(i)] - low) / (high - low);
+  };
+  const char* peak = "1 peak below the greatest height, % of the range";
+  const char* ends = "1 ends of the flight above the least height, % of the range";
+  const Bound none = at_most(1e-9), band = at_most(100.0 * kFlightBand);
+  if (!targets) {
+    list.add_untested(peak, none, kNoTargets);
+    list.add_untested(ends, band, kNoTargets);
+    return;
+  }
+  list.add(peak, 100.0 - share(targets->peak), none);
+  list.add(ends, std::max(share(targets->lift), share(targets->land)), band);
 }
 
 // 1, in the file's own frames: both feet.
@@ -100,7 +106,7 @@ void threshold_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   const auto on = flight_targets(heights, rule), off = flight_targets(heights, {false, false});
   const std::string name = "2 targets without the 10 % bands off those with them, % of the stride";
   if (!on || !off) {
-    list.add_untested(name, more_than(kFrame), "no three targets in this motion's stride");
+    list.add_untested(name, more_than(kFrame), kNoTargets);
   } else if (*on == *off) {
     list.add_untested(name, more_than(kFrame), "no blip in this motion's stride");
   } else {
@@ -153,8 +159,7 @@ void completeness_claims(const PaperSource& source, IkMode mode, ClaimList& list
   auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   const auto whole = flight_targets(heights, rule_of(mode));
   if (!whole) {
-    list.add_untested("5 targets in a curve that ends at its peak", equal_to(0),
-                      "no three targets in this motion's stride");
+    list.add_untested("5 targets in a curve that ends at its peak", equal_to(0), kNoTargets);
     return;
   }
   const std::vector<double> cut(heights.begin(), heights.begin() + whole->peak + 2);
@@ -186,7 +191,8 @@ void completeness_claims(const PaperSource& source, IkMode mode, ClaimList& list
 
 std::vector<Claim> flight_claims(const PaperSource& source, IkMode mode) {
   ClaimList list(kSection, mode);
-  target_claims(source, mode, list);
+  for (const Wanted& wanted : kWanted) target_claims(source, wanted, mode, list);
+  band_claims(source, mode, list);
   file_claims(source, mode, list);
   threshold_claims(source, mode, list);
   ambiguity_claims(source, mode, list);

@@ -50,6 +50,16 @@ FlightFigures flight_figures(const Walk& walk, Side side) {
   return {sum.ticks / n, sum.peak_m / n, sum.reach_m / n, sum.clearance_m / n, sum.step_m / n};
 }
 
+double least_hips_speed(const Walk& walk) {
+  double slowest = 1e9;
+  for (std::size_t k = 1; k < walk.samples.size(); ++k) {
+    if (static_cast<double>(k) < kSteady_s * kPaperRate_hz) continue;
+    const WalkSample &a = walk.samples[k - 1], &b = walk.samples[k];
+    slowest = std::min(slowest, forward_m(b.frame, b.hips_m - a.hips_m) * kPaperRate_hz);
+  }
+  return slowest;
+}
+
 }  // namespace
 
 std::vector<Claim> limp_claims(const LimpWalks& walks, IkMode mode) {
@@ -84,13 +94,8 @@ std::vector<Claim> limp_claims(const LimpWalks& walks, IkMode mode) {
       right.reach_m / left.reach_m, more_than(1.01),
       "the paper: the right trail \"travels further per stride\"; in a straight walk both feet "
       "cover left + right step in every cycle, only the heel's lift-off place may differ");
-  double slowest = 1e9;
-  for (std::size_t k = 1; k < walks.limp->samples.size(); ++k) {
-    if (static_cast<double>(k) < kSteady_s * kPaperRate_hz) continue;
-    const WalkSample &a = walks.limp->samples[k - 1], &b = walks.limp->samples[k];
-    slowest = std::min(slowest, forward_m(b.frame, b.hips_m - a.hips_m) * kPaperRate_hz);
-  }
-  list.add("19 least forward speed of the limping hips, m/s", slowest, more_than(0.0));
+  list.add("19 least forward speed of the limping hips, m/s", least_hips_speed(*walks.limp),
+           more_than(0.0));
   return list.take();
 }
 

@@ -76,6 +76,13 @@ Circle circle_of(const Walk& walk) {
   return {std::fabs(radius * rate / speed - 1.0), gap};
 }
 
+void circle_claims(const Walk& walk, ClaimList& list) {
+  const Circle circle = circle_of(walk);
+  list.add("24 radius of a circle off speed over turn rate, %", 100.0 * circle.radius_error,
+           at_most(2.0), "path of the hips");
+  list.add("24 circle closes within, mm", 1e3 * circle.closes_m, at_most(50.0));
+}
+
 }  // namespace
 
 std::vector<Claim> turn_claims(const Study& study, IkMode mode) {
@@ -113,10 +120,7 @@ std::vector<Claim> turn_claims(const Study& study, IkMode mode) {
     list.add_untested("24 mirrored stick off the mirrored walk, m", at_most(1e-6),
                       "a captured walk is not symmetric");
   }
-  const Circle circle = circle_of(turning(model, mode, kHalf, 20.0));
-  list.add("24 radius of a circle off speed over turn rate, %", 100.0 * circle.radius_error,
-           at_most(2.0), "path of the hips");
-  list.add("24 circle closes within, mm", 1e3 * circle.closes_m, at_most(50.0));
+  circle_claims(turning(model, mode, kHalf, 20.0), list);
   return list.take();
 }
 

@@ -11,6 +11,7 @@ namespace gaitpad {
 namespace {
 
 constexpr int kWidth = 1500, kHeight = 1070;
+constexpr double kInner = kWidth - 2.0 * kPageMargin;
 constexpr int kPoses = 7;  // of a stride
 constexpr double kPanelTop = 104.0, kPanelHeight = 280.0, kPlotTop = 456.0, kPlotHeight = 300.0,
                  kTableTop = 842.0, kTableHeight = 190.0;
@@ -282,11 +283,11 @@ std::string figure_csv(const Figure5& f, const std::vector<DataPose>& data) {
   return csv_text(columns);
 }
 
-Figure drawn(const Study& study, const Figure5& f) {
+Page page_of(const Study& study, const Figure5& f) {
   const std::string mode = f.mode == IkMode::paper
                                ? "paper mode: eq. (5) to the letter, raw weights, no joint limits"
                                : "robust mode";
-  Page page = blank_page(
+  return blank_page(
       kWidth, kHeight,
       f.is_limp ? "Figure 5b: an injured left leg, and where it is injured"
                 : "Figure 5a: one motion, three characters by their weights",
@@ -295,35 +296,45 @@ Figure drawn(const Study& study, const Figure5& f) {
           f.is_limp ? "Left stride: height x 0.5, length x 0.5, speed x 1.3. Weights on the "
                       "left leg: green hip 0.2, blue knee 0.8."
                     : "Weights: red all 1, green hips 0.2, blue knees 0.8."));
-  cairo_t* cr = page.cr.get();
-  const std::vector<DataPose> data = data_stride(study, f);
-  const double width = (kWidth - 2.0 * kPageMargin) / 4.0;
+}
+
+void draw_panels(cairo_t* cr, const GaitCycle& cycle, const Figure5& f,
+                 const std::vector<DataPose>& data) {
   std::vector<Panel> panels;
   for (const Character3& c : f.characters) panels.push_back(panel_of(f, c));
   panels.push_back(panel_of_data(data));
+  const double width = kInner / static_cast<double>(panels.size());
   Box box{kPageMargin, kPanelTop, width - 16.0, kPanelHeight};
   const double scale = common_scale(panels, box);
   for (const Panel& panel : panels) {
-    draw_panel(cr, study.source().cycle, panel, box, scale);
+    draw_panel(cr, cycle, panel, box, scale);
     box.x += width;
   }
+}
+
+std::vector<LegendEntry> legend_of(const Figure5& f) {
+  using Mark = LegendEntry::Mark;
   std::vector<LegendEntry> legend;
-  for (const Character3& c : f.characters) {
-    legend.push_back({LegendEntry::Mark::line, c.colour, c.name});
-  }
-  legend.push_back({LegendEntry::Mark::dashed, paper_colour::kData, "original data"});
-  legend.push_back({LegendEntry::Mark::line, colour::kInk, "trail of the right heel"});
-  legend.push_back(
-      {LegendEntry::Mark::dashed, colour::kInk, "trail of the left heel (left leg paler)"});
-  draw_legend(cr, {kPageMargin, kPanelTop + kPanelHeight + 14.0, kWidth - 2.0 * kPageMargin, 24.0},
-              legend);
-  const double plot = (kWidth - 2.0 * kPageMargin) / 3.0;
+  for (const Character3& c : f.characters) legend.push_back({Mark::line, c.colour, c.name});
+  legend.push_back({Mark::dashed, paper_colour::kData, "original data"});
+  legend.push_back({Mark::line, colour::kInk, "trail of the right heel"});
+  legend.push_back({Mark::dashed, colour::kInk, "trail of the left heel (left leg paler)"});
+  return legend;
+}
+
+Figure drawn(const Study& study, const Figure5& f) {
+  Page page = page_of(study, f);
+  cairo_t* cr = page.cr.get();
+  const std::vector<DataPose> data = data_stride(study, f);
+  draw_panels(cr, study.source().cycle, f, data);
+  draw_legend(cr, {kPageMargin, kPanelTop + kPanelHeight + 14.0, kInner, 24.0}, legend_of(f));
+  const double plot = kInner / 3.0;
   for (const LegJoint joint : {LegJoint::hip, LegJoint::knee, LegJoint::ankle}) {
     draw_joint(cr, f, data, joint,
                {kPageMargin + 52.0 + plot * static_cast<double>(joint), kPlotTop, plot - 66.0,
                 kPlotHeight});
   }
-  draw_table(cr, {kPageMargin, kTableTop, kWidth - 2.0 * kPageMargin, kTableHeight}, table_of(f));
+  draw_table(cr, {kPageMargin, kTableTop, kInner, kTableHeight}, table_of(f));
   return {f.name, std::move(page.surface), figure_csv(f, data)};
 }
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "animation/terrain_file.h"
 #include "animation/terrain_judge.h"
 #include "motion/load.h"
 
@@ -14,51 +15,13 @@ using namespace gaitpad;
 
 namespace {
 
-Terrain course() {
-  Terrain t;
-  const auto add = [&t](const SectionShape& s) {
-    if (auto e = add_section(t, s)) {
-      fmt::print(stderr, "{}\n", e->message);
-      std::exit(1);
-    }
-  };
-  const std::string kind = getenv("COURSE") ? getenv("COURSE") : "course";
-  add(FlatSection{1.5});
-  if (kind == "up") {
-    add(SlopeSection{4.0, 0.15, 0.5});
-    add(FlatSection{1});
-    return t;
+Terrain course(const std::string& name) {
+  auto terrain = load_terrain(fmt::format("{}/config/terrain/{}.toml", GAITPAD_SOURCE_DIR, name));
+  if (!terrain) {
+    fmt::print(stderr, "{}\n", terrain.error().message);
+    std::exit(1);
   }
-  if (kind == "stairs") {
-    add(StairsSection{0.17, 0.28, 6});
-    add(FlatSection{1});
-    return t;
-  }
-  if (kind == "down") {
-    add(StairsSection{-0.17, 0.28, 6});
-    add(FlatSection{1});
-    return t;
-  }
-  if (kind == "rough") {
-    add(rough_section(5.0, 0.03, 2.0, 1.5, 1));
-    add(FlatSection{1});
-    return t;
-  }
-  if (kind == "flat") {
-    add(FlatSection{5});
-    return t;
-  }
-  add(SlopeSection{3.0, 0.15, 0.5});
-  add(FlatSection{1.0});
-  add(StairsSection{0.17, 0.28, 5});
-  add(FlatSection{1.0});
-  add(StairsSection{-0.17, 0.28, 5});
-  add(FlatSection{1.0});
-  add(SlopeSection{3.0, -0.15, 0.5});
-  add(FlatSection{0.5});
-  add(rough_section(4.0, 0.03, 2.0, 1.5, 1));
-  add(FlatSection{1.5});
-  return t;
+  return *terrain;
 }
 
 Style styled(const char* name) {
@@ -73,19 +36,19 @@ Style styled(const char* name) {
   return *loaded;
 }
 
-double sole_m(const WalkModel& m) {
-  double longest = 0;
-  for (const LegBuild& leg : m.leg) {
-    const vec3 v = leg.tip_m - leg.model.heel_m;
-    longest = std::max(longest, std::abs(v.z) + 2.0 * std::abs(leg.side.z) * leg.half_width_m);
+// As a session does it: where a sole does not lie on the shortest tread, the ground grows.
+double terrain_scale(const Terrain& terrain, const WalkModel& model) {
+  double scale = 1.0;
+  for (const LegBuild& leg : model.leg) {
+    const vec3 sole = leg.tip_m - leg.model.heel_m;
+    const double needed = glm::length(vec2(sole.x, sole.z)) + 0.02, tread = least_tread_m(terrain);
+    if (needed > tread) scale = std::max({scale, model.leg_length_m / kReferenceLeg_m, needed / tread});
   }
-  return longest;
+  return scale;
 }
 
-TerrainWorst walk(WalkModel& model, double ratio, double stick_y, const Style& style, FILE* trace) {
-  static const Terrain kCourse = course();
-  const bool scale = sole_m(model) > least_tread_m(kCourse);
-  model.terrain = std::make_shared<const Terrain>(scale ? scaled(kCourse, ratio) : kCourse);
+TerrainWorst walk(const Terrain& ground, WalkModel& model, double stick_y, const Style& style, FILE* trace) {
+  model.terrain = std::make_shared<const Terrain>(scaled(ground, terrain_scale(ground, model)));
   const double goal = length_m(*model.terrain) + 1.0;
   const GaitLimits limits = gait_limits(model.leg_length_m);
   Pose pose;
@@ -142,6 +105,7 @@ int main(int argc, char** argv) {
   std::vector<const char*> styles = {"even",      "limp_left",  "limp_left_hip", "limp_left_knee",
                                      "stiff_hip", "stiff_knee", "tired"};
   FILE* trace = nullptr;
+  std::string terrain = "course";
   for (int i = 1; i < argc; ++i) {
     const std::string a = argv[i];
     if (a == "--even")
@@ -152,11 +116,13 @@ int main(int argc, char** argv) {
       sticks = {std::atof(argv[++i])};
     else if (a == "--style")
       styles = {argv[++i]};
+    else if (a == "--terrain") terrain = argv[++i];
     else if (a == "--trace")
       trace = fopen(argv[++i], "w");
     else
       motions.push_back(a);
   }
+  const Terrain ground = course(terrain);
   if (motions.empty()) motions = {"procedural"};
   fmt::print(
       "{:12} {:>4} {:>4} {:14} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>5} {:>5} {:>3} {:>3} {:>6} "
@@ -180,7 +146,7 @@ int main(int argc, char** argv) {
       auto model = walk_model(*cycle, c);
       for (double y : sticks) {
         for (const char* style : styles) {
-          const TerrainWorst w = walk(*model, ratio, y, styled(style), trace);
+          const TerrainWorst w = walk(ground, *model, y, styled(style), trace);
           fmt::print(
               "{:12} {:4} {:4} {:14} {:6.2f} {:6.3f} {:6.2f} {:6.1f} {:6.3f} {:6.2f} {:5.1f} "
               "{:5.1f} {:3} {:3} {:6.2f} h{} s{} {:.2f} j{} {} {:.2f}\n",

@@ -11,10 +11,10 @@ namespace {
 
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
-constexpr double kRoomBeside_m = 0.005, kMostShift_m = .22, kRiser_m = 0.01;
+constexpr double kRoomBeside_m = 0.005, kMostShift_m = .25, kRiser_m = 0.01;
 // The outer knot over its neighbour: the less, the gentler the ends.
 constexpr std::array<double, 3> kFirstKnots = {0.25, 0.4, 0.6};
-constexpr double kEasyShift_m = .06;
+constexpr double kEasyShift_m = .2;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;
 constexpr double kReplan_m = 0.005;  // of the landing

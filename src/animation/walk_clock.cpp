@@ -11,7 +11,7 @@ constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kShortRoll = 0.085, kBriskRoll = 0.11, kLongRoll = 0.20;
 // Steps up and down take longer: 100 a minute on stairs where 125 do on level ground.
-constexpr double kSlowerOnStairs = 1.3, kSlowestRise = 0.4;
+constexpr double kSlowerOnStairs = 1.6, kSlowestRise = 0.4;
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 

@@ -13,7 +13,7 @@ constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
 constexpr double kRoomBeside_m = 0.005, kMostShift_m = .25, kRiser_m = 0.01;
 // The outer knot over its neighbour: the less, the gentler the ends.
-constexpr std::array<double, 3> kFirstKnots = {0.25, 0.4, 0.6};
+constexpr std::array<double, 3> kFirstKnots = {0.2,0.3,0.45};
 constexpr double kEasyShift_m = .2;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;

@@ -11,7 +11,7 @@ constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kShortRoll = 0.085, kBriskRoll = 0.11, kLongRoll = 0.20;
 // Steps up and down take longer: 100 a minute on stairs where 125 do on level ground.
-constexpr double kSlowerOnStairs = 1.6, kSlowestRise = 0.4;
+constexpr double kSlowerOnStairs = 1.6, kSlowestRise = 0.4, kSteepRise = 0.15;
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 
@@ -53,10 +53,18 @@ void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept 
   state.stage_ticks = ticks;
 }
 
+// On stairs a step takes longer, and a foot that is quicker than the other one is it no more.
+double slowness(const WalkState& state, Side swing) noexcept {
+  const double rise = std::min(state.landing.next_rise, kSlowestRise);
+  if (rise == 0.0) return 1.0;
+  const double quicker = std::max(1.0, state.time_s[other(swing)] / state.time_s[swing]);
+  return (1.0 + kSlowerOnStairs * rise) * mix(1.0, quicker, smoothstep(0.0, kSteepRise, rise));
+}
+
 // A step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   state.last_step_ticks = state.roll_ticks + state.flight_ticks;
-  state.slowness = 1.0 + kSlowerOnStairs * std::min(state.landing.next_rise, kSlowestRise);
+  state.slowness = slowness(state, other(rolling));
   state.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
   state.flight_ticks = stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
   state.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];

@@ -93,8 +93,8 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
     const double begin = model.share[side == kRightSide ? 0 : 2];
     p = (own_phase(model, state, side) - begin) / (model.leg[side].toe_off - begin);
   }
-  // Quick steps leave less time to lag behind and catch up.
-  const double calm = std::min(1.0, state.step_time_s.x / kUnhurriedStep_s);
+  // Quick steps leave less time to lag behind and catch up, stairs less room.
+  const double calm = std::min(1.0, state.step_time_s.x / kUnhurriedStep_s) * state.ground_share.x;
   return state.amplitude.x * state.amplitude.x * calm * std::sqrt(calm) * smoothstep(0.0, 0.25, p) *
          (1.0 - smoothstep(0.55, 0.95, p));
 }

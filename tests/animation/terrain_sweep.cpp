@@ -58,7 +58,7 @@ TerrainWorst walk(const Terrain& ground, WalkModel& model, double stick_y, const
   stick.left = vec2(0.0, stick_y);
   const GaitParams go = gait_params(stick, style, limits),
                    stop = gait_params(Stick{}, style, limits);
-  for (int k = 0, rest = 0; k < 240 * 120 && rest < 400; ++k) {
+  for (int k = 0, rest = 0; k < 240 * 240 && rest < 400; ++k) {
     if (pose.root_m.z > goal) ++rest;
     advance(model, rest ? stop : go, IkMode::robust, 1.0 / 240, state, pose);
     judge.see(state, pose);

@@ -13,8 +13,8 @@ constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
 constexpr double kRoomBeside_m = 0.005, kMostShift_m = .25, kRiser_m = 0.01;
 // The outer knot over its neighbour: the less, the gentler the ends.
-constexpr std::array<double, 3> kFirstKnots = {0.2,0.3,0.45};
-constexpr double kEasyShift_m = .2;
+constexpr std::array<double, 4> kFirstKnots = {0.2, 0.3, 0.45, 0.7};
+constexpr double kLack_m = 0.01, kEasyShift_m = .2;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;
 constexpr double kReplan_m = 0.005;  // of the landing
@@ -80,6 +80,16 @@ FlightSpline wide_envelope(const Wanted& wanted, double most) noexcept {
   }
   for (double& knot : knots) knot = std::clamp(knot * std::min(gain, kMostGain), -most, most);
   return knots;
+}
+
+// How much of what is wanted a spline does not give.
+double lack_of(const Wanted& wanted, const FlightSpline& knots) noexcept {
+  double most = 0.0;
+  for (int i = 1; i < kProbes; ++i) {
+    const double got = spline_at(knots, 0.0, static_cast<double>(i) / kProbes);
+    if (wanted[i] != 0.0) most = std::max(most, wanted[i] > 0.0 ? wanted[i] - got : got - wanted[i]);
+  }
+  return most;
 }
 
 using Sole = std::array<vec3, 5>;  // heel and tip on both sides, ball
@@ -163,7 +173,9 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
       farthest = std::max(farthest, std::abs(beside[i]));
     }
     room.shift_m = wide_envelope(beside, kMostShift_m * model.size);
-    if (farthest < kEasyShift_m * model.size) break;
+    if (farthest < kEasyShift_m * model.size &&
+        lack_of(beside, room.shift_m) < kLack_m * model.size)
+      break;
   }
   if (!begins) return;
   for (int k = 0; k < kFlightKnots - 1; ++k) {

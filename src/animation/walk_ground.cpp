@@ -148,8 +148,10 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
   state.landing.next_m = glm::dot(place - step.from_m, step.forward);
   state.landing.next_base_m = ground_at(terrain, place.x, place.z + middle).height_m;
-  state.landing.next_rise =
-      std::abs(state.landing.next_base_m - state.landing_m.y) / tick.model.leg_length_m;
+  // Of the foot that lands, or of the whole way of the one that flies, whichever is the steeper.
+  const double step_m = std::abs(state.landing.next_base_m - state.landing_m.y),
+               way_m = std::abs(state.landing.next_base_m - landing.from_m.y);
+  state.landing.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
 }
 
 // What a slope between here and there leaves of a step.

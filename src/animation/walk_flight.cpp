@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
-constexpr double kRoomBeside_m = 0.005, kMostShift_m = .25, kRiser_m = 0.01;
+constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = .25, kRiser_m = 0.01;
 constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.5;
 constexpr int kTries = 4;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
@@ -121,8 +121,7 @@ double base_under(const FlightPoint& point, const vec3& p) noexcept {
 // How far to move along z so that no part of the sole is beyond a riser at an end of `piece` that
 // leads up from `height_m`.
 double way_back(const Terrain& terrain, const Sole& sole, const Stretch& piece, double height_m,
-                double size) noexcept {
-  const double room = kRoomBeside_m * size;
+                double room, double size) noexcept {
   double shift = 0.0;
   for (const vec3& p : sole) {
     const bool ahead_up =
@@ -168,6 +167,10 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   above.back() = climb(state, foot);
   const Stretch begin = piece_at(terrain, foot.plane.place_m.z),
                 end = piece_at(terrain, state.landing_m.z);
+  const double end_room = kRoomBeside_m * model.size;
+  double begin_room = kRoomAhead_m * model.size;  // as the pitch may still come out otherwise
+  for (const vec3& p : sole.front())
+    begin_room = std::min({begin_room, 0.7 * (begin.to_m - p.z), 0.7 * (p.z - begin.from_m)});
   // As gently as it does.
   Ends ends;
   for (int tries = 0; tries < kTries; ++tries) {
@@ -176,9 +179,10 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
       const double u = static_cast<double>(i) / kProbes;
       beside[i] = 0.0;
       if (above[i] <= spline_at(room.raise_m, above.back(), u)) continue;
-      beside[i] = 2 * i < kProbes
-                      ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, model.size)
-                      : way_back(terrain, sole[i], end, state.landing_m.y, model.size);
+      beside[i] =
+          2 * i < kProbes
+              ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, begin_room, model.size)
+              : way_back(terrain, sole[i], end, state.landing_m.y, end_room, model.size);
     }
     room.shift_m = wide_envelope(beside, kMostShift_m * model.size);
     if (!sharpen(beside, room.shift_m, model.size, ends)) break;

@@ -12,6 +12,7 @@ constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
 constexpr double kFreeReach = 0.9985, kSoftReach_m = 0.006;
 constexpr double kLeak_per_s = 4.0;
 constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
+constexpr double kFolding = 70.0 * kDegree, kFolded = 115.0 * kDegree;  // knee
 constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
@@ -244,7 +245,9 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
         solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   }
   state.even_rad[side] = leg_angles(angles);
-  const double share = weight_share(tick.model, state, side);
+  double share = weight_share(tick.model, state, side);
+  // A leg that a high riser folds has nowhere else to go.
+  if (!tick.flat) share *= 1.0 - smoothstep(kFolding, kFolded, angles[kKneeX]);
   if (share > 0.0 && !even(state, side)) stiffen(tick, side, pelvis, share, state, angles, solve);
   state.angles_rad[side] = leg_angles(angles);
 }

@@ -69,7 +69,7 @@ class Hiker {
     }
   }
   void walk_to(double z_m, double y, const StyleValues& style = {}) {
-    for (int k = 0; k < 600 && state_.hips_m.z < z_m; ++k) walk(0.0, y, 20, style);
+    for (int k = 0; k < 1500 && state_.hips_m.z < z_m; ++k) walk(0.0, y, 20, style);
   }
   const TerrainWorst& worst() const { return judge_.worst; }
   const WalkState& state() const { return state_; }
@@ -230,12 +230,7 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
     for (int k = 0; k < 60; ++k)
       hiker.walk(chance() % 2 ? 0.0 : in(-0.6, 0.6), in(-0.3, 1.0),
                  40 + static_cast<int>(chance() % 300));
-    EXPECT_LT(hiker.worst().height_mm, 5.0);
-    EXPECT_LT(hiker.worst().slide_mm, 1.0);
-    EXPECT_EQ(hiker.worst().failures, 0);
-    RecordProperty("sunk_um", static_cast<int>(1e3 * hiker.worst().sunk_mm));
-    RecordProperty("overhang_um", static_cast<int>(1e3 * hiker.worst().overhang_mm));
-    RecordProperty("jump_mdeg", static_cast<int>(1e3 * hiker.worst().jump_deg));
+    expect_sound(hiker.worst(), "random sticks, leg " + std::to_string(ratio));
   }
 }
 

@@ -10,9 +10,9 @@ constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kShortRoll = 0.085, kBriskRoll = 0.11, kLongRoll = 0.20;
-// Rises are in legs. A riser of 17 cm takes an adult at least 0.8 s.
-constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.3, kSteepRise = 0.15;
-constexpr double kStairStep_s = 0.8, kStairRise = 0.2;
+// Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
+constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
+constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 

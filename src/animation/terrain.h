@@ -82,7 +82,7 @@ struct TerrainZone {
   double left_m = std::numeric_limits<double>::infinity();
   double right_m = -std::numeric_limits<double>::infinity();  // along x: right_m <= x <= left_m
   std::string style;
-  int line = 0;  // in its file
+  std::string where;  // "course.toml:12", for sentences
 };
 
 // Immutable after load. World frame: characters start at z = 0 and walk along +z.

@@ -1,5 +1,7 @@
 #include "animation/terrain_file.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <utility>
 
@@ -117,7 +119,7 @@ void read_section(TomlTable& section, const std::filesystem::path& folder, Terra
   if (const auto problem = add_section(terrain, shape)) section.reject("kind", problem->message);
 }
 
-TerrainZone zone_of(TomlTable& table) {
+TerrainZone zone_of(TomlTable& table, const std::string& path) {
   TerrainZone zone;
   for (const char* key : {"from_m", "to_m", "style"}) table.require(key);
   const auto read = [&](const char* key, double& value) {
@@ -133,7 +135,7 @@ TerrainZone zone_of(TomlTable& table) {
     table.reject("right_m", "the zone's right is left of its left (x grows to the left)");
   zone.style = table.string("style").value_or("");
   if (zone.style.empty()) table.reject("style", "the style's name is empty");
-  zone.line = table.line("style");
+  zone.where = fmt::format("{}:{}", path, table.line("style"));
   return zone;
 }
 
@@ -146,7 +148,8 @@ Result<Terrain> terrain_of(Result<TomlFile> file, const std::string& path) {
   if (terrain.name.empty()) root.reject("name", "the name is empty");
   for (TomlTable& section : root.tables("section", kMaxSections))
     read_section(section, place.parent_path(), terrain);
-  for (TomlTable& zone : root.tables("zone", kMaxZones)) terrain.zones.push_back(zone_of(zone));
+  for (TomlTable& zone : root.tables("zone", kMaxZones))
+    terrain.zones.push_back(zone_of(zone, path));
   if (auto problem = file->problem()) return *problem;
   return terrain;
 }

@@ -43,7 +43,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
                 Pose& pose) noexcept {
   const GaitCycle& cycle = model.cycle;
   pose.joint_count = static_cast<int>(cycle.skeleton.joints.size());
-  sample_local(cycle, state.phase, pose);
+  sample_local(cycle, data_phase(model, state), pose);
   swing_arms(model, state, pose);
   const double a = presence(state);
   if (a < 1.0) {

@@ -27,7 +27,7 @@ struct WalkFrame {
   double turn_rate_rad_s = 0.0;
   double speed_m_s = 0.0;  // (left + right step) / cycle time of the running cycle; 0 when idle
   vec3 pelvis_m{0.0};
-  std::array<double, 2> stride_m{};  // length in force for that foot's step
+  std::array<double, 2> stride_m{};  // length in force for that foot's step; backwards negative
   std::array<bool, 2> heel_planted{true, true}, toe_planted{true, true};
   std::array<vec3, 2> heel_m{}, toe_m{};
   std::array<int, 2> ik_iterations{};
@@ -109,6 +109,7 @@ struct WalkState {
   int last_step_ticks = 0;  // of the step before
   bool closing = false;     // the running step brings the feet together
   bool started = false;
+  bool backward = false;  // the running walk's steps lead backwards
   double slowness = 1.0;  // of the running step: times are as much longer on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began

@@ -82,6 +82,7 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
   const Side first = tick.params.turn_rate_rad_s < 0.0 ? kRightSide : kLeftSide;
   state.started = true;
   state.closing = false;
+  state.backward = tick.params.backward;
   state.flight_ticks = 0;
   state.roll_ticks = 0;
   begin_step(tick, other(first), state);
@@ -101,7 +102,7 @@ void begin_idle(WalkState& state) noexcept {
 void land(const Tick& tick, WalkState& state) noexcept {
   const Side landed = state.swing;
   const bool closed = state.closing;
-  state.closing = !tick.params.walking;
+  state.closing = !walks_on(tick.params, state);
   if (closed && state.closing) {  // feet together: the toe comes down, then rest
     const int ticks = state.roll_ticks;
     begin_stage(Stage::roll, landed, std::max(ticks, 12), state);
@@ -148,17 +149,28 @@ double own_phase(const WalkModel& model, const WalkState& state, Side side) noex
   return p - std::floor(p);
 }
 
+double data_phase(const WalkModel& model, const WalkState& state) noexcept {
+  if (!state.backward) return state.phase;
+  return model.share[0] + model.share[1] + model.share[2] - state.phase;
+}
+
+bool walks_on(const GaitParams& params, const WalkState& state) noexcept {
+  const bool on_the_spot = params.stride[0].length_m == 0.0 && params.stride[1].length_m == 0.0;
+  return params.walking && (!state.started || on_the_spot || params.backward == state.backward);
+}
+
 void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
-  const bool walking = params.walking && !state.closing;
-  if (state.stage == Stage::idle && params.walking && presence(state) < kStillPresence) {
+  const bool walking = walks_on(params, state) && !state.closing;
+  const bool stood = state.stage == Stage::idle && state.frame.stage == Stage::idle;
+  if (stood && params.walking && presence(state) < kStillPresence) {
     for (int side : {0, 1}) state.time_s[side] = params.stride[side].time_s;
     begin_walk(tick, state);
   }
   for (int side : {0, 1}) {
     const StrideParams& stride = params.stride[side];
-    if (params.walking) state.time_s[side] = stride.time_s;
+    if (walks_on(params, state)) state.time_s[side] = stride.time_s;
     state.length_m[side].advance(walking ? stride.length_m : 0.0, kStepSmoothing * scale, dt);
     state.flight_height[side].advance(stride.flight_height, kStepSmoothing * scale, dt);
     for (int j = 0; j < kLegDofs; ++j) {

@@ -16,9 +16,10 @@ constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
 constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
-constexpr double kLamePeak = 0.9;   // an able foot's peak lags behind its curve by as much
-constexpr double kLameFade = 0.15;  // of kLiftFade, for a foot that does not lift at all
-constexpr double kStopping = 0.6;   // of the flight: from here the heel comes to a stop
+constexpr double kLamePeak = 0.9;       // an able foot's peak lags behind its curve by as much
+constexpr double kLameFade = 0.15;      // of kLiftFade, for a foot that does not lift at all
+constexpr double kBackwardPitch = 0.6;  // of the data's: the foot reaches back, toe down
+constexpr double kStopping = 0.6;       // of the flight: from here the heel comes to a stop
 // A foot that goes down is lifted less: as much of it over a fall of this share of the leg.
 constexpr double kLiftDown = 0.4, kDown = 0.2;
 constexpr double kInPlace_m = 0.1;  // a way shorter than this is gone by time, not by place
@@ -37,6 +38,7 @@ double pitch_scale(const WalkModel& model, const WalkState& state, Side side) no
 }
 
 double support_pitch(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  if (state.backward) return 0.0;  // the front foot leaves the ground as a whole
   const double own = own_phase(model, state, side);
   const double height = std::min(1.0, state.flight_height[side].x);
   const double pitch =
@@ -47,6 +49,12 @@ double support_pitch(const WalkModel& model, const WalkState& state, Side side) 
 double flight_pitch(const WalkModel& model, const WalkState& state, Side side, double u) noexcept {
   const LegBuild& leg = model.leg[side];
   const double scale = pitch_scale(model, state, side);
+  if (state.backward) {
+    // It lands flat, the toe a moment ahead of the heel.
+    const double share = kBackwardPitch * scale * (1.0 - smoothstep(0.55, 1.0, u));
+    const double pitch = share * leg.pitch_rad.at(1.0 - u * (1.0 - leg.toe_off));
+    return soft_max(soft_min(pitch, kMaxPlannedPitch, kWidePitch), kMinPitch, kSoftPitch);
+  }
   const double own = leg.toe_off + u * (1.0 - leg.toe_off);
   const double at_strike = scale * leg.pitch_rad.at(1.0);
   const double wanted = -scale * asin(kToeUpAtStrike_m * model.size / leg.foot_m);
@@ -64,6 +72,25 @@ double lift_share(const WalkState& state, Side side) noexcept {
 double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noexcept {
   return state.turn_rate.x * heel_rise(model, state, side);
 }
+
+// The data's flight, or the same run back.
+struct FlightPath {
+  const FootFlight& data;
+  bool backward;
+  double progress(double u) const noexcept {
+    return backward ? 1.0 - data.progress.at(1.0 - u) : data.progress.at(u);
+  }
+  double start_slope() const noexcept {
+    return backward ? data.progress.end_slope() : data.progress.start_slope();
+  }
+  double end_slope() const noexcept {
+    return backward ? data.progress.start_slope() : data.progress.end_slope();
+  }
+  double height_m(double u) const noexcept { return data.height_m.at(backward ? 1.0 - u : u); }
+  double start_climb_m() const noexcept {
+    return backward ? 0.0 - data.height_m.end_slope() : data.height_m.start_slope();
+  }
+};
 
 // How much of the way from one plane's height to the other's is behind a flying foot: as much as of
 // its way over the ground (in place, by the time); nothing where a riser is between, see
@@ -91,24 +118,25 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   const LegBuild& leg = model.leg[side];
   const FootState& foot = state.foot[side];
   const vec3 way = state.landing_m - foot.lift_m;
-  const FlightCurve& s = leg.flight.progress;
+  const FlightPath path = {leg.flight, state.backward};
   // The data's heel still moves when it strikes, ours stops: the difference is made up at the end.
   const double end = std::max(0.0, (u - kStopping) / (1.0 - kStopping));
-  vec3 p = foot.lift_m + way * s.at(u) + (foot.lift_slope_m - way * s.start_slope()) * h10(u) -
-           way * (s.end_slope() * (1.0 - kStopping) * h11(end));
+  vec3 p = foot.lift_m + way * path.progress(u) +
+           (foot.lift_slope_m - way * path.start_slope()) * h10(u) -
+           way * (path.end_slope() * (1.0 - kStopping) * h11(end));
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
   const double begin_m = height_on(foot.plane, foot.lift_m), rise = state.landing_m.y - begin_m;
   const double k = mix(kLamePeak, 1.0, able) * state.flight_height[side].x *
                    std::min(1.1, 0.35 + 0.65 * full_pace(model, state)) *
                    mix(1.0, kLiftDown, smoothstep(0.0, kDown * model.leg_length_m, -rise));
-  const FlightCurve& h = leg.flight.height_m;
   const Ascent risen = ascent(model, foot, way);
   const double base_slope = rise * glm::dot(foot.lift_slope_m, risen.along_1_m);
   base_m = begin_m + rise * risen.at(p - foot.lift_m, u);
-  const Fade lift = {foot.lift_m.y - begin_m - k * h.at(0.0),
-                     foot.lift_slope_m.y - base_slope - k * h.start_slope(),
+  const Fade lift = {foot.lift_m.y - begin_m - k * path.height_m(0.0),
+                     foot.lift_slope_m.y - base_slope - k * path.start_climb_m(),
                      kLiftFade * lift_share(state, side)};
-  p.y = base_m + std::max(0.0, k * h.at(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
+  p.y =
+      base_m + std::max(0.0, k * path.height_m(u) + lift.at(u)) * (1.0 - smoothstep(0.65, 1.0, u));
   return p;
 }
 

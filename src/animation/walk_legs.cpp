@@ -20,9 +20,9 @@ constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 // The angles that the data show at this phase, fading to a stand.
 LegAngles reference(const WalkModel& model, const WalkState& state, Side side) noexcept {
   LegAngles angles;
-  const double shown = presence(state);
+  const double shown = presence(state), phase = data_phase(model, state);
   for (int j = 0; j < kLegDofs; ++j) {
-    angles[j] = shown * model.reference_rad[side][j].at(state.phase);
+    angles[j] = shown * model.reference_rad[side][j].at(phase);
   }
   angles[kKneeX] = std::max(angles[kKneeX], kLeastKnee);
   return angles;

@@ -30,6 +30,11 @@ double pace(const WalkModel& model, const WalkState& state, Side side) noexcept;
 // The same of the longer step: what a limp, which shortens one, leaves as it is.
 double full_pace(const WalkModel& model, const WalkState& state) noexcept;
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept;
+// Where the data are asked: walking backwards is walking forwards run back (Thorstensson 1986), so
+// that a foot lands where the data lift it.
+double data_phase(const WalkModel& model, const WalkState& state) noexcept;
+// The parameters ask for the walk that runs or may begin: standing lies between the directions.
+bool walks_on(const GaitParams& params, const WalkState& state) noexcept;
 
 // --- walk_ground.cpp: footholds ------------------------------------------------------------------
 double height_on(const FootPlane& plane, const vec3& place_m) noexcept;

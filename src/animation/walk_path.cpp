@@ -7,8 +7,9 @@ namespace {
 constexpr double kReach = 0.9985;  // of the leg: the longest it gets, knee 6 degrees
 constexpr double kEvenFront =
     0.46;  // of the step: front heel to hips where the data's lean is left
-constexpr double kLongDrop_m = 0.05;  // of the hips in steps much longer than the data's
-constexpr double kLameDrop_m = 0.1;   // of the hips for a foot that does not lift at all
+constexpr double kBackwardHips = 0.45;  // of a backward step: the weight follows the foot late
+constexpr double kLongDrop_m = 0.05;    // of the hips in steps much longer than the data's
+constexpr double kLameDrop_m = 0.1;     // of the hips for a foot that does not lift at all
 constexpr double kShortStep = 0.1, kLeastShare = 0.3;  // of the data's step; of the wanted one
 constexpr double kGroundSmoothing_s = 0.3;
 constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
@@ -43,6 +44,7 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
 // beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
 // Steps far longer than the data's take an even stance instead of the data's lean.
 double hips_share(const WalkModel& model, const WalkState& state) noexcept {
+  if (state.backward) return kBackwardHips;
   const double front = mix(model.step_front, kEvenFront, smoothstep(1.05, 1.5, state.pace.x));
   return ((1.0 - front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
 }
@@ -52,11 +54,12 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
   if (state.closing) return 0.0;
   const Side swing = step_foot(state);
   const double beta = hips_share(tick.model, state);
+  const bool goes_on = walks_on(tick.params, state);
   double now = step_length(state, swing), before = state.frame.stride_m[other(swing)],
-         next = tick.params.walking ? state.length_m[other(swing)].x : 0.0;
+         next = goes_on ? step_length(state, other(swing)) : 0.0;
   if (!tick.flat) {
     now = state.frame.stride_m[swing];
-    next = tick.params.walking ? state.landing.next_m : 0.0;
+    next = goes_on ? state.landing.next_m : 0.0;
   }
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
   const double next_s = state.last_step_ticks > 0 ? state.last_step_ticks * tick.dt_s : this_s;
@@ -95,7 +98,7 @@ double height_of_knee(const WalkModel& model, const WalkState& state, const Pelv
   if (state.foot[side].mode == FootMode::support) {
     set_pitch(model.leg[side], state.foot[side].planned_rad, foot, FootMode::support);
   }
-  const double data = model.reference_rad[side][kKneeX].at(state.phase);
+  const double data = model.reference_rad[side][kKneeX].at(data_phase(model, state));
   const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
   const double a = leg.thigh_m, b = leg.shank_m;
   const double cosine = sin_cos(kStandingKnee + bend).cos;
@@ -120,7 +123,8 @@ double left_load(const WalkState& state) noexcept {
 }  // namespace
 
 double step_length(const WalkState& state, Side side) noexcept {
-  return state.closing ? 0.0 : state.length_m[side].x;
+  if (state.closing) return 0.0;
+  return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
 }
 
 // Steps that the ground makes shorter roll and rise like short ones.
@@ -170,13 +174,13 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
 
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
   const double a = presence(state), r = std::clamp(state.pace.x, 0.0, 1.0);
+  const double phase = data_phase(model, state);
   const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
   Pelvis pelvis;
-  pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(state.phase)) +
-                      forward * (a * r * model.surge_m.at(state.phase));
-  const double yaw = a * r * state.sway.x * model.yaw_rad.at(state.phase);
-  const vec3 tilt(model.tilt[0].at(state.phase), model.tilt[1].at(state.phase),
-                  model.tilt[2].at(state.phase));
+  pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(phase)) +
+                      forward * (a * r * model.surge_m.at(phase));
+  const double yaw = a * r * state.sway.x * model.yaw_rad.at(phase);
+  const vec3 tilt(model.tilt[0].at(phase), model.tilt[1].at(phase), model.tilt[2].at(phase));
   pelvis.rotation = rotation_y(state.heading_rad + yaw) * from_rotation_vector(tilt * (a * r));
   return pelvis;
 }
@@ -187,7 +191,7 @@ double pelvis_height(const WalkModel& model, const WalkState& state,
   double y = load * height_of_knee(model, state, pelvis, kLeftSide) +
              (1.0 - load) * height_of_knee(model, state, pelvis, kRightSide);
   const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
-  y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(state.phase);
+  y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
   // Steps longer than the data's need lower hips, or the rear leg is too short for them.
   y -= kLongDrop_m * model.size * smoothstep(0.95, 1.4, r);
   // A lame foot hardly rises on its toe: the hips come down to it instead, around its lift-off.

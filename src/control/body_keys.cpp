@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <span>
 
+#include "base/math.h"
+
 namespace gaitpad {
 namespace {
 
@@ -34,9 +36,9 @@ constexpr BodyNumber kHeadNumbers[] = {
     {"yaw_deg", -90.0, 90.0, [](BodyParams& b, int) -> double& { return b.head.yaw_deg; }},
     {"pitch_deg", -60.0, 60.0, [](BodyParams& b, int) -> double& { return b.head.pitch_deg; }},
     {"look_at", 0.0, 1.0, [](BodyParams& b, int) -> double& { return b.head.look_at; }},
-    {"x_m", -1e3, 1e3, [](BodyParams& b, int) -> double& { return b.head.x_m; }},
-    {"y_m", -1e3, 1e3, [](BodyParams& b, int) -> double& { return b.head.y_m; }},
-    {"z_m", -1e3, 1e3, [](BodyParams& b, int) -> double& { return b.head.z_m; }},
+    {"x_m", -100.0, 100.0, [](BodyParams& b, int) -> double& { return b.head.x_m; }},
+    {"y_m", -100.0, 100.0, [](BodyParams& b, int) -> double& { return b.head.y_m; }},
+    {"z_m", -100.0, 100.0, [](BodyParams& b, int) -> double& { return b.head.z_m; }},
     {"lead", 0.0, 1.0, [](BodyParams& b, int) -> double& { return b.head.lead; }},
 };
 
@@ -226,6 +228,26 @@ bool set_body_value(BodyParams& body, std::string_view name, double value) noexc
   }
   body = changed;
   return true;
+}
+
+BodyParams mixed(const BodyParams& from, const BodyParams& to, double share) noexcept {
+  BodyParams values = from, end = to;
+  for (const BodyTable& entry : kTables) {
+    const bool is_single = entry.name == "spine" || entry.name == "head";
+    if (!is_single && entry.first == entry.last) continue;  // the tables of both sides have all
+    for (int side = entry.first; side <= entry.last; ++side) {
+      for (const BodyNumber& n : entry.numbers) {
+        double& value = n.at(values, side);
+        value = mix(value, n.at(end, side), share);
+      }
+      if (entry.weights_of == nullptr) continue;
+      const std::span<double> weights = entry.weights_of(values, side);
+      const std::span<double> goals = entry.weights_of(end, side);
+      for (std::size_t i = 0; i < weights.size(); ++i)
+        weights[i] = mix(weights[i], goals[i], share);
+    }
+  }
+  return values;
 }
 
 std::optional<double> body_value(const BodyParams& body, std::string_view name) noexcept {

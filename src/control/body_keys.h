@@ -28,4 +28,7 @@ bool set_body_value(BodyParams& body, std::string_view name, double value) noexc
 // Where several stand for it and differ: the first one's.
 std::optional<double> body_value(const BodyParams& body, std::string_view name) noexcept;
 
+// All values part of the way from one to the other: share 0 .. 1.
+BodyParams mixed(const BodyParams& from, const BodyParams& to, double share) noexcept;
+
 }  // namespace gaitpad

@@ -55,12 +55,17 @@ GaitLimits gait_limits(double leg_length_m) noexcept {
 
 GaitParams gait_params(const Stick& stick, const StyleValues& style,
                        const GaitLimits& limits) noexcept {
-  const double forward = std::max(finite_or_zero(stick.left.y), 0.0);
   const double sideways = finite_or_zero(stick.left.x);
-  const BaseStep step = base_step(forward, sideways, style.fatigue, limits);
+  const double ahead = finite_or_zero(stick.left.y);
+  const double back = std::max(0.0 - ahead - kBackwardSector * std::fabs(sideways), 0.0);
+  const double along = ahead > 0.0 ? ahead : kBackwardShare * back;
+  GaitLimits in_direction = limits;
+  if (back > 0.0) in_direction.max_step_m *= kBackwardStep;
+  const BaseStep step = base_step(along, sideways, style.fatigue, in_direction);
 
   GaitParams params;
-  params.walking = forward > 0.0 || sideways != 0.0;
+  params.walking = along > 0.0 || sideways != 0.0;
+  params.backward = back > 0.0;
   // 0 - x, not -x: neutral is +0, one bit pattern.
   params.turn_rate_rad_s = 0.0 - sideways * limits.max_turn_rate_rad_s;
   for (const Side side : {kLeftSide, kRightSide}) {

@@ -16,6 +16,13 @@ inline constexpr double kWalkRatio_m_min = 0.0058;  // metres per step a minute
 inline constexpr double kMaxStepTime_s = 1.1;       // slower walks shorten the step instead
 inline constexpr double kTurnInPlaceStepTime_s = 0.6;
 inline constexpr double kMaxTurnRate_rad_s = 1.0;
+// Backwards a walker goes at this share of its forward speed, in steps this much shorter than
+// forward ones at that speed.
+inline constexpr double kBackwardShare = 0.45;
+inline constexpr double kBackwardStep = 0.8;
+// Backward deflection counts beyond this share of the sideways one, 10 degrees behind the side: a
+// thumb that turns on the spot is not to step back and forth.
+inline constexpr double kBackwardSector = 0.176;
 inline constexpr double kFullFatigueLeaves = 0.4;  // of maximum speed and of maximum stride
 
 // What a character can do at full deflection.
@@ -35,7 +42,7 @@ GaitLimits gait_limits(double leg_length_m) noexcept;
 double vigour(double fatigue) noexcept;
 
 // Stateless: the walk smooths what changes between ticks. Only stick.left is read. Backward
-// deflection counts as none; sideways alone turns in place.
+// deflection walks backwards, sideways alone turns in place.
 GaitParams gait_params(const Stick& stick, const StyleValues& style,
                        const GaitLimits& limits) noexcept;
 

@@ -13,7 +13,7 @@ constexpr double kLongestStride = 1.3;
 constexpr double kQuickest = 0.5, kSlowest = 2.0;  // of the stick's shortest and longest step time
 
 constexpr std::array<GaitKeyInfo, kGaitKeys> kKeys = {{
-    {"speed_m_s", 0.0, kMostSpeed_m_s},
+    {"speed_m_s", -kMostSpeed_m_s, kMostSpeed_m_s},
     {"stride_left_m", 0.0, kMostStride_m},
     {"stride_right_m", 0.0, kMostStride_m},
     {"flight_left", 0.0, kMostFactor},
@@ -34,9 +34,12 @@ std::optional<double> given(const GaitOverrides& overrides, GaitKey key,
   return std::clamp(overrides.value[k], range.min, range.max);
 }
 
-// The forward deflection that gives this speed, or comes nearest to it.
-double deflection_of(double speed_m_s, double fatigue, const GaitLimits& limits) noexcept {
-  return std::min(1.0, speed_m_s / (limits.max_speed_m_s * vigour(fatigue)));
+// The forward deflection that gives this speed with that sideways one, or comes nearest to it.
+double deflection_of(double speed_m_s, double sideways, double fatigue,
+                     const GaitLimits& limits) noexcept {
+  const double share = speed_m_s / (limits.max_speed_m_s * vigour(fatigue));
+  if (!(share < 0.0)) return std::min(1.0, share);
+  return std::max(-1.0, share / kBackwardShare - kBackwardSector * std::fabs(sideways));
 }
 
 // Slow steps in a sharp turn would end beside the hips.
@@ -71,7 +74,9 @@ double value_of(GaitKey key, const GaitParams& params) noexcept {
   switch (key) {
     case GaitKey::speed_m_s: {
       const double cycle_s = left.time_s + right.time_s;
-      return params.walking && cycle_s > 0.0 ? (left.length_m + right.length_m) / cycle_s : 0.0;
+      if (!params.walking || !(cycle_s > 0.0)) return 0.0;
+      const double speed_m_s = (left.length_m + right.length_m) / cycle_s;
+      return params.backward ? 0.0 - speed_m_s : speed_m_s;
     }
     case GaitKey::stride_left_m:
       return left.length_m;
@@ -95,7 +100,8 @@ GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept {
   const GaitKeyInfo& info = info_of(key);
   switch (key) {
     case GaitKey::speed_m_s:
-      return {info.min, std::min(info.max, limits.max_speed_m_s)};
+      return {std::max(info.min, -kBackwardShare * limits.max_speed_m_s),
+              std::min(info.max, limits.max_speed_m_s)};
     case GaitKey::stride_left_m:
     case GaitKey::stride_right_m:
       return {info.min, std::min(info.max, kLongestStride * limits.max_step_m)};
@@ -113,19 +119,21 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitO
   const auto turn_rate_rad_s = given(overrides, GaitKey::turn_rate_rad_s, limits);
   Stick in_force = stick;  // as it would be pushed for what is given
   if (turn_rate_rad_s) in_force.left.x = 0.0 - *turn_rate_rad_s / limits.max_turn_rate_rad_s;
-  if (speed_m_s) in_force.left.y = deflection_of(*speed_m_s, style.fatigue, limits);
-  if (speed_m_s && !(in_force.left.y > 0.0)) in_force = Stick{};
+  if (speed_m_s)
+    in_force.left.y = deflection_of(*speed_m_s, in_force.left.x, style.fatigue, limits);
+  if (speed_m_s && *speed_m_s == 0.0) in_force = Stick{};
 
   GaitParams params = gait_params(in_force, style, limits);
   if (turn_rate_rad_s && params.walking) params.turn_rate_rad_s = *turn_rate_rad_s + 0.0;
-  const bool asks_for_strides = std::isfinite(in_force.left.y) && in_force.left.y > 0.0;
+  const bool asks_for_strides =
+      params.backward || (std::isfinite(in_force.left.y) && in_force.left.y > 0.0);
   for (const Side side : {kLeftSide, kRightSide}) {
     StrideParams& step = params.stride[side];
     if (asks_for_strides)
       step.length_m = given(overrides, kStrides[side], limits).value_or(step.length_m);
     step.flight_height = given(overrides, kFlights[side], limits).value_or(step.flight_height);
   }
-  if (speed_m_s && asks_for_strides) meet_speed(*speed_m_s, limits, params);
+  if (speed_m_s && asks_for_strides) meet_speed(std::fabs(*speed_m_s), limits, params);
   params.hip_sway = given(overrides, GaitKey::hip_sway, limits).value_or(params.hip_sway);
   params.hip_bounce = given(overrides, GaitKey::hip_bounce, limits).value_or(params.hip_bounce);
   return params;

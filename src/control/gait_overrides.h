@@ -11,7 +11,7 @@
 namespace gaitpad {
 
 enum class GaitKey : std::uint8_t {
-  speed_m_s,  // (left + right step) / cycle time
+  speed_m_s,  // (left + right step) / cycle time, backwards negative
   stride_left_m,
   stride_right_m,
   flight_left,  // factor on the flight's height

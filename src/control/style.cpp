@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <string_view>
 
+#include "base/math.h"
 #include "base/toml_file.h"
 #include "control/body_keys.h"
+#include "control/style_blend.h"
 
 namespace gaitpad {
 
@@ -22,6 +24,9 @@ constexpr StyleNumber kStyleNumbers[] = {
     {"fatigue", &StyleValues::fatigue, 0.0, 1.0},
     {"hip_sway", &StyleValues::hip_sway, 0.0, 3.0},
     {"hip_bounce", &StyleValues::hip_bounce, 0.0, 3.0},
+    {"blend_s", &StyleValues::blend_s, 0.0, 10.0},
+    {"fatigue_model.per_100_m", &StyleValues::fatigue_per_100_m, 0.0, 10.0},
+    {"fatigue_model.recovery_per_s", &StyleValues::fatigue_recovery_per_s, 0.0, 1.0},
 };
 
 struct LegNumber {
@@ -57,6 +62,14 @@ struct Legs {
 constexpr Legs kLegs[] = {{"legs", kLeftSide, kRightSide},
                           {"left_leg", kLeftSide, kLeftSide},
                           {"right_leg", kRightSide, kRightSide}};
+
+// Where a point stands in the name, what is before it is a table.
+std::optional<double> number_in(TomlTable root, const StyleNumber& n) {
+  const std::size_t point = n.name.find('.');
+  if (point == std::string_view::npos) return root.number(n.name, n.min, n.max);
+  auto table = root.table(n.name.substr(0, point));
+  return table ? table->number(n.name.substr(point + 1), n.min, n.max) : std::nullopt;
+}
 
 bool is_locked(const LegWeights& weights) noexcept {
   return std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0.0; });
@@ -181,7 +194,7 @@ Result<Style> load_style(const std::string& path) {
   Style style;
   style.name = root.string("name").value_or(std::filesystem::path(path).stem().string());
   for (const StyleNumber& n : kStyleNumbers)
-    style.*n.value = root.number(n.name, n.min, n.max).value_or(style.*n.value);
+    style.*n.value = number_in(root, n).value_or(style.*n.value);
   for (const Legs& legs : kLegs) {
     for (int side = legs.first; side <= legs.last; ++side) {
       if (auto leg = root.table(legs.name)) read_leg(*leg, style.stride[side], style.weight[side]);
@@ -208,6 +221,23 @@ std::string style_text(const Style& style) {
   }
   text += body_text(style.body);
   return text;
+}
+
+StyleValues mixed(const StyleValues& from, const StyleValues& to, double share) noexcept {
+  if (!(share < 1.0)) return to;
+  StyleValues values = from;
+  for (const StyleNumber& n : kStyleNumbers)
+    values.*n.value = mix(from.*n.value, to.*n.value, share);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    for (const LegNumber& n : kLegNumbers) {
+      values.stride[side].*n.value =
+          mix(from.stride[side].*n.value, to.stride[side].*n.value, share);
+    }
+    for (std::size_t d = 0; d < values.weight[side].size(); ++d)
+      values.weight[side][d] = mix(from.weight[side][d], to.weight[side][d], share);
+  }
+  values.body = mixed(from.body, to.body, share);
+  return values;
 }
 
 const std::vector<StyleKey>& style_keys() {

@@ -25,6 +25,8 @@ struct StyleValues {
   double hip_sway = 1.0;
   double hip_bounce = 1.0;
   double fatigue = 0.0;  // 0 fresh .. 1: linear on maximum speed and stride
+  double fatigue_per_100_m = 0.0, fatigue_recovery_per_s = 0.0;  // control/fatigue.h
+  double blend_s = 0.0;  // how long a change to this style or from it takes; control/style_blend.h
   BodyParams body;       // above the hips
   bool operator==(const StyleValues&) const = default;
 };

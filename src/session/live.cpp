@@ -52,6 +52,7 @@ struct LiveSession::Impl {
   LiveOptions options;
   Simulation simulation;
   Cast cast;
+  Script script;
   std::shared_ptr<KeyboardStick> keyboard;  // may be null
   std::unique_ptr<PadStream> pads;
   std::unique_ptr<Recording> recording;
@@ -79,8 +80,8 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 }
 
 void LiveSession::Impl::start_loop() {
-  loop = std::make_unique<LiveLoop>(LiveLoop::Options{options.rate_hz, options.rumble}, simulation,
-                                    *pads, recording.get());
+  loop = std::make_unique<LiveLoop>(LiveLoop::Options{options.rate_hz, options.rumble}, script,
+                                    simulation, *pads, recording.get());
   if (is_by_hand()) {
     time_policy = "by hand";
     loop->begin();
@@ -170,6 +171,8 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& optio
   config->pads = unknown_pads(kMaxPads);
   auto simulation = Simulation::create(*config);
   if (!simulation) return simulation.error();
+  auto script = script_for(*simulation, session.script);
+  if (!script) return script.error();
   auto files = load_pad_files(session.config_folders, session.map, session.calibration);
   if (!files) return files.error();
 
@@ -177,6 +180,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& optio
   Cast cast = cast_of(*simulation, *config);
   live->impl_ = std::make_unique<Impl>(options, std::move(*simulation), std::move(cast));
   Impl& impl = *live->impl_;
+  impl.script = std::move(*script);
   if (options.keyboard) impl.keyboard = std::make_shared<KeyboardStick>();
   auto pads = PadStream::start({std::move(*files), options.wish, impl.keyboard});
   if (!pads) return pads.error();

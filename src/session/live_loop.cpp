@@ -39,9 +39,10 @@ Rumble heel_beat(double speed_m_s) noexcept {
   return {strength, static_cast<std::uint16_t>(strength / 2)};
 }
 
-LiveLoop::LiveLoop(const Options& options, Simulation& simulation, PadStream& pads,
-                   Recording* recording)
+LiveLoop::LiveLoop(const Options& options, const Script& script, Simulation& simulation,
+                   PadStream& pads, Recording* recording)
     : options_(options),
+      script_(script),
       simulation_(simulation),
       pads_(pads),
       recording_(recording),
@@ -138,6 +139,7 @@ void LiveLoop::keep_time(std::int64_t now_ns) noexcept {
 }
 
 void LiveLoop::run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept {
+  follow_script(now_ns);
   const std::span<const Report> reports = reports_.take(now_ns);
   use(reports, now_ns);
   simulation_.step(reports);
@@ -148,6 +150,18 @@ void LiveLoop::run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept {
   ++tick_;
   sample(gaitpad::now_ns() - now_ns);
   ticks_.store(tick_, kRelaxed);
+}
+
+// Ahead of what else belongs to the tick, and recorded like it: a replay needs no script.
+void LiveLoop::follow_script(std::int64_t now_ns) noexcept {
+  for (; next_event_ < script_.events.size() &&
+         tick_of(script_.events[next_event_], options_.rate_hz) <= tick_;
+       ++next_event_) {
+    Report report = report_of(script_.events[next_event_]);
+    report.time_ns = now_ns;
+    if (recording_ != nullptr) recording_->add(tick_, report);
+    simulation_.take(report);
+  }
 }
 
 void LiveLoop::use(std::span<const Report> reports, std::int64_t now_ns) noexcept {

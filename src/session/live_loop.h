@@ -9,6 +9,7 @@
 #include "base/spsc_ring.h"
 #include "session/live.h"
 #include "session/recording.h"
+#include "session/script.h"
 #include "session/tick_clock.h"
 #include "session/tick_reports.h"
 #include "session/time_histogram.h"
@@ -25,7 +26,8 @@ class LiveLoop {
     bool rumble = true;
   };
   // All outlive the loop; `recording` may be null.
-  LiveLoop(const Options& options, Simulation& simulation, PadStream& pads, Recording* recording);
+  LiveLoop(const Options& options, const Script& script, Simulation& simulation, PadStream& pads,
+           Recording* recording);
 
   // One of two. Until stop(), on the calling thread: no heap, lock, file or driver from here on.
   void run() noexcept;
@@ -52,6 +54,7 @@ class LiveLoop {
   void look_at_pads(std::int64_t now_ns) noexcept;
   void keep_time(std::int64_t now_ns) noexcept;
   void run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept;
+  void follow_script(std::int64_t now_ns) noexcept;
   void use(std::span<const Report> reports, std::int64_t now_ns) noexcept;
   void count_wait(std::int64_t wait_ns) noexcept;
   void publish(std::int64_t shown_ns) noexcept;
@@ -60,6 +63,8 @@ class LiveLoop {
   void look_for_the_end(bool has_reports) noexcept;
 
   Options options_;
+  const Script& script_;
+  std::size_t next_event_ = 0;  // of the script
   Simulation& simulation_;
   PadStream& pads_;
   Recording* recording_;

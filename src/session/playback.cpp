@@ -131,10 +131,9 @@ Result<std::unique_ptr<Playback>> Playback::open(const SessionOptions& session,
                                                  std::optional<int> rate_hz, Damage damage) {
   auto prepared = prepared_trace(session, trace, rate_hz, damage);
   if (!prepared) return prepared.error();
-  auto start = TraceRun::begin(*prepared);
-  if (!start) return start.error();
+  TraceRun start = TraceRun::begin(*prepared);
   std::unique_ptr<Playback> playback(new Playback());
-  playback->impl_ = std::make_unique<Impl>(std::move(*prepared), std::move(*start));
+  playback->impl_ = std::make_unique<Impl>(std::move(*prepared), std::move(start));
   return playback;
 }
 

@@ -21,11 +21,12 @@ Result<int> written_fps(const ReplayOptions& options, int rate_hz) {
 }
 
 Result<std::vector<WalkExport>> opened_exports(std::optional<OutputFiles>& files,
-                                               const Simulation& simulation, int rate_hz, int fps) {
+                                               const Simulation& simulation,
+                                               const ExportFormat& format) {
   std::vector<WalkExport> exports;
   if (!files) return exports;
   for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
-    auto opened = WalkExport::open(*files, simulation.walkers()[i], i, rate_hz, fps);
+    auto opened = WalkExport::open(*files, simulation.walkers()[i], i, format);
     if (!opened) return opened.error();
     exports.push_back(std::move(*opened));
   }
@@ -61,26 +62,26 @@ Result<ReplayResult> replay(const ReplayOptions& options) {
   const int rate_hz = prepared->config.rate_hz;
   auto fps = written_fps(options, rate_hz);
   if (!fps) return fps.error();
-  auto run = TraceRun::begin(*prepared);
-  if (!run) return run.error();
-  const Simulation& simulation = run->simulation();
+  TraceRun run = TraceRun::begin(*prepared);
+  const Simulation& simulation = run.simulation();
   std::optional<OutputFiles> files;
   if (!options.out.empty()) {
     auto opened = OutputFiles::open(options.out);
     if (!opened) return opened.error();
     files.emplace(std::move(*opened));
   }
-  auto exports = opened_exports(files, simulation, rate_hz, *fps);
+  auto exports = opened_exports(files, simulation, {rate_hz, *fps, options.gltf});
   if (!exports) return exports.error();
 
-  run_to_end(*prepared, *run, *exports);
+  run_to_end(*prepared, run, *exports);
   ReplayResult result;
   for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
     const Walker& walker = simulation.walkers()[i];
     result.distance_m.push_back(walker.walked_m);
     result.summaries.push_back(
         run_summary(simulation, walker, rate_hz, prepared->trace.skipped_lines));
-    if (files) (*exports)[i].finish(result.summaries.back());
+    if (!files) continue;
+    if (auto problem = (*exports)[i].finish(result.summaries.back())) return *problem;
   }
   if (files) {
     if (auto problem = files->publish()) return *problem;

@@ -4,8 +4,11 @@
 
 #include <utility>
 
+#include "base/toml_file.h"
+#include "control/fatigue.h"
 #include "motion/cycle_retarget.h"
 #include "session/commands.h"
+#include "session/walker_style.h"
 
 namespace gaitpad {
 namespace {
@@ -71,9 +74,9 @@ bool give_back(std::span<Walker> walkers, std::string_view name) noexcept {
 }
 
 // Its style stays, and what is counted since the beginning.
-void restart(const Style& style, Walker& w) noexcept {
+void restart(std::span<const Style> styles, Walker& w) noexcept {
   const std::array<int, 2> steps = w.state.frame.steps;
-  w.values = style;
+  restart_style(w, styles);
   w.overrides = {};
   w.state = standing(*w.model, w.start_m, w.pose);
   w.state.frame.steps = steps;
@@ -104,13 +107,14 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   s.walkers_.reserve(config.walkers.size());
   auto models = s.models_of(config);
   if (!models) return models.error();
+  if (auto problem = s.find_zone_styles()) return *problem;
   for (std::size_t i = 0; i < models->size(); ++i) {
     const WalkerConfig& walker = config.walkers[i];
     Walker& w = s.walkers_.emplace_back();
     w.model = (*models)[i];
     w.limits = gait_limits(w.model->leg_length_m);
     w.style = walker.style;
-    w.values = s.styles()[walker.style];
+    restart_style(w, s.styles());
     const double right_m = kSpacing_m * static_cast<double>(s.walkers_.size() - 1);
     w.start_m = -right_m * kLeft;
     w.start_m.y = ground_at(*s.terrain_, w.start_m.x, w.start_m.z).height_m;
@@ -137,17 +141,31 @@ Result<std::vector<std::shared_ptr<const WalkModel>>> Simulation::models_of(
   return std::vector<std::shared_ptr<const WalkModel>>(models.begin(), models.end());
 }
 
+std::optional<Error> Simulation::find_zone_styles() {
+  std::vector<int> found;
+  for (const TerrainZone& zone : terrain_->zones) {
+    found.push_back(style_index(zone.style));
+    if (found.back() < 0)
+      return Error{fmt::format("{}: there is no style {}", zone.where, in_quotes(zone.style))};
+  }
+  zone_styles_ = std::make_shared<const std::vector<int>>(std::move(found));
+  return std::nullopt;
+}
+
 void Simulation::step(std::span<const Report> reports) noexcept {
   for (const Report& report : reports) take(report);
   stick_ = pads_.stick_of_tick();
   const int landings_before = landings(walkers_.front());
   for (Walker& w : walkers_) {
     w.before = w.pose;
-    w.params = gait_params(stick_, w.values, w.overrides, w.limits);
+    look_at_zones(w, *terrain_, *zone_styles_, styles());
+    w.params = gait_params(stick_, style_of_tick(w, dt_s_), w.overrides, w.limits);
     const vec3 before_m = w.state.hips_m;
     advance(*w.model, w.params, ik_, dt_s_, w.state, w.pose);
     const vec3 way_m = w.state.hips_m - before_m;
-    w.walked_m += glm::length(vec2(way_m.x, way_m.z));
+    const double walked_m = glm::length(vec2(way_m.x, way_m.z));
+    w.walked_m += walked_m;
+    w.tired = tired(w.tired, w.values, walked_m, w.state.frame.stage == Stage::idle, dt_s_);
     for (const bool failed : w.state.frame.ik_failed) w.ik_failures += failed;
     add_to_hash(w.pose);
   }
@@ -184,7 +202,7 @@ bool Simulation::obey(std::string_view text) noexcept {
     case Verb::mark:
       return true;
     case Verb::style:
-      return take_style(walkers, command->name);
+      return take_styles(walkers, command->name);
     case Verb::set:
       return set_values(walkers, command->name, command->value);
     case Verb::gait:
@@ -195,22 +213,24 @@ bool Simulation::obey(std::string_view text) noexcept {
       for (Walker& w : walkers) w.overrides = {};
       return true;
     case Verb::restart:
-      for (Walker& w : walkers) restart(styles()[w.style], w);
+      for (Walker& w : walkers) restart(styles(), w);
       return true;
   }
   return false;
 }
 
-bool Simulation::take_style(std::span<Walker> walkers, std::string_view name) noexcept {
+int Simulation::style_index(std::string_view name) const noexcept {
   for (std::size_t i = 0; i < styles().size(); ++i) {
-    if (styles()[i].name != name) continue;
-    for (Walker& w : walkers) {
-      w.style = static_cast<int>(i);
-      w.values = styles()[i];
-    }
-    return true;
+    if (styles()[i].name == name) return static_cast<int>(i);
   }
-  return false;
+  return -1;
+}
+
+bool Simulation::take_styles(std::span<Walker> walkers, std::string_view name) noexcept {
+  const int index = style_index(name);
+  if (index < 0) return false;
+  for (Walker& w : walkers) take_style(w, index, styles());
+  return true;
 }
 
 void Simulation::add_to_hash(const Pose& pose) noexcept {

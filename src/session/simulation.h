@@ -15,6 +15,7 @@
 #include "control/control.h"
 #include "control/gait_overrides.h"
 #include "control/style.h"
+#include "control/style_blend.h"
 #include "hid/report.h"
 #include "session/pads.h"
 
@@ -49,11 +50,23 @@ struct SimulationCounts {
   std::int64_t bad_commands = 0;  // malformed, of unknown names, out of bounds: changed nothing
 };
 
+// A zone of the terrain in which the walker is, and the style that it takes up again behind it.
+struct ZoneStyle {
+  int index = -1;           // in Terrain::zones; -1: none
+  bool gives_back = false;  // false: no zone, or a command has chosen another style in it
+  int own_style = 0;
+  StyleValues own_values;
+};
+
 struct Walker {
   std::shared_ptr<const WalkModel> model;  // shared with copies of the simulation
   GaitLimits limits;
   int style = 0;       // index in Simulation::styles()
   StyleValues values;  // of that style, and what commands have changed since
+  ZoneStyle zone;
+  StyleBlend blend;
+  double tired = 0.0;    // 0 .. 1, by its style's fatigue model
+  StyleValues in_force;  // of the last tick: values, part of the way there, and tired
   GaitOverrides overrides;
   GaitParams params;  // of the last tick
   WalkState state;
@@ -93,14 +106,17 @@ class Simulation {
  private:
   Simulation() = default;
   Result<std::vector<std::shared_ptr<const WalkModel>>> models_of(const SimulationConfig& config);
+  std::optional<Error> find_zone_styles();
   bool obey(std::string_view text) noexcept;
-  bool take_style(std::span<Walker> walkers, std::string_view name) noexcept;
+  int style_index(std::string_view name) const noexcept;  // -1: there is none
+  bool take_styles(std::span<Walker> walkers, std::string_view name) noexcept;
   void add_to_hash(const Pose& pose) noexcept;
 
   double dt_s_ = 0.0;
   IkMode ik_ = IkMode::robust;
   Pads pads_;
   std::shared_ptr<const std::vector<Style>> styles_;
+  std::shared_ptr<const std::vector<int>> zone_styles_;  // of each of the terrain's zones
   std::vector<Walker> walkers_;
   std::shared_ptr<const Terrain> terrain_;
   double terrain_scale_ = 1.0;

@@ -17,6 +17,7 @@ nlohmann::ordered_json run_summary(const Simulation& simulation, const Walker& w
   s["terrain"] = simulation.terrain()->name;
   s["terrain_scale"] = simulation.terrain_scale();
   s["style"] = simulation.styles()[walker.style].name;
+  s["fatigue"] = walker.in_force.fatigue;
   s["ik_failures"] = walker.ik_failures;
   s["reports"] = counts.reports;
   s["bad_reports"] = counts.bad_reports;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "session/script.h"
+
 namespace gaitpad {
 namespace {
 
@@ -33,19 +35,18 @@ Result<PreparedTrace> prepared_trace(const SessionOptions& session, const std::s
   auto config = simulation_config(session, trace->devices, trace->path, rate);
   if (!config) return config.error();
   if (auto problem = settle_pads(*trace, config->pads)) return *problem;
-  return PreparedTrace{std::move(*trace), *ticks, std::move(*config)};
+  auto start = Simulation::create(*config);
+  if (!start) return start.error();
+  auto script = script_for(*start, session.script);
+  if (!script) return script.error();
+  add_script(*script, rate, *trace);
+  return PreparedTrace{std::move(*trace), *ticks, std::move(*config), std::move(*start)};
 }
 
 std::optional<std::string> damage_remark(const Trace& trace) {
   if (trace.skipped_lines == 0) return std::nullopt;
   return fmt::format("{} damaged lines were skipped, the first: {}", trace.skipped_lines,
                      trace.first_damage);
-}
-
-Result<TraceRun> TraceRun::begin(const PreparedTrace& prepared) {
-  auto simulation = Simulation::create(prepared.config);
-  if (!simulation) return simulation.error();
-  return TraceRun(std::move(*simulation));
 }
 
 void TraceRun::step(const Trace& trace) noexcept {

@@ -27,7 +27,8 @@ enum class Action : std::uint8_t {
   style_9,
   next_style,
   previous_style,
-  next_walker,  // whom the camera follows and the panels tell of; after the last one: all
+  next_terrain,  // another ground: the session begins anew on it
+  next_walker,   // whom the camera follows and the panels tell of; after the last one: all
   record,
   screenshot,
   open_file,

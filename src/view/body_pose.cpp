@@ -82,7 +82,7 @@ void add_stick_figure(const GaitCycle& source, double phase, double presence, co
   const quat turn = rotation_y(heading_rad);
   pose.local[0] = turn * pose.local[0];
   pose.root_m = vec3(place_m.x, 0.0, place_m.z) + turn * vec3(sway_m.x, 0.0, sway_m.z) * share;
-  pose.root_m.y = mix(stand_m, sway_m.y, share);
+  pose.root_m.y = place_m.y + mix(stand_m, sway_m.y, share);
   JointFrames frames;
   forward_kinematics(source.skeleton, pose, frames);
   const double leg_m = left.length_m();

@@ -25,9 +25,10 @@ Axes axes_of(const Camera& camera) noexcept {
 }
 
 void keep_bounds(Camera& camera) noexcept {
-  camera.target_m.y = std::clamp(camera.target_m.y, 0.0, kHighestTarget_m);
+  camera.target_m.y =
+      std::clamp(camera.target_m.y, camera.floor_m, camera.floor_m + kHighestTarget_m);
   camera.distance_m = std::clamp(camera.distance_m, kNearest_m, kFarthest_m);
-  const double floor = (kLowestEye_m - camera.target_m.y) / camera.distance_m;
+  const double floor = (camera.eye_floor_m + kLowestEye_m - camera.target_m.y) / camera.distance_m;
   const double lowest_rad = std::asin(std::clamp(floor, -1.0, 1.0));
   camera.pitch_rad =
       std::clamp(camera.pitch_rad, std::max(lowest_rad, -kSteepest_rad), kSteepest_rad);
@@ -71,6 +72,13 @@ void orbit(Camera& camera, double yaw_rad, double pitch_rad) noexcept {
 void dolly(Camera& camera, double factor) noexcept {
   if (!std::isfinite(factor) || factor <= 0.0) return;
   camera.distance_m *= factor;
+  keep_bounds(camera);
+}
+
+void stand_on(Camera& camera, double floor_m, double eye_floor_m) noexcept {
+  if (!std::isfinite(floor_m) || !std::isfinite(eye_floor_m)) return;
+  camera.floor_m = floor_m;
+  camera.eye_floor_m = eye_floor_m;
   keep_bounds(camera);
 }
 

@@ -13,6 +13,8 @@ struct Camera {
   double yaw_rad = 0.16;            // 0: looks along -z, at the front of who walks along +z
   double pitch_rad = 0.2;           // above the horizon
   double field_of_view_rad = 0.66;  // from the lower edge to the upper one
+  // The ground's height below target and eye: bounds count from there.
+  double floor_m = 0.0, eye_floor_m = 0.0;
   bool is_following = true;
   vec3 followed_m{0.0, 0.8, 0.0};  // the place that follow() was told last
 
@@ -27,6 +29,8 @@ void orbit(Camera& camera, double yaw_rad, double pitch_rad) noexcept;
 void dolly(Camera& camera, double factor) noexcept;  // times the distance
 // What is at the target's distance moves by so many pixels, y downwards. Ends following.
 void pan(Camera& camera, const vec2& pixels, double viewport_height_px) noexcept;
+// On uneven ground, whenever target or eye have moved.
+void stand_on(Camera& camera, double floor_m, double eye_floor_m) noexcept;
 // Towards a place, smoothly and independent of the frame rate; not where is_following is false.
 void follow(Camera& camera, const vec3& place_m, double dt_s) noexcept;
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "session/simulation.h"
+#include "view/scene_ground.h"
 
 namespace gaitpad {
 namespace {
@@ -45,14 +46,16 @@ Ensemble::Ensemble(const Cast& cast)
     : trail_ticks_(std::llround(kTrail_s * cast.rate_hz)),
       point_ticks_(std::max<std::int64_t>(std::llround(kTrailPoint_s * cast.rate_hz), 1)),
       shown_(cast.members.size()) {
+  if (!is_flat(*cast.terrain)) terrain_ = cast.terrain;
   for (const CastMember& member : cast.members) bodies_.push_back(body_of(member.model));
   if (cast.source != nullptr)
     source_height_m_ =
         kHeightOverLeg * (cast.source->leg[0].length_m() + cast.source->leg[1].length_m()) / 2;
 }
 
-void Ensemble::fill(const SessionFrame& frame, const History& history, double share, const Cast& cast,
-                 const UiState& state, const Theme& theme, SceneContent& content) {
+void Ensemble::fill(const SessionFrame& frame, const History& history, double share,
+                    const Cast& cast, const UiState& state, const Theme& theme,
+                    SceneContent& content) {
   content.bodies.clear();
   content.lines.clear();
   content.joints_m.clear();
@@ -71,11 +74,12 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
   content.joint_colour = theme.bone;
   content.has_grid = content.has_axes = state.has_grid;
   content.has_shadows = state.has_shadows;
+  content.terrain = terrain_;
   content.focus_m = focus_m(-1);
 }
 
 void Ensemble::add_trails(const History& history, int walker, const Colour& colour,
-                       SceneContent& content) {
+                          SceneContent& content) {
   const std::size_t size = history.size();
   if (size < 2) return;
   const auto w = static_cast<std::size_t>(walker);
@@ -97,11 +101,11 @@ void Ensemble::add_trails(const History& history, int walker, const Colour& colo
 
 // Beside the first one, on the other side than the rest; it goes where that one goes.
 void Ensemble::add_source(const SessionFrame& frame, double share, const Cast& cast,
-                       const Theme& theme, SceneContent& content) {
+                          const Theme& theme, SceneContent& content) {
   const WalkerFrame& first = frame.walkers[0];
   source_place_m_ = first.before.root_m + share * (first.pose.root_m - first.before.root_m) +
                     kSourceAside_m * kLeft;
-  source_place_m_.y = 0.0;
+  source_place_m_.y = ground_m(source_place_m_);
   add_stick_figure(*cast.source, first.phase, first.presence, source_place_m_,
                    first.walk.heading_rad, theme.bone, content);
 }
@@ -111,7 +115,8 @@ vec3 Ensemble::focus_m(int walker) const noexcept {
   const auto n = static_cast<std::size_t>(walker);
   if (walker >= 0 && n < shown_.size()) {
     const vec3& root = shown_[n].root_m;
-    return vec3(root.x, kLook_m * std::min(bodies_[n].height_m / kAdult_m, 1.5), root.z);
+    const double look_m = kLook_m * std::min(bodies_[n].height_m / kAdult_m, 1.5);
+    return vec3(root.x, ground_m(root) + look_m, root.z);
   }
   vec3 low = shown_.front().root_m, high = low;
   for (const Pose& pose : shown_) {
@@ -123,11 +128,19 @@ vec3 Ensemble::focus_m(int walker) const noexcept {
     high = glm::max(high, source_place_m_);
   }
   const vec3 middle = (low + high) / 2.0;
-  return vec3(middle.x, kLook_m, middle.z);
+  return vec3(middle.x, ground_m(middle) + kLook_m, middle.z);
+}
+
+double Ensemble::ground_m(const vec3& place_m) const noexcept {
+  return terrain_ == nullptr ? 0.0 : mean_ground_m(*terrain_, place_m.x, place_m.z);
+}
+
+void Ensemble::stand_on_ground(Camera& camera) const noexcept {
+  stand_on(camera, ground_m(camera.target_m), ground_m(camera.eye_m()));
 }
 
 double Ensemble::distance_m(int walker, const Camera& camera,
-                         const Viewport& viewport) const noexcept {
+                            const Viewport& viewport) const noexcept {
   if (walker >= 0 || shown_.empty()) return kOnePerson_m;
   const vec3 middle = focus_m(-1);
   double reach_m = 0.0;
@@ -143,8 +156,8 @@ double Ensemble::distance_m(int walker, const Camera& camera,
 }
 
 std::vector<UiLabel> Ensemble::labels(const SessionFrame& frame, const Cast& cast,
-                                   const Camera& camera, const Viewport& viewport,
-                                   const UiState& state, const Theme& theme) const {
+                                      const Camera& camera, const Viewport& viewport,
+                                      const UiState& state, const Theme& theme) const {
   std::vector<UiLabel> labels;
   if (!state.has_names) return labels;
   const auto add = [&](vec3 place_m, std::string text, const Colour& colour) {

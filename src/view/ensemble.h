@@ -20,6 +20,9 @@ class Ensemble {
             const UiState& state, const Theme& theme, SceneContent& content);
   // Of what was filled last: the place that a camera follows, of one walker or of all (-1).
   vec3 focus_m(int walker) const noexcept;
+  bool is_on_uneven_ground() const noexcept { return terrain_ != nullptr; }
+  // Below the camera and what it looks at; to be called when it has moved.
+  void stand_on_ground(Camera& camera) const noexcept;
   // How far a camera stands off to see that.
   double distance_m(int walker, const Camera& camera, const Viewport& viewport) const noexcept;
   // Names above heads, window pixels.
@@ -33,6 +36,9 @@ class Ensemble {
                   SceneContent& content);
 
   std::int64_t trail_ticks_, point_ticks_;  // how far trails go back, between two of their points
+  double ground_m(const vec3& place_m) const noexcept;
+
+  std::shared_ptr<const Terrain> terrain_;  // null: level at height 0
   std::vector<Body> bodies_;
   std::vector<Pose> shown_;  // one a body
   double source_height_m_ = 0.0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "animation/character.h"
+#include "animation/terrain_file.h"
 #include "control/style.h"
 #include "session/motion_source.h"
 #include "stick/calibration.h"
@@ -17,8 +18,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kWhatOpens =
-    "motions (.bvh), recordings (.hid), and .toml files of styles, characters, calibrations and "
-    "motions can be opened";
+    "motions (.bvh, .amc), recordings (.hid), and .toml files of styles, characters, calibrations, "
+    "terrains and motions can be opened";
 
 std::string lower_case(std::string text) {
   for (char& c : text)
@@ -31,6 +32,7 @@ std::optional<FileKind> kind_of_folder(const fs::path& path) {
   if (folder == "styles") return FileKind::style;
   if (folder == "characters") return FileKind::character;
   if (folder == "calibration") return FileKind::calibration;
+  if (folder == "terrain") return FileKind::terrain;
   if (folder == "motions") return FileKind::motion;
   return std::nullopt;
 }
@@ -46,15 +48,16 @@ Result<FileKind> kind_of_content(const std::string& path) {
   look(FileKind::style, load_style(path));
   look(FileKind::character, load_character(path));
   look(FileKind::calibration, load_calibration_file(path));
+  look(FileKind::terrain, load_terrain(path));
   if (kinds.empty()) look(FileKind::motion, load_motion_source(path));
   if (kinds.size() == 1) return kinds.front();
   if (!kinds.empty()) {
     return Error{path +
-                 ": may be a style or a character: put it into a folder named styles or "
-                 "characters"};
+                 ": may be a style, a character or a terrain: put it into a folder named styles, "
+                 "characters or terrain"};
   }
-  return Error{fmt::format("{}: is no style, character, calibration or motion; as a style: {}",
-                           path, problem)};
+  return Error{fmt::format(
+      "{}: is no style, character, calibration, terrain or motion; as a style: {}", path, problem)};
 }
 
 // `list` (a shorter one repeats its last) with this one in place n of `count`, or alone.
@@ -77,7 +80,7 @@ Result<FileKind> kind_of_file(const std::string& path) {
   if (fs::is_directory(status)) return Error{path + ": is a folder; " + kWhatOpens};
   if (!fs::is_regular_file(status)) return Error{path + ": is no file that can be read"};
   const std::string ending = lower_case(fs::path(path).extension().string());
-  if (ending == ".bvh") return FileKind::motion;
+  if (ending == ".bvh" || ending == ".amc") return FileKind::motion;
   if (ending == ".hid") return FileKind::recording;
   if (ending != ".toml") return Error{path + ": cannot be opened: " + kWhatOpens};
   if (const auto kind = kind_of_folder(fs::absolute(path, error))) return *kind;
@@ -103,6 +106,9 @@ ShowOptions with_file(ShowOptions options, const std::string& path, FileKind kin
       break;
     case FileKind::calibration:
       session.calibration = path;
+      break;
+    case FileKind::terrain:
+      session.terrain = path;
       break;
     case FileKind::recording:
       options.trace = path;

@@ -7,10 +7,10 @@
 
 namespace gaitpad {
 
-enum class FileKind { motion, character, style, calibration, recording };
+enum class FileKind { motion, character, style, calibration, terrain, recording };
 
 // By its ending; a .toml by the folder that it stands in (styles, characters, calibration,
-// motions), else by what stands in it. Error where it is no file or none of these.
+// terrain, motions), else by what stands in it. Error where it is no file or none of these.
 Result<FileKind> kind_of_file(const std::string& path);
 
 // The show that runs, with this file. A style or a character is for walker `walker`, -1: for all.

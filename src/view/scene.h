@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "animation/terrain.h"
 #include "base/math.h"
 #include "base/result.h"
 #include "view/camera.h"
@@ -37,6 +38,7 @@ struct SceneContent {
   std::vector<vec3> joints_m;  // dots of the stick figures
   Colour joint_colour;
   std::vector<Trail> trails;
+  std::shared_ptr<const Terrain> terrain;  // the floor; null: level at height 0
   vec3 focus_m{0.0};  // the floor is drawn round it, the grid stays where it is in the world
   bool has_grid = true, has_shadows = true, has_axes = true;
 };

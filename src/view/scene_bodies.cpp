@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "view/scene_ground.h"
 #include "view/scene_shaders.h"
 
 namespace gaitpad {
@@ -34,6 +35,15 @@ vec3 across(const vec3& axis, const vec3& wide) {
 bool is_drawable(const Capsule& c) {
   return is_finite(c.a_m) && is_finite(c.b_m) && is_finite(c.wide) &&
          std::isfinite(c.radius_a_m + c.radius_b_m + c.width_a + c.width_b);
+}
+
+// What throws its shadow from higher up does not feel each riser.
+double floor_below(const SceneContent& content, const vec3& place_m) {
+  constexpr double kNear_m = 0.35;
+  if (content.terrain == nullptr) return 0.0;
+  const double height_m = ground_at(*content.terrain, place_m.x, place_m.z).height_m;
+  if (place_m.y - height_m < kNear_m) return height_m;
+  return mean_ground_m(*content.terrain, place_m.x, place_m.z);
 }
 
 }  // namespace
@@ -92,8 +102,8 @@ void SceneBodies::make_mesh(const MeshDetail& detail) {
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 2), indices.data(),
                GL_STATIC_DRAW);
   glBindBuffer(GL_ARRAY_BUFFER, instances_.get());
-  constexpr VertexPart kInstance[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}};
-  set_vertex_parts(kInstance, 4, 1);
+  constexpr VertexPart kInstance[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 2}};
+  set_vertex_parts(kInstance, 5, 1);
   glBindVertexArray(0);
 }
 
@@ -115,12 +125,15 @@ void SceneBodies::make_shadow_target(int size_px) {
 void SceneBodies::add_rows(const SceneContent& content, const SceneView& view, double from_m,
                            double to_m) {
   for (const Capsule& c : content.bodies) {
-    const double low_m = std::min(c.a_m.y - c.radius_a_m, c.b_m.y - c.radius_b_m);
-    if (!is_drawable(c) || low_m < from_m || low_m >= to_m) continue;
+    if (!is_drawable(c)) continue;
+    const vec2 ground(floor_below(content, c.a_m), floor_below(content, c.b_m));
+    const double low_m =
+        std::min(c.a_m.y - c.radius_a_m - ground.x, c.b_m.y - c.radius_b_m - ground.y);
+    if (low_m < from_m || low_m >= to_m) continue;
     const vec3 colour(c.colour.red, c.colour.green, c.colour.blue);
-    rows_.push_back({row(c.a_m - view.origin_m, c.radius_a_m),
-                     row(c.b_m - view.origin_m, c.radius_b_m),
-                     row(across(c.b_m - c.a_m, c.wide), c.width_a), row(colour, c.width_b)});
+    rows_.push_back(
+        {row(c.a_m - view.origin_m, c.radius_a_m), row(c.b_m - view.origin_m, c.radius_b_m),
+         row(across(c.b_m - c.a_m, c.wide), c.width_a), row(colour, c.width_b), glm::vec2(ground)});
   }
 }
 
@@ -135,7 +148,8 @@ void SceneBodies::load(const SceneContent& content, const SceneView& view) {
     if (!is_finite(l.a_m) || !is_finite(l.b_m)) continue;
     rows_.push_back({row(l.a_m - view.origin_m, kLineShadow_m),
                      row(l.b_m - view.origin_m, kLineShadow_m), row(kLeft, 1.0),
-                     row(vec3(0.0), 1.0)});
+                     row(vec3(0.0), 1.0),
+                     glm::vec2(floor_below(content, l.a_m), floor_below(content, l.b_m))});
   }
   upload(instances_, rows_.data(), rows_.size() * sizeof(Instance));
 }
@@ -145,10 +159,11 @@ ShadowPlace SceneBodies::shadow_place() const noexcept {
   if (rows_.empty()) return {};
   vec2 low(1e9), high(-1e9);
   for (const Instance& i : rows_) {
-    for (const glm::vec4& end : {i.a_radius, i.b_radius}) {
+    for (const auto& [end, ground] :
+         {std::pair(i.a_radius, i.ground.x), {i.b_radius, i.ground.y}}) {
       const vec2 down(end.x, end.z);
-      const vec2 thrown =
-          down - vec2(kLightDirection.x, kLightDirection.z) * (double{end.y} / kLightDirection.y);
+      const vec2 thrown = down - vec2(kLightDirection.x, kLightDirection.z) *
+                                     ((double{end.y} - ground) / kLightDirection.y);
       low = glm::min(low, glm::min(down, thrown));
       high = glm::max(high, glm::max(down, thrown));
     }

@@ -36,6 +36,7 @@ class SceneBodies {
 
   struct Instance {
     glm::vec4 a_radius, b_radius, across_width_a, colour_width_b;
+    glm::vec2 ground;  // below a, below b
   };
   GlProgram body_, shadow_program_;
   GlVertexArray vertices_;

@@ -12,9 +12,11 @@ layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
 layout(location = 3) in vec4 across_width_a;
 layout(location = 4) in vec4 colour_width_b;
+layout(location = 5) in vec2 ground;  // height of the floor below a, below b
 uniform mat4 to_clip;
 out vec3 place;
 out vec3 normal;
+out float above;  // the floor
 flat out vec3 colour;
 void main() {
   vec3 along = b_radius.xyz - a_radius.xyz;
@@ -31,6 +33,7 @@ void main() {
   place = (at_b ? b_radius.xyz : a_radius.xyz) +
           radius * (side * (round.x * width) + deep * round.y + axis * round.z);
   normal = side * (round.x / width) + deep * round.y + axis * round.z;
+  above = place.y - (at_b ? ground.y : ground.x);
   colour = colour_width_b.rgb;
   gl_Position = to_clip * vec4(place, 1.0);
 }
@@ -39,6 +42,7 @@ void main() {
 inline constexpr const char* kBodyFragment = R"(#version 330 core
 in vec3 place;
 in vec3 normal;
+in float above;
 flat in vec3 colour;
 uniform vec3 eye;
 uniform vec3 light;
@@ -71,6 +75,7 @@ layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
 layout(location = 3) in vec4 across_width_a;
 layout(location = 4) in vec4 colour_width_b;
+layout(location = 5) in vec2 ground;
 uniform vec2 slide;     // metres on the floor per metre of height
 uniform vec2 softness;  // of an edge: at the floor, more per metre of height
 uniform vec2 centre;
@@ -82,10 +87,11 @@ flat out float per_span;
 flat out vec4 discs;  // radius and edge at a, at b
 flat out vec2 dark;   // at a, at b
 void main() {
-  vec2 a = a_radius.xz - slide * a_radius.y, b = b_radius.xz - slide * b_radius.y;
+  vec2 above = vec2(a_radius.y, b_radius.y) - ground;
+  vec2 a = a_radius.xz - slide * above.x, b = b_radius.xz - slide * above.y;
   vec2 radius = vec2(a_radius.w * (0.5 + 0.5 * across_width_a.w),
                      b_radius.w * (0.5 + 0.5 * colour_width_b.w));
-  vec2 height = max(vec2(a_radius.y - a_radius.w, b_radius.y - b_radius.w), 0.0);
+  vec2 height = max(above - vec2(a_radius.w, b_radius.w), 0.0);
   vec2 edge = softness.x + softness.y * height;
   float reach = max(radius.x + edge.x, radius.y + edge.y);
   along = b - a;
@@ -169,9 +175,10 @@ void main() {
 }
 )";
 
-inline constexpr const char* kFloorFragment = R"(
+// Behind the background's text, before the two fragments that use it. `light`: 1 on level ground;
+// `mark`: how much of an edge is there.
+inline constexpr const char* kFloorColour = R"(
 in vec2 from_focus;
-in vec2 world;
 in vec2 in_shadow;
 uniform vec3 floor_near;
 uniform vec3 floor_far;
@@ -190,16 +197,64 @@ float lines(vec2 place, vec2 cell_px, float width_px) {
                clamp((cell_px - 2.5) * 0.15, 0.0, 1.0);
   return max(cover.x, cover.y);
 }
-void main() {
+void show_floor(vec2 world, float light, float mark) {
   vec2 metre_px = 1.0 / max(fwidth(world), vec2(1e-5));
   float distance_m = length(from_focus);
   vec3 ground = mix(floor_near, floor_far, min(distance_m / half_size, 1.0));
   float fine = lines(world * 5.0, metre_px * 0.2, pixel) * grid_depth.y;
   float coarse = lines(world, metre_px, 1.9 * pixel) * grid_depth.x;
-  ground = mix(ground, grid, max(fine, coarse));
+  ground = mix(mix(ground, grid, max(fine, coarse)) * light, grid, mark);
   vec2 dark = textureLod(shadow, in_shadow, 0.0).rg * shadow_depth;
   ground *= (1.0 - dark.r) * (1.0 - dark.g);
   show(mix(ground, background(), smoothstep(fade_from, half_size, distance_m)));
+}
+)";
+
+inline constexpr const char* kFloorFragment = R"(
+in vec2 world;
+void main() { show_floor(world, 1.0, 0.0); }
+)";
+
+inline constexpr const char* kGroundVertex = R"(#version 330 core
+layout(location = 0) in vec3 spot;
+layout(location = 1) in vec3 normal_in;
+layout(location = 2) in vec2 edges_in;
+uniform mat4 to_clip;
+uniform vec3 moved;
+uniform vec2 focus;
+uniform vec2 shadow_centre;
+uniform float per_shadow;
+uniform float behind_m;
+out vec2 from_focus;
+out vec2 in_shadow;
+out vec3 place;
+out vec3 normal;
+out vec2 edges;  // metres to a riser's upper and to its lower edge
+void main() {
+  place = spot + moved;
+  normal = normal_in;
+  edges = edges_in;
+  from_focus = place.xz - focus;
+  in_shadow = 0.5 + 0.5 * (place.xz - shadow_centre) * per_shadow;
+  gl_Position = to_clip * vec4(place, 1.0);
+  gl_Position.z += 0.2 * behind_m / max(gl_Position.w, 0.1);  // of a near plane at 0.1 m
+}
+)";
+
+// A riser has the grid's lines across only: those along it would lie at any height.
+inline constexpr const char* kGroundFragment = R"(
+in vec3 place;
+in vec3 normal;
+in vec2 edges;
+uniform vec3 light;
+void main() {
+  vec3 n = normalize(normal);
+  bool is_riser = abs(n.z) > 0.8;
+  float lit = mix(0.38, 1.0, max(dot(n, light) / light.y, 0.0));
+  lit *= 1.0 - 0.45 * exp(-edges.y * 14.0);  // what a riser keeps of the sky's light
+  float edge_px = edges.x / max(fwidth(edges.x), 1e-6);
+  float nose = 0.65 * clamp(1.6 * pixel + 0.5 - edge_px, 0.0, 1.0);
+  show_floor(is_riser ? vec2(place.x, 0.5) : place.xz, lit, nose);
 }
 )";
 

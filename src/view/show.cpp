@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "session/script.h"
 #include "session/simulation.h"
 
 namespace gaitpad {
@@ -19,6 +20,8 @@ std::optional<Error> Show::problem(const ShowOptions& options) {
   if (!config) return config.error();
   const auto simulation = Simulation::create(*config);
   if (!simulation) return simulation.error();
+  const auto script = script_for(*simulation, options.live.session.script);
+  if (!script) return script.error();
   return std::nullopt;
 }
 

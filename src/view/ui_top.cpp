@@ -96,6 +96,11 @@ void draw_view_menu(Ui& ui) {
   if (button(ui, "theme", is_dark ? "Theme: dark" : "Theme: light", look)) {
     ui.out.actions.push_back(Action::theme);
   }
+  look.is_enabled = ui.is_live();
+  if (button(ui, "next terrain", "Ground: " + ui.in.cast.terrain->name, look)) {
+    ui.out.actions.push_back(Action::next_terrain);
+  }
+  look.is_enabled = true;
   if (button(ui, "reset camera", "Reset camera", look)) {
     ui.out.actions.push_back(Action::reset_camera);
   }

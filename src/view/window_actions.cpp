@@ -124,6 +124,9 @@ void WindowLoop::obey_other(Action action) {
     case Action::open_file:
       browser_.open();
       break;
+    case Action::next_terrain:
+      turn_terrains();
+      break;
     case Action::calibrate:
       begin_calibration();
       break;

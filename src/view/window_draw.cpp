@@ -13,6 +13,8 @@
 namespace gaitpad {
 namespace {
 
+constexpr double kAside_rad = 1.1, kAbove_rad = 0.3;
+
 // Of the whole program, in memory; 0: not known.
 double memory_mib() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
@@ -45,6 +47,7 @@ void WindowLoop::draw(bool is_last) {
   if (std::exchange(is_camera_new_, false)) see_anew();
   const double passed_s = makes_pictures() ? 1.0 / kPictureRateHz : clock_.passed_s();
   follow(camera_, ensemble_->focus_m(state_.walker), passed_s);
+  ensemble_->stand_on_ground(camera_);
   const bool is_kept = !makes_still() || is_last || wants_screenshot_;
   if (is_kept && viewport.width > 0 && viewport.height > 0)
     scene_->draw(content_, camera_, theme, viewport, height_px, surface_->scale());
@@ -59,6 +62,10 @@ void WindowLoop::see_anew() {
   const Viewport viewport =
       scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
   camera_ = Camera();
+  if (ensemble_->is_on_uneven_ground()) {  // from the side: steps ahead hide no feet
+    camera_.yaw_rad = kAside_rad;
+    camera_.pitch_rad = kAbove_rad;
+  }
   camera_.target_m = camera_.followed_m = ensemble_->focus_m(state_.walker);
   camera_.distance_m = ensemble_->distance_m(state_.walker, camera_, viewport);
 }

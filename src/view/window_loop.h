@@ -77,6 +77,7 @@ class WindowLoop {
   bool switch_to(const ShowOptions& next);
   bool restart(const ShowOptions& next, const ShowOptions& otherwise);
   void open_file(const std::string& path);
+  void turn_terrains();
   void turn_recording();
   void begin_calibration();
   void end_calibration(CalibrationView::State state);

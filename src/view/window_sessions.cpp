@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "drivers/posix.h"
+#include "session/config_files.h"
 #include "session/user_files.h"
 #include "view/window_loop.h"
 
@@ -114,6 +115,24 @@ void WindowLoop::open_file(const std::string& path) {
   browser_.remember(path);
   const char* back = live_before_ && *kind == FileKind::recording ? "; Escape goes back" : "";
   say(fmt::format("opened {}{}", path, back));
+}
+
+// The next of those that the configuration folders have; from one of elsewhere to the first.
+void WindowLoop::turn_terrains() {
+  if (calibration_) return;
+  if (!show_->is_live()) return say("a recording is playing: it stays on its ground");
+  if (makes_pictures())
+    return say("pictures are made of one session: --terrain chooses the ground");
+  ShowOptions next = show_->options();
+  SessionOptions& session = next.live.session;
+  const auto files = config_files(session.config_folders, "terrain");
+  if (files.empty()) return say("no terrains were found");
+  const std::string now = session.terrain.empty() ? "flat" : config_name(session.terrain);
+  const auto at = std::ranges::find(files, now, config_name);
+  const bool is_last = at == files.end() || at + 1 == files.end();
+  session.terrain = is_last ? files.front() : *(at + 1);
+  next.live.record.clear();
+  if (switch_to(next)) say("on the ground " + config_name(session.terrain));
 }
 
 void WindowLoop::turn_recording() {

@@ -52,7 +52,7 @@ TEST(TerrainFile, ZonesHaveAStyleAndMayHaveSides) {
               "[[zone]]\nfrom_m = 3\nto_m = 4\nright_m = -1\nleft_m = 1\nstyle = \"tired\"\n");
   ASSERT_EQ(t.zones.size(), 2u);
   EXPECT_EQ(t.zones[0].style, "limp_left");
-  EXPECT_EQ(t.zones[0].line, 7);
+  EXPECT_EQ(t.zones[0].where, "somewhere/ramp.toml:7");
   EXPECT_TRUE(std::isinf(t.zones[0].left_m) && t.zones[0].left_m > 0.0);
   EXPECT_EQ(t.zones[1].right_m, -1.0);
   EXPECT_EQ(t.zones[1].to_m, 4.0);

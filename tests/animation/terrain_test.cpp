@@ -234,7 +234,8 @@ TEST(Terrain, AHeightFieldIsItsSamplesAndLevelBeyondThem) {
 
 TEST(Terrain, ScalingIsTheSameGroundInAnotherUnit) {
   Terrain terrain = everything();
-  terrain.zones.push_back({.from_m = 1.0, .to_m = 2.0, .style = "limp_left"});
+  TerrainZone& zone = terrain.zones.emplace_back();
+  zone.from_m = 1.0, zone.to_m = 2.0;
   const Terrain big = scaled(terrain, 1.6);
   EXPECT_NEAR(least_tread_m(big), 1.6 * 0.28, 1e-12);
   EXPECT_NEAR(length_m(big), 1.6 * length_m(terrain), 1e-9);

@@ -7,6 +7,8 @@
 #include "animation/character.h"
 #include "animation/terrain_file.h"
 #include "control/style.h"
+#include "motion/gait_cycle.h"
+#include "motion/keyframe.h"
 #include "stick/calibration.h"
 
 namespace gaitpad {
@@ -41,6 +43,21 @@ TEST(ShippedStyles, EveryFileLoads) {
   }
 }
 
+TEST(ShippedMotions, EveryFileWalks) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kConfig + "motions")) {
+    auto file = TomlFile::load(entry.path().string());
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_TRUE(is_keyframe_file(*file)) << entry.path();
+    const auto motion = keyframe_motion(*file);
+    ASSERT_TRUE(motion) << motion.error().message;
+    const auto cycle = gait_cycle(*motion);
+    EXPECT_TRUE(cycle) << cycle.error().message;
+    ++files;
+  }
+  EXPECT_GE(files, 1);
+}
+
 // Fig. 5a: red 1, green hip -80 %, blue knee -20 %.
 TEST(ShippedStyles, WeightsOfFigure5a) {
   for (const Side side : {kLeftSide, kRightSide}) {
@@ -66,6 +83,27 @@ TEST(ShippedStyles, FactorsAndWeightsOfFigure5b) {
     EXPECT_EQ(weights_of(limp, kRightSide), kEven);
     EXPECT_EQ(limp.fatigue, 0.0);
   }
+}
+
+// Section 3.3.3: low muscle tone low weights, strong muscles high ones. Even ones would say
+// nothing, since they count relative to the largest.
+TEST(ShippedStyles, BuildsHaveLowAndHighWeightsThatDiffer) {
+  const Style heavy = style("heavy_slack"), muscular = style("muscular");
+  for (const Side side : {kLeftSide, kRightSide}) {
+    for (int d = 0; d < kLegDofs; ++d) EXPECT_LT(heavy.weight[side][d], muscular.weight[side][d]);
+    for (const Style* build : {&heavy, &muscular}) {
+      const auto [low, high] = std::ranges::minmax(build->weight[side]);
+      EXPECT_LT(low, 0.8 * high);
+      EXPECT_EQ(build->stride[side], StrideFactors());  // by weights alone
+    }
+  }
+}
+
+TEST(ShippedStyles, TiringTiresAndRecovers) {
+  const Style tiring = style("tiring");
+  EXPECT_GT(tiring.fatigue_per_100_m, 0.0);
+  EXPECT_GT(tiring.fatigue_recovery_per_s, 0.0);
+  EXPECT_EQ(tiring.fatigue, 0.0);
 }
 
 TEST(ShippedStyles, TiredIsFatigued) { EXPECT_GT(style("tired").fatigue, 0.3); }
@@ -105,6 +143,16 @@ TEST(ShippedTerrains, EveryFileLoadsAndTheNamedOnesAreWhatTheySay) {
   const double riser_m = piece_at(stairs, 0.0).to_m;
   EXPECT_NEAR(ground_at(stairs, 0.0, riser_m).height_m, 0.17, 1e-12);
   EXPECT_GT(count_of<RoughSection>(terrain("rough")), 0);
+}
+
+TEST(ShippedTerrains, ZonesNameStylesThatAreThere) {
+  int zones = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kConfig + "terrain")) {
+    if (entry.path().extension() != ".toml") continue;
+    for (const TerrainZone& zone : terrain(entry.path().stem().string()).zones)
+      ++zones, style(zone.style);
+  }
+  EXPECT_GE(zones, 2);
 }
 
 TEST(ShippedTerrains, TheCourseHasAllKindsInARow) {

@@ -97,8 +97,8 @@ TEST(GaitParams, SidewaysTurnsAgainstTheStickAndMirrors) {
   }
 }
 
-TEST(GaitParams, NeutralStandsAndSoDoesBackward) {
-  for (double y : {0.0, -0.0, -0.3, -1.0}) {
+TEST(GaitParams, NeutralStands) {
+  for (double y : {0.0, -0.0}) {
     const GaitParams p = at(0.0, y);
     EXPECT_FALSE(p.walking);
     EXPECT_EQ(p.stride[kLeftSide].length_m, 0.0);
@@ -109,13 +109,32 @@ TEST(GaitParams, NeutralStandsAndSoDoesBackward) {
 }
 
 TEST(GaitParams, SidewaysAloneTurnsInPlace) {
-  for (double y : {0.0, -0.5}) {
+  for (double y : {0.0, -0.05}) {  // 6 degrees behind the side: a thumb's noise
     const GaitParams p = at(-0.5, y);
+    EXPECT_FALSE(p.backward);
     EXPECT_TRUE(p.walking);
     EXPECT_EQ(p.stride[kRightSide].length_m, 0.0);
     EXPECT_EQ(p.stride[kRightSide].time_s, kTurnInPlaceStepTime_s);
     EXPECT_GT(p.turn_rate_rad_s, 0.0);
   }
+}
+
+TEST(GaitParams, BackwardDeflectionWalksBackwardsSlowlyInShortSteps) {
+  for (double y : {0.1, 0.5, 1.0}) {
+    const GaitParams back = at(0.0, -y), ahead = at(0.0, y);
+    EXPECT_TRUE(back.walking && back.backward);
+    EXPECT_FALSE(ahead.backward);
+    const StrideParams &step = back.stride[kLeftSide], &forth = ahead.stride[kLeftSide];
+    EXPECT_LT(step.length_m, kBackwardStep * forth.length_m);
+    EXPECT_NEAR(step.length_m / step.time_s, kBackwardShare * y * kMaxSpeed_m_s, 1e-12);
+  }
+}
+
+TEST(GaitParams, ABackwardBendTurnsAsAForwardOneAndBeginsFromNothing) {
+  const double edge = -kBackwardSector * 0.5;
+  EXPECT_EQ(at(0.5, -0.6).turn_rate_rad_s, at(0.5, 0.6).turn_rate_rad_s);
+  EXPECT_TRUE(at(0.5, -0.6).backward);
+  EXPECT_LT(at(0.5, edge - 0.001).stride[kLeftSide].length_m, 0.002);
 }
 
 // The paper scales lengths by the ratio of the legs; times follow by its fourth root: for a leg a

@@ -27,6 +27,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(HERE, "..", "..", "..", "shared", "data", "mocap")
 MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_006_01_iclone")
 STYLES = ("even", "stiff_hip", "stiff_knee", "limp_left", "limp_left_hip", "limp_left_knee", "tired")
+BUILDS = ("heavy_slack", "muscular")
 RATIOS = (0.6, 1.0, 1.6)
 
 
@@ -40,6 +41,13 @@ def start_and_stop(forward=0.8):
     stick = [(0.5, 0, forward), (4.0, 0, 0.4), (6.5, 0, forward), (9.1, 0, 0), (11.5, 0, forward), (13.0, 0, 1.0),
              (16.0, 0.5, 0.8), (18.0, -0.3, 0.6), (20.0, 0, 0.6), (22.3, 0, 0)]
     return {"stick": stick, "end": 25.0}
+
+
+def back_and_forth():
+    """Backwards, forwards without a rest between, round a backward bend, a turn on the spot with a thumb's noise."""
+    stick = [(0.5, 0, 0.8), (3.0, 0, -0.8), (6.0, 0, 0.8), (7.3, 0, -1.0), (8.1, 0, 1.0), (8.5, 0.5, -0.1),
+             (9.5, 0.5, -0.5), (11.0, -0.5, 0.05), (12.0, -0.5, -0.05), (13.0, 0, 0)]
+    return {"stick": stick, "end": 15.0}
 
 
 def style_changes():
@@ -60,7 +68,7 @@ def wander(seed):
     chance = random.Random(seed)
     time_s, stick, commands = 0.3, [], []
     while time_s < 28.0:
-        x, y = chance.uniform(-0.7, 0.7), chance.uniform(-0.3, 1.0)
+        x, y = chance.uniform(-0.7, 0.7), chance.uniform(-0.5, 1.0)
         kind = chance.random()
         place = (0.0, y) if kind < 0.3 else (0.0, 0.0) if kind < 0.45 else (x, min(y, 0.7))
         stick.append((time_s,) + place)
@@ -83,11 +91,13 @@ def cases_of(motion, quick):
     for ratio in (0.6, 1.6):
         for y in ((0.8,) if quick else (0.3, 0.6, 1.0)):
             add(f"leg {ratio} stick {y}", walk_at(0, y, 12), ratio)
-    for style in STYLES if not quick else ("even", "stiff_hip", "stiff_knee", "limp_left"):
+    for style in STYLES + BUILDS if not quick else ("even", "stiff_hip", "stiff_knee", "limp_left"):
         add(f"style {style}", walk_at(0, 0.8, 12), style=style)
     for x in (-0.5, 0.5):
         add(f"turn {x:+}", walk_at(x, 0.7, 26))
     add("start and stop", start_and_stop())
+    add("back", walk_at(0, -1.0, 10))
+    add("back and forth", back_and_forth())
     add("style changes", style_changes())
     if not quick:
         add("leg 0.6 start and stop", start_and_stop(), 0.6)
@@ -103,6 +113,9 @@ def cases_of(motion, quick):
         add("wander 2", wander(2))
         add("200 strides", walk_at(0, 0.8, 245))
         add("turn on the spot", walk_at(0.6, 0, 8))
+        for ratio in (0.6, 1.6):
+            add(f"leg {ratio} back", walk_at(0, -1.0, 10), ratio)
+            add(f"leg {ratio} back and forth", back_and_forth(), ratio)
         add("turn full", walk_at(1.0, 0.4, 16))
     return found + (weight_cases(quick) if motion == "default" else [])
 

@@ -20,6 +20,7 @@ struct LoopParts {
   std::unique_ptr<PadStream> pads;
   std::optional<Simulation> simulation;
   std::unique_ptr<Recording> recording;
+  Script script;
   std::unique_ptr<LiveLoop> loop;
 };
 
@@ -40,8 +41,9 @@ LoopParts made_loop(PadStreamOptions options, const std::string& record) {
     EXPECT_TRUE(recording);
     parts.recording = std::move(*recording);
   }
-  parts.loop = std::make_unique<LiveLoop>(LiveLoop::Options{}, *parts.simulation, *parts.pads,
-                                          parts.recording.get());
+  parts.script.events.push_back({200'000, "mark", ""});
+  parts.loop = std::make_unique<LiveLoop>(LiveLoop::Options{}, parts.script, *parts.simulation,
+                                          *parts.pads, parts.recording.get());
   return parts;
 }
 
@@ -68,7 +70,7 @@ TEST_F(LiveLoopTest, TheLoopThreadUsesNoHeap) {
   loop.join();
   EXPECT_EQ(uses, 0);
   EXPECT_GT(parts.simulation->counts().reports, 400);
-  EXPECT_EQ(parts.simulation->counts().commands, 1);
+  EXPECT_EQ(parts.simulation->counts().commands, 2);  // the script's and the one above
   EXPECT_GT(parts.simulation->walkers()[0].state.frame.steps[kRightSide], 0);
 }
 

@@ -78,17 +78,17 @@ Straight straight_run(const std::string& path) {
   Straight straight;
   auto prepared = prepared_trace(paper_cast(), path, std::nullopt, Damage::refuse);
   EXPECT_TRUE(prepared) << prepared.error().message;
-  auto run = TraceRun::begin(*prepared);
+  TraceRun run = TraceRun::begin(*prepared);
   auto frame = std::make_unique<SessionFrame>();
   TickSample sample;
   for (std::int64_t tick = 0; tick < prepared->ticks; ++tick) {
-    run->step(prepared->trace);
-    copy_frame(run->simulation(), *frame);
-    copy_sample(run->simulation(), sample);
+    run.step(prepared->trace);
+    copy_frame(run.simulation(), *frame);
+    copy_sample(run.simulation(), sample);
     straight.frames.push_back(print_of(*frame));
     straight.samples.push_back(print_of(sample));
   }
-  straight.pose_hash = run->simulation().pose_hash();
+  straight.pose_hash = run.simulation().pose_hash();
   return straight;
 }
 

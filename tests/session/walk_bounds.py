@@ -338,7 +338,8 @@ def _swing_figures(w, knees):
             up = lifts[0]
             mid = slice(up + int(0.3 * (b - up)), up + int(0.85 * (b - up)))
             clear.append(MM * toe[mid].min())
-            strike.append(MM * toe[b])
+            if w.col["stick_y"][b] >= 0:  # backwards a foot lands flat
+                strike.append(MM * toe[b])
             stance.append(knees[i][a:a + int(0.4 * (b - a))].max())
             away = [k for k in w.lift_offs[1 - i] if a < k < up]
             waves.append(stance_waves(knees[i][a:up - int(0.1 * (b - a))]) if away else 0)
@@ -350,7 +351,7 @@ def _swing_figures(w, knees):
     if not clear:
         return []
     return [Check("lowest toe clearance in swing", min(clear), unit="mm"),
-            Check("lowest toe at heel strike", min(strike), 0.0, ">=", unit="mm"),
+            Check("lowest toe at heel strike", min(strike, default=None), 0.0, ">=", unit="mm"),
             Check("stance knee bend", max(stance), unit="deg"),
             Check("knee waves in stance", max(waves)),
             Check("heel rise at the other foot's strike", min(rise, default=None), unit="mm"),

@@ -148,7 +148,7 @@ class Walk:
             self.lift_offs.append(starts)
 
     def _find_steady(self, settle_s):
-        """steady: walking forward, nothing changed for settle_s. walking: stage is not idle."""
+        """steady: walking forward (or straight back), nothing changed for settle_s. walking: stage is not idle."""
         self.walking = self.col["stage"] != "idle"
         since = np.zeros(self.ticks, dtype=int)
         marks = set(self.change_ticks) | set(np.nonzero(np.diff(self.walking.astype(int)))[0] + 1) | {0}
@@ -156,8 +156,9 @@ class Walk:
         for k in range(self.ticks):
             last = k if k in marks else last
             since[k] = k - last
-        self.steady = self.walking & (since >= settle_s * self.rate) & (self.col["stick_y"] > 0)
         self.straight = self.col["stick_x"] == 0
+        walks = (self.col["stick_y"] > 0) | (self.straight & (self.col["stick_y"] < 0))
+        self.steady = self.walking & (since >= settle_s * self.rate) & walks
         self.turning = ~self.straight | (np.abs(self.col["turn_rate_rad_s"]) > 1e-6)
 
     def cycles(self, side, mask):

@@ -86,6 +86,21 @@ TEST(Camera, StaysAboveTheFloorAndInItsDistancesWhateverIsAsked) {
   EXPECT_TRUE(std::isfinite(camera.yaw_rad));
 }
 
+TEST(Camera, StandsOnUnevenGround) {
+  Camera camera;
+  camera.target_m.y = 2.8;
+  stand_on(camera, 2.0, 2.5);
+  orbit(camera, 0.0, -10.0);
+  EXPECT_NEAR(camera.eye_m().y, 2.6, 1e-9);
+  stand_on(camera, 2.0, 3.1);  // it went into a slope
+  EXPECT_NEAR(camera.eye_m().y, 3.2, 1e-9);
+  pan(camera, {0.0, -1e6}, 600.0);
+  EXPECT_EQ(camera.target_m.y, 2.0);
+  const Camera before = camera;
+  stand_on(camera, kNan, 0.0);
+  EXPECT_EQ(camera.floor_m, before.floor_m);
+}
+
 TEST(Camera, PanningMovesTheTargetUnderThePointer) {
   Camera camera;
   orbit(camera, 0.9, 0.3);

@@ -27,6 +27,7 @@ class Opening : public testing::Test {
 
 TEST_F(Opening, TheEndingTellsMotionsAndRecordings) {
   EXPECT_EQ(*kind_of_file(make("a.bvh")), FileKind::motion);
+  EXPECT_EQ(*kind_of_file(make("A.AMC")), FileKind::motion);
   EXPECT_EQ(*kind_of_file(make("b.BVH")), FileKind::motion);
   EXPECT_EQ(*kind_of_file(make("c.hid")), FileKind::recording);
 }
@@ -35,6 +36,7 @@ TEST_F(Opening, TheFolderTellsWhatATomlFileIs) {
   EXPECT_EQ(*kind_of_file(make("styles/x.toml")), FileKind::style);
   EXPECT_EQ(*kind_of_file(make("characters/x.toml")), FileKind::character);
   EXPECT_EQ(*kind_of_file(make("calibration/x.toml")), FileKind::calibration);
+  EXPECT_EQ(*kind_of_file(make("terrain/x.toml")), FileKind::terrain);
   EXPECT_EQ(*kind_of_file(make("motions/x.toml")), FileKind::motion);
 }
 
@@ -43,6 +45,8 @@ TEST_F(Opening, ElseItsContentTells) {
   EXPECT_EQ(*kind_of_file(make("x.toml", "leg_ratio = 0.6\n")), FileKind::character);
   EXPECT_EQ(*kind_of_file(make("x.toml", "devices = [\"*:*\"]\n[left]\ninner = 0.1\n")),
             FileKind::calibration);
+  EXPECT_EQ(*kind_of_file(make("x.toml", "[[section]]\nkind = \"flat\"\nlength_m = 3\n")),
+            FileKind::terrain);
 }
 
 TEST_F(Opening, WhatCannotBeToldApartSaysWhatToDo) {

@@ -100,6 +100,46 @@ TEST_F(SceneTest, ACapsulesPixelsAreWhereItsBallsAreProjected) {
   EXPECT_NEAR(seen.top, place(b).y - rb, 1.5);
 }
 
+// A wall of four steps between the eye and a ball hides the ball; the floor never does.
+TEST_F(SceneTest, UnevenGroundIsSeenAndHides) {
+  camera_.yaw_rad = 0.0;
+  camera_.pitch_rad = 0.1;
+  const vec3 at(0.0, 0.2, -0.5);
+  const Capsule ball{at, at, 0.15, 0.15, vec3(0.0), 1.0, 1.0, kRed};
+  const Pixels level = drawn(content_);
+  auto terrain = std::make_shared<Terrain>();
+  ASSERT_FALSE(add_section(*terrain, StairsSection{0.3, 0.2, 4}));
+  content_.terrain = terrain;
+  const Pixels steps = drawn(content_);
+  EXPECT_GT(difference(level, steps).pixels, kWidth * kHeight / 10);
+  content_.bodies = {ball};
+  EXPECT_LT(difference(steps, drawn(content_)).pixels, 20);
+  content_.terrain = nullptr;
+  EXPECT_GT(difference(level, drawn(content_)).pixels, 100);
+}
+
+TEST_F(SceneTest, AShadowFallsOnTheGroundThatIsThere) {
+  camera_.pitch_rad = 1.2;
+  content_.has_shadows = true;
+  const auto shadow = [&](double height_m) {
+    camera_.target_m.y = height_m + 0.8;
+    content_.bodies.clear();
+    const Pixels empty = drawn(content_);
+    const vec3 at(0.0, height_m + 0.05, 0.0);
+    content_.bodies = {{at, at, 0.05, 0.05, vec3(0.0), 1.0, 1.0, kRed}};
+    return difference(empty, drawn(content_));
+  };
+  const Extent level = shadow(0.0);
+  auto terrain = std::make_shared<Terrain>();
+  ASSERT_FALSE(add_section(*terrain, SlopeSection{10.0, 0.06, 5.0}));
+  ASSERT_FALSE(add_section(*terrain, FlatSection{20.0}));
+  for (TerrainSection& s : terrain->sections) s.begin_m -= 20.0;  // level at 0.3 m round here
+  content_.terrain = terrain;
+  const Extent raised = shadow(0.3);
+  EXPECT_NEAR(raised.pixels, level.pixels, 0.1 * level.pixels);
+  EXPECT_NEAR(raised.left, level.left, 2);
+}
+
 TEST_F(SceneTest, ABallInABallIsTheLargerOne) {
   const Pixels empty = drawn(content_);
   const vec3 at = camera_.target_m;

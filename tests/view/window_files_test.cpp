@@ -66,6 +66,23 @@ TEST_F(WindowFiles, DroppedFilesChangeTheSessionAndDamagedOnesDoNot) {
   run(script);
 }
 
+TEST_F(WindowFiles, AKeyTurnsToTheNextGroundAndADroppedOneIsWalkedOn) {
+  const std::string ramp =
+      make("terrain/ramp.toml", "[[section]]\nkind = \"slope\"\nlength_m = 5\ngrade = 0.1\n");
+  const std::string bad = make("terrain/bad.toml", "[[section]]\nkind = \"hole\"\n");
+  Script script;
+  script.until("it runs", [](const Glance& g) { return g.session.tick > 0; });
+  script.then([](const Glance& g) { EXPECT_TRUE(is_flat(*g.cast.terrain)); });
+  script.tap(SDLK_m);
+  script.until("it has turned on", [](const Glance& g) { return g.cast.terrain->name == "rough"; });
+  script.drop(bad);
+  script.until("it tells of it", [bad](const Glance& g) { return says(g, "bad.toml:2"); });
+  script.drop(ramp);
+  script.until("the ramp", [](const Glance& g) { return g.cast.terrain->name == "ramp"; });
+  script.until("it runs on", [](const Glance& g) { return g.session.tick > 0; });
+  run(script);
+}
+
 TEST_F(WindowFiles, ADroppedRecordingPlaysAndEscapeGoesBack) {
   Script script;
   script.drop(round_);

@@ -1,0 +1,104 @@
+#include "session/script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/toml_file.h"
+#include "session/commands.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kLatest_s = 86400.0;
+constexpr std::size_t kMaxCommandBytes = 256;
+
+ScriptEvent event_of(TomlTable& table, const std::string& path) {
+  ScriptEvent event;
+  for (const char* key : {"at_s", "command"}) table.require(key);
+  const double at_s = table.number("at_s", 0.0, kLatest_s).value_or(0.0);
+  event.time_us = static_cast<std::int64_t>(std::floor(at_s * 1e6 + 0.5));
+  event.command = table.string("command").value_or("mark");
+  event.where = fmt::format("{}:{}", path, table.line("command"));
+  if (event.command.size() > kMaxCommandBytes) {
+    table.reject("command", "the command is too long");
+  } else if (!parsed_command(event.command)) {
+    table.reject("command", in_quotes(event.command) + " is no command");
+  }
+  return event;
+}
+
+Result<Script> script_of(Result<TomlFile> file, const std::string& path) {
+  if (!file) return file.error();
+  Script script;
+  for (TomlTable& event : file->root().tables("event", kMaxScriptEvents))
+    script.events.push_back(event_of(event, path));
+  if (auto problem = file->problem()) return *problem;
+  std::ranges::stable_sort(script.events, {}, &ScriptEvent::time_us);
+  return script;
+}
+
+}  // namespace
+
+Result<Script> load_script(const std::string& path) {
+  return script_of(TomlFile::load(path), path);
+}
+
+Result<Script> parsed_script(std::string_view text, const std::string& path) {
+  return script_of(TomlFile::parse(text, path), path);
+}
+
+std::int64_t tick_of(const ScriptEvent& event, int rate_hz) noexcept {
+  return (event.time_us * rate_hz + 999'999) / 1'000'000;
+}
+
+Report report_of(const ScriptEvent& event) noexcept {
+  Report report;
+  report.kind = ReportKind::command;
+  report.size = static_cast<std::uint16_t>(event.command.size());
+  std::copy(event.command.begin(), event.command.end(), report.bytes.begin());
+  return report;
+}
+
+Result<Script> script_for(const Simulation& simulation, const std::string& path) {
+  if (path.empty()) return Script{};
+  auto script = load_script(path);
+  if (!script) return script;
+  Simulation scratch = simulation;
+  for (const ScriptEvent& event : script->events) {
+    const std::int64_t before = scratch.counts().bad_commands;
+    scratch.take(report_of(event));
+    if (scratch.counts().bad_commands == before) continue;
+    return Error{
+        fmt::format("{}: {} cannot be obeyed: a name, a value or a character that there is not",
+                    event.where, in_quotes(event.command))};
+  }
+  return script;
+}
+
+void add_script(const Script& script, int rate_hz, Trace& trace) {
+  std::vector<TraceEvent> events;
+  events.reserve(trace.events.size() + script.events.size());
+  auto own = trace.events.begin();
+  for (const ScriptEvent& e : script.events) {
+    const std::int64_t tick = tick_of(e, rate_hz);
+    const auto next =
+        std::lower_bound(own, trace.events.end(), tick,
+                         [](const TraceEvent& t, std::int64_t k) { return t.tick < k; });
+    events.insert(events.end(), own, next);
+    own = next;
+    TraceEvent& event = events.emplace_back();
+    event.time_us = events.size() > 1 ? events[events.size() - 2].time_us : 0;
+    event.tick = tick;
+    event.kind = ReportKind::command;
+    event.first_byte = static_cast<std::uint32_t>(trace.bytes.size());
+    event.size = static_cast<std::uint16_t>(e.command.size());
+    trace.bytes.insert(trace.bytes.end(), e.command.begin(), e.command.end());
+  }
+  events.insert(events.end(), own, trace.events.end());
+  trace.events = std::move(events);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,73 @@
+// An engine that drives a walk over the library (docs/control.md): what it sees is the state, what
+// it says are commands. Kept as a recording would keep them, they give the same walk without the
+// engine.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "session/simulation.h"
+#include "tests/session/made_session.h"
+
+namespace gaitpad {
+namespace {
+
+// Walks on until it is tired, limps while it is, rests where it must and goes on when it is fresh.
+class Engine {
+ public:
+  // What it wants changed.
+  std::vector<std::string> thoughts(const Walker& walker) {
+    const Mood mood = mood_of(walker);
+    if (mood == mood_) return {};
+    mood_ = mood;
+    if (mood == Mood::rests) return {"gait speed_m_s 0"};
+    if (mood == Mood::limps) return {"style limp"};
+    return {"style even", "gait speed_m_s 1.2"};
+  }
+
+ private:
+  enum class Mood { begins, walks, limps, rests };
+  Mood mood_of(const Walker& walker) const {
+    if (mood_ == Mood::rests) return walker.tired > 0.02 ? Mood::rests : Mood::walks;
+    if (walker.tired > 0.3) return Mood::rests;
+    return walker.tired > 0.2 ? Mood::limps : Mood::walks;
+  }
+  Mood mood_ = Mood::begins;
+};
+
+TEST(AiEngine, DrivesByCommandsThatReplayWithoutIt) {
+  SimulationConfig config = made_config(1);
+  for (Style& style : config.styles) {
+    style.fatigue_per_100_m = 8.0;
+    style.fatigue_recovery_per_s = 0.2;
+  }
+  auto driven = Simulation::create(config);
+  auto replayed = Simulation::create(config);
+  ASSERT_TRUE(driven && replayed);
+  struct Said {
+    int tick;
+    std::string command;
+  };
+  std::vector<Said> recording;
+  Engine engine;
+  constexpr int kTicks = 240 * 20;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    for (const std::string& command : engine.thoughts(driven->walkers()[0])) {
+      driven->take(made_command(command));
+      recording.push_back({tick, command});
+    }
+    driven->step({});
+  }
+  EXPECT_GE(recording.size(), 8u);  // it walked, limped, rested, twice at least
+  EXPECT_EQ(driven->counts().bad_commands, 0);
+  std::size_t next = 0;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    for (; next < recording.size() && recording[next].tick == tick; ++next)
+      replayed->take(made_command(recording[next].command));
+    replayed->step({});
+  }
+  EXPECT_EQ(replayed->pose_hash(), driven->pose_hash());
+}
+
+}  // namespace
+}  // namespace gaitpad

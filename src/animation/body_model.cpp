@@ -15,7 +15,7 @@ constexpr double kLeastFlexion = 4.0 * kDegree;  // of an elbow whose swing is m
 constexpr double kGrip = 0.075;       // wrist to the middle of the hand, of the adult; shares of a
 constexpr double kHandPart = 0.5;     // short hand
 constexpr double kClearHinge = 0.05;  // mean sine of the elbow's bend that shows where its hinge is
-constexpr double kWidestTurn = 1.2;   // radians of shoulder z: beyond it x and y mean nothing
+constexpr double kWidestTurn = 1.45;  // radians of shoulder z: beyond it x and y mean nothing
 
 struct Frames {  // of the standing pose
   std::vector<quat> rotation;
@@ -108,19 +108,20 @@ ArmAngles angles_of(const Frames& at, const Skeleton& skeleton, const ArmBuild& 
   return angles;
 }
 
-void fill_ranges(const GaitCycle& cycle, Side side, ArmBuild& arm) {
+void fill_ranges(const GaitCycle& cycle, Side side, const Frames& standing, ArmBuild& arm) {
   const std::size_t count = cycle.skeleton.joints.size();
-  ArmAngles low, high;
-  low.fill(1e9), high.fill(-1e9);
-  ArmAngles before{};
+  const ArmAngles rest = angles_of(standing, cycle.skeleton, arm);
+  ArmAngles low = rest, high = rest, before = rest;
+  double straightest = -1e9;
   for (int i = 0; i < kCycleSamples; ++i) {
     const Frames at = frames_of(cycle.skeleton, cycle.local.data() + i * count);
     ArmAngles now = angles_of(at, cycle.skeleton, arm);
     for (int d = 0; d < kArmDofs; ++d) {
-      if (i > 0) now[d] = before[d] + wrapped(now[d] - before[d]);
+      now[d] = before[d] + wrapped(now[d] - before[d]);
       low[d] = std::min(low[d], now[d]), high[d] = std::max(high[d], now[d]);
       arm.middle_rad[d] += now[d] / kCycleSamples;
     }
+    straightest = std::max(straightest, now[kElbowX]);
     before = now;
   }
   for (int d = 0; d < kArmDofs; ++d) {
@@ -131,7 +132,7 @@ void fill_ranges(const GaitCycle& cycle, Side side, ArmBuild& arm) {
     const double room = d == kElbowX ? 0.0 : 5.0 * kDegree;
     arm.min_rad[d] = std::min(min, low[d] - room), arm.max_rad[d] = std::max(max, high[d] + room);
   }
-  const double middle = arm.middle_rad[kElbowX], straightest = high[kElbowX];
+  const double middle = arm.middle_rad[kElbowX];
   const double room = std::max(0.0, -kLeastFlexion - middle);
   arm.most_elbow_swing = std::max(1.0, room / std::max(1e-3, straightest - middle));
   arm.is_there = std::max(std::abs(low[kShoulderZ]), std::abs(high[kShoulderZ])) < kWidestTurn;
@@ -153,7 +154,7 @@ ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
   if (!(arm.length_m > 1e-3)) return arm;
   arm.hanging = hanging_axes(cycle, joints, standing);
   arm.grip_m = grip_of(cycle, arm, standing);
-  fill_ranges(cycle, side, arm);
+  fill_ranges(cycle, side, standing, arm);
   return arm;
 }
 
@@ -200,12 +201,15 @@ BodyModel body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_hei
   const BodyJoints joints = find_body(cycle.skeleton, {cycle.leg[0].joints, cycle.leg[1].joints},
                                       cycle.pelvis, standing.position_m);
   body.own_step_s = 0.5 * cycle.duration_s * std::sqrt(std::sqrt(leg_ratio));
-  double height_m = 0.0;
+  double height_m = 0.0, length_m = 0.0, arms = 0.0;
   for (const Side side : {kLeftSide, kRightSide}) {
     body.arm[side] = arm_build(cycle, joints.arm[side], side, standing);
-    if (body.arm[side].is_there)
-      height_m = std::max(height_m, standing.position_m[joints.arm[side].shoulder].y);
+    if (!body.arm[side].is_there) continue;
+    height_m = std::max(height_m, standing.position_m[joints.arm[side].shoulder].y);
+    length_m += body.arm[side].length_m;
+    arms += 1.0;
   }
+  if (arms > 0.0) body.arm_m = length_m / arms;
   body.shoulder_height_m = pelvis_height_m + height_m - standing.position_m[cycle.pelvis].y;
   fill_spine(cycle, joints.spine, standing, body);
   fill_head(cycle, joints, standing, body);

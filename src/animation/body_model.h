@@ -39,6 +39,7 @@ struct SpineJoint {
 
 struct BodyModel {
   std::array<ArmBuild, 2> arm;
+  double arm_m = kReferenceArm_m;  // shoulder to wrist, mean of the arms
   double shoulder_height_m = 0.0;  // standing
   double own_step_s = 0.5;         // the data's step, with the time that this character's legs give
   std::vector<int> spine_path;     // from the root to what carries neck and arms

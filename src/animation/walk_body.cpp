@@ -10,12 +10,12 @@ namespace {
 
 constexpr double kSmoothing = 0.22;  // s at the reference leg
 constexpr double kSettled = 40.0;    // of these: what is left is no number any more
-constexpr double kMostExtra = 0.6;   // swing beyond the data's that pace alone can give
+constexpr double kMostExtra = 0.4;   // swing beyond the data's that pace alone can give
 constexpr double kLeastPace = 0.5;   // below it the data's posture fades, and the swing with it
 constexpr double kSoftElbow = 0.1;
-constexpr double kRailProbe_m = 0.14;    // between two probes of the ground under a rail
-constexpr int kRailProbes = 4;           // to either side
-constexpr double kRailSmoothing = 0.15;  // s
+constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail;
+constexpr int kRailProbes = 15;         // 0.56 m to either side: a mean over two treads is even
+constexpr double kRailSmoothing = 0.06;
 
 // Where the values are all at their goals already, this costs one comparison.
 void settle(const Tick& tick, BodyState& body) noexcept {
@@ -48,22 +48,27 @@ double pace_swing(const Tick& tick, const WalkState& state) noexcept {
   return 1.0 + (extra > 0.0 ? extra / (1.0 + extra / kMostExtra) : extra);
 }
 
-// A rail rises evenly over stairs: the ground's mean along the way under the hand.
+// A rail rises evenly over stairs: the ground's mean along the way under the hand, as far ahead as
+// the filter is late.
 void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
   BodyState& body = state.body;
-  const double goal_side = body.goal.hand[side].rail_side_m;
+  const HandParams& hand = body.now.hand[side];
+  const double scale = tick.model.body.shoulder_height_m / kReferenceShoulder_m;
+  const double smoothing_s = kRailSmoothing * tick.model.time_scale;
   const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
-  const vec3 under = state.hips_m + left * (side == kLeftSide ? goal_side : -goal_side);
+  const vec3 under = state.hips_m + state.hips_velocity_m_s * (2.0 * smoothing_s) +
+                     left * (scale * (side == kLeftSide ? hand.rail_side_m : -hand.rail_side_m));
   double sum = 0.0, weights = 0.0;
-  for (int i = -kRailProbes; i <= kRailProbes; ++i) {
+  for (int i = -kRailProbes; i <= kRailProbes && !tick.flat; ++i) {
     const vec3 at = under + forward * (i * kRailProbe_m * tick.model.size);
     const double weight = kRailProbes + 1.0 - std::abs(i);
     sum += weight * ground_at(*tick.model.terrain, at.x, at.z).height_m;
     weights += weight;
   }
+  const double mean_m = tick.flat ? 0.0 : sum / weights;
   Damped<double> ground{body.rail_ground_m[side], body.rail_ground_m_s[side]};
-  ground.advance(sum / weights, kRailSmoothing * tick.model.time_scale, tick.dt_s);
-  if (body.now.hand[side].rail <= 0.0) ground = {sum / weights, 0.0};  // nobody holds it yet
+  ground.advance(mean_m, smoothing_s, tick.dt_s);
+  if (hand.rail <= 0.0) ground = {mean_m, 0.0};  // nobody holds it yet
   body.rail_ground_m[side] = ground.x;
   body.rail_ground_m_s[side] = ground.v;
 }

@@ -10,9 +10,12 @@ namespace {
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
 constexpr double kFarthest = 0.985, kSoftFar = 0.03;  // of the stretched arm: a hand's place
 constexpr double kNearest = 0.3, kSoftNear = 0.1;
-constexpr double kRailAhead_m = 0.10;  // of the shoulder, where a hand takes hold of a rail
-// A held hand's arm: what the solver starts from, of a left arm (a right one's z and y mirrored).
-constexpr double kHeldX = -15.0 * kDegree, kHeldZ = 12.0 * kDegree, kHeldY = -15.0 * kDegree;
+constexpr double kRailAhead_m = 0.15;  // of the shoulder, where a hand takes hold of a rail
+// Shoulder of a held hand's arm: what the solver starts from, of a left arm (a right one's z and y
+// are mirrored). Elbows point down and a little out where a tray is carried, back beside a rail.
+using ShoulderAngles = std::array<double, 3>;
+constexpr ShoulderAngles kCarrying = {-15.0 * kDegree, 12.0 * kDegree, -15.0 * kDegree};
+constexpr ShoulderAngles kAtRail = {25.0 * kDegree, 4.0 * kDegree, 5.0 * kDegree};
 // Beside the style's weights: held hands are brought about by shoulder and elbow.
 constexpr ArmWeights kHeldWeights = {1.0, 1.0, 0.7, 1.0, 0.25, 0.25};
 
@@ -58,6 +61,12 @@ Arm arm_of(const ArmBuild& build, const Skeleton& skeleton, const JointFrames& w
   return arm;
 }
 
+bool has_uneven_weights(const BodyParams& now, Side side) noexcept {
+  const ArmWeights& weight = now.arm_weight[side];
+  const auto [low, high] = std::minmax_element(weight.begin(), weight.end());
+  return *high - *low >= kEvenBodySpread;
+}
+
 double sign_of(Side side) noexcept { return side == kLeftSide ? 1.0 : -1.0; }
 
 double upper_m(const Arm& arm) noexcept { return glm::length(arm.chain.dof[kShoulderY].link_m); }
@@ -77,10 +86,11 @@ vec3 within_reach(const Arm& arm, const vec3& place_m) noexcept {
 
 // Before the chest: in the upright frame that turns with the shoulders, so what both hands hold
 // stays level.
-vec3 carried_place(const HandParams& hand, const Arm& arm, Side side, const vec3& middle_m,
-                   const quat& upright) noexcept {
-  const double scale = arm.build.length_m / kReferenceArm_m;
-  return middle_m + upright * (scale * vec3(sign_of(side) * hand.x_m, hand.y_m, hand.z_m));
+vec3 carried_place(const HandParams& hand, const BodyModel& body, Side side,
+                   const Shoulders& shoulders) noexcept {
+  const double scale = body.arm_m / kReferenceArm_m;
+  return shoulders.middle_m +
+         shoulders.upright * (scale * vec3(sign_of(side) * hand.x_m, hand.y_m, hand.z_m));
 }
 
 // On a rail that runs along with the hips' path.
@@ -96,19 +106,21 @@ vec3 rail_place(const WalkModel& model, const WalkState& state, const HandParams
 
 // Where the solver starts for a held hand: out, bent as far as the place is away, and the wrist as
 // in the data.
-IkAngles held_start(const Arm& arm, Side side, const vec3& place_m) noexcept {
+IkAngles held_start(const Arm& arm, Side side, double rail, const vec3& place_m) noexcept {
   const double a = upper_m(arm), b = lower_m(arm);
   const double far = glm::distance(place_m, arm.shoulder_m);
   const double bend = gaitpad::acos((far * far - a * a - b * b) / std::max(2.0 * a * b, 1e-9));
   IkAngles start{};
-  start[kShoulderX] = kHeldX;
-  start[kShoulderZ] = sign_of(side) * kHeldZ;
-  start[kShoulderY] = sign_of(side) * kHeldY;
+  start[kShoulderX] = mix(kCarrying[0], kAtRail[0], rail);
+  start[kShoulderZ] = sign_of(side) * mix(kCarrying[1], kAtRail[1], rail);
+  start[kShoulderY] = sign_of(side) * mix(kCarrying[2], kAtRail[2], rail);
   start[kElbowX] = -bend;
   return start;
 }
 
-// Joints of small weight hold on to the middle of their swing; the others make up for it.
+// Joints of small weight hold on to the middle of their swing; the others make up for it, so that
+// the hand goes as far forward and aside as it went. Its height gives way: with it the shoulder's
+// angle would follow from the path alone.
 void stiffen(const ArmBuild& build, const ArmWeights& weights, Arm& arm) noexcept {
   const double largest = std::max(1e-6, *std::max_element(weights.begin(), weights.end()));
   for (int d = 0; d < kArmDofs; ++d) {
@@ -116,6 +128,48 @@ void stiffen(const ArmBuild& build, const ArmWeights& weights, Arm& arm) noexcep
     arm.chain.dof[d].weight = w;
     arm.angles[d] += held_back(w) * (build.middle_rad[d] - arm.angles[d]);
   }
+}
+
+// Turns the whole arm at the shoulder towards the goal (from the shoulder, base frame): so little
+// is left to the solver that it needs a third of the time, and the wrist stays as it is.
+void aim(const vec3& goal_m, Arm& arm) noexcept {
+  const IkFrame end = end_frame(arm.chain, arm.angles);
+  const vec3 hand_m = end.position_m + end.rotation * arm.grip_m;
+  const double far = glm::length(hand_m), goal_far = glm::length(goal_m);
+  if (far < 1e-6 || goal_far < 1e-6) return;
+  const quat upper =
+      rotation_xzy({arm.angles[kShoulderX], arm.angles[kShoulderZ], arm.angles[kShoulderY]});
+  const AnglesXzy to = angles_xzy(rotation_between(hand_m / far, goal_m / goal_far) * upper);
+  arm.angles[kShoulderX] += wrapped(to.x - arm.angles[kShoulderX]);
+  arm.angles[kShoulderZ] = to.z;
+  arm.angles[kShoulderY] += wrapped(to.y - arm.angles[kShoulderY]);
+}
+
+// Brings the hand from where it swings to where it is to be.
+void hold(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
+          Arm& arm) noexcept {
+  const HandParams& hand = state.body.now.hand[side];
+  const double carry = std::clamp(hand.carry, 0.0, 1.0), rail = std::clamp(hand.rail, 0.0, 1.0);
+  const double held = 1.0 - (1.0 - carry) * (1.0 - rail);
+  if (held <= 0.0) return;
+  const IkFrame end = end_frame(arm.chain, arm.angles);
+  vec3 place = arm.shoulder_m + arm.base * (end.position_m + end.rotation * arm.grip_m);
+  if (carry > 0.0) {
+    const vec3 goal = within_reach(arm, carried_place(hand, model.body, side, shoulders));
+    place += carry * (goal - place);
+  }
+  if (rail > 0.0) {
+    const vec3 goal = within_reach(arm, rail_place(model, state, hand, side));
+    place += rail * (goal - place);
+  }
+  const IkAngles start = held_start(arm, side, rail, place);
+  for (int d = 0; d < kArmDofs; ++d) {
+    arm.angles[d] += held * (start[d] - arm.angles[d]);
+    arm.chain.dof[d].weight *= mix(1.0, kHeldWeights[d], smoothstep(0.0, 0.1, held));
+  }
+  const vec3 goal = glm::conjugate(arm.base) * (place - arm.shoulder_m);
+  aim(goal, arm);
+  solve_robust(arm.chain, point_goal(arm.grip_m, goal), kRobust, arm.angles);
 }
 
 void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames& world) noexcept {
@@ -143,9 +197,7 @@ void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames
 }  // namespace
 
 bool is_arm_free(const BodyParams& now, Side side) noexcept {
-  const auto [low, high] =
-      std::minmax_element(now.arm_weight[side].begin(), now.arm_weight[side].end());
-  return *high - *low < kEvenBodySpread && now.hand[side].carry <= 0.0 &&
+  return !has_uneven_weights(now, side) && now.hand[side].carry <= 0.0 &&
          now.hand[side].rail <= 0.0;
 }
 
@@ -176,30 +228,15 @@ void pose_arm(const WalkModel& model, const WalkState& state, Side side, const S
               const vec3& own_m, Pose& pose, JointFrames& world) noexcept {
   const ArmBuild& build = model.body.arm[side];
   const BodyParams& now = state.body.now;
-  const HandParams& hand = now.hand[side];
   Arm arm = arm_of(build, model.cycle.skeleton, world);
-  stiffen(build, now.arm_weight[side], arm);
-  vec3 place = own_m;
-  const double carry = std::clamp(hand.carry, 0.0, 1.0), rail = std::clamp(hand.rail, 0.0, 1.0);
-  if (carry > 0.0) {
-    const vec3 goal =
-        within_reach(arm, carried_place(hand, arm, side, shoulders.middle_m, shoulders.upright));
-    place += carry * (goal - place);
+  if (has_uneven_weights(now, side)) {
+    stiffen(build, now.arm_weight[side], arm);
+    const vec3 own = glm::conjugate(arm.base) * (own_m - arm.shoulder_m);
+    const std::array<IkRow, 2> path = {IkRow{arm.grip_m, kLeft, own.x},
+                                       IkRow{arm.grip_m, kForward, own.z}};
+    solve_robust(arm.chain, path, kRobust, arm.angles);
   }
-  if (rail > 0.0) {
-    const vec3 goal = within_reach(arm, rail_place(model, state, hand, side));
-    place += rail * (goal - place);
-  }
-  const double held = 1.0 - (1.0 - carry) * (1.0 - rail);
-  if (held > 0.0) {
-    const IkAngles start = held_start(arm, side, place);
-    for (int d = 0; d < kArmDofs; ++d) {
-      arm.angles[d] += held * (start[d] - arm.angles[d]);
-      arm.chain.dof[d].weight *= mix(1.0, kHeldWeights[d], held);
-    }
-  }
-  const vec3 goal = glm::conjugate(arm.base) * (place - arm.shoulder_m);
-  solve_robust(arm.chain, point_goal(arm.grip_m, goal), kRobust, arm.angles);
+  hold(model, state, side, shoulders, arm);
   write_arm(model.cycle.skeleton, arm, pose, world);
 }
 

@@ -36,9 +36,9 @@ constexpr BodyNumber kHeadNumbers[] = {
     {"yaw_deg", -90.0, 90.0, [](BodyParams& b, int) -> double& { return b.head.yaw_deg; }},
     {"pitch_deg", -60.0, 60.0, [](BodyParams& b, int) -> double& { return b.head.pitch_deg; }},
     {"look_at", 0.0, 1.0, [](BodyParams& b, int) -> double& { return b.head.look_at; }},
-    {"x_m", -1e3, 1e3, [](BodyParams& b, int) -> double& { return b.head.x_m; }},
-    {"y_m", -1e3, 1e3, [](BodyParams& b, int) -> double& { return b.head.y_m; }},
-    {"z_m", -1e3, 1e3, [](BodyParams& b, int) -> double& { return b.head.z_m; }},
+    {"x_m", -100.0, 100.0, [](BodyParams& b, int) -> double& { return b.head.x_m; }},
+    {"y_m", -100.0, 100.0, [](BodyParams& b, int) -> double& { return b.head.y_m; }},
+    {"z_m", -100.0, 100.0, [](BodyParams& b, int) -> double& { return b.head.z_m; }},
     {"lead", 0.0, 1.0, [](BodyParams& b, int) -> double& { return b.head.lead; }},
 };
 

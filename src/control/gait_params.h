@@ -34,7 +34,7 @@ struct HandParams {
   // that hand's side), up, forward. At first a tray at the height of the elbows.
   double x_m = 0.16, y_m = -0.30, z_m = 0.36;
   double rail = 0.0;  // share: on a rail along the way, which wins over what is carried
-  double rail_height_m = 0.90, rail_side_m = 0.42;  // above the ground; from the hips' path
+  double rail_height_m = 0.90, rail_side_m = 0.36;  // above the ground; from the hips' path
   bool operator==(const HandParams&) const = default;
 };
 

@@ -8,14 +8,21 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::string_view kLeftLeg = "left_leg.", kRightLeg = "right_leg.", kBothLegs = "legs.";
+constexpr std::string_view kLeftOf = "left_", kRightOf = "right_";
+constexpr std::string_view kOfBoth[] = {"legs.", "arms.", "hands."};
+constexpr std::string_view kOfBody[] = {"arm.", "hand.", "spine.", "head."};
 
-// A key, or the same key of both legs.
+// A key, or the same key of both sides.
 struct StyleRow {
   std::string label;
   const StyleKey* left = nullptr;   // or the only one
-  const StyleKey* right = nullptr;  // null: no leg's
+  const StyleKey* right = nullptr;  // null: of no side
 };
+
+template <std::size_t n>
+bool begins_with_one(const std::string_view (&parts)[n], std::string_view name) {
+  return std::any_of(parts, parts + n, [name](std::string_view p) { return name.starts_with(p); });
+}
 
 // "weight.hip_x" -> "hip x weight", "stride_length" -> "stride length"
 std::string label_of(std::string_view key) {
@@ -31,23 +38,30 @@ bool is_axis_weight(std::string_view key) {
          (key.ends_with("_x") || key.ends_with("_y") || key.ends_with("_z"));
 }
 
-std::vector<StyleRow> rows_of(bool has_axis_weights) {
+// The legs' rows are known by their words; "lower" and "x" say whose they are.
+std::string row_label(std::string_view name) {
+  const std::string_view table = name.substr(0, name.find('.'));
+  const bool is_plain = table.size() == name.size() || table == "leg" || table == "arm";
+  if (is_plain) return label_of(table.size() == name.size() ? name : name.substr(table.size() + 1));
+  return fmt::format("{} {}", table, label_of(name.substr(table.size() + 1)));
+}
+
+std::vector<StyleRow> rows_of(const UiMemory& memory) {
   std::vector<StyleRow> rows;
   const std::vector<StyleKey>& keys = style_keys();
   for (const StyleKey& key : keys) {
     const std::string_view name = key.name;
-    if (name.starts_with(kBothLegs) || name.starts_with(kRightLeg)) continue;
-    if (!has_axis_weights && is_axis_weight(name)) continue;
-    if (!name.starts_with(kLeftLeg)) {
-      rows.push_back({label_of(name), &key, nullptr});
-      continue;
-    }
-    const std::string_view part = name.substr(kLeftLeg.size());
+    if (begins_with_one(kOfBoth, name) || name.starts_with(kRightOf)) continue;
+    if (!memory.has_axis_weights && is_axis_weight(name)) continue;
+    const bool is_paired = name.starts_with(kLeftOf);
+    const std::string_view part = is_paired ? name.substr(kLeftOf.size()) : name;
+    if (!memory.has_body_keys && begins_with_one(kOfBody, part)) continue;
     const auto right = std::find_if(keys.begin(), keys.end(), [part](const StyleKey& k) {
-      return std::string_view(k.name).starts_with(kRightLeg) &&
-             std::string_view(k.name).substr(kRightLeg.size()) == part;
+      const std::string_view other = k.name;
+      return other.starts_with(kRightOf) && other.substr(kRightOf.size()) == part;
     });
-    rows.push_back({label_of(part), &key, right == keys.end() ? nullptr : &*right});
+    const bool has_right = is_paired && right != keys.end();
+    rows.push_back({row_label(part), &key, has_right ? &*right : nullptr});
   }
   return rows;
 }
@@ -193,6 +207,11 @@ void draw_buttons(Ui& ui, const WalkerFrame& walker) {
   if (button(ui, "axis weights", "each axis", look)) {
     ui.state.memory.has_axis_weights = !ui.state.memory.has_axis_weights;
   }
+  look.width = width;
+  look.is_on = ui.state.memory.has_body_keys;
+  if (button(ui, "upper body", "arms, hands, spine and head", look)) {
+    ui.state.memory.has_body_keys = !ui.state.memory.has_body_keys;
+  }
 }
 
 }  // namespace
@@ -203,7 +222,7 @@ void draw_style_panel(Ui& ui) {
   const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   draw_choice(ui, walker);
-  for (const StyleRow& row : rows_of(ui.state.memory.has_axis_weights)) draw_row(ui, walker, row);
+  for (const StyleRow& row : rows_of(ui.state.memory)) draw_row(ui, walker, row);
   draw_buttons(ui, walker);
   draw_save(ui);
   ImGui::PopStyleVar();

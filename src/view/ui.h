@@ -43,6 +43,7 @@ struct UiMemory {
   bool has_drawn = false;
   std::array<char, 64> style_name{};
   bool has_axis_weights = false;  // the style panel shows each axis of a joint
+  bool has_body_keys = false;     // and what is above the hips
 };
 
 // What is remembered from one start to the next (view/layout.h), and what is open now.

@@ -122,7 +122,12 @@ TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
     EXPECT_TRUE(set == *read) << key.name;
     EXPECT_EQ(value_of(set, key.name), value);
   }
+<<<<<<< HEAD
   EXPECT_EQ(style_keys().size(), 6u + 3u * (3u + 10u));
+=======
+  constexpr std::size_t kLegKeys = 3 + 10, kArmKeys = 1 + 9, kHandKeys = 7, kSpineAndHead = 2 + 8;
+  EXPECT_EQ(style_keys().size(), 3 + 3 * (kLegKeys + kArmKeys + kHandKeys) + kSpineAndHead);
+>>>>>>> main
 }
 
 TEST(StyleValue, OneLegOrBothChange) {
@@ -153,6 +158,14 @@ TEST(StyleValue, WhatIsUnknownOrOutOfBoundsChangesNothing) {
                                "fatigue.",
                                "hip_sway.x",
                                "left_leg.weight.elbow",
+                               "arms",
+                               "arms.carry",
+                               "hands.weight.shoulder",
+                               "spine.weight",
+                               "spine.weight.",
+                               "spine.weightlower",
+                               "head.swing",
+                               "heads.look",
                                " fatigue"};
   for (const char* name : names) {
     EXPECT_FALSE(set_value(style, name, 0.5)) << name;
@@ -174,6 +187,50 @@ TEST(StyleValue, ALegIsNeverLockedAsAWhole) {
   EXPECT_FALSE(set_value(style, "legs.weight.ankle", 0.0)) << "the right one could, the left not";
   EXPECT_EQ(value_of(style, "right_leg.weight.ankle"), 1.0);
   EXPECT_TRUE(set_value(style, "left_leg.weight.ankle_y", 0.0));
+}
+
+TEST_F(StyleFile, ArmsHandsSpineAndHeadHaveTables) {
+  const auto style = loaded(
+      "[arms]\nswing = 0.5\nweight = { shoulder = 0.2 }\n[right_arm]\nswing = 2\n"
+      "weight = { shoulder_y = 1 }\n[hands]\ncarry = 1\n[left_hand]\nrail = 0.25\n"
+      "[spine]\nweight = { lower = 0 }\n[head]\nlook = 1\nyaw_deg = -30");
+  ASSERT_TRUE(style) << style.error().message;
+  const BodyParams& body = style->body;
+  EXPECT_EQ(body.arm_swing, (std::array<double, 2>{0.5, 2.0}));
+  EXPECT_EQ(body.arm_weight[kLeftSide], (ArmWeights{0.2, 0.2, 0.2, 1, 1, 1}));
+  EXPECT_EQ(body.arm_weight[kRightSide], (ArmWeights{0.2, 0.2, 1, 1, 1, 1}));
+  EXPECT_EQ(body.hand[kRightSide].carry, 1.0);
+  EXPECT_EQ(body.hand[kLeftSide].rail, 0.25);
+  EXPECT_EQ(body.hand[kRightSide].rail, 0.0);
+  EXPECT_EQ(body.spine_weight, (SpineWeights{0.0, 1.0}));
+  EXPECT_EQ(body.head.yaw_deg, -30.0);
+}
+
+TEST_F(StyleFile, ABodyThatCouldNotMoveIsRefused) {
+  EXPECT_FALSE(loaded("[arms]\nweight = { shoulder = 0, elbow = 0, wrist = 0 }"));
+  EXPECT_FALSE(loaded("[spine]\nweight = { lower = 0, upper = 0 }"));
+  EXPECT_FALSE(loaded("[hands]\ngrip = 1"));
+}
+
+TEST_F(StyleFile, TextOfABodyIsAsPeopleWouldWriteIt) {
+  Style style;
+  style.name = "mine";
+  style.body.hand[kLeftSide].rail = 1.0;
+  style.body.arm_weight[kLeftSide] = style.body.arm_weight[kRightSide] = {0.2, 0.2, 0.2, 1, 1, 0.5};
+  const std::string text = style_text(style);
+  EXPECT_EQ(text.substr(text.find('\n') + 1),
+            "name = \"mine\"\n\n[arms]\nweight = { shoulder = 0.2, wrist_z = 0.5 }\n"
+            "\n[left_hand]\nrail = 1\n");
+}
+
+TEST(StyleValue, NoArmIsLockedAsAWhole) {
+  StyleValues style;
+  EXPECT_TRUE(set_value(style, "left_arm.weight.shoulder", 0.0));
+  EXPECT_TRUE(set_value(style, "left_arm.weight.elbow", 0.0));
+  EXPECT_FALSE(set_value(style, "left_arm.weight.wrist", 0.0));
+  EXPECT_TRUE(set_value(style, "spine.weight.upper", 0.0));
+  EXPECT_FALSE(set_value(style, "spine.weight.lower", 0.0));
+  EXPECT_EQ(value_of(style, "right_arm.weight.shoulder"), 1.0);
 }
 
 TEST(LoadStyle, AbsentFileIsNamed) {

@@ -122,12 +122,8 @@ TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
     EXPECT_TRUE(set == *read) << key.name;
     EXPECT_EQ(value_of(set, key.name), value);
   }
-<<<<<<< HEAD
-  EXPECT_EQ(style_keys().size(), 6u + 3u * (3u + 10u));
-=======
   constexpr std::size_t kLegKeys = 3 + 10, kArmKeys = 1 + 9, kHandKeys = 7, kSpineAndHead = 2 + 8;
-  EXPECT_EQ(style_keys().size(), 3 + 3 * (kLegKeys + kArmKeys + kHandKeys) + kSpineAndHead);
->>>>>>> main
+  EXPECT_EQ(style_keys().size(), 6 + 3 * (kLegKeys + kArmKeys + kHandKeys) + kSpineAndHead);
 }
 
 TEST(StyleValue, OneLegOrBothChange) {

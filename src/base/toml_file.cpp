@@ -313,6 +313,8 @@ Result<TomlFile> TomlFile::parse(std::string_view text, const std::string& name,
     return document->error_at(line + document->line_offset, cause);
   };
   if (const int line = line_of_invalid_utf8(text)) return damage_at(line, "not UTF-8");
+  if (const int line = line_of_stray_character(text))
+    return damage_at(line, "a character beyond ASCII outside of strings and comments");
   if (const int line = line_of_overlong_key(text)) {
     return damage_at(line, fmt::format("a key of more than {} parts", kMaxKeyParts));
   }

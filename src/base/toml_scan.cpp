@@ -52,11 +52,9 @@ int line_at(std::string_view text, std::size_t place) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + place, '\n'));
 }
 
-}  // namespace
-
-int line_of_overlong_key(std::string_view text) {
-  constexpr std::string_view kEndsOfKeys = ",[]{}=\n";
-  int dots = 0;
+// Of the first byte outside strings and comments that `is_wanted`; 0 where there is none.
+template <class Wanted>
+int first_line(std::string_view text, Wanted is_wanted) {
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
     if (c == '"' || c == '\'') {
@@ -64,12 +62,28 @@ int line_of_overlong_key(std::string_view text) {
     } else if (c == '#') {
       i = std::min(text.find('\n', i), text.size());
     } else {
-      if (kEndsOfKeys.find(c) != std::string_view::npos) dots = 0;
-      if (c == '.' && ++dots >= kMaxKeyParts) return line_at(text, i);
+      if (is_wanted(c)) return line_at(text, i);
       ++i;
     }
   }
   return 0;
+}
+
+}  // namespace
+
+int line_of_overlong_key(std::string_view text) {
+  constexpr std::string_view kEndsOfKeys = ",[]{}=\n";
+  int dots = 0;
+  return first_line(text, [&](char c) {
+    if (kEndsOfKeys.find(c) != std::string_view::npos) dots = 0;
+    return c == '.' && ++dots >= kMaxKeyParts;
+  });
+}
+
+int line_of_stray_character(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return first_line(text, [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
 }
 
 int line_of_invalid_utf8(std::string_view text) {

@@ -14,6 +14,13 @@ TEST(TomlScan, InvalidUtf8IsFoundOnItsLine) {
   }
 }
 
+TEST(TomlScan, StrayCharactersAreFoundOutsideStringsAndComments) {
+  const std::string mark = "\ufeff";
+  EXPECT_EQ(line_of_stray_character(mark + "a = '\u00e9' # \u00e9\nb = \"\u00e9\""), 0);
+  EXPECT_EQ(line_of_stray_character("a = 1\n\u00e9 = 2\n"), 2);
+  EXPECT_EQ(line_of_stray_character("\n\nk\ufef7ind = 1"), 3);
+}
+
 TEST(TomlScan, KeyPartsAreCountedFromDotsOutsideStringsAndComments) {
   const std::string many = "a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a";
   EXPECT_EQ(line_of_overlong_key("\n" + many + " = 1"), 2);

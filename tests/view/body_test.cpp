@@ -228,7 +228,7 @@ double nearest_m(const std::vector<vec3>& places, const vec3& to) {
 // The samples know where the ankles are without any joint.
 TEST(StickFigure, ItsAnklesAreWhereTheSourceHasThem) {
   const GaitCycle cycle = procedural_gait();
-  const vec3 place_m(4.0, 7.0, -2.0);  // the height does not matter
+  const vec3 place_m(4.0, 7.0, -2.0);
   const double heading_rad = 0.7;
   for (const double phase : {0.0, 0.13, 0.5, 0.77}) {
     SceneContent content;
@@ -236,7 +236,7 @@ TEST(StickFigure, ItsAnklesAreWhereTheSourceHasThem) {
     const CycleSample sample = sample_at(cycle, phase);
     for (const LegSample& leg : sample.leg) {
       const vec3 turned = rotation_y(heading_rad) * leg.ankle_m;
-      const vec3 expected = turned + vec3(place_m.x, 0.0, place_m.z);
+      const vec3 expected = turned + place_m;
       EXPECT_LT(nearest_m(content.joints_m, expected), 3e-3) << phase;
     }
     EXPECT_EQ(content.bodies.size(), 0u);

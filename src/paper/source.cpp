@@ -33,7 +33,9 @@ Result<PaperSource> load_paper_source(const std::string& motion_file,
     source.frames = procedural_motion();
     source.cycle = procedural_gait();
   } else {
-    auto motion = load_motion_source(motion_file);
+    const auto path = motion_path(config_folders, motion_file);
+    if (!path) return path.error();
+    auto motion = load_motion_source(*path);
     if (!motion) return motion.error();
     auto cycle = gait_cycle(*motion);
     if (!cycle) return cycle.error();

@@ -139,13 +139,9 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   step.lift_m = landing.from_m;
   step.lifts = landing.stands;
   step.from_m = state.landing_m;
-<<<<<<< HEAD
   step.stands = state.landing.piece;
-  const double wanted = tick.params.walking ? state.length_m[next].x * state.landing.share : 0.0;
-=======
   const double wanted =
       walks_on(tick.params, state) ? step_length(state, next) * state.landing.share : 0.0;
->>>>>>> main
   step.wanted_m = step.from_m + step.forward * wanted - across_m;
   const Terrain& terrain = *tick.model.terrain;
   bool fits = false;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
-constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = .25, kRiser_m = 0.01;
+constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
 constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.5;
 constexpr int kTries = 4;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;

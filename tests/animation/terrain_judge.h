@@ -113,8 +113,7 @@ class TerrainJudge {
                                : s.ball + (s.tip - s.ball) * ((i - 8) / 4.0);
       for (double c : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const double deep = depth_mm(line + s.across * c);
-        if (deep > worst.sunk_mm)
-          worst.sunk_mm = deep, worst.sunk_z_m = s.heel.z;
+        if (deep > worst.sunk_mm) worst.sunk_mm = deep, worst.sunk_z_m = s.heel.z;
       }
     }
     // Flat on the ground: as long as the toe has been down and the heel has not left.
@@ -141,8 +140,7 @@ class TerrainJudge {
         if (tick_ < 2) continue;
         const double jump =
             std::abs(now - 2.0 * angles_[0][side][j] + angles_[1][side][j]) / kDegree;
-        if (jump > worst.jump_deg)
-          worst.jump_deg = jump, worst.jump_z_m = pose.root_m.z;
+        if (jump > worst.jump_deg) worst.jump_deg = jump, worst.jump_z_m = pose.root_m.z;
       }
     }
     if (tick_ >= 2) {

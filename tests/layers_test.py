@@ -30,6 +30,12 @@ ROOMS = {
         {"drivers": ["drivers/posix.h"]},
         ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"],
     ),
+    # The paper's figures and claims: whatever the program can do, drawn without a window.
+    "src/paper": (
+        ["base", "hid", "stick", "motion", "control", "animation", "session", "view"],
+        {"view": ["view/drawing.h", "view/plot.h", "view/stick_plot.h"]},
+        ["fmt/", "cairo/", "nlohmann/"],
+    ),
     "drivers": (["base", "hid", "drivers/pads"], {}, ["fmt/"]),
     "drivers/pads": (["base", "hid"], {}, ["fmt/"]),
 }

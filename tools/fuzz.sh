@@ -10,7 +10,7 @@ bash "$root/tools/build.sh" "$build" fuzzers -DGAITPAD_FUZZ=ON -DCMAKE_CXX_COMPI
   -DCMAKE_BUILD_TYPE=Release
 /usr/bin/python3 "$root/tools/fuzz/seeds.py" "$build/seeds"
 
-for name in fuzz_descriptor fuzz_trace fuzz_bvh fuzz_calibration fuzz_import fuzz_terrain; do
+for name in fuzz_descriptor fuzz_trace fuzz_bvh fuzz_acclaim fuzz_calibration fuzz_import fuzz_terrain; do
   mkdir -p "$build/corpus/$name"
   log=$build/$name.log
   if ! "$build/tools/fuzz/$name" -max_total_time="$seconds" -timeout=10 -max_len=16384 \

@@ -10,8 +10,9 @@ constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kShortRoll = 0.085, kBriskRoll = 0.11, kLongRoll = 0.20;
-// Steps up and down take longer: 100 a minute on stairs where 125 do on level ground.
-constexpr double kSlowerOnStairs = 1.3, kSlowestRise = 0.4;
+// Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
+constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
+constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 
@@ -53,10 +54,21 @@ void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept 
   state.stage_ticks = ticks;
 }
 
+// On stairs a step takes longer, up to a stair's own time, and a foot that is quicker than the
+// other one is it no more.
+double slowness(const WalkModel& model, const WalkState& state, Side swing) noexcept {
+  const double rise = std::min(state.landing.next_rise, kSlowestRise);
+  if (rise == 0.0) return 1.0;
+  const double own = state.time_s[swing], longer = std::max(own, state.time_s[other(swing)]);
+  const double level = mix(own, longer, smoothstep(0.0, kSteepRise, rise));
+  const double stair = kStairStep_s * model.time_scale * rise / kStairRise;
+  return std::max(level * (1.0 + kSlowerOnStairs * rise), stair) / own;
+}
+
 // A step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   state.last_step_ticks = state.roll_ticks + state.flight_ticks;
-  state.slowness = 1.0 + kSlowerOnStairs * std::min(state.landing.next_rise, kSlowestRise);
+  state.slowness = slowness(tick.model, state, other(rolling));
   state.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
   state.flight_ticks = stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
   state.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];

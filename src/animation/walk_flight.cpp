@@ -11,10 +11,9 @@ namespace {
 
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // at the reference leg, as the following
-constexpr double kRoomBeside_m = 0.005, kMostShift_m = .22, kRiser_m = 0.01;
-// The outer knot over its neighbour: the less, the gentler the ends.
-constexpr std::array<double, 3> kFirstKnots = {0.25, 0.4, 0.6};
-constexpr double kEasyShift_m = .06;
+constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = .25, kRiser_m = 0.01;
+constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.5;
+constexpr int kTries = 4;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;
 constexpr double kReplan_m = 0.005;  // of the landing
@@ -42,8 +41,13 @@ double spline_at(const FlightSpline& knots, double end, double u) noexcept {
 
 using Wanted = std::array<double, kProbes + 1>;
 
+// Outer knots over their neighbours: the less, the gentler the ends.
+struct Ends {
+  double first = 0.2, last = 0.2;
+};
+
 // At each knot the greatest value within its reach; the outer ones end the spline gently.
-FlightSpline envelope(const Wanted& wanted, double end_share) noexcept {
+FlightSpline envelope(const Wanted& wanted, const Ends& ends) noexcept {
   FlightSpline knots;
   for (int k = 1; k < kFlightKnots; ++k) {
     double& knot = knots[k - 1];
@@ -52,12 +56,12 @@ FlightSpline envelope(const Wanted& wanted, double end_share) noexcept {
       if (std::abs(i * kFlightKnots - k * kProbes) < 2 * kProbes) knot = std::max(knot, wanted[i]);
     }
   }
-  const auto gentle = [end_share](double knot, double end, double next) {
-    const double most = end_share * std::abs(next - end);
+  const auto gentle = [](double knot, double end, double next, double share) {
+    const double most = share * std::abs(next - end);
     return std::clamp(knot, end - most, end + most);
   };
-  knots.front() = gentle(knots.front(), 0.0, knots[1]);
-  knots.back() = gentle(knots.back(), wanted.back(), knots[kFlightKnots - 3]);
+  knots.front() = gentle(knots.front(), 0.0, knots[1], ends.first);
+  knots.back() = gentle(knots.back(), wanted.back(), knots[kFlightKnots - 3], ends.last);
   return knots;
 }
 
@@ -69,8 +73,8 @@ FlightSpline wide_envelope(const Wanted& wanted, double most) noexcept {
     positive[i] = std::max(0.0, wanted[i]);
     negative[i] = std::max(0.0, -wanted[i]);
   }
-  FlightSpline knots = envelope(positive, kFirstKnots[0]);
-  const FlightSpline other = envelope(negative, kFirstKnots[0]);
+  FlightSpline knots = envelope(positive, Ends{});
+  const FlightSpline other = envelope(negative, Ends{});
   for (int k = 0; k < kFlightKnots - 1; ++k) knots[k] -= other[k];
   double gain = 1.0;
   for (int i = 1; i < kProbes; ++i) {
@@ -80,6 +84,21 @@ FlightSpline wide_envelope(const Wanted& wanted, double most) noexcept {
   }
   for (double& knot : knots) knot = std::clamp(knot * std::min(gain, kMostGain), -most, most);
   return knots;
+}
+
+// Makes an end less gentle where the way beside is long or not got. False: both do.
+bool sharpen(const Wanted& beside, const FlightSpline& shift, double size, Ends& ends) noexcept {
+  Ends more = ends;
+  for (int i = 1; i < kProbes; ++i) {
+    const double got = spline_at(shift, 0.0, static_cast<double>(i) / kProbes);
+    const double lack = beside[i] > 0.0 ? beside[i] - got : beside[i] < 0.0 ? got - beside[i] : 0.0;
+    if (lack < kLack_m * size && std::abs(beside[i]) < kEasyShift_m * size) continue;
+    (2 * i < kProbes ? more.first : more.last) =
+        kSharper * (2 * i < kProbes ? ends.first : ends.last);
+  }
+  const bool any = more.first > ends.first || more.last > ends.last;
+  ends = more;
+  return any;
 }
 
 using Sole = std::array<vec3, 5>;  // heel and tip on both sides, ball
@@ -102,8 +121,7 @@ double base_under(const FlightPoint& point, const vec3& p) noexcept {
 // How far to move along z so that no part of the sole is beyond a riser at an end of `piece` that
 // leads up from `height_m`.
 double way_back(const Terrain& terrain, const Sole& sole, const Stretch& piece, double height_m,
-                double size) noexcept {
-  const double room = kRoomBeside_m * size;
+                double room, double size) noexcept {
   double shift = 0.0;
   for (const vec3& p : sole) {
     const bool ahead_up =
@@ -149,21 +167,25 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   above.back() = climb(state, foot);
   const Stretch begin = piece_at(terrain, foot.plane.place_m.z),
                 end = piece_at(terrain, state.landing_m.z);
-  // As gently as it does without a long way back.
-  for (const double end_share : kFirstKnots) {
-    room.raise_m = envelope(above, end_share);
-    double farthest = 0.0;
+  const double end_room = kRoomBeside_m * model.size;
+  double begin_room = kRoomAhead_m * model.size;  // as the pitch may still come out otherwise
+  for (const vec3& p : sole.front())
+    begin_room = std::min({begin_room, 0.7 * (begin.to_m - p.z), 0.7 * (p.z - begin.from_m)});
+  // As gently as it does.
+  Ends ends;
+  for (int tries = 0; tries < kTries; ++tries) {
+    room.raise_m = envelope(above, ends);
     for (int i = 1; i < kProbes; ++i) {
       const double u = static_cast<double>(i) / kProbes;
       beside[i] = 0.0;
       if (above[i] <= spline_at(room.raise_m, above.back(), u)) continue;
-      beside[i] = 2 * i < kProbes
-                      ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, model.size)
-                      : way_back(terrain, sole[i], end, state.landing_m.y, model.size);
-      farthest = std::max(farthest, std::abs(beside[i]));
+      beside[i] =
+          2 * i < kProbes
+              ? way_back(terrain, sole[i], begin, foot.plane.place_m.y, begin_room, model.size)
+              : way_back(terrain, sole[i], end, state.landing_m.y, end_room, model.size);
     }
     room.shift_m = wide_envelope(beside, kMostShift_m * model.size);
-    if (farthest < kEasyShift_m * model.size) break;
+    if (!sharpen(beside, room.shift_m, model.size, ends)) break;
   }
   if (!begins) return;
   for (int k = 0; k < kFlightKnots - 1; ++k) {

@@ -16,6 +16,7 @@ constexpr double kSkew = 0.25;  // of leaving the heading sideways, against alon
 constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
 constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
+constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
 constexpr double kStay = 0.1;       // another piece than before must be this much better
 constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
@@ -43,10 +44,30 @@ Room room_on(const Stretch& piece, const Extent& sole, double leg_m) noexcept {
 }
 
 struct Step {
-  vec3 from_m{0.0}, forward{0.0, 0.0, 1.0}, wanted_m{0.0};
+  vec3 from_m{0.0}, lift_m{0.0};  // heels of the foot that stands and of the one that flies
+  Stretch stands, lifts;          // their pieces
+  vec3 forward{0.0, 0.0, 1.0}, wanted_m{0.0};
   double leg_m = 0.0;
   Extent sole;
+  double wanted_length_m() const noexcept { return glm::dot(wanted_m - from_m, forward); }
 };
+
+// Over a riser a step is short: from the foot that stands, and on the whole way of the one that
+// flies, which has to rise before it may go.
+double longest_to(const Step& step, const Stretch& piece) noexcept {
+  double longest = std::numeric_limits<double>::infinity();
+  const double sign = step.wanted_length_m() < 0.0 ? -1.0 : 1.0;
+  if (piece.from_m != step.stands.from_m) longest = kCrossStep * step.leg_m;
+  if (piece.from_m != step.lifts.from_m) {
+    const double gone = sign * glm::dot(step.from_m - step.lift_m, step.forward);
+    longest = std::min(longest, std::max(kLeastCross, kCrossWay - gone / step.leg_m) * step.leg_m);
+  }
+  return longest;
+}
+vec3 wanted_on(const Step& step, const Stretch& piece) noexcept {
+  const double wanted = step.wanted_length_m(), longest = longest_to(step, piece);
+  return step.wanted_m + step.forward * (std::clamp(wanted, -longest, longest) - wanted);
+}
 
 // A shift along z by a move that leaves the heading little.
 vec3 shifted(const Step& step, double dz_m) noexcept {
@@ -57,19 +78,22 @@ vec3 shifted(const Step& step, double dz_m) noexcept {
 
 double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) noexcept {
   const Room room = room_on(piece, step.sole, step.leg_m);
-  const double dz = std::clamp(step.wanted_m.z, room.low_m, room.high_m) - step.wanted_m.z;
-  const vec3 move = shifted(step, dz), place = step.wanted_m + move;
+  const vec3 near = wanted_on(step, piece);
+  const double dz = std::clamp(near.z, room.low_m, room.high_m) - near.z;
+  const vec3 move = shifted(step, dz), place = near + move;
   const double middle = std::clamp(place.z + 0.5 * (step.sole.back_m + step.sole.front_m),
                                    piece.from_m + kBeside_m, piece.to_m - kBeside_m);
   const double rise =
       std::abs(ground_at(terrain, place.x, middle).height_m - step.from_m.y) / step.leg_m;
-  const double wanted = glm::dot(step.wanted_m - step.from_m, step.forward),
-               length = wanted + glm::dot(move, step.forward), sign = wanted < 0.0 ? -1.0 : 1.0;
+  const double wanted = step.wanted_length_m(),
+               length = glm::dot(place - step.from_m, step.forward),
+               sign = wanted < 0.0 ? -1.0 : 1.0;
   const double least = kLeastStep * step.leg_m;
   const double ratio = std::max(0.0, sign * length + least) / (sign * wanted + least);
   const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
   const bool stuck = sign * wanted > least && sign * length < kStuck * sign * wanted;
-  const double longer = sign * length - std::max(sign * wanted, kLongStep * step.leg_m);
+  const double longer = sign * length - std::min(longest_to(step, piece),
+                                                 std::max(sign * wanted, kLongStep * step.leg_m));
   return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside +
          (stuck ? kStuckCosts : 0.0) + kLongCosts * std::max(0.0, longer) / step.leg_m +
          kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
@@ -103,8 +127,8 @@ Stretch best_piece(const Terrain& terrain, const Step& step, const Stretch* sett
 vec3 place_on(const Step& step, const Stretch& piece, bool& fits) noexcept {
   const Room room = room_on(piece, step.sole, step.leg_m);
   fits = room.lacks_m == 0.0;
-  const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m);
-  return step.wanted_m + shifted(step, z - step.wanted_m.z);
+  const vec3 near = wanted_on(step, piece);
+  return near + shifted(step, std::clamp(near.z, room.low_m, room.high_m) - near.z);
 }
 
 // The step after the landing, as far as the hips have to know it.
@@ -112,7 +136,10 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
                 WalkState& state) noexcept {
   const Side next = other(step_foot(state));
   Step step = landing;
+  step.lift_m = landing.from_m;
+  step.lifts = landing.stands;
   step.from_m = state.landing_m;
+  step.stands = state.landing.piece;
   const double wanted =
       walks_on(tick.params, state) ? step_length(state, next) * state.landing.share : 0.0;
   step.wanted_m = step.from_m + step.forward * wanted - across_m;
@@ -122,8 +149,10 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
   state.landing.next_m = glm::dot(place - step.from_m, step.forward);
   state.landing.next_base_m = ground_at(terrain, place.x, place.z + middle).height_m;
-  state.landing.next_rise =
-      std::abs(state.landing.next_base_m - state.landing_m.y) / tick.model.leg_length_m;
+  // Of the foot that lands, or of the whole way of the one that flies, whichever is the steeper.
+  const double step_m = std::abs(state.landing.next_base_m - state.landing_m.y),
+               way_m = std::abs(state.landing.next_base_m - landing.from_m.y);
+  state.landing.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
 }
 
 // What a slope between here and there leaves of a step.
@@ -187,7 +216,7 @@ FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
                          double yaw_rad) noexcept {
   const LegBuild& leg = model.leg[side];
   Step step;
-  step.wanted_m = heel_m;
+  step.wanted_m = step.from_m = step.lift_m = heel_m;
   step.leg_m = model.leg_length_m;
   step.sole = sole_extent(leg, yaw_rad);
   const Stretch piece =
@@ -205,6 +234,9 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
              first = state.stage == Stage::roll && state.tick <= 1;
   Step step;
   step.from_m = state.foot[stand].plane.place_m;
+  step.lift_m = state.foot[swing].plane.place_m;
+  step.stands = piece_at(terrain, step.from_m.z);
+  step.lifts = piece_at(terrain, step.lift_m.z);
   step.forward = forward;
   step.leg_m = tick.model.leg_length_m;
   const double yaw = state.landing_heading_rad;
@@ -214,7 +246,7 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   if (!flies) {
     landing.share = 1.0;
     step.wanted_m = wanted();
-    landing.share = slope_share(terrain, step, piece_at(terrain, step.from_m.z));
+    landing.share = slope_share(terrain, step, step.stands);
   }
   step.wanted_m = wanted();
   const bool moved = glm::distance(step.wanted_m, landing.wanted_m) > kMoved_m ||

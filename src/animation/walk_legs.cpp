@@ -12,6 +12,7 @@ constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
 constexpr double kFreeReach = 0.9985, kSoftReach_m = 0.006;
 constexpr double kLeak_per_s = 4.0;
 constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
+constexpr double kFolding = 70.0 * kDegree, kFolded = 115.0 * kDegree;  // knee
 constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
@@ -93,8 +94,8 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
     const double begin = model.share[side == kRightSide ? 0 : 2];
     p = (own_phase(model, state, side) - begin) / (model.leg[side].toe_off - begin);
   }
-  // Quick steps leave less time to lag behind and catch up.
-  const double calm = std::min(1.0, state.step_time_s.x / kUnhurriedStep_s);
+  // Quick steps leave less time to lag behind and catch up, stairs less room.
+  const double calm = std::min(1.0, state.step_time_s.x / kUnhurriedStep_s) * state.ground_share.x;
   return state.amplitude.x * state.amplitude.x * calm * std::sqrt(calm) * smoothstep(0.0, 0.25, p) *
          (1.0 - smoothstep(0.55, 0.95, p));
 }
@@ -244,7 +245,9 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
         solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   }
   state.even_rad[side] = leg_angles(angles);
-  const double share = weight_share(tick.model, state, side);
+  double share = weight_share(tick.model, state, side);
+  // A leg that a high riser folds has nowhere else to go.
+  if (!tick.flat) share *= 1.0 - smoothstep(kFolding, kFolded, angles[kKneeX]);
   if (share > 0.0 && !even(state, side)) stiffen(tick, side, pelvis, share, state, angles, solve);
   state.angles_rad[side] = leg_angles(angles);
 }

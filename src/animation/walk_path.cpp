@@ -11,7 +11,7 @@ constexpr double kBackwardHips = 0.45;  // of a backward step: the weight follow
 constexpr double kLongDrop_m = 0.05;    // of the hips in steps much longer than the data's
 constexpr double kLameDrop_m = 0.1;     // of the hips for a foot that does not lift at all
 constexpr double kShortStep = 0.1, kLeastShare = 0.3;  // of the data's step; of the wanted one
-constexpr double kGroundSmoothing_s = 0.1;
+constexpr double kGroundSmoothing_s = 0.3;
 constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 // Rounding of the hips' height: between the knees' curves and the reach, between the legs' reaches.

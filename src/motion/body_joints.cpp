@@ -53,18 +53,20 @@ int above(const Body& body, int joint, NamedSide side, BodyPart wanted) {
   return -1;
 }
 
-// Of the joints below the elbow the first one named a wrist; else the farthest child.
+// Of the joints below the elbow the lowest one named a wrist or a hand: above it such a joint turns
+// the forearm (CMU's lwrist). Without one the farthest child.
 int wrist_below(const Body& body, int elbow, NamedSide side) {
-  int farthest = -1;
+  int farthest = -1, named = -1;
   for (int j = elbow + 1; j < body.count(); ++j) {
     if (!is_ancestor(body.skeleton, elbow, j)) break;
     const BodyName n = body_name(body.skeleton.joints[static_cast<std::size_t>(j)].name);
-    if (n.side == side && n.part == BodyPart::wrist) return j;
+    const bool is_lower = named < 0 || is_ancestor(body.skeleton, named, j);
+    if (n.side == side && n.part == BodyPart::wrist && is_lower) named = j;
     const bool is_child = body.parent(j) == elbow;
     if (is_child && (farthest < 0 || body.distance(elbow, j) > body.distance(elbow, farthest)))
       farthest = j;
   }
-  return farthest;
+  return named >= 0 ? named : farthest;
 }
 
 ArmChain named_arm(const Body& body, NamedSide side) {

@@ -2,51 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 
+#include "motion/motion_text.h"
 #include "motion/skeleton.h"
 
 namespace gaitpad {
 namespace {
-
-constexpr std::uintmax_t kMaxFileBytes = 512u << 20;
-constexpr long long kMaxFrameJoints = 10'000'000;  // 100 joints: 14 minutes at 120 Hz
-constexpr double kMaxValue = 1e7;                  // keeps all later arithmetic finite
-constexpr std::size_t kMaxShownChars = 40;
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
-
-std::string_view trimmed(std::string_view s) {
-  while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
-  while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
-  return s;
-}
-
-// What a message shows of a stranger's text: short and printable.
-std::string shown(std::string_view s) {
-  std::string out;
-  for (char c : s.substr(0, kMaxShownChars)) out += (c >= ' ' && c != 0x7f) ? c : '?';
-  return s.size() > kMaxShownChars ? out + "..." : out;
-}
-
-std::optional<double> number(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  if (word.empty()) return std::nullopt;
-  double value = 0.0;
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (end != word.data() + word.size()) return std::nullopt;
-  if (code == std::errc::result_out_of_range) {  // 1e-400 is 0, 1e400 is an error
-    const auto e = word.find_first_of("eE");
-    const bool tiny = e != word.npos && word.substr(e + 1).starts_with('-');
-    return tiny ? std::optional(0.0) : std::nullopt;
-  }
-  if (code != std::errc() || !(std::abs(value) <= kMaxValue)) return std::nullopt;
-  return value;
-}
 
 // Words and lines of the text, with the number of the line that the last word stood on.
 class Reader {
@@ -101,8 +64,7 @@ class Reader {
 std::optional<BvhChannel> channel_named(std::string_view word) {
   constexpr std::array<std::string_view, 6> kNames = {"xposition", "yposition", "zposition",
                                                       "xrotation", "yrotation", "zrotation"};
-  std::string lower;
-  for (char c : word.substr(0, 16)) lower += (c >= 'A' && c <= 'Z') ? static_cast<char>(c + 32) : c;
+  const std::string lower = lower_case(word.substr(0, 16));
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (lower == kNames[i]) return static_cast<BvhChannel>(i);
   }
@@ -191,7 +153,7 @@ class Parser {
     has_offset_[joint] = true;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = in_.word();
-      const auto value = number(word);
+      const auto value = text_number(word);
       if (!value) {
         return fail(fmt::format("OFFSET of \"{}\": \"{}\" is no number",
                                 shown(bvh_.joints[joint].name), shown(word)));
@@ -207,7 +169,7 @@ class Parser {
     if (joint.channels > 0)
       return fail(fmt::format("\"{}\" has CHANNELS twice", shown(joint.name)));
     const std::string_view word = in_.word();
-    const auto count = number(word);
+    const auto count = text_number(word);
     if (!count || *count < 0 || *count > 6 || *count != std::floor(*count)) {
       return fail(fmt::format("CHANNELS of \"{}\": \"{}\" is no count from 0 to 6",
                               shown(joint.name), shown(word)));
@@ -238,11 +200,11 @@ class Parser {
 
   bool motion_header() {
     if (in_.word() != "MOTION") return fail("MOTION expected after the hierarchy");
-    const auto frames = number(behind("Frames:"));
+    const auto frames = text_number(behind("Frames:"));
     if (!frames || *frames < 1 || *frames != std::floor(*frames)) {
       return fail("\"Frames:\" with a count of 1 or more expected");
     }
-    const auto time_s = number(behind("Frame Time:"));
+    const auto time_s = text_number(behind("Frame Time:"));
     if (!time_s || *time_s < 1e-5 || *time_s > 10.0) {
       return fail("\"Frame Time:\" with a time from 0.00001 to 10 s expected");
     }
@@ -292,7 +254,7 @@ class Parser {
     while (!line.empty()) {
       std::size_t n = 0;
       while (n < line.size() && !is_blank(line[n])) ++n;
-      const auto value = number(line.substr(0, n));
+      const auto value = text_number(line.substr(0, n));
       if (!value) {
         return fail(fmt::format("frame {}, value {}: \"{}\" is no usable number", frame, count,
                                 shown(line.substr(0, n))));
@@ -322,20 +284,9 @@ Result<Bvh> parse_bvh(std::string_view text, const std::string& name) {
 }
 
 Result<Bvh> read_bvh(const std::string& path) {
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(path, code)) {
-    return Error{fmt::format("{}: no such file", path)};
-  }
-  const std::uintmax_t size = std::filesystem::file_size(path, code);
-  if (code || size > kMaxFileBytes) {
-    return Error{fmt::format("{}: larger than {} MB", path, kMaxFileBytes >> 20)};
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::string text(size, '\0');
-  if (!in.read(text.data(), static_cast<std::streamsize>(size))) {
-    return Error{fmt::format("{}: cannot be read", path)};
-  }
-  return parse_bvh(text, path);
+  const auto text = motion_file_text(path);
+  if (!text) return text.error();
+  return parse_bvh(*text, path);
 }
 
 }  // namespace gaitpad

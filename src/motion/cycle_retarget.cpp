@@ -7,7 +7,7 @@
 
 #include "motion/cycle_leg.h"
 #include "motion/cycle_standing.h"
-#include "motion/legs.h"
+#include "motion/cycle_upper_body.h"
 #include "motion/tracks.h"
 
 namespace gaitpad {
@@ -118,62 +118,9 @@ void take_over_samples(const GaitCycle& source, double ratio, GaitCycle& out) {
   }
 }
 
-// The source's joint of the same name, for those above the legs; else -1.
-std::vector<int> counterparts(const GaitCycle& source, const GaitCycle& out) {
-  std::vector<int> found;
-  const auto is_in_leg = [](const GaitCycle& cycle, int joint) {
-    return is_ancestor(cycle.skeleton, cycle.leg[0].joints.hip, joint) ||
-           is_ancestor(cycle.skeleton, cycle.leg[1].joints.hip, joint);
-  };
-  for (std::size_t j = 0; j < out.skeleton.joints.size(); ++j) {
-    const int joint = static_cast<int>(j);
-    const int same = source.skeleton.find(out.skeleton.joints[j].name);
-    const bool is_carried = same >= 0 && !is_ancestor(out.skeleton, joint, out.pelvis) &&
-                            !is_ancestor(source.skeleton, same, source.pelvis) &&
-                            !is_in_leg(out, joint) && !is_in_leg(source, same);
-    found.push_back(is_carried ? same : -1);
-  }
-  return found;
-}
-
-// The one child that both have, or -1.
-int common_child(const GaitCycle& out, const std::vector<int>& same, const GaitCycle& source,
-                 int joint) {
-  int child = -1;
-  for (std::size_t j = 0; j < same.size(); ++j) {
-    if (same[j] < 0 || out.skeleton.joints[j].parent != joint) continue;
-    if (source.skeleton.joints[same[j]].parent != same[joint]) continue;
-    if (child >= 0) return -1;
-    child = static_cast<int>(j);
-  }
-  return child;
-}
-
-// A T pose hangs its arms: bones that both bodies have stand as they do in the source.
-void stand_alike(const GaitCycle& source, const std::vector<int>& same, GaitCycle& out) {
-  const std::vector<quat> from = world_rotations(source.skeleton, source.standing_local.data());
-  std::vector<quat> to = world_rotations(out.skeleton, out.standing_local.data());
-  for (std::size_t j = 0; j < same.size(); ++j) {
-    const int joint = static_cast<int>(j), parent = out.skeleton.joints[j].parent;
-    if (parent < 0) continue;
-    to[j] = to[parent] * out.standing_local[j];
-    const int child = same[j] < 0 ? -1 : common_child(out, same, source, joint);
-    if (child < 0) continue;
-    const vec3 bone = to[j] * out.skeleton.joints[child].offset_m;
-    const vec3 wanted = from[same[j]] * source.skeleton.joints[same[child]].offset_m;
-    if (glm::length(bone) <= 0.0 || glm::length(wanted) <= 0.0) continue;
-    to[j] = rotation_between(glm::normalize(bone), glm::normalize(wanted)) * to[j];
-    out.standing_local[j] = glm::normalize(glm::conjugate(to[parent]) * to[j]);
-  }
-}
-
-// Local rotations at sample i: joints turn away from the standing pose as in the source.
-void pose_sample(const GaitCycle& source, const std::vector<int>& same, int i, GaitCycle& out) {
-  const std::size_t joints = same.size();
-  const auto before = world_rotations(source.skeleton, source.standing_local.data());
-  const auto after =
-      world_rotations(source.skeleton, source.local.data() + i * source.skeleton.joints.size());
-  const auto standing = world_rotations(out.skeleton, out.standing_local.data());
+// Local rotations at the turn's sample i.
+void pose_sample(const UpperBodyTurn& turn, int i, GaitCycle& out) {
+  const std::size_t joints = out.skeleton.joints.size();
   const CycleSample& at = out.samples[i];
   quat* local = out.local.data() + i * joints;
   std::vector<quat> world(joints, kIdentity);
@@ -182,7 +129,7 @@ void pose_sample(const GaitCycle& source, const std::vector<int>& same, int i, G
     const quat above = parent < 0 ? kIdentity : world[parent];
     world[j] = above * out.standing_local[j];
     if (static_cast<int>(j) == out.pelvis) world[j] = at.pelvis * out.pelvis_standing;
-    if (same[j] >= 0) world[j] = after[same[j]] * glm::conjugate(before[same[j]]) * standing[j];
+    if (turn.has(static_cast<int>(j))) world[j] = turn.world(static_cast<int>(j));
     local[j] = glm::normalize(glm::conjugate(above) * world[j]);
   }
   for (int side = 0; side < 2; ++side) {
@@ -207,10 +154,14 @@ Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& chara
   const double ratio = mean_leg_m(*out) / mean_leg_m(source);
   take_over_events(source, ratio, *out);
   take_over_samples(source, ratio, *out);
-  const std::vector<int> same = counterparts(source, *out);
-  stand_alike(source, same, *out);
-  out->local.assign(kCycleSamples * same.size(), kIdentity);
-  for (int i = 0; i < kCycleSamples; ++i) pose_sample(source, same, i, *out);
+  const UpperBody body = upper_body(source, *out);
+  stand_alike(body, *out);
+  UpperBodyTurn turn(source, body, *out);
+  out->local.assign(kCycleSamples * out->skeleton.joints.size(), kIdentity);
+  for (int i = 0; i < kCycleSamples; ++i) {
+    turn.set_sample(i);
+    pose_sample(turn, i, *out);
+  }
   return out;
 }
 

@@ -6,8 +6,8 @@ namespace gaitpad {
 
 // `source` as the skeleton of `character` walks it. How that one stands is measured on its own walk
 // where it has one, else on the frame of its file in which it stands straightest. Leg angles and
-// foot rotations are taken over, lengths grow by the ratio of the legs; above the legs joints of
-// equal names turn as in the source, all others rest. Error: `NAME: cause`.
+// foot rotations are taken over, lengths grow by the ratio of the legs; spine, neck, head and arms
+// follow their counterparts whatever they are called (cycle_upper_body.h). Error: `NAME: cause`.
 Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& character);
 
 // Thigh + shank, the mean of both legs.

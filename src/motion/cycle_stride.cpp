@@ -282,6 +282,21 @@ std::vector<Candidate> candidates(const Motion& motion, const BodyTrack& track) 
   return found;
 }
 
+// With what tells a walk on the spot, or one that is over before its first stride, from other
+// motions.
+std::string why_no_stride(const BodyTrack& track, double frame_s) {
+  double moved_m = 0.0;
+  std::size_t frames = 0;
+  for (const FrameRange& range : unbroken_ranges(track, frame_s)) {
+    frames = std::max(frames, static_cast<std::size_t>(range.last - range.first + 1));
+    for (int f = range.first; f <= range.last; ++f) {
+      moved_m = std::max(moved_m, horizontal(track.pelvis_m[f] - track.pelvis_m[range.first]));
+    }
+  }
+  return fmt::format("holds no full walking stride of both feet: the hips go {:.2f} m in {:.1f} s",
+                     moved_m, static_cast<double>(frames) * frame_s);
+}
+
 // How much farther one half of the stride goes than the other, share of the stride.
 double unsteadiness(const BodyTrack& track, const StrideWindow& w) {
   const vec3 start = point_at(track.pelvis_m, w.start);
@@ -338,7 +353,7 @@ Result<std::vector<StrideWindow>> best_strides(const Motion& motion) {
   const BodyTrack track = body_track(motion);
   if (!(track.leg_m > 0.0) || !(motion.frame_time_s > 0.0)) return Error{"has no legs to walk on"};
   std::vector<Candidate> all = candidates(motion, track);
-  if (all.empty()) return Error{"holds no full walking stride of both feet"};
+  if (all.empty()) return Error{why_no_stride(track, motion.frame_time_s)};
   sort_best_first(track, all);
   std::vector<StrideWindow> windows;
   for (const Candidate& c : all) windows.push_back(c.window);

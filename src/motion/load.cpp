@@ -2,18 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <memory>
 
 #include "motion/bvh.h"
 #include "motion/euler.h"
+#include "motion/load_steps.h"
+#include "motion/motion_text.h"
 #include "motion/tracks.h"
-#include "motion/units.h"
 
 namespace gaitpad {
 namespace {
-
-constexpr double kMinLegUnits = 1e-3, kMaxLegUnits = 1e6;
 
 struct JointValues {
   quat rotation = kIdentity;
@@ -94,23 +93,6 @@ Motion in_file_units(const Bvh& bvh) {
   return motion;
 }
 
-enum class UpAxis { y = 1, z = 2 };
-
-UpAxis up_axis(const std::array<std::vector<vec3>, 2>& hips,
-               const std::array<std::vector<vec3>, 2>& ankles) {
-  double y = 0.0, z = 0.0;
-  for (int s = 0; s < 2; ++s) {
-    for (std::size_t f = 0; f < hips[s].size(); ++f) {
-      const vec3 leg = hips[s][f] - ankles[s][f];
-      const double length = glm::length(leg);
-      if (length <= 0.0) continue;
-      y += leg.y / length;
-      z += leg.z / length;
-    }
-  }
-  return z > std::abs(y) ? UpAxis::z : UpAxis::y;
-}
-
 // Median over the frames of the lowest foot joint's height.
 double floor_height(const Motion& motion, UpAxis up) {
   const std::array<int, 6> feet = {motion.legs[0].ankle,   motion.legs[0].toe,
@@ -141,53 +123,27 @@ void settle_root(const Bvh& bvh, UpAxis up, Motion& motion) {
   for (MotionFrame& frame : motion.frames) frame.root_m += shift;
 }
 
-UpAxis up_axis_of(const Motion& motion) {
-  const std::array<int, 4> joints = {motion.legs[0].hip, motion.legs[1].hip, motion.legs[0].ankle,
-                                     motion.legs[1].ankle};
-  const auto tracks = joint_tracks_m(motion, joints);
-  return up_axis({tracks[0], tracks[1]}, {tracks[2], tracks[3]});
-}
-
-void scale(Motion& motion, double metres_per_unit) {
-  motion.metres_per_unit = metres_per_unit;
-  for (Joint& joint : motion.skeleton.joints) joint.offset_m *= metres_per_unit;
-  for (MotionFrame& frame : motion.frames) {
-    frame.root_m *= metres_per_unit;
-    for (vec3& t : frame.translation_m) t *= metres_per_unit;
-  }
-}
-
-void turn_y_up(Motion& motion) {
-  const quat turn = rotation_x(-0.5 * kPi);
-  for (MotionFrame& frame : motion.frames) {
-    frame.root_m = vec3(frame.root_m.x, frame.root_m.z, -frame.root_m.y);
-    frame.local[0] = glm::normalize(turn * frame.local[0]);
-  }
-}
-
 Result<Motion> motion_of(const Bvh& bvh, const std::string& path, const LoadOptions& options) {
-  Motion motion = in_file_units(bvh);
-  motion.name = std::filesystem::path(path).filename().string();
-  const auto legs = find_legs(motion, options.legs);
-  if (!legs) return Error{fmt::format("{}: {}", path, legs.error().message)};
-  motion.legs = *legs;
-  motion.pelvis = pelvis_of(motion.skeleton, *legs);
-  const UpAxis up = up_axis_of(motion);
-  settle_root(bvh, up, motion);
-  const double leg_units = leg_length_m(motion);
-  if (leg_units < kMinLegUnits || leg_units > kMaxLegUnits) {
-    return Error{fmt::format("{}: legs of {:.3g} units are no legs", path, leg_units)};
+  if (!options.skeleton.empty()) {
+    return Error{
+        fmt::format("{}: brings its skeleton itself, {} is not for it", path, options.skeleton)};
   }
-  const double unit_m =
-      options.metres_per_unit > 0.0 ? options.metres_per_unit : metres_per_unit(leg_units);
-  scale(motion, unit_m);
-  if (up == UpAxis::z) turn_y_up(motion);
-  return motion;
+  Motion motion = in_file_units(bvh);
+  const auto up = find_body(motion, path, options);
+  if (!up) return up.error();
+  settle_root(bvh, *up, motion);
+  return finished(std::move(motion), *up, 0.0, path, options);
+}
+
+bool ends_in(const std::string& path, std::string_view ending) {
+  return lower_case(std::filesystem::path(path).extension().string()) == ending;
 }
 
 }  // namespace
 
 Result<Motion> load_motion(const std::string& path, const LoadOptions& options) {
+  if (ends_in(path, ".amc")) return load_amc(path, options);
+  if (ends_in(path, ".asf")) return load_asf(path, options);
   const auto bvh = read_bvh(path);
   if (!bvh) return bvh.error();
   return motion_of(*bvh, path, options);

@@ -6,8 +6,8 @@
 // few harmonics.
 #include <algorithm>
 
-#include "motion/cycle_leg.h"
 #include "motion/procedural_skeleton.h"
+#include "motion/stride_plane.h"
 
 namespace gaitpad {
 namespace {
@@ -44,13 +44,6 @@ constexpr Harmonics kTilt = {9.76,
 constexpr Harmonics kObliquity = {0.0, {{{1.85, 2.12}, {0, 0}, {-1.19, .22}}}};
 constexpr Harmonics kRotation = {0.0, {{{3.74, 2.10}, {0, 0}, {.34, -.37}}}};
 
-// 0 below -width, x above +width, smooth between.
-double soft_positive(double x, double width) {
-  if (x <= -width) return 0.0;
-  if (x >= width) return x;
-  return (x + width) * (x + width) / (4.0 * width);
-}
-
 // The fit dips to 0 at heel strike; a knee is never quite straight.
 double knee_flexion(double phase) {
   return (1.5 + soft_positive(kKnee.at(phase) - 1.5, 2.0)) * kDegree;
@@ -63,11 +56,6 @@ double foot_correction(double phase) {
   return 3.5 * kDegree * sin_cos(2.0 * kPi * (phase - 0.33)).cos;
 }
 
-// Segment rotations about x in the travel frame (+ turns the lower end backwards), of the right
-// leg.
-struct SagittalLeg {
-  double thigh, shank, foot, toe;
-};
 SagittalLeg sagittal_leg(double phase) {
   SagittalLeg leg;
   leg.thigh = (kTilt.at(phase) - kHip.at(phase)) * kDegree;
@@ -85,34 +73,6 @@ quat pelvis_rotation(double phase) {
          rotation_x((kTilt.at(phase) - kTilt.mean) * kDegree);
 }
 
-// The leg's plane is tilted about the line of travel so that the ankle stays above its track; the
-// knee's hinge stays across the line of travel, the foot points ahead and never rolls.
-LegSample right_leg(const LegModel& model, const CycleSample& body, double phase) {
-  const SagittalLeg plane = sagittal_leg(phase);
-  const double drop =
-      model.thigh_m * sin_cos(plane.thigh).cos + model.shank_m * sin_cos(plane.shank).cos;
-  const double aside = -kTrack - (body.pelvis_m + body.pelvis * model.hip_m).x;
-  const quat tilt = rotation_z(gaitpad::atan2(aside, std::sqrt(drop * drop - aside * aside)));
-  const quat thigh = tilt * rotation_x(plane.thigh), shank = tilt * rotation_x(plane.shank);
-  const AnglesXzy hip = angles_xzy(glm::conjugate(body.pelvis) * thigh);
-  const AnglesXzy ankle = angles_xzy(glm::conjugate(shank) * rotation_x(plane.foot));
-  LegSample leg;
-  leg.angles = {hip.x, hip.z, hip.y, plane.shank - plane.thigh, ankle.x, ankle.z, ankle.y};
-  leg.toe_x = plane.toe;
-  return leg;
-}
-
-LegSample mirrored(const LegSample& leg) {
-  LegSample m = leg;
-  for (const int d : {kHipZ, kHipY, kAnkleZ, kAnkleY}) m.angles[d] = -leg.angles[d];
-  return m;
-}
-
-LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at) {
-  const LegSample& leg = at.leg[side];
-  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
-}
-
 // Pelvis rotation and sway, and the leg angles. The left leg is the right one half a cycle later.
 void fill_angles(GaitCycle& cycle) {
   const double leg_m = cycle.leg[kRightSide].length_m();
@@ -128,7 +88,8 @@ void fill_angles(GaitCycle& cycle) {
   }
   for (int i = 0; i < kCycleSamples; ++i) {
     CycleSample& at = cycle.samples[i];
-    at.leg[kRightSide] = right_leg(cycle.leg[kRightSide], at, double(i) / kCycleSamples);
+    at.leg[kRightSide] = right_leg_in_plane(cycle.leg[kRightSide], at,
+                                            sagittal_leg(double(i) / kCycleSamples), kTrack);
     CycleSample& later = cycle.samples[(i + kHalf) % kCycleSamples];
     later.leg[kLeftSide] = mirrored(at.leg[kRightSide]);
   }
@@ -151,13 +112,6 @@ std::array<double, kHalf> smoothed(const std::array<double, kHalf>& curve) {
     }
   }
   return out;
-}
-
-// How far the foot's lowest point is above its height at rest.
-double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at) {
-  const LegModel& model = cycle.leg[side];
-  const LegPose p = pose_of(cycle, side, at);
-  return std::min({p.heel_m.y, p.toe_m.y - model.toe_rest_m, p.toe_end_m.y - model.toe_end_rest_m});
 }
 
 // The pelvis stands on whichever foot reaches lower. Fore and aft it swings by 70 % of what would

@@ -12,4 +12,10 @@ double metres_per_unit(double leg_length_units) noexcept {
   return kAdultLegM / leg_length_units;
 }
 
+double metres_per_unit(double leg_length_units, double stated_unit_m) noexcept {
+  constexpr double kMinLegM = 0.4, kMaxLegM = 1.3;
+  const double leg_m = leg_length_units * stated_unit_m;
+  return leg_m >= kMinLegM && leg_m <= kMaxLegM ? stated_unit_m : metres_per_unit(leg_length_units);
+}
+
 }  // namespace gaitpad

@@ -13,7 +13,8 @@ constexpr std::string_view kHeader =
     "left_heel_planted,left_toe_planted,right_heel_planted,right_toe_planted,"
     "left_heel_x_m,left_heel_y_m,left_heel_z_m,left_toe_x_m,left_toe_y_m,left_toe_z_m,"
     "right_heel_x_m,right_heel_y_m,right_heel_z_m,right_toe_x_m,right_toe_y_m,right_toe_z_m,"
-    "left_ik_iterations,right_ik_iterations,left_ik_error_m,right_ik_error_m\n";
+    "left_ik_iterations,right_ik_iterations,left_ik_error_m,right_ik_error_m,"
+    "left_heel_ground_m,left_toe_ground_m,right_heel_ground_m,right_toe_ground_m\n";
 
 constexpr std::string_view kStageNames[] = {"idle", "flight", "roll"};
 
@@ -62,6 +63,10 @@ void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const
   fmt::format_to(end, ",{},{}", frame.ik_iterations[kLeftSide], frame.ik_iterations[kRightSide]);
   append_number(frame.ik_error_m[kLeftSide], out);
   append_number(frame.ik_error_m[kRightSide], out);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    append_number(frame.heel_ground_m[side], out);
+    append_number(frame.toe_ground_m[side], out);
+  }
   out.push_back('\n');
 }
 

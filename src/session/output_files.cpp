@@ -39,6 +39,16 @@ Result<std::ostream*> OutputFiles::add(const std::string& name) {
   return files_.back().stream.get();
 }
 
+Result<std::fstream> OutputFiles::scratch() const {
+  const std::string path = (fs::path(folder_) / fmt::format(".scratch.{}", ::getpid())).string();
+  errno = 0;
+  std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+  if (!stream) return failure(path, errno);
+  std::error_code ignored;
+  fs::remove(path, ignored);  // the stream keeps what it is open on
+  return stream;
+}
+
 std::optional<Error> OutputFiles::publish() {
   for (const File& file : files_) {
     errno = 0;

@@ -20,6 +20,9 @@ class OutputFiles {
   // comes out of publish().
   Result<std::ostream*> add(const std::string& name);
   std::optional<Error> publish();
+  // A file without a name in the same folder, to write and read while running; it is gone with its
+  // stream, whatever happens.
+  Result<std::fstream> scratch() const;
 
   OutputFiles(OutputFiles&&) noexcept = default;
   OutputFiles& operator=(OutputFiles&&) = delete;

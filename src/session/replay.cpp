@@ -21,11 +21,12 @@ Result<int> written_fps(const ReplayOptions& options, int rate_hz) {
 }
 
 Result<std::vector<WalkExport>> opened_exports(std::optional<OutputFiles>& files,
-                                               const Simulation& simulation, int rate_hz, int fps) {
+                                               const Simulation& simulation,
+                                               const ExportFormat& format) {
   std::vector<WalkExport> exports;
   if (!files) return exports;
   for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
-    auto opened = WalkExport::open(*files, simulation.walkers()[i], i, rate_hz, fps);
+    auto opened = WalkExport::open(*files, simulation.walkers()[i], i, format);
     if (!opened) return opened.error();
     exports.push_back(std::move(*opened));
   }
@@ -69,7 +70,7 @@ Result<ReplayResult> replay(const ReplayOptions& options) {
     if (!opened) return opened.error();
     files.emplace(std::move(*opened));
   }
-  auto exports = opened_exports(files, simulation, rate_hz, *fps);
+  auto exports = opened_exports(files, simulation, {rate_hz, *fps, options.gltf});
   if (!exports) return exports.error();
 
   run_to_end(*prepared, run, *exports);
@@ -79,7 +80,8 @@ Result<ReplayResult> replay(const ReplayOptions& options) {
     result.distance_m.push_back(walker.walked_m);
     result.summaries.push_back(
         run_summary(simulation, walker, rate_hz, prepared->trace.skipped_lines));
-    if (files) (*exports)[i].finish(result.summaries.back());
+    if (!files) continue;
+    if (auto problem = (*exports)[i].finish(result.summaries.back())) return *problem;
   }
   if (files) {
     if (auto problem = files->publish()) return *problem;

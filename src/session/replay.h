@@ -16,6 +16,7 @@ struct ReplayOptions {
   std::string out;             // folder for the files; empty: none
   std::optional<int> rate_hz;  // an error where the trace says another
   std::optional<int> fps;      // of the poses written; the rate where absent
+  bool gltf = false;           // pose.glb beside pose.bvh
   Damage damage = Damage::refuse;
 };
 

@@ -68,9 +68,11 @@ Result<std::shared_ptr<const Terrain>> terrain_of(const SessionOptions& options)
   return std::shared_ptr<const Terrain>(std::make_shared<Terrain>(std::move(*terrain)));
 }
 
-Result<GaitCycle> cycle_of(const std::string& motion_file) {
-  if (motion_file.empty() || motion_file == "procedural") return procedural_gait();
-  auto motion = load_motion_source(motion_file);
+Result<GaitCycle> cycle_of(const SessionOptions& options) {
+  if (options.motion.empty() || options.motion == "procedural") return procedural_gait();
+  const auto path = motion_path(options.config_folders, options.motion);
+  if (!path) return path.error();
+  auto motion = load_motion_source(*path);
   if (!motion) return motion.error();
   return gait_cycle(*motion);
 }
@@ -108,7 +110,7 @@ Result<SimulationConfig> simulation_config(const SessionOptions& options,
   config.styles = std::move(*styles);
   auto characters = all_characters(options);
   if (!characters) return characters.error();
-  auto cycle = cycle_of(options.motion);
+  auto cycle = cycle_of(options);
   if (!cycle) return cycle.error();
   config.cycle = std::move(*cycle);
   const std::size_t count = std::max(characters->size(), chosen_styles.size());

@@ -11,7 +11,7 @@ namespace gaitpad {
 
 // The options that replay and play share; empty means the default that interface.md states.
 struct SessionOptions {
-  std::string motion;                   // FILE
+  std::string motion;                   // FILE|NAME, `procedural` or empty: the built-in walk
   std::vector<std::string> characters;  // FILE|NAME
   std::vector<std::string> styles;      // FILE|NAME; a list shorter than the other repeats its last
   std::string terrain;                  // FILE|NAME

@@ -20,6 +20,15 @@ BvhLayout layout_of(const WalkModel& model, int fps) {
   return layout;
 }
 
+// Bound as it stands, at the origin.
+GltfLayout gltf_layout(const Walker& walker, int fps) {
+  const WalkModel& model = *walker.model;
+  return {.name = walker.model->cycle.name,
+          .fps = static_cast<double>(fps),
+          .rest_local = model.cycle.standing_local,
+          .rest_root_m = vec3(0.0, model.stand_m, 0.0)};
+}
+
 // Tick t is shown where a frame's time j / fps falls into (t - 1, t] ticks; the first frame is tick
 // 0.
 bool is_shown(std::int64_t tick, int rate_hz, int fps) {
@@ -42,8 +51,8 @@ std::string numbered_name(const std::string& stem, const std::string& extension,
 }
 
 Result<WalkExport> WalkExport::open(OutputFiles& files, const Walker& walker, std::size_t index,
-                                    int rate_hz, int fps) {
-  WalkExport e(walker, rate_hz, fps);
+                                    const ExportFormat& format) {
+  WalkExport e(walker, format);
   auto poses = files.add(numbered_name("pose", ".bvh", index));
   if (!poses) return poses.error();
   auto frames = files.add(numbered_name("frames", ".csv", index));
@@ -53,24 +62,37 @@ Result<WalkExport> WalkExport::open(OutputFiles& files, const Walker& walker, st
   e.frames_ = *frames;
   e.summary_ = *summary;
   e.poses_ = std::make_unique<BvhWriter>(**poses, walker.model->cycle.skeleton,
-                                         layout_of(*walker.model, fps));
+                                         layout_of(*walker.model, format.fps));
+  if (format.with_gltf) {
+    auto out = files.add(numbered_name("pose", ".glb", index));
+    if (!out) return out.error();
+    auto scratch = files.scratch();
+    if (!scratch) return scratch.error();
+    e.gltf_ = std::make_unique<GltfWriter>(**out, std::move(*scratch), walker.model->cycle.skeleton,
+                                           gltf_layout(walker, format.fps));
+  }
   append_frames_header(e.row_);
   return e;
 }
 
 void WalkExport::write(std::int64_t tick, const Stick& stick) {
-  append_frames_row(tick, rate_hz_, stick, walker_->state.frame, row_);
+  append_frames_row(tick, format_.rate_hz, stick, walker_->state.frame, row_);
   frames_->write(row_.data(), static_cast<std::streamsize>(row_.size()));
   row_.clear();
-  if (is_shown(tick, rate_hz_, fps_)) poses_->write(walker_->pose);
+  if (!is_shown(tick, format_.rate_hz, format_.fps)) return;
+  poses_->write(walker_->pose);
+  if (gltf_) gltf_->write(walker_->pose);
 }
 
-void WalkExport::finish(const nlohmann::ordered_json& summary) {
+std::optional<Error> WalkExport::finish(const nlohmann::ordered_json& summary) {
   frames_->write(row_.data(),
                  static_cast<std::streamsize>(row_.size()));  // header of an empty walk
   row_.clear();
   poses_->finish();
   *summary_ << summary.dump(2) << '\n';
+  if (!gltf_) return std::nullopt;
+  const auto problem = gltf_->finish();
+  return problem ? std::optional(Error{"pose.glb: " + *problem}) : std::nullopt;
 }
 
 nlohmann::ordered_json walker_summary(const Walker& walker) {

@@ -23,7 +23,7 @@ std::string lower_case(std::string text) {
 
 bool is_wanted(const std::string& name, FileFilter filter) {
   const std::string ending = lower_case(fs::path(name).extension().string());
-  const bool is_motion = ending == ".bvh", is_recording = ending == ".hid",
+  const bool is_motion = ending == ".bvh" || ending == ".amc", is_recording = ending == ".hid",
              is_setting = ending == ".toml";
   switch (filter) {
     case FileFilter::motions:

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kWhatOpens =
-    "motions (.bvh), recordings (.hid), and .toml files of styles, characters, calibrations, "
+    "motions (.bvh, .amc), recordings (.hid), and .toml files of styles, characters, calibrations, "
     "terrains and motions can be opened";
 
 std::string lower_case(std::string text) {
@@ -80,7 +80,7 @@ Result<FileKind> kind_of_file(const std::string& path) {
   if (fs::is_directory(status)) return Error{path + ": is a folder; " + kWhatOpens};
   if (!fs::is_regular_file(status)) return Error{path + ": is no file that can be read"};
   const std::string ending = lower_case(fs::path(path).extension().string());
-  if (ending == ".bvh") return FileKind::motion;
+  if (ending == ".bvh" || ending == ".amc") return FileKind::motion;
   if (ending == ".hid") return FileKind::recording;
   if (ending != ".toml") return Error{path + ": cannot be opened: " + kWhatOpens};
   if (const auto kind = kind_of_folder(fs::absolute(path, error))) return *kind;

@@ -19,12 +19,9 @@ struct TerrainWorst {
   double overhang_mm = 0;  // of a sole beyond the edge of the piece that it stands on
   double jump_deg = 0;     // second difference of any leg angle per tick
   double pelvis_mm = 0;    // second difference of the pelvis per tick
-  double body_deg = 0;     // of any other joint's rotation
   double knee_min_deg = 180, knee_max_deg = 0;
   int failures = 0, landings = 0;
-  int jump_tick = 0, sunk_tick = 0, height_tick = 0;
-  int jump_joint = 0;
-  double jump_z_m = 0, sunk_z_m = 0;
+  double jump_z_m = 0, sunk_z_m = 0;  // where
   double end_z_m = 0;
 };
 
@@ -104,7 +101,7 @@ class TerrainJudge {
       if (point.planted) {
         const Ground g = ground_at(*model_.terrain, point.place.x, point.place.z);
         const double off = 1e3 * std::abs((point.place.y - g.height_m) * g.normal.y - point.rest_m);
-        if (off > worst.height_mm) worst.height_mm = off, worst.height_tick = tick_;
+        worst.height_mm = std::max(worst.height_mm, off);
         if (!was) anchor_[side][k] = point.place;
         worst.slide_mm =
             std::max(worst.slide_mm, 1e3 * glm::distance(anchor_[side][k], point.place));
@@ -117,7 +114,7 @@ class TerrainJudge {
       for (double c : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const double deep = depth_mm(line + s.across * c);
         if (deep > worst.sunk_mm)
-          worst.sunk_mm = deep, worst.sunk_tick = tick_, worst.sunk_z_m = s.heel.z;
+          worst.sunk_mm = deep, worst.sunk_z_m = s.heel.z;
       }
     }
     // Flat on the ground: as long as the toe has been down and the heel has not left.
@@ -145,8 +142,7 @@ class TerrainJudge {
         const double jump =
             std::abs(now - 2.0 * angles_[0][side][j] + angles_[1][side][j]) / kDegree;
         if (jump > worst.jump_deg)
-          worst.jump_deg = jump, worst.jump_tick = tick_, worst.jump_joint = side * 10 + j,
-          worst.jump_z_m = pose.root_m.z;
+          worst.jump_deg = jump, worst.jump_z_m = pose.root_m.z;
       }
     }
     if (tick_ >= 2) {

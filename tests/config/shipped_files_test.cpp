@@ -7,6 +7,8 @@
 #include "animation/character.h"
 #include "animation/terrain_file.h"
 #include "control/style.h"
+#include "motion/gait_cycle.h"
+#include "motion/keyframe.h"
 #include "stick/calibration.h"
 
 namespace gaitpad {
@@ -39,6 +41,21 @@ TEST(ShippedStyles, EveryFileLoads) {
   for (const auto& entry : std::filesystem::directory_iterator(kConfig + "styles")) {
     style(entry.path().stem().string());
   }
+}
+
+TEST(ShippedMotions, EveryFileWalks) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kConfig + "motions")) {
+    auto file = TomlFile::load(entry.path().string());
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_TRUE(is_keyframe_file(*file)) << entry.path();
+    const auto motion = keyframe_motion(*file);
+    ASSERT_TRUE(motion) << motion.error().message;
+    const auto cycle = gait_cycle(*motion);
+    EXPECT_TRUE(cycle) << cycle.error().message;
+    ++files;
+  }
+  EXPECT_GE(files, 1);
 }
 
 // Fig. 5a: red 1, green hip -80 %, blue knee -20 %.

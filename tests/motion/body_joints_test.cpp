@@ -196,5 +196,22 @@ TEST(BodyJoints, OfRealMotionsAreArmsSpineAndHead) {
   EXPECT_GT(count, 0);
 }
 
+TEST(BodyJoints, AJointNamedWristAboveTheHandTurnsTheForearm) {
+  Made m = made({"#clavicle", "#humerus", "#radius", "#wrist"}, 'l', 'r');
+  const int wrist = m.skeleton.find("lwrist");
+  Joint hand{"lhand", wrist, vec3(0.0, -0.1, 0.0), false};
+  m.skeleton.joints.insert(m.skeleton.joints.begin() + wrist + 1, hand);
+  m.at.insert(m.at.begin() + wrist + 1, m.at[wrist] + hand.offset_m);
+  for (std::size_t j = wrist + 2; j < m.skeleton.joints.size(); ++j) {
+    int& parent = m.skeleton.joints[j].parent;
+    if (parent > wrist) ++parent;
+  }
+  for (LegJoints& leg : m.legs) {
+    for (int* j : {&leg.hip, &leg.knee, &leg.ankle, &leg.toe, &leg.toe_end}) ++*j;
+  }
+  EXPECT_EQ(m.found().arm[0].wrist, m.skeleton.find("lhand"));
+  EXPECT_EQ(m.found().arm[1].wrist, m.skeleton.find("rwrist"));
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -217,7 +217,9 @@ TEST(GaitCycle, StandingInPlaceIsRefusedByName) {
   for (MotionFrame& frame : m.frames) frame = m.frames.front();
   const auto cycle = gait_cycle(m);
   ASSERT_FALSE(cycle);
-  EXPECT_EQ(cycle.error().message, "cut.bvh: holds no full walking stride of both feet");
+  EXPECT_TRUE(cycle.error().message.starts_with(
+      "cut.bvh: holds no full walking stride of both feet: the hips go "))
+      << cycle.error().message;
 }
 
 TEST(GaitCycle, WalkingBackwardsIsRefused) {

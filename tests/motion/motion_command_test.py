@@ -73,6 +73,53 @@ def check_swings(program):
         assert foot["heel_off_frame"] < foot["lift_frame"] < foot["peak_frame"] < foot["land_frame"], foot
 
 
+ASF = """:units
+  length 0.45
+  angle deg
+:root
+  order TX TY TZ RX RY RZ
+:bonedata
+%s:hierarchy
+  begin
+    root lfemur rfemur
+    lfemur ltibia
+    ltibia lfoot
+    rfemur rtibia
+    rtibia rfoot
+  end
+"""
+BONE = "begin\nname %s%s\ndirection %s\nlength 7\naxis 0 0 0 XYZ\ndof rx\nend\n"
+
+
+def check_acclaim(program, folder):
+    """An .amc file finds its .asf, or is told of it in a .toml file or an option."""
+    bones = "".join(BONE % (side, name, way) for side, x in (("l", "1"), ("r", "-1"))
+                    for name, way in (("femur", x + " -9 0"), ("tibia", "0 -1 0"), ("foot", "0 0 1")))
+    amc, asf = os.path.join(folder, "walk_01.amc"), os.path.join(folder, "sub", "body.asf")
+    os.mkdir(os.path.dirname(asf))
+    frames = "".join(f"{k}\nroot 0 17 0 0 0 0\nlfemur {k}\n" for k in (5, 6, 7))
+    for path, text in ((amc, frames), (asf, ASF % bones), (amc + ".toml", 'file = "walk_01.amc"\nframe_rate_hz = 60\n'
+                                                                         'skeleton = "sub/body.asf"\n')):
+        with open(path, "w") as file:
+            file.write(text)
+    status, _, err = run(program, amc)
+    assert status == 1 and "neither walk_01.asf nor walk.asf nor" in err and err.count("\n") == 1, err
+    got = json.loads(run(program, amc, "--json", "--skeleton", asf)[1])
+    assert got["frames"] == 3 and abs(got["frame_rate_hz"] - 120) < 1e-9, got
+    assert abs(got["metres_per_unit"] - 0.0254 / 0.45) < 1e-12, got
+    got = json.loads(run(program, amc + ".toml", "--json")[1])
+    assert abs(got["frame_rate_hz"] - 60) < 1e-9 and got["legs"]["left"]["ankle"] == "lfoot", got
+
+
+def check_names(program):
+    """A key-framed walk by its name in config/motions; an unknown name lists the known ones."""
+    status, out, err = run(program, "keyframe_walk", "--json")
+    assert status == 0, err
+    assert all(json.loads(out)["flight"].values())
+    status, _, err = run(program, "moonwalk")
+    assert status == 1 and 'no "moonwalk" in config/motions (known: ' in err and "keyframe_walk" in err, err
+
+
 def main():
     program = sys.argv[1]
     with tempfile.TemporaryDirectory() as folder:
@@ -83,6 +130,8 @@ def main():
         check_overrides(program, path)
         check_refusals(program, folder, path)
         check_swings(program)
+        check_acclaim(program, folder)
+        check_names(program)
         status, out, _ = run(program, path)
         assert status == 0 and "LeftUpLeg - LeftLeg - LeftFoot - LeftToeBase" in out
     print("motion command: ok")

@@ -36,6 +36,13 @@ TEST(FramesCsv, IdleSwingsNoFoot) {
   EXPECT_NE(row(frame).find(",roll,right,"), std::string::npos);
 }
 
+TEST(FramesCsv, TheGroundUnderEachPointStandsLast) {
+  WalkFrame frame;
+  frame.heel_ground_m = {0.5, -0.25};
+  frame.toe_ground_m = {1.5, 2.0};
+  EXPECT_TRUE(row(frame).ends_with(",0.500000000,1.500000000,-0.250000000,2.000000000\n"));
+}
+
 TEST(FramesCsv, ThereIsNoMinusZero) {
   WalkFrame frame;
   frame.heading_rad = -0.0;

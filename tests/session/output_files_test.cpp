@@ -56,6 +56,20 @@ TEST_F(OutputFolder, KeepsTheOldFileUntilTheNewOneIsPublished) {
   EXPECT_EQ(text("a.txt"), "three");
 }
 
+TEST_F(OutputFolder, AScratchFileKeepsWhatIsWrittenAndIsNeverSeen) {
+  auto files = OutputFiles::open(folder_.string());
+  ASSERT_TRUE(files);
+  auto one = files->scratch(), two = files->scratch();
+  ASSERT_TRUE(one && two);
+  *one << "one";
+  *two << "two";
+  EXPECT_EQ(entries(), 0u);
+  one->seekg(0);
+  std::string back;
+  *one >> back;
+  EXPECT_EQ(back, "one");
+}
+
 TEST_F(OutputFolder, WhereAFileStandsIsRefused) {
   write_and_publish("one");
   const auto files = OutputFiles::open((folder_ / "a.txt" / "below").string());

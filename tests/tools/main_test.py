@@ -24,7 +24,7 @@ class Main(unittest.TestCase):
 
     def test_help_names_every_command(self):
         listed = run("--help").stdout
-        for command in ("play", "replay", "record", "pads", "doctor", "decode", "monitor", "motion", "ik", "bench"):
+        for command in ("play", "replay", "record", "pads", "doctor", "decode", "monitor", "motion", "ik", "figures", "bench"):
             self.assertIn(f"  {command} ", listed)
 
     def test_a_full_disk_is_one_sentence(self):

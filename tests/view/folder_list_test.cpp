@@ -35,10 +35,10 @@ class Folder : public testing::Test {
 using Names = std::vector<std::string>;
 
 TEST_F(Folder, FoldersComeFirstThenFilesByNameWithoutCase) {
-  for (const char* name : {"b.hid", "A.bvh", "c.toml"}) make(name);
+  for (const char* name : {"b.hid", "A.bvh", "d.amc", "d.asf", "c.toml"}) make(name);
   fs::create_directory(folder_ / "z");
   fs::create_directory(folder_ / "Y");
-  EXPECT_EQ(names(), (Names{"Y", "z", "A.bvh", "b.hid", "c.toml"}));
+  EXPECT_EQ(names(), (Names{"Y", "z", "A.bvh", "b.hid", "c.toml", "d.amc"}));
 }
 
 TEST_F(Folder, TheFilterLeavesFoldersAndItsOwnKind) {

@@ -27,6 +27,7 @@ class Opening : public testing::Test {
 
 TEST_F(Opening, TheEndingTellsMotionsAndRecordings) {
   EXPECT_EQ(*kind_of_file(make("a.bvh")), FileKind::motion);
+  EXPECT_EQ(*kind_of_file(make("A.AMC")), FileKind::motion);
   EXPECT_EQ(*kind_of_file(make("b.BVH")), FileKind::motion);
   EXPECT_EQ(*kind_of_file(make("c.hid")), FileKind::recording);
 }

@@ -49,6 +49,25 @@ def write_walk(out):
     (out / "fuzz_bvh" / "still.bvh").write_text(text.replace(f"Frames: {len(frames)}", "Frames: 1") + frames[0] + "\n")
 
 
+def bone(name, direction, dof):
+    return f"begin\nid 1\nname {name}\ndirection {direction}\nlength 7\naxis 0 0 20 XYZ\n{dof}end\n"
+
+
+def write_acclaim(out):
+    """A body of two legs, at rest and in two frames."""
+    bones, tree, frame = "", "root lhip rhip\n", ["root 0 17 0 0 0 0"]
+    for side, x in (("l", 1), ("r", -1)):
+        bones += bone(side + "hip", f"{x} 0 0", "") + bone(side + "femur", "0 -1 0", "dof rx ry rz\nlimits (-1 2)\n(-inf inf)\n")
+        bones += bone(side + "tibia", "0 -1 0", "dof rx\n") + bone(side + "foot", "0 -1 2", "dof tx rz\n")
+        tree += f"{side}hip {side}femur\n{side}femur {side}tibia\n{side}tibia {side}foot\n"
+        frame += [f"{side}femur 3 -2 1e-3", f"{side}tibia 20", f"{side}foot 0 5"]
+    asf = (":version 1.10\n:name x\n:units\nmass 1\nlength 0.45\nangle deg\n:root\norder TX TY TZ RX RY RZ\naxis XYZ\n"
+           f"position 0 0 0\norientation 0 0 0\n:bonedata\n{bones}:hierarchy\nbegin\n{tree}end\n")
+    lines = "\n".join(frame)
+    (out / "fuzz_acclaim" / "rest.asf").write_text(asf)
+    (out / "fuzz_acclaim" / "two_frames").write_text(f"{asf}\n----\n:FULLY-SPECIFIED\n:DEGREES\n1\n{lines}\n2\n{lines}\n")
+
+
 EVERY_KEY = """name = "mine"
 unique_id = "a1:b2"
 port = "usb-1/input0"
@@ -98,11 +117,12 @@ def write_imports(out):
 
 def main():
     out = pathlib.Path(sys.argv[1])
-    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh", "fuzz_calibration", "fuzz_import",
+    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh", "fuzz_acclaim", "fuzz_calibration", "fuzz_import",
                  "fuzz_terrain"):
         (out / name).mkdir(parents=True, exist_ok=True)
     write_pads(out)
     write_walk(out)
+    write_acclaim(out)
     write_calibrations(out)
     write_imports(out)
     for path in (ROOT / "config/terrain").iterdir():

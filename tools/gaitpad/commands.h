@@ -15,6 +15,7 @@ void add_monitor(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);
 void add_motion(CLI::App& app, int& status);
 void add_ik(CLI::App& app, int& status);
+void add_figures(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
 
 }  // namespace gaitpad

@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
   gaitpad::add_calibrate(app, status);
   gaitpad::add_motion(app, status);
   gaitpad::add_ik(app, status);
+  gaitpad::add_figures(app, status);
   gaitpad::add_bench(app, status);
   try {
     app.parse(argc, argv);

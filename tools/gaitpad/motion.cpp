@@ -7,8 +7,9 @@
 
 #include "motion/flight.h"
 #include "motion/gait_cycle.h"
-#include "motion/load.h"
 #include "motion/tracks.h"
+#include "session/config_files.h"
+#include "session/motion_source.h"
 #include "tools/gaitpad/commands.h"
 
 namespace gaitpad {
@@ -104,7 +105,9 @@ void print_table(const Motion& motion) {
 
 Result<Motion> chosen_motion(const MotionArguments& arguments) {
   if (arguments.file == "procedural") return procedural_motion();
-  return load_motion(arguments.file, arguments.load);
+  const auto path = motion_path(config_folders(GAITPAD_CONFIG_DIR), arguments.file);
+  if (!path) return path.error();
+  return load_motion_source(*path, arguments.load);
 }
 
 int run_motion(const MotionArguments& arguments) {
@@ -138,13 +141,22 @@ void add_motion(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "motion", "shows what a motion file holds: units, rate, joints, legs, when each foot flies");
   const auto arguments = std::make_shared<MotionArguments>();
-  command->add_option("FILE", arguments->file, "BVH file, or `procedural` for the built-in walk")
+  command
+      ->add_option("FILE", arguments->file,
+                   "motion (.bvh, .amc with its .asf, .asf, .toml), a NAME of config/motions, or "
+                   "`procedural`")
       ->required();
   command->add_flag("--json", arguments->as_json, "one JSON object");
   command
       ->add_option("--metres-per-unit", arguments->load.metres_per_unit,
                    "length of the file's unit (default: found from the legs' length)")
       ->check(CLI::Range(1e-6, 1e3));
+  command->add_option("--skeleton", arguments->load.skeleton,
+                      "the .asf file of an .amc file (default: found beside it by its name)");
+  command
+      ->add_option("--frame-rate", arguments->load.frame_rate_hz,
+                   "frames a second (default: the file's; 120 for .amc, which does not say)")
+      ->check(CLI::Range(1.0, 1e4));
   for (int s = 0; s < 2; ++s) add_leg_options(*command, arguments->load.legs[s], kSideNames[s]);
   command->callback([arguments, &status] { status = run_motion(*arguments); });
 }

@@ -21,7 +21,7 @@ struct ReplayArguments {
   SessionArguments session;
   WindowArguments window;
   std::string trace, out;
-  bool json = false, lenient = false, view = false;
+  bool json = false, lenient = false, view = false, gltf = false;
   int fps = 0;  // 0: not given
 };
 
@@ -35,6 +35,9 @@ void print_text(const ReplayArguments& arguments, const ReplayResult& result) {
   for (std::size_t i = 0; i < result.summaries.size(); ++i) {
     print_character(i, result.summaries[i], result.distance_m[i]);
     if (arguments.out.empty()) continue;
+    if (arguments.gltf) {
+      fmt::print("  {}/{}\n", arguments.out, numbered_name("pose", ".glb", i));
+    }
     fmt::print("  {0}/{1}  {0}/{2}  {0}/{3}\n", arguments.out, numbered_name("pose", ".bvh", i),
                numbered_name("frames", ".csv", i), numbered_name("summary", ".json", i));
   }
@@ -46,6 +49,7 @@ int run_through(const ReplayArguments& arguments) {
   options.session = session_options(arguments.session);
   options.trace = arguments.trace;
   options.out = arguments.out;
+  options.gltf = arguments.gltf;
   options.damage = arguments.lenient ? Damage::skip : Damage::refuse;
   if (arguments.session.rate_hz > 0) options.rate_hz = arguments.session.rate_hz;
   if (arguments.fps > 0) options.fps = arguments.fps;
@@ -89,9 +93,16 @@ void add_replay(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("replay", "walks characters along a recorded stick");
   const auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("trace", arguments->trace, "the recording (.hid)")->required();
-  command->add_option("--out", arguments->out, "folder for pose.bvh, frames.csv and summary.json");
+  auto* out = command->add_option("--out", arguments->out,
+                                  "folder for pose.bvh, frames.csv and summary.json");
+  command
+      ->add_flag("--gltf", arguments->gltf,
+                 "pose.glb too: binary glTF 2.0, joints, one animation and a plain body")
+      ->needs(out);
   add_session_options(*command, arguments->session, "the trace's, else 240");
-  command->add_option("--fps", arguments->fps, "poses a second in pose.bvh (default: every tick)")
+  command
+      ->add_option("--fps", arguments->fps,
+                   "poses a second in pose.bvh and pose.glb (default: every tick)")
       ->check(CLI::Range(1, kMaxRateHz));
   command->add_flag("--lenient", arguments->lenient, "skip damaged lines and count them");
   auto* in_window = command->add_flag("--view", arguments->view,

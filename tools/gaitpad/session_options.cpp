@@ -9,7 +9,8 @@ namespace gaitpad {
 void add_session_options(CLI::App& command, SessionArguments& arguments,
                          const std::string& default_rate) {
   SessionOptions& session = arguments.options;
-  command.add_option("--motion", session.motion, "motion file; without it the built-in walk");
+  command.add_option("--motion", session.motion,
+                     "motion, FILE|NAME (.bvh, .amc, .toml); without it the built-in walk");
   command
       .add_option("--character", session.characters, "a build, FILE|NAME; once for each character")
       ->allow_extra_args(false)  // what follows the next word may be PAD

@@ -1,0 +1,58 @@
+// Figure 4's simple structure: four links in a plane, the root's weight lowered.
+#pragma once
+#include <vector>
+
+#include "animation/ik.h"
+#include "animation/walk.h"
+
+namespace gaitpad {
+
+inline constexpr int kChainLinks = 4;
+inline constexpr double kChainLink_m = 0.25;
+inline constexpr double kChainTolerance_m = 1e-5;
+// Of figure 4: 1 is the even chain.
+inline constexpr std::array<double, 5> kRootWeights = {1.0, 0.5, 0.2, 0.1, 0.05};
+
+// The links turn about z; the chain begins at the origin and points along x at angles of 0.
+IkChain plane_chain(const std::array<double, kChainLinks>& weights);
+vec2 plane_end(const IkChain& chain, const IkAngles& angles_rad);
+// Its joints, the origin first and the end last.
+std::vector<vec2> plane_joints(const IkChain& chain, const IkAngles& angles_rad);
+
+struct ChainTask {
+  IkAngles start_rad{};
+  vec2 goal_m{0.0};
+};
+ChainTask figure_4_task();
+
+struct ChainSolve {
+  std::vector<IkAngles> angles_rad;  // row k: after k iterations
+  std::vector<double> error_m;
+  IkResult result;
+  const IkAngles& answer() const { return angles_rad.back(); }
+  int iterations() const { return static_cast<int>(angles_rad.size()) - 1; }
+};
+// Two rows of the Jacobian, x and y: the plane's half Jacobian.
+ChainSolve solve_chain(const IkChain& chain, const ChainTask& task, IkMode mode);
+
+// Deterministic numbers everywhere the same (Knuth's MMIX multiplier).
+class Lcg {
+ public:
+  explicit Lcg(std::uint64_t seed) : state_(seed) {}
+  double between(double a, double b) {
+    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
+    return a + (b - a) * (static_cast<double>(state_ >> 11) * 0x1p-53);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+// A chain bent by up to `bend_rad` at each joint, and a goal no farther than `reach_links` from its
+// end on both axes.
+struct NearGoals {
+  double bend_rad = kPi;
+  double reach_links = 0.6;
+};
+ChainTask near_task(Lcg& random, const NearGoals& what);
+
+}  // namespace gaitpad

@@ -1,0 +1,269 @@
+#include "paper/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace gaitpad {
+namespace {
+
+constexpr int kMaxTicks = 8;
+constexpr std::array<double, 2> kDashes = {6.0, 4.0};
+
+void use(cairo_t* cr, const Stroke& stroke) {
+  set_colour(cr, rgb(stroke.colour, stroke.alpha));
+  cairo_set_line_width(cr, stroke.width);
+  cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+  cairo_set_dash(cr, kDashes.data(), stroke.is_dashed ? 2 : 0, 0.0);
+}
+
+void draw_ticks(cairo_t* cr, const PlotFrame& plot) {
+  const Box& b = plot.box;
+  const TextStyle style{12.0, colour::kFaint, Align::centre};
+  const auto x_ticks = nice_ticks(plot.x.min, plot.x.max, kMaxTicks);
+  const double x_step = x_ticks.size() > 1 ? x_ticks[1] - x_ticks[0] : 1.0;
+  for (const double t : x_ticks) {
+    const double x = std::round(pixel_in(plot, vec2(t, plot.y.min)).x) + 0.5;
+    line(cr, {x, b.y}, {x, b.y + b.height});
+    cairo_stroke(cr);
+    draw_text(cr, style, {x, b.y + b.height + 16.0}, tick_text(t, x_step));
+    set_colour(cr, rgb(colour::kGrid));
+  }
+  const auto y_ticks = nice_ticks(plot.y.min, plot.y.max, kMaxTicks - 1);
+  const double y_step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : 1.0;
+  for (const double t : y_ticks) {
+    const double y = std::round(pixel_in(plot, vec2(plot.x.min, t)).y) + 0.5;
+    line(cr, {b.x, y}, {b.x + b.width, y});
+    cairo_stroke(cr);
+    draw_text(cr, {12.0, colour::kFaint, Align::right}, {b.x - 7.0, y + 4.0}, tick_text(t, y_step));
+    set_colour(cr, rgb(colour::kGrid));
+  }
+}
+
+}  // namespace
+
+Page blank_page(int width_px, int height_px, const std::string& title, const std::string& caption) {
+  Page page;
+  page.surface.reset(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px));
+  page.cr.reset(cairo_create(page.surface.get()));
+  cairo_t* cr = page.cr.get();
+  fill_box(cr, {0.0, 0.0, double(width_px), double(height_px)}, rgb(colour::kCard));
+  const double width = width_px - 2.0 * kPageMargin;
+  draw_text(cr, {20.0, colour::kInk, Align::left, true}, {kPageMargin, 36.0}, title, width);
+  draw_text(cr, {13.0, colour::kFaint}, {kPageMargin, 58.0}, caption, width);
+  return page;
+}
+
+vec2 pixel_in(const PlotFrame& plot, const vec2& value) noexcept {
+  const Box& b = plot.box;
+  return {b.x + b.width * (value.x - plot.x.min) / (plot.x.max - plot.x.min),
+          b.y + b.height * (plot.y.max - value.y) / (plot.y.max - plot.y.min)};
+}
+
+void draw_frame(cairo_t* cr, const PlotFrame& plot) {
+  const Box& b = plot.box;
+  cairo_set_dash(cr, nullptr, 0, 0.0);
+  cairo_set_line_width(cr, 1.0);
+  set_colour(cr, rgb(colour::kGrid));
+  draw_ticks(cr, plot);
+  stroke_box(cr, b, rgb(0xaab2bd), 1.0);
+  draw_text(cr, {14.0, colour::kInk, Align::left, true}, {b.x, b.y - 9.0}, plot.title, b.width);
+  draw_text(cr, {12.5, colour::kInk, Align::centre}, {b.x + 0.5 * b.width, b.y + b.height + 35.0},
+            plot.x_label);
+  cairo_save(cr);
+  cairo_translate(cr, b.x - 44.0, b.y + 0.5 * b.height);
+  cairo_rotate(cr, -0.5 * kPi);
+  draw_text(cr, {12.5, colour::kInk, Align::centre}, {0.0, 0.0}, plot.y_label);
+  cairo_restore(cr);
+}
+
+void draw_curve(cairo_t* cr, const PlotFrame& plot, const Line2& points, const Stroke& stroke) {
+  const Clipped clip(cr, plot.box);
+  use(cr, stroke);
+  bool is_down = false;
+  for (const vec2& p : points) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
+      is_down = false;
+      continue;
+    }
+    const vec2 at = pixel_in(plot, p);
+    is_down ? cairo_line_to(cr, at.x, at.y) : cairo_move_to(cr, at.x, at.y);
+    is_down = true;
+  }
+  cairo_stroke(cr);
+}
+
+void draw_band(cairo_t* cr, const PlotFrame& plot, const PlotRange& x, const std::string& word) {
+  const double from = pixel_in(plot, vec2(x.min, 0.0)).x, to = pixel_in(plot, vec2(x.max, 0.0)).x;
+  {
+    const Clipped clip(cr, plot.box);
+    fill_box(cr, {from, plot.box.y, to - from, plot.box.height}, rgb(paper_colour::kBand));
+  }
+  draw_text(cr, {11.5, colour::kFaint, Align::centre}, {0.5 * (from + to), plot.box.y + 15.0}, word,
+            to - from);
+}
+
+void draw_dot(cairo_t* cr, const vec2& at, double radius, unsigned colour) {
+  set_colour(cr, rgb(colour));
+  cairo_arc(cr, at.x, at.y, radius, 0.0, 2.0 * kPi);
+  cairo_fill(cr);
+}
+
+PlotRange range_of(const std::vector<Line2>& curves, double least) {
+  double min = 1e300, max = -1e300;
+  for (const Line2& curve : curves) {
+    for (const vec2& p : curve) {
+      if (!std::isfinite(p.y)) continue;
+      min = std::min(min, p.y);
+      max = std::max(max, p.y);
+    }
+  }
+  return nice_range(min, max, least);
+}
+
+vec2 pixel_in(const SideView& view, const vec3& place_m) noexcept {
+  return {view.box.x + (place_m.z - view.left_z_m) * view.px_per_m,
+          view.floor_px - place_m.y * view.px_per_m};
+}
+
+void draw_floor(cairo_t* cr, const SideView& view) {
+  use(cr, {0xaab2bd, 1.0});
+  const double y = std::round(view.floor_px) + 0.5;
+  line(cr, {view.box.x, y}, {view.box.x + view.box.width, y});
+  cairo_stroke(cr);
+}
+
+void draw_path(cairo_t* cr, const SideView& view, const std::vector<vec3>& path_m,
+               const Stroke& stroke) {
+  use(cr, stroke);
+  for (const vec3& p : path_m) {
+    const vec2 at = pixel_in(view, p);
+    cairo_line_to(cr, at.x, at.y);
+  }
+  cairo_stroke(cr);
+}
+
+void draw_arrow(cairo_t* cr, const vec2& from, const vec2& to, const Stroke& stroke) {
+  constexpr double kLongestHead = 9.0, kShortest = 4.0, kHalf = 0.4;  // pixels, rad
+  const vec2 way = to - from;
+  const double length = glm::length(way), head = std::min(kLongestHead, 0.5 * length);
+  if (length < kShortest) return;
+  use(cr, stroke);
+  const vec2 tip = to, neck = to - way * (head / length);
+  line(cr, from, neck);
+  cairo_stroke(cr);
+  const double angle = atan2(way.y, way.x);
+  cairo_move_to(cr, tip.x, tip.y);
+  for (const double side : {-kHalf, kHalf}) {
+    const SinCos s = sin_cos(angle + side);
+    cairo_line_to(cr, tip.x - head * 1.2 * s.cos, tip.y - head * 1.2 * s.sin);
+  }
+  cairo_close_path(cr);
+  cairo_fill(cr);
+}
+
+void draw_plant(cairo_t* cr, const vec2& at) {
+  constexpr double kHalf = 8.0, kHigh = 13.0;
+  set_colour(cr, rgb(paper_colour::kPlant));
+  cairo_move_to(cr, at.x, at.y + 2.0);
+  cairo_line_to(cr, at.x - kHalf, at.y + 2.0 + kHigh);
+  cairo_line_to(cr, at.x + kHalf, at.y + 2.0 + kHigh);
+  cairo_close_path(cr);
+  cairo_fill(cr);
+}
+
+std::vector<vec3> figure_points(const std::vector<vec3>& joints_m,
+                                const std::array<vec3, 2>& heel_m) {
+  std::vector<vec3> points = joints_m;
+  points.insert(points.end(), heel_m.begin(), heel_m.end());
+  return points;
+}
+
+std::vector<StickBone> stick_bones(const GaitCycle& cycle, const std::vector<vec3>& points_m) {
+  // Of the leg: fingers have no line, meshes' loose ends neither.
+  constexpr double kShortest = 0.015, kLongest = 0.9, kLongestEnd = 0.5;
+  using Part = StickBone::Part;
+  const auto& joints = cycle.skeleton.joints;
+  const double leg_m = cycle.leg[kLeftSide].length_m();
+  std::vector<StickBone> bones;
+  std::vector<Part> part(joints.size(), Part::rest);
+  for (std::size_t j = 1; j < joints.size(); ++j) {
+    const auto parent = static_cast<std::size_t>(joints[j].parent);
+    part[j] = part[parent];
+    if (static_cast<int>(j) == cycle.leg[kLeftSide].joints.hip) part[j] = Part::left_leg;
+    if (static_cast<int>(j) == cycle.leg[kRightSide].joints.hip) part[j] = Part::right_leg;
+    const double length_m = glm::distance(points_m[parent], points_m[j]);
+    const double longest = joints[j].is_end_site ? kLongestEnd : kLongest;
+    if (length_m < kShortest * leg_m || length_m > longest * leg_m) continue;
+    bones.push_back({joints[j].parent, static_cast<int>(j), part[j]});
+  }
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const int heel = static_cast<int>(joints.size()) + side;
+    const Part leg = side == kLeftSide ? Part::left_leg : Part::right_leg;
+    bones.push_back({cycle.leg[side].joints.ankle, heel, leg});
+    bones.push_back({heel, cycle.leg[side].joints.toe, leg});
+  }
+  return bones;
+}
+
+void draw_stick_figure(cairo_t* cr, const SideView& view, const std::vector<StickBone>& bones,
+                       const std::vector<vec3>& points_m, const Stroke& stroke) {
+  using Part = StickBone::Part;
+  constexpr double kPale = 0.5;
+  for (const Part part : {Part::left_leg, Part::rest, Part::right_leg}) {
+    Stroke now = stroke;
+    if (part == Part::left_leg) now.alpha *= kPale;
+    if (part == Part::rest) now.alpha *= 0.8, now.width *= 0.8;
+    use(cr, now);
+    for (const StickBone& bone : bones) {
+      if (bone.part != part) continue;
+      line(cr, pixel_in(view, points_m[static_cast<std::size_t>(bone.parent)]),
+           pixel_in(view, points_m[static_cast<std::size_t>(bone.joint)]));
+    }
+    cairo_stroke(cr);
+  }
+}
+
+void draw_table(cairo_t* cr, const Box& box, const Table& table) {
+  if (table.rows.empty()) return;
+  const double row = box.height / static_cast<double>(table.rows.size());
+  double sum = 0.0;
+  for (const double share : table.shares) sum += share;
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    const double y = box.y + row * static_cast<double>(r);
+    const TextStyle style{13.0, r == 0 ? colour::kFaint : colour::kInk, Align::left, false};
+    double x = box.x;
+    for (std::size_t c = 0; c < std::min(table.rows[r].size(), table.shares.size()); ++c) {
+      const double width = box.width * table.shares[c] / sum;
+      draw_text(cr, style, {x, y + 0.7 * row}, table.rows[r][c], width - 8.0);
+      x += width;
+    }
+    use(cr, {colour::kGrid, 1.0});
+    line(cr, {box.x, std::round(y + row) + 0.5}, {box.x + box.width, std::round(y + row) + 0.5});
+    cairo_stroke(cr);
+  }
+}
+
+std::string csv_text(const std::vector<CsvColumn>& columns) {
+  fmt::memory_buffer out;
+  std::size_t rows = 0;
+  for (const CsvColumn& c : columns) {
+    fmt::format_to(std::back_inserter(out), "{}{}", &c == columns.data() ? "" : ",", c.name);
+    rows = std::max(rows, c.values.size());
+  }
+  out.push_back('\n');
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (const CsvColumn& c : columns) {
+      if (&c != columns.data()) out.push_back(',');
+      if (r < c.values.size() && std::isfinite(c.values[r])) {
+        fmt::format_to(std::back_inserter(out), "{:.9g}", c.values[r]);
+      }
+    }
+    out.push_back('\n');
+  }
+  return fmt::to_string(out);
+}
+
+}  // namespace gaitpad

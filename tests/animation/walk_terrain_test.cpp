@@ -1,0 +1,248 @@
+// Properties of the walk over terrain, on the built-in motion and grounds made here. The whole
+// sweep (captured motions, all styles and legs, the shipped course) is terrain_sweep.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+
+#include "animation/terrain_judge.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kDt = 1.0 / 240.0;
+
+std::shared_ptr<const Terrain> ground_of(const std::vector<SectionShape>& sections,
+                                         double scale = 1.0) {
+  Terrain terrain;
+  for (const SectionShape& s : sections) {
+    const auto problem = add_section(terrain, s);
+    EXPECT_FALSE(problem) << problem->message;
+  }
+  return std::make_shared<const Terrain>(scaled(terrain, scale));
+}
+
+std::vector<SectionShape> all_kinds() {
+  return {FlatSection{1.5},
+          SlopeSection{3.0, 0.15, 0.5},
+          FlatSection{1.0},
+          StairsSection{0.17, 0.28, 4},
+          FlatSection{1.0},
+          StairsSection{-0.17, 0.28, 4},
+          FlatSection{1.0},
+          SlopeSection{3.0, -0.15, 0.5},
+          rough_section(4.0, 0.03, 2.0, 1.5, 1),
+          FlatSection{3.0}};
+}
+std::vector<SectionShape> stairs(double rise_m) {
+  return {FlatSection{1.5}, StairsSection{rise_m, 0.28, 6}, FlatSection{2.0}};
+}
+
+WalkModel model_of(double leg_ratio, std::shared_ptr<const Terrain> terrain) {
+  Character character;
+  character.leg_ratio = leg_ratio;
+  auto model = walk_model(procedural_gait(), character);
+  if (!model) {
+    ADD_FAILURE() << model.error().message;
+    std::abort();
+  }
+  model->terrain = std::move(terrain);
+  return *model;
+}
+
+class Hiker {
+ public:
+  explicit Hiker(const WalkModel& model, IkMode mode = IkMode::robust, double z_m = 0.0)
+      : model_(model),
+        mode_(mode),
+        limits_(gait_limits(model.leg_length_m)),
+        state_(standing(model, vec3(0.0, 0.0, z_m), pose_)),
+        judge_(model) {}
+
+  void walk(double x, double y, int ticks, const StyleValues& style = {}) {
+    Stick stick;
+    stick.left = vec2(x, y);
+    const GaitParams params = gait_params(stick, style, limits_);
+    for (int i = 0; i < ticks; ++i) {
+      advance(model_, params, mode_, kDt, state_, pose_);
+      judge_.see(state_, pose_);
+    }
+  }
+  void walk_to(double z_m, double y, const StyleValues& style = {}) {
+    for (int k = 0; k < 1500 && state_.hips_m.z < z_m; ++k) walk(0.0, y, 20, style);
+  }
+  const TerrainWorst& worst() const { return judge_.worst; }
+  const WalkState& state() const { return state_; }
+  TerrainJudge::Sole sole(Side side) const { return judge_.sole(side); }
+
+ private:
+  const WalkModel& model_;
+  IkMode mode_;
+  GaitLimits limits_;
+  Pose pose_;
+  WalkState state_;
+  TerrainJudge judge_;
+};
+
+void expect_sound(const TerrainWorst& worst, const std::string& what) {
+  EXPECT_LT(worst.height_mm, 5.0) << what;
+  EXPECT_LT(worst.slide_mm, 1.0) << what;
+  EXPECT_LT(worst.sunk_mm, 5.0) << what << " at z " << worst.sunk_z_m;
+  EXPECT_LE(worst.overhang_mm, 0.0) << what;
+  EXPECT_EQ(worst.failures, 0) << what;
+  EXPECT_LT(worst.jump_deg, 1.0) << what << " at z " << worst.jump_z_m;
+}
+
+StyleValues limp() {
+  StyleValues style;
+  style.stride[kLeftSide] = {.length = 0.5, .speed = 1.3, .flight_height = 0.5};
+  return style;
+}
+
+TEST(WalkTerrain, FeetStandOnEveryGroundAndNeverSinkIntoIt) {
+  for (const double ratio : {0.6, 1.0, 1.6}) {
+    const double scale = ratio > 1.0 ? ratio : 1.0;  // where the foot is longer than the tread
+    const WalkModel model = model_of(ratio, ground_of(all_kinds(), scale));
+    for (const double y : {0.4, 0.7}) {
+      Hiker hiker(model);
+      hiker.walk_to(17.0 * scale, y);
+      hiker.walk(0.0, 0.0, 500);
+      EXPECT_GE(hiker.worst().end_z_m, 17.0 * scale);
+      expect_sound(hiker.worst(), "leg " + std::to_string(ratio) + " stick " + std::to_string(y));
+    }
+  }
+}
+
+TEST(WalkTerrain, ALimpKeepsToTheGroundToo) {
+  const WalkModel model = model_of(1.0, ground_of(all_kinds()));
+  Hiker hiker(model);
+  hiker.walk_to(17.0, 0.7, limp());
+  EXPECT_GE(hiker.worst().end_z_m, 17.0);
+  expect_sound(hiker.worst(), "limp");
+}
+
+TEST(WalkTerrain, LevelGroundIsWalkedAsWithoutTerrain) {
+  const WalkModel flat = model_of(1.0, flat_terrain());
+  const WalkModel far =
+      model_of(1.0, ground_of({FlatSection{100.0}, StairsSection{0.17, 0.28, 3}}));
+  Hiker a(flat), b(far);
+  for (Hiker* hiker : {&a, &b}) {
+    hiker->walk(0.0, 0.8, 800);
+    hiker->walk(0.4, 0.6, 600);
+    hiker->walk(0.0, 0.0, 400);
+  }
+  for (Side side : {kLeftSide, kRightSide}) {
+    EXPECT_LT(glm::distance(a.state().frame.heel_m[side], b.state().frame.heel_m[side]), 1e-6);
+  }
+  EXPECT_LT(glm::distance(a.state().frame.pelvis_m, b.state().frame.pelvis_m), 1e-6);
+}
+
+TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
+  for (const double rise : {0.17, -0.17}) {
+    const WalkModel model = model_of(1.0, ground_of(stairs(rise)));
+    for (const double y : {0.3, 0.7, 1.0}) {
+      Hiker hiker(model);
+      double lowest = 0.0, last = 0.0, most = 0.0;
+      for (int k = 0; k < 3000; ++k) {
+        hiker.walk(0.0, y, 1);
+        const WalkFrame& f = hiker.state().frame;
+        if (f.stage != Stage::roll || hiker.state().tick != 1) continue;
+        most = std::max(most, std::abs(f.heel_ground_m[f.swing] - last));
+        last = f.heel_ground_m[f.swing];
+        lowest = std::max(lowest, std::abs(last));
+      }
+      EXPECT_NEAR(most, 0.17, 1e-6) << rise << " " << y;
+      EXPECT_NEAR(lowest, 6 * 0.17, 1e-6) << rise << " " << y;
+    }
+  }
+}
+
+TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
+  for (const double rise : {0.17, -0.17}) {
+    const WalkModel model = model_of(1.0, ground_of(stairs(rise)));
+    for (const double z : {1.2, 1.6, 1.9, 2.2, 2.6, 3.0}) {
+      Hiker hiker(model);
+      hiker.walk_to(z, 0.7);
+      hiker.walk(0.0, 0.0, 700);
+      EXPECT_EQ(hiker.state().stage, Stage::idle);
+      const auto& f = hiker.state().frame;
+      EXPECT_EQ(f.heel_ground_m[0], f.heel_ground_m[1]) << rise << " stopped at " << z;
+      expect_sound(hiker.worst(), "stop at " + std::to_string(z));
+    }
+  }
+}
+
+TEST(WalkTerrain, AStartOnAnEdgeStandsBesideIt) {
+  const WalkModel model = model_of(1.0, ground_of(stairs(0.17)));
+  for (double z = 1.2; z < 2.2; z += 0.07) {
+    Hiker hiker(model, IkMode::robust, z);
+    hiker.walk(0.0, 0.0, 5);
+    EXPECT_LE(hiker.worst().overhang_mm, 0.0) << z;
+    EXPECT_LT(hiker.worst().height_mm, 1.0) << z;
+    EXPECT_EQ(hiker.worst().failures, 0) << z;
+  }
+}
+
+TEST(WalkTerrain, FeetLieOnASlope) {
+  const double grade = 0.2;
+  const WalkModel model = model_of(1.0, ground_of({SlopeSection{40.0, grade, 0.5}}));
+  Hiker hiker(model, IkMode::robust, 5.0);
+  hiker.walk(0.0, 0.0, 10);
+  for (Side side : {kLeftSide, kRightSide}) {
+    const auto sole = hiker.sole(side);
+    EXPECT_NEAR((sole.tip.y - sole.heel.y) / (sole.tip.z - sole.heel.z), grade, 0.01);
+  }
+}
+
+TEST(WalkTerrain, SlopesShortenSteps) {
+  const auto stride = [](double grade) {
+    const WalkModel model = model_of(1.0, ground_of({SlopeSection{60.0, grade, 0.5}}));
+    Hiker hiker(model, IkMode::robust, 2.0);
+    hiker.walk(0.0, 0.7, 2000);
+    return hiker.state().frame.stride_m[0];
+  };
+  const double level = stride(0.001);
+  EXPECT_LT(stride(0.2), 0.9 * level);
+  EXPECT_LT(stride(-0.2), 0.9 * level);
+}
+
+TEST(WalkTerrain, ARiserTooHighForTheLegsIsNotClimbed) {
+  const WalkModel model = model_of(0.6, ground_of(stairs(0.4)));
+  Hiker hiker(model);
+  hiker.walk(0.0, 0.8, 3000);
+  EXPECT_LT(hiker.worst().end_z_m, 1.6);
+  expect_sound(hiker.worst(), "too high");
+}
+
+TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
+  for (const double ratio : {0.8, 1.0}) {
+    std::vector<SectionShape> sections = {FlatSection{0.3}};
+    for (int k = 0; k < 6; ++k) {
+      sections.push_back(StairsSection{k % 2 ? -0.17 : 0.17, 0.28, 5});
+      sections.push_back(FlatSection{0.8});
+    }
+    const WalkModel model = model_of(ratio, ground_of(sections));
+    Hiker hiker(model);
+    std::mt19937 chance(11);
+    const auto in = [&chance](double low, double high) {
+      return low + (high - low) * (chance() >> 8) / double(1 << 24);
+    };
+    for (int k = 0; k < 60; ++k)
+      hiker.walk(chance() % 2 ? 0.0 : in(-0.6, 0.6), in(-0.3, 1.0),
+                 40 + static_cast<int>(chance() % 300));
+    expect_sound(hiker.worst(), "random sticks, leg " + std::to_string(ratio));
+  }
+}
+
+TEST(WalkTerrain, PaperModeStaysBoundedAndFinite) {
+  const WalkModel model = model_of(1.0, ground_of(all_kinds()));
+  Hiker hiker(model, IkMode::paper);
+  hiker.walk_to(17.0, 0.7);
+  for (Side side : {kLeftSide, kRightSide}) {
+    EXPECT_LT(glm::distance(hiker.state().frame.heel_m[side], hiker.state().frame.pelvis_m),
+              1.5 * model.leg_length_m);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

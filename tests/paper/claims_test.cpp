@@ -1,0 +1,183 @@
+// Each group of claims fails where what it measures is broken: a walk is spoilt by hand and the
+// claim that is about it has to notice, while the walk as it is holds.
+#include "paper/claims.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "paper/paper_fixture.h"
+#include "paper/planted.h"
+
+namespace gaitpad {
+namespace {
+
+using test::claim_of;
+using test::even;
+using test::passes;
+using test::study;
+constexpr IkMode kRobust = IkMode::robust;
+
+std::size_t middle_of_flight(const Walk& walk, Side side) {
+  const Ticks f = flights(walk, side, 4.0).front();
+  return (f.begin + f.end) / 2;
+}
+
+TEST(PaperClaims, EveryNumberOfTheThirtyIsThere) {
+  std::set<int> numbers;
+  for (const Claim& c : all_claims(study())) {
+    const int number = std::atoi(c.name.c_str());
+    EXPECT_EQ(c.name.rfind(std::to_string(number) + " ", 0), 0u) << c.name;
+    EXPECT_FALSE(c.section.empty());
+    EXPECT_FALSE(c.bound.empty());
+    EXPECT_TRUE(c.pass || !c.note.empty()) << c.name;
+    numbers.insert(number);
+  }
+  EXPECT_EQ(numbers.size(), 30u);
+  EXPECT_EQ(*numbers.begin(), 1);
+  EXPECT_EQ(*numbers.rbegin(), 30);
+}
+
+TEST(PaperClaims, APlantedFootThatSlidesIsSeen) {
+  EXPECT_LT(planted_slide_mm(even()), 0.1);
+  Walk broken = even();
+  broken.samples[middle_of_flight(broken, kRightSide)].frame.toe_m[kLeftSide].x += 0.0005;
+  EXPECT_NEAR(planted_slide_mm(broken), 0.5, 0.01);
+  const auto claims = table_1_claims(broken, 0.0, kRobust);
+  EXPECT_FALSE(passes(claims, "7 support toe moves in stage a, mm"));
+  EXPECT_TRUE(passes(claims, "7 landed heel and support toe move in stage b, mm"));
+  EXPECT_TRUE(passes(claims, "7 stages out of order"));
+}
+
+TEST(PaperClaims, AWrongStageOrPlantIsSeen) {
+  Walk broken = even();
+  const std::size_t k = middle_of_flight(broken, kRightSide);
+  broken.samples[k].frame.heel_planted[kRightSide] = true;
+  EXPECT_EQ(claim_of(table_1_claims(broken, 0.0, kRobust),
+                     "7 ticks whose planted points are not table I's")
+                .value,
+            1.0);
+  broken.samples[k].frame.swing = kLeftSide;
+  EXPECT_FALSE(passes(table_1_claims(broken, 0.0, kRobust), "7 stages out of order"));
+}
+
+TEST(PaperClaims, AJumpAtAStagesBorderIsSeen) {
+  const FootBuild build = foot_build(study().model());
+  const char* name = "8 jump of a leg angle's rate at a stage's border, deg per 1/60 s";
+  EXPECT_TRUE(passes(continuity_claims(even(), build, 3.5, kRobust), name));
+  Walk broken = even();
+  const Ticks flight = flights(broken, kRightSide, 4.0).front();
+  broken.samples[flight.begin].angles_rad[kRightSide][kKneeX] += 2.0 * kDegree;
+  EXPECT_FALSE(passes(continuity_claims(broken, build, 3.5, kRobust), name));
+}
+
+TEST(PaperClaims, HipsThatStandStillAndASunkToeAreSeen) {
+  const FootBuild build = foot_build(study().model());
+  Walk broken = even();
+  const std::size_t k = middle_of_flight(broken, kRightSide);
+  broken.samples[k].frame.pelvis_m = broken.samples[k - 1].frame.pelvis_m;
+  broken.samples[k].frame.toe_m[kRightSide].y = build.toe_rest_m[kRightSide] - 0.002;
+  const auto claims = continuity_claims(broken, build, 3.5, kRobust);
+  EXPECT_FALSE(passes(claims, "8 least forward speed of the hips, m/s"));
+  EXPECT_NEAR(*claim_of(claims, "8 heel or toe below its height of rest, mm").value, 2.0, 1e-6);
+}
+
+TEST(PaperClaims, WeightsThatDoNothingFail) {
+  const Ticks stride = study().figure_stride(even());
+  const auto claims = weight_claims({&even(), &even(), &even()}, stride, kRobust);
+  EXPECT_FALSE(passes(claims, "13 RMS change of the hip of stiff_hip against even, deg"));
+  EXPECT_FALSE(passes(claims, "14 RMS change of the hip of stiff_knee against even, deg"));
+  EXPECT_EQ(claim_of(claims, "13 hip range of stiff_hip over even").value, 1.0);
+  EXPECT_TRUE(passes(claims, "16 landing places of the heels differ, mm"));
+}
+
+TEST(PaperClaims, AFootThatLandsElsewhereIsSeen) {
+  const Ticks stride = study().figure_stride(even());
+  Walk moved = study().walk("stiff_hip", kRobust);
+  for (std::size_t k = stride.begin; k < stride.begin + 5; ++k) {
+    moved.samples[k].frame.heel_m[kRightSide].z += 0.0015;
+  }
+  const WeightWalks walks = {&even(), &moved, &study().walk("stiff_knee", kRobust)};
+  EXPECT_NEAR(
+      *claim_of(weight_claims(walks, stride, kRobust), "16 landing places of the heels differ, mm")
+           .value,
+      1.5, 0.01);
+}
+
+TEST(PaperClaims, AChangeOfTheRootMeanSquareIsWhatWasPutIn) {
+  const Ticks stride = study().figure_stride(even());
+  Walk shifted = even();
+  for (WalkSample& s : shifted.samples) s.angles_rad[kRightSide][kHipX] -= 2.5 * kDegree;
+  EXPECT_NEAR(joint_rms(even(), shifted, stride, kRightSide, LegJoint::hip), 2.5, 1e-9);
+  EXPECT_NEAR(joint_rms(even(), shifted, stride, kLeftSide, LegJoint::hip), 0.0, 1e-12);
+}
+
+TEST(PaperClaims, MonotoneMeansEveryStepGrows) {
+  EXPECT_EQ(monotone_claims({0.1, 0.2, 0.4, 0.8}, kRobust)[0].pass, true);
+  EXPECT_EQ(monotone_claims({0.1, 0.4, 0.2, 0.8}, kRobust)[0].value, 1.0);
+  EXPECT_EQ(monotone_claims({0.1, 0.1, 0.2, 0.8}, kRobust)[0].pass, false);
+}
+
+TEST(PaperClaims, AWalkThatDoesNotLimpFails) {
+  const auto claims = limp_claims({&even(), &even(), &even(), &even()}, kRobust);
+  EXPECT_NEAR(*claim_of(claims, "18 left heel's peak of the limp over even's").value, 1.0, 1e-12);
+  EXPECT_FALSE(passes(claims, "18 left heel's peak of the limp over even's"));
+  EXPECT_FALSE(passes(claims, "18 left step of the limp over its right step"));
+  EXPECT_FALSE(passes(claims, "18 ticks of the left flight off even's / 1.3"));
+  EXPECT_TRUE(passes(claims, "18 right step of the limp over even's"));
+  EXPECT_FALSE(passes(claims, "19 right step over the left one"));
+}
+
+TEST(PaperClaims, WeightsOfTheLeftLegThatMoveTheRightOneAreSeen) {
+  const Walk &limp = study().walk("limp_left", kRobust),
+             &hip = study().walk("limp_left_hip", kRobust),
+             &knee = study().walk("limp_left_knee", kRobust);
+  const Ticks stride = study().figure_stride(limp);
+  const char* name = "20 right leg's angles change by, deg";
+  EXPECT_TRUE(passes(limp_weight_claims({&even(), &limp, &hip, &knee}, stride, kRobust), name));
+  Walk broken = hip;
+  broken.samples[stride.begin + 20].angles_rad[kRightSide][kAnkleZ] += 1.2 * kDegree;
+  EXPECT_NEAR(
+      *claim_of(limp_weight_claims({&even(), &limp, &broken, &knee}, stride, kRobust), name).value,
+      1.2, 0.05);
+}
+
+TEST(PaperClaims, ADriftOverTwoHundredStridesIsSeen) {
+  WalkCase what;
+  what.model = &study().model();
+  what.end_s = 250.0;
+  Walk walk = walked(what);
+  EXPECT_EQ(endurance_claims(walk, kRobust)[0].pass, true);
+  const double n = static_cast<double>(walk.samples.size());
+  for (std::size_t k = 0; k < walk.samples.size(); ++k) {
+    walk.samples[k].angles_rad[kLeftSide][kKneeX] += 3.0 * kDegree * static_cast<double>(k) / n;
+  }
+  const auto claims = endurance_claims(walk, kRobust);
+  EXPECT_EQ(claims[0].pass, false);
+  EXPECT_EQ(claims[1].pass, false);
+  walk.samples.resize(2000);
+  EXPECT_FALSE(endurance_claims(walk, kRobust)[0].pass.has_value());
+}
+
+TEST(PaperClaims, PaperModeBendsAStiffHipsKneeBackwards) {
+  // What fails in paper mode fails for its reason: no joint limits, no pull to the data.
+  const Ticks stride = study().figure_stride(even());
+  const auto paper = weight_claims(
+      {&study().walk("even", IkMode::paper), &study().walk("stiff_hip", IkMode::paper),
+       &study().walk("stiff_knee", IkMode::paper)},
+      stride, IkMode::paper);
+  EXPECT_LT(*claim_of(paper, "13 least knee angle of stiff_hip, deg").value, 0.0);
+  EXPECT_FALSE(passes(paper, "13 least knee angle of stiff_hip, deg"));
+}
+
+TEST(PaperClaims, OfAMotionWithoutHandsTheArmsAreNotJudged) {
+  PaperSource source = study().source();
+  for (Joint& joint : source.cycle.skeleton.joints) joint.name = "joint";
+  auto nameless = Study::of(std::move(source));
+  ASSERT_TRUE(nameless);
+  const auto claims = body_claims(*nameless);
+  EXPECT_FALSE(claim_of(claims, "28 hand against the opposite hip, correlation").pass.has_value());
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,43 @@
+// One study of the built-in motion for the tests of src/paper, and ways to find a claim.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string_view>
+
+#include "paper/claims.h"
+
+namespace gaitpad::test {
+
+inline Study& study() {
+  static Study made = [] {
+    auto source = load_paper_source("", {GAITPAD_SOURCE_DIR "/config"});
+    if (!source) {
+      ADD_FAILURE() << source.error().message;
+      std::abort();
+    }
+    auto result = Study::of(std::move(*source));
+    if (!result) {
+      ADD_FAILURE() << result.error().message;
+      std::abort();
+    }
+    return std::move(*result);
+  }();
+  return made;
+}
+
+inline const Claim& claim_of(const std::vector<Claim>& claims, std::string_view name) {
+  for (const Claim& claim : claims) {
+    if (claim.name == name) return claim;
+  }
+  ADD_FAILURE() << "no claim " << name;
+  static const Claim kNone;
+  return kNone;
+}
+inline bool passes(const std::vector<Claim>& claims, std::string_view name) {
+  return claim_of(claims, name).pass.value_or(false);
+}
+
+inline const Walk& even() { return study().walk("even", IkMode::robust); }
+
+}  // namespace gaitpad::test

@@ -1,0 +1,79 @@
+// gaitpad figures: the paper's figures and claims out of the running code.
+#include "paper/figures.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "paper/claims.h"
+#include "session/config_files.h"
+#include "tools/gaitpad/commands.h"
+
+namespace gaitpad {
+namespace {
+
+struct FiguresArguments {
+  std::string folder, motion;
+  bool as_json = false;
+};
+
+int failed(const Error& error) {
+  fmt::print(stderr, "gaitpad figures: {}\n", error.message);
+  return 1;
+}
+
+void print_summary(const std::vector<Claim>& claims, const std::string& folder) {
+  fmt::print("{}", claims_table(claims));
+  for (const IkMode mode : {IkMode::paper, IkMode::robust}) {
+    int passed = 0, broken = 0, untested = 0;
+    for (const Claim& c : claims) {
+      if (c.mode != mode) continue;
+      (!c.pass ? untested : *c.pass ? passed : broken) += 1;
+    }
+    fmt::print("{:<6} mode: {} pass, {} fail, {} cannot be tested with this motion\n",
+               name_of(mode), passed, broken, untested);
+  }
+  fmt::print("figures 2, 3, 4, 5a and 5b and claims.json (with the reasons) are in {}\n", folder);
+}
+
+int run(const FiguresArguments& arguments) {
+  auto source = load_paper_source(arguments.motion, config_folders(GAITPAD_CONFIG_DIR));
+  if (!source) return failed(source.error());
+  auto study = Study::of(std::move(*source));
+  if (!study) return failed(study.error());
+  const std::vector<Claim> claims = all_claims(*study);
+  const std::string json = claims_json(study->source().motion, claims);
+  if (auto problem = write_figures(arguments.folder, all_figures(*study), json)) {
+    return failed(*problem);
+  }
+  if (arguments.as_json) {
+    fmt::print("{}", json);
+  } else {
+    print_summary(claims, arguments.folder);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_figures(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "figures", "the paper's figures 2, 3, 4, 5a and 5b, and each of its claims as a number");
+  command->footer(
+      "Writes figure2, figure3, figure4, figure5a, figure5b (robust mode), figure5a_paper and\n"
+      "figure5b_paper as PNG and CSV, and claims.json: every claim in the modes that it depends "
+      "on.\n"
+      "A claim that fails is a finding about the paper's method, not a failure of the program:\n"
+      "the exit status is 0 when the files were written.");
+  const auto arguments = std::make_shared<FiguresArguments>();
+  command->add_option("--out", arguments->folder, "folder for the files, made where it is missing")
+      ->required();
+  command->add_option("--motion", arguments->motion,
+                      "BVH file or .toml (default: the procedural walk)");
+  command->add_flag("--json", arguments->as_json, "print claims.json instead of the table");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace gaitpad

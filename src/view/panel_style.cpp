@@ -10,7 +10,9 @@ namespace {
 
 constexpr std::string_view kLeftOf = "left_", kRightOf = "right_";
 constexpr std::string_view kOfBoth[] = {"legs.", "arms.", "hands."};
-constexpr std::string_view kOfBody[] = {"arm.", "hand.", "spine.", "head."};
+// Behind the button below: the body above the hips, and what is rarely moved.
+constexpr std::string_view kRare[] = {"arm.",  "hand.",   "spine.",
+                                      "head.", "blend_s", "fatigue_model."};
 
 // A key, or the same key of both sides.
 struct StyleRow {
@@ -55,7 +57,7 @@ std::vector<StyleRow> rows_of(const UiMemory& memory) {
     if (!memory.has_axis_weights && is_axis_weight(name)) continue;
     const bool is_paired = name.starts_with(kLeftOf);
     const std::string_view part = is_paired ? name.substr(kLeftOf.size()) : name;
-    if (!memory.has_body_keys && begins_with_one(kOfBody, part)) continue;
+    if (!memory.has_body_keys && begins_with_one(kRare, part)) continue;
     const auto right = std::find_if(keys.begin(), keys.end(), [part](const StyleKey& k) {
       const std::string_view other = k.name;
       return other.starts_with(kRightOf) && other.substr(kRightOf.size()) == part;
@@ -209,7 +211,7 @@ void draw_buttons(Ui& ui, const WalkerFrame& walker) {
   }
   look.width = width;
   look.is_on = ui.state.memory.has_body_keys;
-  if (button(ui, "upper body", "arms, hands, spine and head", look)) {
+  if (button(ui, "upper body", "upper body, tiring, blending", look)) {
     ui.state.memory.has_body_keys = !ui.state.memory.has_body_keys;
   }
 }
@@ -222,9 +224,9 @@ void draw_style_panel(Ui& ui) {
   const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   draw_choice(ui, walker);
+  draw_save(ui);
   for (const StyleRow& row : rows_of(ui.state.memory)) draw_row(ui, walker, row);
   draw_buttons(ui, walker);
-  draw_save(ui);
   ImGui::PopStyleVar();
 }
 

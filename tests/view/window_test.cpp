@@ -1,7 +1,9 @@
 #include "view/window.h"
 
+#include <algorithm>
 #include <memory>
 
+#include "session/config_files.h"
 #include "tests/view/window_script.h"
 
 namespace gaitpad {
@@ -14,7 +16,10 @@ class ActionScript : public Script {
  public:
   explicit ActionScript(const WindowOptions& options) {
     styles_ = options.live.session.styles;
-    for (const char* name : {"limp_left_hip", "limp_left_knee", "tired"}) styles_.push_back(name);
+    // Those of config/ that are not among them, by name.
+    for (const std::string& path : config_files(options.live.session.config_folders, "styles")) {
+      if (std::ranges::count(styles_, config_name(path)) == 0) styles_.push_back(config_name(path));
+    }
   }
   void add(const ActionInfo& info);
 
@@ -178,9 +183,13 @@ void ActionScript::add(const ActionInfo& info) {
     case Action::reset:
       return add_reset(info);
     case Action::next_style:
-      return add_neighbours(info, 6, 0);  // behind the last one the first
+      return add_neighbours(info, 6, 7);
     case Action::previous_style:
-      return add_neighbours(info, 2, 1);
+      return add_neighbours(info, 0, styles_.size() - 1);  // before the first one the last
+    case Action::next_terrain:
+      tap(info.key);
+      until("another ground", [](const Glance& g) { return g.cast.terrain->name == "rough"; });
+      return until("the session runs", [](const Glance& g) { return g.session.tick > 0; });
     case Action::next_walker:
       return add_walkers(info);
     case Action::record:

@@ -18,7 +18,7 @@ LEVELS = {"O0": "-O0", "O2": "-O2", "O3native": "-O3 -march=native"}
 ROOMS = ["base", "hid", "stick", "motion", "control", "animation", "session"]
 # What reads and writes files and cannot reach a pose comes from the ordinary build's libraries.
 NO_POSE = re.compile(
-    r"toml_file|trace|_file|_files|style|character|bvh_writer|frames_csv|replay|setup|walk_export"
+    r"toml_file|trace|_file|_files|^style\.|style_store|body_keys|character|bvh_writer|gltf|frames_csv|replay|setup|walk_export"
     r"|motion_source|pad_|live|recording|realtime|summary|guided|tick_reports|playback|user_files")
 MAIN = ROOT / "tests/session/pose_hash_main.cpp"
 FLAGS = f"-std=c++20 -ffp-contract=off -w -I {ROOT}/src -I {ROOT}"
@@ -28,7 +28,7 @@ rule compile
   command = $cxx {FLAGS} $level -MD -MF $out.d -c $in -o $out
   depfile = $out.d
 rule link
-  command = $cxx $in -o $out -Wl,--start-group $libraries -Wl,--end-group -lfmt -ltomlplusplus
+  command = $cxx $in -o $out -Wl,--start-group $libraries -Wl,--end-group -lfmt -ltomlplusplus -lpng
 """
 
 

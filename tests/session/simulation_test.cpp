@@ -211,7 +211,7 @@ TEST(Simulation, AResetKeepsTheStyleThatWasChosenAndDropsItsChanges) {
 TEST(Simulation, ACommandThatCannotBeObeyedChangesNothing) {
   const char* const bad[] = {"set arms 1",          "set fatigue 1.01",      "set 4 fatigue 0.5",
                              "set fatigue -0.01",   "set fatigue nan",       "set fatigue",
-                             "gait speed 1",        "gait speed_m_s 1e9",    "gait speed_m_s -1",
+                             "gait speed 1",        "gait speed_m_s 1e9",    "gait speed_m_s -1e9",
                              "gait 4 speed_m_s 1",  "gait wings stick",      "gait 4 stick",
                              "gait hip_sway three", "gait 2 hip_sway 3.001", "reset 1"};
   Simulation s = made_simulation(made_config(3));

@@ -75,7 +75,7 @@ class Files(ReplayCase):
     def test_columns_rows_and_poses_are_those_of_the_contract(self):
         rows, summary = self.replay(WALK)
         lines = (self.out / "frames.csv").read_text().splitlines()
-        self.assertEqual(lines[0], COLUMNS)
+        self.assertEqual(lines[0], COLUMNS + ",left_heel_ground_m,left_toe_ground_m,right_heel_ground_m,right_toe_ground_m")
         self.assertEqual(len(rows), 7 * RATE_HZ)
         self.assertEqual(summary["ticks"], 7 * RATE_HZ)
         self.assertRegex(summary["pose_hash"], "^[0-9a-f]{16}$")

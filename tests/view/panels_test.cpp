@@ -49,11 +49,11 @@ TEST_F(PanelTest, ASliderSendsEachNewValueOnceForTheChosenCharacter) {
   walk();
   state.walker = 1;
   show(Panel::control);
-  const double most = range_of(GaitKey::speed_m_s, cast.members[1].limits).max;
+  const GaitRange range = range_of(GaitKey::speed_m_s, cast.members[1].limits);
   const UiOutput first = press_at("slider speed_m_s", 0.5);
   ASSERT_EQ(first.commands.size(), 1u);
   EXPECT_EQ(first.commands[0].rfind("gait 2 speed_m_s ", 0), 0u) << first.commands[0];
-  EXPECT_NEAR(last_number(first.commands[0]), most / 2.0, 0.02);
+  EXPECT_NEAR(last_number(first.commands[0]), 0.5 * (range.min + range.max), 0.02);
   EXPECT_LE(first.commands[0].size(), std::string("gait 2 speed_m_s 0.75").size());
   EXPECT_TRUE(draw().commands.empty());  // held still
   EXPECT_EQ(move_to("slider speed_m_s", 1.0).commands.size(), 1u);

@@ -115,7 +115,7 @@ double leg_ik_us(const Session& session, Simulation simulation) {
     pelvis.position_m.y = w.state.frame.pelvis_m.y;
   }
   const GaitParams params = gait_params(simulation.stick(), simulation.styles()[w.style], w.limits);
-  const Tick tick{*w.model, params, 1.0 / session.config.rate_hz};
+  const Tick tick{*w.model, params, 1.0 / session.config.rate_hz, is_flat(*w.model->terrain)};
   std::size_t i = 0;
   return measured_us("leg", [&] {
     pose_leg(tick, session.config.ik, (i & 1) != 0 ? kRightSide : kLeftSide, pelvises[i / 2],

@@ -19,6 +19,11 @@ unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 330 --theme light --panels none \
   --style even --style limp_left --screenshot "$folder/limp.png"
 
+# Up the stairs, side by side.
+"$gaitpad" replay "$root/config/traces/round.hid" --view --frames 300 --theme dark --panels none \
+  --terrain stairs --style even --style stiff_hip --style stiff_knee --style limp_left \
+  --screenshot "$folder/stairs.png"
+
 # Why it limps: joint angles, heights, stages; what the solver needs.
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 420 --theme dark \
   --panels graphs,solver --style even --style limp_left --screenshot "$folder/graphs.png"

@@ -136,7 +136,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   state.landing_m = state.foot[kLeftSide].heel_anchor_m;
   state.landing_plane = state.foot[kLeftSide].plane;
   state.base_m =
-      base_at_strike(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
+      std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
   return state;
 }

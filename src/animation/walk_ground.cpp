@@ -4,8 +4,6 @@ namespace gaitpad {
 namespace {
 
 constexpr double kSlopeShortens = 1.0;  // steps per grade
-constexpr double kBaseShare =
-    0.0;  // of the way up from the lower foot: the hips' ground at a strike
 // Of the leg: what the sole keeps from an edge where there is room, and it takes at most this share
 // of the room.
 constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
@@ -260,10 +258,6 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   }
   state.landing_m = state.landing_plane.place_m;
   if (moved) look_ahead(tick, step, across_m, state);
-}
-
-double base_at_strike(double standing_m, double striking_m) noexcept {
-  return mix(std::min(standing_m, striking_m), std::max(standing_m, striking_m), kBaseShare);
 }
 
 }  // namespace gaitpad

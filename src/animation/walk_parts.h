@@ -50,8 +50,6 @@ FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
 // along `forward`, the heading at landing, and `across_m` from the standing heel.
 void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
                      const vec3& across_m) noexcept;
-// Height of the ground that the hips go over when one foot stands and the other strikes.
-double base_at_strike(double standing_m, double striking_m) noexcept;
 
 // --- walk_flight.cpp: over what lies between two footholds
 // ----------------------------------------

@@ -67,13 +67,14 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
                 ((1.0 - beta) * now + beta * next) / next_s);
 }
 
-// The ground that the hips go over rises and falls along a cubic from strike to strike, as they go.
+// The ground that the hips go over, at a strike that of the lower foot, rises and falls along a
+// cubic from strike to strike, as they go.
 void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexcept {
   const Side swing = step_foot(state), stand = other(swing);
   const double standing = state.foot[stand].plane.place_m.y, landing = state.landing_m.y;
-  const double goal = base_at_strike(standing, landing);
-  const double before = base_at_strike(state.foot[swing].plane.place_m.y, standing);
-  const double next = base_at_strike(landing, state.landing.next_base_m);
+  const double goal = std::min(standing, landing);
+  const double before = std::min(state.foot[swing].plane.place_m.y, standing);
+  const double next = std::min(landing, state.landing.next_base_m);
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
   const double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
   approach(state.base_m, state.base_velocity_m_s, goal, velocity, remaining_s, tick.dt_s);

@@ -4,6 +4,7 @@
 // Without them: the course; legs 0.6, 1, 1.6; sticks 0.4, 0.7, 1; all styles; the built-in motion.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -28,6 +29,15 @@ T value_or_exit(Result<T> result) {
 
 std::string config(const char* kind, const std::string& name) {
   return fmt::format("{}/config/{}/{}.toml", GAITPAD_SOURCE_DIR, kind, name);
+}
+
+std::vector<std::string> shipped_styles() {
+  std::vector<std::string> names;
+  const std::string folder = fmt::format("{}/config/styles", GAITPAD_SOURCE_DIR);
+  for (const auto& file : std::filesystem::directory_iterator(folder))
+    names.push_back(file.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 Result<GaitCycle> cycle_of(const std::string& motion) {
@@ -87,8 +97,7 @@ bool is_sound(const TerrainWorst& w, double most_jump) {
 int main(int argc, char** argv) {
   std::vector<std::string> motions;
   std::vector<double> ratios = {0.6, 1.0, 1.6}, sticks = {0.4, 0.7, 1.0};
-  std::vector<std::string> styles = {"even",      "limp_left",  "limp_left_hip", "limp_left_knee",
-                                     "stiff_hip", "stiff_knee", "tired"};
+  std::vector<std::string> styles = shipped_styles();
   std::string terrain = "course";
   for (int i = 1; i < argc; ++i) {
     const std::string option = argv[i];

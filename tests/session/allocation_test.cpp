@@ -61,24 +61,31 @@ TEST(Allocation, IsCounted) {
   EXPECT_EQ(heap_uses(), 1);
 }
 
-TEST(Allocation, NoneIn10000StepsWithReportsCommandsAndReplugging) {
-  for (const IkMode mode : {IkMode::robust, IkMode::paper}) {
-    SimulationConfig config = made_config(4);
-    config.ik = mode;
-    auto simulation = Simulation::create(config);
-    ASSERT_TRUE(simulation) << simulation.error().message;
-    int uses = 0;
-    for (int tick = 0; tick < 10000; ++tick) {
-      const std::vector<Report> reports = made_tick(tick);
-      begin_counting_heap_use();
-      simulation->step(reports);
-      uses += heap_uses();
-    }
-    EXPECT_EQ(uses, 0);
-    EXPECT_EQ(simulation->counts().ticks, 10000);
-    EXPECT_EQ(simulation->counts().bad_commands, 3);
-    EXPECT_GT(simulation->walkers()[0].state.frame.steps[kLeftSide], 10);
+void expect_no_heap_use(SimulationConfig config, IkMode mode) {
+  config.ik = mode;
+  auto simulation = Simulation::create(config);
+  ASSERT_TRUE(simulation) << simulation.error().message;
+  int uses = 0;
+  for (int tick = 0; tick < 10000; ++tick) {
+    const std::vector<Report> reports = made_tick(tick);
+    begin_counting_heap_use();
+    simulation->step(reports);
+    uses += heap_uses();
   }
+  EXPECT_EQ(uses, 0);
+  EXPECT_EQ(simulation->counts().ticks, 10000);
+  EXPECT_EQ(simulation->counts().bad_commands, 3);
+  EXPECT_GT(simulation->walkers()[0].state.frame.steps[kLeftSide], 10);
+}
+
+TEST(Allocation, NoneIn10000StepsWithReportsCommandsAndReplugging) {
+  for (const IkMode mode : {IkMode::robust, IkMode::paper})
+    expect_no_heap_use(made_config(4), mode);
+}
+
+TEST(Allocation, NoneOverTerrainWithZonesBlendsTiringAndHandsThatHold) {
+  for (const IkMode mode : {IkMode::robust, IkMode::paper})
+    expect_no_heap_use(made_uneven_config(4), mode);
 }
 
 }  // namespace

@@ -77,6 +77,35 @@ inline SimulationConfig made_config(int walkers) {
   return config;
 }
 
+// Slopes, stairs and waves, zones, blends, tiring, stiff arms, hands that hold, a look: all that
+// poses besides the legs on level ground.
+inline SimulationConfig made_uneven_config(int walkers) {
+  SimulationConfig config = made_config(walkers);
+  Terrain terrain;
+  for (const SectionShape& shape :
+       {SectionShape(FlatSection{1.0}), SectionShape(SlopeSection{2.5, 0.15, 0.5}),
+        SectionShape(StairsSection{0.17, 0.28, 4}), SectionShape(StairsSection{-0.17, 0.28, 4}),
+        SectionShape(rough_section(6.0, 0.03, 2.0, 1.0, 7))}) {
+    add_section(terrain, shape);
+  }
+  TerrainZone& zone = terrain.zones.emplace_back();
+  zone.from_m = 2.0;
+  zone.to_m = 4.0;
+  zone.style = "limp";
+  config.terrain = std::make_shared<const Terrain>(std::move(terrain));
+  Style& busy = config.styles.emplace_back();
+  busy.name = "busy";
+  busy.blend_s = 0.7;
+  busy.fatigue_per_100_m = 5.0;
+  busy.body.arm_weight[kLeftSide][0] = 0.3;
+  busy.body.spine_weight[0] = 0.4;
+  busy.body.hand[kLeftSide].carry = 1.0;
+  busy.body.hand[kRightSide].rail = 1.0;
+  busy.body.head.look = 1.0;
+  for (WalkerConfig& walker : config.walkers) walker.style = 2;
+  return config;
+}
+
 // The reports of one tick of a lively walk: standing, straight on, curves, a style, values changed,
 // unplugging, a reset.
 inline std::vector<Report> made_tick(int tick) {

@@ -31,32 +31,6 @@ int walk(const char* name, const SimulationConfig& config) {
   return 0;
 }
 
-// Slopes, stairs and waves, zones, blends, tiring, stiff arms, hands that hold, a look: all that
-// poses besides the legs on level ground.
-Result<SimulationConfig> all_at_once() {
-  SimulationConfig config = made_config(3);
-  Terrain terrain;
-  for (const SectionShape& shape :
-       {SectionShape(FlatSection{1.0}), SectionShape(SlopeSection{2.5, 0.15, 0.5}),
-        SectionShape(StairsSection{0.17, 0.28, 4}), SectionShape(StairsSection{-0.17, 0.28, 4}),
-        SectionShape(rough_section(6.0, 0.03, 2.0, 1.0, 7))}) {
-    if (const auto problem = add_section(terrain, shape)) return *problem;
-  }
-  terrain.zones.push_back({.from_m = 2.0, .to_m = 4.0, .style = "limp"});
-  config.terrain = std::make_shared<const Terrain>(std::move(terrain));
-  Style& busy = config.styles.emplace_back();
-  busy.name = "busy";
-  busy.blend_s = 0.7;
-  busy.fatigue_per_100_m = 5.0;
-  busy.body.arm_weight[kLeftSide][0] = 0.3;
-  busy.body.spine_weight[0] = 0.4;
-  busy.body.hand[kLeftSide].carry = 1.0;
-  busy.body.hand[kRightSide].rail = 1.0;
-  busy.body.head.look = 1.0;
-  for (WalkerConfig& walker : config.walkers) walker.style = 2;
-  return config;
-}
-
 // The procedural walk through a BVH file: the reader, the legs found, the cycle made periodic.
 Result<GaitCycle> cycle_through_file(const std::string& path) {
   const Motion motion = procedural_motion();
@@ -83,9 +57,7 @@ int main(int argc, char** argv) {
   if (walk("procedural robust", config) != 0) return 1;
   config.ik = IkMode::paper;
   if (walk("procedural paper", config) != 0) return 1;
-  const auto all = all_at_once();
-  if (!all) return fail(all.error().message);
-  if (walk("terrain and body", *all) != 0) return 1;
+  if (walk("terrain and body", made_uneven_config(3)) != 0) return 1;
   auto cycle = cycle_through_file(std::string(argv[1]) + "/procedural.bvh");
   if (!cycle) return fail(cycle.error().message);
   config = made_config(2);

@@ -21,7 +21,7 @@ NO_POSE = re.compile(
     r"toml_file|trace|_file|_files|^style\.|style_store|body_keys|character|bvh_writer|gltf|frames_csv|replay|setup|walk_export"
     r"|motion_source|pad_|live|recording|realtime|summary|guided|tick_reports|playback|user_files")
 MAIN = ROOT / "tests/session/pose_hash_main.cpp"
-FLAGS = f"-std=c++20 -ffp-contract=off -w -I {ROOT}/src -I {ROOT}"
+FLAGS = f"-std=c++20 -ffp-contract=off -fno-tree-slp-vectorize -w -I {ROOT}/src -I {ROOT}"
 
 RULES = f"""
 rule compile

@@ -12,7 +12,7 @@ constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
 constexpr double kFreeReach = 0.9985, kSoftReach_m = 0.006;
 constexpr double kLeak_per_s = 4.0;
 constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
-constexpr double kFolding = 70.0 * kDegree, kFolded = 115.0 * kDegree;  // knee
+constexpr double kFolding = 45.0 * kDegree, kFolded = 90.0 * kDegree;  // knee
 constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};

@@ -21,7 +21,7 @@ unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG
 
 # Up the stairs, side by side.
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 300 --theme dark --panels none \
-  --terrain stairs --style even --style stiff_hip --style stiff_knee --style limp_left \
+  --terrain stairs --hide source --style even --style stiff_hip --style stiff_knee --style limp_left \
   --screenshot "$folder/stairs.png"
 
 # Why it limps: joint angles, heights, stages; what the solver needs.

@@ -237,4 +237,17 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   return model;
 }
 
+double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept {
+  constexpr double kSpare_m = 0.02;
+  const double tread_m = least_tread_m(terrain);
+  double scale = 1.0;
+  for (const LegBuild& leg : model.leg) {
+    const vec3 sole = leg.tip_m - leg.model.heel_m;
+    const double needed_m = glm::length(vec2(sole.x, sole.z)) + kSpare_m;
+    if (needed_m <= tread_m) continue;
+    scale = std::max({scale, model.leg_length_m / kReferenceLeg_m, needed_m / tread_m});
+  }
+  return scale;
+}
+
 }  // namespace gaitpad

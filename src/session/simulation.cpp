@@ -26,26 +26,6 @@ Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& w
   return model;
 }
 
-// From the heel to the tip of the toes.
-double sole_m(const LegModel& leg) noexcept {
-  const vec3 sole = leg.toe_m + leg.toe_end_m - leg.heel_m;
-  return glm::length(vec2(sole.x, sole.z));
-}
-
-// Where a sole does not lie on the shortest tread, all the ground grows by the ratio of that
-// walker's leg to the adult's, and farther if need be.
-double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept {
-  constexpr double kSpare_m = 0.02;
-  const double tread_m = least_tread_m(terrain);
-  double scale = 1.0;
-  for (const LegBuild& leg : model.leg) {
-    const double needed_m = sole_m(leg.model) + kSpare_m;
-    if (needed_m <= tread_m) continue;
-    scale = std::max({scale, model.leg_length_m / kReferenceLeg_m, needed_m / tread_m});
-  }
-  return scale;
-}
-
 // All or none: what a command asks for is possible for each of them.
 bool set_values(std::span<Walker> walkers, std::string_view key, double value) noexcept {
   for (const Walker& w : walkers) {

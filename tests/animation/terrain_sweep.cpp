@@ -47,18 +47,6 @@ Result<GaitCycle> cycle_of(const std::string& motion) {
   return gait_cycle(*loaded);
 }
 
-// As a session does it: where a sole does not lie on the shortest tread, the ground grows.
-double terrain_scale(const Terrain& terrain, const WalkModel& model) {
-  double scale = 1.0;
-  for (const LegBuild& leg : model.leg) {
-    const vec3 sole = leg.tip_m - leg.model.heel_m;
-    const double needed = glm::length(vec2(sole.x, sole.z)) + 0.02, tread = least_tread_m(terrain);
-    if (needed > tread)
-      scale = std::max({scale, model.leg_length_m / kReferenceLeg_m, needed / tread});
-  }
-  return scale;
-}
-
 // From its begin to a stop behind its end.
 TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
   const double goal_m = length_m(*model.terrain) + 1.0;

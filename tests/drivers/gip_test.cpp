@@ -1,8 +1,5 @@
 // Byte by byte after Linux's xpad (xpadone_process_packet, xpad_play_effect).
-#include <gtest/gtest.h>
-
-#include "hid/decode.h"
-#include "recording_port.h"
+#include "drivers/xbox_pad.h"
 
 namespace gaitpad {
 namespace {
@@ -10,58 +7,17 @@ namespace {
 constexpr UsbInterfaceClass kGip{0xff, 0x47, 0xd0};
 constexpr std::uint16_t kMicrosoft = 0x045e, kOneS = 0x02ea, kSeries = 0x0b12;
 
-DeviceInfo pad_info(std::uint16_t vendor, std::uint16_t product) {
-  DeviceInfo info;
-  info.bus = BusType::usb;
-  info.vendor = vendor;
-  info.product = product;
-  info.driver = "usb";
-  info.name = "pad";
-  info.descriptor = make_gip_pad(kGip, info).descriptor;
-  return info;
-}
-
-class Gip : public testing::Test {
+class Gip : public XboxPad {
  protected:
   void SetUp() override { use(kMicrosoft, kOneS); }
-
   void use(std::uint16_t vendor, std::uint16_t product) {
-    const DeviceInfo info = pad_info(vendor, product);
-    const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-    ASSERT_TRUE(overrides) << overrides.error().message;
-    auto layout = pad_layout(info, *overrides);
-    ASSERT_TRUE(layout) << layout.error().message;
-    EXPECT_TRUE(layout->is_pad);
-    EXPECT_TRUE(layout->unnamed.empty());
-    layout_ = std::move(*layout);
-    model_ = make_gip_pad(kGip, info).model;
-    state_ = {};
+    XboxPad::use(&make_gip_pad, kGip, vendor, product);
   }
-
-  bool decodes(const Bytes& packet) {
-    Report report;
-    report.size = static_cast<std::uint16_t>(packet.size());
-    std::copy(packet.begin(), packet.end(), report.bytes.begin());
-    return decode(layout_, report, state_);
-  }
-
-  static Bytes neutral(std::size_t size = 18) {
-    Bytes packet(size);
+  static Packet neutral(std::size_t size = 18) {
+    Packet packet(size);
     packet[0] = 0x20, packet[2] = 0x01, packet[3] = static_cast<std::uint8_t>(size - 4);
     return packet;
   }
-
-  std::uint32_t buttons_of(std::size_t byte, int bit) {
-    Bytes packet = neutral();
-    packet[byte] = static_cast<std::uint8_t>(1 << bit);
-    EXPECT_TRUE(decodes(packet));
-    return state_.buttons;
-  }
-
-  PadLayout layout_;
-  PadState state_;
-  std::unique_ptr<PadModel> model_;
-  OutPacket reply_;
 };
 
 TEST_F(Gip, EveryButtonHasItsBit) {
@@ -71,14 +27,14 @@ TEST_F(Gip, EveryButtonHasItsBit) {
                             kButtonDpadRight, kButtonLeftShoulder, kButtonRightShoulder,
                             kButtonLeftStick, kButtonRightStick};
   for (int bit = 0; bit < 8; ++bit) {
-    EXPECT_EQ(buttons_of(4, bit), kByte4[bit] < 0 ? 0u : 1u << kByte4[bit])
+    EXPECT_EQ(buttons_of(neutral(), 4, bit), kByte4[bit] < 0 ? 0u : 1u << kByte4[bit])
         << "byte 4, bit " << bit;
-    EXPECT_EQ(buttons_of(5, bit), 1u << kByte5[bit]) << "byte 5, bit " << bit;
+    EXPECT_EQ(buttons_of(neutral(), 5, bit), 1u << kByte5[bit]) << "byte 5, bit " << bit;
   }
 }
 
 TEST_F(Gip, GuideComesInAMessageOfItsOwnAndLeavesTheRest) {
-  Bytes packet = neutral();
+  Packet packet = neutral();
   packet[4] = 0x10;
   ASSERT_TRUE(decodes(packet));
   ASSERT_TRUE(decodes({0x07, 0x20, 0x02, 0x02, 0x01, 0x5b}));
@@ -90,7 +46,7 @@ TEST_F(Gip, GuideComesInAMessageOfItsOwnAndLeavesTheRest) {
 }
 
 TEST_F(Gip, TriggersAreTenBitsAndSticksSixteenWithYForwardAsThePadSendsIt) {
-  Bytes packet = neutral();
+  Packet packet = neutral();
   packet[6] = 0xff, packet[7] = 0x03;    // left trigger 1023
   packet[8] = 0x00, packet[9] = 0x01;    // right trigger 256
   packet[10] = 0xff, packet[11] = 0x7f;  // left x
@@ -108,7 +64,7 @@ TEST_F(Gip, TriggersAreTenBitsAndSticksSixteenWithYForwardAsThePadSendsIt) {
 
 TEST_F(Gip, OtherMakersPadsAreTheSame) {
   use(0x20d6, 0x2001);  // PowerA
-  Bytes packet = neutral();
+  Packet packet = neutral();
   packet[13] = 0x7f, packet[5] = 0x80;
   ASSERT_TRUE(decodes(packet));
   EXPECT_GT(state_.axis[kLeftY], 0.9f);
@@ -118,7 +74,7 @@ TEST_F(Gip, OtherMakersPadsAreTheSame) {
 // Byte 22 of 48: Xbox Series with current firmware (SDL, SDL_hidapi_xboxone.c).
 TEST_F(Gip, SeriesPadsHaveAShareButton) {
   use(kMicrosoft, kSeries);
-  Bytes packet = neutral(48);
+  Packet packet = neutral(48);
   packet[13] = 0x7f, packet[22] = 0x01;
   ASSERT_TRUE(decodes(packet));
   EXPECT_EQ(state_.buttons, 1u << kButtonMisc1);
@@ -132,43 +88,43 @@ TEST_F(Gip, SeriesPadsHaveAShareButton) {
 }
 
 TEST_F(Gip, ItIsSwitchedOnWithoutWaitingForAnAnnouncement) {
-  RecordingPort port;
+  ScriptedPort port;
   model_->start(port, StartedBy::us);
-  const std::vector<Bytes> expected = {{0x05, 0x20, 1, 0x01, 0x00},
-                                       {0x05, 0x20, 2, 0x0f, 0x06},
-                                       {0x0a, 0x20, 3, 0x03, 0x00, 0x01, 0x14},
-                                       {0x06, 0x20, 4, 0x02, 0x01, 0x00}};
+  const std::vector<Packet> expected = {{0x05, 0x20, 1, 0x01, 0x00},
+                                        {0x05, 0x20, 2, 0x0f, 0x06},
+                                        {0x0a, 0x20, 3, 0x03, 0x00, 0x01, 0x14},
+                                        {0x06, 0x20, 4, 0x02, 0x01, 0x00}};
   EXPECT_EQ(port.written, expected);
 }
 
 TEST_F(Gip, AnAnnouncementIsAnsweredByPowerOn) {
-  Bytes announce(32);
+  Packet announce(32);
   announce[0] = 0x02, announce[1] = 0x20, announce[2] = 0x01, announce[3] = 0x1c;
   EXPECT_FALSE(model_->accept(announce, reply_));
-  EXPECT_EQ(bytes_of(reply_), (Bytes{0x05, 0x20, 1, 0x01, 0x00}));
+  EXPECT_EQ(bytes_of(reply_), (Packet{0x05, 0x20, 1, 0x01, 0x00}));
 }
 
 TEST_F(Gip, WhatAsksForAnAnswerGetsOneUnderItsNumber) {
-  EXPECT_TRUE(model_->accept(Bytes{0x07, 0x30, 0x2a, 0x02, 0x01, 0x5b}, reply_));
-  EXPECT_EQ(bytes_of(reply_), (Bytes{0x01, 0x20, 0x2a, 9, 0, 0x07, 0x20, 0x02, 0, 0, 0, 0, 0}));
+  EXPECT_TRUE(model_->accept(Packet{0x07, 0x30, 0x2a, 0x02, 0x01, 0x5b}, reply_));
+  EXPECT_EQ(bytes_of(reply_), (Packet{0x01, 0x20, 0x2a, 9, 0, 0x07, 0x20, 0x02, 0, 0, 0, 0, 0}));
   EXPECT_TRUE(model_->accept(neutral(), reply_));
   EXPECT_EQ(reply_.size, 0u);
 }
 
 TEST_F(Gip, MessagesOfTheProtocolAreNoInput) {
   for (const std::uint8_t command : {0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x08, 0x1e, 0x60}) {
-    EXPECT_FALSE(model_->accept(Bytes{command, 0x20, 0x01, 0x00}, reply_)) << int{command};
-    EXPECT_FALSE(model_->accept(Bytes{command}, reply_)) << int{command};
+    EXPECT_FALSE(model_->accept(Packet{command, 0x20, 0x01, 0x00}, reply_)) << int{command};
+    EXPECT_FALSE(model_->accept(Packet{command}, reply_)) << int{command};
   }
-  Bytes headset = neutral();
+  Packet headset = neutral();
   headset[1] = 0x01;
   EXPECT_FALSE(model_->accept(headset, reply_)) << "of what is plugged into the pad";
 }
 
 TEST_F(Gip, PartsOfLongMessagesAreIgnored) {
-  EXPECT_FALSE(model_->accept(Bytes{0x04, 0xf0, 0x01, 0xba, 0x10, 0x20}, reply_));
+  EXPECT_FALSE(model_->accept(Packet{0x04, 0xf0, 0x01, 0xba, 0x10, 0x20}, reply_));
   EXPECT_EQ(reply_.size, 0u);
-  Bytes input = neutral();
+  Packet input = neutral();
   input[1] = 0xa0;
   EXPECT_EQ(model_->lost(), 0);
   EXPECT_FALSE(model_->accept(input, reply_));
@@ -176,10 +132,10 @@ TEST_F(Gip, PartsOfLongMessagesAreIgnored) {
 }
 
 TEST_F(Gip, ShortAndUnknownPacketsAreHandedOnAndChangeNothing) {
-  Bytes packet = neutral();
+  Packet packet = neutral();
   packet[4] = 0x10;
   for (std::size_t size = 1; size < packet.size(); ++size) {
-    const Bytes part(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(size));
+    const Packet part(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_TRUE(model_->accept(part, reply_)) << size;
     EXPECT_FALSE(decodes(part)) << size;
   }
@@ -187,7 +143,7 @@ TEST_F(Gip, ShortAndUnknownPacketsAreHandedOnAndChangeNothing) {
   EXPECT_TRUE(model_->accept(packet, reply_));
   EXPECT_EQ(reply_.size, 0u);
   EXPECT_FALSE(decodes(packet));
-  EXPECT_FALSE(model_->accept(Bytes{}, reply_));
+  EXPECT_FALSE(model_->accept(Packet{}, reply_));
   EXPECT_EQ(state_, PadState{});
 }
 
@@ -195,10 +151,10 @@ TEST_F(Gip, RumbleIsScaledAsTheKernelDoes) {
   OutPacket packet;
   model_->rumble({0xc000, 0x4000}, packet);
   EXPECT_EQ(bytes_of(packet),
-            (Bytes{0x09, 0x00, 1, 0x09, 0x00, 0x0f, 0x00, 0x00, 0x60, 0x20, 0xff, 0x00, 0xff}));
+            (Packet{0x09, 0x00, 1, 0x09, 0x00, 0x0f, 0x00, 0x00, 0x60, 0x20, 0xff, 0x00, 0xff}));
   model_->rumble({}, packet);
   EXPECT_EQ(bytes_of(packet),
-            (Bytes{0x09, 0x00, 2, 0x09, 0x00, 0x0f, 0x00, 0x00, 0x00, 0x00, 0xff, 0x00, 0xff}));
+            (Packet{0x09, 0x00, 2, 0x09, 0x00, 0x0f, 0x00, 0x00, 0x00, 0x00, 0xff, 0x00, 0xff}));
 }
 
 TEST_F(Gip, SequenceNumbersAreNeverZero) {

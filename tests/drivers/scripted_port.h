@@ -50,5 +50,10 @@ class ScriptedPort final : public PadPort {
 inline Packet bytes_of(const OutPacket& packet) {
   return Packet(packet.bytes.begin(), packet.bytes.begin() + static_cast<long>(packet.size));
 }
+inline Packet rumble_of(PadModel& pad, const Rumble& rumble) {
+  OutPacket packet;
+  pad.rumble(rumble, packet);
+  return bytes_of(packet);
+}
 
 }  // namespace gaitpad

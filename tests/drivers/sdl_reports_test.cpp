@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hid/decode.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
@@ -22,9 +23,7 @@ PadLayout layout_of(const JoystickState& state) {
   DeviceInfo device;
   device.driver = "sdl";
   device.descriptor = joystick_reports(state, "", 0).layout().descriptor;
-  const auto layout = pad_layout(device, {});
-  EXPECT_TRUE(layout) << (layout ? "" : layout.error().message);
-  return layout ? *layout : PadLayout{};
+  return value_of(pad_layout(device, {}));
 }
 
 PadState decoded(const PadLayout& layout, const JoystickState& state) {

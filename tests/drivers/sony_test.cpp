@@ -43,12 +43,6 @@ Packet sealed(std::uint8_t seed, Packet report) {
   return report;
 }
 
-Packet rumble_of(PadModel& pad, const Rumble& rumble) {
-  OutPacket packet;
-  pad.rumble(rumble, packet);
-  return bytes_of(packet);
-}
-
 bool accepts(PadModel& pad, const Packet& packet) {
   OutPacket reply;
   const bool is_input = pad.accept(packet, reply);

@@ -297,12 +297,6 @@ TEST(SwitchPro, OnlyInputReportsAreHandedOn) {
   EXPECT_EQ(reply.size, 0u);
 }
 
-Packet rumble_of(PadModel& pad, const Rumble& rumble) {
-  OutPacket packet;
-  pad.rumble(rumble, packet);
-  return bytes_of(packet);
-}
-
 TEST(SwitchPro, RestingMotorsAreTheDocumentedPacketAndTheCounterRunsTo15) {
   const auto pad = model();
   for (int i = 0; i < 18; ++i) {

@@ -1,63 +1,20 @@
 // Byte by byte after Linux's xpad (xpad360_process_packet, xpad_play_effect).
-#include <gtest/gtest.h>
-
-#include "hid/decode.h"
-#include "recording_port.h"
+#include "drivers/xbox_pad.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr UsbInterfaceClass kXbox360{0xff, 0x5d, 0x01};
 
-DeviceInfo pad_info(std::uint16_t vendor, std::uint16_t product) {
-  DeviceInfo info;
-  info.bus = BusType::usb;
-  info.vendor = vendor;
-  info.product = product;
-  info.driver = "usb";
-  info.name = "pad";
-  info.descriptor = make_xbox_360_pad(kXbox360, info).descriptor;
-  return info;
-}
-
-class Xbox360 : public testing::Test {
+class Xbox360 : public XboxPad {
  protected:
-  void SetUp() override { use(pad_info(0x045e, 0x028e)); }
+  void SetUp() override { use(&make_xbox_360_pad, kXbox360, 0x045e, 0x028e); }
 
-  void use(const DeviceInfo& info) {
-    const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-    ASSERT_TRUE(overrides) << overrides.error().message;
-    auto layout = pad_layout(info, *overrides);
-    ASSERT_TRUE(layout) << layout.error().message;
-    EXPECT_TRUE(layout->is_pad);
-    EXPECT_TRUE(layout->unnamed.empty());
-    layout_ = std::move(*layout);
-  }
-
-  bool decodes(const Bytes& packet) {
-    Report report;
-    report.size = static_cast<std::uint16_t>(packet.size());
-    std::copy(packet.begin(), packet.end(), report.bytes.begin());
-    return decode(layout_, report, state_);
-  }
-
-  static Bytes neutral() {
-    Bytes packet(20);
+  static Packet neutral() {
+    Packet packet(20);
     packet[1] = 0x14;
     return packet;
   }
-
-  std::uint32_t buttons_of(std::size_t byte, int bit) {
-    Bytes packet = neutral();
-    packet[byte] = static_cast<std::uint8_t>(1 << bit);
-    EXPECT_TRUE(decodes(packet));
-    return state_.buttons;
-  }
-
-  PadLayout layout_;
-  PadState state_;
-  std::unique_ptr<PadModel> model_ = make_xbox_360_pad(kXbox360, {}).model;
-  OutPacket reply_;
 };
 
 TEST_F(Xbox360, EveryButtonHasItsBit) {
@@ -72,14 +29,14 @@ TEST_F(Xbox360, EveryButtonHasItsBit) {
                             kButtonX,
                             kButtonY};
   for (int bit = 0; bit < 8; ++bit) {
-    EXPECT_EQ(buttons_of(2, bit), 1u << kByte2[bit]) << "byte 2, bit " << bit;
-    EXPECT_EQ(buttons_of(3, bit), kByte3[bit] < 0 ? 0u : 1u << kByte3[bit])
+    EXPECT_EQ(buttons_of(neutral(), 2, bit), 1u << kByte2[bit]) << "byte 2, bit " << bit;
+    EXPECT_EQ(buttons_of(neutral(), 3, bit), kByte3[bit] < 0 ? 0u : 1u << kByte3[bit])
         << "byte 3, bit " << bit;
   }
 }
 
 TEST_F(Xbox360, SticksAreSixteenBitsWithYForwardAsThePadSendsIt) {
-  Bytes packet = neutral();
+  Packet packet = neutral();
   packet[6] = 0xff, packet[7] = 0x7f;    // left x 32767
   packet[8] = 0xff, packet[9] = 0x7f;    // left y 32767: pushed away
   packet[10] = 0x00, packet[11] = 0x80;  // right x -32768
@@ -92,7 +49,7 @@ TEST_F(Xbox360, SticksAreSixteenBitsWithYForwardAsThePadSendsIt) {
 }
 
 TEST_F(Xbox360, TriggersAreEightBits) {
-  Bytes packet = neutral();
+  Packet packet = neutral();
   packet[4] = 0xff, packet[5] = 0x33;
   ASSERT_TRUE(decodes(packet));
   EXPECT_FLOAT_EQ(state_.axis[kLeftTrigger], 1.0f);
@@ -101,8 +58,8 @@ TEST_F(Xbox360, TriggersAreEightBits) {
 }
 
 TEST_F(Xbox360, OtherMakersPadsAreTheSame) {
-  use(pad_info(0x046d, 0xc21d));  // Logitech F310
-  Bytes packet = neutral();
+  use(&make_xbox_360_pad, kXbox360, 0x046d, 0xc21d);  // Logitech F310
+  Packet packet = neutral();
   packet[9] = 0x7f, packet[3] = 0x04;
   ASSERT_TRUE(decodes(packet));
   EXPECT_GT(state_.axis[kLeftY], 0.9f);
@@ -111,19 +68,19 @@ TEST_F(Xbox360, OtherMakersPadsAreTheSame) {
 
 TEST_F(Xbox360, HandsOnInputAndDropsStates) {
   EXPECT_TRUE(model_->accept(neutral(), reply_));
-  EXPECT_FALSE(model_->accept(Bytes{0x01, 0x03, 0x06}, reply_));
-  EXPECT_FALSE(model_->accept(Bytes{0x03, 0x03, 0x03}, reply_));
-  EXPECT_FALSE(model_->accept(Bytes{0x08, 0x03, 0x00}, reply_));
-  EXPECT_FALSE(model_->accept(Bytes{}, reply_));
+  EXPECT_FALSE(model_->accept(Packet{0x01, 0x03, 0x06}, reply_));
+  EXPECT_FALSE(model_->accept(Packet{0x03, 0x03, 0x03}, reply_));
+  EXPECT_FALSE(model_->accept(Packet{0x08, 0x03, 0x00}, reply_));
+  EXPECT_FALSE(model_->accept(Packet{}, reply_));
   EXPECT_EQ(reply_.size, 0u);
   EXPECT_EQ(model_->lost(), 0);
 }
 
 TEST_F(Xbox360, ShortPacketsAreHandedOnAndChangeNothing) {
-  Bytes packet = neutral();
+  Packet packet = neutral();
   packet[3] = 0x10;
   for (std::size_t size = 1; size < 20; ++size) {
-    const Bytes part(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(size));
+    const Packet part(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_TRUE(model_->accept(part, reply_)) << size;
     EXPECT_FALSE(decodes(part)) << size;
     EXPECT_EQ(state_, PadState{});
@@ -131,7 +88,7 @@ TEST_F(Xbox360, ShortPacketsAreHandedOnAndChangeNothing) {
 }
 
 TEST_F(Xbox360, LongPacketsAreReadAsFarAsTheyAreKnown) {
-  Bytes packet = neutral();
+  Packet packet = neutral();
   packet.resize(kMaxReportBytes, 0xff);
   packet[3] = 0x10;
   EXPECT_TRUE(model_->accept(packet, reply_));
@@ -141,26 +98,26 @@ TEST_F(Xbox360, LongPacketsAreReadAsFarAsTheyAreKnown) {
 
 TEST_F(Xbox360, UnknownPacketsAreRefusedAndCounted) {
   for (int id = 1; id < 256; ++id) {
-    Bytes packet(20, 0xff);
+    Packet packet(20, 0xff);
     packet[0] = static_cast<std::uint8_t>(id);
     EXPECT_FALSE(model_->accept(packet, reply_)) << id;
   }
-  EXPECT_FALSE(model_->accept(Bytes{0x00, 0x15, 0x00}, reply_));
+  EXPECT_FALSE(model_->accept(Packet{0x00, 0x15, 0x00}, reply_));
   EXPECT_EQ(model_->lost(), 256);
 }
 
 TEST_F(Xbox360, ItsLightIsSetAtTheStart) {
-  RecordingPort port;
+  ScriptedPort port;
   model_->start(port, StartedBy::us);
-  EXPECT_EQ(port.written, (std::vector<Bytes>{{0x01, 0x03, 0x06}}));
+  EXPECT_EQ(port.written, (std::vector<Packet>{{0x01, 0x03, 0x06}}));
 }
 
 TEST_F(Xbox360, RumbleHasTheStrongMotorFirst) {
   OutPacket packet;
   model_->rumble({0xc000, 0x4000}, packet);
-  EXPECT_EQ(bytes_of(packet), (Bytes{0x00, 0x08, 0x00, 0xc0, 0x40, 0x00, 0x00, 0x00}));
+  EXPECT_EQ(bytes_of(packet), (Packet{0x00, 0x08, 0x00, 0xc0, 0x40, 0x00, 0x00, 0x00}));
   model_->rumble({}, packet);
-  EXPECT_EQ(bytes_of(packet), (Bytes{0x00, 0x08, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}));
+  EXPECT_EQ(bytes_of(packet), (Packet{0x00, 0x08, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}));
 }
 
 TEST_F(Xbox360, OtherInterfacesAreNone) {

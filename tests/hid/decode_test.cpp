@@ -5,6 +5,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "tests/hid/made_pads.h"
+
 namespace gaitpad {
 namespace {
 
@@ -17,23 +19,12 @@ DeviceInfo device_of(const Bytes& descriptor) {
 }
 
 PadLayout layout_of(const DeviceInfo& device, const PadOverrides& overrides = {}) {
-  auto layout = pad_layout(device, overrides);
-  EXPECT_TRUE(layout) << (layout ? "" : layout.error().message);
-  return layout ? *layout : PadLayout{};
+  return value_of(pad_layout(device, overrides));
 }
 PadLayout layout_of(const Bytes& descriptor) { return layout_of(device_of(descriptor)); }
 
 PadLayout with_map(const DeviceInfo& device, const std::string& toml) {
-  auto pads = parse_pad_file(toml, "map.toml");
-  EXPECT_TRUE(pads) << (pads ? "" : pads.error().message);
-  return pads ? layout_of(device, *pads) : PadLayout{};
-}
-
-Report report_of(const Bytes& bytes) {
-  Report report;
-  report.size = static_cast<std::uint16_t>(bytes.size());
-  std::copy(bytes.begin(), bytes.end(), report.bytes.begin());
-  return report;
+  return layout_of(device, value_of(parse_pad_file(toml, "map.toml")));
 }
 
 PadState state_of(const PadLayout& layout, const Bytes& bytes) {

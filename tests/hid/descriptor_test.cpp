@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "tests/value_of.h"
+
 namespace gaitpad {
 namespace {
 
@@ -19,16 +21,8 @@ Bytes game_pad(const Bytes& items) {
   return Bytes{0x05, 0x01, 0x09, 0x05, 0xa1, 0x01} + items + Bytes{0xc0};
 }
 
-ReportDescriptor parsed(const Bytes& bytes) {
-  auto result = parse_descriptor(bytes);
-  EXPECT_TRUE(result) << (result ? "" : result.error().message);
-  return result ? *result : ReportDescriptor{};
-}
-
-std::string cause(const Bytes& bytes) {
-  auto result = parse_descriptor(bytes);
-  return result ? "accepted" : result.error().message;
-}
+ReportDescriptor parsed(const Bytes& bytes) { return value_of(parse_descriptor(bytes)); }
+std::string cause(const Bytes& bytes) { return cause_of(parse_descriptor(bytes)); }
 
 // X with the given range items, 8 bits.
 Field x_with_range(const Bytes& range, std::uint8_t bits = 8) {

@@ -8,13 +8,13 @@
 #include <map>
 #include <string>
 
+#include "tests/value_of.h"
+
 namespace gaitpad {
 namespace {
 
 ReportDescriptor parsed(const std::vector<std::uint8_t>& bytes) {
-  const auto descriptor = parse_descriptor(bytes);
-  EXPECT_TRUE(descriptor) << (descriptor ? "" : descriptor.error().message);
-  return descriptor ? *descriptor : ReportDescriptor{};
+  return value_of(parse_descriptor(bytes));
 }
 
 // An application collection around X, Y (bytes) and what `items` states.

@@ -8,15 +8,10 @@
 
 #include "hid/decode.h"
 #include "hid/trace.h"
+#include "tests/hid/made_pads.h"
 
 namespace gaitpad {
 namespace {
-
-PadOverrides shipped_pads() {
-  auto pads = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-  EXPECT_TRUE(pads) << (pads ? "" : pads.error().message);
-  return pads ? *pads : PadOverrides{};
-}
 
 // A node as a kernel driver makes it, read through layout and decoder.
 class Node {
@@ -29,9 +24,7 @@ class Node {
     info_.product = product;
     info_.version = version;
     info_.descriptor = stated_.descriptor;
-    const auto layout = pad_layout(info_, shipped_pads());
-    EXPECT_TRUE(layout) << (layout ? "" : layout.error().message);
-    if (layout) layout_ = *layout;
+    layout_ = value_of(pad_layout(info_, shipped_pads()));
     for (const EvdevAxis& a : abilities_.axes) {
       state_.axis[a.code] = static_cast<std::int32_t>((std::int64_t{a.min} + a.max) / 2);
     }
@@ -64,42 +57,6 @@ class Node {
 };
 
 constexpr std::uint32_t bit(PadButton b) { return 1u << b; }
-
-// Axes and keys as xpad states them (drivers/input/joystick/xpad.c).
-EvdevAbilities xpad_node() {
-  return {{{0, -32768, 32767},
-           {1, -32768, 32767},
-           {2, 0, 255},
-           {3, -32768, 32767},
-           {4, -32768, 32767},
-           {5, 0, 255},
-           {0x10, -1, 1},
-           {0x11, -1, 1}},
-          {0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e}};
-}
-// hid-playstation and hid-sony: all eight bits wide, both ways of a trigger.
-EvdevAbilities playstation_node() {
-  return {
-      {{0, 0, 255},
-       {1, 0, 255},
-       {2, 0, 255},
-       {3, 0, 255},
-       {4, 0, 255},
-       {5, 0, 255},
-       {0x10, -1, 1},
-       {0x11, -1, 1}},
-      {0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x138, 0x139, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e}};
-}
-EvdevAbilities nintendo_node() {
-  return {{{0, -32767, 32767},
-           {1, -32767, 32767},
-           {3, -32767, 32767},
-           {4, -32767, 32767},
-           {0x10, -1, 1},
-           {0x11, -1, 1}},
-          {0x130, 0x131, 0x133, 0x134, 0x135, 0x136, 0x137, 0x138, 0x139, 0x13a, 0x13b, 0x13c,
-           0x13d, 0x13e}};
-}
 
 void expect_sticks(Node& node, std::int32_t min, std::int32_t max) {
   const std::uint16_t codes[] = {0, 1, 3, 4};

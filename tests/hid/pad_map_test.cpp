@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/hid/made_pads.h"
+
 namespace gaitpad {
 namespace {
 
-std::string cause(const std::string& text) {
-  auto pads = parse_pad_file(text, "p.toml");
-  return pads ? "accepted" : pads.error().message;
-}
+std::string cause(const std::string& text) { return cause_of(parse_pad_file(text, "p.toml")); }
 
 TEST(PadFile, SourcesNameUsagesButtonsBitsAndAlternatives) {
   auto sources = parse_sources("-0001:0031");
@@ -87,20 +86,15 @@ TEST(PadFile, IdsNamePadsOfSeveralVendors) {
             "p.toml:2: \"0e8f\" is no vendor:product such as 054c:0268");
 }
 
-TEST(PadFile, TheShippedFilesAreSound) {
-  const auto pads = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-  ASSERT_TRUE(pads) << pads.error().message;
-  EXPECT_GE(pads->size(), 10u);
-}
+TEST(PadFile, TheShippedFilesAreSound) { EXPECT_GE(shipped_pads().size(), 10u); }
 
 TEST(PadFile, StreamingIsWhatTheContractSays) {
-  const auto pads = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-  ASSERT_TRUE(pads);
+  const PadOverrides pads = shipped_pads();
   const auto streams = [&](std::uint16_t vendor, std::uint16_t product) {
     DeviceInfo device;
     device.vendor = vendor;
     device.product = product;
-    const PadOverride* o = find_override(*pads, device);
+    const PadOverride* o = find_override(pads, device);
     return o != nullptr && o->streams;
   };
   EXPECT_TRUE(streams(0x054c, 0x09cc));

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "hid/decode.h"
-#include "hid/evdev_layout.h"
+#include "tests/hid/made_pads.h"
 
 namespace gaitpad {
 namespace {
@@ -55,13 +55,8 @@ class MadePad {
         static_cast<std::uint8_t>(1u << (i % 8));
   }
   PadState state(const PadOverrides& overrides = {}) const {
-    const auto layout = pad_layout(device, overrides);
-    EXPECT_TRUE(layout) << (layout ? "" : layout.error().message);
-    Report report;
-    report.size = static_cast<std::uint16_t>(bytes_.size());
-    std::copy(bytes_.begin(), bytes_.end(), report.bytes.begin());
     PadState state;
-    EXPECT_TRUE(layout && decode(*layout, report, state));
+    EXPECT_TRUE(decode(value_of(pad_layout(device, overrides)), report_of(bytes_), state));
     return state;
   }
   // The name of what is pressed when only this button is; "" for none, "?" for several.

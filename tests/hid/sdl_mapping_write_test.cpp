@@ -10,9 +10,9 @@
 #include <set>
 #include <sstream>
 
-#include "hid/evdev_layout.h"
 #include "hid/sdl_mapping.h"
 #include "hid/trace.h"
+#include "tests/hid/made_pads.h"
 
 namespace gaitpad {
 namespace {
@@ -26,8 +26,7 @@ struct KnownPad {
 };
 
 std::vector<KnownPad> known_pads() {
-  const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-  EXPECT_TRUE(overrides);
+  const PadOverrides overrides = shipped_pads();
   std::vector<KnownPad> pads;
   for (const std::string& folder : {std::string(GAITPAD_SOURCE_DIR "/tests/data/pads"), kShared}) {
     std::error_code code;
@@ -35,7 +34,7 @@ std::vector<KnownPad> known_pads() {
       if (entry.path().extension() != ".hid") continue;
       const auto trace = read_trace(entry.path().string());
       if (!trace || trace->devices.size() != 1) continue;
-      auto layout = pad_layout(trace->devices[0].info, *overrides);
+      auto layout = pad_layout(trace->devices[0].info, overrides);
       if (!layout || !layout->is_pad) continue;
       pads.push_back({entry.path().string(), trace->devices[0].info, std::move(*layout)});
     }
@@ -170,16 +169,6 @@ TEST(SdlMappingWrite, AxesAndButtonsAreThoseOfSdlsDataBase) {
 
 // As the evdev driver states the node of a DualSense under hid-playstation.
 KnownPad dualsense_node() {
-  const EvdevAbilities abilities{
-      {{0x00, 0, 255},
-       {0x01, 0, 255},
-       {0x02, 0, 255},
-       {0x03, 0, 255},
-       {0x04, 0, 255},
-       {0x05, 0, 255},
-       {0x10, -1, 1},
-       {0x11, -1, 1}},
-      {0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x138, 0x139, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e}};
   KnownPad pad;
   pad.device.bus = BusType::usb;
   pad.device.vendor = 0x054c;
@@ -187,12 +176,8 @@ KnownPad dualsense_node() {
   pad.device.version = 0x8111;
   pad.device.driver = "evdev";
   pad.device.name = "PS5 Controller";
-  pad.device.descriptor = evdev_layout(abilities, {}).descriptor;
-  const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-  EXPECT_TRUE(overrides);
-  auto layout = pad_layout(pad.device, *overrides);
-  EXPECT_TRUE(layout);
-  pad.layout = std::move(*layout);
+  pad.device.descriptor = evdev_layout(playstation_node(), {}).descriptor;
+  pad.layout = value_of(pad_layout(pad.device, shipped_pads()));
   return pad;
 }
 

@@ -9,6 +9,7 @@
 
 #include "hid/decode.h"
 #include "hid/trace.h"
+#include "tests/hid/made_pads.h"
 
 namespace gaitpad {
 namespace {
@@ -152,8 +153,7 @@ struct Recorded {
 // Each recording is named after what its maker's thumb did.
 TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
   NEEDS_SHARED_DATA();
-  const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-  ASSERT_TRUE(overrides);
+  const PadOverrides overrides = shipped_pads();
   for (const auto& [file, button] : {Recorded{"circle", kButtonB},
                                      {"x", kButtonA},
                                      {"square", kButtonX},
@@ -167,7 +167,7 @@ TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
                                      {"dpad_right", kButtonDpadRight}}) {
     const auto trace = read_trace(kFolder + "/dualsense_usb_" + file + ".hid");
     ASSERT_TRUE(trace) << trace.error().message;
-    const auto layout = pad_layout(trace->devices[0].info, *overrides);
+    const auto layout = pad_layout(trace->devices[0].info, overrides);
     ASSERT_TRUE(layout);
     PadState state;
     std::uint32_t seen = 0;
@@ -182,9 +182,8 @@ TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
 // The largest and smallest position of each axis in a recording.
 std::array<std::pair<float, float>, kAxisCount> extremes(const std::string& file) {
   std::array<std::pair<float, float>, kAxisCount> range{};
-  const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
   const auto trace = read_trace(kFolder + "/" + file);
-  const auto layout = pad_layout(trace->devices[0].info, *overrides);
+  const auto layout = pad_layout(trace->devices[0].info, shipped_pads());
   PadState state;
   for (const TraceEvent& event : trace->events) {
     decode(*layout, report_of(*trace, event), state);
@@ -220,10 +219,9 @@ TEST(SharedData, DualSenseSticksAndTriggersMoveAlone) {
 
 TEST(SharedData, EliteTwoPressesItsFourPaddles) {
   NEEDS_SHARED_DATA();
-  const auto overrides = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
   const auto trace = read_trace(kFolder + "/xbox_elite2_bt_paddles_only.hid");
-  ASSERT_TRUE(trace && overrides);
-  const auto layout = pad_layout(trace->devices[0].info, *overrides);
+  ASSERT_TRUE(trace);
+  const auto layout = pad_layout(trace->devices[0].info, shipped_pads());
   PadState state;
   std::uint32_t seen = 0;
   for (const TraceEvent& event : trace->events) {

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "tests/value_of.h"
+
 namespace gaitpad {
 namespace {
 
@@ -14,15 +16,10 @@ const std::string kHeader =
     "I: 3 1209 0001\n";
 
 Trace parsed(const std::string& text, Damage damage = Damage::refuse) {
-  auto trace = parse_trace(text, "t.hid", damage);
-  EXPECT_TRUE(trace) << (trace ? "" : trace.error().message);
-  return trace ? *trace : Trace{};
+  return value_of(parse_trace(text, "t.hid", damage));
 }
 
-std::string cause(const std::string& text) {
-  auto trace = parse_trace(text, "t.hid");
-  return trace ? "accepted" : trace.error().message;
-}
+std::string cause(const std::string& text) { return cause_of(parse_trace(text, "t.hid")); }
 
 std::int64_t tick_of(Trace trace, int rate_hz, std::size_t event) {
   EXPECT_TRUE(assign_ticks(trace, rate_hz));

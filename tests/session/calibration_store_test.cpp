@@ -12,6 +12,8 @@
 #include <set>
 #include <sstream>
 
+#include "tests/value_of.h"
+
 namespace gaitpad {
 namespace {
 
@@ -172,9 +174,7 @@ class SaveCalibration : public testing::Test {
     return error ? error->message : "none";
   }
   static double inner_of(const std::string& path) {
-    auto file = load_calibration_file(path);
-    EXPECT_TRUE(file) << file.error().message;
-    return file ? file->calibration.left.inner : -1.0;
+    return value_of(load_calibration_file(path)).calibration.left.inner;
   }
   // In a process of its own, since it changes what the whole process may do.
   template <typename Test>
@@ -291,8 +291,7 @@ TEST_F(SaveCalibration, WhereNothingCanBeWrittenItSaysSo) {
             "directory");
   fs::create_directories(path_);
   EXPECT_EQ(problem(path_, 0.1), path_ + ": cannot be written: Is a directory");
-  EXPECT_EQ(problem("/dev/null", 0.1),
-            "/dev/null: this is no file, none can take its place");
+  EXPECT_EQ(problem("/dev/null", 0.1), "/dev/null: this is no file, none can take its place");
   EXPECT_EQ(files_in(top_), 2);
 }
 

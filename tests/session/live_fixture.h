@@ -77,19 +77,13 @@ class Live : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::unique_ptr<LiveSession> started() {
-    auto session = LiveSession::start(options_);
-    EXPECT_TRUE(session) << session.error().message;
-    return session ? std::move(*session) : nullptr;
-  }
+  std::unique_ptr<LiveSession> started() { return value_of(LiveSession::start(options_)); }
   // What a replay of the recording comes to.
   std::vector<nlohmann::ordered_json> replayed() const {
     ReplayOptions options;
     options.session = options_.session;
     options.trace = options_.record;
-    auto result = replay(options);
-    EXPECT_TRUE(result) << result.error().message;
-    return result ? result->summaries : std::vector<nlohmann::ordered_json>();
+    return value_of(replay(options)).summaries;
   }
 
   std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "session/simulation.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 
@@ -75,6 +76,10 @@ inline SimulationConfig made_config(int walkers) {
     walker.style = i % 2;
   }
   return config;
+}
+
+inline Simulation made_simulation(const SimulationConfig& config) {
+  return value_of(Simulation::create(config));
 }
 
 // Slopes, stairs and waves, zones, blends, tiring, stiff arms, hands that hold, a look: all that

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "tests/session/fake_drivers.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
@@ -23,9 +24,7 @@ class PadChoice : public testing::Test {
     return pad;
   }
   std::vector<PadSighting> sightings(const PadWish& wish = {}) {
-    auto seen = pad_sightings({}, wish, Drivers::preferred, FakeBus::table());
-    EXPECT_TRUE(seen) << seen.error().message;
-    return seen ? *seen : std::vector<PadSighting>();
+    return value_of(pad_sightings({}, wish, Drivers::preferred, FakeBus::table()));
   }
   // The nodes to open, with a blank behind each.
   std::string chosen(const PadWish& wish = {}) {

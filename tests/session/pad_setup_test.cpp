@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "tests/session/made_session.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
@@ -29,9 +30,7 @@ class PadSetup : public testing::Test {
     return folder_ + "/" + name;
   }
   PadFiles files(const std::string& map = "", const std::string& calibration = "") const {
-    auto loaded = load_pad_files({folder_}, map, calibration);
-    EXPECT_TRUE(loaded) << loaded.error().message;
-    PadFiles files = loaded ? *loaded : PadFiles();
+    PadFiles files = value_of(load_pad_files({folder_}, map, calibration));
     files.user_calibrations = folder_ + "/user";
     return files;
   }
@@ -43,13 +42,10 @@ class PadSetup : public testing::Test {
   PadConfig replayed_pad(const PadFiles& all, const TraceDevice& device) const {
     Trace trace;
     trace.devices = {device};
-    auto read = parse_trace(trace_text(trace), "a recording");
-    EXPECT_TRUE(read) << read.error().message;
+    const Trace read = value_of(parse_trace(trace_text(trace), "a recording"));
     PadFiles others = all;
     others.calibration.reset();
-    auto config = pad_config(others, read->devices.front(), "a recording");
-    EXPECT_TRUE(config) << config.error().message;
-    return *config;
+    return value_of(pad_config(others, read.devices.front(), "a recording"));
   }
   Calibration replayed(const PadFiles& all, const TraceDevice& device) const {
     return replayed_pad(all, device).calibration;

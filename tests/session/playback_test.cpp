@@ -76,13 +76,12 @@ struct Straight {
 };
 Straight straight_run(const std::string& path) {
   Straight straight;
-  auto prepared = prepared_trace(paper_cast(), path, std::nullopt, Damage::refuse);
-  EXPECT_TRUE(prepared) << prepared.error().message;
-  TraceRun run = TraceRun::begin(*prepared);
+  const auto prepared = value_of(prepared_trace(paper_cast(), path, std::nullopt, Damage::refuse));
+  TraceRun run = TraceRun::begin(prepared);
   auto frame = std::make_unique<SessionFrame>();
   TickSample sample;
-  for (std::int64_t tick = 0; tick < prepared->ticks; ++tick) {
-    run.step(prepared->trace);
+  for (std::int64_t tick = 0; tick < prepared.ticks; ++tick) {
+    run.step(prepared.trace);
     copy_frame(run.simulation(), *frame);
     copy_sample(run.simulation(), sample);
     straight.frames.push_back(print_of(*frame));
@@ -96,9 +95,7 @@ class PlaybackTest : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path_); }
   void open(const std::string& path) {
-    auto opened = Playback::open(paper_cast(), path, std::nullopt, Damage::refuse);
-    ASSERT_TRUE(opened) << opened.error().message;
-    playback_ = std::move(*opened);
+    playback_ = value_of(Playback::open(paper_cast(), path, std::nullopt, Damage::refuse));
   }
   // A lively session of so many ticks: walking, commands, buttons, unplugging.
   std::string write_session(std::int64_t ticks, int rate_hz = kRateHz) {

@@ -48,11 +48,7 @@ Report at(std::int64_t time_ns, Report report) {
   return report;
 }
 
-Trace parsed(const std::string& text) {
-  auto trace = parse_trace(text, "recording");
-  EXPECT_TRUE(trace) << (trace ? "" : trace.error().message) << "\n" << text.substr(0, 3000);
-  return trace ? *trace : Trace{};
-}
+Trace parsed(const std::string& text) { return value_of(parse_trace(text, "recording")); }
 
 // The recorded lines of one session.
 class Lines {
@@ -294,9 +290,7 @@ class RecordingFile : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   std::unique_ptr<Recording> started() const {
-    auto recording = Recording::start({file_.string(), 240, {}}, made_devices);
-    EXPECT_TRUE(recording) << (recording ? "" : recording.error().message);
-    return recording ? std::move(*recording) : nullptr;
+    return value_of(Recording::start({file_.string(), 240, {}}, made_devices));
   }
   // Until it stands in FILE.part, a second at most.
   bool is_written(const std::string& piece) const {

@@ -63,10 +63,9 @@ class Scripted : public Live {
       return !session->pad_name(0).empty();
     }));
     session->advance(ticks);
-    auto summaries = session->stop();
-    EXPECT_TRUE(summaries) << summaries.error().message;
-    style_ = (*summaries)[0]["style"];
-    return (*summaries)[0]["pose_hash"];
+    const auto summaries = value_of(session->stop());
+    style_ = summaries[0]["style"];
+    return summaries[0]["pose_hash"];
   }
   std::string style_;
 };
@@ -113,9 +112,7 @@ TEST_F(Scripted, IsMergedWithTheEventsOfATrace) {
     options.session.config_folders = options_.session.config_folders;
     options.session.script = script;
     options.trace = trace;
-    auto result = replay(options);
-    EXPECT_TRUE(result) << result.error().message;
-    return result ? result->summaries[0] : nlohmann::ordered_json();
+    return value_of(replay(options)).summaries[0];
   };
   const auto plain = replay_with("");
   const auto scripted = replay_with(write("a.toml", event("1", "style limp_left")));
@@ -131,8 +128,7 @@ TEST_F(Scripted, IsMergedWithTheEventsOfATrace) {
 TEST_F(Scripted, WhatASessionCouldNotObeyIsRefusedBeforeItBegins) {
   const auto refusal = [&](const std::string& command) {
     options_.session.script = write("walk.toml", event("0", "mark") + event("1", command));
-    const auto session = LiveSession::start(options_);
-    return session ? "" : session.error().message;
+    return cause_of(LiveSession::start(options_));
   };
   for (const char* command : {"style no_such", "set hip_sway 9", "style 3 even", "gait speed 1"}) {
     EXPECT_NE(

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <random>
 
 #include "motion/cycle_retarget.h"
@@ -11,15 +10,6 @@
 
 namespace gaitpad {
 namespace {
-
-Simulation made_simulation(const SimulationConfig& config) {
-  auto simulation = Simulation::create(config);
-  if (!simulation) {
-    ADD_FAILURE() << simulation.error().message;
-    std::abort();
-  }
-  return std::move(*simulation);
-}
 
 void step(Simulation& simulation, const std::vector<Report>& reports, int ticks = 1) {
   simulation.step(reports);

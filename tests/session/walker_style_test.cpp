@@ -28,12 +28,6 @@ SimulationConfig zoned(int walkers = 1) {
   return config;
 }
 
-Simulation made(const SimulationConfig& config) {
-  auto simulation = Simulation::create(config);
-  EXPECT_TRUE(simulation) << simulation.error().message;
-  return std::move(*simulation);
-}
-
 void walk_to(Simulation& s, double z_m) {
   s.take(made_report(0x80, 0x00));
   for (int k = 0; k < 10000 && s.walkers()[0].state.hips_m.z < z_m; ++k) s.step({});
@@ -44,7 +38,7 @@ std::string style_of(const Simulation& s, int walker = 0) {
 }
 
 TEST(Zones, GiveTheirStyleAndTakeItBack) {
-  Simulation s = made(zoned());
+  Simulation s = made_simulation(zoned());
   walk_to(s, 1.9);
   EXPECT_EQ(style_of(s), "even");
   walk_to(s, 2.1);
@@ -56,14 +50,14 @@ TEST(Zones, GiveTheirStyleAndTakeItBack) {
 }
 
 TEST(Zones, CountForEachWalkerByItsOwnPlace) {
-  Simulation s = made(zoned(2));  // the second one walks at x = -1.2
+  Simulation s = made_simulation(zoned(2));  // the second one walks at x = -1.2
   walk_to(s, 7.0);
   EXPECT_EQ(style_of(s, 0), "limp");
   EXPECT_EQ(style_of(s, 1), "even");
 }
 
 TEST(Zones, BringBackWhatWasChangedBeforeThem) {
-  Simulation s = made(zoned());
+  Simulation s = made_simulation(zoned());
   s.take(made_command("set hip_sway 2"));
   walk_to(s, 3.0);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 1.0);
@@ -74,7 +68,7 @@ TEST(Zones, BringBackWhatWasChangedBeforeThem) {
 }
 
 TEST(Zones, AChosenStyleWinsAndStays) {
-  Simulation s = made(zoned());
+  Simulation s = made_simulation(zoned());
   walk_to(s, 3.0);
   s.take(made_command("style slow"));
   walk_to(s, 3.5);
@@ -88,7 +82,7 @@ TEST(Zones, AChosenStyleWinsAndStays) {
 }
 
 TEST(Zones, AResetLeavesThemWithTheChosenStyle) {
-  Simulation s = made(zoned());
+  Simulation s = made_simulation(zoned());
   walk_to(s, 3.0);
   s.step(std::vector{made_report(0x80, 0x80), made_command("reset")});
   EXPECT_EQ(style_of(s), "even");
@@ -102,7 +96,7 @@ TEST(Zones, OverlappingOnesTheLastCounts) {
   auto terrain = std::make_shared<Terrain>(*config.terrain);
   terrain->zones.push_back(zone(3.0, 5.0, "slow"));
   config.terrain = terrain;
-  Simulation s = made(config);
+  Simulation s = made_simulation(config);
   walk_to(s, 2.5);
   EXPECT_EQ(style_of(s), "limp");
   walk_to(s, 3.5);
@@ -125,7 +119,7 @@ TEST(Zones, AStyleThatIsNotThereIsNamedWithItsPlace) {
 TEST(Zones, BlendInTheTimeOfTheStyle) {
   SimulationConfig config = zoned();
   config.styles[1].blend_s = 0.5;
-  Simulation s = made(config);
+  Simulation s = made_simulation(config);
   walk_to(s, 1.9);
   double before = 1.0;
   int ticks = 0;
@@ -147,7 +141,7 @@ TEST(Tiring, SlowsAWalkWithItsWayAndRestHelps) {
   SimulationConfig config = made_config(1);
   config.styles[0].fatigue_per_100_m = 4.0;
   config.styles[0].fatigue_recovery_per_s = 0.05;
-  Simulation s = made(config);
+  Simulation s = made_simulation(config);
   walk_to(s, 4.0);
   const double fresh_m_s = s.walkers()[0].state.frame.speed_m_s;
   walk_to(s, 15.0);
@@ -177,7 +171,7 @@ TEST(Builds, AreSeenInTheKnee) {
     auto style = load_style(GAITPAD_SOURCE_DIR "/config/styles/" + name + ".toml");
     EXPECT_TRUE(style) << style.error().message;
     config.styles[0] = *style;
-    Simulation s = made(config);
+    Simulation s = made_simulation(config);
     walk_to(s, 3.0);
     std::vector<double> knee_rad;
     for (int k = 0; k < 720; ++k) {
@@ -194,7 +188,7 @@ TEST(Builds, AreSeenInTheKnee) {
 }
 
 TEST(Tiring, AStyleWithoutAModelWalksAsEver) {
-  Simulation s = made(made_config(1));
+  Simulation s = made_simulation(made_config(1));
   walk_to(s, 6.0);
   EXPECT_EQ(s.walkers()[0].tired, 0.0);
   EXPECT_TRUE(s.walkers()[0].in_force == s.styles()[0]);

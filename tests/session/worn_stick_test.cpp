@@ -69,9 +69,7 @@ Report report_of(const vec2& raw) {
 Simulation simulation_with(const StickCalibration& calibration) {
   SimulationConfig config = made_config(1);
   config.pads[0].calibration.left = calibration;
-  auto simulation = Simulation::create(config);
-  EXPECT_TRUE(simulation);
-  return *simulation;
+  return made_simulation(config);
 }
 
 struct Straightness {

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "hid/evdev_layout.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
@@ -39,26 +40,20 @@ Pad pad_of(std::int32_t min, std::int32_t max) {
   pad.device.driver = "evdev";
   pad.device.name = "Node";
   pad.device.descriptor = evdev_layout(abilities, {}).descriptor;
-  auto layout = pad_layout(pad.device, {});
-  EXPECT_TRUE(layout);
-  pad.layout = std::move(*layout);
+  pad.layout = value_of(pad_layout(pad.device, {}));
   return pad;
 }
 
 CalibrationFile imported(const std::string& text, const Pad& pad) {
-  const auto file = calibration_import(text, "old.js", pad.device, pad.layout);
-  EXPECT_TRUE(file) << (file ? "" : file.error().message);
-  return file ? *file : CalibrationFile{};
+  return value_of(calibration_import(text, "old.js", pad.device, pad.layout));
 }
 std::string error_of(const std::string& text, const Pad& pad) {
-  const auto file = calibration_import(text, "old.js", pad.device, pad.layout);
-  return file ? "accepted" : file.error().message;
+  return cause_of(calibration_import(text, "old.js", pad.device, pad.layout));
 }
 
 // What a calibration file must keep to: it is read back.
 void expect_loadable(const CalibrationFile& file) {
-  const auto back = parse_calibration(calibration_text(file), "back.toml");
-  EXPECT_TRUE(back) << (back ? "" : back.error().message);
+  EXPECT_EQ(cause_of(parse_calibration(calibration_text(file), "back.toml")), "accepted");
 }
 
 // Linux's drivers/input/joydev.c, its broken line, in the words of its documentation.

@@ -10,6 +10,7 @@
 #include "hid/decode.h"
 #include "hid/trace.h"
 #include "stick/drawn_stick.h"
+#include "tests/hid/made_pads.h"
 
 namespace gaitpad {
 namespace {
@@ -126,16 +127,10 @@ TEST(TriggerStatistics, AReportOfNonsenseIsNoEnd) {
 // ---- real recordings ----
 
 PadTracks recorded(const std::string& name) {
-  const auto pads = load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads");
-  const auto trace = read_trace(GAITPAD_SHARED_DATA "/hid/" + name);
-  EXPECT_TRUE(pads) << (pads ? "" : pads.error().message);
-  EXPECT_TRUE(trace) << (trace ? "" : trace.error().message);
-  if (!pads || !trace) return {};
-  const auto layout = pad_layout(trace->devices[0].info, *pads);
-  EXPECT_TRUE(layout) << (layout ? "" : layout.error().message);
-  if (!layout) return {};
-  PadTracker tracker(*layout);
-  for (const TraceEvent& event : trace->events) tracker.take(report_of(*trace, event));
+  const Trace trace = value_of(read_trace(GAITPAD_SHARED_DATA "/hid/" + name));
+  const PadLayout layout = value_of(pad_layout(trace.devices[0].info, shipped_pads()));
+  PadTracker tracker(layout);
+  for (const TraceEvent& event : trace.events) tracker.take(report_of(trace, event));
   return tracker.tracks();
 }
 

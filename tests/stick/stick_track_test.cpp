@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "tests/hid/made_pads.h"
+
 namespace gaitpad {
 namespace {
 
@@ -25,19 +27,10 @@ PadLayout split_pad() {
       "[[pad]]\n[pad.axes]\nright_x = \"0001:0032\"\nright_y = \"0001:0035\"\n"
       "left_trigger = \"0002:00c5\"\nright_trigger = \"\"\n",
       "split.toml");
-  EXPECT_TRUE(pads) << (pads ? "" : pads.error().message);
-  auto layout = pad_layout(device, pads ? *pads : PadOverrides{});
-  EXPECT_TRUE(layout) << (layout ? "" : layout.error().message);
-  return layout ? *layout : PadLayout{};
+  return value_of(pad_layout(device, value_of(pads)));
 }
 
-Report report_at(std::int64_t time_ns, const Bytes& bytes) {
-  Report report;
-  report.time_ns = time_ns;
-  report.size = static_cast<std::uint16_t>(bytes.size());
-  std::copy(bytes.begin(), bytes.end(), report.bytes.begin());
-  return report;
-}
+Report report_at(std::int64_t time_ns, const Bytes& bytes) { return report_of(bytes, time_ns); }
 
 TEST(StickTrack, LayoutSaysWhichControlsThereAre) {
   const PadLayout pad = split_pad();

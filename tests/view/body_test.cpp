@@ -9,6 +9,7 @@
 
 #include "control/control.h"
 #include "motion/load.h"
+#include "tests/value_of.h"
 #include "view/body_parts.h"
 
 namespace gaitpad {
@@ -17,9 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::shared_ptr<const WalkModel> model_of(const GaitCycle& cycle, const Character& character = {}) {
-  auto model = walk_model(cycle, character);
-  EXPECT_TRUE(model) << model.error().message;
-  return std::make_shared<const WalkModel>(std::move(*model));
+  return std::make_shared<const WalkModel>(value_of(walk_model(cycle, character)));
 }
 
 // The deepest place of a hull of two balls that are stretched along `wide`.

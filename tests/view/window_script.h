@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "session/replay.h"
+#include "tests/value_of.h"
 #include "view/surface.h"
 #include "view/window.h"
 
@@ -195,10 +196,9 @@ class Window : public testing::Test {
   // Done by the script to its end.
   WindowResult run(Script& script) {
     options_.script = std::ref(script);
-    auto result = run_window(options_);
-    EXPECT_TRUE(result) << result.error().message;
+    const WindowResult result = value_of(run_window(options_));
     EXPECT_TRUE(script.is_done());
-    return result ? *result : WindowResult();
+    return result;
   }
   std::string make(const std::string& name, const std::string& text) {
     std::filesystem::create_directories((folder_ / name).parent_path());

@@ -1,29 +1,24 @@
 #include "animation/character.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
 
 class CharacterFile : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   Result<Character> loaded(const std::string& text) {
-    std::ofstream(path_) << text;
-    return load_character(path_);
+    return load_character(own_.write("mine.toml", text));
   }
   std::string refusal(const std::string& text) {
     auto character = loaded(text);
     return character ? "none" : character.error().message.substr(path_.size());
   }
-  // Tests run side by side, each in its own process.
-  std::string folder_ = testing::TempDir() + "gaitpad_character_" + std::to_string(getpid());
-  std::string path_ = folder_ + "/mine.toml";
+
+  OwnFolder own_;
+  const std::string path_ = own_.at("mine.toml");
 };
 
 TEST_F(CharacterFile, OneLineIsEnough) {
@@ -40,8 +35,7 @@ TEST_F(CharacterFile, SkeletonIsRelativeToTheFile) {
   ASSERT_TRUE(character) << character.error().message;
   EXPECT_EQ(character->name, "dancer");
   EXPECT_EQ(character->scale, 1.1);
-  const auto folder = std::filesystem::path(path_).parent_path();
-  EXPECT_EQ(character->skeleton, (folder / "../bvh/dancer.bvh").string());
+  EXPECT_EQ(character->skeleton, own_.at("../bvh/dancer.bvh"));
 }
 
 TEST_F(CharacterFile, AbsoluteSkeletonStaysAbsolute) {

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "animation/height_picture.h"
+#include "tests/own_folder.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -83,11 +82,6 @@ TEST(TerrainFile, ErrorsNameFileAndLine) {
   EXPECT_NE(problem(many), "accepted");
 }
 
-std::string bytes_of_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(HeightPicture, ReadsTheShippedOne) {
   const auto picture = load_height_picture(GAITPAD_SOURCE_DIR "/config/terrain/hills.png");
   ASSERT_TRUE(picture) << picture.error().message;
@@ -132,7 +126,7 @@ TEST(HeightPicture, EightBitsSpanTheSameRange) {
 }
 
 TEST(HeightPicture, DamageAndColoursAreErrors) {
-  const std::string sound = bytes_of_file(GAITPAD_SOURCE_DIR "/config/terrain/hills.png");
+  const std::string sound = text_in(GAITPAD_SOURCE_DIR "/config/terrain/hills.png");
   ASSERT_TRUE(height_picture(sound, "hills.png"));
   for (std::size_t size = 0; size < sound.size(); size += 97) {
     const auto cut = height_picture(sound.substr(0, size), "hills.png");

@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <filesystem>
-#include <fstream>
 
 #include "drivers/driver_entries.h"
 #include "drivers/registry.h"
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -21,13 +19,7 @@ std::int64_t now_ns() {
 // A file that is gone after the test. One byte a report, descriptors of no meaning.
 class TraceDriver : public testing::Test {
  protected:
-  void SetUp() override {
-    path_ = (std::filesystem::temp_directory_path() /
-             ("gaitpad_trace_driver_" + std::to_string(::getpid()) + ".hid"))
-                .string();
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-  void write(const std::string& text) { std::ofstream(path_) << text; }
+  void write(const std::string& text) { own_.write("trace.hid", text); }
 
   std::unique_ptr<Device> opened(std::size_t device = 0) {
     auto listings = trace_listings(path_);
@@ -56,7 +48,8 @@ class TraceDriver : public testing::Test {
     }
   }
 
-  std::string path_;
+  OwnFolder own_;
+  const std::string path_ = own_.at("trace.hid");
 };
 
 TEST_F(TraceDriver, HandsOnEventsAtTheirOwnTimesAndNeverTooEarly) {

@@ -12,6 +12,7 @@
 #include "drivers/driver_entries.h"
 #include "drivers/usb_interfaces.h"
 #include "drivers/usb_reattach.h"
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -20,14 +21,6 @@ namespace fs = std::filesystem;
 
 class UsbFolders : public testing::Test {
  protected:
-  void SetUp() override {
-    char name[] = "/tmp/gaitpad_usb_XXXXXX";
-    ASSERT_NE(::mkdtemp(name), nullptr);
-    root_ = name;
-    device_ = root_ / "0000:00:14.0" / "usb1" / "1-1" / "1-1.2";
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
   static void write(const fs::path& path, const std::string& text) {
     fs::create_directories(path.parent_path());
     std::ofstream(path, std::ios::binary) << text;
@@ -52,7 +45,8 @@ class UsbFolders : public testing::Test {
     fs::create_directory_symlink(root_ / "drivers" / driver, folder / "driver");
   }
 
-  fs::path root_, device_;
+  OwnFolder own_;
+  const fs::path root_ = own_.path, device_ = root_ / "0000:00:14.0" / "usb1" / "1-1" / "1-1.2";
 };
 
 TEST_F(UsbFolders, AHidPadIsKnownWithWhatTheKernelMadeOfIt) {

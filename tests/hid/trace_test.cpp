@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
-
+#include "tests/own_folder.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -253,10 +252,10 @@ TEST(Trace, AFileOfSeveralReadsIsReadAsOneText) {
   std::string text = kHeader;
   for (int i = 0; i < 20000; ++i) text += "E: 000000.000000 5 01 80 7f 80 80\n";
   const Trace t = parsed(text);
-  const std::string path = ::testing::TempDir() + "gaitpad_trace_test.hid";
+  const OwnFolder own;
+  const std::string path = own.at("trace.hid");
   ASSERT_TRUE(write_trace(t, path));
   const auto back = read_trace(path);
-  std::remove(path.c_str());
   ASSERT_TRUE(back);
   EXPECT_EQ(back->events, t.events);
   EXPECT_EQ(back->bytes, t.bytes);

@@ -6,32 +6,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <sstream>
 
+#include "tests/own_folder.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
 
 namespace fs = std::filesystem;
-
-// An environment variable for the length of a test; null: not set.
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old;
-    value != nullptr ? ::setenv(name, value, 1) : ::unsetenv(name);
-  }
-  ~Environment() { old_ ? ::setenv(name_, old_->c_str(), 1) : ::unsetenv(name_); }
-
- private:
-  const char* name_;
-  std::optional<std::string> old_;
-};
 
 std::string folder_with(const char* config, const char* home) {
   const Environment xdg("XDG_CONFIG_HOME", config), user("HOME", home);
@@ -158,17 +143,6 @@ CalibrationFile made_file(double inner) {
 
 class SaveCalibration : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(top_); }
-  void TearDown() override {
-    fs::permissions(top_, fs::perms::owner_all);
-    fs::remove_all(top_);
-  }
-  static std::string text(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    std::stringstream all;
-    all << stream.rdbuf();
-    return all.str();
-  }
   static std::string problem(const std::string& path, double inner) {
     const auto error = save_calibration(path, made_file(inner), {});
     return error ? error->message : "none";
@@ -186,11 +160,9 @@ class SaveCalibration : public testing::Test {
     ::waitpid(child, &status, 0);
     return status == 0;
   }
-  int files_in(const std::string& folder) const {
-    return static_cast<int>(std::distance(fs::directory_iterator(folder), {}));
-  }
 
-  std::string top_ = testing::TempDir() + "gaitpad_store_" + std::to_string(::getpid());
+  OwnFolder own_;
+  const std::string top_ = own_.path.string();
   std::string path_ = top_ + "/pad.toml";
 };
 
@@ -200,28 +172,28 @@ TEST_F(SaveCalibration, ReadsBackAsItWasAndMakesItsFolder) {
   auto file = load_calibration_file(path);
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(*file, made_file(0.1));
-  EXPECT_EQ(text(path).find("# Made by a test\n#\n# two?lines ?\n\nname = \"Pad\"\n"), 0u)
-      << text(path);
-  EXPECT_EQ(files_in(top_ + "/a/b"), 1);
+  EXPECT_EQ(text_in(path).find("# Made by a test\n#\n# two?lines ?\n\nname = \"Pad\"\n"), 0u)
+      << text_in(path);
+  EXPECT_EQ(entries_in(top_ + "/a/b"), 1);
 }
 
 TEST_F(SaveCalibration, TheFileBeforeIsKept) {
   EXPECT_EQ(problem(path_, 0.1), "none");
   EXPECT_FALSE(fs::exists(path_ + ".old"));
-  const std::string first = text(path_);
+  const std::string first = text_in(path_);
   EXPECT_EQ(problem(path_, 0.2), "none");
-  EXPECT_EQ(text(path_ + ".old"), first);
+  EXPECT_EQ(text_in(path_ + ".old"), first);
   EXPECT_EQ(inner_of(path_), 0.2);
   EXPECT_EQ(problem(path_, 0.3), "none");
   EXPECT_EQ(inner_of(path_ + ".old"), 0.2);
-  EXPECT_EQ(files_in(top_), 2);
+  EXPECT_EQ(own_.entries(), 2);
 }
 
 TEST_F(SaveCalibration, ADamagedFileIsReplacedAndKept) {
   std::ofstream(path_) << "damaged";
   EXPECT_EQ(problem(path_, 0.2), "none");
   EXPECT_EQ(inner_of(path_), 0.2);
-  EXPECT_EQ(text(path_ + ".old"), "damaged");
+  EXPECT_EQ(text_in(path_ + ".old"), "damaged");
 }
 
 // rename() does nothing where both names are one file: as it is left when a save is killed between
@@ -232,7 +204,7 @@ TEST_F(SaveCalibration, ASaveThatWasKilledBetweenItsStepsLeavesNothingOdd) {
   EXPECT_EQ(problem(path_, 0.2), "none");
   EXPECT_EQ(inner_of(path_ + ".old"), 0.1);
   EXPECT_EQ(inner_of(path_), 0.2);
-  EXPECT_EQ(files_in(top_), 2);
+  EXPECT_EQ(own_.entries(), 2);
 }
 
 TEST_F(SaveCalibration, ASymbolicLinkStaysOneAndItsTargetIsWritten) {
@@ -246,7 +218,7 @@ TEST_F(SaveCalibration, ASymbolicLinkStaysOneAndItsTargetIsWritten) {
   EXPECT_FALSE(fs::is_symlink(target));
   EXPECT_EQ(inner_of(target), 0.2);
   EXPECT_EQ(inner_of(target + ".old"), 0.1);
-  EXPECT_EQ(files_in(top_ + "/config"), 1);
+  EXPECT_EQ(entries_in(top_ + "/config"), 1);
 }
 
 TEST_F(SaveCalibration, LinksInACircleAreAnError) {
@@ -267,7 +239,7 @@ TEST_F(SaveCalibration, AFullDiskIsToldAndTheOldFileStays) {
   }));
   EXPECT_EQ(inner_of(path_), 0.2);
   EXPECT_EQ(inner_of(path_ + ".old"), 0.1);
-  EXPECT_EQ(files_in(top_), 2);
+  EXPECT_EQ(own_.entries(), 2);
 }
 
 TEST_F(SaveCalibration, AReadOnlyFolderIsToldAndTheOldFileStays) {
@@ -279,7 +251,7 @@ TEST_F(SaveCalibration, AReadOnlyFolderIsToldAndTheOldFileStays) {
     return problem(path_, 0.2) == path_ + ": cannot be written: Permission denied";
   }));
   EXPECT_EQ(inner_of(path_), 0.1);
-  EXPECT_EQ(files_in(top_), 1);
+  EXPECT_EQ(own_.entries(), 1);
 }
 
 TEST_F(SaveCalibration, WhereNothingCanBeWrittenItSaysSo) {
@@ -292,7 +264,7 @@ TEST_F(SaveCalibration, WhereNothingCanBeWrittenItSaysSo) {
   fs::create_directories(path_);
   EXPECT_EQ(problem(path_, 0.1), path_ + ": cannot be written: Is a directory");
   EXPECT_EQ(problem("/dev/null", 0.1), "/dev/null: this is no file, none can take its place");
-  EXPECT_EQ(files_in(top_), 2);
+  EXPECT_EQ(own_.entries(), 2);
 }
 
 TEST_F(SaveCalibration, WhereTheOldFileCannotBeKeptNothingIsChanged) {
@@ -300,7 +272,7 @@ TEST_F(SaveCalibration, WhereTheOldFileCannotBeKeptNothingIsChanged) {
   fs::create_directories(path_ + ".old");
   EXPECT_EQ(problem(path_, 0.2), path_ + ".old: cannot be written: Is a directory");
   EXPECT_EQ(inner_of(path_), 0.1);
-  EXPECT_EQ(files_in(top_), 2);
+  EXPECT_EQ(own_.entries(), 2);
 }
 
 TEST_F(SaveCalibration, WhatCouldNotBeReadBackIsNotWritten) {
@@ -313,7 +285,7 @@ TEST_F(SaveCalibration, WhatCouldNotBeReadBackIsNotWritten) {
 TEST_F(SaveCalibration, AProcessKilledAtAnyMomentLeavesAWholeFile) {
   ASSERT_EQ(problem(path_, 0.1), "none");
   ASSERT_EQ(problem(path_, 0.2), "none");
-  const std::set<std::string> whole = {text(path_), text(path_ + ".old")};
+  const std::set<std::string> whole = {text_in(path_), text_in(path_ + ".old")};
   ::fflush(nullptr);
   for (int round = 0; round < 60; ++round) {
     const pid_t child = ::fork();
@@ -327,8 +299,8 @@ TEST_F(SaveCalibration, AProcessKilledAtAnyMomentLeavesAWholeFile) {
     int status = 0;
     ::waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status));
-    ASSERT_EQ(whole.count(text(path_)), 1u) << round;
-    ASSERT_EQ(whole.count(text(path_ + ".old")), 1u) << round;
+    ASSERT_EQ(whole.count(text_in(path_)), 1u) << round;
+    ASSERT_EQ(whole.count(text_in(path_ + ".old")), 1u) << round;
   }
 }
 

@@ -1,10 +1,10 @@
 #include "session/config_files.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
+
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -14,24 +14,14 @@ namespace fs = std::filesystem;
 class ConfigFiles : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
-    make("own/styles/even.toml");
-    make("own/styles/notes.txt");
-    make("shipped/styles/even.toml");
-    make("shipped/styles/tired.toml");
+    for (const char* name : {"own/styles/even.toml", "own/styles/notes.txt",
+                             "shipped/styles/even.toml", "shipped/styles/tired.toml"}) {
+      own_.write(name, "\n");
+    }
   }
-  void TearDown() override {
-    fs::remove_all(folder_);
-    ::unsetenv("GAITPAD_CONFIG");
-  }
-  void make(const std::string& path) {
-    fs::create_directories((folder_ / path).parent_path());
-    std::ofstream(folder_ / path) << "\n";
-  }
-  std::string at(const std::string& path) const { return (folder_ / path).string(); }
+  std::string at(const std::string& path) const { return own_.at(path); }
 
-  fs::path folder_ =
-      fs::path(testing::TempDir()) / ("gaitpad_config_files_" + std::to_string(::getpid()));
+  OwnFolder own_;
 };
 
 TEST_F(ConfigFiles, TheFirstFolderThatHasANameWins) {
@@ -54,7 +44,7 @@ TEST_F(ConfigFiles, AnUnknownNameListsTheKnownOnes) {
 }
 
 TEST_F(ConfigFiles, TheEnvironmentComesFirstAndTheBuiltInFolderLast) {
-  ::setenv("GAITPAD_CONFIG", at("own").c_str(), 1);
+  const Environment config("GAITPAD_CONFIG", at("own").c_str());
   const std::vector<std::string> folders = config_folders(at("shipped"));
   ASSERT_GE(folders.size(), 2u);
   EXPECT_EQ(folders.front(), at("own"));
@@ -62,7 +52,7 @@ TEST_F(ConfigFiles, TheEnvironmentComesFirstAndTheBuiltInFolderLast) {
 }
 
 TEST_F(ConfigFiles, FoldersThatDoNotExistAreLeftOut) {
-  ::setenv("GAITPAD_CONFIG", at("nowhere").c_str(), 1);
+  const Environment config("GAITPAD_CONFIG", at("nowhere").c_str());
   for (const std::string& folder : config_folders(at("nowhere"))) {
     EXPECT_NE(folder, at("nowhere"));
   }

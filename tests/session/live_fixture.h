@@ -1,7 +1,6 @@
 // Live sessions for tests: a made-up recording of two pads drives two characters.
 #pragma once
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -13,6 +12,7 @@
 
 #include "session/live.h"
 #include "session/replay.h"
+#include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {
@@ -67,15 +67,12 @@ inline Trace two_pads_trace() {
 class Live : public testing::Test {
  protected:
   void SetUp() override {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
     options_.session.config_folders = {GAITPAD_SOURCE_DIR "/config"};
     options_.session.styles = {"even", "limp_left"};
     options_.wish.pad = (folder_ / "pads.hid").string();
     options_.record = (folder_ / "session.hid").string();
     ASSERT_TRUE(write_trace(two_pads_trace(), options_.wish.pad));
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::unique_ptr<LiveSession> started() { return value_of(LiveSession::start(options_)); }
   // What a replay of the recording comes to.
@@ -86,8 +83,8 @@ class Live : public testing::Test {
     return value_of(replay(options)).summaries;
   }
 
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
-                                  ("gaitpad_live_test." + std::to_string(::getpid()));
+  OwnFolder own_;
+  const std::filesystem::path folder_ = own_.path;
   LiveOptions options_;
 };
 

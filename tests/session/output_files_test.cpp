@@ -1,10 +1,10 @@
 #include "session/output_files.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <iterator>
+
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -13,12 +13,7 @@ namespace fs = std::filesystem;
 
 class OutputFolder : public testing::Test {
  protected:
-  void SetUp() override { fs::remove_all(folder_); }
-  void TearDown() override { fs::remove_all(folder_.parent_path()); }
-  std::string text(const std::string& name) const {
-    std::ifstream in(folder_ / name);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string text(const std::string& name) const { return text_in(folder_ / name); }
   void write_and_publish(const std::string& content) {
     auto files = OutputFiles::open(folder_.string());
     ASSERT_TRUE(files);
@@ -27,19 +22,15 @@ class OutputFolder : public testing::Test {
     **stream << content;
     EXPECT_FALSE(files->publish());
   }
-  std::size_t entries() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
-  }
 
-  // A folder of its own: tests of one file run side by side.
-  fs::path folder_ = fs::path(testing::TempDir()) /
-                     ("gaitpad_output_files_" + std::to_string(::getpid())) / "deep";
+  OwnFolder own_;
+  const fs::path folder_ = own_.path / "deep";
 };
 
 TEST_F(OutputFolder, IsMadeAndHoldsWhatWasPublished) {
   write_and_publish("one");
   EXPECT_EQ(text("a.txt"), "one");
-  EXPECT_EQ(entries(), 1u);
+  EXPECT_EQ(entries_in(folder_), 1);
 }
 
 TEST_F(OutputFolder, KeepsTheOldFileUntilTheNewOneIsPublished) {
@@ -51,7 +42,7 @@ TEST_F(OutputFolder, KeepsTheOldFileUntilTheNewOneIsPublished) {
     EXPECT_EQ(text("a.txt"), "one");
   }
   EXPECT_EQ(text("a.txt"), "one");
-  EXPECT_EQ(entries(), 1u) << "a temporary file stayed behind";
+  EXPECT_EQ(entries_in(folder_), 1) << "a temporary file stayed behind";
   write_and_publish("three");
   EXPECT_EQ(text("a.txt"), "three");
 }
@@ -63,7 +54,7 @@ TEST_F(OutputFolder, AScratchFileKeepsWhatIsWrittenAndIsNeverSeen) {
   ASSERT_TRUE(one && two);
   *one << "one";
   *two << "two";
-  EXPECT_EQ(entries(), 0u);
+  EXPECT_EQ(entries_in(folder_), 0);
   one->seekg(0);
   std::string back;
   *one >> back;

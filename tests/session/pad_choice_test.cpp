@@ -1,11 +1,8 @@
 #include "session/pad_choice.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
+#include "tests/own_folder.h"
 #include "tests/session/fake_drivers.h"
 #include "tests/value_of.h"
 
@@ -109,17 +106,13 @@ TEST_F(PadChoice, WhatDriversCallDifferentlyIsOnePad) {
 }
 
 TEST_F(PadChoice, ALinkToANodeIsTheNode) {
-  namespace fs = std::filesystem;
-  const std::string stem =
-      (fs::temp_directory_path() / ("gaitpad_pad_choice_" + std::to_string(::getpid()))).string();
-  const std::string node = stem + ".node", link = stem + ".link";
+  const OwnFolder own;
+  const std::string node = own.at("node"), link = own.at("link");
   ASSERT_EQ(::mkfifo(node.c_str(), 0600), 0);
-  fs::create_symlink(node, link);
+  std::filesystem::create_symlink(node, link);
   see(kHidraw, "A", "p1")->listing.node = node;
   see(kHidraw, "B", "p2");
   EXPECT_EQ(chosen({link, ""}), node + " ");
-  fs::remove(link);
-  fs::remove(node);
 }
 
 TEST_F(PadChoice, SightingsTellWhatIsNoPadAndWhy) {

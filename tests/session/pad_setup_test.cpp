@@ -1,12 +1,11 @@
 #include "session/pad_setup.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <filesystem>
-#include <fstream>
 
+#include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 #include "tests/value_of.h"
 
@@ -18,16 +17,12 @@ namespace fs = std::filesystem;
 class PadSetup : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        (fs::temp_directory_path() / ("gaitpad_pad_setup_" + std::to_string(::getpid()))).string();
     fs::create_directories(folder_ + "/calibration");
     fs::create_directories(folder_ + "/pads");
     fs::create_directories(folder_ + "/user");
   }
-  void TearDown() override { fs::remove_all(folder_); }
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ + "/" + name) << text;
-    return folder_ + "/" + name;
+    return own_.write(name, text);
   }
   PadFiles files(const std::string& map = "", const std::string& calibration = "") const {
     PadFiles files = value_of(load_pad_files({folder_}, map, calibration));
@@ -51,7 +46,8 @@ class PadSetup : public testing::Test {
     return replayed_pad(all, device).calibration;
   }
 
-  std::string folder_;
+  OwnFolder own_;
+  const std::string folder_ = own_.path.string();
   std::vector<std::string> remarks_;
 };
 

@@ -2,17 +2,15 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <chrono>
-#include <filesystem>
-#include <fstream>
 #include <random>
 
 #include "base/hash.h"
 #include "session/replay.h"
 #include "session/trace_run.h"
+#include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {
@@ -93,7 +91,6 @@ Straight straight_run(const std::string& path) {
 
 class PlaybackTest : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
   void open(const std::string& path) {
     playback_ = value_of(Playback::open(paper_cast(), path, std::nullopt, Damage::refuse));
   }
@@ -131,9 +128,8 @@ class PlaybackTest : public testing::Test {
     while (!playback_->seek(tick, budget)) ASSERT_LT(++calls, 1'000'000);
   }
 
-  std::string path_ =
-      (std::filesystem::temp_directory_path() / fmt::format("gaitpad_playback_{}.hid", ::getpid()))
-          .string();
+  OwnFolder own_;
+  const std::string path_ = own_.at("session.hid");
   std::unique_ptr<Playback> playback_;
 };
 

@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <thread>
 
 #include "drivers/posix.h"
 #include "session/tick_clock.h"
+#include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {
@@ -280,30 +279,21 @@ TEST(RecordingLines, LongNamesAreCutToWhatTheReaderTakes) {
 
 class RecordingFile : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  static std::string text(const fs::path& path) {
-    std::ifstream in(path);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
   std::unique_ptr<Recording> started() const {
     return value_of(Recording::start({file_.string(), 240, {}}, made_devices));
   }
   // Until it stands in FILE.part, a second at most.
   bool is_written(const std::string& piece) const {
     for (int i = 0; i < 100; ++i) {
-      if (text(part_).find(piece) != std::string::npos) return true;
+      if (text_in(part_).find(piece) != std::string::npos) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return false;
   }
 
-  fs::path folder_ =
-      fs::path(testing::TempDir()) / ("gaitpad_recording_test." + std::to_string(::getpid()));
-  fs::path file_ = folder_ / "walk.hid", part_ = folder_ / "walk.hid.part";
+  OwnFolder own_;
+  const fs::path folder_ = own_.path;
+  const fs::path file_ = folder_ / "walk.hid", part_ = folder_ / "walk.hid.part";
 };
 
 TEST_F(RecordingFile, TakesItsNameAtTheEnd) {
@@ -313,12 +303,12 @@ TEST_F(RecordingFile, TakesItsNameAtTheEnd) {
   recording->add(0, at(now_ns(), made_plug(ReportKind::added)));
   recording->add(1, at(now_ns(), made_report(7, 8)));
   EXPECT_TRUE(is_written("6 07 08"));
-  EXPECT_EQ(text(file_), "old");
+  EXPECT_EQ(text_in(file_), "old");
   auto remarks = recording->finish(2, now_ns());
   ASSERT_TRUE(remarks) << remarks.error().message;
   EXPECT_TRUE(remarks->empty());
   EXPECT_FALSE(fs::exists(part_));
-  Trace trace = parsed(text(file_));
+  Trace trace = parsed(text_in(file_));
   EXPECT_EQ(*assign_ticks(trace, 240), 2);
   EXPECT_EQ(trace.events.size(), 2u);
 }
@@ -330,10 +320,10 @@ TEST_F(RecordingFile, WithoutAnEndLeavesAPartThatReplays) {
     recording->add(0, at(now_ns(), made_plug(ReportKind::added)));
     recording->add(1, at(now_ns(), made_report(7, 8)));
   }
-  EXPECT_EQ(text(file_), "old");
-  EXPECT_EQ(parsed(text(part_)).events.size(), 2u);
+  EXPECT_EQ(text_in(file_), "old");
+  EXPECT_EQ(parsed(text_in(part_)).events.size(), 2u);
   started()->add(0, made_plug(ReportKind::added));
-  EXPECT_EQ(parsed(text(part_)).events.size(), 1u) << "the next one begins anew";
+  EXPECT_EQ(parsed(text_in(part_)).events.size(), 1u) << "the next one begins anew";
 }
 
 TEST_F(RecordingFile, WithoutAnyPadIsNotWritten) {
@@ -354,7 +344,7 @@ TEST_F(RecordingFile, WhatFindsNoRoomIsCountedAndTold) {
   const auto remarks = recording->finish(1000, now_ns);
   ASSERT_TRUE(remarks);
   EXPECT_EQ(remarks->size(), recording->lost() > 0 ? 1u : 0u);
-  const Trace trace = parsed(text(file_));
+  const Trace trace = parsed(text_in(file_));
   EXPECT_EQ(static_cast<std::int64_t>(trace.events.size()) + recording->lost(), 100'000);
 }
 
@@ -374,8 +364,8 @@ TEST_F(RecordingFile, AFullDiskIsToldTheOldFileIsKeptAndThePartIsWhole) {
   ::setrlimit(RLIMIT_FSIZE, &before);
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().message, part_.string() + ": cannot be written: File too large");
-  EXPECT_EQ(text(file_), "old");
-  EXPECT_EQ(text(part_).back(), '\n');
+  EXPECT_EQ(text_in(file_), "old");
+  EXPECT_EQ(text_in(part_).back(), '\n');
 }
 
 TEST_F(RecordingFile, PlacesWhereNoFileCanStandAreNamed) {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "tests/session/live_fixture.h"
 
 namespace gaitpad {
@@ -50,13 +48,10 @@ class Scripted : public Live {
     options_.wish.pad = "0001:fffe";  // nobody has one: the script alone walks
   }
   std::string write(const std::string& name, const std::string& text) {
-    const std::string path = (folder_ / name).string();
-    std::ofstream(path) << text;
-    return path;
+    return own_.write(name, text);
   }
   std::string hash_of_live(int ticks) {
-    auto session = started();
-    if (!session) return {};
+    const auto session = started();
     // A recording needs a device.
     EXPECT_TRUE(comes_true([&] {
       session->advance(1);
@@ -97,8 +92,7 @@ TEST_F(Scripted, ZonesAndTiringActOnceInAReplay) {
   const auto summaries = replayed();
   ASSERT_FALSE(summaries.empty());
   EXPECT_EQ(summaries[0]["pose_hash"], live);
-  std::ifstream file(options_.record);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = text_in(options_.record);
   EXPECT_EQ(text.find("limp_left_hip"), std::string::npos);
   EXPECT_NE(text.find("set hip_bounce 0.5"), std::string::npos);
   options_.session.terrain.clear();  // the zone was there indeed

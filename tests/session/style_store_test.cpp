@@ -1,15 +1,13 @@
 #include "session/style_store.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "session/config_files.h"
 #include "session/pad_setup.h"
 #include "session/user_files.h"
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -19,23 +17,15 @@ namespace fs = std::filesystem;
 class StyleStore : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_ / "shipped/styles");
-    std::ofstream(folder_ / "shipped/styles/even.toml") << "\n";
-    if (const char* old = std::getenv("XDG_CONFIG_HOME")) old_ = old;
-    ::setenv("XDG_CONFIG_HOME", folder_.c_str(), 1);
+    own_.write("shipped/styles/even.toml", "\n");
     values_.fatigue = 0.25;
     values_.weight[kLeftSide][kKneeX] = 0.3;
   }
-  void TearDown() override {
-    fs::remove_all(folder_);
-    old_ ? ::setenv("XDG_CONFIG_HOME", old_->c_str(), 1) : ::unsetenv("XDG_CONFIG_HOME");
-  }
-  std::string shipped() const { return (folder_ / "shipped").string(); }
+  std::string shipped() const { return own_.at("shipped"); }
 
-  fs::path folder_ =
-      fs::path(testing::TempDir()) / ("gaitpad_style_store_" + std::to_string(::getpid()));
-  std::optional<std::string> old_;
+  OwnFolder own_;
+  const fs::path folder_ = own_.path;
+  const Environment config_home_{"XDG_CONFIG_HOME", folder_.c_str()};
   StyleValues values_;
 };
 
@@ -74,9 +64,8 @@ TEST_F(StyleStore, ANameIsNoPath) {
 }
 
 TEST_F(StyleStore, PadsOfTheUsersFolderSteerNoReplay) {
-  fs::create_directories(folder_ / "gaitpad/pads");
   fs::create_directories(folder_ / "gaitpad/calibration");
-  std::ofstream(folder_ / "gaitpad/pads/mine.toml") << "not = a pad file\n";
+  own_.write("gaitpad/pads/mine.toml", "not = a pad file\n");
   const auto files = load_pad_files(config_folders(shipped()), "", "");
   ASSERT_TRUE(files) << files.error().message;
   for (const std::string& folder : files->calibration_folders)

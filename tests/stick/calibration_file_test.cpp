@@ -1,10 +1,9 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "stick/calibration.h"
+#include "tests/own_folder.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -214,40 +213,36 @@ class FindCalibration : public testing::Test {
     std::filesystem::create_directories(user_);
     std::filesystem::create_directories(shipped_);
   }
-  void TearDown() override { std::filesystem::remove_all(top_); }
-  static void write(const std::string& path, const std::string& text) {
-    std::ofstream(path) << text;
-  }
+  void write(const std::string& name, const std::string& text) { own_.write(name, text); }
 
-  // Tests run side by side, each in its own process.
-  std::string top_ = testing::TempDir() + "gaitpad_calibration_" + std::to_string(getpid()) + "/";
-  std::string user_ = top_ + "user", shipped_ = top_ + "shipped";
+  OwnFolder own_;
+  std::string user_ = own_.at("user"), shipped_ = own_.at("shipped");
   std::vector<std::string> folders_ = {user_, shipped_};
   DeviceIdentity device_{0x054c, 0x09cc, "aa:bb", "1-2", "hidraw"};
 };
 
 TEST_F(FindCalibration, WithoutFilesAnUnknownStickIsAssumed) {
-  folders_.push_back(top_ + "absent");
+  folders_.push_back(own_.at("absent"));
   const FoundCalibration found = find_calibration(folders_, device_);
   EXPECT_TRUE(found.problems.empty());
   EXPECT_EQ(found.file.calibration.left.inner, kInnerZoneUnknown);
 }
 
 TEST_F(FindCalibration, TheBestFitWinsAndTheEarlierFolderAmongEquals) {
-  write(shipped_ + "/a.toml", "name = 'shipped'\ndevices = ['054c:*']\n");
-  write(shipped_ + "/b.toml", "name = 'any'\ndevices = ['*:*']\n");
+  write("shipped/a.toml", "name = 'shipped'\ndevices = ['054c:*']\n");
+  write("shipped/b.toml", "name = 'any'\ndevices = ['*:*']\n");
   EXPECT_EQ(find_calibration(folders_, device_).file.name, "shipped");
-  write(user_ + "/z.toml", "name = 'user'\ndevices = ['054c:*']\n");
+  write("user/z.toml", "name = 'user'\ndevices = ['054c:*']\n");
   EXPECT_EQ(find_calibration(folders_, device_).file.name, "user");
-  write(shipped_ + "/c.toml", "name = 'exact'\ndevices = ['054c:09cc']\n");
+  write("shipped/c.toml", "name = 'exact'\ndevices = ['054c:09cc']\n");
   EXPECT_EQ(find_calibration(folders_, device_).file.name, "exact");
 }
 
 // It may be another pad's: this one goes on with the next best.
 TEST_F(FindCalibration, ADamagedFileIsLeftOutAndNamed) {
-  write(user_ + "/z.toml", "\n\nouter = 1\n");
-  write(user_ + "/zz.toml", "name = 'sound'\nunique_id = 'aa:bb'\n");
-  write(shipped_ + "/a.toml", "name = 'shipped'\ndevices = ['054c:*']\n");
+  write("user/z.toml", "\n\nouter = 1\n");
+  write("user/zz.toml", "name = 'sound'\nunique_id = 'aa:bb'\n");
+  write("shipped/a.toml", "name = 'shipped'\ndevices = ['054c:*']\n");
   const FoundCalibration found = find_calibration(folders_, device_);
   EXPECT_EQ(found.file.name, "sound");
   ASSERT_EQ(found.problems.size(), 1u);
@@ -255,12 +250,12 @@ TEST_F(FindCalibration, ADamagedFileIsLeftOutAndNamed) {
 }
 
 TEST_F(FindCalibration, AFolderThatIsNoneIsLeftOutAndNamed) {
-  write(top_ + "file", "");
-  write(shipped_ + "/a.toml", "name = 'shipped'\ndevices = ['054c:*']\n");
-  const FoundCalibration found = find_calibration({{top_ + "file", shipped_}}, device_);
+  write("file", "");
+  write("shipped/a.toml", "name = 'shipped'\ndevices = ['054c:*']\n");
+  const FoundCalibration found = find_calibration({{own_.at("file"), shipped_}}, device_);
   EXPECT_EQ(found.file.name, "shipped");
   ASSERT_EQ(found.problems.size(), 1u);
-  EXPECT_EQ(found.problems[0], top_ + "file: Not a directory");
+  EXPECT_EQ(found.problems[0], own_.at("file") + ": Not a directory");
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
 #include "view/folder_list.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -14,23 +15,16 @@ namespace fs = std::filesystem;
 
 class Folder : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override {
-    fs::permissions(folder_, fs::perms::owner_all);
-    fs::remove_all(folder_);
-  }
-  void make(const std::string& name) { std::ofstream(folder_ / name) << "x"; }
+  void make(const std::string& name) { own_.write(name, "x"); }
   std::vector<std::string> names(FileFilter filter = FileFilter::all) {
     std::vector<std::string> all;
     for (const FolderEntry& entry : list_folder(folder_.string(), filter).entries)
       all.push_back(entry.name);
     return all;
   }
-  fs::path folder_ =
-      fs::path(testing::TempDir()) / ("gaitpad_folder_list_" + std::to_string(::getpid()));
+
+  OwnFolder own_;
+  const fs::path folder_ = own_.path;
 };
 using Names = std::vector<std::string>;
 

@@ -1,10 +1,10 @@
 #include "view/layout.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
+
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -13,18 +13,13 @@ namespace fs = std::filesystem;
 
 class LayoutTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("gaitpad_layout_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path() const { return (folder_ / "sub" / "layout.toml").string(); }
+  std::string path() const { return own_.at("sub/layout.toml"); }
   Layout loaded(const std::string& text) {
-    fs::create_directories(fs::path(path()).parent_path());
-    std::ofstream(path()) << text;
-    return load_layout(path());
+    return load_layout(own_.write("sub/layout.toml", text));
   }
-  fs::path folder_;
+
+  OwnFolder own_;
+  const fs::path folder_ = own_.path;
 };
 
 TEST_F(LayoutTest, WhatIsSavedIsLoadedAgain) {
@@ -78,15 +73,13 @@ TEST_F(LayoutTest, ADamagedFileIsToldInOneSentenceAndNothingOfItUsed) {
 }
 
 TEST_F(LayoutTest, WhatCannotBeWrittenIsAnErrorAndNothingIsLeftBehind) {
-  std::ofstream(folder_ / "file") << "x";
+  own_.write("file", "x");
   const auto problem = save_layout((folder_ / "file" / "layout.toml").string(), UiState{});
   ASSERT_TRUE(problem);
   EXPECT_NE(problem->message.find("file"), std::string::npos);
   EXPECT_TRUE(save_layout((folder_ / "").string(), UiState{}));
   ASSERT_FALSE(save_layout((folder_ / "layout.toml").string(), UiState{}));
-  int files = 0;
-  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder_)) ++files;
-  EXPECT_EQ(files, 2);
+  EXPECT_EQ(own_.entries(), 2);
 }
 
 }  // namespace

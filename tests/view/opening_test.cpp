@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
+
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -14,15 +14,12 @@ namespace fs = std::filesystem;
 
 class Opening : public testing::Test {
  protected:
-  void SetUp() override { fs::remove_all(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
   std::string make(const std::string& path, const std::string& text = "") {
-    fs::create_directories((folder_ / path).parent_path());
-    std::ofstream(folder_ / path) << text;
-    return (folder_ / path).string();
+    return own_.write(path, text);
   }
-  fs::path folder_ =
-      fs::path(testing::TempDir()) / ("gaitpad_opening_" + std::to_string(::getpid()));
+
+  OwnFolder own_;
+  const fs::path folder_ = own_.path;
 };
 
 TEST_F(Opening, TheEndingTellsMotionsAndRecordings) {

@@ -12,9 +12,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <numbers>
+
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -101,21 +102,16 @@ struct Made {
 
 class StickPictureFile : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "stick_picture_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder = name;
-    path = (folder / "plot.png").string();
-  }
-  void TearDown() override { fs::remove_all(folder); }
   Pixels drawn(const Made& made) {
     const StickPicture picture = made.picture();
     const auto error = write_stick_picture(path, "Pad, 2024-05-04", {&picture, 1});
     EXPECT_FALSE(error) << error->message;
     return read_png(path);
   }
-  fs::path folder;
-  std::string path;
+
+  OwnFolder own;
+  const fs::path folder = own.path;
+  const std::string path = own.at("plot.png");
 };
 
 TEST_F(StickPictureFile, TheOutlineStandsWhereItWasMeasured) {
@@ -212,8 +208,7 @@ TEST_F(StickPictureFile, AnUnwritableFileIsOneSentenceAndTheOldOneStays) {
   const auto is_folder = write_stick_picture(folder.string(), "", {&picture, 1});
   ASSERT_TRUE(is_folder);
   EXPECT_EQ(fs::file_size(path), old);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
-      << "nothing is left behind";
+  EXPECT_EQ(own.entries(), 1) << "nothing is left behind";
 }
 
 // Names and numbers that no pad should have, and no data at all.
@@ -258,17 +253,16 @@ TEST(StickPictureDeathTest, WithoutAnyFontItIsDrawnAllTheSame) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(
       {
-        std::string name = (fs::temp_directory_path() / "stick_picture_XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) std::_Exit(2);
-        const std::string none = name + "/fonts.conf";
-        std::ofstream(none) << "<?xml version=\"1.0\"?><fontconfig></fontconfig>";
+        auto own = std::make_unique<OwnFolder>();
+        const std::string none =
+            own->write("fonts.conf", "<?xml version=\"1.0\"?><fontconfig></fontconfig>");
         ::setenv("FONTCONFIG_FILE", none.c_str(), 1);
         Made made;
         made.statistics.outline = circle(0.8, vec2(0.0));
         const StickPicture picture = made.picture();
-        const auto error = write_stick_picture(name + "/plot.png", "Pad", {&picture, 1});
-        const bool is_drawn = !error && fs::file_size(name + "/plot.png") > 10000;
-        fs::remove_all(name);
+        const auto error = write_stick_picture(own->at("plot.png"), "Pad", {&picture, 1});
+        const bool is_drawn = !error && fs::file_size(own->at("plot.png")) > 10000;
+        own.reset();
         std::_Exit(is_drawn ? 0 : 1);
       },
       testing::ExitedWithCode(0), "");

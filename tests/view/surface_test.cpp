@@ -13,10 +13,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <thread>
 
+#include "tests/own_folder.h"
 #include "view/drawing.h"
 #include "view/offscreen.h"
 
@@ -45,25 +45,6 @@ Pixels drawn_corner(int width, int height) {
   glDisable(GL_SCISSOR_TEST);
   return read_pixels(width, height);
 }
-
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("surface_test." + std::to_string(::getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
-  }
-
- private:
-  fs::path path_;
-};
 
 TEST(Surface, PixelsAreReadFromTheTopAndAreOpaque) {
   GAITPAD_OFFSCREEN(surface, 101, 80);
@@ -133,20 +114,6 @@ TEST(Surface, JoysticksOnAnotherThreadOutliveTheWindow) {
   EXPECT_NE(SDL_WasInit(SDL_INIT_JOYSTICK), 0u);
   SDL_QuitSubSystem(SDL_INIT_JOYSTICK);
 }
-
-// Sets a variable of the environment while it lives; null: takes it away.
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    value ? ::setenv(name, value, 1) : ::unsetenv(name);
-  }
-  ~Environment() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 TEST(Surface, WithoutADisplayAWindowIsRefusedAndItSaysWhatWorks) {
   const Environment x11("DISPLAY", nullptr), wayland("WAYLAND_DISPLAY", nullptr),
@@ -221,14 +188,14 @@ TEST(SurfaceDeathTest, AnXServerThatIsKilledEndsTheWindowNotTheProgram) {
 }
 
 TEST(PictureFile, HoldsThePixelsThatWereGiven) {
-  const Folder folder;
+  const OwnFolder folder;
   Pixels pixels{3, 2, {}};
   for (int i = 0; i < 6; ++i) {
     for (const int v : {i * 40, 255 - i * 40, 7 * i, 255}) {
       pixels.rgba.push_back(static_cast<std::uint8_t>(v));
     }
   }
-  const std::string path = folder.file("a.png");
+  const std::string path = folder.at("a.png");
   const auto error = write_png(path, pixels);
   ASSERT_FALSE(error) << error->message;
   const Surface read(cairo_image_surface_create_from_png(path.c_str()));
@@ -247,18 +214,18 @@ TEST(PictureFile, HoldsThePixelsThatWereGiven) {
 }
 
 TEST(PictureFile, WhatCannotBeWrittenLeavesTheOldFileAndSaysWhy) {
-  const Folder folder;
+  const OwnFolder folder;
   const Pixels pixels{1, 1, {1, 2, 3, 255}};
-  fs::create_directory(folder.file("folder.png"));
-  const auto is_folder = write_png(folder.file("folder.png"), pixels);
+  fs::create_directory(folder.at("folder.png"));
+  const auto is_folder = write_png(folder.at("folder.png"), pixels);
   ASSERT_TRUE(is_folder);
   EXPECT_NE(is_folder->message.find("folder.png: "), std::string::npos);
   const auto below_file = write_png("/dev/null/a.png", pixels);
   ASSERT_TRUE(below_file);
   EXPECT_NE(below_file->message.find("/dev/null"), std::string::npos);
-  EXPECT_TRUE(write_png(folder.file("empty.png"), Pixels{}));
-  EXPECT_TRUE(write_png(folder.file("short.png"), Pixels{2, 2, {1, 2, 3, 4}}));
-  EXPECT_EQ(folder.files(), 1u);
+  EXPECT_TRUE(write_png(folder.at("empty.png"), Pixels{}));
+  EXPECT_TRUE(write_png(folder.at("short.png"), Pixels{2, 2, {1, 2, 3, 4}}));
+  EXPECT_EQ(folder.entries(), 1);
 }
 
 }  // namespace

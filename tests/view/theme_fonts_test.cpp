@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
+#include "tests/own_folder.h"
 #include "view/theme.h"
 
 namespace gaitpad {
@@ -42,18 +41,15 @@ TEST_F(FontTest, HasTheLettersThatPlotsNeed) {
 }
 
 TEST_F(FontTest, AFileThatIsNoFontIsPassedOver) {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("gaitpad_font_" + std::to_string(::getpid()));
-  std::ofstream(path) << "no font at all, whatever its name says";
-  for (const std::string& file :
-       {path.string(), std::string("/nowhere/font.ttf"), std::string("/")}) {
+  const OwnFolder own;
+  for (const std::string& file : {own.write("font", "no font at all, whatever its name says"),
+                                  std::string("/nowhere/font.ttf"), std::string("/")}) {
     ::setenv("GAITPAD_FONT", file.c_str(), 1);
     const Fonts fonts = load_fonts(1.0);
     EXPECT_NE(fonts.family, file);
     ASSERT_NE(fonts.body, nullptr);
     EXPECT_NE(fonts.body->FindGlyphNoFallback('a'), nullptr);
   }
-  std::filesystem::remove(path);
 }
 
 TEST_F(FontTest, TheUsersOwnFontComesFirst) {

@@ -10,7 +10,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
+
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -19,17 +20,8 @@ namespace fs = std::filesystem;
 
 class Video : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("video_test." + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    path_before_ = std::getenv("PATH");
-  }
-  void TearDown() override {
-    ::setenv("PATH", path_before_.c_str(), 1);
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  void TearDown() override { ::setenv("PATH", path_before_.c_str(), 1); }
+  std::string file(const std::string& name) const { return own_.at(name); }
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& e : fs::directory_iterator(folder_)) names.push_back(e.path().filename());
@@ -38,15 +30,14 @@ class Video : public testing::Test {
   }
   // From now on this is what runs in ffmpeg's place.
   void pretend_ffmpeg(const std::string& script) {
-    fs::create_directory(folder_ / "bin");
-    const std::string program = file("bin/ffmpeg");
-    std::ofstream(program) << "#!/bin/sh\n" << script << "\n";
+    const std::string program = own_.write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
     ::chmod(program.c_str(), 0755);
     ::setenv("PATH", (file("bin") + ":" + path_before_).c_str(), 1);
   }
 
-  fs::path folder_;
-  std::string path_before_;
+  OwnFolder own_;
+  const fs::path folder_ = own_.path;
+  const std::string path_before_ = std::getenv("PATH");
 };
 
 Pixels plain(int width, int height, std::array<std::uint8_t, 3> upper,
@@ -114,7 +105,7 @@ TEST_F(Video, WithoutFfmpegOneSentenceSaysSoAndNothingIsLeft) {
 // It would have ended this program by SIGPIPE.
 TEST_F(Video, FfmpegsOwnReasonIsToldWhereItEndsEarly) {
   pretend_ffmpeg("echo 'first line' >&2; echo 'Unknown encoder libx264' >&2; exit 1");
-  std::ofstream(file("a.mp4")) << "old";
+  own_.write("a.mp4", "old");
   auto writer = VideoWriter::open(file("a.mp4"), 256, 256, 30);
   ASSERT_TRUE(writer) << writer.error().message;
   const Pixels pixels = plain(256, 256, {1, 2, 3}, {4, 5, 6});
@@ -126,9 +117,7 @@ TEST_F(Video, FfmpegsOwnReasonIsToldWhereItEndsEarly) {
   EXPECT_TRUE((*writer)->finish());
   *writer = nullptr;
   EXPECT_EQ(files(), (std::vector<std::string>{"a.mp4", "bin"}));
-  std::string content;
-  std::ifstream(file("a.mp4")) >> content;
-  EXPECT_EQ(content, "old");
+  EXPECT_EQ(text_in(file("a.mp4")), "old");
 }
 
 TEST_F(Video, AFailureAtTheEndIsNoVideo) {

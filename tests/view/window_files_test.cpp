@@ -12,11 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 using Glance = WindowGlance;
 
-std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 // A motion file: the bundled recording's walk, as replay exports it.
 std::string exported_walk(const Window&, const fs::path& folder, const SessionOptions& session,
                           const std::string& trace) {
@@ -33,7 +28,7 @@ class WindowFiles : public Window {};
 
 TEST_F(WindowFiles, DroppedFilesChangeTheSessionAndDamagedOnesDoNot) {
   const std::string walk = exported_walk(*this, folder_, options_.live.session, round_);
-  const std::string damaged = make("damaged.bvh", text_of(walk).substr(0, 3000));
+  const std::string damaged = make("damaged.bvh", text_in(walk).substr(0, 3000));
   const std::string style = make("styles/own.toml", "fatigue = 0.75\n");
   const std::string bad_style = make("styles/bad.toml", "fatigue = \"very\"\n");
   const std::string build = make("characters/small.toml", "scale = 0.5\n");
@@ -119,7 +114,7 @@ TEST_F(WindowFiles, APlaybackIsPausedSteppedSoughtAndTakesNoStyles) {
 }
 
 TEST_F(WindowFiles, TheBrowserOpensWhatIsTypedOrClicked) {
-  make("walks/limp.hid", text_of(round_));
+  make("walks/limp.hid", text_in(round_));
   make("walks/other.txt", "x");
   Script script;
   script.tap(SDLK_o);
@@ -146,7 +141,7 @@ TEST_F(WindowFiles, TheBrowserOpensWhatIsTypedOrClicked) {
   script.until("it is closed", [](const Glance& g) { return !g.is_browsing; });
   options_.recent_file = (folder_ / "recent").string();
   run(script);
-  EXPECT_EQ(text_of(options_.recent_file), (folder_ / "walks/limp.hid").string() + "\n");
+  EXPECT_EQ(text_in(options_.recent_file), (folder_ / "walks/limp.hid").string() + "\n");
 }
 
 // A pad with one stick that is let go four times from all sides, at once and often enough to be
@@ -244,7 +239,7 @@ TEST_F(WindowFiles, PicturesOfATraceAreTheSameEveryTime) {
     const auto result = run_window(options_);
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->frames, 45);
-    pictures[i] = text_of(options_.screenshot);
+    pictures[i] = text_in(options_.screenshot);
     hashes[i] = result->summaries[0]["pose_hash"];
     EXPECT_EQ(result->summaries[0]["ticks"], 45 * 240 / 60);
   }
@@ -264,7 +259,7 @@ TEST_F(WindowFiles, ALiveSessionIsPicturedByHandTheSameEveryTime) {
     const auto result = run_window(options_);
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->summaries[0]["ticks"], 30 * 240 / 60);
-    picture = text_of(options_.screenshot);
+    picture = text_in(options_.screenshot);
   }
   EXPECT_FALSE(pictures[0].empty());
   EXPECT_EQ(pictures[0], pictures[1]);

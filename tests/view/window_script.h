@@ -3,18 +3,17 @@
 #pragma once
 #include <SDL2/SDL.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <string>
 #include <vector>
 
 #include "session/replay.h"
+#include "tests/own_folder.h"
 #include "tests/value_of.h"
 #include "view/surface.h"
 #include "view/window.h"
@@ -176,10 +175,6 @@ class Window : public testing::Test {
     const auto opened = WindowSurface::open(surface);
     if (!opened) GTEST_SKIP() << opened.error().message;
     ::setenv("SDL_VIDEODRIVER", "offscreen", 1);
-    if (const char* config = std::getenv("XDG_CONFIG_HOME")) config_ = config;
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-    ::setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
     std::filesystem::current_path(folder_);
     options_.live.session.config_folders = {GAITPAD_SOURCE_DIR "/config"};
     options_.live.session.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
@@ -188,8 +183,6 @@ class Window : public testing::Test {
   }
   void TearDown() override {
     std::filesystem::current_path(std::filesystem::temp_directory_path());
-    std::filesystem::remove_all(folder_);
-    if (!config_.empty()) ::setenv("XDG_CONFIG_HOME", config_.c_str(), 1);
     ::unsetenv("SDL_VIDEODRIVER");
   }
 
@@ -201,9 +194,7 @@ class Window : public testing::Test {
     return result;
   }
   std::string make(const std::string& name, const std::string& text) {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return (folder_ / name).string();
+    return own_.write(name, text);
   }
   std::vector<std::string> files(const std::string& ending) const {
     std::vector<std::string> all;
@@ -212,10 +203,10 @@ class Window : public testing::Test {
     return all;
   }
 
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
-                                        ("gaitpad_window_test." + std::to_string(getpid()));
+  OwnFolder own_;
+  const std::filesystem::path folder_ = own_.path;
+  const Environment config_home_{"XDG_CONFIG_HOME", own_.at("config").c_str()};
   const std::string round_ = GAITPAD_SOURCE_DIR "/config/traces/round.hid";
-  std::string config_;
   WindowOptions options_;
 };
 

@@ -2,25 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <numeric>
 
-#include "animation/walk.h"
+#include "animation/made_walker.h"
 
 namespace gaitpad {
 namespace {
-
-WalkModel model_of(double leg_ratio, double scale = 1.0) {
-  Character character;
-  character.leg_ratio = leg_ratio;
-  character.scale = scale;
-  auto model = walk_model(procedural_gait(), character);
-  if (!model) {
-    ADD_FAILURE() << model.error().message;
-    std::abort();
-  }
-  return *model;
-}
 
 const Joint& joint_of(const WalkModel& model, int index) {
   return model.cycle.skeleton.joints[index];

@@ -2,15 +2,13 @@
 // sweep (captured motions, all styles and legs, the shipped course) is terrain_sweep.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <random>
 
+#include "animation/made_walker.h"
 #include "animation/terrain_judge.h"
 
 namespace gaitpad {
 namespace {
-
-constexpr double kDt = 1.0 / 240.0;
 
 std::shared_ptr<const Terrain> ground_of(const std::vector<SectionShape>& sections,
                                          double scale = 1.0) {
@@ -38,49 +36,30 @@ std::vector<SectionShape> stairs(double rise_m) {
   return {FlatSection{1.5}, StairsSection{rise_m, 0.28, 6}, FlatSection{2.0}};
 }
 
-WalkModel model_of(double leg_ratio, std::shared_ptr<const Terrain> terrain) {
-  Character character;
-  character.leg_ratio = leg_ratio;
-  auto model = walk_model(procedural_gait(), character);
-  if (!model) {
-    ADD_FAILURE() << model.error().message;
-    std::abort();
-  }
-  model->terrain = std::move(terrain);
-  return *model;
+WalkModel model_on(double leg_ratio, std::shared_ptr<const Terrain> terrain) {
+  WalkModel model = model_of(leg_ratio);
+  model.terrain = std::move(terrain);
+  return model;
 }
 
-class Hiker {
+class Hiker : public MadeWalker {
  public:
   explicit Hiker(const WalkModel& model, IkMode mode = IkMode::robust, double z_m = 0.0)
-      : model_(model),
-        mode_(mode),
-        limits_(gait_limits(model.leg_length_m)),
-        state_(standing(model, vec3(0.0, 0.0, z_m), pose_)),
-        judge_(model) {}
+      : MadeWalker(model, mode, z_m), judge_(model) {}
 
   void walk(double x, double y, int ticks, const StyleValues& style = {}) {
-    Stick stick;
-    stick.left = vec2(x, y);
-    const GaitParams params = gait_params(stick, style, limits_);
     for (int i = 0; i < ticks; ++i) {
-      advance(model_, params, mode_, kDt, state_, pose_);
-      judge_.see(state_, pose_);
+      MadeWalker::walk(x, y, 1, style);
+      judge_.see(state(), pose());
     }
   }
   void walk_to(double z_m, double y, const StyleValues& style = {}) {
-    for (int k = 0; k < 1500 && state_.hips_m.z < z_m; ++k) walk(0.0, y, 20, style);
+    for (int k = 0; k < 1500 && state().hips_m.z < z_m; ++k) walk(0.0, y, 20, style);
   }
   const TerrainWorst& worst() const { return judge_.worst; }
-  const WalkState& state() const { return state_; }
   TerrainJudge::Sole sole(Side side) const { return judge_.sole(side); }
 
  private:
-  const WalkModel& model_;
-  IkMode mode_;
-  GaitLimits limits_;
-  Pose pose_;
-  WalkState state_;
   TerrainJudge judge_;
 };
 
@@ -93,16 +72,10 @@ void expect_sound(const TerrainWorst& worst, const std::string& what) {
   EXPECT_LT(worst.jump_deg, 1.0) << what << " at z " << worst.jump_z_m;
 }
 
-StyleValues limp() {
-  StyleValues style;
-  style.stride[kLeftSide] = {.length = 0.5, .speed = 1.3, .flight_height = 0.5};
-  return style;
-}
-
 TEST(WalkTerrain, FeetStandOnEveryGroundAndNeverSinkIntoIt) {
   for (const double ratio : {0.6, 1.0, 1.6}) {
     const double scale = ratio > 1.0 ? ratio : 1.0;  // where the foot is longer than the tread
-    const WalkModel model = model_of(ratio, ground_of(all_kinds(), scale));
+    const WalkModel model = model_on(ratio, ground_of(all_kinds(), scale));
     for (const double y : {0.4, 0.7}) {
       Hiker hiker(model);
       hiker.walk_to(17.0 * scale, y);
@@ -114,7 +87,7 @@ TEST(WalkTerrain, FeetStandOnEveryGroundAndNeverSinkIntoIt) {
 }
 
 TEST(WalkTerrain, ALimpKeepsToTheGroundToo) {
-  const WalkModel model = model_of(1.0, ground_of(all_kinds()));
+  const WalkModel model = model_on(1.0, ground_of(all_kinds()));
   Hiker hiker(model);
   hiker.walk_to(17.0, 0.7, limp());
   EXPECT_GE(hiker.worst().end_z_m, 17.0);
@@ -122,9 +95,9 @@ TEST(WalkTerrain, ALimpKeepsToTheGroundToo) {
 }
 
 TEST(WalkTerrain, LevelGroundIsWalkedAsWithoutTerrain) {
-  const WalkModel flat = model_of(1.0, flat_terrain());
+  const WalkModel flat = model_on(1.0, flat_terrain());
   const WalkModel far =
-      model_of(1.0, ground_of({FlatSection{100.0}, StairsSection{0.17, 0.28, 3}}));
+      model_on(1.0, ground_of({FlatSection{100.0}, StairsSection{0.17, 0.28, 3}}));
   Hiker a(flat), b(far);
   for (Hiker* hiker : {&a, &b}) {
     hiker->walk(0.0, 0.8, 800);
@@ -139,7 +112,7 @@ TEST(WalkTerrain, LevelGroundIsWalkedAsWithoutTerrain) {
 
 TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
   for (const double rise : {0.17, -0.17}) {
-    const WalkModel model = model_of(1.0, ground_of(stairs(rise)));
+    const WalkModel model = model_on(1.0, ground_of(stairs(rise)));
     for (const double y : {0.3, 0.7, 1.0}) {
       Hiker hiker(model);
       double lowest = 0.0, last = 0.0, most = 0.0;
@@ -159,7 +132,7 @@ TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
 
 TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
   for (const double rise : {0.17, -0.17}) {
-    const WalkModel model = model_of(1.0, ground_of(stairs(rise)));
+    const WalkModel model = model_on(1.0, ground_of(stairs(rise)));
     for (const double z : {1.2, 1.6, 1.9, 2.2, 2.6, 3.0}) {
       Hiker hiker(model);
       hiker.walk_to(z, 0.7);
@@ -173,7 +146,7 @@ TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
 }
 
 TEST(WalkTerrain, AStartOnAnEdgeStandsBesideIt) {
-  const WalkModel model = model_of(1.0, ground_of(stairs(0.17)));
+  const WalkModel model = model_on(1.0, ground_of(stairs(0.17)));
   for (double z = 1.2; z < 2.2; z += 0.07) {
     Hiker hiker(model, IkMode::robust, z);
     hiker.walk(0.0, 0.0, 5);
@@ -185,7 +158,7 @@ TEST(WalkTerrain, AStartOnAnEdgeStandsBesideIt) {
 
 TEST(WalkTerrain, FeetLieOnASlope) {
   const double grade = 0.2;
-  const WalkModel model = model_of(1.0, ground_of({SlopeSection{40.0, grade, 0.5}}));
+  const WalkModel model = model_on(1.0, ground_of({SlopeSection{40.0, grade, 0.5}}));
   Hiker hiker(model, IkMode::robust, 5.0);
   hiker.walk(0.0, 0.0, 10);
   for (Side side : {kLeftSide, kRightSide}) {
@@ -196,7 +169,7 @@ TEST(WalkTerrain, FeetLieOnASlope) {
 
 TEST(WalkTerrain, SlopesShortenSteps) {
   const auto stride = [](double grade) {
-    const WalkModel model = model_of(1.0, ground_of({SlopeSection{60.0, grade, 0.5}}));
+    const WalkModel model = model_on(1.0, ground_of({SlopeSection{60.0, grade, 0.5}}));
     Hiker hiker(model, IkMode::robust, 2.0);
     hiker.walk(0.0, 0.7, 2000);
     return hiker.state().frame.stride_m[0];
@@ -207,7 +180,7 @@ TEST(WalkTerrain, SlopesShortenSteps) {
 }
 
 TEST(WalkTerrain, ARiserTooHighForTheLegsIsNotClimbed) {
-  const WalkModel model = model_of(0.6, ground_of(stairs(0.4)));
+  const WalkModel model = model_on(0.6, ground_of(stairs(0.4)));
   Hiker hiker(model);
   hiker.walk(0.0, 0.8, 3000);
   EXPECT_LT(hiker.worst().end_z_m, 1.6);
@@ -221,7 +194,7 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
       sections.push_back(StairsSection{k % 2 ? -0.17 : 0.17, 0.28, 5});
       sections.push_back(FlatSection{0.8});
     }
-    const WalkModel model = model_of(ratio, ground_of(sections));
+    const WalkModel model = model_on(ratio, ground_of(sections));
     Hiker hiker(model);
     std::mt19937 chance(11);
     const auto in = [&chance](double low, double high) {
@@ -235,7 +208,7 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
 }
 
 TEST(WalkTerrain, PaperModeStaysBoundedAndFinite) {
-  const WalkModel model = model_of(1.0, ground_of(all_kinds()));
+  const WalkModel model = model_on(1.0, ground_of(all_kinds()));
   Hiker hiker(model, IkMode::paper);
   hiker.walk_to(17.0, 0.7);
   for (Side side : {kLeftSide, kRightSide}) {

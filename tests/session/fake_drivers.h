@@ -102,6 +102,8 @@ class FakeDevice final : public Device {
   pollfd fd_;
 };
 
+enum : int { kHidraw, kEvdev, kUsb };  // positions in FakeBus::table()
+
 // The sockets of the test's machine. Static, since a driver is two plain functions.
 class FakeBus {
  public:
@@ -114,7 +116,7 @@ class FakeBus {
   }
   int changes_fd() const { return changes_; }
 
-  // `driver` is the position in kTable. Not seen before show().
+  // Not seen before show().
   Pad make(int driver, const std::string& unique_id, const std::string& port) const {
     auto pad = std::make_shared<FakePad>();
     pad->listing.info = made_pad();

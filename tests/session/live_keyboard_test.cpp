@@ -119,14 +119,7 @@ Trace late_pad_trace() {
   Trace trace;
   trace.devices.emplace_back().info = made_pad();
   for (int ms = 0; ms <= 3000; ms += 8) {
-    const Report report = made_report(ms < 2000 ? 0x80 : 0xff, 0x80);
-    TraceEvent event;
-    event.time_us = ms * 1000;
-    event.device = 0;
-    event.first_byte = static_cast<std::uint32_t>(trace.bytes.size());
-    event.size = report.size;
-    trace.bytes.insert(trace.bytes.end(), report.bytes.begin(), report.bytes.begin() + report.size);
-    trace.events.push_back(event);
+    add_event(trace, ms * 1000, made_report(ms < 2000 ? 0x80 : 0xff, 0x80));
   }
   return trace;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "hid/trace.h"
 #include "session/simulation.h"
 #include "tests/value_of.h"
 
@@ -43,6 +44,18 @@ inline Report made_command(std::string_view text) {
   report.size = static_cast<std::uint16_t>(text.size());
   std::copy(text.begin(), text.end(), report.bytes.begin());
   return report;
+}
+
+// Puts a report behind the others of a trace.
+inline void add_event(Trace& trace, std::int64_t time_us, const Report& report) {
+  TraceEvent event;
+  event.time_us = time_us;
+  event.device = report.device;
+  event.kind = report.kind;
+  event.first_byte = static_cast<std::uint32_t>(trace.bytes.size());
+  event.size = report.size;
+  trace.bytes.insert(trace.bytes.end(), report.bytes.begin(), report.bytes.begin() + report.size);
+  trace.events.push_back(event);
 }
 
 // It does not stream; calibration of an unknown stick.

@@ -9,8 +9,6 @@
 namespace gaitpad {
 namespace {
 
-enum : int { kHidraw, kEvdev, kUsb };
-
 class PadChoice : public testing::Test {
  protected:
   FakeBus::Pad see(int driver, const std::string& unique_id, const std::string& port,

@@ -2,14 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
 
+#include "tests/comes_true.h"
 #include "tests/session/fake_drivers.h"
 
 namespace gaitpad {
 namespace {
-
-using namespace std::chrono_literals;
 
 constexpr std::int64_t kNow_ns = std::int64_t{1} << 60;
 constexpr std::uint8_t kHatAtRest = 0x08, kFirstButton = 0x10;  // of made_pad()'s fifth byte
@@ -18,28 +16,25 @@ constexpr std::uint8_t kHatAtRest = 0x08, kFirstButton = 0x10;  // of made_pad()
 class LiveTickReports : public testing::Test {
  protected:
   void SetUp() override {
-    pad_ = bus_.plug(0, "A", "port1");
+    pad_ = bus_.plug(kHidraw, "A", "port1");
     PadStreamOptions options;
     options.drivers = FakeBus::table();
     options.changes_fd = bus_.changes_fd();
     options.ring_reports = 64;
-    auto stream = PadStream::start(std::move(options));
-    ASSERT_TRUE(stream) << stream.error().message;
-    stream_ = std::move(*stream);
+    stream_ = value_of(PadStream::start(std::move(options)));
     SimulationConfig config = made_config(1);
     config.pads = unknown_pads(kMaxPads);
-    simulation_.emplace(std::move(*Simulation::create(config)));
+    simulation_.emplace(made_simulation(config));
     reports_.emplace(*stream_, *simulation_);
     gather_until(1);
     step();
   }
   // Until so many have come from the pads, those that were left out too.
   void gather_until(std::int64_t reports) {
-    const auto end = std::chrono::steady_clock::now() + 60s;
-    do {
+    comes_true([&] {
       reports_->gather(kNow_ns);
-      std::this_thread::sleep_for(1ms);
-    } while (stream_->counts().reports < reports && std::chrono::steady_clock::now() < end);
+      return stream_->counts().reports >= reports;
+    });
     reports_->gather(kNow_ns);
     EXPECT_EQ(stream_->counts().reports, reports);
   }
@@ -80,7 +75,7 @@ constexpr int kAdded = -static_cast<int>(ReportKind::added),
 
 TEST_F(LiveTickReports, ATickUsesAllThatHasComeSinceTheLastOne) {
   for (int x = 1; x <= 5; ++x) send(x);
-  while (stream_->counts().reports < 6) std::this_thread::sleep_for(1ms);
+  ASSERT_TRUE(comes_true([&] { return stream_->counts().reports >= 6; }));
   EXPECT_EQ(step(), (std::vector<int>{1, 2, 3, 4, 5}));
   EXPECT_EQ(step(), std::vector<int>());
 }
@@ -134,7 +129,7 @@ TEST_F(LiveTickReports, PluggingAndCommandsKeepTheirPlace) {
   bus_.unplug(pad_);
   gather_until(5);
   EXPECT_EQ(shown().pad.state, PadState());
-  pad_ = bus_.plug(0, "A", "port1");
+  pad_ = bus_.plug(kHidraw, "A", "port1");
   gather_until(6);
   send(3);
   send(4);

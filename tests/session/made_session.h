@@ -95,6 +95,18 @@ inline Simulation made_simulation(const SimulationConfig& config) {
   return value_of(Simulation::create(config));
 }
 
+inline void step(Simulation& simulation, const std::vector<Report>& reports, int ticks = 1) {
+  simulation.step(reports);
+  for (int i = 1; i < ticks; ++i) simulation.step({});
+}
+
+// A stick pushed forward and held from tick 0 on.
+inline Simulation walked(const SimulationConfig& config, int x, int y, int ticks) {
+  Simulation simulation = made_simulation(config);
+  step(simulation, {made_report(x, y)}, ticks);
+  return simulation;
+}
+
 // Slopes, stairs and waves, zones, blends, tiring, stiff arms, hands that hold, a look: all that
 // poses besides the legs on level ground.
 inline SimulationConfig made_uneven_config(int walkers) {

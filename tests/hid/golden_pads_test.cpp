@@ -49,14 +49,6 @@ std::vector<Expected> all_expected(const std::string& path) {
   return all;
 }
 
-std::string names_of(std::uint32_t buttons) {
-  std::string names;
-  for (int b = 0; b < kButtonCount; ++b) {
-    if ((buttons >> b) & 1u) names += std::string(kButtonNames[b]) + " ";
-  }
-  return names;
-}
-
 void check_pad(const std::string& path, const PadOverrides& overrides) {
   SCOPED_TRACE(path);
   const auto trace = read_trace(path);

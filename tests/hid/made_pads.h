@@ -2,6 +2,7 @@
 // drivers state them.
 #pragma once
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "hid/evdev_layout.h"
@@ -20,6 +21,15 @@ inline Report report_of(const std::vector<std::uint8_t>& bytes, std::int64_t tim
   report.size = static_cast<std::uint16_t>(bytes.size());
   std::copy(bytes.begin(), bytes.end(), report.bytes.begin());
   return report;
+}
+
+// With a blank in between.
+inline std::string names_of(std::uint32_t buttons) {
+  std::string names;
+  for (std::size_t b = 0; b < kButtonNames.size(); ++b) {
+    if ((buttons >> b) & 1u) names += (names.empty() ? "" : " ") + std::string(kButtonNames[b]);
+  }
+  return names;
 }
 
 // xpad, drivers/input/joystick/xpad.c.

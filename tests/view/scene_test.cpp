@@ -2,87 +2,21 @@
 // pixel, without a display.
 #include "view/scene.h"
 
-#include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "control/control.h"
+#include "tests/value_of.h"
 #include "view/body.h"
 #include "view/gl_program.h"
-#include "view/offscreen.h"
+#include "view/scene_fixture.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-const Colour kRed = rgb(0xd02020), kBlue = rgb(0x2020d0);
-
-// 0 .. 255
-double brightness(const Pixels& p, double x, double y) {
-  const int px = std::clamp(static_cast<int>(x), 0, p.width - 1);
-  const int py = std::clamp(static_cast<int>(y), 0, p.height - 1);
-  const std::uint8_t* c = p.rgba.data() + 4 * (py * p.width + px);
-  return (c[0] + c[1] + c[2]) / 3.0;
-}
-bool differs(const Pixels& a, const Pixels& b, int x, int y) {
-  const std::size_t i = 4 * (static_cast<std::size_t>(y) * a.width + x);
-  int sum = 0;
-  for (int c = 0; c < 3; ++c) sum += std::abs(a.rgba[i + c] - b.rgba[i + c]);
-  return sum > 6;
-}
-struct Extent {
-  int left = kWidth, top = kHeight, right = -1, bottom = -1, pixels = 0;
-};
-Extent difference(const Pixels& a, const Pixels& b) {
-  Extent e;
-  for (int y = 0; y < a.height; ++y) {
-    for (int x = 0; x < a.width; ++x) {
-      if (!differs(a, b, x, y)) continue;
-      e.left = std::min(e.left, x);
-      e.right = std::max(e.right, x);
-      e.top = std::min(e.top, y);
-      e.bottom = std::max(e.bottom, y);
-      ++e.pixels;
-    }
-  }
-  return e;
-}
-
-class SceneTest : public testing::Test {
- protected:
-  void SetUp() override {
-    auto opened = WindowSurface::open(hidden(kWidth, kHeight));
-    if (!opened) GTEST_SKIP() << opened.error().message;
-    surface_ = std::move(*opened);
-    auto scene = Scene::create(Scene::Quality::low);
-    ASSERT_TRUE(scene) << scene.error().message;
-    scene_ = std::move(*scene);
-    content_.has_axes = content_.has_shadows = false;
-  }
-  Pixels drawn(const SceneContent& content) {
-    int width = 0, height = 0;
-    surface_->size(width, height);
-    surface_->begin();
-    scene_->draw(content, camera_, theme_of(theme_), {0, 0, width, height}, height, scale_);
-    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-    return read_pixels(width, height);
-  }
-  vec3 place(const vec3& world_m) const { return projected(camera_, world_m, kWidth, kHeight); }
-  void look_down() {
-    orbit(camera_, -camera_.yaw_rad, 10.0);
-    camera_.target_m.y = 0.0;
-    content_.focus_m = camera_.target_m;
-  }
-
-  std::unique_ptr<WindowSurface> surface_;
-  std::unique_ptr<Scene> scene_;
-  SceneContent content_;
-  Camera camera_;
-  ThemeName theme_ = ThemeName::dark;
-  double scale_ = 1.0;
-};
+const Colour kBlue = rgb(0x2020d0);
 
 TEST_F(SceneTest, ACapsulesPixelsAreWhereItsBallsAreProjected) {
   camera_.target_m = {20.0, 0.8, -7.0};
@@ -90,7 +24,7 @@ TEST_F(SceneTest, ACapsulesPixelsAreWhereItsBallsAreProjected) {
   const Pixels empty = drawn(content_);
   const vec3 a = camera_.target_m + vec3(-0.4, 0.2, 0.0),
              b = camera_.target_m + vec3(0.5, 0.7, 0.2);
-  content_.bodies = {{a, b, 0.10, 0.05, vec3(0.0), 1.0, 1.0, kRed}};
+  content_.bodies = {bone(a, b, 0.10, 0.05)};
   const Extent seen = difference(empty, drawn(content_));
   const double half_height = kHeight / 2.0 / std::tan(camera_.field_of_view_rad / 2.0);
   const double ra = half_height * 0.10 / place(a).z, rb = half_height * 0.05 / place(b).z;
@@ -105,7 +39,7 @@ TEST_F(SceneTest, UnevenGroundIsSeenAndHides) {
   camera_.yaw_rad = 0.0;
   camera_.pitch_rad = 0.1;
   const vec3 at(0.0, 0.2, -0.5);
-  const Capsule ball{at, at, 0.15, 0.15, vec3(0.0), 1.0, 1.0, kRed};
+  const Capsule ball = bone(at, at, 0.15);
   const Pixels level = drawn(content_);
   auto terrain = std::make_shared<Terrain>();
   ASSERT_FALSE(add_section(*terrain, StairsSection{0.3, 0.2, 4}));
@@ -126,7 +60,7 @@ TEST_F(SceneTest, AShadowFallsOnTheGroundThatIsThere) {
     content_.bodies.clear();
     const Pixels empty = drawn(content_);
     const vec3 at(0.0, height_m + 0.05, 0.0);
-    content_.bodies = {{at, at, 0.05, 0.05, vec3(0.0), 1.0, 1.0, kRed}};
+    content_.bodies = {bone(at, at, 0.05)};
     return difference(empty, drawn(content_));
   };
   const Extent level = shadow(0.0);
@@ -143,9 +77,9 @@ TEST_F(SceneTest, AShadowFallsOnTheGroundThatIsThere) {
 TEST_F(SceneTest, ABallInABallIsTheLargerOne) {
   const Pixels empty = drawn(content_);
   const vec3 at = camera_.target_m;
-  content_.bodies = {{at, at, 0.2, 0.2, vec3(0.0), 1.0, 1.0, kRed}};
+  content_.bodies = {bone(at, at, 0.2)};
   const Extent ball = difference(empty, drawn(content_));
-  content_.bodies = {{at, at + vec3(0.05, 0.0, 0.0), 0.2, 0.04, vec3(0.0), 1.0, 1.0, kRed}};
+  content_.bodies = {bone(at, at + vec3(0.05, 0.0, 0.0), 0.2, 0.04)};
   const Extent both = difference(empty, drawn(content_));
   EXPECT_NEAR(both.pixels, ball.pixels, 0.1 * ball.pixels);  // meshes that are turned
   EXPECT_NEAR(ball.right - ball.left, ball.bottom - ball.top, 2);
@@ -170,10 +104,9 @@ TEST_F(SceneTest, AWideCapsuleIsWideAcrossOnly) {
 TEST_F(SceneTest, TheNearerCapsuleHidesTheOther) {
   camera_.yaw_rad = 0.0;
   const vec3 at = camera_.target_m;
-  const Capsule far{at, at, 0.2, 0.2, vec3(0.0), 1.0, 1.0, kBlue};
-  Capsule near = far;
+  Capsule near = bone(at, at, 0.2), far = near;
   near.a_m.z = near.b_m.z = 1.0;
-  near.colour = kRed;
+  far.colour = kBlue;
   for (const bool is_near_first : {true, false}) {
     content_.bodies = {is_near_first ? near : far, is_near_first ? far : near};
     const Pixels pixels = drawn(content_);
@@ -187,14 +120,11 @@ TEST_F(SceneTest, TheNearerCapsuleHidesTheOther) {
 TEST_F(SceneTest, AShadowDarkensTheFloorAwayFromTheLight) {
   look_down();
   content_.has_grid = false;
-  content_.bodies = {{{0.0, 0.05, 0.0}, {0.0, 0.9, 0.0}, 0.05, 0.05, vec3(0.0), 1.0, 1.0, kRed}};
+  content_.bodies = {bone({0.0, 0.05, 0.0}, {0.0, 0.9, 0.0}, 0.05)};
   const Pixels without = drawn(content_);
   content_.has_shadows = true;
   const Pixels with = drawn(content_);
-  const auto darker = [&](const vec3& floor_m) {
-    const vec3 p = place(floor_m);
-    return brightness(without, p.x, p.y) - brightness(with, p.x, p.y);
-  };
+  const auto darker = [&](const vec3& floor_m) { return brighter(without, with, floor_m); };
   // The light comes from +x and +z. At 0.45 m of height it throws the bone 0.3 m aside.
   EXPECT_GT(darker({-0.2, 0.0, -0.17}), 12.0);
   EXPECT_LT(darker({0.35, 0.0, 0.3}), 2.0);
@@ -207,99 +137,16 @@ TEST_F(SceneTest, AFootDarkensTheFloorRoundItAndALiftedFootDoesNot) {
   content_.has_grid = false;
   const auto darker_beside = [&](double height_m) {
     const vec3 heel(-0.1, height_m, 0.0), toe(0.1, height_m, 0.0);
-    content_.bodies = {{heel, toe, 0.03, 0.03, vec3(0.0), 1.0, 1.0, kRed}};
+    content_.bodies = {bone(heel, toe, 0.03)};
     content_.has_shadows = false;
     const Pixels without = drawn(content_);
     content_.has_shadows = true;
     const Pixels with = drawn(content_);
-    const vec3 p = place({0.0, 0.0, 0.042});  // towards the light, which throws no shadow there
-    return brightness(without, p.x, p.y) - brightness(with, p.x, p.y);
+    // Towards the light, which throws no shadow there.
+    return brighter(without, with, {0.0, 0.0, 0.042});
   };
   EXPECT_GT(darker_beside(0.03), 3.0);
   EXPECT_LT(darker_beside(0.60), 1.0);
-}
-
-TEST_F(SceneTest, GridLinesLieAtWholeMetresOfTheWorld) {
-  look_down();
-  for (const double x_m : {0.0, 0.3, 150.6}) {
-    camera_.target_m.x = content_.focus_m.x = x_m;
-    content_.has_grid = false;
-    const Pixels without = drawn(content_);
-    content_.has_grid = true;
-    const Pixels with = drawn(content_);
-    const auto line_at = [&](double x, double z) {
-      const vec3 p = place({x, 0.0, z});
-      double most = 0.0;  // a line is a pixel or two wide
-      for (const int off : {-1, 0, 1}) {
-        most =
-            std::max(most, brightness(with, p.x + off, p.y) - brightness(without, p.x + off, p.y));
-      }
-      return most;
-    };
-    const double metre = std::round(x_m);
-    EXPECT_GT(line_at(metre, 0.5), 20.0) << x_m;
-    EXPECT_GT(line_at(metre + 1.0, 0.5), 20.0) << x_m;
-    const double twenty = line_at(metre + 0.4, 0.5);
-    EXPECT_GT(twenty, 3.0) << x_m;
-    EXPECT_LT(twenty, 0.7 * line_at(metre, 0.5)) << x_m;
-    EXPECT_LT(line_at(metre + 0.5, 0.5), 1.5) << x_m;
-  }
-}
-
-TEST_F(SceneTest, ATrailFadesTowardsItsOldEnd) {
-  look_down();
-  content_.has_grid = false;
-  const Pixels without = drawn(content_);
-  Trail trail;
-  for (int i = 0; i <= 40; ++i) trail.points_m.push_back({-1.0 + i * 0.05, 0.01, 0.0});
-  trail.colour = rgb(0xffffff);
-  content_.trails = {trail};
-  const Pixels with = drawn(content_);
-  const auto strength = [&](double x_m) {
-    const vec3 p = place({x_m, 0.01, 0.0});
-    return brightness(with, p.x, p.y) - brightness(without, p.x, p.y);
-  };
-  EXPECT_GT(strength(0.95), 100.0);
-  EXPECT_GT(strength(0.95), strength(0.3) + 20.0);
-  EXPECT_GT(strength(0.3), strength(-0.4) + 20.0);
-  EXPECT_LT(strength(-0.95), 5.0);
-}
-
-TEST_F(SceneTest, ALineIsAsWideAsItsPixelsTimesTheScale) {
-  camera_.yaw_rad = camera_.pitch_rad = 0.0;
-  const vec3 a = camera_.target_m - kUp * 0.5, b = camera_.target_m + kUp * 0.5;
-  for (const double scale : {1.0, 2.0}) {
-    scale_ = scale;
-    content_.lines.clear();
-    const Pixels without = drawn(content_);
-    content_.lines = {{a, b, rgb(0xffffff), 4.0}};
-    const Pixels with = drawn(content_);
-    double covered = 0.0;  // pixels of one row
-    const int row = kHeight / 2;
-    for (int x = 0; x < kWidth; ++x) covered += differs(with, without, x, row);
-    EXPECT_NEAR(covered, 4.0 * scale, 1.1);
-  }
-}
-
-TEST_F(SceneTest, ALineThatPassesTheEyeIsCutThere) {
-  const vec3 behind = camera_.eye_m() + (camera_.eye_m() - camera_.target_m) * 0.5 + kUp * 0.1;
-  const Pixels without = drawn(content_);
-  content_.lines = {{camera_.target_m, behind, rgb(0xffffff), 3.0}};
-  const Extent seen = difference(without, drawn(content_));
-  EXPECT_GT(seen.pixels, 20);
-  EXPECT_NEAR(seen.bottom, kHeight / 2.0, 12.0);  // it rises from the middle, to above the eye
-}
-
-TEST_F(SceneTest, BodiesHideLinesBehindThem) {
-  camera_.yaw_rad = 0.0;
-  const vec3 at = camera_.target_m;
-  content_.bodies = {{at, at, 0.3, 0.3, vec3(0.0), 1.0, 1.0, kRed}};
-  const Pixels without = drawn(content_);
-  content_.lines = {{at - vec3(1.0, 0.0, 1.0), at + vec3(1.0, 0.0, -1.0), rgb(0xffffff), 4.0}};
-  const Pixels with = drawn(content_);
-  EXPECT_FALSE(differs(with, without, kWidth / 2, kHeight / 2));
-  const vec3 beside = place(at + vec3(0.8, 0.0, -1.0));
-  EXPECT_TRUE(differs(with, without, static_cast<int>(beside.x), static_cast<int>(beside.y)));
 }
 
 // Seen from the side, the eye a hand above the floor: the floor's line is as good as one row.
@@ -310,7 +157,7 @@ TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
   orbit(camera_, 0.0, -1.0);
   ASSERT_LT(camera_.eye_m().y, 0.11);
   const Body body = body_of(
-      std::make_shared<const WalkModel>(std::move(*walk_model(procedural_gait(), Character{}))));
+      std::make_shared<const WalkModel>(value_of(walk_model(procedural_gait(), Character{}))));
   Stick stick;
   stick.left = {0.2, 0.7};
   const GaitParams params = gait_params(stick, StyleValues{}, GaitLimits{});
@@ -343,12 +190,7 @@ TEST_F(SceneTest, TheLightThemeIsBright) {
 }
 
 TEST_F(SceneTest, OutsideTheViewportNothingChanges) {
-  surface_->begin();
-  glClearColor(1.0f, 0.0f, 1.0f, 1.0f);
-  glClear(GL_COLOR_BUFFER_BIT);
-  const Viewport viewport{40, 30, 200, 120};
-  scene_->draw(content_, camera_, theme_of(theme_), viewport, kHeight, 1.0);
-  const Pixels pixels = read_pixels(kWidth, kHeight);
+  const Pixels pixels = over_magenta({40, 30, 200, 120}, kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const std::uint8_t* c = pixels.rgba.data() + 4 * (y * kWidth + x);
@@ -364,11 +206,7 @@ TEST_F(SceneTest, EveryViewportSizeIsFilled) {
        {std::pair(500, 300), std::pair(101, 77), std::pair(640, 90)}) {
     SDL_SetWindowSize(surface_->window(), width, height);
     SDL_PumpEvents();
-    surface_->begin();
-    glClearColor(1.0f, 0.0f, 1.0f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    scene_->draw(content_, camera_, theme_of(theme_), {0, 0, width, height}, height, 1.0);
-    const Pixels pixels = read_pixels(width, height);
+    const Pixels pixels = over_magenta({0, 0, width, height}, width, height);
     for (std::size_t i = 0; i < pixels.rgba.size(); i += 4) {
       ASSERT_FALSE(pixels.rgba[i] == 255 && pixels.rgba[i + 1] == 0) << i;
     }
@@ -379,8 +217,7 @@ TEST_F(SceneTest, WhatIsNotFiniteIsLeftOut) {
   const Pixels without = drawn(content_);
   content_.has_shadows = true;
   const vec3 nowhere(kNan, 0.0, 0.0), at = camera_.target_m;
-  content_.bodies = {{nowhere, at, 0.1, 0.1, vec3(0.0), 1.0, 1.0, kRed},
-                     {at, at, kNan, 0.1, vec3(0.0), 1.0, 1.0, kRed}};
+  content_.bodies = {bone(nowhere, at, 0.1), bone(at, at, kNan, 0.1)};
   content_.lines = {{at, nowhere, kRed, 3.0}};
   content_.joints_m = {nowhere};
   content_.trails = {{{nowhere, nowhere, at}, kRed}};
@@ -390,7 +227,7 @@ TEST_F(SceneTest, WhatIsNotFiniteIsLeftOut) {
 TEST_F(SceneTest, AnotherSceneDrawsTheSameInAnotherContext) {
   content_.has_shadows = content_.has_axes = true;
   const vec3 at = camera_.target_m;
-  content_.bodies = {{at, at - kUp * 0.7, 0.1, 0.1, vec3(0.0), 1.0, 1.0, kRed}};
+  content_.bodies = {bone(at, at - kUp * 0.7, 0.1)};
   const Pixels first = drawn(content_);
   scene_.reset();
   surface_.reset();

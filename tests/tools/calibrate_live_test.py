@@ -11,8 +11,7 @@ import time
 import tomllib
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
+from program import PROGRAM, ROOT
 sys.path[:0] = [str(ROOT / "tests/session"), str(ROOT / "tools/rig")]
 from make_trace import DESCRIPTOR, FULL  # noqa: E402
 from terminal import Terminal  # noqa: E402

@@ -8,31 +8,25 @@ import resource
 import shutil
 import subprocess
 import sys
-import tempfile
 import tomllib
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from stick_trace import Stick, thumb, trace_text  # noqa: E402
+from program import FolderCase, ROOT, run
+from stick_trace import Stick, thumb, trace_text
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared/data/hid"
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
 SERIAL = "AA:BB:01"
 
 
-class Calibrate(unittest.TestCase):
+class Calibrate(FolderCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.own = self.folder / "config/gaitpad/calibration"
 
     def run_program(self, *arguments, environment=None, before=None):
         own = {"XDG_CONFIG_HOME": str(self.folder / "config")} if environment is None else environment
         kept = {k: v for k, v in os.environ.items() if k not in ("XDG_CONFIG_HOME", "HOME")}
-        return subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                              check=False, timeout=120, env={**kept, **own}, preexec_fn=before, cwd=self.folder)
+        return run(*arguments, env={**kept, **own}, preexec_fn=before, cwd=self.folder)
 
     def trace(self, left=None, right=None, steps=None, **options):
         path = self.folder / f"{options.pop('file', 'made')}.hid"

@@ -7,19 +7,18 @@ import subprocess
 import sys
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = sys.argv[1] if len(sys.argv) > 1 else "gaitpad"
+from program import PROGRAM, ROOT, run
+
 TARGET = pathlib.Path("/etc/udev/rules.d/60-gaitpad.rules")
 
 
-def run(*arguments, answer=""):
-    return subprocess.run([PROGRAM, "doctor", *arguments], input=answer, capture_output=True, text=True, check=False,
-                          timeout=60)
+def doctor(*arguments, answer=""):
+    return run("doctor", *arguments, input=answer)
 
 
 class Doctor(unittest.TestCase):
     def test_findings_have_node_cause_and_fix(self):
-        done = run("--json")
+        done = doctor("--json")
         findings = json.loads(done.stdout)
         self.assertGreater(len(findings), 0)
         for finding in findings:
@@ -29,17 +28,17 @@ class Doctor(unittest.TestCase):
             self.assertNotIn("\n", finding["cause"] + finding["fix"])
 
     def test_the_exit_status_tells_whether_a_pad_is_usable(self):
-        done = run("--json")
+        done = doctor("--json")
         is_usable = any(f["state"] == "usable" for f in json.loads(done.stdout))
         self.assertEqual(done.returncode, 0 if is_usable else 1)
 
     def test_text_is_one_line_a_finding(self):
-        count = len(json.loads(run("--json").stdout))
-        self.assertEqual(len(run().stdout.splitlines()), count)
+        count = len(json.loads(doctor("--json").stdout))
+        self.assertEqual(len(doctor().stdout.splitlines()), count)
 
     def test_wrong_usage_is_2(self):
-        self.assertEqual(run("--yes").returncode, 2)
-        self.assertEqual(run("--install-rules", "--json").returncode, 2)
+        self.assertEqual(doctor("--yes").returncode, 2)
+        self.assertEqual(doctor("--install-rules", "--json").returncode, 2)
 
 
 class InstallRules(unittest.TestCase):
@@ -51,7 +50,7 @@ class InstallRules(unittest.TestCase):
 
     def test_shows_the_file_and_refuses_without_a_yes(self):
         for answer in ("", "n\n", "no\n", "\n", "maybe\n"):
-            done = run("--install-rules", answer=answer)
+            done = doctor("--install-rules", answer=answer)
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertTrue(done.stdout.startswith((ROOT / "config/udev/60-gaitpad.rules").read_text()))
             self.assertIn(str(TARGET), done.stderr)

@@ -7,15 +7,14 @@ import math
 import os
 import pathlib
 import struct
-import subprocess
 import sys
 import tempfile
 import time
 import unittest
 import zlib
 
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from program import PROGRAM, ROOT, run
+
 MOCAP = ROOT.parent / "shared" / "data" / "mocap"
 FIGURES = ("figure2", "figure3", "figure4", "figure5a", "figure5b", "figure5a_paper", "figure5b_paper")
 STYLES = {"figure5a": ("even", "stiff_hip", "stiff_knee"),
@@ -25,7 +24,7 @@ LIMIT_S = 30.0
 
 
 def figures(*arguments):
-    return subprocess.run([PROGRAM, "figures", *map(str, arguments)], capture_output=True, text=True, check=False)
+    return run("figures", *arguments)
 
 
 def columns_of(path):

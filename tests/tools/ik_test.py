@@ -3,12 +3,12 @@
 import csv
 import math
 import pathlib
-import subprocess
 import sys
 import tempfile
 import unittest
 
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
+from program import run
+
 GOAL = (0.1, -0.6, 0.2)
 CHAIN = """goal_m = [0.1, -0.6, 0.2]
 tolerance_m = 1e-6
@@ -41,7 +41,7 @@ class Ik(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "chain.toml"
             path.write_text(text)
-            return subprocess.run([PROGRAM, "ik", path, *options], capture_output=True, text=True, check=False)
+            return run("ik", path, *options)
 
     def rows(self, *options):
         done = self.run_chain(CHAIN, *options)
@@ -71,7 +71,7 @@ class Ik(unittest.TestCase):
             self.assertEqual(len(done.stderr.strip().splitlines()), 1)
 
     def test_no_file_is_a_failure_and_no_mode_a_usage_error(self):
-        self.assertEqual(subprocess.run([PROGRAM, "ik", "/none.toml"], capture_output=True, check=False).returncode, 1)
+        self.assertEqual(run("ik", "/none.toml").returncode, 1)
         self.assertEqual(self.run_chain(CHAIN, "--mode", "fast").returncode, 2)
 
 

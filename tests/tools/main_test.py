@@ -1,17 +1,12 @@
 #!/usr/bin/python3
 """gaitpad itself: version, help, and the benchmark's list."""
 import json
-import pathlib
 import subprocess
 import sys
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = sys.argv[1] if len(sys.argv) > 1 else "gaitpad"
+from program import PROGRAM, ROOT, run
 
-
-def run(*arguments):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False)
 
 
 class Main(unittest.TestCase):

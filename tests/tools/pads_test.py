@@ -1,24 +1,19 @@
 #!/usr/bin/python3
 """gaitpad pads: a list that a script can read, with or without devices."""
 import json
-import subprocess
 import sys
 import unittest
 
-PROGRAM = sys.argv[1] if len(sys.argv) > 1 else "gaitpad"
+from program import run
+
 KEYS = {"driver": str, "path": str, "bus": str, "vendor": int, "product": int, "name": str, "unique_id": str,
         "port": str, "kernel_driver": str, "usages": list, "poll_rate_hz": (float, int, type(None)), "usable": bool,
         "problem": str, "chosen": bool}
 
 
-def run(*arguments):
-    return subprocess.run([PROGRAM, "pads", *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          check=False, timeout=60)
-
-
 class Pads(unittest.TestCase):
     def test_every_row_has_the_keys_of_the_contract(self):
-        done = run("--json")
+        done = run("pads", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         for row in json.loads(done.stdout):
             if set(row) == {"driver", "problem"}:  # built without its library
@@ -30,23 +25,23 @@ class Pads(unittest.TestCase):
             self.assertEqual(row["usable"], row["problem"] == "")
 
     def test_at_most_one_is_chosen_and_it_is_usable(self):
-        rows = [row for row in json.loads(run("--json").stdout) if "chosen" in row]
+        rows = [row for row in json.loads(run("pads", "--json").stdout) if "chosen" in row]
         chosen = [row for row in rows if row["chosen"]]
         self.assertEqual(len(chosen), 1 if any(row["usable"] for row in rows) else 0)
         self.assertTrue(all(row["usable"] for row in chosen))
         self.assertEqual(rows[:len(chosen)], chosen)
 
     def test_text_says_something_in_any_case(self):
-        done = run()
+        done = run("pads")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotEqual(done.stdout.strip(), "")
 
     def test_one_driver_alone(self):
         for driver in ("hidraw", "evdev", "usb", "sdl"):
-            done = run("--driver", driver, "--json")
+            done = run("pads", "--driver", driver, "--json")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertLessEqual({row["driver"] for row in json.loads(done.stdout)}, {driver})
-        self.assertEqual(run("--driver", "magic").returncode, 2)
+        self.assertEqual(run("pads", "--driver", "magic").returncode, 2)
 
 
 if __name__ == "__main__":

@@ -6,21 +6,14 @@ import pathlib
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 import unittest.mock
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
-ROUND = str(ROOT / "config/traces/round.hid")
+from program import FolderCase, PROGRAM, ROUND, run
+
 SECONDS = 3
 LIVE_KEYS = {"overruns", "lost", "recording_lost", "tick_us_median", "tick_us_max", "wait_us_median", "wait_us_max"}
-
-
-def run(*arguments, **options):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False,
-                          **{"stdin": subprocess.DEVNULL, "timeout": 120, **options})
 
 
 def short_trace():
@@ -29,11 +22,9 @@ def short_trace():
     return "".join(line for line in lines if not line.startswith(("E:", "C:", "Q:")) or line[3:16] < "000001.500000")
 
 
-class PlayCase(unittest.TestCase):
+class PlayCase(FolderCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.record = str(self.folder / "session.hid")
 
     def replay_hash(self, *options):

@@ -9,15 +9,9 @@ import tempfile
 import time
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
+from program import FolderCase, PROGRAM, ROOT, ROUND, run
+
 DUALSHOCK = ROOT / "tests/data/pads/054c_09cc.hid"
-ROUND = ROOT / "config/traces/round.hid"
-
-
-def run(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          check=False, timeout=120)
 
 
 def reports(path, until="999999"):
@@ -31,16 +25,14 @@ def header(path, letters):
     return [line for line in lines if line[:2] in [letter + ":" for letter in letters]]
 
 
-class Record(unittest.TestCase):
+class Record(FolderCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.out = self.folder / "out.hid"
 
     def short(self):
         trace = self.folder / "short.hid"
-        lines = ROUND.read_text().splitlines(keepends=True)
+        lines = pathlib.Path(ROUND).read_text().splitlines(keepends=True)
         trace.write_text("".join(l for l in lines if l[:2] not in ("E:", "C:", "Q:") or l[3:16] < "000002.000000"))
         return trace
 
@@ -73,7 +65,7 @@ class Record(unittest.TestCase):
 
     def test_signals_and_seconds_leave_a_complete_file(self):
         for number in (signal.SIGINT, signal.SIGTERM):
-            with subprocess.Popen([PROGRAM, "record", str(ROUND), "--out", str(self.out)], text=True,
+            with subprocess.Popen([PROGRAM, "record", ROUND, "--out", str(self.out)], text=True,
                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
                 time.sleep(2.5)
                 process.send_signal(number)

@@ -3,15 +3,14 @@
 import csv
 import json
 import os
-import pathlib
 import resource
 import subprocess
 import sys
-import tempfile
 import unittest
 import unittest.mock
 
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
+from program import FolderCase, PROGRAM, run
+
 RATE_HZ = 240
 COLUMNS = (
     "tick,time_s,stick_x,stick_y,stride_left_m,stride_right_m,speed_m_s,turn_rate_rad_s,heading_rad,"
@@ -35,11 +34,9 @@ def end(seconds):
     return f"Q: {seconds:013.6f} {round(seconds * RATE_HZ)}\n"
 
 
-class ReplayCase(unittest.TestCase):
+class ReplayCase(FolderCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.out = self.folder / "out"
 
     def write(self, name, text):
@@ -48,8 +45,7 @@ class ReplayCase(unittest.TestCase):
 
     def run_program(self, trace_text, *options):
         trace = self.write("made.hid", trace_text)
-        return subprocess.run([PROGRAM, "replay", trace, "--out", str(self.out), *options],
-                              capture_output=True, text=True, check=False)
+        return run("replay", trace, "--out", self.out, *options)
 
     def replay(self, trace_text, *options):
         """Rows of frames.csv and the summary."""

@@ -14,10 +14,10 @@ import tempfile
 import time
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = str(pathlib.Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else "gaitpad"
+import program
+from program import PROGRAM, ROOT, ROUND
+
 PICTURES = pathlib.Path(PROGRAM).parent / "pictures"
-ROUND = str(ROOT / "config/traces/round.hid")
 sys.path.insert(0, str(ROOT / "tests/session"))
 
 if shutil.which("Xvfb") is None:
@@ -63,8 +63,7 @@ def environment(display=None, **more):
 
 
 def run(*arguments, display=None, env=None, **options):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False, timeout=180,
-                          stdin=subprocess.DEVNULL, env=env or environment(display), **options)
+    return program.run(*arguments, timeout=180, env=env or environment(display), **options)
 
 
 def walk_trace(path):

@@ -9,6 +9,7 @@
 
 #include "animation/made_body.h"
 #include "motion/load.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -176,16 +177,14 @@ TEST(WalkBody, ChildrenAndGiantsHoldOnToo) {
 }
 
 TEST(WalkBody, OfRealWalksReachesAndStaysSound) {
-  const std::filesystem::path folder = std::string(GAITPAD_SHARED_DATA) + "/mocap";
-  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
+  GAITPAD_NEEDS(kCapturedMotions);
   int walks = 0;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    if (file.path().extension() != ".bvh") continue;
-    const auto motion = load_motion(file.path().string());
+  for (const std::string& file : files_in(kCapturedMotions, ".bvh")) {
+    const auto motion = load_motion(file);
     if (!motion) continue;
     const auto cycle = gait_cycle(*motion);
     if (!cycle) continue;
-    SCOPED_TRACE(file.path().filename().string());
+    SCOPED_TRACE(std::filesystem::path(file).filename().string());
     ++walks;
     const WalkModel model = model_of(*cycle);
     EXPECT_TRUE(model.body.arm[0].is_there && model.body.arm[1].is_there);

@@ -2,20 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <charconv>
-#include <filesystem>
-#include <fstream>
+
+#include "tests/own_folder.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
 
-TomlFile parsed(const std::string& text) {
-  auto file = TomlFile::parse(text, "f.toml");
-  EXPECT_TRUE(file) << file.error().message;
-  return std::move(*file);
-}
+TomlFile parsed(const std::string& text) { return value_of(TomlFile::parse(text, "f.toml")); }
 std::string syntax_error(const std::string& text) {
   auto file = TomlFile::parse(text, "f.toml");
   return file ? "none" : file.error().message;
@@ -179,17 +175,15 @@ TEST(TomlFile, DotsInStringsCommentsAndNumbersAreNoKeyParts) {
 }
 
 TEST(TomlFile, FilesThatCannotBeReadAreNamed) {
-  const std::string folder = testing::TempDir() + "gaitpad_toml_" + std::to_string(getpid());
-  std::filesystem::create_directories(folder);
+  const OwnFolder own;
+  const std::string folder = own.path.string();
   EXPECT_EQ(TomlFile::load(folder + "/no").error().message, folder + "/no: no such file");
   EXPECT_EQ(TomlFile::load(folder).error().message, folder + ": not a regular file");
   const std::string fifo = folder + "/fifo";
   mkfifo(fifo.c_str(), 0600);
   EXPECT_EQ(TomlFile::load(fifo).error().message, fifo + ": not a regular file");
-  const std::string big = folder + "/big";
-  std::ofstream(big) << std::string(kMaxTomlBytes + 1, '#');
+  const std::string big = own.write("big", std::string(kMaxTomlBytes + 1, '#'));
   EXPECT_EQ(TomlFile::load(big).error().message, big + ": larger than 1048576 bytes");
-  std::filesystem::remove_all(folder);
 }
 
 TEST(TomlFile, QuotedTextIsShortAndPrintable) {

@@ -1,34 +1,29 @@
 #include "control/style.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <random>
 
 #include "base/math.h"
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
 
 class StyleFile : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   Result<Style> loaded(const std::string& text) {
-    std::ofstream(path_) << text;
-    return load_style(path_);
+    return load_style(own_.write("mine.toml", text));
   }
   std::string refusal(const std::string& text) {
     auto style = loaded(text);
     return style ? "none" : style.error().message.substr(path_.size());
   }
-  // Tests run side by side, each in its own process.
-  std::string folder_ = testing::TempDir() + "gaitpad_style_" + std::to_string(getpid());
-  std::string path_ = folder_ + "/mine.toml";
+
+  OwnFolder own_;
+  const std::string path_ = own_.at("mine.toml");
 };
 
 TEST_F(StyleFile, EmptyFileIsTheEvenStyleNamedAfterTheFile) {

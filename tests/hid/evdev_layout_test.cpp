@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 
 #include "hid/decode.h"
 #include "hid/trace.h"
 #include "tests/hid/made_pads.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -363,11 +363,8 @@ void expect_same_through_evdev(const std::string& path, const PadOverrides& over
 TEST(EvdevLayout, AHidPadIsTheSameThroughHidrawAndThroughEvdev) {
   const PadOverrides overrides = shipped_pads();
   int compared = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(GAITPAD_SOURCE_DIR "/tests/data/pads")) {
-    if (entry.path().extension() != ".hid") continue;
-    expect_same_through_evdev(entry.path().string(), overrides, compared);
-  }
+  for (const std::string& path : files_in(kGoldenPads, ".hid"))
+    expect_same_through_evdev(path, overrides, compared);
   EXPECT_GE(compared, 8);
 }
 

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "hid/decode.h"
 #include "hid/trace.h"
 #include "tests/hid/made_pads.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -72,10 +72,8 @@ void check_pad(const std::string& path, const PadOverrides& overrides) {
 TEST(GoldenPads, EveryReportDecodesAsThePadsMakerMeantIt) {
   const PadOverrides overrides = shipped_pads();
   int pads = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(GAITPAD_SOURCE_DIR "/tests/data/pads")) {
-    if (entry.path().extension() != ".hid") continue;
-    check_pad(entry.path().string(), overrides);
+  for (const std::string& path : files_in(kGoldenPads, ".hid")) {
+    check_pad(path, overrides);
     ++pads;
   }
   EXPECT_GE(pads, 12);

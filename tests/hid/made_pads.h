@@ -11,6 +11,8 @@
 
 namespace gaitpad {
 
+inline const std::string kGoldenPads = GAITPAD_SOURCE_DIR "/tests/data/pads";
+
 inline PadOverrides shipped_pads() {
   return value_of(load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads"));
 }

@@ -13,11 +13,10 @@
 #include "hid/sdl_mapping.h"
 #include "hid/trace.h"
 #include "tests/hid/made_pads.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
-
-const std::string kShared = GAITPAD_SHARED_DATA "/hid";
 
 struct KnownPad {
   std::string path;
@@ -28,15 +27,13 @@ struct KnownPad {
 std::vector<KnownPad> known_pads() {
   const PadOverrides overrides = shipped_pads();
   std::vector<KnownPad> pads;
-  for (const std::string& folder : {std::string(GAITPAD_SOURCE_DIR "/tests/data/pads"), kShared}) {
-    std::error_code code;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
-      if (entry.path().extension() != ".hid") continue;
-      const auto trace = read_trace(entry.path().string());
+  for (const std::string& folder : {kGoldenPads, kPadRecordings}) {
+    for (const std::string& path : files_in(folder, ".hid")) {
+      const auto trace = read_trace(path);
       if (!trace || trace->devices.size() != 1) continue;
       auto layout = pad_layout(trace->devices[0].info, overrides);
       if (!layout || !layout->is_pad) continue;
-      pads.push_back({entry.path().string(), trace->devices[0].info, std::move(*layout)});
+      pads.push_back({path, trace->devices[0].info, std::move(*layout)});
     }
   }
   return pads;
@@ -123,7 +120,7 @@ TEST(SdlMappingWrite, WhatIsWrittenReadsBackToTheSameControlsOfEveryKnownPad) {
 // pad's own controls, as the recordings here do.
 std::vector<Controls> data_base_lines(const std::string& guid) {
   std::vector<Controls> lines;
-  std::ifstream file(kShared + "/gamecontrollerdb.txt");
+  std::ifstream file(kPadRecordings + "gamecontrollerdb.txt");
   for (std::string line; std::getline(file, line);) {
     if (line.find("platform:Linux") == std::string::npos || line.size() < 32) continue;
     if (line.compare(0, 20, guid, 0, 20) != 0 || line.compare(28, 4, "0000") != 0) continue;
@@ -143,8 +140,8 @@ bool agrees(const Controls& mine, const Controls& theirs) {
 }
 
 TEST(SdlMappingWrite, AxesAndButtonsAreThoseOfSdlsDataBase) {
-  if (!std::filesystem::exists(kShared + "/gamecontrollerdb.txt")) {
-    GTEST_SKIP() << "no data base at " << kShared;
+  if (!std::filesystem::exists(kPadRecordings + "gamecontrollerdb.txt")) {
+    GTEST_SKIP() << "no data base at " << kPadRecordings;
   }
   std::set<std::string> agreed;
   for (const KnownPad& pad : known_pads()) {

@@ -1,4 +1,6 @@
 // Recordings and descriptors of real devices, which stay outside the repository.
+#include "tests/shared_data.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,22 +16,15 @@
 namespace gaitpad {
 namespace {
 
-const std::string kFolder = GAITPAD_SHARED_DATA "/hid";
-
-#define NEEDS_SHARED_DATA() \
-  if (!std::filesystem::is_directory(kFolder)) GTEST_SKIP() << "no shared data at " << kFolder
-
 std::vector<std::string> recordings() {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
-    if (entry.path().extension() == ".hid") names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
+  for (const std::string& path : files_in(kPadRecordings, ".hid"))
+    names.push_back(std::filesystem::path(path).filename().string());
   return names;
 }
 
 TEST(SharedData, EveryFileParsesAndPadsAreToldFromTheRest) {
-  NEEDS_SHARED_DATA();
+  GAITPAD_NEEDS(kPadRecordings);
   const std::vector<std::string> no_pads = {"legion_go_shortcuts.hid",
                                             "legion_go_vendor_raw.hid",
                                             "msi_claw_main.hid",
@@ -38,7 +33,7 @@ TEST(SharedData, EveryFileParsesAndPadsAreToldFromTheRest) {
                                             "steamdeck_controller.rdesc.hid",
                                             "steamdeck_lcd_lizard_mouse.hid"};
   for (const std::string& name : recordings()) {
-    const auto trace = read_trace(kFolder + "/" + name);
+    const auto trace = read_trace(kPadRecordings + name);
     ASSERT_TRUE(trace) << trace.error().message;
     ASSERT_EQ(trace->devices.size(), 1u) << name;
     const auto layout = pad_layout(trace->devices[0].info, {});
@@ -49,9 +44,9 @@ TEST(SharedData, EveryFileParsesAndPadsAreToldFromTheRest) {
 }
 
 TEST(SharedData, EveryReportFitsItsDescriptor) {
-  NEEDS_SHARED_DATA();
+  GAITPAD_NEEDS(kPadRecordings);
   for (const std::string& name : recordings()) {
-    const auto trace = read_trace(kFolder + "/" + name);
+    const auto trace = read_trace(kPadRecordings + name);
     ASSERT_TRUE(trace);
     const auto layout = pad_layout(trace->devices[0].info, {});
     ASSERT_TRUE(layout);
@@ -63,9 +58,9 @@ TEST(SharedData, EveryReportFitsItsDescriptor) {
 }
 
 TEST(SharedData, EveryRecordingComesBackFromTheWriter) {
-  NEEDS_SHARED_DATA();
+  GAITPAD_NEEDS(kPadRecordings);
   for (const std::string& name : recordings()) {
-    const auto trace = read_trace(kFolder + "/" + name);
+    const auto trace = read_trace(kPadRecordings + name);
     ASSERT_TRUE(trace);
     const auto back = parse_trace(trace_text(*trace), name);
     ASSERT_TRUE(back) << back.error().message;
@@ -77,7 +72,7 @@ TEST(SharedData, EveryRecordingComesBackFromTheWriter) {
 
 // The sizes that the folder's INDEX.md states were found by another parser.
 TEST(SharedData, ReportLengthsAgreeWithTheIndex) {
-  NEEDS_SHARED_DATA();
+  GAITPAD_NEEDS(kPadRecordings);
   const std::map<std::string, std::vector<std::pair<int, std::uint32_t>>> stated = {
       {"asus_gamepad.rdesc.hid", {{1, 64}, {3, 56}}},
       {"ds4_usb.rdesc.hid", {{1, 504}}},
@@ -93,7 +88,7 @@ TEST(SharedData, ReportLengthsAgreeWithTheIndex) {
       {"xbox_one_s_bt_windows.rdesc.hid", {{1, 120}, {2, 8}, {4, 8}}},
   };
   for (const auto& [name, lengths] : stated) {
-    const auto trace = read_trace(kFolder + "/" + name);
+    const auto trace = read_trace(kPadRecordings + name);
     ASSERT_TRUE(trace);
     const auto d = parse_descriptor(trace->devices[0].info.descriptor);
     ASSERT_TRUE(d);
@@ -122,8 +117,8 @@ std::vector<std::int64_t> recorded_values(const std::string& line) {
 }
 
 TEST(SharedData, FieldsAgreeWithHidRecordersOwnDecoding) {
-  NEEDS_SHARED_DATA();
-  const std::string path = kFolder + "/dualsense_usb_l1.raw.hid";
+  GAITPAD_NEEDS(kPadRecordings);
+  const std::string path = kPadRecordings + "dualsense_usb_l1.raw.hid";
   const auto trace = read_trace(path);
   ASSERT_TRUE(trace);
   const auto d = parse_descriptor(trace->devices[0].info.descriptor);
@@ -152,7 +147,7 @@ struct Recorded {
 
 // Each recording is named after what its maker's thumb did.
 TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
-  NEEDS_SHARED_DATA();
+  GAITPAD_NEEDS(kPadRecordings);
   const PadOverrides overrides = shipped_pads();
   for (const auto& [file, button] : {Recorded{"circle", kButtonB},
                                      {"x", kButtonA},
@@ -165,7 +160,7 @@ TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
                                      {"dpad_down", kButtonDpadDown},
                                      {"dpad_left", kButtonDpadLeft},
                                      {"dpad_right", kButtonDpadRight}}) {
-    const auto trace = read_trace(kFolder + "/dualsense_usb_" + file + ".hid");
+    const auto trace = read_trace(kPadRecordings + "dualsense_usb_" + file + ".hid");
     ASSERT_TRUE(trace) << trace.error().message;
     const auto layout = pad_layout(trace->devices[0].info, overrides);
     ASSERT_TRUE(layout);
@@ -182,7 +177,7 @@ TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
 // The largest and smallest position of each axis in a recording.
 std::array<std::pair<float, float>, kAxisCount> extremes(const std::string& file) {
   std::array<std::pair<float, float>, kAxisCount> range{};
-  const auto trace = read_trace(kFolder + "/" + file);
+  const auto trace = read_trace(kPadRecordings + file);
   const auto layout = pad_layout(trace->devices[0].info, shipped_pads());
   PadState state;
   for (const TraceEvent& event : trace->events) {
@@ -196,7 +191,7 @@ std::array<std::pair<float, float>, kAxisCount> extremes(const std::string& file
 }
 
 TEST(SharedData, DualSenseSticksAndTriggersMoveAlone) {
-  NEEDS_SHARED_DATA();
+  GAITPAD_NEEDS(kPadRecordings);
   const auto is_still = [](std::pair<float, float> r) {
     return r.first > -0.15f && r.second < 0.15f;
   };
@@ -218,8 +213,8 @@ TEST(SharedData, DualSenseSticksAndTriggersMoveAlone) {
 }
 
 TEST(SharedData, EliteTwoPressesItsFourPaddles) {
-  NEEDS_SHARED_DATA();
-  const auto trace = read_trace(kFolder + "/xbox_elite2_bt_paddles_only.hid");
+  GAITPAD_NEEDS(kPadRecordings);
+  const auto trace = read_trace(kPadRecordings + "xbox_elite2_bt_paddles_only.hid");
   ASSERT_TRUE(trace);
   const auto layout = pad_layout(trace->devices[0].info, shipped_pads());
   PadState state;

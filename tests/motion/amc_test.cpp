@@ -3,18 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "motion/acclaim_text.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
 
-Asf skeleton() {
-  const auto asf = parse_asf(acclaim_skeleton(), "body.asf");
-  EXPECT_TRUE(asf);
-  return *asf;
-}
-
 Result<Amc> parsed(const std::string& text) {
-  static const Asf asf = skeleton();
+  static const Asf asf = value_of(parse_asf(acclaim_skeleton(), "body.asf"));
   return parse_amc(text, "walk.amc", asf, "body.asf");
 }
 
@@ -46,7 +41,7 @@ TEST(Amc, LineEndsBlankLinesCommentsAndTheFirstNumberDoNotMatter) {
 }
 
 TEST(Amc, AnglesAreTheSkeletonsUnlessTheFileSaysItself) {
-  Asf rad = skeleton();
+  Asf rad = value_of(parse_asf(acclaim_skeleton(), "body.asf"));
   rad.angle_unit = 1.0;
   const std::string bare = acclaim_frame(1);
   EXPECT_EQ(parse_amc(bare, "a", rad, "b")->angle_unit, 1.0);

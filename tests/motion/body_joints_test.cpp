@@ -7,6 +7,7 @@
 
 #include "motion/load.h"
 #include "motion/motion.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -164,12 +165,10 @@ TEST(BodyJoints, TwistJointsAndFingersAreNotTheArm) {
 
 // Every motion that there is: two arms with joints of the right order, a head above them.
 TEST(BodyJoints, OfRealMotionsAreArmsSpineAndHead) {
-  const std::filesystem::path folder = std::string(GAITPAD_SHARED_DATA) + "/mocap";
-  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
+  GAITPAD_NEEDS(kCapturedMotions);
   int count = 0;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    if (file.path().extension() != ".bvh") continue;
-    const auto motion = load_motion(file.path().string());
+  for (const std::string& file : files_in(kCapturedMotions, ".bvh")) {
+    const auto motion = load_motion(file);
     if (!motion) continue;
     const auto world = std::make_unique<JointFrames>();
     Pose pose;
@@ -180,7 +179,7 @@ TEST(BodyJoints, OfRealMotionsAreArmsSpineAndHead) {
     const BodyJoints found =
         find_body(motion->skeleton, motion->legs, motion->pelvis,
                   std::span(world->position_m.data(), motion->skeleton.joints.size()));
-    SCOPED_TRACE(file.path().filename().string());
+    SCOPED_TRACE(std::filesystem::path(file).filename().string());
     ++count;
     for (const ArmChain& arm : found.arm) {
       EXPECT_TRUE(arm.is_found());

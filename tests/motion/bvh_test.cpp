@@ -7,6 +7,7 @@
 
 #include "motion/bvh_text.h"
 #include "motion/skeleton.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -136,13 +137,10 @@ TEST(Bvh, AMissingFileOrAFolderIsOneSentence) {
 }
 
 TEST(Bvh, AllSharedFilesAreRead) {
-  const std::filesystem::path folder = std::string(GAITPAD_SHARED_DATA) + "/mocap";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
+  GAITPAD_NEEDS(kCapturedMotions);
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() != ".bvh") continue;
-    const auto bvh = read_bvh(entry.path().string());
+  for (const std::string& entry : files_in(kCapturedMotions, ".bvh")) {
+    const auto bvh = read_bvh(entry);
     EXPECT_TRUE(bvh) << bvh.error().message;
     ++files;
   }
@@ -150,11 +148,9 @@ TEST(Bvh, AllSharedFilesAreRead) {
 }
 
 TEST(Bvh, LineEndsOfASharedFileChangeNothing) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
-  const auto lf = read_bvh(folder + "mocapbank_test.bvh");
-  const auto crlf = read_bvh(folder + "mocapbank_test_crlf.bvh");
+  GAITPAD_NEEDS(kCapturedMotions);
+  const auto lf = read_bvh(kCapturedMotions + "mocapbank_test.bvh");
+  const auto crlf = read_bvh(kCapturedMotions + "mocapbank_test_crlf.bvh");
   ASSERT_TRUE(lf && crlf);
   EXPECT_EQ(lf->values, crlf->values);
 }

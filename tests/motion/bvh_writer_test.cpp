@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <memory>
 #include <sstream>
 
@@ -10,6 +9,7 @@
 #include "motion/bvh_text.h"
 #include "motion/load.h"
 #include "motion/tracks.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -147,12 +147,10 @@ TEST(BvhWriter, ATurningRootNeverFlipsAChannel) {
 }
 
 TEST(BvhWriter, SharedWalksComeBackWithinAMicrometreAndSmooth) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
+  GAITPAD_NEEDS(kCapturedMotions);
   for (const char* file : {"bvhtoolbox_walk01.bvh", "cmu_007_01_iclone.bvh", "cmu_m21_walk.bvh",
                            "makehuman_walk1.bvh", "dpr_walk_simple.bvh", "sheffield_swagger.bvh"}) {
-    const auto m = load_motion(folder + file);
+    const auto m = load_motion(kCapturedMotions + file);
     ASSERT_TRUE(m) << m.error().message;
     const auto bvh = parse_bvh(exported(*m), file);
     ASSERT_TRUE(bvh) << bvh.error().message;

@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "motion/bvh_text.h"
 #include "motion/cycle_leg.h"
 #include "motion/load.h"
+#include "motion/made_motion.h"
+#include "tests/shared_data.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
@@ -32,11 +33,6 @@ Motion grown(Motion m, double factor) {
 // Of a skeleton alone the lowest joint counts as the sole; the procedural toe has some flesh below.
 vec3 flesh(const GaitCycle& source) { return source.leg[0].toe_end_rest_m * kUp; }
 
-LegPose pose_of(const GaitCycle& cycle, int i, int side) {
-  const CycleSample& at = cycle.samples[i];
-  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, at.leg[side].angles, at.leg[side].toe_x);
-}
-
 TEST(CycleOnSkeleton, OnItsOwnSkeletonIsTheSameWalk) {
   const GaitCycle source = procedural_gait();
   const auto same = cycle_on_skeleton(source, standing_body(source));
@@ -46,7 +42,8 @@ TEST(CycleOnSkeleton, OnItsOwnSkeletonIsTheSameWalk) {
     EXPECT_LT(glm::distance(same->samples[i].pelvis_m + flesh(source), source.samples[i].pelvis_m),
               1e-9);
     for (int side = 0; side < 2; ++side) {
-      const LegPose a = pose_of(*same, i, side), b = pose_of(source, i, side);
+      const LegPose a = pose_of(*same, same->samples[i], side),
+                    b = pose_of(source, source.samples[i], side);
       EXPECT_LT(glm::distance(a.ankle_m + flesh(source), b.ankle_m), 1e-9);
       EXPECT_LT(glm::distance(a.toe_m + flesh(source), b.toe_m), 1e-9);
     }
@@ -124,9 +121,7 @@ double angle_between_deg(const quat& a, const quat& b) {
 }
 
 GaitCycle on_skeleton(const GaitCycle& source, const Motion& body) {
-  auto cycle = cycle_on_skeleton(source, body);
-  EXPECT_TRUE(cycle) << cycle.error().message;
-  return *cycle;
+  return value_of(cycle_on_skeleton(source, body));
 }
 
 using Names = std::vector<std::pair<std::string, std::string>>;  // the procedural one, another
@@ -288,8 +283,9 @@ TEST(CycleOnSkeleton, MissingToesAreNoHindrance) {
   const GaitCycle with = on_skeleton(without, standing_body(source));
   for (int i = 0; i < kCycleSamples; i += 4) {
     for (int side = 0; side < 2; ++side) {
-      const LegPose a = pose_of(source, i, side), b = pose_of(without, i, side);
-      const LegPose c = pose_of(with, i, side);
+      const LegPose a = pose_of(source, source.samples[i], side),
+                    b = pose_of(without, without.samples[i], side);
+      const LegPose c = pose_of(with, with.samples[i], side);
       EXPECT_LT(glm::distance(a.ankle_m, b.ankle_m), 0.025) << "within the flesh below the toe";
       EXPECT_LT(angle_between_deg(a.foot, c.foot), 5.0);
     }
@@ -318,9 +314,7 @@ TEST(CycleOnSkeleton, AFootThatIsNowhereFlatStillPointsForward) {
 
 // Walks and skeletons of six houses on each other.
 TEST(CycleOnSkeleton, SharedBodiesTakeTheWalksOfOneAnother) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
+  GAITPAD_NEEDS(kCapturedMotions);
   struct Body {
     const char* file;
     std::string chest, head, arm, elbow, hand;
@@ -337,12 +331,12 @@ TEST(CycleOnSkeleton, SharedBodiesTakeTheWalksOfOneAnother) {
       {"cmu_m21_walk.bvh", "Spine1", "Head", "LeftArm", "LeftForeArm", "LeftHand"},
   };
   for (const Body& from : kBodies) {
-    const auto motion = load_motion(folder + from.file);
+    const auto motion = load_motion(kCapturedMotions + from.file);
     ASSERT_TRUE(motion);
     const auto source = gait_cycle(*motion);
     ASSERT_TRUE(source) << source.error().message;
     for (const Body& to : kBodies) {
-      const auto body = load_motion(folder + to.file);
+      const auto body = load_motion(kCapturedMotions + to.file);
       ASSERT_TRUE(body);
       const GaitCycle cycle = on_skeleton(*source, *body);
       for (int i = 0; i < kCycleSamples; i += 16) {

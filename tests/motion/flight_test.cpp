@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "motion/load.h"
 #include "motion/tracks.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -196,12 +195,10 @@ constexpr const char* kWalks[] = {
     "sheffield_swagger.bvh"};
 
 TEST(Flight, SharedWalksGiveBothFeetByTheRobustRuleAndSevenByThePapers) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
+  GAITPAD_NEEDS(kCapturedMotions);
   int literal = 0;
   for (const char* file : kWalks) {
-    const auto m = load_motion(folder + file);
+    const auto m = load_motion(kCapturedMotions + file);
     ASSERT_TRUE(m) << m.error().message;
     EXPECT_TRUE(robust_flight(*m, kLeftSide)) << file;
     EXPECT_TRUE(robust_flight(*m, kRightSide)) << file;
@@ -246,12 +243,10 @@ class Speed {
 };
 
 TEST(Flight, SharedSwingsAgreeWithAnotherSpeedCurveWithin80Ms) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
+  GAITPAD_NEEDS(kCapturedMotions);
   int count = 0;
   for (const char* file : kWalks) {
-    const auto m = load_motion(folder + file);
+    const auto m = load_motion(kCapturedMotions + file);
     ASSERT_TRUE(m) << m.error().message;
     for (const Side side : {kLeftSide, kRightSide}) {
       const Speed speed(*m, side);

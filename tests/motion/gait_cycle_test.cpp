@@ -5,20 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
 #include "motion/cycle_leg.h"
 #include "motion/load.h"
+#include "motion/made_motion.h"
 #include "motion/tracks.h"
+#include "tests/shared_data.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
-
-LegPose pose_at(const GaitCycle& cycle, int side, double phase) {
-  const CycleSample at = sample_at(cycle, phase);
-  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, at.leg[side].angles, at.leg[side].toe_x);
-}
 
 // The procedural motion cut to frames [first, last].
 Motion cut(int first, int last) {
@@ -233,8 +230,6 @@ TEST(GaitCycle, HalfAStrideIsRefused) { EXPECT_FALSE(gait_cycle(cut(0, 60))); }
 // ---- real clips
 // -----------------------------------------------------------------------------------
 
-std::filesystem::path mocap() { return std::filesystem::path(GAITPAD_SHARED_DATA) / "mocap"; }
-
 // gait-notes' walks but the one in place.
 constexpr const char* kWalks[] = {
     "bvhtoolbox_walk01", "cmu_006_01_iclone", "cmu_007_01_iclone", "cmu_007_04_iclone",
@@ -245,14 +240,9 @@ constexpr const char* kWalks[] = {
 class CapturedWalk : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    const std::filesystem::path file = mocap() / (std::string(GetParam()) + ".bvh");
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
-    auto loaded = load_motion(file.string());
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    motion = std::move(*loaded);
-    auto made = gait_cycle(motion);
-    ASSERT_TRUE(made) << made.error().message;
-    cycle = std::move(*made);
+    GAITPAD_NEEDS(kCapturedMotions);
+    motion = value_of(load_motion(kCapturedMotions + GetParam() + ".bvh"));
+    cycle = value_of(gait_cycle(motion));
   }
   Motion motion;
   GaitCycle cycle;
@@ -362,10 +352,10 @@ INSTANTIATE_TEST_SUITE_P(SharedData, CapturedWalk, testing::ValuesIn(kWalks),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(GaitCycle, OtherClipsAreRefusedInOneSentence) {
-  if (!std::filesystem::exists(mocap())) GTEST_SKIP() << mocap() << " is not here";
+  GAITPAD_NEEDS(kCapturedMotions);
   for (const char* name : {"mass_run", "cmu_01_01", "cmu_m21_old1", "pybvh_example",
                            "mocapbank_test", "daz3d_170_joints", "makehuman_walk1"}) {
-    const auto motion = load_motion((mocap() / (std::string(name) + ".bvh")).string());
+    const auto motion = load_motion(kCapturedMotions + name + ".bvh");
     ASSERT_TRUE(motion) << name;
     const auto cycle = gait_cycle(*motion);
     ASSERT_FALSE(cycle) << name;

@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "motion/bvh_text.h"
 #include "motion/load.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -160,11 +159,9 @@ constexpr SharedCase kShared[] = {
     {"wisc_example.bvh", "Hips", "LeftUpLeg LeftLowLeg LeftFoot LeftFoot_End LeftFoot_End"}};
 
 TEST(Legs, OfSharedFilesAreTheOnesAPersonWouldName) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
+  GAITPAD_NEEDS(kCapturedMotions);
   for (const SharedCase& c : kShared) {
-    const auto m = load_motion(folder + c.file);
+    const auto m = load_motion(kCapturedMotions + c.file);
     ASSERT_TRUE(m) << m.error().message;
     EXPECT_EQ(leg_text(*m, kLeftSide), c.left) << c.file;
     EXPECT_EQ(name_of(*m, m->pelvis), c.pelvis) << c.file;
@@ -173,12 +170,10 @@ TEST(Legs, OfSharedFilesAreTheOnesAPersonWouldName) {
 
 // Where names are taken away the shape finds the same joints.
 TEST(Legs, OfSharedFilesAreFoundByShapeToo) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
+  GAITPAD_NEEDS(kCapturedMotions);
   for (const char* file : {"bvhtoolbox_walk01.bvh", "cmu_12_01_walk.bvh", "cmu_m21_walk.bvh",
                            "dpr_walk_simple.bvh", "makehuman_walk1.bvh", "sheffield_swagger.bvh"}) {
-    auto m = load_motion(folder + file);
+    auto m = load_motion(kCapturedMotions + file);
     ASSERT_TRUE(m) << m.error().message;
     const auto named = m->legs;
     for (Joint& joint : m->skeleton.joints) joint.name = "x";

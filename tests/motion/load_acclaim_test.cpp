@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <memory>
 
 #include "motion/acclaim_text.h"
 #include "motion/load.h"
+#include "motion/made_motion.h"
 #include "motion/tracks.h"
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -16,12 +15,6 @@ namespace fs = std::filesystem;
 Result<Motion> loaded(const std::string& asf, const std::string& amc,
                       const LoadOptions& options = {}) {
   return motion_from_acclaim({"body.asf", asf}, {"walk.amc", amc}, options);
-}
-
-std::unique_ptr<JointFrames> world_of(const Motion& m, std::size_t frame = 0) {
-  auto world = std::make_unique<JointFrames>();
-  forward_kinematics(m, m.frames[frame], *world);
-  return world;
 }
 
 vec3 place(const Motion& m, const std::string& joint, std::size_t frame = 0) {
@@ -114,19 +107,11 @@ TEST(LoadAcclaim, AStatedUnitThatMakesNoLegIsNotBelieved) {
 
 class AcclaimFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) /
-              ("gaitpad_asf_" + std::string(info->name()) + std::to_string(::getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
+    return own_.write(name, text);
   }
-  fs::path folder_;
+  OwnFolder own_;
+  const fs::path folder_ = own_.path;
 };
 
 TEST_F(AcclaimFolder, TheSkeletonIsFoundByTheMotionsName) {

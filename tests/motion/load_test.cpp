@@ -3,26 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <memory>
 
 #include "motion/bvh_text.h"
 #include "motion/euler.h"
+#include "motion/made_motion.h"
 #include "motion/tracks.h"
+#include "tests/shared_data.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
 
-Motion loaded(const std::string& text) {
-  auto m = motion_from_bvh(text, "walk.bvh");
-  EXPECT_TRUE(m) << m.error().message;
-  return m ? *m : Motion{};
-}
-
-std::unique_ptr<JointFrames> world_of(const Motion& m, std::size_t frame = 0) {
-  auto world = std::make_unique<JointFrames>();
-  forward_kinematics(m, m.frames[frame], *world);
-  return world;
-}
+Motion loaded(const std::string& text) { return value_of(motion_from_bvh(text, "walk.bvh")); }
 
 void expect_near(const vec3& a, const vec3& b, double tolerance, const std::string& what = "") {
   EXPECT_LT(glm::distance(a, b), tolerance) << what << a.x << " " << a.y << " " << a.z;
@@ -142,13 +134,10 @@ TEST(Load, ZUpIsTurnedToYUp) {
 }
 
 TEST(Load, SharedFilesStandOnTheFloorWithAnAdultsLegs) {
-  const std::filesystem::path folder = std::string(GAITPAD_SHARED_DATA) + "/mocap";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() != ".bvh") continue;
-    const std::string name = entry.path().filename().string();
-    const auto m = load_motion(entry.path().string());
+  GAITPAD_NEEDS(kCapturedMotions);
+  for (const std::string& entry : files_in(kCapturedMotions, ".bvh")) {
+    const std::string name = std::filesystem::path(entry).filename().string();
+    const auto m = load_motion(entry);
     ASSERT_TRUE(m) << m.error().message;
     EXPECT_GT(leg_length_m(*m), 0.65) << name;
     EXPECT_LT(leg_length_m(*m), 1.05) << name;
@@ -167,12 +156,10 @@ TEST(Load, SharedFilesStandOnTheFloorWithAnAdultsLegs) {
 }
 
 TEST(Load, TheSameMotionFromTwoFilesIsTheSame) {
-  const std::string folder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-  if (!std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "no shared data beside the repository";
+  GAITPAD_NEEDS(kCapturedMotions);
   // SNU's walk with and without helper joints: hips, knees and ankles agree.
-  const auto a = load_motion(folder + "dpr_walk_simple.bvh");
-  const auto b = load_motion(folder + "mass_walk.bvh");
+  const auto a = load_motion(kCapturedMotions + "dpr_walk_simple.bvh");
+  const auto b = load_motion(kCapturedMotions + "mass_walk.bvh");
   ASSERT_TRUE(a && b);
   for (const Side side : {kLeftSide, kRightSide}) {
     const std::array<int, 1> ankle_a = {a->legs[side].ankle}, ankle_b = {b->legs[side].ankle};

@@ -6,6 +6,7 @@
 
 #include "motion/cycle_leg.h"
 #include "motion/gait_cycle.h"
+#include "motion/made_motion.h"
 
 namespace gaitpad {
 namespace {
@@ -13,11 +14,6 @@ namespace {
 const GaitCycle& walk() {
   static const GaitCycle cycle = procedural_gait();
   return cycle;
-}
-
-LegPose pose_at(const GaitCycle& cycle, int side, double phase) {
-  const CycleSample at = sample_at(cycle, phase);
-  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, at.leg[side].angles, at.leg[side].toe_x);
 }
 
 // Adult set (gaitutils normal.gcd), degrees at every 8 % of the cycle: hip minus mean tilt, knee,

@@ -10,18 +10,15 @@
 #include "motion/gait_cycle.h"
 #include "motion/load.h"
 #include "motion/tracks.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
 namespace fs = std::filesystem;
 
-const std::string kFolder = std::string(GAITPAD_SHARED_DATA) + "/mocap/";
-
 class SharedMotions : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!fs::is_directory(kFolder)) GTEST_SKIP() << "no shared data beside the repository";
-  }
+  void SetUp() override { GAITPAD_NEEDS(kCapturedMotions); }
 };
 
 // Why a file is no walk: as the data's index says of it. All others walk.
@@ -58,7 +55,7 @@ const std::map<std::string, std::string> kNoWalks = {
 
 TEST_F(SharedMotions, AllLoadAndWalkOrSayWhyNot) {
   int files = 0;
-  for (const auto& entry : fs::directory_iterator(kFolder)) {
+  for (const auto& entry : fs::directory_iterator(kCapturedMotions)) {
     const std::string name = entry.path().filename().string();
     const auto motion = load_motion(entry.path().string());
     ASSERT_TRUE(motion) << motion.error().message;
@@ -81,7 +78,7 @@ struct Pair {
   Motion amc, bvh;
 };
 Pair loaded(const std::string& amc, const std::string& bvh) {
-  const auto a = load_motion(kFolder + amc), b = load_motion(kFolder + bvh);
+  const auto a = load_motion(kCapturedMotions + amc), b = load_motion(kCapturedMotions + bvh);
   EXPECT_TRUE(a && b);
   return {*a, *b};
 }

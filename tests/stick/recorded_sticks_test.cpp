@@ -3,20 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <span>
 #include <sstream>
 
 #include "stick/outline.h"
 #include "stick/recommendation.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
 
 std::array<StickTrack, 2> tracks_of(const std::string& name) {
   std::array<StickTrack, 2> tracks;
-  std::ifstream file(std::string(GAITPAD_SHARED_DATA "/hid/") + name);
+  std::ifstream file(kPadRecordings + name);
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
     std::string tag, time, size;
@@ -50,11 +50,7 @@ StickCalibration advised(std::initializer_list<const char*> recordings, std::siz
 
 class RecordedSticks : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(GAITPAD_SHARED_DATA "/hid")) {
-      GTEST_SKIP() << "no recordings at " GAITPAD_SHARED_DATA "/hid";
-    }
-  }
+  void SetUp() override { GAITPAD_NEEDS(kPadRecordings); }
 };
 
 TEST_F(RecordedSticks, RestNeverWalks) {

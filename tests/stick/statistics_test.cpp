@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <filesystem>
 #include <limits>
 
 #include "hid/decode.h"
 #include "hid/trace.h"
 #include "stick/drawn_stick.h"
 #include "tests/hid/made_pads.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -127,7 +127,7 @@ TEST(TriggerStatistics, AReportOfNonsenseIsNoEnd) {
 // ---- real recordings ----
 
 PadTracks recorded(const std::string& name) {
-  const Trace trace = value_of(read_trace(GAITPAD_SHARED_DATA "/hid/" + name));
+  const Trace trace = value_of(read_trace(kPadRecordings + name));
   const PadLayout layout = value_of(pad_layout(trace.devices[0].info, shipped_pads()));
   PadTracker tracker(layout);
   for (const TraceEvent& event : trace.events) tracker.take(report_of(trace, event));
@@ -147,11 +147,7 @@ vec2 median_of(const StickTrack& track) {
 
 class RealStickStatistics : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(GAITPAD_SHARED_DATA "/hid")) {
-      GTEST_SKIP() << "no recordings at " GAITPAD_SHARED_DATA "/hid";
-    }
-  }
+  void SetUp() override { GAITPAD_NEEDS(kPadRecordings); }
 };
 
 TEST_F(RealStickStatistics, AnUntouchedStickRestsAtItsMedian) {

@@ -4,18 +4,16 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <map>
 
 #include "control/control.h"
 #include "motion/load.h"
+#include "tests/shared_data.h"
 #include "tests/value_of.h"
 #include "view/body_parts.h"
 
 namespace gaitpad {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::shared_ptr<const WalkModel> model_of(const GaitCycle& cycle, const Character& character = {}) {
   return std::make_shared<const WalkModel>(value_of(walk_model(cycle, character)));
@@ -180,16 +178,14 @@ TEST(Body, WithoutArmsAndHeadTheRestIsDrawn) {
 }
 
 TEST(Body, EveryCapturedSkeletonHasItsArmsAndHeadAndStaysAboveTheFloor) {
-  const fs::path folder = fs::path(GAITPAD_SHARED_DATA) / "mocap";
-  if (!fs::is_directory(folder)) GTEST_SKIP() << folder << " is missing";
+  GAITPAD_NEEDS(kCapturedMotions);
   int walks = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != ".bvh") continue;
-    const auto motion = load_motion(entry.path().string());
+  for (const std::string& file : files_in(kCapturedMotions, ".bvh")) {
+    const auto motion = load_motion(file);
     if (!motion) continue;
     const auto cycle = gait_cycle(*motion);
     if (!cycle) continue;
-    SCOPED_TRACE(entry.path().filename().string());
+    SCOPED_TRACE(file);
     const Body body = body_of(model_of(*cycle));
     expect_plausible(body);
     walk(*body.model, 0.3,

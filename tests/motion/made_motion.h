@@ -1,0 +1,23 @@
+// Motions and walks as their tests look at them.
+#pragma once
+#include <memory>
+
+#include "motion/cycle_leg.h"
+#include "motion/tracks.h"
+
+namespace gaitpad {
+
+inline std::unique_ptr<JointFrames> world_of(const Motion& m, std::size_t frame = 0) {
+  auto world = std::make_unique<JointFrames>();
+  forward_kinematics(m, m.frames[frame], *world);
+  return world;
+}
+
+inline LegPose pose_of(const GaitCycle& cycle, const CycleSample& at, int side) {
+  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, at.leg[side].angles, at.leg[side].toe_x);
+}
+inline LegPose pose_at(const GaitCycle& cycle, int side, double phase) {
+  return pose_of(cycle, sample_at(cycle, phase), side);
+}
+
+}  // namespace gaitpad

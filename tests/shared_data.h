@@ -1,0 +1,30 @@
+// Recordings of pads and captured motions, which stay outside the repository.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gaitpad {
+
+inline const std::string kPadRecordings = GAITPAD_SHARED_DATA "/hid/",
+                         kCapturedMotions = GAITPAD_SHARED_DATA "/mocap/";
+
+// Skips the test where they are not there.
+#define GAITPAD_NEEDS(folder) \
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there"
+
+// Paths of a folder's files of one ending, by name; none where there is no folder.
+inline std::vector<std::string> files_in(const std::string& folder, const std::string& ending) {
+  std::vector<std::string> paths;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ending) paths.push_back(entry.path().string());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+}  // namespace gaitpad

@@ -10,6 +10,7 @@
 #include "motion/gait_cycle.h"
 #include "motion/keyframe.h"
 #include "stick/calibration.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
@@ -17,16 +18,12 @@ namespace {
 const std::string kConfig = GAITPAD_SOURCE_DIR "/config/";
 
 Style style(const std::string& name) {
-  auto loaded = load_style(kConfig + "styles/" + name + ".toml");
-  EXPECT_TRUE(loaded) << loaded.error().message;
-  if (!loaded) return {};
-  EXPECT_EQ(loaded->name, name);
-  return *loaded;
+  const Style style = value_of(load_style(kConfig + "styles/" + name + ".toml"));
+  EXPECT_EQ(style.name, name);
+  return style;
 }
 Character character(const std::string& name) {
-  auto loaded = load_character(kConfig + "characters/" + name + ".toml");
-  EXPECT_TRUE(loaded) << loaded.error().message;
-  return loaded ? *loaded : Character();
+  return value_of(load_character(kConfig + "characters/" + name + ".toml"));
 }
 std::string weights_of(const Style& s, Side side) {
   std::string text;
@@ -120,11 +117,9 @@ TEST(ShippedCharacters, EveryFileLoadsAndTheNamedOnesAreThere) {
 }
 
 Terrain terrain(const std::string& name) {
-  auto loaded = load_terrain(kConfig + "terrain/" + name + ".toml");
-  EXPECT_TRUE(loaded) << loaded.error().message;
-  if (!loaded) return {};
-  EXPECT_EQ(loaded->name, name);
-  return *loaded;
+  const Terrain terrain = value_of(load_terrain(kConfig + "terrain/" + name + ".toml"));
+  EXPECT_EQ(terrain.name, name);
+  return terrain;
 }
 template <class Shape>
 int count_of(const Terrain& t) {

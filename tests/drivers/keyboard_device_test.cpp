@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hid/decode.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
@@ -24,12 +25,8 @@ struct Seen {
 class KeyboardDeviceTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto opened = open_keyboard(stick_);
-    ASSERT_TRUE(opened) << opened.error().message;
-    device_ = std::move(*opened);
-    auto layout = pad_layout(device_->info(), {});
-    ASSERT_TRUE(layout) << layout.error().message;
-    layout_ = std::move(*layout);
+    device_ = value_of(open_keyboard(stick_));
+    layout_ = value_of(pad_layout(device_->info(), {}));
   }
   // As the I/O thread: reads whenever there is something, for that long.
   std::vector<Seen> seen_for(int ms) {

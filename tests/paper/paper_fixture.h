@@ -2,27 +2,16 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string_view>
 
 #include "paper/claims.h"
+#include "tests/value_of.h"
 
 namespace gaitpad::test {
 
 inline Study& study() {
-  static Study made = [] {
-    auto source = load_paper_source("", {GAITPAD_SOURCE_DIR "/config"});
-    if (!source) {
-      ADD_FAILURE() << source.error().message;
-      std::abort();
-    }
-    auto result = Study::of(std::move(*source));
-    if (!result) {
-      ADD_FAILURE() << result.error().message;
-      std::abort();
-    }
-    return std::move(*result);
-  }();
+  static Study made =
+      value_of(Study::of(value_of(load_paper_source("", {GAITPAD_SOURCE_DIR "/config"}))));
   return made;
 }
 

@@ -26,17 +26,15 @@ class LiveKeyboard : public Live {
   }
   // Left stick after each input report of the device in the recording that has this driver.
   std::vector<vec2> recorded_stick(const std::string& driver) {
-    auto trace = read_trace(options_.record);
-    EXPECT_TRUE(trace) << trace.error().message;
+    const Trace trace = value_of(read_trace(options_.record));
     std::vector<vec2> all;
-    for (std::size_t d = 0; d < trace->devices.size(); ++d) {
-      if (trace->devices[d].info.driver != driver) continue;
-      const auto layout = pad_layout(trace->devices[d].info, {});
-      EXPECT_TRUE(layout) << layout.error().message;
+    for (std::size_t d = 0; d < trace.devices.size(); ++d) {
+      if (trace.devices[d].info.driver != driver) continue;
+      const PadLayout layout = value_of(pad_layout(trace.devices[d].info, {}));
       PadState state;
-      for (const TraceEvent& e : trace->events) {
+      for (const TraceEvent& e : trace.events) {
         if (e.device != d || e.kind != ReportKind::input) continue;
-        EXPECT_TRUE(decode(*layout, report_of(*trace, e), state));
+        EXPECT_TRUE(decode(layout, report_of(trace, e), state));
         all.emplace_back(state.axis[kLeftX], state.axis[kLeftY]);
       }
     }

@@ -30,10 +30,8 @@ LoopParts made_loop(PadStreamOptions options, const std::string& record) {
   LoopParts parts;
   SimulationConfig config = made_config(2);
   config.pads = unknown_pads(kMaxPads);
-  parts.simulation.emplace(std::move(*Simulation::create(config)));
-  auto pads = PadStream::start(std::move(options));
-  EXPECT_TRUE(pads) << pads.error().message;
-  parts.pads = std::move(*pads);
+  parts.simulation.emplace(made_simulation(config));
+  parts.pads = value_of(PadStream::start(std::move(options)));
   if (!record.empty()) {
     auto recording = Recording::start(
         {record, kDefaultRateHz, {}},

@@ -18,9 +18,7 @@ class SessionFrameTest : public testing::Test {
  protected:
   void start(int walkers) {
     config_ = made_config(walkers);
-    auto simulation = Simulation::create(config_);
-    ASSERT_TRUE(simulation) << simulation.error().message;
-    simulation_.emplace(std::move(*simulation));
+    simulation_.emplace(made_simulation(config_));
     copy_frame(*simulation_, frame_);
   }
   void step(const std::vector<Report>& reports = {}) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "session/setup.h"
+#include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
@@ -19,9 +20,7 @@ class Walking : public testing::Test {
     options.styles = {"even", "limp_left"};
     auto config = simulation_config(options, {}, "", 240);
     ASSERT_TRUE(config) << config.error().message;
-    auto made = Simulation::create(*config);
-    ASSERT_TRUE(made) << made.error().message;
-    simulation_ = std::make_unique<Simulation>(std::move(*made));
+    simulation_ = std::make_unique<Simulation>(value_of(Simulation::create(*config)));
     cast_ = cast_of(*simulation_, *config);
     ensemble_ = std::make_unique<Ensemble>(cast_);
     run(1);

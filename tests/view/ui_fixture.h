@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "session/setup.h"
+#include "tests/value_of.h"
 #include "view/ui.h"
 
 namespace gaitpad {
@@ -49,9 +50,7 @@ class UiTest : public ::testing::Test {
     options.characters.assign(styles.size(), "adult");
     auto config = simulation_config(options, {}, "", 240);
     ASSERT_TRUE(config) << config.error().message;
-    auto made = Simulation::create(*config);
-    ASSERT_TRUE(made) << made.error().message;
-    simulation_ = std::make_unique<Simulation>(std::move(*made));
+    simulation_ = std::make_unique<Simulation>(value_of(Simulation::create(*config)));
     cast = cast_of(*simulation_, *config);
     frame = std::make_unique<SessionFrame>();
     history = History();

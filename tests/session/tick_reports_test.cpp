@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "tests/comes_true.h"
 #include "tests/session/fake_drivers.h"
 

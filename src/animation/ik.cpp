@@ -38,12 +38,15 @@ inline vec3 turn_about(const vec3& a, const SinCos& s, Axes& f) noexcept {
 
 void pose_chain(const IkChain& chain, const IkAngles& angles_rad, IkPose& pose) noexcept {
   assert(chain.dofs >= 0 && chain.dofs <= kMaxIkDofs);
+  // All calls first: the axes then stay in registers.
+  std::array<SinCos, kMaxIkDofs> angle;
+  for (int j = 0; j < chain.dofs; ++j) angle[j] = sin_cos(angles_rad[j]);
   Axes f;
   vec3 end(0.0);
   for (int j = 0; j < chain.dofs; ++j) {
     const IkDof& dof = chain.dof[j];
     pose.pivot_m[j] = end;
-    pose.axis[j] = turn_about(dof.axis, sin_cos(angles_rad[j]), f);
+    pose.axis[j] = turn_about(dof.axis, angle[j], f);
     const vec3& l = dof.link_m;
     if (l.x != 0.0 || l.y != 0.0 || l.z != 0.0) end += l.x * f.x + l.y * f.y + l.z * f.z;
   }

@@ -60,6 +60,8 @@ SinCos sin_cos(double angle_rad) noexcept {
   constexpr double kPart1 = 1.57079632673412561417e+00;
   constexpr double kPart2 = 6.07710050630396597660e-11;
   constexpr double kPart3 = 2.02226624879595063154e-21;
+  // Below pi/4 there is nothing to reduce: the same bits, sooner.
+  if (std::abs(angle_rad) < 0.785) return {sin_kernel(angle_rad), cos_kernel(angle_rad)};
   if (!(std::abs(angle_rad) < 1e6)) return {0.0, 1.0};  // never met; bounded also for NaN
   const double scaled = angle_rad * kTwoOverPi;
   const auto n = static_cast<std::int64_t>(scaled + (scaled < 0.0 ? -0.5 : 0.5));

@@ -26,6 +26,13 @@ Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& w
   return model;
 }
 
+// Of the 10 KB of a pose only the joints that there are.
+void keep_pose(const Pose& pose, Pose& before) noexcept {
+  before.root_m = pose.root_m;
+  before.joint_count = pose.joint_count;
+  std::copy_n(pose.local.begin(), pose.joint_count, before.local.begin());
+}
+
 // All or none: what a command asks for is possible for each of them.
 bool set_values(std::span<Walker> walkers, std::string_view key, double value) noexcept {
   for (const Walker& w : walkers) {
@@ -137,7 +144,7 @@ void Simulation::step(std::span<const Report> reports) noexcept {
   stick_ = pads_.stick_of_tick();
   const int landings_before = landings(walkers_.front());
   for (Walker& w : walkers_) {
-    w.before = w.pose;
+    keep_pose(w.pose, w.before);
     look_at_zones(w, *terrain_, *zone_styles_, styles());
     w.params = gait_params(stick_, style_of_tick(w, dt_s_), w.overrides, w.limits);
     const vec3 before_m = w.state.hips_m;

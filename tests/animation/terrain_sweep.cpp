@@ -94,10 +94,18 @@ int main(int argc, char** argv) {
       continue;
     }
     const std::string value = i + 1 < argc ? argv[++i] : "";
-    if (option == "--terrain") terrain = value;
-    if (option == "--ratio") ratios = {std::atof(value.c_str())};
-    if (option == "--stick") sticks = {std::atof(value.c_str())};
-    if (option == "--style") styles = {value};
+    if (option == "--terrain") {
+      terrain = value;
+    } else if (option == "--ratio") {
+      ratios = {std::atof(value.c_str())};
+    } else if (option == "--stick") {
+      sticks = {std::atof(value.c_str())};
+    } else if (option == "--style") {
+      styles = {value};
+    } else {
+      fmt::print(stderr, "terrain_sweep: unknown option {}\n", option);
+      return 2;
+    }
   }
   if (motions.empty()) motions = {"procedural"};
   const Terrain ground = value_or_exit(load_terrain(config("terrain", terrain)));

@@ -130,6 +130,42 @@ TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
   }
 }
 
+// How far the heel of a flying foot gets beyond the place where it lands, at worst.
+double most_beyond_m(const WalkModel& model, double y, double until_m) {
+  Hiker hiker(model);
+  double farthest = -1e9, most = -1e9;
+  for (int k = 0; k < 20000 && hiker.state().hips_m.z < until_m; ++k) {
+    hiker.walk(0.0, y, 1);
+    const WalkFrame& f = hiker.state().frame;
+    const double heel = hiker.sole(f.swing).heel.z;
+    if (f.stage == Stage::flight) farthest = std::max(farthest, heel);
+    if (f.stage != Stage::roll || hiker.state().tick != 1) continue;
+    most = std::max(most, farthest - heel);
+    farthest = -1e9;
+  }
+  expect_sound(hiker.worst(), "stick " + std::to_string(y));
+  return most;
+}
+
+TEST(WalkTerrain, AFootSinksToItsLandingAndDoesNotComeBackToIt) {
+  const std::vector<SectionShape> kerbs = {
+      FlatSection{1.1}, StairsSection{0.16, 0.34, 1}, StairsSection{-0.12, 0.3, 2},
+      FlatSection{0.5}, StairsSection{0.1, 0.3, 2},   StairsSection{-0.15, 0.3, 3},
+      FlatSection{2.0}};
+  for (const double ratio : {0.6, 1.0, 1.6}) {
+    const double scale = ratio > 1.0 ? ratio : 1.0;
+    for (const auto& sections : {stairs(-0.17), kerbs}) {
+      const WalkModel flat = model_of(ratio, flat_terrain()),
+                      model = model_of(ratio, ground_of(sections, scale));
+      for (const double y : {0.4, 0.7, 1.0}) {
+        const double own = most_beyond_m(flat, y, 4.0);
+        EXPECT_LT(most_beyond_m(model, y, 4.5 * scale), own + 0.03 * ratio)
+            << "leg " << ratio << " stick " << y << " sections " << sections.size();
+      }
+    }
+  }
+}
+
 TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
   for (const double rise : {0.17, -0.17}) {
     const WalkModel model = model_on(1.0, ground_of(stairs(rise)));

@@ -155,8 +155,8 @@ TEST(WalkTerrain, AFootSinksToItsLandingAndDoesNotComeBackToIt) {
   for (const double ratio : {0.6, 1.0, 1.6}) {
     const double scale = ratio > 1.0 ? ratio : 1.0;
     for (const auto& sections : {stairs(-0.17), kerbs}) {
-      const WalkModel flat = model_of(ratio, flat_terrain()),
-                      model = model_of(ratio, ground_of(sections, scale));
+      const WalkModel flat = model_on(ratio, flat_terrain()),
+                      model = model_on(ratio, ground_of(sections, scale));
       for (const double y : {0.4, 0.7, 1.0}) {
         const double own = most_beyond_m(flat, y, 4.0);
         EXPECT_LT(most_beyond_m(model, y, 4.5 * scale), own + 0.03 * ratio)

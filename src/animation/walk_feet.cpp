@@ -246,13 +246,14 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
   const LegBuild& leg = model.leg[side];
   const double planned = foot.planned_rad;
   const double gate = heel_rise(model, state, side);
-  // Under the hips the leg may be longer: a standing foot stays flat.
+  // Under the hips the leg may be longer: a standing foot stays flat. Backwards it is left in front
+  // and pushes off.
   const vec3 forward = rotation_y(foot.pose.yaw_rad) * leg.forward;
   const double ahead = glm::dot(hip_m - foot.pose.toe_m, forward) / leg.model.length_m();
+  const double pushes_off = state.backward ? 1.0 : smoothstep(0.0, kAhead, ahead);
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
   const double reach =
-      leg.model.length_m() *
-      mix(kReachUpright, mix(kReachOfLame, kReachOnToe, able), smoothstep(0.0, kAhead, ahead));
+      leg.model.length_m() * mix(kReachUpright, mix(kReachOfLame, kReachOnToe, able), pushes_off);
   const double pitch = gate == 0.0
                            ? planned
                            : mix(planned,

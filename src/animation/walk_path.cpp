@@ -83,8 +83,9 @@ void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexce
   const double next = std::min(landing, state.landing.next_base_m);
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
   double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
-  // Backwards up, the leg that is left in front would be too short: they wait for its lift-off.
-  if (state.backward && next > before) {
+  // Upwards, a leg that does not roll far over its toe, in front backwards or closing a walk, would
+  // be too short: they wait for its lift-off.
+  if ((state.backward || state.closing) && next > before) {
     velocity = 0.0;
     if (state.stage == Stage::roll) {
       goal = before;

@@ -71,6 +71,9 @@ class Hiker {
   void walk_to(double z_m, double y, const StyleValues& style = {}) {
     for (int k = 0; k < 1500 && state_.hips_m.z < z_m; ++k) walk(0.0, y, 20, style);
   }
+  void walk_back_to(double z_m, double y) {
+    for (int k = 0; k < 1500 && state_.hips_m.z > z_m; ++k) walk(0.0, y, 20);
+  }
   const TerrainWorst& worst() const { return judge_.worst; }
   const WalkState& state() const { return state_; }
   TerrainJudge::Sole sole(Side side) const { return judge_.sole(side); }
@@ -204,6 +207,39 @@ TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
       const auto& f = hiker.state().frame;
       EXPECT_EQ(f.heel_ground_m[0], f.heel_ground_m[1]) << rise << " stopped at " << z;
       expect_sound(hiker.worst(), "stop at " + std::to_string(z));
+    }
+  }
+}
+
+TEST(WalkTerrain, BackwardsUpAndDownStairsIsAsSmooth) {
+  for (const double ratio : {0.6, 1.0, 1.6}) {
+    const double scale = ratio > 1.0 ? ratio : 1.0;
+    std::vector<SectionShape> sections = stairs(0.17);
+    sections.insert(sections.end(), {StairsSection{-0.17, 0.28, 6}, FlatSection{2.0}});
+    const WalkModel model = model_of(ratio, ground_of(sections, scale));
+    for (const double y : {-0.4, -0.7, -1.0}) {
+      for (const double from : {7.6, 7.75, 7.9}) {
+        Hiker hiker(model, IkMode::robust, from * scale);
+        hiker.walk_back_to(0.5 * scale, y);
+        EXPECT_LT(hiker.worst().end_z_m, 0.6 * scale);
+        expect_sound(hiker.worst(), "leg " + std::to_string(ratio) + " stick " + std::to_string(y) +
+                                        " from " + std::to_string(from));
+      }
+    }
+  }
+}
+
+TEST(WalkTerrain, AStickPulledBackOnStairsLeadsDownAsSmoothly) {
+  for (const double ratio : {0.6, 1.0, 1.6}) {
+    const double scale = ratio > 1.0 ? ratio : 1.0;
+    const WalkModel model = model_of(ratio, ground_of(stairs(0.17), scale));
+    for (double z = 1.4; z < 3.4; z += 0.1) {
+      Hiker hiker(model);
+      hiker.walk_to(z * scale, 0.7);
+      hiker.walk_back_to(0.5 * scale, -0.7);
+      EXPECT_LT(hiker.worst().end_z_m, 0.6 * scale);
+      expect_sound(hiker.worst(),
+                   "leg " + std::to_string(ratio) + " pulled back at " + std::to_string(z));
     }
   }
 }

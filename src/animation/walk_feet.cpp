@@ -25,6 +25,8 @@ constexpr double kLiftDown = 0.4, kDown = 0.2;
 constexpr double kInPlace_m = 0.1;  // a way shorter than this is gone by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
 
+constexpr double kPushUp = 0.1;  // of the leg: backwards a foot pushes off for such a rise
+
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
 
 vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
@@ -140,6 +142,13 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   return p;
 }
 
+// From a standing foot's ground to that where the other one stands or lands.
+double rise_to_other(const WalkState& state, Side side) noexcept {
+  const FootState& to = state.foot[other(side)];
+  const double height_m = to.mode == FootMode::flight ? state.landing_m.y : to.plane.place_m.y;
+  return height_m - state.foot[side].plane.place_m.y;
+}
+
 // The pitch at which the ankle, turning about the planted toe, is as far from the hip as the leg
 // reaches: P cos + Q sin = K in the foot's own vertical plane.
 double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m,
@@ -246,11 +255,12 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
   const LegBuild& leg = model.leg[side];
   const double planned = foot.planned_rad;
   const double gate = heel_rise(model, state, side);
-  // Under the hips the leg may be longer: a standing foot stays flat. Backwards it is left in front
-  // and pushes off.
+  // Under the hips the leg may be longer: a standing foot stays flat.
   const vec3 forward = rotation_y(foot.pose.yaw_rad) * leg.forward;
   const double ahead = glm::dot(hip_m - foot.pose.toe_m, forward) / leg.model.length_m();
-  const double pushes_off = state.backward ? 1.0 : smoothstep(0.0, kAhead, ahead);
+  const double pushes_off =
+      state.backward ? smoothstep(0.0, kPushUp, rise_to_other(state, side) / leg.model.length_m())
+                     : smoothstep(0.0, kAhead, ahead);
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
   const double reach =
       leg.model.length_m() * mix(kReachUpright, mix(kReachOfLame, kReachOnToe, able), pushes_off);

@@ -8,7 +8,8 @@ constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when th
 constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 // Of the leg: with the hip further away, a standing foot rises on its toe.
 constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachUpright = 1.01;
-constexpr double kAhead = 0.1;  // of the leg: the hip before the toe
+constexpr double kMostOfLeft = 0.35;  // in a tick, of the way to its highest
+constexpr double kAhead = 0.1;        // of the leg: the hip before the toe
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // Near its highest the ankle hardly rises any more: there the reach is given up softly.
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
@@ -270,7 +271,10 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
                                  soft_max(planned, pitch_in_reach(leg, foot.pose, hip_m, reach),
                                           std::clamp(0.5 * planned, 1e-3, kSoftPitch)),
                                  gate);
-  foot.reach_rad = {pitch - planned, foot.reach_rad[0]};
+  // What plan_foot() runs on must not lead beyond the highest: the hips would follow it there.
+  const double more = pitch - planned;
+  const double left = pitch_in_reach(leg, foot.pose, hip_m, 0.0) - pitch;
+  foot.reach_rad = {more, std::max(foot.reach_rad[0], more - kMostOfLeft * std::max(0.0, left))};
   set_pitch(leg, pitch, foot.pose, foot.mode);
 }
 void remember_foot(FootState& foot) noexcept {

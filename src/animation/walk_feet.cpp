@@ -8,8 +8,8 @@ constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when th
 constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 // Of the leg: with the hip further away, a standing foot rises on its toe.
 constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachUpright = 1.01;
-constexpr double kMostOfLeft = 0.35;  // in a tick, of the way to its highest
-constexpr double kAhead = 0.1;        // of the leg: the hip before the toe
+constexpr double kRiseAhead = 15.0;  // 1/s: as much of the way to its highest is looked ahead
+constexpr double kAhead = 0.1;       // of the leg: the hip before the toe
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // Near its highest the ankle hardly rises any more: there the reach is given up softly.
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
@@ -166,6 +166,12 @@ double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip
                   kWidePitch);
 }
 
+// How far a standing foot may still rise, as the hips were a tick ago.
+double left_to_rise(const LegBuild& leg, const WalkState& state, const FootState& foot) noexcept {
+  const vec3 hip = state.frame.pelvis_m + rotation_y(state.heading_rad) * leg.model.hip_m;
+  return std::max(0.0, pitch_in_reach(leg, foot.pose, hip, 0.0) - foot.pose.pitch_rad);
+}
+
 }  // namespace
 
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept {
@@ -233,7 +239,9 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     // With what the reach asked for last, run on: the hips' height and the reach depend on each
     // other.
     foot.planned_rad = support_pitch(model, state, side) + fade;
-    const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
+    // But no further than a foot soon at its highest can follow: the hips would be left without it.
+    const double most = foot.reach_rad[0] + kRiseAhead * tick.dt_s * left_to_rise(leg, state, foot);
+    const double reach = std::max(0.0, std::min(2.0 * foot.reach_rad[0] - foot.reach_rad[1], most));
     set_pitch(leg, foot.planned_rad + reach, foot.pose, foot.mode);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
@@ -271,10 +279,7 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
                                  soft_max(planned, pitch_in_reach(leg, foot.pose, hip_m, reach),
                                           std::clamp(0.5 * planned, 1e-3, kSoftPitch)),
                                  gate);
-  // What plan_foot() runs on must not lead beyond the highest: the hips would follow it there.
-  const double more = pitch - planned;
-  const double left = pitch_in_reach(leg, foot.pose, hip_m, 0.0) - pitch;
-  foot.reach_rad = {more, std::max(foot.reach_rad[0], more - kMostOfLeft * std::max(0.0, left))};
+  foot.reach_rad = {pitch - planned, foot.reach_rad[0]};
   set_pitch(leg, pitch, foot.pose, foot.mode);
 }
 void remember_foot(FootState& foot) noexcept {

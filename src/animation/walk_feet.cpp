@@ -8,7 +8,7 @@ constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when th
 constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 // Of the leg: with the hip further away, a standing foot rises on its toe.
 constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachUpright = 1.01;
-constexpr double kRiseAhead = 15.0;  // 1/s: as much of the way to its highest is looked ahead
+constexpr double kRiseAhead = 22.0;  // 1/s: the most of the way to its highest
 constexpr double kAhead = 0.1;       // of the leg: the hip before the toe
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // Near its highest the ankle hardly rises any more: there the reach is given up softly.
@@ -238,9 +238,11 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     foot.pose.toe_m = foot.toe_anchor_m;
     // With what the reach asked for last, run on: the hips' height and the reach depend on each
     // other.
+    const double last = foot.planned_rad + foot.reach_rad[0];
     foot.planned_rad = support_pitch(model, state, side) + fade;
     // But no further than a foot soon at its highest can follow: the hips would be left without it.
-    const double most = foot.reach_rad[0] + kRiseAhead * tick.dt_s * left_to_rise(leg, state, foot);
+    const double most =
+        last - foot.planned_rad + kRiseAhead * tick.dt_s * left_to_rise(leg, state, foot);
     const double reach = std::max(0.0, std::min(2.0 * foot.reach_rad[0] - foot.reach_rad[1], most));
     set_pitch(leg, foot.planned_rad + reach, foot.pose, foot.mode);
   } else if (foot.mode == FootMode::roll) {

@@ -244,6 +244,33 @@ TEST(WalkTerrain, AStickPulledBackOnStairsLeadsDownAsSmoothly) {
   }
 }
 
+// Feet as short as a captured skeleton may have them: they reach their highest while they rise.
+GaitCycle short_footed_gait(double share) {
+  GaitCycle cycle = procedural_gait();
+  for (LegModel& leg : cycle.leg) {
+    vec3& toe = cycle.skeleton.joints[leg.joints.toe].offset_m;
+    toe = vec3(share * toe.x, toe.y, share * toe.z);
+    leg.toe_m = vec3(share * leg.toe_m.x, leg.toe_m.y, share * leg.toe_m.z);
+  }
+  return cycle;
+}
+
+TEST(WalkTerrain, ShortFeetAreNotExpectedToReachBeyondTheirTips) {
+  Character child;
+  child.leg_ratio = 0.6;
+  for (const double share : {0.25, 0.3}) {
+    auto model = walk_model(short_footed_gait(share), child);
+    ASSERT_TRUE(model) << model.error().message;
+    model->terrain = ground_of(stairs(0.17));
+    for (const double y : {0.4, 0.7, 1.0}) {
+      Hiker hiker(*model);
+      hiker.walk_to(4.5, y);
+      EXPECT_EQ(hiker.worst().failures, 0) << "foot " << share << " stick " << y;
+      EXPECT_LT(hiker.worst().jump_deg, 1.8) << "foot " << share << " stick " << y;
+    }
+  }
+}
+
 TEST(WalkTerrain, AStartOnAnEdgeStandsBesideIt) {
   const WalkModel model = model_of(1.0, ground_of(stairs(0.17)));
   for (double z = 1.2; z < 2.2; z += 0.07) {

@@ -240,10 +240,13 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     // other.
     const double last = foot.planned_rad + foot.reach_rad[0];
     foot.planned_rad = support_pitch(model, state, side) + fade;
+    double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
     // But no further than a foot soon at its highest can follow: the hips would be left without it.
-    const double most =
-        last - foot.planned_rad + kRiseAhead * tick.dt_s * left_to_rise(leg, state, foot);
-    const double reach = std::max(0.0, std::min(2.0 * foot.reach_rad[0] - foot.reach_rad[1], most));
+    if (!tick.flat) {
+      const double most =
+          last - foot.planned_rad + kRiseAhead * tick.dt_s * left_to_rise(leg, state, foot);
+      reach = std::clamp(most, 0.0, reach);
+    }
     set_pitch(leg, foot.planned_rad + reach, foot.pose, foot.mode);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;

@@ -8,7 +8,8 @@ constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when th
 constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 // Of the leg: with the hip further away, a standing foot rises on its toe.
 constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachUpright = 1.01;
-constexpr double kAhead = 0.1;  // of the leg: the hip before the toe
+constexpr double kRiseAhead = 22.0;  // 1/s: the most of the way to its highest
+constexpr double kAhead = 0.1;       // of the leg: the hip before the toe
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // Near its highest the ankle hardly rises any more: there the reach is given up softly.
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
@@ -24,6 +25,8 @@ constexpr double kStopping = 0.6;       // of the flight: from here the heel com
 constexpr double kLiftDown = 0.4, kDown = 0.2;
 constexpr double kInPlace_m = 0.1;  // a way shorter than this is gone by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
+
+constexpr double kPushUp = 0.1;  // of the leg: backwards a foot pushes off for such a rise
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
 
@@ -140,6 +143,13 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
   return p;
 }
 
+// From a standing foot's ground to that where the other one stands or lands.
+double rise_to_other(const WalkState& state, Side side) noexcept {
+  const FootState& to = state.foot[other(side)];
+  const double height_m = to.mode == FootMode::flight ? state.landing_m.y : to.plane.place_m.y;
+  return height_m - state.foot[side].plane.place_m.y;
+}
+
 // The pitch at which the ankle, turning about the planted toe, is as far from the hip as the leg
 // reaches: P cos + Q sin = K in the foot's own vertical plane.
 double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m,
@@ -154,6 +164,12 @@ double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip
   if (m < 1e-9) return 0.0;
   return soft_min(atan2(q, p) - acos(soft_min(k / m, kMostUpright, kSoftUpright)), kMaxPitch,
                   kWidePitch);
+}
+
+// How far a standing foot may still rise, as the hips were a tick ago.
+double left_to_rise(const LegBuild& leg, const WalkState& state, const FootState& foot) noexcept {
+  const vec3 hip = state.frame.pelvis_m + rotation_y(state.heading_rad) * leg.model.hip_m;
+  return std::max(0.0, pitch_in_reach(leg, foot.pose, hip, 0.0) - foot.pose.pitch_rad);
 }
 
 }  // namespace
@@ -222,8 +238,15 @@ void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept {
     foot.pose.toe_m = foot.toe_anchor_m;
     // With what the reach asked for last, run on: the hips' height and the reach depend on each
     // other.
+    const double last = foot.planned_rad + foot.reach_rad[0];
     foot.planned_rad = support_pitch(model, state, side) + fade;
-    const double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
+    double reach = std::max(0.0, 2.0 * foot.reach_rad[0] - foot.reach_rad[1]);
+    // But no further than a foot soon at its highest can follow: the hips would be left without it.
+    if (!tick.flat) {
+      const double most =
+          last - foot.planned_rad + kRiseAhead * tick.dt_s * left_to_rise(leg, state, foot);
+      reach = std::clamp(most, 0.0, reach);
+    }
     set_pitch(leg, foot.planned_rad + reach, foot.pose, foot.mode);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
@@ -249,10 +272,12 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
   // Under the hips the leg may be longer: a standing foot stays flat.
   const vec3 forward = rotation_y(foot.pose.yaw_rad) * leg.forward;
   const double ahead = glm::dot(hip_m - foot.pose.toe_m, forward) / leg.model.length_m();
+  const double pushes_off =
+      state.backward ? smoothstep(0.0, kPushUp, rise_to_other(state, side) / leg.model.length_m())
+                     : smoothstep(0.0, kAhead, ahead);
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
   const double reach =
-      leg.model.length_m() *
-      mix(kReachUpright, mix(kReachOfLame, kReachOnToe, able), smoothstep(0.0, kAhead, ahead));
+      leg.model.length_m() * mix(kReachUpright, mix(kReachOfLame, kReachOnToe, able), pushes_off);
   const double pitch = gate == 0.0
                            ? planned
                            : mix(planned,

@@ -15,6 +15,7 @@ constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.
 constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
 constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
+constexpr double kCrossWayBackward = 0.6;
 constexpr double kStay = 0.1;       // another piece than before must be this much better
 constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
@@ -58,7 +59,8 @@ double longest_to(const Step& step, const Stretch& piece) noexcept {
   if (piece.from_m != step.stands.from_m) longest = kCrossStep * step.leg_m;
   if (piece.from_m != step.lifts.from_m) {
     const double gone = sign * glm::dot(step.from_m - step.lift_m, step.forward);
-    longest = std::min(longest, std::max(kLeastCross, kCrossWay - gone / step.leg_m) * step.leg_m);
+    const double way = sign < 0.0 ? kCrossWayBackward : kCrossWay;
+    longest = std::min(longest, std::max(kLeastCross, way - gone / step.leg_m) * step.leg_m);
   }
   return longest;
 }

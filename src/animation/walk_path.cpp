@@ -8,8 +8,10 @@ constexpr double kReach = 0.9985;  // of the leg: the longest it gets, knee 6 de
 constexpr double kEvenFront =
     0.46;  // of the step: front heel to hips where the data's lean is left
 constexpr double kBackwardHips = 0.45;  // of a backward step: the weight follows the foot late
-constexpr double kLongDrop_m = 0.05;    // of the hips in steps much longer than the data's
-constexpr double kLameDrop_m = 0.1;     // of the hips for a foot that does not lift at all
+// Up a high riser (rises in legs) they come along with it, or its ankle would bend up too far.
+constexpr double kBackwardHipsUp = 0.95, kHighRiser = 0.2, kHighestRiser = 0.3;
+constexpr double kLongDrop_m = 0.05;  // of the hips in steps much longer than the data's
+constexpr double kLameDrop_m = 0.1;   // of the hips for a foot that does not lift at all
 constexpr double kShortStep = 0.1, kLeastShare = 0.3;  // of the data's step; of the wanted one
 constexpr double kGroundSmoothing_s = 0.3;
 constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
@@ -44,7 +46,11 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
 // beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
 // Steps far longer than the data's take an even stance instead of the data's lean.
 double hips_share(const WalkModel& model, const WalkState& state) noexcept {
-  if (state.backward) return kBackwardHips;
+  if (state.backward) {
+    const double rise = state.landing_m.y - state.foot[other(step_foot(state))].plane.place_m.y;
+    return mix(kBackwardHips, kBackwardHipsUp,
+               smoothstep(kHighRiser, kHighestRiser, rise / model.leg_length_m));
+  }
   const double front = mix(model.step_front, kEvenFront, smoothstep(1.05, 1.5, state.pace.x));
   return ((1.0 - front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
 }
@@ -72,11 +78,20 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
 void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexcept {
   const Side swing = step_foot(state), stand = other(swing);
   const double standing = state.foot[stand].plane.place_m.y, landing = state.landing_m.y;
-  const double goal = std::min(standing, landing);
+  double goal = std::min(standing, landing);
   const double before = std::min(state.foot[swing].plane.place_m.y, standing);
   const double next = std::min(landing, state.landing.next_base_m);
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
-  const double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
+  double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
+  // Upwards, a leg that does not roll far over its toe, in front backwards or closing a walk, would
+  // be too short: they wait for its lift-off.
+  if ((state.backward || state.closing) && next > before) {
+    velocity = 0.0;
+    if (state.stage == Stage::roll) {
+      goal = before;
+      remaining_s -= state.flight_ticks * tick.dt_s;
+    }
+  }
   approach(state.base_m, state.base_velocity_m_s, goal, velocity, remaining_s, tick.dt_s);
 }
 

@@ -56,6 +56,9 @@ class Hiker : public MadeWalker {
   void walk_to(double z_m, double y, const StyleValues& style = {}) {
     for (int k = 0; k < 1500 && state().hips_m.z < z_m; ++k) walk(0.0, y, 20, style);
   }
+  void walk_back_to(double z_m, double y) {
+    for (int k = 0; k < 1500 && state_.hips_m.z > z_m; ++k) walk(0.0, y, 20);
+  }
   const TerrainWorst& worst() const { return judge_.worst; }
   TerrainJudge::Sole sole(Side side) const { return judge_.sole(side); }
 
@@ -177,6 +180,66 @@ TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
       const auto& f = hiker.state().frame;
       EXPECT_EQ(f.heel_ground_m[0], f.heel_ground_m[1]) << rise << " stopped at " << z;
       expect_sound(hiker.worst(), "stop at " + std::to_string(z));
+    }
+  }
+}
+
+TEST(WalkTerrain, BackwardsUpAndDownStairsIsAsSmooth) {
+  for (const double ratio : {0.6, 1.0, 1.6}) {
+    const double scale = ratio > 1.0 ? ratio : 1.0;
+    std::vector<SectionShape> sections = stairs(0.17);
+    sections.insert(sections.end(), {StairsSection{-0.17, 0.28, 6}, FlatSection{2.0}});
+    const WalkModel model = model_of(ratio, ground_of(sections, scale));
+    for (const double y : {-0.4, -0.7, -1.0}) {
+      for (const double from : {7.6, 7.75, 7.9}) {
+        Hiker hiker(model, IkMode::robust, from * scale);
+        hiker.walk_back_to(0.5 * scale, y);
+        EXPECT_LT(hiker.worst().end_z_m, 0.6 * scale);
+        expect_sound(hiker.worst(), "leg " + std::to_string(ratio) + " stick " + std::to_string(y) +
+                                        " from " + std::to_string(from));
+      }
+    }
+  }
+}
+
+TEST(WalkTerrain, AStickPulledBackOnStairsLeadsDownAsSmoothly) {
+  for (const double ratio : {0.6, 1.0, 1.6}) {
+    const double scale = ratio > 1.0 ? ratio : 1.0;
+    const WalkModel model = model_of(ratio, ground_of(stairs(0.17), scale));
+    for (double z = 1.4; z < 3.4; z += 0.1) {
+      Hiker hiker(model);
+      hiker.walk_to(z * scale, 0.7);
+      hiker.walk_back_to(0.5 * scale, -0.7);
+      EXPECT_LT(hiker.worst().end_z_m, 0.6 * scale);
+      expect_sound(hiker.worst(),
+                   "leg " + std::to_string(ratio) + " pulled back at " + std::to_string(z));
+    }
+  }
+}
+
+// Feet as short as a captured skeleton may have them: they reach their highest while they rise.
+GaitCycle short_footed_gait(double share) {
+  GaitCycle cycle = procedural_gait();
+  for (LegModel& leg : cycle.leg) {
+    vec3& toe = cycle.skeleton.joints[leg.joints.toe].offset_m;
+    toe = vec3(share * toe.x, toe.y, share * toe.z);
+    leg.toe_m = vec3(share * leg.toe_m.x, leg.toe_m.y, share * leg.toe_m.z);
+  }
+  return cycle;
+}
+
+TEST(WalkTerrain, ShortFeetAreNotExpectedToReachBeyondTheirTips) {
+  Character child;
+  child.leg_ratio = 0.6;
+  for (const double share : {0.25, 0.3}) {
+    auto model = walk_model(short_footed_gait(share), child);
+    ASSERT_TRUE(model) << model.error().message;
+    model->terrain = ground_of(stairs(0.17));
+    for (const double y : {0.4, 0.7, 1.0}) {
+      Hiker hiker(*model);
+      hiker.walk_to(4.5, y);
+      EXPECT_EQ(hiker.worst().failures, 0) << "foot " << share << " stick " << y;
+      EXPECT_LT(hiker.worst().jump_deg, 1.8) << "foot " << share << " stick " << y;
     }
   }
 }

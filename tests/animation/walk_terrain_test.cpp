@@ -57,7 +57,7 @@ class Hiker : public MadeWalker {
     for (int k = 0; k < 1500 && state().hips_m.z < z_m; ++k) walk(0.0, y, 20, style);
   }
   void walk_back_to(double z_m, double y) {
-    for (int k = 0; k < 1500 && state_.hips_m.z > z_m; ++k) walk(0.0, y, 20);
+    for (int k = 0; k < 1500 && state().hips_m.z > z_m; ++k) walk(0.0, y, 20);
   }
   const TerrainWorst& worst() const { return judge_.worst; }
   TerrainJudge::Sole sole(Side side) const { return judge_.sole(side); }
@@ -189,7 +189,7 @@ TEST(WalkTerrain, BackwardsUpAndDownStairsIsAsSmooth) {
     const double scale = ratio > 1.0 ? ratio : 1.0;
     std::vector<SectionShape> sections = stairs(0.17);
     sections.insert(sections.end(), {StairsSection{-0.17, 0.28, 6}, FlatSection{2.0}});
-    const WalkModel model = model_of(ratio, ground_of(sections, scale));
+    const WalkModel model = model_on(ratio, ground_of(sections, scale));
     for (const double y : {-0.4, -0.7, -1.0}) {
       for (const double from : {7.6, 7.75, 7.9}) {
         Hiker hiker(model, IkMode::robust, from * scale);
@@ -205,7 +205,7 @@ TEST(WalkTerrain, BackwardsUpAndDownStairsIsAsSmooth) {
 TEST(WalkTerrain, AStickPulledBackOnStairsLeadsDownAsSmoothly) {
   for (const double ratio : {0.6, 1.0, 1.6}) {
     const double scale = ratio > 1.0 ? ratio : 1.0;
-    const WalkModel model = model_of(ratio, ground_of(stairs(0.17), scale));
+    const WalkModel model = model_on(ratio, ground_of(stairs(0.17), scale));
     for (double z = 1.4; z < 3.4; z += 0.1) {
       Hiker hiker(model);
       hiker.walk_to(z * scale, 0.7);

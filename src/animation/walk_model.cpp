@@ -238,12 +238,12 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
 }
 
 double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept {
-  constexpr double kSpare_m = 0.02;
+  constexpr double kSpare_m = 0.02;  // at the reference leg
   const double tread_m = least_tread_m(terrain);
   double scale = 1.0;
   for (const LegBuild& leg : model.leg) {
     const vec3 sole = leg.tip_m - leg.model.heel_m;
-    const double needed_m = glm::length(vec2(sole.x, sole.z)) + kSpare_m;
+    const double needed_m = glm::length(vec2(sole.x, sole.z)) + kSpare_m * model.size;
     if (needed_m <= tread_m) continue;
     scale = std::max({scale, model.leg_length_m / kReferenceLeg_m, needed_m / tread_m});
   }

@@ -66,9 +66,9 @@ struct WalkModel {
 // Retargets by the leg-length ratio. Fails only on a character that the skeleton cannot be.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
 
-// How much larger a terrain is to be for this walker, 1 where it fits: where a sole, with some
-// centimetres to spare, does not lie on the shortest tread, all the ground grows by the ratio of
-// the leg to the adult's, and farther if need be.
+// How much larger a terrain is to be for this walker, 1 where it fits: where a sole, with some room
+// of the walker's own size, does not lie on the shortest tread, all the ground grows by the ratio
+// of the leg to the adult's, and farther if need be.
 double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept;
 
 }  // namespace gaitpad

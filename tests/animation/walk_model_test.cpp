@@ -99,6 +99,23 @@ TEST(WalkModel, AFlightGoesFromLiftToStrikeAndAboveTheFloor) {
   }
 }
 
+// config/README.md, Terrain: a sole and 2 cm of an adult, as the walker's size makes them.
+TEST(WalkModel, GroundGrowsUntilASoleAndSomeRoomFitItsTreads) {
+  Terrain narrow, wide;
+  ASSERT_FALSE(add_section(narrow, StairsSection{0.1, 0.2, 3}));
+  ASSERT_FALSE(add_section(wide, StairsSection{0.1, 1.0, 3}));
+  for (const double ratio : {0.6, 1.0, 1.3, 1.6}) {
+    const WalkModel model = model_of(ratio);
+    const LegBuild& leg = model.leg[kLeftSide];
+    const vec3 sole = leg.tip_m - leg.model.heel_m;
+    const double needed_m = glm::length(vec2(sole.x, sole.z)) + 0.02 * model.size;
+    const double scale = terrain_scale(narrow, model);
+    EXPECT_GE(0.2 * scale, needed_m - 1e-12) << ratio;
+    EXPECT_EQ(scale > 1.0, needed_m > 0.2) << ratio;
+    EXPECT_EQ(terrain_scale(wide, model), 1.0) << ratio;
+  }
+}
+
 // The normative walk is symmetric: what the left leg does, the right one does half a cycle later.
 TEST(WalkModel, TheDefaultsSidesMirrorEachOther) {
   const WalkModel model = model_of(1.0);

@@ -142,17 +142,21 @@ void Ensemble::stand_on_ground(Camera& camera) const noexcept {
 double Ensemble::distance_m(int walker, const Camera& camera,
                             const Viewport& viewport) const noexcept {
   if (walker >= 0 || shown_.empty()) return kOnePerson_m;
-  const vec3 middle = focus_m(-1);
-  double reach_m = 0.0;
+  const vec3 middle = focus_m(-1), to_eye = camera.eye_m() - camera.target_m;
+  double reach_m = 0.0, nearest_m = 0.0;
   const auto reach = [&](const vec3& place) {
-    reach_m = std::max(reach_m, std::hypot(place.x - middle.x, place.z - middle.z));
+    const vec3 away = place - middle;
+    reach_m = std::max(reach_m, std::hypot(away.x, away.z));
+    nearest_m = std::max(nearest_m, glm::dot(away, to_eye) / camera.distance_m);
   };
   for (const Pose& pose : shown_) reach(pose.root_m);
   if (has_source_) reach(source_place_m_);
   const double aspect =
       static_cast<double>(std::max(viewport.width, 1)) / std::max(viewport.height, 1);
   const double half_view = std::tan(camera.field_of_view_rad / 2.0) * std::min(aspect, 2.0);
-  return std::clamp((reach_m + kAside_m) / half_view, kOnePerson_m, 14.0);
+  // The nearest one is to be seen from head to foot.
+  return std::clamp(std::max((reach_m + kAside_m) / half_view, nearest_m + kOnePerson_m),
+                    kOnePerson_m, 14.0);
 }
 
 std::vector<UiLabel> Ensemble::labels(const SessionFrame& frame, const Cast& cast,

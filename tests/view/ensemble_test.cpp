@@ -11,13 +11,14 @@
 namespace gaitpad {
 namespace {
 
-// Two characters of the bundled configuration walking ahead, every tick in a history.
+// Characters of the bundled configuration walking ahead, every tick in a history.
 class Walking : public testing::Test {
  protected:
-  void SetUp() override {
+  void SetUp() override { begin({"even", "limp_left"}); }
+  void begin(const std::vector<std::string>& styles) {
     SessionOptions options;
     options.config_folders = {GAITPAD_SOURCE_DIR "/config"};
-    options.styles = {"even", "limp_left"};
+    options.styles = styles;
     auto config = simulation_config(options, {}, "", 240);
     ASSERT_TRUE(config) << config.error().message;
     simulation_ = std::make_unique<Simulation>(value_of(Simulation::create(*config)));
@@ -112,24 +113,27 @@ TEST_F(Walking, AMomentBetweenTwoTicksIsDrawnBetweenTheirPoses) {
 }
 
 TEST_F(Walking, FromItsDistanceTheCameraSeesEverybodyWithTheirNames) {
+  begin({"even", "stiff_hip", "stiff_knee", "limp_left"});
   for (const Viewport& viewport : {Viewport{232, 44, 744, 612}, Viewport{0, 0, 1280, 600}}) {
-    fill();
-    Camera camera;
-    camera.target_m = ensemble_->focus_m(-1);
-    camera.distance_m = ensemble_->distance_m(-1, camera, viewport);
-    const auto labels =
-        ensemble_->labels(*frame_, cast_, camera, viewport, state_, theme_of(ThemeName::dark));
-    ASSERT_EQ(labels.size(), 3u);
-    EXPECT_EQ(labels[0].text, "even");
-    EXPECT_EQ(labels[1].text, "limp left");
-    EXPECT_EQ(labels[2].text, "source");
-    for (const Capsule& bone : content_.bodies) {
-      const vec3 place = projected(camera, bone.a_m, viewport.width, viewport.height);
-      EXPECT_GT(place.z, 0.0);
-      EXPECT_GT(place.x, 0.0);
-      EXPECT_LT(place.x, viewport.width);
-      EXPECT_GT(place.y, 0.0);
-      EXPECT_LT(place.y, viewport.height);
+    for (const double yaw : {Camera().yaw_rad, 1.1, kPi / 2.0, -kPi / 2.0}) {
+      fill();
+      Camera camera{.yaw_rad = yaw};
+      camera.target_m = ensemble_->focus_m(-1);
+      camera.distance_m = ensemble_->distance_m(-1, camera, viewport);
+      const auto labels =
+          ensemble_->labels(*frame_, cast_, camera, viewport, state_, theme_of(ThemeName::dark));
+      ASSERT_EQ(labels.size(), 5u);
+      EXPECT_EQ(labels[0].text, "even");
+      EXPECT_EQ(labels[3].text, "limp left");
+      EXPECT_EQ(labels[4].text, "source");
+      for (const Capsule& bone : content_.bodies) {
+        const vec3 place = projected(camera, bone.a_m, viewport.width, viewport.height);
+        EXPECT_GT(place.z, 0.0);
+        EXPECT_GT(place.x, 0.0);
+        EXPECT_LT(place.x, viewport.width);
+        EXPECT_GT(place.y, 0.0);
+        EXPECT_LT(place.y, viewport.height);
+      }
     }
   }
 }

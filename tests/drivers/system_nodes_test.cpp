@@ -1,12 +1,12 @@
 #include "drivers/system_nodes.h"
 
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <string>
+
+#include "tests/own_folder.h"
 
 namespace gaitpad {
 namespace {
@@ -37,11 +37,10 @@ TEST(AccessProblem, NoneWhereTheUserMayReadAndWrite) { EXPECT_EQ(access_problem(
 
 TEST(AccessProblem, NamesOwnerAndModeOfWhatIsForbidden) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may open everything; the rig tries it as a user";
-  char path[] = "/tmp/gaitpad_access_XXXXXX";
-  ::close(::mkstemp(path));
-  ::chmod(path, 0);
+  OwnFolder folder;
+  const std::string path = folder.write("node");
+  std::filesystem::permissions(path, std::filesystem::perms::none);
   const std::string problem = access_problem(path);
-  ::unlink(path);
   EXPECT_NE(problem.find("permission denied"), std::string::npos) << problem;
   EXPECT_NE(problem.find("mode 0000"), std::string::npos) << problem;
 }

@@ -11,15 +11,9 @@ ROUND = str(ROOT / "config/traces/round.hid")
 
 
 def run(*arguments, **options):
-    """Under AddressSanitizer the search for leaks itself crashes once in a thousand runs, among Mesa's threads that
-    are just ending ("Tracer caught signal 11"). It found nothing then: it is made again."""
     stdin = {} if "input" in options else {"stdin": subprocess.DEVNULL}
-    for _ in range(2):
-        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False,
-                              **{**stdin, "timeout": 300, **options})
-        if "LeakSanitizer has encountered a fatal error" not in done.stderr:
-            break
-    return done
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False,
+                          **{**stdin, "timeout": 300, **options})
 
 
 class FolderCase(unittest.TestCase):

@@ -21,8 +21,10 @@ constexpr double kLamePeak = 0.9;       // an able foot's peak lags behind its c
 constexpr double kLameFade = 0.15;      // of kLiftFade, for a foot that does not lift at all
 constexpr double kBackwardPitch = 0.6;  // of the data's: the foot reaches back, toe down
 constexpr double kStopping = 0.6;       // of the flight: from here the heel comes to a stop
-// A foot that goes down is lifted less: as much of it over a fall of this share of the leg.
+// A foot that goes down is lifted less: as much of it over a fall of this share of the leg. So is
+// one that goes up far: its way over the riser is lift enough, and the knee folds only so much.
 constexpr double kLiftDown = 0.4, kDown = 0.2;
+constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
 constexpr double kInPlace_m = 0.1;  // a way shorter than this is gone by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: what the lift-off brought has faded
 
@@ -129,9 +131,11 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, Side side, doub
            way * (path.end_slope() * (1.0 - kStopping) * h11(end));
   const double able = std::clamp(state.flight_height[side].x, 0.0, 1.0);
   const double begin_m = height_on(foot.plane, foot.lift_m), rise = state.landing_m.y - begin_m;
+  const double rise_legs = rise / model.leg_length_m;
   const double k = mix(kLamePeak, 1.0, able) * state.flight_height[side].x *
                    std::min(1.1, 0.35 + 0.65 * full_pace(model, state)) *
-                   mix(1.0, kLiftDown, smoothstep(0.0, kDown * model.leg_length_m, -rise));
+                   mix(1.0, kLiftDown, smoothstep(0.0, kDown, -rise_legs)) *
+                   mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
   const Ascent risen = ascent(model, foot, way);
   const double base_slope = rise * glm::dot(foot.lift_slope_m, risen.along_1_m);
   base_m = begin_m + rise * risen.at(p - foot.lift_m, u);

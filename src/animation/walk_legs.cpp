@@ -186,40 +186,37 @@ bool even(const WalkState& state, Side side) noexcept {
   return high - low < kEvenSpread;
 }
 
-// Points a flying foot down beyond what the ground allows by lifting it over its toe.
-void point_down(const LegBuild& leg, double room_rad, double more_rad, double flight_progress,
-                FootPose& pose) noexcept {
+// Points a flying foot down: as far as the ground allows by its pitch alone, beyond by lifting it
+// over its toe.
+void point_down(const LegBuild& leg, double more_rad, double flight_progress,
+                FootState& foot) noexcept {
   const double open =
       smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.7, 0.95, flight_progress));
-  set_pitch(leg, pose.pitch_rad + room_rad, pose, FootMode::flight);
+  FootPose& pose = foot.pose;
+  const double room = highest_pitch(leg, heel_height(foot), 0.0) - pose.pitch_rad;
+  const double allowed = std::min(more_rad, std::max(0.0, room));
+  set_pitch(leg, pose.pitch_rad + allowed, pose, FootMode::flight);
   const double toe_m = pose.toe_m.y;
-  set_pitch(leg, pose.pitch_rad + open * more_rad, pose, FootMode::flight);
+  set_pitch(leg, pose.pitch_rad + open * (more_rad - allowed), pose, FootMode::flight);
   const double lift_m = toe_m - pose.toe_m.y;
   pose.heel_m.y += lift_m;
   pose.toe_m.y += lift_m;
 }
 
-// A foot whose ankle would bend up too far points down in flight, as far as the floor allows, and
-// rises at the heel in late support; a foot that is to stand still does not.
+// A foot whose ankle would bend up too far points down in flight and rises at the heel in late
+// support; a foot that is to stand still does not.
 void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvis& pelvis,
                 IkAngles& angles, FootState& foot, Solve& solve) noexcept {
-  const WalkModel& model = tick.model;
-  const LegBuild& leg = model.leg[side];
+  const LegBuild& leg = tick.model.leg[side];
+  const bool flies = foot.mode == FootMode::flight;
   double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], kSoftAnkle);
-  if (foot.mode == FootMode::flight) {
-    const double room = highest_pitch(leg, heel_height(foot), 0.0) - foot.pose.pitch_rad;
-    const double allowed = std::min(excess, std::max(0.0, room));
-    if (!tick.flat && excess > allowed) {
-      point_down(leg, allowed, excess - allowed, flight_progress(state), foot.pose);
-      solve.add(solve_robust(leg.chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
-      return;
-    }
-    excess = allowed;
-  } else {
-    excess *= foot.mode == FootMode::support ? heel_rise(model, state, side) : 0.0;
-  }
+  if (!flies) excess *= foot.mode == FootMode::support ? heel_rise(tick.model, state, side) : 0.0;
   if (excess == 0.0) return;
-  set_pitch(leg, foot.pose.pitch_rad + excess, foot.pose, foot.mode);
+  if (flies) {
+    point_down(leg, excess, flight_progress(state), foot);
+  } else {
+    set_pitch(leg, foot.pose.pitch_rad + excess, foot.pose, foot.mode);
+  }
   solve.add(solve_robust(leg.chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 
@@ -237,7 +234,7 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
   state.data_rad[side] = data;
   IkChain chain = leg.chain;
   // At its limit the ankle would turn the knee aside. It is eased from where it would have to go.
-  if (!tick.flat) chain.dof[kAnkleX].min_rad = -kPi;
+  chain.dof[kAnkleX].min_rad = -kPi;
   solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   ease_ankle(tick, state, side, pelvis, angles, state.foot[side], solve);
   if (angles[kAnkleX] < leg.chain.dof[kAnkleX].min_rad) {

@@ -33,6 +33,12 @@ inline StyleValues limp() {
   return style;
 }
 
+inline StyleValues high_steps() {
+  StyleValues style;
+  for (StrideFactors& stride : style.stride) stride.flight_height = 3.0;
+  return style;
+}
+
 // A character with a stick and a style, and the frames of its ticks.
 class MadeWalker {
  public:

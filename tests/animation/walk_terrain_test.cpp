@@ -244,6 +244,17 @@ TEST(WalkTerrain, ShortFeetAreNotExpectedToReachBeyondTheirTips) {
   }
 }
 
+// A riser of a third of the leg, and a swing that folds the knee without it already.
+TEST(WalkTerrain, AChildThatStepsHighFoldsItsKneesNoFurtherThanTheyGo) {
+  const WalkModel model = model_on(0.6, ground_of(stairs(0.17)));
+  for (const double y : {0.4, 0.7}) {
+    Hiker hiker(model);
+    hiker.walk_to(4.5, y, high_steps());
+    EXPECT_GE(hiker.worst().end_z_m, 4.5);
+    expect_sound(hiker.worst(), "stick " + std::to_string(y));
+  }
+}
+
 TEST(WalkTerrain, AStartOnAnEdgeStandsBesideIt) {
   const WalkModel model = model_on(1.0, ground_of(stairs(0.17)));
   for (double z = 1.2; z < 2.2; z += 0.07) {

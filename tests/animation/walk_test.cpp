@@ -268,6 +268,18 @@ TEST(Walk, NeitherFailsNorJumpsOverRandomSticksAndStyles) {
   }
 }
 
+// Its ankles bend up further than they can: the feet point down instead.
+TEST(Walk, AChildThatStepsHighAtFullSpeedIsSmooth) {
+  const WalkModel child = model_of(0.6);
+  MadeWalker walker(child);
+  for (int walks = 0; walks < 8; ++walks) {
+    walker.walk(0, 1.0, 240 + 30 * walks, high_steps());
+    walker.walk(0, 0, 2 * kRate, high_steps());
+  }
+  for (const WalkFrame& f : walker.frames()) ASSERT_FALSE(f.ik_failed[0] || f.ik_failed[1]);
+  EXPECT_LT(walker.sharpest_turn_rad(), 1.5 * kDegree);
+}
+
 TEST(Walk, PaperModeStaysBoundedAndFinite) {
   for (const StyleValues& style : {StyleValues{}, limp(), with_hip_weight(0.2)}) {
     MadeWalker walker(adult(), IkMode::paper);

@@ -73,7 +73,9 @@ Cause TraceReader::add_lettered(char letter, std::string_view text) {
 
 Cause TraceReader::version(Words words) {
   if (words.next() != "1") return "this version of the format is not known, 1 is";
-  if (trace_.rate_hz || !trace_.events.empty()) return "a V: line stands first, once";
+  if (trace_.rate_hz || trace_.has_ticks || !trace_.events.empty())
+    return "a V: line stands first, once";
+  std::optional<int> rate_hz;
   while (!words.at_end()) {
     const std::string_view word = words.next();
     constexpr std::string_view kRate = "rate_hz=";
@@ -82,8 +84,9 @@ Cause TraceReader::version(Words words) {
     if (!rate || *rate < 1) {
       return fmt::format("{} is no rate within 1 .. {}", in_quotes(word), kMaxRateHz);
     }
-    trace_.rate_hz = static_cast<int>(*rate);
+    rate_hz = static_cast<int>(*rate);
   }
+  trace_.rate_hz = rate_hz;
   return std::nullopt;
 }
 

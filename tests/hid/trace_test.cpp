@@ -170,6 +170,7 @@ TEST(Trace, DamageIsRefusedWithFileAndLine) {
   EXPECT_EQ(cause(good + "T: 4\n"), "t.hid:3: the first T: line stands behind events");
   EXPECT_EQ(cause("V: 2 rate_hz=240\n"), "t.hid:1: this version of the format is not known, 1 is");
   EXPECT_EQ(cause("V: 1 rate_hz=0\n"), "t.hid:1: \"rate_hz=0\" is no rate within 1 .. 10000");
+  EXPECT_EQ(cause("R: 1 c0\nT: 5\nV: 1 rate_hz=1\n"), "t.hid:3: a V: line stands first, once");
   EXPECT_EQ(cause("R: 1 c0\nT: 5\nT: 4\n"), "t.hid:3: tick 4 comes after tick 5");
   EXPECT_EQ(cause("R: 1 c0\nT: 144001\n"),
             "t.hid:2: a gap of more than ten minutes: tick 144001 after tick 0");
@@ -198,6 +199,12 @@ TEST(Trace, LenientSkipsDamagedLinesAndCountsThem) {
   EXPECT_EQ(t.first_damage, "t.hid:6: time goes back from 1.000000 to 0.000000");
   EXPECT_EQ(t.events.size(), 2u);
   EXPECT_EQ(t.devices.size(), 1u) << "the second device has no descriptor";
+}
+
+TEST(Trace, NothingOfADamagedLineCounts) {
+  const Trace t = parsed("V: 1 rate_hz=500 rate_hz=x\n" + kHeader, Damage::skip);
+  EXPECT_EQ(t.skipped_lines, 1);
+  EXPECT_EQ(t.rate_hz, std::nullopt);
 }
 
 TEST(Trace, ReportsBelowADamagedDeviceIndexBelongToNoDevice) {

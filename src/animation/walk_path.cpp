@@ -8,8 +8,8 @@ constexpr double kReach = 0.9985;  // of the leg: the longest it gets, knee 6 de
 constexpr double kEvenFront =
     0.46;  // of the step: front heel to hips where the data's lean is left
 constexpr double kBackwardHips = 0.45;  // of a backward step: the weight follows the foot late
-// Up a high riser (rises in legs) they come along with it, or its ankle would bend up too far.
-constexpr double kBackwardHipsUp = 0.95, kHighRiser = 0.2, kHighestRiser = 0.3;
+// Up a high riser (rises in legs) they go ahead of it, or its ankle would bend up too far.
+constexpr double kBackwardHipsUp = 1.075, kHighRiser = 0.2, kHighestRiser = 0.3;
 constexpr double kLongDrop_m = 0.05;  // of the hips in steps much longer than the data's
 constexpr double kLameDrop_m = 0.1;   // of the hips for a foot that does not lift at all
 constexpr double kShortStep = 0.1, kLeastShare = 0.3;  // of the data's step; of the wanted one

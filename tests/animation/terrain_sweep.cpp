@@ -2,6 +2,7 @@
 // walk. Exit status 1 where one misses its bound.
 // Usage: terrain_sweep [--terrain NAME] [--ratio R] [--stick Y] [--style NAME] [MOTION ...]
 // Without them: the course; legs 0.6, 1, 1.6; sticks 0.4, 0.7, 1; all styles; the built-in motion.
+// A stick below 0 walks it backwards from its end.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,20 +48,21 @@ Result<GaitCycle> cycle_of(const std::string& motion) {
   return gait_cycle(*loaded);
 }
 
-// From its begin to a stop behind its end.
+// From one end to a stop behind the other.
 TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
-  const double goal_m = length_m(*model.terrain) + 1.0;
+  const double far_m = length_m(*model.terrain) + 1.0;
+  const bool backward = stick_y < 0.0;
   const GaitLimits limits = gait_limits(model.leg_length_m);
   Stick stick;
   stick.left = vec2(0.0, stick_y);
   const GaitParams go = gait_params(stick, style, limits),
                    stop = gait_params(Stick{}, style, limits);
   Pose pose;
-  WalkState state = standing(model, vec3(0.0), pose);
+  WalkState state = standing(model, vec3(0.0, 0.0, backward ? far_m : 0.0), pose);
   TerrainJudge judge(model);
   int rest = 0;
   for (int k = 0; k < kLongest_s * kRate && rest < 400; ++k) {
-    if (pose.root_m.z > goal_m) ++rest;
+    if (backward ? pose.root_m.z < -1.0 : pose.root_m.z > far_m) ++rest;
     advance(model, rest > 0 ? stop : go, IkMode::robust, 1.0 / kRate, state, pose);
     judge.see(state, pose);
   }
@@ -71,7 +73,7 @@ TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
 // The first issue's bound on second differences: 1 degree, 5 for captured walks at a high speed.
 double most_jump_deg(const WalkModel& model, const std::string& motion, double stick_y) {
   const double size = model.leg_length_m / kReferenceLeg_m;
-  const double speed = stick_y * gait_limits(model.leg_length_m).max_speed_m_s;
+  const double speed = std::abs(stick_y) * gait_limits(model.leg_length_m).max_speed_m_s;
   return motion != "procedural" && speed > kPlainSpeed_m_s * std::sqrt(size) ? 5.0 : 1.0;
 }
 

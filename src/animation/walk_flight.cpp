@@ -25,7 +25,7 @@ constexpr double kReplan_m = 0.005;  // of the landing
 
 // The spline through 0 and `end` with slope 0 there.
 template <class Knots, class Value>
-double spline_at(const Knots& knots, double end, double u, const Value& value) noexcept {
+constexpr double spline_at(const Knots& knots, double end, double u, const Value& value) noexcept {
   constexpr int n = kFlightKnots;
   const auto control = [&](int k) {
     if (k <= 0) return value(knots[0]) * (k == 0 ? -0.5 : 1.0);
@@ -40,7 +40,7 @@ double spline_at(const Knots& knots, double end, double u, const Value& value) n
           control(i + 1) * (1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3) + control(i + 2) * t3) /
          6.0;
 }
-double spline_at(const FlightSpline& knots, double end, double u) noexcept {
+constexpr double spline_at(const FlightSpline& knots, double end, double u) noexcept {
   return spline_at(knots, end, u, [](double k) { return k; });
 }
 
@@ -266,30 +266,37 @@ double way_on(const Tick& tick, const Flight& flight, int i, double raise) noexc
   return on;
 }
 
+// Of each knot along the flight.
+constexpr auto kKnotWeights = [] {
+  std::array<Wanted, kFlightKnots - 1> weights;
+  for (int k = 0; k < kFlightKnots - 1; ++k) {
+    FlightSpline alone{};
+    alone[k] = 1.0;
+    for (int i = 0; i <= kProbes; ++i)
+      weights[k][i] = spline_at(alone, 0.0, static_cast<double>(i) / kProbes);
+  }
+  return weights;
+}();
+
 // Draws the inner knots to a taut line over what is wanted, less some of its room: the envelope
 // alone holds each height for two knots longer than needed. Where the spline lacks more already, it
 // sinks no further.
 void draw_taut(const Wanted& wanted, double room_m, FlightSpline& knots) noexcept {
   Wanted slack;
-  std::array<Wanted, kFlightKnots - 1> weight;  // of each knot along the flight
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
     const double spare = (1.0 - kTautRoom) * room_m * in_flight(u);
     slack[i] = std::max(0.0, spline_at(knots, wanted.back(), u) - wanted[i] + spare);
-    for (int k = 0; k < kFlightKnots - 1; ++k) {
-      FlightSpline alone{};
-      alone[k] = 1.0;
-      weight[k][i] = spline_at(alone, 0.0, u);
-    }
   }
   for (int round = 0; round < kTautRounds; ++round) {
     for (int k = kFlightKnots - 3; k > 0; --k) {
+      const Wanted& weight = kKnotWeights[k];
       double fall = knots[k] - 0.5 * (knots[k - 1] + knots[k + 1]);
       for (int i = 0; i <= kProbes; ++i) {
-        if (weight[k][i] > kLeastWeight) fall = std::min(fall, slack[i] / weight[k][i]);
+        if (weight[i] > kLeastWeight) fall = std::min(fall, slack[i] / weight[i]);
       }
       knots[k] -= fall;
-      for (int i = 0; i <= kProbes; ++i) slack[i] -= fall * weight[k][i];
+      for (int i = 0; i <= kProbes; ++i) slack[i] -= fall * weight[i];
     }
   }
 }

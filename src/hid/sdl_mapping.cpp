@@ -138,6 +138,11 @@ bool is_guid(std::string_view text) {
 
 }  // namespace
 
+bool is_one_line(std::string_view mapping) {
+  return std::none_of(mapping.begin(), mapping.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
 Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor& descriptor,
                                 std::string_view driver) {
   if (mapping.size() > kMaxTraceTextBytes) {

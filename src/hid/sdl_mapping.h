@@ -21,6 +21,9 @@ namespace gaitpad {
 Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor& descriptor,
                                 std::string_view driver);
 
+// Without control characters: what a calibration keeps of a mapping.
+bool is_one_line(std::string_view mapping);
+
 // The layout's axis that moves a stick's axis, for sticks that lie otherwise than the layout has
 // it.
 struct StickAxis {

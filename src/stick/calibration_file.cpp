@@ -150,8 +150,7 @@ void read_drivers(TomlTable& root, std::vector<std::string>& drivers) {
 void read_mapping(TomlTable& root, std::string& mapping) {
   auto line = root.string("mapping");
   if (!line || line->empty()) return;
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  if (std::any_of(line->begin(), line->end(), is_control)) {
+  if (!is_one_line(*line)) {
     root.reject("mapping", "\"mapping\" is more than one line");
     return;
   }

@@ -229,6 +229,7 @@ unsigned guid_word(const std::string& line, std::size_t byte) {
 
 // Why a line is none of the pad's; empty: it is one.
 std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
+  if (!is_one_line(line)) return "SDL mapping: it holds a control character";
   const unsigned vendor = guid_word(line, 4), product = guid_word(line, 8);
   if (guid_word(line, 6) != 0 || guid_word(line, 10) != 0) return {};  // a name, no ids
   if (vendor != 0 && (vendor != device.vendor || product != device.product)) {

@@ -230,6 +230,8 @@ TEST(CalibrationImport, AnSdlMappingIsTakenAsItStands) {
             "old.js:2: SDL mapping: it is for another platform, which counts otherwise");
   EXPECT_EQ(error_of("03000000091200000100000011010000,Node,a:q1,platform:Linux,", pad),
             "old.js:1: SDL mapping: unknown source \"q1\"");
+  EXPECT_EQ(error_of("03000000091200000100000011010000,No\001de,a:b1,platform:Linux,", pad),
+            "old.js:1: SDL mapping: it holds a control character");
   EXPECT_EQ(error_of("03000000091200000100000011010000,Node,a:b99,platform:Linux,", pad),
             "old.js:1: SDL mapping: it names no control that the pad has");
   EXPECT_EQ(error_of("03000000091200000100000011810000,Node,a:b1,platform:Linux,", pad),

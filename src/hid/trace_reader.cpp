@@ -195,8 +195,9 @@ Cause TraceReader::tick(Words words) {
   if (!tick || !words.at_end()) return fmt::format("{} is no tick", in_quotes(word));
   if (trace_.end_ticks) return "a line behind the end of the recording (Q:)";
   if (*tick < tick_) return fmt::format("tick {} comes after tick {}", *tick, tick_);
-  if (*tick - tick_ > rate() * (kMaxTraceGapUs / 1'000'000)) {
-    return fmt::format("a gap of more than ten minutes: tick {} after tick {}", *tick, tick_);
+  const std::int64_t last = trace_.events.empty() ? 0 : trace_.events.back().tick;
+  if (*tick - last > rate() * (kMaxTraceGapUs / 1'000'000)) {
+    return fmt::format("a gap of more than ten minutes: tick {} after tick {}", *tick, last);
   }
   if (!trace_.has_ticks && !trace_.events.empty()) return "the first T: line stands behind events";
   trace_.has_ticks = true;

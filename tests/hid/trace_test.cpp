@@ -174,6 +174,8 @@ TEST(Trace, DamageIsRefusedWithFileAndLine) {
   EXPECT_EQ(cause("R: 1 c0\nT: 5\nT: 4\n"), "t.hid:3: tick 4 comes after tick 5");
   EXPECT_EQ(cause("R: 1 c0\nT: 144001\n"),
             "t.hid:2: a gap of more than ten minutes: tick 144001 after tick 0");
+  EXPECT_EQ(cause("R: 1 c0\nT: 100000\nT: 200000\n"),
+            "t.hid:3: a gap of more than ten minutes: tick 200000 after tick 0");
   EXPECT_EQ(cause("R: 1 c0\nT: 5\nE: 000000.000000 1 00\nQ: 000001.000000 5\n"),
             "t.hid:4: the recording has 5 ticks but tick 5 has events");
   EXPECT_EQ(

@@ -61,18 +61,28 @@ class Terminal:
         end = time.monotonic() + seconds
         with self._more:
             while True:
+                is_last = self.process.poll() is not None or time.monotonic() > end
+                if is_last:
+                    self._read_all()
                 found = re.compile(pattern).search(self.text, since)
                 if found:
                     return found
-                if self.process.poll() is not None or time.monotonic() > end:
+                if is_last:
                     raise AssertionError(f"{pattern!r} was not shown: ...{self.text[-1500:]!r}")
                 self._more.wait(0.05)
 
     def wait_end(self, seconds=20.0):
         """Exit status."""
         status = self.process.wait(seconds)
-        time.sleep(0.05)  # for the reader
+        with self._more:
+            self._read_all()
         return status
+
+    def _read_all(self):
+        """What the program wrote comes before what is written now."""
+        os.write(self._slave, b"\0")
+        self._more.wait_for(lambda: "\0" in self.text, 10)
+        self.text = self.text.replace("\0", "")
 
     def send_signal(self, number):
         self.process.send_signal(number)

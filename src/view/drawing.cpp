@@ -143,16 +143,17 @@ std::string png_of(cairo_surface_t* surface) {
 
 }  // namespace gaitpad
 
-// Fontconfig and D-Bus (through SDL) keep what they looked up until the process ends, out of the leak
-// checker's sight.
+// Fontconfig and D-Bus (through SDL) keep what they looked up until the process ends, out of the
+// leak checker's sight.
 #ifdef __SANITIZE_ADDRESS__
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libdbus-1\n"
          "leak:libfontconfig";
 }
 extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
-// A library's thread-local block that Mesa has glibc allocate on the heap 16 bytes into a page: GCC 12's libasan
-// takes it for one of glibc 2.19, whose size stands before it, and the leak checker reads astray and crashes. Not
-// told of such blocks it finds them all the same, as what the dynamic linker allocated.
+// A thread-local block that glibc allocates for Mesa on the heap, 16 bytes into a page: GCC 12's
+// libasan takes it for one of glibc 2.19, whose size stands before it, and the leak checker reads
+// astray and crashes. Not told of such blocks it finds them all the same, as what the dynamic
+// linker allocated.
 extern "C" const char* __asan_default_options() { return "intercept_tls_get_addr=0"; }
 #endif

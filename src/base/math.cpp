@@ -18,11 +18,12 @@ double sin_kernel(double x) noexcept {
 
 double cos_kernel(double x) noexcept {
   const double z = x * x;
-  const double p = 4.16666666666666019037e-02 +
-                   z * (-1.38888888888741095749e-03 +
-                        z * (2.48015872894767294178e-05 +
-                             z * (-2.75573143513906633035e-07 +
-                                  z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11))));
+  const double p =
+      4.16666666666666019037e-02 +
+      z * (-1.38888888888741095749e-03 +
+           z * (2.48015872894767294178e-05 +
+                z * (-2.75573143513906633035e-07 +
+                     z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11))));
   return 1.0 - 0.5 * z + z * z * p;
 }
 
@@ -35,11 +36,11 @@ double atan_kernel(double x) noexcept {
                 w * (9.09088713343650656196e-02 +
                      w * (6.66107313738753120669e-02 +
                           w * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02)))));
-  const double s2 = w * (-1.99999999998764832476e-01 +
-                         w * (-1.11111104054623557880e-01 +
-                              w * (-7.69187620504482999495e-02 +
-                                   w * (-5.83357013379057348645e-02 +
-                                        w * -3.65315727442169155270e-02))));
+  const double s2 =
+      w * (-1.99999999998764832476e-01 +
+           w * (-1.11111104054623557880e-01 +
+                w * (-7.69187620504482999495e-02 +
+                     w * (-5.83357013379057348645e-02 + w * -3.65315727442169155270e-02))));
   return x - x * (s1 + s2);
 }
 
@@ -69,10 +70,14 @@ SinCos sin_cos(double angle_rad) noexcept {
   const double x = ((angle_rad - k * kPart1) - k * kPart2) - k * kPart3;
   const double s = sin_kernel(x), c = cos_kernel(x);
   switch (n & 3) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
   }
 }
 

@@ -1,8 +1,8 @@
 // Vectors, quaternions and the few transcendental functions of the program.
 // Everything is double: a character that has walked 200 m still has its feet nailed to 0.1 mm.
 // sin, cos and atan2 are our own, because libm's last bits differ between compilers, versions and
-// CPUs, and a replay must give the same bits everywhere (only + - * / and sqrt are exact in IEEE 754).
-// GLM_FORCE_CTOR_INIT stays undefined: with it GLM types are not trivially copyable.
+// CPUs, and a replay must give the same bits everywhere (only + - * / and sqrt are exact in IEEE
+// 754). GLM_FORCE_CTOR_INIT stays undefined: with it GLM types are not trivially copyable.
 #pragma once
 #define GLM_FORCE_EXPLICIT_CTOR
 #include <algorithm>
@@ -19,11 +19,11 @@ using mat3 = glm::dmat3;
 using quat = glm::dquat;
 
 inline constexpr double kPi = std::numbers::pi;
-inline constexpr double kDegree = kPi / 180.0;             // radians
-inline const quat kIdentity = quat(1.0, 0.0, 0.0, 0.0);    // w, x, y, z
-inline const vec3 kLeft = vec3(1.0, 0.0, 0.0);             // world axes: x to the walker's left at
-inline const vec3 kUp = vec3(0.0, 1.0, 0.0);               // heading 0, y up,
-inline const vec3 kForward = vec3(0.0, 0.0, 1.0);          // z forward
+inline constexpr double kDegree = kPi / 180.0;           // radians
+inline const quat kIdentity = quat(1.0, 0.0, 0.0, 0.0);  // w, x, y, z
+inline const vec3 kLeft = vec3(1.0, 0.0, 0.0);           // world axes: x to the walker's left at
+inline const vec3 kUp = vec3(0.0, 1.0, 0.0);             // heading 0, y up,
+inline const vec3 kForward = vec3(0.0, 0.0, 1.0);        // z forward
 
 struct SinCos {
   double sin, cos;

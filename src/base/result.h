@@ -6,7 +6,8 @@
 
 namespace gaitpad {
 
-// `message` names the thing, the place and the cause: `config/pads/sony.toml:12: unknown axis "left_z"`.
+// `message` names the thing, the place and the cause: `config/pads/sony.toml:12: unknown axis
+// "left_z"`.
 struct Error {
   std::string message;
 };

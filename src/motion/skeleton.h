@@ -1,6 +1,6 @@
 // The character's bones and one posture of them.
-// Meredith & Maddock 2005, section 3.2: the data module hands out "limb degree-of-freedom values" in
-// one format, whatever the source (captured, procedural, key-framed).
+// Meredith & Maddock 2005, section 3.2: the data module hands out "limb degree-of-freedom values"
+// in one format, whatever the source (captured, procedural, key-framed).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -28,14 +28,16 @@ struct Skeleton {
   int find(const std::string& name) const;  // exact name, -1 where there is none
 };
 
-// Joint indices of one leg. Between hip and knee (or knee and ankle) further joints may stand (twist
-// joints); they keep a fixed rotation. toe is an End Site where the skeleton has no toe joint; toe_end
-// is the toe joint's End Site or last descendant (== toe where toe is itself an End Site).
+// Joint indices of one leg. Between hip and knee (or knee and ankle) further joints may stand
+// (twist joints); they keep a fixed rotation. toe is an End Site where the skeleton has no toe
+// joint; toe_end is the toe joint's End Site or last descendant (== toe where toe is itself an End
+// Site).
 struct LegJoints {
   int hip = -1, knee = -1, ankle = -1, toe = -1, toe_end = -1;
 };
 
-// Plain, trivially copyable. local[j] turns joint j's frame into its parent's; local[0] into the world.
+// Plain, trivially copyable. local[j] turns joint j's frame into its parent's; local[0] into the
+// world.
 struct Pose {
   vec3 root_m{0.0};  // world position of joint 0
   std::array<quat, kMaxJoints> local;

@@ -30,7 +30,8 @@ inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // different ones in 
 struct PadStreamOptions {
   PadFiles files;
   PadWish wish;
-  std::shared_ptr<KeyboardStick> keyboard = nullptr;  // a further device, index 0, there from the start
+  std::shared_ptr<KeyboardStick> keyboard =
+      nullptr;  // a further device, index 0, there from the start
   // For tests: other drivers; a descriptor that is readable when something was plugged in or out
   // and silent after one read(), in place of udev's word; reports that the ring holds, a power of
   // two.

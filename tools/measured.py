@@ -150,7 +150,8 @@ def measure_terrain(options, text=None):
             worst = max(found, key=lambda w: float(w["d2_deg"]))
             rows.append(row(name, float(worst["d2_deg"]), allowed, "deg/tick2", len(found), 0,
                             place(worst)))
-    return {"rows": rows, "runs": len(walks), "missed": sum("MISSED" in line for line in lines)}
+    missed = sum("MISSED" in line for line in lines)
+    return {"rows": rows, "note": f"{missed} of {len(walks)} walks missed a bound."}
 
 
 def place(walk):
@@ -268,7 +269,7 @@ def measure_worn(options, text=None):
         row("full deflection, any of 360 directions, before the sideways zone", float(full[2]),
             ">= 0.99", "", sticks),
         row("the same after it", float(full[3]), ">= 0.96", "", sticks),
-        row("stride at full deflection forward, over the full one", float(walk[4]), ">= 0.999", "",
+        row("stride at full deflection forward, over the full one", walk[4], ">= 0.999", "",
             sticks),
         row("reports at rest that move the character", at_rest, "== 0", "", sticks),
     ]}

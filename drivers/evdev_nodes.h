@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "base/result.h"
 #include "drivers/posix.h"
+#include "gaitpad/result.h"
 #include "hid/evdev_layout.h"
 
 namespace gaitpad {

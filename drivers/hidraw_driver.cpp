@@ -19,7 +19,7 @@
 #include "drivers/hidraw_node.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
-#include "hid/descriptor.h"
+#include "gaitpad/descriptor.h"
 
 namespace gaitpad {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
 #include "drivers/pads/packet_sender.h"
 #include "drivers/pads/pad_model.h"
 #include "drivers/present_state.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

@@ -6,10 +6,10 @@
 #include <memory>
 #include <string_view>
 
-#include "base/math.h"
-#include "base/result.h"
 #include "drivers/posix.h"
-#include "hid/driver.h"
+#include "gaitpad/driver.h"
+#include "gaitpad/math.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

@@ -1,6 +1,5 @@
-#include "drivers/registry.h"
-
 #include "drivers/driver_entries.h"
+#include "gaitpad/drivers.h"
 
 namespace gaitpad {
 

@@ -14,8 +14,8 @@
 #include "drivers/sdl_reports.h"
 #include "drivers/sdl_timer.h"
 #include "drivers/system_nodes.h"
-#include "hid/evdev_codes.h"
-#include "hid/trace.h"
+#include "gaitpad/trace.h"
+#include "hid/evdev_layout.h"
 
 namespace gaitpad {
 namespace {

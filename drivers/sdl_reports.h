@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "gaitpad/report.h"
 #include "hid/evdev_layout.h"
-#include "hid/report.h"
 
 namespace gaitpad {
 

@@ -18,7 +18,7 @@
 #include <optional>
 #include <utility>
 
-#include "hid/descriptor.h"
+#include "gaitpad/descriptor.h"
 
 namespace gaitpad {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/result.h"
-#include "hid/driver.h"
+#include "gaitpad/driver.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

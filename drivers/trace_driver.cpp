@@ -13,7 +13,7 @@
 
 #include "drivers/driver_entries.h"
 #include "drivers/posix.h"
-#include "hid/trace.h"
+#include "gaitpad/trace.h"
 
 namespace gaitpad {
 namespace {

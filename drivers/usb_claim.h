@@ -8,10 +8,10 @@
 #include <string>
 #include <string_view>
 
-#include "base/result.h"
 #include "drivers/posix.h"
 #include "drivers/usb_interfaces.h"
 #include "drivers/usb_reattach.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

@@ -11,7 +11,7 @@
 #include "drivers/usb_claim.h"
 #include "drivers/usb_interfaces.h"
 #include "drivers/usb_transfers.h"
-#include "hid/descriptor.h"
+#include "gaitpad/descriptor.h"
 
 namespace gaitpad {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "drivers/system_nodes.h"
-#include "hid/descriptor.h"
+#include "gaitpad/descriptor.h"
 
 namespace gaitpad {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "drivers/pads/pad_model.h"
-#include "hid/driver.h"
+#include "gaitpad/driver.h"
 
 namespace gaitpad {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "base/result.h"
 #include "drivers/posix.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

@@ -14,10 +14,10 @@
 #include <span>
 #include <vector>
 
-#include "base/result.h"
 #include "drivers/pads/pad_model.h"
 #include "drivers/posix.h"
-#include "hid/report.h"
+#include "gaitpad/report.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

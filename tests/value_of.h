@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/result.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hid/driver.h"
+#include "gaitpad/driver.h"
 
 namespace gaitpad {
 

@@ -1,11 +1,163 @@
-#include "animation/ik.h"
+// One pose of an IK chain as screws, from which every Jacobian entry is one product. Internal to
+// ik*.
+
+#include "gaitpad/ik.h"
 
 #include <cassert>
+#include <limits>
+#include <utility>
 
-#include "animation/ik_pose.h"
-#include "base/math.h"
+#include "gaitpad/math.h"
 
 namespace gaitpad {
+
+struct IkPose {
+  std::array<vec3, kMaxIkDofs> axis;     // of each DOF, base frame
+  std::array<vec3, kMaxIkDofs> pivot_m;  // a point on that axis
+  vec3 x, y, z;                          // images of the last frame's axes
+  vec3 end_m;                            // its origin
+};
+void pose_chain(const IkChain& chain, const IkAngles& angles_rad, IkPose& pose) noexcept;
+
+inline vec3 point_in_base(const IkPose& pose, const vec3& p) noexcept {
+  return pose.end_m + p.x * pose.x + p.y * pose.y + p.z * pose.z;
+}
+
+// Step 1.
+struct IkErrors {
+  std::array<double, kMaxIkRows> dx;
+  std::array<vec3, kMaxIkRows> point_m;  // the rows' points, base frame
+  double squares = 0.0;                  // |dX|^2
+};
+void measure(const IkPose& pose, std::span<const IkRow> rows, IkErrors& errors) noexcept;
+
+// Finite angles, weights and limits (limits may be infinite). Links, axes, points and goals show in
+// the error.
+bool finite_inputs(const IkChain& chain, const IkAngles& angles_rad) noexcept;
+
+// A further row of the trace; and the last row, unless it is the answer already.
+void note(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept;
+void note_answer(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept;
+
+// The linear system of one robust IK step, sized at compile time. Internal to ik*.
+
+using IkDofValues = std::array<double, kMaxIkDofs>;
+
+// Two doubles in one SSE2 register: the same bits as one by one, at half the time.
+using Pair = double __attribute__((vector_size(16)));
+
+// f(0), f(1) ... with the index as a constant: unrolled on every compiler at -O2.
+template <int kCount, class F>
+inline void unrolled(F&& f) noexcept {
+  [&]<int... i>(std::integer_sequence<int, i...>) { (f(std::integral_constant<int, i>{}), ...); }
+  (std::make_integer_sequence<int, kCount>{});
+}
+
+// (J W J^T + l^2 I) y = b. kRows is even; where the number of rows is not, the last is all zero.
+template <int kRows>
+class IkStep {
+ public:
+  using Rows = std::array<double, kRows>;
+
+  void set_columns(const IkPose& pose, std::span<const IkRow> rows, const IkErrors& errors,
+                   int dofs) noexcept;
+  // l^2 > 0: no pivot is less, so none is checked.
+  void factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
+  void solve(const Rows& b, Rows& y) const noexcept;
+  // Row j of J^T times y, and b -= column j of J times an angle.
+  double product(int j, const Rows& y) const noexcept;
+  void subtract(int j, double angle_rad, Rows& b) const noexcept;
+
+ private:
+  static constexpr int kPairs = kRows / 2;
+  template <int kBlock>
+  void gram_block(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
+
+  Pair column_[kMaxIkDofs][kPairs];  // of J
+  std::array<Rows, kRows> factor_;   // J W J^T + l^2 I = L D L^T: above the diagonal L^T, else L D
+  Rows reciprocal_;                  // 1 / D
+};
+
+// An entry is d . (a x (p - q)) for direction d, point p and an axis a through q, which is
+// a . (p x d) + d . (q x a).
+template <int kRows>
+void IkStep<kRows>::set_columns(const IkPose& pose, std::span<const IkRow> rows,
+                                const IkErrors& errors, int dofs) noexcept {
+  Pair d[3][kPairs] = {}, m[3][kPairs] = {};
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const vec3& direction = rows[r].direction;
+    const vec3 moment = glm::cross(errors.point_m[r], direction);
+    for (int i = 0; i < 3; ++i) d[i][r / 2][r % 2] = direction[i], m[i][r / 2][r % 2] = moment[i];
+  }
+  for (int j = 0; j < dofs; ++j) {
+    const vec3& a = pose.axis[j];
+    const vec3 n = glm::cross(pose.pivot_m[j], a);
+    unrolled<kPairs>([&](auto i) {
+      column_[j][i] = (a.x * m[0][i] + a.y * m[1][i]) + (a.z * m[2][i] + n.x * d[0][i]) +
+                      (n.y * d[1][i] + n.z * d[2][i]);
+    });
+  }
+}
+
+// Two rows of the lower half at a time: their sums stay in registers.
+template <int kRows>
+template <int kBlock>
+void IkStep<kRows>::gram_block(const IkDofValues& weight, int dofs,
+                               double damping_squared) noexcept {
+  Pair even[kBlock + 1] = {}, odd[kBlock + 1] = {};
+  for (int j = 0; j < dofs; ++j) {
+    const Pair weighted = weight[j] * column_[j][kBlock];
+    unrolled<kBlock + 1>([&](auto i) {
+      even[i] += weighted[0] * column_[j][i];
+      odd[i] += weighted[1] * column_[j][i];
+    });
+  }
+  unrolled<2 * kBlock + 2>([&](auto s) {
+    factor_[2 * kBlock][s] = even[s / 2][s % 2];
+    factor_[2 * kBlock + 1][s] = odd[s / 2][s % 2];
+  });
+  factor_[2 * kBlock][2 * kBlock] += damping_squared;
+  factor_[2 * kBlock + 1][2 * kBlock + 1] += damping_squared;
+}
+
+template <int kRows>
+void IkStep<kRows>::factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept {
+  unrolled<kPairs>([&](auto block) { gram_block<block>(weight, dofs, damping_squared); });
+  unrolled<kRows>([&](auto k) {
+    reciprocal_[k] = 1.0 / factor_[k][k];
+    unrolled<kRows - 1 - k>([&](auto i) {
+      constexpr int r = k + 1 + i;
+      const double l = factor_[k][r] = factor_[r][k] * reciprocal_[k];
+      unrolled<i + 1>([&](auto s) { factor_[r][k + 1 + s] -= l * factor_[k + 1 + s][k]; });
+    });
+  });
+}
+
+template <int kRows>
+void IkStep<kRows>::solve(const Rows& b, Rows& y) const noexcept {
+  y = b;
+  unrolled<kRows>([&](auto k) {
+    unrolled<kRows - 1 - k>([&](auto i) { y[k + 1 + i] -= factor_[k][k + 1 + i] * y[k]; });
+  });
+  unrolled<kRows>([&](auto k) { y[k] *= reciprocal_[k]; });
+  unrolled<kRows>([&](auto back) {
+    constexpr int k = kRows - 1 - back;
+    unrolled<k>([&](auto r) { y[r] -= factor_[r][k] * y[k]; });
+  });
+}
+
+template <int kRows>
+double IkStep<kRows>::product(int j, const Rows& y) const noexcept {
+  Pair sum = {};
+  unrolled<kPairs>([&](auto i) { sum += column_[j][i] * Pair{y[2 * i], y[2 * i + 1]}; });
+  return sum[0] + sum[1];
+}
+
+template <int kRows>
+void IkStep<kRows>::subtract(int j, double angle_rad, Rows& b) const noexcept {
+  unrolled<kRows>([&](auto r) { b[r] -= column_[j][r / 2][r % 2] * angle_rad; });
+}
+
 namespace {
 
 struct Axes {
@@ -119,6 +271,407 @@ std::array<IkRow, 3> point_goal(const vec3& point_m, const vec3& goal_m) noexcep
   return {{{point_m, vec3(1.0, 0.0, 0.0), goal_m.x},
            {point_m, vec3(0.0, 1.0, 0.0), goal_m.y},
            {point_m, vec3(0.0, 0.0, 1.0), goal_m.z}}};
+}
+
+// Meredith & Maddock 2005, section 3.3.2, steps 1-7, literally.
+
+namespace {
+
+using Rows = std::array<double, kMaxIkRows>;
+using Square = std::array<Rows, kMaxIkRows>;
+
+// Explicit inverse by Gauss-Jordan elimination with row exchange; false if there is none.
+bool invert(Square& a, int n) noexcept {
+  Square inverse{};
+  for (int i = 0; i < n; ++i) inverse[i][i] = 1.0;
+  for (int i = 0; i < n; ++i) {
+    int pivot = i;
+    for (int k = i + 1; k < n; ++k) {
+      if (std::abs(a[k][i]) > std::abs(a[pivot][i])) pivot = k;
+    }
+    if (!(std::abs(a[pivot][i]) > 0.0)) return false;  // also for NaN
+    std::swap(a[i], a[pivot]);
+    std::swap(inverse[i], inverse[pivot]);
+    const double reciprocal = 1.0 / a[i][i];
+    for (int k = 0; k < n; ++k) a[i][k] *= reciprocal, inverse[i][k] *= reciprocal;
+    for (int row = 0; row < n; ++row) {
+      if (row == i) continue;
+      const double factor = a[row][i];
+      for (int k = 0; k < n; ++k) {
+        a[row][k] -= factor * a[i][k];
+        inverse[row][k] -= factor * inverse[i][k];
+      }
+    }
+  }
+  a = inverse;
+  return true;
+}
+
+struct Equations {
+  int rows, dofs;
+  IkJacobian j;                                              // J
+  std::array<std::array<double, kMaxIkRows>, kMaxIkDofs> p;  // J^+
+  Square left_over;                                          // I - J J^+
+  Rows dx;
+};
+
+// Steps 1-3: dX, J and its pseudo-inverse J^+ = J^T (J J^T)^-1. False if J J^T has no inverse.
+bool form_equations(const IkChain& chain, std::span<const IkRow> rows, const IkAngles& angles_rad,
+                    Equations& e) noexcept {
+  e.rows = static_cast<int>(rows.size()), e.dofs = chain.dofs;
+  position_jacobian(chain, rows, angles_rad, e.j, e.dx);
+  Square gram{};
+  for (int r = 0; r < e.rows; ++r) {
+    for (int s = 0; s < e.rows; ++s) {
+      for (int k = 0; k < e.dofs; ++k) gram[r][s] += e.j[r][k] * e.j[s][k];
+    }
+  }
+  if (!invert(gram, e.rows)) return false;
+  for (int k = 0; k < e.dofs; ++k) {
+    for (int s = 0; s < e.rows; ++s) {
+      e.p[k][s] = 0.0;
+      for (int r = 0; r < e.rows; ++r) e.p[k][s] += e.j[r][k] * gram[r][s];
+    }
+  }
+  for (int r = 0; r < e.rows; ++r) {
+    for (int s = 0; s < e.rows; ++s) {
+      double product = 0.0;
+      for (int k = 0; k < e.dofs; ++k) product += e.j[r][k] * e.p[k][s];
+      e.left_over[r][s] = (r == s ? 1.0 : 0.0) - product;
+    }
+  }
+  return true;
+}
+
+double norm(const Rows& v, int n) noexcept {
+  double squares = 0.0;
+  for (int r = 0; r < n; ++r) squares += v[r] * v[r];
+  return std::sqrt(squares);
+}
+
+// Step 4: ||(I - J J^+) dX||.
+double inverse_error(const Equations& e) noexcept {
+  Rows v{};
+  for (int r = 0; r < e.rows; ++r) {
+    for (int s = 0; s < e.rows; ++s) v[r] += e.left_over[r][s] * e.dx[s];
+  }
+  return norm(v, e.rows);
+}
+
+struct Pass {
+  bool done = false;  // false: no inverse or no finite step; the angles are as before
+  double error_m = 0.0;
+  int halvings = 0;
+};
+
+// Steps 1-6, with eq. (5) in step 6.
+Pass one_pass(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
+              IkAngles& angles_rad) noexcept {
+  Equations e;
+  Pass pass;
+  const bool inverted = form_equations(chain, rows, angles_rad, e);
+  pass.error_m = norm(e.dx, e.rows);
+  if (!inverted) return pass;
+  while (inverse_error(e) > options.epsilon_m && pass.halvings < options.max_halvings) {
+    for (int r = 0; r < e.rows; ++r) e.dx[r] /= 2.0;
+    ++pass.halvings;
+  }
+  IkAngles next = angles_rad;
+  double zero = 0.0;
+  for (int k = 0; k < e.dofs; ++k) {
+    double step = 0.0;
+    for (int r = 0; r < e.rows; ++r) step += e.p[k][r] * e.dx[r];
+    next[k] += chain.dof[k].weight * step;
+    zero += next[k] - next[k];
+  }
+  if (zero != 0.0) return pass;
+  angles_rad = next;
+  pass.done = true;
+  return pass;
+}
+
+double pose_error(const IkChain& chain, std::span<const IkRow> rows,
+                  const IkAngles& angles_rad) noexcept {
+  IkPose pose;
+  IkErrors errors;
+  pose_chain(chain, angles_rad, pose);
+  measure(pose, rows, errors);
+  return std::sqrt(errors.squares);
+}
+
+}  // namespace
+
+double paper_iteration(const IkChain& chain, std::span<const IkRow> rows,
+                       const PaperOptions& options, IkAngles& angles_rad) noexcept {
+  return one_pass(chain, rows, options, angles_rad).error_m;
+}
+
+IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
+                     IkAngles& angles_rad, IkTrace* trace) noexcept {
+  IkResult result;
+  result.error_m = pose_error(chain, rows, angles_rad);
+  if (!finite_inputs(chain, angles_rad) || !std::isfinite(result.error_m)) {
+    result.status = IkStatus::not_finite;
+    result.error_m = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  note(trace, angles_rad, result.error_m);
+  while (result.error_m > options.tolerance_m) {  // step 7
+    if (result.iterations >= options.max_iterations) {
+      result.status = IkStatus::unreachable;
+      break;
+    }
+    const Pass pass = one_pass(chain, rows, options, angles_rad);
+    result.halvings += pass.halvings;
+    if (!pass.done) {
+      result.status = IkStatus::singular;
+      break;
+    }
+    ++result.iterations;
+    result.error_m = pose_error(chain, rows, angles_rad);
+    note(trace, angles_rad, result.error_m);
+  }
+  return result;
+}
+
+// theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits.
+
+namespace {
+
+// l^2 = damping^2 + growth |dX|^2 (after Sugihara 2011, "Solvability-unconcerned inverse kinematics
+// by the Levenberg-Marquardt method"); growth rises where a step makes the error greater.
+constexpr double kLeastDampingSquared = 1e-20;
+constexpr double kGrowth = 0.1;
+constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
+constexpr double kFarthest = 0.5;     // metres of dX that one step asks for at most
+constexpr int kPatience = 6;          // iterations that must gain, together,
+constexpr double kLeastGain = 0.001;  // this share of the error
+constexpr double kGainFrom = 0.1;     // or, if it is greater, of this many metres
+constexpr int kCandidates = 16;       // starts looked at before each further try
+constexpr double kWorthAJump = 0.99;  // a later try replaces an earlier one only below this share
+
+// All that stays the same during a solve.
+struct Problem {
+  const IkChain& chain;
+  std::span<const IkRow> rows;
+  const RobustOptions& options;
+  IkDofValues weight;  // divided by the greatest
+};
+
+IkDofValues relative_weights(const IkChain& chain) noexcept {
+  IkDofValues w{};
+  double greatest = 0.0;
+  for (int j = 0; j < chain.dofs; ++j) greatest = std::max(greatest, chain.dof[j].weight);
+  if (greatest <= 0.0) return w;
+  for (int j = 0; j < chain.dofs; ++j) w[j] = std::max(chain.dof[j].weight, 0.0) / greatest;
+  return w;
+}
+
+double inside(const IkDof& dof, double angle_rad) noexcept {
+  return std::min(std::max(angle_rad, dof.min_rad), dof.max_rad);
+}
+
+// The step within the limits. A DOF that the step would carry past a limit moves exactly to it, its
+// column leaves the system, and the others make up for what it cannot do. All of this depends
+// continuously on goal and pose.
+template <int kRows>
+void limited_step(const Problem& p, IkStep<kRows>& step, double damping_squared,
+                  typename IkStep<kRows>::Rows& dx, const IkAngles& angles_rad,
+                  IkDofValues& delta) noexcept {
+  const int dofs = p.chain.dofs;
+  IkDofValues weight = p.weight;
+  typename IkStep<kRows>::Rows y;
+  for (int j = 0; j < dofs; ++j) delta[j] = 0.0;
+  for (int round = 0; round <= dofs; ++round) {
+    step.factor(weight, dofs, damping_squared);
+    step.solve(dx, y);
+    bool frozen = false;
+    for (int j = 0; j < dofs; ++j) {
+      if (weight[j] == 0.0) continue;
+      delta[j] = weight[j] * step.product(j, y);
+      const double wanted = angles_rad[j] + delta[j], allowed = inside(p.chain.dof[j], wanted);
+      if (allowed == wanted) continue;
+      delta[j] = allowed - angles_rad[j];
+      weight[j] = 0.0;
+      frozen = true;
+      step.subtract(j, delta[j], dx);
+    }
+    if (!frozen) return;
+  }
+}
+
+double cap_share(const IkDofValues& delta, int dofs, double cap_rad) noexcept {
+  double greatest = 0.0;
+  for (int j = 0; j < dofs; ++j) greatest = std::max(greatest, std::abs(delta[j]));
+  return greatest > cap_rad ? cap_rad / greatest : 1.0;
+}
+
+template <int kRows>
+void advance(const Problem& p, const IkPose& pose, const IkErrors& errors, double growth,
+             IkAngles& angles_rad) noexcept {
+  IkStep<kRows> step;
+  step.set_columns(pose, p.rows, errors, p.chain.dofs);
+  const double most = kFarthest * kFarthest;
+  const double share = errors.squares > most ? kFarthest / std::sqrt(errors.squares) : 1.0;
+  typename IkStep<kRows>::Rows dx{};
+  for (std::size_t r = 0; r < p.rows.size(); ++r) dx[r] = share * errors.dx[r];
+  const double damping_squared =
+      std::max(p.options.damping * p.options.damping, kLeastDampingSquared) +
+      growth * std::min(errors.squares, most);
+  IkDofValues delta;
+  limited_step(p, step, damping_squared, dx, angles_rad, delta);
+  const double cap = cap_share(delta, p.chain.dofs, p.options.max_step_rad);
+  for (int j = 0; j < p.chain.dofs; ++j) {
+    angles_rad[j] = inside(p.chain.dof[j], angles_rad[j] + cap * delta[j]);
+  }
+}
+
+struct Try {
+  IkAngles angles_rad;  // the best met
+  double squares = std::numeric_limits<double>::infinity();
+  int iterations = 0;
+};
+
+// True when `squares` is a stand-still: too little gained in the last iterations.
+struct Progress {
+  double error_m = std::numeric_limits<double>::infinity();
+  int iteration = 0;
+
+  bool stands_still(double squares, int k) noexcept {
+    const double now = std::sqrt(squares);
+    if (now < error_m - kLeastGain * std::min(now, kGainFrom)) error_m = now, iteration = k;
+    return k - iteration >= kPatience;
+  }
+};
+
+// From `start` until the tolerance, a stand-still or the last iteration allowed.
+template <int kRows>
+Try one_try(const Problem& p, const IkAngles& start, int max_iterations, IkTrace* trace) noexcept {
+  Try best;
+  IkAngles angles_rad = best.angles_rad = start;
+  std::array<IkPose, 2> pose;
+  std::array<IkErrors, 2> errors;
+  int best_at = 0;
+  Progress progress;
+  double growth = kGrowth;
+  const double enough = p.options.tolerance_m * p.options.tolerance_m;
+  for (int k = 0;; ++k) {
+    const int at = 1 - best_at;
+    pose_chain(p.chain, angles_rad, pose[at]);
+    measure(pose[at], p.rows, errors[at]);
+    if (errors[at].squares < best.squares) {
+      best.squares = errors[at].squares, best.angles_rad = angles_rad, best_at = at;
+      growth = std::max(growth * kGrowthDown, kGrowth);
+    } else {
+      growth *= kGrowthUp;
+    }
+    best.iterations = k;
+    if (trace != nullptr) note(trace, best.angles_rad, std::sqrt(best.squares));
+    if (best.squares <= enough || k >= max_iterations) break;
+    if (!std::isfinite(best.squares) || progress.stands_still(best.squares, k)) break;
+    angles_rad = best.angles_rad;
+    advance<kRows>(p, pose[best_at], errors[best_at], growth, angles_rad);
+  }
+  return best;
+}
+
+// Start number k: a sequence that fills the box of the limits evenly (Weyl: multiples of an
+// irrational number per DOF, here square roots of primes). Without limits: half a turn to both
+// sides.
+IkAngles spread_start(const Problem& p, const IkAngles& given, int k) noexcept {
+  static constexpr std::array<double, kMaxIkDofs> kIrrational = {
+      0.41421356237309515, 0.73205080756887719, 0.23606797749978969, 0.64575131106459072,
+      0.31662479035539981, 0.60555127546398912, 0.12310562561766059, 0.35889894354067398,
+      0.79583152331271907, 0.38516480713450374, 0.56776436283002192, 0.082762530298219357,
+      0.40312423743284853, 0.55743852430200066, 0.85565460040104412, 0.28010988928051805};
+  IkAngles start = given;
+  for (int j = 0; j < p.chain.dofs; ++j) {
+    if (p.weight[j] == 0.0) continue;
+    const double low = std::max(p.chain.dof[j].min_rad, given[j] - kPi);
+    const double high = std::min(p.chain.dof[j].max_rad, given[j] + kPi);
+    const double x = 0.5 + k * kIrrational[j];
+    start[j] = low + (high - low) * (x - static_cast<int>(x));
+  }
+  return start;
+}
+
+// Of the kCandidates starts from number `first` on the one that is nearest to the goal.
+IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexcept {
+  IkAngles nearest = given;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = first; k < first + kCandidates; ++k) {
+    const IkAngles candidate = spread_start(p, given, k);
+    IkPose pose;
+    IkErrors errors;
+    pose_chain(p.chain, candidate, pose);
+    measure(pose, p.rows, errors);
+    if (errors.squares < least) least = errors.squares, nearest = candidate;
+  }
+  return nearest;
+}
+
+// True for a goal farther from the base than the stretched chain: no other start can help. Looks at
+// the leading rows of one point along directions at right angles.
+bool beyond_reach(const Problem& p) noexcept {
+  if (p.rows.empty()) return false;
+  double reach = glm::length(p.rows[0].point_m), squares = 0.0;
+  for (int j = 0; j < p.chain.dofs; ++j) reach += glm::length(p.chain.dof[j].link_m);
+  for (std::size_t r = 0; r < p.rows.size() && p.rows[r].point_m == p.rows[0].point_m; ++r) {
+    for (std::size_t s = 0; s < r; ++s) {
+      if (std::abs(glm::dot(p.rows[r].direction, p.rows[s].direction)) > 1e-9) return false;
+    }
+    squares += p.rows[r].goal_m * p.rows[r].goal_m;
+    if (squares > reach * reach) return true;
+  }
+  return false;
+}
+
+template <int kRows>
+IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles_rad,
+                       IkTrace* trace) noexcept {
+  const double enough = p.options.tolerance_m * p.options.tolerance_m;
+  Try best = one_try<kRows>(p, start, p.options.max_iterations, trace);
+  IkResult result;
+  result.iterations = best.iterations;
+  const int tries = best.squares <= enough || beyond_reach(p) ? 1 : p.options.max_tries;
+  while (!(best.squares <= enough) && result.tries < tries &&
+         result.iterations < p.options.max_iterations) {
+    const IkAngles other = nearest_start(p, start, (result.tries - 1) * kCandidates);
+    const int left = p.options.max_iterations - result.iterations - 1;
+    const Try next = one_try<kRows>(p, other, left, trace);
+    ++result.tries;
+    result.iterations += 1 + next.iterations;  // the jump counts
+    if (next.squares <= enough || next.squares < kWorthAJump * best.squares) best = next;
+  }
+  angles_rad = best.angles_rad;
+  result.error_m = std::sqrt(best.squares);
+  result.status = best.squares <= enough ? IkStatus::converged : IkStatus::unreachable;
+  note_answer(trace, angles_rad, result.error_m);
+  return result;
+}
+
+IkResult refused() noexcept {
+  IkResult result;
+  result.status = IkStatus::not_finite;
+  result.error_m = std::numeric_limits<double>::infinity();
+  return result;
+}
+
+}  // namespace
+
+IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
+                      const RobustOptions& options, IkAngles& angles_rad, IkTrace* trace) noexcept {
+  assert(rows.size() <= kMaxIkRows);
+  if (!finite_inputs(chain, angles_rad)) return refused();
+  const Problem p{chain, rows, options, relative_weights(chain)};
+  IkAngles start = angles_rad;
+  for (int j = 0; j < chain.dofs; ++j) start[j] = inside(chain.dof[j], start[j]);
+  IkAngles answer = start;
+  const IkResult result = rows.size() <= 4 ? best_of_tries<4>(p, start, answer, trace)
+                                           : best_of_tries<6>(p, start, answer, trace);
+  if (!std::isfinite(result.error_m)) return refused();
+  angles_rad = answer;
+  return result;
 }
 
 }  // namespace gaitpad

@@ -1,6 +1,6 @@
 // The parts of one walking tick, in the order in which walk.cpp calls them. Internal to the walk.
 #pragma once
-#include "animation/walk.h"
+#include "gaitpad/walk.h"
 
 namespace gaitpad {
 

@@ -1,4 +1,4 @@
-#include "base/math.h"
+#include "gaitpad/math.h"
 
 #include <cassert>
 #include <cstdint>

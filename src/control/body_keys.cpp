@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "base/math.h"
+#include "gaitpad/math.h"
 
 namespace gaitpad {
 namespace {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/toml_file.h"
-#include "control/gait_params.h"
+#include "files/toml_file.h"
+#include "gaitpad/gait_params.h"
 
 namespace gaitpad {
 

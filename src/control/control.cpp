@@ -1,6 +1,9 @@
-#include "control/control.h"
+#include "gaitpad/control.h"
 
-#include "base/math.h"
+#include <algorithm>
+#include <cmath>
+
+#include "gaitpad/math.h"
 
 namespace gaitpad {
 
@@ -78,6 +81,141 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   params.hip_bounce = style.hip_bounce;
   params.weight = style.weight;
   params.body = style.body;
+  return params;
+}
+
+namespace {
+
+constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;  // of giants; limits bound them
+constexpr double kMostFactor = 3.0;                            // as in a style
+// Of the stick's: what legs reach at any speed and in any turn.
+constexpr double kLongestStride = 1.3;
+constexpr double kQuickest = 0.5, kSlowest = 2.0;  // of the stick's shortest and longest step time
+
+constexpr std::array<GaitKeyInfo, kGaitKeys> kKeys = {{
+    {"speed_m_s", -kMostSpeed_m_s, kMostSpeed_m_s},
+    {"stride_left_m", 0.0, kMostStride_m},
+    {"stride_right_m", 0.0, kMostStride_m},
+    {"flight_left", 0.0, kMostFactor},
+    {"flight_right", 0.0, kMostFactor},
+    {"turn_rate_rad_s", -kMaxTurnRate_rad_s, kMaxTurnRate_rad_s},
+    {"hip_sway", 0.0, kMostFactor},
+    {"hip_bounce", 0.0, kMostFactor},
+}};
+
+constexpr std::array<GaitKey, 2> kStrides = {GaitKey::stride_left_m, GaitKey::stride_right_m};
+constexpr std::array<GaitKey, 2> kFlights = {GaitKey::flight_left, GaitKey::flight_right};
+
+std::optional<double> given(const GaitOverrides& overrides, GaitKey key,
+                            const GaitLimits& limits) noexcept {
+  const auto k = static_cast<std::size_t>(key);
+  if (!overrides.is_set[k] || !std::isfinite(overrides.value[k])) return std::nullopt;
+  const GaitRange range = range_of(key, limits);
+  return std::clamp(overrides.value[k], range.min, range.max);
+}
+
+// The forward deflection that gives this speed with that sideways one, or comes nearest to it.
+double deflection_of(double speed_m_s, double sideways, double fatigue,
+                     const GaitLimits& limits) noexcept {
+  const double share = speed_m_s / (limits.max_speed_m_s * vigour(fatigue));
+  if (!(share < 0.0)) return std::min(1.0, share);
+  return std::max(-1.0, share / kBackwardShare - kBackwardSector * std::fabs(sideways));
+}
+
+// Slow steps in a sharp turn would end beside the hips.
+double slowest_step_s(double turn_rate_rad_s, const GaitLimits& limits) noexcept {
+  const double sharp = std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s;
+  return limits.max_step_time_s / std::max(sharp, 1.0 / kSlowest);
+}
+
+void meet_speed(double speed_m_s, const GaitLimits& limits, GaitParams& params) noexcept {
+  std::array<StrideParams, 2>& stride = params.stride;
+  const double cycle_s = (stride[0].length_m + stride[1].length_m) / speed_m_s;
+  const double stretch = cycle_s / (stride[0].time_s + stride[1].time_s);
+  const double quickest_s = kQuickest * limits.max_step_m / limits.max_speed_m_s;
+  const double slowest_s = slowest_step_s(params.turn_rate_rad_s, limits);
+  for (StrideParams& step : stride)
+    step.time_s = std::clamp(step.time_s * stretch, quickest_s, slowest_s);
+}
+
+}  // namespace
+
+const GaitKeyInfo& info_of(GaitKey key) noexcept { return kKeys[static_cast<std::size_t>(key)]; }
+
+std::optional<GaitKey> gait_key(std::string_view name) noexcept {
+  for (int k = 0; k < kGaitKeys; ++k) {
+    if (kKeys[k].name == name) return static_cast<GaitKey>(k);
+  }
+  return std::nullopt;
+}
+
+double value_of(GaitKey key, const GaitParams& params) noexcept {
+  const auto& [left, right] = params.stride;
+  switch (key) {
+    case GaitKey::speed_m_s: {
+      const double cycle_s = left.time_s + right.time_s;
+      if (!params.walking || !(cycle_s > 0.0)) return 0.0;
+      const double speed_m_s = (left.length_m + right.length_m) / cycle_s;
+      return params.backward ? 0.0 - speed_m_s : speed_m_s;
+    }
+    case GaitKey::stride_left_m:
+      return left.length_m;
+    case GaitKey::stride_right_m:
+      return right.length_m;
+    case GaitKey::flight_left:
+      return left.flight_height;
+    case GaitKey::flight_right:
+      return right.flight_height;
+    case GaitKey::turn_rate_rad_s:
+      return params.turn_rate_rad_s;
+    case GaitKey::hip_sway:
+      return params.hip_sway;
+    case GaitKey::hip_bounce:
+      return params.hip_bounce;
+  }
+  return 0.0;
+}
+
+GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept {
+  const GaitKeyInfo& info = info_of(key);
+  switch (key) {
+    case GaitKey::speed_m_s:
+      return {std::max(info.min, -kBackwardShare * limits.max_speed_m_s),
+              std::min(info.max, limits.max_speed_m_s)};
+    case GaitKey::stride_left_m:
+    case GaitKey::stride_right_m:
+      return {info.min, std::min(info.max, kLongestStride * limits.max_step_m)};
+    case GaitKey::turn_rate_rad_s:
+      return {std::max(info.min, -limits.max_turn_rate_rad_s),
+              std::min(info.max, limits.max_turn_rate_rad_s)};
+    default:
+      return {info.min, info.max};
+  }
+}
+
+GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitOverrides& overrides,
+                       const GaitLimits& limits) noexcept {
+  const auto speed_m_s = given(overrides, GaitKey::speed_m_s, limits);
+  const auto turn_rate_rad_s = given(overrides, GaitKey::turn_rate_rad_s, limits);
+  Stick in_force = stick;  // as it would be pushed for what is given
+  if (turn_rate_rad_s) in_force.left.x = 0.0 - *turn_rate_rad_s / limits.max_turn_rate_rad_s;
+  if (speed_m_s)
+    in_force.left.y = deflection_of(*speed_m_s, in_force.left.x, style.fatigue, limits);
+  if (speed_m_s && *speed_m_s == 0.0) in_force = Stick{};
+
+  GaitParams params = gait_params(in_force, style, limits);
+  if (turn_rate_rad_s && params.walking) params.turn_rate_rad_s = *turn_rate_rad_s + 0.0;
+  const bool asks_for_strides =
+      params.backward || (std::isfinite(in_force.left.y) && in_force.left.y > 0.0);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    StrideParams& step = params.stride[side];
+    if (asks_for_strides)
+      step.length_m = given(overrides, kStrides[side], limits).value_or(step.length_m);
+    step.flight_height = given(overrides, kFlights[side], limits).value_or(step.flight_height);
+  }
+  if (speed_m_s && asks_for_strides) meet_speed(std::fabs(*speed_m_s), limits, params);
+  params.hip_sway = given(overrides, GaitKey::hip_sway, limits).value_or(params.hip_sway);
+  params.hip_bounce = given(overrides, GaitKey::hip_bounce, limits).value_or(params.hip_bounce);
   return params;
 }
 

@@ -1,6 +1,11 @@
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
+
+#include "hid/default_map.h"
+#include "hid/sdl_mapping.h"
 
 namespace gaitpad {
 
@@ -9,6 +14,347 @@ namespace {
 constexpr std::uint32_t bit(int button) { return std::uint32_t{1} << button; }
 constexpr std::uint32_t kDpad =
     bit(kButtonDpadUp) | bit(kButtonDpadDown) | bit(kButtonDpadLeft) | bit(kButtonDpadRight);
+
+constexpr std::uint32_t kMaxControlBits = 32;  // a wider field is no control
+
+FieldBits bits_of(const Field& f) {
+  FieldBits bits;
+  bits.bit_offset = f.bit_offset;
+  bits.bit_size = static_cast<std::uint8_t>(std::min<std::uint32_t>(f.bit_size, 64));
+  bits.is_signed = f.logical_min < 0;
+  bits.min = f.logical_min;
+  bits.max = f.logical_max;
+  return bits;
+}
+
+// A hat counts 8 steps, 4 steps, or degrees of some fineness; whatever lies outside is "released".
+HatOp hat_op(const Field& f) {
+  HatOp op;
+  op.bits = bits_of(f);
+  op.last = f.logical_max;
+  const std::int64_t count = f.logical_max - f.logical_min + 1;
+  const bool ends_at_315 = f.physical_max - f.physical_min == 315 || count == 316;
+  if (count == 4) {
+    op.numerator = 2;
+  } else if (count >= 8 && count <= 16) {
+    op.last = f.logical_min + 7;  // some state the value of "released" as part of the range
+  } else if (ends_at_315 && count > 1) {
+    op.numerator = 7;
+    op.denominator = count - 1;
+  } else if (count > 16) {
+    op.numerator = 8;
+    op.denominator = count;
+  } else {
+    op.last = f.logical_min - 1;
+  }
+  return op;
+}
+
+// Of an odd number of counts the one in the middle belongs to both halves, and is 0 in both.
+FieldBits part_of(const Field& f, AxisPart part) {
+  FieldBits bits = bits_of(f);
+  const std::int64_t span = std::max<std::int64_t>(f.logical_max - f.logical_min, 0);
+  if (part == AxisPart::high) bits.min += (span + 1) / 2;
+  if (part == AxisPart::low) bits.max = bits.min + span / 2;
+  return bits;
+}
+
+// Sticks: HID's y grows towards the thumb's owner, ours away from it.
+bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
+bool is_trigger(PadAxis axis) { return axis == kLeftTrigger || axis == kRightTrigger; }
+int side_of(PadAxis axis, StickSide side) {
+  if (side == StickSide::both || is_trigger(axis)) return 0;
+  return (side == StickSide::negative) == is_upward(axis) ? 1 : -1;
+}
+
+AxisOp axis_op(const Field& f, PadAxis axis, const Binding& b) {
+  AxisOp op;
+  op.bits = part_of(f, b.part);
+  op.axis = axis;
+  op.side = static_cast<std::int8_t>(side_of(axis, b.side));
+  op.reversed = b.reversed != (b.part == AxisPart::low);
+  if (op.side == 0 && is_upward(axis)) op.reversed = !op.reversed;
+  return op;
+}
+
+ButtonOp button_op(const Field& f, const Binding& b) {
+  const bool reversed = b.reversed != (b.part == AxisPart::low);
+  return {part_of(f, b.part), b.mask, bit(b.control), reversed && b.mask == 0};
+}
+
+// One direction of a hat as a button, or as a side of a stick.
+HatOp direction_op(const Field& f, const Binding& b) {
+  HatOp op = hat_op(f);
+  op.directions = b.directions;
+  if (b.kind == ControlKind::axis) {
+    op.axis = static_cast<PadAxis>(b.control);
+    op.value = side_of(op.axis, b.side) < 0 ? -1.0f : 1.0f;
+  } else {
+    op.button = bit(b.control);
+  }
+  return op;
+}
+
+// Of the second pad in an adapter for two: the same collection once more.
+bool is_of_twin(const ReportDescriptor& d, const Field& f) {
+  const std::optional<std::size_t> pad = pad_application(d);
+  if (!pad || f.application == *pad || f.application >= d.applications.size()) return false;
+  return d.applications[f.application] == d.applications[*pad];
+}
+
+const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const ControlSource& s,
+                       std::size_t& index) {
+  std::uint32_t seen = 0;
+  for (std::size_t i = 0; i < d.fields.size(); ++i) {
+    const Field& f = d.fields[i];
+    if (f.kind != FieldKind::input || f.is_array || f.report_id != report_id) continue;
+    if (f.usage != s.usage || is_of_twin(d, f) || ++seen != s.occurrence) continue;
+    index = i;
+    return &f;
+  }
+  return nullptr;
+}
+
+// What is known of the controls beside the descriptor: of an override, or of SDL's data base.
+struct Wishes {
+  std::optional<ButtonOrder> order;
+  const ControlMap* controls = nullptr;      // of an override: the rest is as usual
+  const ControlMap* all_controls = nullptr;  // of SDL: there are no others
+};
+
+bool is_for(const Binding& b, ControlKind kind, int control) {
+  if (b.kind == kind && b.control == control) return true;
+  return kind == ControlKind::button && b.kind == ControlKind::dpad && b.control == control;
+}
+
+void bind_control(const ReportDescriptor& d, ControlKind kind, int control,
+                  const ControlSources& sources, std::vector<Binding>& bindings) {
+  for (const ControlSource& s : sources) {
+    for (const ReportLength& report : d.reports) {
+      std::size_t index = 0;
+      if (report.kind != FieldKind::input || !nth_field(d, report.report_id, s, index)) continue;
+      bindings.push_back({kind, control, index, s.mask, s.reversed, s.part, s.side, s.directions});
+    }
+  }
+}
+
+// The override's control takes the place of the default one, and its fields serve nothing else.
+void override_control(const ReportDescriptor& d, ControlKind kind, int control,
+                      const ControlSources& sources, std::vector<Binding>& bindings) {
+  std::erase_if(bindings, [&](const Binding& b) { return is_for(b, kind, control); });
+  bind_control(d, kind, control, sources, bindings);
+}
+
+void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
+                      std::vector<Binding>& bindings) {
+  const auto drop = [&](const std::optional<ControlSources>& sources) {
+    if (!sources) return;
+    for (const ControlSource& s : *sources) {
+      std::erase_if(bindings, [&](const Binding& b) { return d.fields[b.field].usage == s.usage; });
+    }
+  };
+  for (const auto& sources : controls.axes) drop(sources);
+  for (const auto& sources : controls.buttons) drop(sources);
+}
+
+// A pad that has its axes for a D-pad in SDL's data base (no left stick at all) still walks by
+// them.
+std::vector<Binding> sdl_bindings(const ReportDescriptor& d, const ControlMap& controls) {
+  std::vector<Binding> bindings;
+  for (int i = 0; i < kAxisCount; ++i) {
+    if (controls.axes[i]) bind_control(d, ControlKind::axis, i, *controls.axes[i], bindings);
+  }
+  const auto is_left_stick = [](const Binding& b) {
+    return b.kind == ControlKind::axis && (b.control == kLeftX || b.control == kLeftY);
+  };
+  if (std::none_of(bindings.begin(), bindings.end(), is_left_stick)) {
+    for (const Binding& b : default_bindings(d, std::nullopt)) {
+      if (is_left_stick(b)) bindings.push_back(b);
+    }
+  }
+  for (int i = 0; i < kButtonCount; ++i) {
+    if (controls.buttons[i])
+      bind_control(d, ControlKind::button, i, *controls.buttons[i], bindings);
+  }
+  return bindings;
+}
+
+std::vector<Binding> bindings_of(const ReportDescriptor& d, const Wishes& wishes) {
+  if (wishes.all_controls) return sdl_bindings(d, *wishes.all_controls);
+  std::vector<Binding> bindings = default_bindings(d, wishes.order);
+  if (!wishes.controls) return bindings;
+  const ControlMap& controls = *wishes.controls;
+  drop_defaults_on(d, controls, bindings);
+  for (int i = 0; i < kAxisCount; ++i) {
+    if (!controls.axes[i]) continue;
+    override_control(d, ControlKind::axis, i, *controls.axes[i], bindings);
+  }
+  for (int i = 0; i < kButtonCount; ++i) {
+    if (!controls.buttons[i]) continue;
+    override_control(d, ControlKind::button, i, *controls.buttons[i], bindings);
+  }
+  return bindings;
+}
+
+void add_binding(const Field& f, const Binding& b, ReportLayout& layout) {
+  if (b.kind != ControlKind::hat && b.directions != 0) {
+    layout.hats.push_back(direction_op(f, b));
+    layout.covered |= layout.hats.back().button;
+    return;
+  }
+  switch (b.kind) {
+    case ControlKind::axis:
+      layout.axes.push_back(axis_op(f, static_cast<PadAxis>(b.control), b));
+      return;
+    case ControlKind::hat:
+      layout.hats.push_back(hat_op(f));
+      layout.covered |= kDpad;
+      return;
+    case ControlKind::button:
+    case ControlKind::dpad:
+      layout.buttons.push_back(button_op(f, b));
+      layout.covered |= bit(b.control);
+      return;
+  }
+}
+
+// Several fields of one axis add up: two halves of a stick, or a source and its alternative.
+void find_sums(ReportLayout& layout) {
+  std::uint32_t seen = 0;
+  for (const AxisOp& op : layout.axes) {
+    layout.summed |= seen & bit(op.axis);
+    seen |= bit(op.axis);
+  }
+  for (const HatOp& op : layout.hats) {
+    if (op.value != 0.0f) layout.summed |= bit(op.axis);
+  }
+}
+
+// Some pads send the numbers of the pressed buttons in place of a bit for each.
+void add_array(const ReportDescriptor& d, const Field& f, ButtonOrder order, ReportLayout& layout) {
+  constexpr std::int64_t kMaxNames = 256;
+  if (page_of(f.usage) != usage::kButtonPage || f.bit_size > kMaxControlBits) return;
+  ArrayOp op;
+  op.bits = bits_of(f);
+  const std::int64_t last = std::min(f.logical_max, f.logical_min + kMaxNames - 1);
+  for (std::int64_t value = f.logical_min; value <= last; ++value) {
+    const std::uint32_t u = array_usage(d, f, value);
+    const bool is_button = page_of(u) == usage::kButtonPage;
+    const PadButton button = is_button ? button_of(order, id_of(u)) : kButtonCount;
+    op.button.push_back(button == kButtonCount ? 0 : bit(button));
+    layout.covered |= op.button.back();
+  }
+  layout.arrays.push_back(std::move(op));
+}
+
+// One layout a report, each as long as the descriptor says.
+std::vector<ReportLayout> report_layouts(const ReportDescriptor& d, const Wishes& wishes) {
+  std::vector<ReportLayout> layouts;
+  for (const ReportLength& r : d.reports) {
+    if (r.kind != FieldKind::input || (d.numbered && r.report_id == 0)) continue;
+    ReportLayout layout;
+    layout.report_id = r.report_id;
+    layout.numbered = d.numbered;
+    const std::size_t size = (r.bits + 7) / 8 + (d.numbered ? 1 : 0);
+    layout.min_size = static_cast<std::uint16_t>(size);
+    layouts.push_back(std::move(layout));
+  }
+  const auto layout_of = [&](std::uint8_t id) {
+    return std::find_if(layouts.begin(), layouts.end(),
+                        [id](const ReportLayout& l) { return l.report_id == id; });
+  };
+  for (const Binding& b : bindings_of(d, wishes)) {
+    const Field& f = d.fields[b.field];
+    const auto it = layout_of(f.report_id);
+    if (it != layouts.end() && f.bit_size <= kMaxControlBits) add_binding(f, b, *it);
+  }
+  for (ReportLayout& layout : layouts) find_sums(layout);
+  const std::vector<std::size_t> fields = pad_fields(d);
+  const ButtonOrder order = wishes.order.value_or(likely_button_order(d, fields));
+  for (const std::size_t i : fields) {
+    const Field& f = d.fields[i];
+    const auto it = layout_of(f.report_id);
+    if (!f.is_array || it == layouts.end() || it->arrays.size() >= 32) continue;
+    add_array(d, f, order, *it);
+  }
+  return layouts;
+}
+
+bool reads(const ReportLayout& layout, const Field& f) {
+  const auto same = [&f](const auto& op) {
+    return op.bits.bit_offset == f.bit_offset && op.bits.bit_size == f.bit_size;
+  };
+  return std::any_of(layout.axes.begin(), layout.axes.end(), same) ||
+         std::any_of(layout.buttons.begin(), layout.buttons.end(), same);
+}
+
+std::vector<UnnamedButton> unnamed_buttons(const PadLayout& layout) {
+  std::vector<UnnamedButton> unnamed;
+  const ReportDescriptor& d = layout.descriptor;
+  for (const std::size_t i : pad_fields(d)) {
+    const Field& f = d.fields[i];
+    if (page_of(f.usage) != usage::kButtonPage || f.is_array) continue;
+    const bool bound = std::any_of(
+        layout.reports.begin(), layout.reports.end(),
+        [&](const ReportLayout& r) { return r.report_id == f.report_id && reads(r, f); });
+    if (!bound) unnamed.push_back({f.report_id, bits_of(f), id_of(f.usage)});
+  }
+  return unnamed;
+}
+
+// evdev and SDL hand on changes alone, so silence means nothing there.
+bool driver_hands_on_all(const std::string& driver) {
+  return driver.empty() || driver == "hidraw" || driver == "usb";
+}
+
+bool names_controls(const PadOverride& o) {
+  const auto is_set = [](const auto& sources) { return sources.has_value(); };
+  const ControlMap& c = o.controls;
+  return o.order || !o.replacement.descriptor.empty() ||
+         std::any_of(c.axes.begin(), c.axes.end(), is_set) ||
+         std::any_of(c.buttons.begin(), c.buttons.end(), is_set);
+}
+
+// What SDL's data base says about the device; a file that names controls knows better, and a
+// damaged line says nothing.
+std::optional<ControlMap> sdl_map(const DeviceInfo& device, const ReportDescriptor& d,
+                                  const PadOverride* o) {
+  if (device.mapping.empty() || (o && names_controls(*o))) return std::nullopt;
+  auto controls = sdl_controls(device.mapping, d, device.driver);
+  if (!controls) return std::nullopt;
+  return std::move(*controls);
+}
+
+}  // namespace
+
+Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overrides) {
+  auto parsed = parse_descriptor(device.descriptor);
+  if (!parsed) return Error{device.name + ": report descriptor: " + parsed.error().message};
+  PadLayout layout;
+  layout.descriptor = std::move(*parsed);
+  const PadOverride* o = find_override(overrides, device);
+  layout.is_pad = pad_application(layout.descriptor).has_value();
+  if (o) {
+    layout.is_pad = o->is_pad.value_or(layout.is_pad);
+    layout.streams = o->streams && driver_hands_on_all(device.driver);
+    layout.override_origin = o->origin;
+  }
+  if (o && !o->replacement.descriptor.empty()) {
+    auto replaced = parse_descriptor(o->replacement.descriptor);
+    if (!replaced) return Error{o->origin + ": descriptor: " + replaced.error().message};
+    layout.reports = report_layouts(*replaced, {o->order, &o->replacement.controls});
+    for (ReportLayout& r : layout.reports) r.exact_sizes = o->replacement.lengths;
+  }
+  Wishes wishes = o ? Wishes{o->order, &o->controls} : Wishes{};
+  const auto sdl = sdl_map(device, layout.descriptor, o);
+  if (sdl) wishes.all_controls = &*sdl;
+  std::vector<ReportLayout> own = report_layouts(layout.descriptor, wishes);
+  std::move(own.begin(), own.end(), std::back_inserter(layout.reports));
+  layout.unnamed = unnamed_buttons(layout);
+  return layout;
+}
+
+namespace {
 
 std::int64_t value_of(const FieldBits& f, std::span<const std::uint8_t> data) noexcept {
   const std::uint64_t raw = bits_at(data, f.bit_offset, f.bit_size);

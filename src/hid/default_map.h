@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "hid/descriptor.h"
-#include "hid/pad_map.h"
-#include "hid/report.h"
+#include "gaitpad/descriptor.h"
+#include "gaitpad/pad_map.h"
+#include "gaitpad/report.h"
 
 namespace gaitpad {
 

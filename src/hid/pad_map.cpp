@@ -1,11 +1,11 @@
-#include "hid/pad_map.h"
+#include "gaitpad/pad_map.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "base/toml_file.h"
+#include "files/toml_file.h"
 #include "hid/trace_lines.h"
 
 namespace gaitpad {

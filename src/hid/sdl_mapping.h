@@ -7,10 +7,10 @@
 #include <string>
 #include <string_view>
 
-#include "base/result.h"
-#include "hid/decode.h"
-#include "hid/descriptor.h"
-#include "hid/pad_map.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/descriptor.h"
+#include "gaitpad/pad_map.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "base/math.h"
+#include "gaitpad/math.h"
 
 namespace gaitpad {
 

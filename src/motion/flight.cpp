@@ -1,9 +1,9 @@
-#include "motion/flight.h"
+#include "gaitpad/flight.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "motion/tracks.h"
+#include "gaitpad/motion.h"
 
 namespace gaitpad {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "animation/ik.h"
-#include "animation/walk.h"
+#include "gaitpad/ik.h"
+#include "gaitpad/walk.h"
 
 namespace gaitpad {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "animation/walk.h"
+#include "gaitpad/walk.h"
 
 namespace gaitpad {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "motion/flight.h"
+#include "gaitpad/flight.h"
 #include "paper/claims.h"
 #include "paper/flight_rules.h"
 

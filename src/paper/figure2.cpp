@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "motion/flight.h"
-#include "motion/tracks.h"
+#include "gaitpad/flight.h"
+#include "gaitpad/motion.h"
 #include "paper/figures.h"
 #include "paper/flight_rules.h"
 #include "paper/page.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "motion/cycle_leg.h"
+#include "motion/leg_pose.h"
 #include "paper/figures.h"
 #include "paper/page.h"
 

@@ -1,6 +1,6 @@
 #include "paper/figures.h"
 
-#include "session/output_files.h"
+#include "session/walk_export.h"
 
 namespace gaitpad {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "motion/cycle_leg.h"
+#include "motion/leg_pose.h"
 
 namespace gaitpad {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "motion/gait_cycle.h"
+#include "gaitpad/gait_cycle.h"
 
 namespace gaitpad {
 

@@ -1,6 +1,6 @@
 // A gamepad of two 16-bit axes, for the claims that begin at the joystick.
 #pragma once
-#include "session/simulation.h"
+#include "gaitpad/simulation.h"
 
 namespace gaitpad {
 

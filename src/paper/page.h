@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "motion/gait_cycle.h"
+#include "gaitpad/gait_cycle.h"
 #include "view/drawing.h"
 #include "view/plot.h"
 #include "view/stick_plot.h"

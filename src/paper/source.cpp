@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "session/config_files.h"
-#include "session/motion_source.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/motion_file.h"
 
 namespace gaitpad {
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
-#include "control/style.h"
-#include "motion/gait_cycle.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/result.h"
+#include "gaitpad/style.h"
 
 namespace gaitpad {
 

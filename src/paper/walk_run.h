@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "animation/walk.h"
-#include "control/control.h"
+#include "gaitpad/control.h"
+#include "gaitpad/walk.h"
 
 namespace gaitpad {
 

@@ -1,4 +1,4 @@
-#include "session/live.h"
+#include "gaitpad/live.h"
 
 #include <fmt/format.h>
 #include <pthread.h>
@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "drivers/posix.h"
+#include "pads/realtime.h"
 #include "session/live_loop.h"
-#include "session/realtime.h"
 #include "session/recording.h"
-#include "session/summary.h"
+#include "session/walk_export.h"
 
 namespace gaitpad {
 

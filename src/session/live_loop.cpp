@@ -3,13 +3,206 @@
 #include <time.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
+#include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "drivers/posix.h"
-#include "session/realtime.h"
+#include "gaitpad/decode.h"
+#include "pads/realtime.h"
 
 namespace gaitpad {
+
+double TickClock::usable_pace(double pace) noexcept {
+  if (!(pace >= kMinPace)) return 0.0;
+  return std::min(pace, kMaxPace);
+}
+
+std::int64_t TickClock::due_ns(std::int64_t tick) const noexcept {
+  if (pace_ == 0.0) return kNever_ns;
+  const std::int64_t ticks = tick - base_tick_;
+  if (pace_ != 1.0) {
+    const double tick_ns =
+        static_cast<double>(kSecond_ns) / (static_cast<double>(rate_hz_) * pace_);
+    return base_ns_ + static_cast<std::int64_t>(std::round(static_cast<double>(ticks) * tick_ns));
+  }
+  return base_ns_ + ticks / rate_hz_ * kSecond_ns + ticks % rate_hz_ * kSecond_ns / rate_hz_;
+}
+
+void TickClock::run_anew(std::int64_t tick, std::int64_t due_ns) noexcept {
+  base_tick_ = tick;
+  base_ns_ = due_ns;
+}
+
+void TickClock::set_pace(double pace, std::int64_t tick, std::int64_t now_ns) noexcept {
+  const bool stood_still = pace_ == 0.0;
+  const std::int64_t before_ns = due_ns(tick);
+  pace_ = pace;
+  if (pace_ == 0.0) return;
+  run_anew(tick, now_ns);
+  if (stood_still) {
+    last_late_ns_ = 0;
+  } else {
+    run_anew(tick, std::min(before_ns, due_ns(tick + 1)));  // not later than a tick from now
+  }
+}
+
+TickClock::Begin TickClock::begin(std::int64_t tick, std::int64_t now_ns) noexcept {
+  const std::int64_t late_ns = now_ns - due_ns(tick);
+  const std::int64_t before_ns = std::exchange(last_late_ns_, late_ns);
+  if (late_ns <= kTooLate_ns) return now_ns > due_ns(tick + 1) ? Begin::late : Begin::on_time;
+  run_anew(tick, now_ns);
+  last_late_ns_ = 0;
+  skipped_ns_ += late_ns;
+  return late_ns - before_ns > kTooLate_ns / 2 ? Begin::after_standstill : Begin::after_overload;
+}
+
+// Values below 64 have a class each; above, the highest seven bits make the class.
+std::size_t TimeHistogram::class_of(std::uint64_t time_ns) noexcept {
+  const int octave = std::max(0, static_cast<int>(std::bit_width(time_ns)) - kStepBits - 1);
+  const std::size_t index =
+      (static_cast<std::size_t>(octave) << kStepBits) + static_cast<std::size_t>(time_ns >> octave);
+  return std::min(index, kClasses - 1);
+}
+
+double TimeHistogram::middle_ns(std::size_t index) noexcept {
+  const std::size_t steps = std::size_t{1} << kStepBits;
+  if (index < 2 * steps) return static_cast<double>(index);
+  const std::size_t octave = index / steps - 1;
+  const auto width = static_cast<double>(std::uint64_t{1} << octave);
+  return (static_cast<double>(index - octave * steps) + 0.5) * width;
+}
+
+void TimeHistogram::add(std::int64_t time_ns) noexcept {
+  const std::int64_t time = std::max<std::int64_t>(time_ns, 0);
+  constexpr auto kRelaxed = std::memory_order_relaxed;
+  std::atomic<std::uint64_t>& count = counts_[class_of(static_cast<std::uint64_t>(time))];
+  count.store(count.load(kRelaxed) + 1, kRelaxed);  // nobody else writes
+  if (time > max_ns_.load(kRelaxed)) max_ns_.store(time, kRelaxed);
+}
+
+double TimeHistogram::median_us() const noexcept {
+  std::array<std::uint64_t, kClasses> counts;
+  std::uint64_t all = 0;
+  for (std::size_t i = 0; i < kClasses; ++i) {
+    all += counts[i] = counts_[i].load(std::memory_order_relaxed);
+  }
+  std::uint64_t below = 0;
+  for (std::size_t i = 0; i < kClasses; ++i) {
+    below += counts[i];
+    if (2 * below >= all && below > 0) return std::min(middle_ns(i) / 1000.0, max_us());
+  }
+  return 0.0;
+}
+
+double TimeHistogram::max_us() const noexcept {
+  return static_cast<double>(max_ns_.load(std::memory_order_relaxed)) / 1000.0;
+}
+
+namespace {
+
+void copy(const Report& from, std::int64_t now_ns, Report& to) noexcept {
+  to.time_ns = std::min(from.time_ns, now_ns);
+  to.device = from.device;
+  to.kind = from.kind;
+  to.size = std::min<std::uint16_t>(from.size, kMaxReportBytes);
+  std::memcpy(to.bytes.data(), from.bytes.data(), to.size);
+}
+
+bool tells_of_the_same(const PadLayout& layout, const Report& a, const Report& b) noexcept {
+  if (a.size != b.size) return false;
+  return !layout.descriptor.numbered || (a.size > 0 && a.bytes[0] == b.bytes[0]);
+}
+
+}  // namespace
+
+TickReports::TickReports(PadStream& pads, Simulation& simulation)
+    : pads_(pads), simulation_(simulation), reports_(kMaxInTick) {}
+
+void TickReports::begin_anew() noexcept {
+  if (!std::exchange(is_used_, false)) return;
+  count_ = 0;
+  for (Gathered& device : gathered_) {
+    if (device.has_state) device = {};
+  }
+}
+
+std::span<const Report> TickReports::take(std::int64_t now_ns) noexcept {
+  begin_anew();
+  while (count_ < kMaxInTick) {
+    const Report* oldest = pads_.front();
+    if (oldest == nullptr) break;
+    copy(*oldest, now_ns, reports_[count_]);
+    pads_.pop();
+    if (is_of_known_device(reports_[count_])) ++count_;
+  }
+  is_used_ = true;
+  return {reports_.data(), count_};
+}
+
+bool TickReports::gather(std::int64_t now_ns) noexcept {
+  begin_anew();
+  // No more in one go than a tick would take: a flood is not to keep the thread.
+  std::size_t seen = 0;
+  for (; seen < kMaxInTick && count_ < kMaxInTick; ++seen) {
+    const Report* oldest = pads_.front();
+    if (oldest == nullptr) break;
+    Report& report = reports_[count_];
+    copy(*oldest, now_ns, report);
+    pads_.pop();
+    if (is_of_known_device(report) && !replaces_older(report)) ++count_;
+  }
+  return seen > 0;
+}
+
+// A device becomes known when it is added for the first time; nothing else of it counts before.
+bool TickReports::is_of_known_device(const Report& report) noexcept {
+  if (report.kind == ReportKind::command) return true;
+  if (report.device >= is_known_.size()) return false;
+  std::atomic<bool>& is_known = is_known_[report.device];
+  if (!is_known.load(std::memory_order_relaxed) && report.kind == ReportKind::added) {
+    simulation_.set_pad(report.device, std::move(pads_.config(report.device)));
+    is_known.store(true, std::memory_order_release);
+  }
+  return is_known.load(std::memory_order_relaxed);
+}
+
+bool TickReports::replaces_older(const Report& report) noexcept {
+  if (report.kind == ReportKind::command) return false;
+  Gathered& device = gathered_[report.device];
+  if (!device.has_state && report.device == simulation_.pads().driving())
+    device.state = simulation_.pads().driving_state();
+  device.has_state = true;
+  const int older = std::exchange(device.newest, -1);
+  if (report.kind != ReportKind::input) {
+    device.state = PadState{};
+    return false;
+  }
+  const std::uint32_t before = device.state.buttons;
+  if (!decode(pads_.layout(report.device), report, device.state)) return false;
+  const std::uint32_t pressed = device.state.buttons & ~before;
+  for (int b = 0; b < kButtonCount; ++b) device.presses[b] += (pressed >> b) & 1u;
+  const bool replaces = older >= 0 && device.state.buttons == before &&
+                        tells_of_the_same(pads_.layout(report.device), reports_[older], report);
+  device.newest = replaces ? older : static_cast<int>(count_);
+  if (replaces) copy(report, report.time_ns, reports_[older]);
+  return replaces;
+}
+
+void TickReports::show(SessionFrame& frame) const noexcept {
+  if (is_used_ || frame.pad.device >= gathered_.size()) return;
+  const Gathered& device = gathered_[frame.pad.device];
+  if (!device.has_state) return;
+  frame.pad.state = device.state;
+  for (int b = 0; b < kButtonCount; ++b) frame.presses[b] += device.presses[b];
+}
+
+bool TickReports::is_known(std::uint16_t device) const noexcept {
+  return device < is_known_.size() && is_known_[device].load(std::memory_order_acquire);
+}
+
 namespace {
 
 constexpr std::int64_t kNap_ns = 20'000'000;  // a sleep's longest piece: orders wait for its end

@@ -1,5 +1,5 @@
-// A trace on a time line: any tick of it, exact, from the deterministic core. Snapshots of the
-// simulation's state stand along the way, what is between them is computed again.
+// A trace made ready to run, for all who run one: its events and a script's by ticks, and the
+// session as it was set up.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -7,11 +7,45 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
-#include "session/session_frame.h"
-#include "session/setup.h"
+#include "gaitpad/result.h"
+#include "gaitpad/session_frame.h"
+#include "gaitpad/setup.h"
+#include "gaitpad/simulation.h"
+#include "gaitpad/trace.h"
 
 namespace gaitpad {
+
+struct PreparedTrace {
+  Trace trace;
+  std::int64_t ticks = 0;
+  SimulationConfig config;  // its rate is the one to run at
+  Simulation start;
+};
+// `rate_hz`: an error where the trace says another. None of its devices being a pad is an error,
+// too.
+Result<PreparedTrace> prepared_trace(const SessionOptions& session, const std::string& path,
+                                     std::optional<int> rate_hz, Damage damage);
+// "3 damaged lines were skipped, the first: ..."; none where none were.
+std::optional<std::string> damage_remark(const Trace& trace);
+
+// A place in a run: copies of it go on from there, each for itself.
+class TraceRun {
+ public:
+  static TraceRun begin(const PreparedTrace& prepared) { return TraceRun(prepared.start); }
+
+  // One tick with the reports that belong to it; `trace` is the one that it began with.
+  void step(const Trace& trace) noexcept;
+  std::int64_t ticks() const { return simulation_.counts().ticks; }  // so far
+  const Simulation& simulation() const { return simulation_; }
+
+ private:
+  explicit TraceRun(Simulation simulation) : simulation_(std::move(simulation)) {}
+  Simulation simulation_;
+  std::size_t next_event_ = 0;
+};
+
+// A trace on a time line: any tick of it, exact, from the deterministic core. Snapshots of the
+// simulation's state stand along the way, what is between them is computed again.
 
 struct PlaybackMark {  // for the time line
   std::int64_t tick = 0;

@@ -1,12 +1,10 @@
-#include "session/replay.h"
+#include "gaitpad/replay.h"
 
 #include <fmt/format.h>
 
 #include <utility>
 
-#include "session/output_files.h"
-#include "session/summary.h"
-#include "session/trace_run.h"
+#include "session/playback.h"
 #include "session/walk_export.h"
 
 namespace gaitpad {

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <utility>
 
-#include "base/toml_file.h"
+#include "files/toml_file.h"
 #include "session/commands.h"
 
 namespace gaitpad {
+
 namespace {
 
 constexpr double kLatest_s = 86400.0;

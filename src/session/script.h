@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "base/result.h"
-#include "hid/trace.h"
-#include "session/simulation.h"
+#include "gaitpad/result.h"
+#include "gaitpad/simulation.h"
+#include "gaitpad/trace.h"
 
 namespace gaitpad {
 

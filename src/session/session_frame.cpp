@@ -1,4 +1,4 @@
-#include "session/session_frame.h"
+#include "gaitpad/session_frame.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "session/setup.h"
+#include "gaitpad/setup.h"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "animation/terrain_file.h"
-#include "motion/cycle_retarget.h"
-#include "session/config_files.h"
-#include "session/motion_source.h"
-#include "session/pad_setup.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/motion_file.h"
+#include "gaitpad/pad_setup.h"
+#include "gaitpad/terrain_file.h"
 
 namespace gaitpad {
 namespace {

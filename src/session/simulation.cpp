@@ -1,12 +1,12 @@
-#include "session/simulation.h"
+#include "gaitpad/simulation.h"
 
 #include <fmt/format.h>
 
 #include <utility>
 
-#include "base/toml_file.h"
-#include "control/fatigue.h"
-#include "motion/cycle_retarget.h"
+#include "files/toml_file.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/style.h"
 #include "session/commands.h"
 #include "session/walker_style.h"
 

@@ -1,10 +1,158 @@
 #include "session/walk_export.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
-#include "session/frames_csv.h"
-
 namespace gaitpad {
+
+namespace fs = std::filesystem;
+namespace {
+
+Error failure(const std::string& path, int number) {
+  return Error{fmt::format("{}: cannot be written: {}", path, std::strerror(number))};
+}
+
+}  // namespace
+
+Result<OutputFiles> OutputFiles::open(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Error{fmt::format("{}: cannot be made: {}", folder, error.message())};
+  if (!fs::is_directory(folder, error)) return failure(folder, ENOTDIR);
+  return OutputFiles(folder);
+}
+
+Result<std::ostream*> OutputFiles::add(const std::string& name) {
+  File file;
+  file.path = (fs::path(folder_) / name).string();
+  file.temporary = (fs::path(folder_) / fmt::format(".{}.{}", name, ::getpid())).string();
+  std::error_code ignored;
+  if (fs::is_directory(file.path, ignored)) return failure(file.path, EISDIR);
+  errno = 0;
+  file.stream = std::make_unique<std::ofstream>(file.temporary, std::ios::binary);
+  if (!*file.stream) return failure(file.path, errno);
+  files_.push_back(std::move(file));
+  return files_.back().stream.get();
+}
+
+Result<std::fstream> OutputFiles::scratch() const {
+  const std::string path = (fs::path(folder_) / fmt::format(".scratch.{}", ::getpid())).string();
+  errno = 0;
+  std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+  if (!stream) return failure(path, errno);
+  std::error_code ignored;
+  fs::remove(path, ignored);  // the stream keeps what it is open on
+  return stream;
+}
+
+std::optional<Error> OutputFiles::publish() {
+  for (const File& file : files_) {
+    errno = 0;
+    file.stream->close();
+    if (file.stream->fail()) return failure(file.path, errno != 0 ? errno : EIO);
+  }
+  for (File& file : files_) {
+    if (std::rename(file.temporary.c_str(), file.path.c_str()) != 0) {
+      return failure(file.path, errno);
+    }
+    file.temporary.clear();
+  }
+  return std::nullopt;
+}
+
+OutputFiles::~OutputFiles() {
+  for (File& file : files_) {
+    file.stream.reset();
+    std::error_code ignored;
+    if (!file.temporary.empty()) fs::remove(file.temporary, ignored);
+  }
+}
+
+std::optional<Error> write_file(const std::string& path, const std::string& bytes) {
+  const std::filesystem::path file(path);
+  if (!file.has_filename()) return Error{path + ": is no file's name"};
+  auto files = OutputFiles::open(file.has_parent_path() ? file.parent_path().string() : ".");
+  if (!files) return files.error();
+  auto stream = files->add(file.filename().string());
+  if (!stream) return stream.error();
+  **stream << bytes;
+  return files->publish();
+}
+
+namespace {
+
+constexpr std::string_view kHeader =
+    "tick,time_s,stick_x,stick_y,stride_left_m,stride_right_m,speed_m_s,turn_rate_rad_s,heading_"
+    "rad,"
+    "root_x_m,root_y_m,root_z_m,stage,swing,"
+    "left_heel_planted,left_toe_planted,right_heel_planted,right_toe_planted,"
+    "left_heel_x_m,left_heel_y_m,left_heel_z_m,left_toe_x_m,left_toe_y_m,left_toe_z_m,"
+    "right_heel_x_m,right_heel_y_m,right_heel_z_m,right_toe_x_m,right_toe_y_m,right_toe_z_m,"
+    "left_ik_iterations,right_ik_iterations,left_ik_error_m,right_ik_error_m,"
+    "left_heel_ground_m,left_toe_ground_m,right_heel_ground_m,right_toe_ground_m\n";
+
+constexpr std::string_view kStageNames[] = {"idle", "flight", "roll"};
+
+std::string_view swing_name(const WalkFrame& frame) {
+  if (frame.stage == Stage::idle) return "none";
+  return frame.swing == kLeftSide ? "left" : "right";
+}
+
+void append_number(double value, fmt::memory_buffer& out) {
+  fmt::format_to(std::back_inserter(out), ",{:.9f}", value + 0.0);  // + 0.0: no "-0"
+}
+
+void append_place(const vec3& place_m, fmt::memory_buffer& out) {
+  append_number(place_m.x, out);
+  append_number(place_m.y, out);
+  append_number(place_m.z, out);
+}
+
+}  // namespace
+
+void append_frames_header(fmt::memory_buffer& out) {
+  out.append(kHeader.data(), kHeader.data() + kHeader.size());
+}
+
+void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const WalkFrame& frame,
+                       fmt::memory_buffer& out) {
+  const auto end = std::back_inserter(out);
+  fmt::format_to(end, "{}", tick);
+  append_number(static_cast<double>(tick) / rate_hz, out);
+  append_number(stick.left.x, out);
+  append_number(stick.left.y, out);
+  append_number(frame.stride_m[kLeftSide], out);
+  append_number(frame.stride_m[kRightSide], out);
+  append_number(frame.speed_m_s, out);
+  append_number(frame.turn_rate_rad_s, out);
+  append_number(frame.heading_rad, out);
+  append_place(frame.pelvis_m, out);
+  fmt::format_to(end, ",{},{}", kStageNames[static_cast<int>(frame.stage)], swing_name(frame));
+  for (const Side side : {kLeftSide, kRightSide}) {
+    fmt::format_to(end, ",{:d},{:d}", frame.heel_planted[side], frame.toe_planted[side]);
+  }
+  for (const Side side : {kLeftSide, kRightSide}) {
+    append_place(frame.heel_m[side], out);
+    append_place(frame.toe_m[side], out);
+  }
+  fmt::format_to(end, ",{},{}", frame.ik_iterations[kLeftSide], frame.ik_iterations[kRightSide]);
+  append_number(frame.ik_error_m[kLeftSide], out);
+  append_number(frame.ik_error_m[kRightSide], out);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    append_number(frame.heel_ground_m[side], out);
+    append_number(frame.toe_ground_m[side], out);
+  }
+  out.push_back('\n');
+}
+
 namespace {
 
 BvhLayout layout_of(const WalkModel& model, int fps) {
@@ -115,6 +263,26 @@ nlohmann::ordered_json walker_summary(const Walker& walker) {
   s["right_toe_rest_m"] = right.toe_rest_m;
   s["steps_left"] = walker.state.frame.steps[kLeftSide];
   s["steps_right"] = walker.state.frame.steps[kRightSide];
+  return s;
+}
+
+nlohmann::ordered_json run_summary(const Simulation& simulation, const Walker& walker, int rate_hz,
+                                   std::int64_t damaged_lines) {
+  const SimulationCounts& counts = simulation.counts();
+  nlohmann::ordered_json s;
+  s["ticks"] = counts.ticks;
+  s["rate_hz"] = rate_hz;
+  s["pose_hash"] = fmt::format("{:016x}", simulation.pose_hash());
+  s.update(walker_summary(walker));
+  s["terrain"] = simulation.terrain()->name;
+  s["terrain_scale"] = simulation.terrain_scale();
+  s["style"] = simulation.styles()[walker.style].name;
+  s["fatigue"] = walker.in_force.fatigue;
+  s["ik_failures"] = walker.ik_failures;
+  s["reports"] = counts.reports;
+  s["bad_reports"] = counts.bad_reports;
+  s["bad_commands"] = counts.bad_commands;
+  s["damaged_lines"] = damaged_lines;
   return s;
 }
 

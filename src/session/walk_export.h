@@ -1,19 +1,65 @@
-// What one character's walk leaves behind: pose.bvh (pose.glb), frames.csv and summary.json.
+// The files of one run: they appear in their folder together and complete, or not at all.
 #pragma once
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <string>
+#include <vector>
 
-#include "motion/bvh_writer.h"
-#include "session/gltf_writer.h"
-#include "session/output_files.h"
-#include "session/simulation.h"
+#include "files/bvh.h"
+#include "files/gltf.h"
+#include "gaitpad/result.h"
+#include "gaitpad/simulation.h"
+#include "gaitpad/stick.h"
+#include "gaitpad/walk.h"
 
 namespace gaitpad {
+
+// Everything is written under temporary names in the same folder; publish() renames. Without it the
+// temporaries vanish, and files of an earlier run stay as they were.
+class OutputFiles {
+ public:
+  // Makes the folder where it is missing.
+  static Result<OutputFiles> open(const std::string& folder);
+  // A new file, empty so far; the stream lives as long as this object. What cannot be written to it
+  // comes out of publish().
+  Result<std::ostream*> add(const std::string& name);
+  std::optional<Error> publish();
+  // A file without a name in the same folder, to write and read while running; it is gone with its
+  // stream, whatever happens.
+  Result<std::fstream> scratch() const;
+
+  OutputFiles(OutputFiles&&) noexcept = default;
+  OutputFiles& operator=(OutputFiles&&) = delete;
+  ~OutputFiles();
+
+ private:
+  struct File {
+    std::string path, temporary;
+    std::unique_ptr<std::ofstream> stream;
+  };
+  explicit OutputFiles(std::string folder) : folder_(std::move(folder)) {}
+
+  std::string folder_;
+  std::vector<File> files_;
+};
+
+// One file alone, the same way; its folder is made.
+std::optional<Error> write_file(const std::string& path, const std::string& bytes);
+
+// frames.csv: one row a tick, what a character did, in metres, seconds and radians of the world.
+
+void append_frames_header(fmt::memory_buffer& out);
+// The state after `tick`, which had `stick` and ran at rate_hz.
+void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const WalkFrame& frame,
+                       fmt::memory_buffer& out);
+
+// What one character's walk leaves behind: pose.bvh (pose.glb), frames.csv and summary.json.
 
 // `pose.bvh` for the first character, `pose-2.bvh` ... for further ones.
 std::string numbered_name(const std::string& stem, const std::string& extension,
@@ -50,5 +96,12 @@ class WalkExport {
 
 // The character's part of a summary: names of joints, lengths, steps.
 nlohmann::ordered_json walker_summary(const Walker& walker);
+
+// What a run comes to, for summary.json and for who reads it: replay's and a live session's are the
+// same.
+
+// The whole run's numbers and one character's. `damaged_lines`: of the trace, 0 for a live session.
+nlohmann::ordered_json run_summary(const Simulation& simulation, const Walker& walker, int rate_hz,
+                                   std::int64_t damaged_lines);
 
 }  // namespace gaitpad

@@ -1,6 +1,6 @@
 #include "session/walker_style.h"
 
-#include "control/fatigue.h"
+#include "gaitpad/style.h"
 
 namespace gaitpad {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "session/simulation.h"
+#include "gaitpad/simulation.h"
 
 namespace gaitpad {
 

@@ -6,10 +6,10 @@
 #include <iterator>
 #include <optional>
 
-#include "base/toml_file.h"
+#include "files/toml_file.h"
+#include "gaitpad/calibration.h"
+#include "gaitpad/trace.h"
 #include "hid/sdl_mapping.h"
-#include "hid/trace.h"
-#include "stick/calibration.h"
 
 namespace gaitpad {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-#include "base/result.h"
-#include "hid/decode.h"
+#include "gaitpad/calibration.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/result.h"
 #include "hid/sdl_mapping.h"
-#include "stick/calibration.h"
 
 namespace gaitpad {
 

@@ -1,11 +1,383 @@
 #include "stick/guide.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
 namespace gaitpad {
+
+namespace {
+
+constexpr std::int64_t kBucketNs = 100 * kMillisecondNs;
+constexpr double kStillWithin = 0.04;  // of means over a tenth: three sigma of a very noisy stick
+// Shorter stays are spikes: to another place and back within three reports.
+constexpr std::int64_t kSpikeNs = 40 * kMillisecondNs;
+
+constexpr std::int64_t kStillNs = 500 * kMillisecondNs;
+constexpr std::int64_t kNearNs = 1500 * kMillisecondNs;
+constexpr double kAway = 0.3;           // from where it rests
+constexpr double kAwayUnknown = 0.5;    // from the middle, where that is not known yet
+constexpr double kFarthestRest = 0.45;  // from the middle; beyond it a stick is held
+constexpr std::size_t kMaxRests = 64;   // further releases are not needed
+
+constexpr double kOfReach = 0.6;      // of the farthest that was seen: pushed out
+constexpr double kOfMedianRim = 0.6;  // less is a cut corner, not a gate (a square has 0.71)
+constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;  // noise, spikes
+
+constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
+constexpr double kInOfRim = 0.6;  // nearer it is let go
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(values.begin(), middle)) / 2.0;
+}
+
+vec2 median(const std::vector<vec2>& points) {
+  std::vector<double> x, y;
+  for (const vec2& point : points) {
+    x.push_back(point.x);
+    y.push_back(point.y);
+  }
+  return {median(std::move(x)), median(std::move(y))};
+}
+
+// 0 right, 1 front, 2 left, 3 back.
+std::size_t quarter_of(const vec2& v) noexcept {
+  if (std::fabs(v.x) >= std::fabs(v.y)) return v.x >= 0.0 ? 0 : 2;
+  return v.y >= 0.0 ? 1 : 3;
+}
+
+}  // namespace
+
+void StillWatch::hold(const vec2& raw, std::int64_t duration_ns) noexcept {
+  while (duration_ns > 0) {
+    const std::int64_t part_ns = std::min(duration_ns, kBucketNs - sum_ns_);
+    sum_ += raw * static_cast<double>(part_ns);
+    sum_ns_ += part_ns;
+    duration_ns -= part_ns;
+    if (sum_ns_ < kBucketNs) return;
+    const vec2 mean = sum_ / static_cast<double>(kBucketNs);
+    sum_ = vec2(0.0);
+    sum_ns_ = 0;
+    if (!(glm::distance(mean, mean_) <= kStillWithin)) still_ns_ = 0;
+    const auto buckets = static_cast<double>(still_ns_ / kBucketNs);
+    mean_ = (mean_ * buckets + mean) / (buckets + 1.0);
+    still_ns_ += kBucketNs;
+  }
+}
+
+void ReleaseWatch::hold(const vec2& raw, std::int64_t duration_ns) {
+  still_.hold(raw, duration_ns);
+  const vec2 from_rest = raw - rest_.value_or(vec2(0.0));
+  if (glm::length(from_rest) > (rest_ ? kAway : kAwayUnknown)) {
+    away_ns_ += duration_ns;
+    away_ = from_rest;
+    if (away_ns_ > kSpikeNs) {
+      if (!is_away_) still_ = StillWatch();  // how it stood before it went
+      reach_ = std::max(reach_, glm::length(from_rest));
+      is_away_ = true;
+      near_ns_ = 0;
+      near_sum_ = vec2(0.0);
+    }
+  } else {
+    away_ns_ = 0;
+    near_ns_ += duration_ns;
+    near_sum_ += raw * static_cast<double>(duration_ns);
+  }
+  if (is_back()) add_release();
+  if (count() >= kWantedReleases && sides() >= kWantedSides && near_ns_ >= kWantedRestNs)
+    is_complete_ = true;
+}
+
+bool ReleaseWatch::is_held() const noexcept {
+  return is_away_ && still_.still_ns() >= kStillNs && !is_back();
+}
+
+bool ReleaseWatch::is_back() const noexcept {
+  if (near_ns_ >= kNearNs && away_ns_ == 0) return true;
+  if (still_.still_ns() < kStillNs || !(glm::length(still_.mean()) < kFarthestRest)) return false;
+  // The first rests may each be a stick that was held; two of them tell.
+  return rests_.size() < 2 || glm::distance(still_.mean(), *rest_) < kAway;
+}
+
+void ReleaseWatch::add_release() {
+  const bool is_still = still_.still_ns() >= kStillNs;
+  const vec2 place = is_still ? still_.mean() : near_sum_ / static_cast<double>(near_ns_);
+  if (!is_away_) {
+    if (rests_.empty()) rest_ = place;
+    return;
+  }
+  is_away_ = false;
+  away_ns_ = 0;
+  sides_[quarter_of(away_)] = true;
+  if (rests_.size() < kMaxRests) rests_.push_back(place);
+  rest_ = median(rests_);
+}
+
+void ReleaseWatch::restart() {
+  rests_.clear();
+  sides_ = {};
+  is_complete_ = false;
+  lose();
+}
+
+void ReleaseWatch::lose() noexcept {
+  still_ = StillWatch();
+  away_ns_ = near_ns_ = 0;
+  near_sum_ = vec2(0.0);
+  is_away_ = false;
+}
+
+double ReleaseWatch::rim() const noexcept {
+  return reach_ > 0.0 ? std::min(kHalfWay, kOfReach * reach_) : kHalfWay;
+}
+
+int ReleaseWatch::sides() const noexcept {
+  return static_cast<int>(std::ranges::count(sides_, true));
+}
+
+void TurnWatch::take(const vec2& from_rest, double rim) noexcept {
+  rim_ = rim;
+  const double radius = glm::length(from_rest);
+  if (!(radius > rim)) return;  // between two circles; not-a-number, too
+  const double angle_rad = atan2(from_rest.y, from_rest.x);
+  const int bin = static_cast<int>(std::lround(angle_rad / (2.0 * kPi) * kTurnBins));
+  double& greatest = radius_[static_cast<std::size_t>((bin + kTurnBins) % kTurnBins)];
+  greatest = std::max(greatest, radius);
+  const double moved_rad = anchor_rad_ ? std::fabs(wrapped(angle_rad - *anchor_rad_)) : 0.0;
+  if (anchor_rad_ && moved_rad < kLeastTravel) return;
+  if (moved_rad < kMostTravel) travelled_rad_ += moved_rad;
+  anchor_rad_ = angle_rad;
+}
+
+double TurnWatch::least_radius() const noexcept {
+  std::array<double, kTurnBins> sorted = radius_;
+  const auto end = std::remove(sorted.begin(), sorted.end(), 0.0);
+  if (end == sorted.begin()) return rim_;
+  const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
+  std::nth_element(sorted.begin(), middle, end);
+  return std::max(rim_, kOfMedianRim * *middle);
+}
+
+int TurnWatch::filled() const noexcept {
+  const double least = least_radius();
+  return static_cast<int>(
+      std::ranges::count_if(radius_, [least](double radius) { return radius > least; }));
+}
+
+std::optional<vec2> TurnWatch::missing() const noexcept {
+  const double least = least_radius();
+  int longest = 0, end = 0, run = 0;  // of bins that are not filled, `end` included
+  for (int i = 0; i < 2 * kTurnBins; ++i) {
+    run = radius_[static_cast<std::size_t>(i % kTurnBins)] > least ? 0 : run + 1;
+    if (run > kTurnBins) run = kTurnBins;
+    if (run <= longest) continue;
+    longest = run;
+    end = i;
+  }
+  if (longest == 0) return std::nullopt;
+  const SinCos middle = sin_cos((end - (longest - 1) / 2.0) * 2.0 * kPi / kTurnBins);
+  return vec2(middle.cos, middle.sin);
+}
+
+void PushWatch::hold(const vec2& from_rest, double rim, std::int64_t duration_ns) noexcept {
+  const double radius = glm::length(from_rest);
+  const Zone zone = radius > rim ? Zone::out : radius < kInOfRim * rim ? Zone::in : Zone::between;
+  zone_ns_ = zone == zone_ ? zone_ns_ + duration_ns : duration_ns;
+  zone_ = zone;
+  if (zone == Zone::out && is_armed_) {
+    out_ns_ += duration_ns;
+    sum_ += from_rest * static_cast<double>(duration_ns);
+  }
+  if (zone != Zone::in || zone_ns_ < kSpikeNs) return;
+  if (out_ns_ >= kHeldNs) push_ = sum_ / static_cast<double>(out_ns_);
+  out_ns_ = 0;
+  sum_ = vec2(0.0);
+  is_armed_ = true;
+}
+
+void PushWatch::restart() noexcept {
+  is_armed_ = zone_ == Zone::in || zone_ == Zone::unknown;
+  out_ns_ = 0;
+  sum_ = vec2(0.0);
+  push_.reset();
+}
+
+PushWatch::State PushWatch::state() const noexcept {
+  if (out_ns_ >= kHeldNs) return State::held;
+  return out_ns_ > kSpikeNs ? State::out : State::waiting;
+}
+
+std::optional<vec2> PushWatch::take_push() noexcept {
+  const std::optional<vec2> push = push_;
+  push_.reset();
+  return push;
+}
+
+// What the guide says: instructions and progress.
+
+namespace {
+
+const char* control_name(int side, bool is_stick) noexcept {
+  if (is_stick) return side == 0 ? "left stick" : "right stick";
+  return side == 0 ? "left trigger" : "right trigger";
+}
+
+const char* push_text(PushWatch::State state) noexcept {
+  switch (state) {
+    case PushWatch::State::waiting:
+      return "waiting for it";
+    case PushWatch::State::out:
+      return "hold it";
+    case PushWatch::State::held:
+      return "now let go";
+  }
+  return "";
+}
+double push_share(PushWatch::State state) noexcept {
+  switch (state) {
+    case PushWatch::State::waiting:
+      return 0.0;
+    case PushWatch::State::out:
+      return 0.3;
+    case PushWatch::State::held:
+      return 0.7;
+  }
+  return 0.0;
+}
+
+const char* direction_words(GuideStep step) noexcept {
+  switch (step) {
+    case GuideStep::forward:
+      return "FORWARD, away from you";
+    case GuideStep::right:
+      return "to the RIGHT";
+    case GuideStep::back:
+      return "BACK, towards you";
+    default:
+      return "to the LEFT";
+  }
+}
+
+// How the axes lie under the thumb is learned by the pushes, in later steps.
+std::string side_name(const vec2& raw) {
+  static constexpr const char* kNames[] = {"right", "front right", "front", "front left",
+                                           "left",  "back left",   "back",  "back right"};
+  const long eighth = std::lround(atan2(raw.y, raw.x) / (kPi / 4.0));
+  return std::string(kNames[(eighth + 8) % 8]) + " by its axes";
+}
+
+}  // namespace
+
+std::string CalibrationGuide::instruction() const {
+  if (is_full() && step() != GuideStep::done)
+    return "This took so long that no more is kept: skip to the end, or repeat the step.";
+  const auto which = [](const auto& controls, bool is_stick) -> std::string {
+    if (controls.size() != 1) return is_stick ? "each stick" : "each trigger";
+    return std::string("the ") + control_name(controls.front().side, is_stick);
+  };
+  const std::string sticks = which(sticks_, true);
+  switch (step()) {
+    case GuideStep::rest:
+      return fmt::format(
+          "Push {} to its rim, let it snap back and wait a second; {} times, to different sides. "
+          "Then leave it alone.",
+          sticks, kWantedReleases);
+    case GuideStep::turn:
+      return fmt::format(
+          "Turn {} in full circles, pressed outwards along its rim, slowly, until "
+          "every direction is seen.",
+          sticks);
+    case GuideStep::triggers:
+      return fmt::format("Press {} fully, hold it a moment, let go.", which(triggers_, false));
+    case GuideStep::done:
+      return "Done.";
+    default:
+      return fmt::format("Push {} {}, hold it a moment, let go.", sticks, direction_words(step()));
+  }
+}
+
+std::vector<GuideProgress> CalibrationGuide::progress() const {
+  std::vector<GuideProgress> all;
+  if (step() == GuideStep::done) return all;
+  if (step() == GuideStep::triggers) {
+    for (const Trigger& trigger : triggers_) all.push_back(trigger_progress(trigger));
+    return all;
+  }
+  for (const Stick& stick : sticks_) {
+    if (step() == GuideStep::rest) {
+      all.push_back(rest_progress(stick));
+    } else {
+      all.push_back(step() == GuideStep::turn ? turn_progress(stick) : push_progress(stick));
+    }
+    all.back().control = control_name(stick.side, true);
+    all.back().raw = raw(stick);
+  }
+  return all;
+}
+
+GuideProgress CalibrationGuide::rest_progress(const Stick& stick) const {
+  const ReleaseWatch& release = stick.release;
+  const int count = std::min(release.count(), kWantedReleases);
+  const int sides = std::min(release.sides(), kWantedSides);
+  const double alone_s = static_cast<double>(release.rested_ns()) / 1e9;
+  const double wanted_s = static_cast<double>(kWantedRestNs) / 1e9;
+  GuideProgress progress;
+  progress.done = 0.9 * (count + sides) / (kWantedReleases + kWantedSides);
+  progress.text = fmt::format("{} of {} releases", count, kWantedReleases);
+  if (release.is_complete()) {
+    progress.done = 1.0;
+  } else if (release.is_held()) {
+    progress.text += "; it is held, let go";
+  } else if (release.is_away()) {
+    progress.text += "; let go and wait";
+  } else if (count == kWantedReleases && sides < kWantedSides) {
+    progress.text += fmt::format("; only from {} of {} sides", sides, kWantedSides);
+  } else if (count == kWantedReleases) {
+    progress.text += fmt::format("; leave it alone: {:.1f} of {:.1f} s", alone_s, wanted_s);
+  }
+  return progress;
+}
+
+GuideProgress CalibrationGuide::turn_progress(const Stick& stick) const {
+  const TurnWatch& turn = stick.turn;
+  const double turns = std::min(turn.turns(), kWantedTurns);
+  GuideProgress progress;
+  progress.done = 0.75 * turn.filled() / kTurnBins + 0.25 * turns / kWantedTurns;
+  if (turn.is_complete()) progress.done = 1.0;
+  // Rounded down: what is shown as two turns is two turns.
+  progress.text = fmt::format("{} of {} directions, {:.1f} of {:.0f} turns", turn.filled(),
+                              kTurnBins, std::floor(turns * 10.0) / 10.0, kWantedTurns);
+  const std::optional<vec2> missing = turn.missing();
+  if (missing && turn.filled() > 0) progress.text += "; not yet: " + side_name(*missing);
+  if (missing && turns == kWantedTurns) progress.text += " (Enter goes on without)";
+  return progress;
+}
+
+GuideProgress CalibrationGuide::push_progress(const Stick& stick) const {
+  const auto number =
+      static_cast<std::size_t>(step()) - static_cast<std::size_t>(GuideStep::forward);
+  if (stick.pushed[number]) return {{}, 1.0, "seen", {}};
+  const PushWatch::State state = stick.push.state();
+  const bool is_advised = state == PushWatch::State::waiting && !stick.advice.empty();
+  return {{}, push_share(state), is_advised ? stick.advice : push_text(state), {}};
+}
+
+GuideProgress CalibrationGuide::trigger_progress(const Trigger& trigger) const {
+  GuideProgress progress;
+  progress.control = control_name(trigger.side, false);
+  const PushWatch::State state = trigger.push.state();
+  progress.done = trigger.is_done ? 1.0 : push_share(state);
+  progress.text = trigger.is_done ? "seen" : push_text(state);
+  progress.raw = vec2(tracker_.state().axis[kLeftTrigger + trigger.side], 0.0);
+  return progress;
+}
+
 namespace {
 
 // Longer silence tells no more, and costs no time.

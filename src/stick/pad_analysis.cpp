@@ -1,10 +1,292 @@
 #include "stick/pad_analysis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
+#include <vector>
+
+#include "stick/outline.h"
 
 namespace gaitpad {
+
+namespace {
+
+// What a calibration file accepts, with a little room for rounding.
+constexpr double kLeastHalfRange = 0.1001, kGreatestCentre = 0.89;
+constexpr double kGreatestInner = 0.89, kLeastSpan = 0.0501, kGreatestOuter = 0.95;
+
+constexpr double kLeastInner = 0.05;         // raw; a good stick returns within 5 %
+constexpr double kAssumedHysteresis = 0.05;  // raw, of a stick that was let go only once
+// Of noise in two directions one report in four million is further out; less than 1 in 20,000 where
+// the measured sigma is 15 % too small.
+constexpr double kSigmasOfRest = 5.5;
+constexpr double kSigmasOfRim = 4.5;  // one report in 300,000 of a stick at its rim is not full
+// From 0.14 on full deflection is less than 0.96 where the sideways zone takes most off it.
+constexpr double kLeastSideways = 0.08, kGreatestSideways = 0.14;
+constexpr double kSigmasOfForward = 4.0;
+constexpr double kSigmasOfWander = 3.0;  // as far as a rest shows it; a walk goes on
+
+// Beyond these no calibration helps.
+constexpr double kUselessZone = 0.3;     // raw; a third of the way does nothing
+constexpr double kUselessReach = 0.5;    // raw, from the centre
+constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel at the least reach
+constexpr double kUselessDrift = 0.002;  // raw a second: out of a zone of 0.1 within a minute
+constexpr double kUselessWander = 0.02;  // raw, within seconds: a minute leaves any zone
+constexpr double kDriftTold_s = 5.0;     // at rest, of a stick that was never let go twice
+constexpr int kUselessStuck = 2;         // once may be a lost report
+// Beyond these a stick is worn: two or three times what new ones show.
+constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
+constexpr double kWornWander = 0.01;
+constexpr double kWornSteps = 1.5;  // noise of fewer steps is the steps'
+constexpr int kWornJumps = 3;
+
+struct Side {
+  const char* name;
+  std::optional<double> reach;  // raw, from the centre
+};
+std::array<Side, 4> sides_of(const StickStatistics& s) {
+  const vec2 centre = s.centre.value_or(vec2(0.0));
+  const auto from = [](const std::optional<double>& end, double middle) {
+    return end ? std::optional(std::fabs(*end - middle)) : std::nullopt;
+  };
+  return {Side{"left", from(s.min_x, centre.x)}, Side{"right", from(s.max_x, centre.x)},
+          Side{"back", from(s.min_y, centre.y)}, Side{"front", from(s.max_y, centre.y)}};
+}
+
+double greatest_sigma(const StickStatistics& s) noexcept {
+  return s.sigma ? std::max(s.sigma->x, s.sigma->y) : 0.0;
+}
+double step_of(const StickStatistics& s) noexcept { return std::max(s.step_x, s.step_y); }
+double hysteresis_of(const StickStatistics& s) noexcept {
+  return s.hysteresis.value_or(kAssumedHysteresis);
+}
+
+AxisCalibration axis_of(double centre, const std::optional<double>& min,
+                        const std::optional<double>& max) noexcept {
+  AxisCalibration axis;
+  axis.centre = std::clamp(centre, -kGreatestCentre, kGreatestCentre);
+  axis.min = std::clamp(min.value_or(-1.0), -1.0, axis.centre - kLeastHalfRange);
+  axis.max = std::clamp(max.value_or(1.0), axis.centre + kLeastHalfRange, 1.0);
+  return axis;
+}
+
+double least_half(const AxisCalibration& axis) noexcept {
+  return std::min(axis.centre - axis.min, axis.max - axis.centre);
+}
+double least_half(const StickCalibration& c) noexcept {
+  return std::min(least_half(c.x), least_half(c.y));
+}
+
+// The smallest deflection, centred and ranged, of all directions of the outline that were seen;
+// 1 where none was.
+double least_deflection(const Outline& outline, const StickCalibration& c) noexcept {
+  double least = 1.0;
+  for (int k = 0; k < kOutlineDirections; ++k) {
+    const double radius = outline.radius[static_cast<std::size_t>(k)];
+    if (radius <= 0.0) continue;
+    const vec2 p = outline.middle + radius * unit_vector(k * kOutlineSpacing);
+    const auto ranged = [](const AxisCalibration& axis, double raw) {
+      const double off = raw - axis.centre;
+      return off / (off < 0.0 ? axis.centre - axis.min : axis.max - axis.centre);
+    };
+    const double x = ranged(c.x, p.x), y = ranged(c.y, p.y);
+    least = std::min(least, std::sqrt(x * x + y * y));
+  }
+  return least;
+}
+
+void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
+  StickCalibration& c = advice.calibration;
+  const double half = least_half(c), sigma = greatest_sigma(s);
+  advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
+  // Where there is little hysteresis the formula leaves out too much of the noise, and all wander.
+  const double rest = std::max(advice.inner_zone, 0.5 * hysteresis_of(s) + kSigmasOfRest * sigma +
+                                                      kSigmasOfWander * s.wander);
+  c.inner = std::min(rest / half, kGreatestInner);
+  const double margin = (kSigmasOfRim * sigma + step_of(s)) / half;
+  // Where so much is noise that the rim is hardly beyond the inner zone the verdict says so.
+  c.outer =
+      std::clamp(least_deflection(s.outline, c) - margin, c.inner + kLeastSpan, kGreatestOuter);
+  advice.outer_zone = c.outer * half;
+  const double sigma_x = s.sigma ? s.sigma->x : 0.0;
+  const double astray = 0.5 * hysteresis_of(s) + kSigmasOfForward * sigma_x;
+  c.sideways = std::clamp(astray / (least_half(c.x) * c.outer), kLeastSideways, kGreatestSideways);
+}
+
+using Reasons = std::vector<std::string>;
+
+Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
+  Reasons reasons;
+  const double drift = s.drift_per_s.value_or(0.0);
+  // A short rest alone may have been a thumb that lay on the stick.
+  const bool is_told = s.rests.size() > 1 || s.rest_s >= kDriftTold_s;
+  if (drift > kUselessDrift && is_told) {
+    reasons.push_back(fmt::format(
+        "it drifts by {:.3f} a second while nobody touches it, which no dead zone cures", drift));
+  }
+  if (s.wander > kUselessWander) {
+    reasons.push_back(fmt::format(
+        "it wanders by {:.3f} while nobody touches it, which no dead zone cures", s.wander));
+  }
+  if (advice.inner_zone > kUselessZone) {
+    reasons.push_back(
+        fmt::format("it would need a dead zone of {:.0f} %", 100.0 * advice.inner_zone));
+  }
+  if (greatest_sigma(s) > kUselessSigma) {
+    reasons.push_back(fmt::format("its noise is {:.3f}", greatest_sigma(s)));
+  }
+  for (const Side& side : sides_of(s)) {
+    if (side.reach && *side.reach < kUselessReach) {
+      reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
+    }
+  }
+  if (s.stuck >= kUselessStuck) {
+    reasons.push_back(fmt::format("its value stuck {} times while it moved", s.stuck));
+  }
+  return reasons;
+}
+
+Reasons missing(const StickStatistics& s) {
+  if (!s.centre) return {"it was never seen at rest, so its centre is not known"};
+  std::string unseen;
+  for (const Side& side : sides_of(s)) {
+    if (!side.reach) unseen += fmt::format("{}{}", unseen.empty() ? "" : ", ", side.name);
+  }
+  if (unseen.empty()) return {};
+  if (filled_bins(s.outline) == 0) return {"it was never turned to the rim"};
+  return {fmt::format("its rim was not seen to the {}", unseen)};
+}
+
+Reasons worn(const StickStatistics& s) {
+  Reasons reasons;
+  if (s.hysteresis && *s.hysteresis > kWornHysteresis) {
+    reasons.push_back(
+        fmt::format("let go from different sides it rests up to {:.3f} apart", *s.hysteresis));
+  }
+  const double sigma = greatest_sigma(s);
+  if (sigma > std::max(kWornSigma, kWornSteps * step_of(s))) {
+    reasons.push_back(fmt::format("its noise at rest is {:.3f}", sigma));
+  }
+  const double off = glm::length(s.centre.value_or(vec2(0.0)));
+  if (off > kWornCentre) {
+    reasons.push_back(fmt::format("it rests {:.2f} off the middle of its range", off));
+  }
+  for (const Side& side : sides_of(s)) {
+    if (side.reach && *side.reach < kWornReach) {
+      reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
+    }
+  }
+  if (s.jumps >= kWornJumps) {
+    reasons.push_back(fmt::format("it jumped to another place and back {} times", s.jumps));
+  }
+  if (s.drift_per_s.value_or(0.0) > 0.0) {
+    reasons.push_back(
+        fmt::format("it drifts by {:.4f} a second at rest, so calibrate it again now and then",
+                    *s.drift_per_s));
+  }
+  if (s.wander > kWornWander) {
+    reasons.push_back(
+        fmt::format("it wanders by {:.3f} at rest, so its dead zone is wider", s.wander));
+  }
+  return reasons;
+}
+
+std::string good(const StickStatistics& s) {
+  double least = 2.0;
+  for (const Side& side : sides_of(s)) least = std::min(least, side.reach.value_or(least));
+  std::string text = fmt::format("its noise is {:.4f}{}", greatest_sigma(s),
+                                 s.is_sigma_hidden ? " (hidden by its steps)" : "");
+  if (s.hysteresis && *s.hysteresis < 0.0005) {
+    text += ", it comes back to one place";
+  } else if (s.hysteresis) {
+    text += fmt::format(", it comes back within {:.3f}", *s.hysteresis);
+  }
+  return text + fmt::format(" and it reaches {:.2f} or more to every side", least);
+}
+
+// `opening` and the reasons, with a capital letter.
+std::string sentence(std::string_view opening, const Reasons& reasons) {
+  std::string text(opening);
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    text += i == 0 ? "" : i + 1 < reasons.size() ? ", " : " and ";
+    text += reasons[i];
+  }
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+void judge(const StickStatistics& s, StickAdvice& advice) {
+  const Reasons useless_for = useless(s, advice), missing_are = missing(s), worn_by = worn(s);
+  if (s.centre && !useless_for.empty()) {
+    advice.verdict = Verdict::replace;
+    advice.reason = sentence("", useless_for);
+  } else if (!missing_are.empty()) {
+    advice.verdict = Verdict::unknown;
+    advice.reason = sentence("too little was seen: ", missing_are);
+  } else if (!worn_by.empty()) {
+    advice.verdict = Verdict::worn;
+    advice.reason = sentence("", worn_by) + "; calibration makes up for it";
+  } else {
+    advice.verdict = Verdict::good;
+    advice.reason = sentence("", {good(s)});
+  }
+  if (s.centre && !s.hysteresis) {
+    advice.reason += fmt::format(
+        "; it was not seen let go between two rests, so a spread of {:.2f} is assumed for the "
+        "inner zone",
+        kAssumedHysteresis);
+  }
+}
+
+}  // namespace
+
+const char* name_of(Verdict verdict) noexcept {
+  switch (verdict) {
+    case Verdict::good:
+      return "good";
+    case Verdict::worn:
+      return "worn";
+    case Verdict::replace:
+      return "replace";
+    case Verdict::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+StickAdvice stick_advice(const StickStatistics& statistics, const StickFrame& frame) {
+  StickAdvice advice;
+  StickCalibration& c = advice.calibration;
+  c.frame = frame;
+  if (statistics.centre) {
+    c.x = axis_of(statistics.centre->x, statistics.min_x, statistics.max_x);
+    c.y = axis_of(statistics.centre->y, statistics.min_y, statistics.max_y);
+    add_zones(statistics, advice);
+  } else {
+    advice.inner_zone = c.inner;
+    advice.outer_zone = c.outer;
+  }
+  judge(statistics, advice);
+  return advice;
+}
+
+// A spring does not bring a trigger back to the same place each time, and a finger does not always
+// press to the end: 2 % of the travel at either end. Less than a quarter of the range is no travel.
+TriggerCalibration trigger_advice(const TriggerStatistics& statistics) noexcept {
+  constexpr double kSlack = 0.02, kLeastTravel = 0.25;
+  const TriggerCalibration plain;
+  const double low = std::clamp(statistics.released.value_or(plain.released), 0.0, 1.0);
+  const double high = std::clamp(statistics.pressed.value_or(plain.pressed), 0.0, 1.0);
+  if (!(high - low >= kLeastTravel)) return plain;
+  const double slack = kSlack * (high - low);
+  return {statistics.released ? low + slack : plain.released,
+          statistics.pressed ? high - slack : plain.pressed};
+}
+
 namespace {
 
 bool is_turned(const StickStatistics& s) noexcept {

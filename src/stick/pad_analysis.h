@@ -1,13 +1,31 @@
-// All of one pad: its sticks and triggers measured, and the calibration that follows.
+// From what was measured to what to do: zones, a calibration and a verdict in plain words.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "stick/recommendation.h"
+#include "gaitpad/calibration.h"
 #include "stick/statistics.h"
 
 namespace gaitpad {
+
+enum class Verdict : std::uint8_t { good, worn, replace, unknown };
+const char* name_of(Verdict verdict) noexcept;
+
+struct StickAdvice {
+  StickCalibration calibration;  // what is not known is as for an unknown stick
+  double inner_zone = 0.0;       // raw: max(0.05, 3 sigma + hysteresis)
+  double outer_zone = 0.0;       // raw
+  Verdict verdict = Verdict::unknown;
+  std::string reason;  // one sentence with its numbers
+};
+// `statistics` are in `frame`.
+StickAdvice stick_advice(const StickStatistics& statistics, const StickFrame& frame);
+TriggerCalibration trigger_advice(const TriggerStatistics& statistics) noexcept;
+
+// All of one pad: its sticks and triggers measured, and the calibration that follows.
 
 struct StickAnalysis {
   std::vector<StickTrack> tracks;  // in the frame of the advice

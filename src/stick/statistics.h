@@ -1,7 +1,4 @@
-// What a stick's raw reports say about it: where it rests and how quietly, how far it reaches, how
-// regularly it reports. No marks are needed: rest, turning and pushes are found in the tracks.
-// Set-up code. What is robust against what stands at the parts: stills, rest_statistics,
-// report_statistics, clean_track.
+// What a stick's reports say whatever the stick does: how often they come and in what steps.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,10 +7,38 @@
 #include <vector>
 
 #include "stick/outline.h"
+#include "stick/rests.h"
 #include "stick/stick_track.h"
-#include "stick/stills.h"
 
 namespace gaitpad {
+
+// Seconds between reports that follow each other. On pads that report changes only these are the
+// ones while the stick moves. Robust against lost reports and bursts; 4 ms where there are too few.
+double typical_interval_s(std::span<const StickTrack> tracks);
+
+struct ReportTiming {
+  std::optional<double> rate_hz, jitter_ms;  // none: too few reports
+  std::optional<std::int64_t> gaps;          // none: as well where silence tells nothing
+};
+// `repeats_expected`: the chance that a report at rest is the same as the one before, as far as
+// noise and steps tell. A pad that repeats itself less often, or never, reports changes only as far
+// as one can see, and nobody knows its gaps.
+ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_expected);
+
+// The smallest distance between neighbouring values that is seen often enough to be a step, else
+// `declared`. Axis 0 is x, 1 is y.
+double quantisation_step(std::span<const StickTrack> tracks, int axis, double declared);
+
+// How often the value froze for 60 ms or more while the stick moved on, and then jumped after it.
+std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s);
+
+// Whole turns round the middle, farther out than `radius`, each way counted.
+int whole_turns(std::span<const StickTrack> tracks, const vec2& middle, double radius);
+
+// What a stick's raw reports say about it: where it rests and how quietly, how far it reaches, how
+// regularly it reports. No marks are needed: rest, turning and pushes are found in the tracks.
+// Set-up code. What is robust against what stands at the parts: stills, rest_statistics,
+// report_statistics, clean_track.
 
 // Positions, lengths: raw, as in StickSample. What too little data cannot tell is none.
 struct StickStatistics {

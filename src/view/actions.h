@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "hid/report.h"
+#include "gaitpad/report.h"
 
 namespace gaitpad {
 

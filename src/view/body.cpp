@@ -3,7 +3,7 @@
 
 #include <iterator>
 
-#include "motion/legs.h"
+#include "gaitpad/anatomy.h"
 #include "view/body_parts.h"
 
 namespace gaitpad {

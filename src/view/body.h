@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "motion/gait_cycle.h"
-#include "session/session_frame.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/session_frame.h"
 #include "view/scene.h"
 
 namespace gaitpad {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "motion/legs.h"
+#include "gaitpad/anatomy.h"
 
 namespace gaitpad {
 namespace {

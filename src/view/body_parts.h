@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "animation/walk_model.h"
+#include "gaitpad/walk_model.h"
 
 namespace gaitpad {
 

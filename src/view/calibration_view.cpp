@@ -9,7 +9,7 @@
 #include <chrono>
 #include <iterator>
 
-#include "session/calibration_store.h"
+#include "pads/calibration_store.h"
 #include "view/modal.h"
 #include "view/stick_picture.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
-#include "session/guided_calibration.h"
+#include "gaitpad/result.h"
+#include "pads/guided_calibration.h"
 #include "view/ui_parts.h"
 
 namespace gaitpad {

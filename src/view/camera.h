@@ -1,7 +1,7 @@
 // Where the picture is seen from: on a sphere round a target that may follow somebody.
 // Plain functions on plain data; what is not a finite number changes nothing.
 #pragma once
-#include "base/math.h"
+#include "gaitpad/math.h"
 
 namespace gaitpad {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "base/math.h"
-#include "session/session_frame.h"
+#include "gaitpad/math.h"
+#include "gaitpad/session_frame.h"
 #include "view/actions.h"
 
 namespace gaitpad {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/math.h"
+#include "gaitpad/math.h"
 
 namespace gaitpad {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "session/simulation.h"
+#include "gaitpad/simulation.h"
 #include "view/scene_ground.h"
 
 namespace gaitpad {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/toml_file.h"
-#include "session/user_files.h"
+#include "files/toml_file.h"
+#include "gaitpad/config_files.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;

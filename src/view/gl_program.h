@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "base/math.h"
-#include "base/result.h"
+#include "gaitpad/math.h"
+#include "gaitpad/result.h"
 #include "view/drawing.h"
 
 namespace gaitpad {

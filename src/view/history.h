@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "session/session_frame.h"
+#include "gaitpad/session_frame.h"
 
 namespace gaitpad {
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "base/toml_file.h"
-#include "session/output_files.h"
+#include "files/toml_file.h"
+#include "session/walk_export.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;

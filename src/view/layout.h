@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "base/result.h"
+#include "gaitpad/result.h"
 #include "view/ui.h"
 
 namespace gaitpad {

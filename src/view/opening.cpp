@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "animation/character.h"
-#include "animation/terrain_file.h"
-#include "control/style.h"
-#include "session/motion_source.h"
-#include "stick/calibration.h"
+#include "gaitpad/calibration.h"
+#include "gaitpad/motion_file.h"
+#include "gaitpad/style.h"
+#include "gaitpad/terrain_file.h"
+#include "gaitpad/walk_model.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;

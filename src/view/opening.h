@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "base/result.h"
+#include "gaitpad/result.h"
 #include "view/show.h"
 
 namespace gaitpad {

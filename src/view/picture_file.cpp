@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "session/output_files.h"
+#include "session/walk_export.h"
 #include "view/drawing.h"
 #include "view/surface.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "animation/terrain.h"
-#include "base/math.h"
-#include "base/result.h"
+#include "gaitpad/math.h"
+#include "gaitpad/result.h"
+#include "gaitpad/terrain.h"
 #include "view/camera.h"
 #include "view/theme.h"
 

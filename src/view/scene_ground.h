@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "animation/terrain.h"
+#include "gaitpad/terrain.h"
 
 namespace gaitpad {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "gaitpad/simulation.h"
 #include "session/script.h"
-#include "session/simulation.h"
 
 namespace gaitpad {
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/result.h"
-#include "session/live.h"
+#include "gaitpad/live.h"
+#include "gaitpad/result.h"
 #include "session/playback.h"
 #include "view/history.h"
 #include "view/ui.h"

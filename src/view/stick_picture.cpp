@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "session/output_files.h"
+#include "session/walk_export.h"
 #include "view/drawing.h"
 #include "view/stick_plot.h"
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "base/result.h"
-#include "stick/recommendation.h"
+#include "gaitpad/result.h"
+#include "stick/pad_analysis.h"
 #include "stick/statistics.h"
 #include "view/drawing.h"
 

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "base/toml_file.h"
+#include "files/toml_file.h"
 #include "view/theme.h"
 
 namespace gaitpad {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "session/live.h"
+#include "gaitpad/live.h"
+#include "gaitpad/session_frame.h"
 #include "session/playback.h"
-#include "session/session_frame.h"
 #include "view/actions.h"
 #include "view/history.h"
 #include "view/scene.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "base/result.h"
+#include "gaitpad/result.h"
 #include "view/surface.h"
 
 namespace gaitpad {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "base/result.h"
-#include "session/live.h"
-#include "session/replay.h"
+#include "gaitpad/live.h"
+#include "gaitpad/replay.h"
+#include "gaitpad/result.h"
 #include "view/camera.h"
 #include "view/ui.h"
 

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "session/style_store.h"
-#include "session/user_files.h"
+#include "gaitpad/config_files.h"
 #include "view/window_loop.h"
 
 namespace gaitpad {

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "drivers/posix.h"
-#include "session/config_files.h"
-#include "session/user_files.h"
+#include "gaitpad/config_files.h"
 #include "view/window_loop.h"
 
 namespace gaitpad {

@@ -1,7 +1,6 @@
-#include "animation/character.h"
-
 #include <gtest/gtest.h>
 
+#include "gaitpad/walk_model.h"
 #include "tests/own_folder.h"
 
 namespace gaitpad {

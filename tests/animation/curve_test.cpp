@@ -1,4 +1,4 @@
-#include "animation/curve.h"
+#include "gaitpad/curve.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "animation/ik.h"
+#include "gaitpad/ik.h"
 
 namespace gaitpad::test {
 

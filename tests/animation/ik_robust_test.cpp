@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/leg.h"
+#include "gaitpad/limbs.h"
 #include "ik_chains.h"
 
 namespace gaitpad::test {

@@ -1,4 +1,4 @@
-#include "animation/ik.h"
+#include "gaitpad/ik.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "animation/made_walker.h"
-#include "animation/walk_body.h"
-#include "control/style.h"
-#include "motion/legs.h"
+#include "gaitpad/anatomy.h"
+#include "gaitpad/style.h"
+#include "gaitpad/walk.h"
 
 namespace gaitpad {
 

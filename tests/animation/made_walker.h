@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "animation/walk.h"
-#include "control/control.h"
+#include "gaitpad/control.h"
+#include "gaitpad/walk.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

@@ -1,10 +1,10 @@
-#include "animation/terrain_file.h"
+#include "gaitpad/terrain_file.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "animation/height_picture.h"
+#include "files/height_picture.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "animation/walk.h"
-#include "control/control.h"
+#include "gaitpad/control.h"
+#include "gaitpad/walk.h"
 
 namespace gaitpad {
 

@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <string>
 
-#include "animation/terrain_file.h"
 #include "animation/terrain_judge.h"
-#include "motion/load.h"
+#include "gaitpad/motion_file.h"
+#include "gaitpad/terrain_file.h"
 
 using namespace gaitpad;
 

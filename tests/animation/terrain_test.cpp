@@ -1,4 +1,4 @@
-#include "animation/terrain.h"
+#include "gaitpad/terrain.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,13 @@
 // What is above the hips: where hands and head are, what the joints do, and that nothing below is
 // touched. On the built-in motion; the last tests on the real ones where they are.
-#include "animation/walk_body.h"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <filesystem>
 
 #include "animation/made_body.h"
-#include "motion/load.h"
+#include "gaitpad/motion_file.h"
+#include "gaitpad/walk.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

@@ -1,4 +1,4 @@
-#include "animation/walk_model.h"
+#include "gaitpad/walk_model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Properties of the walk on the built-in motion, without files. tests/session/acceptance.py
 // measures the bounds on exported walks, captured ones too.
-#include "animation/walk.h"
+#include "gaitpad/walk.h"
 
 #include <gtest/gtest.h>
 

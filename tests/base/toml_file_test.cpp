@@ -1,4 +1,4 @@
-#include "base/toml_file.h"
+#include "files/toml_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

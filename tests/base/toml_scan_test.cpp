@@ -1,6 +1,6 @@
-#include "base/toml_scan.h"
-
 #include <gtest/gtest.h>
+
+#include "files/toml_file.h"
 
 namespace gaitpad {
 namespace {

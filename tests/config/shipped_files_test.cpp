@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "animation/character.h"
-#include "animation/terrain_file.h"
-#include "control/style.h"
-#include "motion/gait_cycle.h"
-#include "motion/keyframe.h"
-#include "stick/calibration.h"
+#include "files/keyframe.h"
+#include "gaitpad/calibration.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/style.h"
+#include "gaitpad/terrain_file.h"
+#include "gaitpad/walk_model.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

@@ -1,4 +1,4 @@
-#include "control/control.h"
+#include "gaitpad/control.h"
 
 #include <gtest/gtest.h>
 

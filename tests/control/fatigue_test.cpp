@@ -1,6 +1,6 @@
-#include "control/fatigue.h"
-
 #include <gtest/gtest.h>
+
+#include "gaitpad/style.h"
 
 namespace gaitpad {
 namespace {

@@ -1,5 +1,3 @@
-#include "control/gait_overrides.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -7,6 +5,8 @@
 #include <limits>
 #include <random>
 #include <type_traits>
+
+#include "gaitpad/control.h"
 
 namespace gaitpad {
 namespace {

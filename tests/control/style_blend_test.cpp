@@ -1,6 +1,6 @@
-#include "control/style_blend.h"
-
 #include <gtest/gtest.h>
+
+#include "gaitpad/style.h"
 
 namespace gaitpad {
 namespace {

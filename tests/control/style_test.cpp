@@ -1,4 +1,4 @@
-#include "control/style.h"
+#include "gaitpad/style.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "base/math.h"
+#include "gaitpad/math.h"
 #include "tests/own_folder.h"
 
 namespace gaitpad {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "drivers/registry.h"
+#include "gaitpad/drivers.h"
 
 namespace gaitpad {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "drivers/driver_entries.h"
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
 #include "hid/sdl_mapping.h"
 #include "tests/value_of.h"
 

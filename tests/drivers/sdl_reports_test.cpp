@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

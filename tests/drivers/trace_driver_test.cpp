@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "drivers/driver_entries.h"
-#include "drivers/registry.h"
+#include "gaitpad/drivers.h"
 #include "tests/own_folder.h"
 
 namespace gaitpad {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/scripted_port.h"
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
 #include "tests/hid/made_pads.h"
 
 namespace gaitpad {

@@ -1,4 +1,4 @@
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
 
 #include <gtest/gtest.h>
 

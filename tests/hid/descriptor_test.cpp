@@ -1,4 +1,4 @@
-#include "hid/descriptor.h"
+#include "gaitpad/descriptor.h"
 
 #include <gtest/gtest.h>
 

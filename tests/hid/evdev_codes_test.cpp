@@ -1,13 +1,12 @@
 // Codes are those of Linux's include/uapi/linux/input-event-codes.h, the rules those of
 // drivers/hid/hid-input.c (6.1), both written out here as numbers.
-#include "hid/evdev_codes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 #include <string>
 
+#include "hid/evdev_layout.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "hid/decode.h"
-#include "hid/trace.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/trace.h"
 #include "tests/hid/made_pads.h"
 #include "tests/shared_data.h"
 

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "hid/decode.h"
-#include "hid/trace.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/trace.h"
 #include "tests/hid/made_pads.h"
 #include "tests/shared_data.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "gaitpad/pad_map.h"
 #include "hid/evdev_layout.h"
-#include "hid/pad_map.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

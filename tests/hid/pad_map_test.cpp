@@ -1,4 +1,4 @@
-#include "hid/pad_map.h"
+#include "gaitpad/pad_map.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include <random>
 
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
 #include "tests/hid/made_pads.h"
 
 namespace gaitpad {

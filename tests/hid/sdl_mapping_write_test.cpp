@@ -10,8 +10,8 @@
 #include <set>
 #include <sstream>
 
+#include "gaitpad/trace.h"
 #include "hid/sdl_mapping.h"
-#include "hid/trace.h"
 #include "tests/hid/made_pads.h"
 #include "tests/shared_data.h"
 

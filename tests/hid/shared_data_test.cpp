@@ -9,8 +9,8 @@
 #include <map>
 #include <sstream>
 
-#include "hid/decode.h"
-#include "hid/trace.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/trace.h"
 #include "tests/hid/made_pads.h"
 
 namespace gaitpad {

@@ -1,4 +1,4 @@
-#include "hid/trace.h"
+#include "gaitpad/trace.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
-#include "motion/amc.h"
-
 #include <gtest/gtest.h>
 
+#include "files/acclaim.h"
 #include "motion/acclaim_text.h"
 #include "tests/value_of.h"
 

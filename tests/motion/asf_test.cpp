@@ -1,9 +1,8 @@
-#include "motion/asf.h"
-
 #include <gtest/gtest.h>
 
+#include "files/acclaim.h"
+#include "gaitpad/skeleton.h"
 #include "motion/acclaim_text.h"
-#include "motion/skeleton.h"
 
 namespace gaitpad {
 namespace {

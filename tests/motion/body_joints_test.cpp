@@ -1,12 +1,11 @@
-#include "motion/body_joints.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <memory>
 
-#include "motion/load.h"
-#include "motion/motion.h"
+#include "gaitpad/anatomy.h"
+#include "gaitpad/motion.h"
+#include "gaitpad/motion_file.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

@@ -1,12 +1,12 @@
-#include "motion/bvh.h"
+#include "files/bvh.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "gaitpad/skeleton.h"
 #include "motion/bvh_text.h"
-#include "motion/skeleton.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

@@ -1,14 +1,12 @@
-#include "motion/bvh_writer.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <sstream>
 
-#include "motion/bvh.h"
+#include "files/bvh.h"
+#include "gaitpad/motion.h"
+#include "gaitpad/motion_file.h"
 #include "motion/bvh_text.h"
-#include "motion/load.h"
-#include "motion/tracks.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

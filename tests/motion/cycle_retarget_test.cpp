@@ -1,11 +1,10 @@
 // The procedural walk on other skeletons: larger ones, ones that only stand, ones in a T pose.
-#include "motion/cycle_retarget.h"
-
 #include <gtest/gtest.h>
 
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/motion_file.h"
 #include "motion/bvh_text.h"
-#include "motion/cycle_leg.h"
-#include "motion/load.h"
+#include "motion/leg_pose.h"
 #include "motion/made_motion.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"

@@ -1,9 +1,9 @@
-#include "motion/flight.h"
+#include "gaitpad/flight.h"
 
 #include <gtest/gtest.h>
 
-#include "motion/load.h"
-#include "motion/tracks.h"
+#include "gaitpad/motion.h"
+#include "gaitpad/motion_file.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

@@ -1,16 +1,16 @@
 // The best stride of a motion as a periodic walk: on the procedural motion, disturbed in ways that
 // captured ones are, and on real clips where they are at hand.
-#include "motion/gait_cycle.h"
+#include "gaitpad/gait_cycle.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "motion/cycle_leg.h"
-#include "motion/load.h"
+#include "gaitpad/motion.h"
+#include "gaitpad/motion_file.h"
+#include "motion/leg_pose.h"
 #include "motion/made_motion.h"
-#include "motion/tracks.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
 

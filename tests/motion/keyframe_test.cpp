@@ -1,9 +1,9 @@
-#include "motion/keyframe.h"
+#include "files/keyframe.h"
 
 #include <gtest/gtest.h>
 
-#include "motion/gait_cycle.h"
-#include "motion/tracks.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/motion.h"
 
 namespace gaitpad {
 namespace {

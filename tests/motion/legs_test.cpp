@@ -1,9 +1,8 @@
-#include "motion/legs.h"
-
 #include <gtest/gtest.h>
 
+#include "gaitpad/anatomy.h"
+#include "gaitpad/motion_file.h"
 #include "motion/bvh_text.h"
-#include "motion/load.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

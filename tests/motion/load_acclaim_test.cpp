@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
+#include "gaitpad/motion.h"
+#include "gaitpad/motion_file.h"
 #include "motion/acclaim_text.h"
-#include "motion/load.h"
 #include "motion/made_motion.h"
-#include "motion/tracks.h"
 #include "tests/own_folder.h"
 
 namespace gaitpad {

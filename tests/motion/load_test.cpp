@@ -1,13 +1,12 @@
-#include "motion/load.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "gaitpad/motion.h"
+#include "gaitpad/motion_file.h"
 #include "motion/bvh_text.h"
 #include "motion/euler.h"
 #include "motion/made_motion.h"
-#include "motion/tracks.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <memory>
 
-#include "motion/cycle_leg.h"
-#include "motion/tracks.h"
+#include "gaitpad/motion.h"
+#include "motion/leg_pose.h"
 
 namespace gaitpad {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "motion/cycle_leg.h"
-#include "motion/gait_cycle.h"
+#include "gaitpad/gait_cycle.h"
+#include "motion/leg_pose.h"
 #include "motion/made_motion.h"
 
 namespace gaitpad {

@@ -7,9 +7,9 @@
 #include <map>
 #include <memory>
 
-#include "motion/gait_cycle.h"
-#include "motion/load.h"
-#include "motion/tracks.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/motion.h"
+#include "gaitpad/motion_file.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

@@ -1,6 +1,6 @@
-#include "motion/units.h"
-
 #include <gtest/gtest.h>
+
+#include "gaitpad/motion_file.h"
 
 namespace gaitpad {
 namespace {

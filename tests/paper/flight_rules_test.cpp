@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/flight.h"
+#include "gaitpad/flight.h"
 
 namespace gaitpad {
 namespace {

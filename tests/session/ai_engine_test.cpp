@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "session/simulation.h"
+#include "gaitpad/simulation.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "session/calibration_store.h"
+#include "pads/calibration_store.h"
 
 namespace gaitpad {
 namespace {

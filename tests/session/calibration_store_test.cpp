@@ -1,4 +1,4 @@
-#include "session/calibration_store.h"
+#include "pads/calibration_store.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

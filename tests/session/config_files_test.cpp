@@ -1,4 +1,4 @@
-#include "session/config_files.h"
+#include "gaitpad/config_files.h"
 
 #include <gtest/gtest.h>
 

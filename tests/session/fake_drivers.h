@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "hid/driver.h"
+#include "gaitpad/driver.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {

@@ -1,8 +1,8 @@
-#include "session/frames_csv.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "session/walk_export.h"
 
 namespace gaitpad {
 namespace {

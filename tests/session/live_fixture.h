@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "session/live.h"
-#include "session/replay.h"
+#include "gaitpad/live.h"
+#include "gaitpad/replay.h"
 #include "tests/comes_true.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <fstream>
 
-#include "hid/decode.h"
-#include "session/live.h"
-#include "session/pad_setup.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/live.h"
+#include "gaitpad/pad_setup.h"
 #include "tests/session/live_fixture.h"
 
 namespace gaitpad {

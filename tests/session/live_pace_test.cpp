@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "session/live.h"
+#include "gaitpad/live.h"
 #include "tests/session/live_fixture.h"
 
 namespace gaitpad {

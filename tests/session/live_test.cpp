@@ -1,5 +1,5 @@
 // Live sessions in real time; a trace is the pad.
-#include "session/live.h"
+#include "gaitpad/live.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "hid/trace.h"
-#include "session/simulation.h"
+#include "gaitpad/simulation.h"
+#include "gaitpad/trace.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

@@ -1,9 +1,8 @@
-#include "session/output_files.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "session/walk_export.h"
 #include "tests/own_folder.h"
 
 namespace gaitpad {

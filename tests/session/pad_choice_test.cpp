@@ -1,7 +1,6 @@
-#include "session/pad_choice.h"
-
 #include <gtest/gtest.h>
 
+#include "gaitpad/pad_stream.h"
 #include "tests/own_folder.h"
 #include "tests/session/fake_drivers.h"
 #include "tests/value_of.h"

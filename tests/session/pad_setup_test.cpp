@@ -1,4 +1,4 @@
-#include "session/pad_setup.h"
+#include "gaitpad/pad_setup.h"
 
 #include <gtest/gtest.h>
 

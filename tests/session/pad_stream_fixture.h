@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "session/pad_stream.h"
+#include "gaitpad/pad_stream.h"
 #include "tests/comes_true.h"
 #include "tests/own_folder.h"
 #include "tests/session/fake_drivers.h"

@@ -1,5 +1,5 @@
 // What a stream hands on of pads that are there: order, losses, stamps, motors, commands, its end.
-#include "session/pad_stream.h"
+#include "gaitpad/pad_stream.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "session/pads.h"
+#include "gaitpad/pads.h"
 
 #include <gtest/gtest.h>
 

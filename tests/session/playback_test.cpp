@@ -7,9 +7,8 @@
 #include <chrono>
 #include <random>
 
-#include "base/hash.h"
-#include "session/replay.h"
-#include "session/trace_run.h"
+#include "gaitpad/hash.h"
+#include "gaitpad/replay.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 

@@ -5,8 +5,8 @@
 
 #include <fstream>
 
-#include "motion/bvh_writer.h"
-#include "motion/load.h"
+#include "files/bvh.h"
+#include "gaitpad/motion_file.h"
 #include "tests/session/made_session.h"
 
 using namespace gaitpad;

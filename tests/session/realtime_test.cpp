@@ -1,4 +1,4 @@
-#include "session/realtime.h"
+#include "pads/realtime.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>

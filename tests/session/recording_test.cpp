@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "drivers/posix.h"
-#include "session/tick_clock.h"
+#include "session/live_loop.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 

@@ -1,8 +1,8 @@
-#include "session/simulation.h"
+#include "gaitpad/simulation.h"
 
 #include <gtest/gtest.h>
 
-#include "motion/cycle_retarget.h"
+#include "gaitpad/gait_cycle.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {

@@ -1,12 +1,9 @@
-#include "session/style_store.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "session/config_files.h"
-#include "session/pad_setup.h"
-#include "session/user_files.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/pad_setup.h"
 #include "tests/own_folder.h"
 
 namespace gaitpad {

@@ -1,8 +1,8 @@
-#include "session/tick_clock.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "session/live_loop.h"
 
 namespace gaitpad {
 namespace {

@@ -1,7 +1,6 @@
-#include "session/tick_reports.h"
-
 #include <gtest/gtest.h>
 
+#include "session/live_loop.h"
 #include "tests/comes_true.h"
 #include "tests/session/fake_drivers.h"
 

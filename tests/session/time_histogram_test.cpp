@@ -1,8 +1,8 @@
-#include "session/time_histogram.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
+
+#include "session/live_loop.h"
 
 namespace gaitpad {
 namespace {

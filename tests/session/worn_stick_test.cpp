@@ -8,7 +8,7 @@
 
 #include "session/made_session.h"
 #include "stick/made_stick.h"
-#include "stick/recommendation.h"
+#include "stick/pad_analysis.h"
 
 namespace gaitpad {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "stick/calibration.h"
+#include "gaitpad/calibration.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 

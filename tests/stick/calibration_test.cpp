@@ -1,4 +1,4 @@
-#include "stick/calibration.h"
+#include "gaitpad/calibration.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,10 @@
-#include "stick/recommendation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
 #include "stick/made_stick.h"
+#include "stick/pad_analysis.h"
 
 namespace gaitpad {
 namespace {

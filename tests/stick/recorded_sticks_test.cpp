@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "stick/outline.h"
-#include "stick/recommendation.h"
+#include "stick/pad_analysis.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

@@ -1,6 +1,5 @@
-#include "stick/report_statistics.h"
-
 #include "stick/drawn_stick.h"
+#include "stick/statistics.h"
 
 namespace gaitpad {
 namespace {

@@ -1,8 +1,7 @@
-#include "stick/rest_statistics.h"
-
 #include <functional>
 
 #include "stick/drawn_stick.h"
+#include "stick/rests.h"
 
 namespace gaitpad {
 namespace {

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <limits>
 
-#include "hid/decode.h"
-#include "hid/trace.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/trace.h"
 #include "stick/drawn_stick.h"
 #include "tests/hid/made_pads.h"
 #include "tests/shared_data.h"

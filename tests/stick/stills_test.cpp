@@ -1,10 +1,9 @@
-#include "stick/stills.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "stick/made_stick.h"
+#include "stick/rests.h"
 
 namespace gaitpad {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <map>
 
-#include "control/control.h"
-#include "motion/load.h"
+#include "gaitpad/control.h"
+#include "gaitpad/motion_file.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
 #include "view/body_parts.h"

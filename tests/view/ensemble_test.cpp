@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "session/setup.h"
+#include "gaitpad/setup.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "control/control.h"
+#include "gaitpad/control.h"
 #include "tests/value_of.h"
 #include "view/body.h"
 #include "view/gl_program.h"

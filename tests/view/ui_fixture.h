@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "session/setup.h"
+#include "gaitpad/setup.h"
 #include "tests/value_of.h"
 #include "view/ui.h"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "session/calibration_store.h"
+#include "pads/calibration_store.h"
 #include "tests/view/window_script.h"
 
 namespace gaitpad {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "session/replay.h"
+#include "gaitpad/replay.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 #include "view/surface.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "session/config_files.h"
+#include "gaitpad/config_files.h"
 #include "tests/view/window_script.h"
 
 namespace gaitpad {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "motion/flight.h"
-#include "motion/load.h"
+#include "gaitpad/flight.h"
+#include "gaitpad/motion_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaitpad;

@@ -6,10 +6,9 @@
 #include <sstream>
 #include <string_view>
 
-#include "motion/bvh.h"
-#include "motion/bvh_writer.h"
-#include "motion/flight.h"
-#include "motion/load.h"
+#include "files/bvh.h"
+#include "gaitpad/flight.h"
+#include "gaitpad/motion_file.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "stick/calibration.h"
+#include "gaitpad/calibration.h"
 
 namespace {
 

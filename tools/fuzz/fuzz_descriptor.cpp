@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <span>
 
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/trace.h"
 #include "hid/sdl_mapping.h"
-#include "hid/trace.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "animation/height_picture.h"
-#include "animation/terrain_file.h"
+#include "files/height_picture.h"
+#include "gaitpad/terrain_file.h"
 
 namespace {
 

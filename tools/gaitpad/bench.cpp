@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "animation/walk_parts.h"
-#include "session/config_files.h"
-#include "session/setup.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/setup.h"
 #include "tools/gaitpad/commands.h"
 
 namespace gaitpad {

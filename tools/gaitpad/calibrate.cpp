@@ -8,8 +8,8 @@
 #include <memory>
 #include <utility>
 
-#include "session/calibration_store.h"
-#include "session/user_files.h"
+#include "gaitpad/config_files.h"
+#include "pads/calibration_store.h"
 #include "stick/pad_analysis.h"
 #include "tools/gaitpad/calibrate_files.h"
 #include "tools/gaitpad/calibrate_live.h"

@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "base/toml_file.h"
+#include "files/toml_file.h"
 #include "hid/sdl_mapping.h"
-#include "session/calibration_store.h"
+#include "pads/calibration_store.h"
 #include "stick/calibration_import.h"
 #include "tools/gaitpad/calibrate_live.h"
 #include "tools/gaitpad/calibrate_trace.h"

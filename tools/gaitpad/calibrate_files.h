@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
-#include "session/pad_choice.h"
-#include "session/pad_setup.h"
+#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_stream.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
-#include "session/guided_calibration.h"
+#include "gaitpad/result.h"
+#include "pads/guided_calibration.h"
 #include "tools/gaitpad/live_run.h"
 
 namespace gaitpad {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "hid/report.h"
+#include "gaitpad/report.h"
 #include "stick/pad_analysis.h"
 
 namespace gaitpad {

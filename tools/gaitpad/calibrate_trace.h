@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
-#include "session/pad_setup.h"
+#include "gaitpad/pad_setup.h"
+#include "gaitpad/result.h"
 #include "tools/gaitpad/calibrate_live.h"
 
 namespace gaitpad {

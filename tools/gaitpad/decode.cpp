@@ -8,8 +8,8 @@
 #include <memory>
 #include <optional>
 
-#include "hid/trace.h"
-#include "session/pad_choice.h"
+#include "gaitpad/pad_stream.h"
+#include "gaitpad/trace.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/live_run.h"
 #include "tools/gaitpad/pad_options.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "drivers/registry.h"
+#include "gaitpad/drivers.h"
 #include "tools/gaitpad/doctor_checks.h"
 
 namespace gaitpad {

@@ -13,7 +13,7 @@
 #include <fstream>
 #include <map>
 
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
 #include "tools/gaitpad/udev_rules.h"
 
 namespace gaitpad {

@@ -7,8 +7,8 @@
 
 #include "drivers/system_nodes.h"
 #include "drivers/usb_interfaces.h"
-#include "hid/pad_map.h"
-#include "session/pad_choice.h"
+#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_stream.h"
 
 namespace gaitpad {
 

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "gaitpad/config_files.h"
 #include "paper/claims.h"
-#include "session/config_files.h"
 #include "tools/gaitpad/commands.h"
 
 namespace gaitpad {

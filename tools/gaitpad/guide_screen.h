@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hid/report.h"
+#include "gaitpad/report.h"
 #include "stick/guide.h"
 #include "tools/gaitpad/live_run.h"
 

@@ -1,5 +1,5 @@
 // gaitpad ik: solves one chain to a goal and prints the angles of each iteration.
-#include "animation/ik.h"
+#include "gaitpad/ik.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "base/toml_file.h"
+#include "files/toml_file.h"
 #include "tools/gaitpad/commands.h"
 
 namespace gaitpad {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "session/pad_stream.h"
+#include "gaitpad/pad_stream.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/live_run.h"
 #include "tools/gaitpad/pad_options.h"

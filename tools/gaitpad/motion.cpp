@@ -1,15 +1,16 @@
 // gaitpad motion: what a motion file holds.
+#include "gaitpad/motion.h"
+
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "motion/flight.h"
-#include "motion/gait_cycle.h"
-#include "motion/tracks.h"
-#include "session/config_files.h"
-#include "session/motion_source.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/flight.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/motion_file.h"
 #include "tools/gaitpad/commands.h"
 
 namespace gaitpad {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "drivers/registry.h"
 #include "drivers/system_nodes.h"
-#include "session/config_files.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/drivers.h"
 #include "tools/gaitpad/report_print.h"
 
 namespace gaitpad {

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "base/result.h"
-#include "session/pad_choice.h"
+#include "gaitpad/pad_stream.h"
+#include "gaitpad/result.h"
 #include "tools/gaitpad/live_run.h"
 
 namespace gaitpad {

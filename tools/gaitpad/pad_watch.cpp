@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stick/calibration.h"
+#include "gaitpad/calibration.h"
 #include "tools/gaitpad/live_run.h"
 #include "tools/gaitpad/report_print.h"
 

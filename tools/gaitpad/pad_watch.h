@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "session/pad_stream.h"
+#include "gaitpad/pad_stream.h"
 
 namespace gaitpad {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "drivers/registry.h"
-#include "hid/descriptor.h"
-#include "session/pad_choice.h"
+#include "gaitpad/descriptor.h"
+#include "gaitpad/drivers.h"
+#include "gaitpad/pad_stream.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/pad_options.h"
 #include "tools/gaitpad/report_print.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "session/live.h"
+#include "gaitpad/live.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/live_run.h"
 #include "tools/gaitpad/pad_options.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "session/pad_stream.h"
+#include "gaitpad/pad_stream.h"
 #include "session/recording.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/live_run.h"

@@ -1,6 +1,6 @@
 // gaitpad replay TRACE: a recorded stick walks characters; files and a summary come out, or a
 // window shows it on a time line.
-#include "session/replay.h"
+#include "gaitpad/replay.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hid/decode.h"
-#include "hid/trace.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/trace.h"
 
 namespace gaitpad {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "session/config_files.h"
+#include "gaitpad/config_files.h"
 
 namespace gaitpad {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "session/setup.h"
+#include "gaitpad/setup.h"
 
 namespace gaitpad {
 

@@ -13,7 +13,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "session/config_files.h"
+#include "gaitpad/config_files.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;

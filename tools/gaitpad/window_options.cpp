@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "session/calibration_store.h"
-#include "session/user_files.h"
+#include "gaitpad/config_files.h"
+#include "pads/calibration_store.h"
 
 namespace gaitpad {
 namespace {

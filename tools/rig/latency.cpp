@@ -20,9 +20,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/registry.h"
 #include "drivers/system_nodes.h"
-#include "hid/decode.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/drivers.h"
 
 namespace {
 

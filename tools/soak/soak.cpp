@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "session/config_files.h"
+#include "gaitpad/config_files.h"
 #include "view/window.h"
 
 namespace gaitpad {

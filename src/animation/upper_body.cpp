@@ -1,0 +1,621 @@
+// The parts of posing an upper body, in the order in which walk_body.cpp calls them. Internal to
+// it.
+
+#include <bit>
+#include <vector>
+
+#include "animation/walk_parts.h"
+#include "gaitpad/walk.h"
+#include "motion/leg_pose.h"
+
+namespace gaitpad {
+
+inline constexpr double kEvenBodySpread = 1e-9;  // weights closer than this are even
+inline constexpr double kBodyHold = 0.8;         // of a change that a locked joint does not follow
+
+// How much of its change a joint of relative weight `w` leaves to the others.
+inline double held_back(double w) noexcept { return kBodyHold * (1.0 - (w * w) * (w * w)); }
+
+// World frames of the joints of a path that begins at the root; other entries stay as they are.
+void carry_path(const Skeleton& skeleton, const std::vector<int>& path, const Pose& pose,
+                JointFrames& world) noexcept;
+// A rotation a part of the way to another one, the short way.
+quat between(const quat& from, const quat& to, double share) noexcept;
+
+// Where each hand is before anything is done to it, for those whose arm is there.
+using HandPlaces = std::array<vec3, 2>;
+
+// --- walk_body_spine.cpp
+bool is_spine_even(const BodyParams& now) noexcept;
+void pose_spine(const BodyModel& body, const Skeleton& skeleton, const SpineWeights& weight,
+                Pose& pose, JointFrames& world) noexcept;
+// --- walk_body_arm.cpp
+bool is_arm_free(const BodyParams& now, Side side) noexcept;  // swings, with even weights
+vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept;
+struct Shoulders {
+  vec3 middle_m{0.0};        // between them
+  quat upright = kIdentity;  // turned with them about the vertical
+};
+Shoulders shoulders_of(const WalkModel& model, const JointFrames& world) noexcept;
+// `own_m`: where the hand is in the data.
+void pose_arm(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
+              const vec3& own_m, Pose& pose, JointFrames& world) noexcept;
+// --- walk_body_head.cpp
+bool is_head_free(const HeadParams& head) noexcept;
+void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
+               JointFrames& world) noexcept;
+
+// The spine by weighted half-Jacobian IK: its joints share the way to where the data carry the neck
+// and turn the shoulders. Three rows, all of positions: the neck's sideways and fore-aft place, and
+// how far ahead a point beside it is.
+
+namespace {
+
+constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
+constexpr double kSideLever_m = 0.2;
+constexpr double kMostBend = 60.0 * kDegree;  // of one joint
+constexpr int kAxes = 3;                      // a joint
+static_assert(kAxes * kMaxSpineIk <= kMaxIkDofs);
+constexpr std::array<vec3, kAxes> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0)};
+
+// The spine as it stands in a pose, in the walker's axes as its foundation holds them.
+struct Spine {
+  quat base = kIdentity;
+  IkChain chain;
+  IkAngles angles{};      // how far each joint is turned from its standing pose
+  quat last = kIdentity;  // the uppermost joint's turn
+  vec3 last_m{0.0};       // its place, from the lowest
+};
+
+Spine spine_of(const BodyModel& body, const Skeleton& skeleton, const JointFrames& world) noexcept {
+  const int count = static_cast<int>(body.spine.size());
+  Spine spine;
+  spine.base = world.rotation[skeleton.joints[body.spine.front().joint].parent] *
+               glm::conjugate(body.spine_base);
+  const quat to_base = glm::conjugate(spine.base);
+  spine.chain.dofs = kAxes * count;
+  for (int i = 0; i < count; ++i) {
+    const SpineJoint& at = body.spine[i];
+    const quat own = to_base * world.rotation[at.joint] * glm::conjugate(at.standing);
+    const AnglesXzy turn = angles_xzy(glm::conjugate(spine.last) * own);
+    const std::array<double, kAxes> turn_rad = {turn.x, turn.z, turn.y};
+    for (int a = 0; a < kAxes; ++a) {
+      spine.angles[kAxes * i + a] = turn_rad[a];
+      spine.chain.dof[kAxes * i + a] = {
+          .axis = kAxis[a], .min_rad = -kMostBend, .max_rad = kMostBend};
+    }
+    spine.last = own;
+    if (i + 1 == count) break;
+    const vec3 link = world.position_m[body.spine[i + 1].joint] - world.position_m[at.joint];
+    spine.chain.dof[kAxes * i + 2].link_m = glm::conjugate(own) * (to_base * link);
+  }
+  spine.last_m = to_base * (world.position_m[body.spine.back().joint] -
+                            world.position_m[body.spine.front().joint]);
+  return spine;
+}
+
+// Joints of small weight keep to the standing pose.
+void stiffen(const BodyModel& body, const SpineWeights& weight, Spine& spine) noexcept {
+  const double largest = std::max({1e-6, weight[kLowerSpine], weight[kUpperSpine]});
+  for (std::size_t i = 0; i < body.spine.size(); ++i) {
+    const double here = mix(weight[kLowerSpine], weight[kUpperSpine], body.spine[i].upper);
+    const double w = std::clamp(here / largest, 0.0, 1.0);
+    for (std::size_t d = kAxes * i; d < kAxes * (i + 1); ++d) {
+      spine.chain.dof[d].weight = w;
+      spine.angles[d] *= 1.0 - held_back(w);
+    }
+  }
+}
+
+void write_spine(const BodyModel& body, const Skeleton& skeleton, const Spine& spine, Pose& pose,
+                 JointFrames& world) noexcept {
+  quat segment = kIdentity;
+  std::size_t i = 0;
+  for (const int j : body.spine_path) {
+    const int parent = skeleton.joints[j].parent;
+    if (i < body.spine.size() && body.spine[i].joint == j) {
+      const double* angle = &spine.angles[kAxes * i];
+      segment = segment * (rotation_x(angle[0]) * rotation_z(angle[1]) * rotation_y(angle[2]));
+      const quat to = spine.base * segment * body.spine[i].standing;
+      pose.local[j] = glm::normalize(glm::conjugate(world.rotation[parent]) * to);
+      ++i;
+    }
+    if (parent >= 0) world.rotation[j] = world.rotation[parent] * pose.local[j];
+  }
+}
+
+}  // namespace
+
+bool is_spine_even(const BodyParams& now) noexcept {
+  return std::abs(now.spine_weight[kLowerSpine] - now.spine_weight[kUpperSpine]) < kEvenBodySpread;
+}
+
+void pose_spine(const BodyModel& body, const Skeleton& skeleton, const SpineWeights& weight,
+                Pose& pose, JointFrames& world) noexcept {
+  carry_path(skeleton, body.spine_path, pose, world);
+  Spine spine = spine_of(body, skeleton, world);
+  stiffen(body, weight, spine);
+  const vec3 side_point = body.neck_m + vec3(kSideLever_m, 0.0, 0.0);
+  const vec3 neck = spine.last_m + spine.last * body.neck_m;
+  const vec3 beside = spine.last_m + spine.last * side_point;
+  const std::array<IkRow, 3> rows = {IkRow{body.neck_m, kLeft, neck.x},
+                                     IkRow{body.neck_m, kForward, neck.z},
+                                     IkRow{side_point, kForward, beside.z}};
+  solve_robust(spine.chain, rows, kRobust, spine.angles);
+  write_spine(body, skeleton, spine, pose, world);
+}
+
+// One arm by weighted half-Jacobian IK: shoulder 3, elbow 1, wrist 2; the end-effector is the
+// middle of the hand. With the wrist as end-effector weights would change next to nothing, as with
+// the ankle: the distance from shoulder to wrist is the elbow's angle.
+
+namespace {
+
+constexpr double kFarthest = 0.985, kSoftFar = 0.03;  // of the stretched arm: a hand's place
+constexpr double kNearest = 0.3, kSoftNear = 0.1;
+constexpr double kRailAhead_m = 0.15;  // of the shoulder, where a hand takes hold of a rail
+// Shoulder of a held hand's arm: what the solver starts from, of a left arm (a right one's z and y
+// are mirrored). Elbows point down and a little out where a tray is carried, back beside a rail.
+using ShoulderAngles = std::array<double, 3>;
+constexpr ShoulderAngles kCarrying = {-15.0 * kDegree, 12.0 * kDegree, -15.0 * kDegree};
+constexpr ShoulderAngles kAtRail = {25.0 * kDegree, 4.0 * kDegree, 5.0 * kDegree};
+// Beside the style's weights: held hands are brought about by shoulder and elbow.
+constexpr ArmWeights kHeldWeights = {1.0, 1.0, 0.7, 1.0, 0.25, 0.25};
+
+// One arm as it stands in a pose.
+struct Arm {
+  const ArmBuild& build;
+  quat base = kIdentity;                              // the walker's axes at the shoulder
+  quat upper = kIdentity, fore = kIdentity;           // hanging axes of both bones
+  quat fore_rest = kIdentity, hand_rest = kIdentity;  // joint frames in those of the forearm
+  vec3 shoulder_m{0.0};
+  IkChain chain;
+  IkAngles angles{};
+  vec3 grip_m{0.0};  // in the forearm's hanging axes
+
+  explicit Arm(const ArmBuild& b) noexcept : build(b) {}
+};
+
+Arm arm_of(const ArmBuild& build, const Skeleton& skeleton, const JointFrames& world) noexcept {
+  const ArmChain& j = build.joints;
+  Arm arm(build);
+  arm.base = world.rotation[skeleton.joints[j.shoulder].parent] * build.chest;
+  arm.upper = world.rotation[j.shoulder] * build.hanging;
+  arm.shoulder_m = world.position_m[j.shoulder];
+  const AnglesXzy a = angles_xzy(glm::conjugate(arm.base) * arm.upper);
+  const vec3 upper_m = glm::conjugate(arm.upper) * (world.position_m[j.elbow] - arm.shoulder_m);
+  const vec3 fore_m = world.position_m[j.wrist] - world.position_m[j.elbow];
+  const vec3 in_upper = glm::conjugate(arm.upper) * fore_m;
+  const double bend = gaitpad::atan2(-in_upper.z, -in_upper.y);
+  arm.fore = arm.upper * rotation_x(bend);
+  arm.fore_rest = glm::conjugate(arm.fore) * world.rotation[j.elbow];
+  arm.hand_rest = glm::conjugate(arm.fore) * world.rotation[j.wrist];
+  arm.grip_m = arm.hand_rest * build.grip_m;
+  arm.angles[kShoulderX] = a.x, arm.angles[kShoulderZ] = a.z, arm.angles[kShoulderY] = a.y;
+  arm.angles[kElbowX] = bend;
+  constexpr std::array<vec3, kArmDofs> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0),
+                                                vec3(1, 0, 0), vec3(1, 0, 0), vec3(0, 0, 1)};
+  arm.chain.dofs = kArmDofs;
+  for (int d = 0; d < kArmDofs; ++d) {
+    arm.chain.dof[d] = {.axis = kAxis[d], .min_rad = build.min_rad[d], .max_rad = build.max_rad[d]};
+  }
+  arm.chain.dof[kShoulderY].link_m = upper_m;
+  arm.chain.dof[kElbowX].link_m = glm::conjugate(arm.fore) * fore_m;
+  return arm;
+}
+
+bool has_uneven_weights(const BodyParams& now, Side side) noexcept {
+  const ArmWeights& weight = now.arm_weight[side];
+  const auto [low, high] = std::minmax_element(weight.begin(), weight.end());
+  return *high - *low >= kEvenBodySpread;
+}
+
+double sign_of(Side side) noexcept { return side == kLeftSide ? 1.0 : -1.0; }
+
+double upper_m(const Arm& arm) noexcept { return glm::length(arm.chain.dof[kShoulderY].link_m); }
+double lower_m(const Arm& arm) noexcept {
+  return glm::length(arm.chain.dof[kElbowX].link_m + arm.grip_m);
+}
+
+// The place within what the arm reaches around its shoulder.
+vec3 within_reach(const Arm& arm, const vec3& place_m) noexcept {
+  const double full = upper_m(arm) + lower_m(arm);
+  const vec3 way = place_m - arm.shoulder_m;
+  const double far = glm::length(way);
+  if (far < 1e-9) return arm.shoulder_m + arm.base * vec3(0.0, 0.0, kNearest * full);
+  const double near = soft_max(far, kNearest * full, kSoftNear * full);
+  return arm.shoulder_m + way * (soft_min(near, kFarthest * full, kSoftFar * full) / far);
+}
+
+// Before the chest: in the upright frame that turns with the shoulders, so what both hands hold
+// stays level.
+vec3 carried_place(const HandParams& hand, const BodyModel& body, Side side,
+                   const Shoulders& shoulders) noexcept {
+  const double scale = body.arm_m / kReferenceArm_m;
+  return shoulders.middle_m +
+         shoulders.upright * (scale * vec3(sign_of(side) * hand.x_m, hand.y_m, hand.z_m));
+}
+
+// On a rail that runs along with the hips' path.
+vec3 rail_place(const WalkModel& model, const WalkState& state, const HandParams& hand,
+                Side side) noexcept {
+  const double scale = model.body.shoulder_height_m / kReferenceShoulder_m;
+  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
+  vec3 place = state.hips_m + left * (sign_of(side) * scale * hand.rail_side_m) +
+               forward * (scale * kRailAhead_m);
+  place.y = state.body.rail_ground_m[side] + scale * hand.rail_height_m;
+  return place;
+}
+
+// Where the solver starts for a held hand: out, bent as far as the place is away, and the wrist as
+// in the data.
+IkAngles held_start(const Arm& arm, Side side, double rail, const vec3& place_m) noexcept {
+  const double a = upper_m(arm), b = lower_m(arm);
+  const double far = glm::distance(place_m, arm.shoulder_m);
+  const double bend = gaitpad::acos((far * far - a * a - b * b) / std::max(2.0 * a * b, 1e-9));
+  IkAngles start{};
+  start[kShoulderX] = mix(kCarrying[0], kAtRail[0], rail);
+  start[kShoulderZ] = sign_of(side) * mix(kCarrying[1], kAtRail[1], rail);
+  start[kShoulderY] = sign_of(side) * mix(kCarrying[2], kAtRail[2], rail);
+  start[kElbowX] = -bend;
+  return start;
+}
+
+// Joints of small weight hold on to the middle of their swing; the others make up for it, so that
+// the hand goes as far forward and aside as it went. Its height gives way: with it the shoulder's
+// angle would follow from the path alone.
+void stiffen(const ArmBuild& build, const ArmWeights& weights, Arm& arm) noexcept {
+  const double largest = std::max(1e-6, *std::max_element(weights.begin(), weights.end()));
+  for (int d = 0; d < kArmDofs; ++d) {
+    const double w = std::clamp(weights[d] / largest, 0.0, 1.0);
+    arm.chain.dof[d].weight = w;
+    arm.angles[d] += held_back(w) * (build.middle_rad[d] - arm.angles[d]);
+  }
+}
+
+// Turns the whole arm at the shoulder towards the goal (from the shoulder, base frame): so little
+// is left to the solver that it needs a third of the time, and the wrist stays as it is.
+void aim(const vec3& goal_m, Arm& arm) noexcept {
+  const IkFrame end = end_frame(arm.chain, arm.angles);
+  const vec3 hand_m = end.position_m + end.rotation * arm.grip_m;
+  const double far = glm::length(hand_m), goal_far = glm::length(goal_m);
+  if (far < 1e-6 || goal_far < 1e-6) return;
+  const quat upper =
+      rotation_xzy({arm.angles[kShoulderX], arm.angles[kShoulderZ], arm.angles[kShoulderY]});
+  const AnglesXzy to = angles_xzy(rotation_between(hand_m / far, goal_m / goal_far) * upper);
+  arm.angles[kShoulderX] += wrapped(to.x - arm.angles[kShoulderX]);
+  arm.angles[kShoulderZ] = to.z;
+  arm.angles[kShoulderY] += wrapped(to.y - arm.angles[kShoulderY]);
+}
+
+// Brings the hand from where it swings to where it is to be.
+void hold(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
+          Arm& arm) noexcept {
+  const HandParams& hand = state.body.now.hand[side];
+  const double carry = std::clamp(hand.carry, 0.0, 1.0), rail = std::clamp(hand.rail, 0.0, 1.0);
+  const double held = 1.0 - (1.0 - carry) * (1.0 - rail);
+  if (held <= 0.0) return;
+  const IkFrame end = end_frame(arm.chain, arm.angles);
+  vec3 place = arm.shoulder_m + arm.base * (end.position_m + end.rotation * arm.grip_m);
+  if (carry > 0.0) {
+    const vec3 goal = within_reach(arm, carried_place(hand, model.body, side, shoulders));
+    place += carry * (goal - place);
+  }
+  if (rail > 0.0) {
+    const vec3 goal = within_reach(arm, rail_place(model, state, hand, side));
+    place += rail * (goal - place);
+  }
+  const IkAngles start = held_start(arm, side, rail, place);
+  for (int d = 0; d < kArmDofs; ++d) {
+    arm.angles[d] += held * (start[d] - arm.angles[d]);
+    arm.chain.dof[d].weight *= mix(1.0, kHeldWeights[d], smoothstep(0.0, 0.1, held));
+  }
+  const vec3 goal = glm::conjugate(arm.base) * (place - arm.shoulder_m);
+  aim(goal, arm);
+  solve_robust(arm.chain, point_goal(arm.grip_m, goal), kRobust, arm.angles);
+}
+
+void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames& world) noexcept {
+  const ArmChain& j = arm.build.joints;
+  const quat upper =
+      arm.base * (rotation_x(arm.angles[kShoulderX]) * rotation_z(arm.angles[kShoulderZ]) *
+                  rotation_y(arm.angles[kShoulderY]));
+  const quat fore = upper * rotation_x(arm.angles[kElbowX]);
+  const quat hand = fore * (rotation_x(arm.angles[kWristX]) * rotation_z(arm.angles[kWristZ]));
+  bool is_below = false;
+  for (const int k : arm.build.path) {
+    is_below = is_below || k == j.shoulder;
+    if (!is_below) continue;
+    const quat& above = world.rotation[skeleton.joints[k].parent];
+    const bool is_end = skeleton.joints[k].is_end_site;
+    if (k == j.shoulder)
+      pose.local[k] = glm::conjugate(above) * upper * glm::conjugate(arm.build.hanging);
+    if (k == j.elbow) pose.local[k] = glm::conjugate(above) * fore * arm.fore_rest;
+    if (k == j.wrist && !is_end) pose.local[k] = glm::conjugate(above) * hand * arm.hand_rest;
+    pose.local[k] = glm::normalize(pose.local[k]);
+    world.rotation[k] = above * pose.local[k];
+  }
+}
+
+}  // namespace
+
+bool is_arm_free(const BodyParams& now, Side side) noexcept {
+  return !has_uneven_weights(now, side) && now.hand[side].carry <= 0.0 &&
+         now.hand[side].rail <= 0.0;
+}
+
+vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept {
+  return world.position_m[arm.joints.wrist] + world.rotation[arm.joints.wrist] * arm.grip_m;
+}
+
+Shoulders shoulders_of(const WalkModel& model, const JointFrames& world) noexcept {
+  const std::array<ArmBuild, 2>& arm = model.body.arm;
+  Shoulders s;
+  if (arm[0].is_there && arm[1].is_there) {
+    const vec3 left = world.position_m[arm[0].joints.shoulder],
+               right = world.position_m[arm[1].joints.shoulder];
+    s.middle_m = 0.5 * (left + right);
+    const vec3 across = left - right;
+    s.upright = rotation_y(heading_of(vec3(-across.z, 0.0, across.x)));
+    return s;
+  }
+  const ArmBuild& only = arm[arm[0].is_there ? 0 : 1];
+  const quat base =
+      world.rotation[model.cycle.skeleton.joints[only.joints.shoulder].parent] * only.chest;
+  s.middle_m = world.position_m[only.joints.shoulder];
+  s.upright = rotation_y(heading_of(base * kForward));
+  return s;
+}
+
+void pose_arm(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
+              const vec3& own_m, Pose& pose, JointFrames& world) noexcept {
+  const ArmBuild& build = model.body.arm[side];
+  const BodyParams& now = state.body.now;
+  Arm arm = arm_of(build, model.cycle.skeleton, world);
+  if (has_uneven_weights(now, side)) {
+    stiffen(build, now.arm_weight[side], arm);
+    const vec3 own = glm::conjugate(arm.base) * (own_m - arm.shoulder_m);
+    const std::array<IkRow, 2> path = {IkRow{arm.grip_m, kLeft, own.x},
+                                       IkRow{arm.grip_m, kForward, own.z}};
+    solve_robust(arm.chain, path, kRobust, arm.angles);
+  }
+  hold(model, state, side, shoulders, arm);
+  write_arm(model.cycle.skeleton, arm, pose, world);
+}
+
+// The head turns to where it is to look, the neck takes its share.
+
+namespace {
+
+constexpr double kMostYaw = 70.0 * kDegree, kMostPitch = 40.0 * kDegree;  // from the trunk
+constexpr double kSoftYaw = 6.0 * kDegree, kSoftPitch = 4.0 * kDegree;
+// What is behind is not looked at: there left and right are the same.
+constexpr double kBesideYaw = 105.0 * kDegree, kBehindYaw = 150.0 * kDegree;
+constexpr double kLevelFrom = 0.15, kLevelTo = 0.4;  // nor what is straight above or below
+constexpr double kNeckShare = 0.45;
+constexpr double kLead_s = 0.6;  // how far ahead of the walk a leading head looks
+
+double within(double x, double most, double soft) noexcept {
+  return soft_max(soft_min(x, most, soft), -most, soft);
+}
+
+// Where the head stands when it looks along `direction` (world, unit), upright, as far as the trunk
+// lets it; and how much of that it wants.
+struct Gaze {
+  quat head = kIdentity;
+  double share = 1.0;
+};
+Gaze gaze(const BodyModel& body, const quat& trunk, const vec3& direction) noexcept {
+  const vec3 d = glm::conjugate(trunk) * direction;
+  const double level = std::sqrt(d.x * d.x + d.z * d.z);
+  const double yaw = heading_of(d), pitch = gaitpad::atan2(d.y, level);
+  Gaze to;
+  to.share = (1.0 - smoothstep(kBesideYaw, kBehindYaw, std::abs(yaw))) *
+             smoothstep(kLevelFrom, kLevelTo, level);
+  const SinCos y = sin_cos(within(yaw, kMostYaw, kSoftYaw));
+  const SinCos p = sin_cos(within(pitch, kMostPitch, kSoftPitch));
+  const vec3 ahead = trunk * vec3(p.cos * y.sin, p.sin, p.cos * y.cos);
+  const vec3 left = glm::normalize(glm::cross(kUp, ahead));
+  to.head = from_axes(left, glm::cross(ahead, left), ahead) * body.head_standing;
+  return to;
+}
+
+// Turns neck and head by `turn` (world): the neck by its share, the head by all of it.
+void turn_head(const BodyModel& body, const Skeleton& skeleton, const quat& turn, Pose& pose,
+               JointFrames& world) noexcept {
+  const int last = static_cast<int>(body.head_path.size()) - 1;
+  std::array<quat, kMaxBodyPath> own;
+  for (int i = body.neck_at; i <= last; ++i) own[i] = world.rotation[body.head_path[i]];
+  for (int i = body.neck_at; i <= last; ++i) {
+    const int j = body.head_path[i], parent = skeleton.joints[j].parent;
+    const double share =
+        i == last ? 1.0 : kNeckShare * (i - body.neck_at + 1) / (last - body.neck_at);
+    const quat to = between(kIdentity, turn, share) * own[i];
+    pose.local[j] = glm::normalize(glm::conjugate(world.rotation[parent]) * to);
+    world.position_m[j] =
+        world.position_m[parent] + world.rotation[parent] * skeleton.joints[j].offset_m;
+    world.rotation[j] = world.rotation[parent] * pose.local[j];
+  }
+}
+
+}  // namespace
+
+bool is_head_free(const HeadParams& head) noexcept {
+  return head.look <= 0.0 && head.look_at <= 0.0 && head.lead <= 0.0;
+}
+
+void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
+               JointFrames& world) noexcept {
+  const BodyModel& body = model.body;
+  const Skeleton& skeleton = model.cycle.skeleton;
+  const HeadParams& now = state.body.now.head;
+  carry_path(skeleton, body.head_path, pose, world);
+  const int head = body.head_path.back();
+  const int chest = skeleton.joints[body.head_path[body.neck_at]].parent;
+  const quat trunk = world.rotation[chest] * glm::conjugate(body.chest_standing);
+  const auto look = [&](const vec3& direction, double share) {
+    const Gaze to = gaze(body, trunk, direction);
+    const quat& own = world.rotation[head];
+    const quat wanted = between(own, to.head, std::clamp(share, 0.0, 1.0) * to.share);
+    turn_head(body, skeleton, wanted * glm::conjugate(own), pose, world);
+  };
+  if (now.lead > 0.0) {
+    const quat ahead = rotation_y(now.lead * kLead_s * state.turn_rate.x);
+    turn_head(body, skeleton, ahead, pose, world);
+  }
+  if (now.look > 0.0) {
+    const SinCos p = sin_cos(now.pitch_deg * kDegree);
+    look(rotation_y(state.heading_rad + now.yaw_deg * kDegree) * vec3(0.0, p.sin, p.cos), now.look);
+  }
+  // The head moves as it turns, so a near place is aimed at twice.
+  for (int pass = 0; now.look_at > 0.0 && pass < 2; ++pass) {
+    const vec3 way = vec3(now.x_m, now.y_m, now.z_m) - world.position_m[head];
+    const double far = glm::length(way);
+    if (far > 1e-3) look(way / far, pass == 0 || now.look_at >= 1.0 ? now.look_at : 0.0);
+  }
+}
+
+namespace {
+
+constexpr double kSmoothing = 0.22;  // s at the reference leg
+constexpr double kSettled = 40.0;    // of these: what is left is no number any more
+constexpr double kMostExtra = 0.4;   // swing beyond the data's that pace alone can give
+constexpr double kLeastPace = 0.5;   // below it the data's posture fades, and the swing with it
+constexpr double kSoftElbow = 0.1;
+constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail;
+constexpr int kRailProbes = 15;         // 0.56 m to either side: a mean over two treads is even
+constexpr double kRailSmoothing = 0.06;
+
+// Where the values are all at their goals already, this costs one comparison.
+void settle(const Tick& tick, BodyState& body) noexcept {
+  const BodyParams& goal = tick.params.body;
+  const double tau = kSmoothing * tick.model.time_scale;
+  if (!(goal == body.goal)) {
+    body.goal = goal;
+    body.unsettled_ticks = static_cast<int>(std::min(kSettled * tau / tick.dt_s, 1e6));
+  }
+  if (body.unsettled_ticks <= 0) return;
+  const auto to = std::bit_cast<BodyValues>(goal);
+  auto now = std::bit_cast<BodyValues>(body.now);
+  --body.unsettled_ticks;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    Damped<double> value{now[i], body.per_s[i]};
+    value.advance(to[i], tau, tick.dt_s);
+    const bool is_there = body.unsettled_ticks == 0;
+    now[i] = is_there ? to[i] : value.x;
+    body.per_s[i] = is_there ? 0.0 : value.v;
+  }
+  body.now = std::bit_cast<BodyParams>(now);
+}
+
+// The arms swing as far as the speed is above or below the data's (Boulic et al. 1990: amplitude
+// proportional to speed), in bounds: 1 at the data's own pace.
+double pace_swing(const Tick& tick, const WalkState& state) noexcept {
+  const double own_s = tick.model.body.own_step_s;
+  const double quicker = own_s / std::max(state.step_time_s.x, 0.25 * own_s);
+  const double extra = std::max(state.pace.x, kLeastPace) * quicker - 1.0;
+  return 1.0 + (extra > 0.0 ? extra / (1.0 + extra / kMostExtra) : extra);
+}
+
+// A rail rises evenly over stairs: the ground's mean along the way under the hand, as far ahead as
+// the filter is late.
+void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
+  BodyState& body = state.body;
+  const HandParams& hand = body.now.hand[side];
+  const double scale = tick.model.body.shoulder_height_m / kReferenceShoulder_m;
+  const double smoothing_s = kRailSmoothing * tick.model.time_scale;
+  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
+  const vec3 under = state.hips_m + state.hips_velocity_m_s * (2.0 * smoothing_s) +
+                     left * (scale * (side == kLeftSide ? hand.rail_side_m : -hand.rail_side_m));
+  double sum = 0.0, weights = 0.0;
+  for (int i = -kRailProbes; i <= kRailProbes && !tick.flat; ++i) {
+    const vec3 at = under + forward * (i * kRailProbe_m * tick.model.size);
+    const double weight = kRailProbes + 1.0 - std::abs(i);
+    sum += weight * ground_at(*tick.model.terrain, at.x, at.z).height_m;
+    weights += weight;
+  }
+  const double mean_m = tick.flat ? 0.0 : sum / weights;
+  Damped<double> ground{body.rail_ground_m[side], body.rail_ground_m_s[side]};
+  ground.advance(mean_m, smoothing_s, tick.dt_s);
+  if (hand.rail <= 0.0) ground = {mean_m, 0.0};  // nobody holds it yet
+  body.rail_ground_m[side] = ground.x;
+  body.rail_ground_m_s[side] = ground.v;
+}
+
+}  // namespace
+
+quat between(const quat& from, const quat& to, double share) noexcept {
+  const double sign = glm::dot(from, to) < 0.0 ? -1.0 : 1.0;
+  return glm::normalize(from * (1.0 - share) + to * (sign * share));
+}
+
+void carry_path(const Skeleton& skeleton, const std::vector<int>& path, const Pose& pose,
+                JointFrames& world) noexcept {
+  for (const int j : path) {
+    const Joint& joint = skeleton.joints[j];
+    if (joint.parent < 0) {
+      world.position_m[j] = pose.root_m;
+      world.rotation[j] = pose.local[j];
+      continue;
+    }
+    world.position_m[j] =
+        world.position_m[joint.parent] + world.rotation[joint.parent] * joint.offset_m;
+    world.rotation[j] = world.rotation[joint.parent] * pose.local[j];
+  }
+}
+
+void smooth_body(const Tick& tick, IkMode mode, WalkState& state) noexcept {
+  BodyState& body = state.body;
+  settle(tick, body);
+  const double pace = mode == IkMode::paper ? 1.0 : pace_swing(tick, state);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    body.swing[side] = pace * body.now.arm_swing[side];
+    if (body.now.hand[side].rail > 0.0 || body.goal.hand[side].rail > 0.0)
+      follow_rail(tick, side, state);
+  }
+}
+
+void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const ArmBuild& arm = model.body.arm[side];
+    const double swing = state.body.swing[side];
+    if (!arm.is_there || swing == 1.0) continue;
+    quat& shoulder = pose.local[arm.joints.shoulder];
+    quat& elbow = pose.local[arm.joints.elbow];
+    shoulder = between(arm.swing_shoulder, shoulder, swing);
+    elbow = between(arm.swing_elbow, elbow, soft_min(swing, arm.most_elbow_swing, kSoftElbow));
+  }
+}
+
+void pose_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+  const BodyParams& now = state.body.now;
+  const Skeleton& skeleton = model.cycle.skeleton;
+  const bool moves_spine = model.body.spine.size() > 1 && !is_spine_even(now);
+  std::array<bool, 2> moves_arm;
+  for (const Side side : {kLeftSide, kRightSide})
+    moves_arm[side] = model.body.arm[side].is_there && !is_arm_free(now, side);
+  const bool moves_head = !model.body.head_path.empty() && !is_head_free(now.head);
+  if (!moves_spine && !moves_arm[0] && !moves_arm[1] && !moves_head) return;
+
+  JointFrames world;
+  HandPlaces own_m{};
+  for (const Side side : {kLeftSide, kRightSide}) {
+    if (!model.body.arm[side].is_there || !(moves_arm[0] || moves_arm[1])) continue;
+    carry_path(skeleton, model.body.arm[side].path, pose, world);
+    own_m[side] = hand_place(model.body.arm[side], world);
+  }
+  if (moves_spine) {
+    pose_spine(model.body, skeleton, now.spine_weight, pose, world);
+    for (const Side side : {kLeftSide, kRightSide}) {
+      if (moves_arm[side]) carry_path(skeleton, model.body.arm[side].path, pose, world);
+    }
+  }
+  Shoulders shoulders;
+  if (moves_arm[0] || moves_arm[1]) shoulders = shoulders_of(model, world);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    if (moves_arm[side]) pose_arm(model, state, side, shoulders, own_m[side], pose, world);
+  }
+  if (moves_head) pose_head(model, state, pose, world);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,107 @@
+// Small smooth building blocks of the walk: tables, Hermite curves, filters, soft limits.
+// All of them are + - * / and sqrt only, so they give the same bits everywhere.
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "gaitpad/math.h"
+
+namespace gaitpad {
+
+// Catmull-Rom through four neighbouring samples, t in [0,1] between b and c.
+template <class T>
+T catmull_rom(const T& a, const T& b, const T& c, const T& d, double t) noexcept {
+  const double t2 = t * t, t3 = t2 * t;
+  return 0.5 * ((2.0 * b) + (c - a) * t + (2.0 * a - 5.0 * b + 4.0 * c - d) * t2 +
+                (3.0 * b - a - 3.0 * c + d) * t3);
+}
+
+// A periodic function of a phase, sampled evenly over [0, 1).
+template <std::size_t N>
+struct PeriodicTable {
+  std::array<double, N> value{};
+  double at(double phase) const noexcept {
+    const double x = (phase - std::floor(phase)) * N;
+    const auto i = static_cast<std::size_t>(x) % N;
+    return catmull_rom(value[(i + N - 1) % N], value[i], value[(i + 1) % N], value[(i + 2) % N],
+                       x - std::floor(x));
+  }
+};
+
+// A function of u in [0, 1], sampled evenly with both ends; its slopes at the ends are one-sided.
+template <std::size_t N>
+struct Curve {
+  std::array<double, N> value{};
+  double at(double u) const noexcept {
+    const double x = std::clamp(u, 0.0, 1.0) * (N - 1);
+    const auto i = std::min(static_cast<std::size_t>(x), N - 2);
+    const double before = i == 0 ? 2.0 * value[0] - value[1] : value[i - 1];
+    const double after = i + 2 == N ? 2.0 * value[N - 1] - value[N - 2] : value[i + 2];
+    return catmull_rom(before, value[i], value[i + 1], after, x - static_cast<double>(i));
+  }
+  double start_slope() const noexcept { return (value[1] - value[0]) * (N - 1); }
+  double end_slope() const noexcept { return (value[N - 1] - value[N - 2]) * (N - 1); }
+};
+
+// Cubic Hermite basis on [0, 1]: h00 carries the start value, h10 the start slope, h11 the end
+// slope.
+inline double h00(double s) noexcept { return 1.0 + s * s * (2.0 * s - 3.0); }
+inline double h10(double s) noexcept { return s * (1.0 - s) * (1.0 - s); }
+inline double h11(double s) noexcept { return s * s * (s - 1.0); }
+
+// A point on its way to a goal: one tick along the cubic from the present position and velocity to
+// the goal's over the remaining time. Constant goals give one cubic; a goal that moves bends it.
+template <class T>
+void approach(T& x, T& v, const T& goal_x, const T& goal_v, double remaining_s,
+              double dt_s) noexcept {
+  const double s = dt_s / remaining_s;
+  const T d = goal_x - x;
+  const T v0 = v * remaining_s, v1 = goal_v * remaining_s;
+  const T c2 = 3.0 * d - 2.0 * v0 - v1, c3 = v0 + v1 - 2.0 * d;
+  x = x + (v0 + (c2 + c3 * s) * s) * s;
+  v = (v0 + (2.0 * c2 + 3.0 * c3 * s) * s) / remaining_s;
+}
+
+// A difference that fades away: value and slope at the start, both 0 after `duration`.
+struct Fade {
+  double value = 0.0, slope = 0.0;  // slope per unit of the argument
+  double duration = 1.0;
+  double at(double x) const noexcept {
+    if (x >= duration) return 0.0;
+    const double s = x / duration;
+    return value * h00(s) + slope * duration * h10(s);
+  }
+};
+
+// Critically damped second-order filter (implicit Euler: stable for every dt).
+template <class T>
+struct Damped {
+  T x{};
+  T v{};
+  void advance(const T& goal, double time_constant_s, double dt_s) noexcept {
+    const double w = dt_s / time_constant_s;
+    v = (v + (goal - x) * (w / time_constant_s)) * (1.0 / ((1.0 + w) * (1.0 + w)));
+    x = x + v * dt_s;
+  }
+};
+
+// max(x, 0) rounded over |x| < width: 0 below, x above, a parabola between.
+inline double soft_positive(double x, double width) noexcept {
+  if (x <= -width) return 0.0;
+  if (x >= width) return x;
+  return (x + width) * (x + width) / (4.0 * width);
+}
+inline double soft_min(double a, double b, double width) noexcept {
+  return a - soft_positive(a - b, width);
+}
+inline double soft_max(double a, double b, double width) noexcept {
+  return a + soft_positive(b - a, width);
+}
+
+// Slope at the last of three evenly spaced values (second order), per spacing.
+template <class T>
+T end_slope(const T& before_last, const T& last, const T& now) noexcept {
+  return 0.5 * (3.0 * now - 4.0 * last + before_last);
+}
+
+}  // namespace gaitpad

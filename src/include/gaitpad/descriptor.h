@@ -1,0 +1,123 @@
+// HID report-descriptor parser (Device Class Definition for HID 1.11, section 6.2.2), with Linux's
+// answers where the document leaves a choice. Descriptors come from strangers: everything is
+// bounded.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "gaitpad/result.h"
+
+namespace gaitpad {
+
+inline constexpr std::size_t kMaxDescriptorBytes = 4096;  // HID_MAX_DESCRIPTOR_SIZE
+inline constexpr std::uint32_t kMaxFieldBits = 256;
+inline constexpr std::uint32_t kMaxReportBits = 16384 * 8;  // HID_MAX_BUFFER_SIZE
+inline constexpr std::size_t kMaxFields = 32768;            // over all reports together
+
+enum class FieldKind : std::uint8_t { input, output, feature };
+
+// A page and an id in one number, as a 4-byte usage item has them.
+constexpr std::uint32_t usage_of(std::uint16_t page, std::uint16_t id) noexcept {
+  return (std::uint32_t{page} << 16) | id;
+}
+constexpr std::uint16_t page_of(std::uint32_t usage) noexcept {
+  return static_cast<std::uint16_t>(usage >> 16);
+}
+constexpr std::uint16_t id_of(std::uint32_t usage) noexcept {
+  return static_cast<std::uint16_t>(usage & 0xffff);
+}
+
+namespace usage {
+inline constexpr std::uint32_t kJoystick = usage_of(0x01, 0x04);
+inline constexpr std::uint32_t kGamePad = usage_of(0x01, 0x05);
+inline constexpr std::uint32_t kMultiAxis = usage_of(0x01, 0x08);
+inline constexpr std::uint32_t kX = usage_of(0x01, 0x30);
+inline constexpr std::uint32_t kY = usage_of(0x01, 0x31);
+inline constexpr std::uint32_t kZ = usage_of(0x01, 0x32);
+inline constexpr std::uint32_t kRx = usage_of(0x01, 0x33);
+inline constexpr std::uint32_t kRy = usage_of(0x01, 0x34);
+inline constexpr std::uint32_t kRz = usage_of(0x01, 0x35);
+inline constexpr std::uint32_t kHatSwitch = usage_of(0x01, 0x39);
+inline constexpr std::uint32_t kSelect = usage_of(0x01, 0x3e);
+inline constexpr std::uint32_t kStart = usage_of(0x01, 0x3d);
+inline constexpr std::uint32_t kSystemMainMenu = usage_of(0x01, 0x85);
+inline constexpr std::uint32_t kDpadUp = usage_of(0x01, 0x90);
+inline constexpr std::uint32_t kDpadDown = usage_of(0x01, 0x91);
+inline constexpr std::uint32_t kDpadRight = usage_of(0x01, 0x92);
+inline constexpr std::uint32_t kDpadLeft = usage_of(0x01, 0x93);
+inline constexpr std::uint32_t kRudder = usage_of(0x02, 0xba);
+inline constexpr std::uint32_t kThrottle = usage_of(0x02, 0xbb);
+inline constexpr std::uint32_t kAccelerator = usage_of(0x02, 0xc4);
+inline constexpr std::uint32_t kBrake = usage_of(0x02, 0xc5);
+inline constexpr std::uint32_t kConsumerRecord = usage_of(0x0c, 0xb2);
+inline constexpr std::uint32_t kConsumerHome = usage_of(0x0c, 0x223);
+inline constexpr std::uint32_t kConsumerBack = usage_of(0x0c, 0x224);
+inline constexpr std::uint16_t kButtonPage = 0x09;
+}  // namespace usage
+
+struct UsageRange {  // inclusive; both ends on one page
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+  bool operator==(const UsageRange&) const = default;
+};
+
+// One value of a report: an element of a main item, constant and empty ones left out.
+struct Field {
+  FieldKind kind = FieldKind::input;
+  std::uint8_t report_id = 0;  // 0 where the report has none
+  bool is_array = false;       // the value is an index into the usages, not a usage's value
+  bool has_null = false;       // the main item's Null State flag
+  bool is_relative = false;
+  bool has_odd_range = false;  // minimum above maximum: replaced by the unsigned range of the bits
+  std::uint32_t bit_offset = 0;  // from the first bit behind the report id
+  std::uint32_t bit_size = 0;
+  std::uint32_t usage = 0;  // page and id; of an array the first one that it can name
+  std::int64_t logical_min = 0;
+  std::int64_t logical_max = 0;
+  std::int64_t physical_min = 0;
+  std::int64_t physical_max = 0;
+  std::uint16_t application = 0;  // index in ReportDescriptor::applications, else kNoApplication
+  std::uint32_t first_range = 0;  // of an array: its usages, in ReportDescriptor::ranges
+  std::uint32_t range_count = 0;
+};
+inline constexpr std::uint16_t kNoApplication = 0xffff;
+
+struct ReportLength {
+  std::uint8_t report_id = 0;
+  FieldKind kind = FieldKind::input;
+  std::uint32_t bits = 0;  // without the report id
+};
+
+struct ReportDescriptor {
+  bool numbered = false;  // every report begins with its id
+  std::vector<Field> fields;
+  std::vector<std::uint32_t> applications;  // usages of the application collections, in order
+  std::vector<UsageRange> ranges;
+  std::vector<ReportLength> reports;  // in the order in which they first occur
+};
+
+// Errors name the byte: `byte 12: report size of 300 bits, at most 256 are read`.
+Result<ReportDescriptor> parse_descriptor(std::span<const std::uint8_t> bytes);
+
+// Bytes that a report must have, its id included; 0 where there is no such report.
+std::size_t report_bytes(const ReportDescriptor& descriptor, FieldKind kind,
+                         std::uint8_t report_id);
+
+// Bits `offset .. offset + size - 1`, least significant first; size <= 64, bits beyond the data are
+// 0.
+std::uint64_t bits_at(std::span<const std::uint8_t> data, std::uint64_t offset,
+                      std::uint32_t size) noexcept;
+// The field's raw count, sign-extended if its minimum is negative. `data` starts behind the report
+// id. Fields of more than 64 bits give their lowest 64.
+std::int64_t field_value(const Field& field, std::span<const std::uint8_t> data) noexcept;
+// The usage that an array field names, 0 for none.
+std::uint32_t array_usage(const ReportDescriptor& descriptor, const Field& field,
+                          std::int64_t value) noexcept;
+
+// The first application collection 1:4, 1:5 or 1:8 that has X and Y as input: what makes a pad.
+std::optional<std::size_t> pad_application(const ReportDescriptor& descriptor);
+
+}  // namespace gaitpad

@@ -1,0 +1,703 @@
+#include "motion/captured_cycle.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "gaitpad/motion.h"
+#include "motion/leg_pose.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr int kPoints = 256;    // of the closed stride, before its harmonics are taken
+constexpr double kFade = 0.25;  // of the stride, at most, on either side of the seam
+constexpr double kLeastFade = 0.08;
+constexpr int kFullHarmonics = 10;  // the ones above fade out to kHarmonics
+
+// Natural cubic spline through values at 0, 1, 2 ...
+struct Spline {
+  std::vector<double> value, curvature;
+  double at(double x) const {
+    const int last = static_cast<int>(value.size()) - 2;
+    const int i = std::clamp(static_cast<int>(std::floor(x)), 0, last);
+    const double t = x - i, s = 1.0 - t;
+    return value[i] * s + value[i + 1] * t +
+           ((s * s * s - s) * curvature[i] + (t * t * t - t) * curvature[i + 1]) / 6.0;
+  }
+};
+
+Spline spline(std::vector<double> value) {
+  const int n = static_cast<int>(value.size());
+  std::vector<double> curvature(n, 0.0), upper(n, 0.0);
+  for (int i = 1; i + 1 < n; ++i) {
+    const double pivot = 4.0 - upper[i - 1];
+    upper[i] = 1.0 / pivot;
+    const double bend = 6.0 * (value[i + 1] - 2.0 * value[i] + value[i - 1]);
+    curvature[i] = (bend - curvature[i - 1]) / pivot;
+  }
+  for (int i = n - 2; i > 0; --i) curvature[i] -= upper[i] * curvature[i + 1];
+  return {std::move(value), std::move(curvature)};
+}
+
+// The frames used: the window and what lies around it.
+struct Stretch {
+  int first = 0, count = 0;
+  double start = 0.0, period = 0.0;  // frames from `first`
+  double before = 0.0, after = 0.0;  // room for fading, share of the period
+  double place(double phase) const { return start + phase * period; }
+};
+
+Stretch stretch_of(const StrideWindow& w) {
+  Stretch s;
+  const double margin = kFade * w.period + 4.0;
+  s.first = std::max(w.first, static_cast<int>(std::floor(w.start - margin)));
+  const int last = std::min(w.last, static_cast<int>(std::ceil(w.start + w.period + margin)));
+  s.count = last - s.first + 1;
+  s.start = w.start - s.first;
+  s.period = w.period;
+  s.before = std::min(kFade, s.start / s.period);
+  s.after = std::min(kFade, (s.count - 1 - s.start - s.period) / s.period);
+  return s;
+}
+
+// x(phase) for 0 .. 1 made periodic. Where the motion goes on beyond the seam, the two sides are
+// faded into each other; else the difference of value is spread over the stride, that of slope
+// around the seam.
+class Closer {
+ public:
+  explicit Closer(const Stretch& stretch)
+      : s_(stretch), fades_(s_.before + s_.after >= kLeastFade) {}
+
+  std::array<double, kPoints> closed(const Spline& x) const {
+    std::array<double, kPoints> y;
+    for (int i = 0; i < kPoints; ++i) {
+      const double phase = double(i) / kPoints;
+      y[i] = fades_ ? faded(x, phase) : levelled(x, phase);
+    }
+    return y;
+  }
+
+ private:
+  double faded(const Spline& x, double phase) const {
+    double y = x.at(s_.place(phase));
+    const double share = s_.before / (s_.before + s_.after);
+    if (phase > 1.0 - s_.before) {
+      const double w = share * smoothstep(1.0 - s_.before, 1.0, phase);
+      y = mix(y, x.at(s_.place(phase - 1.0)), w);
+    } else if (phase < s_.after) {
+      const double w = (1.0 - share) * (1.0 - smoothstep(0.0, s_.after, phase));
+      y = mix(y, x.at(s_.place(phase + 1.0)), w);
+    }
+    return y;
+  }
+  double levelled(const Spline& x, double phase) const {
+    constexpr double kReach = 0.2, kStep = 0.01;
+    const double gap = x.at(s_.place(1.0)) - x.at(s_.place(0.0));
+    const double slope_start = (x.at(s_.place(kStep)) - x.at(s_.place(0.0))) / kStep;
+    const double slope_end = (x.at(s_.place(1.0)) - x.at(s_.place(1.0 - kStep))) / kStep;
+    const double half = 0.5 * (slope_end - slope_start);
+    const double from_seam = std::min(phase, 1.0 - phase);
+    const double rest = std::max(0.0, 1.0 - from_seam / kReach);
+    return x.at(s_.place(phase)) - gap * (phase - 0.5) + half * from_seam * rest * rest;
+  }
+
+  Stretch s_;
+  bool fades_;
+};
+
+// cos and sin of 2 pi k i / kPoints.
+struct Waves {
+  std::array<SinCos, kPoints> table;
+  Waves() {
+    for (int i = 0; i < kPoints; ++i) table[i] = sin_cos(2.0 * kPi * i / kPoints);
+  }
+  const SinCos& at(int k, int i) const { return table[(k * i) % kPoints]; }
+};
+
+// Harmonics that the source's frames can carry, the highest ones fading out (no ringing at
+// contacts).
+Fourier harmonics(const std::array<double, kPoints>& y, const Waves& waves, double period_frames) {
+  Fourier f;
+  for (const double v : y) f.mean += v / kPoints;
+  const int most = std::min(kHarmonics, static_cast<int>(0.5 * period_frames) - 1);
+  const int full = std::min(kFullHarmonics, most);
+  for (int k = 1; k <= most; ++k) {
+    double a = 0.0, b = 0.0;
+    for (int i = 0; i < kPoints; ++i) {
+      const SinCos& s = waves.at(k, i);
+      a += y[i] * s.cos;
+      b += y[i] * s.sin;
+    }
+    const double keep = 1.0 - smoothstep(full, most + 1, k);
+    f.a[k - 1] = keep * 2.0 / kPoints * a;
+    f.b[k - 1] = keep * 2.0 / kPoints * b;
+  }
+  return f;
+}
+
+double value_at(const Fourier& f, const std::array<SinCos, kHarmonics>& wave) {
+  double sum = f.mean;
+  for (int k = 0; k < kHarmonics; ++k) sum += f.a[k] * wave[k].cos + f.b[k] * wave[k].sin;
+  return sum;
+}
+
+// The pelvis' path with the turning undone step by step, x and z then turned so that the stride
+// goes along +z. Returns the heading that was taken out at each frame.
+std::vector<double> straighten(const Motion& motion, const Stretch& s, double turn_rad,
+                               std::array<std::vector<double>, 3>& path_m) {
+  const auto world = std::make_unique<JointFrames>();
+  std::vector<double> heading(s.count);
+  std::vector<vec3> place(s.count);
+  vec3 before(0.0);
+  for (int f = 0; f < s.count; ++f) {
+    heading[f] = turn_rad * (f - s.start) / s.period;
+    forward_kinematics(motion, motion.frames[s.first + f], *world);
+    const vec3 now = world->position_m[motion.pelvis];
+    const double middle = heading[f] - 0.5 * turn_rad / s.period;
+    place[f] = f == 0 ? now : place[f - 1] + rotation_y(-middle) * (now - before);
+    before = now;
+  }
+  const auto at = [&](double x) {
+    const int i = std::clamp(static_cast<int>(x), 0, s.count - 2);
+    return glm::mix(place[i], place[i + 1], x - i);
+  };
+  const double course = heading_of(at(s.place(1.0)) - at(s.place(0.0)));
+  for (int f = 0; f < s.count; ++f) {
+    heading[f] += course;
+    const vec3 p = rotation_y(-course) * (place[f] - place[0]);
+    path_m[0].push_back(p.x);
+    path_m[1].push_back(p.y + place[0].y);
+    path_m[2].push_back(p.z);
+  }
+  return heading;
+}
+
+// A joint's rotation in the stretch, joint 0 without the heading.
+quat local_at(const Motion& motion, const Stretch& s, int frame, int joint,
+              const std::vector<double>& heading) {
+  const quat& q = motion.frames[s.first + frame].local[joint];
+  return joint == 0 ? rotation_y(-heading[frame]) * q : q;
+}
+
+quat mean_rotation(const std::vector<quat>& all) {
+  quat sum = all.front();
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    sum = sum + all[i] * (glm::dot(all[i], sum) < 0.0 ? -1.0 : 1.0);
+  }
+  return glm::normalize(sum);
+}
+
+}  // namespace
+
+PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window) {
+  const Stretch s = stretch_of(window);
+  const Closer closer(s);
+  const auto waves = std::make_unique<Waves>();
+  PeriodicMotion out;
+  out.duration_s = s.period * motion.frame_time_s;
+
+  std::array<std::vector<double>, 3> path_m;
+  const std::vector<double> heading = straighten(motion, s, window.turn_rad, path_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Spline whole = spline(path_m[axis]);
+    const double travel = whole.at(s.place(1.0)) - whole.at(s.place(0.0));
+    if (axis == 2) out.stride_m = travel;
+    for (int f = 0; f < s.count; ++f) path_m[axis][f] -= travel * (f - s.start) / s.period;
+    out.pelvis_m[axis] = harmonics(closer.closed(spline(path_m[axis])), *waves, s.period);
+    if (axis != 1) out.pelvis_m[axis].mean = 0.0;
+  }
+
+  const int joints = static_cast<int>(motion.skeleton.joints.size());
+  std::vector<quat> local(s.count);
+  for (int j = 0; j < joints; ++j) {
+    for (int f = 0; f < s.count; ++f) local[f] = local_at(motion, s, f, j, heading);
+    out.mean.push_back(mean_rotation(local));
+    std::array<std::vector<double>, 3> turn;
+    for (const quat& q : local) {
+      const vec3 v = rotation_vector(glm::conjugate(out.mean[j]) * q);
+      for (int axis = 0; axis < 3; ++axis) turn[axis].push_back(v[axis]);
+    }
+    out.rotation.emplace_back();
+    for (int axis = 0; axis < 3; ++axis) {
+      out.rotation[j][axis] = harmonics(closer.closed(spline(turn[axis])), *waves, s.period);
+    }
+  }
+  return out;
+}
+
+PeriodicPose pose_at(const PeriodicMotion& motion, double phase) {
+  std::array<SinCos, kHarmonics> wave;
+  for (int k = 0; k < kHarmonics; ++k) wave[k] = sin_cos(2.0 * kPi * (k + 1) * phase);
+  const auto vector_at = [&](const std::array<Fourier, 3>& f) {
+    return vec3(value_at(f[0], wave), value_at(f[1], wave), value_at(f[2], wave));
+  };
+  PeriodicPose pose;
+  pose.pelvis_m = vector_at(motion.pelvis_m);
+  for (std::size_t j = 0; j < motion.mean.size(); ++j) {
+    pose.local.push_back(motion.mean[j] * from_rotation_vector(vector_at(motion.rotation[j])));
+  }
+  return pose;
+}
+
+namespace {
+
+// Joint offsets of which some frames may bring their own: the mean over the motion.
+std::vector<vec3> mean_offsets(const Motion& motion) {
+  std::vector<vec3> offset;
+  for (const Joint& joint : motion.skeleton.joints) offset.push_back(joint.offset_m);
+  if (motion.frames.front().translation_m.empty()) return offset;
+  for (std::size_t j = 0; j < offset.size(); ++j) {
+    vec3 sum(0.0);
+    for (const MotionFrame& frame : motion.frames) sum += frame.translation_m[j];
+    offset[j] = sum / double(motion.frames.size());
+  }
+  return offset;
+}
+
+// The root moves to the pelvis; what else hangs on the joints between them keeps its place beside
+// it.
+Skeleton rooted_at_pelvis(const Motion& motion) {
+  Skeleton skeleton = motion.skeleton;
+  const std::vector<vec3> offset = mean_offsets(motion);
+  for (std::size_t j = 0; j < offset.size(); ++j) skeleton.joints[j].offset_m = offset[j];
+  vec3 to_pelvis(0.0);  // in the frame of `joint`
+  for (int joint = motion.pelvis; joint >= 0; joint = skeleton.joints[joint].parent) {
+    const int parent = skeleton.joints[joint].parent;
+    if (joint != motion.pelvis) to_pelvis = motion.frames.front().local[joint] * to_pelvis;
+    to_pelvis += offset[joint];
+    skeleton.joints[joint].offset_m = vec3(0.0);
+    if (parent < 0) break;
+    for (std::size_t k = 0; k < offset.size(); ++k) {
+      const bool is_beside = skeleton.joints[k].parent == parent && static_cast<int>(k) != joint;
+      if (is_beside) skeleton.joints[k].offset_m = offset[k] - to_pelvis;
+    }
+  }
+  return skeleton;
+}
+
+void add_leg(const Skeleton& skeleton, const JointFrames& world, const LegJoints& j,
+             CapturedLeg& leg) {
+  leg.hip_m.push_back(world.position_m[j.hip]);
+  leg.knee_m.push_back(world.position_m[j.knee]);
+  leg.ankle_m.push_back(world.position_m[j.ankle]);
+  leg.toe_m.push_back(world.position_m[j.toe]);
+  leg.toe_end_m.push_back(world.position_m[j.toe_end]);
+  leg.hip.push_back(world.rotation[j.hip]);
+  leg.above_knee.push_back(world.rotation[skeleton.joints[j.knee].parent]);
+  leg.knee.push_back(world.rotation[j.knee]);
+  leg.ankle.push_back(world.rotation[j.ankle]);
+  leg.toe.push_back(world.rotation[j.toe]);
+}
+
+CapturedCycle without_samples(const Motion& motion) {
+  CapturedCycle cycle;
+  cycle.skeleton = rooted_at_pelvis(motion);
+  cycle.pelvis = motion.pelvis;
+  cycle.legs = motion.legs;
+  return cycle;
+}
+
+void add_sample(const PeriodicPose& at, JointFrames& world, CapturedCycle& cycle) {
+  Pose pose;
+  pose.joint_count = static_cast<int>(cycle.joints());
+  std::ranges::copy(at.local, pose.local.begin());
+  pose.root_m = at.pelvis_m;
+  forward_kinematics(cycle.skeleton, pose, world);
+  cycle.local.insert(cycle.local.end(), at.local.begin(), at.local.end());
+  cycle.pelvis_m.push_back(at.pelvis_m);
+  cycle.pelvis_rotation.push_back(world.rotation[cycle.pelvis]);
+  for (int side = 0; side < 2; ++side)
+    add_leg(cycle.skeleton, world, cycle.legs[side], cycle.leg[side]);
+}
+
+// About the vertical, then about the direction of view: the hips stand level.
+quat turned_to_left(const vec3& hips) {
+  const double level = std::sqrt(hips.x * hips.x + hips.z * hips.z);
+  return rotation_z(-gaitpad::atan2(hips.y, level)) *
+         rotation_y(-heading_of(glm::cross(hips, kUp)));
+}
+
+}  // namespace
+
+CapturedCycle captured_cycle(const Motion& motion, const PeriodicMotion& periodic, double shift) {
+  CapturedCycle cycle = without_samples(motion);
+  cycle.duration_s = periodic.duration_s;
+  cycle.stride_m = periodic.stride_m;
+  const auto world = std::make_unique<JointFrames>();
+  for (int i = 0; i < kCycleSamples; ++i) {
+    add_sample(pose_at(periodic, shift + double(i) / kCycleSamples), *world, cycle);
+  }
+  return cycle;
+}
+
+CapturedCycle captured_pose(const Motion& motion, const MotionFrame& frame) {
+  CapturedCycle cycle = without_samples(motion);
+  cycle.duration_s = 1.0;
+  const auto world = std::make_unique<JointFrames>();
+  forward_kinematics(motion, frame, *world);
+  const auto& at = world->position_m;
+  const vec3 left = at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip];
+  PeriodicPose pose{vec3(0.0, at[motion.pelvis].y, 0.0), frame.local};
+  pose.local[0] = turned_to_left(left) * frame.local[0];
+  for (int i = 0; i < kCycleSamples; ++i) add_sample(pose, *world, cycle);
+  return cycle;
+}
+
+std::vector<double> ground_speed(const CapturedCycle& cycle, const std::vector<vec3>& point_m) {
+  const double step_s = cycle.duration_s / kCycleSamples;
+  const vec3 travel = kForward * (2.0 * cycle.stride_m / kCycleSamples);
+  std::vector<double> speed;
+  for (int i = 0; i < kCycleSamples; ++i) {
+    const vec3 moved = point_m[wrapped_index(i + 1)] - point_m[wrapped_index(i - 1)] + travel;
+    speed.push_back(glm::length(moved) / (2.0 * step_s));
+  }
+  return speed;
+}
+
+FlatFoot flat_foot(const CapturedCycle& cycle, int side) {
+  constexpr double kRatePerS = 14.0;  // so much height above the lowest counts as so much speed
+  const CapturedLeg& leg = cycle.leg[side];
+  const std::vector<double> ankle = ground_speed(cycle, leg.ankle_m);
+  const std::vector<double> toe = ground_speed(cycle, leg.toe_m);
+  FlatFoot flat;
+  double least = -1.0;
+  for (int i = 0; i < kCycleSamples; ++i) {
+    double sum = 0.0;
+    for (int k = -2 * FlatFoot::reach; k <= 2 * FlatFoot::reach; ++k) {
+      const int at = wrapped_index(i + k);
+      sum += ankle[at] + toe[at] + kRatePerS * (leg.ankle_m[at].y + leg.toe_m[at].y);
+    }
+    if (i == 0 || sum < least) {
+      least = sum;
+      flat.middle = i;
+    }
+  }
+  return flat;
+}
+
+quat mean_around(const std::vector<quat>& q, int middle, int reach) {
+  const quat centre = q[wrapped_index(middle)];
+  quat sum = centre;
+  for (int k = -reach; k <= reach; ++k) {
+    if (k == 0) continue;
+    const quat& other = q[wrapped_index(middle + k)];
+    sum = sum + other * (glm::dot(other, centre) < 0.0 ? -1.0 : 1.0);
+  }
+  return glm::normalize(sum);
+}
+
+quat mean_of(const std::vector<quat>& q) { return mean_around(q, 0, kCycleSamples / 2 - 1); }
+
+vec3 mean_around(const std::vector<vec3>& p, int middle, int reach) {
+  vec3 sum(0.0);
+  for (int k = -reach; k <= reach; ++k) sum += p[wrapped_index(middle + k)];
+  return sum / double(2 * reach + 1);
+}
+
+namespace {
+
+constexpr double kHeelShare = 0.3;       // heel behind the ankle, of ankle to toe
+constexpr double kOwnToe_legs = 0.155;   // where the skeleton has no toe: ball before the ankle
+constexpr double kOwnAnkle_legs = 0.08;  // and ankle above the floor
+constexpr double kShortestFoot_legs = 0.04;
+constexpr double kLowestToe_legs = 0.16;  // a foot point deeper under the ankle is no sole
+constexpr double kLeastAnkle_legs = 0.02;
+constexpr double kMostToe = 70.0 * kDegree;  // what toes bend; some clips turn them all round
+
+// Joints below `from` down to and without `to`, topmost first.
+std::vector<int> joints_between(const Skeleton& skeleton, int from, int to) {
+  std::vector<int> chain;
+  for (int j = skeleton.joints[to].parent; j >= 0 && j != from; j = skeleton.joints[j].parent) {
+    chain.insert(chain.begin(), j);
+  }
+  return chain;
+}
+
+// From joint `from` to joint `to`, in the frame of `from`, with the locals given.
+vec3 link(const Skeleton& skeleton, const std::vector<quat>& local, int from, int to) {
+  vec3 v = skeleton.joints[to].offset_m;
+  for (int j = skeleton.joints[to].parent; j >= 0 && j != from; j = skeleton.joints[j].parent) {
+    v = skeleton.joints[j].offset_m + local[j] * v;
+  }
+  return from == to ? vec3(0.0) : v;
+}
+
+std::vector<quat> mean_locals(const CapturedCycle& c) {
+  std::vector<quat> mean, all(kCycleSamples);
+  for (std::size_t j = 0; j < c.joints(); ++j) {
+    for (int i = 0; i < kCycleSamples; ++i) all[i] = c.local[i * c.joints() + j];
+    mean.push_back(mean_of(all));
+  }
+  return mean;
+}
+
+// The knee's hinge in the thigh's and the shank's joint frame: across the plane of hip, knee and
+// ankle, where the knee is bent, positive for flexion.
+struct Hinge {
+  vec3 thigh, shank;
+};
+Hinge knee_hinge(const CapturedLeg& leg, const quat& pelvis_standing,
+                 const std::vector<quat>& pelvis) {
+  std::vector<vec3> across(kCycleSamples);
+  double most = 0.0;
+  for (int i = 0; i < kCycleSamples; ++i) {
+    const vec3 thigh = glm::normalize(leg.knee_m[i] - leg.hip_m[i]);
+    const vec3 shank = glm::normalize(leg.ankle_m[i] - leg.knee_m[i]);
+    across[i] = glm::cross(thigh, shank);  // its length is the sine of the flexion
+    const vec3 left = pelvis[i] * glm::conjugate(pelvis_standing) * kLeft;
+    if (glm::dot(across[i], left) > 0.0) most = std::max(most, glm::length(across[i]));
+  }
+  Hinge hinge{vec3(0.0), vec3(0.0)};
+  for (int i = 0; i < kCycleSamples; ++i) {
+    const vec3 left = pelvis[i] * glm::conjugate(pelvis_standing) * kLeft;
+    const bool is_bent = glm::length(across[i]) >= 0.7 * most && glm::dot(across[i], left) > 0.0;
+    const vec3 axis = most > 0.15 ? (is_bent ? across[i] : vec3(0.0)) : left;
+    hinge.thigh += glm::conjugate(leg.hip[i]) * axis;
+    hinge.shank += glm::conjugate(leg.knee[i]) * axis;
+  }
+  return hinge;
+}
+
+// The rotation that turns the bone to point straight down and the hinge to the left.
+quat upright(const vec3& bone, const vec3& hinge) {
+  const vec3 y = -glm::normalize(bone);
+  const vec3 x = glm::normalize(hinge - y * glm::dot(hinge, y));
+  return glm::conjugate(from_axes(x, y, glm::cross(x, y)));
+}
+
+struct FlatPose {
+  vec3 ankle_m;
+  quat foot, toe;  // joint frames
+};
+FlatPose flat_pose(const CapturedCycle& c, int side) {
+  const FlatFoot flat = flat_foot(c, side);
+  const CapturedLeg& leg = c.leg[side];
+  return {mean_around(leg.ankle_m, flat.middle, FlatFoot::reach),
+          mean_around(leg.ankle, flat.middle, FlatFoot::reach),
+          mean_around(leg.toe, flat.middle, FlatFoot::reach)};
+}
+
+// Toe and toe end from the ankle and the toe, standing. An End Site may be anything: one of no
+// length becomes a toe of usual length, one far under the foot does not count.
+void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle& out,
+                LegModel& leg) {
+  std::vector<Joint>& joints = out.skeleton.joints;
+  LegJoints& j = leg.joints;
+  const double leg_m = leg.length_m();
+  const auto from_ankle = [&](int joint) {
+    return flat.foot * link(out.skeleton, local, j.ankle, joint);
+  };
+  const auto is_short = [&](const vec3& v) {
+    return std::sqrt(v.x * v.x + v.z * v.z) < kShortestFoot_legs * leg_m;
+  };
+  if (is_short(from_ankle(j.toe)) && !is_short(from_ankle(j.toe_end))) j.toe = j.toe_end;
+  if (is_short(from_ankle(j.toe))) {
+    const vec3 wanted(0.0, -kOwnAnkle_legs * leg_m, kOwnToe_legs * leg_m);
+    const vec3 missing = glm::conjugate(flat.foot) * (wanted - from_ankle(j.toe));
+    vec3 turned = missing;  // into the frame of the toe's parent
+    for (const int k : joints_between(out.skeleton, j.ankle, j.toe)) {
+      turned = glm::conjugate(local[k]) * turned;
+    }
+    joints[j.toe].offset_m += turned;
+  }
+  leg.toe_m = from_ankle(j.toe);
+  leg.toe_end_m = joints[j.toe].is_end_site || j.toe == j.toe_end
+                      ? vec3(0.0)
+                      : flat.toe * link(out.skeleton, local, j.toe, j.toe_end);
+  const bool is_odd = leg.toe_m.y + leg.toe_end_m.y < -kLowestToe_legs * leg_m ||
+                      leg.toe_m.y + leg.toe_end_m.y > 0.0;
+  if (is_odd) {
+    j.toe_end = j.toe;
+    leg.toe_end_m = vec3(0.0);
+  }
+}
+
+// Heel point and the toes' rest heights for an ankle that stands so high above the floor.
+void build_sole(double ankle_height_m, LegModel& leg) {
+  const vec3 flat(leg.toe_m.x, 0.0, leg.toe_m.z);
+  leg.heel_m = -kHeelShare * flat - ankle_height_m * kUp;
+  leg.toe_rest_m = std::max(0.0, leg.toe_m.y + ankle_height_m);
+  leg.toe_end_rest_m = std::max(0.0, leg.toe_m.y + leg.toe_end_m.y + ankle_height_m);
+}
+
+Result<LegModel> leg_bones(const CapturedCycle& c, int side, const GaitCycle& out,
+                           const std::vector<quat>& local) {
+  LegModel leg;
+  leg.joints = c.legs[side];
+  const LegJoints& j = leg.joints;
+  if (j.toe < 0 || j.toe_end < 0) return Error{"has no joint and no End Site below an ankle"};
+  const vec3 thigh = link(out.skeleton, local, j.hip, j.knee);
+  const vec3 shank = link(out.skeleton, local, j.knee, j.ankle);
+  leg.thigh_m = glm::length(thigh);
+  leg.shank_m = glm::length(shank);
+  if (!(leg.thigh_m > 0.05 * leg.shank_m) || !(leg.shank_m > 0.05 * leg.thigh_m)) {
+    return Error{"has a leg without a thigh or a shank"};
+  }
+  leg.hip_m = out.pelvis_standing * link(out.skeleton, local, c.pelvis, j.hip);
+  const Hinge hinge = knee_hinge(c.leg[side], out.pelvis_standing, c.pelvis_rotation);
+  leg.standing[0] = upright(thigh, hinge.thigh);
+  leg.standing[1] = upright(shank, hinge.shank);
+  return leg;
+}
+
+void build_standing_local(const CapturedCycle& c, std::vector<quat> local, GaitCycle& out) {
+  quat above = kIdentity;
+  for (int j = c.skeleton.joints[c.pelvis].parent; j >= 0; j = c.skeleton.joints[j].parent) {
+    above = local[j] * above;
+  }
+  local[c.pelvis] = glm::conjugate(above) * out.pelvis_standing;
+  for (const LegModel& leg : out.leg) {
+    const LegPose pose = leg_pose(leg, vec3(0.0), kIdentity, LegAngles{}, 0.0);
+    set_leg_locals(out.skeleton, leg, pose, local.data());
+  }
+  out.standing_local = std::move(local);
+}
+
+}  // namespace
+
+Result<double> build_standing(const CapturedCycle& c, GaitCycle& out) {
+  out.skeleton = c.skeleton;
+  out.pelvis = c.pelvis;
+  out.pelvis_standing = mean_of(c.pelvis_rotation);
+  const std::vector<quat> local = mean_locals(c);
+  std::array<FlatPose, 2> flat;
+  double floor_m = 0.0;
+  for (int side = 0; side < 2; ++side) {
+    Result<LegModel> leg = leg_bones(c, side, out, local);
+    if (!leg) return leg.error();
+    flat[side] = flat_pose(c, side);
+    build_toes(flat[side], local, out, *leg);
+    leg->standing[2] = flat[side].foot;
+    leg->standing[3] = flat[side].toe;
+    const double lowest = std::min(
+        {leg->toe_m.y, leg->toe_m.y + leg->toe_end_m.y, -kLeastAnkle_legs * leg->length_m()});
+    const double under_m = flat[side].ankle_m.y + lowest;
+    // Each foot stands on its own lowest point: captured floors are uneven by a centimetre or two,
+    // and a character with one foot in the air would stand crooked.
+    floor_m += 0.5 * under_m;
+    build_sole(-lowest, *leg);
+    out.leg[side] = *leg;
+  }
+  build_standing_local(c, local, out);
+  return floor_m;
+}
+
+namespace {
+
+// 0 below -width, x above +width, smooth between.
+double soft_positive(double x, double width) {
+  if (x <= -width) return 0.0;
+  if (x >= width) return x;
+  return (x + width) * (x + width) / (4.0 * width);
+}
+
+// Flexion that carries the ankle to `reach_m` from the hip; a nearly straight knee keeps the
+// captured angle, because there the distance says nothing.
+double knee_angle(const LegModel& leg, double captured_rad, double reach_m) {
+  const double cosine =
+      (reach_m * reach_m - leg.thigh_m * leg.thigh_m - leg.shank_m * leg.shank_m) /
+      (2.0 * leg.thigh_m * leg.shank_m);
+  const double by_reach = gaitpad::acos(cosine);
+  const double share = smoothstep(4.0 * kDegree, 12.0 * kDegree, captured_rad);
+  const double knee = mix(captured_rad, by_reach, share);
+  // A knee that stops short of straight must do so over some degrees: it comes at 300 degrees/s.
+  constexpr double kLeast = 1.5 * kDegree, kWidth = 5.0 * kDegree;
+  return kLeast + soft_positive(knee - kLeast, kWidth);
+}
+
+// The knee's hinge in the frame of the joint above the knee (a twist joint where there is one).
+vec3 hinge_above_knee(const GaitCycle& cycle, int side) {
+  const LegModel& leg = cycle.leg[side];
+  vec3 hinge = glm::conjugate(leg.standing[0]) * kLeft;
+  for (const int j : joints_between(cycle.skeleton, leg.joints.hip, leg.joints.knee)) {
+    hinge = glm::conjugate(cycle.standing_local[j]) * hinge;
+  }
+  return hinge;
+}
+
+// Leg angles that put the ankle and the foot where they were captured, the knee's hinge as near to
+// its captured direction as the leg's line allows.
+LegSample leg_sample(const CapturedLeg& from, int i, const LegModel& model,
+                     const vec3& hinge_above_knee, const vec3& hip_m, const quat& pelvis) {
+  const vec3 hinge = from.above_knee[i] * hinge_above_knee;
+  const vec3 upper = from.knee_m[i] - from.hip_m[i], lower = from.ankle_m[i] - from.knee_m[i];
+  const double bent =
+      gaitpad::atan2(glm::dot(glm::cross(upper, lower), hinge), glm::dot(upper, lower));
+  const vec3 to_ankle = from.ankle_m[i] - hip_m;
+  const double knee = knee_angle(model, bent, glm::length(to_ankle));
+
+  const SinCos k = sin_cos(knee);
+  const vec3 in_thigh =
+      glm::normalize(vec3(0.0, -model.thigh_m - model.shank_m * k.cos, -model.shank_m * k.sin));
+  const vec3 line = glm::normalize(to_ankle);
+  const vec3 across = glm::normalize(hinge - line * glm::dot(hinge, line));
+  const quat model_axes = from_axes(kLeft, in_thigh, glm::cross(kLeft, in_thigh));
+  const quat turned =
+      from_axes(across, line, glm::cross(across, line)) * glm::conjugate(model_axes);
+
+  LegSample leg;
+  leg.foot = from.ankle[i] * glm::conjugate(model.standing[2]);
+  leg.ankle_m = from.ankle_m[i];
+  const AnglesXzy hip = angles_xzy(glm::conjugate(pelvis) * turned);
+  const AnglesXzy ankle = angles_xzy(glm::conjugate(turned * rotation_x(knee)) * leg.foot);
+  leg.angles = {hip.x, hip.z, hip.y, knee, ankle.x, ankle.z, ankle.y};
+  const quat toe = glm::conjugate(leg.foot) * from.toe[i] * glm::conjugate(model.standing[3]);
+  const vec3 ahead = toe * kForward;
+  leg.toe_x = std::clamp(gaitpad::atan2(-ahead.y, std::max(ahead.z, 0.1)), -kMostToe, kMostToe);
+  return leg;
+}
+
+// Angles go on from the sample before; quaternions stay in its hemisphere.
+void make_continuous(GaitCycle& out) {
+  for (int i = 1; i < kCycleSamples; ++i) {
+    for (int side = 0; side < 2; ++side) {
+      const LegSample& before = out.samples[i - 1].leg[side];
+      LegSample& leg = out.samples[i].leg[side];
+      for (int d = 0; d < kLegDofs; ++d) {
+        leg.angles[d] = before.angles[d] + wrapped(leg.angles[d] - before.angles[d]);
+      }
+      leg.toe_x = before.toe_x + wrapped(leg.toe_x - before.toe_x);
+      if (glm::dot(leg.foot, before.foot) < 0.0) leg.foot = -leg.foot;
+    }
+    quat& pelvis = out.samples[i].pelvis;
+    if (glm::dot(pelvis, out.samples[i - 1].pelvis) < 0.0) pelvis = -pelvis;
+  }
+  const std::size_t joints = out.standing_local.size();
+  for (std::size_t k = joints; k < out.local.size(); ++k) {
+    if (glm::dot(out.local[k], out.local[k - joints]) < 0.0) out.local[k] = -out.local[k];
+  }
+}
+
+}  // namespace
+
+void build_samples(const CapturedCycle& c, double floor_m, GaitCycle& out) {
+  const vec3 down = -floor_m * kUp;
+  out.local = c.local;
+  out.samples.assign(kCycleSamples, CycleSample{});
+  const std::array<vec3, 2> hinge = {hinge_above_knee(out, kLeftSide),
+                                     hinge_above_knee(out, kRightSide)};
+  for (int i = 0; i < kCycleSamples; ++i) {
+    CycleSample& at = out.samples[i];
+    at.pelvis_m = c.pelvis_m[i] + down;
+    at.pelvis = c.pelvis_rotation[i] * glm::conjugate(out.pelvis_standing);
+    quat* local = out.local.data() + i * c.joints();
+    for (int side = 0; side < 2; ++side) {
+      const LegModel& model = out.leg[side];
+      const LegJoints& j = model.joints;
+      const vec3 hip_m = c.pelvis_m[i] + at.pelvis * model.hip_m;
+      LegSample& leg = at.leg[side];
+      leg = leg_sample(c.leg[side], i, model, hinge[side], hip_m, at.pelvis);
+      leg.ankle_m += down;
+      for (const auto& [from, to] :
+           {std::pair{c.pelvis, j.hip}, {j.hip, j.knee}, {j.knee, j.ankle}, {j.ankle, j.toe}}) {
+        for (const int k : joints_between(c.skeleton, from, to)) local[k] = out.standing_local[k];
+      }
+      const LegPose pose = leg_pose(model, at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
+      set_leg_locals(out.skeleton, model, pose, local);
+    }
+  }
+  make_continuous(out);
+}
+
+}  // namespace gaitpad

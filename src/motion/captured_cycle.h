@@ -1,0 +1,88 @@
+// A stride of a motion as a periodic function of its phase: straightened, standing still, seam
+// closed.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "gaitpad/gait_cycle.h"
+#include "motion/stride.h"
+
+namespace gaitpad {
+
+inline constexpr int kHarmonics = 16;
+
+// mean + sum of a cos 2 pi k p + b sin 2 pi k p, k = 1 .. kHarmonics.
+struct Fourier {
+  double mean = 0.0;
+  std::array<double, kHarmonics> a{}, b{};
+};
+
+// Rotations are rotation vectors from each joint's mean, so that every channel is a plain number.
+struct PeriodicMotion {
+  double duration_s = 0.0, stride_m = 0.0;
+  std::vector<quat> mean;                        // a joint; joint 0 in the travel frame
+  std::vector<std::array<Fourier, 3>> rotation;  // a joint
+  std::array<Fourier, 3> pelvis_m;               // travel frame, x and z without their means
+};
+PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window);
+
+struct PeriodicPose {
+  vec3 pelvis_m{0.0};
+  std::vector<quat> local;
+};
+PeriodicPose pose_at(const PeriodicMotion& motion, double phase);
+
+// The periodic captured stride as sampled poses: what the standing pose and the legs are measured
+// on.
+
+struct CapturedLeg {  // travel frame, joint frames
+  std::vector<vec3> knee_m, ankle_m, toe_m, toe_end_m, hip_m;
+  std::vector<quat> hip, above_knee, knee, ankle, toe;  // above_knee: the knee's parent
+};
+struct CapturedCycle {
+  Skeleton skeleton;  // as in GaitCycle: root at the pelvis
+  int pelvis = 0;
+  std::array<LegJoints, 2> legs;
+  double duration_s = 0.0, stride_m = 0.0;
+  std::vector<quat> local;            // kCycleSamples x joints
+  std::vector<vec3> pelvis_m;         // height above the file's zero
+  std::vector<quat> pelvis_rotation;  // world rotation of the joint
+  std::array<CapturedLeg, 2> leg;
+  std::size_t joints() const { return skeleton.joints.size(); }
+};
+
+// `shift` is the phase of `periodic` at which sample 0 stands.
+CapturedCycle captured_cycle(const Motion& motion, const PeriodicMotion& periodic, double shift);
+
+// One frame of a motion as a cycle in which nothing moves, turned until the hips' line is +x.
+CapturedCycle captured_pose(const Motion& motion, const MotionFrame& frame);
+
+// Speed over the ground of a point that is periodic in the travel frame, m/s, at each sample.
+std::vector<double> ground_speed(const CapturedCycle& cycle, const std::vector<vec3>& point_m);
+
+// Samples [middle - reach, middle + reach] (wrapping) in which a foot stands flat: ankle and toe
+// are slowest.
+struct FlatFoot {
+  int middle = 0;
+  static constexpr int reach = 3;
+};
+FlatFoot flat_foot(const CapturedCycle& cycle, int side);
+
+quat mean_of(const std::vector<quat>& q);
+quat mean_around(const std::vector<quat>& q, int middle, int reach);
+vec3 mean_around(const std::vector<vec3>& p, int middle, int reach);
+inline int wrapped_index(int i) { return (i % kCycleSamples + kCycleSamples) % kCycleSamples; }
+
+// The standing pose of a captured skeleton, built from how it walks, and its legs' angles from
+// there.
+
+// Fills skeleton, pelvis_standing, leg models and standing_local of `out`. Joints between pelvis
+// and hip, hip and knee, knee and ankle, ankle and toe are held at their mean rotation from here
+// on. `floor_m` is the floor's height in `captured`. Error, without file name, where there is no
+// leg.
+Result<double> build_standing(const CapturedCycle& captured, GaitCycle& out);
+
+// Fills samples and local: the legs put the model's ankles and feet where the captured ones are.
+void build_samples(const CapturedCycle& captured, double floor_m, GaitCycle& out);
+
+}  // namespace gaitpad

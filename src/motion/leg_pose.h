@@ -1,0 +1,37 @@
+// One leg of a gait cycle: its forward kinematics, its angles, and the way back into joint
+// rotations.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "gaitpad/gait_cycle.h"
+
+namespace gaitpad {
+
+// Segment rotations and points in the frame of the pelvis position and rotation given.
+struct LegPose {
+  quat thigh, shank, foot, toe;
+  vec3 hip_m, knee_m, ankle_m, heel_m, toe_m, toe_end_m;
+};
+LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis,
+                 const LegAngles& angles, double toe_x) noexcept;
+
+// q = Rx(x) Rz(z) Ry(y), the order of LegDof; z in [-pi/2, pi/2].
+struct AnglesXzy {
+  double x, z, y;
+};
+quat rotation_xzy(const AnglesXzy& a) noexcept;
+AnglesXzy angles_xzy(const quat& q) noexcept;
+
+// Mirror images in the walker's middle plane (x -> -x).
+inline vec3 mirrored(const vec3& v) noexcept { return vec3(-v.x, v.y, v.z); }
+inline quat mirrored(const quat& q) noexcept { return quat(q.w, q.x, -q.y, -q.z); }
+
+// World rotation of every joint for the local rotations given.
+std::vector<quat> world_rotations(const Skeleton& skeleton, const quat* local);
+// Overwrites the locals of hip, knee, ankle and toe so that the joints stand as the segment
+// rotations of `pose` say; all other joints keep their locals.
+void set_leg_locals(const Skeleton& skeleton, const LegModel& model, const LegPose& pose,
+                    quat* local);
+
+}  // namespace gaitpad

@@ -1,0 +1,450 @@
+// The body above the legs on another skeleton: spine, neck, arms and what has the same name.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "gaitpad/anatomy.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/motion.h"
+#include "motion/captured_cycle.h"
+#include "motion/leg_pose.h"
+
+namespace gaitpad {
+
+// Which joints of a skeleton follow which of the source's.
+// - Arms by their parts: collar bone, upper arm, forearm, hand. What stands between (twist joints)
+//   rests; what one of the two lacks is left out.
+// - Spine and neck as chains: of n joints that follow m, the k-th (from 1) turns in the world as
+// the
+//   source does k m / n of the way up its chain, so that chest and head turn as the source's do.
+// - Fingers and all else above the legs: joints of equal names. The others rest.
+struct Counterpart {
+  int lower = -1, upper = -1;  // joints of the source; -1: none, this joint rests
+  double share = 0.0;          // of the way from lower to upper
+};
+struct UpperBody {
+  std::vector<Counterpart> from;  // one a joint
+  std::vector<int> aim;         // whose place each joint's bone points to; -1: none; others inside
+  std::vector<vec3> direction;  // where it points, as the source stands
+};
+UpperBody upper_body(const GaitCycle& source, const GaitCycle& character);
+
+// A T pose hangs its arms: bones that both bodies have point as they do in the source's standing
+// pose. Arms and hands do so bone by bone; spine and neck as wholes, unless their joints have the
+// source's names, because backs are curved in different ways (the head then looks ahead as it did);
+// collar bones only then, too.
+void stand_alike(const UpperBody& body, GaitCycle& character);
+
+// World rotations of the joints in `from` at sample i: away from the standing pose as the source's.
+// The character has been made to stand alike.
+class UpperBodyTurn {
+ public:
+  UpperBodyTurn(const GaitCycle& source, const UpperBody& body, const GaitCycle& character);
+  void set_sample(int i);
+  bool has(int joint) const { return body_.from[joint].lower >= 0; }
+  quat world(int joint) const;
+
+ private:
+  const GaitCycle& source_;
+  const UpperBody& body_;
+  std::vector<quat> before_, after_, standing_;
+};
+
+namespace {
+
+std::vector<vec3> standing_places(const GaitCycle& cycle) {
+  const auto world = world_rotations(cycle.skeleton, cycle.standing_local.data());
+  std::vector<vec3> at(world.size(), vec3(0.0));
+  for (std::size_t j = 1; j < at.size(); ++j) {
+    const Joint& joint = cycle.skeleton.joints[j];
+    at[j] = at[joint.parent] + world[joint.parent] * joint.offset_m;
+  }
+  return at;
+}
+
+// One skeleton's parts and places.
+struct Part {
+  const GaitCycle& cycle;
+  std::vector<vec3> at;
+  BodyJoints joints;
+  std::vector<int> neck;  // the head is its last
+  explicit Part(const GaitCycle& c)
+      : cycle(c),
+        at(standing_places(c)),
+        joints(find_body(c.skeleton, {c.leg[0].joints, c.leg[1].joints}, c.pelvis, at)),
+        neck(joints.neck) {
+    if (joints.head >= 0) neck.push_back(joints.head);
+  }
+  const std::string& name(int joint) const { return cycle.skeleton.joints[joint].name; }
+  int chest() const { return joints.spine.empty() ? cycle.pelvis : joints.spine.back(); }
+  bool is_in_leg(int joint) const {
+    return is_ancestor(cycle.skeleton, cycle.leg[0].joints.hip, joint) ||
+           is_ancestor(cycle.skeleton, cycle.leg[1].joints.hip, joint);
+  }
+  bool is_upper(int joint) const {
+    return !is_in_leg(joint) && !is_ancestor(cycle.skeleton, joint, cycle.pelvis);
+  }
+  // Mean place of its children; its own where it has none away from it.
+  vec3 below(int joint) const {
+    vec3 sum(0.0);
+    int count = 0;
+    for (std::size_t j = 1; j < at.size(); ++j) {
+      if (cycle.skeleton.joints[j].parent != joint) continue;
+      sum += at[j];
+      ++count;
+    }
+    return count > 0 ? sum / double(count) : at[joint];
+  }
+};
+
+// The child a joint's bone may point to: the only one, else -1.
+int only_child(const Part& part, int joint) {
+  int child = -1;
+  for (std::size_t j = 1; j < part.at.size(); ++j) {
+    if (part.cycle.skeleton.joints[j].parent != joint) continue;
+    if (child >= 0) return -1;
+    child = static_cast<int>(j);
+  }
+  return child;
+}
+
+class Matcher {
+ public:
+  Matcher(const GaitCycle& source, const GaitCycle& character) : from_(source), to_(character) {
+    const std::size_t joints = character.skeleton.joints.size();
+    body_ = {std::vector<Counterpart>(joints), std::vector<int>(joints, -1),
+             std::vector<vec3>(joints, vec3(0.0))};
+  }
+
+  UpperBody matched() {
+    match_chain(from_.joints.spine, to_.joints.spine, from_.cycle.pelvis);
+    match_chain(from_.neck, to_.neck, from_.chest());
+    for (int side = 0; side < 2; ++side) match_arm(from_.joints.arm[side], to_.joints.arm[side]);
+    match_names();
+    aim_chain(from_.joints.spine, to_.joints.spine, first(from_.neck), first(to_.neck));
+    aim_chain(from_.neck, to_.neck, -1, -1);
+    return std::move(body_);
+  }
+
+ private:
+  static int first(const std::vector<int>& chain) { return chain.empty() ? -1 : chain.front(); }
+
+  void match_chain(const std::vector<int>& from, const std::vector<int>& to, int below) {
+    for (std::size_t k = 1; k <= to.size(); ++k) {
+      // Whole numbers, so that equal chains match exactly.
+      const std::size_t lower = k * from.size() / to.size(), rest = k * from.size() % to.size();
+      const auto joint = [&](std::size_t i) { return i == 0 ? below : from[i - 1]; };
+      body_.from[to[k - 1]] = {joint(lower), joint(lower + (rest > 0)), double(rest) / to.size()};
+    }
+  }
+
+  void match(int from, int to) {
+    if (from < 0 || to < 0 || to_.cycle.skeleton.joints[to].is_end_site) return;
+    body_.from[to] = {from, from, 0.0};
+  }
+
+  void match_arm(const ArmChain& from, const ArmChain& to) {
+    if (!from.is_found() || !to.is_found()) return;
+    match(from.collar, to.collar);
+    match(from.shoulder, to.shoulder);
+    match(from.elbow, to.elbow);
+    match(from.wrist, to.wrist);
+    if (from.collar >= 0 && to.collar >= 0 && from_.name(from.collar) == to_.name(to.collar))
+      aim(from.collar, from.shoulder, to.collar, to.shoulder);
+    aim(from.shoulder, from.elbow, to.shoulder, to.elbow);
+    aim(from.elbow, from.wrist, to.elbow, to.wrist);
+    body_.aim[to.wrist] = kChildren;
+    body_.direction[to.wrist] = from_.below(from.wrist) - from_.at[from.wrist];
+  }
+
+  void aim(int from, int from_end, int to, int to_end) {
+    body_.aim[to] = to_end;
+    body_.direction[to] = from_.at[from_end] - from_.at[from];
+  }
+
+  // As a whole, from its first joint; bone by bone where it is the same chain.
+  void aim_chain(const std::vector<int>& from, const std::vector<int>& to, int from_end,
+                 int to_end) {
+    if (from.empty() || to.empty()) return;
+    const bool is_same =
+        from.size() == to.size() && std::ranges::equal(
+                                        from, to, {}, [this](int j) { return from_.name(j); },
+                                        [this](int j) { return to_.name(j); });
+    if (is_same) {
+      for (std::size_t k = 0; k + 1 < from.size(); ++k) aim(from[k], from[k + 1], to[k], to[k + 1]);
+      if (from_end >= 0 && to_end >= 0) aim(from.back(), from_end, to.back(), to_end);
+      if (from_end < 0) aim_at_only_child(from.back(), to.back());
+      return;
+    }
+    // A head looks ahead however its neck is bent.
+    if (from_end < 0) body_.aim[to.back()] = kAsItStood;
+    const int last_from = from_end >= 0 ? from_end : from.back();
+    const int last_to = to_end >= 0 ? to_end : to.back();
+    if (last_from != from.front() && last_to != to.front())
+      aim(from.front(), last_from, to.front(), last_to);
+  }
+
+  void aim_at_only_child(int from, int to) {
+    const int from_child = only_child(from_, from), to_child = only_child(to_, to);
+    if (from_child >= 0 && to_child >= 0) aim(from, from_child, to, to_child);
+  }
+
+  static bool is_part(const Part& part, int joint) {
+    const auto has = [joint](const std::vector<int>& list) {
+      return std::ranges::find(list, joint) != list.end();
+    };
+    return has(part.joints.spine) || has(part.neck) ||
+           std::ranges::any_of(part.joints.arm, [joint](const ArmChain& arm) {
+             return joint == arm.collar || joint == arm.shoulder || joint == arm.elbow ||
+                    joint == arm.wrist;
+           });
+  }
+
+  void match_names() {
+    const auto& joints = to_.cycle.skeleton.joints;
+    std::vector<int> same(joints.size(), -1);
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const int joint = static_cast<int>(j);
+      const int found = from_.cycle.skeleton.find(joints[j].name);
+      if (found < 0 || is_part(to_, joint) || is_part(from_, found)) continue;
+      if (to_.is_upper(joint) && from_.is_upper(found)) same[j] = found;
+    }
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (same[j] < 0) continue;
+      match(same[j], static_cast<int>(j));
+      aim_at_only_child(same[j], static_cast<int>(j));
+    }
+  }
+
+ public:
+  // Aims: the mean of the children; none, but the joint stays as it stood.
+  static constexpr int kChildren = -2, kAsItStood = -3;
+
+ private:
+  Part from_, to_;
+  UpperBody body_;
+};
+
+// From joint to where its bone ends, in its own frame, standing.
+vec3 bone_of(const GaitCycle& cycle, int joint, int end) {
+  if (end == Matcher::kChildren) {
+    vec3 sum(0.0);
+    for (const Joint& child : cycle.skeleton.joints) {
+      if (child.parent == joint) sum += child.offset_m;
+    }
+    return sum;
+  }
+  vec3 v(0.0);
+  for (int j = end; j > joint; j = cycle.skeleton.joints[j].parent) {
+    v = cycle.skeleton.joints[j].offset_m + cycle.standing_local[j] * v;
+  }
+  return v;
+}
+
+quat between(const quat& a, const quat& b, double share) {
+  const quat near = glm::dot(a, b) < 0.0 ? -b : b;
+  return share > 0.0 ? glm::normalize(a * (1.0 - share) + near * share) : a;
+}
+
+}  // namespace
+
+UpperBody upper_body(const GaitCycle& source, const GaitCycle& character) {
+  return Matcher(source, character).matched();
+}
+
+void stand_alike(const UpperBody& body, GaitCycle& character) {
+  constexpr double kLeastBone_m = 1e-4;
+  const auto& joints = character.skeleton.joints;
+  const auto stood = world_rotations(character.skeleton, character.standing_local.data());
+  std::vector<quat> world = stood;
+  for (std::size_t j = 1; j < joints.size(); ++j) {
+    const quat above = world[joints[j].parent];
+    world[j] = above * character.standing_local[j];
+    if (body.aim[j] == Matcher::kAsItStood) {
+      world[j] = stood[j];
+      character.standing_local[j] = glm::normalize(glm::conjugate(above) * world[j]);
+    }
+    if (body.aim[j] == -1 || body.aim[j] == Matcher::kAsItStood) continue;
+    const vec3 bone = world[j] * bone_of(character, static_cast<int>(j), body.aim[j]);
+    const vec3 wanted = body.direction[j];
+    if (glm::length(bone) < kLeastBone_m || glm::length(wanted) < kLeastBone_m) continue;
+    world[j] = rotation_between(glm::normalize(bone), glm::normalize(wanted)) * world[j];
+    character.standing_local[j] = glm::normalize(glm::conjugate(above) * world[j]);
+  }
+}
+
+UpperBodyTurn::UpperBodyTurn(const GaitCycle& source, const UpperBody& body,
+                             const GaitCycle& character)
+    : source_(source),
+      body_(body),
+      before_(world_rotations(source.skeleton, source.standing_local.data())),
+      standing_(world_rotations(character.skeleton, character.standing_local.data())) {}
+
+void UpperBodyTurn::set_sample(int i) {
+  const std::size_t joints = source_.skeleton.joints.size();
+  after_ = world_rotations(source_.skeleton, source_.local.data() + i * joints);
+}
+
+quat UpperBodyTurn::world(int joint) const {
+  const Counterpart& from = body_.from[joint];
+  const auto turn = [this](int j) { return after_[j] * glm::conjugate(before_[j]); };
+  return between(turn(from.lower), turn(from.upper), from.share) * standing_[joint];
+}
+
+namespace {
+
+constexpr double kMostToeOut = 45.0 * kDegree;
+
+// The frame with the lowest score.
+template <class Score>
+const MotionFrame& best_frame(const Motion& motion, Score score) {
+  const auto world = std::make_unique<JointFrames>();
+  std::size_t best = 0;
+  double least = 0.0;
+  for (std::size_t f = 0; f < motion.frames.size(); ++f) {
+    forward_kinematics(motion, motion.frames[f], *world);
+    const double s = score(world->position_m);
+    if (f == 0 || s < least) {
+      least = s;
+      best = f;
+    }
+  }
+  return motion.frames[best];
+}
+
+using Places = std::array<vec3, kMaxJoints>;
+double foot_height_m(const Places& at, const LegJoints& leg) {
+  return at[leg.ankle].y + at[leg.toe].y;
+}
+
+// Both feet low and both legs long.
+const MotionFrame& standing_frame(const Motion& motion) {
+  return best_frame(motion, [&](const Places& at) {
+    double score = 0.0;
+    for (const LegJoints& leg : motion.legs) {
+      score += foot_height_m(at, leg) - glm::distance(at[leg.hip], at[leg.ankle]);
+    }
+    return score;
+  });
+}
+
+// Where a foot is lowest it lies flat; where it lies across, it is turned forward.
+void take_over_foot(const Motion& motion, Side side, CapturedLeg& leg) {
+  const LegJoints& j = motion.legs[side];
+  const auto& frame = best_frame(motion, [&j](const Places& at) { return foot_height_m(at, j); });
+  const CapturedLeg flat = captured_pose(motion, frame).leg[side];
+  const double out_rad = heading_of(flat.toe_m.front() - flat.ankle_m.front());
+  const quat turn = std::abs(out_rad) > kMostToeOut ? rotation_y(-out_rad) : kIdentity;
+  leg.ankle.assign(kCycleSamples, turn * flat.ankle.front());
+  leg.toe.assign(kCycleSamples, turn * flat.toe.front());
+}
+
+// The character's build and standing pose.
+Result<GaitCycle> body_of(const Motion& character) {
+  if (Result<GaitCycle> own_walk = gait_cycle(character)) return own_walk;
+  CapturedCycle pose = captured_pose(character, standing_frame(character));
+  for (const Side side : {kLeftSide, kRightSide}) take_over_foot(character, side, pose.leg[side]);
+  GaitCycle body;
+  const Result<double> floor_m = build_standing(pose, body);
+  if (!floor_m) return Error{fmt::format("{}: {}", character.name, floor_m.error().message)};
+  return body;
+}
+
+vec3 mean_hip_m(const GaitCycle& cycle) { return 0.5 * (cycle.leg[0].hip_m + cycle.leg[1].hip_m); }
+
+double mean_ankle_height_m(const GaitCycle& cycle) {
+  return -0.5 * (cycle.leg[0].heel_m.y + cycle.leg[1].heel_m.y);
+}
+
+// Takes a body's place in `source`'s walk; samples and locals are still the body's own.
+void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
+  out.name = source.name;
+  out.metres_per_unit = source.metres_per_unit;
+  out.duration_s = source.duration_s * std::sqrt(ratio);  // as a pendulum
+  out.stride_m = source.stride_m * ratio;
+  out.strike = source.strike;
+  out.toe_off = source.toe_off;
+  for (int side = 0; side < 2; ++side) {
+    out.step_m[side] = source.step_m[side] * ratio;
+    out.track_m[side] =
+        source.track_m[side] * ratio + out.leg[side].hip_m.x - source.leg[side].hip_m.x * ratio;
+  }
+}
+
+// Hips and heels run where the source's do, `ratio` times as large; feet stand as far beside the
+// hips as there.
+void take_over_samples(const GaitCycle& source, double ratio, GaitCycle& out) {
+  const vec3 from_hips = mean_hip_m(source), to_hips = mean_hip_m(out);
+  // The hips stand no higher than the shorter leg reaches.
+  const double shorter_m = mean_leg_m(out) - std::min(out.leg[0].length_m(), out.leg[1].length_m());
+  const double higher_m =
+      mean_ankle_height_m(out) - ratio * mean_ankle_height_m(source) - shorter_m;
+  out.samples = source.samples;
+  vec3 middle(0.0);
+  for (CycleSample& at : out.samples) {
+    at.pelvis_m = ratio * (at.pelvis_m + at.pelvis * from_hips) - at.pelvis * to_hips;
+    at.pelvis_m.y += higher_m;
+    middle += vec3(at.pelvis_m.x, 0.0, at.pelvis_m.z) / double(kCycleSamples);
+    for (int side = 0; side < 2; ++side) {
+      const LegModel &from = source.leg[side], &to = out.leg[side];
+      LegSample& leg = at.leg[side];
+      leg.ankle_m = ratio * (leg.ankle_m + leg.foot * from.heel_m) - leg.foot * to.heel_m;
+      leg.ankle_m.x += to.hip_m.x - ratio * from.hip_m.x;
+    }
+  }
+  for (CycleSample& at : out.samples) {
+    at.pelvis_m -= middle;
+    for (LegSample& leg : at.leg) leg.ankle_m -= middle;
+  }
+}
+
+// Local rotations at the turn's sample i.
+void pose_sample(const UpperBodyTurn& turn, int i, GaitCycle& out) {
+  const std::size_t joints = out.skeleton.joints.size();
+  const CycleSample& at = out.samples[i];
+  quat* local = out.local.data() + i * joints;
+  std::vector<quat> world(joints, kIdentity);
+  for (std::size_t j = 0; j < joints; ++j) {
+    const int parent = out.skeleton.joints[j].parent;
+    const quat above = parent < 0 ? kIdentity : world[parent];
+    world[j] = above * out.standing_local[j];
+    if (static_cast<int>(j) == out.pelvis) world[j] = at.pelvis * out.pelvis_standing;
+    if (turn.has(static_cast<int>(j))) world[j] = turn.world(static_cast<int>(j));
+    local[j] = glm::normalize(glm::conjugate(above) * world[j]);
+  }
+  for (int side = 0; side < 2; ++side) {
+    const LegSample& leg = at.leg[side];
+    const LegPose pose = leg_pose(out.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
+    set_leg_locals(out.skeleton, out.leg[side], pose, local);
+  }
+  for (std::size_t j = 0; i > 0 && j < joints; ++j) {
+    if (glm::dot(local[j], local[j - joints]) < 0.0) local[j] = -local[j];
+  }
+}
+
+}  // namespace
+
+double mean_leg_m(const GaitCycle& cycle) noexcept {
+  return 0.5 * (cycle.leg[0].length_m() + cycle.leg[1].length_m());
+}
+
+Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& character) {
+  Result<GaitCycle> out = body_of(character);
+  if (!out) return out;
+  const double ratio = mean_leg_m(*out) / mean_leg_m(source);
+  take_over_events(source, ratio, *out);
+  take_over_samples(source, ratio, *out);
+  const UpperBody body = upper_body(source, *out);
+  stand_alike(body, *out);
+  UpperBodyTurn turn(source, body, *out);
+  out->local.assign(kCycleSamples * out->skeleton.joints.size(), kIdentity);
+  for (int i = 0; i < kCycleSamples; ++i) {
+    turn.set_sample(i);
+    pose_sample(turn, i, *out);
+  }
+  return out;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,462 @@
+// Where pelvis and legs are in every frame of a motion.
+
+#include "motion/stride.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gaitpad/motion.h"
+
+namespace gaitpad {
+
+struct LegTrack {
+  std::vector<vec3> hip_m, knee_m, ankle_m, toe_m;
+};
+struct BodyTrack {
+  std::vector<vec3> pelvis_m;
+  std::vector<double> heading_rad;  // where the hips face, unwrapped
+  std::array<LegTrack, 2> leg;
+  double leg_m = 0.0;  // thigh + shank, mean of both sides
+};
+BodyTrack body_track(const Motion& motion);
+
+// Frames [first, last] without a jump: no point of the body moves faster than a limb can.
+struct FrameRange {
+  int first, last;
+};
+std::vector<FrameRange> unbroken_ranges(const BodyTrack& track, double frame_time_s);
+
+namespace {
+
+constexpr double kFastestLegsPerSecond =
+    14.0;  // a sprinter's foot; a jump to another take is faster
+
+// Across the hips from right to left, turned to the front.
+double hips_heading(const vec3& left_hip, const vec3& right_hip) {
+  return heading_of(glm::cross(left_hip - right_hip, kUp));
+}
+
+}  // namespace
+
+BodyTrack body_track(const Motion& motion) {
+  BodyTrack track;
+  const auto world = std::make_unique<JointFrames>();
+  for (const MotionFrame& frame : motion.frames) {
+    forward_kinematics(motion, frame, *world);
+    const auto& at = world->position_m;
+    track.pelvis_m.push_back(at[motion.pelvis]);
+    for (int side = 0; side < 2; ++side) {
+      const LegJoints& joints = motion.legs[side];
+      LegTrack& leg = track.leg[side];
+      leg.hip_m.push_back(at[joints.hip]);
+      leg.knee_m.push_back(at[joints.knee]);
+      leg.ankle_m.push_back(at[joints.ankle]);
+      leg.toe_m.push_back(at[joints.toe]);
+    }
+    double heading =
+        hips_heading(track.leg[kLeftSide].hip_m.back(), track.leg[kRightSide].hip_m.back());
+    if (!track.heading_rad.empty()) {
+      heading = track.heading_rad.back() + wrapped(heading - track.heading_rad.back());
+    }
+    track.heading_rad.push_back(heading);
+  }
+  track.leg_m = leg_length_m(motion);
+  return track;
+}
+
+std::vector<FrameRange> unbroken_ranges(const BodyTrack& track, double frame_time_s) {
+  const double most_m = kFastestLegsPerSecond * track.leg_m * frame_time_s;
+  const int frames = static_cast<int>(track.pelvis_m.size());
+  const auto moves_far = [&](const std::vector<vec3>& p, int f) {
+    return !(glm::distance(p[f], p[f - 1]) <= most_m);
+  };
+  std::vector<FrameRange> ranges;
+  int first = 0;
+  for (int f = 1; f <= frames; ++f) {
+    const bool breaks = f == frames || moves_far(track.pelvis_m, f) ||
+                        moves_far(track.leg[0].ankle_m, f) || moves_far(track.leg[1].ankle_m, f);
+    if (!breaks) continue;
+    if (f - first >= 2) ranges.push_back({first, f - 1});
+    first = f;
+  }
+  return ranges;
+}
+
+namespace {
+
+// Of the fast speed: a faster foot is in the air. The second one is for the slow steps of a motion
+// that also has quick ones.
+constexpr std::array<double, 2> kMovingShares = {0.30, 0.18};
+constexpr double kSmoothing_s = 0.04;  // half the width of the window over the ankle's track
+constexpr double kShortestRest_s = 0.06;
+constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
+constexpr double kShortestSwing_legs = 0.25, kLongestSwing_legs = 2.6;
+constexpr double kLongestStride_s = 4.0;
+constexpr double kShortestStride_legs = 0.4;
+constexpr double kSlowest_legs_s = 0.12;
+constexpr double kSharpestTurn_rad = 60.0 * kDegree;
+constexpr double kLoop_legs = 0.12;  // mean distance of first and last pose in a looping clip
+
+double horizontal(const vec3& v) { return std::sqrt(v.x * v.x + v.z * v.z); }
+
+// Running mean over a raised cosine, cut off at the range's ends.
+std::vector<vec3> smoothed(const std::vector<vec3>& p, const FrameRange& range,
+                           double half_frames) {
+  const int reach = static_cast<int>(half_frames);
+  std::vector<vec3> out;
+  for (int f = range.first; f <= range.last; ++f) {
+    const int n = std::min({reach, f - range.first, range.last - f});
+    vec3 sum(0.0);
+    double weight = 0.0;
+    for (int k = -n; k <= n; ++k) {
+      const double w = 1.0 + sin_cos(kPi * k / (half_frames + 1.0)).cos;
+      sum += p[f + k] * w;
+      weight += w;
+    }
+    out.push_back(sum / weight);
+  }
+  return out;
+}
+
+// Horizontal speed of each frame of the range.
+std::vector<double> speeds(const std::vector<vec3>& p, const FrameRange& range, double frame_s) {
+  const std::vector<vec3> track = smoothed(p, range, kSmoothing_s / frame_s);
+  const int n = static_cast<int>(track.size());
+  std::vector<double> speed(n);
+  for (int i = 0; i < n; ++i) {
+    const int a = std::max(i - 1, 0), b = std::min(i + 1, n - 1);
+    speed[i] = horizontal(track[b] - track[a]) / ((b - a) * frame_s);
+  }
+  return speed;
+}
+
+enum class Change { lift, land };
+struct FootEvent {
+  double frame;
+  int side;
+  Change change;
+};
+
+struct MovingRun {
+  int first, last;  // indices into the range
+};
+std::vector<MovingRun> moving_runs(const std::vector<double>& speed, double limit,
+                                   double rest_frames) {
+  std::vector<MovingRun> runs;
+  for (int i = 0; i < static_cast<int>(speed.size()); ++i) {
+    if (!(speed[i] > limit)) continue;
+    if (!runs.empty() && i - runs.back().last - 1 < rest_frames) {
+      runs.back().last = i;
+    } else {
+      runs.push_back({i, i});
+    }
+  }
+  return runs;
+}
+
+// Where the speed crosses the limit between two neighbouring indices.
+double crossing(const std::vector<double>& speed, int a, int b, double limit) {
+  const double rise = speed[b] - speed[a];
+  return rise == 0.0 ? a : a + (b - a) * std::clamp((limit - speed[a]) / rise, 0.0, 1.0);
+}
+
+bool is_swing(const BodyTrack& track, const std::vector<vec3>& ankle, const MovingRun& run,
+              int offset, double frame_s) {
+  const double time_s = (run.last - run.first + 1) * frame_s;
+  const double legs =
+      horizontal(ankle[offset + run.last] - ankle[offset + run.first]) / track.leg_m;
+  return time_s >= kShortestSwing_s && time_s <= kLongestSwing_s && legs >= kShortestSwing_legs &&
+         legs <= kLongestSwing_legs;
+}
+
+// Lifts and landings of one foot. A swing cut by the range's end still gives its one event.
+void add_events(const BodyTrack& track, int side, const FrameRange& range, double limit_m_s,
+                double frame_s, std::vector<FootEvent>& events) {
+  const std::vector<vec3>& ankle = track.leg[side].ankle_m;
+  const std::vector<double> speed = speeds(ankle, range, frame_s);
+  const int last = static_cast<int>(speed.size()) - 1;
+  for (const MovingRun& run : moving_runs(speed, limit_m_s, kShortestRest_s / frame_s)) {
+    const bool is_cut = run.first == 0 || run.last == last;
+    if (!is_cut && !is_swing(track, ankle, run, range.first, frame_s)) continue;
+    if (run.first > 0) {
+      const double lift = crossing(speed, run.first - 1, run.first, limit_m_s);
+      events.push_back({range.first + lift, side, Change::lift});
+    }
+    if (run.last < last) {
+      const double land = crossing(speed, run.last, run.last + 1, limit_m_s);
+      events.push_back({range.first + land, side, Change::land});
+    }
+  }
+}
+
+// The 95th percentile of both ankles' speeds over all ranges.
+double fast_speed(const BodyTrack& track, const std::vector<FrameRange>& ranges, double frame_s) {
+  std::vector<double> all;
+  for (const FrameRange& range : ranges) {
+    for (const LegTrack& leg : track.leg) {
+      const std::vector<double> some = speeds(leg.ankle_m, range, frame_s);
+      all.insert(all.end(), some.begin(), some.end());
+    }
+  }
+  if (all.empty()) return 0.0;
+  const auto at = all.begin() + static_cast<std::ptrdiff_t>((all.size() - 1) * 95 / 100);
+  std::nth_element(all.begin(), at, all.end());
+  return *at;
+}
+
+// Linear between frames.
+vec3 point_at(const std::vector<vec3>& p, double frame) {
+  const int f = std::clamp(static_cast<int>(frame), 0, static_cast<int>(p.size()) - 2);
+  return glm::mix(p[f], p[f + 1], frame - f);
+}
+double heading_at(const BodyTrack& track, double frame) {
+  const int f =
+      std::clamp(static_cast<int>(frame), 0, static_cast<int>(track.heading_rad.size()) - 2);
+  return mix(track.heading_rad[f], track.heading_rad[f + 1], frame - f);
+}
+
+// Mean distance of the legs' points, seen from the pelvis along its heading, in leg lengths.
+double pose_distance(const BodyTrack& track, double a, double b) {
+  const quat back_a = rotation_y(-heading_at(track, a)), back_b = rotation_y(-heading_at(track, b));
+  const vec3 pelvis_a = point_at(track.pelvis_m, a), pelvis_b = point_at(track.pelvis_m, b);
+  double sum = std::abs(pelvis_a.y - pelvis_b.y);
+  for (const LegTrack& leg : track.leg) {
+    for (const auto* p : {&leg.knee_m, &leg.ankle_m, &leg.toe_m}) {
+      sum += glm::distance(back_a * (point_at(*p, a) - pelvis_a),
+                           back_b * (point_at(*p, b) - pelvis_b));
+    }
+  }
+  return sum / (7.0 * track.leg_m);
+}
+
+// The same and its rate: the poses a twentieth of the stride on either side count too.
+double seam(const BodyTrack& track, const FrameRange& range, double start, double period) {
+  double sum = 0.0, weight = 0.0;
+  for (const double off : {-0.05 * period, 0.0, 0.05 * period}) {
+    if (start + off < range.first || start + period + off > range.last) continue;
+    sum += pose_distance(track, start + off, start + period + off);
+    weight += 1.0;
+  }
+  return weight > 0.0 ? sum / weight : 1.0;
+}
+
+struct Candidate {
+  StrideWindow window;
+  double speed_legs_s = 0.0, seam_legs = 0.0;
+  double score = 0.0;  // the smaller the better
+};
+
+// Every other event happens once between two equal ones.
+bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size_t to) {
+  std::array<int, 4> count{};
+  for (std::size_t i = from; i < to; ++i) {
+    ++count[2 * events[i].side + static_cast<int>(events[i].change)];
+  }
+  return std::ranges::all_of(count, [](int n) { return n == 1; });
+}
+
+// The period within 4 % of the events' that makes the seam smallest.
+double best_period(const BodyTrack& track, const FrameRange& range, double start, double period) {
+  double best = period, least = seam(track, range, start, period);
+  for (int k = -16; k <= 16; ++k) {
+    const double tried = period * (1.0 + 0.0025 * k);
+    if (start + tried > range.last) continue;
+    const double cost = seam(track, range, start, tried) + 0.02 * std::abs(k) / 16.0;
+    if (cost < least) {
+      least = cost;
+      best = tried;
+    }
+  }
+  return best;
+}
+
+std::optional<Candidate> candidate(const BodyTrack& track, const FrameRange& range, double start,
+                                   double end, double frame_s) {
+  Candidate c;
+  StrideWindow& w = c.window;
+  w = {start, best_period(track, range, start, end - start), 0.0, range.first, range.last};
+  const double stop = w.start + w.period;
+  w.turn_rad = heading_at(track, stop) - heading_at(track, w.start);
+  const vec3 travel = point_at(track.pelvis_m, stop) - point_at(track.pelvis_m, w.start);
+  const double legs = horizontal(travel) / track.leg_m;
+  c.speed_legs_s = legs / (w.period * frame_s);
+  c.seam_legs = seam(track, range, w.start, w.period);
+  const bool is_walk = w.period * frame_s <= kLongestStride_s && legs >= kShortestStride_legs &&
+                       c.speed_legs_s >= kSlowest_legs_s &&
+                       std::abs(w.turn_rad) <= kSharpestTurn_rad;
+  return is_walk ? std::optional<Candidate>(c) : std::nullopt;
+}
+
+// Lifts and landings of a range whose feet count as moving above `limit_m_s`, in time order.
+std::vector<FootEvent> foot_events(const BodyTrack& track, const FrameRange& range,
+                                   double limit_m_s, double frame_s) {
+  std::vector<FootEvent> events;
+  for (int side = 0; side < 2; ++side) add_events(track, side, range, limit_m_s, frame_s, events);
+  std::ranges::stable_sort(events, {}, &FootEvent::frame);
+  return events;
+}
+
+// From each event to the next equal one.
+void add_between_events(const BodyTrack& track, const FrameRange& range,
+                        const std::vector<FootEvent>& events, double frame_s,
+                        std::vector<Candidate>& found) {
+  const auto is_same = [](const FootEvent& a, const FootEvent& b) {
+    return a.side == b.side && a.change == b.change;
+  };
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    std::size_t k = i + 1;
+    while (k < events.size() && !is_same(events[i], events[k])) ++k;
+    if (k == events.size() || !is_stride(events, i, k)) continue;
+    const auto c = candidate(track, range, events[i].frame, events[k].frame, frame_s);
+    if (c) found.push_back(*c);
+  }
+}
+
+// A clip of hardly more than one stride may hold no event twice: from each frame to the one most
+// like it, so that each event lies between them once.
+void add_by_pose(const BodyTrack& track, const FrameRange& range,
+                 const std::vector<FootEvent>& events, double frame_s,
+                 std::vector<Candidate>& found) {
+  constexpr double kLike_legs = 0.05;
+  constexpr double kShortest_s = 0.5;
+  const auto first_from = [&](double frame) {
+    return std::ranges::lower_bound(events, frame, {}, &FootEvent::frame) - events.begin();
+  };
+  const int shortest = static_cast<int>(kShortest_s / frame_s) + 1;
+  const int longest = static_cast<int>(kLongestStride_s / frame_s);
+  for (int start = range.first; start + shortest <= range.last; ++start) {
+    int best_end = -1;
+    double least = kLike_legs;
+    for (int end = start + shortest; end <= std::min(range.last, start + longest); ++end) {
+      if (!is_stride(events, first_from(start), first_from(end))) continue;
+      const double cost = seam(track, range, start, end - start);
+      if (cost >= least) continue;
+      least = cost;
+      best_end = end;
+    }
+    if (best_end < 0) continue;
+    if (const auto c = candidate(track, range, start, best_end, frame_s)) found.push_back(*c);
+  }
+}
+
+std::vector<Candidate> candidates(const Motion& motion, const BodyTrack& track) {
+  std::vector<Candidate> found;
+  const double frame_s = motion.frame_time_s;
+  const std::vector<FrameRange> ranges = unbroken_ranges(track, frame_s);
+  const double fast_m_s = fast_speed(track, ranges, frame_s);
+  for (const auto add : {&add_between_events, &add_by_pose}) {
+    for (const double share : kMovingShares) {
+      if (!found.empty()) break;
+      for (const FrameRange& range : ranges) {
+        add(track, range, foot_events(track, range, share * fast_m_s, frame_s), frame_s, found);
+      }
+    }
+  }
+  return found;
+}
+
+// With what tells a walk on the spot, or one that is over before its first stride, from other
+// motions.
+std::string why_no_stride(const BodyTrack& track, double frame_s) {
+  double moved_m = 0.0;
+  std::size_t frames = 0;
+  for (const FrameRange& range : unbroken_ranges(track, frame_s)) {
+    frames = std::max(frames, static_cast<std::size_t>(range.last - range.first + 1));
+    for (int f = range.first; f <= range.last; ++f) {
+      moved_m = std::max(moved_m, horizontal(track.pelvis_m[f] - track.pelvis_m[range.first]));
+    }
+  }
+  return fmt::format("holds no full walking stride of both feet: the hips go {:.2f} m in {:.1f} s",
+                     moved_m, static_cast<double>(frames) * frame_s);
+}
+
+// How much farther one half of the stride goes than the other, share of the stride.
+double unsteadiness(const BodyTrack& track, const StrideWindow& w) {
+  const vec3 start = point_at(track.pelvis_m, w.start);
+  const vec3 middle = point_at(track.pelvis_m, w.start + 0.5 * w.period);
+  const vec3 end = point_at(track.pelvis_m, w.start + w.period);
+  const double first = horizontal(middle - start), second = horizontal(end - middle);
+  return std::abs(second - first) / (first + second);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Small seam, straight and steady, neither hurried nor dawdling for this motion, room to fade the
+// seam.
+void sort_best_first(const BodyTrack& track, std::vector<Candidate>& all) {
+  std::vector<double> speed;
+  for (const Candidate& c : all) speed.push_back(c.speed_legs_s);
+  const double usual = median(speed);
+  for (Candidate& c : all) {
+    const StrideWindow& w = c.window;
+    const double stop = w.start + w.period;
+    const double room = std::max(w.start - w.first, w.last - stop) / w.period;
+    c.score = c.seam_legs + 0.1 * std::abs(w.turn_rad) +
+              0.1 * std::abs(c.speed_legs_s / usual - 1.0) + 0.1 * unsteadiness(track, w) +
+              0.02 * (1.0 - std::min(room / 0.2, 1.0));
+  }
+  std::ranges::stable_sort(all, {}, &Candidate::score);
+}
+
+// Spreads the difference of last and first pose over the clip, so that frame n-1 is frame 0 moved
+// on.
+void close_loop(Motion& motion, double turn_rad) {
+  const int last = static_cast<int>(motion.frames.size()) - 1;
+  const std::vector<quat> from = motion.frames.front().local, to = motion.frames.back().local;
+  const double rise = motion.frames.back().root_m.y - motion.frames.front().root_m.y;
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    const quat aim = j == 0 ? rotation_y(turn_rad) * from[j] : from[j];
+    const vec3 gap = rotation_vector(glm::conjugate(to[j]) * aim);
+    for (int f = 0; f <= last; ++f) {
+      quat& q = motion.frames[f].local[j];
+      q = q * from_rotation_vector(gap * (double(f) / last - 0.5));
+    }
+  }
+  for (int f = 0; f <= last; ++f) motion.frames[f].root_m.y -= rise * (double(f) / last - 0.5);
+}
+
+}  // namespace
+
+Result<std::vector<StrideWindow>> best_strides(const Motion& motion) {
+  if (motion.frames.size() < 6) return Error{"has fewer than 6 frames"};
+  const BodyTrack track = body_track(motion);
+  if (!(track.leg_m > 0.0) || !(motion.frame_time_s > 0.0)) return Error{"has no legs to walk on"};
+  std::vector<Candidate> all = candidates(motion, track);
+  if (all.empty()) return Error{why_no_stride(track, motion.frame_time_s)};
+  sort_best_first(track, all);
+  std::vector<StrideWindow> windows;
+  for (const Candidate& c : all) windows.push_back(c.window);
+  return windows;
+}
+
+Motion looped_twice(const Motion& motion) {
+  Motion twice = motion;
+  twice.frames.clear();
+  const int frames = static_cast<int>(motion.frames.size());
+  if (frames < 6) return twice;
+  const BodyTrack track = body_track(motion);
+  if (!(pose_distance(track, 0.0, frames - 1.0) <= kLoop_legs)) return twice;
+  const double turn = wrapped(track.heading_rad.back() - track.heading_rad.front());
+  twice.frames = motion.frames;
+  close_loop(twice, turn);
+  const quat onward = rotation_y(turn);
+  const std::vector<vec3> pelvis = body_track(twice).pelvis_m;  // the root may stand still
+  for (int f = 1; f < frames; ++f) {
+    MotionFrame frame = twice.frames[f];
+    frame.root_m = pelvis.back() + onward * (frame.root_m - pelvis.front());
+    frame.local[0] = onward * frame.local[0];
+    twice.frames.push_back(std::move(frame));
+  }
+  return twice;
+}
+
+}  // namespace gaitpad

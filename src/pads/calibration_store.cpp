@@ -1,0 +1,240 @@
+#include "pads/calibration_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "files/toml_file.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/hash.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::size_t kMaxKeyBytes = 48;           // of a file's name, between ids and ending
+constexpr std::uint16_t kKernelArranged = 0x8000;  // of the version on evdev: config/README.md
+
+// Cheap pads have a serial number of zeros or blanks, or one that no text can hold.
+std::string usable_id(const std::string& unique_id) {
+  const bool is_blank = unique_id.find_first_not_of("0:-. \t") == std::string::npos;
+  return is_blank || line_of_invalid_utf8(unique_id) != 0 ? "" : unique_id;
+}
+
+std::string text_hash(std::string_view text) {
+  WordHash hash;
+  for (const char c : text) hash.add(static_cast<unsigned char>(c));
+  hash.add(static_cast<double>(text.size()));
+  return fmt::format("{:08x}", static_cast<std::uint32_t>(hash.value()));
+}
+
+// Fit for a file's name, and never the same for two texts: what was changed, or could be taken for
+// one of our own endings, is followed by a hash.
+std::string file_key(std::string_view text) {
+  std::string key(text.substr(0, kMaxKeyBytes));
+  for (char& c : key) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
+    if (!is_plain) c = '-';
+  }
+  const bool is_ambiguous = text.starts_with("port-") || text.ends_with("-evdev");
+  return key == text && !is_ambiguous ? key : key + "-" + text_hash(text);
+}
+
+std::string commented(const std::vector<std::string>& comments) {
+  std::string text;
+  for (const std::string& comment : comments) {
+    std::string line = comment;
+    const bool is_utf8 = line_of_invalid_utf8(line) == 0;
+    for (char& c : line) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (byte < 0x20 || byte == 0x7f || (byte >= 0x80 && !is_utf8)) c = '?';
+    }
+    text += line.empty() ? "#\n" : "# " + line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string user_calibration_folder() {
+  const std::string folder = user_config_folder();
+  return folder.empty() ? "" : folder + "/calibration";
+}
+
+CalibrationFile calibration_for(const DeviceInfo& device, bool has_factory_sticks) {
+  CalibrationFile file;
+  file.name = device.name;
+  file.devices = {{device.vendor, device.product}};
+  file.unique_id = usable_id(device.unique_id);
+  if (file.unique_id.empty() && line_of_invalid_utf8(device.physical_path) == 0)
+    file.port = device.physical_path;
+  const bool is_arranged = device.driver == "evdev" || device.driver == "sdl";
+  if (is_arranged && (device.version & kKernelArranged) != 0) {
+    file.drivers = {"evdev", "sdl"};
+  } else if (!is_arranged && has_factory_sticks) {
+    file.drivers = {"hidraw", "usb"};
+  }
+  return file;
+}
+
+std::string calibration_path(const std::string& folder, const CalibrationFile& file) {
+  const auto id = [](int number) { return number < 0 ? "any" : fmt::format("{:04x}", number); };
+  const DevicePattern device = file.devices.empty() ? DevicePattern() : file.devices.front();
+  std::string name = id(device.vendor) + "_" + id(device.product);
+  if (!file.unique_id.empty()) {
+    name += "-" + file_key(file.unique_id);
+  } else if (!file.port.empty()) {
+    name += "-port-" + file_key(file.port);
+  }
+  const bool is_for_evdev = std::ranges::count(file.drivers, "evdev") > 0;
+  return folder + "/" + name + (is_for_evdev ? "-evdev" : "") + ".toml";
+}
+
+std::optional<Error> save_calibration(const std::string& path, const CalibrationFile& file,
+                                      const std::vector<std::string>& comments) {
+  const std::string text =
+      commented(comments) + (comments.empty() ? "" : "\n") + calibration_text(file);
+  // A file that could not be read back would be lost work, and told only at the next game.
+  if (auto again = parse_calibration(text, path); !again)
+    return Error{"was not saved, since it could not be read back: " + again.error().message};
+  return save_text(path, text);
+}
+
+// Today's stick beside its file. The thresholds are above what two measurements of one stick differ
+// by (tests/stick: range within 1 %, sigma within 15 %, circularity within 0.5 points).
+
+namespace {
+
+constexpr double kCentreShare = 0.5;         // of the inner zone
+constexpr double kReachChange = 0.03;        // raw
+constexpr double kNoiseFactor = 1.5;         // of sigma ...
+constexpr double kLeastNoiseChange = 0.001;  // ... and raw: half a step of 10 bits
+constexpr double kHysteresisChange = 0.01;   // raw
+constexpr double kCircularityChange = 2.0;   // percent
+constexpr double kDriftChange = 0.002;       // raw a second: the least inner zone in 25 s
+
+// One stick, then and now.
+struct Pair {
+  std::string_view name;
+  const StickCalibration &then, &now;
+  StickMeasured before, today;
+  std::vector<std::string>& told;
+
+  template <typename... Args>
+  void tell(fmt::format_string<Args...> sentence, Args&&... args) {
+    told.push_back(fmt::format("{} stick: ", name) +
+                   fmt::format(sentence, std::forward<Args>(args)...));
+  }
+};
+
+// The file's inner zone is a fraction of a centred, ranged deflection; the noise is raw.
+double inner_zone_raw(const StickCalibration& c) {
+  const double reach = std::min(
+      {c.x.max - c.x.centre, c.x.centre - c.x.min, c.y.max - c.y.centre, c.y.centre - c.y.min});
+  return c.inner * reach;
+}
+
+void compare_centre(Pair& stick) {
+  const auto& [name, then, now, before, today, told] = stick;
+  const double moved = std::hypot(now.x.centre - then.x.centre, now.y.centre - then.y.centre);
+  const double zone = inner_zone_raw(then);
+  if (!today.sigma || !(moved > kCentreShare * zone)) return;
+  stick.tell(
+      "the centre has moved by {:.3f}, from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f}): {} the inner "
+      "zone of {:.3f}, {}",
+      moved, then.x.centre, then.y.centre, now.x.centre, now.y.centre,
+      moved > zone ? "beyond" : "more than half of", zone,
+      moved > zone ? "so the pad walks by itself" : "so it may soon walk by itself");
+}
+
+void compare_reach(Pair& stick) {
+  const auto& [name, then, now, before, today, told] = stick;
+  if (!today.circularity_error) return;  // it was not turned round
+  const struct {
+    std::string_view direction;
+    double before, now, half_range;
+  } ends[] = {
+      {"to the right", then.x.max, now.x.max, then.x.max - then.x.centre},
+      {"to the left", -then.x.min, -now.x.min, then.x.centre - then.x.min},
+      {"forward", then.y.max, now.y.max, then.y.max - then.y.centre},
+      {"back", -then.y.min, -now.y.min, then.y.centre - then.y.min},
+  };
+  for (const auto& end : ends) {
+    if (!(std::fabs(end.now - end.before) > kReachChange)) continue;
+    const bool is_short = end.before - end.now > (1.0 - then.outer) * end.half_range;
+    stick.tell("it reaches {:.3f} {}, {:.3f} in the file: {}", end.now, end.direction, end.before,
+               end.now > end.before ? "full deflection comes before the rim"
+               : is_short           ? "full deflection is not reached there any more"
+                                    : "full deflection is still reached, but barely");
+  }
+}
+
+void compare_rest(Pair& stick) {
+  const auto& [name, then, now, before, today, told] = stick;
+  const double zone = inner_zone_raw(then);
+  const bool is_covered = 3.0 * today.sigma.value_or(0.0) + today.hysteresis.value_or(0.0) <= zone;
+  const std::string verdict = fmt::format("the inner zone of {:.3f} {}", zone,
+                                          is_covered ? "covers it" : "is too small for it");
+  if (before.sigma && today.sigma) {
+    const double more = *today.sigma, less = *before.sigma;
+    const bool is_other = more > kNoiseFactor * less || less > kNoiseFactor * more;
+    if (is_other && std::fabs(more - less) > kLeastNoiseChange) {
+      stick.tell("its noise at rest is {:.4f} (sigma), {:.4f} in the file: {}", more, less,
+                 verdict);
+    }
+  }
+  if (before.hysteresis && today.hysteresis &&
+      std::fabs(*today.hysteresis - *before.hysteresis) > kHysteresisChange) {
+    stick.tell("the places to which it returns lie {:.3f} apart, {:.3f} in the file: {}",
+               *today.hysteresis, *before.hysteresis, verdict);
+  }
+  if (before.drift_per_s && today.drift_per_s &&
+      std::fabs(*today.drift_per_s - *before.drift_per_s) > kDriftChange) {
+    stick.tell("at rest it drifts by {:.4f} a second, {:.4f} in the file: {}", *today.drift_per_s,
+               *before.drift_per_s,
+               *today.drift_per_s > *before.drift_per_s ? "no dead zone cures that"
+                                                        : "it is steadier now");
+  }
+}
+
+void compare_roundness(Pair& stick) {
+  const auto& [name, then, now, before, today, told] = stick;
+  if (!before.circularity_error || !today.circularity_error) return;
+  const double error = *today.circularity_error, old = *before.circularity_error;
+  if (!(std::fabs(error - old) > kCircularityChange)) return;
+  stick.tell("its circularity error is {:.1f} %, {:.1f} % in the file: {}", error, old,
+             error > old ? "the directions differ more in how far it reaches"
+                         : "it is closer to a circle now");
+}
+
+}  // namespace
+
+std::vector<std::string> changes_since(const CalibrationFile& then, const CalibrationFile& now) {
+  std::vector<std::string> told;
+  const Calibration &c = then.calibration, &d = now.calibration;
+  const StickCalibration* sticks[2][2] = {{&c.left, &d.left}, {&c.right, &d.right}};
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!now.measured[side]) continue;
+    Pair stick{side == 0 ? "left" : "right",
+               *sticks[side][0],
+               *sticks[side][1],
+               then.measured[side].value_or(StickMeasured()),
+               *now.measured[side],
+               told};
+    if (stick.then.frame != stick.now.frame) {
+      stick.tell("its axes lie otherwise than in the file: was another pad calibrated?");
+      continue;
+    }
+    compare_centre(stick);
+    compare_reach(stick);
+    compare_rest(stick);
+    compare_roundness(stick);
+  }
+  return told;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,132 @@
+#include "pads/guided_calibration.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <filesystem>
+#include <iterator>
+#include <utility>
+
+#include "drivers/posix.h"
+#include "pads/calibration_store.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::int64_t kOnTheWayNs = 50'000'000;  // silence shorter than that may be none
+constexpr const char* kSides[] = {"left", "right"};
+
+}  // namespace
+
+Result<std::unique_ptr<GuidedCalibration>> GuidedCalibration::start(const PadFiles& files,
+                                                                    const PadWish& wish) {
+  PadStreamOptions options;
+  options.files = files;
+  options.wish = wish;
+  auto stream = PadStream::start(std::move(options));
+  if (!stream) return stream.error();
+  std::unique_ptr<GuidedCalibration> calibration(new GuidedCalibration());
+  calibration->stream_ = std::move(*stream);
+  return calibration;
+}
+
+void GuidedCalibration::take(const Report& report) {
+  if (report.kind == ReportKind::added && device_ == kNoDevice) {
+    device_ = report.device;
+    info_ = stream_->device(device_).info;
+    config_ = std::move(stream_->config(device_));
+    guide_.emplace(*config_.layout);
+  }
+  if (report.device != device_ || device_ == kNoDevice) return;
+  if (report.kind == ReportKind::added) is_plugged_ = true;
+  if (report.kind == ReportKind::removed) is_plugged_ = false;
+  guide_->take(report);
+}
+
+void GuidedCalibration::end_recording() {
+  has_ended_ = true;
+  if (!guide_ || guide_->step() == GuideStep::done) return;
+  remarks_.emplace_back("the recording has ended: what it did not show is left out");
+  while (guide_->step() != GuideStep::done) guide_->skip();
+}
+
+void GuidedCalibration::look(std::chrono::milliseconds timeout) {
+  if (timeout.count() > 0) stream_->wait(timeout);
+  const bool has_ended = stream_->has_ended();  // asked first: what came before it is read below
+  for (; const Report* report = stream_->front(); stream_->pop()) take(*report);
+  if (guide_) guide_->tick(now_ns() - kOnTheWayNs);
+  if (has_ended && !has_ended_) end_recording();
+}
+
+std::vector<std::string> GuidedCalibration::take_remarks() {
+  std::vector<std::string> all = stream_->take_remarks();
+  std::move(remarks_.begin(), remarks_.end(), std::back_inserter(all));
+  remarks_.clear();
+  return all;
+}
+
+GuidedPad GuidedCalibration::finish() {
+  GuidedPad pad;
+  if (!guide_) return pad;
+  pad.info = info_;
+  pad.has_factory_sticks = config_.has_factory_sticks;
+  pad.tracks = guide_->tracks();
+  pad.frame = {guide_->frame(0), guide_->frame(1)};
+  if (config_.layout) pad.layout = *config_.layout;
+  return pad;
+}
+
+std::string driver_remark(const DeviceInfo& info) {
+  if (info.driver != "evdev" && info.driver != "sdl") return {};
+  return fmt::format(
+      "through {} the kernel may filter small changes (fuzz) and correct the sticks, so noise and "
+      "centre are not the pad's own; --driver hidraw or usb sees more, where the pad has it",
+      info.driver);
+}
+
+Result<std::string> calibration_target(const std::string& out, const CalibrationFile& file) {
+  if (!out.empty()) return out;
+  const std::string folder = user_calibration_folder();
+  if (!folder.empty()) return calibration_path(folder, file);
+  return Error{"neither XDG_CONFIG_HOME nor HOME names a folder for the file: give --out FILE"};
+}
+
+void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
+                     CalibrationFile& file, std::vector<std::string>& remarks) {
+  std::error_code error;
+  if (target != "-" && std::filesystem::exists(target, error)) {
+    auto old = load_calibration_file(target);
+    if (old) {
+      file.calibration = old->calibration;
+      file.mapping = old->mapping;
+      file.measured = old->measured;
+      file.measured_on = old->measured_on;
+      return;
+    }
+    remarks.push_back(old.error().message + "; it counts for nothing");
+  }
+  file.calibration =
+      find_calibration(files.calibration_folders, identity_of(info)).file.calibration;
+}
+
+std::vector<std::string> calibration_comments(const PadAnalysis& analysis) {
+  std::vector<std::string> comments = {
+      "Made by gaitpad calibrate; config/README.md says what the "
+      "keys mean. Edit it as you like."};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!analysis.stick[i]) continue;
+    comments.push_back(fmt::format("{} stick: {}. {}", kSides[i],
+                                   name_of(analysis.stick[i]->advice.verdict),
+                                   analysis.stick[i]->advice.reason));
+  }
+  return comments;
+}
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  return fmt::format("{:%Y-%m-%d}", fmt::localtime(now));
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,625 @@
+#include "pads/pad_finder.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "drivers/driver_entries.h"
+#include "files/toml_file.h"
+#include "gaitpad/drivers.h"
+#include "gaitpad/pad_stream.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::string_view kTrace = "trace", kUsb = "usb", kSdl = "sdl";
+
+// ASCII alone, whatever the locale.
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+Result<const DriverEntry*> wished_driver(const std::string& name,
+                                         std::span<const DriverEntry> table) {
+  std::string known;
+  for (const DriverEntry& entry : table) {
+    if (name == entry.name && entry.find != nullptr) return &entry;
+    if (name == entry.name)
+      return Error{fmt::format("the driver \"{}\" is missing: the program was built without {}",
+                               name, entry.library)};
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return Error{fmt::format("there is no driver \"{}\" (known: {})", name, known)};
+}
+
+bool is_built(std::span<const DriverEntry> table, std::string_view name) {
+  return std::ranges::any_of(
+      table, [name](const DriverEntry& e) { return name == e.name && e.find != nullptr; });
+}
+
+// SDL sees through the kernel's devices what the others see themselves.
+bool is_asked(const DriverEntry& entry, Drivers which, std::span<const DriverEntry> table) {
+  if (entry.find == nullptr) return false;
+  if (which == Drivers::all || entry.name != kSdl) return true;
+  return !is_built(table, "hidraw") && !is_built(table, "evdev");
+}
+
+PadSighting judged(const PadFiles& files, DeviceListing listing, const DriverEntry& driver) {
+  PadSighting sighting{std::move(listing), &driver, true, {}};
+  const DeviceListing& seen = sighting.listing;
+  sighting.problem = seen.problem;
+  sighting.is_pad = !seen.is_other;
+  if (seen.is_other || seen.info.descriptor.empty()) return sighting;
+  const auto layout = pad_layout(seen.info, files.overrides);
+  sighting.is_pad = layout && layout->is_pad;
+  if (sighting.is_pad || !sighting.problem.empty()) return sighting;
+  sighting.problem =
+      !layout ? fmt::format("{}: {}", seen.node, layout.error().message)
+              : fmt::format("{}: {} is no pad: it has no joystick or gamepad with X and Y",
+                            seen.node, in_quotes(seen.info.name));
+  return sighting;
+}
+
+// A device whose descriptor one driver cannot read is what another driver says of it.
+void ask_the_others(std::vector<PadSighting>& sightings) {
+  for (PadSighting& unknown : sightings) {
+    const std::string& path = unknown.listing.pad_path;
+    const bool is_judged = unknown.listing.is_other || !unknown.listing.info.descriptor.empty();
+    if (is_judged || path.empty()) continue;
+    bool is_known = false, is_pad = false;
+    for (const PadSighting& other : sightings) {
+      if (other.listing.pad_path != path || other.listing.info.descriptor.empty()) continue;
+      is_known = true;
+      is_pad = is_pad || other.is_pad;
+    }
+    unknown.is_pad = !is_known || is_pad;
+    if (!unknown.is_pad && unknown.problem.empty())
+      unknown.problem = fmt::format("{}: no pad", unknown.listing.node);
+  }
+}
+
+Result<std::vector<PadSighting>> recorded_pads(const PadFiles& files, const PadWish& wish,
+                                               std::span<const DriverEntry> table) {
+  if (!wish.driver.empty() && wish.driver != kTrace)
+    return Error{
+        fmt::format("{}: a recording is not for the driver \"{}\"", wish.pad, wish.driver)};
+  auto driver = wished_driver(std::string(kTrace), table);
+  if (!driver) return driver.error();
+  auto listings = trace_listings(wish.pad);
+  if (!listings) return listings.error();
+  std::vector<PadSighting> sightings;
+  for (DeviceListing& listing : *listings)
+    sightings.push_back(judged(files, std::move(listing), **driver));
+  return sightings;
+}
+
+// How exactly a text fits. Whoever fits best is meant.
+enum class Fit { none, part_of_name, name, unique_id, model, node };
+
+// `vvvv:pppp` in hexadecimal.
+bool is_model(std::string_view text, const DeviceInfo& info) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return false;
+  const auto is_id = [](std::string_view digits, std::uint16_t id) {
+    std::uint16_t value = 0;
+    const char* end = digits.data() + digits.size();
+    const auto read = std::from_chars(digits.data(), end, value, 16);
+    return digits.size() <= 4 && read.ec == std::errc() && read.ptr == end && value == id;
+  };
+  return is_id(text.substr(0, colon), info.vendor) && is_id(text.substr(colon + 1), info.product);
+}
+
+struct Wanted {
+  std::string text, lower_text;
+  std::string node;  // links such as /dev/input/by-id/... resolved
+};
+Wanted wanted_of(const std::string& pad) {
+  std::error_code error;
+  const std::filesystem::path node = std::filesystem::canonical(pad, error);
+  return {pad, lower(pad), error ? pad : node.string()};
+}
+
+Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
+  const DeviceListing& listing = sighting.listing;
+  if (listing.node == wanted.text || listing.node == wanted.node) return Fit::node;
+  if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only where it is wished
+  if (is_model(wanted.text, listing.info)) return Fit::model;
+  if (lower(listing.info.unique_id) == wanted.lower_text) return Fit::unique_id;
+  const std::string name = lower(listing.info.name);
+  if (name == wanted.lower_text) return Fit::name;
+  return name.find(wanted.lower_text) == std::string::npos ? Fit::none : Fit::part_of_name;
+}
+
+bool is_one_pad(const PadSighting& a, const PadSighting& b) {
+  if (pad_key(a) == pad_key(b)) return true;
+  const std::string& id = a.listing.info.unique_id;
+  return !id.empty() && lower(id) == lower(b.listing.info.unique_id);
+}
+
+std::string described(const PadSighting& s) {
+  const DeviceInfo& info = s.listing.info;
+  const bool has_id = !info.unique_id.empty();
+  return fmt::format("{} ({:04x}:{:04x}, {} {})", in_quotes(info.name), info.vendor, info.product,
+                     has_id ? "unique id" : "port",
+                     in_quotes(has_id ? info.unique_id : info.physical_path));
+}
+
+// A part of a name must mean one pad; all of `fitting` fit it.
+std::optional<Error> ambiguity(const std::vector<PadSighting>& fitting, const std::string& text) {
+  std::vector<PadSighting> different;
+  for (const PadSighting& s : fitting) {
+    if (std::ranges::none_of(different, [&s](const PadSighting& d) { return is_one_pad(d, s); }))
+      different.push_back(s);
+  }
+  if (different.size() < 2) return std::nullopt;
+  std::string names;
+  for (const PadSighting& s : different) names += (names.empty() ? "" : ", ") + described(s);
+  return Error{fmt::format("\"{}\" fits {} pads: {}", text, different.size(), names)};
+}
+
+}  // namespace
+
+std::string pad_key(const PadSighting& s) {
+  if (!s.listing.pad_path.empty()) return s.listing.pad_path;
+  return fmt::format("{} {}", s.driver->name, s.listing.node);
+}
+
+bool is_recording(const std::string& pad) {
+  std::error_code ignored;
+  return pad.ends_with(".hid") || std::filesystem::is_regular_file(pad, ignored);
+}
+
+Result<std::vector<PadSighting>> pad_sightings(const PadFiles& files, const PadWish& wish,
+                                               Drivers drivers,
+                                               std::span<const DriverEntry> table) {
+  if (is_recording(wish.pad)) return recorded_pads(files, wish, table);
+  const DriverEntry* only = nullptr;
+  if (!wish.driver.empty()) {
+    auto found = wished_driver(wish.driver, table);
+    if (!found) return found.error();
+    only = *found;
+  }
+  std::vector<PadSighting> sightings;
+  for (const DriverEntry& entry : table) {
+    if (only != nullptr ? &entry != only : !is_asked(entry, drivers, table)) continue;
+    for (DeviceListing& listing : entry.find())
+      sightings.push_back(judged(files, std::move(listing), entry));
+  }
+  ask_the_others(sightings);
+  std::ranges::stable_partition(sightings, &PadSighting::is_pad);
+  return sightings;
+}
+
+Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sightings,
+                                             const PadWish& wish) {
+  std::vector<PadSighting> pads;
+  std::ranges::copy_if(sightings, std::back_inserter(pads), &PadSighting::is_pad);
+  std::ranges::stable_sort(pads, std::less<>(), &PadSighting::driver);
+  if (wish.pad.empty()) return pads;
+
+  const Wanted wanted = wanted_of(wish.pad);
+  std::vector<PadSighting> fitting;
+  Fit best = Fit::none;
+  for (const PadSighting& s : pads) {
+    const Fit fit = fit_of(s, wanted);
+    if (fit == Fit::none || fit < best) continue;
+    if (fit > best) fitting.clear();
+    best = fit;
+    fitting.push_back(s);
+  }
+  if (best == Fit::part_of_name || best == Fit::name) {
+    if (auto error = ambiguity(fitting, wish.pad)) return *error;
+  }
+  if (best == Fit::none || best == Fit::node) return fitting;
+  // Drivers give one pad different names and ids; what fits one of them means the pad.
+  std::erase_if(pads, [&fitting](const PadSighting& s) {
+    return std::ranges::none_of(fitting,
+                                [&s](const PadSighting& f) { return pad_key(f) == pad_key(s); });
+  });
+  return pads;
+}
+
+Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sightings,
+                                             const PadWish& wish) {
+  auto pads = wished_pads(sightings, wish);
+  if (!pads) return pads.error();
+  const Wanted wanted = wanted_of(wish.pad);
+  std::vector<PadSighting> chosen;
+  for (PadSighting& s : *pads) {
+    const bool is_wished = wish.driver == kUsb || fit_of(s, wanted) == Fit::node;
+    const bool is_taken = s.driver->name == kUsb && !s.listing.kernel_driver.empty();
+    if (!s.problem.empty() || (is_taken && !is_wished)) continue;
+    const auto is_served = [&s](const PadSighting& c) {
+      return c.driver != s.driver && pad_key(c) == pad_key(s);
+    };
+    if (std::ranges::none_of(chosen, is_served)) chosen.push_back(std::move(s));
+  }
+  return chosen;
+}
+
+bool is_same_device(const DeviceInfo& a, const DeviceInfo& b) noexcept {
+  if (a.driver != b.driver || a.vendor != b.vendor || a.product != b.product) return false;
+  if (!a.unique_id.empty() || !b.unique_id.empty()) return a.unique_id == b.unique_id;
+  return a.physical_path == b.physical_path;
+}
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kQuiet = 30ms, kMaxUnrest = 200ms;  // one plugging in is a volley of events
+// After a failed opening; then the next driver that sees the pad has its turn.
+constexpr std::chrono::milliseconds kRetries[] = {100ms, 300ms, 1000ms};
+constexpr auto kSlowRetry = 5000ms;
+constexpr auto kShortLife = 1000ms, kMaxRest = 1000ms;  // of a device that goes and comes
+// How long a pad that was just plugged in may take until the preferred driver sees it, or until the
+// kernel has found its own driver for it.
+constexpr auto kDriverPatience = 700ms, kKernelPatience = 2000ms;
+// The kernel shows the node before its driver has asked the pad for its unique id.
+constexpr auto kIdPatience = 1000ms;
+constexpr auto kGonePatience = 3000ms;
+constexpr auto kProblemPatience = 1500ms;  // permissions come a moment after the node
+constexpr auto kIdleLook = 30'000ms, kLookWithoutPads = 5000ms, kLookWithoutUdev = 1000ms;
+
+// The same for what one driver sees of one device.
+std::string key_of(const PadSighting& s) {
+  const DeviceInfo& info = s.listing.info;
+  return fmt::format("{} {} {} {:04x}:{:04x} {}", s.driver->name, s.listing.node,
+                     s.listing.pad_path, info.vendor, info.product, info.unique_id);
+}
+
+std::string name_of(const PadSighting& s) {
+  const DeviceInfo& info = s.listing.info;
+  return fmt::format("{} ({}, {})", in_quotes(info.name), s.driver->name, s.listing.node);
+}
+
+// By drivers that ask the pad for its Bluetooth address.
+bool lacks_its_id(const PadSighting& s) {
+  const std::string& kernel = s.listing.kernel_driver;
+  const bool asks = kernel == "playstation" || kernel == "sony" || kernel == "nintendo";
+  return asks && s.listing.info.unique_id.empty();
+}
+
+int milliseconds_until(std::chrono::steady_clock::time_point time) {
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(time - std::chrono::steady_clock::now());
+  return static_cast<int>(std::clamp(left, 0ms, kIdleLook).count());
+}
+
+}  // namespace
+
+PadFinder::PadFinder(Options options, PadSlots& slots, PadIo& io, Remarks& remarks)
+    : options_(std::move(options)),
+      slots_(slots),
+      io_(io),
+      remarks_(remarks),
+      is_recording_(is_recording(options_.wish.pad)) {
+  if (options_.first) known_.push_back({*options_.first, true});
+}
+
+void PadFinder::stop() {
+  is_ending_ = true;
+  bell_.ring();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::optional<Error> PadFinder::start() {
+  if (bell_.fd() < 0) return Error{"no file descriptors are left for pads"};
+  std::promise<std::optional<Error>> first_look;
+  auto outcome = first_look.get_future();
+  thread_ =
+      std::thread([this, promise = std::move(first_look)]() mutable { run(std::move(promise)); });
+  return outcome.get();
+}
+
+void PadFinder::take_gone(std::uint64_t id, std::unique_ptr<Device> device) {
+  {
+    const std::lock_guard lock(mutex_);
+    gone_.push_back({id, std::move(device)});
+  }
+  bell_.ring();
+}
+
+void PadFinder::run(std::promise<std::optional<Error>> first_look) {
+  // Listens before it looks: what comes in between is not missed.
+  if (options_.changes_fd < 0 && !is_recording_) {
+    auto monitor = HotplugMonitor::create();
+    if (monitor)
+      monitor_.emplace(std::move(*monitor));
+    else
+      remarks_.add_once(monitor.error().message);
+  }
+  if (look(&first_look)) return;
+  is_first_look_ = false;
+  while (!is_ending_) {
+    wait();
+    if (is_ending_) return;
+    close_gone();
+    if (is_recording_) continue;
+    if (auto problem = look(nullptr)) remarks_.add_once(problem->message);
+  }
+}
+
+void PadFinder::wait() {
+  const int changes = monitor_ ? monitor_->fd() : options_.changes_fd;
+  pollfd fds[] = {{bell_.fd(), POLLIN, 0}, {changes, POLLIN, 0}};
+  ::poll(fds, 2, is_recording_ ? -1 : milliseconds_until(next_look_));
+  bell_.clear();
+  // Whatever the socket says, an overflow too, the devices are looked at.
+  if (fds[1].revents != 0) let_settle(changes);
+}
+
+void PadFinder::let_settle(int changes_fd) {
+  const Clock::time_point end = Clock::now() + kMaxUnrest;
+  pollfd changes{changes_fd, POLLIN, 0};
+  do {
+    std::uint64_t ignored = 0;
+    if (monitor_)
+      monitor_->has_changed();
+    else
+      static_cast<void>(!::read(changes_fd, &ignored, sizeof(ignored)));
+  } while (!is_ending_ && Clock::now() < end &&
+           ::poll(&changes, 1, static_cast<int>(kQuiet.count())) > 0);
+}
+
+void PadFinder::look_no_later_than(Clock::time_point time) {
+  next_look_ = std::min(next_look_, time);
+}
+
+// Tells whoever waits for the first look as soon as it is known whether the wish makes sense.
+std::optional<Error> PadFinder::look(std::promise<std::optional<Error>>* first_look) {
+  now_ = Clock::now();
+  const auto answer = [first_look](std::optional<Error> error) {
+    if (first_look != nullptr) first_look->set_value(error);
+    return error;
+  };
+  next_look_ = now_ + (monitor_ || options_.changes_fd >= 0 ? kIdleLook : kLookWithoutUdev);
+  if (open_.empty()) look_no_later_than(now_ + kLookWithoutPads);
+  auto sightings =
+      pad_sightings(options_.files, options_.wish, Drivers::preferred, options_.drivers);
+  if (!sightings) return answer(sightings.error());
+  remember(*sightings);
+  auto chosen = chosen_pads(*sightings, options_.wish);
+  if (!chosen) return answer(chosen.error());
+  if (is_recording_) {
+    if (chosen->empty())
+      return answer(Error{options_.wish.pad + ": none of its devices is a pad with a stick"});
+    awaited_ends_ = static_cast<int>(chosen->size());
+  }
+  answer(std::nullopt);
+  for (const PadSighting& s : *chosen) {
+    if (is_ending_) return std::nullopt;
+    consider(s);
+  }
+  tell_problems(*sightings, *chosen);
+  return std::nullopt;
+}
+
+void PadFinder::remember(std::vector<PadSighting>& sightings) {
+  for (auto& [key, candidate] : candidates_) candidate.is_seen = false;
+  for (PadSighting& s : sightings) {
+    const auto [entry, is_new] = candidates_.try_emplace(key_of(s));
+    Candidate& candidate = entry->second;
+    if (is_new) {
+      candidate.first_seen = now_;
+      candidate.is_from_start = is_first_look_;
+    }
+    candidate.is_seen = true;
+    const bool is_exhausted = candidate.failures > static_cast<int>(std::size(kRetries));
+    if (!is_exhausted || is_open(s) || now_ >= candidate.next_try) continue;
+    look_no_later_than(candidate.next_try);
+    if (s.problem.empty()) s.problem = candidate.problem;
+  }
+  std::erase_if(candidates_, [](const auto& entry) { return !entry.second.is_seen; });
+  for (Open& open : open_) {
+    if (candidates_.contains(open.key))
+      open.missing_since.reset();
+    else if (!open.missing_since)
+      open.missing_since = now_;
+  }
+}
+
+void PadFinder::close_gone() {
+  std::vector<Gone> gone;
+  {
+    const std::lock_guard lock(mutex_);
+    gone.swap(gone_);
+  }
+  for (const Gone& one : gone) forget(one.id);
+}
+
+void PadFinder::forget(std::uint64_t id) {
+  const auto open = std::ranges::find(open_, id, &Open::id);
+  if (open == open_.end()) return;
+  const Clock::time_point now = Clock::now();
+  known_[open->index].is_present = false;
+  if (const auto entry = candidates_.find(open->key); entry != candidates_.end()) {
+    Candidate& candidate = entry->second;
+    const bool was_short = now - open->since < kShortLife;
+    candidate.failures = was_short ? candidate.failures + 1 : 0;
+    candidate.next_try =
+        now + std::min<std::chrono::milliseconds>(candidate.failures * kRetries[0], kMaxRest);
+  }
+  open_.erase(open);
+  if (is_recording_) --awaited_ends_;
+}
+
+// Itself, also where its name or unique id came after its opening, or the same pad through another
+// driver.
+bool PadFinder::is_open(const PadSighting& sighting) const {
+  const std::string pad = pad_key(sighting);
+  return std::ranges::any_of(open_, [&](const Open& o) {
+    return o.pad_key == pad && (o.driver != sighting.driver || o.node == sighting.listing.node);
+  });
+}
+
+// Plugged in again before the I/O thread has noticed that it was out: it is to get its old index.
+bool PadFinder::is_awaiting_gone(const PadSighting& sighting) const {
+  return std::ranges::any_of(open_, [this, &info = sighting.listing.info](const Open& open) {
+    return open.missing_since && now_ < *open.missing_since + kGonePatience &&
+           is_same_device(known_[open.index].info, info);
+  });
+}
+
+std::chrono::milliseconds PadFinder::patience(const PadSighting& sighting,
+                                              const Candidate& candidate) const {
+  const std::string_view driver = sighting.driver->name;
+  if (lacks_its_id(sighting)) return kIdPatience;
+  if (is_recording_ || !options_.wish.driver.empty()) return 0ms;
+  if (driver == "usb") return kKernelPatience;
+  const DeviceInfo& info = sighting.listing.info;
+  const bool was_here = std::ranges::any_of(known_, [&info, driver](const Known& known) {
+    return known.info.driver == driver && known.info.vendor == info.vendor &&
+           known.info.product == info.product;
+  });
+  const auto built = std::ranges::find_if(
+      options_.drivers, [](const DriverEntry& entry) { return entry.find != nullptr; });
+  const bool is_preferred = sighting.driver == &*built;
+  return candidate.is_from_start || was_here || is_preferred ? 0ms : kDriverPatience;
+}
+
+void PadFinder::consider(const PadSighting& sighting) {
+  Candidate& candidate = candidates_.at(key_of(sighting));
+  if (candidate.is_refused || is_open(sighting)) return;
+  if (is_awaiting_gone(sighting)) {
+    look_no_later_than(now_ + kQuiet);
+    return;
+  }
+  const auto time =
+      std::max(candidate.next_try, candidate.first_seen + patience(sighting, candidate));
+  if (now_ < time) {
+    look_no_later_than(time);
+    return;
+  }
+  open(sighting, candidate);
+}
+
+void PadFinder::open(const PadSighting& sighting, Candidate& candidate) {
+  const Detach detach = options_.wish.driver == "usb" ? Detach::allowed : Detach::never;
+  auto device = sighting.driver->open(sighting.listing, detach);
+  const Clock::time_point now = Clock::now();
+  if (!device) {
+    const auto tries = static_cast<std::size_t>(candidate.failures++);
+    const bool is_exhausted = tries >= std::size(kRetries);
+    candidate.problem = device.error().message;
+    candidate.next_try = now + (is_exhausted ? kSlowRetry : kRetries[tries]);
+    look_no_later_than(is_exhausted ? now + kQuiet : candidate.next_try);  // for the next driver
+    if (!is_recording_) return;
+    remarks_.add_once(candidate.problem);
+    --awaited_ends_;
+    return;
+  }
+  PadSlot slot;
+  auto problem = set_up(sighting, **device, slot);
+  std::optional<std::uint16_t> index;
+  if (!problem) {
+    index = index_of((*device)->info());
+    if (!index)
+      problem = fmt::format("{}: more than {} different pads", name_of(sighting), slots_.size());
+  }
+  if (problem) {
+    candidate.is_refused = true;
+    if (!problem->empty()) remarks_.add_once(*problem);
+    if (is_recording_) --awaited_ends_;
+    return;
+  }
+  hand_over(sighting, std::move(*device), std::move(slot), *index);
+}
+
+// What a replay of a recording of this session will find, and the same for now. Else why not: empty
+// where nobody needs to know, since no pad was named and this is none.
+std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device& device,
+                                             PadSlot& slot) {
+  const DeviceInfo& info = device.info();
+  const std::optional<FactorySticks> factory = device.factory_sticks();
+  std::vector<std::string> remarks;
+  TraceDevice recorded = recorded_device(options_.files, info, factory, remarks);
+  for (const std::string& remark : remarks) remarks_.add_once(remark);
+  if (is_recording_) {
+    recorded.info.mapping = info.mapping;
+    const std::string own = trace_calibration(sighting.listing);
+    if (!own.empty() && !options_.files.calibration) recorded.calibration = own;
+  }
+  auto config = pad_config(options_.files, recorded, name_of(sighting));
+  if (!config) return config.error().message;
+  if (!config->is_usable) return options_.wish.pad.empty() ? "" : name_of(sighting) + ": no stick";
+  config->is_present = false;  // until `added` is read
+  config->has_factory_sticks = factory.has_value();
+  slot = {std::move(recorded), std::move(*config), {}};
+  slot.layout = slot.config.layout;
+  return std::nullopt;
+}
+
+// The index that it had before; among equal ones the first on the same port.
+std::optional<std::uint16_t> PadFinder::index_of(const DeviceInfo& info) const {
+  std::optional<std::uint16_t> on_other_port;
+  for (std::uint16_t i = 0; i < known_.size(); ++i) {
+    const DeviceInfo& known = known_[i].info;
+    if (known_[i].is_present || !is_same_device(known, info)) continue;
+    if (known.bus != info.bus || known.descriptor != info.descriptor) continue;
+    if (known.physical_path == info.physical_path) return i;
+    if (!on_other_port) on_other_port = i;
+  }
+  if (on_other_port) return on_other_port;
+  if (known_.size() >= slots_.size()) return std::nullopt;
+  return static_cast<std::uint16_t>(known_.size());
+}
+
+void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> device, PadSlot slot,
+                          std::uint16_t index) {
+  OpenedPad opened;
+  opened.has_report_ids = slot.config.layout->descriptor.numbered;
+  opened.is_recording = is_recording_;
+  opened.index = index;
+  opened.id = ++openings_;
+  opened.name = name_of(sighting);
+  if (index == known_.size()) {
+    known_.push_back({device->info(), true});
+    slots_[index] = std::move(slot);
+    slots_[index].device.index = index;
+  } else {
+    known_[index].info = device->info();  // it may hang on another port now
+    known_[index].is_present = true;
+  }
+  opened.device = std::move(device);
+  open_.push_back({opened.id, key_of(sighting), pad_key(sighting), sighting.listing.node,
+                   sighting.driver, index, Clock::now(), std::nullopt});
+  io_.take_over(std::move(opened));
+}
+
+// Of each wished pad that nothing can open the first driver's cause.
+void PadFinder::tell_problems(const std::vector<PadSighting>& sightings,
+                              const std::vector<PadSighting>& chosen) {
+  const auto wished = wished_pads(sightings, options_.wish);
+  if (!wished) return;
+  std::vector<std::string> settled;
+  for (const PadSighting& s : chosen) settled.push_back(pad_key(s));
+  for (const PadSighting& s : *wished) {
+    const std::string pad = pad_key(s);
+    if (s.problem.empty() || is_open(s) || std::ranges::count(settled, pad) > 0) continue;
+    const Candidate& candidate = candidates_.at(key_of(s));
+    const auto time = candidate.first_seen + kProblemPatience;
+    look_no_later_than(std::max(now_ + kLookWithoutPads, time));
+    if (!candidate.is_from_start && now_ < time) {
+      look_no_later_than(time);
+      continue;
+    }
+    remarks_.add_once(s.problem);
+    settled.push_back(pad);
+  }
+}
+
+}  // namespace gaitpad

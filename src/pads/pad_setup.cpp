@@ -1,0 +1,196 @@
+#include "gaitpad/pad_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "drivers/keyboard_device.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/drivers.h"
+#include "pads/calibration_store.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr double kLeastFactoryRange = 0.25;  // raw, from the centre to either end
+
+Result<CalibrationFile> calibration_of(const PadFiles& files, const TraceDevice& device,
+                                       const std::string& origin) {
+  // A file that is given for the user's pad would bend the keyboard's stick.
+  if (files.calibration && device.info.driver != kKeyboardDriver) return *files.calibration;
+  if (!device.calibration.empty())
+    return parse_calibration(device.calibration, origin + ": calibration");
+  auto found = find_calibration(files.calibration_folders, identity_of(device.info));
+  if (!found.problems.empty()) return Error{found.problems.front()};
+  return std::move(found.file);
+}
+
+// A calibration's mapping takes the place of the controls that config/pads names; what else it says
+// of the pad stays. Where it replaces the descriptor, SDL's numbers mean nothing.
+Result<PadLayout> layout_with(const PadFiles& files, DeviceInfo info, const std::string& mapping) {
+  const PadOverride* own = find_override(files.overrides, info);
+  if (mapping.empty() || (own && !own->replacement.descriptor.empty()))
+    return pad_layout(info, files.overrides);
+  PadOverrides rest;
+  if (own) {
+    rest.push_back(*own);
+    rest.back().order.reset();
+    rest.back().controls = {};
+  }
+  info.mapping = mapping;
+  return pad_layout(info, rest);
+}
+
+// Pads answer with what they like: a range that no stick has is not taken.
+void take_factory_axis(const FactoryAxis& own, AxisCalibration& axis) {
+  if (!std::isfinite(own.min) || !std::isfinite(own.centre) || !std::isfinite(own.max)) return;
+  const double min = std::max(own.min, -1.0), max = std::min(own.max, 1.0);
+  if (own.centre - min < kLeastFactoryRange || max - own.centre < kLeastFactoryRange) return;
+  axis = {min, own.centre, max};
+}
+
+void take_factory_sticks(const FactorySticks& own, Calibration& calibration) {
+  take_factory_axis(own.left_x, calibration.left.x);
+  take_factory_axis(own.left_y, calibration.left.y);
+  take_factory_axis(own.right_x, calibration.right.x);
+  take_factory_axis(own.right_y, calibration.right.y);
+}
+
+// The pad's own numbers are for its axes as they are.
+bool has_own_axes(const CalibrationFile& file) {
+  const Calibration& c = file.calibration;
+  return file.mapping.empty() && c.left.frame == StickFrame() && c.right.frame == StickFrame();
+}
+
+// -0 would come back from text as 0.
+void drop_negative_zeros(Calibration& calibration) {
+  for (StickCalibration* stick : {&calibration.left, &calibration.right}) {
+    for (AxisCalibration* axis : {&stick->x, &stick->y}) {
+      for (double* number : {&axis->min, &axis->centre, &axis->max}) *number += 0.0;
+    }
+    for (double* number : {&stick->inner, &stick->sideways, &stick->curve}) *number += 0.0;
+  }
+  for (TriggerCalibration* trigger : {&calibration.left_trigger, &calibration.right_trigger})
+    trigger->released += 0.0;
+}
+
+// Only what a replay reads back: whom the file was for does not matter any more.
+std::string text_of_calibration(const CalibrationFile& file) {
+  CalibrationFile own;
+  if (file.name.size() <= kMaxTraceTextBytes) own.name = file.name;
+  own.mapping = file.mapping;
+  own.calibration = file.calibration;
+  drop_negative_zeros(own.calibration);
+  return calibration_text(own);
+}
+
+CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& info,
+                                     const std::optional<FactorySticks>& factory,
+                                     std::vector<std::string>& remarks) {
+  if (files.calibration) return *files.calibration;
+  std::vector<std::string> folders = files.calibration_folders;
+  if (!files.user_calibrations.empty()) folders.insert(folders.begin(), files.user_calibrations);
+  FoundCalibration found = find_calibration(folders, identity_of(info));
+  for (const std::string& problem : found.problems)
+    remarks.push_back(problem + "; pads go on without this calibration");
+  const CalibrationFile& file = found.file;
+  const bool is_for_this_one = !file.unique_id.empty() || !file.port.empty();
+  if (factory && !is_for_this_one && has_own_axes(file))
+    take_factory_sticks(*factory, found.file.calibration);
+  return std::move(found.file);
+}
+
+// SDL's line where nothing better is known; one that no recording can hold or that does not fit the
+// descriptor is none.
+std::string sdl_line_of(const PadFiles& files, const DeviceInfo& info) {
+  DeviceInfo mapped = info;
+  if (info.mapping.empty() && info.driver != "sdl") {
+    if (find_override(files.overrides, info) != nullptr) return {};
+    mapped.mapping = sdl_mapping_of(info);
+  }
+  if (mapped.mapping.size() > kMaxTraceTextBytes) return {};
+  return pad_layout(mapped, files.overrides) ? mapped.mapping : std::string();
+}
+
+}  // namespace
+
+DeviceIdentity identity_of(const DeviceInfo& info) {
+  return {info.vendor, info.product, info.unique_id, info.physical_path, info.driver};
+}
+
+Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
+                                const std::string& map, const std::string& calibration) {
+  // A recording's pads are the same on every machine: none of the user's own files.
+  std::vector<std::string> folders = config_folders;
+  std::erase(folders, user_config_folder());
+  PadFiles files;
+  if (!map.empty()) {
+    auto own = load_pad_file(map);
+    if (!own) return own.error();
+    files.overrides = std::move(*own);
+  }
+  for (const std::string& path : config_files(folders, "pads")) {
+    auto file = load_pad_file(path);
+    if (!file) return file.error();
+    std::move(file->begin(), file->end(), std::back_inserter(files.overrides));
+  }
+  if (!calibration.empty()) {
+    auto file = load_calibration_file(calibration);
+    if (!file) return file.error();
+    files.calibration = std::move(*file);
+    drop_negative_zeros(files.calibration->calibration);
+  }
+  for (const std::string& folder : folders)
+    files.calibration_folders.push_back(folder + "/calibration");
+  files.user_calibrations = user_calibration_folder();
+  return files;
+}
+
+Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
+                             const std::string& origin) {
+  auto calibration = calibration_of(files, device, origin);
+  if (!calibration) return calibration.error();
+  auto layout = layout_with(files, device.info, calibration->mapping);
+  if (!layout) return Error{origin + ": " + layout.error().message};
+  PadConfig pad;
+  pad.is_usable = layout->is_pad;
+  pad.streams = layout->streams;
+  pad.is_fallback = device.info.driver == kKeyboardDriver;
+  pad.layout = std::make_shared<const PadLayout>(std::move(*layout));
+  pad.calibration = calibration->calibration;
+  return pad;
+}
+
+Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
+                                           const std::vector<TraceDevice>& devices,
+                                           const std::string& source) {
+  std::vector<PadConfig> pads;
+  for (const TraceDevice& device : devices) {
+    auto pad = pad_config(files, device, fmt::format("{}: device {}", source, device.index));
+    if (!pad) return pad.error();
+    pads.push_back(std::move(*pad));
+  }
+  return pads;
+}
+
+TraceDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
+                            const std::optional<FactorySticks>& factory,
+                            std::vector<std::string>& remarks) {
+  const CalibrationFile calibration = calibration_in_force(files, info, factory, remarks);
+  TraceDevice device;
+  device.info = info;
+  device.info.mapping =
+      calibration.mapping.empty() ? sdl_line_of(files, info) : calibration.mapping;
+  device.calibration = text_of_calibration(calibration);
+  for (std::string* text : {&device.info.driver, &device.info.name, &device.info.unique_id,
+                            &device.info.physical_path}) {
+    text->resize(std::min(text->size(), kMaxTraceTextBytes));
+  }
+  return device;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,156 @@
+#include "gaitpad/pads.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gaitpad {
+
+namespace {
+
+constexpr double kNearCentre = 0.1;    // of the calibrated deflection
+constexpr int kSilencesInSecond = 10;  // 100 ms each
+const PadState kAtRest;
+
+Stick calibrated(const Calibration& calibration, const PadState& state) noexcept {
+  return stick_position(calibration, vec2(state.axis[kLeftX], state.axis[kLeftY]),
+                        vec2(state.axis[kRightX], state.axis[kRightY]));
+}
+
+}  // namespace
+
+Pads::Pads(std::vector<PadConfig> configs, int rate_hz)
+    : silence_ticks_((rate_hz + kSilencesInSecond - 1) / kSilencesInSecond) {
+  pads_.resize(configs.size());
+  for (std::size_t i = 0; i < configs.size(); ++i) {
+    pads_[i].config = std::move(configs[i]);
+    if (pads_[i].config.is_present) add(static_cast<std::uint16_t>(i));
+  }
+}
+
+void Pads::set(std::uint16_t device, PadConfig& config) noexcept {
+  if (device >= pads_.size()) return;
+  std::swap(pads_[device].config, config);
+  pads_[device].config.is_present = false;
+}
+
+bool Pads::take(const Report& report) noexcept {
+  if (report.device >= pads_.size()) return false;
+  Pad& pad = pads_[report.device];
+  ++pad.reports;
+  const std::uint32_t buttons_before = pad.state.buttons;
+  if (!pad.config.layout || !decode(*pad.config.layout, report, pad.state)) return false;
+  pad.silent_ticks = 0;
+  pad.is_seen = true;
+  if (pad.is_awaited) pad.is_awaited = !is_near_centre(pad);
+  if (has_lost_its_driver() && can_take_over(pad)) driving_ = report.device;
+  if (report.device == driving_) count_presses(buttons_before, pad.state.buttons);
+  return true;
+}
+
+void Pads::add(std::uint16_t device) noexcept {
+  if (device >= pads_.size()) return;
+  Pad& pad = pads_[device];
+  pad.config.is_present = true;
+  pad.silent_ticks = 0;
+  if (pad.turn == 0) pad.turn = ++turns_;
+  if (!pad.config.is_usable) return;
+  if (driving_ == kNoDevice || (is_fallback(driving_) && !is_fallback(device))) driving_ = device;
+}
+
+void Pads::remove(std::uint16_t device) noexcept {
+  if (device >= pads_.size()) return;
+  Pad& lost = pads_[device];
+  lost.config.is_present = false;
+  lost.is_awaited = true;
+  lost.is_seen = false;
+  lost.state = PadState{};
+  if (has_lost_its_driver()) replace_driver();
+}
+
+// One that rests takes over at once: nobody may touch it for a while.
+void Pads::replace_driver() noexcept {
+  int first = 0;
+  for (std::size_t i = 0; i < pads_.size(); ++i) {
+    const Pad& pad = pads_[i];
+    if (!can_take_over(pad) || (first != 0 && pad.turn > first)) continue;
+    first = pad.turn;
+    driving_ = static_cast<std::uint16_t>(i);
+  }
+}
+
+void Pads::count_presses(std::uint32_t before, std::uint32_t now) noexcept {
+  for (int b = 0; b < kButtonCount; ++b) presses_[b] += (now & ~before) >> b & 1u;
+}
+
+bool Pads::is_silent(const Pad& pad) const noexcept {
+  return pad.config.streams && pad.silent_ticks >= silence_ticks_;
+}
+
+bool Pads::is_near_centre(const Pad& pad) const noexcept {
+  return glm::length(calibrated(pad.config.calibration, pad.state).left) <= kNearCentre;
+}
+
+bool Pads::can_take_over(const Pad& pad) const noexcept {
+  if (!pad.config.is_usable || !pad.config.is_present || pad.is_awaited || is_silent(pad))
+    return false;
+  // A fallback's stick counts already.
+  if (pad.config.is_fallback) return !is_other_plugged_in();
+  return pad.is_seen && is_near_centre(pad);
+}
+
+bool Pads::has_lost_its_driver() const noexcept {
+  return driving_ != kNoDevice && !pads_[driving_].config.is_present;
+}
+
+bool Pads::is_fallback(std::uint16_t device) const noexcept {
+  return pads_[device].config.is_fallback;
+}
+
+bool Pads::is_other_plugged_in() const noexcept {
+  return std::ranges::any_of(pads_, [](const Pad& pad) {
+    return pad.config.is_usable && pad.config.is_present && !pad.config.is_fallback;
+  });
+}
+
+Stick Pads::stick_of(const Pad& pad) const noexcept {
+  if (!pad.config.is_present || pad.is_awaited || is_silent(pad)) return {};
+  return calibrated(pad.config.calibration, pad.state);
+}
+
+// Of several the one that was plugged in first.
+Stick Pads::fallback_stick() const noexcept {
+  Stick stick;
+  int first = 0;
+  for (const Pad& pad : pads_) {
+    if (!pad.config.is_fallback || !pad.config.is_usable || (first != 0 && pad.turn > first))
+      continue;
+    const Stick own = stick_of(pad);
+    if (own.left == vec2(0.0)) continue;
+    first = pad.turn;
+    stick = own;
+  }
+  return stick;
+}
+
+Stick Pads::stick_of_tick() noexcept {
+  Stick stick;
+  if (driving_ != kNoDevice) stick = stick_of(pads_[driving_]);
+  if (const Stick other = fallback_stick(); stick.left == vec2(0.0) && other.left != vec2(0.0))
+    stick = other;
+  for (Pad& pad : pads_) pad.silent_ticks = std::min(pad.silent_ticks + 1, silence_ticks_);
+  return stick;
+}
+
+const PadState& Pads::driving_state() const noexcept {
+  return driving_ == kNoDevice ? kAtRest : pads_[driving_].state;
+}
+
+const PadConfig* Pads::driving_pad() const noexcept {
+  return driving_ == kNoDevice ? nullptr : &pads_[driving_].config;
+}
+
+std::uint64_t Pads::driving_reports() const noexcept {
+  return driving_ == kNoDevice ? 0 : pads_[driving_].reports;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# check.sh [--all | --since COMMIT | FILE.cpp ...]: checks the layout of every C++ file (clang-format 14) and runs
+# clang-tidy 14 with the checks of .clang-tidy over the sources that changed since COMMIT, default: since main.
+# --all: over all sources, half an hour of processor time. --format: the layout alone.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+all=0 tidy=1 since= files=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --all) all=1 ;;
+    --format) tidy=0 ;;
+    --since)
+      since=${2:?check.sh: --since needs a commit}
+      shift
+      ;;
+    -*)
+      echo "check.sh: unknown option $1" >&2
+      exit 2
+      ;;
+    *) files+=("$1") ;;
+  esac
+  shift
+done
+
+bash tools/install.sh clang-format clang-tidy
+# /usr/bin: the versions of Debian 12, whatever else is on PATH.
+git ls-files -z '*.cpp' '*.h' '*.c' | xargs -0 /usr/bin/clang-format --dry-run -Werror
+[ $tidy -eq 1 ] || exit 0
+
+sources() { git ls-files 'src/*.cpp' 'drivers/*.cpp' 'tools/*.cpp' ':!tools/fuzz' ':!tools/examples'; }
+# Changed sources, and for each changed header the first source that includes it.
+changed_sources() {
+  local name header
+  while read -r name; do
+    [ -f "$name" ] || continue
+    case $name in
+      src/*.cpp | drivers/*.cpp | tools/*.cpp) echo "$name" ;;
+      src/*.h | drivers/*.h)
+        header=${name#src/}
+        header=${header#include/}
+        sources | xargs grep -lF "\"$header\"" 2>/dev/null | head -n 1 || true
+        ;;
+    esac
+  done < <(git diff --name-only "$1")
+}
+if [ $all -eq 1 ]; then
+  mapfile -t files < <(sources)
+elif [ ${#files[@]} -eq 0 ]; then
+  if [ -z "$since" ]; then
+    for branch in origin/main main; do
+      since=$(git merge-base HEAD "$branch" 2>/dev/null) && break
+    done
+  fi
+  [ -n "$since" ] || since=HEAD
+  mapfile -t files < <(changed_sources "$since" | sort -u | grep -Fxf <(sources) || true)
+fi
+if [ ${#files[@]} -eq 0 ]; then
+  echo "clang-tidy: no source changed"
+  exit 0
+fi
+
+build=$root/build-tidy
+if [ ! -f "$build/compile_commands.json" ] ||
+  [ -n "$(find . -name CMakeLists.txt -newer "$build/compile_commands.json" -not -path './build*' -print -quit)" ]; then
+  mkdir -p "$build"
+  cmake -S . -B "$build" -G Ninja -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >"$build/build.log" 2>&1 || {
+    cat "$build/build.log" >&2
+    exit 1
+  }
+  touch "$build/compile_commands.json"
+fi
+# What the configuration leaves out (a driver without its library) has no command and is not checked.
+mapfile -t known < <(printf '%s\n' "${files[@]}" | while read -r name; do
+  grep -qF "\"file\": \"$root/$name\"" "$build/compile_commands.json" && echo "$name"; done)
+[ ${#known[@]} -gt 0 ] || { echo "clang-tidy: none of these sources is built here"; exit 0; }
+log=$build/tidy.log
+status=0
+printf '%s\0' "${known[@]}" |
+  xargs -0 -n 1 -P "$(nproc)" /usr/bin/clang-tidy -p "$build" --quiet >"$log" 2>"$build/tidy.err" || status=1
+if [ $status -ne 0 ]; then
+  grep -E 'error:|warning:' "$log" | sort -u >&2 || tail -n 20 "$build/tidy.err" >&2
+fi
+echo "clang-tidy: ${#known[@]} sources checked"
+exit $status

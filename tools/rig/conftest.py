@@ -62,6 +62,7 @@ def run_child(item, log):
     file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
     os.dup2(file, 1)
     os.dup2(file, 2)
+    sys.stdout.reconfigure(line_buffering=True)  # a test that is ended has told what it did
     status = FAILED
     try:
         reports = runtestprotocol(item, log=False, nextitem=None)

@@ -11,9 +11,9 @@ status=$?
 if [ $status -ne 0 ]; then
   grep -vE '(Passed|Skipped) +[0-9.]+ sec$|^ +Start +[0-9]+:' "$log" >&2
 fi
-skipped=$(grep -cE 'Skipped +[0-9.]+ sec$' "$log")
+skipped=$(grep -c ': Skipped$' "$folder/Testing/Temporary/LastTest.log")
 if [ "$skipped" -ne 0 ]; then
-  echo "$skipped tests were skipped, because:"
+  echo "$skipped cases were skipped, because:"
   awk '/: Skipped$/ { getline; print }' "$folder/Testing/Temporary/LastTest.log" |
     sed -E 's|/[^/"]*"|/..."|' | sort | uniq -c
 fi

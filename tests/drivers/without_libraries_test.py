@@ -1,6 +1,6 @@
 """Without any driver the program still builds and replays, and says what is missing. SDL2 stays, the window's.
 
-The drivers are built anew without their libraries, in `without_libraries` beside the program, and linked to the
+The devices' library is built anew without the drivers' libraries, in `without_libraries` beside the program, and linked to the
 program's other objects: nothing else knows which drivers there are.
 """
 import json
@@ -11,7 +11,7 @@ import subprocess
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DRIVERS = "libgaitpad_drivers.a"  # the archive, and gaitpad_drivers its target
+DEVICES = "libgaitpad_devices.a"  # the archive of the target gaitpad_devices, which holds the drivers
 LIBRARIES = {"hidraw": "libhidapi-hidraw", "evdev": "libevdev", "sdl": "libSDL2", "usb": "libusb-1.0"}
 
 
@@ -24,12 +24,12 @@ def without(program):
     """The program without drivers."""
     folder = program.parent / "without_libraries"
     off = [f"-DGAITPAD_{driver.upper()}=OFF" for driver in LIBRARIES]
-    built = run("bash", ROOT / "tools/build.sh", folder, "gaitpad_drivers", "-DCMAKE_BUILD_TYPE=Release",
+    built = run("bash", ROOT / "tools/build.sh", folder, "gaitpad_devices", "-DCMAKE_BUILD_TYPE=Release",
                 "-DCMAKE_OPTIMIZE_DEPENDENCIES=ON", *off)
     assert built.returncode == 0, built.stderr
     link = run("ninja", "-t", "commands", program.name, folder=program.parent).stdout.splitlines()[-1]
-    assert f" {DRIVERS} " in link
-    link = link.replace(f" {DRIVERS} ", f" {folder / DRIVERS} ").replace(" -o gaitpad ", f" -o {folder / 'gaitpad'} ")
+    assert f" {DEVICES} " in link
+    link = link.replace(f" {DEVICES} ", f" {folder / DEVICES} ").replace(" -o gaitpad ", f" -o {folder / 'gaitpad'} ")
     for library in set(LIBRARIES.values()) - {"libSDL2"}:
         assert f"/{library}.so" in link
         link = re.sub(rf" \S*/{library}\.so\S*", "", link)
@@ -40,7 +40,7 @@ def without(program):
 
 def test_nothing_else_knows_which_drivers_there_are():
     sources = [path for pattern in ("*.cpp", "*.h") for room in ("src", "tools", "drivers")
-               for path in (ROOT / room).rglob(pattern) if "GAITPAD_HAS_" in path.read_text()]
+               for path in (ROOT / room).rglob(pattern) if re.search(r"GAITPAD_HAS_(HIDRAW|USB|EVDEV|SDL)\b", path.read_text())]
     assert [path.parent.name for path in sources] == ["drivers"]
 
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "gaitpad/curve.h"
 #include "gaitpad/motion.h"
 #include "motion/leg_pose.h"
 
@@ -313,8 +314,7 @@ void add_sample(const PeriodicPose& at, JointFrames& world, CapturedCycle& cycle
 
 // About the vertical, then about the direction of view: the hips stand level.
 quat turned_to_left(const vec3& hips) {
-  const double level = std::sqrt(hips.x * hips.x + hips.z * hips.z);
-  return rotation_z(-gaitpad::atan2(hips.y, level)) *
+  return rotation_z(-gaitpad::atan2(hips.y, horizontal_length(hips))) *
          rotation_y(-heading_of(glm::cross(hips, kUp)));
 }
 
@@ -489,7 +489,7 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
     return flat.foot * link(out.skeleton, local, j.ankle, joint);
   };
   const auto is_short = [&](const vec3& v) {
-    return std::sqrt(v.x * v.x + v.z * v.z) < kShortestFoot_legs * leg_m;
+    return horizontal_length(v) < kShortestFoot_legs * leg_m;
   };
   if (is_short(from_ankle(j.toe)) && !is_short(from_ankle(j.toe_end))) j.toe = j.toe_end;
   if (is_short(from_ankle(j.toe))) {
@@ -584,13 +584,6 @@ Result<double> build_standing(const CapturedCycle& c, GaitCycle& out) {
 }
 
 namespace {
-
-// 0 below -width, x above +width, smooth between.
-double soft_positive(double x, double width) {
-  if (x <= -width) return 0.0;
-  if (x >= width) return x;
-  return (x + width) * (x + width) / (4.0 * width);
-}
 
 // Flexion that carries the ankle to `reach_m` from the hip; a nearly straight knee keeps the
 // captured angle, because there the distance says nothing.

@@ -2,8 +2,6 @@
 
 #include "gaitpad/gait_cycle.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 
@@ -212,7 +210,7 @@ Result<GaitCycle> gait_cycle(const Motion& motion) {
       if (Result<GaitCycle> again = cycle_of(twice)) cycle = std::move(again);
     }
   }
-  if (!cycle) return Error{fmt::format("{}: {}", motion.name, cycle.error().message)};
+  if (!cycle) return Error{motion.name + ": " + cycle.error().message};
   return cycle;
 }
 

@@ -125,12 +125,6 @@ double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at) {
   return std::min({p.heel_m.y, p.toe_m.y - model.toe_rest_m, p.toe_end_m.y - model.toe_end_rest_m});
 }
 
-double soft_positive(double x, double width) {
-  if (x <= -width) return 0.0;
-  if (x >= width) return x;
-  return (x + width) * (x + width) / (4.0 * width);
-}
-
 // The embedded default walk: published normative joint curves on the adult of procedural_skeleton.
 // Sources. Hip, knee, ankle, pelvic tilt: six-harmonic fits of an adult data set (gaitutils,
 // normal.gcd). Pelvic obliquity and rotation: fits of Schwartz, Rozumalski & Trost 2008 (free

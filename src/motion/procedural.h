@@ -1,5 +1,6 @@
 // The embedded adult: bones in Drillis and Contini's fractions of the stature, arms hanging.
 #pragma once
+#include "gaitpad/curve.h"
 #include "gaitpad/gait_cycle.h"
 #include "motion/leg_pose.h"
 
@@ -29,8 +30,5 @@ CycleSample mirrored_pelvis(const CycleSample& body);  // pelvis alone, legs unt
 LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at);
 // How far the foot's lowest point is above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);
-
-// 0 below -width, x above +width, smooth between.
-double soft_positive(double x, double width);
 
 }  // namespace gaitpad

@@ -1,7 +1,5 @@
 // The body above the legs on another skeleton: spine, neck, arms and what has the same name.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 
@@ -55,25 +53,22 @@ class UpperBodyTurn {
 namespace {
 
 std::vector<vec3> standing_places(const GaitCycle& cycle) {
-  const auto world = world_rotations(cycle.skeleton, cycle.standing_local.data());
-  std::vector<vec3> at(world.size(), vec3(0.0));
-  for (std::size_t j = 1; j < at.size(); ++j) {
-    const Joint& joint = cycle.skeleton.joints[j];
-    at[j] = at[joint.parent] + world[joint.parent] * joint.offset_m;
-  }
-  return at;
+  const auto world = std::make_unique<JointFrames>();
+  forward_kinematics(cycle.skeleton, cycle.standing_local, *world);
+  const auto& at = world->position_m;
+  return {at.begin(), at.begin() + static_cast<std::ptrdiff_t>(cycle.skeleton.joints.size())};
 }
 
 // One skeleton's parts and places.
 struct Part {
   const GaitCycle& cycle;
   std::vector<vec3> at;
-  BodyJoints joints;
+  UpperBodyJoints joints;
   std::vector<int> neck;  // the head is its last
   explicit Part(const GaitCycle& c)
       : cycle(c),
         at(standing_places(c)),
-        joints(find_body(c.skeleton, {c.leg[0].joints, c.leg[1].joints}, c.pelvis, at)),
+        joints(find_upper_body(c.skeleton, {c.leg[0].joints, c.leg[1].joints}, c.pelvis, at)),
         neck(joints.neck) {
     if (joints.head >= 0) neck.push_back(joints.head);
   }
@@ -243,11 +238,6 @@ vec3 bone_of(const GaitCycle& cycle, int joint, int end) {
   return v;
 }
 
-quat between(const quat& a, const quat& b, double share) {
-  const quat near = glm::dot(a, b) < 0.0 ? -b : b;
-  return share > 0.0 ? glm::normalize(a * (1.0 - share) + near * share) : a;
-}
-
 }  // namespace
 
 UpperBody upper_body(const GaitCycle& source, const GaitCycle& character) {
@@ -257,7 +247,7 @@ UpperBody upper_body(const GaitCycle& source, const GaitCycle& character) {
 void stand_alike(const UpperBody& body, GaitCycle& character) {
   constexpr double kLeastBone_m = 1e-4;
   const auto& joints = character.skeleton.joints;
-  const auto stood = world_rotations(character.skeleton, character.standing_local.data());
+  const auto stood = world_rotations(character.skeleton, character.standing_local);
   std::vector<quat> world = stood;
   for (std::size_t j = 1; j < joints.size(); ++j) {
     const quat above = world[joints[j].parent];
@@ -279,18 +269,20 @@ UpperBodyTurn::UpperBodyTurn(const GaitCycle& source, const UpperBody& body,
                              const GaitCycle& character)
     : source_(source),
       body_(body),
-      before_(world_rotations(source.skeleton, source.standing_local.data())),
-      standing_(world_rotations(character.skeleton, character.standing_local.data())) {}
+      before_(world_rotations(source.skeleton, source.standing_local)),
+      standing_(world_rotations(character.skeleton, character.standing_local)) {}
 
 void UpperBodyTurn::set_sample(int i) {
   const std::size_t joints = source_.skeleton.joints.size();
-  after_ = world_rotations(source_.skeleton, source_.local.data() + i * joints);
+  after_ = world_rotations(source_.skeleton, std::span(source_.local).subspan(i * joints, joints));
 }
 
 quat UpperBodyTurn::world(int joint) const {
   const Counterpart& from = body_.from[joint];
   const auto turn = [this](int j) { return after_[j] * glm::conjugate(before_[j]); };
-  return between(turn(from.lower), turn(from.upper), from.share) * standing_[joint];
+  const quat lower = turn(from.lower);
+  const quat turned = from.share > 0.0 ? nlerp(lower, turn(from.upper), from.share) : lower;
+  return turned * standing_[joint];
 }
 
 namespace {
@@ -348,7 +340,7 @@ Result<GaitCycle> body_of(const Motion& character) {
   for (const Side side : {kLeftSide, kRightSide}) take_over_foot(character, side, pose.leg[side]);
   GaitCycle body;
   const Result<double> floor_m = build_standing(pose, body);
-  if (!floor_m) return Error{fmt::format("{}: {}", character.name, floor_m.error().message)};
+  if (!floor_m) return Error{character.name + ": " + floor_m.error().message};
   return body;
 }
 

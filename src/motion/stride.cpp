@@ -2,14 +2,14 @@
 
 #include "motion/stride.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "base/numeric.h"
+#include "base/text.h"
 #include "gaitpad/motion.h"
 
 namespace gaitpad {
@@ -102,8 +102,6 @@ constexpr double kSlowest_legs_s = 0.12;
 constexpr double kSharpestTurn_rad = 60.0 * kDegree;
 constexpr double kLoop_legs = 0.12;  // mean distance of first and last pose in a looping clip
 
-double horizontal(const vec3& v) { return std::sqrt(v.x * v.x + v.z * v.z); }
-
 // Running mean over a raised cosine, cut off at the range's ends.
 std::vector<vec3> smoothed(const std::vector<vec3>& p, const FrameRange& range,
                            double half_frames) {
@@ -130,7 +128,7 @@ std::vector<double> speeds(const std::vector<vec3>& p, const FrameRange& range, 
   std::vector<double> speed(n);
   for (int i = 0; i < n; ++i) {
     const int a = std::max(i - 1, 0), b = std::min(i + 1, n - 1);
-    speed[i] = horizontal(track[b] - track[a]) / ((b - a) * frame_s);
+    speed[i] = horizontal_length(track[b] - track[a]) / ((b - a) * frame_s);
   }
   return speed;
 }
@@ -169,7 +167,7 @@ bool is_swing(const BodyTrack& track, const std::vector<vec3>& ankle, const Movi
               int offset, double frame_s) {
   const double time_s = (run.last - run.first + 1) * frame_s;
   const double legs =
-      horizontal(ankle[offset + run.last] - ankle[offset + run.first]) / track.leg_m;
+      horizontal_length(ankle[offset + run.last] - ankle[offset + run.first]) / track.leg_m;
   return time_s >= kShortestSwing_s && time_s <= kLongestSwing_s && legs >= kShortestSwing_legs &&
          legs <= kLongestSwing_legs;
 }
@@ -203,10 +201,7 @@ double fast_speed(const BodyTrack& track, const std::vector<FrameRange>& ranges,
       all.insert(all.end(), some.begin(), some.end());
     }
   }
-  if (all.empty()) return 0.0;
-  const auto at = all.begin() + static_cast<std::ptrdiff_t>((all.size() - 1) * 95 / 100);
-  std::nth_element(all.begin(), at, all.end());
-  return *at;
+  return all.empty() ? 0.0 : percentile(std::move(all), 95);
 }
 
 // Linear between frames.
@@ -283,7 +278,7 @@ std::optional<Candidate> candidate(const BodyTrack& track, const FrameRange& ran
   const double stop = w.start + w.period;
   w.turn_rad = heading_at(track, stop) - heading_at(track, w.start);
   const vec3 travel = point_at(track.pelvis_m, stop) - point_at(track.pelvis_m, w.start);
-  const double legs = horizontal(travel) / track.leg_m;
+  const double legs = horizontal_length(travel) / track.leg_m;
   c.speed_legs_s = legs / (w.period * frame_s);
   c.seam_legs = seam(track, range, w.start, w.period);
   const bool is_walk = w.period * frame_s <= kLongestStride_s && legs >= kShortestStride_legs &&
@@ -368,11 +363,11 @@ std::string why_no_stride(const BodyTrack& track, double frame_s) {
   for (const FrameRange& range : unbroken_ranges(track, frame_s)) {
     frames = std::max(frames, static_cast<std::size_t>(range.last - range.first + 1));
     for (int f = range.first; f <= range.last; ++f) {
-      moved_m = std::max(moved_m, horizontal(track.pelvis_m[f] - track.pelvis_m[range.first]));
+      moved_m = std::max(moved_m, horizontal_length(track.pelvis_m[f] - track.pelvis_m[range.first]));
     }
   }
-  return fmt::format("holds no full walking stride of both feet: the hips go {:.2f} m in {:.1f} s",
-                     moved_m, static_cast<double>(frames) * frame_s);
+  return "holds no full walking stride of both feet: the hips go " + fixed(moved_m, 2) + " m in " +
+         fixed(static_cast<double>(frames) * frame_s, 1) + " s";
 }
 
 // How much farther one half of the stride goes than the other, share of the stride.
@@ -380,14 +375,8 @@ double unsteadiness(const BodyTrack& track, const StrideWindow& w) {
   const vec3 start = point_at(track.pelvis_m, w.start);
   const vec3 middle = point_at(track.pelvis_m, w.start + 0.5 * w.period);
   const vec3 end = point_at(track.pelvis_m, w.start + w.period);
-  const double first = horizontal(middle - start), second = horizontal(end - middle);
+  const double first = horizontal_length(middle - start), second = horizontal_length(end - middle);
   return std::abs(second - first) / (first + second);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Small seam, straight and steady, neither hurried nor dawdling for this motion, room to fade the

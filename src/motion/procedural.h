@@ -1,4 +1,5 @@
-// The embedded adult: bones in Drillis and Contini's fractions of the stature, arms hanging.
+// The embedded adult, and legs given as angles in the plane of travel: what the procedural and the
+// key-framed walks are made of.
 #pragma once
 #include "gaitpad/curve.h"
 #include "gaitpad/gait_cycle.h"
@@ -6,11 +7,9 @@
 
 namespace gaitpad {
 
-// Skeleton and leg models; every joint's standing rotation is identity.
+// Skeleton and leg models: bones in Drillis and Contini's fractions of the stature, arms hanging,
+// every joint's standing rotation identity.
 GaitCycle procedural_body();
-
-// Legs given as angles in the plane of travel: what the procedural and the key-framed walk are made
-// of.
 
 // Segment rotations about x in the travel frame (+ turns the lower end backwards), toe against
 // foot.
@@ -18,9 +17,9 @@ struct SagittalLeg {
   double thigh, shank, foot, toe;
 };
 
-// The right leg below the pelvis that `body` has. The leg's plane is tilted about the line of
-// travel so that the ankle stays `track_m` beside the middle line; the knee's hinge stays across
-// the line of travel, the foot points ahead and never rolls. Angles and toe only.
+// Angles and toe of the right leg below the pelvis of `body`. The leg's plane is tilted about the
+// line of travel so that the ankle stays `track_m` beside the middle line. The knee's hinge stays
+// across the line of travel; the foot points ahead and never rolls.
 LegSample right_leg_in_plane(const LegModel& model, const CycleSample& body,
                              const SagittalLeg& plane, double track_m);
 

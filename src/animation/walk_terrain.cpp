@@ -187,14 +187,8 @@ double slope_share(const Terrain& terrain, const Step& step, const Stretch& stan
   return 1.0 / (1.0 + kSlopeShortens * std::abs(rise) / length);
 }
 
-}  // namespace
-
-double height_on(const FootPlane& plane, const vec3& place_m) noexcept {
-  const vec3& n = plane.normal;
-  return plane.place_m.y -
-         (n.x * (place_m.x - plane.place_m.x) + n.z * (place_m.z - plane.place_m.z)) / n.y;
-}
-
+// The best fit to the ground under a sole: the ground is as far above the plane as below it. Ground
+// beyond the risers around `piece` does not count.
 FootPlane plane_under(const Terrain& terrain, const LegBuild& leg, const vec3& heel_m,
                       double yaw_rad, const Stretch& piece) noexcept {
   const quat yaw = rotation_y(yaw_rad);
@@ -228,6 +222,14 @@ FootPlane plane_under(const Terrain& terrain, const LegBuild& leg, const vec3& h
   plane.normal = glm::normalize(kUp - along * grade - across * bank);
   plane.tilt = rotation_between(kUp, plane.normal);
   return plane;
+}
+
+}  // namespace
+
+double height_on(const FootPlane& plane, const vec3& place_m) noexcept {
+  const vec3& n = plane.normal;
+  return plane.place_m.y -
+         (n.x * (place_m.x - plane.place_m.x) + n.z * (place_m.z - plane.place_m.z)) / n.y;
 }
 
 bool crosses_riser(const Terrain& terrain, const FootPlane& a, const FootPlane& b) noexcept {

@@ -2,7 +2,7 @@
 
 #include "gaitpad/anatomy.h"
 #include "gaitpad/motion_file.h"
-#include "motion/bvh_text.h"
+#include "files/bvh_text.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

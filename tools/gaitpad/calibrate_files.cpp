@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "base/files.h"
-#include "base/text.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
 #include "stick/calibration_import.h"

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "files/bvh_text.h"
 #include "gaitpad/motion.h"
 #include "gaitpad/motion_file.h"
-#include "motion/bvh_text.h"
 #include "tests/shared_data.h"
 
 namespace gaitpad {

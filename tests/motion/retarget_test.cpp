@@ -3,7 +3,7 @@
 
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
-#include "motion/bvh_text.h"
+#include "files/bvh_text.h"
 #include "motion/leg_pose.h"
 #include "motion/made_motion.h"
 #include "tests/shared_data.h"

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/files.h"
 #include "gaitpad/config_files.h"
 #include "pads/calibration_store.h"
 #include "stick/pad_analysis.h"

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "motion/bvh_text.h"
+#include "files/bvh_text.h"
 
 namespace gaitpad {
 

@@ -3,7 +3,7 @@
 
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
-#include "motion/bvh_text.h"
+#include "files/bvh_text.h"
 #include "motion/leg_pose.h"
 #include "motion/made_motion.h"
 #include "tests/shared_data.h"
@@ -31,6 +31,12 @@ Motion grown(Motion m, double factor) {
 
 // Of a skeleton alone the lowest joint counts as the sole; the procedural toe has some flesh below.
 vec3 flesh(const GaitCycle& source) { return source.leg[0].toe_end_rest_m * kUp; }
+
+// World rotations of all joints in a cycle's sample i.
+std::vector<quat> sample_rotations(const GaitCycle& c, int i) {
+  const std::size_t joints = c.skeleton.joints.size();
+  return world_rotations(c.skeleton, std::span(c.local).subspan(i * joints, joints));
+}
 
 TEST(CycleOnSkeleton, OnItsOwnSkeletonIsTheSameWalk) {
   const GaitCycle source = procedural_gait();
@@ -88,10 +94,8 @@ TEST(CycleOnSkeleton, ArmsOfATPoseHangAsInTheSource) {
   ASSERT_TRUE(cycle);
   const int forearm = source.skeleton.find("LeftForeArm");
   for (int i = 0; i < kCycleSamples; i += 16) {
-    const auto from =
-        world_rotations(source.skeleton, source.local.data() + i * source.skeleton.joints.size());
-    const auto to =
-        world_rotations(cycle->skeleton, cycle->local.data() + i * cycle->skeleton.joints.size());
+    const auto from = sample_rotations(source, i);
+    const auto to = sample_rotations(*cycle, i);
     const vec3 bone = source.skeleton.joints[forearm].offset_m;
     const int arm = source.skeleton.joints[forearm].parent;
     EXPECT_LT(glm::distance(from[arm] * bone, to[arm] * bone), 1e-9) << i;
@@ -100,7 +104,7 @@ TEST(CycleOnSkeleton, ArmsOfATPoseHangAsInTheSource) {
 
 // A bone's direction at sample i of a cycle, by the joints' names.
 vec3 bone(const GaitCycle& c, int i, const std::string& from, const std::string& to) {
-  const auto world = world_rotations(c.skeleton, c.local.data() + i * c.skeleton.joints.size());
+  const auto world = sample_rotations(c, i);
   vec3 v(0.0);
   for (int j = c.skeleton.find(to); j != c.skeleton.find(from); j = c.skeleton.joints[j].parent) {
     v += world[c.skeleton.joints[j].parent] * c.skeleton.joints[j].offset_m;
@@ -111,8 +115,8 @@ vec3 bone(const GaitCycle& c, int i, const std::string& from, const std::string&
 // How far a joint has turned away from the standing pose, in the world.
 quat turn_of(const GaitCycle& c, int i, const std::string& name) {
   const auto joint = static_cast<std::size_t>(c.skeleton.find(name));
-  const auto now = world_rotations(c.skeleton, c.local.data() + i * c.skeleton.joints.size());
-  return now[joint] * glm::conjugate(world_rotations(c.skeleton, c.standing_local.data())[joint]);
+  const auto now = sample_rotations(c, i);
+  return now[joint] * glm::conjugate(world_rotations(c.skeleton, c.standing_local)[joint]);
 }
 
 double angle_between_deg(const quat& a, const quat& b) {

@@ -34,11 +34,11 @@ ROOMS = {
 }
 # The public headers, src/include/gaitpad/NAME.h, by the room whose functions they declare.
 PUBLIC = {
-    "src/base": ["hash", "limbs", "math", "result"],
+    "src/base": ["curve", "hash", "limbs", "math", "result"],
     "src/motion": ["anatomy", "flight", "gait_cycle", "motion", "skeleton"],
     "src/control": ["control", "gait_params", "stick", "style"],
-    "src/animation": ["curve", "ik", "terrain", "walk", "walk_model"],
-    "src/files": ["bvh", "config_files", "motion_file", "terrain_file"],
+    "src/animation": ["ik", "terrain", "walk", "walk_model"],
+    "src/files": ["bvh", "config_files", "gltf", "motion_file", "terrain_file"],
     "src/hid": ["decode", "descriptor", "driver", "pad_map", "report", "trace"],
     "src/stick": ["calibration"],
     "drivers": ["drivers"],

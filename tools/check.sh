@@ -74,12 +74,21 @@ fi
 mapfile -t known < <(printf '%s\n' "${files[@]}" | while read -r name; do
   grep -qF "\"file\": \"$root/$name\"" "$build/compile_commands.json" && echo "$name"; done)
 [ ${#known[@]} -gt 0 ] || { echo "clang-tidy: none of these sources is built here"; exit 0; }
-log=$build/tidy.log
+# clang 14 cannot parse some algorithms of libstdc++ 12's <ranges>; a source with such an error in a system
+# header is named and not judged. Every other finding is a failure.
+export build
+check_one() {
+  local out
+  out=$(/usr/bin/clang-tidy -p "$build" --quiet "$1" 2>/dev/null) && return 0
+  if grep -qE '^/usr/.*\[clang-diagnostic-error\]' <<<"$out"; then
+    echo "clang-tidy: $1 cannot be parsed by clang 14, not checked"
+    return 0
+  fi
+  grep -E 'error:|warning:' <<<"$out" | sort -u >&2
+  return 1
+}
+export -f check_one
 status=0
-printf '%s\0' "${known[@]}" |
-  xargs -0 -n 1 -P "$(nproc)" /usr/bin/clang-tidy -p "$build" --quiet >"$log" 2>"$build/tidy.err" || status=1
-if [ $status -ne 0 ]; then
-  grep -E 'error:|warning:' "$log" | sort -u >&2 || tail -n 20 "$build/tidy.err" >&2
-fi
-echo "clang-tidy: ${#known[@]} sources checked"
+printf '%s\0' "${known[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'check_one "$1"' check || status=1
+echo "clang-tidy: ${#known[@]} sources looked at"
 exit $status

@@ -26,11 +26,11 @@ quat between(const quat& from, const quat& to, double share) noexcept;
 using HandPlaces = std::array<vec3, 2>;
 
 // --- walk_body_spine.cpp
-bool is_spine_even(const BodyParams& now) noexcept;
+bool is_spine_even(const UpperBodyParams& now) noexcept;
 void pose_spine(const BodyModel& body, const Skeleton& skeleton, const SpineWeights& weight,
                 Pose& pose, JointFrames& world) noexcept;
 // --- walk_body_arm.cpp
-bool is_arm_free(const BodyParams& now, Side side) noexcept;  // swings, with even weights
+bool is_arm_free(const UpperBodyParams& now, Side side) noexcept;  // swings, with even weights
 vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept;
 struct Shoulders {
   vec3 middle_m{0.0};        // between them
@@ -126,7 +126,7 @@ void write_spine(const BodyModel& body, const Skeleton& skeleton, const Spine& s
 
 }  // namespace
 
-bool is_spine_even(const BodyParams& now) noexcept {
+bool is_spine_even(const UpperBodyParams& now) noexcept {
   return std::abs(now.spine_weight[kLowerSpine] - now.spine_weight[kUpperSpine]) < kEvenBodySpread;
 }
 
@@ -204,7 +204,7 @@ Arm arm_of(const ArmBuild& build, const Skeleton& skeleton, const JointFrames& w
   return arm;
 }
 
-bool has_uneven_weights(const BodyParams& now, Side side) noexcept {
+bool has_uneven_weights(const UpperBodyParams& now, Side side) noexcept {
   const ArmWeights& weight = now.arm_weight[side];
   const auto [low, high] = std::minmax_element(weight.begin(), weight.end());
   return *high - *low >= kEvenBodySpread;
@@ -339,7 +339,7 @@ void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames
 
 }  // namespace
 
-bool is_arm_free(const BodyParams& now, Side side) noexcept {
+bool is_arm_free(const UpperBodyParams& now, Side side) noexcept {
   return !has_uneven_weights(now, side) && now.hand[side].carry <= 0.0 &&
          now.hand[side].rail <= 0.0;
 }
@@ -370,7 +370,7 @@ Shoulders shoulders_of(const WalkModel& model, const JointFrames& world) noexcep
 void pose_arm(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
               const vec3& own_m, Pose& pose, JointFrames& world) noexcept {
   const ArmBuild& build = model.body.arm[side];
-  const BodyParams& now = state.body.now;
+  const UpperBodyParams& now = state.body.now;
   Arm arm = arm_of(build, model.cycle.skeleton, world);
   if (has_uneven_weights(now, side)) {
     stiffen(build, now.arm_weight[side], arm);
@@ -488,7 +488,7 @@ constexpr double kRailSmoothing = 0.06;
 
 // Where the values are all at their goals already, this costs one comparison.
 void settle(const Tick& tick, BodyState& body) noexcept {
-  const BodyParams& goal = tick.params.body;
+  const UpperBodyParams& goal = tick.params.body;
   const double tau = kSmoothing * tick.model.time_scale;
   if (!(goal == body.goal)) {
     body.goal = goal;
@@ -505,7 +505,7 @@ void settle(const Tick& tick, BodyState& body) noexcept {
     now[i] = is_there ? to[i] : value.x;
     body.per_s[i] = is_there ? 0.0 : value.v;
   }
-  body.now = std::bit_cast<BodyParams>(now);
+  body.now = std::bit_cast<UpperBodyParams>(now);
 }
 
 // The arms swing as far as the speed is above or below the data's (Boulic et al. 1990: amplitude
@@ -588,7 +588,7 @@ void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noex
 }
 
 void pose_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
-  const BodyParams& now = state.body.now;
+  const UpperBodyParams& now = state.body.now;
   const Skeleton& skeleton = model.cycle.skeleton;
   const bool moves_spine = model.body.spine.size() > 1 && !is_spine_even(now);
   std::array<bool, 2> moves_arm;

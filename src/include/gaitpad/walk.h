@@ -16,12 +16,12 @@ struct WalkModel;
 struct WalkState;
 enum class IkMode : unsigned char;
 
-// BodyParams are numbers alone, so they can be smoothed one like the other.
-using BodyValues = std::array<double, sizeof(BodyParams) / sizeof(double)>;
+// UpperBodyParams are numbers alone, so they can be smoothed one like the other.
+using BodyValues = std::array<double, sizeof(UpperBodyParams) / sizeof(double)>;
 
 // Plain, trivially copyable.
 struct BodyState {
-  BodyParams goal, now;                   // asked for; smoothed
+  UpperBodyParams goal, now;              // asked for; smoothed
   BodyValues per_s{};                     // rate of `now`
   int unsettled_ticks = 0;                // until `now` is `goal`
   std::array<double, 2> swing{1.0, 1.0};  // factor on the data's arm swing in this tick

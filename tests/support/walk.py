@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 
-import bvh_fk
+from support import bvh as bvhs
 
 SIDES = ("left", "right")
 COLUMNS = (
@@ -37,19 +37,6 @@ def read_frames(path):
     return header, columns
 
 
-def trace_changes(path):
-    """Times of the commands and plug events of a trace, seconds from the first event."""
-    times, first = [], None
-    with open(path, encoding="utf-8", errors="replace") as file:
-        for line in file:
-            if line[:2] in ("E:", "C:", "H:"):
-                time = float(line.split()[1])
-                first = time if first is None else first
-                if line[:2] != "E:":
-                    times.append(time - first)
-    return times
-
-
 class Walk:
     """One character's exported walk. Positions in metres, world; index of axis 0 is the tick."""
 
@@ -60,13 +47,13 @@ class Walk:
         with open(name("summary", "json"), encoding="utf-8") as file:
             self.summary = json.load(file)
         self.header, self.col = read_frames(name("frames", "csv"))
-        self.bvh = bvh_fk.read_bvh(name("pose", "bvh"))
+        self.bvh = bvhs.read_bvh(name("pose", "bvh"))
         self.ticks = len(self.col["tick"])
         self.rate = float(self.summary["rate_hz"])
         scale = float(self.summary["metres_per_unit"])
-        self.local = bvh_fk.local_rotations(self.bvh)
-        self.position, self.rotation = bvh_fk.forward_kinematics(
-            self.bvh.parents, bvh_fk.translations(self.bvh) * scale, self.local)
+        self.local = bvhs.local_rotations(self.bvh)
+        self.position, self.rotation = bvhs.forward_kinematics(
+            self.bvh.parents, bvhs.translations(self.bvh) * scale, self.local)
         self.leg_length = float(self.summary["leg_length_m"])
         self._find_legs()
         self._find_points()

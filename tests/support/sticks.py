@@ -5,6 +5,8 @@ A second derivation beside tests/stick/made_stick.h, in other words and with ano
 import math
 import random
 
+from support import traces
+
 FORWARD, RIGHT, BACK, LEFT = (0, 1), (1, 0), (0, -1), (-1, 0)
 
 
@@ -83,27 +85,19 @@ def counts(value, bits):
 
 def trace_text(left, right, steps, bits=16, serial="", swap=lambda x, y: (x, y), name="made pad", product=0x0002):
     """`swap`: from the housing's x right, y forward to what the pad reports as such (left stick)."""
-    own = descriptor(bits)
-    lines = [f"R: {len(own)} " + " ".join(f"{b:02x}" for b in own), f"N: {name}", "P: made", f"I: 3 1209 {product:04x}"]
-    if serial:
-        lines.append(f"U: {serial}")
+    text = traces.device(descriptor(bits), name, ids=f"3 1209 {product:04x}", physical="made", unique=serial)
     for time, place, side in steps:
         axes = [*swap(*left.position(time, place, side)), *right.position(time, place, side)]
         axes[1], axes[3] = -axes[1], -axes[3]  # HID's y grows towards the thumb's owner
         squeeze = round(255 * max(0.0, place[1]))
         data = b"".join(counts(a, bits).to_bytes(bits // 8, "little") for a in axes) + bytes([squeeze, squeeze, 0])
-        micros = round(time * 1e6)
-        lines.append(f"E: {micros // 1000000:06d}.{micros % 1000000:06d} {len(data)} " + " ".join(f"{b:02x}" for b in data))
-    return "\n".join(lines) + "\n"
+        text += traces.report(time, data)
+    return text
 
 
-def main():
-    """The bundled recording of a worn left and a good right stick, on standard output."""
+def worn_trace():
+    """config/traces/worn.hid, the bundled recording of a worn left and a good right stick."""
     worn = Stick(centre=(0.11, -0.07), reach=(0.82, 0.76), sigma=0.012, hysteresis=0.06)
     good = Stick(centre=(0.01, 0.005), sigma=0.002, seed=2)
-    print("# Made by tests/tools/stick_trace.py: a worn left stick, a good right one.")
-    print(trace_text(worn, good, thumb(turns=2, rest_s=0.5, rate_hz=125), bits=8, name="Worn pad (made)"), end="")
-
-
-if __name__ == "__main__":
-    main()
+    return ("# Made by tests/support/sticks.py: a worn left stick, a good right one.\n" +
+            trace_text(worn, good, thumb(turns=2, rest_s=0.5, rate_hz=125), bits=8, name="Worn pad (made)"))

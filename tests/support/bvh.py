@@ -144,10 +144,11 @@ def translations(bvh):
     return offsets
 
 
-def forward_kinematics(parents, offsets, local):
-    """World positions (F, J, 3) and rotations (F, J, 3, 3)."""
+def forward_kinematics(parents, offsets, local, order=None):
+    """World positions (F, J, 3) and rotations (F, J, 3, 3). order: parents before children, if the joints are not so."""
     position, rotation = offsets.copy(), local.copy()
-    for j, p in enumerate(parents):
+    for j in order or range(len(parents)):
+        p = parents[j]
         if p >= 0:
             position[:, j] = position[:, p] + np.einsum("fij,fj->fi", rotation[:, p], offsets[:, j])
             rotation[:, j] = rotation[:, p] @ local[:, j]

@@ -5,8 +5,8 @@ import tempfile
 
 import numpy as np
 
-import bvh_fk
-from walk_data import COLUMNS, SIDES, Walk
+from support import bvh as bvhs
+from support.walk import COLUMNS, SIDES, Walk
 
 THIGH = SHANK = 0.42
 HIP_Y, HALF_WIDTH = 0.85, 0.1
@@ -124,7 +124,7 @@ JOINTS += [("Spine", 0, (0, 0.2, 0)), ("Spine_End", 11, (0, 0.3, 0))]
 
 
 def pose_of(maker):
-    bvh = bvh_fk.Bvh()
+    bvh = bvhs.Bvh()
     bvh.names = [n for n, _, _ in JOINTS]
     bvh.parents = [p for _, p, _ in JOINTS]
     bvh.offsets = np.array([o for _, _, o in JOINTS], dtype=float) * 100
@@ -193,7 +193,7 @@ class Files:
 
     def load(self, changes=()):
         with tempfile.TemporaryDirectory() as folder:
-            bvh_fk.write_bvh(self.bvh, os.path.join(folder, "pose.bvh"), 7)
+            bvhs.write_bvh(self.bvh, os.path.join(folder, "pose.bvh"), 7)
             with open(os.path.join(folder, "summary.json"), "w", encoding="utf-8") as file:
                 json.dump(self.summary, file)
             texts = [v if v.dtype.kind == "U" else v.astype(int).astype(str) if v.dtype.kind in "bi" else

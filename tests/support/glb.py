@@ -5,6 +5,8 @@ import struct
 
 import numpy as np
 
+from support.bvh import forward_kinematics, matrices_of
+
 COMPONENTS = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 
@@ -51,32 +53,16 @@ class Glb:
         return times, found["translation"], found["rotation"]
 
 
-def matrices(q):
-    """(..., 4) x y z w to (..., 3, 3)."""
-    x, y, z, w = np.moveaxis(q.astype(float), -1, 0)
-    rows = [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
-            2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-            2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]
-    return np.stack(rows, -1).reshape(q.shape[:-1] + (3, 3))
-
-
 def world(glb, frames, translations, rotations):
     """Joint positions (F, N, 3) and rotations (F, N, 3, 3); without tracks the nodes' own."""
     count = len(glb.nodes)
-    position, rotation = np.zeros((frames, count, 3)), np.zeros((frames, count, 3, 3))
+    offsets, local = np.zeros((frames, count, 3)), np.zeros((frames, count, 3, 3))
+    for i, node in enumerate(glb.nodes):
+        offsets[:, i] = translations.get(i, node.get("translation", [0, 0, 0]))
+        turn = np.asarray(rotations.get(i, [node.get("rotation", [0, 0, 0, 1])]), dtype=float)
+        local[:, i] = matrices_of(np.roll(turn, 1, axis=-1))  # glTF writes x y z w
     order = sorted(range(count), key=lambda i: depth(glb, i))
-    for i in order:
-        node = glb.nodes[i]
-        place = translations.get(i, np.array([node.get("translation", [0, 0, 0])]))
-        turn = matrices(rotations.get(i, np.array([node.get("rotation", [0, 0, 0, 1])])))
-        parent = glb.parents[i]
-        if parent < 0:
-            position[:, i], rotation[:, i] = place, turn
-            continue
-        position[:, i] = position[:, parent] + np.einsum("fij,fj->fi", rotation[:, parent],
-                                                         np.broadcast_to(place, (frames, 3)))
-        rotation[:, i] = rotation[:, parent] @ turn
-    return position, rotation
+    return forward_kinematics(glb.parents, offsets, local, order)
 
 
 def depth(glb, node):

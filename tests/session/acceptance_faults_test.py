@@ -1,17 +1,13 @@
-#!/usr/bin/env python3
-"""Judges the judge: an own small walk, exact by construction, passes walk_check; each planted fault
+"""Judges the judge: an own small walk, exact by construction, passes every check; each planted fault
 in its files makes the check that is meant for it fail. Needs neither the program nor data."""
 import copy
-import sys
 
 import numpy as np
+import pytest
 
-import bvh_fk
-import walk_bounds
-import walk_check
-import walk_compare
-import walk_smooth
-from exact_walk import Files
+from support import bvh as bvhs
+from support import judge
+from support.exact_walk import Files
 
 
 class Spot:
@@ -24,7 +20,7 @@ class Spot:
         self.fly = (self.lift + self.strike) // 2
 
     def _stage(self, stage):
-        return walk_bounds.runs((self.col["stage"] == stage) & (self.col["swing"] == "left"))[8]
+        return judge.runs((self.col["stage"] == stage) & (self.col["swing"] == "left"))[8]
 
     def add(self, joint, channel, degrees, first=0, last=None):
         self.files.channel(joint, channel)[first:last] += degrees
@@ -105,46 +101,59 @@ JOINT_FAULTS = {
 }
 
 
-def expect(what, condition, failures, detail=""):
-    print(f"{'ok  ' if condition else 'FAIL'} {what} {detail}".rstrip())
-    if not condition:
-        failures.append(what)
+@pytest.fixture(scope="module")
+def sound():
+    return Files()
 
 
-def run_faults(failures):
-    sound = Files()
-    broken = [f"{c.name} {c.value:.4g}" for c in walk_check.check_walk(sound.load()) if c.ok is False]
-    expect("the exact walk passes every check", not broken, failures, "; ".join(broken))
-    for name, plant in {**FILE_FAULTS, **CONTACT_FAULTS, **JOINT_FAULTS}.items():
-        files = copy.deepcopy(sound)
-        plant(Spot(files))
-        try:
-            hit = [c for c in walk_check.check_walk(files.load()) if c.name == name]
-            seen, detail = bool(hit) and hit[0].ok is False, f"{hit[0].value:.4g}" if hit else "no such check"
-        except (ValueError, IndexError) as error:  # damaged beyond measuring counts as seen
-            seen, detail = True, f"refused: {error}"
-        expect(f"fault seen: {name}", seen, failures, detail)
+@pytest.fixture(scope="module")
+def even(sound):
+    return sound.load()
 
 
-def run_comparisons(failures):
-    even, twin = Files().load(), Files(first=1).load()
-    fails = lambda checks: [c.name for c in checks if c.ok is False]
-    expect("a mirrored walk passes", not fails(walk_compare.mirror_checks(even, twin)), failures)
-    expect("an unmirrored walk fails", "mirrored walk, all joints" in
-           fails(walk_compare.mirror_checks(even, even)), failures)
+def failed(checks):
+    return [c.name for c in checks if c.ok is False]
+
+
+def test_the_exact_walk_passes_every_check(even):
+    assert failed(judge.check_walk(even)) == []
+
+
+@pytest.mark.parametrize("name", [*FILE_FAULTS, *CONTACT_FAULTS, *JOINT_FAULTS])
+def test_a_planted_fault_is_seen_by_its_check(sound, name):
+    files = copy.deepcopy(sound)
+    {**FILE_FAULTS, **CONTACT_FAULTS, **JOINT_FAULTS}[name](Spot(files))
+    try:
+        checks = judge.check_walk(files.load())
+    except (ValueError, IndexError):  # damaged beyond measuring counts as seen
+        return
+    assert [c.ok for c in checks if c.name == name][:1] == [False]
+
+
+def test_a_mirrored_walk_passes_and_an_unmirrored_one_fails(even):
+    assert failed(judge.mirror_checks(even, Files(first=1).load())) == []
+    assert "mirrored walk, all joints" in failed(judge.mirror_checks(even, even))
+
+
+def test_a_limp_of_the_asked_measure_passes(even):
     # Both peaks count from the floor, and the lift-off height is not the flight's.
     limp = Files(length=(0.16, 0.32), flight=(138, 180), height=(0.008, 0.1)).load()
-    checks = walk_compare.limp_checks(even, limp)
-    expect("a limp of the asked measure passes", not fails(checks), failures,
-           "; ".join(f"{c.name} {c.value:.3f}" for c in checks))
-    expect("no limp fails all but the right step", len(fails(walk_compare.limp_checks(even, even))) == 3, failures)
-    small, big = Files(bump=0.12).load(), Files(bump=0.6).load()
-    figures = [walk_compare.weight_figures(even, other, 0)["rms"] for other in (small, big)]
-    expect("weights: RMS grows with the change", 0 < figures[0] < figures[1], failures, str(np.round(figures, 2)))
-    expect("weights: no change fails", bool(fails(walk_compare.weight_checks(even, even, 1.5))), failures)
+    assert failed(judge.limp_checks(even, limp)) == []
+
+
+def test_no_limp_fails_all_but_the_right_step(even):
+    assert len(failed(judge.limp_checks(even, even))) == 3
+
+
+def test_rms_of_weights_grows_with_the_change(even):
+    small, big = (judge.weight_figures(even, Files(bump=bump).load(), 0)["rms"] for bump in (0.12, 0.6))
+    assert 0 < small < big
+
+
+def test_weights_without_a_change_or_with_moved_landings_fail(even):
+    assert failed(judge.weight_checks(even, even, 1.5))
     moved = Files(length=(0.33, 0.31)).load()
-    expect("weights: moved landings fail", "weights, left: heel at landing" in
-           fails(walk_compare.weight_checks(even, moved, 0.0)), failures)
+    assert "weights, left: heel at landing" in failed(judge.weight_checks(even, moved, 0.0))
 
 
 class Ring:
@@ -162,39 +171,26 @@ class Ring:
             self.heel_fk.append(np.stack([r * np.sin(heading) + drift * k, 0 * k, r * np.cos(heading)], -1))
 
 
-def run_circles(failures):
-    bad = lambda **fault: sorted({c.name.split(" ", 1)[1] for c in walk_bounds.circle_checks(Ring(**fault))
-                                  if c.ok is False})
-    expect("a circle passes", bad() == [], failures)
-    expect("a spread of radii fails", "landings off their circle" in bad(spread=0.03), failures)
-    expect("a drifting circle fails to close", "circle closes" in bad(drift=0.004), failures)
+@pytest.mark.parametrize("fault, seen", [({}, None), ({"spread": 0.03}, "landings off their circle"),
+                                         ({"drift": 0.004}, "circle closes")], ids=["sound", "spread", "drift"])
+def test_landings_off_their_circle_are_seen(fault, seen):
+    bad = {name.split(" ", 1)[1] for name in failed(judge.circle_checks(Ring(**fault)))}
+    assert seen in bad if seen else not bad
 
 
-def run_mathematics(failures):
-    random = np.random.default_rng(1)
-    angles = random.uniform(-170, 170, (200, 3))
-    m = bvh_fk.axis_matrices("Z", angles[:, 0]) @ bvh_fk.axis_matrices("X", angles[:, 1]) @ \
-        bvh_fk.axis_matrices("Y", angles[:, 2])
-    expect("quaternions give the matrices back",
-           np.abs(bvh_fk.matrices_of(bvh_fk.quaternions(m)) - m).max() < 1e-12, failures)
-    turn = bvh_fk.axis_matrices("Y", np.array([0.0, 1.0, 3.0, 6.0]))[:, None]
-    expect("second differences of 0 1 3 6 degrees are 1",
-           np.allclose(bvh_fk.second_differences(turn)[1:-1], 1.0), failures)
-    x = np.linspace(0, 6, 61)
-    y = walk_smooth._spline(np.sin(x)[:, None], np.arange(200, 400) * 0.1)
-    expect("the spline follows a sine",
-           np.abs(y[:, 0] - np.sin(0.1 * np.arange(200, 400) * 0.1)).max() < 1e-4, failures)
+def test_quaternions_give_the_matrices_back():
+    angles = np.random.default_rng(1).uniform(-170, 170, (200, 3))
+    m = bvhs.axis_matrices("Z", angles[:, 0]) @ bvhs.axis_matrices("X", angles[:, 1]) @ \
+        bvhs.axis_matrices("Y", angles[:, 2])
+    assert np.abs(bvhs.matrices_of(bvhs.quaternions(m)) - m).max() < 1e-12
 
 
-def main():
-    failures = []
-    run_mathematics(failures)
-    run_faults(failures)
-    run_comparisons(failures)
-    run_circles(failures)
-    print(f"{len(failures)} of the judge's own tests failed")
-    return 1 if failures else 0
+def test_second_differences_of_0_1_3_6_degrees_are_1():
+    turn = bvhs.axis_matrices("Y", np.array([0.0, 1.0, 3.0, 6.0]))[:, None]
+    assert np.allclose(bvhs.second_differences(turn)[1:-1], 1.0)
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def test_the_spline_follows_a_sine():
+    x, places = np.linspace(0, 6, 61), np.arange(200, 400) * 0.1
+    y = judge._spline(np.sin(x)[:, None], places)
+    assert np.abs(y[:, 0] - np.sin(0.1 * places)).max() < 1e-4

@@ -32,11 +32,11 @@ constexpr int kRailProbes = 15;  // to either side, 0.56 m: a mean over two trea
 constexpr double kRailSmoothing = 0.06;
 
 // The parameters are numbers alone, so all of them are smoothed as one row.
-using BodyValues = std::array<double, sizeof(BodyParams) / sizeof(double)>;
+using BodyValues = std::array<double, sizeof(UpperBodyParams) / sizeof(double)>;
 
 // Brings the values in force nearer to their goals. At the goals this costs one comparison.
 void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
-  const BodyParams& goal = tick.params.body;
+  const UpperBodyParams& goal = tick.params.body;
   const double tau = kSmoothing * tick.model.time_scale;
   if (!(goal == body.goal)) {
     body.goal = goal;
@@ -53,7 +53,7 @@ void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
     now[i] = is_there ? to[i] : value.x;
     body.per_s[i] = is_there ? 0.0 : value.v;
   }
-  body.now = std::bit_cast<BodyParams>(now);
+  body.now = std::bit_cast<UpperBodyParams>(now);
 }
 
 // Factor on the data's arm swing: proportional to speed (Boulic et al. 1990), bounded, and 1 at the
@@ -170,7 +170,7 @@ void write_spine(const UpperBodyModel& body, const Skeleton& skeleton, const Spi
   }
 }
 
-bool is_spine_even(const BodyParams& now) noexcept {
+bool is_spine_even(const UpperBodyParams& now) noexcept {
   return std::abs(now.spine_weight[kLowerSpine] - now.spine_weight[kUpperSpine]) < kEvenSpread;
 }
 
@@ -248,13 +248,13 @@ Arm arm_of(const ArmBuild& build, const Skeleton& skeleton, const JointFrames& w
   return arm;
 }
 
-bool has_uneven_weights(const BodyParams& now, Side side) noexcept {
+bool has_uneven_weights(const UpperBodyParams& now, Side side) noexcept {
   const ArmWeights& weight = now.arm_weight[side];
   const auto [low, high] = std::minmax_element(weight.begin(), weight.end());
   return *high - *low >= kEvenSpread;
 }
 
-bool is_arm_free(const BodyParams& now, Side side) noexcept {
+bool is_arm_free(const UpperBodyParams& now, Side side) noexcept {
   return !has_uneven_weights(now, side) && now.hand[side].carry <= 0.0 &&
          now.hand[side].rail <= 0.0;
 }
@@ -421,7 +421,7 @@ void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames
 void pose_arm(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
               const vec3& own_m, Pose& pose, JointFrames& world) noexcept {
   const ArmBuild& build = model.body.arm[side];
-  const BodyParams& now = state.body.now;
+  const UpperBodyParams& now = state.body.now;
   Arm arm = arm_of(build, model.cycle.skeleton, world);
   if (has_uneven_weights(now, side)) {
     stiffen_arm(build, now.arm_weight[side], arm);
@@ -548,7 +548,7 @@ void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noex
 }
 
 void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
-  const BodyParams& now = state.body.now;
+  const UpperBodyParams& now = state.body.now;
   const Skeleton& skeleton = model.cycle.skeleton;
   const bool moves_spine = model.body.spine.size() > 1 && !is_spine_even(now);
   std::array<bool, 2> moves_arm;

@@ -1,22 +1,20 @@
 #include "gaitpad/walk_model.h"
 
-#include <memory>
-
-#include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
-
 namespace {
+
+// --- The upper body ------------------------------------------------------------------------------
 
 // Limits in radians (degrees here) of a left arm, after AAOS; a right one's z and y are mirrored.
 constexpr ArmAngles kMin = {-170, -35, -90, -150, -60, -25};
 constexpr ArmAngles kMax = {60, 150, 80, -2, 60, 35};
 constexpr double kLeastFlexion = 4.0 * kDegree;  // of an elbow whose swing is magnified
-constexpr double kGrip = 0.075;       // wrist to the middle of the hand, of the adult; shares of a
-constexpr double kHandPart = 0.5;     // short hand
+constexpr double kGrip = 0.075;                  // wrist to the middle of an adult's hand, metres
+constexpr double kHandPart = 0.5;                // the same as a share of a hand shorter than that
 constexpr double kClearHinge = 0.05;  // mean sine of the elbow's bend that shows where its hinge is
-constexpr double kWidestTurn = 1.45;  // radians of shoulder z: beyond it x and y mean nothing
+constexpr double kWidestTurn = 1.45;  // radians of shoulder z: near a right angle x and y are one
 
 // The world frames of the data's sample i, with the root at the origin.
 JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
@@ -46,8 +44,8 @@ quat mean_local(const GaitCycle& cycle, int joint) {
 
 vec3 perpendicular(const vec3& v, const vec3& to) { return v - to * glm::dot(v, to); }
 
-// The hanging axes in the shoulder joint's frame: y along the bone, x along the elbow's hinge,
-// which is where the data bend it, or else to the walker's left.
+// The hanging axes in the shoulder joint's frame: y along the bone, x along the elbow's hinge. The
+// hinge shows where the data bend the elbow; where they hardly do, it is the walker's left.
 quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const JointFrames& standing) {
   vec3 bone(0.0), hinge(0.0);
   for (int i = 0; i < kCycleSamples; ++i) {
@@ -183,8 +181,8 @@ void fill_head(const GaitCycle& cycle, const UpperBodyJoints& joints, const Join
   body.chest_standing = standing.rotation[cycle.skeleton.joints[first].parent];
 }
 
-}  // namespace
-
+// Arms, spine and head of a cycle that has the character's lengths. `leg_ratio`: the character's
+// leg over the data's.
 UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_height_m) {
   UpperBodyModel body;
   JointFrames standing;
@@ -208,13 +206,13 @@ UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double
   return body;
 }
 
-namespace {
+// --- Legs and tables -----------------------------------------------------------------------------
 
 // Joint limits of a walker in radians (hip flexion and dorsiflexion are negative): AAOS-type
 // ranges, dorsiflexion under load up to 38 degrees.
 constexpr std::array<double, kLegDofs> kLegMin = {-120, -50, -70, 1.0, -60, -60, -80};
 constexpr std::array<double, kLegDofs> kLegMax = {60, 50, 70, 150, 75, 60, 80};
-constexpr double kHeelDown = 0.007;   // of the leg: a heel this low has landed
+constexpr double kHeelDown = 0.007;   // of the leg: a heel so near to the floor has landed
 constexpr double kLatestDown = 0.05;  // own phase
 constexpr double kHalfWidth = 0.054;  // of the leg: half a foot's breadth, 9 cm of an adult's
 constexpr double kOscillation = 0.8;  // share of the fore-aft oscillation, which FK exaggerates
@@ -237,11 +235,6 @@ IkChain leg_chain(const LegModel& leg) {
 
 double elevation(const vec3& v) { return atan2(v.y, horizontal_length(v)); }
 
-bool below(const Skeleton& skeleton, int joint, int ancestor) {
-  while (joint >= 0 && joint != ancestor) joint = skeleton.joints[joint].parent;
-  return joint == ancestor;
-}
-
 // Bones below the hips grow by scale * leg_ratio, all others by scale.
 void scale_build(GaitCycle& cycle, double scale, double leg_ratio) {
   for (std::size_t j = 0; j < cycle.skeleton.joints.size(); ++j) {
@@ -249,7 +242,7 @@ void scale_build(GaitCycle& cycle, double scale, double leg_ratio) {
     bool in_leg = false;
     for (const LegModel& leg : cycle.leg) {
       in_leg = in_leg || (static_cast<int>(j) != leg.joints.hip &&
-                          below(cycle.skeleton, static_cast<int>(j), leg.joints.hip));
+                          is_ancestor(cycle.skeleton, leg.joints.hip, static_cast<int>(j)));
     }
     joint.offset_m *= in_leg ? scale * leg_ratio : scale;
   }
@@ -349,9 +342,10 @@ void fill_pelvis_tables(const GaitCycle& source, double ratio, WalkModel& model)
   }
 }
 
-// At a strike the front heel is alpha of the step before the hips (mean over both feet). The heel
-// of the data still sinks and slides for a moment when it strikes; ours stands at once. So the
-// distance is that of the flat foot, run back to the moment when the heel of the data is down.
+// At a strike the front heel is this share of the step before the hips, as a mean over both feet.
+// The heel of the data still sinks and slides for a moment after its strike, but the walker's
+// stands at once. So the distance is measured at the flat foot and run back to when the data's heel
+// is down.
 double front_share(const GaitCycle& source, double source_step) {
   const double down_m = kHeelDown * 0.5 * (source.leg[0].length_m() + source.leg[1].length_m());
   double sum = 0.0;

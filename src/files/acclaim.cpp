@@ -43,7 +43,7 @@ class LineReader {
   int line_ = 0;
 };
 
-// A bone as it is read: angles may stand before the unit that they are in.
+// A bone as it is read. Its angles may stand before the unit that they are in.
 struct RawBone {
   AsfBone bone;
   EulerOrder order = {0, 1, 2};
@@ -73,14 +73,14 @@ std::optional<AsfChannel> channel_named(const std::string& word) {
   return static_cast<AsfChannel>(at - kNames.begin());
 }
 
-// The letters' first rotation is done first, so it stands on the right.
+// The first letter's rotation is applied first, so it is the rightmost factor.
 quat in_order(const EulerOrder& order, const vec3& angles_rad) {
   quat q = kIdentity;
   for (const int axis : order) q = rotation_about_axis(axis, angles_rad[axis]) * q;
   return glm::normalize(q);
 }
 
-// First error wins; every parsing function returns false once there is one.
+// Reads a skeleton. Its functions return false at the first error, which message_ then holds.
 class AsfParser {
  public:
   AsfParser(std::string_view text, const std::string& name) : in_(text), name_(name) {
@@ -106,7 +106,7 @@ class AsfParser {
   void advance() { line_ = in_.next(); }
   bool is_inside() const { return !line_.empty() && line_.front() != ':'; }
 
-  // From a line that begins with a colon up to the next one.
+  // Reads from a line that begins with a colon up to the next one.
   bool section() {
     std::string_view rest = line_;
     const std::string keyword = lower_case(take_word(rest));
@@ -122,7 +122,8 @@ class AsfParser {
     }
     if (keyword == ":bonedata") return bone_data();
     if (keyword == ":hierarchy") return hierarchy();
-    return each_line([](auto, auto) { return true; });  // version, name, documentation, skin ...
+    return each_line(
+        [](auto, auto) { return true; });  // :version, :name, :documentation, :skin ...
   }
 
   template <class Take>
@@ -176,7 +177,7 @@ class AsfParser {
 
   bool order_of(std::string_view rest, RawBone& raw) {
     const std::string_view word = take_word(rest);
-    if (word.empty()) return true;  // XYZ
+    if (word.empty()) return true;  // no order given: XYZ
     const auto order = axis_order(word);
     if (!order) return fail(fmt::format("axis: {} is no order of X, Y and Z", in_quotes(word)));
     raw.order = *order;
@@ -293,7 +294,7 @@ class AsfParser {
     return std::nullopt;
   }
 
-  // Walks down from the root; what it does not reach hangs on nothing or in a ring.
+  // Orders the bones from the root down. Bones that are not reached hang on nothing or in a ring.
   bool in_depth_first_order() {
     if (bones_.size() < 2) return fail("no bones: not a skeleton (.asf)");
     if (children_.size() != bones_.size()) return fail("no :hierarchy behind :bonedata");
@@ -338,7 +339,7 @@ class AsfParser {
 
 constexpr double kMaxFrameNumber = 1e7;
 
-// A line of digits alone begins a frame.
+// A frame begins with a line of digits alone.
 std::optional<int> frame_number(std::string_view line) {
   if (line.find_first_not_of("0123456789") != line.npos) return std::nullopt;
   const auto value = parse_bounded(line);
@@ -346,7 +347,7 @@ std::optional<int> frame_number(std::string_view line) {
   return static_cast<int>(*value);
 }
 
-// First error wins; every parsing function returns false once there is one.
+// Reads the frames of a motion. Its functions return false at the first error.
 class AmcParser {
  public:
   AmcParser(std::string_view text, const std::string& name, const Asf& asf,
@@ -451,7 +452,7 @@ class AmcParser {
                             in_quotes(bone.name), count, bone.channels));
   }
 
-  // The first frame says which bones move.
+  // Which bones move is said by the first frame.
   bool is_complete() {
     if (amc_.frames == 1) {
       first_ = seen_;

@@ -17,7 +17,7 @@ namespace gaitpad {
 
 namespace {
 
-// Words and lines of the text, with the number of the line that the last word stood on.
+// Words and lines of a text, with the line number of the last word.
 class Reader {
  public:
   explicit Reader(std::string_view text) : rest_(without_byte_order_mark(text)) {}
@@ -75,7 +75,7 @@ std::optional<BvhChannel> channel_named(std::string_view word) {
   return std::nullopt;
 }
 
-// First error wins; every parsing function returns false once there is one.
+// Reads a file. Its functions return false at the first error, which message_ then holds.
 class Parser {
  public:
   Parser(std::string_view text, const std::string& name) : in_(text), name_(name) {}
@@ -102,7 +102,7 @@ class Parser {
     return true;
   }
 
-  // One keyword inside the braces of the innermost open joint.
+  // Reads one keyword inside the braces of the innermost open joint, the last of `open`.
   bool item(std::vector<int>& open) {
     const int joint = open.back();
     const std::string_view word = in_.word();
@@ -217,14 +217,14 @@ class Parser {
     return plausible(static_cast<long long>(*frames));
   }
 
-  // What stands behind a key on the next line, empty where another key stands there.
+  // What follows this key on the next line; empty if another key stands there.
   std::string_view behind(std::string_view key) {
     const std::string_view line = in_.full_line();
     return line.starts_with(key) ? trimmed(line.substr(key.size())) : std::string_view();
   }
 
-  // A number takes two characters with the blank behind it, so the text bounds what may be asked
-  // for.
+  // A number and the blank behind it take two bytes, so the length of the text bounds the counts
+  // that it may declare.
   bool plausible(long long frames) {
     if (bvh_.channels == 0) return fail("no joint has channels");
     if (frames * bvh_.channels > static_cast<long long>(in_.bytes_left() / 2 + 1)) {
@@ -279,7 +279,7 @@ class Parser {
   std::string name_;
   std::string message_;
   Bvh bvh_;
-  std::vector<bool> has_offset_;  // one a joint
+  std::vector<bool> has_offset_;  // of each joint
 };
 
 constexpr double kPoleLimit = 0.5;  // sine of 30 degrees
@@ -381,7 +381,7 @@ void BvhWriter::write_joint(int joint, int depth) {
     is_leaf = false;
     write_joint(child, depth + 1);
   }
-  if (is_leaf && has_channels) {  // a chain must end in an End Site
+  if (is_leaf && has_channels) {  // BVH requires an End Site at the end of a chain
     out_ << indent << "\tEnd Site\n" << indent << "\t{\n" << indent << "\t\t";
     std::string end;
     append_offset(end, vec3(0.0));

@@ -1,5 +1,3 @@
-// The body that a .glb shows: a rod for each bone, thicker where it begins.
-
 #include "gaitpad/gltf.h"
 
 #include <fmt/format.h>

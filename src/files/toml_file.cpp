@@ -40,7 +40,7 @@ int line_at(std::string_view text, std::size_t place) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + place, '\n'));
 }
 
-// Of the first byte outside strings and comments that `is_wanted`; 0 where there is none.
+// The line of the first byte outside strings and comments that `is_wanted`; 0 if there is none.
 template <class Wanted>
 int first_line(std::string_view text, Wanted is_wanted) {
   for (std::size_t i = 0; i < text.size();) {
@@ -73,7 +73,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& known) {
-  std::size_t nearest = std::min<std::size_t>(3, unknown.size());  // two letters off at most
+  std::size_t nearest = std::min<std::size_t>(3, unknown.size());  // at most two letters differ
   const std::string* best = nullptr;
   if (unknown.size() > kMaxQuotedBytes) return {};
   for (const std::string& key : known) {
@@ -152,7 +152,7 @@ struct TomlDocument {
     }
     return {};
   }
-  // The array at the key where it is one of min_count..max_count elements.
+  // The array at the key; null if it is absent or has not min_count to max_count elements.
   const toml::array* array_at(std::size_t index, std::string_view key, std::size_t min_count,
                               std::size_t max_count, std::string_view of) {
     const toml::node* node = asked(index, key);
@@ -308,7 +308,7 @@ std::vector<std::string> TomlTable::keys() const {
 }
 
 int TomlTable::line() const {
-  // The root table of an empty text stands nowhere.
+  // The root table of an empty text has no line.
   const int line = document_->line_of(*document_->visited[index_].table);
   return std::max(line, 1 + document_->line_offset);
 }

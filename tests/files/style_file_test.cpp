@@ -128,7 +128,7 @@ TEST_F(StyleFile, ArmsHandsSpineAndHeadHaveTables) {
       "weight = { shoulder_y = 1 }\n[hands]\ncarry = 1\n[left_hand]\nrail = 0.25\n"
       "[spine]\nweight = { lower = 0 }\n[head]\nlook = 1\nyaw_deg = -30");
   ASSERT_TRUE(style) << style.error().message;
-  const BodyParams& body = style->body;
+  const UpperBodyParams& body = style->body;
   EXPECT_EQ(body.arm_swing, (std::array<double, 2>{0.5, 2.0}));
   EXPECT_EQ(body.arm_weight[kLeftSide], (ArmWeights{0.2, 0.2, 0.2, 1, 1, 1}));
   EXPECT_EQ(body.arm_weight[kRightSide], (ArmWeights{0.2, 0.2, 1, 1, 1, 1}));

@@ -37,7 +37,7 @@ struct StyleValues {
   // The fatigue model, both 0: none. Fatigue gained by walking 100 m, and lost by a second of rest.
   double fatigue_per_100_m = 0.0, fatigue_recovery_per_s = 0.0;
   double blend_s = 0.0;  // how long a change to or from this style takes, 0 .. 10
-  BodyParams body;       // arms, hands, spine and head
+  UpperBodyParams body;  // arms, hands, spine and head
   bool operator==(const StyleValues&) const = default;
 };
 struct Style : StyleValues {

@@ -30,4 +30,22 @@ LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at);
 // How far the foot's lowest point is above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);
 
+// The mean and the lowest harmonics of a periodic curve.
+template <std::size_t kCount>
+std::array<double, kCount> smoothed(const std::array<double, kCount>& curve, int harmonics) {
+  const auto wave = [](int k, std::size_t i) { return sin_cos(2.0 * kPi * k * i / kCount); };
+  std::array<double, kCount> out{};
+  for (int k = 0; k <= harmonics; ++k) {
+    double a = 0.0, b = 0.0;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      a += curve[i] * wave(k, i).cos;
+      b += curve[i] * wave(k, i).sin;
+    }
+    const double share = (k == 0 ? 1.0 : 2.0) / kCount;
+    for (std::size_t i = 0; i < kCount; ++i)
+      out[i] += share * (a * wave(k, i).cos + b * wave(k, i).sin);
+  }
+  return out;
+}
+
 }  // namespace gaitpad

@@ -259,14 +259,15 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 constexpr double kReach = 0.9985;  // of the leg: its greatest reach, with the knee bent 6 degrees
 // Front heel to hips over the step, in steps so long that the data's lean is given up.
 constexpr double kEvenFront = 0.46;
-// The same backwards, where the weight follows the foot late. Up a high riser (rises in legs) the
-// hips go ahead of the foot, or its ankle would bend up too far.
+// How much of a backward step the hips have covered at its strike: the weight follows the foot
+// late. Up a high riser (rises in legs) they go ahead of the foot, or its ankle would bend up too
+// far.
 constexpr double kBackwardHips = 0.45;
 constexpr double kBackwardHipsUp = 1.075, kHighRiser = 0.2, kHighestRiser = 0.3;
 constexpr double kLongDrop_m = 0.05;  // how far the hips sink in steps much longer than the data's
 constexpr double kLameDrop_m = 0.1;   // and for a foot that does not lift at all
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
-constexpr double kLeastShare = 0.3;  // of a step's length that the ground leaves
+constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
 constexpr double kFreeze = 0.55;      // of the flight: after it the landing place is settled
 constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
@@ -303,8 +304,8 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
   return state.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
 }
 
-// beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
-// In steps far longer than the data's the hips stand evenly between the feet instead.
+// How much of a step's length the hips have covered, beyond their rest lead, at its strike. In
+// steps far longer than the data's the hips stand evenly between the feet instead.
 double hips_share(const WalkModel& model, const WalkState& state) noexcept {
   if (state.backward) {
     const double rise = state.landing_m.y - state.foot[other(step_foot(state))].plane.place_m.y;

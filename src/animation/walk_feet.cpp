@@ -18,8 +18,7 @@ constexpr double kToeUpAtStrike_m = 0.05;  // toe's height over its rest when th
 constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 // Of the leg: with the hip further away, a standing foot rises on its toe.
 constexpr double kReachOnToe = 0.993, kReachOfLame = 0.9965, kReachUpright = 1.01;
-constexpr double kRiseAhead =
-    22.0;                       // 1/s: the rate at which a heel may approach its greatest pitch
+constexpr double kRiseAhead = 22.0;  // 1/s: how fast a heel may approach its greatest pitch
 constexpr double kAhead = 0.1;  // of the leg: a hip so far before the toe lets the foot push off
 constexpr double kSoftPitch = 8.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // Near the greatest pitch the ankle hardly rises any more, so the reach is given up softly there.
@@ -28,7 +27,8 @@ constexpr double kMaxPitch = 85.0 * kDegree, kMaxPlannedPitch = 80.0 * kDegree;
 constexpr double kMinPitch = -28.0 * kDegree;      // toe up
 constexpr double kRollEnd = 0.95;                  // of the roll: the toe is down
 constexpr double kMostOvershoot = 12.0 * kDegree;  // of the push-off's pitch rate
-constexpr double kLamePeak = 0.9;       // height of a lame foot's flight, over what it asks for
+// Of a lame foot's height: an able foot's peak falls short of its curve by as much.
+constexpr double kLamePeak = 0.9;
 constexpr double kLameFade = 0.15;      // of kLiftFade, for a foot that does not lift at all
 constexpr double kBackwardPitch = 0.6;  // of the data's: the foot reaches back, toe down
 constexpr double kStopping = 0.6;       // of the flight: from here the heel comes to a stop

@@ -24,12 +24,12 @@ namespace {
 
 // --- Footholds -----------------------------------------------------------------------------------
 
-constexpr double kSlopeShortens = 1.0;  // steps per grade
+constexpr double kSlopeShortens = 1.0;  // a grade g leaves 1 / (1 + g) of a step
 // The sole keeps kEdgeRoom legs away from an edge, but gives up at most kMostEdgeShare of its room.
 constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
-constexpr int kMostPieces = 8;  // looked at from the wanted one to the standing foot's
-constexpr double kSkew =
-    0.25;  // how willingly a step is moved across the heading, against along it
+constexpr int kMostPieces = 8;  // compared, from the wanted one to the standing foot's
+// How willingly a step is moved across the heading, against along it.
+constexpr double kSkew = 0.25;
 // What a piece costs: about the logarithm of how much longer or shorter it makes the step (steps
 // shorter than kLeastStep legs count as that long), and further costs of what the step becomes:
 // stuck in place, sideways, high, overhanging, long. Rises are in legs.
@@ -64,6 +64,7 @@ Room room_on(const Stretch& piece, const Extent& sole, double leg_m) noexcept {
   return {low + edge, high - edge, 0.0};
 }
 
+// A step whose foothold is looked for.
 struct Step {
   vec3 from_m{0.0}, lift_m{0.0};  // heels of the foot that stands and of the one that flies
   Stretch stands, lifts;          // their pieces
@@ -295,14 +296,14 @@ constexpr double kRoomAbove_m = 0.02;  // over the ground; metres at the referen
 constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
 constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.5;
 constexpr int kTries = 4;
-constexpr double kOver =
-    0.67;  // of the flight: from here a foot on its way down is over its landing's piece
+// Of the flight: from here on a foot on its way down is over its landing's piece.
+constexpr double kOver = 0.67;
 constexpr int kMostRisers = 4, kTautRounds = 24;
 constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
 constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;
-constexpr double kReplan_m = 0.005;  // of the landing
+constexpr double kReplan_m = 0.005;  // a landing moved by more is planned for anew
 
 // The spline from 0 at u = 0 to `end` at u = 1, with slope 0 at both.
 template <class Knots, class Value>
@@ -330,6 +331,7 @@ double in_flight(double u) noexcept {
   return smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.8, 1.0, u));
 }
 
+// A value wanted at each probe of the flight.
 using Wanted = std::array<double, kProbes + 1>;
 
 // The outer knots as shares of their neighbours: the smaller, the gentler the spline's ends.
@@ -436,7 +438,7 @@ double climb(const WalkState& state, const FootState& foot) noexcept {
 struct Flight {
   std::array<FlightPoint, kProbes + 1> point;
   std::array<Sole, kProbes + 1> sole;
-  Wanted left{};  // of the way along z
+  Wanted left{};  // the way that is left along z
   Stretch begin, end;
   double begin_room = 0.0;
   double climb = 0.0;

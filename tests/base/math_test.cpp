@@ -149,6 +149,15 @@ TEST(Rotations, BetweenOppositeDirectionsIsHalfATurn) {
   }
 }
 
+TEST(Rotations, NlerpGoesTheShorterWayBetweenItsEnds) {
+  const quat from = rotation_y(0.2), to = rotation_y(1.0);
+  expect_same_rotation(nlerp(from, to, 0.0), from, 1e-15);
+  expect_same_rotation(nlerp(from, to, 1.0), to, 1e-15);
+  expect_same_rotation(nlerp(from, to, 0.5), rotation_y(0.6), 1e-15);
+  expect_same_rotation(nlerp(from, -to, 0.5), rotation_y(0.6), 1e-15);
+  EXPECT_NEAR(glm::length(nlerp(from, to, 0.3)), 1.0, 1e-15);
+}
+
 // Half turns about the axes and between them take each of the four branches.
 TEST(Rotations, AxesGoBackAndForth) {
   Chance chance;

@@ -372,6 +372,33 @@ TEST(UpperBodyJoints, OfRealMotionsAreArmsSpineAndHead) {
   EXPECT_GT(count, 0);
 }
 
+TEST(UpperBodyJoints, AHandEndsInItsLongestFingerAndAHeadInItsTop) {
+  const Made bare = made({"#clavicle", "#humerus", "#radius", "#wrist"}, 'l', 'r');
+  EXPECT_EQ(bare.found().arm[0].hand_end, -1);
+  EXPECT_EQ(bare.found().head_top, bare.found().head);
+  Made body;
+  const int hips = body.add("Hips", -1, {0.0, 1.0, 0.0});
+  body.add_legs(hips);
+  const int chest = body.add("Spine", hips, {0.0, 1.3, 0.0});
+  for (const std::string side : {"l", "r"}) {
+    const double x = side == "l" ? 1.0 : -1.0;
+    const int shoulder = body.add(side + "humerus", chest, {0.2 * x, 1.4, 0.0});
+    const int elbow = body.add(side + "radius", shoulder, {0.2 * x, 1.1, 0.0});
+    const int wrist = body.add(side + "hand", elbow, {0.2 * x, 0.85, 0.0});
+    body.add(side + "thumb", wrist, {0.2 * x, 0.6, 0.2});
+    const int fingers = body.add(side + "fingers", wrist, {0.2 * x, 0.75, 0.0});
+    body.add(side + "fingers_End", fingers, {0.2 * x, 0.7, 0.0}, true);
+  }
+  const int head = body.add("Head", chest, {0.0, 1.6, 0.0});
+  body.add("LeftEye", head, {0.03, 1.65, 0.1});
+  const int top = body.add("Head_End", head, {0.0, 1.8, 0.0}, true);
+  const UpperBodyJoints found = body.found();
+  EXPECT_EQ(found.arm[0].hand_end, body.skeleton.find("lfingers_End"));
+  EXPECT_EQ(found.arm[1].hand_end, body.skeleton.find("rfingers_End"));
+  EXPECT_EQ(found.head, head);
+  EXPECT_EQ(found.head_top, top);
+}
+
 TEST(UpperBodyJoints, AJointNamedWristAboveTheHandTurnsTheForearm) {
   Made m = made({"#clavicle", "#humerus", "#radius", "#wrist"}, 'l', 'r');
   const int wrist = m.skeleton.find("lwrist");

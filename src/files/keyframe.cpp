@@ -177,32 +177,14 @@ void fill_samples(const KeyedStride& stride, GaitCycle& cycle) {
   }
 }
 
-// The curve's harmonics up to the sixth.
-std::array<double, kCycleSamples> smoothed(const std::array<double, kCycleSamples>& curve) {
-  std::array<double, kCycleSamples> out{};
-  for (int k = 0; k <= 6; ++k) {
-    double a = 0.0, b = 0.0;
-    for (int i = 0; i < kCycleSamples; ++i) {
-      const SinCos s = sin_cos(2.0 * kPi * k * i / kCycleSamples);
-      a += curve[i] * s.cos;
-      b += curve[i] * s.sin;
-    }
-    const double share = (k == 0 ? 1.0 : 2.0) / kCycleSamples;
-    for (int i = 0; i < kCycleSamples; ++i) {
-      const SinCos s = sin_cos(2.0 * kPi * k * i / kCycleSamples);
-      out[i] += share * (a * s.cos + b * s.sin);
-    }
-  }
-  return out;
-}
-
+// Sets the pelvis' height so that the lower foot stands on the floor.
 void stand_on_lower_foot(GaitCycle& cycle) {
   std::array<double, kCycleSamples> height{};
   for (int i = 0; i < kCycleSamples; ++i) {
     const CycleSample& at = cycle.samples[i];
     height[i] = -std::min(foot_clearance(cycle, 0, at), foot_clearance(cycle, 1, at));
   }
-  height = smoothed(height);
+  height = low_harmonics(height, 6);
   for (int i = 0; i < kCycleSamples; ++i) cycle.samples[i].pelvis_m.y = height[i];
 }
 

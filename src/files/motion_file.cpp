@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "base/files.h"
+#include "base/numeric.h"
 #include "base/text.h"
 #include "files/acclaim.h"
 #include "files/keyframe.h"
@@ -301,9 +303,7 @@ double floor_height(const Motion& motion, UpAxis up) {
       lowest[f] = std::min(lowest[f], track[f][static_cast<int>(up)]);
     }
   }
-  const auto middle = lowest.begin() + static_cast<std::ptrdiff_t>(lowest.size() / 2);
-  std::nth_element(lowest.begin(), middle, lowest.end());
-  return *middle;
+  return median(std::move(lowest));
 }
 
 // Adds the root's OFFSET to its positions if that puts the feet nearer to the floor.

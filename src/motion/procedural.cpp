@@ -221,25 +221,6 @@ void fill_angles(GaitCycle& cycle) {
   }
 }
 
-// The even harmonics up to 6 of a curve that repeats every half cycle.
-std::array<double, kHalf> smoothed(const std::array<double, kHalf>& curve) {
-  std::array<double, kHalf> out{};
-  for (int k = 0; k <= 3; ++k) {
-    double a = 0.0, b = 0.0;
-    for (int i = 0; i < kHalf; ++i) {
-      const SinCos s = sin_cos(2.0 * kPi * k * i / kHalf);
-      a += curve[i] * s.cos;
-      b += curve[i] * s.sin;
-    }
-    const double share = (k == 0 ? 1.0 : 2.0) / kHalf;
-    for (int i = 0; i < kHalf; ++i) {
-      const SinCos s = sin_cos(2.0 * kPi * k * i / kHalf);
-      out[i] += share * (a * s.cos + b * s.sin);
-    }
-  }
-  return out;
-}
-
 // The pelvis is as high as the lower foot asks. Fore and aft it swings by 70 % of what would let
 // the standing foot slide least (least squares over heel and ball), so it is slowest over that
 // foot. (Boulic's fore-aft curve, as ported, runs the other way and makes the foot slide.)
@@ -249,7 +230,7 @@ void fill_pelvis_path(GaitCycle& cycle) {
     const CycleSample& at = cycle.samples[i];
     height[i] = -std::min(foot_clearance(cycle, 0, at), foot_clearance(cycle, 1, at));
   }
-  height = smoothed(height);
+  height = low_harmonics(height, 3);  // of half a cycle, which repeats
   for (int i = 0; i < kHalf; ++i) {
     const SinCos s = sin_cos(2.0 * kPi * i / kHalf);
     for (const int at : {i, i + kHalf}) {

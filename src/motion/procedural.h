@@ -1,6 +1,9 @@
 // The embedded adult, and legs given as angles in the plane of travel: what the procedural and the
 // key-framed walks are made of.
 #pragma once
+#include <array>
+#include <cstddef>
+
 #include "gaitpad/curve.h"
 #include "gaitpad/gait_cycle.h"
 #include "motion/leg_pose.h"
@@ -29,5 +32,26 @@ CycleSample mirrored_pelvis(const CycleSample& body);  // pelvis alone, legs unt
 LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at);
 // How far the foot's lowest point is above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);
+
+// A periodic curve's mean and its first `harmonics` harmonics, at the same `n` samples.
+template <std::size_t n>
+std::array<double, n> low_harmonics(const std::array<double, n>& curve, int harmonics) {
+  constexpr int kSamples = static_cast<int>(n);
+  std::array<double, n> out{};
+  for (int k = 0; k <= harmonics; ++k) {
+    double a = 0.0, b = 0.0;
+    for (int i = 0; i < kSamples; ++i) {
+      const SinCos s = sin_cos(2.0 * kPi * k * i / kSamples);
+      a += curve[i] * s.cos;
+      b += curve[i] * s.sin;
+    }
+    const double share = (k == 0 ? 1.0 : 2.0) / kSamples;
+    for (int i = 0; i < kSamples; ++i) {
+      const SinCos s = sin_cos(2.0 * kPi * k * i / kSamples);
+      out[i] += share * (a * s.cos + b * s.sin);
+    }
+  }
+  return out;
+}
 
 }  // namespace gaitpad

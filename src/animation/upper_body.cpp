@@ -14,11 +14,6 @@ namespace gaitpad {
 namespace {
 
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
-constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
-constexpr double kHold = 0.8;         // of a change that a locked joint does not follow
-
-// How much of its change a joint of relative weight `w` leaves to the others.
-double held_back(double w) noexcept { return kHold * (1.0 - (w * w) * (w * w)); }
 
 // --- Smoothing, once a tick ----------------------------------------------------------------------
 

@@ -15,13 +15,11 @@ constexpr double kLeastKnee = 5.0 * kDegree;  // where the solver starts: a knee
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
 constexpr double kUnhurriedStep_s = 0.46;
 constexpr double kSoftToe = 15.0 * kDegree;
-constexpr double kHold = 0.8;  // of a change that a locked joint does not follow
 constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
 constexpr double kFreeReach = 0.9985, kSoftReach_m = 0.006;
 constexpr double kLeak_per_s = 4.0;   // of the correction on the data's angles
 constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
 constexpr double kFolding = 45.0 * kDegree, kFolded = 90.0 * kDegree;  // knee
-constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 
@@ -173,9 +171,7 @@ void stiffen_leg(const Tick& tick, Side side, const Pelvis& pelvis, double share
   for (int j = 0; j < kLegDofs; ++j) {
     const double w = std::clamp(state.weight[side][j].x / largest, 0.0, 1.0);
     chain.dof[j].weight = w;
-    // W multiplies once an iteration, and a solve takes a few of them.
-    const double held = kHold * (1.0 - (w * w) * (w * w));
-    angles[j] += share * held * (foot.anchor_rad[j] - angles[j]);
+    angles[j] += share * held_back(w) * (foot.anchor_rad[j] - angles[j]);
   }
   solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(),
                          kRobust, angles));

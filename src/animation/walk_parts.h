@@ -13,6 +13,12 @@ struct Tick {
   bool flat;  // no terrain: all that walk_terrain.cpp does is left out
 };
 
+inline constexpr double kEvenSpread = 1e-9;  // weights closer to each other than this are even
+// The share of its change that a joint of relative weight `w` (0 locked .. 1 free) leaves to the
+// other joints. Its fourth power stands for the few iterations of a solve, each of which multiplies
+// by W.
+inline double held_back(double w) noexcept { return 0.8 * (1.0 - (w * w) * (w * w)); }
+
 // Progress of the running flight, 0 .. 1; 0 outside of flights.
 double flight_progress(const WalkState& state) noexcept;
 // The foot that flies in this step (also during the roll before its flight).

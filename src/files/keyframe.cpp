@@ -177,14 +177,14 @@ void fill_samples(const KeyedStride& stride, GaitCycle& cycle) {
   }
 }
 
-// Sets the pelvis' height so that the lower foot stands on the floor.
+// Sets the height of the pelvis so that the lower foot stands on the floor.
 void stand_on_lower_foot(GaitCycle& cycle) {
   std::array<double, kCycleSamples> height{};
   for (int i = 0; i < kCycleSamples; ++i) {
     const CycleSample& at = cycle.samples[i];
     height[i] = -std::min(foot_clearance(cycle, 0, at), foot_clearance(cycle, 1, at));
   }
-  height = low_harmonics(height, 6);
+  height = smoothed(height, 6);
   for (int i = 0; i < kCycleSamples; ++i) cycle.samples[i].pelvis_m.y = height[i];
 }
 

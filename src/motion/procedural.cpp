@@ -230,7 +230,7 @@ void fill_pelvis_path(GaitCycle& cycle) {
     const CycleSample& at = cycle.samples[i];
     height[i] = -std::min(foot_clearance(cycle, 0, at), foot_clearance(cycle, 1, at));
   }
-  height = low_harmonics(height, 3);  // of half a cycle, which repeats
+  height = smoothed(height, 3);  // the even ones up to 6: it repeats every half cycle
   for (int i = 0; i < kHalf; ++i) {
     const SinCos s = sin_cos(2.0 * kPi * i / kHalf);
     for (const int at : {i, i + kHalf}) {

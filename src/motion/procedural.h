@@ -1,9 +1,6 @@
 // The embedded adult, and legs given as angles in the plane of travel: what the procedural and the
 // key-framed walks are made of.
 #pragma once
-#include <array>
-#include <cstddef>
-
 #include "gaitpad/curve.h"
 #include "gaitpad/gait_cycle.h"
 #include "motion/leg_pose.h"
@@ -33,23 +30,20 @@ LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at);
 // How far the foot's lowest point is above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);
 
-// A periodic curve's mean and its first `harmonics` harmonics, at the same `n` samples.
-template <std::size_t n>
-std::array<double, n> low_harmonics(const std::array<double, n>& curve, int harmonics) {
-  constexpr int kSamples = static_cast<int>(n);
-  std::array<double, n> out{};
+// The mean and the lowest harmonics of a periodic curve.
+template <std::size_t kCount>
+std::array<double, kCount> smoothed(const std::array<double, kCount>& curve, int harmonics) {
+  const auto wave = [](int k, std::size_t i) { return sin_cos(2.0 * kPi * k * i / kCount); };
+  std::array<double, kCount> out{};
   for (int k = 0; k <= harmonics; ++k) {
     double a = 0.0, b = 0.0;
-    for (int i = 0; i < kSamples; ++i) {
-      const SinCos s = sin_cos(2.0 * kPi * k * i / kSamples);
-      a += curve[i] * s.cos;
-      b += curve[i] * s.sin;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      a += curve[i] * wave(k, i).cos;
+      b += curve[i] * wave(k, i).sin;
     }
-    const double share = (k == 0 ? 1.0 : 2.0) / kSamples;
-    for (int i = 0; i < kSamples; ++i) {
-      const SinCos s = sin_cos(2.0 * kPi * k * i / kSamples);
-      out[i] += share * (a * s.cos + b * s.sin);
-    }
+    const double share = (k == 0 ? 1.0 : 2.0) / kCount;
+    for (std::size_t i = 0; i < kCount; ++i)
+      out[i] += share * (a * wave(k, i).cos + b * wave(k, i).sin);
   }
   return out;
 }

@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """Runs `gaitpad replay` over motions x styles x leg ratios x sticks and judges every exported walk.
 
-  acceptance.py PATH/TO/gaitpad [--quick] [--data DIR] [--out DIR] [--json | --json-file FILE]
+  acceptance.py PATH/TO/gaitpad [--quick] [--rotate] [--data DIR] [--out DIR] [--json | --json-file FILE]
 
 Prints one line a bound with the worst figure of all runs, then what failed. Exit status 1 where
 a bound is broken. Captured motions are skipped, with a remark, when the data folder is absent.
-The tests do the same for each motion: acceptance_test.py.
+--rotate runs a third of the walks, another one every day, and always those that have come nearest to a
+bound; with GAITPAD_ALL=1 in the environment it runs them all. The tests do the same for each motion, rotated: acceptance_test.py.
 """
 import argparse
+import datetime
 import json
 import multiprocessing
 import os
@@ -17,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zlib
 
 if __name__ == "__main__":
     sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
@@ -130,6 +133,21 @@ def weight_cases(quick):
     return found
 
 
+# ---- which of them today ---------------------------------------------------------------------
+SLICES = 3
+# Starts, stops, turns about, a random thumb, a long walk and the longest legs come nearest to their bounds.
+ALWAYS = ("back and forth", "start and stop", "default wander", "default 200 strides", "default leg 1.6 turn")
+
+
+def rotated(cases, kept, day):
+    """The cases of that day's slice, those kept, and those that always run."""
+    def is_run(case):
+        label = case["label"]
+        return label in kept or any(part in label for part in ALWAYS) or \
+            zlib.crc32(label.encode()) % SLICES == day % SLICES
+    return [case for case in cases if is_run(case)]
+
+
 # ---- one run ---------------------------------------------------------------------------------
 def folder_of(case, out):
     return os.path.join(out, case["label"].replace(" ", "_"))
@@ -215,10 +233,14 @@ def run_comparison(job):
         return label, [Check("walks can be compared", 1, 0, "==", note=f"{type(error).__name__}: {error}")]
 
 
+def monotone_labels(options):
+    return ["default style stiff_hip"] if options.quick else \
+        ["default hip 0.9", "default hip 0.8", "default hip 0.5", "default style stiff_hip"]
+
+
 def monotone_check(options):
     """RMS of the hip's change must grow as its weight falls."""
-    labels = ["default style stiff_hip"] if options.quick else \
-        ["default hip 0.9", "default hip 0.8", "default hip 0.5", "default style stiff_hip"]
+    labels = monotone_labels(options)
     even = load({"label": "default style even"}, options.out)
     rms = [judge.weight_figures(even, load({"label": n}, options.out), 0)["rms"] for n in labels]
     falls = sum(b <= a for a, b in zip(rms[:-1], rms[1:]))
@@ -267,6 +289,7 @@ def arguments(words=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("gaitpad")
     parser.add_argument("--quick", action="store_true", help="the default and one captured motion, under 40 s")
+    parser.add_argument("--rotate", action="store_true", help="this day's third of the walks, unless GAITPAD_ALL=1")
     parser.add_argument("--data", default=str(DATA / "mocap"), help="folder of the BVH files")
     parser.add_argument("--motions", default=",".join(MOTIONS), help="BVH names without ending; default is always run")
     parser.add_argument("--out", help="keep traces and exported files there")
@@ -290,11 +313,17 @@ def run_motions(motions, options, processes=2):
     with open(os.path.join(options.out, "exact.toml"), "w", encoding="utf-8") as file:
         file.write(EXACT_CALIBRATION)
     cases = [c for m in motions for c in cases_of(m, options.quick) if options.only in c["label"]]
+    compared = [job for m in motions for job in comparisons(m, options)]
+    if options.rotate and os.environ.get("GAITPAD_ALL") != "1":
+        day, count = datetime.date.today().toordinal(), len(cases)
+        kept = {label for job in compared for label in job[2:4]} | set(monotone_labels(options))
+        cases = rotated(cases, kept, day)
+        print(f"{len(cases)} of {count} walks: slice {day % SLICES + 1} of {SLICES}, by the day (GAITPAD_ALL=1: all)")
     cases.sort(key=lambda c: -c["end"])  # long ones first: the processes end together
     with multiprocessing.Pool(processes) as pool:
         results = pool.map(run_case, [(c, options) for c in cases], chunksize=1)
         if not options.only:
-            results += pool.map(run_comparison, [j for m in motions for j in comparisons(m, options)], chunksize=1)
+            results += pool.map(run_comparison, compared, chunksize=1)
     return results
 
 

@@ -13,7 +13,7 @@ def pytest_generate_tests(metafunc):
 
 
 def test_walks_keep_every_bound(program, pytestconfig, tmp_path, motion):
-    words = [str(program), "--out", str(tmp_path)] + (["--quick"] if pytestconfig.getoption("--quick") else [])
+    words = [str(program), "--out", str(tmp_path), "--rotate"] + (["--quick"] if pytestconfig.getoption("--quick") else [])
     options = acceptance.arguments(words)
     if motion != "default" and not os.path.exists(os.path.join(options.data, motion + ".bvh")):
         pytest.skip(f"{motion}.bvh is not in {options.data}")

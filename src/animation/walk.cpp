@@ -401,7 +401,8 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
   if (!tick.flat) advance_base(tick, state, remaining);
 }
 
-// Pelvis place and rotation, still without the height.
+}  // namespace
+
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
   const double a = presence(state), r = std::clamp(state.pace.x, 0.0, 1.0);
   const double phase = data_phase(model, state);
@@ -414,6 +415,8 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexce
   pelvis.rotation = rotation_y(state.heading_rad + yaw) * from_rotation_vector(tilt * (a * r));
   return pelvis;
 }
+
+namespace {
 
 // Pelvis height at which hip and ankle are `reach_m` apart.
 double height_over(const LegBuild& leg, const FootPose& foot, const Pelvis& pelvis,

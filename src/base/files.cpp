@@ -37,7 +37,7 @@ std::optional<Error> make_folder(const fs::path& folder) {
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
   if (!error) return std::nullopt;
-  return Error{folder.string() + ": cannot be made: " + error.message()};
+  return Error{folder.string() + ": cannot be created: " + error.message()};
 }
 
 // Hidden, in the same folder, and different for every process.
@@ -131,7 +131,7 @@ Error write_error(const std::string& path, int number) {
 
 std::optional<Error> write_file(const std::string& path, std::string_view bytes) {
   const fs::path place(path);
-  if (!place.has_filename()) return Error{path + ": is no file's name"};
+  if (!place.has_filename()) return Error{path + ": is not a file name"};
   if (auto problem = make_folder(place.parent_path())) return problem;
   std::error_code ignored;
   if (fs::is_directory(place, ignored)) return write_error(path, EISDIR);
@@ -150,7 +150,7 @@ std::optional<Error> saving_problem(const std::string& path) {
   const fs::file_status status = fs::status(*place, error);
   if (fs::is_directory(status)) return write_error(path, EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    return Error{path + ": this is no file, none can take its place"};
+    return Error{path + ": not a regular file, so it cannot be replaced"};
   fs::path folder = fs::absolute(*place, error).parent_path();
   while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
   if (!fs::is_directory(folder, error)) return write_error(path, ENOTDIR);

@@ -111,7 +111,7 @@ class AsfParser {
     std::string_view rest = line_;
     const std::string keyword = lower_case(take_word(rest));
     if (keyword.empty() || keyword.front() != ':') {
-      return fail(fmt::format("{} stands in no section (\":bonedata\" ...)", in_quotes(line_)));
+      return fail(fmt::format("{} is outside of a section (\":bonedata\" ...)", in_quotes(line_)));
     }
     advance();
     if (keyword == ":units")
@@ -145,12 +145,12 @@ class AsfParser {
       else if (angle.starts_with("rad"))
         asf_.angle_unit = 1.0;
       else
-        return fail(fmt::format("angles in {}: deg or rad is known", in_quotes(word)));
+        return fail(fmt::format("angles in {}: only deg and rad are known", in_quotes(word)));
     }
     if (key == "length") {
       const auto value = parse_bounded(word);
       if (!value || *value <= 0.0)
-        return fail(fmt::format("length {} is no unit", in_quotes(word)));
+        return fail(fmt::format("length {} is not a unit", in_quotes(word)));
       asf_.length_unit = *value;
     }
     return true;
@@ -169,7 +169,7 @@ class AsfParser {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = take_word(rest);
       const auto value = parse_bounded(word);
-      if (!value) return fail(fmt::format("{}: {} is no number", key, in_quotes(word)));
+      if (!value) return fail(fmt::format("{}: {} is not a number", key, in_quotes(word)));
       out[axis] = *value;
     }
     return true;
@@ -179,7 +179,7 @@ class AsfParser {
     const std::string_view word = take_word(rest);
     if (word.empty()) return true;  // no order given: XYZ
     const auto order = axis_order(word);
-    if (!order) return fail(fmt::format("axis: {} is no order of X, Y and Z", in_quotes(word)));
+    if (!order) return fail(fmt::format("axis: {} is not an order of X, Y and Z", in_quotes(word)));
     raw.order = *order;
     return true;
   }
@@ -194,7 +194,7 @@ class AsfParser {
                                 in_quotes(bone.name)));
       }
       if (!channel)
-        return fail(fmt::format("dof {} is none of rx ry rz tx ty tz", in_quotes(word)));
+        return fail(fmt::format("dof {} is not one of rx ry rz tx ty tz", in_quotes(word)));
       const auto end = bone.channel.begin() + bone.channels;
       if (std::find(bone.channel.begin(), end, *channel) != end) {
         return fail(fmt::format("{} has dof {} twice", in_quotes(bone.name), word));
@@ -215,7 +215,7 @@ class AsfParser {
         const std::string key = lower_case(take_word(rest));
         if (!bone_key(key, rest, raw)) return false;
       }
-      if (!is_inside()) return fail_at(raw.line, "a bone without its end");
+      if (!is_inside()) return fail_at(raw.line, "a bone without \"end\"");
       advance();
       if (!add(std::move(raw))) return false;
     }
@@ -234,7 +234,7 @@ class AsfParser {
     if (key == "length") {
       const auto value = parse_bounded(trimmed(rest));
       if (!value || *value < 0.0)
-        return fail(fmt::format("length {} is none", in_quotes(trimmed(rest))));
+        return fail(fmt::format("length {} is not a length", in_quotes(trimmed(rest))));
       raw.bone.length = *value;
       raw.has_length = true;
     }
@@ -276,7 +276,7 @@ class AsfParser {
         const auto child = bone_named(take_word(rest));
         if (!child) return false;
         if (*child == 0 || bones_[*child].bone.parent >= 0) {
-          return fail(fmt::format("{} hangs on two bones", in_quotes(bones_[*child].bone.name)));
+          return fail(fmt::format("{} has two parents", in_quotes(bones_[*child].bone.name)));
         }
         bones_[*child].bone.parent = *parent;
         children_[*parent].push_back(*child);
@@ -318,7 +318,7 @@ class AsfParser {
     }
     for (const RawBone& raw : bones_) {
       if (raw.line > 0) {
-        return fail_at(raw.line, fmt::format("{} hangs on no bone", in_quotes(raw.bone.name)));
+        return fail_at(raw.line, fmt::format("{} has no parent", in_quotes(raw.bone.name)));
       }
     }
     if (asf_.bones.size() + leaves > static_cast<std::size_t>(kMaxJoints)) {
@@ -378,7 +378,7 @@ class AmcParser {
       std::string_view rest = line_;
       const std::string word = lower_case(take_word(rest));
       if (word.front() != ':') {
-        return fail(fmt::format("{} stands before the first frame's number", in_quotes(line_)));
+        return fail(fmt::format("{} is before the number of the first frame", in_quotes(line_)));
       }
       if (word == ":degrees") amc_.angle_unit = kDegree;
       if (word == ":radians") amc_.angle_unit = 1.0;
@@ -386,7 +386,7 @@ class AmcParser {
       if (word == ":samples-per-second") {
         const auto rate = parse_bounded(trimmed(rest));
         if (!rate || *rate < 0.1 || *rate > 1e5) {
-          return fail(fmt::format("{} is no rate", in_quotes(trimmed(rest))));
+          return fail(fmt::format("{} is not a rate", in_quotes(trimmed(rest))));
         }
         amc_.frame_rate_hz = *rate;
       }
@@ -433,7 +433,7 @@ class AmcParser {
     }
     const AsfBone& bone = asf_.bones[static_cast<std::size_t>(at->second)];
     if (seen_[static_cast<std::size_t>(at->second)]) {
-      return fail(fmt::format("frame {}: {} stands twice", number_, in_quotes(word)));
+      return fail(fmt::format("frame {}: {} occurs twice", number_, in_quotes(word)));
     }
     seen_[static_cast<std::size_t>(at->second)] = true;
     double* values = amc_.values.data() + amc_.values.size() - asf_.channels + bone.first_value;
@@ -442,7 +442,7 @@ class AmcParser {
       const std::string_view text = take_word(rest);
       const auto value = parse_bounded(text);
       if (!value) {
-        return fail(fmt::format("frame {}, {}: {} is no usable number", number_,
+        return fail(fmt::format("frame {}, {}: {} is not a usable number", number_,
                                 in_quotes(bone.name), in_quotes(text)));
       }
       if (count < bone.channels) values[count] = *value;

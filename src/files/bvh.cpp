@@ -160,8 +160,8 @@ class Parser {
       const std::string_view word = in_.word();
       const auto value = parse_bounded(word);
       if (!value) {
-        return fail(fmt::format("OFFSET of {}: {} is no number", in_quotes(bvh_.joints[joint].name),
-                                in_quotes(word)));
+        return fail(fmt::format("OFFSET of {}: {} is not a number",
+                                in_quotes(bvh_.joints[joint].name), in_quotes(word)));
       }
       bvh_.joints[joint].offset[axis] = *value;
     }
@@ -176,8 +176,8 @@ class Parser {
     const std::string_view word = in_.word();
     const auto count = parse_bounded(word);
     if (!count || *count < 0 || *count > 6 || *count != std::floor(*count)) {
-      return fail(fmt::format("CHANNELS of {}: {} is no count from 0 to 6", in_quotes(joint.name),
-                              in_quotes(word)));
+      return fail(fmt::format("CHANNELS of {}: {} is not a count from 0 to 6",
+                              in_quotes(joint.name), in_quotes(word)));
     }
     joint.first_value = bvh_.channels;
     while (joint.channels < static_cast<int>(*count)) {
@@ -192,7 +192,7 @@ class Parser {
     const auto kind = channel_named(word);
     if (!kind) {
       return fail(
-          fmt::format("{} is no channel (joint {})", in_quotes(word), in_quotes(joint.name)));
+          fmt::format("{} is not a channel (joint {})", in_quotes(word), in_quotes(joint.name)));
     }
     for (int i = 0; i < joint.channels; ++i) {
       if (joint.channel[i] == *kind) {
@@ -249,7 +249,7 @@ class Parser {
       if (!frame_values(line, frame)) return false;
     }
     if (const std::string_view more = in_.full_line(); !more.empty()) {
-      return fail(fmt::format("{} behind the last of {} frames", in_quotes(more), bvh_.frames));
+      return fail(fmt::format("{} after the last of {} frames", in_quotes(more), bvh_.frames));
     }
     return true;
   }
@@ -261,7 +261,7 @@ class Parser {
       while (n < line.size() && !is_blank(line[n])) ++n;
       const auto value = parse_bounded(line.substr(0, n));
       if (!value) {
-        return fail(fmt::format("frame {}, value {}: {} is no usable number", frame, count,
+        return fail(fmt::format("frame {}, value {}: {} is not a usable number", frame, count,
                                 in_quotes(line.substr(0, n))));
       }
       if (++count > bvh_.channels) break;

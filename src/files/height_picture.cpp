@@ -102,8 +102,9 @@ Result<HeightPicture> height_picture(std::string_view png, const std::string& na
   png_destroy_read_struct(&reader.png, &reader.info, nullptr);
   if (is_read) return picture;
   const std::string cause = reader.problem[0] != '\0' ? reader.problem.data() : "no memory";
-  return Error{fmt::format("{}: is no height picture (a grey PNG of at most {} samples a side): {}",
-                           name, kMaxPictureSide, cause)};
+  return Error{
+      fmt::format("{}: is not a height picture (a grey PNG of at most {} samples a side): {}", name,
+                  kMaxPictureSide, cause)};
 }
 
 Result<HeightPicture> load_height_picture(const std::string& path) {

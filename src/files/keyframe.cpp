@@ -177,6 +177,7 @@ void fill_samples(const KeyedStride& stride, GaitCycle& cycle) {
   }
 }
 
+// Sets the height of the pelvis so that the lower foot stands on the floor.
 void stand_on_lower_foot(GaitCycle& cycle) {
   std::array<double, kCycleSamples> height{};
   for (int i = 0; i < kCycleSamples; ++i) {

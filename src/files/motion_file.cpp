@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "base/files.h"
+#include "base/numeric.h"
 #include "base/text.h"
 #include "files/acclaim.h"
 #include "files/keyframe.h"
@@ -84,7 +86,7 @@ Result<Motion> finish_motion(Motion motion, UpAxis up, double stated_unit_m,
                              const std::string& path, const LoadOptions& options) {
   const double leg_units = leg_length_m(motion);
   if (leg_units < kMinLegUnits || leg_units > kMaxLegUnits) {
-    return Error{fmt::format("{}: legs of {:.3g} units are no legs", path, leg_units)};
+    return Error{fmt::format("{}: legs of {:.3g} units are not plausible", path, leg_units)};
   }
   const double unit_m = options.metres_per_unit > 0.0 ? options.metres_per_unit
                                                       : metres_per_unit(leg_units, stated_unit_m);
@@ -206,7 +208,7 @@ Result<std::string> skeleton_beside(const std::string& path) {
   if (all.size() == 1) return all.front();
   return Error{
       fmt::format("{}: its skeleton is missing: neither {} nor a single other .asf file "
-                  "stands beside it",
+                  "is in its folder",
                   path, fmt::join(tried, " nor "))};
 }
 
@@ -301,9 +303,7 @@ double floor_height(const Motion& motion, UpAxis up) {
       lowest[f] = std::min(lowest[f], track[f][static_cast<int>(up)]);
     }
   }
-  const auto middle = lowest.begin() + static_cast<std::ptrdiff_t>(lowest.size() / 2);
-  std::nth_element(lowest.begin(), middle, lowest.end());
-  return *middle;
+  return median(std::move(lowest));
 }
 
 // Adds the root's OFFSET to its positions if that puts the feet nearer to the floor.
@@ -322,7 +322,7 @@ void settle_root(const Bvh& bvh, UpAxis up, Motion& motion) {
 Result<Motion> motion_of(const Bvh& bvh, const std::string& path, const LoadOptions& options) {
   if (!options.skeleton.empty()) {
     return Error{
-        fmt::format("{}: brings its skeleton itself, {} is not for it", path, options.skeleton)};
+        fmt::format("{}: has its own skeleton, {} is not used with it", path, options.skeleton)};
   }
   Motion motion = in_file_units(bvh);
   const auto up = find_body(motion, path, options);

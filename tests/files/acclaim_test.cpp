@@ -87,21 +87,21 @@ TEST(Asf, DamageIsNamedWithFileAndLine) {
   const std::string good = acclaim_skeleton();
   EXPECT_EQ(asf_error(""), "body.asf:0: no bones: not a skeleton (.asf)");
   EXPECT_EQ(asf_error("HIERARCHY\n"),
-            "body.asf:1: \"HIERARCHY\" stands in no section (\":bonedata\" ...)");
+            "body.asf:1: \"HIERARCHY\" is outside of a section (\":bonedata\" ...)");
   EXPECT_EQ(asf_error(replaced(good, "length 7.5", "length x")),
-            "body.asf:27: length \"x\" is none");
+            "body.asf:27: length \"x\" is not a length");
   EXPECT_EQ(asf_error(replaced(good, "length 0.45", "length -1")),
-            "body.asf:6: length \"-1\" is no unit");
+            "body.asf:6: length \"-1\" is not a unit");
   EXPECT_EQ(asf_error(replaced(good, "angle deg", "angle turns")),
-            "body.asf:7: angles in \"turns\": deg or rad is known");
+            "body.asf:7: angles in \"turns\": only deg and rad are known");
   EXPECT_EQ(asf_error(replaced(good, "ltibia lfoot", "ltibia lfoot lfoot")),
-            "body.asf:118: \"lfoot\" hangs on two bones");
+            "body.asf:118: \"lfoot\" has two parents");
   EXPECT_EQ(asf_error(replaced(good, "    lfemur ltibia\n", "")),
-            "body.asf:34: \"ltibia\" hangs on no bone");
+            "body.asf:34: \"ltibia\" has no parent");
   EXPECT_EQ(asf_error(replaced(good, "lfoot ltoes", "lfoot ltows")),
             "body.asf:119: no bone \"ltows\" in :bonedata above");
   EXPECT_EQ(asf_error(replaced(good, "dof rx rz", "dof rx rq")),
-            "body.asf:49: dof \"rq\" is none of rx ry rz tx ty tz");
+            "body.asf:49: dof \"rq\" is not one of rx ry rz tx ty tz");
   EXPECT_EQ(asf_error(replaced(good, "dof rx rz", "dof rx l")),
             "body.asf:49: \"lfoot\" changes its length (dof l), which no joint here can");
   EXPECT_EQ(asf_error(replaced(good, "dof rx rz", "dof rx rx")),
@@ -109,7 +109,7 @@ TEST(Asf, DamageIsNamedWithFileAndLine) {
   EXPECT_EQ(asf_error(replaced(good, "name rtoes", "name ltoes")),
             "body.asf:94: a second bone \"ltoes\"");
   EXPECT_EQ(asf_error(replaced(good, "20 XYZ", "20 XYX")),
-            "body.asf:28: axis: \"XYX\" is no order of X, Y and Z");
+            "body.asf:28: axis: \"XYX\" is not an order of X, Y and Z");
 }
 
 TEST(Asf, WhatIsMissingIsRefused) {
@@ -201,16 +201,16 @@ TEST(Amc, DamageIsNamedWithFileAndLine) {
   EXPECT_EQ(amc_error(replaced(good, "rtibia 0", "rtibia")),
             "walk.amc:12: frame 1: \"rtibia\" has 0 values, its skeleton says 1");
   EXPECT_EQ(amc_error(replaced(good, "rtibia 0", "rtibia 1,5")),
-            "walk.amc:12: frame 1, \"rtibia\": \"1,5\" is no usable number");
+            "walk.amc:12: frame 1, \"rtibia\": \"1,5\" is not a usable number");
   EXPECT_EQ(amc_error(replaced(good, "rtibia 0", "rshin 0")),
             "walk.amc:12: frame 1: body.asf has no bone \"rshin\"");
   EXPECT_EQ(amc_error(replaced(good, "rtibia 0", "ltibia 0")),
-            "walk.amc:12: frame 1: \"ltibia\" stands twice");
+            "walk.amc:12: frame 1: \"ltibia\" occurs twice");
   EXPECT_EQ(amc_error(replaced(good, "\n2\n", "\n4\n")), "walk.amc:15: frame 4 follows frame 1");
   EXPECT_EQ(amc_error(replaced(good, "root 0 17 0 0 0 0\n", "")),
             "walk.amc:14: frame 1 has no root");
   EXPECT_EQ(amc_error("HIERARCHY\n"),
-            "walk.amc:1: \"HIERARCHY\" stands before the first frame's number");
+            "walk.amc:1: \"HIERARCHY\" is before the number of the first frame");
 }
 
 TEST(Amc, NumbersThatAreNoneOrOutOfReachAreRefused) {

@@ -77,16 +77,16 @@ TEST(Bvh, SeveralEndSitesOfAJointHaveDifferentNames) {
 
 TEST(Bvh, WrongOrMissingValuesAreNamedWithFileAndLine) {
   EXPECT_EQ(error_of(replaced(kTiny, "3 4", "3 x4")),
-            "walk.bvh:15: frame 1, value 1: \"x4\" is no usable number");
+            "walk.bvh:15: frame 1, value 1: \"x4\" is not a usable number");
   EXPECT_EQ(error_of(replaced(kTiny, "3 4", "3")), "walk.bvh:15: frame 1 has 1 of 2 values");
   EXPECT_EQ(error_of(replaced(kTiny, "3 4", "3 4 5")),
             "walk.bvh:15: frame 1 has more than 2 values");
   EXPECT_EQ(error_of(replaced(kTiny, "1 2\n3 4\n", "1.000 2.000\n")),
             "walk.bvh:15: the motion ends after 1 of 2 frames");
   EXPECT_EQ(error_of(replaced(kTiny, "3 4", "3 4\n5 6")),
-            "walk.bvh:16: \"5 6\" behind the last of 2 frames");
+            "walk.bvh:16: \"5 6\" after the last of 2 frames");
   EXPECT_EQ(error_of(replaced(kTiny, "OFFSET 1 2 3", "OFFSET 1 2")),
-            "walk.bvh:5: OFFSET of \"a\": \"CHANNELS\" is no number");
+            "walk.bvh:5: OFFSET of \"a\": \"CHANNELS\" is not a number");
 }
 
 TEST(Bvh, NumbersThatAreNoneOrOutOfReachAreRefused) {

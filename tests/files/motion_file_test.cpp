@@ -305,7 +305,7 @@ TEST_F(AcclaimFolder, TheSkeletonIsFoundByTheMotionsName) {
   EXPECT_EQ(load_motion(motion).error().message,
             motion +
                 ": its skeleton is missing: neither cmu_01_02.asf nor cmu_01.asf nor a single "
-                "other .asf file stands beside it");
+                "other .asf file is in its folder");
   write("else.asf", acclaim_skeleton());
   EXPECT_TRUE(load_motion(motion));
   write("another.asf", "broken");
@@ -336,7 +336,7 @@ TEST_F(AcclaimFolder, ABvhFileNeedsNoSkeleton) {
   given.skeleton = "body.asf";
   const std::string path = write("walk.bvh", WalkerText().text());
   EXPECT_EQ(load_motion(path, given).error().message,
-            path + ": brings its skeleton itself, body.asf is not for it");
+            path + ": has its own skeleton, body.asf is not used with it");
 }
 
 }  // namespace

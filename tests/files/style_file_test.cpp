@@ -13,18 +13,21 @@
 namespace gaitpad {
 namespace {
 
-class StyleFile : public testing::Test {
+// A file of a test's own, and why reading it failed: what follows its path.
+class OwnFile : public testing::Test {
  protected:
-  Result<Style> loaded(const std::string& text) {
-    return load_style(own_.write("mine.toml", text));
+  std::string written(const std::string& text) const { return own_.write("mine.toml", text); }
+  template <class T>
+  std::string cause(const Result<T>& read) const {
+    return read ? "none" : read.error().message.substr(own_.at("mine.toml").size());
   }
-  std::string refusal(const std::string& text) {
-    auto style = loaded(text);
-    return style ? "none" : style.error().message.substr(path_.size());
-  }
-
   OwnFolder own_;
-  const std::string path_ = own_.at("mine.toml");
+};
+
+class StyleFile : public OwnFile {
+ protected:
+  Result<Style> loaded(const std::string& text) { return load_style(written(text)); }
+  std::string refusal(const std::string& text) { return cause(loaded(text)); }
 };
 
 TEST_F(StyleFile, EmptyFileIsTheEvenStyleNamedAfterTheFile) {
@@ -160,18 +163,10 @@ TEST(LoadStyle, AbsentFileIsNamed) {
   EXPECT_EQ(load_style("no/such.toml").error().message, "no/such.toml: no such file");
 }
 
-class CharacterFile : public testing::Test {
+class CharacterFile : public OwnFile {
  protected:
-  Result<Character> loaded(const std::string& text) {
-    return load_character(own_.write("mine.toml", text));
-  }
-  std::string refusal(const std::string& text) {
-    auto character = loaded(text);
-    return character ? "none" : character.error().message.substr(path_.size());
-  }
-
-  OwnFolder own_;
-  const std::string path_ = own_.at("mine.toml");
+  Result<Character> loaded(const std::string& text) { return load_character(written(text)); }
+  std::string refusal(const std::string& text) { return cause(loaded(text)); }
 };
 
 TEST_F(CharacterFile, OneLineIsEnough) {

@@ -263,7 +263,7 @@ TEST_F(SaveCalibration, WhereNothingCanBeWrittenItSaysSo) {
             "directory");
   fs::create_directories(path_);
   EXPECT_EQ(problem(path_, 0.1), path_ + ": cannot be written: Is a directory");
-  EXPECT_EQ(problem("/dev/null", 0.1), "/dev/null: this is no file, none can take its place");
+  EXPECT_EQ(problem("/dev/null", 0.1), "/dev/null: not a regular file, so it cannot be replaced");
   EXPECT_EQ(own_.entries(), 2);
 }
 

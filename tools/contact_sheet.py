@@ -20,12 +20,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
-sys.path.insert(0, os.path.join(ROOT, "tests", "session"))
-import bvh_fk
-import make_trace
-from walk_data import SIDES, Walk
+sys.path.insert(0, os.path.join(ROOT, "tests"))
+from support import bvh as bvhs
+from support.program import DATA
+from support.traces import EXACT_CALIBRATION, write_trace
+from support.walk import SIDES, Walk
 
-DATA = os.path.join(ROOT, "..", "shared", "data", "mocap")
 COLOURS = ("#1f5fbf", "#d9701a")
 POSES_A_CYCLE, SPACING_M, FIGURE_M = 12, 0.55, 1.9
 
@@ -63,10 +63,10 @@ def walk_strip(walk, title):
 
 def source_strip(path, walk, title):
     """The clip itself: joints as in the walk made from it, floor at the lowest heel."""
-    bvh = bvh_fk.read_bvh(path)
+    bvh = bvhs.read_bvh(path)
     scale = float(walk.summary["metres_per_unit"])
-    position, rotation = bvh_fk.forward_kinematics(
-        bvh.parents, bvh_fk.translations(bvh) * scale, bvh_fk.local_rotations(bvh))
+    position, rotation = bvhs.forward_kinematics(
+        bvh.parents, bvhs.translations(bvh) * scale, bvhs.local_rotations(bvh))
     ratio = float(walk.summary["source_leg_length_m"]) / walk.leg_length
     find = lambda j: bvh.index(walk.bvh.names[j])
     legs = [[find(j) for j in (walk.hip[i], walk.knee[i], walk.ankle[i], walk.toe[i])] for i in range(2)]
@@ -174,8 +174,9 @@ def draw_sheet(strips, path):
 def replay(gaitpad, folder, motion, style, stick):
     os.makedirs(folder, exist_ok=True)
     trace, exact = os.path.join(folder, "trace.hid"), os.path.join(folder, "exact.toml")
-    make_trace.write_exact_calibration(exact)
-    make_trace.write_trace(trace, [(0.5, 0, stick)], end_s=10.0)
+    with open(exact, "w", encoding="utf-8") as file:
+        file.write(EXACT_CALIBRATION)
+    write_trace(trace, [(0.5, 0, stick)], end_s=10.0)
     command = [gaitpad, "replay", trace, "--out", folder, "--calibration", exact, "--style", style]
     done = subprocess.run(command + (["--motion", motion] if motion else []), capture_output=True, text=True)
     if done.returncode != 0:
@@ -205,7 +206,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("gaitpad", nargs="?")
     parser.add_argument("out")
-    parser.add_argument("--motions", default=",".join(os.path.join(DATA, m + ".bvh") for m in
+    parser.add_argument("--motions", default=",".join(str(DATA / "mocap" / (m + ".bvh")) for m in
                                                      ("cmu_m21_walk", "bvhtoolbox_walk01")))
     parser.add_argument("--styles", default="even,limp_left")
     parser.add_argument("--stick", type=float, default=0.8)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # fuzz.sh [SECONDS]: builds the fuzz targets with clang and runs each for that long (default 60).
-# What they learn stays in build-fuzz/corpus; an input that breaks one is kept beside it and named.
+# The corpus stays in build-fuzz/corpus. An input that breaks a target is kept in build-fuzz and named.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:-60}

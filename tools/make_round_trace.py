@@ -5,19 +5,24 @@ Stand, walk on, a curve to the left and one to the right, limp for a while (a co
 sends a report when something has changed, at most every 8 ms. Usage: make_round_trace.py > round.hid
 """
 import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests"))
+from support import traces  # noqa: E402
 
 RATE_HZ = 240
 PERIOD_US = 8000
 END_S = 20
 
 # Game pad: X Y Z Rz of 8 bits, a hat, 12 buttons; no report id.
-DESCRIPTOR = """
+DESCRIPTOR = bytes.fromhex("""
 05 01 09 05 a1 01
 15 00 26 ff 00 75 08 95 04 09 30 09 31 09 32 09 35 81 02
 15 00 25 07 75 04 95 01 09 39 81 42
 05 09 15 00 25 01 75 01 95 0c 19 01 29 0c 81 02
 c0
-""".split()
+""")
 
 # seconds, sideways (+ right), forward; straight lines between
 STICK = [
@@ -51,10 +56,6 @@ def count(value):
     return max(0, min(255, math.floor(127.5 + 127.5 * value + 0.5)))
 
 
-def time_text(us):
-    return f"{us // 1_000_000:06d}.{us % 1_000_000:06d}"
-
-
 def report_at(t):
     """The thumb trembles by less than a count; the middle rests at 0x7f or 0x80."""
     x, y = stick_at(t)
@@ -63,21 +64,17 @@ def report_at(t):
 
 
 def main():
-    print(f"V: 1 rate_hz={RATE_HZ}")
-    print(f"R: {len(DESCRIPTOR)} {' '.join(DESCRIPTOR)}")
-    print("N: Example Walk Pad")
-    print("I: 3 1209 0001")
+    lines = [f"V: 1 rate_hz={RATE_HZ}\n", traces.device(DESCRIPTOR, "Example Walk Pad")]
     commands = list(COMMANDS)
     last = None
     for us in range(0, END_S * 1_000_000, PERIOD_US):
         while commands and commands[0][0] * 1_000_000 <= us:
-            seconds, text = commands.pop(0)
-            print(f"C: {time_text(int(seconds * 1_000_000))} {text}")
+            lines.append(traces.command(*commands.pop(0)))
         report = report_at(us / 1_000_000)
         if report != last:
-            print(f"E: {time_text(us)} {len(report)} {' '.join(f'{b:02x}' for b in report)}")
+            lines.append(traces.report(us / 1_000_000, report))
             last = report
-    print(f"Q: {time_text(END_S * 1_000_000)} {END_S * RATE_HZ}")
+    print("".join(lines) + traces.end(END_S, RATE_HZ), end="")
 
 
 if __name__ == "__main__":

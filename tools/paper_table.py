@@ -35,13 +35,15 @@ def reasons(claims):
     return lines
 
 
-def main():
-    claims = json.loads(pathlib.Path(sys.argv[1]).read_text())["claims"]
-    page = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else
-                        pathlib.Path(__file__).resolve().parents[1] / "docs" / "paper.md")
+def write(claims, page):
     before, rest = page.read_text().split(BEGIN)
     after = rest.split(END)[1]
     page.write_text(before + BEGIN + "\n".join(table(claims) + reasons(claims)) + "\n" + END + after)
+
+
+def main():
+    page = sys.argv[2] if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parents[1] / "docs" / "paper.md"
+    write(json.loads(pathlib.Path(sys.argv[1]).read_text())["claims"], pathlib.Path(page))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# pictures.sh [FOLDER]: makes the README's pictures of the window and of the calibration out of the
-# bundled recordings, without a display, the same each time. FOLDER: docs.
+# pictures.sh [FOLDER]: draws the documentation's pictures of the window and of the calibration from the bundled
+# recordings, without a display and the same each time. FOLDER is docs by default.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 bash "$root/tools/install.sh" fonts-inter

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# realtime.sh [SECONDS] [OPTION of gaitpad play ...]: does the loop keep its time while the window draws
-# what it can? Four characters walk for SECONDS (300) along the stick of config/traces/round.hid, again
-# and again. Fewer than 1 in 1000 ticks may begin more than one period late, none is skipped or run
-# twice. That is judged where the thread runs under SCHED_FIFO (as root, or where limits.d allows it) and
-# no `steal` was counted in /proc/stat; else the numbers are printed with that reason. Beside them stands
-# how often threads that only sleep (tools/realtime_control.py) were late on this machine.
+# realtime.sh [SECONDS] [OPTION of gaitpad play ...]: measures whether the loop keeps its time while the window
+# draws as fast as it can. Four characters walk for SECONDS (300) along the stick of config/traces/round.hid,
+# repeatedly. Fewer than 1 in 1000 ticks may begin more than one period late, and none may be skipped or run
+# twice. The result is judged if the thread runs under SCHED_FIFO (as root, or if limits.d allows it) and
+# /proc/stat counted no `steal`; otherwise the numbers are printed with that reason. For comparison the script
+# also prints how often threads that only sleep (tools/realtime_control.py) were late on this machine.
 #   tools/realtime.sh 60 --no-window
-# REALTIME_BUILD names another build folder than build, which is then taken as it is.
-# Ends with 0 where it passed or was not judged, 1 where it failed.
+# REALTIME_BUILD names another build folder than build; it is then not rebuilt.
+# Exit status: 0 if it passed or was not judged, 1 if it failed.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 seconds=300
@@ -23,13 +23,13 @@ fi
 results=$build/realtime
 mkdir -p "$results"
 
-# Drawing leaves one core to the loop; without a display SDL draws into memory.
+# One drawing thread leaves one core to the loop. Without a display SDL draws into memory.
 export LP_NUM_THREADS=1
 if [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}${SDL_VIDEODRIVER:-}" ]; then
   export SDL_VIDEODRIVER=offscreen
 fi
 
-# Longer than the session, which ends with its pad.
+# Longer than the session, because a session ends with its pad.
 /usr/bin/python3 "$root/tools/long_trace.py" "$root/config/traces/round.hid" \
   "$results/long.hid" $((seconds + 60))
 steal() { awk '$1 == "cpu" { print $9 }' /proc/stat; }

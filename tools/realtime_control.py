@@ -1,9 +1,8 @@
 #!/usr/bin/python3
-"""Does the machine itself keep time? realtime_control.py RATE_HZ, until it is told to end (SIGTERM).
+"""Measures whether the machine itself keeps time: realtime_control.py RATE_HZ, until SIGTERM.
 
-On each processor something of the highest priority does nothing but sleep until its next tick, as
-often as the loop does. What is late there is late because the machine stood still, whatever `steal`
-says of it. Prints {"late": ticks more than one period late on the worst processor, "worst_us": ...},
+On each processor a process of the highest priority only sleeps until its next tick, at the rate of
+the loop. If it wakes late, the machine stood still, whatever `steal` says. Prints {"late": ticks more than one period late on the worst processor, "worst_us": ...},
 or {} where SCHED_FIFO is refused.
 """
 import json

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Judges what tools/realtime.sh measured: realtime_judge.py SUMMARY.json CONTROL.json --steal N --seconds N.
 
-Exit status 1 where it failed, 0 where it passed or where nothing can be said.
+Exit status 1 if it failed, 0 if it passed or cannot be judged.
 """
 import argparse
 import json
@@ -15,7 +15,7 @@ def per_mille(count, ticks):
 
 
 def broken_promises(s, seconds):
-    """A sentence each: what neither a slow host nor an ordinary priority excuses."""
+    """One sentence per failure that neither a slow host nor an ordinary priority excuses."""
     ticks, rate_hz, time_s = s["ticks"], s["rate_hz"], s["time_s"]
     # Tick 0 is due at time 0. At the end late ones may be on their way.
     due = int((time_s - s["skipped_s"]) * rate_hz) + 1

@@ -44,6 +44,7 @@ for kernel in "${kernels[@]}"; do
   results=$build/rig/results-$kernel
   rm -rf "$results"
   bash "$root/tools/rig/guest.sh" --kernel "$kernel" --memory 1536 --timeout $seconds --results "$results" -- \
-    env RIG_LONG=$long RIG_BUILD="$build" /usr/bin/python3 "$root/tools/rig/guest_tests.py" --only "$only" || status=1
+    env RIG_LONG=$long RIG_BUILD="$build" /usr/bin/python3 -m pytest -s --tb=short -p no:cacheprovider \
+    --only "$only" "$root/tools/rig" || status=1
 done
 exit $status

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# soak.sh [SECONDS]: the window for ten minutes (600) while a pad comes and goes, styles change and motions
-# are loaded again: is its memory flat? Then a tenth of that under the sanitizers and ThreadSanitizer.
+# soak.sh [SECONDS]: runs the window for ten minutes (600) while a pad is plugged in and out, styles change and
+# motions are loaded again, and checks that its memory stays flat. Then runs a tenth of that time under the
+# sanitizers and ThreadSanitizer.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:-600}
@@ -27,6 +28,6 @@ echo "under AddressSanitizer and UndefinedBehaviorSanitizer:"
 bash "$root/tools/build.sh" "$root/build-tsan" soak -DGAITPAD_TSAN=ON -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 echo "under ThreadSanitizer:"
-# Mesa's and LLVM's own threads are not built for it: what happens within them is not reported.
+# Mesa's and LLVM's own threads are not built for ThreadSanitizer: it does not report what happens in them.
 TSAN_OPTIONS="suppressions=$root/tools/soak/tsan.supp exitcode=66 ${TSAN_OPTIONS:-}" \
   "$root/build-tsan/tools/soak/soak" $short "${motions[@]}"

@@ -1,171 +1,33 @@
-// One pose of an IK chain as screws, from which every Jacobian entry is one product. Internal to
-// ik*.
-
 #include "gaitpad/ik.h"
 
 #include <cassert>
 #include <limits>
 #include <utility>
 
-#include "gaitpad/math.h"
-
 namespace gaitpad {
+namespace {
 
+// --- The chain in one pose -----------------------------------------------------------------------
+
+// Every DOF as an axis in space. A Jacobian column is then one cross product per point.
 struct IkPose {
   std::array<vec3, kMaxIkDofs> axis;     // of each DOF, base frame
   std::array<vec3, kMaxIkDofs> pivot_m;  // a point on that axis
   vec3 x, y, z;                          // images of the last frame's axes
   vec3 end_m;                            // its origin
 };
-void pose_chain(const IkChain& chain, const IkAngles& angles_rad, IkPose& pose) noexcept;
 
-inline vec3 point_in_base(const IkPose& pose, const vec3& p) noexcept {
+vec3 point_in_base(const IkPose& pose, const vec3& p) noexcept {
   return pose.end_m + p.x * pose.x + p.y * pose.y + p.z * pose.z;
 }
 
-// Step 1.
-struct IkErrors {
-  std::array<double, kMaxIkRows> dx;
-  std::array<vec3, kMaxIkRows> point_m;  // the rows' points, base frame
-  double squares = 0.0;                  // |dX|^2
-};
-void measure(const IkPose& pose, std::span<const IkRow> rows, IkErrors& errors) noexcept;
-
-// Finite angles, weights and limits (limits may be infinite). Links, axes, points and goals show in
-// the error.
-bool finite_inputs(const IkChain& chain, const IkAngles& angles_rad) noexcept;
-
-// A further row of the trace; and the last row, unless it is the answer already.
-void note(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept;
-void note_answer(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept;
-
-// The linear system of one robust IK step, sized at compile time. Internal to ik*.
-
-using IkDofValues = std::array<double, kMaxIkDofs>;
-
-// Two doubles in one SSE2 register: the same bits as one by one, at half the time.
-using Pair = double __attribute__((vector_size(16)));
-
-// f(0), f(1) ... with the index as a constant: unrolled on every compiler at -O2.
-template <int kCount, class F>
-inline void unrolled(F&& f) noexcept {
-  [&]<int... i>(std::integer_sequence<int, i...>) { (f(std::integral_constant<int, i>{}), ...); }
-  (std::make_integer_sequence<int, kCount>{});
-}
-
-// (J W J^T + l^2 I) y = b. kRows is even; where the number of rows is not, the last is all zero.
-template <int kRows>
-class IkStep {
- public:
-  using Rows = std::array<double, kRows>;
-
-  void set_columns(const IkPose& pose, std::span<const IkRow> rows, const IkErrors& errors,
-                   int dofs) noexcept;
-  // l^2 > 0: no pivot is less, so none is checked.
-  void factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
-  void solve(const Rows& b, Rows& y) const noexcept;
-  // Row j of J^T times y, and b -= column j of J times an angle.
-  double product(int j, const Rows& y) const noexcept;
-  void subtract(int j, double angle_rad, Rows& b) const noexcept;
-
- private:
-  static constexpr int kPairs = kRows / 2;
-  template <int kBlock>
-  void gram_block(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
-
-  Pair column_[kMaxIkDofs][kPairs];  // of J
-  std::array<Rows, kRows> factor_;   // J W J^T + l^2 I = L D L^T: above the diagonal L^T, else L D
-  Rows reciprocal_;                  // 1 / D
-};
-
-// An entry is d . (a x (p - q)) for direction d, point p and an axis a through q, which is
-// a . (p x d) + d . (q x a).
-template <int kRows>
-void IkStep<kRows>::set_columns(const IkPose& pose, std::span<const IkRow> rows,
-                                const IkErrors& errors, int dofs) noexcept {
-  Pair d[3][kPairs] = {}, m[3][kPairs] = {};
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const vec3& direction = rows[r].direction;
-    const vec3 moment = glm::cross(errors.point_m[r], direction);
-    for (int i = 0; i < 3; ++i) d[i][r / 2][r % 2] = direction[i], m[i][r / 2][r % 2] = moment[i];
-  }
-  for (int j = 0; j < dofs; ++j) {
-    const vec3& a = pose.axis[j];
-    const vec3 n = glm::cross(pose.pivot_m[j], a);
-    unrolled<kPairs>([&](auto i) {
-      column_[j][i] = (a.x * m[0][i] + a.y * m[1][i]) + (a.z * m[2][i] + n.x * d[0][i]) +
-                      (n.y * d[1][i] + n.z * d[2][i]);
-    });
-  }
-}
-
-// Two rows of the lower half at a time: their sums stay in registers.
-template <int kRows>
-template <int kBlock>
-void IkStep<kRows>::gram_block(const IkDofValues& weight, int dofs,
-                               double damping_squared) noexcept {
-  Pair even[kBlock + 1] = {}, odd[kBlock + 1] = {};
-  for (int j = 0; j < dofs; ++j) {
-    const Pair weighted = weight[j] * column_[j][kBlock];
-    unrolled<kBlock + 1>([&](auto i) {
-      even[i] += weighted[0] * column_[j][i];
-      odd[i] += weighted[1] * column_[j][i];
-    });
-  }
-  unrolled<2 * kBlock + 2>([&](auto s) {
-    factor_[2 * kBlock][s] = even[s / 2][s % 2];
-    factor_[2 * kBlock + 1][s] = odd[s / 2][s % 2];
-  });
-  factor_[2 * kBlock][2 * kBlock] += damping_squared;
-  factor_[2 * kBlock + 1][2 * kBlock + 1] += damping_squared;
-}
-
-template <int kRows>
-void IkStep<kRows>::factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept {
-  unrolled<kPairs>([&](auto block) { gram_block<block>(weight, dofs, damping_squared); });
-  unrolled<kRows>([&](auto k) {
-    reciprocal_[k] = 1.0 / factor_[k][k];
-    unrolled<kRows - 1 - k>([&](auto i) {
-      constexpr int r = k + 1 + i;
-      const double l = factor_[k][r] = factor_[r][k] * reciprocal_[k];
-      unrolled<i + 1>([&](auto s) { factor_[r][k + 1 + s] -= l * factor_[k + 1 + s][k]; });
-    });
-  });
-}
-
-template <int kRows>
-void IkStep<kRows>::solve(const Rows& b, Rows& y) const noexcept {
-  y = b;
-  unrolled<kRows>([&](auto k) {
-    unrolled<kRows - 1 - k>([&](auto i) { y[k + 1 + i] -= factor_[k][k + 1 + i] * y[k]; });
-  });
-  unrolled<kRows>([&](auto k) { y[k] *= reciprocal_[k]; });
-  unrolled<kRows>([&](auto back) {
-    constexpr int k = kRows - 1 - back;
-    unrolled<k>([&](auto r) { y[r] -= factor_[r][k] * y[k]; });
-  });
-}
-
-template <int kRows>
-double IkStep<kRows>::product(int j, const Rows& y) const noexcept {
-  Pair sum = {};
-  unrolled<kPairs>([&](auto i) { sum += column_[j][i] * Pair{y[2 * i], y[2 * i + 1]}; });
-  return sum[0] + sum[1];
-}
-
-template <int kRows>
-void IkStep<kRows>::subtract(int j, double angle_rad, Rows& b) const noexcept {
-  unrolled<kRows>([&](auto r) { b[r] -= column_[j][r / 2][r % 2] * angle_rad; });
-}
-
-namespace {
-
+// Images of the axes of the frame that the chain has led to so far.
 struct Axes {
   vec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
 };
 
 // Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
-inline void turn(vec3& y, vec3& z, const SinCos& s) noexcept {
+void turn(vec3& y, vec3& z, const SinCos& s) noexcept {
   const vec3 old = y;
   y = s.cos * old + s.sin * z;
   z = s.cos * z - s.sin * old;
@@ -173,7 +35,7 @@ inline void turn(vec3& y, vec3& z, const SinCos& s) noexcept {
 
 // Turns about a unit axis that is given in the frame itself, by Rodrigues' formula; returns the
 // axis in the base frame. The usual axes cost a third of it.
-inline vec3 turn_about(const vec3& a, const SinCos& s, Axes& f) noexcept {
+vec3 turn_about(const vec3& a, const SinCos& s, Axes& f) noexcept {
   vec3 axis;
   if (a.x == 1.0) return axis = f.x, turn(f.y, f.z, s), axis;
   if (a.y == 1.0) return axis = f.y, turn(f.z, f.x, s), axis;
@@ -185,8 +47,6 @@ inline vec3 turn_about(const vec3& a, const SinCos& s, Axes& f) noexcept {
   f.z = s.cos * f.z + s.sin * glm::cross(axis, f.z) + (versine * a.z) * axis;
   return axis;
 }
-
-}  // namespace
 
 void pose_chain(const IkChain& chain, const IkAngles& angles_rad, IkPose& pose) noexcept {
   assert(chain.dofs >= 0 && chain.dofs <= kMaxIkDofs);
@@ -206,7 +66,14 @@ void pose_chain(const IkChain& chain, const IkAngles& angles_rad, IkPose& pose) 
   pose.end_m = end;
 }
 
-void measure(const IkPose& pose, std::span<const IkRow> rows, IkErrors& errors) noexcept {
+// Step 1 of section 3.3.2: dX, how far each row is from its goal.
+struct IkErrors {
+  std::array<double, kMaxIkRows> dx;
+  std::array<vec3, kMaxIkRows> point_m;  // the rows' points, base frame
+  double squares = 0.0;                  // |dX|^2
+};
+
+void measure_errors(const IkPose& pose, std::span<const IkRow> rows, IkErrors& errors) noexcept {
   assert(rows.size() <= kMaxIkRows);
   errors.squares = 0.0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -217,7 +84,9 @@ void measure(const IkPose& pose, std::span<const IkRow> rows, IkErrors& errors) 
   }
 }
 
-bool finite_inputs(const IkChain& chain, const IkAngles& angles_rad) noexcept {
+// Angles and weights are finite, limits in order (they may be infinite). A bad link, axis, point or
+// goal shows in the error.
+bool are_inputs_finite(const IkChain& chain, const IkAngles& angles_rad) noexcept {
   double zero = 0.0;  // x - x is NaN for a NaN or an infinity
   bool ordered = true;
   for (int j = 0; j < chain.dofs; ++j) {
@@ -228,7 +97,8 @@ bool finite_inputs(const IkChain& chain, const IkAngles& angles_rad) noexcept {
   return zero == 0.0 && ordered;
 }
 
-void note(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept {
+// Adds a row to the trace.
+void add_trace_row(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept {
   if (trace == nullptr) return;
   const auto row = static_cast<std::size_t>(trace->rows);
   if (row >= trace->angles_rad.size() || row >= trace->error_m.size()) return;
@@ -237,13 +107,23 @@ void note(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept {
   ++trace->rows;
 }
 
-void note_answer(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept {
+// Makes the answer the trace's last row, unless it is already.
+void end_trace(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept {
   if (trace == nullptr || trace->rows == 0) return;
   if (trace->angles_rad[static_cast<std::size_t>(trace->rows - 1)] == angles_rad) return;
   const std::size_t room = std::min(trace->angles_rad.size(), trace->error_m.size());
   if (static_cast<std::size_t>(trace->rows) == room) --trace->rows;
-  note(trace, angles_rad, error_m);
+  add_trace_row(trace, angles_rad, error_m);
 }
+
+IkResult refused() noexcept {
+  IkResult result;
+  result.status = IkStatus::not_finite;
+  result.error_m = std::numeric_limits<double>::infinity();
+  return result;
+}
+
+}  // namespace
 
 IkFrame end_frame(const IkChain& chain, const IkAngles& angles_rad) noexcept {
   IkPose pose;
@@ -257,7 +137,7 @@ void position_jacobian(const IkChain& chain, std::span<const IkRow> rows,
   IkPose pose;
   pose_chain(chain, angles_rad, pose);
   IkErrors errors;
-  measure(pose, rows, errors);
+  measure_errors(pose, rows, errors);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     error_m[r] = errors.dx[r];
     for (int j = 0; j < chain.dofs; ++j) {
@@ -273,9 +153,9 @@ std::array<IkRow, 3> point_goal(const vec3& point_m, const vec3& goal_m) noexcep
            {point_m, vec3(0.0, 0.0, 1.0), goal_m.z}}};
 }
 
-// Meredith & Maddock 2005, section 3.3.2, steps 1-7, literally.
-
 namespace {
+
+// --- The paper, section 3.3.2, steps 1-7 to the letter -------------------------------------------
 
 using Rows = std::array<double, kMaxIkRows>;
 using Square = std::array<Rows, kMaxIkRows>;
@@ -395,7 +275,7 @@ double pose_error(const IkChain& chain, std::span<const IkRow> rows,
   IkPose pose;
   IkErrors errors;
   pose_chain(chain, angles_rad, pose);
-  measure(pose, rows, errors);
+  measure_errors(pose, rows, errors);
   return std::sqrt(errors.squares);
 }
 
@@ -410,12 +290,10 @@ IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const Pa
                      IkAngles& angles_rad, IkTrace* trace) noexcept {
   IkResult result;
   result.error_m = pose_error(chain, rows, angles_rad);
-  if (!finite_inputs(chain, angles_rad) || !std::isfinite(result.error_m)) {
-    result.status = IkStatus::not_finite;
-    result.error_m = std::numeric_limits<double>::infinity();
-    return result;
+  if (!are_inputs_finite(chain, angles_rad) || !std::isfinite(result.error_m)) {
+    return refused();
   }
-  note(trace, angles_rad, result.error_m);
+  add_trace_row(trace, angles_rad, result.error_m);
   while (result.error_m > options.tolerance_m) {  // step 7
     if (result.iterations >= options.max_iterations) {
       result.status = IkStatus::unreachable;
@@ -429,28 +307,149 @@ IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const Pa
     }
     ++result.iterations;
     result.error_m = pose_error(chain, rows, angles_rad);
-    note(trace, angles_rad, result.error_m);
+    add_trace_row(trace, angles_rad, result.error_m);
   }
   return result;
 }
 
-// theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits.
-
 namespace {
+
+// --- The linear system of one robust step --------------------------------------------------------
+
+using IkDofValues = std::array<double, kMaxIkDofs>;
+
+// Two doubles in one SSE2 register: the same bits as one after the other, in half the time.
+using Pair = double __attribute__((vector_size(16)));
+
+// f(0), f(1) ... with the index as a constant: unrolled on every compiler at -O2.
+template <int kCount, class F>
+inline void unrolled(F&& f) noexcept {
+  [&]<int... i>(std::integer_sequence<int, i...>) { (f(std::integral_constant<int, i>{}), ...); }
+  (std::make_integer_sequence<int, kCount>{});
+}
+
+// (J W J^T + l^2 I) y = b, with sizes known to the compiler. kRows is even; a row too many is zero.
+template <int kRows>
+class IkStep {
+ public:
+  using Rows = std::array<double, kRows>;
+
+  void set_columns(const IkPose& pose, std::span<const IkRow> rows, const IkErrors& errors,
+                   int dofs) noexcept;
+  // No pivot is less than l^2 > 0, so none is checked.
+  void factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
+  void solve(const Rows& b, Rows& y) const noexcept;
+  // Row j of J^T times y, and b -= column j of J times an angle.
+  double product(int j, const Rows& y) const noexcept;
+  void subtract(int j, double angle_rad, Rows& b) const noexcept;
+
+ private:
+  static constexpr int kPairs = kRows / 2;
+  template <int kBlock>
+  void gram_block(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
+
+  Pair column_[kMaxIkDofs][kPairs];  // of J
+  std::array<Rows, kRows> factor_;   // J W J^T + l^2 I = L D L^T: above the diagonal L^T, else L D
+  Rows reciprocal_;                  // 1 / D
+};
+
+// An entry is d . (a x (p - q)) for direction d, point p and an axis a through q, which is
+// a . (p x d) + d . (q x a).
+template <int kRows>
+void IkStep<kRows>::set_columns(const IkPose& pose, std::span<const IkRow> rows,
+                                const IkErrors& errors, int dofs) noexcept {
+  Pair d[3][kPairs] = {}, m[3][kPairs] = {};
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const vec3& direction = rows[r].direction;
+    const vec3 moment = glm::cross(errors.point_m[r], direction);
+    for (int i = 0; i < 3; ++i) d[i][r / 2][r % 2] = direction[i], m[i][r / 2][r % 2] = moment[i];
+  }
+  for (int j = 0; j < dofs; ++j) {
+    const vec3& a = pose.axis[j];
+    const vec3 n = glm::cross(pose.pivot_m[j], a);
+    unrolled<kPairs>([&](auto i) {
+      column_[j][i] = (a.x * m[0][i] + a.y * m[1][i]) + (a.z * m[2][i] + n.x * d[0][i]) +
+                      (n.y * d[1][i] + n.z * d[2][i]);
+    });
+  }
+}
+
+// Two rows of the lower half at a time: their sums stay in registers.
+template <int kRows>
+template <int kBlock>
+void IkStep<kRows>::gram_block(const IkDofValues& weight, int dofs,
+                               double damping_squared) noexcept {
+  Pair even[kBlock + 1] = {}, odd[kBlock + 1] = {};
+  for (int j = 0; j < dofs; ++j) {
+    const Pair weighted = weight[j] * column_[j][kBlock];
+    unrolled<kBlock + 1>([&](auto i) {
+      even[i] += weighted[0] * column_[j][i];
+      odd[i] += weighted[1] * column_[j][i];
+    });
+  }
+  unrolled<2 * kBlock + 2>([&](auto s) {
+    factor_[2 * kBlock][s] = even[s / 2][s % 2];
+    factor_[2 * kBlock + 1][s] = odd[s / 2][s % 2];
+  });
+  factor_[2 * kBlock][2 * kBlock] += damping_squared;
+  factor_[2 * kBlock + 1][2 * kBlock + 1] += damping_squared;
+}
+
+template <int kRows>
+void IkStep<kRows>::factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept {
+  unrolled<kPairs>([&](auto block) { gram_block<block>(weight, dofs, damping_squared); });
+  unrolled<kRows>([&](auto k) {
+    reciprocal_[k] = 1.0 / factor_[k][k];
+    unrolled<kRows - 1 - k>([&](auto i) {
+      constexpr int r = k + 1 + i;
+      const double l = factor_[k][r] = factor_[r][k] * reciprocal_[k];
+      unrolled<i + 1>([&](auto s) { factor_[r][k + 1 + s] -= l * factor_[k + 1 + s][k]; });
+    });
+  });
+}
+
+template <int kRows>
+void IkStep<kRows>::solve(const Rows& b, Rows& y) const noexcept {
+  y = b;
+  unrolled<kRows>([&](auto k) {
+    unrolled<kRows - 1 - k>([&](auto i) { y[k + 1 + i] -= factor_[k][k + 1 + i] * y[k]; });
+  });
+  unrolled<kRows>([&](auto k) { y[k] *= reciprocal_[k]; });
+  unrolled<kRows>([&](auto back) {
+    constexpr int k = kRows - 1 - back;
+    unrolled<k>([&](auto r) { y[r] -= factor_[r][k] * y[k]; });
+  });
+}
+
+template <int kRows>
+double IkStep<kRows>::product(int j, const Rows& y) const noexcept {
+  Pair sum = {};
+  unrolled<kPairs>([&](auto i) { sum += column_[j][i] * Pair{y[2 * i], y[2 * i + 1]}; });
+  return sum[0] + sum[1];
+}
+
+template <int kRows>
+void IkStep<kRows>::subtract(int j, double angle_rad, Rows& b) const noexcept {
+  unrolled<kRows>([&](auto r) { b[r] -= column_[j][r / 2][r % 2] * angle_rad; });
+}
+
+// --- The robust solver: theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits ---------------
 
 // l^2 = damping^2 + growth |dX|^2 (after Sugihara 2011, "Solvability-unconcerned inverse kinematics
 // by the Levenberg-Marquardt method"); growth rises where a step makes the error greater.
 constexpr double kLeastDampingSquared = 1e-20;
 constexpr double kGrowth = 0.1;
 constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
-constexpr double kFarthest = 0.5;     // metres of dX that one step asks for at most
-constexpr int kPatience = 6;          // iterations that must gain, together,
-constexpr double kLeastGain = 0.001;  // this share of the error
-constexpr double kGainFrom = 0.1;     // or, if it is greater, of this many metres
-constexpr int kCandidates = 16;       // starts looked at before each further try
+constexpr double kFarthest = 0.5;  // metres: the greatest |dX| that one step asks for
+// The error stands still if kPatience iterations together lower it by less than the share
+// kLeastGain of itself, or of kGainFrom metres if it is greater.
+constexpr int kPatience = 6;
+constexpr double kLeastGain = 0.001;
+constexpr double kGainFrom = 0.1;
+constexpr int kCandidates = 16;       // starts compared before each further try
 constexpr double kWorthAJump = 0.99;  // a later try replaces an earlier one only below this share
 
-// All that stays the same during a solve.
+// What stays the same during a solve.
 struct Problem {
   const IkChain& chain;
   std::span<const IkRow> rows;
@@ -471,13 +470,13 @@ double inside(const IkDof& dof, double angle_rad) noexcept {
   return std::min(std::max(angle_rad, dof.min_rad), dof.max_rad);
 }
 
-// The step within the limits. A DOF that the step would carry past a limit moves exactly to it, its
-// column leaves the system, and the others make up for what it cannot do. All of this depends
-// continuously on goal and pose.
+// Solves for a step within the limits. A DOF that the step would carry past a limit moves exactly
+// to the limit, its column leaves the system, and the system is solved again for the others. The
+// result depends continuously on goal and pose.
 template <int kRows>
-void limited_step(const Problem& p, IkStep<kRows>& step, double damping_squared,
-                  typename IkStep<kRows>::Rows& dx, const IkAngles& angles_rad,
-                  IkDofValues& delta) noexcept {
+void solve_limited_step(const Problem& p, IkStep<kRows>& step, double damping_squared,
+                        typename IkStep<kRows>::Rows& dx, const IkAngles& angles_rad,
+                        IkDofValues& delta) noexcept {
   const int dofs = p.chain.dofs;
   IkDofValues weight = p.weight;
   typename IkStep<kRows>::Rows y;
@@ -507,8 +506,8 @@ double cap_share(const IkDofValues& delta, int dofs, double cap_rad) noexcept {
 }
 
 template <int kRows>
-void advance(const Problem& p, const IkPose& pose, const IkErrors& errors, double growth,
-             IkAngles& angles_rad) noexcept {
+void take_step(const Problem& p, const IkPose& pose, const IkErrors& errors, double growth,
+               IkAngles& angles_rad) noexcept {
   IkStep<kRows> step;
   step.set_columns(pose, p.rows, errors, p.chain.dofs);
   const double most = kFarthest * kFarthest;
@@ -519,7 +518,7 @@ void advance(const Problem& p, const IkPose& pose, const IkErrors& errors, doubl
       std::max(p.options.damping * p.options.damping, kLeastDampingSquared) +
       growth * std::min(errors.squares, most);
   IkDofValues delta;
-  limited_step(p, step, damping_squared, dx, angles_rad, delta);
+  solve_limited_step(p, step, damping_squared, dx, angles_rad, delta);
   const double cap = cap_share(delta, p.chain.dofs, p.options.max_step_rad);
   for (int j = 0; j < p.chain.dofs; ++j) {
     angles_rad[j] = inside(p.chain.dof[j], angles_rad[j] + cap * delta[j]);
@@ -532,7 +531,7 @@ struct Try {
   int iterations = 0;
 };
 
-// True when `squares` is a stand-still: too little gained in the last iterations.
+// Tells when the error hardly falls any more.
 struct Progress {
   double error_m = std::numeric_limits<double>::infinity();
   int iteration = 0;
@@ -544,7 +543,8 @@ struct Progress {
   }
 };
 
-// From `start` until the tolerance, a stand-still or the last iteration allowed.
+// Iterates from `start` until the tolerance is met, the error stands still or the iterations are
+// used up.
 template <int kRows>
 Try one_try(const Problem& p, const IkAngles& start, int max_iterations, IkTrace* trace) noexcept {
   Try best;
@@ -558,7 +558,7 @@ Try one_try(const Problem& p, const IkAngles& start, int max_iterations, IkTrace
   for (int k = 0;; ++k) {
     const int at = 1 - best_at;
     pose_chain(p.chain, angles_rad, pose[at]);
-    measure(pose[at], p.rows, errors[at]);
+    measure_errors(pose[at], p.rows, errors[at]);
     if (errors[at].squares < best.squares) {
       best.squares = errors[at].squares, best.angles_rad = angles_rad, best_at = at;
       growth = std::max(growth * kGrowthDown, kGrowth);
@@ -566,11 +566,11 @@ Try one_try(const Problem& p, const IkAngles& start, int max_iterations, IkTrace
       growth *= kGrowthUp;
     }
     best.iterations = k;
-    if (trace != nullptr) note(trace, best.angles_rad, std::sqrt(best.squares));
+    if (trace != nullptr) add_trace_row(trace, best.angles_rad, std::sqrt(best.squares));
     if (best.squares <= enough || k >= max_iterations) break;
     if (!std::isfinite(best.squares) || progress.stands_still(best.squares, k)) break;
     angles_rad = best.angles_rad;
-    advance<kRows>(p, pose[best_at], errors[best_at], growth, angles_rad);
+    take_step<kRows>(p, pose[best_at], errors[best_at], growth, angles_rad);
   }
   return best;
 }
@@ -595,7 +595,7 @@ IkAngles spread_start(const Problem& p, const IkAngles& given, int k) noexcept {
   return start;
 }
 
-// Of the kCandidates starts from number `first` on the one that is nearest to the goal.
+// The one nearest to the goal of kCandidates starts, beginning with number `first`.
 IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexcept {
   IkAngles nearest = given;
   double least = std::numeric_limits<double>::infinity();
@@ -604,14 +604,14 @@ IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexc
     IkPose pose;
     IkErrors errors;
     pose_chain(p.chain, candidate, pose);
-    measure(pose, p.rows, errors);
+    measure_errors(pose, p.rows, errors);
     if (errors.squares < least) least = errors.squares, nearest = candidate;
   }
   return nearest;
 }
 
-// True for a goal farther from the base than the stretched chain: no other start can help. Looks at
-// the leading rows of one point along directions at right angles.
+// True for a goal farther from the base than the stretched chain, where no other start can help.
+// Only leading rows of one point, along directions at right angles, are looked at.
 bool beyond_reach(const Problem& p) noexcept {
   if (p.rows.empty()) return false;
   double reach = glm::length(p.rows[0].point_m), squares = 0.0;
@@ -646,14 +646,7 @@ IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles
   angles_rad = best.angles_rad;
   result.error_m = std::sqrt(best.squares);
   result.status = best.squares <= enough ? IkStatus::converged : IkStatus::unreachable;
-  note_answer(trace, angles_rad, result.error_m);
-  return result;
-}
-
-IkResult refused() noexcept {
-  IkResult result;
-  result.status = IkStatus::not_finite;
-  result.error_m = std::numeric_limits<double>::infinity();
+  end_trace(trace, angles_rad, result.error_m);
   return result;
 }
 
@@ -662,7 +655,7 @@ IkResult refused() noexcept {
 IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
                       const RobustOptions& options, IkAngles& angles_rad, IkTrace* trace) noexcept {
   assert(rows.size() <= kMaxIkRows);
-  if (!finite_inputs(chain, angles_rad)) return refused();
+  if (!are_inputs_finite(chain, angles_rad)) return refused();
   const Problem p{chain, rows, options, relative_weights(chain)};
   IkAngles start = angles_rad;
   for (int j = 0; j < chain.dofs; ++j) start[j] = inside(chain.dof[j], start[j]);

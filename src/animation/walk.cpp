@@ -1,14 +1,76 @@
+// The animation module: one tick of a walk, and what drives it.
+//
+// Clock. A walk is a sequence of steps; a step is a roll (Table I (b): the landed foot comes down
+// while the other one still pushes off) and a flight (Table I (a)). The stick decides how long both
+// last; a phase runs through the data's cycle at a rate that meets these times (the time-warp of
+// section 3.3). Parameters are smoothed on the way in, so a stick may jump.
+//
+// Hips. They move over the ground along cubics from strike to strike, planned so that at a strike
+// they stand between both feet as in the data. Their height follows from the legs: each leg asks
+// for the height at which its knee is bent as in the data, weighed by how much of the weight it
+// carries, and the height is bounded by what both legs can reach. The data's sway, bounce and tilt
+// are added on top, by as much as the pace lets them show.
+//
+// The pose. Feet and pelvis are planned first, then the inverse kinematics connects them (section
+// 3.3.2), and everything else comes from the data at this phase.
 #include "gaitpad/walk.h"
 
 #include "animation/walk_parts.h"
+#include "motion/leg_pose.h"
 
 namespace gaitpad {
 
+// --- What all parts of a tick ask about the walk -------------------------------------------------
+
+Side step_foot(const WalkState& state) noexcept {
+  return state.stage == Stage::flight ? state.swing : other(state.swing);
+}
+
+double flight_progress(const WalkState& state) noexcept {
+  if (state.stage != Stage::flight) return 0.0;
+  return static_cast<double>(state.tick) / state.stage_ticks;
+}
+
+double pace(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  return std::clamp(state.length_m[side].x * state.ground_share.x / model.source_step_m, 0.0, 1.5);
+}
+
+double full_pace(const WalkModel& model, const WalkState& state) noexcept {
+  return std::max(pace(model, state, kLeftSide), pace(model, state, kRightSide));
+}
+
+double presence(const WalkState& state) noexcept {
+  return std::clamp(state.amplitude.x, 0.0, 1.0) * std::clamp(2.0 * state.pace.x, 0.0, 1.0);
+}
+
+double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  const double p = state.phase - (side == kRightSide ? 0.0 : model.share[0] + model.share[1]);
+  return p - std::floor(p);
+}
+
+double data_phase(const WalkModel& model, const WalkState& state) noexcept {
+  if (!state.backward) return state.phase;
+  return model.share[0] + model.share[1] + model.share[2] - state.phase;
+}
+
+bool walks_on(const GaitParams& params, const WalkState& state) noexcept {
+  const bool on_the_spot = params.stride[0].length_m == 0.0 && params.stride[1].length_m == 0.0;
+  return params.walking && (!state.started || on_the_spot || params.backward == state.backward);
+}
+
+double step_length(const WalkState& state, Side side) noexcept {
+  if (state.closing) return 0.0;
+  return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
+}
+
 namespace {
+
+// --- Clock: stages, steps, phases ----------------------------------------------------------------
 
 // Time constants in seconds at the reference leg; they scale with pendulum time.
 constexpr double kStepSmoothing = 0.12;
 constexpr double kTurnGoalSmoothing = 0.08;
+constexpr double kTurnSmoothing = 0.25;
 constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
@@ -25,9 +87,9 @@ double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
   return model.share[swing == kLeftSide ? 1 : 3];
 }
 
-// Share of the cycle's time. The roll is as long as in the data within bounds: shorter ones slap
-// the toe down, longer ones hold the rear foot back until its leg is too short; at full pace the
-// more so.
+// Share of the cycle's time. The roll is as long as in the data, within bounds: a shorter one slaps
+// the toe down, a longer one holds the rear foot back until its leg is too short, most of all at
+// full pace.
 double time_share(const WalkModel& model, const WalkState& state, Stage stage,
                   Side swing) noexcept {
   const Side rolling = stage == Stage::roll ? swing : other(swing);
@@ -57,9 +119,9 @@ void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept 
   state.stage_ticks = ticks;
 }
 
-// On stairs a step takes longer, up to a stair's own time, and a foot that is quicker than the
-// other one is it no more.
-double slowness(const WalkModel& model, const WalkState& state, Side swing) noexcept {
+// On stairs a step takes longer, and at least as long as a person takes for a stair. On stairs both
+// feet take equally long.
+double slowness_of_step(const WalkModel& model, const WalkState& state, Side swing) noexcept {
   const double rise = std::min(state.landing.next_rise, kSlowestRise);
   if (rise == 0.0) return 1.0;
   const double own = state.time_s[swing], longer = std::max(own, state.time_s[other(swing)]);
@@ -68,14 +130,14 @@ double slowness(const WalkModel& model, const WalkState& state, Side swing) noex
   return std::max(level * (1.0 + kSlowerOnStairs * rise), stair) / own;
 }
 
-// A step: `rolling` has just landed, the other foot flies next.
+// Begins a step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   state.last_step_ticks = state.roll_ticks + state.flight_ticks;
-  state.slowness = slowness(tick.model, state, other(rolling));
+  state.slowness = slowness_of_step(tick.model, state, other(rolling));
   state.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
   state.flight_ticks = stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
   state.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];
-  // Keeps the phase continuous where the step begins at another turn of the same phase.
+  // The phase may have come out a whole turn off.
   state.phase = state.stage_phase;
   begin_stage(Stage::roll, rolling, state.roll_ticks, state);
 }
@@ -102,7 +164,7 @@ void begin_idle(WalkState& state) noexcept {
   for (FootState& foot : state.foot) foot.pitch_fade = {};
 }
 
-void land(const Tick& tick, WalkState& state) noexcept {
+void land_foot(const Tick& tick, WalkState& state) noexcept {
   const Side landed = state.swing;
   const bool closed = state.closing;
   state.closing = !walks_on(tick.params, state);
@@ -119,49 +181,7 @@ void land(const Tick& tick, WalkState& state) noexcept {
   if (closed) hold_pitch(tick.model, state, other(landed), state.roll_ticks);
 }
 
-}  // namespace
-
-Side step_foot(const WalkState& state) noexcept {
-  return state.stage == Stage::flight ? state.swing : other(state.swing);
-}
-
-double flight_progress(const WalkState& state) noexcept {
-  if (state.stage != Stage::flight) return 0.0;
-  return static_cast<double>(state.tick) / state.stage_ticks;
-}
-
-int ticks_to_strike(const WalkState& state) noexcept {
-  if (state.stage == Stage::flight) return state.stage_ticks - state.tick;
-  return state.stage_ticks - state.tick + state.flight_ticks;
-}
-
-double pace(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  return std::clamp(state.length_m[side].x * state.ground_share.x / model.source_step_m, 0.0, 1.5);
-}
-
-double presence(const WalkState& state) noexcept {
-  return std::clamp(state.amplitude.x, 0.0, 1.0) * std::clamp(2.0 * state.pace.x, 0.0, 1.0);
-}
-
-double full_pace(const WalkModel& model, const WalkState& state) noexcept {
-  return std::max(pace(model, state, kLeftSide), pace(model, state, kRightSide));
-}
-
-double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  const double p = state.phase - (side == kRightSide ? 0.0 : model.share[0] + model.share[1]);
-  return p - std::floor(p);
-}
-
-double data_phase(const WalkModel& model, const WalkState& state) noexcept {
-  if (!state.backward) return state.phase;
-  return model.share[0] + model.share[1] + model.share[2] - state.phase;
-}
-
-bool walks_on(const GaitParams& params, const WalkState& state) noexcept {
-  const bool on_the_spot = params.stride[0].length_m == 0.0 && params.stride[1].length_m == 0.0;
-  return params.walking && (!state.started || on_the_spot || params.backward == state.backward);
-}
-
+// Smooths the parameters and starts a walk from standing when the parameters ask for one.
 void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
@@ -199,11 +219,12 @@ void advance_clock(const Tick& tick, WalkState& state) noexcept {
   state.heading_rad += state.turn_rate.x * tick.dt_s;
   for (FootState& foot : state.foot) ++foot.mode_ticks;
   if (state.stage == Stage::idle) return;
-  const bool resting = !state.started;  // the last roll: the data's clock stands still
+  const bool resting = !state.started;  // in the last roll the data's clock stands still
   const double remaining = state.stage_ticks - state.tick;
   ++state.tick;
   if (resting) return;
-  // The rate meets the next stage's half-way, so the time-warp of the upper body has no kink.
+  // At the end of a stage the phase runs at the mean of both stages' rates, so the time-warp of the
+  // upper body has no kink.
   const Stage stage = state.stage;
   const Side swing = state.swing;
   const Stage next = stage == Stage::roll ? Stage::flight : Stage::roll;
@@ -215,11 +236,12 @@ void advance_clock(const Tick& tick, WalkState& state) noexcept {
            0.5 * (rate + next_rate), remaining, 1.0);
 }
 
+// Begins the next stage where this one is over.
 void finish_stage(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::idle || state.tick < state.stage_ticks) return;
   const Side swing = state.swing;
   if (state.stage == Stage::flight) {
-    land(tick, state);
+    land_foot(tick, state);
   } else if (!state.started) {
     begin_support(state.foot[swing], state.even_rad[swing]);
     begin_idle(state);
@@ -231,23 +253,26 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
   }
 }
 
-namespace {
+// --- Hips and landing place ----------------------------------------------------------------------
 
 // Lengths in metres at the reference leg.
-constexpr double kReach = 0.9985;  // of the leg: the longest it gets, knee 6 degrees
-constexpr double kEvenFront =
-    0.46;  // of the step: front heel to hips where the data's lean is left
-constexpr double kBackwardHips = 0.45;  // of a backward step: the weight follows the foot late
-// Up a high riser (rises in legs) they go ahead of it, or its ankle would bend up too far.
+constexpr double kReach = 0.9985;  // of the leg: its greatest reach, with the knee bent 6 degrees
+// Front heel to hips over the step, in steps so long that the data's lean is given up.
+constexpr double kEvenFront = 0.46;
+// The same backwards, where the weight follows the foot late. Up a high riser (rises in legs) the
+// hips go ahead of the foot, or its ankle would bend up too far.
+constexpr double kBackwardHips = 0.45;
 constexpr double kBackwardHipsUp = 1.075, kHighRiser = 0.2, kHighestRiser = 0.3;
-constexpr double kLongDrop_m = 0.05;  // of the hips in steps much longer than the data's
-constexpr double kLameDrop_m = 0.1;   // of the hips for a foot that does not lift at all
-constexpr double kShortStep = 0.1, kLeastShare = 0.3;  // of the data's step; of the wanted one
+constexpr double kLongDrop_m = 0.05;  // how far the hips sink in steps much longer than the data's
+constexpr double kLameDrop_m = 0.1;   // and for a foot that does not lift at all
+constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
+constexpr double kLeastShare = 0.3;  // of a step's length that the ground leaves
 constexpr double kGroundSmoothing_s = 0.3;
+constexpr double kFreeze = 0.55;      // of the flight: after it the landing place is settled
 constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
-// Rounding of the hips' height: between the knees' curves and the reach, between the legs' reaches.
-// The steps that it suits take this long; quicker ones are rounded more.
+// Rounding of the hips' height: where the reach begins to bound it, and where the legs' reaches
+// cross. It suits steps of kCalmStep_s; quicker ones are rounded more.
 constexpr double kSoftBase_m = 0.02, kSoftReach_m = 0.03;
 constexpr double kCalmStep_s = 0.52;
 
@@ -259,8 +284,13 @@ double power(double base, int exponent) noexcept {
   return result;
 }
 
-// The heading after n more ticks of a turn-rate filter whose goal stays: the filter is a linear
-// recurrence with the double eigenvalue q, so e_k = (e_0 + c k) q^k, and its sum has a closed form.
+int ticks_to_strike(const WalkState& state) noexcept {
+  if (state.stage == Stage::flight) return state.stage_ticks - state.tick;
+  return state.stage_ticks - state.tick + state.flight_ticks;
+}
+
+// The heading n ticks ahead if the turn rate's goal stays. The filter is a linear recurrence with
+// the double eigenvalue q, so its error is e_k = (e_0 + c k) q^k, and the sum has a closed form.
 double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
   const double goal = state.turn_goal.x;
   const double w = tick.dt_s / (kTurnSmoothing * tick.model.time_scale), q = 1.0 / (1.0 + w);
@@ -274,7 +304,7 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
 }
 
 // beta: how much of a step's length the hips have covered, beyond their rest lead, at its strike.
-// Steps far longer than the data's take an even stance instead of the data's lean.
+// In steps far longer than the data's the hips stand evenly between the feet instead.
 double hips_share(const WalkModel& model, const WalkState& state) noexcept {
   if (state.backward) {
     const double rise = state.landing_m.y - state.foot[other(step_foot(state))].plane.place_m.y;
@@ -285,7 +315,7 @@ double hips_share(const WalkModel& model, const WalkState& state) noexcept {
   return ((1.0 - front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
 }
 
-// Mean speed of the hips between this step's strike and the one before, and the next one.
+// Speed of the hips at this step's strike: the mean of their mean speeds before and after it.
 double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
   if (state.closing) return 0.0;
   const Side swing = step_foot(state);
@@ -303,8 +333,8 @@ double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
                 ((1.0 - beta) * now + beta * next) / next_s);
 }
 
-// The ground that the hips go over, at a strike that of the lower foot, rises and falls along a
-// cubic from strike to strike, as they go.
+// Moves the height of the ground that the hips go over. At a strike it is the lower foot's ground;
+// in between it follows a cubic.
 void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexcept {
   const Side swing = step_foot(state), stand = other(swing);
   const double standing = state.foot[stand].plane.place_m.y, landing = state.landing_m.y;
@@ -313,8 +343,8 @@ void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexce
   const double next = std::min(landing, state.landing.next_base_m);
   const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
   double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
-  // Upwards, a leg that does not roll far over its toe, in front backwards or closing a walk, would
-  // be too short: they wait for its lift-off.
+  // Upwards, a rear leg that does not roll far over its toe would be too short (walking backwards,
+  // or when closing a walk): the hips wait for its lift-off.
   if ((state.backward || state.closing) && next > before) {
     velocity = 0.0;
     if (state.stage == Stage::roll) {
@@ -325,55 +355,7 @@ void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexce
   approach(state.base_m, state.base_velocity_m_s, goal, velocity, remaining_s, tick.dt_s);
 }
 
-// Pelvis height at which a leg is as long from its hip to its ankle as `reach_m`.
-double height_over(const LegBuild& leg, const FootPose& foot, const Pelvis& pelvis,
-                   double reach_m) noexcept {
-  const vec3 ankle = foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
-  const vec3 hip = pelvis.hip(leg);  // pelvis.position_m.y is 0 here
-  const double dx = hip.x - ankle.x, dz = hip.z - ankle.z;
-  const double square = std::max(0.04 * reach_m * reach_m, reach_m * reach_m - dx * dx - dz * dz);
-  return ankle.y - hip.y + std::sqrt(square);
-}
-
-// The height that a leg's knee curve in the data asks for.
-double height_of_knee(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
-                      Side side) noexcept {
-  const LegModel& leg = model.leg[side].model;
-  // As the data roll the foot: what the reach asks for beyond it follows from the height.
-  FootPose foot = state.foot[side].pose;
-  if (state.foot[side].mode == FootMode::support) {
-    set_pitch(model.leg[side], state.foot[side].planned_rad, foot, FootMode::support);
-  }
-  const double data = model.reference_rad[side][kKneeX].at(data_phase(model, state));
-  const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
-  const double a = leg.thigh_m, b = leg.shank_m;
-  const double cosine = sin_cos(kStandingKnee + bend).cos;
-  return state.base_m - state.foot[side].base_m +
-         height_over(model.leg[side], foot, pelvis,
-                     std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
-}
-
-// Share of the weight on the left foot: it moves over during the roll, from and to both feet at
-// rest.
-double left_load(const WalkState& state) noexcept {
-  if (state.stage == Stage::idle) return 0.5;
-  double on_swing = 0.0;
-  if (state.stage == Stage::roll) {
-    const bool first = state.started && state.last_step_ticks == 0, last = !state.started;
-    const double progress = static_cast<double>(state.tick) / state.stage_ticks;
-    on_swing = mix(first ? 0.5 : 0.0, last ? 0.5 : 1.0, smoothstep(0.0, 1.0, progress));
-  }
-  return state.swing == kLeftSide ? on_swing : 1.0 - on_swing;
-}
-
-}  // namespace
-
-double step_length(const WalkState& state, Side side) noexcept {
-  if (state.closing) return 0.0;
-  return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
-}
-
-// Steps that the ground makes shorter roll and rise like short ones.
+// Smooths how much of a step's length the ground leaves: such steps roll and rise like short ones.
 void follow_ground(const Tick& tick, WalkState& state, Side swing) noexcept {
   const double wanted = std::abs(step_length(state, swing));
   const double share =
@@ -395,7 +377,7 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
     state.landing_m = standing + forward * step_length(state, swing) + left * width;
     if (!tick.flat) choose_foothold(tick, state, forward, left * width);
   }
-  // Along the heading that the landing will have, which may still turn after the place is settled.
+  // Along the heading at the landing, which may still turn after the place is settled.
   state.frame.stride_m[swing] = glm::dot(state.landing_m - standing, forward);
   if (!tick.flat) follow_ground(tick, state, swing);
 }
@@ -418,6 +400,7 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
   if (!tick.flat) advance_base(tick, state, remaining);
 }
 
+// Pelvis place and rotation, still without the height.
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
   const double a = presence(state), r = std::clamp(state.pace.x, 0.0, 1.0);
   const double phase = data_phase(model, state);
@@ -431,6 +414,48 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexce
   return pelvis;
 }
 
+// Pelvis height at which hip and ankle are `reach_m` apart.
+double height_over(const LegBuild& leg, const FootPose& foot, const Pelvis& pelvis,
+                   double reach_m) noexcept {
+  const vec3 ankle = foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
+  const vec3 hip = pelvis.hip(leg);  // pelvis.position_m.y is 0 here
+  const double dx = hip.x - ankle.x, dz = hip.z - ankle.z;
+  const double square = std::max(0.04 * reach_m * reach_m, reach_m * reach_m - dx * dx - dz * dz);
+  return ankle.y - hip.y + std::sqrt(square);
+}
+
+// Pelvis height at which the knee is bent as in the data.
+double height_of_knee(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
+                      Side side) noexcept {
+  const LegModel& leg = model.leg[side].model;
+  // The foot is taken as the data roll it. What the reach adds depends on this height.
+  FootPose foot = state.foot[side].pose;
+  if (state.foot[side].mode == FootMode::support) {
+    set_pitch(model.leg[side], state.foot[side].planned_rad, foot, FootMode::support);
+  }
+  const double data = model.reference_rad[side][kKneeX].at(data_phase(model, state));
+  const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
+  const double a = leg.thigh_m, b = leg.shank_m;
+  const double cosine = sin_cos(kStandingKnee + bend).cos;
+  return state.base_m - state.foot[side].base_m +
+         height_over(model.leg[side], foot, pelvis,
+                     std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
+}
+
+// Share of the weight on the left foot. It moves over during the roll; at rest both feet carry
+// half.
+double left_load(const WalkState& state) noexcept {
+  if (state.stage == Stage::idle) return 0.5;
+  double on_swing = 0.0;
+  if (state.stage == Stage::roll) {
+    const bool first = state.started && state.last_step_ticks == 0, last = !state.started;
+    const double progress = static_cast<double>(state.tick) / state.stage_ticks;
+    on_swing = mix(first ? 0.5 : 0.0, last ? 0.5 : 1.0, smoothstep(0.0, 1.0, progress));
+  }
+  return state.swing == kLeftSide ? on_swing : 1.0 - on_swing;
+}
+
+// The pelvis' height, within both legs' reach.
 double pelvis_height(const WalkModel& model, const WalkState& state,
                      const Pelvis& pelvis) noexcept {
   const double load = left_load(state);
@@ -438,9 +463,9 @@ double pelvis_height(const WalkModel& model, const WalkState& state,
              (1.0 - load) * height_of_knee(model, state, pelvis, kRightSide);
   const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
   y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
-  // Steps longer than the data's need lower hips, or the rear leg is too short for them.
+  // In steps longer than the data's the hips sink, or the rear leg would be too short.
   y -= kLongDrop_m * model.size * smoothstep(0.95, 1.4, r);
-  // A lame foot hardly rises on its toe: the hips come down to it instead, around its lift-off.
+  // A lame foot hardly rises on its toe, so around its lift-off the hips come down instead.
   for (Side side : {kLeftSide, kRightSide}) {
     const double lame = 1.0 - std::min(1.0, state.flight_height[side].x);
     const double own = own_phase(model, state, side), lift = model.leg[side].toe_off;
@@ -452,13 +477,13 @@ double pelvis_height(const WalkModel& model, const WalkState& state,
     const LegBuild& leg = model.leg[side];
     highest[side] = height_over(leg, state.foot[side].pose, pelvis, kReach * leg.model.length_m());
   }
-  // Quick steps turn the same corners in less time, so they are cut wider.
+  // Quick steps pass the same corners of the height in less time, so these are rounded wider.
   const double quick = kCalmStep_s / std::max(0.1, state.step_time_s.x);
   const double soft = model.size * std::clamp(quick * quick * quick, 1.0, 3.0);
   return soft_min(y, soft_min(highest[0], highest[1], kSoftReach_m * soft), kSoftBase_m * soft);
 }
 
-namespace {
+// --- Pose and report -----------------------------------------------------------------------------
 
 void write_leg(const WalkModel& model, const WalkState& state, Side side, JointFrames& frames,
                Pose& pose) noexcept {
@@ -468,10 +493,9 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   const Skeleton& skeleton = model.cycle.skeleton;
   const quat pelvis =
       frames.rotation[model.cycle.pelvis] * glm::inverse(model.cycle.pelvis_standing);
-  const quat thigh = pelvis * (rotation_x(q[kHipX]) * rotation_z(q[kHipZ]) * rotation_y(q[kHipY]));
+  const quat thigh = pelvis * rotation_xzy({q[kHipX], q[kHipZ], q[kHipY]});
   const quat shank = thigh * rotation_x(q[kKneeX]);
-  const quat foot =
-      shank * (rotation_x(q[kAnkleX]) * rotation_z(q[kAnkleZ]) * rotation_y(q[kAnkleY]));
+  const quat foot = shank * rotation_xzy({q[kAnkleX], q[kAnkleZ], q[kAnkleY]});
   const quat toes = foot * rotation_about(leg.side, state.foot[side].pose.toe_rad);
   const std::array<int, 4> chain = {joints.hip, joints.knee, joints.ankle, joints.toe};
   const std::array<quat, 4> segment = {thigh, shank, foot, toes};
@@ -503,14 +527,11 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   const double a = presence(state);
   if (a < 1.0) {
     for (int j = 0; j < pose.joint_count; ++j) {
-      const quat& rest = cycle.standing_local[j];
-      const quat& walk = pose.local[j];
-      const double sign = glm::dot(rest, walk) < 0.0 ? -1.0 : 1.0;
-      pose.local[j] = glm::normalize(rest * (1.0 - a) + walk * (sign * a));
+      pose.local[j] = nlerp(cycle.standing_local[j], pose.local[j], a);
     }
   }
   for (int j : model.kept) pose.local[j] = cycle.standing_local[j];
-  // What hangs between root and pelvis turns with the heading and else moves as in the data.
+  // Joints between root and pelvis turn with the heading and else move as in the data.
   JointFrames frames;
   pose.root_m = pelvis.position_m;
   pose.local[0] = rotation_y(state.heading_rad) * pose.local[0];
@@ -522,7 +543,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   frames.rotation[cycle.pelvis] = pelvis.rotation * cycle.pelvis_standing;
   pose.local[cycle.pelvis] = glm::inverse(above) * frames.rotation[cycle.pelvis];
   for (Side side : {kLeftSide, kRightSide}) write_leg(model, state, side, frames, pose);
-  pose_body(model, state, pose);
+  pose_upper_body(model, state, pose);
 }
 
 void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
@@ -535,7 +556,7 @@ void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
   }
 }
 
-void report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
+void fill_report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
   WalkFrame& frame = state.frame;
   frame.stage = state.stage;
   frame.swing = state.swing;
@@ -600,7 +621,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
              WalkState& state, Pose& pose) noexcept {
   const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
   smooth_parameters(tick, state);
-  smooth_body(tick, mode, state);
+  smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);
   advance_hips(tick, state);
@@ -612,7 +633,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
     pose_leg(tick, mode, side, pelvis, state);
   }
   write_pose(model, state, pelvis, pose);
-  report(pelvis, dt_s, state);
+  fill_report(pelvis, dt_s, state);
   report_ground(tick, state.frame);
   finish_stage(tick, state);
   for (FootState& foot : state.foot) remember_foot(foot);

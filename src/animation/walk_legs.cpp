@@ -1,16 +1,24 @@
+// One leg by inverse kinematics (section 3.3.2): from where the pelvis and the foot are to be to
+// the angles of hip, knee and ankle.
+//
+// Paper mode takes steps 1-7 to the letter, from the pose of the tick before, with raw weights.
+// Robust mode poses the leg evenly first: six rows hold the whole foot, and the knee's swivel,
+// which they leave free, is pulled to the data's. Then, where the weights are uneven, each joint is
+// held back by its own weight and the solver brings the stage's end-effector (Table I) back to its
+// place. The foot's pitch is what this costs, kept off the ground and within the leg's reach.
 #include "animation/walk_parts.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr double kLeastKnee = 5.0 * kDegree;  // of the reference: fixes the way the knee bends
+constexpr double kLeastKnee = 5.0 * kDegree;  // where the solver starts: a knee that bends forward
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
 constexpr double kUnhurriedStep_s = 0.46;
 constexpr double kSoftToe = 15.0 * kDegree;
-constexpr double kHold = 0.8;  // of the change that a locked joint does not follow by itself
+constexpr double kHold = 0.8;  // of a change that a locked joint does not follow
 constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
 constexpr double kFreeReach = 0.9985, kSoftReach_m = 0.006;
-constexpr double kLeak_per_s = 4.0;
+constexpr double kLeak_per_s = 4.0;   // of the correction on the data's angles
 constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
 constexpr double kFolding = 45.0 * kDegree, kFolded = 90.0 * kDegree;  // knee
 constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
@@ -39,10 +47,9 @@ LegAngles leg_angles(const IkAngles& all) noexcept {
   return angles;
 }
 
-// Rows that put the whole foot: three of the end-effector, two of the foot's other end, one of a
-// point beside the end-effector. Directions are the foot's own axes, so every row is well
-// conditioned (the height of a steep foot's other end is not). The first three are the paper's half
-// Jacobian.
+// Rows that hold the whole foot: three of the end-effector (the paper's half Jacobian), two of the
+// foot's other end, one of a point beside the end-effector. Their directions are the foot's own
+// axes, so every row is well conditioned; the height of a steep foot's other end would not be.
 struct FootGoal {
   std::array<IkRow, 6> rows;
   std::span<const IkRow> effector() const noexcept { return {rows.data(), 3}; }
@@ -77,14 +84,14 @@ FootGoal foot_goal(const LegBuild& leg, const FootState& foot, const Pelvis& pel
            IkRow{beside_point, across, glm::dot(across, beside)}}};
 }
 
-// The whole foot. Always from the heel: the swivel that the rows leave free must not jump when the
+// Always counted from the heel, so that the swivel that the rows leave free does not jump when the
 // end-effector changes.
 FootGoal whole_foot(const LegBuild& leg, const FootState& foot, const Pelvis& pelvis) noexcept {
   return foot_goal(leg, foot, pelvis, FootEnd::heel);
 }
 
-// When weights may show: in mid-flight and in mid-support, fading out before the foot has to be
-// exactly where the next stage takes it over, so landing and lift-off places do not depend on them.
+// How much the weights show: in mid-flight and in mid-support. They fade before the next stage
+// takes the foot over, so places of landing and lift-off do not depend on them.
 double weight_share(const WalkModel& model, const WalkState& state, Side side) noexcept {
   const FootState& foot = state.foot[side];
   const bool stays = (state.closing || !state.started) && side != step_foot(state);
@@ -94,7 +101,7 @@ double weight_share(const WalkModel& model, const WalkState& state, Side side) n
     const double begin = model.share[side == kRightSide ? 0 : 2];
     p = (own_phase(model, state, side) - begin) / (model.leg[side].toe_off - begin);
   }
-  // Quick steps leave less time to lag behind and catch up, stairs less room.
+  // Quick steps leave less time to lag behind and catch up, and stairs leave less room.
   const double calm = std::min(1.0, state.step_time_s.x / kUnhurriedStep_s) * state.ground_share.x;
   return state.amplitude.x * state.amplitude.x * calm * std::sqrt(calm) * smoothstep(0.0, 0.25, p) *
          (1.0 - smoothstep(0.55, 0.95, p));
@@ -108,8 +115,8 @@ double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, const FootPose& pos
   return leg.elevation_rad - atan2(line.y, glm::dot(line, leg.forward));
 }
 
-// Toes stay level while the heel is the higher end, on the floor as in the air: they never dig in.
-// In the air the change is rounded off, on the floor it is exact.
+// Toes stay level while the heel is the higher end, on the floor and in the air, so they never dig
+// in. In the air the change is rounded, on the floor it is exact.
 double level_toe(double pitch_rad, double flight_progress) noexcept {
   const double air =
       smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.8, 1.0, flight_progress));
@@ -148,16 +155,16 @@ double free_pitch(const WalkModel& model, const LegBuild& leg, const Pelvis& pel
   const double longer = leg_span(leg, pelvis, foot.pose, pitch, foot.mode) - span;
   const double room = std::max(0.0, kFreeReach * leg.model.length_m() - span);
   if (longer <= 1e-9) return pitch;
-  // Of a lengthening, as much as there is room for, rounded off.
+  // The leg lengthens only as far as there is room, with rounding.
   const double allowed = soft_min(longer, room, std::min(room, kSoftReach_m * model.size));
   return mix(planned, pitch, std::clamp(allowed / longer, 0.0, 1.0));
 }
 
-// Weights of eq. (5): every joint follows the even pose's change since the stage began by its own
-// weight, the solver makes up the rest at the stage's end-effector; the pitch that comes out of it,
+// Weights of eq. (5): each joint follows the even pose's change since the stage began by its own
+// weight, and the solver makes up the rest at the stage's end-effector. The pitch that this gives,
 // kept off the floor, becomes the foot's.
-void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, WalkState& state,
-             IkAngles& angles, Solve& solve) noexcept {
+void stiffen_leg(const Tick& tick, Side side, const Pelvis& pelvis, double share, WalkState& state,
+                 IkAngles& angles, Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   FootState& foot = state.foot[side];
   IkChain chain = leg.chain;
@@ -177,7 +184,7 @@ void stiffen(const Tick& tick, Side side, const Pelvis& pelvis, double share, Wa
   solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 
-bool even(const WalkState& state, Side side) noexcept {
+bool are_weights_even(const WalkState& state, Side side) noexcept {
   double low = 1e9, high = 0.0;
   for (const Damped<double>& w : state.weight[side]) {
     low = std::min(low, w.x);
@@ -186,10 +193,10 @@ bool even(const WalkState& state, Side side) noexcept {
   return high - low < kEvenSpread;
 }
 
-// Points a flying foot down: as far as the ground allows by its pitch alone, beyond by lifting it
-// over its toe.
-void point_down(const LegBuild& leg, double more_rad, double flight_progress,
-                FootState& foot) noexcept {
+// Points a flying foot down: as far as the ground allows by its pitch alone, and farther by lifting
+// it so that its toe stays at its height.
+void point_foot_down(const LegBuild& leg, double more_rad, double flight_progress,
+                     FootState& foot) noexcept {
   const double open =
       smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.7, 0.95, flight_progress));
   FootPose& pose = foot.pose;
@@ -203,8 +210,8 @@ void point_down(const LegBuild& leg, double more_rad, double flight_progress,
   pose.toe_m.y += lift_m;
 }
 
-// A foot whose ankle would bend up too far points down in flight and rises at the heel in late
-// support; a foot that is to stand still does not.
+// Eases an ankle that would bend up too far: in flight the foot points down, in late support the
+// heel rises. A foot that has to stand still does neither.
 void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvis& pelvis,
                 IkAngles& angles, FootState& foot, Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
@@ -213,7 +220,7 @@ void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvi
   if (!flies) excess *= foot.mode == FootMode::support ? heel_rise(tick.model, state, side) : 0.0;
   if (excess == 0.0) return;
   if (flies) {
-    point_down(leg, excess, flight_progress(state), foot);
+    point_foot_down(leg, excess, flight_progress(state), foot);
   } else {
     set_pitch(leg, foot.pose.pitch_rad + excess, foot.pose, foot.mode);
   }
@@ -223,8 +230,8 @@ void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvi
 void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
                  Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
-  // The data's angles plus what the solver had to add a tick ago. That correction leaks away, so
-  // the swivel, which no row holds, is pulled to the data's and cannot drift.
+  // Start from the data's angles plus what the solver had to add a tick ago. That correction leaks
+  // away, so the swivel, which no row holds, is pulled to the data's and cannot drift.
   const LegAngles data = reference(tick.model, state, side);
   const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
   IkAngles angles{};
@@ -233,7 +240,7 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
   }
   state.data_rad[side] = data;
   IkChain chain = leg.chain;
-  // At its limit the ankle would turn the knee aside. It is eased from where it would have to go.
+  // Solve without the ankle's limit first, so that the knee does not twist.
   chain.dof[kAnkleX].min_rad = -kPi;
   solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   ease_ankle(tick, state, side, pelvis, angles, state.foot[side], solve);
@@ -243,14 +250,15 @@ void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& s
   }
   state.even_rad[side] = leg_angles(angles);
   double share = weight_share(tick.model, state, side);
-  // A leg that a high riser folds has nowhere else to go.
+  // A fully folded leg cannot be stiffened too.
   if (!tick.flat) share *= 1.0 - smoothstep(kFolding, kFolded, angles[kKneeX]);
-  if (share > 0.0 && !even(state, side)) stiffen(tick, side, pelvis, share, state, angles, solve);
+  if (share > 0.0 && !are_weights_even(state, side))
+    stiffen_leg(tick, side, pelvis, share, state, angles, solve);
   state.angles_rad[side] = leg_angles(angles);
 }
 
-// Steps 1-7 to the letter from the pose of the tick before, raw weights, the stage's end-effector
-// alone; while heel and toe both stand or land, the other end is a second position target.
+// Steps 1-7 to the letter for the stage's end-effector alone. While heel and toe both stand or
+// land, the other end is a second position goal.
 void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
                 Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];

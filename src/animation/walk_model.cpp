@@ -1,39 +1,26 @@
 #include "gaitpad/walk_model.h"
 
-#include <fmt/format.h>
-
-#include <memory>
-
-#include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
-
 namespace {
+
+// --- The upper body ------------------------------------------------------------------------------
 
 // Limits in radians (degrees here) of a left arm, after AAOS; a right one's z and y are mirrored.
 constexpr ArmAngles kMin = {-170, -35, -90, -150, -60, -25};
 constexpr ArmAngles kMax = {60, 150, 80, -2, 60, 35};
 constexpr double kLeastFlexion = 4.0 * kDegree;  // of an elbow whose swing is magnified
-constexpr double kGrip = 0.075;       // wrist to the middle of the hand, of the adult; shares of a
-constexpr double kHandPart = 0.5;     // short hand
+constexpr double kGrip = 0.075;                  // wrist to the middle of an adult's hand, metres
+constexpr double kHandPart = 0.5;                // the same as a share of a hand shorter than that
 constexpr double kClearHinge = 0.05;  // mean sine of the elbow's bend that shows where its hinge is
-constexpr double kWidestTurn = 1.45;  // radians of shoulder z: beyond it x and y mean nothing
+constexpr double kWidestTurn = 1.45;  // radians of shoulder z: near a right angle x and y are one
 
-struct Frames {  // of the standing pose
-  std::vector<quat> rotation;
-  std::vector<vec3> position_m;
-};
-
-Frames frames_of(const Skeleton& skeleton, const quat* local) {
-  Frames frames;
-  frames.rotation = world_rotations(skeleton, local);
-  for (const Joint& joint : skeleton.joints) {
-    const bool is_root = joint.parent < 0;
-    frames.position_m.push_back(is_root ? vec3(0.0)
-                                        : frames.position_m[joint.parent] +
-                                              frames.rotation[joint.parent] * joint.offset_m);
-  }
+// The world frames of the data's sample i, with the root at the origin.
+JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
+  const std::size_t joints = cycle.skeleton.joints.size();
+  JointFrames frames;
+  forward_kinematics(cycle.skeleton, std::span(cycle.local).subspan(i * joints, joints), frames);
   return frames;
 }
 
@@ -57,13 +44,12 @@ quat mean_local(const GaitCycle& cycle, int joint) {
 
 vec3 perpendicular(const vec3& v, const vec3& to) { return v - to * glm::dot(v, to); }
 
-// The hanging axes in the shoulder joint's frame: y along the bone, x along the elbow's hinge,
-// which is where the data bend it, or else to the walker's left.
-quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const Frames& standing) {
-  const std::size_t count = cycle.skeleton.joints.size();
+// The hanging axes in the shoulder joint's frame: y along the bone, x along the elbow's hinge. The
+// hinge shows where the data bend the elbow; where they hardly do, it is the walker's left.
+quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const JointFrames& standing) {
   vec3 bone(0.0), hinge(0.0);
   for (int i = 0; i < kCycleSamples; ++i) {
-    const Frames at = frames_of(cycle.skeleton, cycle.local.data() + i * count);
+    const JointFrames at = frames_of_sample(cycle, i);
     const quat back = glm::conjugate(at.rotation[joints.shoulder]);
     const vec3& elbow_m = at.position_m[joints.elbow];
     const vec3 upper = glm::normalize(elbow_m - at.position_m[joints.shoulder]);
@@ -82,7 +68,7 @@ quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const Frames& 
 }
 
 // Middle of the hand: beyond the wrist on the way to what hangs on it, else along the forearm.
-vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const Frames& standing) {
+vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const JointFrames& standing) {
   vec3 sum(0.0);
   double longest_m = 0.0;
   for (const Joint& joint : cycle.skeleton.joints) {
@@ -99,7 +85,7 @@ vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const Frames& standing
 }
 
 // The angles that the data's arm has in one sample; the wrist's count from there.
-ArmAngles angles_of(const Frames& at, const Skeleton& skeleton, const ArmBuild& arm) {
+ArmAngles angles_of(const JointFrames& at, const Skeleton& skeleton, const ArmBuild& arm) {
   const ArmChain& j = arm.joints;
   const quat base = at.rotation[skeleton.joints[j.shoulder].parent] * arm.chest;
   const quat upper = at.rotation[j.shoulder] * arm.hanging;
@@ -111,13 +97,12 @@ ArmAngles angles_of(const Frames& at, const Skeleton& skeleton, const ArmBuild& 
   return angles;
 }
 
-void fill_ranges(const GaitCycle& cycle, Side side, const Frames& standing, ArmBuild& arm) {
-  const std::size_t count = cycle.skeleton.joints.size();
+void fill_ranges(const GaitCycle& cycle, Side side, const JointFrames& standing, ArmBuild& arm) {
   const ArmAngles rest = angles_of(standing, cycle.skeleton, arm);
   ArmAngles low = rest, high = rest, before = rest;
   double straightest = -1e9;
   for (int i = 0; i < kCycleSamples; ++i) {
-    const Frames at = frames_of(cycle.skeleton, cycle.local.data() + i * count);
+    const JointFrames at = frames_of_sample(cycle, i);
     ArmAngles now = angles_of(at, cycle.skeleton, arm);
     for (int d = 0; d < kArmDofs; ++d) {
       now[d] = before[d] + wrapped(now[d] - before[d]);
@@ -142,7 +127,7 @@ void fill_ranges(const GaitCycle& cycle, Side side, const Frames& standing, ArmB
 }
 
 ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
-                   const Frames& standing) {
+                   const JointFrames& standing) {
   ArmBuild arm;
   arm.joints = joints;
   if (!joints.is_found() || cycle.skeleton.joints[joints.shoulder].parent < 0) return arm;
@@ -162,8 +147,8 @@ ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
 }
 
 // At most kMaxSpineIk of the spine's joints, spread over it.
-void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const Frames& standing,
-                BodyModel& body) {
+void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const JointFrames& standing,
+                UpperBodyModel& body) {
   if (spine.size() < 2) return;
   body.spine_path = path_to(cycle.skeleton, spine.back());
   if (body.spine_path.size() > kMaxBodyPath) return;
@@ -184,8 +169,8 @@ void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const Fra
   if (arms > 0.0) body.neck_m /= arms;
 }
 
-void fill_head(const GaitCycle& cycle, const BodyJoints& joints, const Frames& standing,
-               BodyModel& body) {
+void fill_head(const GaitCycle& cycle, const UpperBodyJoints& joints, const JointFrames& standing,
+               UpperBodyModel& body) {
   if (joints.head <= 0) return;
   const std::vector<int> path = path_to(cycle.skeleton, joints.head);
   if (path.size() > kMaxBodyPath) return;
@@ -196,13 +181,15 @@ void fill_head(const GaitCycle& cycle, const BodyJoints& joints, const Frames& s
   body.chest_standing = standing.rotation[cycle.skeleton.joints[first].parent];
 }
 
-}  // namespace
-
-BodyModel body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_height_m) {
-  BodyModel body;
-  const Frames standing = frames_of(cycle.skeleton, cycle.standing_local.data());
-  const BodyJoints joints = find_body(cycle.skeleton, {cycle.leg[0].joints, cycle.leg[1].joints},
-                                      cycle.pelvis, standing.position_m);
+// Arms, spine and head of a cycle that has the character's lengths. `leg_ratio`: the character's
+// leg over the data's.
+UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_height_m) {
+  UpperBodyModel body;
+  JointFrames standing;
+  forward_kinematics(cycle.skeleton, cycle.standing_local, standing);
+  body.joints = find_upper_body(cycle.skeleton, {cycle.leg[0].joints, cycle.leg[1].joints},
+                                cycle.pelvis, standing.position_m);
+  const UpperBodyJoints& joints = body.joints;
   body.own_step_s = 0.5 * cycle.duration_s * std::sqrt(std::sqrt(leg_ratio));
   double height_m = 0.0, length_m = 0.0, arms = 0.0;
   for (const Side side : {kLeftSide, kRightSide}) {
@@ -219,13 +206,13 @@ BodyModel body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_hei
   return body;
 }
 
-namespace {
+// --- Legs and tables -----------------------------------------------------------------------------
 
 // Joint limits of a walker in radians (hip flexion and dorsiflexion are negative): AAOS-type
 // ranges, dorsiflexion under load up to 38 degrees.
 constexpr std::array<double, kLegDofs> kLegMin = {-120, -50, -70, 1.0, -60, -60, -80};
 constexpr std::array<double, kLegDofs> kLegMax = {60, 50, 70, 150, 75, 60, 80};
-constexpr double kHeelDown = 0.007;   // of the leg: a heel this low has landed
+constexpr double kHeelDown = 0.007;   // of the leg: a heel so near to the floor has landed
 constexpr double kLatestDown = 0.05;  // own phase
 constexpr double kHalfWidth = 0.054;  // of the leg: half a foot's breadth, 9 cm of an adult's
 constexpr double kOscillation = 0.8;  // share of the fore-aft oscillation, which FK exaggerates
@@ -246,12 +233,7 @@ IkChain leg_chain(const LegModel& leg) {
   return chain;
 }
 
-double elevation(const vec3& v) { return atan2(v.y, std::sqrt(v.x * v.x + v.z * v.z)); }
-
-bool below(const Skeleton& skeleton, int joint, int ancestor) {
-  while (joint >= 0 && joint != ancestor) joint = skeleton.joints[joint].parent;
-  return joint == ancestor;
-}
+double elevation(const vec3& v) { return atan2(v.y, horizontal_length(v)); }
 
 // Bones below the hips grow by scale * leg_ratio, all others by scale.
 void scale_build(GaitCycle& cycle, double scale, double leg_ratio) {
@@ -260,7 +242,7 @@ void scale_build(GaitCycle& cycle, double scale, double leg_ratio) {
     bool in_leg = false;
     for (const LegModel& leg : cycle.leg) {
       in_leg = in_leg || (static_cast<int>(j) != leg.joints.hip &&
-                          below(cycle.skeleton, static_cast<int>(j), leg.joints.hip));
+                          is_ancestor(cycle.skeleton, leg.joints.hip, static_cast<int>(j)));
     }
     joint.offset_m *= in_leg ? scale * leg_ratio : scale;
   }
@@ -360,9 +342,10 @@ void fill_pelvis_tables(const GaitCycle& source, double ratio, WalkModel& model)
   }
 }
 
-// At a strike the front heel is alpha of the step before the hips (mean over both feet). The heel
-// of the data still sinks and slides for a moment when it strikes; ours stands at once. So the
-// distance is that of the flat foot, run back to the moment when the heel of the data is down.
+// At a strike the front heel is this share of the step before the hips, as a mean over both feet.
+// The heel of the data still sinks and slides for a moment after its strike, but the walker's
+// stands at once. So the distance is measured at the flat foot and run back to when the data's heel
+// is down.
 double front_share(const GaitCycle& source, double source_step) {
   const double down_m = kHeelDown * 0.5 * (source.leg[0].length_m() + source.leg[1].length_m());
   double sum = 0.0;
@@ -418,13 +401,11 @@ bool has_overlong_leg(const GaitCycle& cycle) {
 
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character) {
   if (!character.skeleton.empty()) {
-    return Error{fmt::format("{}: a character with a skeleton of its own is not supported yet",
-                             character.name)};
+    return Error{character.name + ": a character with a skeleton of its own is not supported yet"};
   }
   if (has_overlong_leg(cycle)) {
-    return Error{
-        fmt::format("{}: a leg has more than {} joints between two of hip, knee, ankle and toe",
-                    cycle.name, kMaxBetween)};
+    return Error{cycle.name + ": a leg has more than " + std::to_string(kMaxBetween) +
+                 " joints between two of hip, knee, ankle and toe"};
   }
   WalkModel model;
   model.cycle = cycle;
@@ -449,7 +430,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.stand_m += 0.5 * (0.998 * leg.model.length_m() - leg.model.heel_m.y - leg.model.hip_m.y);
   }
   collect_kept_joints(model);
-  model.body = body_model(model.cycle, ratio, model.stand_m);
+  model.body = upper_body_model(model.cycle, ratio, model.stand_m);
   return model;
 }
 

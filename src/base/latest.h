@@ -1,5 +1,5 @@
-// The latest value, from one writing to one reading thread: three buffers, wait-free on both sides.
-// The reader never sees a half-written value and never an older one than before.
+// Passes the latest value from one writing to one reading thread: three buffers, wait-free on both
+// sides. The reader never sees a half-written value, nor one older than it has seen.
 #pragma once
 #include <array>
 #include <atomic>
@@ -21,7 +21,7 @@ class Latest {
         kIndex;
   }
 
-  // Reader: the newest published value; `is_new` where it was not there at the last call.
+  // Reader: the newest published value. `is_new`: it was published after the last call.
   const T& read(bool& is_new) noexcept {
     is_new = (middle_.load(std::memory_order_relaxed) & kFresh) != 0;
     if (is_new) reading_ = middle_.exchange(reading_, std::memory_order_acq_rel) & kIndex;

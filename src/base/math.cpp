@@ -61,9 +61,9 @@ SinCos sin_cos(double angle_rad) noexcept {
   constexpr double kPart1 = 1.57079632673412561417e+00;
   constexpr double kPart2 = 6.07710050630396597660e-11;
   constexpr double kPart3 = 2.02226624879595063154e-21;
-  // Below pi/4 there is nothing to reduce: the same bits, sooner.
+  // Below pi/4 nothing is to be reduced: the result has the same bits without the work.
   if (std::abs(angle_rad) < 0.785) return {sin_kernel(angle_rad), cos_kernel(angle_rad)};
-  if (!(std::abs(angle_rad) < 1e6)) return {0.0, 1.0};  // never met; bounded also for NaN
+  if (!(std::abs(angle_rad) < 1e6)) return {0.0, 1.0};  // keeps NaN and huge angles bounded
   const double scaled = angle_rad * kTwoOverPi;
   const auto n = static_cast<std::int64_t>(scaled + (scaled < 0.0 ? -0.5 : 0.5));
   const double k = static_cast<double>(n);
@@ -141,9 +141,14 @@ quat from_rotation_vector(const vec3& v) noexcept {
   return rotation_about(v / angle, angle);
 }
 
+quat nlerp(const quat& from, const quat& to, double share) noexcept {
+  const double sign = glm::dot(from, to) < 0.0 ? -1.0 : 1.0;
+  return glm::normalize(from * (1.0 - share) + to * (sign * share));
+}
+
 quat from_axes(const vec3& x, const vec3& y, const vec3& z) noexcept {
-  // Shepperd's method: divide by the largest component. (glm::quat_cast does the same; written out
-  // so that the order of operations is ours.)
+  // Shepperd's method: divide by the largest component. glm::quat_cast does the same; this is
+  // written out so that the order of operations does not change with glm's version.
   const double t = x.x + y.y + z.z;
   quat q;
   if (t > 0.0) {

@@ -1,5 +1,5 @@
-// A bounded queue between exactly one writing and one reading thread: wait-free on both sides, no
-// heap after construction. The writer sees a full ring and decides; nothing is overwritten.
+// A bounded queue from exactly one writing to one reading thread: wait-free on both sides, no heap
+// after construction. Nothing is overwritten: a full ring refuses what is pushed.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -20,7 +20,7 @@ class SpscRing {
   explicit SpscRing(std::size_t capacity)
       : mask_(capacity - 1), items_(std::make_unique_for_overwrite<T[]>(capacity)) {}
 
-  // Writer. False: full, nothing was written.
+  // Writer. Returns false if the ring is full; nothing is written then.
   bool push(const T& item) noexcept {
     const std::size_t at = written_.load(std::memory_order_relaxed);
     if (at - read_seen_ > mask_) {
@@ -32,7 +32,7 @@ class SpscRing {
     return true;
   }
 
-  // Reader. The oldest item, null where there is none; stays valid until pop().
+  // Reader. The oldest item, valid until pop(); null if the ring is empty.
   const T* front() noexcept {
     const std::size_t at = read_.load(std::memory_order_relaxed);
     if (at == written_seen_) {
@@ -41,7 +41,7 @@ class SpscRing {
     }
     return &items_[at & mask_];
   }
-  void pop() noexcept {  // only after front() gave one
+  void pop() noexcept {  // only after front() returned an item
     read_.store(read_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
   bool pop(T& item) noexcept {

@@ -6,7 +6,6 @@
 #include "gaitpad/math.h"
 
 namespace gaitpad {
-
 namespace {
 
 struct BaseStep {
@@ -17,9 +16,9 @@ double finite_or_zero(double x) noexcept {
   return std::isfinite(x) ? std::clamp(x, -1.0, 1.0) : 0.0;
 }
 
-// Longest step time. Straight walks may be slow; a turn in place and the closing step of a stop are
-// brisk. The share of the turn makes it continuous over the whole stick, neutral (no walk)
-// excepted.
+// The longest step time. Steps of a straight walk may be slow; those of a turn in place and the
+// closing step of a stop are brisk. In between the share of the turn decides, so that it is
+// continuous over the whole stick but for neutral, which does not walk.
 double step_time_cap_s(double forward, double sideways, const GaitLimits& limits) noexcept {
   const double turn = std::fabs(sideways);
   if (forward == 0.0) return limits.turn_step_time_s;
@@ -27,8 +26,8 @@ double step_time_cap_s(double forward, double sideways, const GaitLimits& limits
   return mix(limits.max_step_time_s, limits.turn_step_time_s, smoothstep(0.0, 1.0, share));
 }
 
-// The walk before any stylization but fatigue. Speed goes with the forward deflection, step length
-// with the root of speed: their quotient over cadence is constant.
+// The step before any stylization but fatigue. Speed is proportional to the forward deflection,
+// step length to the root of the speed, so that step length over cadence is constant.
 BaseStep base_step(double forward, double sideways, double fatigue,
                    const GaitLimits& limits) noexcept {
   const double share = vigour(fatigue);
@@ -37,6 +36,49 @@ BaseStep base_step(double forward, double sideways, double fatigue,
   const double length_m = limits.max_step_m * share * std::sqrt(forward);
   if (!(length_m < speed_m_s * cap_s)) return {speed_m_s * cap_s, cap_s};
   return {length_m, length_m / speed_m_s};
+}
+
+// Overrides, as factors on what the stick gives at most: the longest stride that the legs reach at
+// every speed and in every turn, the shortest and the longest step time.
+constexpr double kLongestStride = 1.3;
+constexpr double kQuickest = 0.5, kSlowest = 2.0;
+
+constexpr std::array<GaitKey, 2> kStrides = {GaitKey::stride_left_m, GaitKey::stride_right_m};
+constexpr std::array<GaitKey, 2> kFlights = {GaitKey::flight_left, GaitKey::flight_right};
+
+// The override of this key, bounded; nothing where it is not set or not a number.
+std::optional<double> given(const GaitOverrides& overrides, GaitKey key,
+                            const GaitLimits& limits) noexcept {
+  const auto k = static_cast<std::size_t>(key);
+  if (!overrides.is_set[k] || !std::isfinite(overrides.value[k])) return std::nullopt;
+  const GaitRange range = range_of(key, limits);
+  return std::clamp(overrides.value[k], range.min, range.max);
+}
+
+// The forward deflection that gives this speed with that sideways one, or comes nearest to it.
+double deflection_of(double speed_m_s, double sideways, double fatigue,
+                     const GaitLimits& limits) noexcept {
+  const double share = speed_m_s / (limits.max_speed_m_s * vigour(fatigue));
+  if (!(share < 0.0)) return std::min(1.0, share);
+  return std::max(-1.0, share / kBackwardShare - kBackwardSector * std::fabs(sideways));
+}
+
+// The longest step time in a turn of this rate: the foot of a slower step would land beside the
+// hips.
+double slowest_step_s(double turn_rate_rad_s, const GaitLimits& limits) noexcept {
+  const double sharp = std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s;
+  return limits.max_step_time_s / std::max(sharp, 1.0 / kSlowest);
+}
+
+// Stretches both step times until the walk has this speed, within the bounds of a step.
+void meet_speed(double speed_m_s, const GaitLimits& limits, GaitParams& params) noexcept {
+  std::array<StrideParams, 2>& stride = params.stride;
+  const double cycle_s = (stride[0].length_m + stride[1].length_m) / speed_m_s;
+  const double stretch = cycle_s / (stride[0].time_s + stride[1].time_s);
+  const double quickest_s = kQuickest * limits.max_step_m / limits.max_speed_m_s;
+  const double slowest_s = slowest_step_s(params.turn_rate_rad_s, limits);
+  for (StrideParams& step : stride)
+    step.time_s = std::clamp(step.time_s * stretch, quickest_s, slowest_s);
 }
 
 }  // namespace
@@ -69,7 +111,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   GaitParams params;
   params.walking = along > 0.0 || sideways != 0.0;
   params.backward = back > 0.0;
-  // 0 - x, not -x: neutral is +0, one bit pattern.
+  // 0 - x and not -x: neutral must be +0, since a hash tells +0 and -0 apart.
   params.turn_rate_rad_s = 0.0 - sideways * limits.max_turn_rate_rad_s;
   for (const Side side : {kLeftSide, kRightSide}) {
     const StrideFactors& factors = style.stride[side];
@@ -82,98 +124,6 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   params.weight = style.weight;
   params.body = style.body;
   return params;
-}
-
-namespace {
-
-constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;  // of giants; limits bound them
-constexpr double kMostFactor = 3.0;                            // as in a style
-// Of the stick's: what legs reach at any speed and in any turn.
-constexpr double kLongestStride = 1.3;
-constexpr double kQuickest = 0.5, kSlowest = 2.0;  // of the stick's shortest and longest step time
-
-constexpr std::array<GaitKeyInfo, kGaitKeys> kKeys = {{
-    {"speed_m_s", -kMostSpeed_m_s, kMostSpeed_m_s},
-    {"stride_left_m", 0.0, kMostStride_m},
-    {"stride_right_m", 0.0, kMostStride_m},
-    {"flight_left", 0.0, kMostFactor},
-    {"flight_right", 0.0, kMostFactor},
-    {"turn_rate_rad_s", -kMaxTurnRate_rad_s, kMaxTurnRate_rad_s},
-    {"hip_sway", 0.0, kMostFactor},
-    {"hip_bounce", 0.0, kMostFactor},
-}};
-
-constexpr std::array<GaitKey, 2> kStrides = {GaitKey::stride_left_m, GaitKey::stride_right_m};
-constexpr std::array<GaitKey, 2> kFlights = {GaitKey::flight_left, GaitKey::flight_right};
-
-std::optional<double> given(const GaitOverrides& overrides, GaitKey key,
-                            const GaitLimits& limits) noexcept {
-  const auto k = static_cast<std::size_t>(key);
-  if (!overrides.is_set[k] || !std::isfinite(overrides.value[k])) return std::nullopt;
-  const GaitRange range = range_of(key, limits);
-  return std::clamp(overrides.value[k], range.min, range.max);
-}
-
-// The forward deflection that gives this speed with that sideways one, or comes nearest to it.
-double deflection_of(double speed_m_s, double sideways, double fatigue,
-                     const GaitLimits& limits) noexcept {
-  const double share = speed_m_s / (limits.max_speed_m_s * vigour(fatigue));
-  if (!(share < 0.0)) return std::min(1.0, share);
-  return std::max(-1.0, share / kBackwardShare - kBackwardSector * std::fabs(sideways));
-}
-
-// Slow steps in a sharp turn would end beside the hips.
-double slowest_step_s(double turn_rate_rad_s, const GaitLimits& limits) noexcept {
-  const double sharp = std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s;
-  return limits.max_step_time_s / std::max(sharp, 1.0 / kSlowest);
-}
-
-void meet_speed(double speed_m_s, const GaitLimits& limits, GaitParams& params) noexcept {
-  std::array<StrideParams, 2>& stride = params.stride;
-  const double cycle_s = (stride[0].length_m + stride[1].length_m) / speed_m_s;
-  const double stretch = cycle_s / (stride[0].time_s + stride[1].time_s);
-  const double quickest_s = kQuickest * limits.max_step_m / limits.max_speed_m_s;
-  const double slowest_s = slowest_step_s(params.turn_rate_rad_s, limits);
-  for (StrideParams& step : stride)
-    step.time_s = std::clamp(step.time_s * stretch, quickest_s, slowest_s);
-}
-
-}  // namespace
-
-const GaitKeyInfo& info_of(GaitKey key) noexcept { return kKeys[static_cast<std::size_t>(key)]; }
-
-std::optional<GaitKey> gait_key(std::string_view name) noexcept {
-  for (int k = 0; k < kGaitKeys; ++k) {
-    if (kKeys[k].name == name) return static_cast<GaitKey>(k);
-  }
-  return std::nullopt;
-}
-
-double value_of(GaitKey key, const GaitParams& params) noexcept {
-  const auto& [left, right] = params.stride;
-  switch (key) {
-    case GaitKey::speed_m_s: {
-      const double cycle_s = left.time_s + right.time_s;
-      if (!params.walking || !(cycle_s > 0.0)) return 0.0;
-      const double speed_m_s = (left.length_m + right.length_m) / cycle_s;
-      return params.backward ? 0.0 - speed_m_s : speed_m_s;
-    }
-    case GaitKey::stride_left_m:
-      return left.length_m;
-    case GaitKey::stride_right_m:
-      return right.length_m;
-    case GaitKey::flight_left:
-      return left.flight_height;
-    case GaitKey::flight_right:
-      return right.flight_height;
-    case GaitKey::turn_rate_rad_s:
-      return params.turn_rate_rad_s;
-    case GaitKey::hip_sway:
-      return params.hip_sway;
-    case GaitKey::hip_bounce:
-      return params.hip_bounce;
-  }
-  return 0.0;
 }
 
 GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept {
@@ -197,7 +147,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitO
                        const GaitLimits& limits) noexcept {
   const auto speed_m_s = given(overrides, GaitKey::speed_m_s, limits);
   const auto turn_rate_rad_s = given(overrides, GaitKey::turn_rate_rad_s, limits);
-  Stick in_force = stick;  // as it would be pushed for what is given
+  Stick in_force = stick;  // the stick that would give what is overridden
   if (turn_rate_rad_s) in_force.left.x = 0.0 - *turn_rate_rad_s / limits.max_turn_rate_rad_s;
   if (speed_m_s)
     in_force.left.y = deflection_of(*speed_m_s, in_force.left.x, style.fatigue, limits);

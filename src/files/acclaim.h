@@ -1,5 +1,5 @@
-// Acclaim skeleton (ASF) text: bones as the file has them, in the hierarchy's order.
-// Files come from strangers: bones are counted, names and numbers checked, nothing is trusted.
+// Acclaim files: the bones of a skeleton (ASF) and the numbers of each frame of a motion (AMC), as
+// they stand in the files. Counts, names and numbers are checked, so that any text may be read.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace gaitpad {
 
-// What a bone's motion consists of, in the order of its `dof` (the root's: its `order`).
+// The channels of a bone, in the order of its `dof` (of the root: its `order`).
 enum class AsfChannel : std::uint8_t { rx, ry, rz, tx, ty, tz };
 inline constexpr bool is_rotation(AsfChannel c) noexcept { return c <= AsfChannel::rz; }
 
-// A bone turns about its start, which is its parent's end. Its channels count in its own axes;
-// direction and axes are the world's in the rest pose.
+// A bone turns about its start, which is its parent's end. Its channels are about its own axes.
+// `direction` and `axes` are in the world frame, in the rest pose.
 struct AsfBone {
   std::string name;
   int parent = -1;
@@ -33,32 +33,28 @@ struct AsfBone {
 // Bones stand in depth-first order, parents before children; bones[0] is the root.
 struct Asf {
   std::vector<AsfBone> bones;
-  vec3 root_position{0.0};      // file units; what the root's translation starts from
+  vec3 root_position{0.0};      // file units; the root's translation is added to it
   double length_unit = 0.0;     // `:units length` as written; 0: absent
   double angle_unit = kDegree;  // rad; `deg` unless the file says `rad`
-  int channels = 0;             // numbers a frame
+  int channels = 0;             // numbers in a frame
 };
 
-// Any order of sections and channels, any case of keywords, CRLF, comments. Limits, masses and
-// sections that nobody here needs are passed over. Rotations are applied in the order that is
-// written, first one first. Refused are, besides damage, bones that stretch (dof `l`). Errors read
-// `NAME:LINE: cause`.
+// Parses a skeleton: any order of sections and channels, any case of keywords, CRLF, comments.
+// Limits, masses and unknown sections are skipped. Rotations are applied in the order in which they
+// are written. Bones that stretch (dof `l`) are errors. Errors read `NAME:LINE: cause`.
 Result<Asf> parse_asf(std::string_view text, const std::string& name);
-
-// Acclaim motion (AMC) text: the numbers of each frame for the bones of its skeleton.
-// Files come from strangers: memory grows with the text alone, and up to a bound.
 
 struct Amc {
   int frames = 0;
   double angle_unit = kDegree;  // rad; :DEGREES or :RADIANS, else the skeleton's
-  double frame_rate_hz = 0.0;   // 0: not said, as usual
+  double frame_rate_hz = 0.0;   // 0: not stated, which is usual
   std::vector<double> values;   // frames x asf.channels; file units
 };
 
-// Frames are numbered lines, counted up by one from any number; CRLF, comments and blank lines do
-// not matter. A bone that the first frame leaves out rests; one that a later frame leaves out keeps
-// its last values, or is damage where the file says :FULLY-SPECIFIED. `asf_name` stands in the
-// sentence about a bone that the skeleton does not have. Errors read `NAME:LINE: cause`.
+// Parses a motion of the skeleton `asf`. Frames are numbered, counted up by one from any number. A
+// bone that the first frame leaves out rests. One that a later frame leaves out keeps its last
+// values, or is an error if the file says :FULLY-SPECIFIED. `asf_name` stands in the error about a
+// bone that the skeleton does not have. Errors read `NAME:LINE: cause`.
 Result<Amc> parse_amc(std::string_view text, const std::string& name, const Asf& asf,
                       const std::string& asf_name);
 

@@ -8,7 +8,7 @@
 #include <csetjmp>
 #include <cstring>
 
-#include "files/toml_file.h"
+#include "base/files.h"
 
 namespace gaitpad {
 
@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 4 << 20;
 
-// libpng leaves by longjmp: nothing here that has a destructor may live in a function that calls
-// it.
+// libpng reports errors by longjmp, which skips destructors: no function here that calls libpng may
+// hold an object with a destructor.
 struct Reader {
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -60,7 +60,7 @@ bool begin(Reader& reader) noexcept {
   return true;
 }
 
-// Two bytes a sample, or one, `row_bytes` a row, into `to`.
+// Reads all rows into `to`, one or two bytes a sample, `row_bytes` a row.
 bool read_rows(Reader& reader, png_bytep to, std::size_t row_bytes, std::size_t rows) noexcept {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   const int passes = png_set_interlace_handling(reader.png);

@@ -1,4 +1,4 @@
-// A grey picture as heights: PNG of 8 or 16 bits, its samples as they stand in the file.
+// Height pictures: grey PNG files of 8 or 16 bits, the samples as they stand in the file.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -15,10 +15,10 @@ struct HeightPicture {
   int columns = 0, rows = 0;
   std::vector<std::uint16_t> samples;  // from the upper left corner, 0 black .. 65535 white
 };
-// Files come from strangers: of at most 4 MiB and kMaxPictureSide a side, damage is an error.
-// What a file says of gamma and profiles does not count: heights are no colours.
+// Reads a picture of at most 4 MiB and kMaxPictureSide samples a side. Damage is an error. Gamma
+// and colour profiles in the file are ignored, because heights are not colours.
 Result<HeightPicture> load_height_picture(const std::string& path);
-// The sentences name `name`.
+// The same from the bytes of a file; `name` stands in errors.
 Result<HeightPicture> height_picture(std::string_view png, const std::string& name);
 
 }  // namespace gaitpad

@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::size_t kMostPoses = 64;
 constexpr int kStrides = 4;
-constexpr double kLeastGap = 0.005;  // between two keys, share of the stride
+constexpr double kLeastGap = 0.005;  // between two keys of one channel, share of the stride
 
-// What can be keyed. A side's values are those of its own stride, so the left leg's are half a
-// stride later where the walk is symmetric; the trunk's then repeat every half stride, those that
-// point to a side with the other sign.
+// The channels that a pose can key. The values of a side belong to its own stride: in a symmetric
+// walk the left leg has those of the right one half a stride later. The trunk's values then repeat
+// every half stride, those about a sideways motion with the opposite sign.
 enum Channel { kHip, kKnee, kAnkle, kToe, kShoulder, kElbow, kSideChannels };
 enum TrunkChannel {
   kTurn,
@@ -33,7 +33,7 @@ enum TrunkChannel {
 
 struct KeyName {
   const char* name;
-  double min, max, unit;  // of a value; what one is in radians or metres
+  double min, max, unit;  // range in the file; `unit` in radians or metres
 };
 constexpr std::array<KeyName, kSideChannels> kSideNames = {{{"hip", -60.0, 120.0, kDegree},
                                                             {"knee", 0.0, 150.0, kDegree},
@@ -64,7 +64,7 @@ struct KeyedStride {
 
 double fraction(double phase) { return phase - std::floor(phase); }
 
-// One pose's value for one channel, and its mirror image half a stride later.
+// Collects the keys of all poses, and of a symmetric walk their mirror images half a stride later.
 class Reader {
  public:
   explicit Reader(bool is_symmetric) : is_symmetric_(is_symmetric) {}
@@ -129,7 +129,7 @@ class Reader {
 
 KeyedStride stride_of(TomlTable& root) {
   KeyedStride stride;
-  root.string("name");  // for people
+  root.string("name");  // allowed, not used
   stride.duration_s = root.number("duration_s", 0.5, 4.0).value_or(stride.duration_s);
   root.require("duration_s");
   stride.track_m = root.number("track_m", 0.0, 0.3).value_or(stride.track_m);
@@ -154,7 +154,7 @@ quat turned(double turn, double list, double tilt) {
   return rotation_y(turn) * rotation_z(list) * rotation_x(tilt);
 }
 
-// Pelvis without its height, and both legs.
+// Fills in both legs and the pelvis without its height.
 void fill_samples(const KeyedStride& stride, GaitCycle& cycle) {
   cycle.samples.assign(kCycleSamples, CycleSample{});
   for (int i = 0; i < kCycleSamples; ++i) {
@@ -177,7 +177,7 @@ void fill_samples(const KeyedStride& stride, GaitCycle& cycle) {
   }
 }
 
-// The harmonics up to 6 of a curve over the cycle.
+// The curve's harmonics up to the sixth.
 std::array<double, kCycleSamples> smoothed(const std::array<double, kCycleSamples>& curve) {
   std::array<double, kCycleSamples> out{};
   for (int k = 0; k <= 6; ++k) {
@@ -206,8 +206,9 @@ void stand_on_lower_foot(GaitCycle& cycle) {
   for (int i = 0; i < kCycleSamples; ++i) cycle.samples[i].pelvis_m.y = height[i];
 }
 
-// What the lowest point (heel, ball, tip) of those that go back goes back in a stride: that one
-// stands, however low a swinging toe hangs.
+// The length of a stride: between two samples the lowest point (heel, ball, tip) of those that move
+// backwards is taken to stand, and the pelvis travels as far as it moves back. A swinging toe may
+// be lower, but moves forward.
 double travel_m(const GaitCycle& cycle) {
   double sum_m = 0.0;
   for (int i = 0; i < kCycleSamples; ++i) {
@@ -233,7 +234,8 @@ double travel_m(const GaitCycle& cycle) {
   return sum_m;
 }
 
-// Arms, trunk and head of a frame whose pelvis is set; chest and head stand in the travel frame.
+// Sets arms, trunk and head of a frame whose pelvis is set. Chest and head keep their rotation in
+// the travel frame.
 void set_upper_body(const KeyedStride& stride, const GaitCycle& cycle, int i, quat* local) {
   const Skeleton& s = cycle.skeleton;
   const double phase = double(i) / kCycleSamples;
@@ -306,7 +308,7 @@ double PeriodicKeys::at(double phase) const {
   if (n == 0) return 0.0;
   if (n == 1) return keys_[0].value;
   const double p = fraction(phase);
-  std::size_t k = n - 1;  // the key before p, that of the last cycle where p is before all
+  std::size_t k = n - 1;  // the key before p; if p is before all, the last key of the cycle before
   while (k > 0 && keys_[k].phase > p) --k;
   if (keys_[k].phase > p) k = n - 1;
   const std::size_t next = (k + 1) % n;

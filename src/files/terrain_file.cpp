@@ -1,19 +1,20 @@
-#include "gaitpad/terrain_file.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <utility>
 
+#include "base/text.h"
 #include "files/height_picture.h"
 #include "files/toml_file.h"
+#include "gaitpad/config_files.h"
 
 namespace gaitpad {
 
 namespace {
 
 constexpr double kMost_m = 1000.0;
-constexpr double kUsualBend_1_m = 0.25;  // of roundings that nobody chose: 2 mm under a sole
+constexpr double kUsualBend_1_m =
+    0.25;  // bend of a rounding that the file leaves out: 2 mm under a sole
 
 double length_of(TomlTable& section) {
   section.require("length_m");
@@ -61,8 +62,8 @@ SectionShape rough_of(TomlTable& section) {
                        static_cast<std::uint32_t>(seed));
 }
 
-// Seen from above, upwards is onwards: the lowest row is the first one, the left column at the
-// left.
+// Seen from above, the way leads up the picture: its lowest row is the first one of the field, its
+// left column is at the walker's left.
 std::shared_ptr<const HeightField> field_of(const HeightPicture& picture, double low_m,
                                             double high_m) {
   auto field = std::make_shared<HeightField>();

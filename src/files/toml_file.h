@@ -1,8 +1,9 @@
-// Strict reader of the program's TOML files. A wrong type, a value out of range, a key that nobody
-// asked for and a syntax error all become one sentence: `FILE:LINE: unknown key "inner_zome"; ...`.
-// Files come from strangers: at most 1 MiB, bounded depth, nothing thrown.
+// A strict reader of TOML files. A syntax error, a wrong type, a value out of range and a key that
+// the caller did not ask for all become one sentence, `FILE:LINE: unknown key "inner_zome"; did you
+// mean
+// ...?`. Size and depth are bounded, and nothing is thrown, so that any file may be read.
 //
-// Use: parse or load, ask every table for every key it may hold, then look at problem() once:
+// Ask every table for every key that it may hold, then look at problem() once:
 //   auto file = TomlFile::load(path);
 //   if (!file) return file.error();
 //   TomlTable root = file->root();
@@ -23,21 +24,17 @@ namespace gaitpad {
 
 inline constexpr std::size_t kMaxTomlBytes = 1 << 20;
 
-// The whole text of a regular file of at most `max_bytes`; the sentence names the path.
-Result<std::string> file_text(const std::string& path, std::size_t max_bytes);
-// `text` in double quotes, control characters replaced, cut to a length fit for an error sentence.
-std::string in_quotes(std::string_view text);
-// A string as it stands in a TOML file, quotes and all; of what is no UTF-8 only ASCII is left.
+// The text as a TOML string, with its quotes. If it is not UTF-8, bytes beyond ASCII become '?'.
 std::string toml_string(std::string_view text);
 
 struct TomlDocument;  // hides toml++
 
-// One table of a file: a small handle, valid as long as its TomlFile. A getter returns nothing
-// where the key is absent, and also where its value is wrong: then the file keeps the problem (the
-// first one counts). Asking for a key makes it a known key.
+// One table of a file: a small handle, valid as long as its TomlFile. A getter returns nothing if
+// the key is absent or its value is wrong; of wrong values the file keeps the first one as its
+// problem(). Asking for a key makes it a known key.
 class TomlTable {
  public:
-  // Finite and within [min, max]; a whole number counts as a number.
+  // A finite number within [min, max]; integers are numbers, too.
   std::optional<double> number(std::string_view key, double min, double max);
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t min, std::int64_t max);
   std::optional<bool> boolean(std::string_view key);
@@ -47,16 +44,16 @@ class TomlTable {
                                              std::size_t max_count, double min, double max);
   std::optional<std::vector<std::string>> strings(std::string_view key, std::size_t max_count);
   std::optional<TomlTable> table(std::string_view key);
-  // `[[key]]`, at most max_count; empty where absent.
+  // The tables of `[[key]]`, at most max_count; empty if absent.
   std::vector<TomlTable> tables(std::string_view key, std::size_t max_count);
 
   bool has(std::string_view key);
-  // A problem unless the key is there.
+  // Makes it a problem if the key is absent.
   void require(std::string_view key);
-  // The caller's own objection to a key's value, `FILE:LINE: cause` with that key's line.
+  // Makes `FILE:LINE: cause` a problem, with the line of that key's value.
   void reject(std::string_view key, const std::string& cause);
 
-  // For tables whose keys are data: in the order of the file, none of them made known.
+  // All keys in the order of the file, for tables whose keys are data. They do not become known.
   std::vector<std::string> keys() const;
   int line() const;                      // where the table begins
   int line(std::string_view key) const;  // of the key's value; the table's where it is absent
@@ -71,7 +68,7 @@ class TomlTable {
 class TomlFile {
  public:
   static Result<TomlFile> load(const std::string& path);
-  // `name` and `first_line` stand in the sentences (a trace carries its calibration inside).
+  // `name` and `first_line` stand in errors: a trace, for example, holds a calibration.
   static Result<TomlFile> parse(std::string_view text, const std::string& name, int first_line = 1);
 
   TomlTable root();
@@ -90,20 +87,20 @@ class TomlFile {
   std::unique_ptr<TomlDocument> document_;
 };
 
-// Looks over a TOML text before toml++ parses it, for what toml++ would not survive or misplace.
+// Checks before toml++ parses a text, for what would make it crash or name the wrong line. Each
+// returns a line, from 1, or 0 if there is nothing wrong.
 
-// A dotted key nests a table a dot, and toml++ frees nested tables by recursion.
+// Each dot of a key nests a table, and toml++ frees nested tables by recursion.
 inline constexpr int kMaxKeyParts = 16;
 
-// The line, from 1, of the first key with more parts; 0 where there is none. Strings and comments
-// are skipped as TOML says, so far as the text is valid; toml++ itself stops where it is not.
+// The first key with more parts. Strings and comments are skipped as TOML defines them, as far as
+// the text is valid; toml++ itself stops where it is not.
 int line_of_overlong_key(std::string_view text);
-// The line of the first character beyond ASCII that stands in no string and no comment, where
-// TOML 1.0 has none (a mark of byte order at the very beginning is let through); 0 where there is
-// none. toml++ takes some of them for white space by way of undefined behaviour.
+// The first character beyond ASCII outside of strings and comments, where TOML 1.0 allows none but
+// a byte order mark at the beginning. toml++ reads some of them as white space, with undefined
+// behaviour.
 int line_of_stray_character(std::string_view text);
-// The line of the first byte that is no UTF-8; 0 where there is none. (toml++ names the line where
-// it began to read ahead.)
+// The first byte that is not UTF-8. toml++ would name the line where it began to read ahead.
 int line_of_invalid_utf8(std::string_view text);
 
 }  // namespace gaitpad

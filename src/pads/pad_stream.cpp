@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/spsc_ring.h"
+#include "base/text.h"
 #include "drivers/keyboard_device.h"
 #include "pads/newest_reports.h"
 #include "pads/pad_finder.h"
@@ -171,10 +172,6 @@ std::chrono::nanoseconds processor_time() {
   return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
-bool is_blank(std::string_view text) {
-  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
-}
-
 // Reads all open devices, stamps and orders their reports, sets motors, and gives back the devices
 // that are gone.
 class PadIo {
@@ -282,7 +279,7 @@ void PadIo::take_over(OpenedPad pad) {
 }
 
 void PadIo::command(std::string_view text) {
-  if (is_blank(text)) return;  // a recording cannot hold it
+  if (trimmed(text, " \t\r\n").empty()) return;  // a recording cannot hold it
   if (text.size() > kMaxReportBytes) {
     remarks_.add_once(fmt::format("a command of {} bytes was left out, {} can be taken",
                                   text.size(), kMaxReportBytes));

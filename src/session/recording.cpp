@@ -14,6 +14,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/files.h"
+#include "base/text.h"
 #include "gaitpad/descriptor.h"
 #include "session/live_loop.h"
 
@@ -26,11 +28,6 @@ constexpr std::size_t kCommands = kMaxTraceDevices;  // index in streams_
 
 std::string seconds(std::int64_t time_ns) {
   return fmt::format("{}.{:09}", time_ns / kSecond_ns, time_ns % kSecond_ns);
-}
-
-// The reader of traces refuses a command without words.
-bool is_blank(std::string_view text) {
-  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
 
 }  // namespace
@@ -60,7 +57,7 @@ void RecordingLines::clock(std::int64_t tick, std::int64_t time_ns, double pace)
 bool RecordingLines::add(std::int64_t tick, const Report& report) {
   if (is_over(tick)) return false;
   const bool is_command = report.kind == ReportKind::command;
-  if (is_command && is_blank(text_of(report))) return true;
+  if (is_command && trimmed(text_of(report), " \t\r\n").empty()) return true;  // no command
   if (!is_command && !describe(report.device)) return false;
   begin_time(report.time_ns);
   const Stream& stream = streams_[is_command ? kCommands : report.device];
@@ -167,19 +164,15 @@ constexpr std::size_t kRingItems = 4096;
 constexpr std::chrono::milliseconds kPause{20};  // between looks at the ring: nobody wakes it
 constexpr std::size_t kWriteBytes = std::size_t{1} << 18;
 
-Error failure(const std::string& path, int number) {
-  return Error{fmt::format("{}: cannot be written: {}", path, std::strerror(number))};
-}
-
 // Opens the file, empties it and locks it for this session. If it is a pipe without a reader, that
 // is an error instead of a wait.
 Result<OwnedFd> opened_part(const std::string& part) {
   OwnedFd file(
       ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
-  if (file.get() < 0) return failure(part, errno);
+  if (file.get() < 0) return write_error(part, errno);
   if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0)
     return Error{part + ": another session is recording into it"};
-  if (::ftruncate(file.get(), 0) != 0) return failure(part, errno);
+  if (::ftruncate(file.get(), 0) != 0) return write_error(part, errno);
   return file;
 }
 
@@ -285,13 +278,13 @@ Result<std::vector<std::string>> Recording::finish(std::int64_t ticks, std::int6
     ::unlink(part_.c_str());
     return std::vector<std::string>{path_ + ": was not written: there was no pad to record"};
   }
-  if (std::rename(part_.c_str(), path_.c_str()) != 0) return failure(path_, errno);
+  if (std::rename(part_.c_str(), path_.c_str()) != 0) return write_error(path_, errno);
   return remarks();
 }
 
 std::optional<Error> Recording::problem() const {
   if (problem_ == 0) return std::nullopt;
-  return failure(part_, problem_);
+  return write_error(part_, problem_);
 }
 
 std::vector<std::string> Recording::remarks() const {

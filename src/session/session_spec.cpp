@@ -9,7 +9,6 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
-#include "gaitpad/terrain_file.h"
 
 namespace gaitpad {
 namespace {

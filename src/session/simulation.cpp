@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "files/toml_file.h"
+#include "base/text.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/style.h"
 #include "session/script.h"

@@ -1,9 +1,9 @@
 #include "view/body_parts.h"
 
-#include <cctype>
 #include <string>
 #include <string_view>
 
+#include "base/text.h"
 #include "gaitpad/anatomy.h"
 
 namespace gaitpad {
@@ -42,8 +42,7 @@ class Reading {
 };
 
 bool Reading::is_named(int j, std::initializer_list<std::string_view> words) const {
-  std::string name = joints_[j].name;
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string name = lower_case(joints_[j].name);
   for (const std::string_view word : words) {
     if (name.find(word) != std::string::npos) return true;
   }

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "files/toml_file.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "gaitpad/config_files.h"
 
 namespace gaitpad {
@@ -14,12 +15,6 @@ namespace {
 
 constexpr std::size_t kMostSeen = 100'000;  // entries of a folder that are looked at
 constexpr std::size_t kMostRecentBytes = 64 * 1024;
-
-std::string lower_case(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
 
 bool is_wanted(const std::string& name, FileFilter filter) {
   const std::string ending = lower_case(fs::path(name).extension().string());

@@ -7,10 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "gaitpad/calibration.h"
+#include "gaitpad/config_files.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/style.h"
-#include "gaitpad/terrain_file.h"
 #include "gaitpad/walk_model.h"
 
 namespace gaitpad {
@@ -20,12 +21,6 @@ namespace {
 constexpr const char* kWhatOpens =
     "motions (.bvh, .amc), recordings (.hid), and .toml files of styles, characters, calibrations, "
     "terrains and motions can be opened";
-
-std::string lower_case(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
 
 std::optional<FileKind> kind_of_folder(const fs::path& path) {
   const std::string folder = path.parent_path().filename().string();

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "session/walk_export.h"
+#include "base/files.h"
 #include "view/drawing.h"
 #include "view/surface.h"
 

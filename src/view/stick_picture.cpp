@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "session/walk_export.h"
+#include "base/files.h"
 #include "view/drawing.h"
 #include "view/stick_plot.h"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "files/toml_file.h"
+#include "base/files.h"
 #include "view/theme.h"
 
 namespace gaitpad {

@@ -1,11 +1,8 @@
-#!/usr/bin/python3
 """config/udev: the rules are read in time, jump to labels that follow, and open pads, no other hardware."""
-import pathlib
 import re
-import sys
-import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from support.program import ROOT
+
 RULES = ROOT / "config/udev/60-gaitpad.rules"
 LINES = [line for line in RULES.read_text().splitlines() if line and not line.startswith("#")]
 # They make keyboards, mice, phones and more: pads are listed one by one.
@@ -52,43 +49,45 @@ def config_ids():
     return ids
 
 
-class UdevRules(unittest.TestCase):
-    def test_the_number_is_below_that_of_the_seat_rules(self):
-        self.assertLess(int(RULES.name[:2]), 73)  # 73-seat-late.rules acts upon the tag uaccess
-
-    def test_jumps_lead_to_labels_that_follow(self):
-        for number, line in enumerate(LINES):
-            for label in values(line.replace('GOTO="', 'GOTO=="'), "GOTO"):
-                self.assertIn(f'LABEL="{label}"', LINES[number + 1:], line)
-
-    def test_every_line_is_key_operator_value(self):
-        term = re.compile(r'^[A-Z]+(\{\w+\})?(==|!=|=|\+=)"[^"]*"$')
-        for line in LINES:
-            for part in re.split(r",\s*(?=[A-Z])", line):
-                self.assertRegex(part, term)
-
-    def test_one_line_gives_access_by_group_and_by_seat(self):
-        given = [line for line in LINES if "MODE=" in line]
-        self.assertEqual(given, ['MODE="0660", GROUP="input", TAG+="uaccess"'])
-
-    def test_hidraw_and_usb_name_the_same_pads(self):
-        self.assertGreater(len(hidraw_ids()), 100)
-        self.assertEqual(hidraw_ids(), usb_ids())
-
-    def test_no_vendor_of_other_things_is_opened_as_a_whole(self):
-        whole = {i.split(":")[0] for i in hidraw_ids() if i.endswith("*")}
-        self.assertEqual(whole & MIXED_VENDORS, set())
-
-    def test_every_pad_of_config_is_opened(self):
-        missing = {i for i in config_ids() - hidraw_ids() - LEFT_OUT if f"{i[:4]}:*" not in hidraw_ids()}
-        self.assertEqual(missing, set())
-
-    def test_event_nodes_are_asked_what_they_are_and_keyboards_are_not_opened(self):
-        asks = next(n for n, line in enumerate(LINES) if 'IMPORT{builtin}="input_id"' in line)
-        opens = next(n for n, line in enumerate(LINES) if 'ENV{ID_INPUT_JOYSTICK}=="1"' in line)
-        self.assertLess(asks, opens)
-        self.assertIn('ENV{ID_INPUT_KEYBOARD}!="1"', LINES[opens])
+def test_the_number_is_below_that_of_the_seat_rules():
+    assert int(RULES.name[:2]) < 73  # 73-seat-late.rules acts upon the tag uaccess
 
 
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+def test_jumps_lead_to_labels_that_follow():
+    for number, line in enumerate(LINES):
+        for label in values(line.replace('GOTO="', 'GOTO=="'), "GOTO"):
+            assert f'LABEL="{label}"' in LINES[number + 1:], line
+
+
+def test_every_line_is_key_operator_value():
+    term = re.compile(r'^[A-Z]+(\{\w+\})?(==|!=|=|\+=)"[^"]*"$')
+    for line in LINES:
+        for part in re.split(r",\s*(?=[A-Z])", line):
+            assert re.search(term, part)
+
+
+def test_one_line_gives_access_by_group_and_by_seat():
+    given = [line for line in LINES if "MODE=" in line]
+    assert given == ['MODE="0660", GROUP="input", TAG+="uaccess"']
+
+
+def test_hidraw_and_usb_name_the_same_pads():
+    assert len(hidraw_ids()) > 100
+    assert hidraw_ids() == usb_ids()
+
+
+def test_no_vendor_of_other_things_is_opened_as_a_whole():
+    whole = {i.split(":")[0] for i in hidraw_ids() if i.endswith("*")}
+    assert whole & MIXED_VENDORS == set()
+
+
+def test_every_pad_of_config_is_opened():
+    missing = {i for i in config_ids() - hidraw_ids() - LEFT_OUT if f"{i[:4]}:*" not in hidraw_ids()}
+    assert missing == set()
+
+
+def test_event_nodes_are_asked_what_they_are_and_keyboards_are_not_opened():
+    asks = next(n for n, line in enumerate(LINES) if 'IMPORT{builtin}="input_id"' in line)
+    opens = next(n for n, line in enumerate(LINES) if 'ENV{ID_INPUT_JOYSTICK}=="1"' in line)
+    assert asks < opens
+    assert 'ENV{ID_INPUT_KEYBOARD}!="1"' in LINES[opens]

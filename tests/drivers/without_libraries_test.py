@@ -1,56 +1,73 @@
-#!/usr/bin/python3
 """Without any driver the program still builds and replays, and says what is missing. SDL2 stays, the window's.
 
-Usage: without_libraries_test.py PROGRAM (the build stands in `without_libraries` beside it)
+The devices' library is built anew without the drivers' libraries, in `without_libraries` beside the program, and linked to the
+program's other objects: nothing else knows which drivers there are.
 """
 import json
 import pathlib
+import re
 import subprocess
-import sys
-import unittest
+
+import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/gaitpad").resolve()
-FOLDER = PROGRAM.parent / "without_libraries"
+DEVICES = "libgaitpad_devices.a"  # the archive of the target gaitpad_devices, which holds the drivers
 LIBRARIES = {"hidraw": "libhidapi-hidraw", "evdev": "libevdev", "sdl": "libSDL2", "usb": "libusb-1.0"}
 
 
-def run(*command):
-    return subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False)
+def run(*command, folder=None):
+    return subprocess.run([str(c) for c in command], cwd=folder, capture_output=True, text=True, check=False)
 
 
-class WithoutLibraries(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        off = [f"-DGAITPAD_{driver.upper()}=OFF" for driver in LIBRARIES]
-        built = run("bash", ROOT / "tools/build.sh", FOLDER, "gaitpad", "-DCMAKE_BUILD_TYPE=Release", *off)
-        assert built.returncode == 0, built.stderr
-        cls.program = FOLDER / "gaitpad"
-
-    def test_needs_none_of_them(self):
-        needed = run("ldd", self.program).stdout
-        for library in ("hidapi", "usb-1.0", "evdev"):
-            self.assertNotIn(library, needed)
-
-    def test_replays_to_the_same_hash(self):
-        command = ["replay", ROOT / "config/traces/round.hid", "--json"]
-        hashes = [json.loads(run(p, *command).stdout)["pose_hash"] for p in (self.program, PROGRAM)]
-        self.assertEqual(hashes[0], hashes[1])
-
-    def test_pads_names_the_missing_drivers_and_their_libraries(self):
-        text = run(self.program, "pads").stdout
-        for driver, library in LIBRARIES.items():
-            self.assertRegex(text, rf"{driver}.*built without {library}")
-        listed = json.loads(run(self.program, "pads", "--json").stdout)
-        missing = {row["driver"]: row["problem"] for row in listed}
-        for driver, library in LIBRARIES.items():
-            self.assertIn(library, missing[driver])
-
-    def test_asking_for_one_is_one_sentence(self):
-        done = run(self.program, "play", "--no-window", "--driver", "usb", "--seconds", "1")
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("libusb-1.0", done.stderr)
+@pytest.fixture(scope="module")
+def without(program):
+    """The program without drivers."""
+    folder = program.parent / "without_libraries"
+    off = [f"-DGAITPAD_{driver.upper()}=OFF" for driver in LIBRARIES]
+    built = run("bash", ROOT / "tools/build.sh", folder, "gaitpad_devices", "-DCMAKE_BUILD_TYPE=Release",
+                "-DCMAKE_OPTIMIZE_DEPENDENCIES=ON", *off)
+    assert built.returncode == 0, built.stderr
+    link = run("ninja", "-t", "commands", program.name, folder=program.parent).stdout.splitlines()[-1]
+    assert f" {DEVICES} " in link
+    link = link.replace(f" {DEVICES} ", f" {folder / DEVICES} ").replace(" -o gaitpad ", f" -o {folder / 'gaitpad'} ")
+    for library in set(LIBRARIES.values()) - {"libSDL2"}:
+        assert f"/{library}.so" in link
+        link = re.sub(rf" \S*/{library}\.so\S*", "", link)
+    linked = run("bash", "-c", link, folder=program.parent)
+    assert linked.returncode == 0, linked.stderr
+    return folder / "gaitpad"
 
 
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+def test_nothing_else_knows_which_drivers_there_are():
+    sources = [path for pattern in ("*.cpp", "*.h") for room in ("src", "tools", "drivers")
+               for path in (ROOT / room).rglob(pattern) if re.search(r"GAITPAD_HAS_(HIDRAW|USB|EVDEV|SDL)\b", path.read_text())]
+    assert [path.parent.name for path in sources] == ["drivers"]
+
+
+def test_needs_none_of_them(without):
+    needed = run("ldd", without).stdout
+    assert "libc.so" in needed
+    for library in ("hidapi", "usb-1.0", "evdev"):
+        assert library not in needed
+
+
+def test_replays_to_the_same_hash(without, program):
+    command = ["replay", ROOT / "config/traces/round.hid", "--json"]
+    hashes = [json.loads(run(p, *command).stdout)["pose_hash"] for p in (without, program)]
+    assert hashes[0] == hashes[1]
+
+
+def test_pads_names_the_missing_drivers_and_their_libraries(without):
+    text = run(without, "pads").stdout
+    for driver, library in LIBRARIES.items():
+        assert re.search(rf"{driver}.*built without {library}", text)
+    listed = json.loads(run(without, "pads", "--json").stdout)
+    missing = {row["driver"]: row["problem"] for row in listed}
+    for driver, library in LIBRARIES.items():
+        assert library in missing[driver]
+
+
+def test_asking_for_one_is_one_sentence(without):
+    done = run(without, "play", "--no-window", "--driver", "usb", "--seconds", "1")
+    assert done.returncode == 1
+    assert "libusb-1.0" in done.stderr

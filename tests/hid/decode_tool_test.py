@@ -1,19 +1,14 @@
 """gaitpad decode: its JSON against a second report-descriptor parser, written from HID 1.11 and hid-core.c."""
-import glob
 import json
-import os
-import subprocess
-import sys
-import tempfile
 
-GAITPAD = sys.argv[1]
-HERE = os.path.dirname(os.path.abspath(__file__))
-PADS = sorted(glob.glob(os.path.join(HERE, "../data/pads/*.hid")))
-SHARED = sorted(glob.glob(os.path.join(HERE, "../../../shared/data/hid/*.hid")))
+import pytest
 
+from support import traces
+from support.program import DATA, ROOT
 
-def run(*arguments):
-    return subprocess.run([GAITPAD, "decode", *arguments], capture_output=True, text=True)
+PADS = sorted((ROOT / "tests/data/pads").glob("*.hid"))
+SHARED = sorted((DATA / "hid").glob("*.hid"))
+ARRAYS = ("legion_go_shortcuts", "rog_ally", "elite2")  # of these only the fields are compared
 
 
 def signed(value, size):
@@ -89,18 +84,6 @@ def fields_of(data):
     return parser.fields
 
 
-def recording(path):
-    descriptor, reports = None, []
-    with open(path, errors="replace") as file:
-        for line in file:
-            words = line.split()
-            if line.startswith("R:"):
-                descriptor = bytes(int(w, 16) for w in words[2:])
-            if line.startswith("E:"):
-                reports.append((float(words[1]), bytes(int(w, 16) for w in words[3:])))
-    return descriptor, reports
-
-
 def values_of(fields, report):
     numbered = any(f["report_id"] for f in fields)
     report_id, data = (report[0], report[1:]) if numbered else (0, report)
@@ -115,42 +98,35 @@ def values_of(fields, report):
     return report_id, values
 
 
-def check_file(path, has_arrays):
-    descriptor, reports = recording(path)
-    done = run(path, "--json")
-    assert done.returncode == 0, done.stderr
-    lines = [json.loads(line) for line in done.stdout.splitlines()]
-    assert list(lines[0]) == ["device", "pad", "fields"], path
+@pytest.mark.parametrize("path", PADS + (SHARED or [None]), ids=lambda path: path.stem if path else "recordings")
+def test_fields_and_values_are_those_of_a_second_parser(run, path):
+    if path is None:
+        pytest.skip(f"there are no recordings at {DATA / 'hid'}")
+    descriptor = bytes.fromhex("".join(traces.lines(path, "R")[-1][1].split()[1:]))
+    reports = traces.reports(path)
+    told, *rows = [json.loads(line) for line in run("decode", path, "--json").stdout.splitlines()]
+    assert list(told) == ["device", "pad", "fields"]
     fields = fields_of(descriptor)
-    assert lines[0]["fields"] == fields, path
-    assert len(lines) == 1 + len(reports), path
-    if has_arrays:
+    assert told["fields"] == fields
+    assert len(rows) == len(reports)
+    if path in SHARED and any(name in path.name for name in ARRAYS):
         return
-    for line, (time_s, report) in zip(lines[1:], reports):
+    for row, (time_s, report) in zip(rows, reports):
         report_id, values = values_of(fields, report)
-        assert line["report_id"] == report_id and line["values"] == values, (path, time_s)
-        assert line["device"] == 0 and abs(line["time_s"] - time_s) < 1e-9
+        assert row["report_id"] == report_id and row["values"] == values, time_s
+        assert row["device"] == 0 and abs(row["time_s"] - time_s) < 1e-9
 
 
-def check_failures(folder):
-    path = os.path.join(folder, "damaged.hid")
-    with open(path, "w") as file:
-        file.write("R: 2 05 01\nE: 000000.000000 2 00\nE: 000000.000001 1 00\n")
-    damaged = run(path, "--json")
-    assert damaged.returncode == 1 and damaged.stdout == "" and ":2: " in damaged.stderr
-    lenient = run(path, "--json", "--lenient")
-    assert lenient.returncode == 0 and len(lenient.stdout.splitlines()) == 2, lenient
-    assert run(os.path.join(folder, "none.hid")).returncode == 1
-    assert run("/dev/hidraw99").returncode == 1
-    assert "no driver sees" in run("/dev/hidraw99").stderr
-    assert run().returncode == 2
-    assert run(path, "--nonsense").returncode == 2
+def test_a_damaged_line_is_named_and_can_be_skipped(run, tmp_path):
+    path = tmp_path / "damaged.hid"
+    path.write_text("R: 2 05 01\nE: 000000.000000 2 00\nE: 000000.000001 1 00\n")
+    damaged = run("decode", path, "--json", status=1)
+    assert damaged.stdout == "" and ":2: " in damaged.stderr
+    assert len(run("decode", path, "--json", "--lenient").stdout.splitlines()) == 2
+    run("decode", path, "--nonsense", status=2)
 
 
-for pad in PADS:
-    check_file(pad, False)
-for pad in SHARED:
-    check_file(pad, any(name in pad for name in ("legion_go_shortcuts", "rog_ally", "elite2")))
-with tempfile.TemporaryDirectory() as temporary:
-    check_failures(temporary)
-print(len(PADS), "pads,", len(SHARED), "shared recordings")
+def test_what_is_not_there_cannot_be_decoded(run, tmp_path):
+    run("decode", tmp_path / "none.hid", status=1)
+    assert "no driver sees" in run("decode", "/dev/hidraw99", status=1).stderr
+    run("decode", status=2)

@@ -1,30 +1,32 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Runs `gaitpad replay` over motions x styles x leg ratios x sticks and judges every exported walk.
 
-  acceptance.py PATH/TO/gaitpad [--quick] [--data DIR] [--out DIR] [--json]
+  acceptance.py PATH/TO/gaitpad [--quick] [--data DIR] [--out DIR] [--json | --json-file FILE]
 
 Prints one line a bound with the worst figure of all runs, then what failed. Exit status 1 where
 a bound is broken. Captured motions are skipped, with a remark, when the data folder is absent.
+The tests do the same for each motion: acceptance_test.py.
 """
 import argparse
 import json
 import multiprocessing
 import os
+import pathlib
 import random
 import subprocess
 import sys
 import tempfile
 import time
 
-import bvh_fk
-import make_trace
-import walk_check
-import walk_compare
-from walk_bounds import Check
-from walk_data import Walk, trace_changes
+if __name__ == "__main__":
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import judge
+from support.bvh import read_bvh
+from support.judge import Check
+from support.program import DATA
+from support.traces import EXACT_CALIBRATION, ramp, trace_changes, write_trace
+from support.walk import Walk
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-DATA = os.path.join(HERE, "..", "..", "..", "shared", "data", "mocap")
 MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_006_01_iclone")
 STYLES = ("even", "stiff_hip", "stiff_knee", "limp_left", "limp_left_hip", "limp_left_knee", "tired")
 BUILDS = ("heavy_slack", "muscular")
@@ -58,8 +60,7 @@ def style_changes():
 
 def gentle():
     """A thumb's ramps instead of jumps."""
-    stick = make_trace.ramp(0.5, 1.3, (0, 0), (0, 0.9)) + make_trace.ramp(5, 6, (0, 0.9), (0.4, 0.5)) + \
-        make_trace.ramp(9, 9.6, (0.4, 0.5), (0, 0))
+    stick = ramp(0.5, 1.3, (0, 0), (0, 0.9)) + ramp(5, 6, (0, 0.9), (0.4, 0.5)) + ramp(9, 9.6, (0.4, 0.5), (0, 0))
     return {"stick": stick, "end": 12.0}
 
 
@@ -162,7 +163,7 @@ def run_case(job):
     case, options = job
     folder = folder_of(case, options.out)
     os.makedirs(folder, exist_ok=True)
-    make_trace.write_trace(os.path.join(folder, "trace.hid"), case["stick"], case.get("commands", ()), case["end"],
+    write_trace(os.path.join(folder, "trace.hid"), case["stick"], case.get("commands", ()), case["end"],
                            comment=case["label"])
     done = subprocess.run(command_of(case, folder, options), capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -171,9 +172,9 @@ def run_case(job):
     try:
         source, raw = None, False
         if case["motion"] != "default":
-            source = bvh_fk.read_bvh(os.path.join(options.data, case["motion"] + ".bvh"))
+            source = read_bvh(os.path.join(options.data, case["motion"] + ".bvh"))
             raw = case["label"].endswith(("stick 1.0", "stick 0.8"))
-        return case["label"], walk_check.check_walk(load(case, options.out), source, raw)
+        return case["label"], judge.check_walk(load(case, options.out), source, raw)
     except Exception as error:  # a file that cannot be measured is a failure of that run, not of the judge
         return case["label"], [Check("files can be measured", 1, 0, "==", note=f"{type(error).__name__}: {error}")]
 
@@ -201,15 +202,15 @@ def run_comparison(job):
         if kind == "monotone":
             return label, [monotone_check(options)]
         if kind == "raw":  # the default's own walk on shorter legs
-            source = bvh_fk.read_bvh(os.path.join(folder_of({"label": first}, options.out), "pose.bvh"))
-            return label, walk_compare.raw_checks(by_label(second), source)
+            source = read_bvh(os.path.join(folder_of({"label": first}, options.out), "pose.bvh"))
+            return label, judge.raw_checks(by_label(second), source)
         a, b = by_label(first), by_label(second)
         if kind == "mirror":
-            return label, walk_compare.mirror_checks(a, b)
+            return label, judge.mirror_checks(a, b)
         if kind == "limp":
-            return label, walk_compare.limp_checks(a, b)
-        low, high, extremes = walk_check.weight_bounds(kind.split()[0])
-        return label, walk_compare.weight_checks(a, b, low, high, extremes, (0,) if "left" in kind else (0, 1))
+            return label, judge.limp_checks(a, b)
+        low, high, extremes = judge.weight_bounds(kind.split()[0])
+        return label, judge.weight_checks(a, b, low, high, extremes, (0,) if "left" in kind else (0, 1))
     except Exception as error:  # as in run_case
         return label, [Check("walks can be compared", 1, 0, "==", note=f"{type(error).__name__}: {error}")]
 
@@ -219,7 +220,7 @@ def monotone_check(options):
     labels = ["default style stiff_hip"] if options.quick else \
         ["default hip 0.9", "default hip 0.8", "default hip 0.5", "default style stiff_hip"]
     even = load({"label": "default style even"}, options.out)
-    rms = [walk_compare.weight_figures(even, load({"label": n}, options.out), 0)["rms"] for n in labels]
+    rms = [judge.weight_figures(even, load({"label": n}, options.out), 0)["rms"] for n in labels]
     falls = sum(b <= a for a, b in zip(rms[:-1], rms[1:]))
     return Check("hip RMS not growing with the weight", falls, 0, "==", note=" ".join(f"{v:.2f}" for v in rms))
 
@@ -262,29 +263,35 @@ def failures_text(results, most=4):
     return lines, sum(map(len, broken.values()))
 
 
-def arguments():
+def arguments(words=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("gaitpad")
     parser.add_argument("--quick", action="store_true", help="the default and one captured motion, under 40 s")
-    parser.add_argument("--data", default=DATA, help="folder of the BVH files")
+    parser.add_argument("--data", default=str(DATA / "mocap"), help="folder of the BVH files")
     parser.add_argument("--motions", default=",".join(MOTIONS), help="BVH names without ending; default is always run")
     parser.add_argument("--out", help="keep traces and exported files there")
     parser.add_argument("--only", default="", help="only cases whose label contains this")
-    parser.add_argument("--json", action="store_true")
-    return parser.parse_args()
+    parser.add_argument("--json", action="store_true", help="print every figure as JSON in place of the table")
+    parser.add_argument("--json-file", help="write every figure there too")
+    return parser.parse_args(words)
 
 
-def run_all(options):
-    motions = ["default"]
-    for name in [m for m in options.motions.split(",") if m][:1 if options.quick else None]:
-        if os.path.exists(os.path.join(options.data, name + ".bvh")):
-            motions.append(name)
-        else:
-            print(f"skipped: {name}.bvh is not in {options.data}", file=sys.stderr)
-    make_trace.write_exact_calibration(os.path.join(options.out, "exact.toml"))
+def motions_to_run(options):
+    """The default and the captured motions that are there."""
+    captured = [m for m in options.motions.split(",") if m][:1 if options.quick else None]
+    there = [m for m in captured if os.path.exists(os.path.join(options.data, m + ".bvh"))]
+    for name in (m for m in captured if m not in there):
+        print(f"skipped: {name}.bvh is not in {options.data}", file=sys.stderr)
+    return ["default"] + there
+
+
+def run_motions(motions, options, processes=2):
+    """[(label, Checks)] of all cases and comparisons of these motions."""
+    with open(os.path.join(options.out, "exact.toml"), "w", encoding="utf-8") as file:
+        file.write(EXACT_CALIBRATION)
     cases = [c for m in motions for c in cases_of(m, options.quick) if options.only in c["label"]]
-    cases.sort(key=lambda c: -c["end"])  # long ones first: two processes end together
-    with multiprocessing.Pool(2) as pool:
+    cases.sort(key=lambda c: -c["end"])  # long ones first: the processes end together
+    with multiprocessing.Pool(processes) as pool:
         results = pool.map(run_case, [(c, options) for c in cases], chunksize=1)
         if not options.only:
             results += pool.map(run_comparison, [j for m in motions for j in comparisons(m, options)], chunksize=1)
@@ -297,10 +304,13 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         options.out = os.path.abspath(options.out or scratch)
         os.makedirs(options.out, exist_ok=True)
-        results = run_all(options)
+        results = run_motions(motions_to_run(options), options)
     lines, count = failures_text(results)
+    figures = json.dumps({label: [c.as_dict() for c in checks] for label, checks in results}, indent=1)
+    if options.json_file:
+        pathlib.Path(options.json_file).write_text(figures + "\n")
     if options.json:
-        print(json.dumps({label: [c.as_dict() for c in checks] for label, checks in results}, indent=1))
+        print(figures)
     else:
         print(summary_table(results))
         print("\n".join(lines))

@@ -1,126 +1,130 @@
-#!/usr/bin/python3
-"""One walk, one hash: builds the core with two compilers at three levels and compares every tick.
+"""One walk, one hash: two compilers at three levels walk the same sessions, and every tick is compared.
 
-Runs pose_hash_main twice in each build. Where two builds differ, says at which tick they begin to.
-Usage: determinism_test.py PROGRAM (the builds stand in `determinism` beside it and are kept up to date)
+The program `pose_hash` of the ordinary build is the reference, as users run it; it also says which sources
+a walk needs. The other builds stand in `determinism` beside it, and ninja keeps them up to date. Where two
+builds differ, the test names the first tick that does.
 """
-import hashlib
+import collections
 import itertools
+import json
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
-import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-COMPILERS = ["g++", "clang++"]
+import pytest
+
+ORDINARY = "ordinary"  # the build that is tested everywhere else: g++ -O2
 LEVELS = {"O0": "-O0", "O2": "-O2", "O3native": "-O3 -march=native"}
-ROOMS = ["base", "hid", "stick", "motion", "control", "animation", "session"]
-# What reads and writes files and cannot reach a pose comes from the ordinary build's libraries.
-NO_POSE = re.compile(
-    r"toml_file|trace|_file|_files|^style\.|style_store|body_keys|character|bvh_writer|gltf|frames_csv|replay|setup|walk_export"
-    r"|motion_source|pad_|live|recording|realtime|summary|guided|tick_reports|playback|user_files")
-MAIN = ROOT / "tests/session/pose_hash_main.cpp"
-FLAGS = f"-std=c++20 -ffp-contract=off -fno-tree-slp-vectorize -w -I {ROOT}/src -I {ROOT}"
+OTHERS = {f"{compiler}-{name}": (compiler, level) for compiler in ("g++", "clang++") for name, level in LEVELS.items()
+          if (compiler, name) != ("g++", "O2")}
+PRECOMPILED = {"g++": "gch", "clang++": "pch"}  # the ending that each compiler looks for behind the header's name
 
-RULES = f"""
+RULES = """
+rule header
+  command = $cxx $flags $level -x c++-header $in -MD -MF $out.d -o $out
+  depfile = $out.d
 rule compile
-  command = $cxx {FLAGS} $level -MD -MF $out.d -c $in -o $out
+  command = $cxx $flags $level -include $variant/system.h -MD -MF $out.d -c $in -o $out
   depfile = $out.d
 rule link
-  command = $cxx $in -o $out -Wl,--start-group $libraries -Wl,--end-group -lfmt -ltomlplusplus -lpng
+  command = $cxx $in $libraries -o $out
 """
 
 
-def clashing(unit, sources):
-    """The sources that cannot stand in one translation unit with those before them."""
-    unit.write_text("".join(f'#include "{source}"\n' for source in sources))
-    command = ["g++", *FLAGS.split(), "-fsyntax-only", unit]
-    done = subprocess.run(command, capture_output=True, text=True)
-    named = {line.split(":")[0] for line in done.stderr.splitlines() if ": error:" in line}
-    return [source for source in sources[1:] if str(source) in named], done.returncode == 0
+def output_of(*command, folder):
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
 
 
-def room_units(folder, room):
-    """A room's sources in as few translation units as their unnamed namespaces allow: a third of the
-    time of a unit a file. Tried once for each state of the sources."""
-    sources = [s for s in sorted((ROOT / "src" / room).glob("*.cpp")) if not NO_POSE.search(s.name)]
-    digest = hashlib.sha256(b"".join(s.read_bytes() for s in sources)).hexdigest()
-    stamp = folder / f"{room}.stamp"
-    units = sorted(folder.glob(f"{room}_*.cpp"))
-    if stamp.exists() and stamp.read_text() == digest:
-        return units
-    for unit in units:
-        unit.unlink()
-    units, rest = [], sources
-    while rest:
-        unit = folder / f"{room}_{len(units)}.cpp"
-        together, later = rest, []
-        while True:
-            bad, fits = clashing(unit, together)
-            if fits or not bad:
-                break
-            later += bad
-            together = [s for s in together if s not in bad]
-        if not fits:  # an error of its own: the build will say which
-            later += together[1:]
-            clashing(unit, together[:1])
-        units.append(unit)
-        rest = sorted(later)
-    stamp.write_text(digest)
-    return units
+def parts_of_ordinary(build):
+    """(rows, flags, libraries) of pose_hash: the objects that its linker takes with their sources, how its main
+    file is compiled, and the shared libraries."""
+    link = shlex.split(output_of("ninja", "-t", "commands", "pose_hash", folder=build).splitlines()[-1])
+    link = [word for word in link if word not in (":", "&&")]
+    link[link.index("-o") + 1] = "/dev/null"
+    taken = output_of(*link, "-Wl,--trace,--trace", folder=build).splitlines()  # twice: members of archives too
+    rows = {row["output"]: row for row in json.loads(output_of("ninja", "-t", "compdb", folder=build))
+            if row["output"].endswith(".o")}
+    found, main = [], None
+    for name in taken:
+        member = re.fullmatch(r"\(.*?lib(\w+)\.a\)(.*\.o)", name)
+        if name in rows:
+            main = rows[name]
+            found.append(main)
+        elif member:
+            folder, file = f"/{member[1]}.dir/", f"/{member[2]}"
+            found += [row for output, row in rows.items() if folder in f"/{output}" and output.endswith(file)]
+    command = re.sub(r"^.*?\+\+ | -(M[TF]|o|c) \S+| -MD| -O\S*| -W\S*", "", main["command"])
+    libraries = [word for word in link if re.search(r"\.so(\.[\d.]+)?$", word)]
+    return found, command + " -w", " ".join(libraries)
 
 
-def build(folder):
-    libraries = " ".join(str(library) for library in sorted(folder.parent.glob("libgaitpad_*.a")))
-    units = [unit for room in ROOMS for unit in room_units(folder, room)] + [MAIN]
-    lines, binaries = [RULES], {}
-    for compiler, (name, level) in itertools.product(COMPILERS, LEVELS.items()):
-        variant = f"{compiler}-{name}"
-        objects = [f"{variant}/{unit.stem}.o" for unit in units]
-        for unit, target in zip(units, objects):
-            lines.append(f"build {target}: compile {unit}\n  cxx = {compiler}\n  level = {level}")
-        lines.append(f"build {variant}/walk: link {' '.join(objects)} | {libraries}\n"
-                     f"  cxx = {compiler}\n  libraries = {libraries}")
-        binaries[variant] = folder / variant / "walk"
+def system_headers(build, rows):
+    """Include lines of the system's headers, of all our headers and of sources where several include one:
+    precompiled, they are read once a variant."""
+    deps = output_of("ninja", "-t", "deps", *(row["output"] for row in rows), folder=build).splitlines()
+    own = {line.strip() for line in deps if line.startswith("    ") and line.endswith(".h") and "/usr/" not in line}
+    included = re.compile(r"^#include <.*>$", re.MULTILINE)
+    counts = collections.Counter(line for row in rows for line in included.findall(pathlib.Path(row["file"]).read_text()))
+    return sorted({line for header in own for line in included.findall((build / header).read_text())} |
+                  {line for line, count in counts.items() if count > 2})
+
+
+def write_build_file(folder, build):
+    rows, flags, libraries = parts_of_ordinary(build)
+    sources = [row["file"] for row in rows]
+    headers = system_headers(build, rows)
+    lines = [f"flags = {flags}", f"libraries = {libraries}", RULES]
+    for variant, (compiler, level) in OTHERS.items():
+        header = folder / variant / "system.h"
+        header.parent.mkdir(parents=True, exist_ok=True)
+        text = "\n".join(headers) + "\n"
+        if not header.exists() or header.read_text() != text:
+            header.write_text(text)
+        with_compiler = f"  cxx = {compiler}\n  level = {level}\n  variant = {variant}"
+        precompiled = f"{variant}/system.h.{PRECOMPILED[compiler]}"
+        lines.append(f"build {precompiled}: header {variant}/system.h\n{with_compiler}")
+        objects = [f"{variant}/{number}_{pathlib.Path(source).stem}.o" for number, source in enumerate(sources)]
+        lines += [f"build {target}: compile {source} | {precompiled}\n{with_compiler}"
+                  for source, target in zip(sources, objects)]
+        lines.append(f"build {variant}/walk: link {' '.join(objects)}\n{with_compiler}")
     (folder / "build.ninja").write_text("\n".join(lines) + "\n")
-    done = subprocess.run(["ninja", "-j", "2", "-C", folder], capture_output=True, text=True)
-    return binaries if done.returncode == 0 else done.stdout + done.stderr
+
+
+@pytest.fixture(scope="module")
+def folder(program):
+    for tool in ("g++", "clang++", "ninja"):
+        if not shutil.which(tool):
+            pytest.skip(f"{tool} is not installed")
+    folder = program.parent / "determinism"
+    folder.mkdir(exist_ok=True)
+    write_build_file(folder, program.parent)
+    output_of("ninja", folder=folder)
+    return folder
+
+
+def walk(binary, folder):
+    """The pose hash of every tick, a line each."""
+    return output_of(binary, folder, folder=folder).splitlines()
+
+
+@pytest.fixture(scope="module")
+def ordinary(program, folder):
+    return walk(program.parent / "tests/pose_hash", folder)
 
 
 def first_difference(a, b):
-    for line_a, line_b in itertools.zip_longest(a, b, fillvalue="nothing"):
-        if line_a != line_b:
-            return f"{line_a} against {line_b}"
-    return None
+    return next((f"{x} against {y}" for x, y in itertools.zip_longest(a, b, fillvalue="nothing") if x != y), None)
 
 
-def main():
-    for tool in COMPILERS + ["ninja"]:
-        if not shutil.which(tool):
-            print(f"skipped: {tool} is not installed")
-            return 77
-    folder = pathlib.Path(sys.argv[1]).resolve().parent / "determinism"
-    folder.mkdir(exist_ok=True)
-    binaries = build(folder)
-    if isinstance(binaries, str):
-        print(binaries)
-        return 1
-
-    reference, failed = None, False
-    for variant, run in itertools.product(binaries, (1, 2)):
-        done = subprocess.run([binaries[variant], folder], capture_output=True, text=True)
-        if done.returncode != 0:
-            print(f"{variant}: {done.stderr.strip() or done.returncode}")
-            return 1
-        ticks = done.stdout.splitlines()
-        reference = reference or ticks
-        difference = first_difference(reference, ticks)
-        print(f"{variant} run {run}: {ticks[-1]}, {len(ticks)} ticks" +
-              (f", DIFFERS from {next(iter(binaries))}: {difference}" if difference else ""))
-        failed = failed or difference is not None
-    return 1 if failed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+@pytest.mark.parametrize("variant", [ORDINARY, *OTHERS])
+def test_every_tick_has_the_same_hash(variant, program, folder, ordinary):
+    binary = program.parent / "tests/pose_hash" if variant == ORDINARY else folder / variant / "walk"
+    runs = 1 if variant == ORDINARY else 2  # the ordinary build walked once already
+    assert len(ordinary) > 10000
+    for _ in range(runs):
+        assert first_difference(ordinary, walk(binary, folder)) is None
+    print(f"{variant}: {ordinary[-1]}, {len(ordinary)} ticks")

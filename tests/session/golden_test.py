@@ -1,20 +1,14 @@
-#!/usr/bin/python3
 """Six sessions and the pose_hash that each of them has had since version 0.1.0.
 
-A change of the code that moves a single bit of a single pose fails here. Whoever changes the walk on
-purpose puts the new hashes in and says why in CHANGELOG.md. The sessions need no file from outside
-the repository; they run on the program as users build it (optimised).
-Usage: golden_test.py PROGRAM
+A change that moves a single bit of a single pose fails here. Whoever changes the walk on purpose puts the new
+hashes in and says why in CHANGELOG.md. The sessions need no file from outside the repository.
 """
 import json
-import pathlib
-import sys
-import unittest
 
-from make_trace import ramp, raw_stick, write_trace
+import pytest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tools"))
-from program import FolderCase, ROUND, run  # noqa: E402
+from support.program import ROUND
+from support.traces import ramp, raw_stick, write_trace
 
 CAST = ["--character", "adult", "--character", "child", "--character", "tall", "--character", "adult",
         "--style", "even", "--style", "stiff_hip", "--style", "limp_left", "--style", "tired"]
@@ -29,57 +23,52 @@ command = "gait hip_sway 1.5"
 at_s = 8
 command = "style tiring"
 """
-GOLDEN = {
-    "flat": "ee86aa31d499535e",
-    "paper": "e1bd6ecd7f6a8f8e",
-    "course": "a0146462a8bb229c",
-    "turning": "737383ec0f5b6481",
-    "backward": "a586d103370769a2",
-    "script": "fc1fb641611d43a0",
-}
 
 
-class GoldenHashes(FolderCase):
-    def pose_hash(self, trace, *options):
+@pytest.fixture
+def pose_hash(run):
+    def replay(trace, *options):
         done = run("replay", trace, "--json", *options)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        assert done.returncode == 0, done.stderr
         summary = json.loads(done.stdout)
         return (summary[0] if isinstance(summary, list) else summary)["pose_hash"]
-
-    def expect(self, name, trace, *options):
-        self.assertEqual(self.pose_hash(trace, *options), GOLDEN[name], name)
-
-    def made_trace(self, *stick, end):
-        path = self.folder / "made.hid"
-        write_trace(path, stick, end_s=end)
-        return path
-
-    def test_flat_robust_four_styles(self):
-        self.expect("flat", ROUND, *CAST)
-
-    def test_flat_paper_mode(self):
-        self.expect("paper", ROUND, "--ik", "paper", *CAST)
-
-    def test_terrain_course(self):
-        self.expect("course", ROUND, "--terrain", "course", *CAST)
-
-    def test_turning_in_both_directions(self):
-        stick = [*ramp(0, 1, (0, 0), raw_stick(0.6, 0.6)), (6, *raw_stick(-0.9, 0.3)),
-                 (9, *raw_stick(1, 0)), (12, 0, 0)]
-        self.expect("turning", self.made_trace(*stick, end=14))
-
-    def test_backward_on_stairs(self):
-        stick = [(0, *raw_stick(0, 0.8)), (7, 0, 0), (9, *raw_stick(0.1, -0.7)), (15, 0, 0)]
-        self.expect("backward", self.made_trace(*stick, end=17), "--terrain", "stairs")
-
-    def test_script_on_a_motion_file(self):
-        """The built-in walk, exported and read again: a captured motion as far as the reader knows."""
-        out = self.folder / "out"
-        self.assertEqual(run("replay", ROUND, "--out", out).returncode, 0)
-        script = self.folder / "script.toml"
-        script.write_text(SCRIPT)
-        self.expect("script", ROUND, "--motion", out / "pose.bvh", "--script", script)
+    return replay
 
 
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+@pytest.fixture
+def made_trace(tmp_path):
+    def write(*stick, end):
+        write_trace(tmp_path / "made.hid", stick, end_s=end)
+        return tmp_path / "made.hid"
+    return write
+
+
+def test_flat_in_robust_mode_with_four_styles(pose_hash):
+    assert pose_hash(ROUND, *CAST) == "ee86aa31d499535e"
+
+
+def test_flat_in_paper_mode(pose_hash):
+    assert pose_hash(ROUND, "--ik", "paper", *CAST) == "e1bd6ecd7f6a8f8e"
+
+
+def test_terrain(pose_hash):
+    assert pose_hash(ROUND, "--terrain", "course", *CAST) == "a0146462a8bb229c"
+
+
+def test_turning_to_both_sides(pose_hash, made_trace):
+    trace = made_trace(*ramp(0, 1, (0, 0), raw_stick(0.6, 0.6)), (6, *raw_stick(-0.9, 0.3)), (9, *raw_stick(1, 0)),
+                       (12, 0, 0), end=14)
+    assert pose_hash(trace) == "737383ec0f5b6481"
+
+
+def test_backward_on_stairs(pose_hash, made_trace):
+    trace = made_trace((0, *raw_stick(0, 0.8)), (7, 0, 0), (9, *raw_stick(0.1, -0.7)), (15, 0, 0), end=17)
+    assert pose_hash(trace, "--terrain", "stairs") == "a586d103370769a2"
+
+
+def test_script_on_a_motion_file(pose_hash, run, tmp_path):
+    """The built-in walk, exported and read again: for the reader a captured motion like any other."""
+    assert run("replay", ROUND, "--out", tmp_path).returncode == 0
+    script = tmp_path / "script.toml"
+    script.write_text(SCRIPT)
+    assert pose_hash(ROUND, "--motion", tmp_path / "pose.bvh", "--script", script) == "fc1fb641611d43a0"

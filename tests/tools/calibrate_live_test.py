@@ -1,260 +1,213 @@
-#!/usr/bin/python3
 """gaitpad calibrate at a terminal, a recording being the pad that a hand moves through the steps."""
 import math
 import os
-import pathlib
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 import tomllib
-import unittest
 
-from program import PROGRAM, ROOT
-sys.path[:0] = [str(ROOT / "tests/session"), str(ROOT / "tools/rig")]
-from make_trace import DESCRIPTOR, FULL  # noqa: E402
-from terminal import Terminal  # noqa: E402
+import pytest
+
+from support import traces
+from support.hands import Hand
+from support.terminal import Terminal
 
 REACH = 0.9
 CENTRE = {"left": (0.05, -0.03), "right": (-0.04, 0.06)}
-PERIOD_S = 0.01
 
 
-class Hand:
-    """Reports of the 16-bit test pad, both sticks moved at once: positions from rest, +y forward."""
+class MadeHand(Hand):
+    """On the 16-bit test pad."""
 
-    def __init__(self):
-        self.time_s, self.lines, self.place, self.buttons = 0.0, [], (0.0, 0.0), 0
-
-    def report(self):
-        self.time_s += PERIOD_S
+    def data(self):
         noise = 0.002 * math.sin(len(self.lines) * 2.4)
-        data = b""
-        for centre in CENTRE.values():
-            for raw in (centre[0] + self.place[0] + noise, -(centre[1] + self.place[1] + noise)):
-                data += round(max(-1, min(1, raw)) * FULL).to_bytes(2, "little", signed=True)
-        data += (0x08 | self.buttons << 4).to_bytes(2, "little")
-        micros = round(self.time_s * 1e6)
-        self.lines.append(f"E: {micros // 1000000:06d}.{micros % 1000000:06d} {len(data)} " +
-                          " ".join(f"{byte:02x}" for byte in data))
-
-    def hold(self, seconds):
-        for _ in range(round(seconds / PERIOD_S)):
-            self.report()
-
-    def push(self, x, y, held_s, rest_s):
-        self.place = (x * REACH, y * REACH)
-        self.hold(held_s)
-        self.place = (0.0, 0.0)
-        self.hold(rest_s)
-
-    def releases(self, count):
-        for i in range(count):
-            angle = 2 * math.pi * i / count + 0.2
-            self.push(math.cos(angle), math.sin(angle), 0.1, 0.68)
-
-    def turns(self, count, turn_s=0.9):
-        for i in range(round(count * turn_s / PERIOD_S)):
-            angle = 2 * math.pi * i * PERIOD_S / turn_s
-            self.place = (REACH * math.cos(angle), REACH * math.sin(angle))
-            self.report()
-        self.place = (0.0, 0.0)
-        self.hold(0.2)
-
-    def pushes(self):
-        for x, y in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-            self.push(x, y, 0.4, 0.3)
-
-    def triggers(self):
-        self.buttons = 1 << 6 | 1 << 7
-        self.hold(0.4)
-        self.buttons = 0
-        self.hold(0.2)
+        axes = [raw for x, y in CENTRE.values()
+                for raw in (x + REACH * self.place[0] + noise, -(y + REACH * self.place[1] + noise))]
+        data = b"".join(round(max(-1, min(1, raw)) * traces.FULL).to_bytes(2, "little", signed=True) for raw in axes)
+        triggers = 1 << 6 | 1 << 7 if self.is_pulled else 0
+        return data + (0x08 | triggers << 4).to_bytes(2, "little")
 
     def write(self, path):
-        header = [f"R: {len(DESCRIPTOR)} " + " ".join(f"{byte:02x}" for byte in DESCRIPTOR),
-                  "N: gaitpad test pad", "P: synthetic", "I: 3 1209 0001"]
-        path.write_text("\n".join(header + self.lines) + "\n")
+        path.write_text(traces.device(traces.DESCRIPTOR, "gaitpad test pad", physical="synthetic") + "".join(self.lines))
+        return path
 
 
-class Calibrate(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.traces = tempfile.TemporaryDirectory()
-        folder = pathlib.Path(cls.traces.name)
-        cls.round, cls.rest = folder / "round.hid", folder / "rest.hid"
-        hand = Hand()
-        hand.hold(0.5)
-        hand.releases(7)
-        hand.hold(2.2)
-        hand.turns(2.5)
-        hand.pushes()
-        hand.triggers()
-        hand.hold(3.0)
-        hand.write(cls.round)
-        hand = Hand()
-        hand.hold(30.0)
-        hand.write(cls.rest)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.traces.cleanup()
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.config = pathlib.Path(folder.name)
-        self.folder = self.config / "gaitpad/calibration"
-
-    def at_terminal(self, trace, **size):
-        return Terminal(PROGRAM, "calibrate", trace, env={"XDG_CONFIG_HOME": str(self.config)}, **size)
-
-    def files(self):
-        return {path.name: path.read_text() for path in self.folder.glob("*")} if self.folder.exists() else {}
-
-    def written(self):
-        """A calibration is there already: the file that the tool itself would write."""
-        with self.at_terminal(self.rest) as terminal:
-            terminal.wait_for("Step 1 of 7")
-            time.sleep(0.7)
-            terminal.press("sssssss")
-            terminal.wait_for("Enter writes")
-            time.sleep(0.2)
-            terminal.press("\n")
-            terminal.wait_end()
-        return self.files()
-
-    def test_the_steps_lead_to_a_file(self):
-        with self.at_terminal(self.round) as terminal:
-            place = 0
-            for number, step in enumerate(("rest", "turning", "push forward", "push right", "push back", "push left",
-                                           "triggers"), 1):
-                place = terminal.wait_for(f"Step {number} of 7: {step} ", since=place).end()
-            terminal.wait_for("Enter writes", since=place)
-            self.assertEqual(self.files(), {})
-            terminal.wait_for("[0-9] of 6 releases")
-            terminal.wait_for("4[0-9] of 48 directions")
-            terminal.wait_for("now let go")
-            time.sleep(0.2)
-            terminal.press("\n")
-            self.assertEqual(terminal.wait_end(), 0, terminal.text)
-            self.assertTrue(terminal.is_as_before())
-        names = [name for name in self.files() if name.endswith(".toml")]
-        self.assertEqual(len(names), 1, self.files())
-        told = tomllib.loads(self.files()[names[0]])
-        self.assertEqual(told["devices"], ["1209:0001"])
-        for stick, centre in CENTRE.items():
-            for axis, middle in zip("xy", centre):
-                self.assertAlmostEqual(told[stick][axis]["centre"], middle, delta=0.002)
-                self.assertAlmostEqual(told[stick][axis]["min"], max(-1, middle - REACH), delta=0.01)
-                self.assertAlmostEqual(told[stick][axis]["max"], min(1, middle + REACH), delta=0.01)
-
-    def test_a_line_never_is_wider_than_the_screen_and_the_screen_never_fuller(self):
-        for rows, columns in ((24, 80), (24, 40), (6, 60)):
-            with self.at_terminal(self.rest, rows=rows, columns=columns) as terminal:
-                terminal.wait_for("releases")
-                terminal.press("?s")
-                time.sleep(0.4)
-                terminal.press("q")
-                terminal.wait_end()
-                for screen in terminal.text.split("\033[J"):
-                    lines = screen.replace("\033[K", "").replace("\r", "").split("\n")
-                    if "releases" in screen or "directions" in screen:
-                        self.assertLessEqual(max(len(line.split("A")[-1]) for line in lines), columns, screen)
-                        self.assertLessEqual(len(lines), rows, screen)
-
-    def test_ctrl_c_leaves_the_old_file_and_the_terminal_as_they_were(self):
-        before = self.written()
-        self.assertEqual(len(before), 1)
-        for press in (lambda t: t.press("\x03"), lambda t: t.send_signal(signal.SIGTERM), lambda t: t.press("q"),
-                      lambda t: t.press("\x04")):
-            with self.at_terminal(self.rest) as terminal:
-                terminal.wait_for("Step 1 of 7")
-                self.assertFalse(terminal.is_cooked())
-                press(terminal)
-                self.assertEqual(terminal.wait_end(), 1)
-                self.assertTrue(terminal.is_as_before())
-                self.assertIn("nothing written", terminal.text)
-            self.assertEqual(self.files(), before)
-
-    def test_ctrl_c_and_q_at_the_question_leave_the_old_file(self):
-        before = self.written()
-        for key in ("\x03", "q"):
-            with self.at_terminal(self.rest) as terminal:
-                terminal.wait_for("Step 1 of 7")
-                time.sleep(0.7)
-                terminal.press("sssssss")
-                terminal.wait_for("Enter writes")
-                time.sleep(0.2)
-                terminal.press(key)
-                self.assertEqual(terminal.wait_end(), 1)
-                self.assertTrue(terminal.is_as_before())
-            self.assertEqual(self.files(), before)
-
-    def test_keys_skip_repeat_and_go_back(self):
-        with self.at_terminal(self.round) as terminal:
-            terminal.wait_for("2 of 6 releases")
-            terminal.press("r")
-            at = len(terminal.text)
-            at = terminal.wait_for(" 0 of 6 releases", since=at).end()
-            terminal.press("\n")
-            at = terminal.wait_for("Step 2 of 7", since=at).end()
-            terminal.press("s")
-            at = terminal.wait_for("Step 3 of 7", since=at).end()
-            terminal.press("\x1b[B")  # an arrow is no b
-            time.sleep(0.2)
-            self.assertNotIn("Step 2", terminal.text[at:])
-            terminal.press("b")
-            at = terminal.wait_for("Step 2 of 7", since=at).end()
-            terminal.press("?")
-            terminal.wait_for("nothing is written", since=at)
-            terminal.press("q")
-            terminal.wait_end()
-
-    def test_stopped_it_gives_the_terminal_back_and_takes_it_again(self):
-        with self.at_terminal(self.rest) as terminal:
-            terminal.wait_for("Step 1 of 7")
-            terminal.press("\x1a")
-            terminal.wait_stopped()
-            self.assertTrue(terminal.is_as_before())
-            terminal.go_on()
-            at = len(terminal.text)
-            terminal.wait_for("Step 1 of 7", since=at)
-            self.assertFalse(terminal.is_cooked())
-            terminal.press("q")
-            terminal.wait_end()
-            self.assertTrue(terminal.is_as_before())
-
-    def test_without_a_terminal_lines_do(self):
-        with subprocess.Popen([PROGRAM, "calibrate", str(self.rest)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True,
-                              env={**os.environ, "XDG_CONFIG_HOME": str(self.config)}) as process:
-            time.sleep(1.0)
-            process.stdin.write("s\nskip\nb\nq\n")
-            process.stdin.flush()
-            _, errors = process.communicate(timeout=20)
-        self.assertNotIn("\033", errors)
-        self.assertIn("Step 1 of 7: rest", errors)
-        self.assertIn("left stick: 0 of 6 releases", errors)
-        self.assertIn("nothing written", errors)
-        self.assertEqual(self.files(), {})
-
-    def test_the_end_of_input_gives_up(self):
-        done = subprocess.run([PROGRAM, "calibrate", str(self.rest)], stdin=subprocess.DEVNULL, capture_output=True,
-                              text=True, check=False, timeout=20, env={**os.environ, "XDG_CONFIG_HOME": str(self.config)})
-        self.assertIn("nothing written", done.stderr)
-        self.assertEqual(self.files(), {})
-
-    def test_a_pad_without_a_stick_is_told(self):
-        trace = self.config / "buttons.hid"
-        trace.write_text("R: 23 05 01 09 05 a1 01 05 09 19 01 29 08 15 00 25 01 75 01 95 08 81 02 c0\n"
-                         "N: Buttons\nI: 3 1209 0002\nE: 000000.000000 1 00\nE: 000005.000000 1 00\n")
-        with self.at_terminal(trace) as terminal:
-            terminal.wait_for("stick", 10)
-            self.assertEqual(terminal.wait_end(), 1, terminal.text)
-            self.assertTrue(terminal.is_as_before())
+@pytest.fixture(scope="module")
+def round_trace(tmp_path_factory):
+    hand = MadeHand()
+    hand.hold(0.5)
+    hand.releases(0, 7)
+    hand.hold(2.2)
+    hand.turns(2.5)
+    hand.pushes()
+    hand.triggers()
+    hand.hold(3.0)
+    return hand.write(tmp_path_factory.mktemp("round") / "round.hid")
 
 
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+@pytest.fixture(scope="module")
+def rest_trace(tmp_path_factory):
+    hand = MadeHand()
+    hand.hold(30.0)
+    return hand.write(tmp_path_factory.mktemp("rest") / "rest.hid")
+
+
+@pytest.fixture
+def environment(tmp_path):
+    return {**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}
+
+
+@pytest.fixture
+def at_terminal(program, environment):
+    return lambda trace, **size: Terminal(program, "calibrate", trace, env=environment, **size)
+
+
+@pytest.fixture
+def files(tmp_path):
+    """What the calibrations of this user are now: name -> text."""
+    return lambda: {path.name: path.read_text() for path in (tmp_path / "gaitpad/calibration").glob("*")}
+
+
+def skip_to_the_question(terminal):
+    terminal.wait_for("Step 1 of 7")
+    time.sleep(0.7)
+    terminal.press("sssssss")
+    terminal.wait_for("Enter writes")
+    time.sleep(0.2)
+
+
+@pytest.fixture
+def written(at_terminal, rest_trace, files):
+    """A calibration is there already: the file that the tool itself would write."""
+    with at_terminal(rest_trace) as terminal:
+        skip_to_the_question(terminal)
+        terminal.press("\n")
+        terminal.wait_end()
+    assert len(files()) == 1
+    return files()
+
+
+def test_the_steps_lead_to_a_file(at_terminal, round_trace, files):
+    with at_terminal(round_trace) as terminal:
+        place = 0
+        for number, step in enumerate(("rest", "turning", "push forward", "push right", "push back", "push left",
+                                       "triggers"), 1):
+            place = terminal.wait_for(f"Step {number} of 7: {step} ", since=place).end()
+        terminal.wait_for("Enter writes", since=place)
+        assert files() == {}
+        terminal.wait_for("[0-9] of 6 releases")
+        terminal.wait_for("4[0-9] of 48 directions")
+        terminal.wait_for("now let go")
+        time.sleep(0.2)
+        terminal.press("\n")
+        assert terminal.wait_end() == 0, terminal.text
+        assert terminal.is_as_before()
+    names = [name for name in files() if name.endswith(".toml")]
+    assert len(names) == 1, files()
+    told = tomllib.loads(files()[names[0]])
+    assert told["devices"] == ["1209:0001"]
+    for stick, centre in CENTRE.items():
+        for axis, middle in zip("xy", centre):
+            assert told[stick][axis]["centre"] == pytest.approx(middle, abs=0.002)
+            assert told[stick][axis]["min"] == pytest.approx(max(-1, middle - REACH), abs=0.01)
+            assert told[stick][axis]["max"] == pytest.approx(min(1, middle + REACH), abs=0.01)
+
+
+@pytest.mark.parametrize("rows, columns", [(24, 80), (24, 40), (6, 60)])
+def test_a_line_never_is_wider_than_the_screen_and_the_screen_never_fuller(at_terminal, rest_trace, rows, columns):
+    with at_terminal(rest_trace, rows=rows, columns=columns) as terminal:
+        terminal.wait_for("releases")
+        terminal.press("?s")
+        time.sleep(0.4)
+        terminal.press("q")
+        terminal.wait_end()
+        for screen in terminal.text.split("\033[J"):
+            lines = screen.replace("\033[K", "").replace("\r", "").split("\n")
+            if "releases" in screen or "directions" in screen:
+                assert max(len(line.split("A")[-1]) for line in lines) <= columns, screen
+                assert len(lines) <= rows, screen
+
+
+@pytest.mark.parametrize("give_up", [
+    pytest.param(lambda t: t.press("\x03"), id="ctrl-c"), pytest.param(lambda t: t.send_signal(signal.SIGTERM), id="sigterm"),
+    pytest.param(lambda t: t.press("q"), id="q"), pytest.param(lambda t: t.press("\x04"), id="ctrl-d")])
+def test_giving_up_leaves_the_old_file_and_the_terminal_as_they_were(at_terminal, rest_trace, files, written, give_up):
+    with at_terminal(rest_trace) as terminal:
+        terminal.wait_for("Step 1 of 7")
+        assert not terminal.is_cooked()
+        give_up(terminal)
+        assert terminal.wait_end() == 1
+        assert terminal.is_as_before()
+        assert "nothing written" in terminal.text
+    assert files() == written
+
+
+@pytest.mark.parametrize("key", ["\x03", "q"], ids=["ctrl-c", "q"])
+def test_giving_up_at_the_question_leaves_the_old_file(at_terminal, rest_trace, files, written, key):
+    with at_terminal(rest_trace) as terminal:
+        skip_to_the_question(terminal)
+        terminal.press(key)
+        assert terminal.wait_end() == 1
+        assert terminal.is_as_before()
+    assert files() == written
+
+
+def test_keys_skip_repeat_and_go_back(at_terminal, round_trace):
+    with at_terminal(round_trace) as terminal:
+        terminal.wait_for("2 of 6 releases")
+        terminal.press("r")
+        at = len(terminal.text)
+        at = terminal.wait_for(" 0 of 6 releases", since=at).end()
+        terminal.press("\n")
+        at = terminal.wait_for("Step 2 of 7", since=at).end()
+        terminal.press("s")
+        at = terminal.wait_for("Step 3 of 7", since=at).end()
+        terminal.press("\x1b[B")  # an arrow is no b
+        time.sleep(0.2)
+        assert "Step 2" not in terminal.text[at:]
+        terminal.press("b")
+        at = terminal.wait_for("Step 2 of 7", since=at).end()
+        terminal.press("?")
+        terminal.wait_for("nothing is written", since=at)
+        terminal.press("q")
+        terminal.wait_end()
+
+
+def test_stopped_it_gives_the_terminal_back_and_takes_it_again(at_terminal, rest_trace):
+    with at_terminal(rest_trace) as terminal:
+        terminal.wait_for("Step 1 of 7")
+        terminal.press("\x1a")
+        terminal.wait_stopped()
+        assert terminal.is_as_before()
+        terminal.go_on()
+        terminal.wait_for("Step 1 of 7", since=len(terminal.text))
+        assert not terminal.is_cooked()
+        terminal.press("q")
+        terminal.wait_end()
+        assert terminal.is_as_before()
+
+
+def test_without_a_terminal_lines_do(started, environment, rest_trace, files):
+    with started("calibrate", rest_trace, stdin=subprocess.PIPE, env=environment) as process:
+        time.sleep(1.0)
+        _, errors = process.communicate("s\nskip\nb\nq\n", timeout=20)
+    assert "\033" not in errors
+    for words in ("Step 1 of 7: rest", "left stick: 0 of 6 releases", "nothing written"):
+        assert words in errors
+    assert files() == {}
+
+
+def test_the_end_of_input_gives_up(run, environment, rest_trace, files):
+    done = run("calibrate", rest_trace, status=None, timeout=20, env=environment)
+    assert "nothing written" in done.stderr
+    assert files() == {}
+
+
+def test_a_pad_without_a_stick_is_told(at_terminal, tmp_path):
+    buttons = bytes.fromhex("05 01 09 05 a1 01 05 09 19 01 29 08 15 00 25 01 75 01 95 08 81 02 c0")
+    trace = tmp_path / "buttons.hid"
+    trace.write_text(traces.device(buttons, "Buttons", ids="3 1209 0002") + traces.report(0, b"\0") + traces.report(5, b"\0"))
+    with at_terminal(trace) as terminal:
+        terminal.wait_for("stick", 10)
+        assert terminal.wait_end() == 1, terminal.text
+        assert terminal.is_as_before()

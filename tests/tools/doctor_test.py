@@ -1,67 +1,61 @@
-#!/usr/bin/python3
 """gaitpad doctor: says what it found, ends by it, and changes nothing unasked."""
 import json
 import os
 import pathlib
-import subprocess
-import sys
-import unittest
+import re
 
-from program import PROGRAM, ROOT, run
+import pytest
+
+from support.program import ROOT
 
 TARGET = pathlib.Path("/etc/udev/rules.d/60-gaitpad.rules")
 
 
-def doctor(*arguments, answer=""):
-    return run("doctor", *arguments, input=answer)
+@pytest.fixture
+def doctor(run):
+    return lambda *arguments, status=None, answer="": run("doctor", *arguments, status=status, input=answer)
 
 
-class Doctor(unittest.TestCase):
-    def test_findings_have_node_cause_and_fix(self):
-        done = doctor("--json")
-        findings = json.loads(done.stdout)
-        self.assertGreater(len(findings), 0)
-        for finding in findings:
-            self.assertEqual(list(finding), ["state", "node", "device", "cause", "fix"])
-            self.assertIn(finding["state"], ("usable", "problem", "note"))
-            self.assertNotEqual(finding["cause"], "")
-            self.assertNotIn("\n", finding["cause"] + finding["fix"])
-
-    def test_the_exit_status_tells_whether_a_pad_is_usable(self):
-        done = doctor("--json")
-        is_usable = any(f["state"] == "usable" for f in json.loads(done.stdout))
-        self.assertEqual(done.returncode, 0 if is_usable else 1)
-
-    def test_text_is_one_line_a_finding(self):
-        count = len(json.loads(doctor("--json").stdout))
-        self.assertEqual(len(doctor().stdout.splitlines()), count)
-
-    def test_wrong_usage_is_2(self):
-        self.assertEqual(doctor("--yes").returncode, 2)
-        self.assertEqual(doctor("--install-rules", "--json").returncode, 2)
+def test_findings_have_node_cause_and_fix(doctor):
+    findings = json.loads(doctor("--json").stdout)
+    assert findings
+    for finding in findings:
+        assert list(finding) == ["state", "node", "device", "cause", "fix"]
+        assert finding["state"] in ("usable", "problem", "note")
+        assert finding["cause"] != ""
+        assert "\n" not in finding["cause"] + finding["fix"]
 
 
-class InstallRules(unittest.TestCase):
-    def setUp(self):
-        self.before = TARGET.read_bytes() if TARGET.exists() else None
-
-    def tearDown(self):
-        self.assertEqual(TARGET.read_bytes() if TARGET.exists() else None, self.before)
-
-    def test_shows_the_file_and_refuses_without_a_yes(self):
-        for answer in ("", "n\n", "no\n", "\n", "maybe\n"):
-            done = doctor("--install-rules", answer=answer)
-            self.assertEqual(done.returncode, 1, done.stderr)
-            self.assertTrue(done.stdout.startswith((ROOT / "config/udev/60-gaitpad.rules").read_text()))
-            self.assertIn(str(TARGET), done.stderr)
-
-    @unittest.skipIf(os.geteuid() != 0, "needs root to become somebody else")
-    def test_tells_an_ordinary_user_the_command(self):
-        done = subprocess.run([PROGRAM, "doctor", "--install-rules", "--yes"], stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, check=False, user=65534, group=65534, extra_groups=[])
-        self.assertEqual(done.returncode, 1)
-        self.assertRegex(done.stderr, r"sudo \S*gaitpad doctor --install-rules")
+def test_the_exit_status_tells_whether_a_pad_is_usable(doctor):
+    done = doctor("--json")
+    is_usable = any(f["state"] == "usable" for f in json.loads(done.stdout))
+    assert done.returncode == (0 if is_usable else 1)
 
 
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+def test_text_is_one_line_a_finding(doctor):
+    assert len(doctor().stdout.splitlines()) == len(json.loads(doctor("--json").stdout))
+
+
+@pytest.mark.parametrize("options", [["--yes"], ["--install-rules", "--json"]])
+def test_wrong_usage_is_2(doctor, options):
+    doctor(*options, status=2)
+
+
+@pytest.fixture
+def rules_stay_as_they_are():
+    before = TARGET.read_bytes() if TARGET.exists() else None
+    yield
+    assert (TARGET.read_bytes() if TARGET.exists() else None) == before
+
+
+@pytest.mark.parametrize("answer", ["", "n\n", "no\n", "\n", "maybe\n"])
+def test_installing_rules_shows_the_file_and_refuses_without_a_yes(doctor, rules_stay_as_they_are, answer):
+    done = doctor("--install-rules", status=1, answer=answer)
+    assert done.stdout.startswith((ROOT / "config/udev/60-gaitpad.rules").read_text())
+    assert str(TARGET) in done.stderr
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="needs root to become somebody else")
+def test_installing_rules_tells_an_ordinary_user_the_command(run, rules_stay_as_they_are):
+    done = run("doctor", "--install-rules", "--yes", status=1, user=65534, group=65534, extra_groups=[])
+    assert re.search(r"sudo \S*gaitpad doctor --install-rules", done.stderr)

@@ -1,61 +1,73 @@
-"""`replay --gltf`: pose.glb holds the walk of pose.bvh, read by code of its own. Usage: gltf_test.py GAITPAD"""
+"""`replay --gltf`: pose.glb holds the walk of pose.bvh, read by code of its own; Khronos' validator finds nothing to
+object to, and Blender sees the same joints at the same places in both files."""
+import csv
 import json
 import os
+import shutil
 import subprocess
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-import glb
+from support import bvh as bvhs
+from support.glb import Glb, world
+from support.program import DATA, ROOT
+from support.traces import write_trace
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-sys.path.insert(0, os.path.join(ROOT, "tests", "session"))
-import bvh_fk
-import make_trace
-
-PROGRAM = sys.argv[1]
-
-
-def run(*arguments):
-    return subprocess.run([PROGRAM, "replay", *arguments], capture_output=True, text=True, timeout=300)
+CLIP = DATA / "mocap/cmu_006_01_iclone.bvh"  # a body of a hundred joints
+MODULES = ROOT / "build/gltf/node_modules"
+NEAR_M = 1e-4
 
 
-def replayed(folder, *arguments):
-    done = run(os.path.join(folder, "walk.hid"), "--out", os.path.join(folder, "out"), "--gltf", *arguments)
-    assert done.returncode == 0, done.stderr
-    return os.path.join(folder, "out")
+@pytest.fixture(scope="module")
+def trace(tmp_path_factory):
+    return write_trace(tmp_path_factory.mktemp("trace") / "walk.hid", [(0.5, 0, 0.8), (3, 0.5, 0.7), (7, 0, 0)], (), 9)
 
 
-def check_same_walk(out, suffix=""):
-    """Positions within 0.1 mm at every frame, all joints of the BVH found by name."""
-    file = glb.Glb(os.path.join(out, f"pose{suffix}.glb"))
-    bvh = bvh_fk.read_bvh(os.path.join(out, f"pose{suffix}.bvh"))
-    scale = json.load(open(os.path.join(out, f"summary{suffix}.json")))["metres_per_unit"]
-    expected, _ = bvh_fk.forward_kinematics(bvh.parents, bvh_fk.translations(bvh) * scale, bvh_fk.local_rotations(bvh))
+@pytest.fixture(scope="module")
+def exported(run, trace, tmp_path_factory):
+    """The folder of a replay with these options; each is made once."""
+    folders = {}
+
+    def export(*options):
+        if options not in folders:
+            folders[options] = tmp_path_factory.mktemp("out")
+            run("replay", trace, "--out", folders[options], "--gltf", *options)
+        return folders[options]
+    return export
+
+
+CHARACTERS = ("--fps", "30", "--character", "child", "--character", "tall")
+
+
+@pytest.mark.parametrize("options, suffix", [((), ""), (CHARACTERS, ""), (CHARACTERS, "-2")], ids=["plain", "child", "tall"])
+def test_all_joints_of_the_bvh_are_at_the_same_places_at_every_frame(exported, options, suffix):
+    out = exported(*options)
+    file, bvh = Glb(out / f"pose{suffix}.glb"), bvhs.read_bvh(out / f"pose{suffix}.bvh")
+    scale = json.loads((out / f"summary{suffix}.json").read_text())["metres_per_unit"]
+    expected, _ = bvhs.forward_kinematics(bvh.parents, bvhs.translations(bvh) * scale, bvhs.local_rotations(bvh))
     times, translations, rotations = file.tracks()
     assert np.allclose(times, np.arange(len(times)) * bvh.frame_time, atol=1e-5)
     assert np.all(np.diff(times) > 0) and len(times) == len(expected)
-    position, _ = glb.world(file, len(times), translations, rotations)
+    position, _ = world(file, len(times), translations, rotations)
     shared = [n for n in bvh.names if n in file.names]
     assert len(shared) >= len([n for n in bvh.names if not n.endswith("_End")])
-    gap = max(np.abs(position[:, file.names.index(n)] - expected[:, bvh.index(n)]).max() for n in shared)
-    print(f"{os.path.basename(file.names[-1])}{suffix}: {len(shared)} joints, {len(times)} frames, {1e3 * gap:.4f} mm apart")
-    assert gap < 1e-4, gap
-    return file, rotations
+    gap_m = max(np.abs(position[:, file.names.index(n)] - expected[:, bvh.index(n)]).max() for n in shared)
+    assert gap_m < NEAR_M
 
 
-def check_quaternions(rotations):
-    for node, q in rotations.items():
+def test_quaternions_are_of_unit_length_and_go_the_short_way_round(exported):
+    for node, q in Glb(exported() / "pose.glb").tracks()[2].items():
         assert np.abs(np.linalg.norm(q.astype(float), axis=1) - 1).max() < 1e-6, node
         assert np.sum(q[1:] * q[:-1], axis=1).min() > 0, f"node {node} goes the long way round"
 
 
-def check_skin(file):
-    """In the rest pose every joint's matrix times its inverse bind matrix is the identity; each vertex lies
-    near the joint that carries it, on the floor or above."""
+def test_the_skin_fits_its_joints_in_the_rest_pose(exported):
+    """Every joint's matrix times its inverse bind matrix is the identity; each vertex lies near the joint that
+    carries it, on the floor or above."""
+    file = Glb(exported() / "pose.glb")
     skin = file.json["skins"][0]
-    position, rotation = glb.world(file, 1, {}, {})
+    position, rotation = world(file, 1, {}, {})
     inverse = file.values(skin["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1)
     for k, node in enumerate(skin["joints"]):
         matrix = np.eye(4)
@@ -74,27 +86,76 @@ def check_skin(file):
     assert (np.sum(faces * normal[::3], axis=1) > 0).all(), "triangles face outward as their normals say"
 
 
-def check_options(folder):
-    trace = os.path.join(folder, "walk.hid")
-    assert run(trace, "--gltf").returncode == 2, "--gltf needs --out"
-    out = os.path.join(folder, "plain")
-    assert run(trace, "--out", out).returncode == 0
-    assert sorted(os.listdir(out)) == ["frames.csv", "pose.bvh", "summary.json"]
+def test_the_file_is_written_only_where_it_is_asked_for(run, trace, exported, tmp_path):
+    assert sorted(os.listdir(exported())) == ["frames.csv", "pose.bvh", "pose.glb", "summary.json"]
+    run("replay", trace, "--gltf", status=2)  # it needs --out
+    run("replay", trace, "--out", tmp_path / "plain")
+    assert sorted(os.listdir(tmp_path / "plain")) == ["frames.csv", "pose.bvh", "summary.json"]
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        make_trace.write_trace(os.path.join(folder, "walk.hid"), [(0.5, 0, 0.8), (3, 0.5, 0.7), (7, 0, 0)], (), 9)
-        out = replayed(folder)
-        file, rotations = check_same_walk(out)
-        check_quaternions(rotations)
-        check_skin(file)
-        assert sorted(os.listdir(out)) == ["frames.csv", "pose.bvh", "pose.glb", "summary.json"], os.listdir(out)
-        out = replayed(folder, "--fps", "30", "--character", "child", "--character", "tall")
-        check_same_walk(out)
-        check_same_walk(out, "-2")
-        check_options(folder)
-    print("gltf: ok")
+def captured(*options):
+    return pytest.param(("--motion", CLIP, *options), id="captured",
+                        marks=pytest.mark.skipif(not CLIP.exists(), reason=f"there is no {CLIP}"))
 
 
-main()
+def validated(path):
+    done = subprocess.run(["node", ROOT / "tools/gltf/validate.js", path], env={**os.environ, "NODE_PATH": str(MODULES)},
+                          capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+needs_validator = pytest.mark.skipif(not shutil.which("node") or not (MODULES / "gltf-validator").is_dir(),
+                                     reason="no node, or the validator is not there (bash tools/gltf/install.sh)")
+
+
+@needs_validator
+@pytest.mark.parametrize("options", [
+    pytest.param((), id="plain"),
+    pytest.param(("--style", "limp_left", "--fps", "60", "--character", "child", "--character", "tall"), id="limp"),
+    pytest.param(("--motion", "keyframe_walk"), id="keyframe"), captured("--fps", "30")])
+def test_khronos_validator_finds_no_error_and_no_warning(exported, options):
+    paths = sorted(exported(*options).glob("*.glb"))
+    assert len(paths) == max(1, options.count("--character"))
+    for path in paths:
+        report = validated(path)
+        assert report["issues"]["numErrors"] == 0 and report["issues"]["numWarnings"] == 0, report["issues"]["messages"]
+        assert report["info"]["animationCount"] == 1 and report["info"]["hasSkins"], report["info"]
+
+
+@needs_validator
+def test_khronos_validator_sees_a_quaternion_that_is_none(exported, tmp_path):
+    data = bytearray((exported() / "pose.glb").read_bytes())
+    data[-16:] = b"\0\0\x80\x40" * 4
+    (tmp_path / "broken.glb").write_bytes(data)
+    assert validated(tmp_path / "broken.glb")["issues"]["numErrors"] > 0, "the validator is asleep"
+
+
+def root_of(path, time_s):
+    """In Blender's axes: x the same, y back, z up."""
+    with open(path, newline="") as file:
+        row = next(row for row in csv.DictReader(file) if abs(float(row["time_s"]) - time_s) < 1e-6)
+    x, y, z = (float(row[f"root_{axis}_m"]) for axis in "xyz")
+    return np.array([x, -z, y])
+
+
+@pytest.mark.skipif(not shutil.which("blender"), reason="there is no blender (package blender)")
+@pytest.mark.parametrize("options", [
+    pytest.param((), id="plain"),
+    pytest.param(("--style", "carry", "--character", "child", "--motion", "keyframe_walk"), id="child"), captured()])
+def test_blender_sees_the_same_joints_at_the_same_places(exported, options):
+    out = exported(*options)
+    done = subprocess.run(["blender", "-b", "--factory-startup", "-P", ROOT / "tests/tools/blender_joints.py", "--",
+                           out / "pose.glb", out / "pose.bvh"], capture_output=True, text=True, timeout=300, check=False)
+    read = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    assert len(read) == 2, done.stdout + done.stderr
+    unit_m = json.loads((out / "summary.json").read_text())["metres_per_unit"]
+    roots = []
+    for time_s, of_glb, of_bvh in zip(read[0]["times_s"], read[0]["joints"], read[1]["joints"]):
+        shared = of_glb.keys() & of_bvh.keys()
+        assert len(shared) >= 18, shared
+        for name in shared:
+            assert np.linalg.norm(np.array(of_glb[name]) - unit_m * np.array(of_bvh[name])) < NEAR_M, (name, time_s)
+        roots.append(np.array(next(iter(of_glb.values()))))
+        assert np.linalg.norm(roots[-1] - root_of(out / "frames.csv", time_s)) < NEAR_M, time_s
+    assert max(np.linalg.norm(root - roots[0]) for root in roots) > 1.0, "nothing moves"

@@ -1,48 +1,41 @@
-#!/usr/bin/python3
 """gaitpad pads: a list that a script can read, with or without devices."""
 import json
-import sys
-import unittest
 
-from program import run
+import pytest
 
 KEYS = {"driver": str, "path": str, "bus": str, "vendor": int, "product": int, "name": str, "unique_id": str,
         "port": str, "kernel_driver": str, "usages": list, "poll_rate_hz": (float, int, type(None)), "usable": bool,
         "problem": str, "chosen": bool}
 
 
-class Pads(unittest.TestCase):
-    def test_every_row_has_the_keys_of_the_contract(self):
-        done = run("pads", "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        for row in json.loads(done.stdout):
-            if set(row) == {"driver", "problem"}:  # built without its library
-                self.assertIn("built without", row["problem"])
-                continue
-            self.assertEqual(list(row), list(KEYS))
-            for key, kind in KEYS.items():
-                self.assertIsInstance(row[key], kind, key)
-            self.assertEqual(row["usable"], row["problem"] == "")
-
-    def test_at_most_one_is_chosen_and_it_is_usable(self):
-        rows = [row for row in json.loads(run("pads", "--json").stdout) if "chosen" in row]
-        chosen = [row for row in rows if row["chosen"]]
-        self.assertEqual(len(chosen), 1 if any(row["usable"] for row in rows) else 0)
-        self.assertTrue(all(row["usable"] for row in chosen))
-        self.assertEqual(rows[:len(chosen)], chosen)
-
-    def test_text_says_something_in_any_case(self):
-        done = run("pads")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertNotEqual(done.stdout.strip(), "")
-
-    def test_one_driver_alone(self):
-        for driver in ("hidraw", "evdev", "usb", "sdl"):
-            done = run("pads", "--driver", driver, "--json")
-            self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertLessEqual({row["driver"] for row in json.loads(done.stdout)}, {driver})
-        self.assertEqual(run("pads", "--driver", "magic").returncode, 2)
+def test_every_row_has_the_keys_of_the_contract(run):
+    for row in json.loads(run("pads", "--json").stdout):
+        if set(row) == {"driver", "problem"}:  # built without its library
+            assert "built without" in row["problem"]
+            continue
+        assert list(row) == list(KEYS)
+        for key, kind in KEYS.items():
+            assert isinstance(row[key], kind), key
+        assert row["usable"] == (row["problem"] == "")
 
 
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+def test_at_most_one_is_chosen_and_it_is_usable(run):
+    rows = [row for row in json.loads(run("pads", "--json").stdout) if "chosen" in row]
+    chosen = [row for row in rows if row["chosen"]]
+    assert len(chosen) == (1 if any(row["usable"] for row in rows) else 0)
+    assert all(row["usable"] for row in chosen)
+    assert rows[:len(chosen)] == chosen
+
+
+def test_text_says_something_in_any_case(run):
+    assert run("pads").stdout.strip() != ""
+
+
+@pytest.mark.parametrize("driver", ["hidraw", "evdev", "usb", "sdl"])
+def test_one_driver_alone(run, driver):
+    rows = json.loads(run("pads", "--driver", driver, "--json").stdout)
+    assert {row["driver"] for row in rows} <= {driver}
+
+
+def test_an_unknown_driver_is_wrong_usage(run):
+    run("pads", "--driver", "magic", status=2)

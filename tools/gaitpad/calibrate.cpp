@@ -13,10 +13,11 @@
 #include <span>
 #include <utility>
 
-#include "files/toml_file.h"
+#include "base/files.h"
 #include "gaitpad/config_files.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
+#include "session/playback.h"
 #include "stick/calibration_import.h"
 #include "stick/guide.h"
 #include "stick/pad_analysis.h"
@@ -97,10 +98,7 @@ Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damag
   for (const std::string& path : paths) {
     auto trace = read_trace(path, damage);
     if (!trace) return trace.error();
-    if (trace->skipped_lines > 0) {
-      remarks.push_back(fmt::format("{} damaged lines were skipped, the first: {}",
-                                    trace->skipped_lines, trace->first_damage));
-    }
+    if (const auto remark = damage_remark(*trace)) remarks.push_back(*remark);
     auto found = first_pad(*trace, files.overrides);
     if (!found) return found.error();
     const DeviceInfo& info = trace->devices[found->device].info;

@@ -15,6 +15,7 @@
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/trace.h"
 #include "pads/newest_reports.h"
+#include "session/playback.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
@@ -219,7 +220,7 @@ void print_reports(const DecodeArguments& arguments, const Trace& trace,
     if (!print_report(devices[event.device], report, form_of(arguments))) ++bad;
   }
   if (bad > 0)
-    fmt::print(stderr, "gaitpad decode: {} reports are too short or have an unknown id\n", bad);
+    print_remarks("decode", {fmt::format("{} reports are too short or have an unknown id", bad)});
 }
 
 // Anything that exists and is not a device, and anything that looks like a path.
@@ -239,10 +240,7 @@ int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
   if (!trace) return fail("decode", trace.error().message);
   auto devices = devices_of(*trace, overrides);
   if (!devices) return fail("decode", devices.error().message);
-  if (trace->skipped_lines > 0) {
-    fmt::print(stderr, "gaitpad decode: {} damaged lines were skipped, the first: {}\n",
-               trace->skipped_lines, trace->first_damage);
-  }
+  if (const auto remark = damage_remark(*trace)) print_remarks("decode", {*remark});
   for (const DecodedDevice& device : *devices) print_descriptor(device, form_of(arguments));
   if (!arguments.descriptor_only) print_reports(arguments, *trace, *devices);
   return 0;

@@ -48,13 +48,11 @@ struct Diagnosis {
   }
 };
 
-inline RuleSubject subject_of(const PadHardware& pad) {
+RuleSubject subject_of(const PadHardware& pad) {
   return {static_cast<std::uint16_t>(pad.bus), pad.vendor, pad.product};
 }
 // Whether the node has the sticks of a pad: one pad makes several.
-inline bool is_pad_event(const SystemNode& node) {
-  return !node.is_motion_sensor && !node.is_touchpad;
-}
+bool is_pad_event(const SystemNode& node) { return !node.is_motion_sensor && !node.is_touchpad; }
 
 // In the checks below `state` is what their findings are: a problem, or a note if the pad works in
 // another way.

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -17,6 +16,7 @@
 #include <iterator>
 #include <map>
 
+#include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/decode.h"
 
@@ -94,8 +94,8 @@ bool is_hub(const SystemNode& device) {
   return static_cast<bool>(in >> std::hex >> device_class) && device_class == kHubClass;
 }
 
-bool has_pad_name(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+bool has_pad_name(std::string_view device_name) {
+  const std::string name = lower_case(device_name);
   return std::ranges::any_of(
       std::initializer_list<const char*>{"gamepad", "game pad", "joystick", "joypad"},
       [&](const char* word) { return name.find(word) != std::string::npos; });

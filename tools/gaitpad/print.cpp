@@ -32,14 +32,6 @@ void print_summaries_json(const std::vector<ordered_json>& summaries) {
   print_json(summaries.size() == 1 ? summaries[0] : ordered_json(summaries));
 }
 
-std::string printable(std::string_view text) {
-  std::string shown(text);
-  for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return shown;
-}
-
 std::string usage_text(std::uint32_t usage) {
   return fmt::format("{:04x}:{:04x}", page_of(usage), id_of(usage));
 }
@@ -60,8 +52,8 @@ ordered_json axes_json(const PadState& state) {
 
 void print_session(const std::string& source, const RunSummary& run) {
   fmt::print("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {:016x}\n", source,
-             run.reports, run.ticks, run.rate_hz,
-             static_cast<double>(run.ticks) / run.rate_hz, run.pose_hash);
+             run.reports, run.ticks, run.rate_hz, static_cast<double>(run.ticks) / run.rate_hz,
+             run.pose_hash);
 }
 
 void print_character(const RunSummary& run, std::size_t walker, Way way) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/text.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/summary.h"
 #include "tools/gaitpad/run_end.h"
@@ -26,8 +27,6 @@ void print_json(const nlohmann::ordered_json& value);
 // One object for one character, else a list.
 void print_summaries_json(const std::vector<nlohmann::ordered_json>& summaries);
 
-// A device's text for a terminal: control characters become '?'.
-std::string printable(std::string_view text);
 std::string usage_text(std::uint32_t usage);  // 0001:0030
 std::vector<std::string> button_names(const PadState& state);
 nlohmann::ordered_json axes_json(const PadState& state);

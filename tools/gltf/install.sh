@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Puts Khronos' glTF validator into build/gltf, for tests/tools/gltf_test.py: nothing where it is there. node
-# and npm come from Debian where neither is installed.
+# Installs Khronos' glTF validator into build/gltf, for the tests of glTF; does nothing if it is already there.
+# node and npm come from Debian if they are missing.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# build.sh: builds the virtual pads into build/rig, where they are older than their sources.
+# build.sh: builds the virtual pads into build/rig if they are older than their sources.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 mkdir -p "$root/build/rig"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # guest.sh [--kernel 6.12] [--memory MB] [--timeout S] [--results FOLDER] -- COMMAND...
-# Boots the kernel in QEMU on the host's own files (changes stay in the guest; /results alone is the host's
-# FOLDER) and runs COMMAND there as root: one argument is a line of bash, several are a program and its
-# arguments. Its output goes to stdout and its exit status is this one's; 124 after S seconds, 125 when the
-# guest ended without a status.
+# Boots the kernel in QEMU on the host's own files and runs COMMAND there as root. Changes stay in the guest; only
+# /results is the host's FOLDER. One argument is a line of bash, several are a program and its arguments. The
+# command's output goes to stdout and its exit status is this script's; 124 after S seconds, 125 if the guest
+# ended without a status.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 series=6.1 memory=1024 seconds=300 results=

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# kernel.sh [6.1|6.12]: makes the current Debian kernel ready to boot under build/rig and prints its folder:
-# vmlinuz, initramfs, modules/ (pruned, with their index). 6.1 is that of Debian 12, 6.12 of its backports.
-# Package lists and downloads are private to the folder: nothing of the machine changes. Exit status 3: apt
-# cannot give one.
+# kernel.sh [6.1|6.12]: prepares the current Debian kernel for booting under build/rig and prints its folder:
+# vmlinuz, initramfs, modules/ (pruned, with their index). 6.1 is the kernel of Debian 12, 6.12 that of its
+# backports. Package lists and downloads stay in that folder; the machine itself is not changed. Exit status 3:
+# apt has no such kernel.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 series=${1:-6.1}

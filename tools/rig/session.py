@@ -1,16 +1,35 @@
-"""A `gaitpad play` beside the test, and what its recording says: `with Session(...) as session: ...`."""
+"""The program in a test: run("gaitpad", "pads"), and a `gaitpad play` beside the test with what its recording says,
+`with Session(...) as session: ...`. What a test measured for the reader: remark("median 0.3 ms") comes to the
+screen and into build/rig/results."""
+import csv
 import json
 import os
 import signal
 import subprocess
 
-from harness import BUILD, PROGRAM, run
-from pads import wait_for
+from pads import ROOT, wait_for
 
+BUILD = os.environ.get("RIG_BUILD") or os.path.join(ROOT, "build")
+PROGRAM = os.path.join(BUILD, "gaitpad")
 IDS = {"generic": "1209:0001", "ds4": "054c:09cc", "dualsense": "054c:0ce6", "switch": "057e:2009",
        "xbox360": "045e:028e", "xboxone": "045e:02ea"}
 HAS_SANITIZERS = BUILD.rstrip("/").endswith(("-asan", "-tsan"))
 TICK_S = 1 / 240
+
+
+def remark(text):
+    with open("/results/remarks", "a") as file:
+        file.write(text + "\n")
+
+
+def run(*command, seconds=60):
+    """Runs a command, the program's path for "gaitpad", which must succeed; its output."""
+    command = [PROGRAM if word == "gaitpad" else str(word) for word in command]
+    print("$", *command, flush=True)
+    done = subprocess.run(command, timeout=seconds, capture_output=True, text=True, check=False)
+    print(done.stdout, done.stderr, sep="", flush=True)
+    assert done.returncode == 0, f"{' '.join(command)} ended with {done.returncode}: {done.stderr.strip()[-500:]}"
+    return done
 
 
 class Session:
@@ -79,7 +98,6 @@ class Session:
 
     def frames(self):
         """frames.csv of the replay, as a list of dictionaries of texts."""
-        import csv
         run("gaitpad", "replay", self.path, "--out", "/tmp/frames", seconds=300)
         with open("/tmp/frames/frames.csv", newline="") as file:
             return list(csv.DictReader(file))

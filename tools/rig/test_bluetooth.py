@@ -1,8 +1,9 @@
 """Pads as they are over Bluetooth, through uhid: full reports with their checksums, and rumble with its own."""
 import time
 
-from harness import cases, remark, timeout
-from session import Session
+import pytest
+
+from session import Session, remark
 from test_matrix import check_sequence
 from uhid_pad import UhidPad, with_checksum
 
@@ -29,8 +30,8 @@ def states(half):
     yield rest
 
 
-@timeout(90)
-@cases(*[f"{kind}-{driver}" for kind in HALF for driver in ("hidraw", "evdev", "sdl")])
+@pytest.mark.timeout(90)
+@pytest.mark.parametrize("case", [f"{kind}-{driver}" for kind in HALF for driver in ("hidraw", "evdev", "sdl")])
 def test_decoded_and_replayed(case):
     kind, driver = case.split("-")
     half = HALF[kind]
@@ -50,8 +51,8 @@ def test_decoded_and_replayed(case):
         remark(f"{case}: {session.replayed['reports']} reports, pose hash {session.replayed['pose_hash']} twice")
 
 
-@timeout(60)
-@cases("dualsense_bt", "ds4_bt")
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("kind", ["dualsense_bt", "ds4_bt"])
 def test_a_wrong_checksum_moves_nothing(kind):
     """The kernel's own drivers look, too, and drop such a report before hidraw sees it."""
     with UhidPad(kind) as pad:
@@ -69,8 +70,8 @@ def test_a_wrong_checksum_moves_nothing(kind):
     assert session.replayed["reports"] > 50
 
 
-@timeout(60)
-@cases("dualsense_bt", "ds4_bt")
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("kind", ["dualsense_bt", "ds4_bt"])
 def test_rumble_carries_its_checksum(kind):
     number, strong, weak = OUTPUT[kind]
     with UhidPad(kind) as pad:

@@ -1,5 +1,4 @@
 """A worn virtual pad is calibrated at a terminal, unplugged in the middle; its file is then used by record and play."""
-import math
 import os
 import random
 import signal
@@ -7,10 +6,12 @@ import tempfile
 import time
 import tomllib
 
-from harness import PROGRAM, cases, remark, run, timeout
+import pytest
+
 from pads import LONG, Pad, wait_for
-from session import IDS, Session
-from terminal import Terminal
+from session import IDS, PROGRAM, Session, remark, run
+from support.hands import Hand
+from support.terminal import Terminal
 
 RATE_HZ = 100
 COUNT = 1 / 127.5  # of an 8-bit axis, raw
@@ -24,64 +25,35 @@ AS_IT_SHOULD_BE = lambda x, y: (x, -y)
 TURNED = lambda x, y: (-y, -x)  # a quarter to the left: right goes forward, forward to the left
 
 
-class Hand:
-    """Moves both sticks at once and writes what the pad reports as a recording to play."""
+class PadHand(Hand):
+    """At a virtual pad."""
+
+    rate_hz = RATE_HZ
+    release_s, turn_s, after_turns_s, push_s, trigger_s = (0.15, 0.8), 1.2, 0.3, (0.5, 0.4), (0.5, 0.4)
 
     def __init__(self, pad, mounted):
+        super().__init__()
         self.pad, self.mounted = pad, mounted
-        self.place, self.trigger = (0.0, 0.0), 0
         self.random = random.Random(1)
         pad.set(a=1)
         pad.set(a=0)
         self.base = bytearray(wait_for(pad.sent, 5, "the pad's report")[-1].data)
-        self.lines = []
 
     def counts(self, stick):
         x, y = self.mounted[stick](*self.place)
         return [max(0, min(255, round(centre + offset * REACHES[stick] + self.random.choice((-1, 0, 0, 1)))))
                 for centre, offset in zip(CENTRES[stick], (x, y))]
 
-    def hold(self, seconds):
-        for _ in range(round(seconds * RATE_HZ)):
-            at = FIRST_BYTE[self.pad.kind]
-            self.base[at:at + 6] = bytes(self.counts("left") + self.counts("right") + [self.trigger] * 2)
-            micros = len(self.lines) * 1_000_000 // RATE_HZ
-            self.lines.append(f"E: {micros // 1_000_000:06}.{micros % 1_000_000:06} {len(self.base)} "
-                              + self.base.hex(" "))
-
-    def push(self, angle, held_s, rest_s):
-        self.place = (math.cos(angle), math.sin(angle))
-        self.hold(held_s)
-        self.place = (0.0, 0.0)
-        self.hold(rest_s)
-
-    def releases(self, first, count):
-        for i in range(first, first + count):
-            self.push(2 * math.pi * i / 7 + 0.2, 0.15, 0.8)
-
-    def turns(self, count, turn_s=1.2):
-        for i in range(round(count * turn_s * RATE_HZ)):
-            angle = 2 * math.pi * i / RATE_HZ / turn_s
-            self.place = (math.cos(angle), math.sin(angle))
-            self.hold(1 / RATE_HZ)
-        self.place = (0.0, 0.0)
-        self.hold(0.3)
-
-    def pushes(self):
-        for angle in (math.pi / 2, 0.0, -math.pi / 2, math.pi):
-            self.push(angle, 0.5, 0.4)
-
-    def triggers(self):
-        self.trigger = 255
-        self.hold(0.5)
-        self.trigger = 0
-        self.hold(0.4)
+    def data(self):
+        at = FIRST_BYTE[self.pad.kind]
+        self.base[at:at + 6] = bytes(self.counts("left") + self.counts("right") + [255 * self.is_pulled] * 2)
+        return self.base
 
     def do(self):
         """The pad plays it."""
         path = tempfile.mktemp(suffix=".hid")
         with open(path, "w") as file:
-            file.write("\n".join(self.lines) + "\n")
+            file.writelines(self.lines)
         self.lines = []
         self.pad.play(path)
         self.pad.wait_play(60)
@@ -97,7 +69,7 @@ def guide_through(pad, driver, mounted):
         terminal.wait_for("Step 1 of 7: rest", 30)
         if driver == "evdev":
             terminal.wait_for("through evdev the kernel may filter", 5)
-        hand = Hand(pad, mounted)
+        hand = PadHand(pad, mounted)
         hand.hold(0.5)
         hand.releases(0, 3)
         hand.do()
@@ -200,8 +172,8 @@ def check_giving_up(kind, driver):
 CASES = ("generic-hidraw", "dualsense-evdev") + (("generic-evdev", "dualsense-hidraw") if LONG else ())
 
 
-@timeout(180)
-@cases(*CASES)
+@pytest.mark.timeout(180)
+@pytest.mark.parametrize("case", CASES)
 def test_a_worn_pad_is_calibrated_at_a_terminal(case):
     kind, driver = case.split("-")
     os.environ["XDG_CONFIG_HOME"] = tempfile.mkdtemp()

@@ -3,6 +3,7 @@
 Each fault 50 times with --long, a few times otherwise. A session must survive, be neutral in time, leak no handle,
 and replay to the same poses (session.py asserts that at the end of each).
 """
+import contextlib
 import json
 import os
 import random
@@ -10,10 +11,11 @@ import signal
 import subprocess
 import time
 
+import pytest
+
 import pads
-from harness import PROGRAM, cases, long, remark, run, timeout
 from pads import LONG, Pad, settle, wait_for
-from session import HAS_SANITIZERS, IDS, TICK_S, Session, ticks_of
+from session import HAS_SANITIZERS, IDS, PROGRAM, TICK_S, Session, remark, run, ticks_of
 from test_matrix import NAMES, VALUES, expected_stick
 
 TIMES = 50 if LONG else 5
@@ -34,8 +36,8 @@ def neutral_in_time(frames, ticks, seconds=0.1):
         assert float(after["stick_x"]) == float(after["stick_y"]) == 0.0, (tick, after["stick_y"])
 
 
-@timeout(400)
-@cases("generic-hidraw", "dualsense-hidraw", "generic-usb", "xbox360-evdev", "generic-sdl")
+@pytest.mark.timeout(400)
+@pytest.mark.parametrize("case", ["generic-hidraw", "dualsense-hidraw", "generic-usb", "xbox360-evdev", "generic-sdl"])
 def test_unplugged_while_walking_and_plugged_in_again(case):
     kind, driver = case.split("-")
     times = TIMES if case in ("generic-hidraw", "generic-usb", "xbox360-evdev") or not LONG else 10
@@ -61,7 +63,7 @@ def test_unplugged_while_walking_and_plugged_in_again(case):
     remark(f"unplugged while walking, {case}: {times} times, neutral within 0.1 s each time")
 
 
-@timeout(300)
+@pytest.mark.timeout(300)
 def test_unplugged_during_open():
     """Blind flapping under a loop of programs that open whatever there is, and under a session."""
     chance = random.Random(1)
@@ -85,7 +87,7 @@ def test_unplugged_during_open():
     remark(f"unplugged during open: {TIMES} times, {session.summary['unplugged']} openings were cut")
 
 
-@timeout(200)
+@pytest.mark.timeout(200)
 def test_two_equal_pads_are_kept_apart():
     with Pad("dualsense", 0) as first, Pad("dualsense", 1) as second:
         rows = [row for row in json.loads(run("gaitpad", "pads", "--driver", "hidraw", "--json").stdout) if row["usable"]]
@@ -129,13 +131,13 @@ def numbers_of(session, at):
     return found
 
 
-@timeout(400)
-@cases("hidraw", "usb")
+@pytest.mark.timeout(400)
+@pytest.mark.parametrize("driver", ["hidraw", "usb"])
 def test_flood_of_four_pads_with_a_paused_reader(driver):
     """Each report carries its number: every gap is seen, and what came last is right."""
     rate_hz, seconds = (1000, 60) if LONG and not HAS_SANITIZERS else (250, 6)
     at = 8  # the vendor bytes of the generic pad
-    with contextlib_stack(4) as pads_, Session("1209:0001", "--driver", driver, "--no-rumble", name=f"flood-{driver}",
+    with four_pads() as pads_, Session("1209:0001", "--driver", driver, "--no-rumble", name=f"flood-{driver}",
                                                awaited=1) as session:
         wait_for(lambda: session.plugged() >= 4, 60, "four pads")
         for pad in pads_:
@@ -160,8 +162,8 @@ def test_flood_of_four_pads_with_a_paused_reader(driver):
            f"three times, {session.summary['lost']} of them known to the program")
 
 
-@timeout(120)
-@cases("hidraw", "usb", "evdev")
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("driver", ["hidraw", "usb", "evdev"])
 def test_the_last_state_is_right_after_a_burst_with_a_stopped_reader(driver):
     """Of a pad that says only once what has changed. Stopped for longer than the kernel keeps reports."""
     rate_hz, seconds = 250, 1.5
@@ -202,22 +204,14 @@ def decoded_last(session):
     return [row["axes"] for row in rows if "axes" in row][-1]
 
 
-class contextlib_stack:
-    """So many generic pads."""
-
-    def __init__(self, count):
-        self.pads = [Pad("generic", index) for index in range(count)]
-
-    def __enter__(self):
-        return [pad.__enter__() for pad in self.pads]
-
-    def __exit__(self, *what):
-        for pad in self.pads:
-            pad.__exit__(*what)
+@contextlib.contextmanager
+def four_pads():
+    with contextlib.ExitStack() as stack:
+        yield [stack.enter_context(Pad("generic", index)) for index in range(4)]
 
 
-@timeout(200)
-@cases("hidraw", "usb")
+@pytest.mark.timeout(200)
+@pytest.mark.parametrize("driver", ["hidraw", "usb"])
 def test_a_pad_that_falls_silent_is_neutral(driver):
     with Pad("dualsense") as pad, Session(IDS["dualsense"], "--driver", driver, name=f"silent-{driver}") as session:
         for _ in range(TIMES):
@@ -237,8 +231,8 @@ def test_a_pad_that_falls_silent_is_neutral(driver):
     remark(f"silent pad, {driver}: {silences} silences, neutral each time")
 
 
-@timeout(200)
-@cases("usb", "hidraw")
+@pytest.mark.timeout(200)
+@pytest.mark.parametrize("driver", ["usb", "hidraw"])
 def test_a_stalled_endpoint_recovers(driver):
     with Pad("dualsense") as pad, Session(IDS["dualsense"], "--driver", driver, name=f"stall-{driver}") as session:
         for turn in range(TIMES):
@@ -252,7 +246,7 @@ def test_a_stalled_endpoint_recovers(driver):
     remark(f"stalled endpoint, {driver}: {TIMES} times, goes on; {session.summary['lost']} counted as lost")
 
 
-@timeout(200)
+@pytest.mark.timeout(200)
 def test_odd_packets_on_usb_change_nothing():
     """Short, longer than the descriptor says, of an unknown id."""
     with Pad("dualsense") as pad, Session(IDS["dualsense"], "--driver", "usb", name="odd") as session:
@@ -270,7 +264,7 @@ def test_odd_packets_on_usb_change_nothing():
     remark(f"odd packets on usb: {TIMES}, each counted, none moved the stick")
 
 
-@timeout(400)
+@pytest.mark.timeout(400)
 def test_no_permission_and_the_rule():
     group = subprocess.run(["getent", "group", "input"], capture_output=True, text=True, check=True).stdout.split(":")[2]
     as_user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}"]
@@ -306,8 +300,8 @@ def tagged(node):
     return "uaccess" in subprocess.run(["udevadm", "info", "-q", "all", "-n", node], capture_output=True, text=True).stdout
 
 
-@timeout(120)
-@cases("SIGINT", "SIGTERM", "SIGKILL", "SIGSEGV")
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL", "SIGSEGV"])
 def test_the_kernel_gets_its_pad_back(name):
     """However the program ends that took it."""
     with Pad("generic") as pad:
@@ -320,10 +314,10 @@ def test_the_kernel_gets_its_pad_back(name):
             wait_for(lambda: pad.hidraws and pad.events, 20, "the pad's coming back")
 
 
-@long
-@timeout(400)
+@pytest.mark.long
+@pytest.mark.timeout(400)
 def test_four_pads_at_a_kilohertz_undisturbed():
-    with contextlib_stack(4) as pads_, Session("1209:0001", "--driver", "hidraw", "--no-rumble", name="kilohertz") as session:
+    with four_pads() as pads_, Session("1209:0001", "--driver", "hidraw", "--no-rumble", name="kilohertz") as session:
         wait_for(lambda: session.plugged() >= 4, 60, "four pads")
         for pad in pads_:
             pad.burst(1000, 60, at=8)

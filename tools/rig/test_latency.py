@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """From the gadget's write to user space, and to the tick that uses it, by every driver.
 
 Reports of the generic pad, 250 a second, each numbered in its left stick. A driver's blocks alternate
@@ -12,11 +11,11 @@ import re
 import statistics
 import subprocess
 import time
-import unittest
 
-from harness import BUILD, PROGRAM, remark, timeout
+import pytest
+
 from pads import LONG, Pad
-from session import HAS_SANITIZERS
+from session import BUILD, HAS_SANITIZERS, PROGRAM, remark
 
 RESULTS = pathlib.Path("/results")
 GENERIC = "1209:0001"
@@ -123,10 +122,10 @@ def write(found, medians, ticks):
         remark(line)
 
 
-@timeout(240)
+@pytest.mark.timeout(240)
 def test_drivers_are_as_fast_as_the_bare_read():
     if HAS_SANITIZERS:
-        raise unittest.SkipTest("a program with sanitizers is slower by design")
+        pytest.skip("a program with sanitizers is slower by design")
     ways = ["bare_hidraw", "hidraw", "bare_evdev", "evdev", "sdl", "plain_sdl", "usb"]
     found = {way: [] for way in ways}
     medians = {way: [] for way in ways}  # of each block

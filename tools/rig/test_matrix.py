@@ -2,9 +2,10 @@
 import json
 import time
 
-from harness import cases, remark, run, timeout
+import pytest
+
 from pads import Pad
-from session import IDS, Session
+from session import IDS, Session, remark, run
 
 DRIVERS = {"generic": ("hidraw", "usb", "evdev", "sdl"), "ds4": ("hidraw", "usb", "evdev", "sdl"),
            "dualsense": ("hidraw", "usb", "evdev", "sdl"), "switch": ("hidraw", "usb", "evdev", "sdl"),
@@ -79,8 +80,8 @@ def check_sequence(rows, wanted):
         position = found
 
 
-@timeout(90)
-@cases(*MATRIX)
+@pytest.mark.timeout(90)
+@pytest.mark.parametrize("case", MATRIX)
 def test_found_decoded_recorded_and_replayed(case):
     kind, driver = case.split("-")
     with Pad(kind) as pad:
@@ -106,7 +107,7 @@ def test_found_decoded_recorded_and_replayed(case):
         remark(f"{case}: {session.replayed['reports']} reports, pose hash {session.replayed['pose_hash']} twice")
 
 
-@cases("generic", "ds4", "dualsense", "switch", "xbox360", "xboxone")
+@pytest.mark.parametrize("kind", ["generic", "ds4", "dualsense", "switch", "xbox360", "xboxone"])
 def test_without_a_wish_the_best_driver_serves_it(kind):
     with Pad(kind):
         rows = json.loads(run("gaitpad", "pads", "--json").stdout)

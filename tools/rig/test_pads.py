@@ -5,9 +5,11 @@ round (~y), the others hand the byte on.
 """
 import contextlib
 
-from harness import cases, timeout
+import pytest
+
 from nodes import EventNode, HidrawNode
 from pads import KINDS, NODES, Pad, wait_for
+from support import traces
 from uhid_pad import KINDS as UHID_KINDS, UhidPad, with_checksum
 from uinput_pad import UinputPad
 
@@ -31,7 +33,7 @@ RUMBLE = {"ds4": (b"\x05", {4: 0x40, 5: 0xc0}), "dualsense": (b"\x02", {3: 0x40,
           "xbox360": (b"\x00\x08", {3: 0xc0, 4: 0x40}), "xboxone": (b"\x09", {8: 0x60, 9: 0x20})}
 
 
-@cases(*KINDS)
+@pytest.mark.parametrize("kind", KINDS)
 def test_binds_and_hands_on_what_it_sends(kind):
     with Pad(kind) as pad:
         assert (len(pad.hidraws), len(pad.events)) == NODES[kind]
@@ -52,7 +54,7 @@ def test_binds_and_hands_on_what_it_sends(kind):
             node.until_absolute(**SEEN[kind])
 
 
-@cases(*RUMBLE)
+@pytest.mark.parametrize("kind", RUMBLE)
 def test_logs_the_rumble_that_the_kernel_sends(kind):
     start, strengths = RUMBLE[kind]
 
@@ -77,7 +79,7 @@ def test_switch_rumble_is_encoded_and_stops():
         wait_for(lambda: [p for p in pad.out_packets(loud[-1].ns + 1) if p.data[2:10] == quiet], 5, "the stop")
 
 
-@timeout(90)
+@pytest.mark.timeout(90)
 def test_six_pads_at_once():
     with contextlib.ExitStack() as stack:
         pads = [stack.enter_context(Pad(kind, index)) for index, kind in enumerate(KINDS)]
@@ -112,11 +114,10 @@ def test_a_burst_numbers_its_reports():
 
 def test_plays_a_recording_at_its_own_times():
     path = "/tmp/rig-trace.hid"
+    descriptor = bytes.fromhex("05 01 09 04 a1 01 09 30 09 31 09 32 15 00 26 ff 00 75 08 95 03 81 02 c0")
     with open(path, "w") as file:
-        file.write("R: 24 05 01 09 04 a1 01 09 30 09 31 09 32 15 00 26 ff 00 75 08 95 03 81 02 c0\n"
-                   "N: Traced Pad\nI: 3 1234 5678\n")
-        for number in range(50):
-            file.write(f"E: 00000{number // 25}.{number % 25 * 40000:06} 3 {number:02x} 80 ff\n")
+        file.write(traces.device(descriptor, "Traced Pad", ids="3 1234 5678"))
+        file.writelines(traces.report(number * 0.04, [number, 0x80, 0xff]) for number in range(50))
     with Pad("trace", trace=path) as pad, HidrawNode(pad.hidraw) as node:
         assert len(node.descriptor()) == 24
         pad.play()
@@ -143,7 +144,7 @@ def test_faults_of_the_pad():
         wait_for(lambda: any(line[2] == "stalled" for line in pad.lines("setup")), 10, "a refused feature")
 
 
-@cases(*UHID_KINDS)
+@pytest.mark.parametrize("kind", UHID_KINDS)
 def test_pads_of_bluetooth(kind):
     with UhidPad(kind) as pad:
         wide = kind == "xbox_bt"

@@ -1,9 +1,10 @@
 """A beat at each heel strike, as strong as the walk is fast, and the stop behind it: as the pad receives them."""
 import time
 
-from harness import cases, remark, timeout
+import pytest
+
 from pads import Pad
-from session import IDS, Session
+from session import IDS, Session, remark
 from test_matrix import VALUES
 
 # Where the strengths (strong, weak) stand in the packets that begin so, and how many bits they have there.
@@ -27,8 +28,8 @@ def beats(pad, since_ns):
     return runs
 
 
-@timeout(120)
-@cases(*CASES)
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("case", CASES)
 def test_heel_strikes_are_felt(case):
     kind, driver = case.split("-")
     rest, full = VALUES[kind]["rest"], VALUES[kind]["forward"]

@@ -8,6 +8,7 @@ import time
 import zlib
 
 from pads import Nodes, Packet, Sent, settle, wait_for
+from support import traces
 
 # linux/uhid.h
 DESTROY, OUTPUT, GET_REPORT, GET_REPORT_REPLY, CREATE2, INPUT2, SET_REPORT, SET_REPORT_REPLY = 1, 6, 9, 10, 11, 12, 13, 14
@@ -132,19 +133,18 @@ KINDS = {
 def read_trace(path):
     """(Kind, [(time_s, report)]) of a recording's first device."""
     name, ids, bus, descriptor, reports = "", (0, 0), BUS_USB, b"", []
-    with open(path, errors="replace") as file:
-        for line in file:
-            words = line.split()
-            if line.startswith("D:") and reports:
-                break
-            if line.startswith("N:"):
-                name = line[2:].strip()
-            elif line.startswith("I:"):
-                bus, ids = int(words[1], 16), (int(words[2], 16), int(words[3], 16))
-            elif line.startswith("R:"):
-                descriptor = bytes.fromhex("".join(words[2:]))
-            elif line.startswith("E:"):
-                reports.append((float(words[1]), bytes.fromhex("".join(words[3:]))))
+    for letter, rest in traces.lines(path, "DNIRE"):
+        words = rest.split()
+        if letter == "D" and reports:
+            break
+        if letter == "N":
+            name = rest.strip()
+        elif letter == "I":
+            bus, ids = int(words[0], 16), (int(words[1], 16), int(words[2], 16))
+        elif letter == "R":
+            descriptor = bytes.fromhex("".join(words[1:]))
+        elif letter == "E":
+            reports.append((float(words[0]), bytes.fromhex("".join(words[2:]))))
     features = {(0x054c, 0x0ce6): _dualsense_feature, (0x054c, 0x09cc): _ds4_feature}
     feature = features.get(ids) if bus == BUS_BLUETOOTH else None
     neutral = bytearray(reports[0][1] if reports else b"\0")

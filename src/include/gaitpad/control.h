@@ -1,4 +1,9 @@
-// Stick and stylization state to gait parameters (Meredith & Maddock 2005, section 3.1).
+// Stick and stylization state to gait parameters (Meredith & Maddock 2005, section 3.1). All
+// functions are stateless, allocate nothing and may be called in every tick; the walk smooths what
+// changes between ticks.
+//
+//   const gaitpad::GaitLimits limits = gaitpad::gait_limits(model.leg_length_m);
+//   const gaitpad::GaitParams params = gaitpad::gait_params(stick, style, limits);
 #pragma once
 #include <array>
 #include <cmath>
@@ -12,47 +17,46 @@
 
 namespace gaitpad {
 
-// An adult with 0.84 m of leg at full deflection. Step length over cadence, the walk ratio, stays
-// the same at every speed (adults: 0.52 to 0.64 cm per step/min), so length = sqrt(60 s ratio
-// speed).
+// An adult with a leg of 0.84 m at full deflection. The walk ratio, step length over cadence, is
+// constant over speed (adults: 0.52 to 0.64 cm per step/min): length = sqrt(60 s * ratio * speed).
 inline constexpr double kMaxSpeed_m_s = 1.5;
 inline constexpr double kWalkRatio_m_min = 0.0058;  // metres per step a minute
 inline constexpr double kMaxStepTime_s = 1.1;       // slower walks shorten the step instead
 inline constexpr double kTurnInPlaceStepTime_s = 0.6;
 inline constexpr double kMaxTurnRate_rad_s = 1.0;
-// Backwards a walker goes at this share of its forward speed, in steps this much shorter than
-// forward ones at that speed.
+// Walking backwards: the share of the forward speed, and the factor on the length that a forward
+// step has at the same speed.
 inline constexpr double kBackwardShare = 0.45;
 inline constexpr double kBackwardStep = 0.8;
-// Backward deflection counts beyond this share of the sideways one, 10 degrees behind the side: a
-// thumb that turns on the spot is not to step back and forth.
+// Backward deflection counts only beyond this share of the sideways one, which is 10 degrees behind
+// the side: a thumb that turns on the spot must not step back and forth.
 inline constexpr double kBackwardSector = 0.176;
 inline constexpr double kFullFatigueLeaves = 0.4;  // of maximum speed and of maximum stride
 
-// What a character can do at full deflection.
+// What a character does at full deflection.
 struct GaitLimits {
   double max_speed_m_s = kMaxSpeed_m_s;
   double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);
   double max_step_time_s = kMaxStepTime_s;
-  double turn_step_time_s = kTurnInPlaceStepTime_s;  // of a turn in place, a closing step
-  double max_turn_rate_rad_s = kMaxTurnRate_rad_s;   // the same for all: side by side they stay so
+  double turn_step_time_s = kTurnInPlaceStepTime_s;  // of a turn in place and of a closing step
+  double max_turn_rate_rad_s = kMaxTurnRate_rad_s;   // equal for all, so walkers stay side by side
 };
-// Lengths scale with the leg (the paper). Step times scale with its fourth root and speeds with the
-// rest, half-way between the paper's plain proportion and equal Froude numbers, at which a child's
-// legs would have to turn round faster than they can be followed smoothly at 240 Hz.
+// The limits for a leg length (hip to ankle). Lengths scale with the leg, as in the paper. Step
+// times scale with its fourth root and speeds with length over time. That is half-way between the
+// paper's proportion and equal Froude numbers, at which the legs of a child would move too quickly
+// to be tracked smoothly at 240 Hz.
 GaitLimits gait_limits(double leg_length_m) noexcept;
 
-// What fatigue (0 .. 1) leaves of maximum speed and maximum stride.
+// The share of maximum speed and maximum stride that fatigue (0 .. 1) leaves.
 double vigour(double fatigue) noexcept;
 
-// Stateless: the walk smooths what changes between ticks. Only stick.left is read. Backward
-// deflection walks backwards, sideways alone turns in place.
+// The parameters that a stick and a style ask for. Only stick.left is read. Forward deflection
+// walks, backward deflection walks backwards, sideways deflection turns, alone on the spot.
 GaitParams gait_params(const Stick& stick, const StyleValues& style,
                        const GaitLimits& limits) noexcept;
 
-// Gait parameters that somebody has taken over from the stick, one by one: the window's sliders,
-// a `gait` command of a script.
-
+// Gait parameters that are set in place of what the stick gives, one by one: by the window's
+// sliders or by a `gait` command of a script.
 enum class GaitKey : std::uint8_t {
   speed_m_s,  // (left + right step) / cycle time, backwards negative
   stride_left_m,
@@ -66,37 +70,39 @@ enum class GaitKey : std::uint8_t {
 inline constexpr int kGaitKeys = 8;
 
 struct GaitKeyInfo {
-  std::string_view name;  // as in a command, unit included
-  double min, max;        // what may be given; a character's limits bound it further: range_of()
+  std::string_view name;  // as in a command
+  std::string_view unit;  // "m", "m/s", "rad/s"; "x": a factor
+  double min, max;        // what a command may give; range_of() bounds it further
 };
 const GaitKeyInfo& info_of(GaitKey key) noexcept;
 std::optional<GaitKey> gait_key(std::string_view name) noexcept;
-// What `params` say of it.
+// The value that it has in `params`.
 double value_of(GaitKey key, const GaitParams& params) noexcept;
 
 struct GaitRange {
   double min, max;
 };
-// What has an effect on a character with these limits: as far as its stick, or else a style, goes.
+// The values that have an effect on a character with these limits: as far as its stick, or a style,
+// goes.
 GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept;
 
-// Plain, trivially copyable.
+// Plain, trivially copyable. Arrays are indexed by GaitKey.
 struct GaitOverrides {
   std::array<double, kGaitKeys> value{};
   std::array<bool, kGaitKeys> is_set{};
 };
-// The stick's parameters with what is taken over. Total: a value that is no number counts as not
-// taken over, others are bounded by range_of().
-// - Speed takes the place of the forward deflection: strides as at that speed by stick, style and
-//   fatigue, both step times stretched alike until the speed is met or a foot would step quicker or
-//   slower than any stick and style let it (in the sharpest turn: than a stick). 0 stands, whatever
-//   else is given.
-// - The turn rate takes the place of the sideways deflection. Without speed and with a neutral
-//   stick it turns in place.
-// - A stride holds wherever one is asked for, by stick or speed: standing and turning in place ask
-//   for none. Without speed the step keeps the stick's time.
-// - What is not taken over stays as the stick and the style give it; of nothing all of it, bit by
-//   bit.
+// The parameters of stick and style with the overrides in their place. A value that is not a number
+// counts as not set; others are bounded by range_of().
+// - Speed replaces the forward deflection: strides as stick, style and fatigue give at that speed,
+//   both step times stretched by the same factor until the speed is met, or until a foot would step
+//   faster or slower than any stick and style let it (in the sharpest turn: than a stick). Speed 0
+//   stands, whatever else is set.
+// - The turn rate replaces the sideways deflection. Without speed and with a neutral stick it turns
+//   in place.
+// - A stride length counts only when stick or speed ask for strides; standing and turning in place
+// do
+//   not. Without a speed the step keeps the stick's time.
+// - Parameters that are not overridden pass through bit-identically.
 GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitOverrides& overrides,
                        const GaitLimits& limits) noexcept;
 

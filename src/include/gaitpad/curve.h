@@ -1,5 +1,5 @@
-// Small smooth building blocks of the walk: tables, Hermite curves, filters, soft limits.
-// All of them are + - * / and sqrt only, so they give the same bits everywhere.
+// Smooth building blocks of the walk: tables, Hermite curves, filters, soft limits. They use + - *
+// / alone, so they give the same bits everywhere. No heap; everything may be called in a tick.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -49,8 +49,9 @@ inline double h00(double s) noexcept { return 1.0 + s * s * (2.0 * s - 3.0); }
 inline double h10(double s) noexcept { return s * (1.0 - s) * (1.0 - s); }
 inline double h11(double s) noexcept { return s * s * (s - 1.0); }
 
-// A point on its way to a goal: one tick along the cubic from the present position and velocity to
-// the goal's over the remaining time. Constant goals give one cubic; a goal that moves bends it.
+// Moves a point for one tick along the cubic from its position x and velocity v to the goal's,
+// which it reaches after `remaining_s`. A goal that stays gives one cubic; a goal that moves bends
+// it.
 template <class T>
 void approach(T& x, T& v, const T& goal_x, const T& goal_v, double remaining_s,
               double dt_s) noexcept {
@@ -62,7 +63,7 @@ void approach(T& x, T& v, const T& goal_x, const T& goal_v, double remaining_s,
   v = (v0 + (2.0 * c2 + 3.0 * c3 * s) * s) / remaining_s;
 }
 
-// A difference that fades away: value and slope at the start, both 0 after `duration`.
+// A difference that fades away along a cubic: `value` and `slope` at 0, both 0 from `duration` on.
 struct Fade {
   double value = 0.0, slope = 0.0;  // slope per unit of the argument
   double duration = 1.0;
@@ -73,7 +74,8 @@ struct Fade {
   }
 };
 
-// Critically damped second-order filter (implicit Euler: stable for every dt).
+// Critically damped second-order filter of a value x and its rate v. Implicit Euler: stable for
+// every dt.
 template <class T>
 struct Damped {
   T x{};
@@ -85,7 +87,7 @@ struct Damped {
   }
 };
 
-// max(x, 0) rounded over |x| < width: 0 below, x above, a parabola between.
+// max(x, 0), min(a, b) and max(a, b) with their corner rounded by a parabola over |x| < width.
 inline double soft_positive(double x, double width) noexcept {
   if (x <= -width) return 0.0;
   if (x >= width) return x;
@@ -98,7 +100,7 @@ inline double soft_max(double a, double b, double width) noexcept {
   return a + soft_positive(b - a, width);
 }
 
-// Slope at the last of three evenly spaced values (second order), per spacing.
+// Slope at the last of three evenly spaced values, per spacing (second order).
 template <class T>
 T end_slope(const T& before_last, const T& last, const T& now) noexcept {
   return 0.5 * (3.0 * now - 4.0 * last + before_last);

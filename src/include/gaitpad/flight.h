@@ -1,6 +1,8 @@
-// Foot flights of a walk: when each foot lifts, is highest and lands. Frames are of the ankle
-// joint. Meredith & Maddock 2005, section 3.2 and figure 2 (the literal rule); the robust rule is
-// ours.
+// Foot flights of a walk: the frames in which a foot lifts, is highest and lands, found on the
+// track of its ankle joint. Meredith & Maddock 2005, section 3.2 and figure 2, give the literal
+// rule; it takes any dip for a landing, so a robust rule stands beside it.
+//
+// These functions run when a motion is examined; they allocate.
 #pragma once
 #include <array>
 #include <optional>
@@ -10,9 +12,9 @@
 
 namespace gaitpad {
 
-// Frames count from 0 in the file. A swing over the end of a looping clip has frames >=
-// frames.size(); it always lifts inside the file. A loop's last frame is its first one again, so
-// frame frames.size() - 1 + i is frame i, the pelvis' travel over the clip further on.
+// Frames count from 0 in the file. A swing over the end of a looping clip lifts inside the file and
+// lands at a frame >= frames.size(). A loop's last frame is its first one again, so frame
+// frames.size() - 1 + i is frame i, moved on by the pelvis' travel over the clip.
 struct Swing {
   int heel_off = 0;  // last low of the ankle's height before the lift: the heel begins to rise;
                      // 0 where the file begins later
@@ -23,17 +25,19 @@ struct Swing {
 
 // Robust rule: all swings of a foot that the motion holds whole, in time order. A swing is a run of
 // frames in which the ankle moves horizontally at 0.3 of its usual fast speed or more, for 0.15
-// to 1.8 s and over 0.25 to 2.6 leg lengths; it touches neither end of the file nor a jump (a
-// posture in front that has nothing to do with the motion ends in one). Where a foot has none and
+// to 1.8 s and over 0.25 to 2.6 leg lengths. It touches neither end of the file nor a jump (some
+// files begin with a posture that has nothing to do with the motion). Where a foot has no swing and
 // the last pose is the first one again, the clip is taken as a loop.
 std::vector<Swing> swings(const Motion& motion, Side side);
 
-// Of these the most typical one: nearest to the foot's median duration and length.
+// The most typical one of these: nearest to the foot's median duration and length. None where there
+// is no swing.
 std::optional<Swing> robust_flight(const Motion& motion, Side side);
 
 // The paper's rule to the letter on the ankle's height: the first gradient change - to + within 10
 // % of the range of the lowest height, from there the first + to - within 10 % of the greatest,
-// from there the first - to + within 10 % of the lowest. `heel_off` repeats `lift`.
+// from there the first - to + within 10 % of the lowest. `heel_off` repeats `lift`. None where a
+// target is not found.
 std::optional<Swing> paper_flight(const Motion& motion, Side side);
 // The same on bare heights.
 std::optional<Swing> paper_flight(const std::vector<double>& heights);

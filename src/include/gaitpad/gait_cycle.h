@@ -1,5 +1,6 @@
 // One full stride of a walk, made periodic, with its events: the data module's one output format
-// (Meredith & Maddock 2005, section 3.2). Captured and procedural walks look the same from here on.
+// (Meredith & Maddock 2005, section 3.2). Captured, procedural and key-framed walks look the same
+// from here on.
 //
 // Frames. The walk is seen in its own *travel frame*: x to the walker's left, y up with the floor
 // at 0, z along the direction of travel, moving with the walk's mean speed. Segment rotations are
@@ -7,7 +8,7 @@
 // pelvis in its mean orientation, facing +z. In the standing pose every segment rotation is
 // identity.
 //
-// Phase runs 0..1 from one heel strike of the right foot to the next.
+// Phase runs 0 .. 1 from one heel strike of the right foot to the next.
 #pragma once
 #include <array>
 #include <string>
@@ -20,13 +21,13 @@ namespace gaitpad {
 
 inline constexpr int kCycleSamples = 128;  // a cycle; sample i stands at phase i / kCycleSamples
 
-// The leg's build in the standing pose. Vectors in the standing pose's axes, metres.
+// A leg's build in the standing pose. Vectors are along the standing pose's axes, in metres.
 struct LegModel {
   LegJoints joints;
   vec3 hip_m{0.0};                  // from the pelvis joint to the hip joint (pelvis frame)
-  double thigh_m = 0, shank_m = 0;  // along -y
+  double thigh_m = 0, shank_m = 0;  // lengths, along -y
   vec3 heel_m{0.0}, toe_m{0.0};     // from the ankle joint (foot frame); heel_m.y = -ankle height
-  vec3 toe_end_m{0.0};              // from the toe joint (toe frame); 0 if they are one
+  vec3 toe_end_m{0.0};              // from the toe joint (toe frame); 0 if they are one joint
   double toe_rest_m = 0, toe_end_rest_m = 0;  // height above the floor when standing
   // Standing rotation of each chain joint's own frame: joint world rotation = segment rotation *
   // standing rotation, seen with the walker facing +z. Order: hip, knee, ankle, toe.
@@ -34,9 +35,10 @@ struct LegModel {
   double length_m() const { return thigh_m + shank_m; }
 };
 
+// One leg at one phase. The angles put the model's ankle and foot where ankle_m and foot say.
 struct LegSample {
   LegAngles angles{};
-  double toe_x = 0.0;                    // toe = foot Rx(toe_x); lifting the toe end is negative
+  double toe_x = 0.0;                    // radians: toe = foot Rx(toe_x); toe end up is negative
   vec3 ankle_m{0.0};                     // travel frame
   quat foot = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation in the travel frame
 };
@@ -58,47 +60,47 @@ struct GaitCycle {
 
   double duration_s = 0.0;  // of the stride in the source
   double stride_m = 0.0;    // travel in it
-  // Taken of the heel points while the feet stand flat: from the other foot's along the travel (the
-  // two add up to stride_m), and sideways from the pelvis' mean path (+ left).
+  // By Side, measured on the heels while the feet stand flat: from the other foot's heel along the
+  // travel (the two add up to stride_m), and sideways from the pelvis' mean path (+ left).
   std::array<double, 2> step_m{};
   std::array<double, 2> track_m{};
-  // Events as phases. A foot strikes heel first (or flat): the heel point is down to a quarter of
-  // its greatest speed. Its toe leaves last: the toe point exceeds half the walk's speed.
+  // Events as phases. A foot strikes when its heel point has slowed down to a quarter of its
+  // greatest speed. It lifts when its toe point exceeds half the walk's speed.
   std::array<double, 2> strike{};   // right = 0, left about 0.5
   std::array<double, 2> toe_off{};  // left about 0.12, right about 0.62
 
   std::vector<CycleSample> samples;  // kCycleSamples, periodic
-  // kCycleSamples x joints: every joint's local rotation (joint 0: in the travel frame), neighbours
-  // in the same hemisphere, periodic. The legs' stand as `samples` say. To turn the whole body,
-  // turn local[0]; what hangs on joints between root and pelvis then follows.
+  // kCycleSamples x joints: every joint's local rotation (joint 0: in the travel frame), periodic,
+  // neighbours in the same hemisphere. The legs' rotations are those of `samples`. Turning local[0]
+  // turns the whole body.
   std::vector<quat> local;
   std::vector<quat> standing_local;  // joints: local rotations of the standing pose
 };
 
-// Cubic (Catmull-Rom) interpolation at any phase; noexcept, no allocation.
+// The cycle at any phase, whole turns included: Catmull-Rom between samples. No allocation.
 CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept;
-// Local rotations of all joints at a phase into pose.local (pose.root_m untouched).
+// The same for the local rotations of all joints. Sets pose.local and pose.joint_count, not
+// pose.root_m.
 void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept;
 
 // Finds the best full stride of a motion and makes it periodic: heading and travel taken out, the
-// seam faded, at most 16 harmonics kept. The model's ankles stand where the captured ones do, but
-// for knees nearer to straight than some 3 degrees (fractions of a millimetre) or bent backwards (a
-// few). Fails with one sentence, `NAME: cause`, where there is no walk of both feet in it (a run is
-// none).
+// seam faded, at most 16 harmonics kept. The model's ankles stand where the captured ones do,
+// except where a knee is nearer to straight than about 3 degrees (off by fractions of a millimetre)
+// or bent backwards (off by a few millimetres). Error `NAME: cause` where the motion holds no walk
+// of both feet; a run is none.
 Result<GaitCycle> gait_cycle(const Motion& motion);
 
 // The embedded default: an adult with 0.84 m of thigh + shank, 120 Hz, one exactly periodic and
-// left-right symmetric stride from published normative curves; arms after Boulic et al. 1990.
+// left-right symmetric stride from published normative curves, arms after Boulic et al. 1990.
 GaitCycle procedural_gait();
 // The same walk as a motion of several strides (for `gaitpad motion`, export and tests).
 Motion procedural_motion();
 
-// A walk on another skeleton with two legs: retargeting by the leg-length ratio.
-
-// `source` as the skeleton of `character` walks it. How that one stands is measured on its own walk
-// where it has one, else on the frame of its file in which it stands straightest. Leg angles and
-// foot rotations are taken over, lengths grow by the ratio of the legs; spine, neck, head and arms
-// follow their counterparts whatever they are called (cycle_upper_body.h). Error: `NAME: cause`.
+// Retargets a walk (section 3.2): `source` as the skeleton of `character` walks it. How the
+// character stands is measured on its own walk where it has one, else on the frame of its file in
+// which it stands straightest. Leg angles and foot rotations are taken over, and lengths grow by
+// the ratio of the legs. Spine, neck, head and arms follow their counterparts, whatever they are
+// called; other joints follow those of equal name. Error `NAME: cause`.
 Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& character);
 
 // Thigh + shank, the mean of both legs.

@@ -1,6 +1,7 @@
-// A hash of pose bits that is the same on every machine: 64-bit words instead of FNV-1a's bytes,
-// with its offset and prime, and a shift that brings the upper half down, which multiplying alone
-// never does. Eight times fewer steps than FNV-1a; no defence against an adversary.
+// A hash of the bits of poses, equal on every machine: two walks are the same bit by bit if their
+// hashes are. It is FNV-1a on 64-bit words instead of bytes, with FNV's offset and prime, and a
+// shift after each product, because a product alone never carries upper bits down. Eight times
+// fewer steps than FNV-1a. It does not resist an adversary.
 #pragma once
 #include <bit>
 #include <cstdint>

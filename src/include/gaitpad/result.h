@@ -1,4 +1,9 @@
-// A value or one sentence that says why there is none. For set-up code; the loop uses statuses.
+// A value, or one sentence that says why there is none. Set-up code returns it, since loading may
+// fail; nothing that runs in a tick does.
+//
+//   const gaitpad::Result<gaitpad::Motion> motion = gaitpad::load_motion(path);
+//   if (!motion) return std::puts(motion.error().message.c_str());
+//   walk(*motion);
 #pragma once
 #include <string>
 #include <utility>
@@ -6,8 +11,8 @@
 
 namespace gaitpad {
 
-// `message` names the thing, the place and the cause: `config/pads/sony.toml:12: unknown axis
-// "left_z"`.
+// `message` is one sentence for a user. It names the thing, the place and the cause:
+// `config/pads/sony.toml:12: unknown axis "left_z"`.
 struct Error {
   std::string message;
 };
@@ -17,11 +22,13 @@ class [[nodiscard]] Result {
  public:
   Result(T value) : content_(std::move(value)) {}
   Result(Error error) : content_(std::move(error)) {}
-  explicit operator bool() const { return content_.index() == 0; }
+  explicit operator bool() const { return content_.index() == 0; }  // whether there is a value
+  // The value; only where there is one.
   T& operator*() { return std::get<0>(content_); }
   const T& operator*() const { return std::get<0>(content_); }
   T* operator->() { return &std::get<0>(content_); }
   const T* operator->() const { return &std::get<0>(content_); }
+  // Why there is no value; only where there is none.
   const Error& error() const { return std::get<1>(content_); }
 
  private:

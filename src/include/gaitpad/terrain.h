@@ -2,9 +2,10 @@
 // Meredith & Maddock 2005, section 3.3: "examination of the surrounding terrain", uneven ground,
 // climbing and descending steps.
 //
-// A terrain is sections in a row along +z, each beginning at the height where the one before ends;
-// sideways they have no end. Before the first one and behind the last it is level. Only a riser of
-// stairs is an edge: everything else bends so little that a sole of 0.25 m lies on it within 4 mm.
+// A terrain is a row of sections along +z. Each begins at the height where the one before ends, and
+// sideways it has no end. Before the first and behind the last section the ground is level. Only
+// the risers of stairs are edges: everything else bends so little that a sole of 0.25 m lies on it
+// within 4 mm. add_section() refuses ground on which a sole would not lie.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,31 +24,34 @@ namespace gaitpad {
 inline constexpr int kMaxSections = 64;
 inline constexpr int kMaxZones = 64;
 inline constexpr int kMaxFieldSide = 1024;  // samples
-// Of the height along any straight line on the ground but across a riser: its second derivative.
-// A chord of s metres then leaves the ground by bend s^2 / 8 at most: 4 mm at 0.25 m.
+// Bound on the second derivative of the height along any straight line that crosses no riser. A
+// chord of s metres then leaves the ground by bend s^2 / 8 at most: 4 mm at 0.25 m.
 inline constexpr double kMaxBend_1_m = 0.512;
-inline constexpr double kMaxGrade = 0.6;  // steepest fall line
+inline constexpr double kMaxGrade = 0.6;  // rise over run along the steepest line
 
-// What a probe finds under a place.
+// The ground at one place. Risers cut the ground into pieces, counted along +z: if two places are
+// on different pieces, a riser is between them.
 struct Ground {
   double height_m = 0.0;
-  vec3 normal = kUp;  // unit
-  int piece = 0;      // where it changes between two places, an edge (a riser) lies between them
+  vec3 normal = kUp;  // unit, world
+  int piece = 0;
 };
 
 struct FlatSection {
   double length_m = 1.0;
 };
-// Level at both ends: the grade grows over `rounding_m` (a parabola), holds, and fades over
-// another.
+// Level at both ends: over `rounding_m` the grade grows from 0 (a parabola), holds, and over
+// another `rounding_m` it falls back to 0. A negative grade leads down.
 struct SlopeSection {
   double length_m = 1.0, grade = 0.0, rounding_m = 0.5;
 };
-// Riser k stands at k tread_m from the section's begin, a tread behind each. Negative: downstairs.
+// `count` risers. Riser k (from 0) stands k tread_m behind the section's begin, with a tread behind
+// it. A negative rise leads down.
 struct StairsSection {
   double rise_m = 0.17, tread_m = 0.28;
   int count = 1;
 };
+// height_m sin(x_rad_m x + z_rad_m u + phase_rad), with u counted from the section's begin.
 struct Wave {
   double x_rad_m = 0.0, z_rad_m = 0.0, phase_rad = 0.0, height_m = 0.0;
 };
@@ -56,11 +60,12 @@ struct RoughSection {
   double length_m = 1.0, fade_m = 1.0;
   std::array<Wave, 5> wave;
 };
-// Samples of a height field, smoothed by cubic B-splines (so the slope has no jumps and a single
-// pixel no spike), faded to level at both ends and both sides; beyond these it is level.
+// Samples of heights. A section smooths them by cubic B-splines, so that the slope does not jump
+// and a single pixel is no spike, and fades them to level at both ends and both sides. Beyond its
+// sides the section is level.
 struct HeightField {
-  int columns = 0, rows = 0;    // along -x, from the walker's left; along +z
-  std::vector<float> height_m;  // above the section's begin, row by row; scaled() leaves them
+  int columns = 0, rows = 0;    // along -x from the walker's left; along +z
+  std::vector<float> height_m;  // above the section's begin, row by row; times height_scale
 };
 struct FieldSection {
   double length_m = 1.0, fade_m = 1.0, pixel_m = 0.1, height_scale = 1.0;
@@ -69,60 +74,61 @@ struct FieldSection {
 
 using SectionShape =
     std::variant<FlatSection, SlopeSection, StairsSection, RoughSection, FieldSection>;
+// A section in its place.
 struct TerrainSection {
   SectionShape shape;
   double begin_m = 0.0, length_m = 0.0;  // along z
   double base_m = 0.0, end_m = 0.0;      // heights at its begin and its end
-  int piece = 0;                         // of the ground before it
+  int piece = 0;                         // number of the piece that leads up to it
 };
 
-// Who comes here walks in this style. On its border is within.
+// A rectangle of the ground in which everybody walks in one style. Its border belongs to it.
 struct TerrainZone {
   double from_m = 0.0, to_m = 0.0;  // along z
   double left_m = std::numeric_limits<double>::infinity();
   double right_m = -std::numeric_limits<double>::infinity();  // along x: right_m <= x <= left_m
   std::string style;
-  std::string where;  // "course.toml:12", for sentences
+  std::string where;  // "course.toml:12", for error sentences
 };
 
-// Immutable after load. World frame: characters start at z = 0 and walk along +z.
+// Immutable after load. In the world frame: characters start at z = 0 and walk along +z.
 struct Terrain {
   std::string name = "flat";
   std::vector<TerrainSection> sections;
-  std::vector<TerrainZone> zones;  // of several that hold a place the last one counts
+  std::vector<TerrainZone> zones;  // where zones overlap the last one counts
 };
 
-// Total: any place has a ground, NaN too. No heap. On the very line of a riser lies its upper
-// tread.
+// The ground at a place. Every place has one, NaN too. The line of a riser belongs to the upper
+// tread. No heap.
 Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept;
 
-// From the riser before a place to the one behind it, along z; without one infinite.
+// A stretch along z between two risers; infinite on a side without one.
 struct Stretch {
   double from_m = -std::numeric_limits<double>::infinity();
   double to_m = std::numeric_limits<double>::infinity();
 };
+// The piece of ground that a place is on.
 Stretch piece_at(const Terrain& terrain, double z_m) noexcept;
 
-// One plane at height 0: no section changes anything.
+// True if all of it is one plane at height 0.
 bool is_flat(const Terrain& terrain) noexcept;
 // The shortest stretch between two risers; infinite where there are none.
 double least_tread_m(const Terrain& terrain) noexcept;
 // Where the last section ends; 0 without any.
 double length_m(const Terrain& terrain) noexcept;
 
-// Puts a section behind the others. Refused, with the cause as the sentence, are numbers that are
-// not finite or out of proportion, ground that bends or climbs too much, and more than
-// kMaxSections.
+// Adds a section behind the others, or returns the cause why not: a number is not finite or out of
+// proportion, the ground bends or climbs too much, or there are kMaxSections already.
 std::optional<Error> add_section(Terrain& terrain, const SectionShape& shape);
-// The greatest height is at most `amplitude_m` off the mean; no wave is shorter than
-// `wavelength_m`.
+// A rough section whose heights stay within `amplitude_m` of the mean and whose waves are
+// `wavelength_m` long or longer. The same seed gives the same ground.
 RoughSection rough_section(double length_m, double amplitude_m, double wavelength_m, double fade_m,
                            std::uint32_t seed);
 
-// The same ground, all lengths and heights times `factor` (> 0), the zones' too.
+// The same ground with all lengths and heights times `factor` (> 0), also those of the zones.
 Terrain scaled(const Terrain& terrain, double factor);
 
-// One plane at height 0, shared by all that walk on it.
+// One plane at height 0, shared by everybody who walks on it.
 std::shared_ptr<const Terrain> flat_terrain();
 
 }  // namespace gaitpad

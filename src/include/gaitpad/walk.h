@@ -1,6 +1,18 @@
-// The upper body of a walk: the data's, but for arms that swing as far as the pace asks, hands and
-// head that are to be somewhere, and joints that follow by their weights (equation 5). Nothing in
-// here moves pelvis or legs. Internal to the walk.
+// The animation module: a character that walks where the gait parameters say.
+// Meredith & Maddock 2005, section 3.3: the two-stage cycle of Table I, feet along the flight paths
+// of the data, legs posed by weighted half-Jacobian inverse kinematics, the rest of the body from
+// the data by a time-warp. Section 5 (future work): weights for arms, spine and head.
+//
+// Model, state and step are apart. A WalkModel is immutable and may be shared by many walkers. A
+// WalkState and a Pose belong to one walker; both are plain data in the caller's memory and may be
+// copied, kept and compared. standing() makes a state, and advance() moves it on by one tick:
+//
+//   Pose pose;
+//   WalkState state = standing(model, vec3(0.0), pose);
+//   for (;;) advance(model, params, IkMode::robust, 1.0 / 240.0, state, pose);
+//
+// advance() is noexcept and uses no heap, lock, clock or libm trigonometry. The same model,
+// parameters and tick length give the same bits on every machine.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,37 +23,8 @@
 
 namespace gaitpad {
 
-struct Tick;
-struct WalkModel;
-struct WalkState;
-enum class IkMode : unsigned char;
-
-// BodyParams are numbers alone, so they can be smoothed one like the other.
-using BodyValues = std::array<double, sizeof(BodyParams) / sizeof(double)>;
-
-// Plain, trivially copyable.
-struct BodyState {
-  BodyParams goal, now;                   // asked for; smoothed
-  BodyValues per_s{};                     // rate of `now`
-  int unsettled_ticks = 0;                // until `now` is `goal`
-  std::array<double, 2> swing{1.0, 1.0};  // factor on the data's arm swing in this tick
-  std::array<double, 2> rail_ground_m{};  // smoothed ground under a rail
-  std::array<double, 2> rail_ground_m_s{};
-};
-
-// Smooths the parameters of the upper body. In paper mode the pace does not act on the arms: the
-// data's upper body is left as it is.
-void smooth_body(const Tick& tick, IkMode mode, WalkState& state) noexcept;
-// On the data's local rotations of this phase, before they fade to a stand.
-void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
-// Spine, arms and head of a pose whose legs are done.
-void pose_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
-
-// The animation module: a character that walks where the gait parameters say.
-// Meredith & Maddock 2005, section 3.3: the two-stage cycle of Table I, feet along the flight paths
-// of the data, legs posed by weighted half-Jacobian IK, the rest of the body from the data by a
-// time-warp.
-
+// paper: the paper's steps 1-7 to the letter; no joint limits, and the solver may fail.
+// robust: damped, within joint limits, continuous; for characters that people look at.
 enum class IkMode : std::uint8_t { paper, robust };
 enum class Stage : std::uint8_t {
   idle,    // both feet planted
@@ -49,52 +32,55 @@ enum class Stage : std::uint8_t {
   roll,    // Table I (b): the landed heel and the other foot's toe are planted
 };
 
-// What one tick did, for export, tests and panels. World frame: y up, floor 0, heading 0 along +z.
+// What one tick did, for export, tests and panels. World frame, metres: y up, floor 0, heading 0
+// along +z, x to the left at heading 0. Arrays are indexed by Side.
 struct WalkFrame {
   Stage stage = Stage::idle;
   Side swing = kLeftSide;    // flight: the flying foot; roll: the foot that has just landed
-  double heading_rad = 0.0;  // not wrapped, positive to the left
+  double heading_rad = 0.0;  // positive to the left; whole turns add up
   double turn_rate_rad_s = 0.0;
   double speed_m_s = 0.0;  // (left + right step) / cycle time of the running cycle; 0 when idle
   vec3 pelvis_m{0.0};
-  std::array<double, 2> stride_m{};  // length in force for that foot's step; backwards negative
+  std::array<double, 2>
+      stride_m{};  // length of that foot's running or last step; backwards negative
   std::array<bool, 2> heel_planted{true, true}, toe_planted{true, true};
   std::array<vec3, 2> heel_m{}, toe_m{};
-  std::array<int, 2> ik_iterations{};
-  std::array<double, 2> ik_error_m{};
-  std::array<bool, 2> ik_failed{};
-  std::array<int, 2> steps{};  // landings so far
-  // Height of the ground under the points, planted or not.
+  std::array<int, 2> ik_iterations{};  // of all solves of that leg in this tick
+  std::array<double, 2> ik_error_m{};  // of the last one of them
+  std::array<bool, 2> ik_failed{};     // it did not converge
+  std::array<int, 2> steps{};          // landings so far
+  // Height of the ground under heel and toe, planted or not.
   std::array<double, 2> heel_ground_m{}, toe_ground_m{};
   int overhangs = 0;  // landings so far on a tread too short for the foot
 };
 
+// support: on its toe; flight: in the air; roll: landed on its heel, the toe comes down.
 enum class FootMode : std::uint8_t { support, flight, roll };
 
-// The plane that a foot stands on or flies to: the ground under its sole.
+// The plane that a foot stands on or flies to: the best fit to the ground under its sole.
 struct FootPlane {
-  vec3 place_m{0.0};      // of the heel
+  vec3 place_m{0.0};      // of the heel, world
   vec3 normal = kUp;      // unit
   quat tilt = kIdentity;  // from level ground
 };
 
-// Where a foot is to be: one of its points on a place, its direction and its pitch.
+// Where a foot is to be.
 struct FootPose {
   vec3 heel_m{0.0}, toe_m{0.0};  // world
   quat tilt = kIdentity;         // from level ground to the foot's own
-  double yaw_rad = 0.0;          // about the vertical, 0: as in the standing pose at heading 0
-  double pitch_rad = 0.0;        // of the heel-toe line, toe down positive, 0: flat on its ground
-  double toe_rad = 0.0;          // toe joint
+  double yaw_rad = 0.0;          // about the vertical; 0 as in the standing pose at heading 0
+  double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
+  double toe_rad = 0.0;          // of the toe joint, toe end down positive
 };
 
-// What keeps a flying foot off the ground that lies between its two planes: the inner control
-// points of two uniform cubic B-splines over the flight.
+// What keeps a flying foot off the ground between its two footholds: two uniform cubic B-splines
+// over the flight, given by their inner control points.
 inline constexpr int kFlightKnots = 8;
 using FlightSpline = std::array<double, kFlightKnots - 1>;
 struct FlightRoom {
-  FlightSpline raise_m{}, shift_m{};  // wanted: up; along z, away from a riser
-  std::array<Damped<double>, kFlightKnots - 1> raise, shift;  // in force
-  vec3 planned_for_m{0.0};                                    // landing
+  FlightSpline raise_m{}, shift_m{};  // planned: up, and along z, away from a riser
+  std::array<Damped<double>, kFlightKnots - 1> raise, shift;  // the same, smoothed and in force
+  vec3 planned_for_m{0.0};                                    // the landing that it is planned for
 };
 
 struct FootState {
@@ -109,38 +95,50 @@ struct FootState {
   std::array<double, 2> reach_rad{};               // pitch beyond the plan, one and two ticks ago
   vec3 lift_m{0.0}, lift_slope_m{0.0};             // heel at lift-off and its slope per flight
   double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // and its slope per flight
-  LegAngles anchor_rad{};      // even pose when the mode began: what stiff joints hold on to
-  FootPlane plane;             // stood on last
+  LegAngles anchor_rad{};      // even pose when the mode began: stiff joints stay near it
+  FootPlane plane;             // that it stands on or stood on last
   double base_m = 0.0;         // height of the ground that the pose is planned over
-  bool crosses_riser = false;  // the running flight
+  bool crosses_riser = false;  // in the running flight
   FlightRoom room;
 };
 
-// What terrain makes of a step; on flat ground all of it stays as it is here.
+// What terrain makes of a step. On flat ground all of it keeps these values.
 struct Foothold {
-  vec3 wanted_m{0.0};        // heel's place as stick and heading have it
+  vec3 wanted_m{0.0};        // the heel's place if the ground were level
   double yaw_rad = 0.0;      // of the foot
-  Stretch piece;             // the landing's, settled when the flight begins
+  Stretch piece;             // piece of ground for the landing, settled when the flight begins
   double share = 1.0;        // of the wanted length that a slope leaves
-  double next_m = 0.0;       // length of the step after it
-  double next_base_m = 0.0;  // and the height of that one's landing
-  double next_rise = 0.0;    // up or down to it, over the leg length
-  bool fits = true;
+  double next_m = 0.0;       // length of the step after this one,
+  double next_base_m = 0.0;  // height of its landing,
+  double next_rise = 0.0;    // and how far up or down it leads, over the leg length
+  bool fits = true;          // the sole does not overhang an edge
 };
 
-// Plain, trivially copyable: all that a walk remembers.
+// What a walk remembers of the upper body.
+struct UpperBodyState {
+  UpperBodyParams goal, now;  // asked for; smoothed and in force
+  std::array<double, sizeof(UpperBodyParams) / sizeof(double)>
+      per_s{};                            // rates of `now`, per second
+  int unsettled_ticks = 0;                // until `now` is `goal`
+  std::array<double, 2> swing{1.0, 1.0};  // factor on the data's arm swing in this tick, by Side
+  // Height of the ground under a rail, smoothed, and its rate.
+  std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};
+};
+
+// All that a walk remembers. Plain, trivially copyable.
 struct WalkState {
   WalkFrame frame;
-  // Clock. A step is a roll and the flight after it; phases count from the right foot's strike.
+  // Clock, in ticks. A step is a roll and the flight after it; phases count from the right foot's
+  // strike.
   Stage stage = Stage::idle;
   Side swing = kLeftSide;
   int tick = 0, stage_ticks = 1;  // in the stage
   int roll_ticks = 0, flight_ticks = 0;
-  int last_step_ticks = 0;  // of the step before
-  bool closing = false;     // the running step brings the feet together
-  bool started = false;
-  bool backward = false;  // the running walk's steps lead backwards
-  double slowness = 1.0;  // of the running step: times are as much longer on steep ground
+  int last_step_ticks = 0;               // of the step before
+  bool closing = false;                  // the running step brings the feet together
+  bool started = false;                  // between the first lean and the last landing
+  bool backward = false;                 // the running walk's steps lead backwards
+  double slowness = 1.0;                 // factor on the running step's times on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
   // Smoothed parameters.
@@ -160,19 +158,22 @@ struct WalkState {
   double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;
-  std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};  // data's, IK even, IK weighted
-  BodyState body;
+  // The data's angles, those of the pose with even weights, and those with weights: the pose's.
+  std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};
+  UpperBodyState body;
 };
 
-// A character standing at `place_m` on the floor, facing +z, and its pose.
+// A character that stands at `place_m`, facing +z, on its terrain; the height of `place_m` does not
+// matter. Sets `pose`.
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept;
 
-// One tick of dt_s seconds (a constant of the run). Total: never fails; what the IK could not reach
-// is flagged in state.frame.
+// Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose.
+// Never fails: what the inverse kinematics could not reach is flagged in state.frame.ik_failed.
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept;
 
-// How much of the data's oscillations and postures shows: none at rest, all from half its pace on.
+// How much of the data's oscillations and postures shows: 0 at rest, 1 from half the data's pace
+// on.
 double presence(const WalkState& state) noexcept;
 
 }  // namespace gaitpad

@@ -1,4 +1,7 @@
-// A character's build, as far as it differs from the motion's own skeleton.
+// Everything about one character's walk that does not change while it walks: the data module's gait
+// cycle, retargeted to the character's legs and laid out in tables (Meredith & Maddock 2005,
+// sections 3.2 and 3.3). A model is immutable after walk_model(), and any number of walkers may
+// share it.
 #pragma once
 #include <array>
 #include <memory>
@@ -15,28 +18,27 @@
 
 namespace gaitpad {
 
+// A character's build, as far as it differs from the motion's own skeleton.
 struct Character {
   std::string name = "as in the motion file";
   double scale = 1.0;      // all bones
   double leg_ratio = 1.0;  // thigh, shank and foot bones, on top of scale
   std::string skeleton;    // BVH file whose skeleton the character brings, empty: the motion's own
 };
-Result<Character> load_character(const std::string& path);
 
-// What is above the hips, as far as a walk poses it anew: arms, spine and head of one character.
-// Meredith & Maddock 2005, section 5 (future work): weights and posture for the upper body.
-
-// Bounds what a tick walks through; a longer way has no IK.
+// Joints from the root to a wrist or the head. A longer path has no inverse kinematics: this bounds
+// what a tick goes through.
 inline constexpr int kMaxBodyPath = 48;
 inline constexpr int kMaxSpineIk = 5;  // joints of the spine that share the work: 3 DOFs each
 
-// One arm. Its *hanging* axes: x the elbow's hinge (to the left), y from elbow to shoulder.
+// One arm, for its inverse kinematics (section 5, future work). Its *hanging* axes are x along the
+// elbow's hinge, to the left, and y from the elbow to the shoulder.
 struct ArmBuild {
-  bool is_there = false;
+  bool is_there = false;  // else nothing of it is set
   ArmChain joints;
-  std::vector<int> path;            // joints from the root to the wrist
-  quat swing_shoulder = kIdentity,  // local rotations, middle of the data's swing
-      swing_elbow = kIdentity;
+  std::vector<int> path;  // joints from the root to the wrist
+  // Local rotations in the middle of the data's swing.
+  quat swing_shoulder = kIdentity, swing_elbow = kIdentity;
   double most_elbow_swing = 1.0;   // factor on the data's swing that would stretch the elbow
   quat hanging = kIdentity;        // the hanging axes in the shoulder joint's frame
   quat chest = kIdentity;          // the walker's axes, standing, in the frame above the shoulder
@@ -46,89 +48,90 @@ struct ArmBuild {
   ArmAngles middle_rad{};          // of the data's swing
 };
 
+// A joint of the spine that shares the work when weights bend it.
 struct SpineJoint {
   int joint = -1;
   quat standing = kIdentity;  // its world rotation in the standing pose
   double upper = 0.0;         // 0 the lowest of the spine .. 1 the uppermost
 };
 
-struct BodyModel {
+// Arms, spine and head. What the skeleton lacks stays empty, and a walk leaves it alone.
+struct UpperBodyModel {
+  UpperBodyJoints
+      joints;  // drawing takes its limbs from here, so they are the ones that are solved
   std::array<ArmBuild, 2> arm;
   double arm_m = kReferenceArm_m;  // shoulder to wrist, mean of the arms
   double shoulder_height_m = 0.0;  // standing
-  double own_step_s = 0.5;         // the data's step, with the time that this character's legs give
+  double own_step_s = 0.5;         // a step's time in the data, for legs of this length
   std::vector<int> spine_path;     // from the root to what carries neck and arms
-  std::vector<SpineJoint> spine;   // those that share the work; fewer than two: none
-  quat spine_base = kIdentity;     // standing rotation of what the spine stands on
-  vec3 neck_m{
-      0.0};  // from the uppermost of them to the middle between the shoulders, standing axes
+  std::vector<SpineJoint>
+      spine;                    // at most kMaxSpineIk; with fewer than two the spine does not bend
+  quat spine_base = kIdentity;  // standing rotation of what the spine stands on
+  vec3 neck_m{0.0};  // from the uppermost one to between the shoulders, in the standing axes
   std::vector<int> head_path;  // from the root to the head; empty: there is none
   int neck_at = 0;             // in head_path: the first neck joint (or the head)
   quat head_standing = kIdentity, chest_standing = kIdentity;  // world rotations
 };
 
-// Of a cycle that has the character's lengths. Total: what it does not find stays off.
-// `leg_ratio`: the character's leg over the leg of the data.
-BodyModel body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_height_m);
-
-// Everything about one character's walk that does not change while it walks: the data module's gait
-// cycle retargeted to the character's legs (Meredith & Maddock 2005, sections 3.2 and 3.3).
-
-inline constexpr int kMaxBetween = 8;  // joints between two of a leg's chain
+inline constexpr int kMaxBetween = 8;  // twist joints between two joints of a leg
 
 using PhaseTable = PeriodicTable<kCycleSamples>;
 inline constexpr int kFlightSamples = 65;
 using FlightCurve = Curve<kFlightSamples>;
 
-// The heel's flight from toe-off (u = 0) to its next strike (u = 1), from the data: the paper's
-// flight path, its height in metres of the character, its progress from 0 to 1.
+// The heel's flight path in the data (figure 2), from toe-off (u = 0) to its next strike (u = 1):
+// progress along the travel from 0 to 1, and height over the floor in metres of the character.
 struct FootFlight {
   FlightCurve progress, height_m;
 };
 
 struct LegBuild {
-  LegModel model;            // character's metres
-  IkChain chain;             // hip joint to foot frame, even weights, joint limits
+  LegModel model;            // in the character's metres
+  IkChain chain;             // from the hip joint to the foot frame: even weights, joint limits
   double foot_m = 0;         // heel to toe
   double elevation_rad = 0;  // of the heel-toe line above the floor when standing
-  vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};  // foot frame: along and across the foot, level
-  // The sole, foot frame: on the floor when standing, from the heel under the ball to the tip.
+  vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};  // foot frame, level: along the foot, across it
+  // The sole in the foot frame: from the heel under the ball to the tip, on the floor when
+  // standing.
   vec3 ball_m{0.0}, tip_m{0.0};
   double half_width_m = 0;
   FootFlight flight;
-  PhaseTable pitch_rad;  // own phase (0 at own strike); of the heel-toe line, toe down positive
+  // Own phases count from the foot's own strike.
+  PhaseTable pitch_rad;  // of the heel-toe line by own phase: 0 standing, toe down positive
   double toe_off = 0.6;  // own phase
   double track_m = 0;    // sideways place of the heel from the pelvis' path, + left
 };
 
 struct WalkModel {
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
-  GaitCycle cycle;  // of the source; skeleton replaced by the character's
+  GaitCycle cycle;  // the data; its skeleton and legs have the character's lengths
   std::array<LegBuild, 2> leg;
   double size = 1.0;        // leg length over kReferenceLeg_m
-  double time_scale = 1.0;  // how much longer than the adult's its times are
+  double time_scale = 1.0;  // factor on the adult's times
   double leg_length_m = 0, source_leg_length_m = 0;
   double source_step_m = 0;  // retargeted: mean step of the data on this character
-  double step_front = 0.5;   // alpha: at a strike, front heel to hips over the step, from the data
-  double rest_lead_m = 0;    // c0: hips before the heels when standing
+  double step_front = 0.5;   // at a strike, front heel to hips over the step length, in the data
+  double rest_lead_m = 0;    // hips before the heels when standing
   double stand_m = 0;        // pelvis height when standing
-  PhaseTable sway_m, bounce_m, surge_m;  // pelvis: sideways, about the mean height, fore-aft
-  PhaseTable yaw_rad;                    // pelvis about the vertical
-  std::array<PhaseTable, 3> tilt;        // the rest of its rotation, as a rotation vector
+  // The pelvis by phase: sideways, about its mean height, fore-aft.
+  PhaseTable sway_m, bounce_m, surge_m;
+  PhaseTable yaw_rad;              // pelvis about the vertical
+  std::array<PhaseTable, 3> tilt;  // the rest of its rotation, as a rotation vector
   std::array<std::array<PhaseTable, kLegDofs>, 2> reference_rad;  // leg angles of the data
   // Shares of the cycle in walking order: roll right, flight left, roll left, flight right.
   std::array<double, 4> share{};
-  std::vector<int>
-      kept;  // joints that the legs' chains pass through: fixed at their standing rotation
-  BodyModel body;
+  std::vector<int> kept;  // twist joints in the legs: fixed at their standing rotation
+  UpperBodyModel body;
 };
 
-// Retargets by the leg-length ratio. Fails only on a character that the skeleton cannot be.
+// Retargets by the ratio of the leg lengths: lengths grow with the leg, times with the fourth root
+// of its ratio to the adult's. Error `NAME: cause` for a character that brings a skeleton of its
+// own and for a leg with more than kMaxBetween twist joints between two of its joints.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
 
-// How much larger a terrain is to be for this walker, 1 where it fits: where a sole, with some room
-// of the walker's own size, does not lie on the shortest tread, all the ground grows by the ratio
-// of the leg to the adult's, and farther if need be.
+// The factor by which a terrain has to grow for this walker: 1 where it fits. Where the sole and
+// some room do not fit on the shortest tread, the ground grows by the ratio of the leg to the
+// adult's, and farther if that is not enough.
 double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept;
 
 }  // namespace gaitpad

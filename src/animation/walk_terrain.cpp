@@ -1,0 +1,656 @@
+// What uneven ground makes of a walk: where a foot may land, and how it flies over what lies
+// between.
+//
+// Footholds. Risers cut the ground into pieces, and a foot stands on one piece. For each piece
+// between the wanted place and the standing foot's, a cost says how much the step would have to
+// become longer, shorter, higher or more sideways, and whether the sole would overhang an edge. The
+// cheapest piece wins; on it the heel goes as near to the wanted place as the room for the sole
+// allows. The foot then gets a plane: the ground's best fit under its sole. When the flight begins,
+// the piece is settled.
+//
+// Flights. A flight is planned over a ground line from one foothold's height to the other's. Where
+// ground rises above this line, a B-spline raises it. The spline's control points are the greatest
+// heights of the ground under the sole in their neighbourhood, and a B-spline stays within the hull
+// of its control points, so it is above all of that ground and never higher than its highest point.
+// Between footholds without a riser the line is straight, and the spline adds only what is missing.
+// At a riser close to a foothold the spline would rise too late or sink too early there, so a
+// second spline moves the foot along z, away from the riser. Down stairs that second spline moves
+// the foot ahead instead, and the first one is drawn taut over the edges, so that the foot sinks
+// early.
+#include "animation/walk_parts.h"
+
+namespace gaitpad {
+namespace {
+
+// --- Footholds -----------------------------------------------------------------------------------
+
+constexpr double kSlopeShortens = 1.0;  // steps per grade
+// The sole keeps kEdgeRoom legs away from an edge, but gives up at most kMostEdgeShare of its room.
+constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
+constexpr int kMostPieces = 8;  // looked at from the wanted one to the standing foot's
+constexpr double kSkew =
+    0.25;  // how willingly a step is moved across the heading, against along it
+// What a piece costs: about the logarithm of how much longer or shorter it makes the step (steps
+// shorter than kLeastStep legs count as that long), and further costs of what the step becomes:
+// stuck in place, sideways, high, overhanging, long. Rises are in legs.
+constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
+constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
+constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
+constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
+constexpr double kCrossWayBackward = 0.6;
+constexpr double kStay = 0.1;       // another piece than before has to be cheaper by this
+constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
+constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
+
+// How far the sole reaches along z from its heel point.
+struct Extent {
+  double back_m = 0.0, front_m = 0.0;
+};
+Extent sole_extent(const LegBuild& leg, double yaw_rad) noexcept {
+  const quat yaw = rotation_y(yaw_rad);
+  const double tip = (yaw * (leg.tip_m - leg.model.heel_m)).z;
+  const double half = std::abs((yaw * leg.side).z) * leg.half_width_m;
+  return {std::min(0.0, tip) - half, std::max(0.0, tip) + half};
+}
+
+// Where the heel may stand on a piece, along z.
+struct Room {
+  double low_m, high_m, lacks_m;
+};
+Room room_on(const Stretch& piece, const Extent& sole, double leg_m) noexcept {
+  const double low = piece.from_m - sole.back_m, high = piece.to_m - sole.front_m;
+  if (high < low) return {0.5 * (low + high), 0.5 * (low + high), low - high};
+  const double edge = std::min(kEdgeRoom * leg_m, kMostEdgeShare * (high - low));
+  return {low + edge, high - edge, 0.0};
+}
+
+struct Step {
+  vec3 from_m{0.0}, lift_m{0.0};  // heels of the foot that stands and of the one that flies
+  Stretch stands, lifts;          // their pieces
+  vec3 forward{0.0, 0.0, 1.0}, wanted_m{0.0};
+  double leg_m = 0.0;
+  Extent sole;
+  double wanted_length_m() const noexcept { return glm::dot(wanted_m - from_m, forward); }
+};
+
+// The longest step over a riser, counted from the foot that stands and over the whole way of the
+// foot that flies: that foot has to rise before it may go forward.
+double longest_to(const Step& step, const Stretch& piece) noexcept {
+  double longest = std::numeric_limits<double>::infinity();
+  const double sign = step.wanted_length_m() < 0.0 ? -1.0 : 1.0;
+  if (piece.from_m != step.stands.from_m) longest = kCrossStep * step.leg_m;
+  if (piece.from_m != step.lifts.from_m) {
+    const double gone = sign * glm::dot(step.from_m - step.lift_m, step.forward);
+    const double way = sign < 0.0 ? kCrossWayBackward : kCrossWay;
+    longest = std::min(longest, std::max(kLeastCross, way - gone / step.leg_m) * step.leg_m);
+  }
+  return longest;
+}
+vec3 wanted_on(const Step& step, const Stretch& piece) noexcept {
+  const double wanted = step.wanted_length_m(), longest = longest_to(step, piece);
+  return step.wanted_m + step.forward * (std::clamp(wanted, -longest, longest) - wanted);
+}
+
+// A move that shifts a place by `dz_m` along z while it leaves the heading as little as it can.
+vec3 shifted(const Step& step, double dz_m) noexcept {
+  const vec3& f = step.forward;
+  const vec3 left = glm::cross(kUp, f);
+  return (f * f.z + left * (left.z * kSkew)) * (dz_m / (f.z * f.z + left.z * left.z * kSkew));
+}
+
+double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) noexcept {
+  const Room room = room_on(piece, step.sole, step.leg_m);
+  const vec3 near = wanted_on(step, piece);
+  const double dz = std::clamp(near.z, room.low_m, room.high_m) - near.z;
+  const vec3 move = shifted(step, dz), place = near + move;
+  const double middle = std::clamp(place.z + 0.5 * (step.sole.back_m + step.sole.front_m),
+                                   piece.from_m + kBeside_m, piece.to_m - kBeside_m);
+  const double rise =
+      std::abs(ground_at(terrain, place.x, middle).height_m - step.from_m.y) / step.leg_m;
+  const double wanted = step.wanted_length_m(),
+               length = glm::dot(place - step.from_m, step.forward),
+               sign = wanted < 0.0 ? -1.0 : 1.0;
+  const double least = kLeastStep * step.leg_m;
+  const double ratio = std::max(0.0, sign * length + least) / (sign * wanted + least);
+  const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
+  const bool stuck = sign * wanted > least && sign * length < kStuck * sign * wanted;
+  const double longer = sign * length - std::min(longest_to(step, piece),
+                                                 std::max(sign * wanted, kLongStep * step.leg_m));
+  return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside +
+         (stuck ? kStuckCosts : 0.0) + kLongCosts * std::max(0.0, longer) / step.leg_m +
+         kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
+         kOverhang * room.lacks_m / step.leg_m;
+}
+
+// Tries the pieces from the one that the wanted place is on back to the standing foot's.
+Stretch best_piece(const Terrain& terrain, const Step& step, const Stretch* settled) noexcept {
+  const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
+  const double stands = step.from_m.z + middle;
+  Stretch piece = piece_at(terrain, step.wanted_m.z + middle), best = piece;
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < kMostPieces; ++n) {
+    double cost = cost_of(terrain, step, piece);
+    if (settled && piece.from_m == settled->from_m) cost -= kStay;
+    if (cost < least) {
+      least = cost;
+      best = piece;
+    }
+    if (stands < piece.from_m) {
+      piece = piece_at(terrain, piece.from_m - kBeside_m);
+    } else if (stands > piece.to_m) {
+      piece = piece_at(terrain, piece.to_m + kBeside_m);
+    } else {
+      break;
+    }
+  }
+  return best;
+}
+
+vec3 place_on(const Step& step, const Stretch& piece, bool& fits) noexcept {
+  const Room room = room_on(piece, step.sole, step.leg_m);
+  fits = room.lacks_m == 0.0;
+  const vec3 near = wanted_on(step, piece);
+  return near + shifted(step, std::clamp(near.z, room.low_m, room.high_m) - near.z);
+}
+
+// Looks at the step after the landing: the hips are planned with its length and height.
+void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
+                WalkState& state) noexcept {
+  const Side next = other(step_foot(state));
+  Step step = landing;
+  step.lift_m = landing.from_m;
+  step.lifts = landing.stands;
+  step.from_m = state.landing_m;
+  step.stands = state.landing.piece;
+  const double wanted =
+      walks_on(tick.params, state) ? step_length(state, next) * state.landing.share : 0.0;
+  step.wanted_m = step.from_m + step.forward * wanted - across_m;
+  const Terrain& terrain = *tick.model.terrain;
+  bool fits = false;
+  const vec3 place = place_on(step, best_piece(terrain, step, nullptr), fits);
+  const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
+  state.landing.next_m = glm::dot(place - step.from_m, step.forward);
+  state.landing.next_base_m = ground_at(terrain, place.x, place.z + middle).height_m;
+  // Of the rise to the next landing and the rest of the flying foot's rise, the greater one.
+  const double step_m = std::abs(state.landing.next_base_m - state.landing_m.y),
+               way_m = std::abs(state.landing.next_base_m - landing.from_m.y);
+  state.landing.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
+}
+
+// The share of its length that a step keeps on a slope.
+double slope_share(const Terrain& terrain, const Step& step, const Stretch& stands) noexcept {
+  const double length =
+      glm::distance(vec2(step.wanted_m.x, step.wanted_m.z), vec2(step.from_m.x, step.from_m.z));
+  if (length < kMoved_m || step.wanted_m.z < stands.from_m || step.wanted_m.z > stands.to_m)
+    return 1.0;
+  const double rise = ground_at(terrain, step.wanted_m.x, step.wanted_m.z).height_m - step.from_m.y;
+  return 1.0 / (1.0 + kSlopeShortens * std::abs(rise) / length);
+}
+
+// The best fit to the ground under a sole: the ground is as far above the plane as below it. Ground
+// beyond the risers around `piece` does not count.
+FootPlane plane_under(const Terrain& terrain, const LegBuild& leg, const vec3& heel_m,
+                      double yaw_rad, const Stretch& piece) noexcept {
+  const quat yaw = rotation_y(yaw_rad);
+  const vec3 sole = yaw * (leg.tip_m - leg.model.heel_m), across = yaw * leg.side;
+  const double length = horizontal_length(sole), half = leg.half_width_m;
+  const vec3 along = vec3(sole.x, 0.0, sole.z) / length;
+  const auto height = [&](double a, double c) {  // of the ground, shares of length and half width
+    const vec3 p = heel_m + along * (a * length) + across * (c * half);
+    return ground_at(terrain, p.x,
+                     std::clamp(p.z, piece.from_m + kBeside_m, piece.to_m - kBeside_m))
+        .height_m;
+  };
+  const std::array<double, 4> corner = {height(0, 1), height(0, -1), height(1, 1), height(1, -1)};
+  const double grade = (corner[2] + corner[3] - corner[0] - corner[1]) / (2.0 * length);
+  const double bank = (corner[0] - corner[1] + corner[2] - corner[3]) / (4.0 * half);
+  const double middle = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);
+  double low = 0.0, high = 0.0;  // of the ground over the plane through the corners
+  const auto compare = [&](double a, double c, double y) {
+    const double over = y - (middle + grade * (a - 0.5) * length + bank * c * half);
+    low = std::min(low, over);
+    high = std::max(high, over);
+  };
+  compare(0, 1, corner[0]);
+  compare(0, -1, corner[1]);
+  compare(1, 1, corner[2]);
+  compare(1, -1, corner[3]);
+  for (const double a : {0.0, 0.35, 0.7, 1.0}) compare(a, 0, height(a, 0));
+  FootPlane plane;
+  plane.place_m = heel_m;
+  plane.place_m.y = middle - grade * 0.5 * length + 0.5 * (low + high);
+  plane.normal = glm::normalize(kUp - along * grade - across * bank);
+  plane.tilt = rotation_between(kUp, plane.normal);
+  return plane;
+}
+
+}  // namespace
+
+double height_on(const FootPlane& plane, const vec3& place_m) noexcept {
+  const vec3& n = plane.normal;
+  return plane.place_m.y -
+         (n.x * (place_m.x - plane.place_m.x) + n.z * (place_m.z - plane.place_m.z)) / n.y;
+}
+
+bool crosses_riser(const Terrain& terrain, const FootPlane& a, const FootPlane& b) noexcept {
+  return piece_at(terrain, a.place_m.z).from_m != piece_at(terrain, b.place_m.z).from_m;
+}
+
+FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
+                         double yaw_rad) noexcept {
+  const LegBuild& leg = model.leg[side];
+  Step step;
+  step.wanted_m = step.from_m = step.lift_m = heel_m;
+  step.leg_m = model.leg_length_m;
+  step.sole = sole_extent(leg, yaw_rad);
+  const Stretch piece =
+      piece_at(*model.terrain, heel_m.z + 0.5 * (step.sole.back_m + step.sole.front_m));
+  bool fits = false;
+  return plane_under(*model.terrain, leg, place_on(step, piece, fits), yaw_rad, piece);
+}
+
+void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
+                     const vec3& across_m) noexcept {
+  const Terrain& terrain = *tick.model.terrain;
+  const Side swing = step_foot(state), stand = other(swing);
+  Foothold& landing = state.landing;
+  const bool flies = state.stage == Stage::flight,
+             first = state.stage == Stage::roll && state.tick <= 1;
+  Step step;
+  step.from_m = state.foot[stand].plane.place_m;
+  step.lift_m = state.foot[swing].plane.place_m;
+  step.stands = piece_at(terrain, step.from_m.z);
+  step.lifts = piece_at(terrain, step.lift_m.z);
+  step.forward = forward;
+  step.leg_m = tick.model.leg_length_m;
+  const double yaw = state.landing_heading_rad;
+  step.sole = sole_extent(tick.model.leg[swing], yaw);
+  const double length = step_length(state, swing);
+  const auto wanted = [&] { return step.from_m + forward * (length * landing.share) + across_m; };
+  if (!flies) {
+    landing.share = 1.0;
+    step.wanted_m = wanted();
+    landing.share = slope_share(terrain, step, step.stands);
+  }
+  step.wanted_m = wanted();
+  const bool moved = glm::distance(step.wanted_m, landing.wanted_m) > kMoved_m ||
+                     std::abs(yaw - landing.yaw_rad) > kTurned_rad || first;
+  if (moved) {
+    landing.wanted_m = step.wanted_m;
+    landing.yaw_rad = yaw;
+    if (!flies) landing.piece = best_piece(terrain, step, first ? nullptr : &landing.piece);
+    const vec3 place = place_on(step, landing.piece, landing.fits);
+    state.landing_plane = plane_under(terrain, tick.model.leg[swing], place, yaw, landing.piece);
+  }
+  state.landing_m = state.landing_plane.place_m;
+  if (moved) look_ahead(tick, step, across_m, state);
+}
+
+namespace {
+
+// --- Flights over the ground between two footholds -----------------------------------------------
+
+constexpr int kProbes = 48;            // along a flight
+constexpr double kRoomAbove_m = 0.02;  // over the ground; metres at the reference leg, as below
+constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
+constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.5;
+constexpr int kTries = 4;
+constexpr double kOver =
+    0.67;  // of the flight: from here a foot on its way down is over its landing's piece
+constexpr int kMostRisers = 4, kTautRounds = 24;
+constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
+constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;
+constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
+constexpr double kRoomSmoothing_s = 0.04;
+constexpr double kReplan_m = 0.005;  // of the landing
+
+// The spline from 0 at u = 0 to `end` at u = 1, with slope 0 at both.
+template <class Knots, class Value>
+constexpr double spline_at(const Knots& knots, double end, double u, const Value& value) noexcept {
+  constexpr int n = kFlightKnots;
+  const auto control = [&](int k) {
+    if (k <= 0) return value(knots[0]) * (k == 0 ? -0.5 : 1.0);
+    if (k < n) return value(knots[k - 1]);
+    return k == n ? 1.5 * end - 0.5 * value(knots[n - 2]) : value(knots[n - 2]);
+  };
+  const double x = std::clamp(u, 0.0, 1.0) * n;
+  const int i = std::min(static_cast<int>(x), n - 1);
+  const double t = x - i, t2 = t * t, t3 = t2 * t;
+  return (control(i - 1) * (1.0 - 3.0 * t + 3.0 * t2 - t3) +
+          control(i) * (4.0 - 6.0 * t2 + 3.0 * t3) +
+          control(i + 1) * (1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3) + control(i + 2) * t3) /
+         6.0;
+}
+constexpr double spline_at(const FlightSpline& knots, double end, double u) noexcept {
+  return spline_at(knots, end, u, [](double k) { return k; });
+}
+
+// 1 in mid-flight, 0 at its ends.
+double in_flight(double u) noexcept {
+  return smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.8, 1.0, u));
+}
+
+using Wanted = std::array<double, kProbes + 1>;
+
+// The outer knots as shares of their neighbours: the smaller, the gentler the spline's ends.
+struct Ends {
+  double first = 0.2, last = 0.2;
+};
+
+// Each knot is the greatest wanted value within its reach. The outer ones are bounded, so that the
+// spline ends gently.
+FlightSpline envelope(const Wanted& wanted, const Ends& ends) noexcept {
+  FlightSpline knots;
+  for (int k = 1; k < kFlightKnots; ++k) {
+    double& knot = knots[k - 1];
+    knot = wanted[k * kProbes / kFlightKnots];
+    for (int i = 0; i <= kProbes; ++i) {
+      if (std::abs(i * kFlightKnots - k * kProbes) < 2 * kProbes) knot = std::max(knot, wanted[i]);
+    }
+  }
+  const auto gentle = [](double knot, double end, double next, double share) {
+    const double most = share * std::abs(next - end);
+    return std::clamp(knot, end - most, end + most);
+  };
+  knots.front() = gentle(knots.front(), 0.0, knots[1], ends.first);
+  knots.back() = gentle(knots.back(), wanted.back(), knots[kFlightKnots - 3], ends.last);
+  return knots;
+}
+
+// The same for values of both signs. Where the spline falls short of them, all of it is multiplied
+// by a gain; no knot exceeds `most`.
+FlightSpline wide_envelope(const Wanted& wanted, double most) noexcept {
+  Wanted positive, negative;
+  for (int i = 0; i <= kProbes; ++i) {
+    positive[i] = std::max(0.0, wanted[i]);
+    negative[i] = std::max(0.0, -wanted[i]);
+  }
+  FlightSpline knots = envelope(positive, Ends{});
+  const FlightSpline other = envelope(negative, Ends{});
+  for (int k = 0; k < kFlightKnots - 1; ++k) knots[k] -= other[k];
+  double gain = 1.0;
+  for (int i = 1; i < kProbes; ++i) {
+    if (std::abs(wanted[i]) < kLeastWanted_m) continue;
+    const double got = spline_at(knots, 0.0, static_cast<double>(i) / kProbes);
+    gain = std::max(gain, got * wanted[i] > 0.0 ? wanted[i] / got : 1.0);
+  }
+  for (double& knot : knots) knot = std::clamp(knot * std::min(gain, kMostGain), -most, most);
+  return knots;
+}
+
+// Sharpens an end if the sideways shift there is too large or was not reached; returns false if
+// neither end changed.
+bool sharpen(const Wanted& beside, const FlightSpline& shift, double size, Ends& ends) noexcept {
+  Ends more = ends;
+  for (int i = 1; i < kProbes; ++i) {
+    const double got = spline_at(shift, 0.0, static_cast<double>(i) / kProbes);
+    const double lack = beside[i] > 0.0 ? beside[i] - got : beside[i] < 0.0 ? got - beside[i] : 0.0;
+    if (lack < kLack_m * size && std::abs(beside[i]) < kEasyShift_m * size) continue;
+    (2 * i < kProbes ? more.first : more.last) =
+        kSharper * (2 * i < kProbes ? ends.first : ends.last);
+  }
+  const bool any = more.first > ends.first || more.last > ends.last;
+  ends = more;
+  return any;
+}
+
+using Sole = std::array<vec3, 5>;  // heel and tip on both sides, ball
+Sole sole_of(const LegBuild& leg, const FootPose& pose) noexcept {
+  const quat foot = foot_rotation(leg, pose);
+  const quat toes = foot * rotation_about(leg.side, -std::max(0.0, pose.pitch_rad));
+  const vec3 ball = pose.heel_m + foot * (leg.ball_m - leg.model.heel_m);
+  const vec3 tip = ball + toes * (leg.tip_m - leg.ball_m);
+  const vec3 side = foot * leg.side * leg.half_width_m;
+  return {pose.heel_m - side, pose.heel_m + side, ball, tip - side, tip + side};
+}
+
+// Height, at p, of the plane through the ground line below the heel that the pose is tilted to.
+double base_under(const FlightPoint& point, const vec3& p) noexcept {
+  const vec3 n = point.pose.tilt * kUp;
+  return point.base_m -
+         (n.x * (p.x - point.pose.heel_m.x) + n.z * (p.z - point.pose.heel_m.z)) / n.y;
+}
+
+// How far to move along z so that no part of the sole is inside a riser that leads up from
+// `height_m` at either end of `piece`.
+double way_back(const Terrain& terrain, const Sole& sole, const Stretch& piece, double height_m,
+                double room, double size) noexcept {
+  double shift = 0.0;
+  for (const vec3& p : sole) {
+    const bool ahead_up =
+        ground_at(terrain, p.x, piece.to_m + kRiser_m).height_m > height_m + kRiser_m;
+    const bool behind_up =
+        ground_at(terrain, p.x, piece.from_m - kRiser_m).height_m > height_m + kRiser_m;
+    if (ahead_up) shift = std::min(shift, piece.to_m - room - p.z);
+    if (behind_up) shift = std::max(shift, piece.from_m + room - p.z);
+  }
+  return std::clamp(shift, -kMostShift_m * size, kMostShift_m * size);
+}
+
+// The climb from lift-off to landing that the spline has to make: 0 where no riser is crossed.
+double climb(const WalkState& state, const FootState& foot) noexcept {
+  return foot.crosses_riser ? state.landing_m.y - height_on(foot.plane, foot.lift_m) : 0.0;
+}
+
+// A flight as planned over its ground line.
+struct Flight {
+  std::array<FlightPoint, kProbes + 1> point;
+  std::array<Sole, kProbes + 1> sole;
+  Wanted left{};  // of the way along z
+  Stretch begin, end;
+  double begin_room = 0.0;
+  double climb = 0.0;
+};
+Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexcept {
+  const WalkModel& model = tick.model;
+  const FootState& foot = state.foot[side];
+  Flight flight;
+  for (int i = 0; i <= kProbes; ++i) {
+    const double u = static_cast<double>(i) / kProbes;
+    flight.point[i] =
+        flight_point(model, state, side, u, foot.pitch_fade.at(u * state.stage_ticks));
+    flight.sole[i] = sole_of(model.leg[side], flight.point[i].pose);
+    flight.left[i] = state.landing_m.z - flight.point[i].pose.heel_m.z;
+  }
+  flight.begin = piece_at(*model.terrain, foot.plane.place_m.z);
+  flight.end = piece_at(*model.terrain, state.landing_m.z);
+  flight.begin_room = kRoomAhead_m * model.size;  // generous: the pitch may still change
+  for (const vec3& p : flight.sole.front())
+    flight.begin_room = std::min(
+        {flight.begin_room, 0.7 * (flight.begin.to_m - p.z), 0.7 * (p.z - flight.begin.from_m)});
+  flight.climb = climb(state, foot);
+  return flight;
+}
+
+// How far the ground line has to rise so that the sole, moved along z by `shift`, clears the
+// ground.
+Wanted wanted_raise(const Tick& tick, const Flight& flight, bool crosses_riser,
+                    const FlightSpline& shift) noexcept {
+  const Terrain& terrain = *tick.model.terrain;
+  const double above_m = kRoomAbove_m * tick.model.size;
+  Wanted above;
+  for (int i = 0; i <= kProbes; ++i) {
+    const double u = static_cast<double>(i) / kProbes, moved = spline_at(shift, 0.0, u);
+    double over = -tick.model.leg_length_m;
+    for (const vec3& p : flight.sole[i])
+      over = std::max(
+          over, ground_at(terrain, p.x, p.z + moved).height_m - base_under(flight.point[i], p));
+    above[i] = crosses_riser ? over + above_m * in_flight(u)
+                             : std::max(0.0, over) + std::clamp(over, 0.0, above_m);
+  }
+  above.front() = 0.0;
+  above.back() = flight.climb;
+  return above;
+}
+
+// In the second half of a flight a shift towards the landing is taken out of `beside` and becomes a
+// share of the way that is left. The share only grows, so the foot is over its landing early and
+// sinks to it; it never overshoots and comes back.
+FlightSpline lead_in(const Flight& flight, Wanted& beside) noexcept {
+  FlightSpline knots;
+  double share = 0.0;
+  for (int k = 1; k < kFlightKnots; ++k) {
+    for (int i = kProbes / 2; i < std::min(kProbes, (k + 2) * kProbes / kFlightKnots); ++i) {
+      if (beside[i] * flight.left[i] > 0.0)
+        share = std::max(share, std::min(1.0, beside[i] / flight.left[i]));
+    }
+    knots[k - 1] = share * flight.left[k * kProbes / kFlightKnots];
+  }
+  for (int i = kProbes / 2; i < kProbes; ++i) {
+    if (beside[i] * flight.left[i] > 0.0) beside[i] = 0.0;
+  }
+  return knots;
+}
+
+// For every flight that does not only lead down.
+void plan_over(const Tick& tick, const WalkState& state, const FootState& foot,
+               const Flight& flight, FlightRoom& room) noexcept {
+  const double size = tick.model.size;
+  const Terrain& terrain = *tick.model.terrain;
+  const Wanted above = wanted_raise(tick, flight, foot.crosses_riser, FlightSpline{});
+  Wanted beside{};
+  // Start gentle; sharpen until the riser is cleared.
+  Ends ends;
+  for (int tries = 0; tries < kTries; ++tries) {
+    room.raise_m = envelope(above, ends);
+    for (int i = 1; i < kProbes; ++i) {
+      beside[i] = 0.0;
+      if (above[i] <= spline_at(room.raise_m, above.back(), static_cast<double>(i) / kProbes))
+        continue;
+      beside[i] = 2 * i < kProbes ? way_back(terrain, flight.sole[i], flight.begin,
+                                             foot.plane.place_m.y, flight.begin_room, size)
+                                  : way_back(terrain, flight.sole[i], flight.end, state.landing_m.y,
+                                             kRoomBeside_m * size, size);
+    }
+    Wanted away = beside;
+    room.shift_m = lead_in(flight, away);
+    const FlightSpline back = wide_envelope(away, kMostShift_m * size);
+    for (int k = 0; k < kFlightKnots - 1; ++k) room.shift_m[k] += back[k];
+    if (!sharpen(beside, room.shift_m, size, ends)) break;
+  }
+}
+
+// Smallest advance that puts the sole past all ground that is higher than the ground line with
+// `raise` and lies before the landing's piece.
+double way_on(const Tick& tick, const Flight& flight, int i, double raise) noexcept {
+  const Terrain& terrain = *tick.model.terrain;
+  const double room = kRoomBeside_m * tick.model.size, least = kLeastWanted_m * tick.model.size;
+  const bool ahead = flight.left[i] > 0.0;
+  double on = 0.0;
+  for (int risers = 0; risers < kMostRisers; ++risers) {
+    for (const vec3& p : flight.sole[i]) {
+      const double z = p.z + on;
+      if (ahead ? z >= flight.end.from_m : z <= flight.end.to_m) continue;
+      if (ground_at(terrain, p.x, z).height_m <= base_under(flight.point[i], p) + raise + least)
+        continue;
+      const Stretch piece = piece_at(terrain, z);
+      on += ahead ? piece.to_m + room - z : piece.from_m - room - z;
+    }
+  }
+  return on;
+}
+
+// How much each knot counts at each probe of the flight.
+constexpr auto kKnotWeights = [] {
+  std::array<Wanted, kFlightKnots - 1> weights;
+  for (int k = 0; k < kFlightKnots - 1; ++k) {
+    FlightSpline alone{};
+    alone[k] = 1.0;
+    for (int i = 0; i <= kProbes; ++i)
+      weights[k][i] = spline_at(alone, 0.0, static_cast<double>(i) / kProbes);
+  }
+  return weights;
+}();
+
+// Lowers the inner knots until the spline is a taut line over what is wanted, less some of its
+// room: the envelope alone holds each height for two knots longer than needed. Where the spline is
+// too low already, it sinks no further.
+void draw_taut(const Wanted& wanted, double room_m, FlightSpline& knots) noexcept {
+  Wanted slack;
+  for (int i = 0; i <= kProbes; ++i) {
+    const double u = static_cast<double>(i) / kProbes;
+    const double spare = (1.0 - kTautRoom) * room_m * in_flight(u);
+    slack[i] = std::max(0.0, spline_at(knots, wanted.back(), u) - wanted[i] + spare);
+  }
+  for (int round = 0; round < kTautRounds; ++round) {
+    for (int k = kFlightKnots - 3; k > 0; --k) {
+      const Wanted& weight = kKnotWeights[k];
+      double fall = knots[k] - 0.5 * (knots[k - 1] + knots[k + 1]);
+      for (int i = 0; i <= kProbes; ++i) {
+        if (weight[i] > kLeastWeight) fall = std::min(fall, slack[i] / weight[i]);
+      }
+      knots[k] -= fall;
+      for (int i = 0; i <= kProbes; ++i) slack[i] -= fall * weight[i];
+    }
+  }
+}
+
+// True for a flight over risers that all lead down.
+bool leads_down(const Tick& tick, const Flight& flight) noexcept {
+  if (flight.climb > -kRiser_m) return false;
+  const Wanted above = wanted_raise(tick, flight, true, FlightSpline{});
+  return *std::max_element(above.begin(), above.end()) < kRoomAbove_m * tick.model.size + kRiser_m;
+}
+
+// How far ahead of its own path the foot has to be to come over its landing's piece in time: a
+// growing share of the way that is left, as in lead_in().
+FlightSpline early_lead(const Tick& tick, const Flight& flight) noexcept {
+  constexpr int over = static_cast<int>(kOver * kProbes);
+  const double left = flight.left[over];
+  const double needed =
+      std::abs(left) < kLeastLeft_m ? 0.0 : way_on(tick, flight, over, flight.climb) / left;
+  const double share = std::clamp(needed, 0.0, 1.0);
+  FlightSpline knots;
+  for (int k = 1; k < kFlightKnots; ++k) {
+    knots[k - 1] = share * smoothstep(0.0, kOver, static_cast<double>(k) / kFlightKnots) *
+                   flight.left[k * kProbes / kFlightKnots];
+  }
+  return knots;
+}
+
+// Ahead of its own path, the foot sinks as soon as it has passed an edge.
+void plan_down(const Tick& tick, const Flight& flight, FlightRoom& room) noexcept {
+  room.shift_m = early_lead(tick, flight);
+  const Wanted above = wanted_raise(tick, flight, true, room.shift_m);
+  room.raise_m = envelope(above, Ends{});
+  draw_taut(above, kRoomAbove_m * tick.model.size, room.raise_m);
+}
+
+}  // namespace
+
+void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
+  FootState& foot = state.foot[side];
+  FlightRoom& room = foot.room;
+  room.planned_for_m = state.landing_m;
+  const Flight flight = planned_flight(tick, state, side);
+  if (leads_down(tick, flight)) {
+    plan_down(tick, flight, room);
+  } else {
+    plan_over(tick, state, foot, flight, room);
+  }
+  if (foot.mode_ticks != 0) return;
+  for (int k = 0; k < kFlightKnots - 1; ++k) {
+    room.raise[k] = {room.raise_m[k], 0.0};
+    room.shift[k] = {room.shift_m[k], 0.0};
+  }
+}
+
+void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept {
+  FootState& foot = state.foot[side];
+  FlightRoom& room = foot.room;
+  if (glm::distance(room.planned_for_m, state.landing_m) > kReplan_m * tick.model.size)
+    plan_room(tick, state, side);
+  for (int k = 0; k < kFlightKnots - 1; ++k) {
+    const double time_s = kRoomSmoothing_s * tick.model.time_scale;
+    room.raise[k].advance(room.raise_m[k], time_s, tick.dt_s);
+    room.shift[k].advance(room.shift_m[k], time_s, tick.dt_s);
+  }
+  const auto in_force = [](const Damped<double>& k) { return k.x; };
+  const double raise = spline_at(room.raise, climb(state, foot), u, in_force);
+  const vec3 move(0.0, raise, spline_at(room.shift, 0.0, u, in_force));
+  foot.base_m += raise;
+  foot.pose.heel_m += move;
+  foot.pose.toe_m += move;
+}
+
+}  // namespace gaitpad

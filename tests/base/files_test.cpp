@@ -1,0 +1,61 @@
+#include "base/files.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "tests/own_folder.h"
+#include "tests/value_of.h"
+
+namespace gaitpad {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Files : public testing::Test {
+ protected:
+  std::string text_of(const std::string& name) const {
+    return value_of(file_text(own_.at(name), 100));
+  }
+  OwnFolder own_;
+};
+
+TEST_F(Files, ReadingIsBounded) {
+  own_.write("a", std::string(100, 'x'));
+  own_.write("b", std::string(101, 'x'));
+  EXPECT_EQ(text_of("a").size(), 100u);
+  EXPECT_EQ(file_text(own_.at("b"), 100).error().message, own_.at("b") + ": larger than 100 bytes");
+  EXPECT_EQ(file_text(own_.at("no"), 1).error().message, own_.at("no") + ": no such file");
+  const std::string fifo = own_.at("fifo");
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_EQ(file_text(fifo, 1).error().message, fifo + ": not a regular file");
+}
+
+TEST_F(Files, WritingReplacesTheFileAndLeavesNothingBeside) {
+  EXPECT_FALSE(write_file(own_.at("a"), "one"));
+  EXPECT_FALSE(write_file(own_.at("a"), "two"));
+  EXPECT_EQ(text_of("a"), "two");
+  EXPECT_EQ(own_.entries(), 1);
+  EXPECT_FALSE(write_file(own_.at("new/folder/b"), "three"));
+  EXPECT_EQ(text_of("new/folder/b"), "three");
+  EXPECT_EQ(write_file(own_.at("new"), "four")->message,
+            own_.at("new") + ": cannot be written: Is a directory");
+  EXPECT_EQ(own_.entries(), 2);
+}
+
+TEST_F(Files, SavingKeepsWhatStoodThereAndFollowsLinks) {
+  fs::create_symlink("real", own_.at("link"));
+  EXPECT_FALSE(save_text(own_.at("link"), "one"));
+  EXPECT_FALSE(save_text(own_.at("link"), "two"));
+  EXPECT_EQ(text_of("real"), "two");
+  EXPECT_EQ(text_of("real.old"), "one");
+  EXPECT_TRUE(fs::is_symlink(own_.at("link")));
+  EXPECT_EQ(own_.entries(), 3);
+  fs::create_symlink("ring", own_.at("ring"));
+  EXPECT_TRUE(saving_problem(own_.at("ring")));
+  EXPECT_TRUE(save_text(own_.at("ring"), "three"));
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,8 @@
+"""Pictures as their readers see them."""
+import matplotlib.image
+import numpy as np
+
+
+def pixels(path):
+    """(rows, columns, 3) of 0..255."""
+    return np.round(matplotlib.image.imread(path)[:, :, :3] * 255).astype(int)

@@ -1,0 +1,52 @@
+"""Runs gaitpad and judges how it ended."""
+import contextlib
+import os
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Real recordings and motions: beside the repository, unless GAITPAD_DATA names another folder.
+DATA = pathlib.Path(os.environ.get("GAITPAD_DATA") or ROOT.parent / "shared/data")
+ROUND = ROOT / "config/traces/round.hid"
+
+
+def run(program, *arguments, status=0, **options):
+    """To its end, which must have that exit status (None: any)."""
+    stdin = {} if "input" in options else {"stdin": subprocess.DEVNULL}
+    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False,
+                          **{**stdin, "timeout": 300, **options})
+    assert status is None or done.returncode == status, \
+        f"{' '.join(map(str, arguments))} ended with {done.returncode}, not {status}: {done.stdout[-2000:]}{done.stderr}"
+    return done
+
+
+def refuse(program, *arguments, says=(), status=1, **options):
+    """It must fail and print nothing but one sentence on stderr, which names each of `says`."""
+    done = run(program, *arguments, status=status, **options)
+    assert done.stdout == "", f"{arguments}: {done.stdout}"
+    if status == 1:
+        assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+    for part in [says] if isinstance(says, str) else says:
+        assert part in done.stderr, f"{part!r} is not in {done.stderr!r}"
+    return done
+
+
+@contextlib.contextmanager
+def started(program, *arguments, **options):
+    """Runs beside the test and is killed, if it still runs, when the block ends."""
+    with subprocess.Popen([program, *map(str, arguments)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          **{"stdin": subprocess.DEVNULL, **options}) as process:
+        try:
+            yield process
+        finally:
+            if process.poll() is None:
+                process.kill()
+
+
+def end_by(process, *signals, status=0):
+    """(stdout, stderr) of a started program that ends by these signals."""
+    for number in signals:
+        process.send_signal(number)
+    out, errors = process.communicate(timeout=30)
+    assert process.returncode == status, errors
+    return out, errors

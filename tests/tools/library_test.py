@@ -1,0 +1,129 @@
+"""gaitpad as others link it: installed, found by CMake and pkg-config, or fetched as a subproject."""
+import csv
+import io
+import os
+import pathlib
+import re
+import subprocess
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "tools/examples"
+
+
+def call(*command, **options):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False, **options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def installed(program, tmp_path_factory):
+    prefix = tmp_path_factory.mktemp("prefix")
+    call("cmake", "--install", program.parent, "--prefix", prefix)
+    return prefix
+
+
+@pytest.fixture(scope="module")
+def examples(installed, tmp_path_factory):
+    """The examples' own CMake project, built against the installed copy."""
+    folder = tmp_path_factory.mktemp("examples")
+    call("cmake", "-G", "Ninja", "-S", EXAMPLES, "-B", folder, f"-DCMAKE_PREFIX_PATH={installed}",
+         "-DCMAKE_BUILD_TYPE=Release")
+    call("cmake", "--build", folder)
+    return folder
+
+
+def test_core_needs_glm_and_the_standard_library_alone(installed):
+    archive = next(installed.glob("lib/**/libgaitpad_core.a"))
+    undefined = call("nm", "--undefined-only", "--demangle", archive)
+    for foreign in ("toml::", "png_", "SDL_", "fmt::", "nlohmann::", "cairo_", "std::thread", "pthread_create",
+                    "libevdev", "hid_", "libusb"):
+        found = [line for line in undefined.splitlines() if foreign in line]
+        assert not found, f"{foreign}: {found[:3]}"
+
+
+def test_installed_headers_include_nothing_internal(installed):
+    headers = sorted((installed / "include/gaitpad").glob("*.h"))
+    assert len(headers) > 20
+    names = {header.name for header in headers}
+    for header in headers:
+        for include in re.findall(r'#include "([^"]+)"', header.read_text()):
+            assert include.removeprefix("gaitpad/") in names, f"{header.name} includes {include}"
+        assert not re.search(r"#include <(fmt|toml\+\+|nlohmann|png|SDL2|cairo)", header.read_text()), header.name
+
+
+def test_each_installed_header_compiles_alone(installed, tmp_path):
+    unit = tmp_path / "one.cpp"
+    for header in sorted((installed / "include/gaitpad").glob("*.h")):
+        unit.write_text(f"#include <gaitpad/{header.name}>\n")
+        call("g++", "-std=c++20", "-fsyntax-only", "-Wall", "-Werror", "-I", installed / "include", unit)
+
+
+def test_minimal_walk_prints_a_row_a_tick(examples, program, tmp_path):
+    walk = tmp_path / "walk"
+    call(program, "replay", ROOT / "config/traces/round.hid", "--out", walk)
+    rows = list(csv.DictReader(io.StringIO(call(examples / "minimal_walk", walk / "pose.bvh", "0.8"))))
+    assert len(rows) == 2400
+    assert float(rows[-1]["time_s"]) == pytest.approx(2399 / 240, abs=1e-6)
+    assert float(rows[-1]["left_heel_z_m"]) > 8.0, "ten seconds at 0.8 lead more than eight metres ahead"
+
+
+def test_minimal_walk_refuses_a_missing_motion_in_one_sentence(examples):
+    done = subprocess.run([examples / "minimal_walk", "missing.bvh", "0.8"], capture_output=True, text=True,
+                          check=False)
+    assert done.returncode == 1
+    assert done.stderr.count("\n") == 1 and "missing.bvh" in done.stderr
+
+
+def test_solve_leg_reaches_its_goal_with_stiff_and_free_hips(examples):
+    lines = call(examples / "solve_leg").splitlines()
+    assert len(lines) == 2
+    for line in lines:
+        assert float(re.search(r"([\d.]+) m from the goal", line)[1]) < 1e-6
+
+
+def test_own_pad_turns_reports_into_sticks(examples):
+    done = subprocess.run([examples / "own_pad"], capture_output=True, text=True, check=True)
+    rows = [tuple(map(float, line.split(","))) for line in done.stdout.splitlines()[1:]]
+    assert rows[0] == (0, 0, 0), "the default dead zone holds the middle"
+    assert rows[1][:2] == pytest.approx((0, 1), abs=0.01) and rows[1][2] == 1
+    assert rows[2][:2] == pytest.approx((1, 0), abs=0.03)
+    assert "1 of 5 reports were refused" in done.stderr
+
+
+def test_sdl_game_walks_its_character(examples, tmp_path):
+    game = examples / "sdl_game"
+    if not game.exists():
+        pytest.skip("SDL2 is not installed")
+    picture = tmp_path / "game.bmp"
+    text = call(game, "--frames", "300", "--stick", "0,0.8", "--picture", picture,
+                env={**os.environ, "SDL_VIDEODRIVER": "dummy"})
+    assert float(re.search(r"z ([\d.-]+) m", text)[1]) > 3.0
+    assert len(set(picture.read_bytes()[54:])) > 3, "the picture shows a character"
+
+
+def test_pkg_config_finds_the_core(installed, tmp_path):
+    folder = next(installed.glob("lib/**/pkgconfig"))
+    flags = call("pkg-config", "--cflags", "--libs", "gaitpad-core",
+                 env={**os.environ, "PKG_CONFIG_PATH": str(folder)}).split()
+    source = tmp_path / "solve.cpp"
+    source.write_text((EXAMPLES / "solve_leg.cpp").read_text())
+    assert "-lgaitpad_core" in flags
+    call("pkg-config", "--exists", "gaitpad", env={**os.environ, "PKG_CONFIG_PATH": str(folder)})
+
+
+def test_fetch_content_builds_the_core_as_a_subproject(tmp_path):
+    (tmp_path / "CMakeLists.txt").write_text(f"""
+cmake_minimum_required(VERSION 3.25)
+project(consumer LANGUAGES CXX)
+include(FetchContent)
+FetchContent_Declare(gaitpad SOURCE_DIR {ROOT})
+FetchContent_MakeAvailable(gaitpad)
+add_executable(consumer {EXAMPLES}/solve_leg.cpp)
+target_link_libraries(consumer PRIVATE gaitpad::core)
+""")
+    call("cmake", "-G", "Ninja", "-S", tmp_path, "-B", tmp_path / "build", "-DCMAKE_BUILD_TYPE=Release")
+    call("cmake", "--build", tmp_path / "build", "--target", "consumer")
+    assert "m from the goal" in call(tmp_path / "build/consumer")

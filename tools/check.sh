@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# check.sh [--all | --since COMMIT | --slice N | FILE.cpp ...]: checks the layout of every C++ file (clang-format 14) and runs
+# clang-tidy 14 with the checks of .clang-tidy over the sources that changed since COMMIT, default: since main.
+# --all: over all sources, half an hour of processor time. --slice N: over every N-th source; the commit decides where
+# the count begins, so each is checked every N commits or so. --format: the layout alone.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+all=0 tidy=1 since= slice=0 files=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --all) all=1 ;;
+    --format) tidy=0 ;;
+    --since)
+      since=${2:?check.sh: --since needs a commit}
+      shift
+      ;;
+    --slice)
+      slice=${2:?check.sh: --slice needs a number}
+      shift
+      ;;
+    -*)
+      echo "check.sh: unknown option $1" >&2
+      exit 2
+      ;;
+    *) files+=("$1") ;;
+  esac
+  shift
+done
+
+bash tools/install.sh clang-format clang-tidy
+# /usr/bin: the versions of Debian 12, whatever else is on PATH.
+git ls-files -z '*.cpp' '*.h' '*.c' | xargs -0 /usr/bin/clang-format --dry-run -Werror
+[ $tidy -eq 1 ] || exit 0
+
+sources() { git ls-files 'src/*.cpp' 'drivers/*.cpp' 'tools/*.cpp' ':!tools/fuzz' ':!tools/examples'; }
+# Changed sources, and for each changed header the first source that includes it.
+changed_sources() {
+  local name header
+  while read -r name; do
+    [ -f "$name" ] || continue
+    case $name in
+      src/*.cpp | drivers/*.cpp | tools/*.cpp) echo "$name" ;;
+      src/*.h | drivers/*.h)
+        header=${name#src/}
+        header=${header#include/}
+        sources | xargs grep -lF "\"$header\"" 2>/dev/null | head -n 1 || true
+        ;;
+    esac
+  done < <(git diff --name-only "$1")
+}
+if [ $all -eq 1 ]; then
+  mapfile -t files < <(sources)
+elif [ "$slice" -gt 0 ]; then
+  first=$((16#$(git rev-parse --short=4 HEAD) % slice))
+  mapfile -t files < <(sources | awk -v n="$slice" -v first="$first" 'NR % n == first')
+elif [ ${#files[@]} -eq 0 ]; then
+  if [ -z "$since" ]; then
+    for branch in origin/main main; do
+      since=$(git merge-base HEAD "$branch" 2>/dev/null) && break
+    done
+  fi
+  [ -n "$since" ] || since=HEAD
+  mapfile -t files < <(changed_sources "$since" | sort -u | grep -Fxf <(sources) || true)
+fi
+if [ ${#files[@]} -eq 0 ]; then
+  echo "clang-tidy: no source changed"
+  exit 0
+fi
+
+build=$root/build-tidy
+if [ ! -f "$build/compile_commands.json" ] ||
+  [ -n "$(find . -name CMakeLists.txt -newer "$build/compile_commands.json" -not -path './build*' -print -quit)" ]; then
+  mkdir -p "$build"
+  cmake -S . -B "$build" -G Ninja -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >"$build/build.log" 2>&1 || {
+    cat "$build/build.log" >&2
+    exit 1
+  }
+  touch "$build/compile_commands.json"
+fi
+# What the configuration leaves out (a driver without its library) has no command and is not checked.
+mapfile -t known < <(printf '%s\n' "${files[@]}" | while read -r name; do
+  grep -qF "\"file\": \"$root/$name\"" "$build/compile_commands.json" && echo "$name"; done)
+[ ${#known[@]} -gt 0 ] || { echo "clang-tidy: none of these sources is built here"; exit 0; }
+# clang 14 cannot parse some algorithms of libstdc++ 12's <ranges>; a source with such an error in a system
+# header is named and not judged. Every other finding is a failure.
+export build
+check_one() {
+  local out
+  out=$(/usr/bin/clang-tidy -p "$build" --quiet "$1" 2>/dev/null) && return 0
+  if grep -qE '^/usr/.*\[clang-diagnostic-error\]' <<<"$out"; then
+    echo "clang-tidy: $1 cannot be parsed by clang 14, not checked"
+    return 0
+  fi
+  grep -E 'error:|warning:' <<<"$out" | sort -u >&2
+  return 1
+}
+export -f check_one
+status=0
+printf '%s\0' "${known[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'check_one "$1"' check || status=1
+echo "clang-tidy: ${#known[@]} sources looked at"
+exit $status

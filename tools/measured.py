@@ -1,0 +1,510 @@
+#!/usr/bin/python3
+"""Writes docs/measured.md from what the tools themselves measured.
+
+  measured.py                        writes the page from docs/measured.json
+  measured.py SECTION ... | all      measures these sections first, keeps them in docs/measured.json
+  measured.py --from SECTION=FILE    takes a tool's output that is already there
+
+Sections: walk terrain bench window pads latency sticks worn claims. A section that is not measured
+in this run keeps its former values and their date. `--build` names the build folder (default
+build), `--data` the folder of captured motions and recordings (default ../shared/data); sections
+that need them say so on the page.
+"""
+import argparse
+import csv
+import datetime
+import glob
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import textwrap
+
+import paper_table
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+STORE, PAGE = ROOT / "docs" / "measured.json", ROOT / "docs" / "measured.md"
+MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_006_01_iclone")
+PYTHON = "/usr/bin/python3"
+
+
+class Missing(Exception):
+    """What a section needs is not on this machine."""
+
+
+# ---- rows ------------------------------------------------------------------------------------
+def number(value):
+    """Four significant digits at most, without an exponent where a reader does not need one."""
+    if value is None:
+        return "unknown"
+    if value == 0:
+        return "0"
+    return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+
+
+def row(name, worst, allowed="", unit="", runs=None, failed=0, where=""):
+    return {"name": name, "worst": worst, "allowed": allowed, "unit": unit, "runs": runs,
+            "failed": failed, "where": where}
+
+
+def distance(value, bound):
+    """Grows as the value gets nearer to its bound or further beyond it."""
+    low_high = re.match(r"(-?[\d.e-]+)\.\.(-?[\d.e-]+)$", bound)
+    if low_high:
+        return abs(value - 0.5 * (float(low_high[1]) + float(low_high[2])))
+    return -value if bound.startswith(">=") else value
+
+
+# Shown although they have no bound.
+FOR_COMPARISON = {"raw playback slides, root as in the file", "raw playback slides, root scaled"}
+
+
+def worst_rows(results):
+    """Rows from {label: [check]}, acceptance.py --json: one per bound, the worst of all runs."""
+    groups = {}
+    for label, checks in results.items():
+        for check in checks:
+            is_shown = check["bound"] or check["name"] in FOR_COMPARISON
+            if check["value"] is not None and is_shown:
+                key = (check["name"], check["bound"], check["unit"])
+                bad = distance(check["value"], check["bound"])
+                entry = (check["ok"] is False, bad, check["value"], label)
+                groups.setdefault(key, []).append(entry)
+    rows = []
+    for (name, bound, unit), found in groups.items():
+        _, _, value, label = max(found)
+        where = label if len({f[2] for f in found}) > 1 else ""  # else no run is worse than others
+        rows.append(row(name, value, bound, unit, len(found), sum(f[0] for f in found), where))
+    return rows
+
+
+def read_rows(text):
+    """A list of {"name", "worst", "allowed"} as it is; a dict of runs becomes one."""
+    data = json.loads(text)
+    if isinstance(data, dict) and "rows" in data:
+        return [row(**entry) for entry in data["rows"]]
+    return [row(**entry) for entry in data] if isinstance(data, list) else worst_rows(data)
+
+
+def output_of(*command, may_fail=False):
+    print("$", *command, file=sys.stderr)
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, cwd=ROOT)
+    if done.returncode != 0 and not may_fail:
+        raise Missing(f"{command[0]} ended with {done.returncode}: {done.stderr.strip()[-300:]}")
+    return done.stdout
+
+
+def needed(path):
+    if not pathlib.Path(path).exists():
+        raise Missing(f"{path} is not there")
+    return path
+
+
+# ---- what measures ---------------------------------------------------------------------------
+def measure_walk(options, text=None):
+    if text is None:
+        needed(options.data / "mocap")
+        program = needed(options.build / "gaitpad")
+        text = output_of(PYTHON, "tests/session/acceptance.py", program, "--data",
+                         options.data / "mocap", "--json", may_fail=True)
+    return {"rows": read_rows(text)}
+
+
+TERRAIN = {  # column of terrain_sweep: (name, unit, allowed)
+    "high_mm": ("a planted heel or toe off the ground", "mm", "<= 5"),
+    "slid_mm": ("a planted heel or toe moves", "mm", "<= 1"),
+    "sunk_mm": ("any part of a sole below the ground or inside a riser, any tick", "mm",
+                "<= 5"),
+    "edge_mm": ("a standing sole over an edge", "mm", "== 0"),
+    "bad": ("IK failures", "", "== 0"),
+}
+
+
+def measure_terrain(options, text=None):
+    if text is None:
+        motions = [needed(options.data / "mocap" / f"{name}.bvh") for name in MOTIONS]
+        sweep = needed(options.build / "tests" / "terrain_sweep")
+        text = output_of(sweep, "procedural", *motions, may_fail=True)
+    if text.lstrip().startswith(("[", "{")):
+        return {"rows": read_rows(text)}
+    lines = text.splitlines()
+    names = lines[0].split()
+    walks = [dict(zip(names, line.split("MISSED")[0].split())) for line in lines[1:]
+             if line.count(" ") > 10]
+    rows = []
+    for column, (name, unit, allowed) in TERRAIN.items():
+        worst = max(walks, key=lambda w: float(w[column]))
+        rows.append(row(name, float(worst[column]), allowed, unit, len(walks), 0, place(worst)))
+    for name, allowed, chosen in (
+            ("second difference of a leg angle, built-in walk", "<= 1",
+             lambda w: w["motion"] == "procedural"),
+            ("the same in captured walks at sticks below 1", "<= 1",
+             lambda w: w["motion"] != "procedural" and float(w["y"]) < 1),
+            ("the same in captured walks at full stick", "<= 5",
+             lambda w: w["motion"] != "procedural" and float(w["y"]) >= 1)):
+        found = [w for w in walks if chosen(w)]
+        if found:
+            worst = max(found, key=lambda w: float(w["d2_deg"]))
+            rows.append(row(name, float(worst["d2_deg"]), allowed, "deg/tick2", len(found), 0,
+                            place(worst)))
+    missed = sum("MISSED" in line for line in lines)
+    return {"rows": rows, "note": f"{missed} of {len(walks)} walks missed a bound."}
+
+
+def place(walk):
+    return f"{walk['motion']}, leg {walk['leg']}, stick {walk['y']}, {walk['style']}"
+
+
+def measure_bench(options, text=None):
+    text = text or output_of(needed(options.build / "gaitpad"), "bench", "--json")
+    found = {(b["name"], b.get("characters")): b for b in json.loads(text)}
+    one, four = found[("step", 1)], found[("step", 4)]
+    return {"rows": [
+        row("one character", one["time_us"], "", "us"),
+        row("four characters, three of them with styles", four["time_us"],
+            f"aim {four['limit_us']:g}", "us"),
+        row("bare playback of the same motion on four", found[("playback", 4)]["time_us"], "",
+            "us"),
+        row("inverse kinematics of one leg", found[("leg_ik", 1)]["time_us"], "", "us"),
+        row("iterations of a leg, one character", one["iterations_per_leg"]),
+    ]}
+
+
+def measure_window(options, text=None):
+    """The results of tools/realtime.sh."""
+    folder = options.build / "realtime"
+    summary = json.loads(text or needed(folder / "summary.json").read_text())
+    s = summary[0] if isinstance(summary, list) else summary
+    rows = [
+        row("ticks begun more than one period late", 1000.0 * s["overruns"] / max(s["ticks"], 1),
+            "< 1 where the host takes no time away", "per 1000"),
+        row("time skipped", s["skipped_s"], "== 0", "s"),
+        row("lateness of a tick, median", s["late_us_median"], "", "us"),
+        row("a tick, median", s["tick_us_median"], "", "us"),
+    ]
+    if "frames_per_second" in s:
+        rows.append(row("frames drawn", s["frames_per_second"], ">= 20", "per second"))
+    if (folder / "control.json").exists():
+        control = json.loads((folder / "control.json").read_text() or "{}")
+        rows.append(row("late wake-ups of a thread beside it that only sleeps", control.get("late"),
+                        "", f"against {s['overruns']} of the loop"))
+    return {"rows": rows, "runs": s["ticks"], "time_policy": s["time_policy"]}
+
+
+DRIVERS = ("hidraw", "evdev", "usb", "sdl")
+KINDS = {"generic": "generic HID pad, by its descriptor alone", "ds4": "DualShock 4",
+         "dualsense": "DualSense", "switch": "Switch Pro Controller", "xbox360": "Xbox 360, wired",
+         "xboxone": "Xbox One S, wired"}
+
+
+def measure_pads(options, text=None):
+    text = text or needed(options.rig / "remarks").read_text()
+    served = set(re.findall(r"^([a-z0-9]+)-([a-z]+): \d+ reports, pose hash", text, re.M))
+    felt = set(re.findall(r"^rumble, ([a-z0-9]+)-([a-z]+):", text, re.M))
+    cells = {}
+    for kind in KINDS:
+        for driver in DRIVERS:
+            cell = "yes" if (kind, driver) in served else "not measured"
+            if kind.startswith("xbox") and driver == "hidraw":
+                cell = "no such node"
+            cells[f"{kind}-{driver}"] = cell + (", R" if (kind, driver) in felt else "")
+    return {"cells": cells}
+
+
+def measure_latency(options, text=None):
+    text = text or needed(options.rig / "latency.csv").read_text()
+    return {"ways": list(csv.DictReader(text.splitlines()))}
+
+
+STICK = (("centre_x", "centre, x", ""), ("centre_y", "centre, y", ""), ("sigma_x", "noise, x", ""),
+         ("sigma_y", "noise, y", ""), ("hysteresis", "hysteresis", ""),
+         ("drift_per_s", "drift", "per s"),
+         ("min_x", "range, least x", ""), ("max_x", "range, greatest x", ""),
+         ("min_y", "range, least y", ""),
+         ("max_y", "range, greatest y", ""), ("circularity_error", "circularity error", "%"),
+         ("rate_hz", "rate", "Hz"), ("jitter_ms", "jitter", "ms"), ("inner_zone", "inner zone", ""),
+         ("outer_zone", "outer zone", ""), ("rests", "rests", ""),
+         ("rest_samples", "reports at rest", ""),
+         ("samples", "reports", ""), ("verdict", "verdict", ""))
+
+
+def measure_sticks(options, text=None):
+    if text is None:
+        files = sorted(glob.glob(str(needed(options.data / "hid") / "dualsense_usb_*.hid")))
+        files = [f for f in files if not f.endswith((".rdesc.hid", ".raw.hid"))]
+        with tempfile.TemporaryDirectory() as folder:
+            traces = [argument for f in files for argument in ("--trace", f)]
+            text = output_of(needed(options.build / "gaitpad"), "calibrate", *traces, "--json",
+                             "--out", f"{folder}/pad.toml", may_fail=True)
+    sticks = json.loads(text)["sticks"]
+    rows = [{"name": name, "left": sticks["left"].get(key), "right": sticks["right"].get(key),
+             "unit": unit}
+            for key, name, unit in STICK]
+    for name, key in (("noise, x", "sigma_x"), ("noise, y", "sigma_y")):
+        for side in ("left", "right"):
+            if sticks[side].get("sigma_hidden_by_steps"):
+                next(r for r in rows if r["name"] == name)[side] = "below a step"
+    return {"sticks": rows}
+
+
+def measure_worn(options, text=None):
+    text = text or output_of(needed(options.build / "tests" / "test_session"),
+                             "--gtest_filter=WornStick.*")
+    walk = re.search(r"worst of (\d+) sticks: ([\d.]+) mm sideways in one stride, "
+                     r"([\d.]+) mm on average, stride ([\d.]+)", text)
+    full = re.search(r"full deflection of (\d+) sticks: at least ([\d.]+), "
+                     r"after the sideways zone ([\d.]+)", text)
+    if not walk or not full:
+        raise Missing("test_session did not print the lines of WornStick")
+    sticks = int(walk[1])
+    rests = re.search(r"\[ +OK \] WornStick.RestNeverMovesIt", text)
+    at_rest = f"0 of {sticks * 20000}" if rests else "not measured"  # RestNeverMovesIt: 20000 each
+    return {"rows": [
+        row("sideways drift of a walk straight ahead, one stride", float(walk[2]), "<= 1", "mm",
+            sticks),
+        row("the same on average", float(walk[3]), "<= 1", "mm", sticks),
+        row("full deflection, any of 360 directions, before the sideways zone", float(full[2]),
+            ">= 0.99", "", sticks),
+        row("the same after it", float(full[3]), ">= 0.96", "", sticks),
+        row("stride at full deflection forward, over the full one", walk[4], ">= 0.999", "",
+            sticks),
+        row("reports at rest that move the character", at_rest, "== 0", "", sticks),
+    ]}
+
+
+def measure_claims(options, text=None):
+    if text is None:
+        with tempfile.TemporaryDirectory() as folder:
+            output_of(needed(options.build / "gaitpad"), "figures", "--out", folder, may_fail=True)
+            text = (pathlib.Path(folder) / "claims.json").read_text()
+    claims = json.loads(text)["claims"]
+    paper_table.write(claims, ROOT / "docs" / "paper.md")
+    rows = []
+    for mode in ("paper", "robust"):
+        mine = [c for c in claims if c["mode"] == mode]
+        rows.append({"name": mode, "held": sum(c["pass"] is True for c in mine),
+                     "failed": sum(c["pass"] is False for c in mine),
+                     "untestable": sum(c["pass"] is None for c in mine)})
+    return {"claims": rows}
+
+
+# ---- the page --------------------------------------------------------------------------------
+def value_text(entry):
+    if isinstance(entry["worst"], str):
+        return entry["worst"]
+    return f"{number(entry['worst'])} {entry['unit']}".strip()
+
+
+def table(heads, rows):
+    lines = ["| " + " | ".join(cells) + " |" for cells in (heads, *rows)]
+    return [lines[0], "|" + "---|" * len(heads), *lines[1:]]
+
+
+def bounds_table(section):
+    rows = section["rows"]
+    if not any(r.get("runs") for r in rows):
+        return table(["", "measured", "allowed"],
+                     [[r["name"], value_text(r), r["allowed"] or "-"] for r in rows])
+
+    def runs_text(r):
+        return f"{r['failed']} of {r['runs']} failed" if r["failed"] else str(r["runs"] or "-")
+
+    return table(["", "worst", "allowed", "runs", "worst run"],
+                 [[r["name"], value_text(r), r["allowed"] or "-", runs_text(r), r["where"] or "-"]
+                  for r in rows])
+
+
+def pads_table(section):
+    return table(["", *(f"`{d}`" for d in DRIVERS)],
+                 [[label, *(section["cells"][f"{kind}-{d}"] for d in DRIVERS)]
+                  for kind, label in KINDS.items()])
+
+
+WAYS = {"bare_hidraw": "bare `poll` + `read` of the hidraw node",
+        "bare_evdev": "the same of the event node",
+        "plain_sdl": "a plain SDL2 program (`SDL_WaitEventTimeout`)"}
+
+
+def latency_table(section):
+    columns = ("median_us", "p99_us", "over_bare_us", "to_tick_median_us", "to_tick_p99_us")
+
+    def ms(text):
+        return f"{float(text) / 1000:.2f} ms" if text not in ("", None) else "-"
+
+    return table(["way", "median", "99th percentile", "over the bare read", "to the tick: median",
+                  "99th percentile"],
+                 [[WAYS.get(w["way"], f"`{w['way']}` driver"), *(ms(w[c]) for c in columns)]
+                  for w in section["ways"]])
+
+
+def sticks_table(section):
+    def cell(value, unit):
+        if isinstance(value, str):
+            return value
+        return f"{number(round(value, 3) if value is not None else None)} {unit}".strip()
+
+    return table(["", "left", "right"],
+                 [[r["name"], cell(r["left"], r["unit"]), cell(r["right"], r["unit"])]
+                  for r in section["sticks"]])
+
+
+def claims_table(section):
+    return table(["mode", "hold", "fail", "cannot be tested with this motion"],
+                 [[r["name"], str(r["held"]), str(r["failed"]), str(r["untestable"])]
+                  for r in section["claims"]])
+
+
+# section: (measure, table, title, made data alone, text before, text after)
+SECTIONS = {
+    "walk": (measure_walk, bounds_table, "Walks on level ground", False, """\
+`tests/session/acceptance.py build/gaitpad` replays the built-in motion and three captured walks
+(CMU's m21 walk and 006_01, bvh-toolbox's walk01) with all styles that change the legs, legs of
+0.6, 1 and 1.6 times the length, straight, backwards, turning, starting, stopping and with random
+sticks, and judges the exported files alone. `d2` is the second difference of a joint's rotation,
+in degrees per tick squared; `(fast)` are captured walks beyond 1.3 m/s. If a name occurs twice,
+the tighter bound is that of the built-in walk. The step length error is a share of what is
+allowed: 0.5 %, in turns 1 %, or 1 mm. `limp` compares `limp_left` with `even`. `weights` compare
+a hip weight of 0.2 (hip RMS at least 1.5 degrees) and a knee weight of 0.8 (0.2 to 1.5 degrees)
+with even weights. `raw playback` plays the same angles on the same character without adaptation;
+it has no bound.""", """\
+The three captured walks are plain walks. Of sixteen captured clips tried at 80 % of the stick,
+ten stay within 1 degree a tick² at all three leg ratios; the others, stylised or with unusual
+feet, reach 1.02 to 2.4. Their feet stand as still. (Measured on 2026-11-21.)"""),
+    "terrain": (measure_terrain, bounds_table, "Walks over terrain", False, """\
+`build/tests/terrain_sweep MOTION ...` (`cmake --build build --target terrain_sweep`) walks the
+course from its beginning to a stop after its end and judges every tick by a grid of points over
+each sole: the built-in motion and those three, all styles, legs of 0.6, 1 and 1.6, sticks of 0.4,
+0.7 and 1.""", """\
+[walk.md](walk.md) has the results of the wider sweeps."""),
+    "bench": (measure_bench, bounds_table, "Time of a tick", True, """\
+`build/gaitpad bench`, one core of the machine that wrote this page; yours prints its own. A tick
+comes every 4167 us.""",
+              ""),
+    "window": (measure_window, bounds_table, "The window", True, """\
+`bash tools/realtime.sh` lets four characters walk for five minutes in the window, drawn by
+software (llvmpipe, one drawing thread) on two cores, with the loop under `SCHED_FIFO`. The
+machine was a virtual one that others used at the same time. The bound on late ticks is not judged
+where the host takes processor time away (`steal`).""", ""),
+    "pads": (measure_pads, pads_table, "Pads and drivers", True, """\
+`bash tools/rig.sh` boots a current Debian kernel in QEMU, plugs virtual USB pads into it and runs
+the program there ([rig.md](rig.md)). For each cell it lists the pad, decodes every stick, trigger
+and button as sent, records the session, and replays the recording to the session's `pose_hash`.
+**R**: the pad also received the rumble of the heel strikes, weak at slow and strong at fast
+walking, and each stop.""", """\
+The kernel is real, the pads are not: no physical pad has been through these tests. DualShock 4,
+DualSense and Xbox pad are also tested as they are over Bluetooth (through uhid, without a radio):
+`hidraw`, `evdev` and `sdl` decode them, and rumble leaves with its checksum."""),
+    "latency": (measure_latency, latency_table, "Latency", True, """\
+From the pad's write to the program, and to the tick that uses it, in that virtual machine. It
+compares the ways with each other and is no figure of your PC.""", """\
+A generic pad, 250 reports a second. The blocks of 200 reports of each driver alternate with those
+of the bare read, and `over` is the median of the differences block by block. A tick comes every
+4.17 ms, so a report waits half of that on average."""),
+    "sticks": (measure_sticks, sticks_table, "A real DualSense", False, """\
+`build/gaitpad calibrate --trace ...` on recordings of a DualSense over USB, 3 to 7 seconds each,
+that others made. Each stick is turned round in one of them and rests in the others.""", """\
+The pad reports 8 bits, so one step is 0.0078: the sticks rest up to 2.5 counts of 256 off the
+middle and come back to within 4 counts, and a step hides their noise. The range is full on all
+sides. A circularity error of 7 to 10 % is normal: Sony's sticks reach further than a circle
+between the axes. What pressing hard adds (0.03) does not count. The jitter is that of the
+recorder's stamps. The inner zone is the least one; without a calibration it is 0.12. With the
+zones found in the two recordings that turn a stick, the calibrated stick is exactly 0 in every
+other recording, except in the two in which the left hand moves it (`build/tests/test_stick
+--gtest_filter='RecordedSticks.*'`)."""),
+    "worn": (measure_worn, bounds_table, "A worn stick", True, """\
+`build/tests/test_stick` checks the analysis on made sticks whose truth is known: 8 to 16 bits,
+noisy, off centre, square, drifting, with spikes and lost reports, 500 of them without a false
+alarm. The worst of these (8 bits, 0.15 off centre, noise 0.02, hysteresis 0.1, reach 0.8 and 0.7)
+is calibrated and walked with by `build/tests/test_session --gtest_filter='WornStick.*'`.""", ""),
+    "claims": (measure_claims, claims_table, "The paper's claims", True, """\
+`build/gaitpad figures --out out/figures`, the built-in motion: how many assertions hold.
+[paper.md](paper.md) lists each one, and why some fail.""", ""),
+}
+
+HEAD = """\
+# What was measured
+
+`tools/measured.py` writes this page from the output of the tools that it names, kept in
+`docs/measured.json`. Do not edit it by hand. A section that was not measured in the latest run
+keeps its former values and their date.
+
+```
+/usr/bin/python3 tools/measured.py bench claims    # measures these two and writes the page
+/usr/bin/python3 tools/measured.py all             # all that can be measured here
+```
+Sections marked *needs real data* use captured motions or recordings of real pads that are not in
+this repository ([data.md](data.md)). All others run from a clone alone.
+"""
+
+
+def wrapped(text):
+    return textwrap.wrap(" ".join(text.split()), 120, break_long_words=False,
+                         break_on_hyphens=False)
+
+
+def page_of(store):
+    lines = HEAD.splitlines()
+    for name, (_, write_table, title, is_made, before, after) in SECTIONS.items():
+        lines += ["", f"## {title}", "", *wrapped(before), ""]
+        section = store.get(name)
+        if section is None:
+            lines.append("Not measured.")
+            continue
+        lines += write_table(section)
+        if after:
+            lines += ["", *wrapped(after)]
+        mark = "" if is_made else " *Needs real data.*"
+        note = f" {section['note']}" if section.get("note") else ""
+        lines += ["", *wrapped(f"Measured on {section['measured_on']}.{mark}{note}")]
+    return "\n".join(lines) + "\n"
+
+
+# ---- the command -----------------------------------------------------------------------------
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("section", nargs="*", choices=[*SECTIONS, "all", []])
+    parser.add_argument("--from", dest="files", action="append", default=[], metavar="SECTION=FILE")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
+    parser.add_argument("--data", type=pathlib.Path, default=ROOT.parent / "shared" / "data")
+    parser.add_argument("--kernel", default="6.1", help="whose results of the rig are taken")
+    parser.add_argument("--check", action="store_true",
+                        help="writes nothing; exit status 1 if the page is not that of the store")
+    options = parser.parse_args()
+    options.build, options.data = options.build.resolve(), options.data.resolve()
+    options.rig = options.build / "rig" / f"results-{options.kernel}"
+    return options
+
+
+def main():
+    options = arguments()
+    store = json.loads(STORE.read_text()) if STORE.exists() else {}
+    if options.check:
+        return 0 if PAGE.exists() and PAGE.read_text() == page_of(store) else 1
+    wanted = {name: None for name in (SECTIONS if "all" in options.section else options.section)}
+    for entry in options.files:
+        name, _, path = entry.partition("=")
+        if name not in SECTIONS or not path:
+            print(f"measured.py: --from {entry}: not SECTION=FILE", file=sys.stderr)
+            return 2
+        wanted[name] = pathlib.Path(path).read_text()
+    for name, text in wanted.items():
+        try:
+            found = SECTIONS[name][0](options, text)
+        except Missing as problem:
+            former = store.get(name, {}).get("measured_on")
+            kept = f"keeps the values of {former}" if former else "is not measured"
+            print(f"{name} {kept}: {problem}", file=sys.stderr)
+            continue
+        store[name] = {"measured_on": datetime.date.today().isoformat(), **found}
+    STORE.write_text(json.dumps(store, indent=1, ensure_ascii=False) + "\n")
+    PAGE.write_text(page_of(store))
+    return 0
+
+
+if __name__ == "__main__":
+    os.chdir(ROOT)
+    sys.exit(main())

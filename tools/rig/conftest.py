@@ -1,0 +1,133 @@
+"""The rig's tests in the guest: each in a process of its own with a time limit, one line a test.
+
+A test fails by an exception and skips by pytest.skip; what it prints is in /results/NAME.log. Marks:
+  @pytest.mark.timeout(120)  seconds; 60 without it. Whatever the test started is ended with it.
+  @pytest.mark.long          only by `rig.sh --long` (pads.LONG tells within a test)
+"""
+import os
+import pathlib
+import signal
+import sys
+import time
+
+import pytest
+from _pytest.runner import runtestprotocol
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests"))  # for `support`
+pytest.register_assert_rewrite("session")
+
+RESULTS = pathlib.Path("/results")
+REMARKS = RESULTS / "remarks"
+PASSED, FAILED, SKIPPED = 0, 1, 77
+WORDS = {PASSED: "ok  ", FAILED: "FAIL", SKIPPED: "SKIP"}
+counts = dict.fromkeys(WORDS, 0)
+shown = 0  # remarks so far
+
+
+def pytest_addoption(parser):
+    parser.addoption("--only", default="", help="tests whose name contains this")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_configure(config):
+    config.addinivalue_line("markers", "timeout(seconds): ends the test then; 60 without it")
+    config.addinivalue_line("markers", "long: only by rig.sh --long")
+    if not config.option.collectonly:
+        config.pluginmanager.unregister(name="terminalreporter")  # the lines below stand in its place
+
+
+def name_of(item):
+    return f"{item.path.stem}.{item.name}".replace("test_", "")
+
+
+def pytest_collection_modifyitems(config, items):
+    is_long = os.environ.get("RIG_LONG") == "1"
+    items[:] = [item for item in items if config.option.only in name_of(item) and
+                (is_long or not item.get_closest_marker("long"))]
+
+
+def pytest_collectreport(report):
+    if report.failed:
+        counts[FAILED] += 1
+        print(report.longreprtext, flush=True)
+
+
+def pytest_internalerror(excrepr):
+    print(excrepr, flush=True)
+
+
+def run_child(item, log):
+    """In the child: never returns."""
+    os.setsid()
+    file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+    os.dup2(file, 1)
+    os.dup2(file, 2)
+    sys.stdout.reconfigure(line_buffering=True)  # a test that is ended has told what it did
+    status = FAILED
+    try:
+        reports = runtestprotocol(item, log=False, nextitem=None)
+        for report in reports:
+            if report.failed:
+                print(report.longreprtext)
+            elif report.skipped:
+                print(f"skipped: {report.longrepr[2].removeprefix('Skipped: ')}")
+        outcomes = {report.outcome for report in reports}
+        status = FAILED if "failed" in outcomes else SKIPPED if "skipped" in outcomes else PASSED
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+
+def end_session(child):
+    try:
+        os.killpg(child, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+
+
+def run_test(item, log):
+    """(status, seconds)"""
+    start = time.monotonic()
+    mark = item.get_closest_marker("timeout")
+    limit_s = mark.args[0] if mark else 60
+    child = os.fork()
+    if child == 0:
+        run_child(item, log)
+    while not (ended := os.waitpid(child, os.WNOHANG))[0]:
+        if time.monotonic() - start > limit_s:
+            end_session(child)
+            os.waitpid(child, 0)
+            with open(log, "a") as file:
+                file.write(f"\nended after {limit_s} s\n")
+            return FAILED, time.monotonic() - start
+        time.sleep(0.02)
+    end_session(child)
+    status = os.waitstatus_to_exitcode(ended[1])
+    return status if status in counts else FAILED, time.monotonic() - start
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item):
+    global shown
+    log = RESULTS / f"{name_of(item)}.log"
+    status, seconds = run_test(item, log)
+    counts[status] += 1
+    lines = log.read_text(errors="replace").splitlines()
+    reason = f": {lines[-1]}" if status == SKIPPED else ""
+    print(f"{WORDS[status]} {name_of(item)} {seconds:.1f} s{reason}", flush=True)
+    if status == FAILED:
+        print("\n".join("     " + line for line in lines[-40:]), flush=True)
+    remarks = REMARKS.read_text().splitlines() if REMARKS.exists() else []
+    print("".join(f"     {line}\n" for line in remarks[shown:]), end="", flush=True)
+    shown = len(remarks)
+    return True
+
+
+def pytest_sessionfinish(session):
+    if session.config.option.collectonly:
+        return
+    os.system(f"dmesg >{RESULTS}/dmesg")
+    print(f"{counts[PASSED]} passed, {counts[FAILED]} failed, {counts[SKIPPED]} skipped "
+          f"on Linux {os.uname().release}", flush=True)
+    session.exitstatus = 1 if counts[FAILED] or not counts[PASSED] else 0

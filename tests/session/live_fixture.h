@@ -53,6 +53,12 @@ class Live : public testing::Test {
   }
 
   std::unique_ptr<LiveSession> started() { return value_of(LiveSession::start(options_)); }
+  // Ends the session, whose recording replays to the same summary.
+  RunSummary stopped(LiveSession& session) const {
+    const RunSummary run = value_of(session.stop());
+    EXPECT_EQ(run, replayed());
+    return run;
+  }
   // What a replay of the recording comes to.
   RunSummary replayed() const {
     SessionSpec spec = options_;

@@ -32,15 +32,13 @@ TEST_F(Live, ReplaysToTheSamePoses) {
   session->command("   ");
   session->command("no such command");
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
-  const auto run = session->stop();
-  ASSERT_TRUE(run) << run.error().message;
-  ASSERT_EQ(run->walkers.size(), 2u);
-  const WalkerSummary& first = run->walkers.front();
-  EXPECT_EQ(*run, replayed());
+  const RunSummary run = stopped(*session);
+  ASSERT_EQ(run.walkers.size(), 2u);
+  const WalkerSummary& first = run.walkers.front();
   EXPECT_EQ(first.style, "tired");
-  EXPECT_GT(run->ticks, 3 * 240) << "2.4 s and a second more";
-  EXPECT_GT(run->reports, 400);
-  EXPECT_EQ(run->bad_reports, 0);
+  EXPECT_GT(run.ticks, 3 * 240) << "2.4 s and a second more";
+  EXPECT_GT(run.reports, 400);
+  EXPECT_EQ(run.bad_reports, 0);
   EXPECT_GT(first.steps[kLeftSide] + first.steps[kRightSide], 1);
   EXPECT_EQ(session->status().recording_lost, 0);
   EXPECT_EQ(session->status().pads.lost, 0);
@@ -109,9 +107,7 @@ TEST_F(Live, AfterAStandstillTheSessionGoesOnWhereItStood) {
                 remarks, [](const std::string& s) { return s.find("stood still") != s.npos; }),
             1);
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
-  const auto run = session->stop();
-  ASSERT_TRUE(run);
-  EXPECT_EQ(*run, replayed());
+  stopped(*session);
 }
 
 TEST_F(Live, WithoutAPadItStandsAndRecordsNothing) {
@@ -187,10 +183,8 @@ TEST_F(LiveKeyboard, WalksAndItsRecordingReplaysToTheSamePoses) {
   sleep_for(400);
   bool is_new = false;
   EXPECT_EQ(session->latest(is_new).stick.left, vec2(0.0)) << "at rest exactly";
-  const auto run = session->stop();
-  ASSERT_TRUE(run) << run.error().message;
-  EXPECT_EQ(*run, replayed());
-  EXPECT_EQ(run->bad_reports, 0);
+  const RunSummary run = stopped(*session);
+  EXPECT_EQ(run.bad_reports, 0);
   EXPECT_EQ(session->status().pads.plugged, 0) << "it is no pad that was plugged in";
   const std::vector<vec2> stick = recorded_stick("keyboard");
   ASSERT_GT(stick.size(), 20u);
@@ -230,9 +224,7 @@ TEST_F(LiveKeyboard, TheUsersCalibrationIsNotForIt) {
   session->steer(vec2(0.0, 0.3));
   bool is_new = false;
   EXPECT_TRUE(comes_true([&] { return session->latest(is_new).stick.left.y > 0.29; }));
-  const auto run = session->stop();
-  ASSERT_TRUE(run) << run.error().message;
-  EXPECT_EQ(*run, replayed());
+  stopped(*session);
 }
 
 TEST_F(LiveKeyboard, ARecordingAsPadEndsTheSessionAsEver) {
@@ -240,9 +232,7 @@ TEST_F(LiveKeyboard, ARecordingAsPadEndsTheSessionAsEver) {
   auto session = started();
   session->steer(vec2(1.0, 0.0));
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
-  const auto run = session->stop();
-  ASSERT_TRUE(run) << run.error().message;
-  EXPECT_EQ(*run, replayed());
+  stopped(*session);
   EXPECT_EQ(session->status().pads.plugged, 4) << "two pads, each twice";
 }
 
@@ -272,9 +262,7 @@ TEST_F(LiveKeyboard, CountsWhileThePadRests) {
   EXPECT_TRUE(comes_true([&] { return look(), stick == vec2(0.0, 1.0); }));
   EXPECT_TRUE(comes_true([&] { return look(), stick.x > 0.99; }));
   EXPECT_EQ(driving, "Example Walk Pad");
-  const auto run = session->stop();
-  ASSERT_TRUE(run) << run.error().message;
-  EXPECT_EQ(*run, replayed());
+  stopped(*session);
 }
 
 TEST_F(LiveKeyboard, WithoutOneSteeringDoesNothing) {
@@ -404,11 +392,9 @@ TEST_F(LivePace, ARecordingOfPausesStepsAndSlowMotionReplaysToTheSamePoses) {
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
   session->set_pace(0.0);
   sleep_for(50);
-  const auto run = session->stop();
-  ASSERT_TRUE(run) << run.error().message;
-  EXPECT_EQ(*run, replayed());
-  EXPECT_EQ(run->walkers[1].style, "tired");
-  EXPECT_GT(run->walkers[0].steps[kLeftSide], 0);
+  const RunSummary run = stopped(*session);
+  EXPECT_EQ(run.walkers[1].style, "tired");
+  EXPECT_GT(run.walkers[0].steps[kLeftSide], 0);
 }
 
 TEST_F(LivePace, AViewerGetsASampleOfEveryTickInOrder) {
@@ -490,12 +476,10 @@ TEST_F(LivePace, ByHandNothingRunsButWhatIsAskedFor) {
   EXPECT_EQ(status.ticks, 1601);
   EXPECT_EQ(status.overruns, 0);
   EXPECT_EQ(status.time_policy, "by hand");
-  const auto run = session->stop();
-  ASSERT_TRUE(run) << run.error().message;
-  EXPECT_EQ(*run, replayed());
-  EXPECT_EQ(run->walkers[0].style, "tired");
-  EXPECT_EQ(run->ticks, 1601);
-  EXPECT_GT(run->reports, 50);
+  const RunSummary run = stopped(*session);
+  EXPECT_EQ(run.walkers[0].style, "tired");
+  EXPECT_EQ(run.ticks, 1601);
+  EXPECT_GT(run.reports, 50);
   session->advance(1);
   EXPECT_EQ(session->status().ticks, 1601) << "it was stopped";
   EXPECT_FALSE(session->stop());
@@ -509,9 +493,7 @@ TEST_F(LivePace, HalfAnHourByHandIsARecordingThatReads) {
   session->advance(20 * 1800);
   sleep_for(50);
   session->advance(1);
-  const auto run = session->stop();
-  ASSERT_TRUE(run) << run.error().message;
-  EXPECT_EQ(*run, replayed());
+  stopped(*session);
 }
 
 TEST_F(LivePace, ByTheClockNobodyElseRunsTicks) {

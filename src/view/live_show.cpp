@@ -9,8 +9,8 @@ namespace {
 
 class LiveShow final : public Show {
  public:
-  LiveShow(const ShowOptions& options, std::unique_ptr<LiveSession> session)
-      : Show(options), session_(std::move(session)) {
+  explicit LiveShow(std::unique_ptr<LiveSession> session)
+      : Show(session->spec()), session_(std::move(session)) {
     bool is_new = false;
     frame_ = &session_->latest(is_new);
   }
@@ -21,14 +21,14 @@ class LiveShow final : public Show {
   void look(double) override {
     bool is_new = false;
     frame_ = &session_->latest(is_new);
-    for (TickSample sample; session_->take(sample);) {
+    for (TickSample sample; session_->take_sample(sample);) {
       if (is_by_hand()) sample.step_us = 0.0f;  // a picture does not tell of the machine's speed
       history_.add(sample);
     }
   }
 
   void look_for_picture() override {
-    due_ticks_ += pace_ * options_.live.rate_hz / kPictureRateHz;
+    due_ticks_ += pace_ * cast().rate_hz / kPictureRateHz;
     advance(static_cast<int>(due_ticks_));
     due_ticks_ -= static_cast<int>(due_ticks_);
     look(0.0);
@@ -37,7 +37,7 @@ class LiveShow final : public Show {
   double share(std::int64_t now_ns) const noexcept override {
     if (is_by_hand() || pace_ <= 0.0) return 1.0;
     const double passed_s = static_cast<double>(now_ns - frame_->time_ns) / 1e9;
-    return std::clamp(passed_s * options_.live.rate_hz * pace_, 0.0, 1.0);
+    return std::clamp(passed_s * cast().rate_hz * pace_, 0.0, 1.0);
   }
 
   void set_pace(double pace) override {
@@ -64,10 +64,12 @@ class LiveShow final : public Show {
     return pad.is_present && pad.device != kNoDevice ? session_->pad_name(pad.device) : "";
   }
   std::vector<std::string> take_remarks() override { return session_->take_remarks(); }
-  Result<std::vector<nlohmann::ordered_json>> stop() override { return session_->stop(); }
+  Result<RunSummary> stop() override { return session_->stop(); }
 
  private:
-  bool is_by_hand() const noexcept { return options_.live.clock == LiveOptions::Clock::by_hand; }
+  bool is_by_hand() const noexcept {
+    return options_.live.clock == SessionSpec::Live::Clock::by_hand;
+  }
   void advance(int ticks) {
     if (ticks > 0) session_->advance(ticks);
   }
@@ -80,10 +82,17 @@ class LiveShow final : public Show {
 
 }  // namespace
 
-Result<std::unique_ptr<Show>> open_live_show(const ShowOptions& options) {
-  auto session = LiveSession::start(options.live);
+Result<std::unique_ptr<Show>> open_live_show(const SessionSpec& options) {
+  auto prepared = LiveSession::prepare(options);
+  if (!prepared) return prepared.error();
+  return open_live_show(*prepared);
+}
+
+Result<std::unique_ptr<Show>> open_live_show(
+    const std::shared_ptr<LiveSession::Prepared>& prepared) {
+  auto session = LiveSession::start(prepared);
   if (!session) return session.error();
-  return std::unique_ptr<Show>(std::make_unique<LiveShow>(options, std::move(*session)));
+  return std::unique_ptr<Show>(std::make_unique<LiveShow>(std::move(*session)));
 }
 
 }  // namespace gaitpad

@@ -15,7 +15,7 @@ Result<FileKind> kind_of_file(const std::string& path);
 
 // The show that runs, with this file. A style or a character is for walker `walker`, -1: for all.
 // Nothing is recorded in it.
-ShowOptions with_file(ShowOptions options, const std::string& path, FileKind kind, int walker,
+SessionSpec with_file(SessionSpec options, const std::string& path, FileKind kind, int walker,
                       int walker_count);
 
 }  // namespace gaitpad

@@ -17,7 +17,7 @@ constexpr std::int64_t kComputing_ns = 12'000'000;  // in a drawn frame: drawing
 
 class PlaybackShow final : public Show {
  public:
-  PlaybackShow(const ShowOptions& options, std::unique_ptr<Playback> playback)
+  PlaybackShow(const SessionSpec& options, std::unique_ptr<Playback> playback)
       : Show(options), playback_(std::move(playback)) {
     playback_->seek(0, 1);
     take_samples();
@@ -75,17 +75,7 @@ class PlaybackShow final : public Show {
     if (std::exchange(are_remarks_taken_, true)) return {};
     return playback_->remarks();
   }
-  Result<std::vector<nlohmann::ordered_json>> stop() override {
-    std::vector<nlohmann::ordered_json> all;
-    for (const CastMember& member : cast().members) {
-      all.push_back({{"ticks", frame().tick + 1},
-                     {"rate_hz", cast().rate_hz},
-                     {"pose_hash", fmt::format("{:016x}", playback_->pose_hash())},
-                     {"motion", cast().motion},
-                     {"character", member.character}});
-    }
-    return all;
-  }
+  Result<RunSummary> stop() override { return playback_->summary(); }
 
  private:
   std::int64_t tick() const noexcept { return static_cast<std::int64_t>(std::max(position_, 0.0)); }
@@ -96,7 +86,7 @@ class PlaybackShow final : public Show {
     if (position_ >= last) position_ = timeline_.is_looping && pace_ > 0.0 ? 0.0 : last;
   }
   void take_samples() {
-    for (TickSample sample; playback_->take(sample);) history_.add(sample);
+    for (TickSample sample; playback_->take_sample(sample);) history_.add(sample);
   }
 
   std::unique_ptr<Playback> playback_;
@@ -108,10 +98,8 @@ class PlaybackShow final : public Show {
 
 }  // namespace
 
-Result<std::unique_ptr<Show>> open_playback_show(const ShowOptions& options) {
-  const auto rate_hz =
-      options.is_rate_given ? std::optional<int>(options.live.rate_hz) : std::nullopt;
-  auto playback = Playback::open(options.live.session, options.trace, rate_hz, options.damage);
+Result<std::unique_ptr<Show>> open_playback_show(const SessionSpec& options) {
+  auto playback = Playback::open(options);
   if (!playback) return playback.error();
   return std::unique_ptr<Show>(std::make_unique<PlaybackShow>(options, std::move(*playback)));
 }

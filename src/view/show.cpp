@@ -7,26 +7,24 @@
 
 namespace gaitpad {
 
-Result<std::unique_ptr<Show>> Show::open(const ShowOptions& options) {
-  return options.trace.empty() ? open_live_show(options) : open_playback_show(options);
+Result<std::unique_ptr<Show>> Show::open(const SessionSpec& options) {
+  return options.replay.trace.empty() ? open_live_show(options) : open_playback_show(options);
 }
 
-std::optional<Error> Show::problem(const ShowOptions& options) {
-  if (!options.trace.empty()) {
-    const auto playback = open_playback_show(options);
-    return playback ? std::nullopt : std::optional(playback.error());
+Result<Show::Start> Show::prepare(const SessionSpec& spec) {
+  if (spec.replay.trace.empty()) {
+    auto prepared = LiveSession::prepare(spec);
+    if (!prepared) return prepared.error();
+    return Start([prepared = *prepared] { return open_live_show(prepared); });
   }
-  const auto config = simulation_config(options.live.session, {}, "", options.live.rate_hz);
-  if (!config) return config.error();
-  const auto simulation = Simulation::create(*config);
-  if (!simulation) return simulation.error();
-  const auto script = script_for(*simulation, options.live.session.script);
-  if (!script) return script.error();
-  return std::nullopt;
+  auto opened = open_playback_show(spec);
+  if (!opened) return opened.error();
+  auto show = std::make_shared<std::unique_ptr<Show>>(std::move(*opened));
+  return Start([show] { return Result(std::move(*show)); });
 }
 
 void Show::add_config_folder(const std::string& folder) {
-  std::vector<std::string>& folders = options_.live.session.config_folders;
+  std::vector<std::string>& folders = options_.config_folders;
   if (std::ranges::count(folders, folder) == 0) folders.push_back(folder);
 }
 

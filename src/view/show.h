@@ -1,8 +1,8 @@
 // What the window shows: a live session, or a trace on a time line, behind one face.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,18 +18,13 @@ namespace gaitpad {
 
 inline constexpr int kPictureRateHz = 60;  // frames a second of the session, in pictures and videos
 
-struct ShowOptions {
-  LiveOptions live;
-  std::string trace;  // a playback of this; empty: live
-  Damage damage = Damage::refuse;
-  bool is_rate_given = false;  // live.rate_hz was asked for: an error where a trace says another
-};
-
 class Show {
  public:
-  static Result<std::unique_ptr<Show>> open(const ShowOptions& options);
-  // Whether the files can be read and fit together, before anything that runs is ended for them.
-  static std::optional<Error> problem(const ShowOptions& options);
+  static Result<std::unique_ptr<Show>> open(const SessionSpec& options);
+  // The same in two parts: reads the files; the function that it returns, called once, opens the
+  // show.
+  using Start = std::function<Result<std::unique_ptr<Show>>()>;
+  static Result<Start> prepare(const SessionSpec& spec);
   virtual ~Show() = default;
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
@@ -37,10 +32,10 @@ class Show {
   virtual const Cast& cast() const noexcept = 0;
   virtual const SessionFrame& frame() const noexcept = 0;
   const History& history() const noexcept { return history_; }
-  const ShowOptions& options() const noexcept { return options_; }
+  const SessionSpec& options() const noexcept { return options_; }
   // For shows that are opened with these options from now on.
   void add_config_folder(const std::string& folder);
-  bool is_live() const noexcept { return options_.trace.empty(); }
+  bool is_live() const noexcept { return options_.replay.trace.empty(); }
 
   // Takes in what has come, once a drawn frame. `passed_s`: of the wall's time since the last call;
   // a playback goes on by it.
@@ -66,19 +61,21 @@ class Show {
 
   virtual std::string pad_name() const = 0;  // of the driving pad, empty: none
   virtual std::vector<std::string> take_remarks() = 0;
-  // Ends it: one summary a character.
-  virtual Result<std::vector<nlohmann::ordered_json>> stop() = 0;
+  // Ends it.
+  virtual Result<RunSummary> stop() = 0;
 
  protected:
-  explicit Show(ShowOptions options) : options_(std::move(options)) {}
-  ShowOptions options_;
+  explicit Show(SessionSpec options) : options_(std::move(options)) {}
+  SessionSpec options_;
   History history_;
   double pace_ = 1.0;
 };
 
 // The two kinds, for open().
-Result<std::unique_ptr<Show>> open_live_show(const ShowOptions& options);
-Result<std::unique_ptr<Show>> open_playback_show(const ShowOptions& options);
+Result<std::unique_ptr<Show>> open_live_show(const SessionSpec& options);
+Result<std::unique_ptr<Show>> open_live_show(
+    const std::shared_ptr<LiveSession::Prepared>& prepared);
+Result<std::unique_ptr<Show>> open_playback_show(const SessionSpec& options);
 // What another one shows now, while nothing runs.
 std::unique_ptr<Show> still_show(Show& show);
 

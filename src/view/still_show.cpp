@@ -29,9 +29,7 @@ class StillShow final : public Show {
   const LiveStatus* status() override { return &status_; }
   std::string pad_name() const override { return pad_name_; }
   std::vector<std::string> take_remarks() override { return {}; }
-  Result<std::vector<nlohmann::ordered_json>> stop() override {
-    return std::vector<nlohmann::ordered_json>();
-  }
+  Result<RunSummary> stop() override { return RunSummary(); }
 
  private:
   Cast cast_;

@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,11 +34,7 @@ inline constexpr std::array<std::string_view, 5> kScenePartNames = {"trails", "g
                                                                     "source", "names"};
 
 struct WindowOptions {
-  LiveOptions live;   // its wish too
-  std::string trace;  // a playback of this instead
-  Damage damage = Damage::refuse;
-  bool is_trace_rate_given =
-      false;  // live.rate_hz was asked for: an error where a trace says another
+  SessionSpec session;             // live, or a playback of session.replay.trace
   std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
   std::string layout_file;         // remembered from one start to the next; empty: not
   std::string recent_file;         // the same of files that were opened
@@ -59,8 +54,8 @@ struct WindowOptions {
   std::function<std::vector<std::string>()> take_commands;  // for the session, from outside
 };
 struct WindowResult {
-  std::vector<nlohmann::ordered_json> summaries;  // one a character, of the last session
-  std::optional<LiveStatus> status;               // of it; none: it was a playback
+  RunSummary summary;                // of the last session
+  std::optional<LiveStatus> status;  // of it; none: it was a playback
   std::int64_t frames = 0;
   double frames_per_second = 0.0;
   std::vector<std::string> remarks;

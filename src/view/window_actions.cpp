@@ -191,14 +191,14 @@ void WindowLoop::go_back() {
   } else if (calibration_) {
     end_calibration(CalibrationView::State::given_up);
   } else if (live_before_) {
-    const ShowOptions live = *std::exchange(live_before_, std::nullopt);
+    const SessionSpec live = *std::exchange(live_before_, std::nullopt);
     switch_to(live);
   }
 }
 
 void WindowLoop::save_walkers_style(const std::string& name) {
   const auto walker = static_cast<std::size_t>(std::max(state_.walker, 0));
-  const auto& folders = show_->options().live.session.config_folders;
+  const auto& folders = show_->options().config_folders;
   const auto path = save_style(folders, name, show_->frame().walkers[walker].style);
   if (path) show_->add_config_folder(user_config_folder());  // it may be new
   say(path ? fmt::format("kept as {}: the next session knows it", *path) : path.error().message);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "drivers/posix.h"
 #include "view/drawing.h"
 #include "view/window_loop.h"
 
@@ -92,7 +93,7 @@ UiInput WindowLoop::ui_input() {
              .pad_name = show_->pad_name(),
              .pace = show_->pace(),
              .recording = show_->options().live.record,
-             .source = show_->options().trace,
+             .source = show_->options().replay.trace,
              .renderer = scene_->renderer(),
              .labels = {},
              .messages = messages_.sentences(),

@@ -20,17 +20,13 @@ constexpr double kOrbitStick_rad_s = 1.8;
 constexpr double kStickRest = 0.02;  // of the right stick: a camera does not creep
 constexpr std::int64_t kMessage_ns = 15'000'000'000;
 
-ShowOptions show_options(const WindowOptions& options) {
-  return {options.live, options.trace, options.damage, options.is_trace_rate_given};
-}
-
 }  // namespace
 
 WindowLoop::WindowLoop(const WindowOptions& options)
     : options_(options), browser_(options.recent_file) {
   // Without a pad the keys walk. For pictures time is that of the frames.
-  options_.live.keyboard = true;
-  if (makes_pictures()) options_.live.clock = LiveOptions::Clock::by_hand;
+  options_.session.live.keyboard = true;
+  if (makes_pictures()) options_.session.live.clock = SessionSpec::Live::Clock::by_hand;
 }
 
 WindowLoop::~WindowLoop() {
@@ -70,7 +66,8 @@ std::optional<Error> WindowLoop::open() {
   Layout layout = load_layout(options_.layout_file);
   take_layout(layout.state);
   // Words of files before anything is opened for them.
-  if (auto problem = Show::problem(show_options(options_))) return problem;
+  auto start = Show::prepare(options_.session);
+  if (!start) return start.error();
   auto surface = WindowSurface::open(
       {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
   if (!surface) return surface.error();
@@ -79,7 +76,7 @@ std::optional<Error> WindowLoop::open() {
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
   gui_ = std::make_unique<Gui>(*surface_);
-  auto show = Show::open(show_options(options_));
+  auto show = (*start)();
   if (!show) return show.error();
   install(std::move(*show));
   say(std::move(layout.remark));
@@ -160,7 +157,7 @@ void WindowLoop::take_wishes(Wishes wishes) {
 void WindowLoop::take_buttons(std::vector<Action>& wanted) {
   std::vector<Action> pressed;
   presses_.take(show_->frame(), pressed);
-  if (is_recording(show_->options().live.wish.pad)) {
+  if (is_recording(show_->options().pad.wish.pad)) {
     std::erase_if(pressed, [](Action action) {
       return action == Action::record || action == Action::screenshot ||
              action == Action::open_file || action == Action::calibrate || action == Action::quit;
@@ -216,12 +213,12 @@ void WindowLoop::remember_layout() {
 Result<WindowResult> WindowLoop::result() {
   remember_layout();
   if (const LiveStatus* status = show_->status()) result_.status = *status;
-  auto summaries = show_->stop();
+  auto summary = show_->stop();
   take_remarks();
   if (failure_) return *failure_;
-  if (!summaries) return summaries.error();
+  if (!summary) return summary.error();
   if (const LiveStatus* status = show_->status()) result_.status = *status;
-  result_.summaries = std::move(*summaries);
+  result_.summary = std::move(*summary);
   result_.frames_per_second = clock_.mean_frames_per_second();
   return std::move(result_);
 }

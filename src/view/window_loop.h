@@ -74,8 +74,8 @@ class WindowLoop {
   void take_remarks();
   void install(std::unique_ptr<Show> show);
   void end_show();  // its last state stays to be seen
-  bool switch_to(const ShowOptions& next);
-  bool restart(const ShowOptions& next, const ShowOptions& otherwise);
+  bool switch_to(const SessionSpec& next);
+  bool restart(Result<std::unique_ptr<Show>> show, const SessionSpec& otherwise);
   void open_file(const std::string& path);
   void turn_terrains();
   void turn_recording();
@@ -95,7 +95,7 @@ class WindowLoop {
   std::unique_ptr<CalibrationView> calibration_;
   std::unique_ptr<Show> show_;
   std::unique_ptr<Ensemble> ensemble_;
-  std::optional<ShowOptions> live_before_;  // a playback: what ran before it
+  std::optional<SessionSpec> live_before_;  // a playback: what ran before it
 
   UiState state_;
   UiState remembered_;  // as it was read

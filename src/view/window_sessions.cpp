@@ -54,10 +54,10 @@ void WindowLoop::install(std::unique_ptr<Show> show) {
 
 void WindowLoop::end_show() {
   const std::string recording = show_->options().live.record;
-  const auto summaries = show_->stop();
+  const auto summary = show_->stop();
   take_remarks();
-  if (!summaries) {
-    say(summaries.error().message);
+  if (!summary) {
+    say(summary.error().message);
   } else if (!recording.empty()) {
     say("the recording " + recording + " is complete");
   }
@@ -67,16 +67,17 @@ void WindowLoop::end_show() {
   is_camera_new_ = false;
 }
 
-bool WindowLoop::switch_to(const ShowOptions& next) {
-  ShowOptions otherwise = show_->options();
+bool WindowLoop::switch_to(const SessionSpec& next) {
+  SessionSpec otherwise = show_->options();
   otherwise.live.record.clear();
-  if (next.trace.empty()) {
-    if (auto problem = Show::problem(next)) {
-      say(problem->message);
+  if (next.replay.trace.empty()) {
+    auto prepared = LiveSession::prepare(next);  // its files are read before what runs is ended
+    if (!prepared) {
+      say(prepared.error().message);
       return false;
     }
     end_show();
-    return restart(next, otherwise);
+    return restart(open_live_show(*prepared), otherwise);
   }
   auto playback = Show::open(next);  // it needs no pad: what runs goes on until it is there
   if (!playback) {
@@ -91,8 +92,7 @@ bool WindowLoop::switch_to(const ShowOptions& next) {
 
 // After end_show(): the next one, or what ran before; where neither can be had, nothing runs and
 // its last state stays.
-bool WindowLoop::restart(const ShowOptions& next, const ShowOptions& otherwise) {
-  auto show = Show::open(next);
+bool WindowLoop::restart(Result<std::unique_ptr<Show>> show, const SessionSpec& otherwise) {
   const bool is_begun = static_cast<bool>(show);
   if (!is_begun) {
     say(show.error().message);
@@ -108,7 +108,7 @@ void WindowLoop::open_file(const std::string& path) {
   const auto kind = kind_of_file(path);
   if (!kind) return say(kind.error().message);
   const int count = static_cast<int>(show_->cast().members.size());
-  ShowOptions next = with_file(show_->options(), path, *kind, state_.walker, count);
+  SessionSpec next = with_file(show_->options(), path, *kind, state_.walker, count);
   if (makes_pictures()) return say("pictures are made of one session: open files without them");
   if (!switch_to(next)) return;
   browser_.remember(path);
@@ -122,22 +122,22 @@ void WindowLoop::turn_terrains() {
   if (!show_->is_live()) return say("a recording is playing: it stays on its ground");
   if (makes_pictures())
     return say("pictures are made of one session: --terrain chooses the ground");
-  ShowOptions next = show_->options();
-  SessionOptions& session = next.live.session;
-  const auto files = config_files(session.config_folders, "terrain");
+  SessionSpec next = show_->options();
+  std::string& terrain = next.walk.terrain;
+  const auto files = config_files(next.config_folders, "terrain");
   if (files.empty()) return say("no terrains were found");
-  const std::string now = session.terrain.empty() ? "flat" : config_name(session.terrain);
+  const std::string now = terrain.empty() ? "flat" : config_name(terrain);
   const auto at = std::ranges::find(files, now, config_name);
   const bool is_last = at == files.end() || at + 1 == files.end();
-  session.terrain = is_last ? files.front() : *(at + 1);
+  terrain = is_last ? files.front() : *(at + 1);
   next.live.record.clear();
-  if (switch_to(next)) say("on the ground " + config_name(session.terrain));
+  if (switch_to(next)) say("on the ground " + config_name(terrain));
 }
 
 void WindowLoop::turn_recording() {
   if (!show_->is_live()) return say("a recording is playing: there is nothing to record");
   if (makes_pictures()) return say("pictures are made of one session: record without them");
-  ShowOptions next = show_->options();
+  SessionSpec next = show_->options();
   const bool is_recorded = !next.live.record.empty();
   next.live.record = is_recorded ? "" : new_file(".hid");
   if (!is_recorded && next.live.record.empty()) return say("no name is free for a recording");
@@ -148,26 +148,25 @@ void WindowLoop::begin_calibration() {
   if (calibration_) return;
   if (!show_->is_live() || makes_pictures())
     return say("a recording is playing: calibrate in a live session");
-  const ShowOptions before = show_->options();
+  const SessionSpec before = show_->options();
   end_show();
-  auto view =
-      CalibrationView::start({before.live.wish, before.live.session.map,
-                              before.live.session.config_folders, options_.calibration_folder});
+  auto view = CalibrationView::start(
+      {before.pad.wish, before.pad.map, before.config_folders, options_.calibration_folder});
   calibration_state_ = CalibrationView::State::goes_on;
   if (view) {
     calibration_ = std::move(*view);
   } else {
     say(view.error().message);
-    restart(show_->options(), show_->options());
+    restart(Show::open(show_->options()), show_->options());
   }
 }
 
 void WindowLoop::end_calibration(CalibrationView::State state) {
   calibration_.reset();  // the pad is free
-  ShowOptions next = show_->options();
+  SessionSpec next = show_->options();
   // A file that was asked for would hide the new one.
-  if (state == CalibrationView::State::saved) next.live.session.calibration.clear();
-  restart(next, show_->options());
+  if (state == CalibrationView::State::saved) next.pad.calibration.clear();
+  restart(Show::open(next), show_->options());
 }
 
 void WindowLoop::take_screenshot(int width_px, int height_px) {

@@ -1,4 +1,4 @@
-// Live sessions in real time; a trace is the pad.
+// Live sessions, from their start to the summary that a replay of their recording has, too.
 #include "gaitpad/live.h"
 
 #include <gtest/gtest.h>
@@ -7,12 +7,19 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
 
 #include "drivers/posix.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/pad_setup.h"
 #include "tests/session/live_fixture.h"
 
 namespace gaitpad {
 namespace {
+
+// --- real time; a trace is the pad
 
 namespace fs = std::filesystem;
 
@@ -25,22 +32,20 @@ TEST_F(Live, ReplaysToTheSamePoses) {
   session->command("   ");
   session->command("no such command");
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  ASSERT_EQ(summaries->size(), 2u);
-  const nlohmann::ordered_json& first = summaries->front();
-  EXPECT_EQ(*summaries, replayed());
-  EXPECT_EQ(first["style"], "tired");
-  EXPECT_GT(first["ticks"], 3 * 240) << "2.4 s and a second more";
-  EXPECT_GT(first["reports"], 400);
-  EXPECT_EQ(first["bad_reports"], 0);
-  EXPECT_GT(first["steps_left"].get<int>() + first["steps_right"].get<int>(), 1);
+  const RunSummary run = stopped(*session);
+  ASSERT_EQ(run.walkers.size(), 2u);
+  const WalkerSummary& first = run.walkers.front();
+  EXPECT_EQ(first.style, "tired");
+  EXPECT_GT(run.ticks, 3 * 240) << "2.4 s and a second more";
+  EXPECT_GT(run.reports, 400);
+  EXPECT_EQ(run.bad_reports, 0);
+  EXPECT_GT(first.steps[kLeftSide] + first.steps[kRightSide], 1);
   EXPECT_EQ(session->status().recording_lost, 0);
   EXPECT_EQ(session->status().pads.lost, 0);
 }
 
 TEST_F(Live, TellsTheNewestTickAndHowItGoes) {
-  options_.record.clear();
+  options_.live.record.clear();
   auto session = started();
   std::int64_t tick = -1;
   std::uint16_t driving = kNoDevice;
@@ -67,7 +72,7 @@ TEST_F(Live, TellsTheNewestTickAndHowItGoes) {
 }
 
 TEST_F(Live, TicksAreTheTimeTimesTheRate) {
-  options_.record.clear();
+  options_.live.record.clear();
   options_.rate_hz = 500;
   auto session = started();
   ASSERT_TRUE(comes_true([&] { return session->status().ticks > 0; }));
@@ -102,19 +107,17 @@ TEST_F(Live, AfterAStandstillTheSessionGoesOnWhereItStood) {
                 remarks, [](const std::string& s) { return s.find("stood still") != s.npos; }),
             1);
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries);
-  EXPECT_EQ(*summaries, replayed());
+  stopped(*session);
 }
 
 TEST_F(Live, WithoutAPadItStandsAndRecordsNothing) {
-  options_.wish.pad = "0001:fffe";
+  options_.pad.wish.pad = "0001:fffe";
   auto session = started();
   sleep_for(200);
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries);
-  EXPECT_EQ(summaries->front()["steps_left"], 0);
-  EXPECT_FALSE(fs::exists(options_.record));
+  const auto run = session->stop();
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->walkers[0].steps[kLeftSide], 0);
+  EXPECT_FALSE(fs::exists(options_.live.record));
 }
 
 TEST_F(Live, EndsWithItsRecordingWhereItIsNotStopped) {
@@ -122,7 +125,7 @@ TEST_F(Live, EndsWithItsRecordingWhereItIsNotStopped) {
     auto session = started();
     sleep_for(300);
   }
-  EXPECT_TRUE(read_trace(options_.record));
+  EXPECT_TRUE(read_trace(options_.live.record));
 }
 
 TEST_F(Live, WrongWishesAreRefused) {
@@ -130,11 +133,389 @@ TEST_F(Live, WrongWishesAreRefused) {
   EXPECT_EQ(LiveSession::start(options_).error().message,
             "a rate of 0 Hz is not within 1 .. 10000");
   options_.rate_hz = 240;
-  options_.record = (folder_ / "none" / "x.hid").string();
+  options_.live.record = (folder_ / "none" / "x.hid").string();
   EXPECT_FALSE(LiveSession::start(options_));
-  options_.record.clear();
-  options_.session.styles = {"no_such_style"};
+  options_.live.record.clear();
+  options_.walk.styles = {"no_such_style"};
   EXPECT_FALSE(LiveSession::start(options_));
+}
+
+// --- the keyboard as a pad
+
+class LiveKeyboard : public Live {
+ protected:
+  void SetUp() override {
+    Live::SetUp();
+    options_.live.keyboard = true;
+    options_.pad.wish.pad = "0001:fffe";  // nobody has one
+  }
+  static double distance_m(LiveSession& session) {
+    bool is_new = false;
+    const SessionFrame& frame = session.latest(is_new);
+    return frame.tick < 0 ? 0.0 : frame.walkers[0].pose.root_m.z;
+  }
+  // Left stick after each input report of the device in the recording that has this driver.
+  std::vector<vec2> recorded_stick(const std::string& driver) {
+    const Trace trace = value_of(read_trace(options_.live.record));
+    std::vector<vec2> all;
+    for (std::size_t d = 0; d < trace.devices.size(); ++d) {
+      if (trace.devices[d].info.driver != driver) continue;
+      const PadLayout layout = value_of(pad_layout(trace.devices[d].info, {}));
+      PadState state;
+      for (const TraceEvent& e : trace.events) {
+        if (e.device != d || e.kind != ReportKind::input) continue;
+        EXPECT_TRUE(decode(layout, report_of(trace, e), state));
+        all.emplace_back(state.axis[kLeftX], state.axis[kLeftY]);
+      }
+    }
+    return all;
+  }
+};
+
+TEST_F(LiveKeyboard, WalksAndItsRecordingReplaysToTheSamePoses) {
+  auto session = started();
+  EXPECT_TRUE(comes_true([&] { return session->pad_name(0) == "Keyboard"; }));
+  session->steer(vec2(0.0, 1.0));
+  EXPECT_TRUE(comes_true([&] { return distance_m(*session) > 1.0; }));
+  session->steer(vec2(1.0, 1.0));
+  sleep_for(400);
+  session->steer(vec2(0.0));
+  sleep_for(400);
+  bool is_new = false;
+  EXPECT_EQ(session->latest(is_new).stick.left, vec2(0.0)) << "at rest exactly";
+  const RunSummary run = stopped(*session);
+  EXPECT_EQ(run.bad_reports, 0);
+  EXPECT_EQ(session->status().pads.plugged, 0) << "it is no pad that was plugged in";
+  const std::vector<vec2> stick = recorded_stick("keyboard");
+  ASSERT_GT(stick.size(), 20u);
+  EXPECT_EQ(stick.front(), vec2(0.0));
+  EXPECT_EQ(stick.back(), vec2(0.0));
+  const auto y = [](const vec2& s) { return s.y; };
+  EXPECT_EQ(std::ranges::max(stick, {}, y).y, 1.0);
+}
+
+TEST_F(LiveKeyboard, TheSmallestDeflectionCountsAndTheLargestIsOne) {
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
+  auto session = started();
+  bool is_new = false;
+  double least = 1.0, most = 0.0;
+  EXPECT_TRUE(comes_true([&] {
+    session->steer(vec2(0.0, 1.0));
+    session->advance(1);
+    const double y = session->latest(is_new).stick.left.y;
+    if (y > 0.0) least = std::min(least, y);
+    most = std::max(most, y);
+    return most == 1.0;
+  }));
+  EXPECT_LT(least, 0.12) << "a first step of 4 to 16 ms of 150";
+  session->steer(vec2(0.002, 0.0));
+  EXPECT_TRUE(comes_true([&] {
+    session->advance(1);
+    return session->latest(is_new).stick.left.y == 0.0;
+  }));
+  EXPECT_NEAR(session->latest(is_new).stick.left.x, 0.002, 1e-4);
+}
+
+// A calibration that was made for somebody's pad is none for the keyboard.
+TEST_F(LiveKeyboard, TheUsersCalibrationIsNotForIt) {
+  options_.pad.calibration = (folder_ / "pad.toml").string();
+  std::ofstream(options_.pad.calibration) << "[left]\ninner = 0.5\nouter = 0.9\n";
+  auto session = started();
+  session->steer(vec2(0.0, 0.3));
+  bool is_new = false;
+  EXPECT_TRUE(comes_true([&] { return session->latest(is_new).stick.left.y > 0.29; }));
+  stopped(*session);
+}
+
+TEST_F(LiveKeyboard, ARecordingAsPadEndsTheSessionAsEver) {
+  options_.pad.wish.pad = (folder_ / "pads.hid").string();
+  auto session = started();
+  session->steer(vec2(1.0, 0.0));
+  EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
+  stopped(*session);
+  EXPECT_EQ(session->status().pads.plugged, 4) << "two pads, each twice";
+}
+
+// A pad that rests for three seconds and is held to the right from the second one on.
+Trace late_pad_trace() {
+  Trace trace;
+  trace.devices.emplace_back().info = made_pad();
+  for (int ms = 0; ms <= 3000; ms += 8) {
+    add_event(trace, ms * 1000, made_report(ms < 2000 ? 0x80 : 0xff, 0x80));
+  }
+  return trace;
+}
+
+TEST_F(LiveKeyboard, CountsWhileThePadRests) {
+  options_.pad.wish.pad = (folder_ / "late.hid").string();
+  ASSERT_TRUE(write_trace(late_pad_trace(), options_.pad.wish.pad));
+  auto session = started();
+  session->steer(vec2(0.0, 1.0));
+  vec2 stick(0.0);
+  std::string driving;
+  const auto look = [&] {
+    bool is_new = false;
+    const SessionFrame& frame = session->latest(is_new);
+    stick = frame.stick.left;
+    driving = session->pad_name(frame.pad.device);
+  };
+  EXPECT_TRUE(comes_true([&] { return look(), stick == vec2(0.0, 1.0); }));
+  EXPECT_TRUE(comes_true([&] { return look(), stick.x > 0.99; }));
+  EXPECT_EQ(driving, "Example Walk Pad");
+  stopped(*session);
+}
+
+TEST_F(LiveKeyboard, WithoutOneSteeringDoesNothing) {
+  options_.live.keyboard = false;
+  options_.live.record.clear();
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
+  auto session = started();
+  session->steer(vec2(0.0, 1.0));
+  sleep_for(50);
+  session->advance(10);
+  bool is_new = false;
+  EXPECT_EQ(session->latest(is_new).stick.left, vec2(0.0));
+}
+
+// --- when ticks run: standing still, steps, slow motion, by hand
+
+class LivePace : public Live {
+ protected:
+  // Until no tick has run for a tenth of a second.
+  static std::int64_t ticks_when_still(LiveSession& session) {
+    std::int64_t before = -1, ticks = session.status().ticks;
+    while (ticks != before) {
+      sleep_for(100);
+      before = std::exchange(ticks, session.status().ticks);
+    }
+    return ticks;
+  }
+};
+
+TEST_F(LivePace, StandingStillIsNoLatenessAndNothingIsMadeUpFor) {
+  auto session = started();
+  sleep_for(200);
+  session->set_pace(0.0);
+  const std::int64_t still = ticks_when_still(*session);
+  const LiveStatus before = session->status();
+  sleep_for(1300);
+  EXPECT_EQ(session->status().ticks, still);
+  session->set_pace(1.0);
+  sleep_for(300);
+  const LiveStatus after = session->status();
+  EXPECT_GT(after.ticks, still);
+  EXPECT_LT(after.ticks - still, 240) << "more than a second was not run";
+  EXPECT_EQ(after.standstills + after.overloads, 0);
+  EXPECT_EQ(after.skipped_s, 0.0);
+  EXPECT_LT(after.late_us_max, 1e6);
+  EXPECT_LT(after.wait_us_max, 1e6) << "what came meanwhile has waited for nobody";
+  EXPECT_EQ(after.pads.lost, 0);
+  EXPECT_EQ(session->take_remarks(), std::vector<std::string>());
+  ASSERT_TRUE(session->stop());
+  EXPECT_EQ(session->status().recording_lost, 0);
+}
+
+TEST_F(LivePace, AStepIsOneTickAndCountsOnlyWhileItStandsStill) {
+  options_.live.record.clear();
+  auto session = started();
+  session->step(100'000);  // of no effect: it runs
+  sleep_for(100);
+  session->set_pace(0.0);
+  session->step(1);  // at once behind it, before the loop has seen either
+  const std::int64_t still = ticks_when_still(*session);
+  EXPECT_LT(still, 240);
+  for (const int steps : {1, 4, 60}) {
+    const std::int64_t before = session->status().ticks;
+    session->step(steps);
+    EXPECT_EQ(ticks_when_still(*session), before + steps);
+  }
+  session->step(0);
+  session->step(-5);
+  EXPECT_EQ(ticks_when_still(*session), still + 65);
+  bool is_new = false;
+  EXPECT_EQ(session->latest(is_new).tick, still + 64);
+}
+
+TEST_F(LivePace, AtAQuarterOfThePaceThereIsAQuarterOfTheTicks) {
+  options_.live.record.clear();
+  auto session = started();
+  ASSERT_TRUE(comes_true([&] { return session->status().ticks > 0; }));
+  for (const double pace : {0.25, 4.0}) {
+    session->set_pace(pace);
+    sleep_for(50);
+    const LiveStatus before = session->status();
+    sleep_for(1000);
+    const LiveStatus after = session->status();
+    const double seconds = after.time_s - before.time_s;
+    const auto ticks = static_cast<double>(after.ticks - before.ticks);
+    EXPECT_NEAR(ticks, 240.0 * pace * seconds, 25.0 * pace) << pace;
+  }
+}
+
+TEST_F(LivePace, NoNumberAndLessThanNothingStandStill) {
+  options_.live.record.clear();
+  auto session = started();
+  for (const double pace : {-1.0, std::nan(""), 1e-12}) {
+    session->set_pace(pace);
+    const std::int64_t still = ticks_when_still(*session);
+    session->set_pace(1e300);  // 8 is the most
+    EXPECT_TRUE(comes_true([&] { return session->status().ticks > still; }));
+  }
+}
+
+TEST_F(LivePace, AStopWaitsForNoTickThatIsFarAway) {
+  options_.live.record.clear();
+  options_.rate_hz = 1;
+  auto session = started();
+  session->set_pace(1.0 / 1024.0);
+  sleep_for(100);
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(session->stop());
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5)) << "not 17 minutes";
+}
+
+TEST_F(LivePace, ARecordingOfPausesStepsAndSlowMotionReplaysToTheSamePoses) {
+  auto session = started();
+  sleep_for(300);
+  session->set_pace(0.0);
+  sleep_for(100);
+  session->command("style 2 tired");
+  for (int i = 0; i < 5; ++i) {
+    session->step(i);
+    sleep_for(30);
+  }
+  session->set_pace(0.25);
+  sleep_for(400);
+  session->set_pace(3.0);
+  sleep_for(200);
+  session->set_pace(1.0);
+  EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
+  session->set_pace(0.0);
+  sleep_for(50);
+  const RunSummary run = stopped(*session);
+  EXPECT_EQ(run.walkers[1].style, "tired");
+  EXPECT_GT(run.walkers[0].steps[kLeftSide], 0);
+}
+
+TEST_F(LivePace, AViewerGetsASampleOfEveryTickInOrder) {
+  options_.live.record.clear();
+  auto session = started();
+  std::int64_t next = 0;
+  TickSample sample;
+  const auto take_all = [&] {
+    while (session->take_sample(sample)) {
+      ASSERT_EQ(sample.tick, next++);
+      EXPECT_EQ(sample.walker_count, 2);
+      EXPECT_GT(sample.step_us, 0.0f);
+    }
+  };
+  while (next < 200) {
+    take_all();
+    sleep_for(10);
+  }
+  ASSERT_TRUE(session->stop());
+  take_all();
+  EXPECT_EQ(next, session->status().ticks);
+}
+
+TEST_F(LivePace, SamplesThatNobodyTakesAreDroppedAndNothingElse) {
+  options_.live.record.clear();
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
+  auto session = started();
+  session->advance(5000);
+  TickSample sample;
+  std::int64_t count = 0;
+  while (session->take_sample(sample)) EXPECT_EQ(sample.tick, count++);
+  EXPECT_GE(count, 1000);
+  EXPECT_LT(count, 5000);
+  EXPECT_EQ(session->status().ticks, 5000);
+  session->advance(1);
+  ASSERT_TRUE(session->take_sample(sample));
+  EXPECT_EQ(sample.tick, 5000);
+}
+
+TEST_F(LivePace, TheTimeIsTheTicksOverTheRate) {
+  options_.live.record.clear();
+  auto session = started();
+  sleep_for(700);
+  ASSERT_TRUE(session->stop());
+  const LiveStatus status = session->status();
+  // The last one may have been late, and the stop is seen within a nap.
+  EXPECT_NEAR(static_cast<double>(status.ticks), 240.0 * status.time_s, 12.0);
+  EXPECT_GT(status.late_us_max, 0.0);
+  EXPECT_LE(status.late_us_median, status.late_us_max);
+  std::int64_t waits = 0;
+  for (const std::int64_t count : status.wait_counts) waits += count;
+  EXPECT_GT(waits, 80) << "125 reports a second of two pads";
+  EXPECT_LE(waits, status.pads.reports);
+  EXPECT_TRUE(status.time_policy == "normal priority" ||
+              status.time_policy.starts_with("SCHED_FIFO "))
+      << status.time_policy;
+}
+
+TEST_F(LivePace, ByHandNothingRunsButWhatIsAskedFor) {
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
+  auto session = started();
+  sleep_for(100);
+  bool is_new = true;
+  EXPECT_EQ(session->latest(is_new).tick, -1);
+  session->advance(0);
+  session->advance(-3);
+  session->set_pace(0.0);
+  session->step(7);
+  EXPECT_EQ(session->status().ticks, 0);
+  for (int i = 0; i < 400; ++i) {
+    session->advance(4);
+    EXPECT_EQ(session->latest(is_new).tick, 4 * i + 3);
+    sleep_for(2);
+  }
+  session->command("style 1 tired");
+  sleep_for(50);
+  session->advance(1);
+  const LiveStatus status = session->status();
+  EXPECT_EQ(status.ticks, 1601);
+  EXPECT_EQ(status.overruns, 0);
+  EXPECT_EQ(status.time_policy, "by hand");
+  const RunSummary run = stopped(*session);
+  EXPECT_EQ(run.walkers[0].style, "tired");
+  EXPECT_EQ(run.ticks, 1601);
+  EXPECT_GT(run.reports, 50);
+  session->advance(1);
+  EXPECT_EQ(session->status().ticks, 1601) << "it was stopped";
+  EXPECT_FALSE(session->stop());
+}
+
+TEST_F(LivePace, HalfAnHourByHandIsARecordingThatReads) {
+  options_.rate_hz = 20;
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
+  auto session = started();
+  sleep_for(50);
+  session->advance(20 * 1800);
+  sleep_for(50);
+  session->advance(1);
+  stopped(*session);
+}
+
+TEST_F(LivePace, ByTheClockNobodyElseRunsTicks) {
+  options_.live.record.clear();
+  options_.rate_hz = 1;
+  auto session = started();
+  session->advance(1000);
+  EXPECT_LT(session->status().ticks, 100);
+}
+
+TEST_F(LivePace, TheCastAndTheNamesOfPadsAreTold) {
+  options_.live.record.clear();
+  auto session = started();
+  const Cast& cast = session->cast();
+  ASSERT_EQ(cast.members.size(), 2u);
+  EXPECT_EQ(cast.members[0].style, "even");
+  EXPECT_EQ(cast.members[1].style, "limp_left");
+  EXPECT_EQ(cast.rate_hz, 240);
+  EXPECT_TRUE(std::ranges::find(cast.styles, "tired") != cast.styles.end());
+  EXPECT_TRUE(comes_true([&] { return session->pad_name(1) == "Example Walk Pad"; }));
+  EXPECT_EQ(session->pad_name(2), "");
+  EXPECT_EQ(session->pad_name(kNoDevice), "");
 }
 
 }  // namespace

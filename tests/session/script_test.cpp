@@ -2,10 +2,84 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "tests/session/live_fixture.h"
 
 namespace gaitpad {
 namespace {
+
+// --- commands
+
+using Verb = Command::Verb;
+
+void expect(std::string_view text, Verb verb, int walker, std::string_view name, double value) {
+  const auto command = parsed_command(text);
+  ASSERT_TRUE(command) << text;
+  EXPECT_EQ(command->verb, verb) << text;
+  EXPECT_EQ(command->walker, walker) << text;
+  EXPECT_EQ(command->name, name) << text;
+  EXPECT_EQ(command->value, value) << text;
+}
+
+TEST(Commands, AreForAllOrForOne) {
+  expect("style limp", Verb::style, 0, "limp", 0);
+  expect("style 2 limp", Verb::style, 2, "limp", 0);
+  expect("set fatigue 0.25", Verb::set, 0, "fatigue", 0.25);
+  expect("\t set  16 legs.weight.hip \t 1e-1 ", Verb::set, 16, "legs.weight.hip", 0.1);
+  expect("gait speed_m_s 1.5", Verb::gait, 0, "speed_m_s", 1.5);
+  expect("gait 3 turn_rate_rad_s -0.5", Verb::gait, 3, "turn_rate_rad_s", -0.5);
+  expect("gait speed_m_s stick", Verb::release, 0, "speed_m_s", 0);
+  expect("gait 1 speed_m_s stick", Verb::release, 1, "speed_m_s", 0);
+  expect("gait stick", Verb::stick, 0, "stick", 0);
+  expect("gait 4 stick", Verb::stick, 4, "stick", 0);
+  expect("reset", Verb::restart, 0, "", 0);
+  expect("mark", Verb::mark, 0, "", 0);
+  expect("mark  what ever 1 2 3", Verb::mark, 0, "", 0);
+}
+
+TEST(Commands, ALoneNumberIsAName) { expect("style 1", Verb::style, 0, "1", 0); }
+
+TEST(Commands, MalformedOnesAreNone) {
+  const char* const bad[] = {"",
+                             " ",
+                             "style",
+                             "style 0 even",
+                             "style -1 even",
+                             "style 1 even now",
+                             "style x even",
+                             "Style even",
+                             "styles even",
+                             "set",
+                             "set fatigue",
+                             "set 1 fatigue",
+                             "set fatigue x",
+                             "set fatigue 0.5x",
+                             "set fatigue +0.5",
+                             "set fatigue 0,5",
+                             "set fatigue nan",
+                             "set fatigue inf",
+                             "set fatigue 1e999",
+                             "set fatigue 0.5 0.5",
+                             "set 0 fatigue 0.5",
+                             "set 1 2 fatigue 0.5",
+                             "set 99999999999 fatigue 0.5",
+                             "gait",
+                             "gait 1",
+                             "gait speed_m_s",
+                             "gait speed_m_s 1 2",
+                             "gait stick stick 1",
+                             "gait stick 1",
+                             "gait stick stick",
+
+                             "reset 1",
+                             "reset now",
+                             "resets",
+                             "sing"};
+  for (const char* text : bad) EXPECT_FALSE(parsed_command(text)) << text;
+}
+
+// --- scripts
 
 std::string event(const std::string& at_s, const std::string& command) {
   return "[[event]]\nat_s = " + at_s + "\ncommand = \"" + command + "\"\n";
@@ -43,14 +117,14 @@ class Scripted : public Live {
  protected:
   void SetUp() override {
     Live::SetUp();
-    options_.clock = LiveOptions::Clock::by_hand;
-    options_.keyboard = true;
-    options_.wish.pad = "0001:fffe";  // nobody has one: the script alone walks
+    options_.live.clock = SessionSpec::Live::Clock::by_hand;
+    options_.live.keyboard = true;
+    options_.pad.wish.pad = "0001:fffe";  // nobody has one: the script alone walks
   }
   std::string write(const std::string& name, const std::string& text) {
     return own_.write(name, text);
   }
-  std::string hash_of_live(int ticks) {
+  std::uint64_t hash_of_live(int ticks) {
     const auto session = started();
     // A recording needs a device.
     EXPECT_TRUE(comes_true([&] {
@@ -58,70 +132,68 @@ class Scripted : public Live {
       return !session->pad_name(0).empty();
     }));
     session->advance(ticks);
-    const auto summaries = value_of(session->stop());
-    style_ = summaries[0]["style"];
-    return summaries[0]["pose_hash"];
+    const RunSummary run = value_of(session->stop());
+    style_ = run.walkers[0].style;
+    return run.pose_hash;
   }
   std::string style_;
 };
 
 TEST_F(Scripted, EventsAreRecordedAndAReplayNeedsNoScript) {
-  options_.session.script =
+  options_.walk.script =
       write("walk.toml", event("1", "style stiff_knee") + event("0.2", "gait speed_m_s 1.2"));
-  const std::string live = hash_of_live(1200);
+  const std::uint64_t live = hash_of_live(1200);
   EXPECT_EQ(style_, "stiff_knee");
-  options_.session.script.clear();
-  const auto summaries = replayed();
-  ASSERT_FALSE(summaries.empty());
-  EXPECT_EQ(summaries[0]["pose_hash"], live);
-  EXPECT_EQ(summaries[0]["style"], "stiff_knee");
-  EXPECT_EQ(summaries[0]["bad_commands"], 0);
+  options_.walk.script.clear();
+  const RunSummary run = replayed();
+  EXPECT_EQ(run.pose_hash, live);
+  EXPECT_EQ(run.walkers[0].style, "stiff_knee");
+  EXPECT_EQ(run.bad_commands, 0);
 }
 
 // Zones and tiring follow from the state: they stand in no recording and act once in a replay.
 TEST_F(Scripted, ZonesAndTiringActOnceInAReplay) {
-  options_.session.terrain =
+  options_.walk.terrain =
       write("zones.toml", "[[zone]]\nfrom_m = 1\nto_m = 2.5\nstyle = \"limp_left_hip\"\n");
-  options_.session.styles = {write("quick.toml",
-                                   "blend_s = 0.4\nfatigue_model = { per_100_m = 5, "
-                                   "recovery_per_s = 0.1 }\n")};
-  options_.session.script =
+  options_.walk.styles = {write("quick.toml",
+                                "blend_s = 0.4\nfatigue_model = { per_100_m = 5, "
+                                "recovery_per_s = 0.1 }\n")};
+  options_.walk.script =
       write("walk.toml", event("0.5", "set hip_bounce 0.5") + event("0.2", "gait speed_m_s 1.2"));
-  const std::string live = hash_of_live(1400);
-  options_.session.script.clear();
-  const auto summaries = replayed();
-  ASSERT_FALSE(summaries.empty());
-  EXPECT_EQ(summaries[0]["pose_hash"], live);
-  const std::string text = text_in(options_.record);
+  const std::uint64_t live = hash_of_live(1400);
+  options_.walk.script.clear();
+  const RunSummary run = replayed();
+  EXPECT_EQ(run.pose_hash, live);
+  const std::string text = text_in(options_.live.record);
   EXPECT_EQ(text.find("limp_left_hip"), std::string::npos);
   EXPECT_NE(text.find("set hip_bounce 0.5"), std::string::npos);
-  options_.session.terrain.clear();  // the zone was there indeed
-  EXPECT_NE(replayed()[0]["pose_hash"], live);
+  options_.walk.terrain.clear();  // the zone was there indeed
+  EXPECT_NE(replayed().pose_hash, live);
 }
 
 TEST_F(Scripted, IsMergedWithTheEventsOfATrace) {
   const std::string trace = (folder_ / "pads.hid").string();
   const auto replay_with = [&](const std::string& script) {
-    ReplayOptions options;
-    options.session.config_folders = options_.session.config_folders;
-    options.session.script = script;
-    options.trace = trace;
-    return value_of(replay(options)).summaries[0];
+    SessionSpec spec;
+    spec.config_folders = options_.config_folders;
+    spec.walk.script = script;
+    spec.replay.trace = trace;
+    return value_of(replay(spec)).summary;
   };
   const auto plain = replay_with("");
   const auto scripted = replay_with(write("a.toml", event("1", "style limp_left")));
-  EXPECT_EQ(scripted["style"], "limp_left");
-  EXPECT_EQ(scripted["reports"], plain["reports"]);
-  EXPECT_EQ(scripted["ticks"], plain["ticks"]);
-  EXPECT_NE(scripted["pose_hash"], plain["pose_hash"]);
+  EXPECT_EQ(scripted.walkers[0].style, "limp_left");
+  EXPECT_EQ(scripted.reports, plain.reports);
+  EXPECT_EQ(scripted.ticks, plain.ticks);
+  EXPECT_NE(scripted.pose_hash, plain.pose_hash);
   // Behind the end nothing happens.
-  EXPECT_EQ(replay_with(write("b.toml", event("99", "style limp_left")))["pose_hash"],
-            plain["pose_hash"]);
+  EXPECT_EQ(replay_with(write("b.toml", event("99", "style limp_left"))).pose_hash,
+            plain.pose_hash);
 }
 
 TEST_F(Scripted, WhatASessionCouldNotObeyIsRefusedBeforeItBegins) {
   const auto refusal = [&](const std::string& command) {
-    options_.session.script = write("walk.toml", event("0", "mark") + event("1", command));
+    options_.walk.script = write("walk.toml", event("0", "mark") + event("1", command));
     return cause_of(LiveSession::start(options_));
   };
   for (const char* command : {"style no_such", "set hip_sway 9", "style 3 even", "gait speed 1"}) {

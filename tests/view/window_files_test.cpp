@@ -13,21 +13,21 @@ namespace fs = std::filesystem;
 using Glance = WindowGlance;
 
 // A motion file: the bundled recording's walk, as replay exports it.
-std::string exported_walk(const Window&, const fs::path& folder, const SessionOptions& session,
+std::string exported_walk(const Window&, const fs::path& folder, const SessionSpec& session,
                           const std::string& trace) {
-  ReplayOptions options;
-  options.session.config_folders = session.config_folders;
-  options.trace = trace;
-  options.out = (folder / "out").string();
-  options.fps = 60;
-  value_of(replay(options));
-  return options.out + "/pose.bvh";
+  SessionSpec spec;
+  spec.config_folders = session.config_folders;
+  spec.replay.trace = trace;
+  spec.replay.out = (folder / "out").string();
+  spec.replay.fps = 60;
+  value_of(replay(spec));
+  return spec.replay.out + "/pose.bvh";
 }
 
 class WindowFiles : public Window {};
 
 TEST_F(WindowFiles, DroppedFilesChangeTheSessionAndDamagedOnesDoNot) {
-  const std::string walk = exported_walk(*this, folder_, options_.live.session, round_);
+  const std::string walk = exported_walk(*this, folder_, options_.session, round_);
   const std::string damaged = make("damaged.bvh", text_in(walk).substr(0, 3000));
   const std::string style = make("styles/own.toml", "fatigue = 0.75\n");
   const std::string bad_style = make("styles/bad.toml", "fatigue = \"very\"\n");
@@ -89,7 +89,7 @@ TEST_F(WindowFiles, ADroppedRecordingPlaysAndEscapeGoesBack) {
 }
 
 TEST_F(WindowFiles, APlaybackIsPausedSteppedSoughtAndTakesNoStyles) {
-  options_.trace = round_;
+  options_.session.replay.trace = round_;
   Script script;
   std::int64_t tick = 0;
   script.until("it plays", [](const Glance& g) { return g.session.tick > 10; });
@@ -171,7 +171,7 @@ std::string thumb_trace() {
 }
 
 TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
-  options_.live.wish.pad = make("thumb.hid", thumb_trace());
+  options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
   options_.calibration_folder = (folder_ / "config/gaitpad/calibration").string();
   Script script;
   script.until("it runs", [](const Glance& g) { return g.session.tick > 0; });
@@ -230,8 +230,8 @@ TEST_F(WindowFiles, ASavedStyleIsKnownToTheNextSession) {
 
 TEST_F(WindowFiles, PicturesOfATraceAreTheSameEveryTime) {
   std::array<std::string, 2> pictures;
-  std::array<std::string, 2> hashes;
-  options_.trace = round_;
+  std::array<std::uint64_t, 2> hashes{};
+  options_.session.replay.trace = round_;
   options_.is_hidden = true;
   options_.frames = 45;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -240,8 +240,8 @@ TEST_F(WindowFiles, PicturesOfATraceAreTheSameEveryTime) {
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->frames, 45);
     pictures[i] = text_in(options_.screenshot);
-    hashes[i] = result->summaries[0]["pose_hash"];
-    EXPECT_EQ(result->summaries[0]["ticks"], 45 * 240 / 60);
+    hashes[i] = result->summary.pose_hash;
+    EXPECT_EQ(result->summary.ticks, 45 * 240 / 60);
   }
   EXPECT_GT(pictures[0].size(), 50'000u);
   EXPECT_EQ(pictures[0], pictures[1]);
@@ -258,7 +258,7 @@ TEST_F(WindowFiles, ALiveSessionIsPicturedByHandTheSameEveryTime) {
     options_.screenshot = (folder_ / "live.png").string();
     const auto result = run_window(options_);
     ASSERT_TRUE(result) << result.error().message;
-    EXPECT_EQ(result->summaries[0]["ticks"], 30 * 240 / 60);
+    EXPECT_EQ(result->summary.ticks, 30 * 240 / 60);
     picture = text_in(options_.screenshot);
   }
   EXPECT_FALSE(pictures[0].empty());

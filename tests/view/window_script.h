@@ -176,9 +176,9 @@ class Window : public testing::Test {
     if (!opened) GTEST_SKIP() << opened.error().message;
     ::setenv("SDL_VIDEODRIVER", "offscreen", 1);
     std::filesystem::current_path(folder_);
-    options_.live.session.config_folders = {GAITPAD_SOURCE_DIR "/config"};
-    options_.live.session.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
-    options_.live.wish.pad = "no pad of this machine";
+    options_.session.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    options_.session.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
+    options_.session.pad.wish.pad = "no pad of this machine";
     options_.scale = 1.0;
   }
   void TearDown() override {

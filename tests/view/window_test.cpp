@@ -15,9 +15,9 @@ using Glance = WindowGlance;
 class ActionScript : public Script {
  public:
   explicit ActionScript(const WindowOptions& options) {
-    styles_ = options.live.session.styles;
+    styles_ = options.session.walk.styles;
     // Those of config/ that are not among them, by name.
-    for (const std::string& path : config_files(options.live.session.config_folders, "styles")) {
+    for (const std::string& path : config_files(options.session.config_folders, "styles")) {
       if (std::ranges::count(styles_, config_name(path)) == 0) styles_.push_back(config_name(path));
     }
   }
@@ -226,12 +226,11 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   run(script);
   EXPECT_EQ(files(".png").size(), 1u);
   ASSERT_EQ(files(".hid").size(), 1u);
-  ReplayOptions replayed;
-  replayed.session = options_.live.session;
-  replayed.trace = files(".hid").front();
+  SessionSpec replayed = options_.session;
+  replayed.replay.trace = files(".hid").front();
   const auto again = replay(replayed);
   ASSERT_TRUE(again) << again.error().message;
-  EXPECT_GT(again->summaries.front()["ticks"], 20);
+  EXPECT_GT(again->summary.ticks, 20);
 }
 
 TEST_F(Window, QuitEndsItAtOnce) {
@@ -307,7 +306,7 @@ TEST_F(Window, KeysWalkAndFocusLossMakesTheStickNeutral) {
 }
 
 TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
-  options_.live.record = (folder_ / "session.hid").string();
+  options_.session.live.record = (folder_ / "session.hid").string();
   options_.are_panels_given = true;
   options_.panels = {Panel::control};
   Script script;
@@ -334,16 +333,15 @@ TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
   script.press(SDLK_UP);
   script.wait(10);
   const WindowResult result = run(script);
-  ASSERT_EQ(result.summaries.size(), 4u);
-  ReplayOptions replayed;
-  replayed.session = options_.live.session;
-  replayed.trace = options_.live.record;
+  ASSERT_EQ(result.summary.walkers.size(), 4u);
+  SessionSpec replayed = options_.session;
+  replayed.replay.trace = options_.session.live.record;
   const auto again = replay(replayed);
   ASSERT_TRUE(again) << again.error().message;
-  EXPECT_GT(result.summaries[0]["ticks"], 240);
-  EXPECT_EQ(result.summaries[0]["ticks"], again->summaries[0]["ticks"]);
-  EXPECT_EQ(result.summaries[0]["pose_hash"], again->summaries[0]["pose_hash"]);
-  EXPECT_EQ(result.summaries[0]["bad_commands"], 0);
+  EXPECT_GT(result.summary.ticks, 240);
+  EXPECT_EQ(result.summary.ticks, again->summary.ticks);
+  EXPECT_EQ(result.summary.pose_hash, again->summary.pose_hash);
+  EXPECT_EQ(result.summary.bad_commands, 0);
 }
 
 TEST_F(Window, FramesAreCountedAndEndedFromOutside) {
@@ -361,12 +359,12 @@ TEST_F(Window, FramesAreCountedAndEndedFromOutside) {
 
 TEST_F(Window, WhatCannotBeLoadedIsOneSentenceBeforeAnythingIsDrawn) {
   options_.script = [](const Glance&) { ADD_FAILURE() << "it was drawn"; };
-  options_.live.session.motion = (folder_ / "none.bvh").string();
+  options_.session.walk.motion = (folder_ / "none.bvh").string();
   auto result = run_window(options_);
   ASSERT_FALSE(result);
   EXPECT_NE(result.error().message.find("none.bvh"), std::string::npos);
-  options_.live.session.motion.clear();
-  options_.trace = make("damaged.hid", "R: 3 05 01\n");
+  options_.session.walk.motion.clear();
+  options_.session.replay.trace = make("damaged.hid", "R: 3 05 01\n");
   result = run_window(options_);
   ASSERT_FALSE(result);
   EXPECT_NE(result.error().message.find("damaged.hid:1"), std::string::npos);

@@ -1,0 +1,121 @@
+#include "gaitpad/session_spec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "gaitpad/config_files.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/motion_file.h"
+
+namespace gaitpad {
+namespace {
+
+// The chosen files come first, so that they win over equal names in the folders of configuration.
+Result<std::vector<Style>> all_styles(const SessionSpec& spec, std::vector<int>& chosen) {
+  std::vector<Style> styles;
+  const auto load = [&styles](const std::string& path) -> std::optional<Error> {
+    auto style = load_style(path);
+    if (!style) return style.error();
+    style->name = config_name(path);
+    styles.push_back(std::move(*style));
+    return std::nullopt;
+  };
+  for (const std::string& wanted : spec.walk.styles) {
+    auto path = config_file(spec.config_folders, "styles", wanted);
+    if (!path) return path.error();
+    chosen.push_back(static_cast<int>(styles.size()));
+    if (auto problem = load(*path)) return *problem;
+  }
+  if (chosen.empty()) {
+    chosen.push_back(0);
+    styles.emplace_back().name = "even";
+  }
+  for (const std::string& path : config_files(spec.config_folders, "styles")) {
+    if (auto problem = load(path)) return *problem;
+  }
+  return styles;
+}
+
+Result<std::vector<Character>> all_characters(const SessionSpec& spec) {
+  std::vector<Character> characters;
+  for (const std::string& wanted : spec.walk.characters) {
+    auto path = config_file(spec.config_folders, "characters", wanted);
+    if (!path) return path.error();
+    auto character = load_character(*path);
+    if (!character) return character.error();
+    characters.push_back(std::move(*character));
+  }
+  if (characters.empty()) characters.emplace_back();
+  return characters;
+}
+
+template <class T>
+const T& nth_or_last(const std::vector<T>& list, std::size_t n) {
+  return list[std::min(n, list.size() - 1)];
+}
+
+Result<std::shared_ptr<const Terrain>> terrain_of(const SessionSpec& spec) {
+  if (spec.walk.terrain.empty()) return flat_terrain();
+  auto path = config_file(spec.config_folders, "terrain", spec.walk.terrain);
+  if (!path) return path.error();
+  auto terrain = load_terrain(*path);
+  if (!terrain) return terrain.error();
+  return std::shared_ptr<const Terrain>(std::make_shared<Terrain>(std::move(*terrain)));
+}
+
+Result<GaitCycle> cycle_of(const SessionSpec& spec) {
+  if (spec.walk.motion.empty() || spec.walk.motion == "procedural") return procedural_gait();
+  const auto path = motion_path(spec.config_folders, spec.walk.motion);
+  if (!path) return path.error();
+  auto motion = load_motion_source(*path);
+  if (!motion) return motion.error();
+  return gait_cycle(*motion);
+}
+
+Result<WalkerConfig> walker_config(const Character& character, int style, const GaitCycle& cycle) {
+  WalkerConfig walker{character, style, std::nullopt};
+  if (character.skeleton.empty()) return walker;
+  auto motion = load_motion_source(character.skeleton);
+  if (!motion) return motion.error();
+  auto own = cycle_on_skeleton(cycle, *motion);
+  if (!own) return own.error();
+  walker.own_cycle = std::move(*own);
+  return walker;
+}
+
+}  // namespace
+
+Result<PadFiles> load_pad_files(const SessionSpec& spec) {
+  return load_pad_files(spec.config_folders, spec.pad.map, spec.pad.calibration);
+}
+
+Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz) {
+  SimulationConfig config;
+  config.rate_hz = rate_hz;
+  config.ik = spec.walk.ik;
+  auto terrain = terrain_of(spec);
+  if (!terrain) return terrain.error();
+  config.terrain = std::move(*terrain);
+  std::vector<int> chosen_styles;
+  auto styles = all_styles(spec, chosen_styles);
+  if (!styles) return styles.error();
+  config.styles = std::move(*styles);
+  auto characters = all_characters(spec);
+  if (!characters) return characters.error();
+  auto cycle = cycle_of(spec);
+  if (!cycle) return cycle.error();
+  config.cycle = std::move(*cycle);
+  const std::size_t count = std::max(characters->size(), chosen_styles.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    auto walker =
+        walker_config(nth_or_last(*characters, i), nth_or_last(chosen_styles, i), config.cycle);
+    if (!walker) return walker.error();
+    config.walkers.push_back(std::move(*walker));
+  }
+  return config;
+}
+
+}  // namespace gaitpad

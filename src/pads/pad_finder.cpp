@@ -546,14 +546,14 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
   const DeviceInfo& info = device.info();
   const std::optional<FactorySticks> factory = device.factory_sticks();
   std::vector<std::string> remarks;
-  TraceDevice recorded = recorded_device(options_.files, info, factory, remarks);
+  auto [recorded, config] = live_pad(options_.files, info, factory, name_of(sighting), remarks);
   for (const std::string& remark : remarks) remarks_.add_once(remark);
   if (is_recording_) {
     recorded.info.mapping = info.mapping;
     const std::string own = trace_calibration(sighting.listing);
     if (!own.empty() && !options_.files.calibration) recorded.calibration = own;
+    config = pad_config(options_.files, recorded, name_of(sighting));
   }
-  auto config = pad_config(options_.files, recorded, name_of(sighting));
   if (!config) return config.error().message;
   if (!config->is_usable) return options_.wish.pad.empty() ? "" : name_of(sighting) + ": no stick";
   config->is_present = false;  // until `added` is read

@@ -7,7 +7,6 @@
 #include <iterator>
 #include <utility>
 
-#include "drivers/keyboard_device.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/drivers.h"
 #include "pads/calibration_store.h"
@@ -66,25 +65,12 @@ bool has_own_axes(const CalibrationFile& file) {
   return file.mapping.empty() && c.left.frame == StickFrame() && c.right.frame == StickFrame();
 }
 
-// -0 would come back from text as 0.
-void drop_negative_zeros(Calibration& calibration) {
-  for (StickCalibration* stick : {&calibration.left, &calibration.right}) {
-    for (AxisCalibration* axis : {&stick->x, &stick->y}) {
-      for (double* number : {&axis->min, &axis->centre, &axis->max}) *number += 0.0;
-    }
-    for (double* number : {&stick->inner, &stick->sideways, &stick->curve}) *number += 0.0;
-  }
-  for (TriggerCalibration* trigger : {&calibration.left_trigger, &calibration.right_trigger})
-    trigger->released += 0.0;
-}
-
-// Only what a replay reads back: whom the file was for does not matter any more.
+// Only what a replay needs: for which device the file was does not matter any more.
 std::string text_of_calibration(const CalibrationFile& file) {
   CalibrationFile own;
   if (file.name.size() <= kMaxTraceTextBytes) own.name = file.name;
   own.mapping = file.mapping;
   own.calibration = file.calibration;
-  drop_negative_zeros(own.calibration);
   return calibration_text(own);
 }
 
@@ -102,6 +88,19 @@ CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& in
   if (factory && !is_for_this_one && has_own_axes(file))
     take_factory_sticks(*factory, found.file.calibration);
   return std::move(found.file);
+}
+
+Result<PadConfig> config_of(const PadFiles& files, const DeviceInfo& info,
+                            const CalibrationFile& calibration, const std::string& origin) {
+  auto layout = layout_with(files, info, calibration.mapping);
+  if (!layout) return Error{origin + ": " + layout.error().message};
+  PadConfig pad;
+  pad.is_usable = layout->is_pad;
+  pad.streams = layout->streams;
+  pad.is_fallback = info.driver == kKeyboardDriver;
+  pad.layout = std::make_shared<const PadLayout>(std::move(*layout));
+  pad.calibration = calibration.calibration;
+  return pad;
 }
 
 // SDL's line where nothing better is known; one that no recording can hold or that does not fit the
@@ -142,7 +141,7 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
     auto file = load_calibration_file(calibration);
     if (!file) return file.error();
     files.calibration = std::move(*file);
-    drop_negative_zeros(files.calibration->calibration);
+    files.calibration->calibration = canonical(files.calibration->calibration);
   }
   for (const std::string& folder : folders)
     files.calibration_folders.push_back(folder + "/calibration");
@@ -154,15 +153,7 @@ Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
                              const std::string& origin) {
   auto calibration = calibration_of(files, device, origin);
   if (!calibration) return calibration.error();
-  auto layout = layout_with(files, device.info, calibration->mapping);
-  if (!layout) return Error{origin + ": " + layout.error().message};
-  PadConfig pad;
-  pad.is_usable = layout->is_pad;
-  pad.streams = layout->streams;
-  pad.is_fallback = device.info.driver == kKeyboardDriver;
-  pad.layout = std::make_shared<const PadLayout>(std::move(*layout));
-  pad.calibration = calibration->calibration;
-  return pad;
+  return config_of(files, device.info, *calibration, origin);
 }
 
 Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
@@ -177,10 +168,11 @@ Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
   return pads;
 }
 
-TraceDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
-                            const std::optional<FactorySticks>& factory,
-                            std::vector<std::string>& remarks) {
-  const CalibrationFile calibration = calibration_in_force(files, info, factory, remarks);
+LivePad live_pad(const PadFiles& files, const DeviceInfo& info,
+                 const std::optional<FactorySticks>& factory, const std::string& origin,
+                 std::vector<std::string>& remarks) {
+  CalibrationFile calibration = calibration_in_force(files, info, factory, remarks);
+  calibration.calibration = canonical(calibration.calibration);
   TraceDevice device;
   device.info = info;
   device.info.mapping =
@@ -190,7 +182,14 @@ TraceDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
                             &device.info.physical_path}) {
     text->resize(std::min(text->size(), kMaxTraceTextBytes));
   }
-  return device;
+  auto config = config_of(files, device.info, calibration, origin);
+  return {std::move(device), std::move(config)};
+}
+
+TraceDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
+                            const std::optional<FactorySticks>& factory,
+                            std::vector<std::string>& remarks) {
+  return live_pad(files, info, factory, info.name, remarks).recorded;
 }
 
 }  // namespace gaitpad

@@ -76,7 +76,7 @@ TEST_F(PadSetup, AReplayHasTheCalibrationOfTheLiveSessionBitByBit) {
     for (const auto& factory : {std::optional<FactorySticks>(), std::optional(kFactory)}) {
       const PadFiles all = files("", calibration);
       const TraceDevice device = recorded(all, made_pad(), factory);
-      auto live = pad_config(all, device, "live");
+      auto live = live_pad(all, made_pad(), factory, "live", remarks_).config;
       ASSERT_TRUE(live) << live.error().message;
       const Calibration again = replayed(all, device);
       EXPECT_TRUE(is_bit_identical(live->calibration.left, again.left));
@@ -94,7 +94,7 @@ TEST_F(PadSetup, TheKeyboardIsAFallbackLiveAndInAReplay) {
   DeviceInfo info = made_pad();
   info.driver = "keyboard";
   const TraceDevice device = recorded(all, info);
-  auto live = pad_config(all, device, "live");
+  auto live = live_pad(all, info, std::nullopt, "live", remarks_).config;
   ASSERT_TRUE(live);
   EXPECT_TRUE(live->is_fallback);
   EXPECT_TRUE(replayed_pad(all, device).is_fallback);
@@ -213,7 +213,7 @@ TEST_F(PadSetup, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
     write("pads/a.toml", entry);
     const TraceDevice device = recorded(files(), made_pad());
     EXPECT_EQ(device.info.mapping, kSwapped);
-    auto live = pad_config(files(), device, "live");
+    auto live = live_pad(files(), made_pad(), std::nullopt, "live", remarks_).config;
     ASSERT_TRUE(live) << live.error().message;
     PadFiles others = files();
     others.user_calibrations.clear();

@@ -162,10 +162,25 @@ TEST(StickPosition, NotANumberCountsAsTheCentre) {
 TEST(StickPosition, BothSticksHaveTheirOwnCalibration) {
   Calibration c;
   c.left.inner = 0.5;
-  const Stick stick = stick_position(c, {0.0, 0.4}, {0.0, 0.4});
+  PadState pad;
+  pad.axis[kLeftY] = pad.axis[kRightY] = 0.4f;
+  const Stick stick = stick_position(c, pad);
   EXPECT_EQ(stick.left.y, 0.0);
   EXPECT_GT(stick.right.y, 0.0);
   static_assert(std::is_trivially_copyable_v<Calibration>);
+}
+
+TEST(Calibration, CanonicalHasNoNegativeZeroAndKeepsEveryOtherNumber) {
+  Calibration c;
+  c.left.x = {-0.9, -0.0, 0.8};
+  c.right.curve = -0.0;
+  c.right_trigger.released = -0.0;
+  const Calibration same = canonical(c);
+  EXPECT_EQ(same, c);
+  EXPECT_FALSE(std::signbit(same.left.x.centre));
+  EXPECT_FALSE(std::signbit(same.right.curve));
+  EXPECT_FALSE(std::signbit(same.right_trigger.released));
+  EXPECT_TRUE(std::signbit(same.left.x.min));
 }
 
 constexpr RawDirection kXs[] = {RawDirection::plus_x, RawDirection::minus_x};

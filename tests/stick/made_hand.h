@@ -46,10 +46,8 @@ inline const std::array<StickFrame, 8> kFrames = {
     {RawDirection::minus_y, RawDirection::minus_x}};
 
 inline vec2 unit(RawDirection direction) {
-  const bool is_minus = direction == RawDirection::minus_x || direction == RawDirection::minus_y;
-  const bool is_x = direction == RawDirection::plus_x || direction == RawDirection::minus_x;
-  const double length = is_minus ? -1.0 : 1.0;
-  return is_x ? vec2(length, 0.0) : vec2(0.0, length);
+  const double length = is_negative(direction) ? -1.0 : 1.0;
+  return is_along_x(direction) ? vec2(length, 0.0) : vec2(0.0, length);
 }
 
 // A pad in a hand, and the guide that watches it. Positions: from rest, as the thumb has them.
@@ -70,7 +68,7 @@ struct MadeHand {
   std::array<double, 2> finger{};  // triggers 0..1
   std::mt19937 random{1};
   std::vector<std::uint8_t> last;
-  CalibrationGuide* copy = nullptr;  // takes the reports too, and is told no times
+  CalibrationGuide* copy = nullptr;  // takes the reports too, but no ticks
 
   std::int16_t word(double raw) {
     if (sigma > 0.0) raw += std::normal_distribution(0.0, sigma)(random);
@@ -94,8 +92,8 @@ struct MadeHand {
   }
   void send(const std::vector<std::uint8_t>& bytes) {
     const Report report = report_of(bytes, time_ns);
-    guide.take(report);
-    if (copy != nullptr) copy->take(report);
+    guide.take_report(report);
+    if (copy != nullptr) copy->take_report(report);
   }
   // One period of the pad.
   void pass() {

@@ -1,9 +1,10 @@
+#include "stick/stills.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "stick/made_stick.h"
-#include "stick/rests.h"
 
 namespace gaitpad {
 namespace {
@@ -42,12 +43,6 @@ std::vector<MadeStick> every_kind() {
     }
   }
   return sticks;
-}
-
-std::string name_of(const MadeStick& stick) {
-  return std::to_string(stick.bits) + " bits, sigma " + std::to_string(stick.sigma.x) + ", " +
-         std::to_string(stick.rate_hz) + " Hz" +
-         (stick.reports_changes_only ? ", changes only" : "");
 }
 
 TEST(Stills, RestAfterEachReleaseIsFoundWhereItWas) {

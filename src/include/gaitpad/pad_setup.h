@@ -41,11 +41,20 @@ Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
 // A live device as a recording will hold it: with the calibration in force as text, and with its
 // mapping, else SDL's line where config/pads has no entry for the pad. A file for this one device
 // (unique id, port) comes before the pad's own factory sticks, these before a file for its model
-// (whose zones they keep); of equal fit the user's file counts. pad_config() of it is the
-// configuration to play with: a replay's is the same bit by bit. `remarks` gets a sentence for each
+// (whose zones they keep); of equal fit the user's file counts. `remarks` gets a sentence for each
 // damaged file, which is left out.
 TraceDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
                             const std::optional<FactorySticks>& factory,
                             std::vector<std::string>& remarks);
+
+// A live device as a recording will hold it, and the configuration to play with: the one that
+// pad_config() makes of `recorded`, bit by bit. An error of the configuration begins with `origin`.
+struct LivePad {
+  TraceDevice recorded;
+  Result<PadConfig> config;
+};
+LivePad live_pad(const PadFiles& files, const DeviceInfo& info,
+                 const std::optional<FactorySticks>& factory, const std::string& origin,
+                 std::vector<std::string>& remarks);
 
 }  // namespace gaitpad

@@ -1,7 +1,8 @@
+#include "stick/rests.h"
+
 #include <functional>
 
-#include "stick/drawn_stick.h"
-#include "stick/rests.h"
+#include "stick/made_stick.h"
 
 namespace gaitpad {
 namespace {

@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-// Takes the text behind `mark` off the end of `text`.
+// Cuts `mark` and what follows off the end of `text` and returns what follows.
 std::string_view cut_behind(std::string_view& text, char mark) {
   const std::size_t at = text.find(mark);
   if (at == std::string_view::npos) return {};
@@ -109,7 +109,7 @@ void read_identity(TomlTable& pad, PadOverride& result) {
   result.drivers = pad.strings("drivers", 16).value_or(std::vector<std::string>{});
   if (const auto bus = pad.integer("bus", 0, 0xffff)) result.bus = static_cast<BusType>(*bus);
   if (const auto text = pad.string("application")) {
-    result.application = device_id(*text);  // a usage is written as ids are
+    result.application = device_id(*text);  // a usage is written like ids
     if (!result.application)
       pad.reject("application", in_quotes(*text) + " is no usage such as ff5d:0001");
   }
@@ -161,7 +161,7 @@ void read_replacement(TomlTable& pad, PadOverride& result) {
        table->numbers("lengths", 1, 16, 1, kMaxReportBytes).value_or(std::vector<double>{})) {
     replacement.lengths.push_back(static_cast<std::uint16_t>(n));
   }
-  // The controls of the own descriptor serve here too, unless the replacement has its own.
+  // The controls named for the device's own descriptor also count here, unless they are named anew.
   replacement.controls = result.controls;
   if (table->has("axes")) replacement.controls.axes = {};
   if (table->has("buttons")) replacement.controls.buttons = {};
@@ -195,7 +195,7 @@ Result<PadOverrides> read_file(TomlFile file) {
 
 Result<ControlSources> parse_sources(std::string_view text) {
   ControlSources sources;
-  if (trimmed(text).empty()) return sources;  // the control is not there
+  if (trimmed(text).empty()) return sources;  // the pad has no such control
   while (true) {
     const std::size_t end = text.find('|');
     const std::string_view part = trimmed(text.substr(0, end));

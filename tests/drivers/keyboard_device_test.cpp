@@ -1,5 +1,3 @@
-#include "drivers/keyboard_device.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "gaitpad/decode.h"
+#include "gaitpad/keyboard.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

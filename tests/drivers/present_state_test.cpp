@@ -62,14 +62,14 @@ class PresentStateTest : public testing::Test {
     const auto end = Clock::now() + timeout;
     while (state.is_waiting() && Clock::now() < end) {
       wait(state, 10ms);
-      const auto report = state.take();
+      const auto report = state.take_answer();
       if (!report.empty()) return Packet(report.begin(), report.end());
     }
     return {};
   }
   void wait_until_asked(PresentState& state, std::size_t count) {
     for (int i = 0; i < 5000 && pad_->asked_for().size() < count; ++i) {
-      EXPECT_TRUE(state.take().empty());
+      EXPECT_TRUE(state.take_answer().empty());
       std::this_thread::sleep_for(1ms);
     }
     ASSERT_EQ(pad_->asked_for().size(), count);
@@ -82,7 +82,7 @@ TEST_F(PresentStateTest, AfterAMissTheSilentPadsAnswerIsTheReport) {
   PresentState present = state(false);
   present.heard(Packet{9, 9});
   EXPECT_FALSE(present.is_waiting());
-  EXPECT_TRUE(present.take().empty());
+  EXPECT_TRUE(present.take_answer().empty());
   pad_->set(0, {0, 3, 4});
   const auto begin = Clock::now();
   present.missed();
@@ -114,7 +114,7 @@ TEST_F(PresentStateTest, APadThatGoesOnIsNotAsked) {
   present.heard(Packet{9, 8});
   EXPECT_FALSE(present.is_waiting());
   std::this_thread::sleep_for(60ms);
-  EXPECT_TRUE(present.take().empty());
+  EXPECT_TRUE(present.take_answer().empty());
   EXPECT_TRUE(pad_->asked_for().empty());
 }
 
@@ -128,7 +128,7 @@ TEST_F(PresentStateTest, AnAnswerThatAReportHasOvertakenIsDropped) {
   present.heard(Packet{5, 5});
   pad_->is_stuck = false;
   std::this_thread::sleep_for(50ms);
-  EXPECT_TRUE(present.take().empty());
+  EXPECT_TRUE(present.take_answer().empty());
 }
 
 TEST_F(PresentStateTest, AnAnswerFromBeforeTheNextMissIsDroppedAndThePadAskedAgain) {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/keyboard_device.h"
 #include "gaitpad/driver.h"
 #include "gaitpad/drivers.h"
+#include "gaitpad/keyboard.h"
 #include "gaitpad/pad_setup.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"

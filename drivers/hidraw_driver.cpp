@@ -64,8 +64,8 @@ bool write_packet(hid_device* handle, bool is_numbered, std::span<const std::uin
   return hid_write(handle, with_id.data(), with_id.size()) >= 0;
 }
 
-// hidapi does not tell its file descriptor, which the I/O thread needs for poll(): it is looked for
-// among those of this process.
+// hidapi does not expose its file descriptor, which the I/O thread needs for poll(): it is looked
+// for among those of this process.
 Result<OpenNode> open_hidraw_node(const std::string& node) {
   struct stat status {};
   if (::stat(node.c_str(), &status) != 0)

@@ -21,7 +21,7 @@ std::vector<std::uint16_t> set_codes(std::string_view text, std::uint16_t end) {
     const std::size_t last = text.find_last_not_of(" \n");
     if (last == std::string_view::npos) break;
     text = text.substr(0, last + 1);
-    const std::size_t begin = text.find_last_of(" \n") + 1;  // 0 where there is none before it
+    const std::size_t begin = text.find_last_of(" \n") + 1;  // 0: the first word
     std::uint64_t bits = 0;
     std::from_chars(text.data() + begin, text.data() + text.size(), bits, 16);
     for (unsigned i = 0; i < kWordBits && word * kWordBits + i < end; ++i) {

@@ -21,7 +21,7 @@ struct ShortItem {
 
 struct ItemAt {
   ShortItem item;
-  bool is_long = false;   // nobody has defined any; skipped
+  bool is_long = false;   // long items have no defined meaning; skipped
   std::size_t bytes = 0;  // including the prefix; 0: the item runs over the end
 };
 

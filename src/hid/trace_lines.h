@@ -25,7 +25,7 @@ class Words {
 
 std::optional<std::int64_t> decimal(std::string_view text, std::int64_t max);
 std::optional<std::uint32_t> hexadecimal(std::string_view text, std::uint32_t max);
-// `SECONDS.MICROSECONDS`, six digits behind the point, in microseconds.
+// `SECONDS.MICROSECONDS`, six digits after the point, in microseconds.
 std::optional<std::int64_t> microseconds(std::string_view text);
 // `LENGTH b0 b1 ...`: appends the bytes. Returns the cause, and leaves `out` as it was, if length
 // and bytes do not fit together or there are more than `max_bytes`.

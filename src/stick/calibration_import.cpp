@@ -387,7 +387,7 @@ double raw_of(const AxisOp& op, double count) {
 // The calibration that the claims have built so far.
 struct Sticks {
   Calibration calibration;
-  std::array<double, 2> inner{};  // left, right; 0: not told
+  std::array<double, 2> inner{};  // left, right; 0: not stated
   bool is_any_told = false;
 };
 

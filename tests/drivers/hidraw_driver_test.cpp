@@ -69,7 +69,7 @@ void hid_close(hid_device* device) {
   for (const int fd : device->fds) ::close(fd);
   delete device;
 }
-// As hidapi 0.13.1: an error number only where a call failed.
+// As hidapi 0.13.1: errno is only set if a call failed.
 int hid_read_timeout(hid_device* device, unsigned char* data, size_t length, int milliseconds) {
   timeouts.push_back(milliseconds);
   if (!script.empty()) {
@@ -392,7 +392,7 @@ TEST(HidrawOpening, ErrorsAreOneSentenceAboutTheNode) {
   device = open_hidraw_device(listing, Detach::never);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, listing.node + ": is no device node");
-  listing.node = "/dev/null";  // no descriptor to be had
+  listing.node = "/dev/null";  // has no descriptor
   device = open_hidraw_device(listing, Detach::never);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, "/dev/null: its report descriptor cannot be read");
@@ -402,7 +402,7 @@ TEST(HidrawOpening, ErrorsAreOneSentenceAboutTheNode) {
 
 TEST_F(HidrawDriver, AReaderThatComesTooLateIsToldOnce) {
   const auto device = opened();
-  read_in_a_row(*device, 100);  // from before the opening's end
+  read_in_a_row(*device, 100);  // from before the device was open
   read_in_a_row(*device, 62);
   EXPECT_TRUE(device->take_remarks().empty());
   EXPECT_EQ(device->lost(), 0);

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Packet = std::vector<std::uint8_t>;
 
-// Answers each id with what is set, and can be held up. Shared with the thread that asks.
+// Answers each id as set; can be made to wait. Shared with the thread that asks.
 struct FakePad {
   std::mutex mutex;
   std::array<Packet, 256> answers;
@@ -57,7 +57,7 @@ class PresentStateTest : public testing::Test {
     auto fds = state.poll_fds();
     ::poll(fds.data(), fds.size(), static_cast<int>(timeout.count()));
   }
-  // What is handed on within that time; empty: nothing.
+  // The answer within that time; empty: none.
   static Packet taken(PresentState& state, std::chrono::milliseconds timeout = 5s) {
     const auto end = Clock::now() + timeout;
     while (state.is_waiting() && Clock::now() < end) {
@@ -139,7 +139,7 @@ TEST_F(PresentStateTest, AnAnswerFromBeforeTheNextMissIsDroppedAndThePadAskedAga
   present.missed();
   wait_until_asked(present, 1);
   pad_->is_stuck = false;
-  std::this_thread::sleep_for(20ms);  // the answer is there, and nobody has looked
+  std::this_thread::sleep_for(20ms);  // the answer is there and was not taken yet
   present.heard(Packet{5, 5});
   pad_->set(0, {0, 6, 7});
   present.missed();

@@ -442,7 +442,7 @@ TEST(EvdevLayout, EveryCodeStandsWhereTheDescriptorSaysSo) {
   }
 }
 
-// What hid-input makes of a HID pad's reports when no special driver arranges it.
+// What hid-input makes of a HID pad's reports without a special driver.
 class HidInput {
  public:
   explicit HidInput(const std::vector<std::uint8_t>& descriptor)
@@ -508,7 +508,7 @@ class HidInput {
 constexpr std::uint32_t kPaddles =
     bit(kButtonPaddle1) | bit(kButtonPaddle2) | bit(kButtonPaddle3) | bit(kButtonPaddle4);
 
-// Reports that the descriptor is untrue about: the kernel would read something else.
+// Reports of a wrong descriptor: the kernel would read something else.
 bool is_replaced(const PadLayout& layout, const Report& report) {
   return std::any_of(layout.reports.begin(), layout.reports.end(), [&](const ReportLayout& r) {
     return std::find(r.exact_sizes.begin(), r.exact_sizes.end(), report.size) !=

@@ -128,7 +128,7 @@ TEST(CalibrationGuide, ARepeatedStepForgetsWhatItHasSeen) {
   EXPECT_LE(hand.samples(), kept);
   EXPECT_NE(hand.text().find("0 of 48"), std::string::npos) << hand.text();
   hand.wait(0.1);
-  EXPECT_EQ(hand.guide.tracks().stick[0].size(), 2u);  // what was between them is gone
+  EXPECT_EQ(hand.guide.tracks().stick[0].size(), 2u);  // the part between them was dropped
 }
 
 TEST(CalibrationGuide, BackBeginsTheStepBeforeAgain) {
@@ -144,7 +144,7 @@ TEST(CalibrationGuide, BackBeginsTheStepBeforeAgain) {
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
   EXPECT_LE(hand.samples(), of_rest);
   hand.guide.back();
-  hand.guide.back();  // there is none before the first
+  hand.guide.back();  // the first step has none before it
   EXPECT_EQ(hand.guide.step(), GuideStep::rest);
   EXPECT_EQ(hand.samples(), 0u);
   EXPECT_EQ(hand.text(), "0 of 6 releases");
@@ -161,7 +161,7 @@ TEST(CalibrationGuide, SkippingKeepsWhatWasSeenUpToTheEnd) {
   hand.guide.skip();
   EXPECT_EQ(hand.guide.step(), GuideStep::done);
   hand.guide.skip();
-  hand.wait(1.0);  // it takes nothing more
+  hand.wait(1.0);  // it ignores further reports
   EXPECT_EQ(hand.samples(), 500u);
   hand.guide.back();
   EXPECT_EQ(hand.guide.step(), GuideStep::left);

@@ -1,4 +1,4 @@
-// Pads in a hand that does what the guide asks for, or something else.
+// Made pads in a made hand, which does what the guide asks for, or something else.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -50,7 +50,8 @@ inline vec2 unit(RawDirection direction) {
   return is_along_x(direction) ? vec2(length, 0.0) : vec2(0.0, length);
 }
 
-// A pad in a hand, and the guide that watches it. Positions: from rest, as the thumb has them.
+// A pad in a hand, and the guide that watches it. Thumb positions are from rest, +x right, +y
+// forward.
 struct MadeHand {
   explicit MadeHand(Controls controls = Controls::two_sticks)
       : layout(layout_of(controls)), guide(layout) {}
@@ -144,7 +145,7 @@ struct MadeHand {
     move(side, vec2(0.0), 0.05);
     wait(0.2);
   }
-  // All that the sticks are asked for.
+  // All steps of the sticks.
   void steps_of_sticks(int sticks) {
     for (int side = 0; side < sticks; ++side) rest_step(side);
     for (int side = 0; side < sticks; ++side) full_turns(side);

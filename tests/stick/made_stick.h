@@ -15,12 +15,12 @@ namespace gaitpad {
 
 enum class Gate { circle, square, ellipse };  // square: of half side `reach_x`, corners and all
 
-// A stick as it is. Positions are raw fractions as the thumb means them (+x right, +y forward);
-// `frame` says how the pad reports them. Beyond -1..1 a report shows the end.
+// The truth about a stick. Positions are raw fractions under the thumb (+x right, +y forward);
+// `frame` says how the pad reports them. Reports are clipped to -1..1.
 struct MadeStick {
   vec2 centre{0.0};
   vec2 sigma{0.0};          // Gaussian, of each report
-  double hysteresis = 0.0;  // it comes to rest half of this towards the side it was let go from
+  double hysteresis = 0.0;  // it rests half of this towards the side of the release
   vec2 drift_per_s{0.0};    // of everything; `centre` is true in the middle of the time
   double creep = 0.0;       // this far off right after a release, gone exponentially in 0.3 s
   double wander = 0.0;      // random walk of everything: standard deviation after one second
@@ -46,7 +46,7 @@ inline double gate_radius(const MadeStick& stick, double angle_rad) {
   return radius;
 }
 
-// By the formula, of the gate without noise, densely sampled.
+// By the formula, for the gate without noise, densely sampled.
 inline double true_circularity_error(const MadeStick& stick) {
   std::array<double, 48> greatest{};
   for (int i = 0; i < 48000; ++i) {
@@ -66,7 +66,7 @@ inline double true_circularity_error(const MadeStick& stick) {
   return 100.0 * std::sqrt(sum / bins);
 }
 
-// Where the thumb and the spring have the stick, report by report, before noise and the rest.
+// The positions of the stick, report by report, before noise, drift and rounding.
 class MadeMoves {
  public:
   explicit MadeMoves(const MadeStick& stick) : stick_(stick), random_(stick.seed * 7919u + 1u) {
@@ -139,7 +139,7 @@ class MadeMoves {
 namespace made {
 
 inline vec2 raw_of(const StickFrame& frame, const vec2& meant) {
-  // A frame turns and mirrors: what lies along each raw axis is found by asking for both.
+  // The inverse of a turn or mirror is its transpose.
   const vec2 x = in_frame(frame, vec2(1.0, 0.0)), y = in_frame(frame, vec2(0.0, 1.0));
   return {x.x * meant.x + x.y * meant.y, y.x * meant.x + y.y * meant.y};
 }
@@ -153,7 +153,7 @@ inline double quantised(double position, int bits) {
 
 }  // namespace made
 
-// The path as the stick's reports tell it.
+// The path as the stick reports it.
 inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path) {
   std::mt19937 random(stick.seed);
   std::normal_distribution<double> normal;
@@ -169,7 +169,7 @@ inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path
     walk += vec2(stride * normal(random), stride * normal(random));
     vec2 at = path[k] + stick.drift_per_s * time_s + walk +
               vec2(stick.sigma.x * normal(random), stick.sigma.y * normal(random));
-    // Two stamps make an interval.
+    // An interval has two stamps.
     const double late_ns = stick.jitter_ms * 1e6 / std::sqrt(2.0) * normal(random);
     if (spike_left == 0 && chance(random) < stick.spike_chance) {
       spike_left = 1 + static_cast<int>(3.0 * chance(random));
@@ -195,9 +195,9 @@ inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path
   return track;
 }
 
-// Reports of the clean session: rest, then `releases` pushes to the rim from different directions
-// with a rest of `rest_s` after each, then `turns` full circles, one a second and a half, let go,
-// then pushes held half a second forward, right, back, left with a short rest after each.
+// Reports of a whole session: rest; `releases` pushes to the rim in different directions, each with
+// a rest of `rest_s` after it; `turns` full circles of 1.5 s and a release; pushes forward, right,
+// back and left, held for half a second, with a short rest after each.
 inline StickTrack made_track(const MadeStick& stick, int releases = 8, double rest_s = 0.6,
                              double turns = 3.0) {
   MadeMoves moves(stick);

@@ -16,7 +16,7 @@
 namespace gaitpad {
 namespace {
 
-// A stick that was let go and turned, in whole numbers.
+// Round numbers for a good stick that was let go and turned.
 StickStatistics measured() {
   StickStatistics s;
   s.samples = 5000;
@@ -40,7 +40,7 @@ StickAdvice advice_for(const MadeStick& stick, const StickTrack& track) {
   return stick_advice(statistics_of(stick, track), {});
 }
 
-// A file with it can be loaded, and the text gives the same numbers back.
+// A file with this calibration loads and gives the same numbers.
 void expect_loadable(const StickCalibration& c) {
   CalibrationFile file;
   file.calibration.left = c;
@@ -59,7 +59,7 @@ TEST(StickAdvice, InnerZoneIsThreeSigmaAndHysteresisButFivePercentAtLeast) {
   s.sigma = vec2(0.01, 0.02);
   s.hysteresis = 0.12;
   EXPECT_DOUBLE_EQ(advice_for(s).inner_zone, 0.18);
-  // The calibration's is a fraction of the shortest side.
+  // The calibration has it as a fraction of the shortest side.
   const double shortest = 0.95 - -0.01;
   EXPECT_NEAR(advice_for(s).calibration.inner, 0.18 / shortest, 1e-12);
 }
@@ -92,7 +92,7 @@ TEST(StickAdvice, AWanderingStickRestsInItsZonesUnlessItIsToBeReplaced) {
   }
 }
 
-// 3 sigma in two directions would let one report in ninety through.
+// With 3 sigma in two directions one report in ninety would get through.
 TEST(StickAdvice, WithoutHysteresisTheCalibrationStillKeepsTheNoiseOut) {
   StickStatistics s = measured();
   s.centre = vec2(0.0);
@@ -198,7 +198,7 @@ constexpr Fault kFaults[] = {
        s.rest_s = 6.0;
      }},
     {"drifts", Verdict::worn,
-     [](StickStatistics& s) {  // perhaps a thumb that lay on it
+     [](StickStatistics& s) {  // a thumb may have lain on it
        s.drift_per_s = 0.02;
        s.rest_s = 3.0;
      }},
@@ -356,7 +356,7 @@ TEST_F(RecordedSticks, OutlineOfARealDualSense) {
   }
 }
 
-// Of the recording in which the stick is turned alone, and with the one in which it rests.
+// Zones from the recording that turns the stick, alone and together with the one in which it rests.
 TEST_F(RecordedSticks, RestNeverWalksWithTheZonesOfTheRecordingsThatTurn) {
   constexpr const char* kLeft = "dualsense_usb_left_stick.hid";
   constexpr const char* kRight = "dualsense_usb_right_stick.hid";

@@ -10,8 +10,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// A pad whose reports have ids: 1 tells of the left stick (8 bit each) and the left trigger (10
-// bit), 2 of the right stick's x alone, 3 of its y.
+// A pad whose reports have ids: 1 has the left stick (8 bits each) and the left trigger (10 bits),
+// 2 the right stick's x, 3 its y.
 PadLayout split_pad() {
   DeviceInfo device;
   device.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                    // game pad
@@ -92,7 +92,7 @@ TEST(StickTrack, ATrackEndsWhereThePadWent) {
   tracker.add_report(report_at(1, {1, 0, 0, 0, 0}));
   tracker.cut();
   EXPECT_EQ(tracker.state().axis[kLeftX], PadState{}.axis[kLeftX]);
-  tracker.cut();  // twice is once
+  tracker.cut();  // cutting twice is cutting once
   tracker.add_report(report_at(2, {1, 0, 0, 0, 0}));
   tracker.add_report(report_at(3, {1, 0, 0, 0, 0}));
   ASSERT_EQ(tracker.tracks().stick[0].size(), 2u);
@@ -126,7 +126,7 @@ TEST(ReportStatistics, RateJitterStepsAndTurnsOfEveryPad) {
   for (std::uint32_t seed = 1; seed <= 100; ++seed) {
     MadeStick stick = Draw(seed).stick();
     stick.spike_chance = 0.0;
-    // A thousand reports a second of coarse codes are not all told.
+    // At 1000 Hz a pad that reports changes only leaves out too many reports of coarse codes.
     if (stick.reports_changes_only && stick.rate_hz > 500.0) stick.rate_hz = 500.0;
     const StickStatistics s = statistics_of(stick);
     ASSERT_TRUE(s.rate_hz && s.jitter_ms) << name_of(stick);
@@ -150,7 +150,7 @@ TEST(ReportStatistics, StepIsMeasuredEvenIfTheFieldIsFiner) {
   const StickStatistics s =
       stick_statistics(std::vector<StickTrack>{made_track(stick)}, vec2(2.0 / 65535.0));
   EXPECT_NEAR(s.step_x, 2.0 / 255.0, 1e-9);
-  // One value tells of no step.
+  // A single value shows no step.
   const StickTrack still(100, {0, {0.1, 0.1}});
   EXPECT_EQ(stick_statistics(std::vector<StickTrack>{still}, vec2(0.25, 0.125)).step_y, 0.125);
 }

@@ -1,5 +1,5 @@
-// What each driver file defines for its row in registry.cpp. A driver whose library is missing at
-// build time is not compiled; its row then has no functions.
+// What each driver file defines for its row in registry.cpp. A driver whose library is missing is
+// not compiled, and its row then has no functions.
 #pragma once
 #include <memory>
 #include <string>
@@ -22,16 +22,15 @@ std::vector<DeviceListing> find_sdl_devices();
 Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, Detach detach);
 std::string sdl_library_mapping(const DeviceInfo& device);
 
-// A recording is never found, only named: one listing for each device of the file. `node` is the
-// file's path, from the second device on with `#2`.
+// A recording is never found, only named: one listing for each device in it. `node` is the path of
+// the file, with `#2` and so on from the second device on.
 Result<std::vector<DeviceListing>> trace_listings(const std::string& path);
 std::vector<DeviceListing> find_trace_devices();  // none
-// The calibration that the recording of an open device carries (TOML text), empty where it has
-// none.
+// The calibration (TOML text) that the recording has for an open device; empty: none.
 std::string trace_calibration(const DeviceListing& listing);
-// Delivers the device's events at their own times, counted from the first opening of that file;
-// `H:` lines as reports of kind added and removed. `gone` where a replay ends: at `Q:`, else one
-// second behind the file's last event.
+// Delivers the device's events at their recorded times, counted from the first opening of that
+// file, and its `H:` lines as reports of kind added and removed. It is `gone` when a replay ends:
+// at the `Q:` line, else one second after the last event.
 Result<std::unique_ptr<Device>> open_trace_device(const DeviceListing& listing, Detach detach);
 
 }  // namespace gaitpad

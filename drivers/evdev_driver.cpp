@@ -1,8 +1,11 @@
-// Pads through Linux's evdev, by libevdev: what the kernel's own driver made of the pad. Needs no
-// more permission than desktops give their user for pads, knows the moment of each event, and
-// serves pads that are no HID devices (xpad). The node is stated as a HID device: hid/evdev_layout.
+// Pads through Linux's evdev, by libevdev: what the kernel's own driver made of the pad. It needs
+// no more permission than desktops give their users for pads, has the kernel's time of each event,
+// and serves pads that are no HID devices (xpad). The node is stated as a HID device:
+// hid/evdev_layout.h.
 #include <errno.h>
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <libevdev/libevdev.h>
 #include <linux/input.h>
 #include <sys/eventfd.h>
 #include <sys/ioctl.h>
@@ -11,24 +14,104 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "drivers/driver_entries.h"
-#include "drivers/evdev_nodes.h"
+#include "drivers/posix.h"
+#include "drivers/system_nodes.h"
+#include "hid/evdev_layout.h"
 
 namespace gaitpad {
 
 namespace {
 
 constexpr int kMaxEventsAtOpening = 4096;
-constexpr int kMaxErrorsInARow = 64;  // a source that only fails is given up
+constexpr int kMaxErrorsInARow = 64;  // then the pad counts as gone
 constexpr std::chrono::milliseconds kMaxUpload{250};
+
+// ---- An open node
+
+struct FreeLibevdev {
+  void operator()(libevdev* device) const noexcept { libevdev_free(device); }
+};
+struct InputNode {
+  OwnedFd fd;
+  std::unique_ptr<libevdev, FreeLibevdev> device;
+  bool may_write = false;
+};
+
+// In the version: set by kernel drivers that choose codes of their own (sony, playstation,
+// nintendo).
+constexpr int kArrangedByKernel = 0x8000;
+
+// A sentence for errno; of a permission it also tells the cure.
+Error open_error(const std::string& node, int error) {
+  const std::string access = error == EACCES || error == EPERM ? access_problem(node) : "";
+  return Error{access.empty() ? fmt::format("{}: {}", node, std::strerror(error)) : access};
+}
+
+EvdevAbilities abilities_of(const libevdev* device) {
+  EvdevAbilities abilities;
+  for (std::uint16_t code = 0; code <= evdev::kAbsMax; ++code) {
+    const input_absinfo* range = libevdev_get_abs_info(device, code);
+    if (range) abilities.axes.push_back({code, range->minimum, range->maximum});
+  }
+  for (std::uint16_t code = 0; code <= evdev::kKeyMax; ++code) {
+    if (libevdev_has_event_code(device, EV_KEY, code)) abilities.keys.push_back(code);
+  }
+  return abilities;
+}
+
+// The first 4096 bytes of a sysfs file; empty if it does not exist.
+std::vector<std::uint8_t> sysfs_bytes(const std::string& node, const char* name) {
+  const std::string device = node.substr(node.rfind('/') + 1);
+  std::ifstream in(fmt::format("/sys/class/input/{}/device/{}", device, name), std::ios::binary);
+  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  return bytes;
+}
+
+// `mode` is O_RDONLY or O_RDWR. Reads never block; stamps are of CLOCK_MONOTONIC.
+Result<InputNode> open_input_node(const std::string& node, int mode) {
+  InputNode opened;
+  opened.fd = OwnedFd(::open(node.c_str(), mode | O_NONBLOCK | O_CLOEXEC));
+  if (opened.fd.get() < 0) return open_error(node, errno);
+  opened.may_write = mode == O_RDWR;
+  // Before libevdev reads the state, because a change of clock drops queued events.
+  int clock = CLOCK_MONOTONIC;
+  if (::ioctl(opened.fd.get(), EVIOCSCLOCKID, &clock) != 0) return open_error(node, errno);
+  libevdev_set_log_function(nullptr, nullptr);  // it would print to stderr about odd devices
+  libevdev* device = nullptr;
+  const int status = libevdev_new_from_fd(opened.fd.get(), &device);
+  if (status != 0) return open_error(node, -status);
+  opened.device.reset(device);
+  return opened;
+}
+
+// How the node is stated as a HID device.
+EvdevLayout input_node_layout(const InputNode& opened, const std::string& node) {
+  std::vector<std::uint8_t> own_descriptor;
+  if ((libevdev_get_id_version(opened.device.get()) & kArrangedByKernel) == 0) {
+    own_descriptor = sysfs_bytes(node, "device/report_descriptor");
+  }
+  return evdev_layout(abilities_of(opened.device.get()), own_descriptor);
+}
+
+// ---- The device
 
 // One force-feedback effect, kept in the kernel and changed in place.
 class Motors {
  public:
-  // Uploads a silent effect. False where the device has no motors, or may not be written to.
-  bool take(int fd, const libevdev* device) {
+  // Uploads a silent effect. False: the device has no motors, or may not be written to.
+  bool upload(int fd, const libevdev* device) {
     if (!libevdev_has_event_code(device, EV_FF, FF_RUMBLE)) return false;
     fd_ = fd;
     effect_.type = FF_RUMBLE;
@@ -37,11 +120,11 @@ class Motors {
     fd_ = -1;
     return false;
   }
-  void give_back() noexcept {
+  void remove() noexcept {
     if (fd_ >= 0) ::ioctl(fd_, EVIOCRMFF, static_cast<long>(effect_.id));
     fd_ = -1;
   }
-  // Without an end of its own: it runs until it is changed, stopped, or its owner's handle closes.
+  // Runs until it is changed or stopped, or the handle closes.
   bool set(const Rumble& rumble) noexcept {
     if (fd_ < 0) return false;
     if (rumble.strong == 0 && rumble.weak == 0) return play(0);
@@ -52,7 +135,7 @@ class Motors {
 
  private:
   bool play(int times) noexcept {
-    if (times != 0 && is_playing_) return true;  // a changed effect goes on by itself
+    if (times != 0 && is_playing_) return true;  // a changed effect runs on by itself
     input_event event{};
     event.type = EV_FF;
     event.code = static_cast<std::uint16_t>(effect_.id);
@@ -76,10 +159,10 @@ class EvdevDevice final : public Device {
     poll_fds_[1] = {wake_.get(), POLLIN, 0};
     take_state();
     for (int i = 0; i < kMaxEventsAtOpening && next_packet() == Status::report; ++i) continue;
-    lost_ = 0;  // nobody has missed what came before the opening
+    lost_ = 0;  // events from before the opening are not lost
     start_motors();
   }
-  ~EvdevDevice() override { motors_.give_back(); }
+  ~EvdevDevice() override { motors_.remove(); }
 
   const DeviceInfo& info() const noexcept override { return info_; }
   std::span<const pollfd> poll_fds() const noexcept override {
@@ -103,7 +186,7 @@ class EvdevDevice final : public Device {
   EvdevLayout layout_;
   EvdevState state_;
   Motors motors_;
-  OwnedFd wake_;  // readable until the first report, which tells what is held already, is read
+  OwnedFd wake_;  // readable until the first report, which has the present state, is read
   std::array<pollfd, 2> poll_fds_{};
   bool is_first_ = true;
   int errors_in_a_row_ = 0;
@@ -119,11 +202,11 @@ void EvdevDevice::start_motors() {
     }
     return;
   }
-  // Of a virtual device the program behind it answers, and may take its time for each change.
+  // A virtual device is answered by a program, which may take long for each change.
   const auto start = std::chrono::steady_clock::now();
-  if (!motors_.take(node_.fd.get(), node_.device.get())) return;
+  if (!motors_.upload(node_.fd.get(), node_.device.get())) return;
   if (std::chrono::steady_clock::now() - start <= kMaxUpload) return;
-  motors_.give_back();
+  motors_.remove();
   remarks_.push_back(info_.name + ": takes too long to set its motors, so it does not rumble");
 }
 
@@ -151,7 +234,7 @@ void EvdevDevice::take_event(const input_event& event) noexcept {
   }
 }
 
-// The kernel's buffer ran over: libevdev asks for the present state, which counts from here on.
+// The kernel's buffer overflowed: libevdev asks for the present state.
 void EvdevDevice::resynchronise() noexcept {
   ++lost_;
   input_event event{};
@@ -162,10 +245,10 @@ void EvdevDevice::resynchronise() noexcept {
   take_state();
 }
 
-// Reads up to the end of one packet of events (SYN_REPORT); `report` where there was a whole one.
+// Reads up to the end of one packet of events (SYN_REPORT). `report`: the packet is complete.
 Device::Status EvdevDevice::next_packet() noexcept {
-  // With the flag libevdev asks the kernel only when it has handed on all that it took before; so
-  // events that came before an unplug are not lost, and a packet costs one system call, not ten.
+  // With BLOCKING libevdev reads from the kernel only after it has returned all events of the last
+  // read. So events before an unplugging are not lost, and a packet costs one system call, not ten.
   constexpr unsigned kFlags = LIBEVDEV_READ_FLAG_NORMAL | LIBEVDEV_READ_FLAG_BLOCKING;
   while (true) {
     input_event event{};
@@ -192,8 +275,8 @@ Device::Status EvdevDevice::next_packet() noexcept {
   }
 }
 
-// A pad that has sent nothing yet: the kernel's axes stand at 0, which of 0..255 is far left and
-// forward. One that is really held there will be seen when it moves.
+// Whether the pad has sent nothing yet. The kernel's axes are 0 then, which of 0..255 is far left
+// and forward. A stick that is really held there shows when it moves.
 bool EvdevDevice::is_untouched() const noexcept {
   bool is_at_an_end = false;
   for (const EvdevField& f : layout_.fields) {
@@ -217,7 +300,7 @@ Device::Status EvdevDevice::read(Report& report) noexcept {
   return Status::report;
 }
 
-// A node's number is used again: between looking and opening it may have become another device.
+// Node numbers are reused: between finding and opening the node may have become another device.
 bool is_another(const libevdev* device, const DeviceInfo& info) {
   const char* port = libevdev_get_phys(device);
   return libevdev_get_id_vendor(device) != info.vendor ||
@@ -225,7 +308,97 @@ bool is_another(const libevdev* device, const DeviceInfo& info) {
          (!info.physical_path.empty() && info.physical_path != (port ? port : ""));
 }
 
+// ---- Finding
+
+bool has_key_between(const libevdev* device, unsigned first, unsigned end) {
+  for (unsigned code = first; code < end; ++code) {
+    if (libevdev_has_event_code(device, EV_KEY, code)) return true;
+  }
+  return false;
+}
+
+// What the node is if it is no pad; empty: it is a pad.
+const char* what_else(const libevdev* device, const SystemNode& node) {
+  if (libevdev_has_property(device, INPUT_PROP_ACCELEROMETER) || node.name.ends_with("(IMU)") ||
+      node.name.ends_with(" IMU")) {
+    return "the motion sensor of a pad";
+  }
+  const bool has_stick = libevdev_has_event_code(device, EV_ABS, ABS_X) &&
+                         libevdev_has_event_code(device, EV_ABS, ABS_Y);
+  const bool has_buttons = has_key_between(device, BTN_JOYSTICK, BTN_DIGI);
+  if (!has_buttons && has_key_between(device, BTN_DIGI, BTN_WHEEL)) {
+    return "a touchpad or tablet";
+  }
+  if (!has_buttons && has_key_between(device, BTN_MOUSE, BTN_JOYSTICK)) return "a mouse";
+  if (!has_stick) return "a device without a stick";
+  const bool has_other_buttons = has_key_between(device, BTN_MISC, BTN_MOUSE) ||
+                                 has_key_between(device, BTN_WHEEL, BTN_GEAR_UP + 1) ||
+                                 has_key_between(device, BTN_DPAD_UP, BTN_DPAD_RIGHT + 1) ||
+                                 has_key_between(device, BTN_TRIGGER_HAPPY, KEY_MAX + 1);
+  if (has_buttons || has_other_buttons || node.is_joystick) return "";
+  return "a device without buttons";
+}
+
+// Keyboards, mice and power buttons have neither ABS_X nor ABS_Y, which sysfs tells without opening
+// them. The file holds words in hexadecimal, the lowest last.
+bool cannot_have_a_stick(const std::string& node) {
+  const std::vector<std::uint8_t> bits = sysfs_bytes(node, "capabilities/abs");
+  const std::string text(bits.begin(), bits.end());
+  const std::size_t end = text.find_last_not_of(" \n");
+  if (end == std::string::npos) return false;  // unknown
+  const char lowest = text[end];
+  return std::string_view("37bfBF").find(lowest) == std::string_view::npos;
+}
+
+// What was seen of a node when it was opened.
+struct Seen {
+  std::string other;  // what it is if it is no pad
+  std::vector<std::uint8_t> descriptor;
+};
+// By the sysfs path of the input device, whose number is never reused. Kept because all nodes are
+// looked at whenever anything is plugged in, and opening a HID pad takes the kernel 50 ms.
+using Memory = std::map<std::string, Seen>;
+
+// Looks at a node; error: why it cannot be opened.
+Result<Seen> look_at(const SystemNode& node, const Memory& known) {
+  if (node.is_motion_sensor) return Seen{"the motion sensor of a pad", {}};
+  if (node.is_touchpad) return Seen{"a touchpad or tablet", {}};
+  if (cannot_have_a_stick(node.node)) return Seen{"a device without a stick", {}};
+  if (::access(node.node.c_str(), R_OK) != 0) return open_error(node.node, errno);
+  const auto it = known.find(node.sysfs_path + (node.is_joystick ? " joystick" : ""));
+  if (it != known.end()) return it->second;
+  const auto opened = open_input_node(node.node, O_RDONLY);
+  if (!opened) return opened.error();
+  return Seen{what_else(opened->device.get(), node),
+              input_node_layout(*opened, node.node).descriptor};
+}
+
 }  // namespace
+
+std::vector<DeviceListing> find_evdev_devices() {
+  static std::mutex one_at_a_time;
+  static Memory known;
+  const std::lock_guard lock(one_at_a_time);
+  std::vector<DeviceListing> listings;
+  Memory still_there;
+  for (const SystemNode& node : system_nodes("input")) {
+    DeviceListing& listing = listings.emplace_back(listing_of(node, "evdev"));
+    auto seen = look_at(node, known);
+    if (!seen) {
+      listing.problem = seen.error().message;
+      continue;
+    }
+    listing.info.descriptor = seen->descriptor;
+    if (!seen->other.empty()) {
+      listing.is_other = true;
+      listing.problem = fmt::format("{}: {} is {}, not a pad", node.node, node.name, seen->other);
+    }
+    if (seen->descriptor.empty()) continue;
+    still_there[node.sysfs_path + (node.is_joystick ? " joystick" : "")] = std::move(*seen);
+  }
+  known = std::move(still_there);
+  return listings;
+}
 
 Result<std::unique_ptr<Device>> open_evdev_device(const DeviceListing& listing, Detach) {
   auto opened = open_input_node(listing.node, O_RDWR);

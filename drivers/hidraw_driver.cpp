@@ -1,7 +1,12 @@
 // Pads through Linux's hidraw, by hidapi: the bytes as the pad sent them, while the kernel's own
-// driver goes on serving evdev. hidapi 0.13 gives neither the report descriptor nor anything to
-// wait on, and one error for all that can go wrong; what is missing is asked of the kernel here.
+// driver goes on serving evdev. hidapi 0.13 gives no report descriptor, nothing to poll(), and the
+// same error for every failure; this driver asks the kernel for what is missing.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <hidapi/hidapi.h>
+#include <linux/hidraw.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
@@ -16,8 +21,11 @@
 #include <utility>
 
 #include "drivers/driver_entries.h"
-#include "drivers/hidraw_node.h"
+#include "drivers/open_descriptors.h"
+#include "drivers/pads/packet_sender.h"
+#include "drivers/pads/pad_model.h"
 #include "drivers/posix.h"
+#include "drivers/present_state.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/descriptor.h"
 
@@ -28,13 +36,123 @@ namespace {
 using namespace std::chrono_literals;
 using Status = Device::Status;
 
-constexpr int kMaxRefusedInARow = 64;  // packets looked at before other pads have their turn
-constexpr int kMaxErrorsInARow = 64;   // a source that only fails is given up
+constexpr int kMaxRefusedInARow = 64;  // packets to look at before other pads get their turn
+constexpr int kMaxErrorsInARow = 64;   // then the pad counts as gone
 constexpr int kKernelRing = 63;        // reports that hidraw keeps for a slow reader
 constexpr auto kKernelStart = 3s;
 constexpr long kBlindPeriod_ns = 1'000'000;
 
-// Ready every millisecond; -1: it cannot be had.
+// ---- An open node
+
+struct CloseHandle {
+  void operator()(hid_device* handle) const noexcept { hid_close(handle); }
+};
+using Handle = std::unique_ptr<hid_device, CloseHandle>;
+
+struct OpenNode {
+  Handle handle;
+  int fd = -1;  // the handle's own; -1: not found
+};
+
+// The kernel always expects a report id, 0 if the pad has none; pad models only write one that
+// exists.
+bool write_packet(hid_device* handle, bool is_numbered, std::span<const std::uint8_t> packet) {
+  if (packet.empty()) return false;
+  if (is_numbered) return hid_write(handle, packet.data(), packet.size()) >= 0;
+  std::vector<std::uint8_t> with_id(packet.size() + 1, 0);
+  std::copy(packet.begin(), packet.end(), with_id.begin() + 1);
+  return hid_write(handle, with_id.data(), with_id.size()) >= 0;
+}
+
+// hidapi does not expose its file descriptor, which the I/O thread needs for poll(): it is looked
+// for among those of this process.
+Result<OpenNode> open_hidraw_node(const std::string& node) {
+  struct stat status {};
+  if (::stat(node.c_str(), &status) != 0)
+    return Error{fmt::format("{}: {}", node, std::strerror(errno))};
+  if (!S_ISCHR(status.st_mode)) return Error{node + ": is no device node"};
+  const OpenDescriptors before = open_descriptors(status.st_rdev);
+  OpenNode opened{Handle(hid_open_path(node.c_str()))};
+  if (!opened.handle) {
+    const std::string problem = access_problem(node);
+    return Error{problem.empty() ? node + ": is no HID device, or it has just gone" : problem};
+  }
+  opened.fd = new_descriptor(before, open_descriptors(status.st_rdev));
+  return opened;
+}
+
+// The report descriptor; empty: it cannot be read.
+std::vector<std::uint8_t> hidraw_descriptor(int fd) {
+  int size = 0;
+  hidraw_report_descriptor descriptor{};
+  if (fd < 0 || ::ioctl(fd, HIDIOCGRDESCSIZE, &size) < 0) return {};
+  if (size <= 0 || size > HID_MAX_DESCRIPTOR_SIZE) return {};
+  descriptor.size = static_cast<unsigned>(size);
+  if (::ioctl(fd, HIDIOCGRDESC, &descriptor) < 0) return {};
+  return std::vector<std::uint8_t>(descriptor.value, descriptor.value + size);
+}
+
+// Node numbers are reused: between finding and opening the node may have become another device.
+bool is_another_hidraw(int fd, const DeviceInfo& info) {
+  hidraw_devinfo now{};
+  if (fd < 0 || ::ioctl(fd, HIDIOCGRAWINFO, &now) < 0) return false;
+  std::array<char, 256> port{};
+  if (::ioctl(fd, HIDIOCGRAWPHYS(port.size() - 1), port.data()) < 0) return false;
+  return static_cast<std::uint16_t>(now.vendor) != info.vendor ||
+         static_cast<std::uint16_t>(now.product) != info.product ||
+         (!info.physical_path.empty() && info.physical_path != port.data());
+}
+
+// The pad model's way to the open pad.
+class HidrawPort final : public PadPort {
+ public:
+  HidrawPort(hid_device* handle, bool is_numbered) : handle_(handle), is_numbered_(is_numbered) {}
+  bool write(std::span<const std::uint8_t> packet) noexcept override {
+    return write_packet(handle_, is_numbered_, packet);
+  }
+  std::size_t read(std::span<std::uint8_t> packet,
+                   std::chrono::milliseconds timeout) noexcept override {
+    const int size = hid_read_timeout(handle_, packet.data(), packet.size(),
+                                      static_cast<int>(std::clamp(timeout, 0ms, 2000ms).count()));
+    return size > 0 ? std::min(static_cast<std::size_t>(size), packet.size()) : 0;
+  }
+  std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
+    if (packet.empty()) return 0;
+    packet[0] = id;
+    const int size = hid_get_feature_report(handle_, packet.data(), packet.size());
+    if (size <= 0 || packet[0] != id) return 0;
+    return std::min(static_cast<std::size_t>(size), packet.size());
+  }
+
+ private:
+  hid_device* handle_;
+  bool is_numbered_;
+};
+
+// For threads: each has a handle of its own, because hidapi writes its error text into the handle
+// on every call. Null if the node cannot be opened again, or no thread can be started.
+std::unique_ptr<PacketSender> hidraw_sender(const std::string& node, bool is_numbered) {
+  const std::shared_ptr<hid_device> handle(hid_open_path(node.c_str()), CloseHandle());
+  if (!handle) return nullptr;
+  return PacketSender::create([handle, is_numbered](std::span<const std::uint8_t> packet) {
+    return write_packet(handle.get(), is_numbered, packet);
+  });
+}
+
+PresentState::Ask hidraw_input_request(const std::string& node) {
+  const std::shared_ptr<hid_device> handle(hid_open_path(node.c_str()), CloseHandle());
+  if (!handle) return nullptr;
+  return [handle](std::uint8_t id, std::span<std::uint8_t> answer) -> std::size_t {
+    if (answer.empty()) return 0;
+    answer[0] = id;
+    const int size = hid_get_input_report(handle.get(), answer.data(), answer.size());
+    return size > 0 ? static_cast<std::size_t>(size) : 0;
+  };
+}
+
+// ---- The device
+
+// Ready every millisecond, for a node whose file descriptor was not found; -1: no timer.
 int blind_timer() noexcept {
   const int timer = ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
   const itimerspec period{{0, kBlindPeriod_ns}, {0, kBlindPeriod_ns}};
@@ -97,7 +215,7 @@ class HidrawDevice final : public Device {
   }
 
  private:
-  bool take(std::span<const std::uint8_t> packet, Report& report) noexcept;
+  bool fill(std::span<const std::uint8_t> packet, Report& report) noexcept;
   Status when_empty(Report& report) noexcept;
   bool has_hung_up(int error) const noexcept;
   Status after_error(int error) noexcept;
@@ -107,21 +225,21 @@ class HidrawDevice final : public Device {
   std::string node_;
   Handle handle_;
   int fd_ = -1;    // the handle's
-  OwnedFd timer_;  // where that is unknown
+  OwnedFd timer_;  // if that is unknown
   std::array<pollfd, 3> wait_on_{};
   std::unique_ptr<PadModel> model_;
   std::unique_ptr<PacketSender> sender_;  // null: no motors
   bool is_numbered_;
   PresentState present_;
   bool is_rumbling_ = false;
-  bool is_unplugged_ = false;  // what came before is still to be read
+  bool is_unplugged_ = false;  // reports from before are still to be read
   int errors_in_row_ = 0;
-  int waiting_ = 0;         // reports read since there were none
-  bool was_empty_ = false;  // once: what waited before that had waited for the opening
+  int waiting_ = 0;         // reports read in a row
+  bool was_empty_ = false;  // once; reports before that waited for the opening
   bool was_late_ = false;
   std::int64_t lost_ = 0;
   std::vector<std::string> remarks_;
-  // One byte more than a report may have, to see that one has more.
+  // One byte more than the longest report, to detect longer ones.
   std::array<std::uint8_t, kMaxReportBytes + 1> buffer_{};
 };
 
@@ -130,8 +248,8 @@ Status HidrawDevice::read(Report& report) noexcept {
   if (timer_.get() >= 0 && ::read(timer_.get(), &ticks, sizeof ticks) < 0) ticks = 0;
   for (int i = 0; i < kMaxRefusedInARow; ++i) {
     errno = 0;
-    // With a timeout hidapi refuses to read on once the pad is gone; without, an unplugged node
-    // gives what it still holds and then an error, and never waits.
+    // With a timeout hidapi stops reading when the pad is gone. Without one, an unplugged node
+    // gives the reports that it still holds, then an error, and never blocks.
     const int size =
         hid_read_timeout(handle_.get(), buffer_.data(), buffer_.size(), is_unplugged_ ? -1 : 0);
     const int error = errno;
@@ -144,13 +262,13 @@ Status HidrawDevice::read(Report& report) noexcept {
     }
     errors_in_row_ = 0;
     count_waiting();
-    if (take(std::span(buffer_).first(static_cast<std::size_t>(size)), report))
+    if (fill(std::span(buffer_).first(static_cast<std::size_t>(size)), report))
       return Status::report;
   }
   return Status::nothing;  // there may be more: the node stays ready
 }
 
-bool HidrawDevice::take(std::span<const std::uint8_t> packet, Report& report) noexcept {
+bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) noexcept {
   if (packet.size() > kMaxReportBytes) {
     ++lost_;
     return false;
@@ -167,8 +285,8 @@ bool HidrawDevice::take(std::span<const std::uint8_t> packet, Report& report) no
   return true;
 }
 
-// hidapi answers -1 for the hang-up that its poll() sees (no error number then) and for every
-// failure of a call.
+// hidapi returns -1 both for a hang-up that its poll() sees (errno is then 0) and for a failed
+// call.
 bool HidrawDevice::has_hung_up(int error) const noexcept {
   if (fd_ < 0) return error == 0 || error == EBADF;
   pollfd now{.fd = fd_, .events = POLLIN, .revents = 0};
@@ -184,7 +302,7 @@ Status HidrawDevice::after_error(int error) noexcept {
   return Status::gone;
 }
 
-// The kernel drops the newest report when nobody has read as many as it keeps, and tells nobody.
+// When its ring is full the kernel drops new reports without notice.
 void HidrawDevice::count_waiting() noexcept {
   if (++waiting_ != kKernelRing || !was_empty_) return;
   ++lost_;
@@ -192,17 +310,17 @@ void HidrawDevice::count_waiting() noexcept {
     remarks_.push_back(node_ + ": was read too late; the kernel may have dropped reports");
 }
 
-// The last moment in which an answer of the pad's is newer than all its reports.
+// Only now, with no report left, is an answer of the pad newer than all of its reports.
 Status HidrawDevice::when_empty(Report& report) noexcept {
   was_empty_ = true;
   if (std::exchange(waiting_, 0) >= kKernelRing) present_.missed();
-  const std::span<const std::uint8_t> answer = present_.take();
+  const std::span<const std::uint8_t> answer = present_.take_answer();
   std::ranges::copy(present_.poll_fds(), wait_on_.begin() + 1);
-  return !answer.empty() && take(answer, report) ? Status::report : Status::nothing;
+  return !answer.empty() && fill(answer, report) ? Status::report : Status::nothing;
 }
 
-// While it binds, hid-nintendo asks the pad for its calibration and takes any answer for its own:
-// it is left alone until its input device stands.
+// While it binds, hid-nintendo asks the pad for its calibration and would take our answers for its
+// own: wait until its input device exists.
 void wait_for_kernel(const std::string& node) {
   const std::filesystem::path name = std::filesystem::path(node).filename();
   const std::filesystem::path device = std::filesystem::path("/sys/class/hidraw") / name / "device";
@@ -221,8 +339,8 @@ StartedBy started_by(const std::string& kernel_driver) {
 
 }  // namespace
 
-// Not by hid_enumerate(): it sees the same nodes and tells less of them, and a pad that was plugged
-// in between two lists would look like another one without a name.
+// Without hid_enumerate(): it sees the same nodes and tells less about them, and a pad that is
+// plugged in between two lists would appear twice, once without a name.
 std::vector<DeviceListing> find_hidraw_devices() {
   std::vector<DeviceListing> listings;
   for (const SystemNode& node : system_nodes("hidraw"))

@@ -1,18 +1,20 @@
-#include "drivers/keyboard_device.h"
-
 #include <sys/eventfd.h>
 #include <sys/timerfd.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "drivers/posix.h"
+#include "gaitpad/keyboard.h"
+
 namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 4'000'000;
-constexpr std::int64_t kMaxStep_ns = 4 * kPeriod_ns;  // a thread that was held up makes no leap
+constexpr std::int64_t kMaxStep_ns = 4 * kPeriod_ns;  // a delayed thread does not jump
 constexpr double kOut_per_s = 1.0 / 0.15, kBack_per_s = 1.0 / 0.10;
 constexpr std::uint16_t kReportBytes = 4;
 
@@ -30,7 +32,7 @@ Counts counts_of(const vec2& position) noexcept {
   return {count(position.x), count(position.y)};
 }
 
-// A diagonal is not to become longer than 1 by rounding.
+// Rounded towards 0, so that a diagonal does not become longer than 1.
 Counts counts_inside(const vec2& position) noexcept {
   const auto count = [](double x) { return static_cast<std::int16_t>(x * KeyboardStick::kFull); };
   return {count(position.x), count(position.y)};
@@ -42,7 +44,7 @@ vec2 in_disc(const vec2& wanted) noexcept {
   return length > 1.0 ? vec2(wanted.x / length, wanted.y / length) : wanted;
 }
 
-// On the straight way there: a disc is never left.
+// In a straight line, so that the position stays in the disc.
 vec2 moved(const vec2& from, const vec2& to, double time_s) noexcept {
   const vec2 way = to - from;
   const double distance = std::hypot(way.x, way.y);
@@ -96,7 +98,7 @@ class KeyboardDevice final : public Device {
       static_cast<void>(!::read(fd.fd, &count, sizeof(count)));
     }
   }
-  // Asleep then; a change at this very moment is seen by the second look or rings.
+  // Goes to sleep then. A change at that moment is seen by the second look or makes fd() readable.
   bool has_arrived() noexcept {
     if (position_ != stick_->wanted()) return false;
     stick_->sleep();
@@ -129,7 +131,7 @@ class KeyboardDevice final : public Device {
   const std::array<pollfd, 2> poll_fds_;
   vec2 position_{0.0};
   Counts reported_{};
-  bool is_first_ = true;  // as most pads, it tells of its rest when it is opened
+  bool is_first_ = true;  // like most pads it reports its rest when it is opened
   bool is_moving_ = false;
   std::int64_t last_ns_ = 0, next_ns_ = 0;  // of the last step, of the next one
 };
@@ -137,6 +139,9 @@ class KeyboardDevice final : public Device {
 }  // namespace
 
 KeyboardStick::KeyboardStick() : fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+KeyboardStick::~KeyboardStick() {
+  if (fd_ >= 0) ::close(fd_);
+}
 
 void KeyboardStick::steer(const vec2& wanted) noexcept {
   const Counts counts = counts_inside(in_disc(wanted));

@@ -1,5 +1,4 @@
-// Which of this process's descriptors are of a certain device node, for libraries that open one and
-// do not say which number it got.
+// Finds the file descriptor of a device node that a library has opened without telling its number.
 #pragma once
 #include <sys/types.h>
 
@@ -9,12 +8,12 @@ namespace gaitpad {
 
 using OpenDescriptors = std::vector<int>;  // ascending
 
-// Those of a character device's node, by /proc/self/fd.
+// The descriptors of this process that are open on that character device, by /proc/self/fd.
 OpenDescriptors open_descriptors(dev_t node);
 
-// The one that an opening between the two has made, -1 where that cannot be told. Another thread
-// may close one of the same node meanwhile and its number be used again: so a single one that there
-// is afterwards is the new one, however old it looks.
+// The descriptor that was opened between the two calls; -1: it cannot be told. Another thread may
+// close a descriptor of the same node meanwhile, and its number be reused: if there is only one
+// afterwards, that is the new one, even if it was there before.
 int new_descriptor(const OpenDescriptors& before, const OpenDescriptors& after);
 
 }  // namespace gaitpad

@@ -1,4 +1,4 @@
-// The few lines of POSIX that drivers on device nodes share.
+// File descriptors and time, as the drivers need them.
 #pragma once
 #include <time.h>
 #include <unistd.h>
@@ -8,6 +8,7 @@
 
 namespace gaitpad {
 
+// Closes the descriptor that it owns; -1: none.
 class OwnedFd {
  public:
   explicit OwnedFd(int fd = -1) noexcept : fd_(fd) {}

@@ -18,8 +18,8 @@ using Clock = std::chrono::steady_clock;
 namespace {
 
 constexpr long kSilence_ns = 30'000'000;
-constexpr auto kPatience = 1s;  // a pad that lets its refusal wait that long is not asked again
-constexpr std::size_t kMaxAsked = 16;  // ids; a pad's state is in one or two
+constexpr auto kPatience = 1s;         // a pad that takes longer to refuse is not asked again
+constexpr std::size_t kMaxAsked = 16;  // ids; the state of a pad is in one or two
 
 bool take_count(int fd) noexcept {
   std::uint64_t count = 0;
@@ -37,10 +37,10 @@ struct PresentState::Request {
   std::size_t size = 0;
 };
 
-// What is asked for at once, shared with the thread that asks.
+// One round of requests, shared with the thread that asks.
 struct PresentState::Round {
   OwnedFd bell{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
-  std::mutex mutex;  // of all below
+  std::mutex mutex;  // guards all below
   std::vector<Answer> answers;
   bool has_ended = false, was_slow = false;
 };
@@ -83,7 +83,7 @@ std::array<pollfd, 2> PresentState::poll_fds() const noexcept {
            {.fd = round_ ? round_->bell.get() : -1, .events = POLLIN, .revents = 0}}};
 }
 
-std::span<const std::uint8_t> PresentState::take() noexcept {
+std::span<const std::uint8_t> PresentState::take_answer() noexcept {
   if (!is_waiting()) return {};
   if (take_count(timer_.get())) ask_all();
   if (round_) take_count(round_->bell.get());
@@ -96,7 +96,7 @@ std::span<const std::uint8_t> PresentState::take() noexcept {
   return {};
 }
 
-// In the thread.
+// Runs in the thread.
 void PresentState::run(Round& round, const Ask& ask,
                        const std::vector<Request>& requests) noexcept {
   for (const Request& request : requests) {
@@ -115,7 +115,7 @@ void PresentState::run(Round& round, const Ask& ask,
   }
 }
 
-// False: the last round still waits for the pad, or showed that it is better not asked.
+// False: the last round still waits for the pad, or the pad was too slow to be asked again.
 bool PresentState::may_ask() noexcept {
   if (!round_) return true;
   const std::lock_guard lock(round_->mutex);
@@ -133,7 +133,8 @@ void PresentState::ask_all() noexcept {
   std::vector<Request> requests;
   for (std::size_t id = 0; id < known_.size() && requests.size() < kMaxAsked; ++id)
     if (known_[id].is_missed)
-      // Not a byte more than is expected: a pad's control endpoint may not end a shorter answer.
+      // Exactly as many bytes as expected: some pads do not end a shorter answer on the control
+      // endpoint.
       requests.push_back(
           {static_cast<std::uint8_t>(id), known_[id].size + (is_numbered_ ? 0u : 1u)});
   round_ = std::make_shared<Round>();
@@ -155,8 +156,8 @@ bool PresentState::next_answer() noexcept {
   return true;
 }
 
-// Some pads answer zeros whatever they do, which on most is a corner of the sticks: believed only
-// of a pad that has reported them itself.
+// Some pads always answer zeros, which on most would be a corner of the sticks: such an answer
+// counts only if the pad has reported zeros itself.
 bool PresentState::fits(const Known& known) const noexcept {
   const std::span<const std::uint8_t> bytes = answer_.bytes;
   if (bytes.empty() || bytes.size() != known.size + (is_numbered_ ? 0u : 1u)) return false;

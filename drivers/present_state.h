@@ -1,6 +1,6 @@
-// A pad's present state, asked for where its newest reports may have been dropped: a pad that
-// reports only changes would not say it again, and the stick would stay where it was last seen.
-// Everything but `Ask` is for one thread and never waits.
+// Asks a pad for its present state when its newest reports may have been dropped: a pad that
+// reports changes only would not repeat them, and the stick would stay where it was last seen.
+// Everything except `Ask` is for one thread and never waits.
 #pragma once
 #include <poll.h>
 
@@ -18,32 +18,33 @@ namespace gaitpad {
 
 class PresentState {
  public:
-  // The pad's answer to GET_REPORT of an input report: the id first, 0 where there are none. Its
-  // size; 0: refused. May wait for the pad, so a thread of its own calls it, never two at a time;
-  // one that still waits when the PresentState is destroyed keeps what it owns until it returns.
+  // Gets the pad's answer to GET_REPORT of an input report, beginning with the id (0 if there are
+  // no ids), and returns its size; 0: refused. It may wait for the pad, so a separate thread calls
+  // it, one call at a time. A call that still waits when the PresentState is destroyed keeps what
+  // it owns until it returns.
   using Ask = std::function<std::size_t(std::uint8_t id, std::span<std::uint8_t> answer)>;
 
-  // `ask` may be empty: then nothing is ever asked.
+  // With an empty `ask` nothing is ever asked.
   PresentState(bool is_numbered, Ask ask) : is_numbered_(is_numbered), ask_(std::move(ask)) {}
 
-  // Every input report that comes.
+  // To be called with every input report.
   void heard(std::span<const std::uint8_t> report) noexcept;
-  // Reports may have been dropped, all that were not have been heard. The ids that are then silent
-  // for 30 ms are asked for, once.
+  // Reports may have been dropped; all others were given to heard(). Asks once for each id that is
+  // then silent for 30 ms.
   void missed() noexcept;
-  // Whether something is awaited; then poll_fds() are to be waited on and take() to be called when
-  // the pad itself has nothing more. Below 0: none.
+  // While this is true, wait for poll_fds() too (below 0: none), and call take_answer() when the
+  // pad itself has no report.
   bool is_waiting() const noexcept { return missed_count_ > 0; }
   std::array<pollfd, 2> poll_fds() const noexcept;
-  // An answer in the form of a report, until the next call; empty: none. Never one that a report
-  // has overtaken or that has not the length of the reports before it.
-  std::span<const std::uint8_t> take() noexcept;
+  // An answer in the form of a report, valid until the next call; empty: none. An answer that is
+  // older than a report, or of another length than the reports before, is dropped.
+  std::span<const std::uint8_t> take_answer() noexcept;
 
  private:
   struct Known {
-    std::uint16_t size = 0;  // of the last report of this id, 0: there was none
+    std::uint16_t size = 0;  // of the last report of this id; 0: none
     bool is_missed = false;
-    bool was_zeros = false;  // once
+    bool was_zeros = false;  // a report was all zeros
   };
   struct Answer {
     std::uint8_t id = 0;
@@ -64,8 +65,8 @@ class PresentState {
   Ask ask_;
   std::array<Known, 256> known_{};
   int missed_count_ = 0;
-  OwnedFd timer_;                 // runs from missed() to asking
-  std::shared_ptr<Round> round_;  // the last one, also its thread's
+  OwnedFd timer_;                 // runs from missed() until the pad is asked
+  std::shared_ptr<Round> round_;  // the last one; shared with its thread
   bool is_round_valid_ = false;   // nothing was missed since
   Answer answer_;
 };

@@ -5,7 +5,7 @@ namespace gaitpad {
 
 namespace {
 
-// The functions of a driver that was compiled, else two null pointers.
+// The functions of a driver that was compiled; else null.
 #ifdef GAITPAD_HAS_HIDRAW
 #define GAITPAD_HIDRAW(function) function
 #else
@@ -27,8 +27,8 @@ namespace {
 #define GAITPAD_SDL(function) nullptr
 #endif
 
-// hidraw gives the pad's own bytes; evdev what the kernel made of them; SDL reads evdev; usb has to
-// take the pad from the kernel.
+// In the order of preference: hidraw has the pad's own bytes, evdev what the kernel made of them,
+// SDL reads evdev, and usb must take the pad away from the kernel.
 constexpr DriverEntry kDrivers[] = {
     {.name = "hidraw",
      .library = "libhidapi-hidraw",

@@ -1,18 +1,21 @@
-// Joysticks of SDL2, and its data base of mappings. SDL keeps one list of joysticks and one queue
-// of events for the whole program, a window's included. So nothing is taken off that queue: a watch
-// sees each joystick event when SDL makes it, whichever thread that is, and puts it aside for the
-// open device that it is about. SDL has nothing to wait for: it looks at its joysticks when asked,
-// once a millisecond here.
+// Joysticks of SDL2, and its data base of mappings. SDL has one list of joysticks and one queue of
+// events for the whole program, including windows. So nothing is taken off that queue: an event
+// watch sees each joystick event when SDL creates it, on any thread, and stores it for the open
+// device. SDL has nothing to poll(): it looks at its joysticks when it is asked to, here once a
+// millisecond.
 #include <SDL2/SDL.h>
 #include <fmt/format.h>
+#include <sys/timerfd.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "drivers/driver_entries.h"
 #include "drivers/posix.h"
 #include "drivers/sdl_reports.h"
-#include "drivers/sdl_timer.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
@@ -25,7 +28,34 @@ constexpr std::size_t kMaxAxes = 64, kMaxButtons = 255, kMaxHats = 4;
 using Change = JoystickReports::Change;
 using Control = JoystickReports::Control;
 
-// SDL's joysticks, started when they are first asked for: that takes up to a second.
+// When to look at SDL's joysticks: once a millisecond. All open devices share the timer; whichever
+// finds it expired updates SDL for all of them.
+class MillisecondTimer {
+ public:
+  MillisecondTimer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {
+    constexpr timespec kMillisecond{0, 1'000'000};
+    const itimerspec times{kMillisecond, kMillisecond};
+    ::timerfd_settime(fd(), 0, &times, nullptr);
+  }
+  int fd() const noexcept { return fd_.get(); }  // below 0: there is none
+  bool take_tick() const noexcept {
+    std::uint64_t count = 0;
+    return ::read(fd(), &count, sizeof count) == sizeof count;
+  }
+  static std::shared_ptr<MillisecondTimer> shared() {
+    static std::mutex mutex;
+    static std::weak_ptr<MillisecondTimer> running;
+    const std::lock_guard lock(mutex);
+    auto timer = running.lock();
+    if (!timer) running = timer = std::make_shared<MillisecondTimer>();
+    return timer;
+  }
+
+ private:
+  OwnedFd fd_;
+};
+
+// SDL's joysticks, started on first use: that takes up to a second.
 class Sdl {
  public:
   static Sdl& started() {
@@ -44,7 +74,7 @@ class Sdl {
   JoystickInboxes inboxes;                                 // of all open devices
 
  private:
-  struct ThreadStorage {  // SDL keeps some for each thread that is not its own
+  struct ThreadStorage {  // SDL allocates some for each thread that it did not start
     ThreadStorage() {}
     ~ThreadStorage() { SDL_TLSCleanup(); }
   };
@@ -53,8 +83,8 @@ class Sdl {
   std::string problem_;
 };
 
-// Only the joysticks. HIDAPI off: its drivers send packets to pads when they look for them. Names
-// by position: the button that Nintendo prints A on is our b.
+// Joysticks only. HIDAPI is off because its drivers send packets to pads while they look for them.
+// Buttons are named by position: the one that Nintendo labels A is our b.
 Sdl::Sdl() {
   constexpr std::pair<const char*, const char*> kHints[] = {
       {SDL_HINT_JOYSTICK_HIDAPI, "0"},
@@ -70,9 +100,9 @@ Sdl::Sdl() {
   SDL_AddEventWatch(&Sdl::watch, this);
 }
 
-// SDL lets go of all controls of a joystick that it has lost, just before it says so, and that to
-// where its axes were first seen: at one end, if the pad had sent nothing yet.
-void forget(JoystickInboxes& inboxes, SDL_JoystickID id) {
+// Just before SDL reports a joystick as removed, it resets all controls, the axes to where they
+// were first seen (one end, if the pad had sent nothing yet). These changes are dropped.
+void mark_removed(JoystickInboxes& inboxes, SDL_JoystickID id) {
   SDL_Joystick* joystick = SDL_JoystickFromInstanceID(id);
   inboxes.mark_removed(id, [joystick](const Change& change) {
     Sint16 rest = 0;
@@ -83,7 +113,7 @@ void forget(JoystickInboxes& inboxes, SDL_JoystickID id) {
   });
 }
 
-// SDL calls this inside SDL_JoystickUpdate(), its joysticks locked.
+// SDL calls this from SDL_JoystickUpdate() with its joysticks locked.
 int SDLCALL Sdl::watch(void* self, SDL_Event* event) {
   JoystickInboxes& inboxes = static_cast<Sdl*>(self)->inboxes;
   const auto put = [&](SDL_JoystickID id, Control control, Uint8 number, Sint16 value) {
@@ -101,7 +131,7 @@ int SDLCALL Sdl::watch(void* self, SDL_Event* event) {
       put(event->jhat.which, Control::hat, event->jhat.hat, event->jhat.value);
       break;
     case SDL_JOYDEVICEREMOVED:
-      forget(inboxes, event->jdevice.which);
+      mark_removed(inboxes, event->jdevice.which);
       break;
     default:
       break;
@@ -115,9 +145,9 @@ struct JoystickLock {
   JoystickLock(const JoystickLock&) = delete;
 };
 
-// Looks at all joysticks, and for new ones: SDL does both in one call, which waits for the kernel
-// when a joystick was plugged in. The events have been put aside; on SDL's queue nobody waits for
-// them, and without a window nobody would ever empty it.
+// Updates all joysticks and looks for new ones; SDL does both in one call, which waits for the
+// kernel when a joystick was plugged in. The watch has stored the events; they are removed from
+// SDL's queue, which nobody empties in a program without a window.
 void update_joysticks() {
   SDL_JoystickUpdate();
   SDL_FlushEvents(SDL_JOYAXISMOTION, SDL_CONTROLLERSENSORUPDATE);
@@ -149,7 +179,7 @@ using JoystickHandle = std::unique_ptr<SDL_Joystick, JoystickClosing>;
 
 class SdlDevice : public Device {
  public:
-  // SDL's joysticks are locked meanwhile, so that no change falls between state and inbox.
+  // The caller has locked SDL's joysticks, so that no change is lost between state and inbox.
   SdlDevice(JoystickHandle joystick, const DeviceListing& listing,
             std::shared_ptr<MillisecondTimer> timer)
       : joystick_(std::move(joystick)),
@@ -167,7 +197,7 @@ class SdlDevice : public Device {
   std::span<const pollfd> poll_fds() const noexcept override { return {&poll_fd_, 1}; }
   std::int64_t lost() const noexcept override { return lost_; }
   Status read(Report& report) noexcept override;
-  // SDL itself stops the motors after 65 seconds.
+  // SDL stops the motors after 65 seconds.
   bool rumble(const Rumble& motors) noexcept override {
     constexpr std::uint32_t kLongest_ms = 0xffff;
     return SDL_JoystickRumble(joystick_.get(), motors.strong, motors.weak, kLongest_ms) == 0;
@@ -186,8 +216,8 @@ class SdlDevice : public Device {
   std::int64_t lost_ = 0;
 };
 
-// SDL keeps the first small movement of an axis to itself: it is asked for the axes, too. Locked,
-// so that no event comes between.
+// SDL does not report the first small movement of an axis, so the axes are also read; locked, so
+// that no event comes in between.
 void SdlDevice::fetch() noexcept {
   if (timer_->take_tick()) update_joysticks();
   const JoystickLock lock;
@@ -204,7 +234,7 @@ void SdlDevice::fetch() noexcept {
   }
 }
 
-// The state at the opening, if it is known, then every change of it.
+// First the state at the opening, if it is known, then every change.
 Device::Status SdlDevice::read(Report& report) noexcept {
   if (!has_reported_ && reports_.is_known()) {
     has_reported_ = true;
@@ -219,26 +249,26 @@ Device::Status SdlDevice::read(Report& report) noexcept {
   return removed_ ? Status::gone : Status::nothing;
 }
 
-// A line of SDL's, freed.
-std::string taken(char* line) {
+// Copies a string that SDL allocated, and frees it.
+std::string take_text(char* line) {
   std::string text = line ? line : "";
   SDL_free(line);
   if (text.size() > kMaxTraceTextBytes) text.clear();
   return text;
 }
 
-// SDL guesses a line for a pad that its data base does not have, and adds it there. A guess ends in
-// a checksum of the pad's name.
+// SDL guesses a line for a pad that its data base does not have, and adds it to the data base. A
+// guess has a checksum of the pad's name.
 bool is_guess(const std::string& line) { return line.find(",crc:") != std::string::npos; }
 
-// SDL's own name for the device with this index; joysticks locked.
+// SDL's path of the device with this index; the joysticks are locked.
 std::string node_of(int index) {
   const char* path = SDL_JoystickPathForIndex(index);
   if (path) return path;
   return fmt::format("sdl joystick {}", SDL_JoystickGetDeviceInstanceID(index));
 }
 
-// `system` is null for what has no node; joysticks locked.
+// `system` is null for a joystick without a node; the joysticks are locked.
 DeviceListing listing_of(int index, const SystemNode* system) {
   DeviceListing listing = system ? listing_of(*system, "sdl") : DeviceListing{};
   const SDL_JoystickGUID guid = SDL_JoystickGetDeviceGUID(index);
@@ -249,16 +279,16 @@ DeviceListing listing_of(int index, const SystemNode* system) {
   info.product = SDL_JoystickGetDeviceProduct(index);
   info.version = SDL_JoystickGetDeviceProductVersion(index);
   if (const char* name = SDL_JoystickNameForIndex(index)) info.name = name;
-  // Where the codes of the node are known they tell more than SDL's guess.
-  info.mapping =
-      system ? sdl_library_mapping(info) : taken(SDL_GameControllerMappingForDeviceIndex(index));
+  // The codes of a node tell more than SDL's guess.
+  info.mapping = system ? sdl_library_mapping(info)
+                        : take_text(SDL_GameControllerMappingForDeviceIndex(index));
   listing.node = node_of(index);
   if (listing.pad_path.empty()) listing.pad_path = listing.node;
   return listing;
 }
 
-// The gyroscope or touchpad of a pad whose buttons are another node's. udev may not yet have said
-// so.
+// Whether the node is the motion sensor or touchpad of a pad, whose buttons are on another node.
+// udev may not have marked it yet.
 bool is_part_of_pad(const SystemNode& node) {
   return node.is_motion_sensor || node.is_touchpad || node.name.ends_with("(IMU)") ||
          node.name.ends_with(" IMU");
@@ -273,7 +303,7 @@ std::vector<DeviceListing> joysticks_among(const std::vector<SystemNode>& nodes)
     const auto node = std::find_if(nodes.begin(), nodes.end(),
                                    [&](const SystemNode& n) { return n.node == name; });
     const bool known = node != nodes.end();
-    if (!known && name.starts_with("/dev/")) continue;  // unplugged, SDL has not heard of it yet
+    if (!known && name.starts_with("/dev/")) continue;  // unplugged; SDL does not know yet
     if (known && is_part_of_pad(*node)) continue;
     listings.push_back(listing_of(i, known ? &*node : nullptr));
   }
@@ -294,7 +324,7 @@ std::vector<DeviceListing> find_sdl_devices() {
   const auto is_missing = [&](const SystemNode& node) {
     return is_joystick(node) && !is_listed(listings, node) && access_problem(node.node).empty();
   };
-  // SDL hears of a new node from udev, as we do, perhaps a moment later.
+  // SDL learns of a new node from udev, as we do, perhaps a moment later.
   constexpr int kTries = 10;
   constexpr std::uint32_t kPause_ms = 10;
   for (int i = 0; sdl.problem().empty() && i < kTries; ++i) {
@@ -333,9 +363,9 @@ Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, De
   return Error{listing.node + ": SDL has no such joystick"};
 }
 
-// SDL takes the line of another version where there is none of this. But lines with the kernel's
-// mark count codes that its driver for that pad gave out, those without count the pad's own
-// controls.
+// Like SDL this takes the line of another version if there is none of this one. But a line with the
+// kernel's mark counts codes that the kernel's driver for the pad chose, one without it the pad's
+// own controls: these are not mixed.
 std::string sdl_library_mapping(const DeviceInfo& device) {
   constexpr unsigned kCodesByKernel = 0x8000;
   constexpr std::size_t kGuidDigits = 32;
@@ -350,7 +380,7 @@ std::string sdl_library_mapping(const DeviceInfo& device) {
       part(static_cast<std::uint16_t>(device.bus)) + part(device.vendor) + part(device.product);
   std::string best;
   for (int i = 0; i < SDL_GameControllerNumMappings(); ++i) {
-    std::string line = taken(SDL_GameControllerMappingForIndex(i));
+    std::string line = take_text(SDL_GameControllerMappingForIndex(i));
     if (line.size() < kGuidDigits || !line.starts_with(model) || is_guess(line)) continue;
     const SDL_JoystickGUID guid =
         SDL_JoystickGetGUIDFromString(line.substr(0, kGuidDigits).c_str());

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int32_t kAxisMin = -32768, kAxisMax = 32767;
 
-// Codes below `end` of the bits that are set. A word is as wide as the kernel's long.
+// Codes below `end` whose bits are set. A word is as wide as the kernel's long.
 std::vector<std::uint16_t> set_codes(std::string_view text, std::uint16_t end) {
   constexpr unsigned kWordBits = 8 * sizeof(long);
   std::vector<std::uint16_t> codes;
@@ -38,7 +38,7 @@ bool is_hat_code(std::uint16_t code) {
   return code >= evdev::kAbsHat0X && code <= evdev::kAbsHat3Y;
 }
 
-// SDL takes all hats for switches or, where the kernel gives them a fuzz, for axes.
+// SDL takes all hats as switches or, if the kernel gives them a fuzz, as axes.
 void divide_axes(const std::vector<std::uint16_t>& all, bool has_hats, JoystickCodes& codes) {
   for (const std::uint16_t code : all) {
     if (!has_hats || !is_hat_code(code)) {
@@ -57,7 +57,7 @@ std::optional<JoystickCodes> node_codes(std::string_view abs_bits, std::string_v
   JoystickCodes codes;
   divide_axes(set_codes(abs_bits, evdev::kAbsMax), !counted.hats.empty(), codes);
   codes.buttons = set_codes(key_bits, evdev::kKeyMax);
-  // SDL counts from BTN_JOYSTICK on, then what lies below.
+  // SDL counts from BTN_JOYSTICK on, then the codes below.
   std::stable_partition(codes.buttons.begin(), codes.buttons.end(),
                         [](std::uint16_t code) { return code >= evdev::kBtnJoystick; });
   const bool fits = codes.axes.size() == counted.axes.size() &&
@@ -68,7 +68,7 @@ std::optional<JoystickCodes> node_codes(std::string_view abs_bits, std::string_v
 }
 
 JoystickCodes plain_codes(const JoystickState& counted) {
-  // Up to five axes the second stick is Z, Rz, above that the triggers are.
+  // With up to five axes the second stick is Z, Rz; with more these are the triggers.
   constexpr std::uint16_t kFew[] = {0x00, 0x01, 0x02, 0x05, 0x06};
   constexpr std::uint16_t kMostAxes = 16, kPadButtons = 16;
   constexpr std::uint16_t kHappyButtons = evdev::kKeyMax - evdev::kBtnTriggerHappy;
@@ -126,7 +126,7 @@ bool JoystickReports::is_known() const noexcept {
   return state_.axes.empty() || !std::all_of(state_.axes.begin(), state_.axes.end(), is_end);
 }
 
-// Where the control stands among all, nothing where there is none or it has that value already.
+// The index of the control among all; none if it does not exist or has that value already.
 std::optional<std::size_t> JoystickReports::changed_control(const Change& c) const noexcept {
   const auto place = [&c](const auto& values, std::size_t before) -> std::optional<std::size_t> {
     if (c.number >= values.size() || values[c.number] == c.value) return std::nullopt;
@@ -178,7 +178,7 @@ bool JoystickReports::next(Report& report) noexcept {
 
 namespace {
 
-// The first 4096 bytes of a file in the node's folder of sysfs; empty where there is none.
+// The first 4096 bytes of a file in the node's sysfs folder; empty if it does not exist.
 std::string sysfs_text(const std::string& node, const char* name) {
   if (!node.starts_with("/dev/input/event")) return {};
   const std::string device = node.substr(node.rfind('/') + 1);
@@ -193,7 +193,7 @@ std::string sysfs_text(const std::string& node, const char* name) {
 
 JoystickReports joystick_reports(JoystickState state, const std::string& node,
                                  std::uint16_t version) {
-  constexpr std::uint16_t kCodesByKernel = 0x8000;  // its driver gave out codes of its own
+  constexpr std::uint16_t kCodesByKernel = 0x8000;  // its driver chose codes of its own
   std::string own;
   auto codes =
       node_codes(sysfs_text(node, "capabilities/abs"), sysfs_text(node, "capabilities/key"), state);
@@ -229,7 +229,7 @@ void JoystickInboxes::put(std::int32_t joystick, const JoystickReports::Change& 
   for (JoystickInbox* inbox : inboxes_) {
     if (inbox->joystick != joystick) continue;
     if (inbox->changes.size() >= kMaxChanges) {
-      inbox->changes.pop_front();  // the newest make the state right again
+      inbox->changes.pop_front();  // the newest changes restore the state
       ++inbox->lost;
     }
     inbox->changes.push_back(change);
@@ -237,13 +237,13 @@ void JoystickInboxes::put(std::int32_t joystick, const JoystickReports::Change& 
 }
 
 void JoystickInboxes::mark_removed(
-    std::int32_t joystick, const std::function<bool(const JoystickReports::Change&)>& is_unsaid) {
+    std::int32_t joystick, const std::function<bool(const JoystickReports::Change&)>& is_reset) {
   const std::lock_guard lock(mutex_);
   for (JoystickInbox* inbox : inboxes_) {
     if (inbox->joystick != joystick || inbox->removed) continue;
     inbox->removed = true;
     auto& changes = inbox->changes;
-    while (!changes.empty() && is_unsaid(changes.back())) changes.pop_back();
+    while (!changes.empty() && is_reset(changes.back())) changes.pop_back();
   }
 }
 

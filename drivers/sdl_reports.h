@@ -1,5 +1,5 @@
-// What a joystick of SDL's, numbered axes, buttons and hats, is as a HID pad: stated as the evdev
-// node that SDL reads it from, so that both drivers name its controls alike, with SDL's ranges.
+// SDL joysticks as HID pads. SDL numbers axes, buttons and hats; these are stated like the evdev
+// node that SDL reads, with SDL's ranges, so that both drivers give the controls the same names.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -24,23 +24,23 @@ struct JoystickState {
   std::size_t count() const { return axes.size() + buttons.size() + hats.size(); }
 };
 
-// The evdev code that each number stands for; of a hat its x code.
+// The evdev code of each number; of a hat its x code.
 struct JoystickCodes {
   std::vector<std::uint16_t> axes, buttons, hats;
   bool operator==(const JoystickCodes&) const = default;
 };
-// From the node's bits in sysfs (capabilities/abs, capabilities/key): words in hexadecimal, the
-// lowest last. Nothing where SDL counts otherwise.
+// From the node's bits in sysfs (capabilities/abs, capabilities/key): hexadecimal words, the lowest
+// last. None if SDL has counted other numbers of controls.
 std::optional<JoystickCodes> node_codes(std::string_view abs_bits, std::string_view key_bits,
                                         const JoystickState& counted);
-// Made up, in SDL's order, for what has no node; what is too much is left out.
+// Plausible codes in SDL's order, for a joystick without a node; too many controls are left out.
 JoystickCodes plain_codes(const JoystickState& counted);
 
-// Axes -32768 .. 32767, whatever the node has. `own_descriptor` as in evdev_layout().
+// Axes are -32768 .. 32767, whatever the node has. `own_descriptor`: as in evdev_layout().
 EvdevLayout joystick_layout(const JoystickCodes& codes,
                             std::span<const std::uint8_t> own_descriptor);
 
-// Changes of single controls, put together to reports.
+// Combines changes of single controls to reports.
 class JoystickReports {
  public:
   enum class Control : std::uint8_t { axis, button, hat };
@@ -56,14 +56,14 @@ class JoystickReports {
         layout_(std::move(layout)),
         changed_in_(state_.count()) {}
 
-  std::deque<Change> changes;  // that wait; those of controls that it does not have are skipped
+  std::deque<Change> changes;  // waiting; changes of controls that do not exist are skipped
   const JoystickState& state() const noexcept { return state_; }
   const EvdevLayout& layout() const noexcept { return layout_; }
-  // False while all axes stand at their lower ends: of a node of which the kernel has heard nothing
-  // yet, which says 0 then, the end of most axes.
+  // False while all axes are at their lower ends: the kernel says 0, the end of most axes, until
+  // the pad has sent something.
   bool is_known() const noexcept;
-  // All that waits in one report, but the second change of a control begins another: nothing is
-  // lost. False where nothing has changed.
+  // Puts the waiting changes into one report, up to the second change of one control, so that no
+  // change is lost. False: nothing has changed.
   bool next(Report& report) noexcept;
   void write(std::int64_t time_ns, Report& report) const noexcept;
 
@@ -74,34 +74,35 @@ class JoystickReports {
   JoystickState state_;
   JoystickCodes codes_;
   EvdevLayout layout_;
-  std::vector<std::uint64_t> changed_in_;  // by control: the report that has its last change
+  std::vector<std::uint64_t>
+      changed_in_;  // by control: the number of the report with its last change
   std::uint64_t report_number_ = 0;
 };
 
-// For the joystick that SDL reads from that node; other names than of evdev nodes are none.
+// For the joystick that SDL reads from that node; a name that is no evdev node means no node.
 JoystickReports joystick_reports(JoystickState state, const std::string& node,
                                  std::uint16_t version);
 
-// What SDL has said of one open joystick and its device has not yet read.
+// What SDL has reported of one open joystick and its device has not read yet.
 struct JoystickInbox {
   std::int32_t joystick = -1;  // SDL's instance id
   std::deque<JoystickReports::Change> changes;
   bool removed = false;
-  std::int64_t lost = 0;  // the oldest ones, where the reader stays away too long
+  std::int64_t lost = 0;  // the oldest changes, if the reader is too slow
 };
 
-// Those of all open devices; filled by whichever thread makes SDL look at its joysticks.
+// The inboxes of all open devices; filled by any thread that updates SDL's joysticks.
 class JoystickInboxes {
  public:
-  static constexpr std::size_t kMaxChanges = 8192;  // that wait in one
+  static constexpr std::size_t kMaxChanges = 8192;  // waiting in one inbox
 
   void add(JoystickInbox& inbox);
   void remove(const JoystickInbox& inbox) noexcept;
-  JoystickInbox take(JoystickInbox& inbox);  // what has come since the last taking
+  JoystickInbox take(JoystickInbox& inbox);  // its content since the last take
   void put(std::int32_t joystick, const JoystickReports::Change& change);
-  // The last changes are taken back as long as `is_unsaid`.
+  // Drops the last changes as long as `is_reset` is true of them.
   void mark_removed(std::int32_t joystick,
-                    const std::function<bool(const JoystickReports::Change&)>& is_unsaid);
+                    const std::function<bool(const JoystickReports::Change&)>& is_reset);
 
  private:
   std::mutex mutex_;

@@ -66,7 +66,7 @@ std::vector<std::uint8_t> file_bytes(const fs::path& path) {
   return bytes;
 }
 
-// The input device that the kernel made of a HID device; its version is the one in SDL's GUID.
+// Of the input device that the kernel made of a HID device: the version in SDL's GUID.
 std::uint16_t input_version(const fs::path& hid_device) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(hid_device / "input", error)) {
@@ -76,7 +76,7 @@ std::uint16_t input_version(const fs::path& hid_device) {
   return 0;
 }
 
-// What is known of every node below a HID device or a USB interface.
+// What the HID device and the USB interface above the node tell.
 void add_parents(udev_device* device, SystemNode& node) {
   udev_device* hid = udev_device_get_parent_with_subsystem_devtype(device, "hid", nullptr);
   udev_device* usb = udev_device_get_parent_with_subsystem_devtype(device, "usb", "usb_interface");
@@ -247,7 +247,7 @@ Result<HotplugMonitor> HotplugMonitor::create() {
   auto impl = std::make_unique<Impl>();
   impl->context.reset(udev_new());
   if (!impl->context) return Error{"udev: cannot be asked for devices"};
-  // Where no udevd runs (containers) nobody but the kernel tells.
+  // Without udevd (in containers) only the kernel reports changes.
   const bool has_udevd = ::access("/run/udev/control", F_OK) == 0;
   impl->monitor.reset(
       udev_monitor_new_from_netlink(impl->context.get(), has_udevd ? "udev" : "kernel"));

@@ -1,5 +1,6 @@
-// What the system (sysfs and udev, through libudev) says about input hardware: nodes, who they
-// belong to, plugging in and out. Shared by the drivers' `find`, the finder and `gaitpad doctor`.
+// What the system (sysfs and udev, through libudev) knows about input hardware: its nodes, what
+// they belong to, plugging in and unplugging. Used by the drivers' `find`, the finder and `gaitpad
+// doctor`.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -12,7 +13,7 @@
 
 namespace gaitpad {
 
-// One node of /dev with what sysfs knows of the hardware behind it.
+// A node in /dev and what sysfs knows of the hardware behind it.
 struct SystemNode {
   std::string node;           // /dev/hidraw3, /dev/input/event5, /dev/bus/usb/001/004
   std::string sysfs_path;     // of the node's own device
@@ -20,28 +21,28 @@ struct SystemNode {
   std::string kernel_driver;  // of the HID device or USB interface: hid-generic, playstation, xpad
   BusType bus = BusType::unknown;
   std::uint16_t vendor = 0, product = 0;
-  std::uint16_t version = 0;  // of the input device where there is one (SDL's GUID holds it)
+  std::uint16_t version = 0;  // of the input device if there is one (part of SDL's GUID)
   std::string name, unique_id, physical_path;
-  std::vector<std::uint8_t> descriptor;  // report_descriptor in sysfs, hidraw nodes only
+  std::vector<std::uint8_t> descriptor;  // report_descriptor in sysfs; hidraw nodes only
   double poll_rate_hz = 0.0;             // 1 / bInterval of the interrupt IN endpoint; 0: unknown
   bool is_joystick = false, is_motion_sensor = false, is_touchpad = false;  // udev's ID_INPUT_*
 };
 
-// "hidraw", "input" (event nodes only) or "usb" (devices; pad_path is empty, they have several
-// interfaces), ordered by node.
+// The nodes of "hidraw", "input" (event nodes only) or "usb" (devices; pad_path is empty because
+// they have several interfaces), ordered by node.
 std::vector<SystemNode> system_nodes(std::string_view subsystem);
 // The node as a driver lists it.
 DeviceListing listing_of(const SystemNode& node, const char* driver);
 // pad_path of a USB interface: `1-1.2:1.0` as in /sys/bus/usb/devices.
 std::string usb_interface_path(const std::string& interface_name);
-// How often the interface's interrupt IN endpoint is asked, by its `interval` (`4ms`, `125us`); 0:
-// unknown, or it has none.
+// How often the interface's interrupt IN endpoint is polled, by its `interval` (`4ms`, `125us`); 0:
+// unknown, or there is none.
 double usb_poll_rate_hz(const std::string& interface_path);
-// Why the node cannot be opened for reading and writing by this user, empty: it can.
+// Why this user cannot open the node for reading and writing; empty: the user can.
 // `/dev/hidraw3: permission denied (owner 0, group 0, mode 0600); gaitpad doctor tells the fix`
 std::string access_problem(const std::string& node);
 
-// Tells that something was plugged in or out, after udev has applied its rules to it.
+// Tells when something was plugged in or unplugged, after udev has applied its rules.
 class HotplugMonitor {
  public:
   static Result<HotplugMonitor> create();
@@ -49,7 +50,7 @@ class HotplugMonitor {
   HotplugMonitor& operator=(HotplugMonitor&&) noexcept;
   ~HotplugMonitor();
   int fd() const noexcept;
-  bool has_changed() noexcept;  // takes what has come; never waits
+  bool has_changed() noexcept;  // reads all that has come; never waits
 
  private:
   struct Impl;

@@ -1,5 +1,5 @@
-// A recording as devices: hands on its events at their own times, counted from the moment when the
-// first of its devices was opened.
+// A recording as devices: delivers its events at their recorded times, counted from the moment when
+// the first of its devices was opened.
 #include <fmt/format.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
@@ -18,9 +18,9 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::int64_t kTail_us = 1'000'000;  // as a replay: a second more where Q: says nothing
+constexpr std::int64_t kTail_us = 1'000'000;  // like a replay: one more second without a Q: line
 
-// One run of a file. All its open devices share it, and with it the beginning of time.
+// One run of a file. All of its open devices share it and its start time.
 struct Playback {
   Trace trace;
   std::int64_t start_ns = 0;              // CLOCK_MONOTONIC
@@ -33,7 +33,7 @@ struct Playback {
 
 Playback started_playback(Trace trace) {
   Playback playback;
-  // With T: lines only each device's own times are in order.
+  // In a file with T: lines only the times of each single device are in order.
   const auto [first, last] = std::ranges::minmax_element(trace.events, {}, &TraceEvent::time_us);
   if (first != trace.events.end()) {
     playback.first_us = first->time_us;
@@ -96,7 +96,7 @@ class TraceFileDevice final : public Device {
     const std::vector<TraceEvent>& events = playback_->trace.events;
     while (next_ < events.size() && events[next_].device != device_) ++next_;
   }
-  // Of the next event, behind the last one of the end.
+  // Of the next event; after the last one: of the end.
   std::int64_t due_ns() const noexcept {
     const std::vector<TraceEvent>& events = playback_->trace.events;
     return next_ < events.size() ? playback_->due_ns(events[next_].time_us) : end_ns_;
@@ -120,7 +120,7 @@ std::string node_of(const std::string& path, std::size_t device) {
   return device == 0 ? path : fmt::format("{}#{}", path, device + 1);
 }
 
-// Undoes node_of(); the name of a file may hold a `#` itself.
+// The reverse of node_of(); the name of a file may contain a `#` itself.
 std::pair<std::string, std::size_t> path_and_device(const std::string& node) {
   const std::size_t mark = node.rfind('#');
   if (mark == std::string::npos) return {node, 0};

@@ -1,15 +1,22 @@
-// USB pads without the kernel's input layer: HID-class ones as they describe themselves,
-// vendor-class ones (Xbox) as their pad model states them. The kernel's driver is detached while a
-// pad is open, with the user's consent only.
+// USB pads without the kernel's input layer: HID-class pads as they describe themselves,
+// vendor-class pads (Xbox) as their pad model states them. While a pad is open the kernel's driver
+// is detached, and only with the user's consent.
+#include <errno.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <libusb.h>
 
 #include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string_view>
 
 #include "drivers/driver_entries.h"
 #include "drivers/pads/pad_model.h"
+#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
-#include "drivers/usb_claim.h"
 #include "drivers/usb_interfaces.h"
+#include "drivers/usb_reattach.h"
 #include "drivers/usb_transfers.h"
 #include "gaitpad/descriptor.h"
 
@@ -28,7 +35,105 @@ struct FreeConfig {
   void operator()(libusb_config_descriptor* config) const { libusb_free_config_descriptor(config); }
 };
 
-// --- What the pad says of itself
+// ---- Taking the interface from the kernel
+
+// `NODE: WHAT: the library's word for the error`
+Error usb_error(const std::string& node, std::string_view what, int error) {
+  return Error{fmt::format("{}: {}: {}", node, what, libusb_strerror(error))};
+}
+
+struct ExitContext {
+  void operator()(libusb_context* context) const { libusb_exit(context); }
+};
+struct CloseHandle {
+  void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
+};
+
+// A USB interface in our hands: its device's node is open and the kernel driver detached. All of it
+// is undone at the end, also if the process dies. One context a pad: no thread of the library, no
+// events of other pads.
+class ClaimedInterface {
+ public:
+  static Result<std::unique_ptr<ClaimedInterface>> claim(const std::string& node,
+                                                         const UsbInterface& interface);
+  ~ClaimedInterface();
+  libusb_context* context() const { return context_.get(); }
+  libusb_device_handle* handle() const { return handle_.get(); }
+
+ private:
+  explicit ClaimedInterface(std::uint8_t number) : number_(number) {}
+  Result<bool> open(const std::string& node);
+  Result<bool> detach_and_claim(const std::string& node, const std::string& kernel_driver);
+
+  OwnedFd node_;
+  std::uint8_t number_;
+  std::unique_ptr<libusb_context, ExitContext> context_;
+  std::unique_ptr<libusb_device_handle, CloseHandle> handle_;
+  std::unique_ptr<ReattachWatcher> watcher_;  // if there was a kernel driver
+  bool is_claimed_ = false;
+};
+
+Result<std::unique_ptr<ClaimedInterface>> ClaimedInterface::claim(const std::string& node,
+                                                                  const UsbInterface& interface) {
+  std::unique_ptr<ClaimedInterface> claimed(new ClaimedInterface(interface.number));
+  if (auto opened = claimed->open(node); !opened) return opened.error();
+  if (auto taken = claimed->detach_and_claim(node, interface.kernel_driver); !taken)
+    return taken.error();
+  return claimed;
+}
+
+Result<bool> ClaimedInterface::open(const std::string& node) {
+  node_ = OwnedFd(::open(node.c_str(), O_RDWR | O_CLOEXEC));
+  if (node_.get() < 0) {
+    const int cause = errno;
+    const std::string problem = access_problem(node);
+    return Error{problem.empty() ? fmt::format("{}: {}", node, std::strerror(cause)) : problem};
+  }
+  // No discovery, because the devices are known from sysfs. libusb only has this option for the
+  // whole process.
+  libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
+  libusb_context* context = nullptr;
+  int error = libusb_init(&context);
+  if (error != LIBUSB_SUCCESS) return usb_error(node, "libusb does not start", error);
+  context_.reset(context);
+  libusb_device_handle* handle = nullptr;
+  error = libusb_wrap_sys_device(context, node_.get(), &handle);
+  if (error != LIBUSB_SUCCESS) return usb_error(node, "cannot be opened", error);
+  handle_.reset(handle);
+  return true;
+}
+
+Result<bool> ClaimedInterface::detach_and_claim(const std::string& node,
+                                                const std::string& kernel_driver) {
+  if (!kernel_driver.empty()) {
+    auto watcher = ReattachWatcher::start(node, number_);
+    if (!watcher) return watcher.error();
+    watcher_ = std::make_unique<ReattachWatcher>(std::move(*watcher));
+    const int error = libusb_detach_kernel_driver(handle(), number_);
+    if (error != LIBUSB_SUCCESS && error != LIBUSB_ERROR_NOT_FOUND) {
+      return usb_error(node, fmt::format("the kernel's driver {} stays", kernel_driver), error);
+    }
+  }
+  const int error = libusb_claim_interface(handle(), number_);
+  if (error == LIBUSB_ERROR_BUSY) return Error{node + ": another program has the pad"};
+  if (error != LIBUSB_SUCCESS) return usb_error(node, "the pad cannot be taken", error);
+  is_claimed_ = true;
+  return true;
+}
+
+ClaimedInterface::~ClaimedInterface() {
+  if (is_claimed_) libusb_release_interface(handle(), number_);
+  if (!watcher_) return;
+  const int error = libusb_attach_kernel_driver(handle(), number_);
+  // BUSY: it has a driver again. NOT_FOUND: the kernel has none that fits. Else the watcher keeps
+  // trying.
+  if (error == LIBUSB_SUCCESS || error == LIBUSB_ERROR_NO_DEVICE || error == LIBUSB_ERROR_BUSY ||
+      error == LIBUSB_ERROR_NOT_FOUND) {
+    watcher_->dismiss();
+  }
+}
+
+// ---- What the pad says of itself
 
 struct PadDescription {
   UsbEndpoints endpoints;
@@ -79,7 +184,7 @@ Result<PadDescription> describe_pad(const std::string& node, libusb_device_handl
   return Error{node + ": no endpoint to read reports from"};
 }
 
-// As the pad itself states it; the kernel's copy may have been mended for its own driver.
+// From the pad itself: the kernel's copy may be corrected for the kernel's driver.
 std::vector<std::uint8_t> report_descriptor(libusb_device_handle* handle, std::uint8_t interface) {
   std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
   const int count = libusb_control_transfer(
@@ -89,8 +194,8 @@ std::vector<std::uint8_t> report_descriptor(libusb_device_handle* handle, std::u
   return bytes;
 }
 
-// A report may be longer than a packet (low-speed pads have packets of 8 bytes): it then comes in
-// several, and a transfer takes all of them.
+// A report may be longer than a packet (low-speed pads have packets of 8 bytes). It then comes in
+// several packets, and a transfer must have room for all of them.
 void fit_transfers(const std::vector<std::uint8_t>& descriptor, UsbEndpoints& endpoints) {
   std::size_t longest = 1;
   if (const auto parsed = parse_descriptor(descriptor)) {
@@ -105,9 +210,9 @@ void fit_transfers(const std::vector<std::uint8_t>& descriptor, UsbEndpoints& en
   endpoints.in_bytes = std::min(whole, std::max(kMaxReportBytes, packet));
 }
 
-// --- An open pad
+// ---- An open pad
 
-// The model's way to the pad while it starts: here waiting is allowed.
+// The pad model's way to the pad while it starts; here waiting is allowed.
 class StartPort final : public PadPort {
  public:
   StartPort(UsbTransfers& transfers, libusb_device_handle* handle, std::uint8_t interface)
@@ -123,7 +228,7 @@ class StartPort final : public PadPort {
 
   std::size_t read(std::span<std::uint8_t> packet, milliseconds timeout) noexcept override {
     const auto end = std::chrono::steady_clock::now() + timeout;
-    while (!transfers_.take(report_)) {
+    while (!transfers_.take_packet(report_)) {
       const auto left = std::chrono::ceil<milliseconds>(end - std::chrono::steady_clock::now());
       if (left.count() <= 0 || transfers_.is_gone()) return 0;
       transfers_.handle_events(left);
@@ -134,7 +239,7 @@ class StartPort final : public PadPort {
   }
 
   std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
-    // Without ids the pad sends none, yet ours begins with it.
+    // A pad without ids sends none, but `packet` begins with one.
     const std::size_t skip = id == 0 ? 1 : 0;
     if (packet.size() <= skip || packet.size() > kMaxReportBytes) return 0;
     packet[0] = id;
@@ -193,9 +298,9 @@ class UsbDevice final : public Device {
   std::vector<std::string> take_remarks() override { return model_->take_remarks(); }
 
  private:
-  // Of what has arrived the oldest input report; answers what asks for it on the way there.
+  // Fills `report` with the oldest input report that has arrived, and answers packets before it.
   bool take_input(Report& report) noexcept {
-    while (transfers_->take(report)) {
+    while (transfers_->take_packet(report)) {
       const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
       const bool is_input = model_->accept(packet, reply_);
       if (reply_.size > 0) transfers_->send(reply_);
@@ -207,12 +312,12 @@ class UsbDevice final : public Device {
   DeviceInfo info_;
   std::unique_ptr<PadModel> model_;
   std::unique_ptr<ClaimedInterface> interface_;
-  std::unique_ptr<UsbTransfers> transfers_;  // goes before the interface does
+  std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
   OutPacket reply_;
   bool is_rumbling_ = false;
 };
 
-// The model, and what the pad's descriptor is; empty where it gives none.
+// The model and descriptor of a vendor-class pad; without a model for all others.
 VendorPad model_of(const UsbInterfaceClass& ids, const DeviceInfo& info) {
   for (const auto make : {make_xbox_360_pad, make_gip_pad}) {
     if (auto pad = make(ids, info); pad.model) return pad;
@@ -249,7 +354,7 @@ Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInter
   return std::unique_ptr<Device>(std::move(device));
 }
 
-// --- Finding
+// ---- Finding
 
 DeviceListing listing_of(const SystemNode& device, const UsbInterface& interface) {
   DeviceListing listing;

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of a device that is being unplugged ends early.
+// Empty or incomplete if the device is being unplugged.
 std::vector<fs::path> entries(const fs::path& folder) {
   std::vector<fs::path> paths;
   std::error_code error;
@@ -49,7 +49,7 @@ std::string driver_of(const fs::path& device) {
   return fs::read_symlink(device / "driver", error).filename().string();
 }
 
-// The HID device `0003:054C:09CC.0001` that usbhid put below the interface.
+// The HID device (`0003:054C:09CC.0001`) that usbhid has made below the interface.
 std::optional<fs::path> hid_device_below(const fs::path& interface) {
   for (const fs::path& entry : entries(interface)) {
     if (entry.filename().string().starts_with("0003:")) return entry;

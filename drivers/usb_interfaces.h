@@ -1,5 +1,5 @@
-// What sysfs tells of a USB device's interfaces: which of them may be pads, where they hang, who
-// has them. Nothing here opens or talks to a device.
+// What sysfs tells about a USB device's interfaces: which of them may be pads, at which port they
+// are, which driver has them. Nothing here opens a device.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -17,22 +17,23 @@ struct UsbInterface {
   std::string path;  // its folder, `.../1-1.2:1.0`
   std::uint8_t number = 0;
   UsbInterfaceClass ids;
-  double poll_rate_hz = 0.0;  // of its interrupt IN endpoint; 0: there is none
+  double poll_rate_hz = 0.0;  // of its interrupt IN endpoint; 0: none
   std::string kernel_driver;  // bound to the interface: usbhid, xpad, usbfs (a program); or empty
   std::string hid_driver;     // of the HID device that usbhid made of it: hid-generic, playstation
   std::uint16_t version = 0;  // of the input device that the kernel made of it; 0: none
   std::vector<std::uint8_t> descriptor;  // report descriptor as the kernel has it, else empty
 };
 
-// The interface of that folder; nothing where it is none (any more).
+// The interface of that folder; none if it is no interface, or was unplugged.
 std::optional<UsbInterface> usb_interface(const std::string& path);
-// Those of a device's folder, by number.
+// The interfaces in a device's folder, by number.
 std::vector<UsbInterface> usb_interfaces(const std::string& device_path);
 
-// HID, Xbox 360 wired (ff/5d/01) or Xbox One and Series (ff/47/d0: of its three interfaces the
-// first), with reports to read.
+// Whether it is HID, Xbox 360 wired (ff/5d/01) or the first of the three interfaces of an Xbox One
+// or Series pad (ff/47/d0), with an endpoint to read reports from.
 bool may_be_pad(const UsbInterface& interface) noexcept;
-// `it is a keyboard`, where the interface says so itself; empty for all others.
+// `it is a keyboard` or `it is a mouse`, if the interface says so itself (HID boot protocol); else
+// empty.
 std::string boot_device(const UsbInterface& interface);
 
 // As the kernel writes it (HIDIOCGRAWPHYS, EVIOCGPHYS): `usb-0000:00:14.0-1.2/input0`.

@@ -18,10 +18,10 @@ namespace gaitpad {
 
 namespace {
 
-// Everything from here to `watch` runs in the child of a process with threads: system calls alone,
-// no heap, no locks, no sanitizer that would need its parent's.
+// Everything up to `watch` runs in the child of a process with threads, so it uses system calls
+// only: no heap, no locks, nothing of which a sanitizer would need the parent's state.
 
-// The dying process holds the interface until its node is closed, a moment after our link was.
+// The dying process holds the interface until its node is closed, a moment after the link.
 enum class Attempt { again, done };
 
 Attempt try_to_reattach(const char* node, int interface_number) {
@@ -42,7 +42,7 @@ Attempt try_to_reattach(const char* node, int interface_number) {
   return result;
 }
 
-// Closes all but `kept`: else a pipe or a node of ours would stay open behind our back.
+// Closes all descriptors but `kept`, so that no pipe or node of the parent stays open in the child.
 void close_others(int kept) {
   bool is_closed = false;
 #ifdef SYS_close_range
@@ -55,7 +55,7 @@ void close_others(int kept) {
 [[noreturn]] void watch(int link, const char* node, int interface_number) {
   constexpr int kAttempts = 250;
   constexpr timespec kPause = {0, 20'000'000};
-  ::setsid();  // Ctrl-C in the terminal is not for us
+  ::setsid();  // Ctrl-C in the terminal must not end the watcher
   close_others(link);
   char word = 0;
   ssize_t count = 0;
@@ -78,7 +78,7 @@ Result<ReattachWatcher> ReattachWatcher::start(const std::string& node,
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     return Error{fmt::format("{}: nothing can watch over it: {}", node, std::strerror(errno))};
   }
-  // The child keeps all signals blocked: no handler of ours runs there, and only our end ends it.
+  // All signals stay blocked in the child: no handler of the parent runs there.
   sigset_t all = {}, before = {};
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -94,7 +94,7 @@ Result<ReattachWatcher> ReattachWatcher::start(const std::string& node,
 
 void ReattachWatcher::dismiss() noexcept {
   if (link_.get() < 0) return;
-  constexpr int kAttempts = 100;  // a watcher that somebody has stopped does not stop us
+  constexpr int kAttempts = 100;  // do not wait for ever for a watcher that was stopped
   constexpr timespec kPause = {0, 1'000'000};
   const char word = 1;
   static_cast<void>(::send(link_.get(), &word, 1, MSG_NOSIGNAL));

@@ -1,7 +1,7 @@
 // Gives a USB interface back to its kernel driver, however this process ends.
 //
-// The kernel does not do that by itself: an interface whose driver was detached stays without one
-// when its taker dies. So a small process is started first that waits for our end.
+// The kernel does not do so: an interface whose driver was detached stays without a driver when the
+// process that detached it dies. So a small process is started that waits for our end.
 #pragma once
 #include <sys/types.h>
 
@@ -16,18 +16,18 @@ namespace gaitpad {
 
 class ReattachWatcher {
  public:
-  // Before the detaching. `node` is the device's, /dev/bus/usb/BBB/DDD.
+  // Call it before detaching. `node`: the device's, /dev/bus/usb/BBB/DDD.
   static Result<ReattachWatcher> start(const std::string& node, std::uint8_t interface_number);
   ReattachWatcher(ReattachWatcher&&) noexcept = default;
   ReattachWatcher& operator=(ReattachWatcher&&) = delete;
-  ~ReattachWatcher();  // as our death: the watcher re-attaches
+  ~ReattachWatcher();  // like the death of this process: the watcher re-attaches
 
-  // The driver is attached again, or the device is gone: nothing is left to do.
+  // The driver is attached again, or the device is gone: ends the watcher.
   void dismiss() noexcept;
 
  private:
   ReattachWatcher(OwnedFd link, pid_t process) : link_(std::move(link)), process_(process) {}
-  OwnedFd link_;  // its closing is what the watcher waits for
+  OwnedFd link_;  // the watcher waits until this is closed
   pid_t process_ = -1;
 };
 

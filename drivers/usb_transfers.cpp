@@ -13,7 +13,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::uint8_t kSetReport = 0x09, kToInterface = 0x21, kOutputReport = 2;
-constexpr unsigned int kOutTimeoutMs = 1000;  // a pad that takes no packet does not keep the queue
+constexpr unsigned int kOutTimeoutMs =
+    1000;  // so that a pad that takes no packet does not block the queue
 constexpr std::int64_t kRecoverPauseNs = 100'000'000;
 
 bool is_device_lost(int error) noexcept { return error == LIBUSB_ERROR_NO_DEVICE; }
@@ -62,7 +63,7 @@ UsbTransfers::~UsbTransfers() {
   while ((waiting_count_ > 0 || is_out_waiting_) && now_ns() < end_ns) {
     handle_events(milliseconds(20));
   }
-  // What the kernel still holds after a second is not freed below it.
+  // A transfer that the kernel still has after a second is not freed.
   for (InSlot& slot : in_) {
     if (slot.transfer && slot.state != InSlot::State::waiting) libusb_free_transfer(slot.transfer);
   }
@@ -85,7 +86,7 @@ void UsbTransfers::handle_events(milliseconds timeout) noexcept {
   set_timer();
 }
 
-// --- IN
+// ---- IN
 
 void UsbTransfers::submit(InSlot& slot) noexcept {
   if (is_gone_ || is_recovering_ || slot.state != InSlot::State::idle) return;
@@ -117,7 +118,7 @@ void UsbTransfers::finish_in(InSlot& slot) noexcept {
   if (is_closing_) return;
   if (is_done && slot.transfer->actual_length > 0) {
     slot.state = InSlot::State::filled;
-    // Packets also arrive while libusb waits for the answer to a control request.
+    // Outside of handle_events: while libusb waits for the answer to a control request.
     slot.time_ns = arrival_ns_ != 0 ? arrival_ns_ : now_ns();
     filled_[filled_count_++] = &slot;
   } else if (status == LIBUSB_TRANSFER_COMPLETED) {
@@ -129,7 +130,7 @@ void UsbTransfers::finish_in(InSlot& slot) noexcept {
   }
 }
 
-bool UsbTransfers::take(Report& packet) noexcept {
+bool UsbTransfers::take_packet(Report& packet) noexcept {
   if (filled_count_ == 0) return false;
   InSlot& slot = *filled_[0];
   std::move(filled_.begin() + 1, filled_.begin() + static_cast<std::ptrdiff_t>(filled_count_),
@@ -145,8 +146,8 @@ bool UsbTransfers::take(Report& packet) noexcept {
   return true;
 }
 
-// --- A halted endpoint: all reads come back, the halt is cleared, reads are sent out again. A pad
-// that halts at once again is asked every 100 ms only.
+// ---- A halted endpoint: all reads are cancelled, the halt is cleared, the reads start again. A
+// pad that halts again at once is tried every 100 ms only.
 
 void UsbTransfers::begin_recovery() noexcept {
   if (is_recovering_ || is_gone_) return;
@@ -156,7 +157,7 @@ void UsbTransfers::begin_recovery() noexcept {
   }
 }
 
-// Without a transfer under way only the node itself tells of the unplugging.
+// Without a waiting transfer only the node itself shows the unplugging.
 bool UsbTransfers::has_hung_up() noexcept {
   ::poll(poll_fds_.data(), poll_fds_.size(), 0);
   return std::any_of(poll_fds_.begin(), poll_fds_.end(),
@@ -178,19 +179,19 @@ void UsbTransfers::recover() noexcept {
     error = libusb_clear_halt(handle_, endpoints_.in);
     is_recovering_ = error != LIBUSB_SUCCESS;
     if (!is_recovering_) {
-      ++lost_;  // only now: the errors of a pad that is being unplugged are no loss
+      ++lost_;  // not earlier: the errors of a pad that is being unplugged are no loss
       submit_all();
     }
   }
   if (is_device_lost(error)) is_gone_ = true;
 }
 
-// --- OUT
+// ---- OUT
 
 bool UsbTransfers::send(const OutPacket& packet) noexcept {
   const bool has_way = endpoints_.out != 0 || endpoints_.is_hid;
   if (is_gone_ || !has_way || packet.size == 0 || packet.size > packet.bytes.size()) return false;
-  // Of packets that a pad does not take in time the newest counts: with motors it is the stop.
+  // If the queue is full the newest packet replaces the last: of motors it may be the stop.
   if (queued_ == kOutPackets) --queued_;
   if (queued_ == 0) has_out_failed_ = false;
   queue_[queued_++] = packet;
@@ -268,7 +269,7 @@ void UsbTransfers::set_timer() noexcept {
   const bool must_recover = (is_recovering_ && waiting_count_ == 0) || is_out_halted_;
   std::int64_t next_ns = must_recover && !is_gone_ ? std::max<std::int64_t>(recover_ns_, 1) : 0;
   if (repeat_ns_ != 0 && !is_gone_) next_ns = next_ns ? std::min(next_ns, repeat_ns_) : repeat_ns_;
-  if (next_ns == timer_ns_) return;  // nearly always: a report costs no system call more
+  if (next_ns == timer_ns_) return;  // nearly always, so a report costs no further system call
   timer_ns_ = next_ns;
   itimerspec when = {};
   when.it_value.tv_sec = static_cast<time_t>(next_ns / 1'000'000'000);

@@ -1,7 +1,7 @@
-// The packets of a claimed USB interface on libusb's asynchronous transfers: several reads wait at
-// the IN endpoint all the time, so that none of its packets finds nobody; OUT packets leave one by
-// one from a short queue. Only the destructor, a stall (one request to the pad) and a time-out that
-// the caller gives ever wait.
+// The packets of a claimed USB interface, on libusb's asynchronous transfers. Several reads always
+// wait at the IN endpoint, so that no packet is missed; OUT packets leave one by one from a short
+// queue. Nothing waits except the destructor, clearing a stall (one request to the pad) and calls
+// with a time-out.
 #pragma once
 #include <libusb.h>
 #include <poll.h>
@@ -21,36 +21,36 @@
 
 namespace gaitpad {
 
-// Where the packets go: from the interface's descriptor.
+// The endpoints, from the interface's descriptor.
 struct UsbEndpoints {
   std::uint8_t interface_number = 0;
   std::uint8_t in = 0;
   std::uint16_t in_packet_bytes = 0;  // wMaxPacketSize
-  std::size_t in_bytes = 0;           // of one transfer: what the longest report needs
-  std::uint8_t out = 0;               // 0: none, HID packets go as SET_REPORT
+  std::size_t in_bytes = 0;           // of one transfer: room for the longest report
+  std::uint8_t out = 0;               // 0: none; HID packets are sent as SET_REPORT
   bool is_hid = false;
   bool is_numbered = false;  // HID packets begin with their report id
 };
 
 class UsbTransfers {
  public:
-  // The handle is open, the interface claimed; both must outlive this.
+  // The handle is open and the interface claimed; context and handle must outlive the transfers.
   static Result<std::unique_ptr<UsbTransfers>> start(libusb_context* context,
                                                      libusb_device_handle* handle,
                                                      const UsbEndpoints& endpoints);
-  ~UsbTransfers();  // takes all transfers back
+  ~UsbTransfers();  // cancels all transfers
   UsbTransfers(const UsbTransfers&) = delete;
   UsbTransfers& operator=(const UsbTransfers&) = delete;
 
-  // What to wait for; never changes while the device is there.
+  // What to wait for; does not change while the device is there.
   std::span<const pollfd> poll_fds() const noexcept { return poll_fds_; }
-  // Lets things happen: packets arrive and leave. Waits at most that long.
+  // Receives and sends packets; waits at most `timeout`.
   void handle_events(std::chrono::milliseconds timeout) noexcept;
-  // The oldest packet that has arrived: its bytes, their number and the time. False: none.
-  bool take(Report& packet) noexcept;
-  // Queues the packet. False where the pad cannot be written to.
+  // Takes the oldest packet that has arrived: bytes, size, time. False: none.
+  bool take_packet(Report& packet) noexcept;
+  // Queues the packet. False: the pad cannot be written to.
   bool send(const OutPacket& packet) noexcept;
-  // Until all queued packets have left. False where one did not.
+  // Waits until all queued packets have left. False: one did not.
   bool flush(std::chrono::milliseconds timeout) noexcept;
 
   bool is_gone() const noexcept { return is_gone_; }
@@ -89,26 +89,26 @@ class UsbTransfers {
   libusb_device_handle* handle_;
   UsbEndpoints endpoints_;
   std::vector<pollfd> poll_fds_;
-  OwnedFd timer_;                // of recovering and repeating
-  std::int64_t timer_ns_ = 0;    // when it is set to; 0: not set
+  OwnedFd timer_;                // for recovering and repeating
+  std::int64_t timer_ns_ = 0;    // the time it is set to; 0: not set
   std::int64_t now_ns_ = 0;      // of the last handle_events()
-  std::int64_t arrival_ns_ = 0;  // of the packets that it finds; 0: it is not running
+  std::int64_t arrival_ns_ = 0;  // of the packets that it receives; 0: it is not running
 
   std::array<InSlot, kInSlots> in_;
   std::array<InSlot*, kInSlots> filled_{};  // oldest first
   std::size_t filled_count_ = 0, waiting_count_ = 0;
 
-  std::array<OutPacket, kOutPackets> queue_;  // the first one is on its way
+  std::array<OutPacket, kOutPackets> queue_;  // the first one is being sent
   std::size_t queued_ = 0;
   libusb_transfer* out_ = nullptr;
   std::vector<std::uint8_t> out_buffer_;
   bool is_out_waiting_ = false, has_out_failed_ = false;
   OutPacket repeated_;
-  std::int64_t repeat_ns_ = 0;  // when; 0: nothing to repeat
+  std::int64_t repeat_ns_ = 0;  // the time; 0: nothing to repeat
 
   bool is_gone_ = false, is_closing_ = false;
   bool is_recovering_ = false, is_out_halted_ = false;
-  std::int64_t recover_ns_ = 0;  // not before
+  std::int64_t recover_ns_ = 0;  // no attempt before
   std::int64_t lost_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// The checksum of Sony's Bluetooth reports: CRC-32 as in Ethernet (polynomial 04c11db7 reflected,
-// start and end inverted), over a byte that tells the direction and then the report.
+// The checksum of Sony's Bluetooth reports: CRC-32 as in Ethernet (polynomial 04c11db7, reflected,
+// start and end inverted), over one byte for the direction and then the report.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,7 +18,7 @@ constexpr std::array<std::uint32_t, 256> crc32_table() noexcept {
 }
 inline constexpr std::array<std::uint32_t, 256> kCrc32Table = crc32_table();
 
-// `before` is the checksum of the bytes in front of these, 0 where there are none.
+// `before`: the checksum of the bytes before these; 0: none.
 constexpr std::uint32_t crc32(std::span<const std::uint8_t> bytes,
                               std::uint32_t before = 0) noexcept {
   std::uint32_t crc = ~before;

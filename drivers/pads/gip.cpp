@@ -1,5 +1,5 @@
-// Xbox One and Series pads on a wire speak GIP: command, options, sequence number and length stand
-// before each message. The command is the report's id.
+// Xbox One and Series pads on USB speak GIP: each message begins with command, options, sequence
+// number and length. The command serves as the report id.
 #include <algorithm>
 
 #include "drivers/pads/pad_model.h"
@@ -11,11 +11,11 @@ namespace {
 constexpr std::size_t kHeaderBytes = 4;
 constexpr std::uint8_t kAcknowledge = 0x01, kAnnounce = 0x02, kPower = 0x05, kGuide = 0x07,
                        kRumble = 0x09, kInput = 0x20;
-constexpr std::uint8_t kClient = 0x0f;  // whose message: 0 the pad's, else what is plugged into it
+constexpr std::uint8_t kClient = 0x0f;  // sender: 0 the pad, else something that is plugged into it
 constexpr std::uint8_t kWantsAnswer = 0x10, kInternal = 0x20, kChunk = 0x80;
 
-// y grows upwards in these packets: config/pads/microsoft.toml says so of every pad with the last
-// line's collection.
+// y grows upwards in these packets; config/pads/microsoft.toml states so for every pad that has the
+// collection of the last line.
 constexpr std::uint8_t kDescriptor[] = {
     0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                          // game pad
     0x85, 0x20, 0x75, 0x08, 0x95, 0x03, 0x81, 0x03,              // input: options, number, length
@@ -36,8 +36,8 @@ constexpr std::uint8_t kDescriptor[] = {
     0x06, 0x47, 0xff, 0x09, 0xd0, 0xa1, 0x01, 0xc0,              // ff47:00d0
 };
 
-// Start-up messages; the third byte, the sequence number, is filled in when they leave. What the
-// pads need is known from Linux's xpad.
+// Start-up messages; the third byte, the sequence number, is set when they are sent. From Linux's
+// xpad.
 struct StartMessage {
   std::uint32_t only = 0;  // vendor and product; 0: all
   std::uint8_t size = 0;
@@ -47,7 +47,7 @@ constexpr std::uint32_t pad_id(std::uint16_t vendor, std::uint16_t product) {
   return std::uint32_t{vendor} << 16 | product;
 }
 constexpr StartMessage kStartMessages[] = {
-    // These two wait for an acknowledgement of their announcement.
+    // These two wait until their announcement is acknowledged.
     {pad_id(0x0e6f, 0x0165),
      13,
      {kAcknowledge, kInternal, 0, 9, 0, 4, kInternal, 0x3a, 0, 0, 0, 0x80}},
@@ -55,14 +55,14 @@ constexpr StartMessage kStartMessages[] = {
      13,
      {kAcknowledge, kInternal, 0, 9, 0, 4, kInternal, 0x3a, 0, 0, 0, 0x80}},
     {0, 5, {kPower, kInternal, 0, 1, 0}},  // on
-    // Xbox One S and Elite 2 that were on Bluetooth before.
+    // Xbox One S and Elite 2 after they were used on Bluetooth.
     {pad_id(0x045e, 0x02ea), 5, {kPower, kInternal, 0, 0x0f, 0x06}},
     {pad_id(0x045e, 0x0b00), 5, {kPower, kInternal, 0, 0x0f, 0x06}},
     {0, 7, {0x0a, kInternal, 0, 3, 0, 1, 0x14}},  // the light
-    {0, 6, {0x06, kInternal, 0, 2, 1, 0}},        // no authentication is asked for
+    {0, 6, {0x06, kInternal, 0, 2, 1, 0}},        // no authentication is requested
 };
 
-// Messages that the protocol lives on.
+// Messages of the protocol itself, which are no input.
 bool is_of_protocol(std::uint8_t command) noexcept {
   constexpr std::uint8_t kCommands[] = {kAcknowledge, kAnnounce, 0x03, 0x04, kPower, 0x06, 0x08,
                                         0x0a,         0x0b,      0x0c, 0x1e, 0x1f,   0x60};
@@ -73,8 +73,7 @@ class GipModel final : public PadModel {
  public:
   explicit GipModel(std::uint32_t id) : id_(id) {}
 
-  // A pad announces itself when it gets power, which mostly was before we came: it is not waited
-  // for.
+  // A pad announces itself when it gets power, mostly long before it is opened: do not wait for it.
   void start(PadPort& port, StartedBy) override {
     for (const StartMessage& message : kStartMessages) {
       if (message.only != 0 && message.only != id_) continue;
@@ -89,13 +88,13 @@ class GipModel final : public PadModel {
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
     if (packet.empty()) return false;
-    // Without a header it cannot be told what it is: it is handed on and counted.
+    // Without a complete header it is unknown: pass it on, so that the decoder counts it.
     if (packet.size() < kHeaderBytes) return !is_of_protocol(packet[0]);
     const bool is_known = packet[0] == kInput || packet[0] == kGuide || is_of_protocol(packet[0]);
-    if (!is_known) return true;  // handed on and counted, too
+    if (!is_known) return true;  // unknown: passed on and counted, too
     const std::uint8_t options = packet[1];
     const bool is_input = !is_of_protocol(packet[0]);
-    if ((options & kChunk) != 0) {  // a part of a long message, which no input is
+    if ((options & kChunk) != 0) {  // part of a long message; input is never long
       refused_ += is_input ? 1 : 0;
       return false;
     }
@@ -108,8 +107,8 @@ class GipModel final : public PadModel {
 
   void rumble(const Rumble& strengths, OutPacket& packet) noexcept override {
     packet = {};
-    // All four motors, those of the triggers at rest; strengths are 0..127; on for 255 x 10 ms, no
-    // pause, 255 times: until the next message.
+    // All four motors, those of the triggers off; strengths 0..127; on for 255 x 10 ms, no pause,
+    // 255 times: practically until the next message.
     packet.bytes = {kRumble,
                     0,
                     0,
@@ -133,7 +132,7 @@ class GipModel final : public PadModel {
     packet.bytes[2] = sequence_;
   }
 
-  // The pad has just got power, or started anew.
+  // The pad has just got power or restarted.
   void power_on(OutPacket& reply) noexcept {
     reply = {};
     reply.bytes = {kPower, kInternal, 0, 1, 0};
@@ -141,7 +140,7 @@ class GipModel final : public PadModel {
     number(reply);
   }
 
-  // Under the message's own number: its command, and how many of its bytes have come.
+  // Has the sequence number of the message, its command, and how many of its bytes arrived.
   static void acknowledge(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept {
     const auto client = static_cast<std::uint8_t>(packet[1] & kClient);
     const auto options = static_cast<std::uint8_t>(kInternal | client);

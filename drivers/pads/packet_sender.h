@@ -1,4 +1,4 @@
-// Sends a pad's packets from a thread of its own, for ports whose writing waits for the pad: hidraw
+// Sends packets to a pad from a separate thread, for ports whose write waits for the pad: hidraw
 // returns when the pad has taken the packet, and the kernel gives up only after five seconds.
 #pragma once
 #include <functional>
@@ -13,14 +13,14 @@ class PacketSender {
  public:
   using Write = std::function<bool(std::span<const std::uint8_t>)>;
 
-  // `write` is called by the thread alone, and destroyed when it has ended. Null where no thread
-  // can be started.
+  // Only the thread calls `write`; it is destroyed when the thread has ended. Null: no thread can
+  // be started.
   static std::unique_ptr<PacketSender> create(Write write);
-  // The packet that waits is still sent. A pad that does not take it within a tenth of a second
-  // keeps the thread and what `write` owns until its write returns, but not the caller.
+  // A waiting packet is still sent. If the pad does not take it within a tenth of a second, the
+  // thread goes on alone, with what `write` owns, until its write returns.
   ~PacketSender();
 
-  // Never waits; replaces a packet that has not left yet. False where the last one failed to leave.
+  // Never waits; replaces a packet that was not sent yet. False: the packet before was not sent.
   bool send(const OutPacket& packet) noexcept;
 
  private:

@@ -1,5 +1,6 @@
-// What a model of pad needs beside its report descriptor: packets that start it, packets that are
-// no input, rumble. Bytes only: the drivers that carry packets (hidraw, usb) share these files.
+// What a model of pad needs in addition to its report descriptor: packets that start it, packets
+// that are no input, rumble. Bytes only; the drivers that carry packets (hidraw, usb) share the
+// models.
 #pragma once
 #include <array>
 #include <chrono>
@@ -15,51 +16,52 @@
 
 namespace gaitpad {
 
-// The way to an open pad, packets with the report id first where there are ids.
+// The way to an open pad. Packets begin with the report id if the pad has ids.
 class PadPort {
  public:
   virtual ~PadPort() = default;
   virtual bool write(std::span<const std::uint8_t> packet) noexcept = 0;
-  // Bytes that came; 0: none within the time, or the pad is gone.
+  // The number of bytes received; 0: none within the time, or the pad is gone.
   virtual std::size_t read(std::span<std::uint8_t> packet,
                            std::chrono::milliseconds timeout) noexcept = 0;
-  // Bytes of the feature report, the id in packet[0] included; 0: refused. HID pads only.
+  // Reads a feature report (HID pads only) and returns its size with the id in packet[0]; 0:
+  // refused.
   virtual std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept = 0;
 };
 
 struct OutPacket {
   std::array<std::uint8_t, 128> bytes{};
   std::size_t size = 0;  // 0: nothing to send
-  // To be sent again after that time, until another packet follows; 0: once does.
+  // Sent again after this time until another packet follows; 0: sent once.
   std::chrono::milliseconds repeat{0};
 };
 
-// How the pad hangs: some start-up packets are only for a pad that no kernel driver has started.
+// Who started the pad: some start-up packets are only for a pad without a kernel driver.
 enum class StartedBy { kernel, us };
 
 class PadModel {
  public:
   virtual ~PadModel() = default;
-  // Talks to the pad right after it was opened, at most two seconds. A pad that does not answer
-  // works with less; what is then missing is said in take_remarks().
+  // Talks to the pad right after it was opened, for at most two seconds. A pad that does not answer
+  // still works; take_remarks() tells what is missing.
   virtual void start(PadPort&, StartedBy) {}
-  // Whether the packet is an input report to hand on. `reply` may be filled with an answer.
+  // Whether the packet is an input report. `reply` gets an answer to send, or size 0.
   virtual bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept {
     reply.size = 0;
     return !packet.empty();
   }
-  // The packet that sets the motors; size 0 where the pad has none.
+  // The packet that sets the motors; size 0: the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
-  // Input reports that accept() refused because they are damaged (a wrong checksum).
+  // Input reports that accept() refused because they are damaged (wrong checksum).
   virtual std::int64_t lost() const noexcept { return 0; }
   virtual std::vector<std::string> take_remarks() { return {}; }
 };
 
-// The model by ids and bus; a plain one for every pad that needs nothing.
+// The model by ids and bus; a plain one for pads that need nothing.
 std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device);
 
-// One file a family; null where the device is not of it.
+// One file for each family; null: the device is of another family.
 std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device);
 std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device);
 
@@ -67,7 +69,7 @@ std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device);
 struct UsbInterfaceClass {
   std::uint8_t interface_class = 0, subclass = 0, protocol = 0;
 };
-// The pad's model and the descriptor that states its packets; null where it is none of them.
+// The pad's model and the descriptor that states its packets; null: another kind of interface.
 struct VendorPad {
   std::unique_ptr<PadModel> model;
   std::vector<std::uint8_t> descriptor;

@@ -1,6 +1,6 @@
-// DualShock 4 and DualSense: their motors, and what Bluetooth adds (full reports on demand, a
-// checksum on every long report). Packet layouts: Linux's hid-playstation.c; on the wire checked
-// against what that driver sends.
+// DualShock 4 and DualSense: their motors, and what Bluetooth adds (full reports on request, a
+// checksum on every long report). Packet layouts are from Linux's hid-playstation.c and were
+// compared with what that driver sends.
 #include <algorithm>
 #include <utility>
 
@@ -16,7 +16,7 @@ constexpr std::uint16_t kDualSenseEdge = 0x0df2;
 constexpr std::size_t kBluetoothBytes = 78;  // full input and output reports of both families
 constexpr std::size_t kChecksumBytes = 4;
 
-// What the checksum counts in front of the report.
+// The byte that the checksum has before the report.
 enum class Direction : std::uint8_t { input = 0xa1, output = 0xa2, feature = 0xa3 };
 
 std::uint32_t checksum(Direction direction, std::span<const std::uint8_t> report) noexcept {
@@ -35,6 +35,7 @@ bool is_intact(Direction direction, std::span<const std::uint8_t> report) noexce
   return checksum(direction, report.first(covered)) == le32(report.last<kChecksumBytes>());
 }
 
+// Appends the checksum.
 void seal(OutPacket& packet, std::size_t size) noexcept {
   const std::size_t covered = size - kChecksumBytes;
   const std::uint32_t sum = checksum(Direction::output, std::span(packet.bytes).first(covered));
@@ -43,13 +44,13 @@ void seal(OutPacket& packet, std::size_t size) noexcept {
   packet.size = size;
 }
 
-// The motors take the upper byte; a weak beat is not rounded away.
+// The motors take the upper byte; a weak rumble is not rounded to 0.
 std::uint8_t motor(std::uint16_t strength) noexcept {
   return strength == 0 ? 0 : std::max<std::uint8_t>(1, static_cast<std::uint8_t>(strength >> 8));
 }
 
 // Over Bluetooth both families send a short report 0x01 until a certain feature report is read,
-// from then on a full one with a checksum.
+// then a full one with a checksum.
 class SonyModel : public PadModel {
  public:
   SonyModel(const DeviceInfo& device, std::uint8_t full_report)
@@ -70,7 +71,8 @@ class SonyModel : public PadModel {
   std::vector<std::string> take_remarks() final { return std::exchange(remarks_, {}); }
 
  protected:
-  // Any of the features switches the pad over; its bytes are motion calibration, of no use here.
+  // Reading any of the features switches the pad over; the content (motion calibration) is not
+  // used.
   void ask_for_full_reports(PadPort& port, std::span<const std::uint8_t> features) {
     for (const std::uint8_t id : features) {
       std::array<std::uint8_t, 64> bytes{};
@@ -93,7 +95,7 @@ class DualShock4 final : public SonyModel {
  public:
   explicit DualShock4(const DeviceInfo& device) : SonyModel(device, 0x11) {}
 
-  // Reading 0x05 does it with every firmware that Linux knows, 0x02 is how it was found first.
+  // 0x05 works with every firmware that Linux knows, 0x02 with the first ones.
   void start(PadPort& port, StartedBy started) final {
     if (!is_bluetooth_ || started == StartedBy::kernel) return;
     ask_for_full_reports(port, std::to_array<std::uint8_t>({0x05, 0x02}));
@@ -101,7 +103,7 @@ class DualShock4 final : public SonyModel {
 
   void rumble(const Rumble& rumble, OutPacket& packet) noexcept final {
     packet = {};
-    const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part that both ways share
+    const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part common to USB and Bluetooth
     packet.bytes[0] = is_bluetooth_ ? 0x11 : 0x05;
     if (is_bluetooth_) packet.bytes[1] = 0xc0;  // a HID report with checksum
     packet.bytes[at] = 0x01;                    // sets the motors and leaves the light alone
@@ -125,26 +127,26 @@ class DualSense final : public SonyModel {
 
   void rumble(const Rumble& rumble, OutPacket& packet) noexcept final {
     packet = {};
-    const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part that both ways share
+    const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part common to USB and Bluetooth
     packet.bytes[0] = is_bluetooth_ ? 0x31 : 0x02;
     if (is_bluetooth_) {
       packet.bytes[1] = static_cast<std::uint8_t>(sequence_ << 4);
       packet.bytes[2] = 0x10;
       sequence_ = (sequence_ + 1) & 0x0f;
     }
-    // Haptics are chosen for the motors; then which way of driving them, by the firmware.
+    // Selects the motors; how they are driven depends on the firmware.
     packet.bytes[at] = has_new_motors_ ? 0x02 : 0x03;
     packet.bytes[at + 2] = motor(rumble.weak);
     packet.bytes[at + 3] = motor(rumble.strong);
     if (has_new_motors_) packet.bytes[at + 38] = 0x04;
-    packet.size = 48;  // as the descriptor has it; the kernel sends 63
+    packet.size = 48;  // as in the descriptor; the kernel sends 63
     if (is_bluetooth_) seal(packet, kBluetoothBytes);
   }
 
  private:
   static constexpr std::uint16_t kFirstWithNewMotors = 0x0215;  // 2.21
 
-  // The version of the pad's firmware (2.36 is 0x0224); 0 where it does not tell.
+  // The version of the pad's firmware (2.36 is 0x0224); 0: unknown.
   std::uint16_t firmware(PadPort& port) const {
     std::array<std::uint8_t, 64> bytes{};
     if (port.feature(0x20, bytes) < bytes.size() || bytes[0] != 0x20) return 0;

@@ -1,5 +1,5 @@
 // Switch Pro Controller: its start over USB, the stick calibration in its flash memory, its motors.
-// Packets, memory map and the coding of vibration: dekuNukem's Nintendo_Switch_Reverse_Engineering
+// Packets, memory map and vibration codes are from dekuNukem's Nintendo_Switch_Reverse_Engineering
 // (bluetooth_hid_notes.md, USB-HID-Notes.md, spi_flash_notes.md, rumble_data_table.md).
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ enum : std::uint8_t {  // first byte of a packet
 enum : std::uint8_t {  // behind kOutUsb
   kUsbHandshake = 0x02,
   kUsbFastSerial = 0x03,
-  kUsbStayHid = 0x04,  // no answer: do not fall back to Bluetooth
+  kUsbStayHid = 0x04,  // do not fall back to Bluetooth; has no answer
 };
 enum : std::uint8_t {  // subcommands
   kSetReportMode = 0x03,
@@ -38,21 +38,21 @@ enum : std::uint8_t {  // subcommands
   kEnableVibration = 0x48,
 };
 
-// All of the start takes at most this; a request is tried so often, and waits so long for an answer
+// Time limit of the whole start; how often a request is tried, and how long it waits for an answer
 // among the input reports, which come every 8 to 15 ms.
 constexpr milliseconds kStart = 1900ms;
 constexpr int kTries = 3;
 constexpr milliseconds kAnswer = 200ms;
 constexpr milliseconds kUsbAnswer = 100ms;
 constexpr int kMaxPacketsAwaited = 512;
-// A motor falls silent by itself unless it is told again.
+// A motor stops by itself unless the packet is repeated.
 constexpr milliseconds kRumbleRepeat = 50ms;
 
 constexpr std::size_t kPacketBytes = 64;
 constexpr std::size_t kAckAt = 13, kSubcommandAt = 14, kAddressAt = 15, kLengthAt = 19,
                       kFlashAt = 20;
 
-// Where the flash keeps what a stick was calibrated to: 9 bytes a stick.
+// Where the flash memory has the calibration of the sticks, 9 bytes each.
 constexpr std::uint32_t kFactoryAddress = 0x603d;  // left, right
 constexpr std::size_t kFactoryBytes = 18;
 constexpr std::uint32_t kUserAddress = 0x8010;  // per stick a mark, then the 9 bytes
@@ -61,14 +61,14 @@ constexpr std::size_t kStickBytes = 9, kMarkBytes = 2;
 constexpr std::array<std::uint8_t, kMarkBytes> kMark = {0xb2, 0xa1};
 
 constexpr int kBlank = 0xfff, kMaxCount = 0xfff;
-// What no working stick goes beyond: its middle off by half of the way, a way of an eighth of the
-// range.
+// Limits of a working stick: the centre is off by at most half of the way, and each way is at least
+// an eighth of the range.
 constexpr int kMinCentre = 1024, kMaxCentre = 3072, kMinWay = 256;
 
 struct StickRange {  // counts; x, then y
   std::array<int, 2> min{}, centre{}, max{};
 };
-// As Linux's hid-nintendo takes a pad without calibration.
+// What Linux's hid-nintendo assumes for a pad without calibration.
 constexpr StickRange kUsualRange = {{500, 500}, {2000, 2000}, {3500, 3500}};
 
 // Two numbers of 12 bits in three bytes.
@@ -78,8 +78,8 @@ std::array<int, 2> unpacked(std::span<const std::uint8_t, 3> bytes) noexcept {
 
 enum class Side { left, right };
 
-// The left stick's bytes hold the way up, the centre, the way down; the right one's the centre, the
-// way down, the way up.
+// The left stick has the way up, the centre, the way down; the right one the centre, the way down,
+// the way up. None: blank or out of limits.
 std::optional<StickRange> stick_range(std::span<const std::uint8_t, kStickBytes> bytes,
                                       Side side) noexcept {
   const auto first = unpacked(bytes.subspan<0, 3>()), second = unpacked(bytes.subspan<3, 3>()),
@@ -106,8 +106,8 @@ FactoryAxis factory_axis(const StickRange& range, std::size_t axis) noexcept {
   return {fraction(range.min[axis]), fraction(range.centre[axis]), fraction(range.max[axis])};
 }
 
-// Index in the published table of amplitudes (0..100) of a strength 0..1; the table's own formulas
-// by octaves, below 0.12 a fit to it. Above its end the motors may be damaged.
+// Index (0..100) in the published table of amplitudes of a strength 0..1, by the table's formulas
+// for each octave; below 0.12 a fit to it. Beyond its end the motors may be damaged.
 int amplitude_index(double strength) noexcept {
   if (strength <= 0.0) return 0;
   const double octaves = strength > 0.23   ? 32.0 * std::log2(strength * 8.7)
@@ -116,9 +116,9 @@ int amplitude_index(double strength) noexcept {
   return std::clamp(static_cast<int>(std::lround(octaves)), 1, 100);
 }
 
-// 320 Hz with the weak strength and 160 Hz with the strong one, in the four bytes of an actuator.
+// 320 Hz with the weak and 160 Hz with the strong strength, as the four bytes of one actuator.
 std::array<std::uint8_t, 4> vibration(const Rumble& rumble) noexcept {
-  constexpr double kFull = 1.003;  // of the table's last row
+  constexpr double kFull = 1.003;  // the table's last row
   const int high = amplitude_index(rumble.weak / 65535.0 * kFull);
   const int low = amplitude_index(rumble.strong / 65535.0 * kFull);
   return {0x00, static_cast<std::uint8_t>(0x01 + 2 * high),
@@ -135,8 +135,8 @@ class SwitchPro final : public PadModel {
   void start(PadPort& port, StartedBy started) override {
     end_ = Clock::now() + kStart;
     if (started == StartedBy::us) start_reports(port);
-    // Linux's driver listens too and takes any reply for its own while it is waiting for one, so
-    // the memory is read in as few packets as possible.
+    // Linux's driver listens too, and while it waits for a reply it takes any reply for its own. So
+    // the memory is read with as few packets as possible.
     std::array<std::uint8_t, kFactoryBytes> factory{};
     std::array<std::uint8_t, kUserBytes> user{};
     const bool has_factory = read_flash(port, kFactoryAddress, factory);
@@ -145,7 +145,7 @@ class SwitchPro final : public PadModel {
                   has_user ? std::span<const std::uint8_t>(user) : std::span<std::uint8_t>());
   }
 
-  // Replies hold the sticks as well, but in a layout that no descriptor states.
+  // Replies also contain the sticks, but in a layout that no descriptor states.
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
     return !packet.empty() && (packet[0] == kInFull || packet[0] == kInSimple);
@@ -186,7 +186,8 @@ class SwitchPro final : public PadModel {
     ask(port, kEnableVibration, std::to_array<std::uint8_t>({0x01}));
   }
 
-  // Sends `packet` until an input packet satisfies `is_answer`; its size, 0: none came.
+  // Sends `packet`, several times if need be, until an input packet satisfies `is_answer`. Returns
+  // the size of the answer; 0: none came.
   template <class IsAnswer>
   std::size_t exchange_packets(PadPort& port, std::span<const std::uint8_t> packet,
                                milliseconds patience, std::span<std::uint8_t> answer,
@@ -236,7 +237,7 @@ class SwitchPro final : public PadModel {
                             is_answer) > 0;
   }
 
-  // An answer counts by what it says it is: another program may be asking the pad as well.
+  // An answer must name the request, because another program may be asking the pad as well.
   bool read_flash(PadPort& port, std::uint32_t address, std::span<std::uint8_t> bytes) {
     const std::array<std::uint8_t, 5> request = {
         static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(address >> 8),
@@ -257,7 +258,7 @@ class SwitchPro final : public PadModel {
     return true;
   }
 
-  // The user's own calibration of a stick comes before the factory's; both may be empty.
+  // The user's calibration of a stick comes before the factory's; both may be empty.
   static std::optional<StickRange> chosen_range(std::span<const std::uint8_t> factory,
                                                 std::span<const std::uint8_t> user, Side side) {
     const std::size_t number = side == Side::left ? 0 : 1;

@@ -1,4 +1,4 @@
-// Xbox 360 pads on a wire, Microsoft's and others': vendor-class packets of 20 bytes, no HID.
+// Wired Xbox 360 pads of Microsoft and others: vendor-class packets of 20 bytes, no HID.
 #include "drivers/pads/pad_model.h"
 
 namespace gaitpad {
@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::uint8_t kInput = 0x00, kInputBytes = 0x14;
 
-// y grows upwards in these packets: config/pads/microsoft.toml says so of every pad with the last
-// line's collection.
+// y grows upwards in these packets; config/pads/microsoft.toml states so for every pad that has the
+// collection of the last line.
 constexpr std::uint8_t kDescriptor[] = {
     0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                          // game pad
     0x75, 0x08, 0x95, 0x02, 0x81, 0x03,                          // bytes 0, 1: 00 14
@@ -40,9 +40,9 @@ class Xbox360Model final : public PadModel {
     reply.size = 0;
     if (packet.empty()) return false;
     const bool is_input = packet[0] == kInput && (packet.size() < 2 || packet[1] == kInputBytes);
-    // What is too short for the pad's state cannot be taken for it: it is handed on and counted.
+    // An input packet that is too short is passed on, so that the decoder counts it.
     if (is_input) return true;
-    // The descriptor has no ids that would tell an unknown packet from an input one.
+    // The descriptor has no ids, so the decoder would take an unknown packet for input.
     if (!is_status(packet)) ++refused_;
     return false;
   }
@@ -57,7 +57,7 @@ class Xbox360Model final : public PadModel {
   std::int64_t lost() const noexcept override { return refused_; }
 
  private:
-  // `01 03 06` LED, `02 03 00`, `03 03 03` motors, `08 03 00` headset: answers and states.
+  // Answers and states: `01 03 06` LED, `02 03 00`, `03 03 03` motors, `08 03 00` headset.
   static bool is_status(std::span<const std::uint8_t> packet) noexcept {
     return packet.size() == 3 && packet[1] == 3 && packet[0] >= 0x01 && packet[0] <= 0x08;
   }

@@ -3,13 +3,340 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
-#include "hid/default_map.h"
 #include "hid/sdl_mapping.h"
 
 namespace gaitpad {
 
 namespace {
+
+// ---- The default bindings: which control a field is, by its usage and its neighbours
+
+enum class ControlKind : std::uint8_t { axis, button, hat, dpad };
+
+// Binds one field of a descriptor to one control of the pad.
+struct Binding {
+  ControlKind kind = ControlKind::axis;
+  int control = 0;        // PadAxis or PadButton; unused for a hat
+  std::size_t field = 0;  // index in ReportDescriptor::fields
+  std::uint32_t mask = 0;
+  bool reversed = false;
+  AxisPart part = AxisPart::whole;  // this and below: as in ControlSource
+  StickSide side = StickSide::both;
+  std::uint8_t directions = 0;
+};
+
+// The n-th entry is button n, counted from 1.
+constexpr PadButton kEmpty = kButtonCount;
+constexpr PadButton kDirectInput[] = {
+    kButtonX,     kButtonA,    kButtonB,    kButtonY,     kButtonLeftShoulder, kButtonRightShoulder,
+    kEmpty,       kEmpty,      kButtonBack, kButtonStart, kButtonLeftStick,    kButtonRightStick,
+    kButtonGuide, kButtonMisc1};
+constexpr PadButton kTopFirst[] = {kButtonY, kButtonB, kButtonA, kButtonX};
+constexpr PadButton kAndroid[] = {kButtonA,
+                                  kButtonB,
+                                  kEmpty,
+                                  kButtonX,
+                                  kButtonY,
+                                  kEmpty,
+                                  kButtonLeftShoulder,
+                                  kButtonRightShoulder,
+                                  kEmpty,
+                                  kEmpty,
+                                  kButtonBack,
+                                  kButtonStart,
+                                  kButtonGuide,
+                                  kButtonLeftStick,
+                                  kButtonRightStick};
+constexpr PadButton kXinput[] = {kButtonA,
+                                 kButtonB,
+                                 kButtonX,
+                                 kButtonY,
+                                 kButtonLeftShoulder,
+                                 kButtonRightShoulder,
+                                 kButtonBack,
+                                 kButtonStart,
+                                 kButtonLeftStick,
+                                 kButtonRightStick,
+                                 kButtonGuide};
+
+// kButtonCount: the order has no such number.
+PadButton button_of(ButtonOrder order, std::uint32_t number) noexcept {
+  const auto pick = [number](const auto& table) {
+    return number >= 1 && number <= std::size(table) ? table[number - 1] : kEmpty;
+  };
+  switch (order) {
+    case ButtonOrder::direct_input:
+      return pick(kDirectInput);
+    case ButtonOrder::top_first:
+      return number <= std::size(kTopFirst) ? pick(kTopFirst) : pick(kDirectInput);
+    case ButtonOrder::android:
+      return pick(kAndroid);
+    case ButtonOrder::xinput:
+      return pick(kXinput);
+  }
+  return kEmpty;
+}
+
+constexpr int kNone = kButtonCount;
+
+// The fields of one report by usage. If a usage occurs several times, the first one counts.
+class ReportFields {
+ public:
+  ReportFields(const ReportDescriptor& descriptor, const std::vector<std::size_t>& fields,
+               std::uint8_t report_id)
+      : descriptor_(descriptor) {
+    for (const std::size_t i : fields) {
+      const Field& f = descriptor.fields[i];
+      if (f.report_id != report_id || f.is_array || f.is_relative) continue;
+      all_.push_back(i);
+      first_.emplace(f.usage, i);
+    }
+  }
+  const std::vector<std::size_t>& all() const { return all_; }
+  bool has(std::uint32_t u) const { return first_.count(u) != 0; }
+  bool has(std::uint32_t a, std::uint32_t b) const { return has(a) && has(b); }
+  std::size_t index(std::uint32_t u) const { return first_.at(u); }
+  const Field& field(std::uint32_t u) const { return descriptor_.fields[index(u)]; }
+
+  // DragonRise and Mega Drive pads state X (or Z) several times; the one beside Y (or Rz) is real.
+  std::size_t index_beside(std::uint32_t u, std::uint32_t next) const {
+    const Field& y = field(next);
+    for (const std::size_t i : all_) {
+      const Field& f = descriptor_.fields[i];
+      if (f.usage == u && f.bit_offset + f.bit_size == y.bit_offset) return i;
+    }
+    return index(u);
+  }
+
+ private:
+  const ReportDescriptor& descriptor_;
+  std::vector<std::size_t> all_;
+  std::map<std::uint32_t, std::size_t> first_;
+};
+
+struct AxisPair {
+  std::uint32_t x = 0, y = 0;
+};
+constexpr AxisPair kZPair{usage::kZ, usage::kRz};
+constexpr AxisPair kRotationPair{usage::kRx, usage::kRy};
+
+bool same_range(const Field& a, const Field& b) {
+  return a.bit_size == b.bit_size && a.logical_min == b.logical_min &&
+         a.logical_max == b.logical_max;
+}
+bool like_left_stick(const ReportFields& r, AxisPair pair) {
+  return r.has(usage::kX) && same_range(r.field(pair.x), r.field(usage::kX)) &&
+         same_range(r.field(pair.y), r.field(usage::kX));
+}
+bool side_by_side(const ReportFields& r, AxisPair pair) {
+  const Field& a = r.field(pair.x);
+  return a.bit_offset + a.bit_size == r.field(pair.y).bit_offset;
+}
+
+// Both pairs exist: one is the right stick, the other the triggers. Xbox pads have the stick on Rx,
+// Ry, Sony pads on Z, Rz. The stick is as wide as the left one, its axes are neighbours, and it
+// comes first.
+AxisPair right_stick_of_two(const ReportFields& r) {
+  const bool z_alike = like_left_stick(r, kZPair),
+             rotation_alike = like_left_stick(r, kRotationPair);
+  if (z_alike != rotation_alike) return z_alike ? kZPair : kRotationPair;
+  const bool z_near = side_by_side(r, kZPair), rotation_near = side_by_side(r, kRotationPair);
+  if (z_near != rotation_near) return z_near ? kZPair : kRotationPair;
+  if (!z_near) return kRotationPair;
+  return r.field(kZPair.x).bit_offset < r.field(kRotationPair.x).bit_offset ? kZPair
+                                                                            : kRotationPair;
+}
+
+std::optional<AxisPair> right_stick(const ReportFields& r) {
+  const bool z = r.has(kZPair.x, kZPair.y), rotation = r.has(kRotationPair.x, kRotationPair.y);
+  if (z && rotation) return right_stick_of_two(r);
+  if (z) return kZPair;
+  if (rotation) return kRotationPair;
+  if (r.has(usage::kRudder, usage::kThrottle)) return AxisPair{usage::kRudder, usage::kThrottle};
+  return std::nullopt;
+}
+
+std::optional<AxisPair> triggers(const ReportFields& r) {
+  if (r.has(usage::kBrake, usage::kAccelerator)) {
+    return AxisPair{usage::kBrake, usage::kAccelerator};
+  }
+  if (!r.has(kZPair.x, kZPair.y) || !r.has(kRotationPair.x, kRotationPair.y)) return std::nullopt;
+  return right_stick_of_two(r).x == kZPair.x ? kRotationPair : kZPair;
+}
+
+void bind_axes(const ReportFields& r, std::vector<Binding>& out) {
+  const auto bind = [&](PadAxis axis, std::size_t field) {
+    out.push_back({ControlKind::axis, axis, field, 0, false});
+  };
+  if (r.has(usage::kX, usage::kY)) {
+    bind(kLeftX, r.index_beside(usage::kX, usage::kY));
+    bind(kLeftY, r.index(usage::kY));
+  }
+  if (const auto stick = right_stick(r)) {
+    bind(kRightX, r.index_beside(stick->x, stick->y));
+    bind(kRightY, r.index(stick->y));
+  } else if (r.has(usage::kRz)) {
+    bind(kRightX, r.index(usage::kRz));  // a flight stick's twist
+  }
+  if (const auto pair = triggers(r)) {
+    bind(kLeftTrigger, r.index(pair->x));
+    bind(kRightTrigger, r.index(pair->y));
+  }
+}
+
+// Buttons as triggers, if there are no trigger axes.
+void bind_digital_triggers(const ReportFields& r, ButtonOrder order, std::vector<Binding>& out) {
+  if (order == ButtonOrder::xinput || triggers(r)) return;
+  const std::uint16_t left = order == ButtonOrder::android ? 9 : 7;
+  for (std::uint16_t i = 0; i < 2; ++i) {
+    const auto number = static_cast<std::uint16_t>(left + i);
+    const std::uint32_t u = usage_of(usage::kButtonPage, number);
+    if (r.has(u)) out.push_back({ControlKind::axis, kLeftTrigger + i, r.index(u), 0, false});
+  }
+}
+
+// Keys of the consumer and system pages that some pads have instead of buttons.
+struct KeyRules {
+  bool home_is_start = false;  // the pad has a guide button and no start button (Asus)
+  bool has_home = false, has_back = false;
+};
+KeyRules key_rules(const ReportDescriptor& d, const std::vector<std::size_t>& fields) {
+  KeyRules rules;
+  bool has_start = false, has_guide = false;
+  for (const std::size_t i : fields) {
+    const std::uint32_t u = d.fields[i].usage;
+    rules.has_home = rules.has_home || u == usage::kConsumerHome;
+    rules.has_back = rules.has_back || u == usage::kConsumerBack;
+    has_start = has_start || u == usage_of(usage::kButtonPage, 12);
+    has_guide = has_guide || u == usage_of(usage::kButtonPage, 13);
+  }
+  rules.home_is_start = has_guide && !has_start;
+  return rules;
+}
+
+int key_button(std::uint32_t u, const KeyRules& rules) {
+  switch (u) {
+    case usage::kConsumerBack:
+    case usage::kSelect:
+      return kButtonBack;
+    case usage::kConsumerHome:
+      return rules.home_is_start ? kButtonStart : kButtonGuide;
+    case usage::kConsumerRecord:
+      return kButtonMisc1;
+    case usage::kSystemMainMenu:
+      return kButtonGuide;
+    case usage::kStart:
+      return kButtonStart;
+    default:
+      return kNone;
+  }
+}
+
+int dpad_button(std::uint32_t u) {
+  switch (u) {
+    case usage::kDpadUp:
+      return kButtonDpadUp;
+    case usage::kDpadDown:
+      return kButtonDpadDown;
+    case usage::kDpadLeft:
+      return kButtonDpadLeft;
+    case usage::kDpadRight:
+      return kButtonDpadRight;
+    default:
+      return kNone;
+  }
+}
+
+void bind_buttons(const ReportDescriptor& d, const ReportFields& r, ButtonOrder order,
+                  const KeyRules& rules, std::vector<Binding>& out) {
+  for (const std::size_t i : r.all()) {
+    const std::uint32_t u = d.fields[i].usage;
+    if (r.index(u) != i) continue;
+    if (u == usage::kHatSwitch) {
+      out.push_back({ControlKind::hat, 0, i, 0, false});
+      continue;
+    }
+    if (const int dpad = dpad_button(u); dpad != kNone) {
+      out.push_back({ControlKind::dpad, dpad, i, 0, false});
+      continue;
+    }
+    int button = key_button(u, rules);
+    if (page_of(u) == usage::kButtonPage) {
+      button = button_of(order, id_of(u));
+      // The key is in another report; this button, which is never pressed, must not release it.
+      if (button == kButtonGuide && rules.has_home && !rules.home_is_start) button = kNone;
+      if (button == kButtonBack && rules.has_back) button = kNone;
+    }
+    if (button != kNone) out.push_back({ControlKind::button, button, i, 0, false});
+  }
+}
+
+bool is_pad_application(std::uint32_t u) {
+  return u == usage::kJoystick || u == usage::kGamePad || u == usage::kMultiAxis;
+}
+
+}  // namespace
+
+std::vector<std::size_t> pad_fields(const ReportDescriptor& d) {
+  const std::optional<std::size_t> pad = pad_application(d);
+  std::vector<std::size_t> fields;
+  if (!pad) return fields;
+  for (std::size_t i = 0; i < d.fields.size(); ++i) {
+    const Field& f = d.fields[i];
+    if (f.kind != FieldKind::input) continue;
+    const bool other_pad =
+        f.application == kNoApplication || is_pad_application(d.applications[f.application]);
+    const KeyRules no_rules;
+    const bool is_key = !other_pad && key_button(f.usage, no_rules) != kNone;
+    if (f.application == *pad || is_key) fields.push_back(i);
+  }
+  return fields;
+}
+
+namespace {
+
+// The order that a pad without a file most likely has: by its axes and the numbers of its buttons.
+ButtonOrder likely_button_order(const ReportDescriptor& d, const std::vector<std::size_t>& fields) {
+  std::vector<bool> has(256);
+  std::uint32_t highest = 0;
+  for (const std::size_t i : fields) {
+    const std::uint32_t u = d.fields[i].usage;
+    if (page_of(u) != usage::kButtonPage || id_of(u) >= has.size()) continue;
+    has[id_of(u)] = true;
+    highest = std::max<std::uint32_t>(highest, id_of(u));
+  }
+  const auto is_x = [&](std::size_t i) { return d.fields[i].usage == usage::kX; };
+  const auto x = std::find_if(fields.begin(), fields.end(), is_x);
+  if (x == fields.end()) return ButtonOrder::direct_input;
+  const ReportFields r(d, fields, d.fields[*x].report_id);
+  const auto stick = right_stick(r);
+  const bool is_game_pad = d.applications[d.fields[*x].application] == usage::kGamePad;
+  if (r.has(usage::kBrake, usage::kAccelerator)) return ButtonOrder::android;
+  if (has[4] && has[5] && !has[3]) return ButtonOrder::android;
+  if (stick && stick->x == usage::kRx && highest <= 11) return ButtonOrder::xinput;
+  if (!is_game_pad && !stick && highest <= 8) return ButtonOrder::xinput;
+  if (is_game_pad && highest == 15 && !triggers(r)) return ButtonOrder::android;
+  return ButtonOrder::direct_input;
+}
+
+std::vector<Binding> default_bindings(const ReportDescriptor& d, std::optional<ButtonOrder> asked) {
+  std::vector<Binding> out;
+  const std::vector<std::size_t> fields = pad_fields(d);
+  const ButtonOrder order = asked.value_or(likely_button_order(d, fields));
+  const KeyRules rules = key_rules(d, fields);
+  for (const ReportLength& report : d.reports) {
+    if (report.kind != FieldKind::input) continue;
+    const ReportFields r(d, fields, report.report_id);
+    bind_axes(r, out);
+    bind_digital_triggers(r, order, out);
+    bind_buttons(d, r, order, rules, out);
+  }
+  return out;
+}
+
+// ---- From fields to operations on the state
 
 constexpr std::uint32_t bit(int button) { return std::uint32_t{1} << button; }
 constexpr std::uint32_t kDpad =
@@ -27,7 +354,7 @@ FieldBits bits_of(const Field& f) {
   return bits;
 }
 
-// A hat counts 8 steps, 4 steps, or degrees of some fineness; whatever lies outside is "released".
+// A hat counts 8 steps, 4 steps, or degrees in any resolution; values outside mean "released".
 HatOp hat_op(const Field& f) {
   HatOp op;
   op.bits = bits_of(f);
@@ -37,7 +364,7 @@ HatOp hat_op(const Field& f) {
   if (count == 4) {
     op.numerator = 2;
   } else if (count >= 8 && count <= 16) {
-    op.last = f.logical_min + 7;  // some state the value of "released" as part of the range
+    op.last = f.logical_min + 7;  // some include the value of "released" in the range
   } else if (ends_at_315 && count > 1) {
     op.numerator = 7;
     op.denominator = count - 1;
@@ -50,7 +377,7 @@ HatOp hat_op(const Field& f) {
   return op;
 }
 
-// Of an odd number of counts the one in the middle belongs to both halves, and is 0 in both.
+// With an odd number of counts the middle one belongs to both halves and is 0 in both.
 FieldBits part_of(const Field& f, AxisPart part) {
   FieldBits bits = bits_of(f);
   const std::int64_t span = std::max<std::int64_t>(f.logical_max - f.logical_min, 0);
@@ -59,7 +386,7 @@ FieldBits part_of(const Field& f, AxisPart part) {
   return bits;
 }
 
-// Sticks: HID's y grows towards the thumb's owner, ours away from it.
+// HID's y of a stick grows towards the thumb's owner, ours away from it.
 bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
 bool is_trigger(PadAxis axis) { return axis == kLeftTrigger || axis == kRightTrigger; }
 int side_of(PadAxis axis, StickSide side) {
@@ -82,7 +409,7 @@ ButtonOp button_op(const Field& f, const Binding& b) {
   return {part_of(f, b.part), b.mask, bit(b.control), reversed && b.mask == 0};
 }
 
-// One direction of a hat as a button, or as a side of a stick.
+// One direction of a hat, used as a button or as one side of a stick.
 HatOp direction_op(const Field& f, const Binding& b) {
   HatOp op = hat_op(f);
   op.directions = b.directions;
@@ -95,7 +422,9 @@ HatOp direction_op(const Field& f, const Binding& b) {
   return op;
 }
 
-// Of the second pad in an adapter for two: the same collection once more.
+// ---- Bindings that a pad file or SDL names
+
+// Whether the field belongs to the second pad of an adapter for two: the same collection again.
 bool is_of_twin(const ReportDescriptor& d, const Field& f) {
   const std::optional<std::size_t> pad = pad_application(d);
   if (!pad || f.application == *pad || f.application >= d.applications.size()) return false;
@@ -115,11 +444,11 @@ const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const 
   return nullptr;
 }
 
-// What is known of the controls beside the descriptor: of an override, or of SDL's data base.
+// What is known of the controls apart from the descriptor: from a pad file, or from SDL.
 struct Wishes {
   std::optional<ButtonOrder> order;
-  const ControlMap* controls = nullptr;      // of an override: the rest is as usual
-  const ControlMap* all_controls = nullptr;  // of SDL: there are no others
+  const ControlMap* controls = nullptr;      // of a pad file: the others keep their default
+  const ControlMap* all_controls = nullptr;  // of SDL's line: there are no others
 };
 
 bool is_for(const Binding& b, ControlKind kind, int control) {
@@ -138,13 +467,14 @@ void bind_control(const ReportDescriptor& d, ControlKind kind, int control,
   }
 }
 
-// The override's control takes the place of the default one, and its fields serve nothing else.
+// Replaces the default sources of a control.
 void override_control(const ReportDescriptor& d, ControlKind kind, int control,
                       const ControlSources& sources, std::vector<Binding>& bindings) {
   std::erase_if(bindings, [&](const Binding& b) { return is_for(b, kind, control); });
   bind_control(d, kind, control, sources, bindings);
 }
 
+// A field that a pad file binds is bound to nothing else.
 void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
                       std::vector<Binding>& bindings) {
   const auto drop = [&](const std::optional<ControlSources>& sources) {
@@ -157,8 +487,8 @@ void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
   for (const auto& sources : controls.buttons) drop(sources);
 }
 
-// A pad that has its axes for a D-pad in SDL's data base (no left stick at all) still walks by
-// them.
+// SDL's data base has some pads' axes as a D-pad, without any left stick: the default stick is
+// bound, so that such a pad can drive too.
 std::vector<Binding> sdl_bindings(const ReportDescriptor& d, const ControlMap& controls) {
   std::vector<Binding> bindings;
   for (int i = 0; i < kAxisCount; ++i) {
@@ -196,6 +526,8 @@ std::vector<Binding> bindings_of(const ReportDescriptor& d, const Wishes& wishes
   return bindings;
 }
 
+// ---- The layout
+
 void add_binding(const Field& f, const Binding& b, ReportLayout& layout) {
   if (b.kind != ControlKind::hat && b.directions != 0) {
     layout.hats.push_back(direction_op(f, b));
@@ -218,7 +550,7 @@ void add_binding(const Field& f, const Binding& b, ReportLayout& layout) {
   }
 }
 
-// Several fields of one axis add up: two halves of a stick, or a source and its alternative.
+// Several fields of one axis are added: two halves of a stick, or alternative sources.
 void find_sums(ReportLayout& layout) {
   std::uint32_t seen = 0;
   for (const AxisOp& op : layout.axes) {
@@ -230,8 +562,9 @@ void find_sums(ReportLayout& layout) {
   }
 }
 
-// Some pads send the numbers of the pressed buttons in place of a bit for each.
-void add_array(const ReportDescriptor& d, const Field& f, ButtonOrder order, ReportLayout& layout) {
+// Some pads send the numbers of the pressed buttons instead of one bit each.
+void add_button_numbers(const ReportDescriptor& d, const Field& f, ButtonOrder order,
+                        ReportLayout& layout) {
   constexpr std::int64_t kMaxNames = 256;
   if (page_of(f.usage) != usage::kButtonPage || f.bit_size > kMaxControlBits) return;
   ArrayOp op;
@@ -247,7 +580,7 @@ void add_array(const ReportDescriptor& d, const Field& f, ButtonOrder order, Rep
   layout.arrays.push_back(std::move(op));
 }
 
-// One layout a report, each as long as the descriptor says.
+// One layout for each input report, as long as the descriptor says.
 std::vector<ReportLayout> report_layouts(const ReportDescriptor& d, const Wishes& wishes) {
   std::vector<ReportLayout> layouts;
   for (const ReportLength& r : d.reports) {
@@ -275,7 +608,7 @@ std::vector<ReportLayout> report_layouts(const ReportDescriptor& d, const Wishes
     const Field& f = d.fields[i];
     const auto it = layout_of(f.report_id);
     if (!f.is_array || it == layouts.end() || it->arrays.size() >= 32) continue;
-    add_array(d, f, order, *it);
+    add_button_numbers(d, f, order, *it);
   }
   return layouts;
 }
@@ -302,7 +635,7 @@ std::vector<UnnamedButton> unnamed_buttons(const PadLayout& layout) {
   return unnamed;
 }
 
-// evdev and SDL hand on changes alone, so silence means nothing there.
+// evdev and SDL pass on changes only, so silence means nothing there.
 bool driver_hands_on_all(const std::string& driver) {
   return driver.empty() || driver == "hidraw" || driver == "usb";
 }
@@ -315,8 +648,7 @@ bool names_controls(const PadOverride& o) {
          std::any_of(c.buttons.begin(), c.buttons.end(), is_set);
 }
 
-// What SDL's data base says about the device; a file that names controls knows better, and a
-// damaged line says nothing.
+// The controls by SDL's data base. None if a pad file names controls, or if the line is damaged.
 std::optional<ControlMap> sdl_map(const DeviceInfo& device, const ReportDescriptor& d,
                                   const PadOverride* o) {
   if (device.mapping.empty() || (o && names_controls(*o))) return std::nullopt;
@@ -354,6 +686,8 @@ Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overr
   return layout;
 }
 
+// ---- Decoding: no heap, no locks
+
 namespace {
 
 std::int64_t value_of(const FieldBits& f, std::span<const std::uint8_t> data) noexcept {
@@ -371,7 +705,7 @@ float position(const AxisOp& op, std::span<const std::uint8_t> data) noexcept {
   if (op.reversed) share = 1.0 - share;
   if (op.axis == kLeftTrigger || op.axis == kRightTrigger) return static_cast<float>(share);
   if (op.side != 0) return static_cast<float>(op.side < 0 ? 0.0 - share : share);
-  // In this form the middle of an odd number of counts is exactly 0, and never -0.
+  // In this form the middle of an odd number of counts is exactly 0 and never -0.
   const double whole = (2.0 * static_cast<double>(value) - low - high) / (high - low);
   return static_cast<float>(op.reversed ? 0.0 - whole : whole);
 }
@@ -399,7 +733,7 @@ std::uint32_t dpad_of(Hat hat) noexcept {
   return kButtons[static_cast<std::size_t>(hat)];
 }
 
-// The hat that four buttons make; opposite ones cancel out.
+// The hat position of the four D-pad buttons; opposite buttons cancel out.
 Hat hat_of(std::uint32_t buttons) noexcept {
   const auto down = [buttons](int b) { return (buttons & bit(b)) != 0 ? 1 : 0; };
   const int x = down(kButtonDpadRight) - down(kButtonDpadLeft);

@@ -9,78 +9,52 @@
 
 namespace gaitpad {
 
-std::size_t report_bytes(const ReportDescriptor& descriptor, FieldKind kind,
-                         std::uint8_t report_id) {
-  for (const ReportLength& r : descriptor.reports) {
-    if (r.kind != kind || r.report_id != report_id) continue;
-    return (r.bits + 7) / 8 + (descriptor.numbered ? 1 : 0);
-  }
-  return 0;
-}
-
-std::uint64_t bits_at(std::span<const std::uint8_t> data, std::uint64_t offset,
-                      std::uint32_t size) noexcept {
-  std::uint64_t value = 0;
-  std::uint32_t done = 0;
-  while (done < size && done < 64) {
-    const std::uint64_t byte = (offset + done) / 8;
-    const std::uint32_t shift = (offset + done) % 8;
-    const std::uint32_t take = std::min({8 - shift, size - done, 64 - done});
-    if (byte < data.size()) {
-      const std::uint64_t part = (std::uint64_t{data[byte]} >> shift) & ((1u << take) - 1);
-      value |= part << done;
-    }
-    done += take;
-  }
-  return value;
-}
-
-std::int64_t field_value(const Field& field, std::span<const std::uint8_t> data) noexcept {
-  const std::uint32_t size = std::min<std::uint32_t>(field.bit_size, 64);
-  const std::uint64_t raw = bits_at(data, field.bit_offset, size);
-  if (field.logical_min >= 0 || size == 0 || size == 64) return static_cast<std::int64_t>(raw);
-  const std::uint64_t sign = std::uint64_t{1} << (size - 1);
-  return static_cast<std::int64_t>((raw ^ sign) - sign);
-}
-
-std::uint32_t array_usage(const ReportDescriptor& descriptor, const Field& field,
-                          std::int64_t value) noexcept {
-  if (!field.is_array || value < field.logical_min || value > field.logical_max) return 0;
-  std::uint64_t index = static_cast<std::uint64_t>(value - field.logical_min);
-  for (std::uint32_t i = 0; i < field.range_count; ++i) {
-    const UsageRange& range = descriptor.ranges[field.first_range + i];
-    const std::uint64_t count = std::uint64_t{range.last} - range.first + 1;
-    if (index < count) return range.first + static_cast<std::uint32_t>(index);
-    index -= count;
-  }
-  return 0;
-}
-
-std::optional<std::size_t> pad_application(const ReportDescriptor& descriptor) {
-  constexpr std::uint8_t kHasX = 1, kHasY = 2;
-  std::vector<std::uint8_t> axes(descriptor.applications.size());
-  for (const Field& f : descriptor.fields) {
-    if (f.kind != FieldKind::input || f.is_array || f.application >= axes.size()) continue;
-    if (f.usage == usage::kX) axes[f.application] |= kHasX;
-    if (f.usage == usage::kY) axes[f.application] |= kHasY;
-  }
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const std::uint32_t what = descriptor.applications[i];
-    const bool named_so =
-        what == usage::kJoystick || what == usage::kGamePad || what == usage::kMultiAxis;
-    if (named_so && axes[i] == (kHasX | kHasY)) return i;
-  }
-  return std::nullopt;
-}
-
 namespace {
+
+// One prefix byte, then 0, 1, 2 or 4 bytes of data (HID 1.11, 6.2.2.2).
+struct ShortItem {
+  ItemType type = ItemType::reserved;
+  std::uint8_t tag = 0;
+  std::uint8_t size = 0;    // of the data: 0, 1, 2 or 4
+  std::uint32_t value = 0;  // zero-extended
+};
+
+struct ItemAt {
+  ShortItem item;
+  bool is_long = false;   // long items have no defined meaning; skipped
+  std::size_t bytes = 0;  // including the prefix; 0: the item runs over the end
+};
+
+ItemAt item_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
+  constexpr std::uint8_t kLongItem = 0xfe;
+  const std::size_t left = bytes.size() - at;
+  ItemAt result;
+  if (left == 0) return result;
+  const std::uint8_t prefix = bytes[at];
+  if (prefix == kLongItem) {
+    result.is_long = true;
+    if (left < 3 || left - 3 < bytes[at + 1]) return result;
+    result.bytes = std::size_t{3} + bytes[at + 1];
+    return result;
+  }
+  const std::uint8_t size = (prefix & 3) == 3 ? 4 : prefix & 3;
+  if (left - 1 < size) return result;
+  result.item.type = static_cast<ItemType>((prefix >> 2) & 3);
+  result.item.tag = prefix >> 4;
+  result.item.size = size;
+  for (std::uint8_t i = 0; i < size; ++i) {
+    result.item.value |= std::uint32_t{bytes[at + 1 + i]} << (8 * i);
+  }
+  result.bytes = std::size_t{1} + size;
+  return result;
+}
 
 constexpr std::size_t kMaxPushed = 4;  // HID_GLOBAL_STACK_SIZE
 constexpr std::size_t kMaxCollections = 64;
 constexpr std::size_t kMaxUsages = 12288;  // HID_MAX_USAGES
 constexpr std::uint8_t kApplicationCollection = 0x01;
 
-// An item's data with its width, since the sign of a maximum is known only with its minimum.
+// An item's data and width: whether a maximum is signed depends on its minimum.
 struct ItemData {
   std::uint32_t value = 0;
   int size = 0;
@@ -110,13 +84,13 @@ struct Globals {
 
 struct LocalUsage {
   UsageRange range;
-  bool extended = false;  // 4 bytes: holds its page
+  bool extended = false;  // 4 bytes: includes its page
 };
 
 struct Locals {
   std::vector<LocalUsage> usages;
   std::size_t usage_count = 0;
-  std::optional<ItemData> minimum, maximum;  // come in either order
+  std::optional<ItemData> minimum, maximum;  // in either order
   int delimiter_depth = 0;
   int delimiter_sets = 0;
 };
@@ -127,7 +101,7 @@ struct Collection {
 
 class Parser {
  public:
-  // The cause of the first error, without its place.
+  // Returns the cause of an error, without its place.
   std::optional<std::string> add(const ShortItem& item);
   std::optional<std::string> finish() const;
   ReportDescriptor take() { return std::move(result_); }
@@ -144,7 +118,7 @@ class Parser {
   std::optional<std::string> set_report_id(std::uint32_t id);
   std::optional<std::string> push_usage(UsageRange range, bool extended);
   std::optional<std::string> delimit(std::uint32_t opens);
-  void let_last_page_reach_back();
+  void apply_last_page();
   Field field_template(FieldKind kind, std::uint32_t flags) const;
   std::optional<std::string> add_variables(Field field);
   std::optional<std::string> add_array(Field field);
@@ -177,7 +151,7 @@ std::optional<std::string> Parser::add(const ShortItem& item) {
 
 std::optional<std::string> Parser::add_main(const ShortItem& item) {
   if (locals_.delimiter_depth != 0) return "a delimiter is open at a main item";
-  let_last_page_reach_back();
+  apply_last_page();
   switch (item.tag) {
     case tag::kInput:
       return add_field_item(FieldKind::input, item.value);
@@ -192,7 +166,7 @@ std::optional<std::string> Parser::add_main(const ShortItem& item) {
       open_.pop_back();
       return std::nullopt;
     default:
-      return std::nullopt;  // several Xbox pads end with a NUL, a main item without meaning
+      return std::nullopt;  // several Xbox pads end with a NUL: a main item without meaning
   }
 }
 
@@ -239,14 +213,14 @@ std::optional<std::string> Parser::add_global(const ShortItem& item) {
     case tag::kReportId:
       return set_report_id(item.value);
     case tag::kReportCount:
-      globals_.report_count = item.value;  // bounded where it is used, with the size
+      globals_.report_count = item.value;  // bounded together with the size, where both are used
       return std::nullopt;
     case tag::kPush:
       return push_globals();
     case tag::kPop:
       return pop_globals();
     default:
-      return std::nullopt;  // unit and unit exponent change no value; others are reserved
+      return std::nullopt;  // unit and exponent do not change values; others are reserved
   }
 }
 
@@ -328,7 +302,7 @@ std::optional<std::string> Parser::add_usage_range() {
 std::optional<std::string> Parser::push_usage(UsageRange range, bool extended) {
   if (ignores_usages()) return std::nullopt;
   const std::size_t room = kMaxUsages - locals_.usage_count;
-  if (room == 0) return std::nullopt;  // as Linux: what is too much is ignored
+  if (room == 0) return std::nullopt;  // as Linux: ignored
   const std::size_t count = std::min<std::size_t>(range.last - range.first + 1, room);
   range.last = range.first + static_cast<std::uint32_t>(count) - 1;
   locals_.usage_count += count;
@@ -336,9 +310,10 @@ std::optional<std::string> Parser::push_usage(UsageRange range, bool extended) {
   return std::nullopt;
 }
 
-// A short usage takes the page in force where it stands. Only a page declared behind the last usage
-// reaches back: to the short usages at the end of the list, up to one that is already on that page.
-void Parser::let_last_page_reach_back() {
+// A short usage has the page in force at its place. But a page that is declared after the last
+// usage also applies to the short usages at the end of the list, back to one that is already on it
+// (as in Linux).
+void Parser::apply_last_page() {
   for (auto it = locals_.usages.rbegin(); it != locals_.usages.rend(); ++it) {
     if (it->extended) continue;
     if (page_of(it->range.first) == globals_.usage_page) return;
@@ -399,7 +374,7 @@ Field Parser::field_template(FieldKind kind, std::uint32_t flags) const {
   return field;
 }
 
-// The last usage serves all further fields; a field without any usage keeps the page with id 0.
+// The last usage applies to all remaining fields; without any usage a field has the page and id 0.
 std::optional<std::string> Parser::add_variables(Field field) {
   field.usage = usage_of(globals_.usage_page, 0);
   std::size_t range = 0;
@@ -458,6 +433,70 @@ Result<ReportDescriptor> parse_descriptor(std::span<const std::uint8_t> bytes) {
   }
   if (auto cause = parser.finish()) return Error{fmt::format("byte {}: {}", at, *cause)};
   return parser.take();
+}
+
+std::size_t report_bytes(const ReportDescriptor& descriptor, FieldKind kind,
+                         std::uint8_t report_id) {
+  for (const ReportLength& r : descriptor.reports) {
+    if (r.kind != kind || r.report_id != report_id) continue;
+    return (r.bits + 7) / 8 + (descriptor.numbered ? 1 : 0);
+  }
+  return 0;
+}
+
+std::uint64_t bits_at(std::span<const std::uint8_t> data, std::uint64_t offset,
+                      std::uint32_t size) noexcept {
+  std::uint64_t value = 0;
+  std::uint32_t done = 0;
+  while (done < size && done < 64) {
+    const std::uint64_t byte = (offset + done) / 8;
+    const std::uint32_t shift = (offset + done) % 8;
+    const std::uint32_t take = std::min({8 - shift, size - done, 64 - done});
+    if (byte < data.size()) {
+      const std::uint64_t part = (std::uint64_t{data[byte]} >> shift) & ((1u << take) - 1);
+      value |= part << done;
+    }
+    done += take;
+  }
+  return value;
+}
+
+std::int64_t field_value(const Field& field, std::span<const std::uint8_t> data) noexcept {
+  const std::uint32_t size = std::min<std::uint32_t>(field.bit_size, 64);
+  const std::uint64_t raw = bits_at(data, field.bit_offset, size);
+  if (field.logical_min >= 0 || size == 0 || size == 64) return static_cast<std::int64_t>(raw);
+  const std::uint64_t sign = std::uint64_t{1} << (size - 1);
+  return static_cast<std::int64_t>((raw ^ sign) - sign);
+}
+
+std::uint32_t array_usage(const ReportDescriptor& descriptor, const Field& field,
+                          std::int64_t value) noexcept {
+  if (!field.is_array || value < field.logical_min || value > field.logical_max) return 0;
+  std::uint64_t index = static_cast<std::uint64_t>(value - field.logical_min);
+  for (std::uint32_t i = 0; i < field.range_count; ++i) {
+    const UsageRange& range = descriptor.ranges[field.first_range + i];
+    const std::uint64_t count = std::uint64_t{range.last} - range.first + 1;
+    if (index < count) return range.first + static_cast<std::uint32_t>(index);
+    index -= count;
+  }
+  return 0;
+}
+
+std::optional<std::size_t> pad_application(const ReportDescriptor& descriptor) {
+  constexpr std::uint8_t kHasX = 1, kHasY = 2;
+  std::vector<std::uint8_t> axes(descriptor.applications.size());
+  for (const Field& f : descriptor.fields) {
+    if (f.kind != FieldKind::input || f.is_array || f.application >= axes.size()) continue;
+    if (f.usage == usage::kX) axes[f.application] |= kHasX;
+    if (f.usage == usage::kY) axes[f.application] |= kHasY;
+  }
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const std::uint32_t what = descriptor.applications[i];
+    const bool named_so =
+        what == usage::kJoystick || what == usage::kGamePad || what == usage::kMultiAxis;
+    if (named_so && axes[i] == (kHasX | kHasY)) return i;
+  }
+  return std::nullopt;
 }
 
 }  // namespace gaitpad

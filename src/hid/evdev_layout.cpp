@@ -1,6 +1,3 @@
-// The tables of hid/evdev_codes: usages and codes as plain numbers, from the HID Usage Tables and
-// Linux's input-event-codes.h.
-
 #include "hid/evdev_layout.h"
 
 #include <algorithm>
@@ -10,12 +7,15 @@
 #include <limits>
 #include <map>
 
-#include "hid/default_map.h"
+#include "gaitpad/decode.h"
 #include "hid/descriptor_items.h"
 
 namespace gaitpad {
 
+// ---- The tables: usages (HID Usage Tables) and codes (Linux's input-event-codes.h)
+
 namespace evdev {
+namespace {
 
 constexpr EvdevCode key(std::uint16_t code) { return {EvdevType::key, code}; }
 constexpr EvdevCode axis(std::uint16_t code) { return {EvdevType::absolute, code}; }
@@ -32,12 +32,12 @@ const Row* row_of(const Table& table, std::uint32_t usage) noexcept {
 }
 
 // Pages of the HID Usage Tables.
-inline constexpr std::uint16_t kDesktop = 0x01, kSimulation = 0x02, kConsumer = 0x0c;
-inline constexpr std::uint16_t kKeyUnknown = 240;
-inline constexpr std::uint32_t kBatteryStrength = usage_of(0x06, 0x20);
+constexpr std::uint16_t kDesktop = 0x01, kSimulation = 0x02, kConsumer = 0x0c;
+constexpr std::uint16_t kKeyUnknown = 240;
+constexpr std::uint32_t kBatteryStrength = usage_of(0x06, 0x20);
 
-// Axes whose code may be given to several fields (hid-input clears it before it takes it).
-inline constexpr Row kSharedAxes[] = {
+// Axes whose code several fields may get (hid-input clears it before it assigns it).
+constexpr Row kSharedAxes[] = {
     {usage::kX, axis(0x00)},
     {usage::kY, axis(0x01)},
     {usage::kZ, axis(0x02)},
@@ -46,8 +46,8 @@ inline constexpr Row kSharedAxes[] = {
     {usage::kRz, axis(0x05)},
     {usage_of(kConsumer, 0xe0), axis(0x20)},  // volume
 };
-inline constexpr std::uint32_t kWheel = usage_of(kDesktop, 0x38);
-inline constexpr Row kAxes[] = {
+constexpr std::uint32_t kWheel = usage_of(kDesktop, 0x38);
+constexpr Row kAxes[] = {
     {usage_of(kDesktop, 0x36), axis(0x06)},  // slider: ABS_THROTTLE
     {usage_of(kDesktop, 0x37), axis(0x07)},  // dial: ABS_RUDDER
     {kWheel, axis(0x08)},
@@ -58,9 +58,9 @@ inline constexpr Row kAxes[] = {
     {usage_of(kSimulation, 0xc8), axis(0x08)},  // steering: ABS_WHEEL
 };
 
-// Keys beside the buttons: the system controls, and of the consumer page what pads and remotes
-// have. Any other consumer usage becomes KEY_UNKNOWN.
-inline constexpr Row kKeys[] = {
+// Keys other than the buttons: the system controls, and what pads and remotes have of the consumer
+// page. Any other consumer usage becomes KEY_UNKNOWN.
+constexpr Row kKeys[] = {
     {usage::kStart, key(0x13b)},
     {usage::kSelect, key(0x13a)},
     {usage_of(kDesktop, 0x81), key(116)},    // power down
@@ -119,15 +119,15 @@ inline constexpr Row kKeys[] = {
     {usage_of(kConsumer, 0x227), key(173)},
 };
 
-inline constexpr Row kDpad[] = {
+constexpr Row kDpad[] = {
     {usage::kDpadUp, key(kBtnDpadUp)},
     {usage::kDpadDown, key(kBtnDpadUp + 1)},
     {usage::kDpadLeft, key(kBtnDpadUp + 2)},
     {usage::kDpadRight, key(kBtnDpadUp + 3)},
 };
 
-// The usages by which the evdev driver states codes, where they are no buttons.
-inline constexpr Row kStated[] = {
+// The usages by which the evdev driver states codes that are no buttons.
+constexpr Row kStated[] = {
     {usage::kX, axis(0x00)},
     {usage::kY, axis(0x01)},
     {usage::kZ, axis(0x02)},
@@ -152,7 +152,10 @@ inline constexpr Row kStated[] = {
     {usage::kDpadRight, key(kBtnDpadUp + 3)},
 };
 
+}  // namespace
 }  // namespace evdev
+
+// ---- Codes of a descriptor's fields
 
 namespace {
 
@@ -181,7 +184,7 @@ std::optional<EvdevCode> button_code(std::uint32_t number, std::uint32_t applica
   if (code > evdev::kKeyMax) return std::nullopt;
   return key(static_cast<std::uint16_t>(code));
 }
-// 0: the code is none of that application's buttons.
+// 0: the code is no button of that application.
 std::uint16_t button_number(std::uint16_t code, std::uint32_t application) noexcept {
   const std::uint16_t first = first_button(application);
   if (code >= first && code < first + kPadButtons) {
@@ -191,7 +194,7 @@ std::uint16_t button_number(std::uint16_t code, std::uint32_t application) noexc
   return static_cast<std::uint16_t>(code - evdev::kBtnTriggerHappy + kPadButtons + 1);
 }
 
-// Pages that hid-input leaves alone or makes something else of than keys and axes.
+// Pages that hid-input ignores, or maps to something other than keys and axes.
 bool is_ignored(std::uint16_t page) noexcept {
   constexpr std::uint16_t kIgnored[] = {0x00,    // undefined
                                         0x07,    // keyboard
@@ -207,10 +210,10 @@ bool is_ignored(std::uint16_t page) noexcept {
   return std::find(std::begin(kIgnored), std::end(kIgnored), page) != std::end(kIgnored);
 }
 
-// What hid-input wants for a usage, before it looks whether the code is free.
+// The code that hid-input wants for a usage; it may be taken already.
 struct Wish {
   EvdevCode code;
-  bool is_shared = false;  // it takes the code in any case
+  bool is_shared = false;  // gets the code even if it is taken
 };
 
 std::optional<Wish> unknown_wish(const Field& f) noexcept {
@@ -237,14 +240,14 @@ std::optional<Wish> wish_of(const Field& f, std::uint32_t u, std::uint32_t appli
   return unknown_wish(f);
 }
 
-// The codes that an input node has, as hid-input hands them out.
+// Assigns the codes of an input node as hid-input does.
 class InputNode {
  public:
   bool take(const Wish& wish) {
     if (wish.code.type == EvdevType::key) return take(keys_, wish);
     return take(axes_, wish);
   }
-  // The pair is taken whole; D-pad usages share it among themselves, hats do not.
+  // Assigns both codes of the pair. The D-pad usages share one pair, hats do not.
   bool take_hat(bool is_dpad) {
     if (is_dpad && dpad_has_hat_) return true;
     if (!take(axes_, {axis(evdev::kAbsHat0X)})) return false;
@@ -269,8 +272,8 @@ std::uint32_t application_of(const ReportDescriptor& d, const Field& f) {
   return f.application < d.applications.size() ? d.applications[f.application] : 0;
 }
 
-// Indices of the fields that go to the pad's node, in the kernel's order: report by report, as the
-// reports first occur. A report belongs to the application of its first field.
+// Indices of the fields of the pad's node in the kernel's order: report by report, in the order of
+// their first occurrence. A report belongs to the application of its first field.
 std::vector<std::size_t> node_fields(const ReportDescriptor& d) {
   const std::optional<std::size_t> pad = pad_application(d);
   if (!pad) return {};
@@ -296,7 +299,7 @@ std::vector<std::size_t> node_fields(const ReportDescriptor& d) {
   return in_order;
 }
 
-// An array takes a code for every usage that it can name.
+// An array gets a code for each usage that it can name.
 void take_array(const ReportDescriptor& d, const Field& f, InputNode& node) {
   for (std::uint32_t i = 0; i < f.range_count; ++i) {
     const UsageRange& range = d.ranges[f.first_range + i];
@@ -308,7 +311,7 @@ void take_array(const ReportDescriptor& d, const Field& f, InputNode& node) {
 
 using Codes = std::vector<std::optional<EvdevCode>>;
 
-// The axis that stands right behind this one on pads: Y behind X, Rz behind Z, Ry behind Rx.
+// The axis that follows this one on pads: Y after X, Rz after Z, Ry after Rx.
 std::optional<std::uint16_t> partner_axis(std::uint16_t code) noexcept {
   constexpr std::array<std::uint16_t, 4> kPartners = {0x01, 0, 0x05, 0x04};
   if (code != 0x00 && code != 0x02 && code != 0x03) return std::nullopt;
@@ -322,8 +325,8 @@ bool stands_before(const ReportDescriptor& d, const Codes& codes, std::size_t in
   return next.report_id == f.report_id && f.bit_offset + f.bit_size == next.bit_offset;
 }
 
-// Of the fields that share a code one keeps it: the first one, but of several X (DragonRise and
-// Mega Drive pads state dead ones) the one beside Y, and so on. A D-pad's fields all keep theirs.
+// One field keeps a shared code: the first, but of several X (DragonRise and Mega Drive pads state
+// dead ones) the one beside Y, and so on. All fields of a D-pad keep theirs.
 void keep_one_of_each(const ReportDescriptor& d, Codes& codes) {
   std::array<std::optional<std::size_t>, evdev::kAbsMax + 1> axis_owner;
   std::array<std::optional<std::size_t>, evdev::kKeyMax + 1> key_owner;
@@ -408,13 +411,15 @@ std::uint32_t own_usage_of_code(EvdevCode code) noexcept {
   return usage_of(kOwnPage, static_cast<std::uint16_t>(first + code.code));
 }
 
+// ---- The report and the descriptor of a node
+
 namespace {
 
 constexpr std::uint16_t kFirstMultiTouch = 0x2f;  // ABS_MT_SLOT
 constexpr std::int64_t kHatReleased = 8;
 constexpr std::uint8_t kApplicationCollection = 0x01;
 
-// Report-descriptor items, each as short as its value allows.
+// Writes report-descriptor items, each as short as its value allows.
 class ItemWriter {
  public:
   void page(std::uint32_t usage) {
@@ -427,7 +432,7 @@ class ItemWriter {
   void local(std::uint8_t tag, std::uint32_t usage) {
     add(ItemType::local, tag, id_of(usage), id_of(usage) > 0xff ? 2 : 1);
   }
-  // Wide enough to be the same number in a signed reading, so that no reader errs.
+  // Wide enough to be the same number signed and unsigned.
   void global(std::uint8_t tag, std::int64_t value) {
     const auto fits = [value](int bits) {
       return value >= -(std::int64_t{1} << (bits - 1)) && value < (std::int64_t{1} << (bits - 1));
@@ -450,7 +455,7 @@ class ItemWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Game pad and joystick as hid-input's button codes tell them; else what has numbered buttons only.
+// The application that hid-input's button codes stand for; multi-axis for numbered buttons alone.
 std::uint32_t application_of(const std::vector<std::uint16_t>& keys) {
   const auto has_any = [&keys](std::uint16_t first, std::uint16_t end) {
     return std::any_of(keys.begin(), keys.end(),
@@ -466,8 +471,8 @@ bool is_hat_code(std::uint16_t code) {
   return code >= evdev::kAbsHat0X && code <= evdev::kAbsHat3Y;
 }
 
-// The first hat is a HID hat where both of its axes know three positions. Another one is stated as
-// two axes, since HID cannot say which hat it is.
+// The first hat is stated as a HID hat if both of its axes have three positions. Other hats are
+// stated as two axes each, because HID does not number hats.
 bool has_digital_hat(const std::vector<EvdevAxis>& axes) {
   const auto is_switch = [&axes](std::uint16_t code) {
     return std::any_of(axes.begin(), axes.end(), [code](const EvdevAxis& a) {
@@ -477,7 +482,7 @@ bool has_digital_hat(const std::vector<EvdevAxis>& axes) {
   return is_switch(evdev::kAbsHat0X) && is_switch(evdev::kAbsHat0X + 1);
 }
 
-// Position of each axis in a descriptor of the device's own.
+// Position of each axis in the device's own descriptor.
 std::map<std::uint16_t, std::size_t> axis_ranks(std::span<const std::uint8_t> own_descriptor) {
   std::map<std::uint16_t, std::size_t> ranks;
   const auto parsed = parse_descriptor(own_descriptor);

@@ -1,5 +1,6 @@
-// The evdev code that Linux's hid-input gives to a HID usage, and back. Plain tables: no header of
-// the kernel is needed, so that a recording means the same on every machine.
+// HID usages and Linux's evdev codes: which code hid-input gives to a usage, and how an evdev input
+// node is stated as a HID device. Plain tables without kernel headers, so that a recording means
+// the same on every machine.
 #pragma once
 #include <array>
 #include <bitset>
@@ -29,41 +30,41 @@ inline constexpr std::uint16_t kBtnMisc = 0x100, kBtnMouse = 0x110, kBtnJoystick
                                kBtnTriggerHappy = 0x2c0, kKeyMax = 0x2ff;
 }  // namespace evdev
 
-// Whose descriptor it is: a device's own, whose codes the kernel chose, or one that the evdev
-// driver stated from the codes, or the sdl driver in the same way (DeviceInfo::driver says which).
+// Who wrote the descriptor: the device, so that the kernel chose the codes, or the evdev driver (or
+// the sdl driver, in the same way) from the codes. DeviceInfo::driver tells.
 enum class StatedBy { device, evdev_driver };
 constexpr StatedBy stated_by(std::string_view driver) noexcept {
   return driver == "evdev" || driver == "sdl" ? StatedBy::evdev_driver : StatedBy::device;
 }
 
-// For every field (index as in descriptor.fields) the code that the pad's input node has for it,
-// nothing where it has none. A hat and each of the four D-pad usages get the x code of their pair
-// (ABS_HAT0X); any other code stands for one field only: where several share it (several X) for the
-// one that a pad means, and a field whose code is taken gets none, as in kernels from 4.18 on. Keys
-// of other applications that belong to a pad (Home, Record) count as the pad's; SDL numbers them
-// behind all buttons.
+// For each field (index as in descriptor.fields) its code on the pad's input node, or none. A hat
+// and each of the four D-pad usages get the x code of their pair (ABS_HAT0X). Any other code
+// belongs to one field: of several X to the one that the pad uses. A field whose code is taken gets
+// none, as in kernels from 4.18 on. Keys of other applications that belong to a pad (Home, Record)
+// are included; SDL numbers them after all buttons.
 std::vector<std::optional<EvdevCode>> evdev_codes(const ReportDescriptor& descriptor,
                                                   StatedBy stated_by = StatedBy::device);
 
-// The usage by which the evdev driver states a code in a descriptor for that application (joystick,
-// game pad, else multi-axis), chosen so that the controls are named right without further data and
-// that evdev_codes(stated, StatedBy::evdev_driver) gives the code back. ABS_HAT0X is a whole hat.
+// The usage by which the evdev driver states a code in a descriptor of that application (joystick,
+// game pad, else multi-axis). It gives the control its right name without further data, and
+// evdev_codes(descriptor, StatedBy::evdev_driver) gives the code back. ABS_HAT0X is a whole hat.
 // Never 0.
 std::uint32_t usage_of_code(EvdevCode code, std::uint32_t application) noexcept;
-// What HID has no usage for stands on a page of our own, ffe5: 1000 + code a key, 3000 + code an
-// axis (hexadecimal).
+// Codes without a HID usage have one on our own page ffe5: 1000 + code for a key, 3000 + code for
+// an axis (hexadecimal).
 std::uint32_t own_usage_of_code(EvdevCode code) noexcept;
 
-// How an evdev input node is stated as a HID device: its axes, hats and keys as one unnumbered
-// report, so that the one decoder reads it. Plain data in, plain data out; the node itself is the
-// evdev driver's (drivers/evdev_driver.cpp).
+// ---- An evdev input node as a HID device
+//
+// Its axes, hats and keys become one unnumbered report, so that the one decoder reads it. Plain
+// data in and out; the evdev driver (drivers/evdev_driver.cpp) has the node itself.
 
 struct EvdevAxis {
   std::uint16_t code = 0;
   std::int32_t min = 0,
-               max = 0;  // as the kernel states them; a minimum that is no smaller: unknown
+               max = 0;  // as the kernel states them; unknown unless min < max
 };
-// What a node can tell, by code upwards.
+// What a node can report, by ascending code.
 struct EvdevAbilities {
   std::vector<EvdevAxis> axes;
   std::vector<std::uint16_t> keys;
@@ -74,10 +75,10 @@ struct EvdevState {
   std::bitset<evdev::kKeyMax + 1> keys;  // pressed
 };
 
-// Where a code stands in the report.
+// Where the value of a code is in the report.
 struct EvdevField {
   EvdevCode code;
-  bool is_hat = false;  // a whole one: this code and the next
+  bool is_hat = false;  // a whole hat: this code and the next
   std::uint16_t bit_offset = 0;
   std::uint8_t bit_size = 0;
   std::int32_t min = 0, max = 0;
@@ -88,13 +89,13 @@ struct EvdevLayout {
   std::uint16_t report_bytes = 0;  // far below kMaxReportBytes, whatever a node claims
 };
 
-// Axes of multi-touch are left out. `own_descriptor` is that of the HID device behind the node,
-// empty where there is none or where its kernel driver gave out codes of its own: the axes then
-// stand in its order, because whether Z, Rz or Rx, Ry are the right stick shows in nothing else.
+// Multi-touch axes are left out. `own_descriptor`: of the HID device behind the node, empty if
+// there is none or if its kernel driver chose codes of its own. The axes follow its order, because
+// nothing else shows whether Z, Rz or Rx, Ry are the right stick.
 EvdevLayout evdev_layout(const EvdevAbilities& abilities,
                          std::span<const std::uint8_t> own_descriptor);
 
-// Bytes of the report for that state. Values beyond an axis' range count as its end.
+// Writes the bytes of the report for that state. Values beyond an axis' range count as its end.
 void put_state(const EvdevLayout& layout, const EvdevState& state, Report& report) noexcept;
 
 }  // namespace gaitpad

@@ -104,7 +104,7 @@ void read_identity(TomlTable& pad, PadOverride& result) {
   result.drivers = pad.strings("drivers", 16).value_or(std::vector<std::string>{});
   if (const auto bus = pad.integer("bus", 0, 0xffff)) result.bus = static_cast<BusType>(*bus);
   if (const auto text = pad.string("application")) {
-    result.application = device_id(*text);  // a usage is written as ids are
+    result.application = device_id(*text);  // a usage is written like ids
     if (!result.application)
       pad.reject("application", in_quotes(*text) + " is no usage such as ff5d:0001");
   }
@@ -156,7 +156,7 @@ void read_replacement(TomlTable& pad, PadOverride& result) {
        table->numbers("lengths", 1, 16, 1, kMaxReportBytes).value_or(std::vector<double>{})) {
     replacement.lengths.push_back(static_cast<std::uint16_t>(n));
   }
-  // The controls of the own descriptor serve here too, unless the replacement has its own.
+  // The controls named for the device's own descriptor also count here, unless they are named anew.
   replacement.controls = result.controls;
   if (table->has("axes")) replacement.controls.axes = {};
   if (table->has("buttons")) replacement.controls.buttons = {};
@@ -190,7 +190,7 @@ Result<PadOverrides> read_file(TomlFile file) {
 
 Result<ControlSources> parse_sources(std::string_view text) {
   ControlSources sources;
-  if (trimmed(text).empty()) return sources;  // the control is not there
+  if (trimmed(text).empty()) return sources;  // the pad has no such control
   while (true) {
     const std::size_t end = text.find('|');
     const std::string_view part = trimmed(text.substr(0, end));

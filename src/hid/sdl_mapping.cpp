@@ -1,6 +1,3 @@
-// What the numbers in a line of SDL's data base stand for on one device, for reading such lines and
-// for writing them.
-
 #include "hid/sdl_mapping.h"
 
 #include <fmt/format.h>
@@ -24,22 +21,20 @@
 
 namespace gaitpad {
 
+namespace {
+
+// ---- What SDL's numbers mean on one device
+
 // Up, right, down, left: bit k of SDL's hat mask.
-inline constexpr std::size_t kHatDirections = 4;
+constexpr std::size_t kHatDirections = 4;
 using SdlHat = std::array<std::optional<ControlSource>, kHatDirections>;
 
-inline constexpr std::size_t kMaxSdlSources = 8;  // of one control
+constexpr std::size_t kMaxSdlSources = 8;  // of one control
 
 struct SdlNumbers {
   std::vector<ControlSource> axes, buttons;  // a0, a1 ..., b0, b1 ...
   std::vector<SdlHat> hats;                  // h0.1, h0.2, h0.4, h0.8 ...
 };
-// SDL's order of an evdev node's controls (SDL 2.26, ConfigJoystick): keys from BTN_JOYSTICK on,
-// then those below; axes by code without the hats; hats by code.
-SdlNumbers sdl_numbers(const ReportDescriptor& descriptor, StatedBy who);
-
-namespace {
-
 enum Direction : std::size_t { kUp, kRight, kDown, kLeft };
 
 struct InputField {
@@ -51,7 +46,7 @@ struct InputField {
 bool is_hat(const Field& f) { return f.usage == usage::kHatSwitch; }
 bool is_dpad(const Field& f) { return f.usage >= usage::kDpadUp && f.usage <= usage::kDpadLeft; }
 
-// Counts how often a usage has occurred in its report.
+// Counts the occurrences of each usage in each report.
 class Occurrences {
  public:
   ControlSource next(const Field& f) {
@@ -90,7 +85,7 @@ std::vector<InputField> coded_fields(const ReportDescriptor& d, StatedBy who) {
   return coded;
 }
 
-// One field of a hat: a whole one, a D-pad's direction, or one axis that counts -1, 0, 1.
+// Adds one field to a hat: a whole hat, a D-pad's direction, or one axis that counts -1, 0, 1.
 void add_to_hat(const InputField& part, SdlHat& hat) {
   const auto half = [&part](AxisPart side) {
     ControlSource source = part.source;
@@ -117,8 +112,8 @@ bool makes_a_hat(const InputField& f) {
   return is_hat(field) || is_dpad(field) || (field.logical_min == -1 && field.logical_max == 1);
 }
 
-}  // namespace
-
+// SDL's order of an evdev node's controls (SDL 2.26, ConfigJoystick): keys from BTN_JOYSTICK on,
+// then those below; axes by code without the hats; hats by code.
 SdlNumbers sdl_numbers(const ReportDescriptor& d, StatedBy who) {
   SdlNumbers numbered;
   std::vector<ControlSource> low_keys;
@@ -138,7 +133,7 @@ SdlNumbers sdl_numbers(const ReportDescriptor& d, StatedBy who) {
   return numbered;
 }
 
-namespace {
+// ---- Reading a line
 
 constexpr std::int64_t kMaxNumber = 1000;
 
@@ -188,7 +183,7 @@ std::optional<NumberedSource> numbered_source(std::string_view text) {
   return source;
 }
 
-// Where one number is several fields (a D-pad of four buttons), more than one.
+// Several sources if one number stands for several fields (a D-pad of four buttons).
 ControlSources sources_of(const SdlNumbers& numbered, const NumberedSource& wanted) {
   ControlSources sources;
   if (wanted.kind == SourceKind::hat) {
@@ -213,7 +208,7 @@ ControlSources sources_of(const SdlNumbers& numbered, const NumberedSource& want
 constexpr std::array<std::string_view, kAxisCount> kSdlAxes = {
     "leftx", "lefty", "rightx", "righty", "lefttrigger", "righttrigger"};
 
-// The control that a key names; null for what is none (`platform`, `hint`, `crc` ...).
+// The control that a key names; null for other keys (`platform`, `hint`, `crc` ...).
 std::optional<ControlSources>* control_of(std::string_view key, ControlMap& map) {
   for (std::size_t i = 0; i < kSdlAxes.size(); ++i) {
     if (key == kSdlAxes[i]) return &map.axes[i];
@@ -287,18 +282,20 @@ Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor
   return map;
 }
 
+// ---- Writing a line
+
 namespace {
 
 constexpr unsigned kCodesByKernel = 0x8000;
 bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
 
-// Where a field stands among SDL's numbers.
+// Finds the number that SDL gives to a field.
 class FieldNumbers {
  public:
   FieldNumbers(const ReportDescriptor& d, StatedBy who)
       : descriptor_(d), numbers_(sdl_numbers(d, who)) {}
 
-  // `a2`, `b3`, `h0.4`, with `+` or `-` for a part of an axis; empty: it has none.
+  // `a2`, `b3`, `h0.4`, with `+` or `-` for a half of an axis; empty: the field has no number.
   std::string source(std::uint8_t report_id, const FieldBits& bits, bool low_is_full) const {
     ControlSource source;
     const Field* field = source_of(report_id, bits, source);
@@ -313,7 +310,7 @@ class FieldNumbers {
     const auto n = index_in(numbers_.axes, source);
     return n ? fmt::format("{}a{}{}", part, *n, low_is_full != is_low ? "~" : "") : std::string();
   }
-  // Of a whole hat: `h0.` and the directions.
+  // Of a whole hat: `h0.` and the mask of directions.
   std::string hat_source(std::uint8_t report_id, const FieldBits& bits,
                          std::uint8_t directions) const {
     ControlSource source;
@@ -359,7 +356,7 @@ class FieldNumbers {
   SdlNumbers numbers_;
 };
 
-// Control and source; of a stick's side the sign stands before the control.
+// Control and source; the sign names one side of a stick's axis and is written before the control.
 struct Pair {
   std::string control, sign, source;
   bool operator<(const Pair& b) const {
@@ -375,7 +372,7 @@ void add(Pairs& pairs, std::string_view control, std::string_view sign, std::str
   pairs.insert({std::string(control), std::string(sign), std::move(source)});
 }
 
-// The axes of a pad that this one of the layout's moves, and which way.
+// The axes of the pad that an axis of the layout moves, and which way.
 struct Moved {
   PadAxis axis;
   bool reversed;
@@ -398,7 +395,7 @@ void add_axes(const ReportLayout& report, const FieldNumbers& numbers, const Sti
               Pairs& pairs) {
   for (const AxisOp& op : report.axes) {
     for (const Moved& m : moved_by(op.axis, sticks)) {
-      bool falls = op.reversed;  // the control's value, in SDL's directions, where the field grows
+      bool falls = op.reversed;  // the control falls, in SDL's directions, while the field grows
       std::string_view sign;
       if (op.side != 0) {
         sign = sign_of(m.axis, (op.side > 0) != m.reversed);
@@ -436,7 +433,8 @@ Pairs pairs_of(const PadLayout& layout, StatedBy who, const StickAxes& sticks) {
   Pairs pairs;
   const FieldNumbers numbers(layout.descriptor, who);
   for (const ReportLayout& report : layout.reports) {
-    if (!report.exact_sizes.empty()) continue;  // not of the descriptor that the kernel reads
+    if (!report.exact_sizes.empty())
+      continue;  // a replaced descriptor; the kernel reads the device's own
     add_axes(report, numbers, sticks, pairs);
     for (const HatOp& op : report.hats) add_hat(op, report.report_id, numbers, sticks, pairs);
     for (const ButtonOp& op : report.buttons) {
@@ -473,7 +471,7 @@ std::string guid_text(const DeviceInfo& device, unsigned version) {
   return text;
 }
 
-// One part of a line: no comma, no control character, and short enough for a trace.
+// The name as a part of a line: no comma, no control character, short enough for a trace.
 std::string name_text(const std::string& name, std::size_t max_bytes) {
   std::string text;
   for (const char c : name) {
@@ -481,7 +479,7 @@ std::string name_text(const std::string& name, std::size_t max_bytes) {
   }
   if (text.empty()) text = "Pad";
   if (text.size() <= max_bytes) return text;
-  std::size_t end = max_bytes;  // not within a character
+  std::size_t end = max_bytes;  // at the boundary of a UTF-8 character
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
   return text.substr(0, end);
 }

@@ -1,5 +1,3 @@
-// Builds a trace from its lines, in their order, and checks each (trace_read.cpp feeds it).
-
 #include "gaitpad/trace.h"
 
 #include <fmt/format.h>
@@ -21,45 +19,7 @@
 
 namespace gaitpad {
 
-using Cause = std::optional<std::string>;  // why a line is damaged, without its place
-
-class TraceReader {
- public:
-  explicit TraceReader(const std::string& name) { trace_.path = name; }
-  Cause add(std::string_view line);
-  Cause finish(Damage damage);
-  void skip(const std::string& sentence);
-  Trace take() { return std::move(trace_); }
-
- private:
-  Cause add_lettered(char letter, std::string_view text);
-  Cause version(Words words);
-  Cause device_index(Words words);
-  Cause descriptor(Words words);
-  Cause identity(Words words);
-  Cause driver(Words words);
-  Cause set_text(std::string DeviceInfo::*member, std::string_view text);
-  Cause calibration(std::string_view text);
-  Cause tick(Words words);
-  Cause report(Words words);
-  Cause command(Words words);
-  Cause plugged(Words words);
-  Cause end(Words words);
-
-  Cause check_place(std::int64_t time_us, std::uint16_t device) const;
-  Cause check_order(std::int64_t time_us, std::uint16_t device) const;
-  void append(TraceEvent event);
-  Cause current_device(std::size_t& device);
-  void drop_undescribed_devices();
-  std::int64_t rate() const { return trace_.rate_hz.value_or(kDefaultRateHz); }
-
-  Trace trace_;
-  std::optional<std::size_t> current_;    // device of the last `D:`
-  std::int64_t tick_ = 0;                 // of the last `T:`
-  std::int64_t latest_us_ = 0;            // over all devices
-  std::vector<std::int64_t> device_us_ =  // last time on each device; commands last
-      std::vector<std::int64_t>(kMaxTraceDevices + 1, -1);
-};
+// ---- The words and numbers of a line
 
 namespace {
 
@@ -140,7 +100,50 @@ std::optional<std::string> append_bytes(Words& words, std::size_t max_bytes,
   return fmt::format("the length says {} but {} bytes follow", *count, found);
 }
 
+// ---- Reading
+
 namespace {
+
+using Cause = std::optional<std::string>;  // why a line is damaged, without its place
+
+// Builds a trace from its lines, in their order, and checks each.
+class TraceReader {
+ public:
+  explicit TraceReader(const std::string& name) { trace_.path = name; }
+  Cause add(std::string_view line);
+  Cause finish(Damage damage);
+  void skip(const std::string& sentence);
+  Trace take() { return std::move(trace_); }
+
+ private:
+  Cause add_lettered(char letter, std::string_view text);
+  Cause version(Words words);
+  Cause device_index(Words words);
+  Cause descriptor(Words words);
+  Cause identity(Words words);
+  Cause driver(Words words);
+  Cause set_text(std::string DeviceInfo::*member, std::string_view text);
+  Cause calibration(std::string_view text);
+  Cause tick(Words words);
+  Cause report(Words words);
+  Cause command(Words words);
+  Cause plugged(Words words);
+  Cause end(Words words);
+
+  Cause check_place(std::int64_t time_us, std::uint16_t device) const;
+  Cause check_order(std::int64_t time_us, std::uint16_t device) const;
+  void append(TraceEvent event);
+  Cause current_device(std::size_t& device);
+  void drop_undescribed_devices();
+  std::int64_t rate() const { return trace_.rate_hz.value_or(kDefaultRateHz); }
+
+  Trace trace_;
+  std::optional<std::size_t> current_;    // device of the last `D:`
+  std::int64_t tick_ = 0;                 // of the last `T:`
+  std::int64_t latest_us_ = 0;            // over all devices
+  std::vector<std::int64_t> device_us_ =  // last time on each device; commands last
+      std::vector<std::int64_t>(kMaxTraceDevices + 1, -1);
+};
 
 constexpr std::size_t kMaxCalibrationBytes = 1 << 16;
 constexpr int kMaxDeviceIndex = 9999;
@@ -149,8 +152,6 @@ Cause bad_time(std::string_view word) {
   return fmt::format("{} is no time SECONDS.MICROSECONDS with six digits behind the point",
                      in_quotes(word));
 }
-
-}  // namespace
 
 Cause TraceReader::add(std::string_view line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
@@ -198,7 +199,7 @@ Cause TraceReader::add_lettered(char letter, std::string_view text) {
     case 'Q':
       return end(words);
     default:
-      return std::nullopt;  // as hid-replay does
+      return std::nullopt;  // ignored, as by hid-replay
   }
 }
 
@@ -224,7 +225,7 @@ Cause TraceReader::version(Words words) {
 Cause TraceReader::device_index(Words words) {
   const std::string_view word = words.next();
   const auto index = decimal(word, kMaxDeviceIndex);
-  current_.reset();  // what stands below a damaged D: line belongs to no device
+  current_.reset();  // lines below a damaged D: line belong to no device
   if (!index || !words.at_end()) return fmt::format("{} is no device index", in_quotes(word));
   for (std::size_t i = 0; i < trace_.devices.size(); ++i) {
     if (trace_.devices[i].index != *index) continue;
@@ -282,7 +283,7 @@ Cause TraceReader::identity(Words words) {
   return std::nullopt;
 }
 
-// hid-recorder's own B: lines are reports as a BPF program left them, beside the E: line of each.
+// hid-recorder has B: lines of its own: reports as a BPF program left them, beside their E: lines.
 Cause TraceReader::driver(Words words) {
   const std::string_view name = words.next();
   if (microseconds(name)) return std::nullopt;
@@ -451,7 +452,7 @@ Cause TraceReader::end(Words words) {
   return std::nullopt;
 }
 
-// Their R: line was damaged; no event belongs to them.
+// Devices whose R: line was damaged; no event belongs to them.
 void TraceReader::drop_undescribed_devices() {
   std::vector<std::uint16_t> place(trace_.devices.size());
   std::vector<TraceDevice> kept;
@@ -478,11 +479,9 @@ void TraceReader::skip(const std::string& sentence) {
   if (trace_.skipped_lines++ == 0) trace_.first_damage = sentence;
 }
 
-namespace {
-
 constexpr std::size_t kMaxLineBytes = 1 << 20;
 
-// Feeds a reader line by line, however the text arrives in pieces.
+// Cuts text that arrives in pieces into lines and feeds them to the reader.
 class LineFeed {
  public:
   LineFeed(const std::string& name, Damage damage) : reader_(name), name_(name), damage_(damage) {}
@@ -497,7 +496,7 @@ class LineFeed {
         if (auto error = line(part)) return error;
         continue;
       }
-      // What is too long is remembered as such: cut, and no longer a line of a trace.
+      // A line that is too long is cut one byte beyond the limit, so that line() still sees it.
       rest_.append(part.substr(0, kMaxLineBytes + 1 - std::min(rest_.size(), kMaxLineBytes + 1)));
       if (complete) {
         const std::string whole = std::move(rest_);
@@ -574,6 +573,8 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
   if (in.bad()) return Error{path + ": reading failed"};
   return feed.finish();
 }
+
+// ---- Writing
 
 namespace {
 
@@ -704,6 +705,8 @@ Result<std::int64_t> write_trace(const Trace& trace, const std::string& path) {
   if (!out) return Error{path + ": writing failed"};
   return static_cast<std::int64_t>(text.size());
 }
+
+// ---- Replaying
 
 Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz) {
   if (rate_hz < 1 || rate_hz > kMaxRateHz) {

@@ -1,4 +1,4 @@
-// One line of a trace at a time: the grammar of `.hid` files, for trace_read.cpp.
+// The words and numbers of a line, as `.hid` files and other line-based texts have them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace gaitpad {
 
-// The words of a line, divided by blanks and tabs.
+// The words of a line, separated by blanks and tabs.
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
@@ -25,10 +25,10 @@ class Words {
 
 std::optional<std::int64_t> decimal(std::string_view text, std::int64_t max);
 std::optional<std::uint32_t> hexadecimal(std::string_view text, std::uint32_t max);
-// `SECONDS.MICROSECONDS`, six digits behind the point, in microseconds.
+// `SECONDS.MICROSECONDS`, six digits after the point, in microseconds.
 std::optional<std::int64_t> microseconds(std::string_view text);
-// `LENGTH b0 b1 ...`: appends the bytes; the cause where length and bytes do not fit together or
-// there are more than `max_bytes`, and then `out` is as before.
+// `LENGTH b0 b1 ...`: appends the bytes. Returns the cause, and leaves `out` as it was, if length
+// and bytes do not fit together or there are more than `max_bytes`.
 std::optional<std::string> append_bytes(Words& words, std::size_t max_bytes,
                                         std::vector<std::uint8_t>& out);
 

@@ -41,7 +41,7 @@ void GuidedCalibration::take_report(const Report& report) {
   if (report.device != device_ || device_ == kNoDevice) return;
   if (report.kind == ReportKind::added) is_plugged_ = true;
   if (report.kind == ReportKind::removed) is_plugged_ = false;
-  guide_->take(report);
+  guide_->take_report(report);
 }
 
 void GuidedCalibration::end_recording() {

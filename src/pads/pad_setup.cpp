@@ -7,7 +7,6 @@
 #include <iterator>
 #include <utility>
 
-#include "drivers/keyboard_device.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/drivers.h"
 #include "pads/calibration_store.h"
@@ -65,25 +64,12 @@ bool has_own_axes(const CalibrationFile& file) {
   return file.mapping.empty() && c.left.frame == StickFrame() && c.right.frame == StickFrame();
 }
 
-// -0 reads back from text as 0: a live session and its replay would differ in that bit.
-void drop_negative_zeros(Calibration& calibration) {
-  for (StickCalibration* stick : {&calibration.left, &calibration.right}) {
-    for (AxisCalibration* axis : {&stick->x, &stick->y}) {
-      for (double* number : {&axis->min, &axis->centre, &axis->max}) *number += 0.0;
-    }
-    for (double* number : {&stick->inner, &stick->sideways, &stick->curve}) *number += 0.0;
-  }
-  for (TriggerCalibration* trigger : {&calibration.left_trigger, &calibration.right_trigger})
-    trigger->released += 0.0;
-}
-
 // What a recording keeps of a calibration: for which devices the file was does not matter there.
 CalibrationFile recorded_calibration(const CalibrationFile& file) {
   CalibrationFile own;
   if (file.name.size() <= kMaxTraceTextBytes) own.name = file.name;
   own.mapping = file.mapping;
-  own.calibration = file.calibration;
-  drop_negative_zeros(own.calibration);
+  own.calibration = canonical(file.calibration);
   return own;
 }
 
@@ -141,7 +127,7 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
     auto file = load_calibration_file(calibration);
     if (!file) return file.error();
     files.calibration = std::move(*file);
-    drop_negative_zeros(files.calibration->calibration);
+    files.calibration->calibration = canonical(files.calibration->calibration);
   }
   for (const std::string& folder : folders)
     files.calibration_folders.push_back(folder + "/calibration");

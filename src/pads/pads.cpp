@@ -10,11 +10,6 @@ constexpr double kNearCentre = 0.1;    // of the calibrated deflection
 constexpr int kSilencesInSecond = 10;  // 100 ms each
 const PadState kAtRest;
 
-Stick calibrated(const Calibration& calibration, const PadState& state) noexcept {
-  return stick_position(calibration, vec2(state.axis[kLeftX], state.axis[kLeftY]),
-                        vec2(state.axis[kRightX], state.axis[kRightY]));
-}
-
 }  // namespace
 
 void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses) noexcept {
@@ -86,7 +81,7 @@ bool Pads::is_silent(const Pad& pad) const noexcept {
 }
 
 bool Pads::is_near_centre(const Pad& pad) const noexcept {
-  return glm::length(calibrated(pad.config.calibration, pad.state).left) <= kNearCentre;
+  return glm::length(stick_position(pad.config.calibration, pad.state).left) <= kNearCentre;
 }
 
 bool Pads::can_take_over(const Pad& pad) const noexcept {
@@ -113,7 +108,7 @@ bool Pads::is_other_plugged_in() const noexcept {
 
 Stick Pads::stick_of(const Pad& pad) const noexcept {
   if (!pad.config.is_present || pad.is_awaited || is_silent(pad)) return {};
-  return calibrated(pad.config.calibration, pad.state);
+  return stick_position(pad.config.calibration, pad.state);
 }
 
 // If several are deflected, the one that was plugged in first counts.

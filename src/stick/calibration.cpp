@@ -1,5 +1,6 @@
 #include "gaitpad/calibration.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gaitpad {
@@ -17,7 +18,7 @@ double response(double deflection, double inner, double outer, double curve) noe
   if (deflection <= inner) return 0.0;
   if (deflection >= outer) return 1.0;
   const double t = std::min((deflection - inner) / (outer - inner), 1.0);
-  // t + curve (t^3 - t), in a form that cannot pass 1 by rounding.
+  // t + curve (t^3 - t), in a form that rounding cannot take above 1.
   return t * (1.0 - curve * (1.0 - t * t));
 }
 
@@ -30,12 +31,12 @@ vec2 radial(const StickCalibration& c, const vec2& p) noexcept {
 vec2 axial(const StickCalibration& c, const vec2& p) noexcept {
   const vec2 q(std::copysign(response(std::fabs(p.x), c.inner, c.outer, c.curve), p.x),
                std::copysign(response(std::fabs(p.y), c.inner, c.outer, c.curve), p.y));
-  // A square gate reaches its corners, the disc does not.
+  // A square gate has corners beyond the unit disc.
   const double length = std::sqrt(q.x * q.x + q.y * q.y);
   return length > 1.0 ? vec2(q.x / length, q.y / length) : q;
 }
 
-double without_middle(double x, double zone) noexcept {
+double outside_zone(double x, double zone) noexcept {
   const double beyond = std::fabs(x) - zone;
   return beyond > 0.0 ? std::copysign(std::min(beyond / (1.0 - zone), 1.0), x) : 0.0;
 }
@@ -62,21 +63,37 @@ vec2 in_frame(const StickFrame& frame, const vec2& raw) noexcept {
 vec2 stick_position(const StickCalibration& c, const vec2& raw) noexcept {
   const vec2 turned = in_frame(c.frame, raw);
   const vec2 p(centred(c.x, turned.x), centred(c.y, turned.y));
-  // Adding zero turns -0 into 0: neutral has one bit pattern.
+  // Adding zero turns -0 into 0, so that neutral has one bit pattern.
   if (c.shape == ZoneShape::axial) return axial(c, p) + vec2(0.0);
   const vec2 q = radial(c, p);
   if (c.shape == ZoneShape::radial) return q + vec2(0.0);
-  return vec2(without_middle(q.x, c.sideways), q.y) + vec2(0.0);
+  return vec2(outside_zone(q.x, c.sideways), q.y) + vec2(0.0);
 }
 
-Stick stick_position(const Calibration& calibration, const vec2& raw_left,
-                     const vec2& raw_right) noexcept {
-  return {stick_position(calibration.left, raw_left), stick_position(calibration.right, raw_right)};
+Stick stick_position(const Calibration& calibration, const PadState& pad) noexcept {
+  return {stick_position(calibration.left, vec2(pad.axis[kLeftX], pad.axis[kLeftY])),
+          stick_position(calibration.right, vec2(pad.axis[kRightX], pad.axis[kRightY]))};
 }
 
 double trigger_position(const TriggerCalibration& c, double raw) noexcept {
   if (!(raw > c.released)) return 0.0;
   return std::min((raw - c.released) / (c.pressed - c.released), 1.0);
+}
+
+Calibration canonical(const Calibration& calibration) noexcept {
+  Calibration c = calibration;
+  for (StickCalibration* stick : {&c.left, &c.right}) {
+    for (AxisCalibration* axis : {&stick->x, &stick->y}) {
+      for (double* number : {&axis->min, &axis->centre, &axis->max}) *number += 0.0;
+    }
+    for (double* number : {&stick->inner, &stick->outer, &stick->sideways, &stick->curve})
+      *number += 0.0;
+  }
+  for (TriggerCalibration* trigger : {&c.left_trigger, &c.right_trigger}) {
+    trigger->released += 0.0;
+    trigger->pressed += 0.0;
+  }
+  return c;
 }
 
 }  // namespace gaitpad

@@ -1,3 +1,4 @@
+// The grammar of calibration files, reading and writing, and which file fits a device.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,13 +21,13 @@ constexpr double kLeastZoneSpan = 0.05;  // from the inner to the outer zone
 constexpr std::size_t kMaxDevices = 256;
 constexpr std::size_t kMaxFolderFiles = 4096;
 constexpr double kLeastTriggerTravel = 0.1;  // raw
-constexpr double kMaxMeasured = 100.0;       // of any measured number, far beyond what sticks do
+constexpr double kMaxMeasured = 100.0;       // of any measured number; far beyond what sticks do
 constexpr std::string_view kShapeNames[] = {"radial", "axial", "both"};
 constexpr std::string_view kDirectionNames[] = {"x", "-x", "y", "-y"};  // by RawDirection
 constexpr std::string_view kDriverNames[] = {"hidraw", "usb", "evdev", "sdl"};
 constexpr std::string_view kStickNames[] = {"left", "right"};
 
-// The index of the key's value among `names`; none where it is absent or none of them.
+// The index of the key's value in `names`; none if the key is absent or its value unknown.
 template <std::size_t N>
 std::optional<int> read_word(TomlTable& table, std::string_view key, std::string_view what,
                              const std::string_view (&names)[N]) {
@@ -145,7 +146,7 @@ void read_drivers(TomlTable& root, std::vector<std::string>& drivers) {
   }
 }
 
-// Sound in itself; which of its controls a device has is seen when the file is used.
+// Checks the line itself; which controls the device has is known when the file is used.
 void read_mapping(TomlTable& root, std::string& mapping) {
   auto line = root.string("mapping");
   if (!line || line->empty()) return;
@@ -205,7 +206,8 @@ std::string measured_text(std::string_view stick, const StickMeasured& m) {
   return text;
 }
 
-// What steers is written even where it is the default: the file means the same for ever.
+// Everything that changes the output is written, even a default: the file keeps its meaning if a
+// default changes.
 std::string stick_text(std::string_view name, const StickCalibration& c) {
   const auto axis = [](const AxisCalibration& a) {
     return fmt::format("{{ min = {}, centre = {}, max = {} }}", a.min, a.centre, a.max);
@@ -228,7 +230,8 @@ std::string trigger_text(std::string_view name, const TriggerCalibration& c) {
   return fmt::format("\n[{}]\nreleased = {}\npressed = {}\n", name, c.released, c.pressed);
 }
 
-// Names of the folder's *.toml files, sorted, so that the choice does not hang on the file system.
+// Paths of the folder's *.toml files, sorted, so that the choice does not depend on the file
+// system.
 Result<std::vector<std::string>> toml_files(const std::string& folder) {
   std::vector<std::string> paths;
   std::error_code code;

@@ -1,5 +1,4 @@
-// What other tools' texts say about a pad's axes, in their own numbers; for calibration_import.
-
+// Two steps: reads the text into the other tool's own numbers, then applies these to the pad.
 #include "stick/calibration_import.h"
 
 #include <fmt/format.h>
@@ -20,19 +19,23 @@
 
 namespace gaitpad {
 
-// jscal's broken line: full at `min` and `max`, nothing from `low` to `high`.
+namespace {
+
+// ---- What the text says, in its tool's own numbers
+
+// jscal's broken line: full at `min` and `max`, 0 from `low` to `high`.
 struct JscalAxis {
-  bool is_corrected = false;  // type 1; else the rest means nothing
-  bool reversed = false;      // it falls where the counts grow
+  bool is_corrected = false;  // type 1; else the other members mean nothing
+  bool reversed = false;      // the axis falls while the counts grow
   double min = 0.0, low = 0.0, high = 0.0, max = 0.0;
 };
 struct JscalText {
-  int line = 0;  // of the correction; 0: there is none
+  int line = 0;  // of the correction; 0: none
   std::vector<JscalAxis> axes;
-  std::vector<std::uint16_t> codes;  // of `jscal -u`: each axis' code; empty: none
+  std::vector<std::uint16_t> codes;  // of `jscal -u`: the code of each axis; empty: none
 };
 
-// Of one axis, as far as it is told.
+// One axis, as far as the text states it.
 struct AbsInfo {
   std::optional<std::int32_t> min, max, flat;
   int line = 0;
@@ -52,18 +55,12 @@ struct ImportText {
   std::uint16_t version = 0;
 };
 
-// Error where a line that it knows is damaged, where a thing is told twice, where the text holds
-// more than one kind or none, and for more than 1 MiB.
-Result<ImportText> import_text(std::string_view text, const std::string& source);
-
-namespace {
-
 constexpr std::size_t kMaxTextBytes = 1 << 20;
 constexpr std::size_t kMaxMappings = 65536;
 constexpr int kMaxAxes = 64;  // ABS_CNT
 constexpr std::uint32_t kLastCode = 0x3f;
 
-// What is wrong with a line; empty: nothing.
+// What is wrong with a line, without its place; empty: nothing.
 using Problem = std::string;
 
 // `6,1,0,127,...`: numbers with commas between, to the end.
@@ -83,8 +80,8 @@ Problem read_list(std::string_view text, std::vector<std::int32_t>& list) {
   return {};
 }
 
-// joydev's broken line (Linux drivers/input/joydev.c): 0 from c[0] to c[1], from there on slopes
-// c[2] and c[3] of 1/16384, cut at +-32767.
+// joydev's broken line (Linux drivers/input/joydev.c): 0 from c[0] to c[1], outside of it slopes of
+// c[2] and c[3] / 16384, clipped at +-32767.
 Problem read_broken_line(std::size_t index, const std::int32_t* c, JscalAxis& axis) {
   constexpr double kFull = 32767.0 * 16384.0;
   if (c[0] > c[1]) {
@@ -102,7 +99,7 @@ Problem read_broken_line(std::size_t index, const std::int32_t* c, JscalAxis& ax
   return {};
 }
 
-// For each axis type, precision and the type's coefficients: none of 0, four of 1.
+// For each axis: type, precision, and the coefficients of the type (0: none, 1: four).
 Problem read_correction(std::string_view text, JscalText& jscal) {
   constexpr std::size_t kHead = 2, kCoefficients = 4;
   std::vector<std::int32_t> list;
@@ -167,7 +164,7 @@ class Reader {
            line.find_first_not_of("0123456789abcdefABCDEF") == kDigits;
   }
 
-  // `jscal -s 2,1,0,... /dev/input/js0`; anything but the two options that set is skipped.
+  // `jscal -s 2,1,0,... /dev/input/js0`; only the two options that set something are read.
   Problem read_jscal(std::string_view line) {
     Words words(line);
     words.next();
@@ -194,7 +191,7 @@ class Reader {
     return {};
   }
 
-  // `A: 00 0 255 0 15 0`: code, minimum, maximum, fuzz, flat, and since its version 1.1 resolution.
+  // `A: 00 0 255 0 15 0`: code, minimum, maximum, fuzz, flat; since version 1.1 also resolution.
   Problem read_evemu(std::string_view rest) {
     Words words(rest);
     const std::string_view word = words.next();
@@ -214,20 +211,20 @@ class Reader {
     return {};
   }
 
-  // `I: 0003 054c 0ce6 8111`: bus, vendor, product, version.
+  // `I: 0003 054c 0ce6 8111`: bus, vendor, product, version. Other tools have other `I:` lines.
   Problem read_ids(std::string_view rest) {
     Words words(rest);
     words.next();
     const auto vendor = hexadecimal(words.next(), 0xffff),
                product = hexadecimal(words.next(), 0xffff),
                version = hexadecimal(words.next(), 0xffff);
-    if (!vendor || !product || !version) return {};  // not evemu's
+    if (!vendor || !product || !version) return {};
     text_.ids = *vendor << 16 | *product;
     text_.version = static_cast<std::uint16_t>(*version);
     return {};
   }
 
-  // `00=0:255:0:0:15`: minimum, maximum, resolution, fuzz, flat; any may be left out.
+  // `00=0:255:0:0:15`: minimum, maximum, resolution, fuzz, flat; each may be empty.
   Problem read_hwdb(std::string_view rest) {
     const std::string_view word = take_part(rest, '=');
     const auto code = hexadecimal(word, kLastCode);
@@ -249,7 +246,7 @@ class Reader {
     return {};
   }
 
-  // `Event code 0 (ABS_X)`; `Event type` and other codes end what is told of an axis.
+  // `Event code 0 (ABS_X)`; `Event type` and other codes end the lines of an axis.
   Problem begin_evtest(std::string_view line) {
     evtest_ = nullptr;
     Words words(line);
@@ -281,12 +278,12 @@ class Reader {
   }
 
   ImportText text_;
-  AbsInfo* evtest_ = nullptr;  // the axis of which evtest's lines tell
+  AbsInfo* evtest_ = nullptr;  // the axis that evtest's next lines describe
   int line_ = 0;
 };
 
-}  // namespace
-
+// Error if a known line is damaged, if something is stated twice, if the text is of several tools
+// or of none, and for more than 1 MiB.
 Result<ImportText> import_text(std::string_view text, const std::string& source) {
   if (text.size() > kMaxTextBytes) {
     return Error{
@@ -308,14 +305,14 @@ Result<ImportText> import_text(std::string_view text, const std::string& source)
   return told;
 }
 
-namespace {
+// ---- What it means for the pad
 
 constexpr double kLeastHalfRange = 0.1;  // raw, as calibration files have it
 constexpr double kLeastInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
 constexpr unsigned kCodesByKernel = 0x8000;
 
-// One axis of the pad in counts, from any of the tools.
+// What a tool claims of one axis of the pad, in counts.
 struct Claim {
   std::string axis;  // for sentences
   double min = 0.0, low = 0.0, high = 0.0, max = 0.0;
@@ -327,7 +324,7 @@ bool is_hat_field(const Field& f) {
   return f.usage == usage::kHatSwitch || (f.usage >= usage::kDpadUp && f.usage <= usage::kDpadLeft);
 }
 
-// The axes of the pad's event node: code to field, none for those of a hat.
+// The axes of the pad's event node by code; null for the axes of a hat.
 using NodeAxes = std::map<std::uint16_t, const Field*>;
 NodeAxes node_axes(const ReportDescriptor& d, const DeviceInfo& device) {
   NodeAxes axes;
@@ -345,7 +342,7 @@ NodeAxes node_axes(const ReportDescriptor& d, const DeviceInfo& device) {
   return axes;
 }
 
-// Where a whole field is an axis of the pad.
+// The axes of the pad that the whole field is bound to.
 std::vector<AxisOp> ops_of(const PadLayout& layout, const Field& f) {
   std::vector<AxisOp> ops;
   for (const ReportLayout& report : layout.reports) {
@@ -365,10 +362,10 @@ double raw_of(const AxisOp& op, double count) {
   return op.reversed ? 0.0 - raw : raw;
 }
 
-// What the claims have said of the sticks so far.
+// The calibration that the claims have built so far.
 struct Sticks {
   Calibration calibration;
-  std::array<double, 2> inner{};  // left, right; 0: not told
+  std::array<double, 2> inner{};  // left, right; 0: not stated
   bool is_any_told = false;
 };
 
@@ -417,7 +414,7 @@ std::string apply_to_stick(const Claim& claim, const AxisOp& op, Sticks& sticks)
   return {};
 }
 
-// Empty: it is done, or the pad has no use for that axis.
+// Returns the problem; empty if the claim was applied or the pad does not use the axis.
 std::string apply(const Claim& claim, const PadLayout& layout, const Field& field, Sticks& sticks) {
   for (const AxisOp& op : ops_of(layout, field)) {
     const auto low = static_cast<double>(op.bits.min), high = static_cast<double>(op.bits.max);
@@ -464,12 +461,12 @@ Result<Sticks> apply_jscal(const JscalText& jscal, const std::string& source, co
     if (!problem.empty()) return where(problem);
   }
   if (!sticks.is_any_told) return where("jscal: no axis of a stick is corrected");
-  // It is full where jscal is.
+  // jscal's ends are full deflection.
   sticks.calibration.left.outer = sticks.calibration.right.outer = 1.0;
   return sticks;
 }
 
-// The middle of the range counts as the centre: the kernel knows of no other.
+// The middle of the range is taken as the centre: the kernel knows no other.
 Result<Sticks> apply_ranges(const AbsInfos& infos, const std::string& source, const NodeAxes& axes,
                             const PadLayout& layout) {
   Sticks sticks;
@@ -491,7 +488,7 @@ Result<Sticks> apply_ranges(const AbsInfos& infos, const std::string& source, co
       return Error{fmt::format("{}:{}: {}", source, line, cause)};
     };
     if (!(min < max)) return where(fmt::format("{}: {} to {} is no range", claim.axis, min, max));
-    // Counts of another scale say nothing about this pad's.
+    // A wider range comes from a pad with another scale.
     const auto width = static_cast<double>(field.logical_max - field.logical_min);
     if (max - min > width * 1.01 + 1.0) {
       return where(fmt::format("{}: {} to {} is more than the pad's {} to {}", claim.axis, min, max,
@@ -516,7 +513,7 @@ std::string ids_text(unsigned vendor, unsigned product) {
   return fmt::format("{:04x}:{:04x}", vendor, product);
 }
 
-// A word of a GUID, least significant byte first; the text is known to be hexadecimal.
+// A 16-bit word of a GUID, least significant byte first; the text is known to be hexadecimal.
 unsigned guid_word(const std::string& line, std::size_t byte) {
   const auto value = [&](std::size_t at) {
     return static_cast<unsigned>(std::stoul(line.substr(2 * at, 2), nullptr, 16));
@@ -524,7 +521,7 @@ unsigned guid_word(const std::string& line, std::size_t byte) {
   return value(byte) | value(byte + 1) << 8;
 }
 
-// Why a line is none of the pad's; empty: it is one.
+// Why a mapping line is not for this pad; empty: it is.
 std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
   if (!is_one_line(line)) return "SDL mapping: it holds a control character";
   const unsigned vendor = guid_word(line, 4), product = guid_word(line, 8);

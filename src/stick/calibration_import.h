@@ -1,5 +1,5 @@
-// Calibrations that other tools made: read for a given pad, since their numbers are counts of the
-// axes of its event node. And the way back: what an exported line has to know of a calibration.
+// Imports calibrations that other tools made. Their numbers are counts of the axes of the pad's
+// event node, so the pad must be known.
 #pragma once
 #include <string>
 #include <string_view>
@@ -11,19 +11,19 @@
 
 namespace gaitpad {
 
-// `text` is one of these, told apart by itself; other lines in it are skipped:
+// `text` is one of these kinds (recognised by its lines; others are skipped):
 // - jscal's command line, as `jscal -p` prints it (with `jscal -u` before it where the axes were
 //   mapped): centre, ranges, the zone round the centre;
 // - ranges and `flat` of the kernel's axes: evemu's `A:` lines, `EVDEV_ABS_..=` of a hwdb file,
 //   what evtest prints;
-// - lines of SDL's controller data base, of which the pad's own is taken: `mapping`.
-// `source` stands in errors: `old.js:3: ...`. Filled are the calibration and the mapping alone, and
-// what the text does not tell is as for an unknown stick. A range beyond what the pad can report
-// counts as that; inner zones are 0.05 at least.
+// - lines of SDL's controller data base: the pad's own line becomes `mapping`.
+// Errors begin with `source`: `old.js:3: ...`. Only the calibration and the mapping are filled;
+// what the text does not state is as for an unknown stick. A range beyond what the pad can report
+// is cut to that; inner zones are at least 0.05.
 Result<CalibrationFile> calibration_import(std::string_view text, const std::string& source,
                                            const DeviceInfo& device, const PadLayout& layout);
 
-// How the sticks lie by their frames, for sdl_mapping_text.
+// How the sticks lie according to their frames, for sdl_mapping_text.
 StickAxes stick_axes(const Calibration& calibration) noexcept;
 
 }  // namespace gaitpad

@@ -9,26 +9,28 @@
 
 namespace gaitpad {
 
+// ---- Watching one control
+
 namespace {
 
 constexpr std::int64_t kBucketNs = 100 * kMillisecondNs;
-constexpr double kStillWithin = 0.04;  // of means over a tenth: three sigma of a very noisy stick
-// Shorter stays are spikes: to another place and back within three reports.
+constexpr double kStillWithin = 0.04;  // between means over 0.1 s: 3 sigma of a very noisy stick
+// Anything shorter is a spike: to another place and back within three reports.
 constexpr std::int64_t kSpikeNs = 40 * kMillisecondNs;
 
 constexpr std::int64_t kStillNs = 500 * kMillisecondNs;
 constexpr std::int64_t kNearNs = 1500 * kMillisecondNs;
-constexpr double kAway = 0.3;           // from where it rests
-constexpr double kAwayUnknown = 0.5;    // from the middle, where that is not known yet
-constexpr double kFarthestRest = 0.45;  // from the middle; beyond it a stick is held
+constexpr double kAway = 0.3;           // from the rest
+constexpr double kAwayUnknown = 0.5;    // from the middle, while the rest is not known
+constexpr double kFarthestRest = 0.45;  // from the middle; farther out a stick is held
 constexpr std::size_t kMaxRests = 64;   // further releases are not needed
 
-constexpr double kOfReach = 0.6;      // of the farthest that was seen: pushed out
-constexpr double kOfMedianRim = 0.6;  // less is a cut corner, not a gate (a square has 0.71)
+constexpr double kOfReach = 0.6;      // of the farthest that was seen: counts as pushed out
+constexpr double kOfMedianRim = 0.6;  // less is a cut corner; a square gate has 0.71
 constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;  // noise, spikes
 
 constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
-constexpr double kInOfRim = 0.6;  // nearer it is let go
+constexpr double kInOfRim = 0.6;  // nearer than this it is let go
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -78,7 +80,7 @@ void ReleaseWatch::hold(const vec2& raw, std::int64_t duration_ns) {
     away_ns_ += duration_ns;
     away_ = from_rest;
     if (away_ns_ > kSpikeNs) {
-      if (!is_away_) still_ = StillWatch();  // how it stood before it went
+      if (!is_away_) still_ = StillWatch();  // forget how it stood before
       reach_ = std::max(reach_, glm::length(from_rest));
       is_away_ = true;
       near_ns_ = 0;
@@ -101,7 +103,7 @@ bool ReleaseWatch::is_held() const noexcept {
 bool ReleaseWatch::is_back() const noexcept {
   if (near_ns_ >= kNearNs && away_ns_ == 0) return true;
   if (still_.still_ns() < kStillNs || !(glm::length(still_.mean()) < kFarthestRest)) return false;
-  // The first rests may each be a stick that was held; two of them tell.
+  // Each of the first rests may be a stick that was held; from two on the rest is known.
   return rests_.size() < 2 || glm::distance(still_.mean(), *rest_) < kAway;
 }
 
@@ -141,10 +143,10 @@ int ReleaseWatch::sides() const noexcept {
   return static_cast<int>(std::ranges::count(sides_, true));
 }
 
-void TurnWatch::take(const vec2& from_rest, double rim) noexcept {
+void TurnWatch::add_position(const vec2& from_rest, double rim) noexcept {
   rim_ = rim;
   const double radius = glm::length(from_rest);
-  if (!(radius > rim)) return;  // between two circles; not-a-number, too
+  if (!(radius > rim)) return;  // also for not-a-number
   const double angle_rad = atan2(from_rest.y, from_rest.x);
   const int bin = static_cast<int>(std::lround(angle_rad / (2.0 * kPi) * kTurnBins));
   double& greatest = radius_[static_cast<std::size_t>((bin + kTurnBins) % kTurnBins)];
@@ -172,7 +174,7 @@ int TurnWatch::filled() const noexcept {
 
 std::optional<vec2> TurnWatch::missing() const noexcept {
   const double least = least_radius();
-  int longest = 0, end = 0, run = 0;  // of bins that are not filled, `end` included
+  int longest = 0, end = 0, run = 0;  // the longest run of empty bins, `end` included
   for (int i = 0; i < 2 * kTurnBins; ++i) {
     run = radius_[static_cast<std::size_t>(i % kTurnBins)] > least ? 0 : run + 1;
     if (run > kTurnBins) run = kTurnBins;
@@ -219,7 +221,285 @@ std::optional<vec2> PushWatch::take_push() noexcept {
   return push;
 }
 
-// What the guide says: instructions and progress.
+// ---- The guide
+
+namespace {
+
+// Longer silence adds nothing and would cost time.
+constexpr std::int64_t kLongestHoldNs = 5000 * kMillisecondNs;
+
+// Larger over smaller part of a push: at most 30 degrees off an axis.
+constexpr double kClearRatio = 1.7;
+
+constexpr int kPushes = 4;
+constexpr GuideStep kFirstPush = GuideStep::forward;
+const std::array<vec2, kPushes> kAsked = {vec2(0.0, 1.0), vec2(1.0, 0.0), vec2(0.0, -1.0),
+                                          vec2(-1.0, 0.0)};
+
+bool is_push(GuideStep step) noexcept {
+  return step >= GuideStep::forward && step <= GuideStep::left;
+}
+std::size_t push_of(GuideStep step) noexcept {
+  return static_cast<std::size_t>(step) - static_cast<std::size_t>(kFirstPush);
+}
+
+// The raw axis along which a push goes; none: not clear.
+std::optional<RawDirection> direction_of(const vec2& push) noexcept {
+  const double x = std::fabs(push.x), y = std::fabs(push.y);
+  if (x > 0.0 && x >= kClearRatio * y)
+    return push.x > 0.0 ? RawDirection::plus_x : RawDirection::minus_x;
+  if (y > 0.0 && y >= kClearRatio * x)
+    return push.y > 0.0 ? RawDirection::plus_y : RawDirection::minus_y;
+  return std::nullopt;
+}
+
+RawDirection opposite(RawDirection direction) noexcept {
+  switch (direction) {
+    case RawDirection::plus_x:
+      return RawDirection::minus_x;
+    case RawDirection::minus_x:
+      return RawDirection::plus_x;
+    case RawDirection::plus_y:
+      return RawDirection::minus_y;
+    case RawDirection::minus_y:
+      return RawDirection::plus_y;
+  }
+  return direction;
+}
+
+// Whether two pushes, made when kAsked[a] and kAsked[b] were asked for, can come from one stick.
+bool fits(const vec2& push_a, std::size_t a, const vec2& push_b, std::size_t b) noexcept {
+  const auto one = direction_of(push_a), other = direction_of(push_b);
+  if (!one || !other) return true;
+  if ((a + b) % 2 == 1) return is_along_x(*one) != is_along_x(*other);
+  return a == b ? *one == *other : *one == opposite(*other);
+}
+
+template <typename Sample>
+void join(std::vector<std::vector<Sample>>& tracks, const std::vector<std::vector<Sample>>& more,
+          bool continues) {
+  auto next = more.begin();
+  if (continues && !tracks.empty() && next != more.end()) {
+    tracks.back().insert(tracks.back().end(), next->begin(), next->end());
+    ++next;
+  }
+  tracks.insert(tracks.end(), next, more.end());
+}
+
+void join(PadTracks& tracks, const PadTracks& more, bool continues) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    join(tracks.stick[side], more.stick[side], continues);
+    join(tracks.trigger[side], more.trigger[side], continues);
+  }
+}
+
+}  // namespace
+
+CalibrationGuide::CalibrationGuide(const PadLayout& layout) : tracker_(layout) {
+  for (int side = 0; side < 2; ++side) {
+    if (has_stick(layout, side)) sticks_.emplace_back().side = side;
+    if (has_trigger(layout, side)) triggers_.emplace_back().side = side;
+  }
+  if (!sticks_.empty()) {
+    steps_ = {GuideStep::rest,  GuideStep::turn, GuideStep::forward,
+              GuideStep::right, GuideStep::back, GuideStep::left};
+    if (!triggers_.empty()) steps_.push_back(GuideStep::triggers);
+  }
+  steps_.push_back(GuideStep::done);
+}
+
+void CalibrationGuide::take_report(const Report& report) {
+  if (report.kind == ReportKind::removed) unplugged();
+  if (report.kind != ReportKind::input || step() == GuideStep::done || is_full()) return;
+  advance(report.time_ns);
+  if (step() == GuideStep::done || !tracker_.add_report(report)) return;
+  if (running_reports_ == 0) continues_ = !is_cut_;
+  is_cut_ = false;
+  ++running_reports_;
+  ++reports_;
+  if (!std::exchange(is_placed_, true)) time_ns_ = report.time_ns;
+  if (step() != GuideStep::turn) return;
+  for (Stick& stick : sticks_) stick.turn.add_position(from_rest(stick), stick.release.rim());
+  if (is_complete()) finish_step();
+}
+
+void CalibrationGuide::tick(std::int64_t now_ns) {
+  if (!is_full()) advance(now_ns);
+}
+
+void CalibrationGuide::unplugged() noexcept {
+  tracker_.cut();
+  is_cut_ = true;
+  is_placed_ = false;
+  for (Stick& stick : sticks_) {
+    stick.release.lose();
+    stick.turn.lose();
+    stick.push.lose();
+  }
+  for (Trigger& trigger : triggers_) {
+    trigger.push.lose();
+    trigger.level = StillWatch();
+  }
+}
+
+// The controls stood where they are from the last time to this one.
+void CalibrationGuide::advance(std::int64_t now_ns) {
+  if (!is_placed_ || now_ns <= time_ns_ || step() == GuideStep::done) return;
+  // The stamps of a damaged recording may be any numbers.
+  const std::uint64_t passed_ns =
+      static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(time_ns_);
+  const auto duration_ns =
+      static_cast<std::int64_t>(std::min(passed_ns, static_cast<std::uint64_t>(kLongestHoldNs)));
+  time_ns_ = now_ns;
+  for (Stick& stick : sticks_) hold(stick, duration_ns);
+  for (Trigger& trigger : triggers_) hold(trigger, duration_ns);
+  if (is_complete()) finish_step();
+}
+
+void CalibrationGuide::hold(Stick& stick, std::int64_t duration_ns) {
+  if (step() == GuideStep::rest) stick.release.hold(raw(stick), duration_ns);
+  stick.push.hold(from_rest(stick), stick.release.rim(), duration_ns);
+  const std::optional<vec2> push = stick.push.take_push();
+  if (push && is_push(step())) take_push(stick, *push);
+}
+
+void CalibrationGuide::hold(Trigger& trigger, std::int64_t duration_ns) {
+  const double value = tracker_.state().axis[kLeftTrigger + trigger.side];
+  trigger.level.hold(vec2(value, 0.0), duration_ns);
+  if (trigger.level.still_ns() > 0) {
+    const double level = trigger.level.mean().x;
+    trigger.released = std::min(trigger.released.value_or(level), level);
+  }
+  trigger.push.hold(vec2(value - trigger.released.value_or(0.0), 0.0), kHalfWay, duration_ns);
+  if (trigger.push.take_push() && step() == GuideStep::triggers) trigger.is_done = true;
+}
+
+void CalibrationGuide::take_push(Stick& stick, const vec2& push) {
+  const std::size_t number = push_of(step());
+  if (stick.pushed[number]) return;  // the other stick is not done yet
+  if (!direction_of(push)) {
+    stick.advice = "that was between two directions, hold it straighter";
+    return;
+  }
+  for (std::size_t other = 0; other < number; ++other) {
+    if (!stick.pushed[other] || fits(*stick.pushed[other], other, push, number)) continue;
+    const auto before = static_cast<GuideStep>(static_cast<std::size_t>(kFirstPush) + other);
+    stick.advice = std::string("that contradicts \"") + name_of(before) +
+                   "\": once more, or back to that step";
+    return;
+  }
+  stick.advice.clear();
+  stick.pushed[number] = push;
+}
+
+vec2 CalibrationGuide::raw(const Stick& stick) const noexcept {
+  const auto& axis = tracker_.state().axis;
+  const auto x = static_cast<std::size_t>(2 * stick.side);
+  return {axis[x], axis[x + 1]};
+}
+
+vec2 CalibrationGuide::from_rest(const Stick& stick) const noexcept {
+  return raw(stick) - stick.release.rest().value_or(vec2(0.0));
+}
+
+bool CalibrationGuide::is_complete() const noexcept {
+  switch (step()) {
+    case GuideStep::rest:
+      return std::ranges::all_of(sticks_,
+                                 [](const Stick& stick) { return stick.release.is_complete(); });
+    case GuideStep::turn:
+      return std::ranges::all_of(sticks_,
+                                 [](const Stick& stick) { return stick.turn.is_complete(); });
+    case GuideStep::triggers:
+      return std::ranges::all_of(triggers_, &Trigger::is_done);
+    case GuideStep::done:
+      return false;
+    default:
+      break;
+  }
+  const std::size_t number = push_of(step());
+  return std::ranges::all_of(
+      sticks_, [number](const Stick& stick) { return stick.pushed[number].has_value(); });
+}
+
+void CalibrationGuide::finish_step() {
+  pieces_.push_back({step(), continues_, running_reports_, tracker_.take_tracks()});
+  running_reports_ = 0;
+  ++index_;
+  for (Stick& stick : sticks_) stick.push.restart();
+  for (Trigger& trigger : triggers_) trigger.push.restart();
+}
+
+// Forgets what the running step has seen.
+void CalibrationGuide::drop_step() noexcept {
+  tracker_.take_tracks();
+  reports_ -= std::exchange(running_reports_, 0);
+  is_cut_ = true;
+  for (Stick& stick : sticks_) {
+    if (step() == GuideStep::rest) stick.release.restart();
+    if (step() == GuideStep::turn) stick.turn.restart();
+    if (is_push(step())) stick.pushed[push_of(step())].reset();
+    stick.push.restart();
+    stick.advice.clear();
+  }
+  for (Trigger& trigger : triggers_) {
+    trigger.push.restart();
+    if (step() == GuideStep::triggers) trigger.is_done = false;
+  }
+}
+
+void CalibrationGuide::skip() {
+  if (step() == GuideStep::done) return;
+  for (Stick& stick : sticks_) stick.advice.clear();
+  finish_step();
+}
+
+void CalibrationGuide::repeat() { drop_step(); }
+
+void CalibrationGuide::back() {
+  drop_step();
+  if (index_ == 0) return;
+  --index_;
+  reports_ -= pieces_.back().reports;
+  pieces_.pop_back();
+  drop_step();
+}
+
+PadTracks CalibrationGuide::tracks() const {
+  PadTracks tracks;
+  for (const Piece& piece : pieces_) join(tracks, piece.tracks, piece.continues);
+  join(tracks, tracker_.tracks(), continues_);
+  return tracks;
+}
+
+StickFrame CalibrationGuide::frame(int side) const {
+  std::vector<vec2> pushes, asked;
+  for (const Stick& stick : sticks_) {
+    for (std::size_t i = 0; stick.side == side && i < kPushes; ++i) {
+      if (!stick.pushed[i]) continue;
+      pushes.push_back(*stick.pushed[i]);
+      asked.push_back(kAsked[i]);
+    }
+  }
+  return frame_of_pushes(pushes, asked).value_or(StickFrame{});
+}
+
+std::optional<StickFrame> frame_of_pushes(std::span<const vec2> pushes,
+                                          std::span<const vec2> asked) {
+  std::optional<RawDirection> right, forward;
+  for (std::size_t i = 0; i < std::min(pushes.size(), asked.size()); ++i) {
+    const std::optional<RawDirection> went = direction_of(pushes[i]), wish = direction_of(asked[i]);
+    if (!went || !wish) continue;
+    const RawDirection told = is_negative(*wish) ? opposite(*went) : *went;
+    std::optional<RawDirection>& known = is_along_x(*wish) ? right : forward;
+    if (known && *known != told) return std::nullopt;
+    known = told;
+  }
+  if (!right || !forward || is_along_x(*right) == is_along_x(*forward)) return std::nullopt;
+  return StickFrame{*right, *forward};
+}
+
+// ---- What the guide says: instructions and progress
 
 namespace {
 
@@ -264,7 +544,7 @@ const char* direction_words(GuideStep step) noexcept {
   }
 }
 
-// How the axes lie under the thumb is learned by the pushes, in later steps.
+// In the directions of the raw axes: how they lie under the thumb is learned later, by the pushes.
 std::string side_name(const vec2& raw) {
   static constexpr const char* kNames[] = {"right", "front right", "front", "front left",
                                            "left",  "back left",   "back",  "back right"};
@@ -273,6 +553,28 @@ std::string side_name(const vec2& raw) {
 }
 
 }  // namespace
+
+const char* name_of(GuideStep step) noexcept {
+  switch (step) {
+    case GuideStep::rest:
+      return "rest";
+    case GuideStep::turn:
+      return "turning";
+    case GuideStep::forward:
+      return "push forward";
+    case GuideStep::right:
+      return "push right";
+    case GuideStep::back:
+      return "push back";
+    case GuideStep::left:
+      return "push left";
+    case GuideStep::triggers:
+      return "triggers";
+    case GuideStep::done:
+      return "done";
+  }
+  return "";
+}
 
 std::string CalibrationGuide::instruction() const {
   if (is_full() && step() != GuideStep::done)
@@ -350,7 +652,7 @@ GuideProgress CalibrationGuide::turn_progress(const Stick& stick) const {
   GuideProgress progress;
   progress.done = 0.75 * turn.filled() / kTurnBins + 0.25 * turns / kWantedTurns;
   if (turn.is_complete()) progress.done = 1.0;
-  // Rounded down: what is shown as two turns is two turns.
+  // Rounded down, so that "2.0 turns" are two whole turns.
   progress.text = fmt::format("{} of {} directions, {:.1f} of {:.0f} turns", turn.filled(),
                               kTurnBins, std::floor(turns * 10.0) / 10.0, kWantedTurns);
   const std::optional<vec2> missing = turn.missing();
@@ -376,304 +678,6 @@ GuideProgress CalibrationGuide::trigger_progress(const Trigger& trigger) const {
   progress.text = trigger.is_done ? "seen" : push_text(state);
   progress.raw = vec2(tracker_.state().axis[kLeftTrigger + trigger.side], 0.0);
   return progress;
-}
-
-namespace {
-
-// Longer silence tells no more, and costs no time.
-constexpr std::int64_t kLongestHoldNs = 5000 * kMillisecondNs;
-
-// Of the larger part of a push to the smaller: 30 degrees off.
-constexpr double kClearRatio = 1.7;
-
-constexpr int kPushes = 4;
-constexpr GuideStep kFirstPush = GuideStep::forward;
-const std::array<vec2, kPushes> kAsked = {vec2(0.0, 1.0), vec2(1.0, 0.0), vec2(0.0, -1.0),
-                                          vec2(-1.0, 0.0)};
-
-bool is_push(GuideStep step) noexcept {
-  return step >= GuideStep::forward && step <= GuideStep::left;
-}
-std::size_t push_of(GuideStep step) noexcept {
-  return static_cast<std::size_t>(step) - static_cast<std::size_t>(kFirstPush);
-}
-
-// The raw axis along which it goes; none: not clear.
-std::optional<RawDirection> direction_of(const vec2& push) noexcept {
-  const double x = std::fabs(push.x), y = std::fabs(push.y);
-  if (x > 0.0 && x >= kClearRatio * y)
-    return push.x > 0.0 ? RawDirection::plus_x : RawDirection::minus_x;
-  if (y > 0.0 && y >= kClearRatio * x)
-    return push.y > 0.0 ? RawDirection::plus_y : RawDirection::minus_y;
-  return std::nullopt;
-}
-
-RawDirection opposite(RawDirection direction) noexcept {
-  switch (direction) {
-    case RawDirection::plus_x:
-      return RawDirection::minus_x;
-    case RawDirection::minus_x:
-      return RawDirection::plus_x;
-    case RawDirection::plus_y:
-      return RawDirection::minus_y;
-    case RawDirection::minus_y:
-      return RawDirection::plus_y;
-  }
-  return direction;
-}
-
-// Whether two pushes that were asked for, number `a` and `b` of kAsked, can be of one stick.
-bool fits(const vec2& push_a, std::size_t a, const vec2& push_b, std::size_t b) noexcept {
-  const auto one = direction_of(push_a), other = direction_of(push_b);
-  if (!one || !other) return true;
-  if ((a + b) % 2 == 1) return is_along_x(*one) != is_along_x(*other);
-  return a == b ? *one == *other : *one == opposite(*other);
-}
-
-template <typename Sample>
-void join(std::vector<std::vector<Sample>>& tracks, const std::vector<std::vector<Sample>>& more,
-          bool continues) {
-  auto next = more.begin();
-  if (continues && !tracks.empty() && next != more.end()) {
-    tracks.back().insert(tracks.back().end(), next->begin(), next->end());
-    ++next;
-  }
-  tracks.insert(tracks.end(), next, more.end());
-}
-
-void join(PadTracks& tracks, const PadTracks& more, bool continues) {
-  for (std::size_t side = 0; side < 2; ++side) {
-    join(tracks.stick[side], more.stick[side], continues);
-    join(tracks.trigger[side], more.trigger[side], continues);
-  }
-}
-
-}  // namespace
-
-const char* name_of(GuideStep step) noexcept {
-  switch (step) {
-    case GuideStep::rest:
-      return "rest";
-    case GuideStep::turn:
-      return "turning";
-    case GuideStep::forward:
-      return "push forward";
-    case GuideStep::right:
-      return "push right";
-    case GuideStep::back:
-      return "push back";
-    case GuideStep::left:
-      return "push left";
-    case GuideStep::triggers:
-      return "triggers";
-    case GuideStep::done:
-      return "done";
-  }
-  return "";
-}
-
-CalibrationGuide::CalibrationGuide(const PadLayout& layout) : tracker_(layout) {
-  for (int side = 0; side < 2; ++side) {
-    if (has_stick(layout, side)) sticks_.emplace_back().side = side;
-    if (has_trigger(layout, side)) triggers_.emplace_back().side = side;
-  }
-  if (!sticks_.empty()) {
-    steps_ = {GuideStep::rest,  GuideStep::turn, GuideStep::forward,
-              GuideStep::right, GuideStep::back, GuideStep::left};
-    if (!triggers_.empty()) steps_.push_back(GuideStep::triggers);
-  }
-  steps_.push_back(GuideStep::done);
-}
-
-void CalibrationGuide::take(const Report& report) {
-  if (report.kind == ReportKind::removed) unplugged();
-  if (report.kind != ReportKind::input || step() == GuideStep::done || is_full()) return;
-  advance(report.time_ns);
-  if (step() == GuideStep::done || !tracker_.take(report)) return;
-  if (running_reports_ == 0) continues_ = !is_cut_;
-  is_cut_ = false;
-  ++running_reports_;
-  ++reports_;
-  if (!std::exchange(is_placed_, true)) time_ns_ = report.time_ns;
-  if (step() != GuideStep::turn) return;
-  for (Stick& stick : sticks_) stick.turn.take(from_rest(stick), stick.release.rim());
-  if (is_complete()) finish_step();
-}
-
-void CalibrationGuide::tick(std::int64_t now_ns) {
-  if (!is_full()) advance(now_ns);
-}
-
-void CalibrationGuide::unplugged() noexcept {
-  tracker_.cut();
-  is_cut_ = true;
-  is_placed_ = false;
-  for (Stick& stick : sticks_) {
-    stick.release.lose();
-    stick.turn.lose();
-    stick.push.lose();
-  }
-  for (Trigger& trigger : triggers_) {
-    trigger.push.lose();
-    trigger.level = StillWatch();
-  }
-}
-
-// The controls have stood where they are from the last moment to this one.
-void CalibrationGuide::advance(std::int64_t now_ns) {
-  if (!is_placed_ || now_ns <= time_ns_ || step() == GuideStep::done) return;
-  // Both are stamps of a clock, but a recording's may be any.
-  const std::uint64_t passed_ns =
-      static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(time_ns_);
-  const auto duration_ns =
-      static_cast<std::int64_t>(std::min(passed_ns, static_cast<std::uint64_t>(kLongestHoldNs)));
-  time_ns_ = now_ns;
-  for (Stick& stick : sticks_) hold(stick, duration_ns);
-  for (Trigger& trigger : triggers_) hold(trigger, duration_ns);
-  if (is_complete()) finish_step();
-}
-
-void CalibrationGuide::hold(Stick& stick, std::int64_t duration_ns) {
-  if (step() == GuideStep::rest) stick.release.hold(raw(stick), duration_ns);
-  stick.push.hold(from_rest(stick), stick.release.rim(), duration_ns);
-  const std::optional<vec2> push = stick.push.take_push();
-  if (push && is_push(step())) take_push(stick, *push);
-}
-
-void CalibrationGuide::hold(Trigger& trigger, std::int64_t duration_ns) {
-  const double value = tracker_.state().axis[kLeftTrigger + trigger.side];
-  trigger.level.hold(vec2(value, 0.0), duration_ns);
-  if (trigger.level.still_ns() > 0) {
-    const double level = trigger.level.mean().x;
-    trigger.released = std::min(trigger.released.value_or(level), level);
-  }
-  trigger.push.hold(vec2(value - trigger.released.value_or(0.0), 0.0), kHalfWay, duration_ns);
-  if (trigger.push.take_push() && step() == GuideStep::triggers) trigger.is_done = true;
-}
-
-void CalibrationGuide::take_push(Stick& stick, const vec2& push) {
-  const std::size_t number = push_of(step());
-  if (stick.pushed[number]) return;  // the other stick is still at it
-  if (!direction_of(push)) {
-    stick.advice = "that was between two directions, hold it straighter";
-    return;
-  }
-  for (std::size_t other = 0; other < number; ++other) {
-    if (!stick.pushed[other] || fits(*stick.pushed[other], other, push, number)) continue;
-    const auto before = static_cast<GuideStep>(static_cast<std::size_t>(kFirstPush) + other);
-    stick.advice = std::string("that contradicts \"") + name_of(before) +
-                   "\": once more, or back to that step";
-    return;
-  }
-  stick.advice.clear();
-  stick.pushed[number] = push;
-}
-
-vec2 CalibrationGuide::raw(const Stick& stick) const noexcept {
-  const auto& axis = tracker_.state().axis;
-  const auto x = static_cast<std::size_t>(2 * stick.side);
-  return {axis[x], axis[x + 1]};
-}
-
-vec2 CalibrationGuide::from_rest(const Stick& stick) const noexcept {
-  return raw(stick) - stick.release.rest().value_or(vec2(0.0));
-}
-
-bool CalibrationGuide::is_complete() const noexcept {
-  switch (step()) {
-    case GuideStep::rest:
-      return std::ranges::all_of(sticks_,
-                                 [](const Stick& stick) { return stick.release.is_complete(); });
-    case GuideStep::turn:
-      return std::ranges::all_of(sticks_,
-                                 [](const Stick& stick) { return stick.turn.is_complete(); });
-    case GuideStep::triggers:
-      return std::ranges::all_of(triggers_, &Trigger::is_done);
-    case GuideStep::done:
-      return false;
-    default:
-      break;
-  }
-  const std::size_t number = push_of(step());
-  return std::ranges::all_of(
-      sticks_, [number](const Stick& stick) { return stick.pushed[number].has_value(); });
-}
-
-void CalibrationGuide::finish_step() {
-  pieces_.push_back({step(), continues_, running_reports_, tracker_.take_tracks()});
-  running_reports_ = 0;
-  ++index_;
-  for (Stick& stick : sticks_) stick.push.restart();
-  for (Trigger& trigger : triggers_) trigger.push.restart();
-}
-
-// Forgets what was seen in the running step.
-void CalibrationGuide::drop_step() noexcept {
-  tracker_.take_tracks();
-  reports_ -= std::exchange(running_reports_, 0);
-  is_cut_ = true;
-  for (Stick& stick : sticks_) {
-    if (step() == GuideStep::rest) stick.release.restart();
-    if (step() == GuideStep::turn) stick.turn.restart();
-    if (is_push(step())) stick.pushed[push_of(step())].reset();
-    stick.push.restart();
-    stick.advice.clear();
-  }
-  for (Trigger& trigger : triggers_) {
-    trigger.push.restart();
-    if (step() == GuideStep::triggers) trigger.is_done = false;
-  }
-}
-
-void CalibrationGuide::skip() {
-  if (step() == GuideStep::done) return;
-  for (Stick& stick : sticks_) stick.advice.clear();
-  finish_step();
-}
-
-void CalibrationGuide::repeat() { drop_step(); }
-
-void CalibrationGuide::back() {
-  drop_step();
-  if (index_ == 0) return;
-  --index_;
-  reports_ -= pieces_.back().reports;
-  pieces_.pop_back();
-  drop_step();
-}
-
-PadTracks CalibrationGuide::tracks() const {
-  PadTracks tracks;
-  for (const Piece& piece : pieces_) join(tracks, piece.tracks, piece.continues);
-  join(tracks, tracker_.tracks(), continues_);
-  return tracks;
-}
-
-StickFrame CalibrationGuide::frame(int side) const {
-  std::vector<vec2> pushes, asked;
-  for (const Stick& stick : sticks_) {
-    for (std::size_t i = 0; stick.side == side && i < kPushes; ++i) {
-      if (!stick.pushed[i]) continue;
-      pushes.push_back(*stick.pushed[i]);
-      asked.push_back(kAsked[i]);
-    }
-  }
-  return frame_of_pushes(pushes, asked).value_or(StickFrame{});
-}
-
-std::optional<StickFrame> frame_of_pushes(std::span<const vec2> pushes,
-                                          std::span<const vec2> asked) {
-  std::optional<RawDirection> right, forward;
-  for (std::size_t i = 0; i < std::min(pushes.size(), asked.size()); ++i) {
-    const std::optional<RawDirection> went = direction_of(pushes[i]), wish = direction_of(asked[i]);
-    if (!went || !wish) continue;
-    const RawDirection told = is_negative(*wish) ? opposite(*went) : *went;
-    std::optional<RawDirection>& known = is_along_x(*wish) ? right : forward;
-    if (known && *known != told) return std::nullopt;
-    known = told;
-  }
-  if (!right || !forward || is_along_x(*right) == is_along_x(*forward)) return std::nullopt;
-  return StickFrame{*right, *forward};
 }
 
 }  // namespace gaitpad

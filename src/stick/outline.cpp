@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace gaitpad {
 
 namespace {
 
-constexpr double kSpacing = kOutlineSpacing;
-constexpr double kLeastRadius = 0.25;     // raw; nearer to the middle no gate is looked for
+// ---- The samples on the rim
+
+constexpr double kSpacing = 2.0 * kPi / kOutlineDirections;
+constexpr double kLeastRadius = 0.25;     // raw; no gate is nearer to the middle
 constexpr double kLeastNoise = 0.003;     // raw; rounding to 8 bits comes to 0.0023
 constexpr double kSeam = 30.0 * kDegree;  // more than any window reaches
 constexpr double kMeanOfUpperHalf = 0.8;  // of a Gaussian, in sigma
@@ -17,19 +20,84 @@ constexpr double kMeanOfUpperHalf = 0.8;  // of a Gaussian, in sigma
 constexpr double kGreatestRadius = 4.0;  // more than from any middle to any corner of the range
 constexpr double kInsideHull = 0.85;     // no gate bends inwards by more
 constexpr double kSteepest = 2.0;        // slope over radius; at a square's corner it is 1
-constexpr int kSteepReach = 8;           // directions; beyond, the hull is the better bound
+constexpr int kSteepReach = 8;           // directions; farther off the hull is the better bound
 constexpr double kLeastSpread = 0.1 * kSpacing * kSpacing;
 
-// The rim is told from what lies inside it by lines over this half width: wide enough for two
-// samples of the slowest pad's two turns, narrow enough for a corner.
+// Half width of the lines that tell the rim from samples inside it: wide enough for two samples of
+// the slowest pad's two turns, narrow enough for a corner.
 constexpr double kSelectionWidth = 3.0 * kSpacing;
 constexpr int kFewOfDirection = 8;
-constexpr int kSelectionRounds = 6;         // it has settled after three or four
-constexpr double kSelectionQuantile = 0.9;  // of the samples' heights: there the search begins
-constexpr double kSigmas = 3.0;             // so far under the line a sample is still on the rim
+constexpr int kSelectionRounds = 6;         // three or four are enough
+constexpr double kSelectionQuantile = 0.9;  // of the samples' heights: the search begins there
+constexpr double kSigmas = 3.0;             // this far below the line a sample is still on the rim
 
-// At the end of the range noise goes one way only. Beyond it would be half of the samples of a gate
-// that ends there, on average by 0.8 sigma (of a gate further in fewer, by little less).
+using Radii = std::array<double, kOutlineDirections>;  // raw, by direction
+
+struct Polar {
+  double angle, radius;  // rad, raw
+};
+
+// A straight line radius(angle) through samples.
+struct Line {
+  double samples = 0.0, angle = 0.0, radius = 0.0, slope = 0.0;  // the means; it passes there
+  double spread = 0.0;    // sum of squared angles about the mean
+  double residual = 0.0;  // mean square
+
+  double at(double a) const noexcept { return radius + slope * (a - angle); }
+};
+
+vec2 unit_vector(double angle) noexcept {
+  const SinCos s = sin_cos(angle);
+  return {s.cos, s.sin};
+}
+
+// The outline's direction that is nearest.
+int direction_of(double angle) noexcept {
+  return static_cast<int>(std::lround(angle / kSpacing) + kOutlineDirections) % kOutlineDirections;
+}
+
+// The samples in [from, to); they are ordered by angle.
+std::span<const Polar> between(std::span<const Polar> samples, double from, double to) {
+  const auto is_below = [](const Polar& p, double angle) { return p.angle < angle; };
+  const auto first = std::lower_bound(samples.begin(), samples.end(), from, is_below);
+  return {first, std::lower_bound(first, samples.end(), to, is_below)};
+}
+
+// Least squares, no steeper than a gate can be.
+Line line_through(std::span<const Polar> samples) noexcept {
+  Line line;
+  if (samples.empty()) return line;
+  line.samples = static_cast<double>(samples.size());
+  for (const Polar& p : samples) {
+    line.angle += p.angle / line.samples;
+    line.radius += p.radius / line.samples;
+  }
+  double product = 0.0;
+  for (const Polar& p : samples) {
+    line.spread += (p.angle - line.angle) * (p.angle - line.angle);
+    product += (p.angle - line.angle) * (p.radius - line.radius);
+  }
+  // Samples at one angle have no slope.
+  const double steepest = kSteepest * line.radius;
+  if (line.spread > kLeastSpread) {
+    line.slope = std::clamp(product / line.spread, -steepest, steepest);
+  }
+  for (const Polar& p : samples) {
+    const double off = p.radius - line.at(p.angle);
+    line.residual += off * off / line.samples;
+  }
+  return line;
+}
+
+// The radial noise of samples on a rim that is not at right angles to the radius; at least that of
+// rounding to 8 bits.
+double radial_noise(const Line& line, double sigma) noexcept {
+  const double steepness = line.slope / std::max(line.radius, kLeastRadius);
+  return std::max(sigma * std::sqrt(1.0 + steepness * steepness), kLeastNoise);
+}
+
+// Reports are cut at the end of the range. Of a gate that ends there half of the samples would lie
+// beyond, on average by 0.8 sigma (farther in: fewer samples, by a little less).
 double without_end(double raw, double sigma) noexcept {
   return std::fabs(raw) < 1.0 ? raw : std::copysign(1.0 + kMeanOfUpperHalf * sigma, raw);
 }
@@ -41,7 +109,7 @@ std::vector<Polar> polar_samples(std::span<const StickTrack> tracks, const vec2&
     vec2 before(0.0);
     for (const StickSample& sample : track) {
       if (!std::isfinite(sample.raw.x) || !std::isfinite(sample.raw.y)) continue;
-      // Most pads do not repeat themselves; the others are made alike.
+      // Most pads report changes only; dropping repeats makes the others like them.
       if (sample.raw == before) continue;
       before = sample.raw;
       const vec2 p =
@@ -83,15 +151,15 @@ Radii hull_of(const Radii& greatest) noexcept {
   return hull;
 }
 
-// Radii below which nothing can be the rim: it would bend inwards, or from what was seen beside it
-// fall off more steeply than a gate does.
+// Radii below which a sample cannot be on the rim: the gate would bend inwards there, or fall off
+// from its neighbours more steeply than gates do.
 Radii inside_of(const Radii& greatest, double sigma) {
   Radii inside = hull_of(greatest);
   for (double& radius : inside) radius = kInsideHull * radius - kSigmas * sigma;
   for (int k = 0; k < kOutlineDirections; ++k) {
     for (int n = -kSteepReach; n <= kSteepReach; ++n) {
       const int beside = (k + n + kOutlineDirections) % kOutlineDirections;
-      // Both samples lie somewhere in their direction, and noise lifts one and lowers the other.
+      // Both samples lie anywhere within their direction; noise may lift one and lower the other.
       const double least = greatest[beside] * (1.0 - kSteepest * kSpacing * (std::abs(n) + 1)) -
                            2.0 * (kSigmas * sigma + kLeastNoise);
       inside[k] = std::max(inside[k], least);
@@ -100,8 +168,8 @@ Radii inside_of(const Radii& greatest, double sigma) {
   return inside;
 }
 
-// By angle, and those beside the seam again beyond the other end.
-std::vector<Polar> ordered(std::vector<Polar> samples) {
+// By angle; samples beside the seam (0 and 2 pi) are repeated beyond the other end.
+std::vector<Polar> sort_by_angle(std::vector<Polar> samples) {
   const std::size_t count = samples.size();
   for (std::size_t i = 0; i < count; ++i) {
     const Polar p = samples[i];
@@ -113,7 +181,8 @@ std::vector<Polar> ordered(std::vector<Polar> samples) {
   return samples;
 }
 
-// Upper envelope: from high up down until the samples under the line are no longer its noise.
+// Upper envelope: a line that starts high and comes down until the samples below it are more than
+// its noise.
 Line envelope(std::span<const Polar> samples, double sigma) {
   Line line = line_through(samples);
   std::vector<double> heights;
@@ -136,7 +205,7 @@ Line envelope(std::span<const Polar> samples, double sigma) {
   return line;
 }
 
-// A stick that is held somewhere must not outweigh what lies beside it: so many a direction.
+// At most eight samples a direction, so that a stick that is held does not outweigh its neighbours.
 std::vector<Polar> thinned(const std::vector<Polar>& samples) {
   std::vector<Polar> few;
   for (auto first = samples.begin(); first != samples.end();) {
@@ -150,7 +219,7 @@ std::vector<Polar> thinned(const std::vector<Polar>& samples) {
   return few;
 }
 
-// Those that are not the noise of the rim lie inside of it.
+// The samples on the rim: those not below its envelope by more than noise.
 std::vector<Polar> rim_of(const std::vector<Polar>& samples, double sigma) {
   const std::vector<Polar> few = thinned(samples);
   std::vector<Polar> rim;
@@ -169,77 +238,33 @@ std::vector<Polar> rim_of(const std::vector<Polar>& samples, double sigma) {
   return rim;
 }
 
-}  // namespace
-
-vec2 unit_vector(double angle) noexcept {
-  const SinCos s = sin_cos(angle);
-  return {s.cos, s.sin};
-}
-
-int direction_of(double angle) noexcept {
-  return static_cast<int>(std::lround(angle / kSpacing) + kOutlineDirections) % kOutlineDirections;
-}
-
-std::span<const Polar> between(std::span<const Polar> samples, double from, double to) {
-  const auto is_below = [](const Polar& p, double angle) { return p.angle < angle; };
-  const auto first = std::lower_bound(samples.begin(), samples.end(), from, is_below);
-  return {first, std::lower_bound(first, samples.end(), to, is_below)};
-}
-
-Line line_through(std::span<const Polar> samples) noexcept {
-  Line line;
-  if (samples.empty()) return line;
-  line.samples = static_cast<double>(samples.size());
-  for (const Polar& p : samples) {
-    line.angle += p.angle / line.samples;
-    line.radius += p.radius / line.samples;
-  }
-  double product = 0.0;
-  for (const Polar& p : samples) {
-    line.spread += (p.angle - line.angle) * (p.angle - line.angle);
-    product += (p.angle - line.angle) * (p.radius - line.radius);
-  }
-  // Samples of one place have no slope.
-  const double steepest = kSteepest * line.radius;
-  if (line.spread > kLeastSpread) {
-    line.slope = std::clamp(product / line.spread, -steepest, steepest);
-  }
-  for (const Polar& p : samples) {
-    const double off = p.radius - line.at(p.angle);
-    line.residual += off * off / line.samples;
-  }
-  return line;
-}
-
-double radial_noise(const Line& line, double sigma) noexcept {
-  const double steepness = line.slope / std::max(line.radius, kLeastRadius);
-  return std::max(sigma * std::sqrt(1.0 + steepness * steepness), kLeastNoise);
-}
-
+// All samples on the rim about `middle`, ordered by angle. A sample 3 sigma inside the envelope is
+// still on it.
 std::vector<Polar> rim_samples(std::span<const StickTrack> tracks, const vec2& middle,
                                double sigma) {
   std::vector<Polar> samples = polar_samples(tracks, middle, sigma);
   const Radii inside = inside_of(greatest_of(samples), sigma);
   std::erase_if(samples, [&](const Polar& p) { return p.radius < inside[direction_of(p.angle)]; });
-  return ordered(rim_of(ordered(std::move(samples)), sigma));
+  return sort_by_angle(rim_of(sort_by_angle(std::move(samples)), sigma));
 }
 
-namespace {
+// ---- The gate through them
 
 constexpr double kGreatestNoise = 0.2;  // raw; beyond that nothing is a rim
-// The radius comes from the widest line that agrees with all narrower ones.
+// Half widths of the windows; the radius comes from the widest line that agrees with the narrower.
 constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.0 * kSpacing,
                               4.0 * kSpacing, 6.0 * kSpacing, 8.0 * kSpacing};
-// Standard errors: of the estimates among each other (less is noisy, more rounds the corners of a
-// square: 1.5 gives the least circularity error over all made gates), and from the direction's own
-// samples.
+// How many standard errors may lie between the estimates (fewer: noisy; more: rounds the corners of
+// a square; 1.5 gives the least circularity error over all made gates) and between an estimate and
+// the direction's own samples.
 constexpr double kAgreement = 1.5, kOwnAgreement = 3.0;
-constexpr double kGreatestError = 0.025;  // raw, one standard error; beyond it was not seen
-constexpr int kGap = 3;                   // directions that are filled in between seen ones
-constexpr double kSharp = 0.6;            // sine of the angle by which a corner turns at least
+constexpr double kGreatestError =
+    0.025;                      // raw, one standard error; beyond it the direction was not seen
+constexpr int kGap = 3;         // directions to fill in between seen ones
+constexpr double kSharp = 0.6;  // sine of the angle by which a corner turns at least
 
-// A side's reach is known where the outline was seen this near to it, on both of its sides or
-// straight there.
+// A side's reach is known if the outline was seen this near to it: on both sides of it, or straight
+// there.
 constexpr double kOfSide = 15.0 * kDegree, kStraight = 3.0 * kSpacing;
 constexpr int kParts = 8;                        // of each piece of the outline, for the bins
 constexpr double kLeastCircularityRadius = 0.2;  // dualshock-tools'
@@ -249,12 +274,12 @@ double cross(const vec2& a, const vec2& b) noexcept { return a.x * b.y - a.y * b
 
 int around(int k) noexcept { return (k + kOutlineDirections) % kOutlineDirections; }
 
-// What gates are made of: an arc about the middle is straight as radius over angle, an edge as it
-// is.
+// Gates consist of arcs and edges. An arc about the middle is a straight line as radius over angle,
+// an edge is one in space.
 enum class Piece { arc, edge };
 
-// The rim about a direction, and the same in coordinates in which such a piece is straight: along
-// it in (nearly) radians from the direction, and outwards.
+// The rim near a direction, also in the coordinates in which a piece is straight: along the piece
+// (about radians from the direction), and outwards.
 struct Neighbourhood {
   double direction;
   std::span<const Polar> rim;
@@ -286,7 +311,7 @@ struct Estimate {
   double residual = 0.0;             // mean square
 };
 
-// The line passes amid the samples of the direction itself, not beside them.
+// Whether the line passes through the middle of the direction's own samples.
 bool agrees(const Line& line, std::span<const Polar> own, double sigma) noexcept {
   double off = 0.0;
   for (const Polar& p : own) off += (p.radius - line.at(p.angle)) / static_cast<double>(own.size());
@@ -294,9 +319,8 @@ bool agrees(const Line& line, std::span<const Polar> own, double sigma) noexcept
          kOwnAgreement * radial_noise(line, sigma) / std::sqrt(static_cast<double>(own.size()));
 }
 
-// Of growing windows from `left` to `right` times the width the last one before the estimates'
-// intervals no longer meet: wide where the rim is smooth, narrow beside a corner (the intersection
-// of confidence intervals; Katkovnik 1999).
+// Windows grow (to `left` and `right` times each width) until the estimates' confidence intervals
+// no longer intersect: wide where the rim is smooth, narrow beside a corner (Katkovnik 1999).
 Estimate adaptive(const Neighbourhood& n, Piece piece, double left, double right, double sigma) {
   const auto own = n.window(piece, -0.5 * kSpacing, 0.5 * kSpacing);
   Estimate best;
@@ -331,7 +355,7 @@ double radius_at(std::span<const Polar> rim, double direction, double sigma) {
   return best.error <= kGreatestError ? best.radius : 0.0;
 }
 
-// By straight lines: by radius a side would bulge.
+// By straight lines in space: interpolated radii would make a side bulge.
 void fill_gaps(Radii& radius) noexcept {
   const Radii seen = radius;
   const auto at = [&](int k) { return seen[around(k)]; };
@@ -347,14 +371,17 @@ void fill_gaps(Radii& radius) noexcept {
   }
 }
 
+}  // namespace
+
 vec2 point_of(const Outline& outline, int k) noexcept {
   k = around(k);
   return outline.middle + outline.radius[k] * unit_vector(k * kSpacing);
 }
 
-// Where the outline turns sharply its sides before and behind, prolonged, meet in a corner that
-// neither shows. `k`: two directions before, two behind; the corner is to lie between the inner
-// two.
+namespace {
+
+// The corner where the extended sides before and behind a sharp turn meet. `k`: two directions
+// before it and two behind; the corner must lie between the inner two.
 std::optional<vec2> corner_between(const Outline& outline, const std::array<int, 4>& k) noexcept {
   std::array<vec2, 4> p;
   for (int i = 0; i < 4; ++i) {
@@ -371,18 +398,17 @@ std::optional<vec2> corner_between(const Outline& outline, const std::array<int,
   return is_between ? std::optional(corner) : std::nullopt;
 }
 
-// Noise also strays along the rim and so rounds a corner: the directions next to it are taken from
-// the corner's sides.
+// Noise along the rim rounds a corner: the directions next to it are taken from the corner's sides.
 void sharpen(Outline& outline) noexcept {
   const Outline round = outline;
   for (int k = 0; k < kOutlineDirections; ++k) {
     const auto corner = corner_between(round, {k - 5, k - 2, k + 2, k + 5});
     if (!corner) continue;
     const vec2 at = *corner - outline.middle;
-    if (direction_of(gaitpad::atan2(at.y, at.x)) != k) continue;  // the next one's
+    if (direction_of(gaitpad::atan2(at.y, at.x)) != k) continue;  // another direction's
     const vec2 in = *corner - point_of(round, k - 2), out = point_of(round, k + 2) - *corner;
     for (int n = k - 1; n <= k + 1; ++n) {
-      // Where the ray meets the side.
+      // Intersection of the ray and the side.
       const vec2 u = unit_vector(n * kSpacing), side = cross(u, at) > 0.0 ? in : out;
       double& radius = outline.radius[around(n)];
       radius = std::max(radius, cross(at, side) / cross(u, side));
@@ -440,8 +466,8 @@ double outwards(const Outline& outline, int k, int side) noexcept {  // right, f
   return (side < 2 ? 1.0 : -1.0) * (side % 2 == 0 ? p.x : p.y);
 }
 
-// A single direction that juts out beyond both of its neighbours, a corner's as a rule, counts no
-// more than they do.
+// A single direction that juts out beyond both of its neighbours (a corner, as a rule) counts only
+// as far as they reach.
 double supported(const Outline& outline, int k, int side) noexcept {
   double beside = -2.0;
   for (const int n : {k - 1, k + 1}) {
@@ -455,7 +481,7 @@ double supported(const Outline& outline, int k, int side) noexcept {
 }  // namespace
 
 Reach reach_of(const Outline& outline) noexcept {
-  // By side: right, front, left, back. How far out, and what was seen beside it.
+  // By side: right, front, left, back.
   std::array<double, 4> furthest;
   furthest.fill(-2.0);
   std::array<bool, 4> is_before{}, is_behind{};
@@ -508,6 +534,52 @@ std::optional<double> circularity_error(const Outline& outline) noexcept {
   }
   if (filled < kLeastFilledBins) return std::nullopt;
   return 100.0 * std::sqrt(sum / filled);
+}
+
+namespace {
+
+// Counts whole turns in either direction; turning back begins anew.
+struct Turning {
+  int turns = 0;
+  double turned = 0.0, farthest = 0.0;  // of the running turn, as parts of a whole one
+  void add(double angle) noexcept {
+    turned += angle;
+    if (std::fabs(turned) > std::fabs(farthest) && turned * farthest >= 0.0) farthest = turned;
+    if (std::fabs(turned - farthest) <= 0.25) return;
+    const double back = turned - farthest;
+    end();
+    turned = farthest = back;
+  }
+  void end() noexcept {
+    // A turn that ends a little early counts as whole.
+    turns += static_cast<int>(std::min(std::fabs(farthest) + 0.05, 1e6));
+    turned = farthest = 0.0;
+  }
+};
+
+}  // namespace
+
+int whole_turns(std::span<const StickTrack> tracks, const vec2& middle, double radius) {
+  constexpr int kStray = 3;  // reports that may be spikes
+  Turning turning;
+  for (const StickTrack& track : tracks) {
+    vec2 before(0.0);  // 0: inside the radius
+    int strays = 0;
+    for (const StickSample& sample : track) {
+      const vec2 p = sample.raw - middle;
+      const bool is_out = glm::length(p) > radius;
+      const double angle =
+          atan2(before.x * p.y - before.y * p.x, glm::dot(before, p)) / (2.0 * kPi);
+      const bool is_stray = before != vec2(0.0) && (!is_out || std::fabs(angle) > 0.2);
+      if (is_stray && ++strays <= kStray) continue;
+      strays = 0;
+      if (is_out && before != vec2(0.0)) turning.add(angle);
+      if (!is_out) turning.end();
+      before = is_out ? p : vec2(0.0);
+    }
+    turning.end();
+  }
+  return turning.turns;
 }
 
 }  // namespace gaitpad

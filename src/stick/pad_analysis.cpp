@@ -14,33 +14,33 @@ namespace gaitpad {
 
 namespace {
 
-// What a calibration file accepts, with a little room for rounding.
+// The limits of a calibration file, with a little room for rounding.
 constexpr double kLeastHalfRange = 0.1001, kGreatestCentre = 0.89;
 constexpr double kGreatestInner = 0.89, kLeastSpan = 0.0501, kGreatestOuter = 0.95;
 
 constexpr double kLeastInner = 0.05;         // raw; a good stick returns within 5 %
-constexpr double kAssumedHysteresis = 0.05;  // raw, of a stick that was let go only once
-// Of noise in two directions one report in four million is further out; less than 1 in 20,000 where
-// the measured sigma is 15 % too small.
+constexpr double kAssumedHysteresis = 0.05;  // raw, if the stick was let go only once
+// Two-dimensional noise exceeds 5.5 sigma once in four million reports, and less than once in
+// 20,000 if the measured sigma is 15 % too small.
 constexpr double kSigmasOfRest = 5.5;
-constexpr double kSigmasOfRim = 4.5;  // one report in 300,000 of a stick at its rim is not full
-// From 0.14 on full deflection is less than 0.96 where the sideways zone takes most off it.
+constexpr double kSigmasOfRim = 4.5;  // at the rim one report in 300,000 is not full
+// From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
 constexpr double kLeastSideways = 0.08, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
-constexpr double kSigmasOfWander = 3.0;  // as far as a rest shows it; a walk goes on
+constexpr double kSigmasOfWander = 3.0;  // a rest shows only part of a random walk
 
 // Beyond these no calibration helps.
-constexpr double kUselessZone = 0.3;     // raw; a third of the way does nothing
+constexpr double kUselessZone = 0.3;     // raw; the stick would do nothing for a third of its way
 constexpr double kUselessReach = 0.5;    // raw, from the centre
-constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel at the least reach
-constexpr double kUselessDrift = 0.002;  // raw a second: out of a zone of 0.1 within a minute
-constexpr double kUselessWander = 0.02;  // raw, within seconds: a minute leaves any zone
-constexpr double kDriftTold_s = 5.0;     // at rest, of a stick that was never let go twice
-constexpr int kUselessStuck = 2;         // once may be a lost report
+constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel of the shortest usable reach
+constexpr double kUselessDrift = 0.002;  // raw a second: leaves a zone of 0.1 within a minute
+constexpr double kUselessWander = 0.02;  // raw, within seconds; within a minute it leaves any zone
+constexpr double kDriftSure_s = 5.0;     // at rest, if the stick was let go only once
+constexpr int kUselessStuck = 2;         // a single one may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
-constexpr double kWornSteps = 1.5;  // noise of fewer steps is the steps'
+constexpr double kWornSteps = 1.5;  // smaller noise comes from the steps
 constexpr int kWornJumps = 3;
 
 struct Side {
@@ -80,14 +80,13 @@ double least_half(const StickCalibration& c) noexcept {
   return std::min(least_half(c.x), least_half(c.y));
 }
 
-// The smallest deflection, centred and ranged, of all directions of the outline that were seen;
-// 1 where none was.
+// The smallest deflection, after centre and range, over the directions of the outline that were
+// seen; 1 if there are none.
 double least_deflection(const Outline& outline, const StickCalibration& c) noexcept {
   double least = 1.0;
   for (int k = 0; k < kOutlineDirections; ++k) {
-    const double radius = outline.radius[static_cast<std::size_t>(k)];
-    if (radius <= 0.0) continue;
-    const vec2 p = outline.middle + radius * unit_vector(k * kOutlineSpacing);
+    if (outline.radius[static_cast<std::size_t>(k)] <= 0.0) continue;
+    const vec2 p = point_of(outline, k);
     const auto ranged = [](const AxisCalibration& axis, double raw) {
       const double off = raw - axis.centre;
       return off / (off < 0.0 ? axis.centre - axis.min : axis.max - axis.centre);
@@ -102,12 +101,12 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   StickCalibration& c = advice.calibration;
   const double half = least_half(c), sigma = greatest_sigma(s);
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
-  // Where there is little hysteresis the formula leaves out too much of the noise, and all wander.
+  // With little hysteresis that formula covers too little of the noise, and it ignores wander.
   const double rest = std::max(advice.inner_zone, 0.5 * hysteresis_of(s) + kSigmasOfRest * sigma +
                                                       kSigmasOfWander * s.wander);
   c.inner = std::min(rest / half, kGreatestInner);
   const double margin = (kSigmasOfRim * sigma + step_of(s)) / half;
-  // Where so much is noise that the rim is hardly beyond the inner zone the verdict says so.
+  // If noise leaves hardly any rim beyond the inner zone, the verdict says so.
   c.outer =
       std::clamp(least_deflection(s.outline, c) - margin, c.inner + kLeastSpan, kGreatestOuter);
   advice.outer_zone = c.outer * half;
@@ -122,8 +121,8 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   Reasons reasons;
   const double drift = s.drift_per_s.value_or(0.0);
   // A short rest alone may have been a thumb that lay on the stick.
-  const bool is_told = s.rests.size() > 1 || s.rest_s >= kDriftTold_s;
-  if (drift > kUselessDrift && is_told) {
+  const bool is_sure = s.rests.size() > 1 || s.rest_s >= kDriftSure_s;
+  if (drift > kUselessDrift && is_sure) {
     reasons.push_back(fmt::format(
         "it drifts by {:.3f} a second while nobody touches it, which no dead zone cures", drift));
   }
@@ -207,7 +206,7 @@ std::string good(const StickStatistics& s) {
   return text + fmt::format(" and it reaches {:.2f} or more to every side", least);
 }
 
-// `opening` and the reasons, with a capital letter.
+// `opening` and the reasons as one sentence with a capital letter.
 std::string sentence(std::string_view opening, const Reasons& reasons) {
   std::string text(opening);
   for (std::size_t i = 0; i < reasons.size(); ++i) {
@@ -274,8 +273,9 @@ StickAdvice stick_advice(const StickStatistics& statistics, const StickFrame& fr
   return advice;
 }
 
-// A spring does not bring a trigger back to the same place each time, and a finger does not always
-// press to the end: 2 % of the travel at either end. Less than a quarter of the range is no travel.
+// A spring does not return a trigger to the same place each time, and a finger does not always
+// press to the end: 2 % of the travel is left out at either end. Less than a quarter of the range
+// is no travel.
 TriggerCalibration trigger_advice(const TriggerStatistics& statistics) noexcept {
   constexpr double kSlack = 0.02, kLeastTravel = 0.25;
   const TriggerCalibration plain;
@@ -307,9 +307,9 @@ vec2 step_in_frame(const PadLayout& layout, int side, const StickFrame& frame) {
   return glm::abs(in_frame(frame, vec2(declared_step(layout, x), declared_step(layout, y))));
 }
 
-// The zones of an untried stick are wide; a range from an earlier day still fits around the new
-// centre, as long as it surrounds it.
-void take_centre(const StickCalibration& advice, StickCalibration& calibration) {
+// Takes the new centre and inner zone of a stick that was never turned, and keeps the range of the
+// earlier calibration if it surrounds the new centre.
+void update_centre(const StickCalibration& advice, StickCalibration& calibration) {
   const auto take = [](double centre, AxisCalibration& axis) {
     constexpr double kLeastHalfRange = 0.25;
     if (centre - axis.min < kLeastHalfRange || axis.max - centre < kLeastHalfRange) axis = {};
@@ -325,7 +325,7 @@ void take_centre(const StickCalibration& advice, StickCalibration& calibration) 
   calibration.outer = std::max(calibration.outer, calibration.inner + 0.05);
 }
 
-// A file is for people, too: 0.00001 is a third of a step of 16 bits.
+// Rounded for readers of the file: 0.00001 is a third of a step of 16 bits.
 double readable(double value) noexcept { return std::round(value * 1e5) / 1e5 + 0.0; }
 
 void make_readable(StickCalibration& c) noexcept {
@@ -383,7 +383,7 @@ void take_advice(const PadAnalysis& analysis, CalibrationFile& file) {
       if (is_turned(stick->statistics)) {
         *sticks[i] = stick->advice.calibration;
       } else {
-        take_centre(stick->advice.calibration, *sticks[i]);
+        update_centre(stick->advice.calibration, *sticks[i]);
       }
       make_readable(*sticks[i]);
       file.measured[i] = measured(stick->statistics);

@@ -3,491 +3,44 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-
-#include "stick/statistics.h"
-#include "stick/stick_track.h"
 
 namespace gaitpad {
 
 namespace {
 
-constexpr double kFarthestHome = 0.5;  // raw; a stick that rests farther out looks held
+// ---- Single rests: points, trends, noise
 
-struct Box {
-  vec2 middle{0.0}, half{0.0};
-};
-
-std::optional<Box> box_of(std::span<const StickTrack> tracks) noexcept {
-  vec2 least(1e9), most(-1e9);
-  for (const StickTrack& track : tracks) {
-    for (const StickSample& sample : track) {
-      least = glm::min(least, sample.raw);
-      most = glm::max(most, sample.raw);
-    }
-  }
-  if (least.x > most.x) return {};
-  return Box{0.5 * (least + most), 0.5 * (most - least)};
-}
-
-// Places are told apart on a grid over +-kFarthestHome; neighbours within 0.19 are one place, so
-// that the rests of a stick that drifts, or returns badly, hang together.
-class Places {
- public:
-  void add(const Still& still) {
-    const std::size_t bin = bin_of(still.mean);
-    seen_[bin] += std::min(still.duration_s, 0.5);
-    sum_[bin] += still.mean;
-    count_[bin] += 1.0;
-  }
-  // Numbers the places and finds the best: often visited, near the middle.
-  void choose() {
-    double best = 0.0;
-    for (int bin = 0; bin < kBins * kBins; ++bin) {
-      if (count_[bin] == 0.0 || place_[bin] != 0) continue;
-      const double score = flood(bin);
-      if (score > best) {
-        best = score;
-        home_ = places_;
-      }
-    }
-  }
-  bool is_home(const Still& still) const {
-    return is_inside(still.mean) && home_ != 0 && place_[bin_of(still.mean)] == home_;
-  }
-  static bool is_inside(const vec2& p) {
-    return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestHome;
-  }
-
- private:
-  static constexpr int kBins = 16, kReach = 3;
-  static std::size_t bin_of(const vec2& p) {
-    const auto index = [](double x) {
-      return std::clamp(static_cast<int>((x / kFarthestHome + 1.0) * 0.5 * kBins), 0, kBins - 1);
-    };
-    return static_cast<std::size_t>(index(p.y) * kBins + index(p.x));
-  }
-  // Gives the place of a bin its number and returns how good a home it is.
-  double flood(int first) {
-    ++places_;
-    std::vector<int> open{first};
-    place_[first] = places_;
-    double seen = 0.0, count = 0.0;
-    vec2 sum(0.0);
-    while (!open.empty()) {
-      const int bin = open.back();
-      open.pop_back();
-      seen += seen_[bin];
-      sum += sum_[bin];
-      count += count_[bin];
-      for (int y = bin / kBins - kReach; y <= bin / kBins + kReach; ++y) {
-        for (int x = bin % kBins - kReach; x <= bin % kBins + kReach; ++x) {
-          if (x < 0 || y < 0 || x >= kBins || y >= kBins) continue;
-          const int next = y * kBins + x;
-          if (count_[next] == 0.0 || place_[next] != 0) continue;
-          place_[next] = places_;
-          open.push_back(next);
-        }
-      }
-    }
-    const vec2 middle = sum / count / 0.25;  // worn sticks rest up to that far off
-    return seen * std::exp(-glm::dot(middle, middle));
-  }
-
-  std::array<double, kBins * kBins> seen_{}, count_{};
-  std::array<vec2, kBins * kBins> sum_{};
-  std::array<int, kBins * kBins> place_{};
-  int places_ = 0, home_ = 0;
-};
-
-// Of a stick that was turned round, which lies well inside of where it went.
-bool may_be_home(const Still& still, const std::optional<Box>& turned) noexcept {
-  if (!Places::is_inside(still.mean)) return false;
-  if (!turned) return true;
-  const vec2 off = (still.mean - turned->middle) / turned->half;
-  return glm::length(off) < 0.6;
-}
-
-// Where the stick went, if it went all the way round.
-std::optional<Box> turned_box(std::span<const StickTrack> tracks) {
-  const std::optional<Box> box = box_of(tracks);
-  if (!box) return {};
-  const double least_half = std::min(box->half.x, box->half.y);
-  if (least_half <= 0.2 || whole_turns(tracks, box->middle, 0.6 * least_half) == 0) return {};
-  return box;
-}
-
-double farthest_from(const vec2& home, std::span<const StickTrack> tracks) noexcept {
-  double farthest = 0.5;
-  for (const StickTrack& track : tracks) {
-    for (const StickSample& sample : track) {
-      farthest = std::max(farthest, glm::length(sample.raw - home));
-    }
-  }
-  return farthest;
-}
-
-}  // namespace
-
-Stills sorted_stills(std::span<const StickTrack> tracks, std::span<const Still> found) {
-  const std::optional<Box> turned = turned_box(tracks);
-  Places places;
-  for (const Still& still : found) {
-    if (may_be_home(still, turned)) places.add(still);
-  }
-  places.choose();
-  Stills sorted;
-  vec2 home(0.0);
+// A position and the number of reports that it stands for. Time counts from the middle of its
+// track.
+struct RestPoint {
+  double time_s = 0.0;
+  vec2 place{0.0};
   double weight = 0.0;
-  for (const Still& still : found) {
-    if (!places.is_home(still) || !may_be_home(still, turned)) continue;
-    sorted.rests.push_back(still);
-    home += still.duration_s * still.mean;
-    weight += still.duration_s;
-  }
-  if (weight > 0.0) home /= weight;
-  const double reach = farthest_from(home, tracks);
-  for (const Still& still : found) {
-    if (glm::length(still.mean - home) >= 0.5 * reach && !places.is_home(still)) {
-      sorted.pushes.push_back(still);
-    }
-  }
-  return sorted;
-}
-
-namespace {
-
-constexpr double kCell_s = 0.02;
-constexpr std::size_t kMostCells = 86400 * 50;  // a day, of all tracks together
-// A place is still if the means of the 0.1 s before and behind it are the same.
-constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // cells
-constexpr std::size_t kShortestStill = 5;                          // cells
-// The window's last half sees a push before it comes; so much of it is still rest.
-constexpr std::size_t kWindowsLead = kHalfWindow - 1;
-// Of the first half so much counts; the rest, with the margin, is settling.
-constexpr std::size_t kWindowsLag = 2;
-constexpr std::size_t kMargin = 2;   // cells
-constexpr double kSlow = 0.006;      // raw, from one half of a window to the other: 0.06 a second
-constexpr double kNoiseLimit = 4.5;  // standard deviations
-constexpr double kUnseen = 0.0012;   // raw, from cell to cell: drift
-constexpr double kNudge = 0.03;      // raw
-
-// 20 ms of a track. Weights are reports, see reports_stood().
-struct Cell {
-  std::int64_t begin_ns = 0;
-  std::size_t sample = 0;  // the one in force when it begins
-  double weight = 0.0;
-  vec2 sum{0.0};
-  double change = 0.0;  // squares of the steps between its reports, summed
-  vec2 mean() const noexcept { return sum / weight; }
-  double variance() const noexcept { return 0.5 * change / weight; }  // of one report, both axes
 };
 
-void add(Cell& to, const Cell& cell) noexcept {
-  to.weight += cell.weight;
-  to.sum += cell.sum;
-  to.change += cell.change;
-}
-
-std::vector<Cell> cells_of(const StickTrack& track, double interval_s, std::size_t most) {
-  std::vector<Cell> cells;
-  double left_s = 0.0;  // of the last cell
-  for (std::size_t i = 0; i < track.size(); ++i) {
-    const double stood_s = hold_s(track, i, interval_s);
-    const double weight = reports_stood(stood_s, interval_s);
-    double done_s = 0.0;
-    do {
-      if (left_s <= 1e-9) {
-        if (cells.size() == most) return cells;
-        cells.push_back(
-            {.begin_ns = track[i].time_ns + static_cast<std::int64_t>(done_s * 1e9), .sample = i});
-        left_s = kCell_s;
-      }
-      const double part_s = std::min(stood_s - done_s, left_s);
-      const double part = stood_s > 0.0 ? weight * part_s / stood_s : weight;
-      cells.back().weight += part;
-      cells.back().sum += part * track[i].raw;
-      if (done_s == 0.0 && i > 0) {
-        const vec2 step = track[i].raw - track[i - 1].raw;
-        cells.back().change += glm::dot(step, step);
-      }
-      done_s += part_s;
-      left_s -= part_s;
-    } while (done_s < stood_s - 1e-9);
-  }
-  return cells;
-}
-
-// What is no movement on this stick.
-struct Limits {
-  double slow = kSlow;     // raw, between the halves of a window; a code that flips is no movement
-  double code = kUnseen;   // raw, from cell to cell
-  std::size_t margin = 1;  // cells at a rest's ends, since a movement begins in the noise
+// Straight line through points by least squares; slope 0 if they have no extent in time.
+struct RestTrend {
+  RestPoint mean;
+  vec2 slope{0.0};      // per second
+  double spread = 0.0;  // sum of weight times squared time from the mean
+  vec2 at(double time_s) const noexcept { return mean.place + slope * (time_s - mean.time_s); }
 };
 
-// Few reports tell their noise badly: the factor on its square that is allowed for. Still fewer
-// would let a movement pass for noise.
-double doubt(double reports) noexcept {
-  return reports > 4.0 ? 1.0 + std::min(6.0 / reports, 1.0) : 1.0;
-}
-
-// Whether the window of cells that begins at `first` shows one place but for noise. The noise is
-// that of neighbouring reports: a movement's own steps are too small to hide it.
-bool is_still(std::span<const Cell> cells, std::size_t first, const Limits& limits) noexcept {
-  Cell before, after;
-  for (std::size_t k = 0; k < kHalfWindow; ++k) {
-    add(before, cells[first + k]);
-    add(after, cells[first + kHalfWindow + k]);
-  }
-  const double weight = before.weight + after.weight;
-  // A movement that begins or ends here is in one half.
-  const double variance = std::min(before.variance(), after.variance());
-  const double limit =
-      kNoiseLimit * kNoiseLimit * variance * doubt(std::min(before.weight, after.weight));
-  const vec2 moved = after.mean() - before.mean();
-  if (glm::dot(moved, moved) >
-      std::max(limits.slow * limits.slow, limit * (1.0 / before.weight + 1.0 / after.weight))) {
-    return false;
-  }
-  // Turning fast comes back to where it was.
-  const vec2 middle = (before.sum + after.sum) / weight;
-  for (std::size_t k = first; k < first + kWindow; ++k) {
-    const vec2 off = cells[k].mean() - middle;
-    const double noise = 2.0 * limit / std::max(cells[k].weight, 1.0);
-    if (glm::dot(off, off) > std::max(4.0 * limits.slow * limits.slow, noise)) return false;
-  }
-  return true;
-}
-
-struct Run {
-  std::size_t begin = 0, end = 0;  // cells
+// Squared deviations from trends over pieces of a second, without spikes: slow movement does not
+// count as noise, rounding does.
+struct RestNoise {
+  vec2 squares{0.0};
+  double freedom = 0.0;
+  vec2 variance() const noexcept { return freedom > 0.0 ? squares / freedom : vec2(0.0); }
 };
-
-// A rare extreme of the noise cuts no rest in two, nor do the small steps of a stick that wanders.
-bool is_same_place(std::span<const Cell> cells, const Run& a, const Run& b) noexcept {
-  if (b.begin > a.end + kWindow) return false;
-  Cell one, other;
-  for (std::size_t k = a.end; k > a.begin && k + kWindow > a.end; --k) add(one, cells[k - 1]);
-  for (std::size_t k = b.begin; k < b.end && k < b.begin + kWindow; ++k) add(other, cells[k]);
-  const vec2 place = one.mean();
-  if (glm::length(other.mean() - place) > kNudge) return false;
-  const double variance = std::max(one.variance(), other.variance());
-  for (std::size_t k = a.end; k < b.begin; ++k) {
-    const vec2 off = cells[k].mean() - place;
-    const double noise = 36.0 * variance / std::max(cells[k].weight, 1.0);
-    if (glm::dot(off, off) > std::max(kNudge * kNudge, noise)) return false;
-  }
-  return true;
-}
-
-// Of one report, both axes: the middle one of the run's parts, so that a spike, or a movement at an
-// end, does not count.
-double usual_variance(std::span<const Cell> cells, const Run& run) {
-  std::vector<double> variances;
-  Cell part;
-  for (std::size_t first = run.begin; first < run.end; first += kHalfWindow) {
-    part = {};
-    const std::size_t end = std::min(first + kHalfWindow, run.end);
-    for (std::size_t k = first; k < end; ++k) add(part, cells[k]);
-    variances.push_back(part.variance());
-  }
-  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>((variances.size() - 1) / 2);
-  std::nth_element(variances.begin(), middle, variances.end());
-  return *middle;
-}
-
-// Goes from a run's inside outwards, to where a cell is not like the five before it: the windows
-// do not see where exactly a movement begins. `step` is 1 or -1; returns the last good cell.
-std::size_t edge_of(std::span<const Cell> cells, const Run& run, int step, double variance,
-                    const Limits& limits) {
-  const std::size_t length = run.end - run.begin;
-  const std::size_t inside = std::min<std::size_t>((length + 1) / 2, 2 * kWindow);
-  const std::size_t outermost = step > 0 ? run.end - 1 : run.begin;
-  std::size_t at = step > 0 ? run.end - inside : run.begin + inside - 1;
-  while (at != outermost) {
-    const std::size_t next = step > 0 ? at + 1 : at - 1;
-    Cell inner;
-    for (std::size_t k = 0; k < kHalfWindow; ++k) {
-      const std::size_t cell = step > 0 ? at - std::min(at - run.begin, k) : at + k;
-      if (cell >= run.end) break;
-      add(inner, cells[cell]);
-    }
-    const vec2 off = cells[next].mean() - inner.mean();
-    const double noise =
-        std::sqrt(variance * (1.0 / std::max(cells[next].weight, 1.0) + 1.0 / inner.weight));
-    if (glm::length(off) > kNoiseLimit * noise + limits.code) break;
-    at = next;
-  }
-  return at;
-}
-
-// Cells whose windows are still, those at one place together.
-std::vector<Run> still_windows(std::span<const Cell> cells, const Limits& limits) {
-  std::vector<Run> runs;
-  if (cells.size() < kWindow) return runs;
-  const std::size_t last = cells.size() - kWindow;  // where the last window begins
-  Run run;
-  const auto end_run = [&] {
-    if (run.begin == run.end) return;
-    if (!runs.empty() && is_same_place(cells, runs.back(), run)) {
-      runs.back().end = run.end;
-    } else {
-      runs.push_back(run);
-    }
-  };
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    const std::size_t window = std::clamp(c, kHalfWindow, last + kHalfWindow) - kHalfWindow;
-    const bool is_in = is_still(cells, window, limits);
-    if (is_in && run.end == c) {
-      ++run.end;
-    } else if (is_in) {
-      end_run();
-      run = {c, c + 1};
-    }
-  }
-  end_run();
-  return runs;
-}
-
-// To where the stick began to move, and a little back.
-Run trimmed(std::span<const Cell> cells, const Run& run, const Limits& limits) {
-  const double reports = 0.5 * cells[run.begin].weight * static_cast<double>(run.end - run.begin);
-  const double variance = doubt(reports) * usual_variance(cells, run);
-  Run edges{edge_of(cells, run, -1, variance, limits),
-            edge_of(cells, run, 1, variance, limits) + 1};
-  const std::size_t margin = std::min(limits.margin, (edges.end - edges.begin) / 4);
-  if (edges.begin > 0) edges.begin += margin;
-  if (edges.end < cells.size()) edges.end -= margin;
-  return edges;
-}
-
-std::vector<Run> still_runs(std::span<const Cell> cells, const Limits& limits) {
-  const std::vector<Run> windows = still_windows(cells, limits);
-  std::vector<Run> runs;
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    // What lies between two places belongs to neither.
-    const std::size_t least = i == 0 ? 0 : (windows[i - 1].end + windows[i].begin + 1) / 2;
-    const std::size_t most =
-        i + 1 == windows.size() ? cells.size() : (windows[i].end + windows[i + 1].begin) / 2;
-    Run run = windows[i];
-    run.begin = std::max(run.begin - std::min(run.begin, kWindowsLag), least);
-    run.end = std::min(run.end + kWindowsLead, most);
-    run = trimmed(cells, run, limits);
-    if (run.end - run.begin >= kShortestStill) runs.push_back(run);
-  }
-  return runs;
-}
-
-Still still_of(const StickTrack& track, std::size_t index, std::span<const Cell> cells,
-               const Run& run) {
-  Cell sum;
-  for (std::size_t k = run.begin; k < run.end; ++k) add(sum, cells[k]);
-  const Cell& final = cells[run.end - 1];
-  Still still{.track = index,
-              .first = cells[run.begin].sample,
-              .last = final.sample,
-              .begin_ns = cells[run.begin].begin_ns,
-              .end_ns = final.begin_ns + static_cast<std::int64_t>(kCell_s * 1e9),
-              .duration_s = kCell_s * static_cast<double>(run.end - run.begin),
-              .mean = sum.mean()};
-  while (still.last + 1 < track.size() && track[still.last + 1].time_ns < still.end_ns) {
-    ++still.last;
-  }
-  return still;
-}
-
-Limits limits_of(std::span<const StickTrack> tracks, const vec2& declared_step, double interval_s) {
-  const double step = std::max(quantisation_step(tracks, 0, declared_step.x),
-                               quantisation_step(tracks, 1, declared_step.y));
-  const double code = std::min(step, 0.05);
-  const double margin = std::ceil(3.0 * interval_s / kCell_s);
-  return {.slow = std::max(kSlow, 1.5 * code),
-          .code = std::max(kUnseen, 1.2 * code),
-          .margin = static_cast<std::size_t>(std::clamp(margin, 1.0, 5.0))};
-}
-
-std::vector<Still> all_stills(std::span<const StickTrack> tracks, const vec2& declared_step) {
-  const double interval_s = typical_interval_s(tracks);
-  const Limits limits = limits_of(tracks, declared_step, interval_s);
-  std::vector<Still> found;
-  std::size_t left = kMostCells;
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    const std::vector<Cell> cells = cells_of(tracks[t], interval_s, left);
-    left -= cells.size();
-    for (const Run& run : still_runs(cells, limits)) {
-      found.push_back(still_of(tracks[t], t, cells, run));
-    }
-  }
-  return found;
-}
-
-}  // namespace
-
-Stills stills(std::span<const StickTrack> raw_tracks, const vec2& declared_step) {
-  const std::vector<StickTrack> tracks = clean_tracks(raw_tracks).tracks;
-  return sorted_stills(tracks, all_stills(tracks, declared_step));
-}
-
-namespace {
 
 constexpr double kPart_s = 0.02, kPiece_s = 1.0;
-constexpr double kFewestReports = 8.0;  // that tell of noise
+constexpr double kFewestReports = 8.0;  // for an estimate of noise
 constexpr double kSpike = 4.5;          // standard deviations
 
 double time_s(const StickTrack& track, std::int64_t time_ns) noexcept {
   const double whole_s = seconds_between(track.front().time_ns, track.back().time_ns);
   return seconds_between(track.front().time_ns, time_ns) - 0.5 * whole_s;
-}
-
-RestNoise noise_about(const RestTrend& line, std::span<const RestPoint> points) noexcept {
-  RestNoise noise;
-  for (const RestPoint& point : points) {
-    const vec2 off = point.place - line.at(point.time_s);
-    noise.squares += point.weight * off * off;
-    noise.freedom += point.weight;
-  }
-  noise.freedom = std::max(noise.freedom - 2.0, 0.0);
-  return noise;
-}
-
-// Leaves out what lies far from the line through all; returns whether there was any.
-bool take_spikes_out(std::vector<RestPoint>& points) {
-  const RestTrend line = rest_trend(points);
-  const RestNoise noise = noise_about(line, points);
-  if (noise.freedom < kFewestReports) return false;
-  const vec2 limit = kSpike * kSpike * noise.variance();
-  return std::erase_if(points, [&](const RestPoint& point) {
-           const vec2 off = point.place - line.at(point.time_s);
-           return off.x * off.x > limit.x || off.y * off.y > limit.y;
-         }) > 0;
-}
-
-RestNoise piece_noise(std::vector<RestPoint> points) {
-  take_spikes_out(points);
-  const RestNoise noise = noise_about(rest_trend(points), points);
-  return noise.freedom < kFewestReports ? RestNoise{} : noise;
-}
-
-}  // namespace
-
-std::vector<RestPoint> rest_points(std::span<const StickTrack> tracks, const Still& still,
-                                   double interval_s) {
-  const StickTrack& track = tracks[still.track];
-  const double begin_s = time_s(track, still.begin_ns), end_s = time_s(track, still.end_ns);
-  std::vector<RestPoint> points;
-  for (std::size_t i = still.first; i <= still.last; ++i) {
-    const double stood_s = hold_s(track, i, interval_s);
-    const double weight = reports_stood(stood_s, interval_s);
-    const double from_s = time_s(track, track[i].time_ns);
-    const int parts = std::max(static_cast<int>(std::ceil(stood_s / kPart_s)), 1);
-    for (int k = 0; k < parts; ++k) {
-      const double at_s = from_s + stood_s * (k + 0.5) / parts;
-      if (parts > 1 && (at_s < begin_s || at_s > end_s)) continue;
-      points.push_back({at_s, track[i].raw, weight / parts});
-    }
-  }
-  take_spikes_out(points);
-  return points;
 }
 
 RestTrend rest_trend(std::span<const RestPoint> points) noexcept {
@@ -510,6 +63,57 @@ RestTrend rest_trend(std::span<const RestPoint> points) noexcept {
   return line;
 }
 
+RestNoise noise_about(const RestTrend& line, std::span<const RestPoint> points) noexcept {
+  RestNoise noise;
+  for (const RestPoint& point : points) {
+    const vec2 off = point.place - line.at(point.time_s);
+    noise.squares += point.weight * off * off;
+    noise.freedom += point.weight;
+  }
+  noise.freedom = std::max(noise.freedom - 2.0, 0.0);
+  return noise;
+}
+
+// Leaves out what lies far from the line through all points.
+void remove_spikes(std::vector<RestPoint>& points) {
+  const RestTrend line = rest_trend(points);
+  const RestNoise noise = noise_about(line, points);
+  if (noise.freedom < kFewestReports) return;
+  const vec2 limit = kSpike * kSpike * noise.variance();
+  std::erase_if(points, [&](const RestPoint& point) {
+    const vec2 off = point.place - line.at(point.time_s);
+    return off.x * off.x > limit.x || off.y * off.y > limit.y;
+  });
+}
+
+RestNoise piece_noise(std::vector<RestPoint> points) {
+  remove_spikes(points);
+  const RestNoise noise = noise_about(rest_trend(points), points);
+  return noise.freedom < kFewestReports ? RestNoise{} : noise;
+}
+
+// The still's samples in the order of time, long holds in parts of 20 ms, without spikes. Tracks
+// are clean ones.
+std::vector<RestPoint> rest_points(std::span<const StickTrack> tracks, const Still& still,
+                                   double interval_s) {
+  const StickTrack& track = tracks[still.track];
+  const double begin_s = time_s(track, still.begin_ns), end_s = time_s(track, still.end_ns);
+  std::vector<RestPoint> points;
+  for (std::size_t i = still.first; i <= still.last; ++i) {
+    const double stood_s = hold_s(track, i, interval_s);
+    const double weight = reports_stood(stood_s, interval_s);
+    const double from_s = time_s(track, track[i].time_ns);
+    const int parts = std::max(static_cast<int>(std::ceil(stood_s / kPart_s)), 1);
+    for (int k = 0; k < parts; ++k) {
+      const double at_s = from_s + stood_s * (k + 0.5) / parts;
+      if (parts > 1 && (at_s < begin_s || at_s > end_s)) continue;
+      points.push_back({at_s, track[i].raw, weight / parts});
+    }
+  }
+  remove_spikes(points);
+  return points;
+}
+
 void add_noise(RestNoise& noise, std::span<const RestPoint> points) {
   if (points.empty()) return;
   const double begin_s = points.front().time_s;
@@ -530,6 +134,7 @@ void add_noise(RestNoise& noise, std::span<const RestPoint> points) {
   }
 }
 
+// Means over `count` equal parts of the time; parts without points are left out.
 std::vector<RestPoint> rest_blocks(std::span<const RestPoint> points, int count) {
   std::vector<RestPoint> blocks(static_cast<std::size_t>(std::max(count, 1)));
   if (points.empty()) return {};
@@ -550,14 +155,24 @@ std::vector<RestPoint> rest_blocks(std::span<const RestPoint> points, int count)
   return blocks;
 }
 
-namespace {
+// ---- Releases
+
+constexpr double kReleaseMovement = 0.2;  // raw; less movement between two rests is no release
+
+// A rest between two movements. Rests that noise or a touch cut in two belong to one release.
+struct Release {
+  std::vector<Still> stills;  // at one place, in the order of time
+  std::size_t track = 0;
+  RestPoint rest;  // mean of all; weight: reports
+  vec2 from{0.0};  // unit, the side from which the stick returned; 0: not seen
+};
 
 constexpr double kSamePlace = 0.02;
-constexpr double kOdd = 0.005;          // raw; what is less far off does no harm
-constexpr std::size_t kMostTried = 64;  // releases, one by one left out
+constexpr double kOdd = 0.005;          // raw; less does no harm
+constexpr std::size_t kMostTried = 64;  // releases that are left out one by one
 
-// The way from one rest to the next: how far it led, from where it came back. Both 0 where the
-// stick hardly moved, or only for a report or two.
+// The way from one rest to the next: how far it went and from which side it returned (unit). Both
+// are 0 if the stick hardly moved, or only for a report or two.
 struct Excursion {
   double farthest = 0.0;
   vec2 from{0.0};
@@ -575,8 +190,8 @@ Excursion excursion(const StickTrack& track, std::size_t first, const Still& to,
     way.farthest = std::max(way.farthest, distance);
   }
   if (away < kFewestReports) return {};
-  // The spring brings it back in a straight line, but may swing over: the side is where it was last
-  // half way out.
+  // The spring brings it back in a straight line but may overshoot: the side is that on which the
+  // stick was last half way out.
   for (std::size_t i = to.first; i > first; --i) {
     const vec2 off = track[i - 1].raw - to.mean;
     if (glm::length(off) < 0.5 * way.farthest) continue;
@@ -586,7 +201,7 @@ Excursion excursion(const StickTrack& track, std::size_t first, const Still& to,
   return way;
 }
 
-// The longest of the stills and those at its place.
+// One release from the longest of the stills and those at its place.
 Release release_of(std::span<const StickTrack> tracks, std::span<const Still> stills,
                    double interval_s) {
   const Still& longest =
@@ -607,9 +222,41 @@ Release release_of(std::span<const StickTrack> tracks, std::span<const Still> st
   return release;
 }
 
-// ---- explaining the places ----
+std::vector<Release> releases_of(std::span<const StickTrack> tracks, std::span<const Still> rests,
+                                 double interval_s) {
+  const auto way_to = [&](std::size_t k) {
+    const bool is_first = k == 0 || rests[k - 1].track != rests[k].track;
+    return excursion(tracks[rests[k].track], is_first ? 0 : rests[k - 1].last + 1, rests[k],
+                     interval_s);
+  };
+  std::vector<Release> releases;
+  for (std::size_t first = 0, end; first < rests.size(); first = end) {
+    end = first + 1;
+    while (end < rests.size() && rests[end].track == rests[first].track &&
+           way_to(end).from == vec2(0.0)) {
+      ++end;
+    }
+    releases.push_back(release_of(tracks, rests.subspan(first, end - first), interval_s));
+    releases.back().from = way_to(first).from;
+  }
+  return releases;
+}
 
-// One release with what may explain its place, without the means of its track.
+// ---- Explaining where it rests
+
+// Rests explained by the side of the release and by drift:
+// place = home + returns * from + drift * time. Each track has its own home.
+struct ReturnModel {
+  std::vector<bool> counts;  // of each release; odd ones and those without `from` do not count
+  int used = 0;
+  vec2 home{0.0};          // mean over the releases used
+  vec2 drift{0.0};         // per second; 0 unless it was asked for
+  double residual = 0.0;   // sum of squares, both axes
+  double spread_s2 = 0.0;  // of the times: the part that `from` does not explain
+};
+enum class Explain { home, returns, returns_and_drift };
+
+// One release and what may explain its place, relative to the means of its track.
 struct Row {
   std::array<double, 3> cause{};  // from.x, from.y, time
   vec2 place{0.0};
@@ -621,9 +268,9 @@ struct Solution {
   double spread_s2 = 0.0;
 };
 
-// Least squares of both axes on the causes that are asked for; a trace of ridge where they hardly
-// differ.
-Solution solved(std::span<const Row> rows, std::size_t first, std::size_t last) {
+// Least squares of both axes on the causes first .. last - 1; a little ridge keeps it solvable if
+// the causes hardly differ.
+Solution solve(std::span<const Row> rows, std::size_t first, std::size_t last) {
   std::array<std::array<double, 3>, 3> a{};
   std::array<vec2, 3> b{};
   for (const Row& row : rows) {
@@ -661,7 +308,7 @@ Row row_of(const Release& release) noexcept {
   return {{release.from.x, release.from.y, release.rest.time_s}, release.rest.place};
 }
 
-// Releases of a track stand beside each other.
+// Rows relative to the mean of their track; releases of one track are neighbours.
 std::vector<Row> centred_rows(std::span<const Release> releases, const std::vector<bool>& counts) {
   std::vector<Row> rows;
   for (std::size_t first = 0, end; first < releases.size(); first = end) {
@@ -684,21 +331,21 @@ std::vector<Row> centred_rows(std::span<const Release> releases, const std::vect
   return rows;
 }
 
-Solution solved(std::span<const Release> releases, const std::vector<bool>& counts,
-                Explain explain) {
+Solution solve(std::span<const Release> releases, const std::vector<bool>& counts,
+               Explain explain) {
   const std::vector<Row> rows = centred_rows(releases, counts);
   const std::size_t first = explain == Explain::home ? 2 : 0;
-  return solved(rows, first, explain == Explain::returns_and_drift ? 3 : 2);
+  return solve(rows, first, explain == Explain::returns_and_drift ? 3 : 2);
 }
 
 int count_of(const std::vector<bool>& counts) {
   return static_cast<int>(std::count(counts.begin(), counts.end(), true));
 }
 
-// Leaves out the release without which the others agree best, if that is a great deal better.
+// Leaves out the release without which the others agree best, if they then agree far better.
 bool leave_odd_out(std::span<const Release> releases, Explain explain, double noise,
                    std::vector<bool>& counts) {
-  const double before = solved(releases, counts, explain).residual;
+  const double before = solve(releases, counts, explain).residual;
   const double freedom = 2.0 * (count_of(counts) - 5);
   if (freedom < 4.0) return false;
   double best = before;
@@ -706,7 +353,7 @@ bool leave_odd_out(std::span<const Release> releases, Explain explain, double no
   for (std::size_t i = 0; i < releases.size(); ++i) {
     if (!counts[i]) continue;
     counts[i] = false;
-    const double without = solved(releases, counts, explain).residual;
+    const double without = solve(releases, counts, explain).residual;
     counts[i] = true;
     if (without < best) {
       best = without;
@@ -719,28 +366,8 @@ bool leave_odd_out(std::span<const Release> releases, Explain explain, double no
   return true;
 }
 
-}  // namespace
-
-std::vector<Release> releases_of(std::span<const StickTrack> tracks, std::span<const Still> rests,
-                                 double interval_s) {
-  const auto way_to = [&](std::size_t k) {
-    const bool is_first = k == 0 || rests[k - 1].track != rests[k].track;
-    return excursion(tracks[rests[k].track], is_first ? 0 : rests[k - 1].last + 1, rests[k],
-                     interval_s);
-  };
-  std::vector<Release> releases;
-  for (std::size_t first = 0, end; first < rests.size(); first = end) {
-    end = first + 1;
-    while (end < rests.size() && rests[end].track == rests[first].track &&
-           way_to(end).from == vec2(0.0)) {
-      ++end;
-    }
-    releases.push_back(release_of(tracks, rests.subspan(first, end - first), interval_s));
-    releases.back().from = way_to(first).from;
-  }
-  return releases;
-}
-
+// `noise`: standard deviation of one rest's mean, one axis; odd releases are farther off than that
+// explains.
 ReturnModel return_model(std::span<const Release> releases, Explain explain, double noise) {
   ReturnModel model;
   model.counts.resize(releases.size());
@@ -751,7 +378,7 @@ ReturnModel return_model(std::span<const Release> releases, Explain explain, dou
       if (!leave_odd_out(releases, explain, noise, model.counts)) break;
     }
   }
-  const Solution solution = solved(releases, model.counts, explain);
+  const Solution solution = solve(releases, model.counts, explain);
   model.used = count_of(model.counts);
   model.residual = solution.residual;
   model.drift = solution.effect[2];
@@ -766,12 +393,15 @@ ReturnModel return_model(std::span<const Release> releases, Explain explain, dou
   return model;
 }
 
+// ---- Distances between places
+
+// Middle of the smallest circle round all places; 0 for none.
 vec2 middle_of(std::span<const vec2> places) noexcept {
   if (places.empty()) return vec2(0.0);
   vec2 middle(0.0);
   for (const vec2& place : places) middle += place / static_cast<double>(places.size());
-  // Badoiu and Clarkson: a step towards the farthest, ever smaller; 1 / steps of the radius is
-  // left.
+  // Badoiu and Clarkson: ever smaller steps towards the farthest place. The error is 1 / steps of
+  // the radius.
   const int steps =
       static_cast<int>(std::clamp(1e7 / static_cast<double>(places.size()), 50.0, 1e3));
   for (int k = 1; k <= steps; ++k) {
@@ -784,6 +414,7 @@ vec2 middle_of(std::span<const vec2> places) noexcept {
   return middle;
 }
 
+// Greatest distance between two places, to 0.1 %.
 double greatest_distance(std::span<const vec2> places) noexcept {
   double greatest = 0.0;
   for (int k = 0; k < 64 && !places.empty(); ++k) {
@@ -799,27 +430,27 @@ double greatest_distance(std::span<const vec2> places) noexcept {
   return greatest;
 }
 
-namespace {
+// ---- Evidence
 
 constexpr double kBlock_s = 0.1;
 constexpr double kFewestRestReports = 5.0;
-constexpr double kSettling_s = 1.0;  // some sticks creep home
+constexpr double kSettling_s = 1.0;  // some sticks creep home for a while
 constexpr double kShortestForDrift_s = 0.5;
 constexpr double kSlowestDrift_per_s = 0.0005;
 
-// All that the rests show, before anything is concluded.
+// All that the rests show; drift, centre and noise are concluded from it.
 struct Evidence {
   std::vector<Release> releases;
   RestNoise noise;
   double mean_noise = 0.0;   // standard deviation of a release's mean, one axis
-  double block_noise = 0.0;  // of a block's mean
-  double white_noise = 0.0;  // the same, if all noise were white
+  double block_noise = 0.0;  // of a block's mean, as measured
+  double white_noise = 0.0;  // of a block's mean if all noise were white
   double seconds = 0.0, longest_s = 0.0;
   double weight = 0.0;                         // reports
-  std::vector<std::vector<RestPoint>> blocks;  // by still, of weight 1
-  std::vector<RestPoint> settled;              // blocks of the longest, some time after a release
+  std::vector<std::vector<RestPoint>> blocks;  // by still, each of weight 1
+  std::vector<RestPoint> settled;              // blocks of the longest still, without settling
   double step = 0.0;
-  double step_noise = 0.0;  // of a mean by rounding, where no noise takes it away
+  double step_noise = 0.0;  // of a mean by rounding, unless noise averages it out
 };
 
 void add_still(Evidence& evidence, std::span<const StickTrack> tracks, const Release& release,
@@ -872,18 +503,18 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
     evidence.step_noise = evidence.step / std::sqrt(12.0);
   }
   const double measured = freedom >= 6.0 ? std::sqrt(squares / freedom) : 0.0;
-  // A code that does not flip says only that the place is within a step.
+  // A code that never flips only says that the place is within a step.
   evidence.block_noise = std::max({evidence.white_noise, measured, 0.02 * evidence.step, 1e-7});
   const double blocks_each = blocks / static_cast<double>(evidence.releases.size());
   evidence.mean_noise = evidence.block_noise / std::sqrt(blocks_each);
   return evidence;
 }
 
-// ---- drift ----
+// ---- Drift
 
-// How much likelier the rests are with a trend than without, as a logarithm. Sixteen are one in ten
-// million, and few patterns of chance or of the hand's habits look so much like a line. Where noise
-// explains all that the trend leaves, the noise is the measure, else what it leaves.
+// Logarithm of how much likelier the rests are with a trend than without. 16 is one in ten million:
+// chance and the habits of a hand seldom look so much like a line. If noise explains the residual
+// with the trend, the odds are measured against the noise, else against the residual.
 constexpr double kSure = 16.0, kSureOfOne = 12.0;
 double log_odds(double without, double with, double freedom, double noise) noexcept {
   const double variance = noise * noise;
@@ -893,7 +524,7 @@ double log_odds(double without, double with, double freedom, double noise) noexc
   return std::max(by_what_is_left, 0.5 * (without - with) / variance);
 }
 
-bool is_worth_telling(const Evidence& evidence, const vec2& drift, double seconds, double steps) {
+bool is_worth_reporting(const Evidence& evidence, const vec2& drift, double seconds, double steps) {
   const double speed = glm::length(drift);
   const double noise = std::sqrt(0.5 * (evidence.noise.variance().x + evidence.noise.variance().y) /
                                  std::max(evidence.weight, 1.0));
@@ -903,10 +534,10 @@ bool is_worth_telling(const Evidence& evidence, const vec2& drift, double second
 
 struct Within {
   vec2 drift{0.0};
-  double error = 0.0;  // one standard deviation, one axis; infinite where rests are too short
+  double error = 0.0;  // one standard deviation, one axis; huge if the rests are too short
 };
 
-// The trend that single rests show; where they stand to each other does not matter.
+// The trend within single rests, wherever they are.
 Within within_rests(const Evidence& evidence) {
   Within within;
   double spread = 0.0;
@@ -940,8 +571,8 @@ int tracks_of(std::span<const Release> releases) noexcept {
   return tracks;
 }
 
-// Rests after rests that lie farther and farther to one side, more than the directions from which
-// the stick was let go explain.
+// Drift between rests: they move to one side over time by more than the directions of the releases
+// explain.
 vec2 drift_across_rests(const Evidence& evidence) {
   const auto& releases = evidence.releases;
   const ReturnModel with = return_model(releases, Explain::returns_and_drift, evidence.mean_noise);
@@ -951,16 +582,16 @@ vec2 drift_across_rests(const Evidence& evidence) {
   const double odds = log_odds(without.residual, with.residual, freedom, evidence.mean_noise);
   const double error = evidence.mean_noise / std::sqrt(std::max(with.spread_s2, 1e-12));
   if (odds < kSure || glm::length(with.drift) < 6.0 * error) return vec2(0.0);
-  // A stick that drifts does so while one looks, too.
+  // Real drift also shows within a single rest.
   const Within within = within_rests(evidence);
   const double apart = glm::length(with.drift - within.drift);
   if (apart > 6.0 * within.error && apart > 0.7 * glm::length(with.drift)) return vec2(0.0);
-  if (!is_worth_telling(evidence, with.drift, time_range_s(releases), 1.0)) return vec2(0.0);
+  if (!is_worth_reporting(evidence, with.drift, time_range_s(releases), 1.0)) return vec2(0.0);
   return with.drift;
 }
 
-// Few rests: the longest of them must show a line over eight parts, in its second half as in the
-// whole, since settling ends.
+// Drift within the longest rest, for few releases: a line over eight parts, with the same slope in
+// the second half, because settling ends.
 vec2 drift_within_rest(const Evidence& evidence) {
   const std::span<const RestPoint> blocks = evidence.settled;
   const std::vector<RestPoint> parts = rest_blocks(blocks, 8);
@@ -983,7 +614,7 @@ vec2 drift_within_rest(const Evidence& evidence) {
   const double freedom = 2.0 * (static_cast<double>(parts.size()) - 2.0);
   if (log_odds(without, with, freedom, part_noise) < kSureOfOne) return vec2(0.0);
   const double seconds = blocks.back().time_s - blocks.front().time_s;
-  return is_worth_telling(evidence, line.slope, seconds, 2.0) ? line.slope : vec2(0.0);
+  return is_worth_reporting(evidence, line.slope, seconds, 2.0) ? line.slope : vec2(0.0);
 }
 
 vec2 drift_of(const Evidence& evidence) {
@@ -993,14 +624,14 @@ vec2 drift_of(const Evidence& evidence) {
   return has_many ? drift_across_rests(evidence) : drift_within_rest(evidence);
 }
 
-// ---- centre ----
+// ---- Centre
 
 struct Home {
   vec2 centre{0.0};
   std::vector<bool> counts;
 };
 
-// The middle one of each axis.
+// Of each axis.
 vec2 median_of(std::span<const Release> releases) {
   std::vector<double> x, y;
   for (const Release& release : releases) {
@@ -1013,8 +644,9 @@ vec2 median_of(std::span<const Release> releases) {
   return {x[x.size() / 2], y[y.size() / 2]};
 }
 
-// A thumb that lay on the stick: a minority, several times as far off as the others are apart.
-std::vector<bool> common_ones(std::span<const Release> releases, double noise) {
+// Which releases count. Leaves out a thumb that lay on the stick: a minority, several times farther
+// off than the others.
+std::vector<bool> usual_releases(std::span<const Release> releases, double noise) {
   std::vector<bool> counts(releases.size(), true);
   if (releases.size() < 4) return counts;
   const vec2 middle = median_of(releases);
@@ -1039,7 +671,7 @@ vec2 mean_of(std::span<const Release> releases, const std::vector<bool>& counts)
   return weight > 0.0 ? sum / weight : vec2(0.0);
 }
 
-// Whether noise alone explains how the rests differ.
+// Whether noise alone explains the differences between the rests.
 bool is_one_place(std::span<const Release> releases, const std::vector<bool>& counts,
                   const Evidence& evidence) {
   const vec2 mean = mean_of(releases, counts);
@@ -1064,12 +696,12 @@ std::vector<vec2> places_of(std::span<const Release> releases, const std::vector
   return places;
 }
 
-// Without hysteresis all samples together are best. With it the rests lie round the true place,
-// but not evenly: where they follow the direction of the release, that is taken out, else the
-// middle of all counts.
+// Without hysteresis the mean of all samples is best. With hysteresis the rests lie round the true
+// place, but not evenly: if they follow the direction of the release, that effect is removed, else
+// the middle of all rests counts.
 Home home_of(std::span<const Release> releases, const Evidence& evidence) {
   Home home;
-  home.counts = common_ones(releases, evidence.mean_noise);
+  home.counts = usual_releases(releases, evidence.mean_noise);
   if (is_one_place(releases, home.counts, evidence)) {
     home.centre = mean_of(releases, home.counts);
     return home;
@@ -1085,8 +717,8 @@ Home home_of(std::span<const Release> releases, const Evidence& evidence) {
     return home;
   }
   home.centre = with.home;
-  // The model knows better which ones are odd; those whose direction was not seen count if they
-  // are not farther out than the others.
+  // Which releases are odd is decided by the model; one of unknown direction counts if it lies no
+  // farther out than the others.
   double radius = 0.0;
   for (std::size_t i = 0; i < releases.size(); ++i) {
     if (with.counts[i]) {
@@ -1101,8 +733,9 @@ Home home_of(std::span<const Release> releases, const Evidence& evidence) {
   return home;
 }
 
-// Between two rests: the way was seen, or the first one's track ends away from it. A stick that
-// rests while the pad is unplugged, or from one recording to the next, tells of no return.
+// Whether the stick was moved and let go between two rests: the way was seen, or the track of the
+// first one ends away from it. A stick that rests while the pad is unplugged, or from one recording
+// to the next, shows no return.
 bool was_let_go(std::span<const StickTrack> tracks, std::span<const Release> releases) noexcept {
   for (std::size_t i = 1; i < releases.size(); ++i) {
     const Release& before = releases[i - 1];
@@ -1116,17 +749,17 @@ bool was_let_go(std::span<const StickTrack> tracks, std::span<const Release> rel
 double hysteresis_of(std::span<const vec2> places, double noise) noexcept {
   const double count = static_cast<double>(places.size());
   const double greatest = greatest_distance(places);
-  // The square of what noise alone sets so many places apart, and seldom more.
+  // Square of the distance that noise alone seldom exceeds between so many places.
   const double by_noise = 6.0 * noise * noise * (std::log(0.5 * count * (count - 1.0)) + 1.5);
   return std::sqrt(std::max(greatest * greatest - by_noise, 0.0));
 }
 
-// ---- noise ----
+// ---- Noise
 
-void tell_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
+void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
   if (evidence.noise.freedom < 10.0) return;
   const vec2 shown = evidence.noise.variance();
-  // Rounding to steps adds what is evenly spread over one.
+  // Rounding adds the variance of an even distribution over one step.
   const vec2 own = glm::sqrt(glm::max(shown - step * step / 12.0, vec2(0.0)));
   const bool is_x_hidden = own.x < step.x, is_y_hidden = own.y < step.y;
   to.is_sigma_hidden = is_x_hidden || is_y_hidden;
@@ -1157,29 +790,29 @@ double wander_of(const Evidence& evidence, const vec2& drift) {
 
 RestStatistics rest_statistics(std::span<const StickTrack> tracks, std::span<const Still> rests,
                                const vec2& step, double interval_s) {
-  RestStatistics told;
-  if (rests.empty()) return told;
+  RestStatistics result;
+  if (rests.empty()) return result;
   const Evidence evidence = evidence_of(tracks, rests, step, interval_s);
   for (const Release& release : evidence.releases) {
     for (const Still& still : release.stills) {
-      told.samples += static_cast<std::int64_t>(still.last - still.first + 1);
+      result.rest_samples += static_cast<std::int64_t>(still.last - still.first + 1);
     }
   }
-  told.seconds = evidence.seconds;
-  if (evidence.weight < kFewestRestReports) return told;
-  told.drift = drift_of(evidence);
-  if (told.seconds >= kShortestForDrift_s) told.drift_per_s = glm::length(told.drift);
+  result.rest_s = evidence.seconds;
+  if (evidence.weight < kFewestRestReports) return result;
+  result.drift = drift_of(evidence);
+  if (result.rest_s >= kShortestForDrift_s) result.drift_per_s = glm::length(result.drift);
   std::vector<Release> steady = evidence.releases;
-  for (Release& release : steady) release.rest.place -= told.drift * release.rest.time_s;
+  for (Release& release : steady) release.rest.place -= result.drift * release.rest.time_s;
   const Home home = home_of(steady, evidence);
-  told.centre = home.centre;
-  told.rests = places_of(steady, home.counts);
-  if (told.rests.size() >= 2 && was_let_go(tracks, evidence.releases)) {
-    told.hysteresis = hysteresis_of(told.rests, evidence.mean_noise);
+  result.centre = home.centre;
+  result.rests = places_of(steady, home.counts);
+  if (result.rests.size() >= 2 && was_let_go(tracks, evidence.releases)) {
+    result.hysteresis = hysteresis_of(result.rests, evidence.mean_noise);
   }
-  tell_sigma(told, evidence, step);
-  told.wander = wander_of(evidence, told.drift);
-  return told;
+  set_sigma(result, evidence, step);
+  result.wander = wander_of(evidence, result.drift);
+  return result;
 }
 
 }  // namespace gaitpad

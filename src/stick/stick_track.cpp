@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "stick/statistics.h"
-
 namespace gaitpad {
 
 namespace {
@@ -14,7 +12,7 @@ namespace {
 constexpr PadAxis kStickAxes[2][2] = {{kLeftX, kLeftY}, {kRightX, kRightY}};
 constexpr PadAxis kTriggerAxes[2] = {kLeftTrigger, kRightTrigger};
 
-bool tells_of(const ReportLayout& report, PadAxis axis) noexcept {
+bool carries(const ReportLayout& report, PadAxis axis) noexcept {
   for (const AxisOp& op : report.axes)
     if (op.axis == axis) return true;
   return false;
@@ -22,16 +20,16 @@ bool tells_of(const ReportLayout& report, PadAxis axis) noexcept {
 
 bool has_axis(const PadLayout& layout, PadAxis axis) noexcept {
   for (const ReportLayout& report : layout.reports)
-    if (tells_of(report, axis)) return true;
+    if (carries(report, axis)) return true;
   return false;
 }
 
 template <typename Sample>
 void append(std::vector<std::vector<Sample>>& tracks, bool is_new, const Sample& sample) {
   if (is_new || tracks.empty()) tracks.emplace_back();
-  // Stamps of a damaged trace or of two reports in one poll: time never goes back in a track.
   std::vector<Sample>& track = tracks.back();
   track.push_back(sample);
+  // A damaged trace, or two reports in one poll, may have stamps that go back.
   if (track.size() > 1) {
     track.back().time_ns = std::max(sample.time_ns, track[track.size() - 2].time_ns);
   }
@@ -58,21 +56,21 @@ double declared_step(const PadLayout& layout, PadAxis axis) noexcept {
   return 0.0;
 }
 
-bool PadTracker::take(const Report& report) {
-  const ReportLayout* told = layout_of(*layout_, report);
-  if (told == nullptr || !decode(*layout_, report, state_)) return false;
-  // An axis that no report has told of yet would be taken for one at its middle.
-  for (const AxisOp& op : told->axes) known_ |= 1u << op.axis;
+bool PadTracker::add_report(const Report& report) {
+  const ReportLayout* read = layout_of(*layout_, report);
+  if (read == nullptr || !decode(*layout_, report, state_)) return false;
+  // An axis that was never reported would look as if it stood in its middle.
+  for (const AxisOp& op : read->axes) known_ |= 1u << op.axis;
   const auto is_known = [this](PadAxis axis) { return (known_ >> axis & 1u) != 0; };
   for (int side = 0; side < 2; ++side) {
     const PadAxis x = kStickAxes[side][0], y = kStickAxes[side][1];
-    if ((tells_of(*told, x) || tells_of(*told, y)) && is_known(x) && is_known(y)) {
+    if ((carries(*read, x) || carries(*read, y)) && is_known(x) && is_known(y)) {
       append(tracks_.stick[side], is_cut_stick_[side],
              StickSample{report.time_ns, vec2(state_.axis[x], state_.axis[y])});
       is_cut_stick_[side] = false;
     }
     const PadAxis trigger = kTriggerAxes[side];
-    if (tells_of(*told, trigger)) {
+    if (carries(*read, trigger)) {
       append(tracks_.trigger[side], is_cut_trigger_[side],
              TriggerSample{report.time_ns, state_.axis[trigger]});
       is_cut_trigger_[side] = false;
@@ -100,12 +98,27 @@ std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack
   return tracks;
 }
 
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
+  if (to_ns < from_ns) return -seconds_between(to_ns, from_ns);
+  return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to_ns) -
+                                    static_cast<std::uint64_t>(from_ns));
+}
+
+double hold_s(const StickTrack& track, std::size_t i, double interval_s) noexcept {
+  if (i + 1 >= track.size()) return interval_s;
+  return std::min(seconds_between(track[i].time_ns, track[i + 1].time_ns), kMaxHold_s);
+}
+
+double reports_stood(double hold_s, double interval_s) noexcept {
+  return hold_s <= 1.5 * interval_s ? 1.0 : hold_s / interval_s;
+}
+
 namespace {
 
 constexpr double kSmallestSpike = 0.03;    // raw; less is noise
-constexpr double kShortMovement_s = 0.04;  // a hand's there and back is longer
-constexpr double kFarthest = 4.0;          // raw; nothing lies farther out, whoever made the track
-constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;  // sums of times fit
+constexpr double kShortMovement_s = 0.04;  // no hand moves there and back faster
+constexpr double kFarthest = 4.0;          // raw; positions beyond are damaged
+constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;  // so that sums of times fit
 
 bool is_place(const vec2& p) noexcept {
   return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest;  // false for not-a-number
@@ -134,8 +147,8 @@ struct Scale {
   double smallest = kSmallestSpike;  // raw
 };
 
-// Noise of a stick held against its end is small and one-sided, so a step counts only if it is long
-// for the whole track.
+// A stick held against its end has small, one-sided noise, so a spike must be long compared with
+// the steps of the whole track.
 double smallest_spike(const StickTrack& track) {
   constexpr std::size_t kMost = std::size_t{1} << 18;
   const std::size_t stride = track.size() / kMost + 1;
@@ -147,8 +160,8 @@ double smallest_spike(const StickTrack& track) {
   return std::max(kSmallestSpike, 5.0 * *quarter);
 }
 
-// Steps of the reports next to a place, nearest first; a pad that reports changes only was silent
-// where it stood, which is steps of 0.
+// Lengths of the steps next to a sample, nearest first. The silence of a pad that reports changes
+// only counts as steps of 0.
 struct Steps {
   std::array<double, 8> length{};
   std::size_t count = 0;
@@ -157,7 +170,7 @@ struct Steps {
   }
 };
 
-// Up to four each way, those into and out of i .. i + length - 1 left out.
+// Up to four before and four behind, without the steps into and out of i .. i + length - 1.
 std::array<Steps, 2> steps_around(const StickTrack& track, std::size_t i, std::size_t length,
                                   double interval_s) noexcept {
   constexpr std::size_t kEach = 4;
@@ -179,8 +192,8 @@ std::array<Steps, 2> steps_around(const StickTrack& track, std::size_t i, std::s
   return steps;
 }
 
-// Whether it stands out from all of them. Hands move several reports long, so the neighbourhood of
-// a real movement has long steps too; one or two may belong to another spike.
+// Whether a step is far longer than all around it. A hand moves for several reports, so a real
+// movement has long steps beside it; one or two of the neighbours may belong to another spike.
 bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
   Steps all = around[0];
   for (std::size_t k = 0; k < around[1].count; ++k) all.add(around[1].length[k]);
@@ -191,12 +204,13 @@ bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
          height > 7.0 * all.length[all.count / 2] && height > 4.5 * all.length[third];
 }
 
-// A spike has sharp edges on both sides and comes back to about where it left.
+// A spike has sharp edges on both sides and returns to about where it began.
 bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const Scale& scale) {
   const vec2& before = track[i - 1].raw;
   const vec2& after = track[i + length].raw;
   double least = 2.0 * kFarthest;
-  for (const std::size_t edge : {i, i + length - 1}) {  // a sound report may stand between two
+  for (const std::size_t edge :
+       {i, i + length - 1}) {  // a sound report may stand between two spikes
     least = std::min(
         {least, glm::length(track[edge].raw - before), glm::length(track[edge].raw - after)});
   }
@@ -207,7 +221,7 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const 
   return stands_out(least, steps_around(track, i, length, scale.interval_s));
 }
 
-// 0 where none begins at i.
+// In reports; 0 if no spike begins at i.
 std::size_t spike_length(const StickTrack& track, std::size_t i, const Scale& scale) {
   if (step_length(track, i) < scale.smallest) return 0;
   for (std::size_t length = 1; length <= 3 && i + length < track.size(); ++length) {
@@ -216,7 +230,7 @@ std::size_t spike_length(const StickTrack& track, std::size_t i, const Scale& sc
   return 0;
 }
 
-std::int64_t take_spikes_out(StickTrack& track, const Scale& scale) {
+std::int64_t remove_spikes(StickTrack& track, const Scale& scale) {
   std::int64_t spikes = 0;
   for (std::size_t i = 1; i + 1 < track.size(); ++i) {
     const std::size_t length = spike_length(track, i, scale);
@@ -228,8 +242,9 @@ std::int64_t take_spikes_out(StickTrack& track, const Scale& scale) {
   return spikes;
 }
 
-// The first and the last report have one neighbour; a hand that has just begun to move loses one.
-void take_ends_out(StickTrack& track, const Scale& scale) {
+// The first and the last report have only one neighbour each, so a movement that has just begun
+// loses a report here.
+void remove_odd_ends(StickTrack& track, const Scale& scale) {
   if (track.size() < 6) return;
   const std::size_t last = track.size() - 1;
   const auto is_out = [&](std::size_t step, const std::array<Steps, 2>& around) {
@@ -251,30 +266,184 @@ CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
   const double interval_s = typical_interval_s(clean.tracks);
   for (StickTrack& track : clean.tracks) {
     const Scale scale{interval_s, smallest_spike(track)};
-    // One that stands beside another is seen only once that is out of the way.
+    // A spike beside another one is found only after that one was removed.
     for (int pass = 0; pass < 3; ++pass) {
-      const std::int64_t spikes = take_spikes_out(track, scale);
+      const std::int64_t spikes = remove_spikes(track, scale);
       clean.jumps += spikes;
       if (spikes == 0) break;
     }
-    take_ends_out(track, scale);
+    remove_odd_ends(track, scale);
   }
   return clean;
 }
 
-double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
-  if (to_ns < from_ns) return -seconds_between(to_ns, from_ns);
-  return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to_ns) -
-                                    static_cast<std::uint64_t>(from_ns));
+namespace {
+
+constexpr std::size_t kMostIntervals = std::size_t{1} << 20;  // enough for a median
+constexpr std::size_t kFewestIntervals = 20;
+constexpr double kSilence_s = 0.1;
+constexpr double kBurst_s = 0.0007;  // nearly all pads send at most 1000 reports a second
+constexpr double kUnknownInterval_s = 0.004;
+constexpr double kFrozen_s = 0.06;
+
+// Seconds between successive reports; those during movements if there are enough, because every pad
+// reports while it moves.
+std::vector<double> intervals(std::span<const StickTrack> tracks) {
+  std::vector<double> all, moving;
+  for (const StickTrack& track : tracks) {
+    std::size_t back = 0;  // the sample 50 ms ago
+    for (std::size_t i = 1; i < track.size() && all.size() < kMostIntervals; ++i) {
+      const double interval_s = seconds_between(track[i - 1].time_ns, track[i].time_ns);
+      while (seconds_between(track[back].time_ns, track[i - 1].time_ns) > 0.05) ++back;
+      if (interval_s < 0.0 || interval_s > kSilence_s) continue;
+      all.push_back(interval_s);
+      if (glm::length(track[i - 1].raw - track[back].raw) > 0.05) moving.push_back(interval_s);
+    }
+  }
+  return moving.size() >= 2 * kFewestIntervals ? moving : all;
 }
 
-double hold_s(const StickTrack& track, std::size_t i, double interval_s) noexcept {
-  if (i + 1 >= track.size()) return interval_s;
-  return std::min(seconds_between(track[i].time_ns, track[i + 1].time_ns), kMaxHold_s);
+struct Spacing {
+  double mean_s = 0.0, deviation_s = 0.0;
+};
+
+Spacing spacing_within(std::span<const double> intervals, double least_s, double most_s) noexcept {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (const double interval : intervals) {
+    if (interval < least_s || interval > most_s) continue;
+    sum += interval;
+    squares += interval * interval;
+    count += 1.0;
+  }
+  if (count == 0.0) return {};
+  const double mean = sum / count;
+  return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0))};
 }
 
-double reports_stood(double hold_s, double interval_s) noexcept {
-  return hold_s <= 1.5 * interval_s ? 1.0 : hold_s / interval_s;
+std::optional<Spacing> spacing(std::span<const StickTrack> tracks) {
+  std::vector<double> found = intervals(tracks);
+  if (found.size() < kFewestIntervals) return {};
+  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
+  std::nth_element(found.begin(), middle, found.end());
+  const double median = *middle;
+  const Spacing all = spacing_within(found, 0.0, kSilence_s);
+  // If most reports come in bursts, the pauses between bursts belong to the rate.
+  if (median < kBurst_s && all.mean_s > 2.0 * median) return all;
+  const double mean_s = spacing_within(found, 0.5 * median, 1.5 * median).mean_s;
+  if (!(mean_s > 0.0)) return {};
+  return Spacing{mean_s, spacing_within(found, 0.0, 1.5 * mean_s).deviation_s};
+}
+
+// Counts lost reports, not late ones: five intervals together must be too long by half a one, too.
+std::int64_t gaps_of(const StickTrack& track, double interval_s) noexcept {
+  std::int64_t gaps = 0;
+  for (std::size_t i = 1; i < track.size(); ++i) {
+    if (seconds_between(track[i - 1].time_ns, track[i].time_ns) <= 1.5 * interval_s) continue;
+    const std::size_t first = i >= 3 ? i - 3 : 0, last = std::min(i + 2, track.size() - 1);
+    const double together_s = seconds_between(track[first].time_ns, track[last].time_ns);
+    if (together_s > (static_cast<double>(last - first) + 0.5) * interval_s) ++gaps;
+  }
+  return gaps;
+}
+
+bool reports_at_rest(std::span<const StickTrack> tracks, double interval_s,
+                     double repeats_expected) noexcept {
+  double count = 0.0, repeats = 0.0, all_s = 0.0, silent_s = 0.0;
+  for (const StickTrack& track : tracks) {
+    for (std::size_t i = 1; i < track.size(); ++i) {
+      const double pause_s = seconds_between(track[i - 1].time_ns, track[i].time_ns);
+      count += 1.0;
+      all_s += pause_s;
+      if (pause_s > std::max(kSilence_s, 5.0 * interval_s)) silent_s += pause_s;
+      if (pause_s <= 1.5 * interval_s && track[i].raw == track[i - 1].raw) repeats += 1.0;
+    }
+  }
+  return silent_s <= 0.2 * all_s && repeats >= std::max(0.25 * repeats_expected * count, 1.0);
+}
+
+double value_of(const StickSample& sample, int axis) noexcept {
+  return axis == 0 ? sample.raw.x : sample.raw.y;
+}
+
+// Ascending, without repeats.
+std::vector<double> distinct_values(std::span<const StickTrack> tracks, int axis) {
+  constexpr std::size_t kMost = std::size_t{1} << 18;
+  std::size_t all = 0;
+  for (const StickTrack& track : tracks) all += track.size();
+  const std::size_t stride = all / kMost + 1;
+  std::vector<double> values;
+  for (const StickTrack& track : tracks) {
+    for (std::size_t i = 0; i < track.size(); i += stride) {
+      values.push_back(value_of(track[i], axis));
+    }
+  }
+  std::sort(values.begin(), values.end());
+  constexpr double kRounding = 1e-6;  // axes are decoded to floats
+  const auto end = std::unique(values.begin(), values.end(),
+                               [](double a, double b) { return b - a <= kRounding; });
+  values.erase(end, values.end());
+  return values;
+}
+
+// Frozen from `first` to `last`, then a jump on in the same direction.
+bool jumps_on(const StickTrack& track, std::size_t first, std::size_t last) noexcept {
+  if (first == 0 || last + 1 >= track.size()) return false;
+  const vec2 before = track[first].raw - track[first - 1].raw;
+  const vec2 after = track[last + 1].raw - track[last].raw;
+  const double b = glm::length(before), a = glm::length(after);
+  // A thumb that pauses slows down before and starts slowly again.
+  return b > 0.01 && a > std::max(0.1, 3.0 * b) && glm::dot(before, after) > 0.7 * a * b;
+}
+
+}  // namespace
+
+double typical_interval_s(std::span<const StickTrack> tracks) {
+  const std::optional<Spacing> found = spacing(tracks);
+  return found ? found->mean_s : kUnknownInterval_s;
+}
+
+ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_expected) {
+  ReportTiming timing;
+  const std::optional<Spacing> found = spacing(tracks);
+  if (!found) return timing;
+  timing.rate_hz = 1.0 / found->mean_s;
+  timing.jitter_ms = 1e3 * found->deviation_s;
+  if (!reports_at_rest(tracks, found->mean_s, repeats_expected)) return timing;
+  timing.gaps = 0;
+  for (const StickTrack& track : tracks) *timing.gaps += gaps_of(track, found->mean_s);
+  return timing;
+}
+
+double quantisation_step(std::span<const StickTrack> tracks, int axis, double declared) {
+  const std::vector<double> values = distinct_values(tracks, axis);
+  double least = 4.0;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    least = std::min(least, values[i] - values[i - 1]);
+  // Values without steps also come close to each other, but seldom, and not at multiples.
+  int ones = 0, few = 0, whole = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double steps = (values[i] - values[i - 1]) / least;
+    if (steps > 8.5) continue;
+    ++few;
+    ones += steps < 1.2;
+    whole += std::fabs(steps - std::round(steps)) < 0.15;
+  }
+  const bool is_step = least < 0.5 && ones >= 3 && 5 * whole >= 4 * few;
+  return is_step ? least : declared;
+}
+
+std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s) {
+  std::int64_t stuck = 0;
+  for (const StickTrack& track : tracks) {
+    for (std::size_t first = 0, last; first < track.size(); first = last + 1) {
+      last = first;
+      while (last + 1 < track.size() && track[last + 1].raw == track[first].raw) ++last;
+      const double frozen_s =
+          seconds_between(track[first].time_ns, track[last].time_ns) + interval_s;
+      if (last > first && frozen_s >= kFrozen_s && jumps_on(track, first, last)) ++stuck;
+    }
+  }
+  return stuck;
 }
 
 }  // namespace gaitpad

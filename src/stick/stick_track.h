@@ -1,7 +1,9 @@
-// What the analysis of a stick looks at: its raw positions in time.
+// A stick's raw positions over time: collected from reports, cleaned of what would mislead, and
+// what they say of the reports themselves (rate, steps, gaps). All of stick's analysis reads these.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,14 +12,14 @@
 
 namespace gaitpad {
 
-// Raw position, fractions of half the logical range from its middle: -1..1, +x right, +y forward as
+// Raw position: fractions of half the logical range from its middle, -1..1, +x right, +y forward as
 // the pad's layout has it.
 struct StickSample {
   std::int64_t time_ns = 0;
   vec2 raw{0.0};
 };
-// Reports of one uninterrupted stay of the pad, in the order of time. Most pads report changes
-// only, so a position holds until the next sample.
+// Reports from plugging in to unplugging, in the order of time. Most pads report changes only, so a
+// position holds until the next sample.
 using StickTrack = std::vector<StickSample>;
 
 struct TriggerSample {
@@ -26,59 +28,86 @@ struct TriggerSample {
 };
 using TriggerTrack = std::vector<TriggerSample>;
 
-// Everything about one pad, of one recording or several: a track ends where the pad was unplugged.
+// One pad's tracks, from one recording or several. Unplugging ends a track.
 struct PadTracks {
   std::array<std::vector<StickTrack>, 2> stick;      // left, right
   std::array<std::vector<TriggerTrack>, 2> trigger;  // left, right
 };
 
-// What a pad's layout says of an axis: false where it has none.
-bool has_stick(const PadLayout& layout, int side) noexcept;  // 0 left, 1 right
+// ---- Collecting tracks
+
+// Whether the layout has the control; side 0 is left, 1 is right.
+bool has_stick(const PadLayout& layout, int side) noexcept;
 bool has_trigger(const PadLayout& layout, int side) noexcept;
-// Of one count of the axis' field, raw; 0 where it has none.
+// One count of the axis' field in raw units; 0 if the layout has no such axis.
 double declared_step(const PadLayout& layout, PadAxis axis) noexcept;
 
-// Makes tracks out of reports. Reports that do not decode, or do not tell of the axis, add nothing.
+// Collects tracks from reports. A report that does not decode, or does not carry an axis, adds
+// nothing to it.
 class PadTracker {
  public:
   explicit PadTracker(const PadLayout& layout) : layout_(&layout) {}
-  bool take(const Report& report);  // false: does not decode
-  void cut() noexcept;              // the pad went, or another recording begins
+  bool add_report(const Report& report);  // false: the report does not decode
+  void cut() noexcept;                    // the pad was unplugged, or another recording begins
   const PadTracks& tracks() const noexcept { return tracks_; }
-  PadTracks take_tracks() noexcept;  // and forgets them: the next report begins new ones
+  PadTracks take_tracks() noexcept;  // moves the tracks out; the next report begins new ones
   const PadState& state() const noexcept { return state_; }
 
  private:
   const PadLayout* layout_;
   PadState state_;
-  std::uint32_t known_ = 0;  // axes (bits) that reports have told of since the last cut
+  std::uint32_t known_ = 0;  // axes (bits) that were reported since the last cut
   std::array<bool, 2> is_cut_stick_{true, true}, is_cut_trigger_{true, true};
   PadTracks tracks_;
 };
 
-// Every sample as it is in the frame.
+// Turns every sample into the frame.
 std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack> tracks);
 
-// A stick's tracks without what would mislead: positions that are no numbers, time that goes back,
-// spikes. And how long a position stood for, which all means at rest are weighted by.
+// ---- How long a position stood
+
+// Seconds from one time to a later one; any two 64-bit times are allowed.
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept;
+
+// A pad that is silent for longer than this may be gone: no position counts for longer.
+inline constexpr double kMaxHold_s = 2.0;
+// How long sample i stood: until the next sample; the last one for one interval.
+double hold_s(const StickTrack& track, std::size_t i, double interval_s) noexcept;
+// The number of reports that a hold stands for: 1 if the next report followed within 1.5 intervals,
+// else as many as were left out (nothing changed) or lost. Means at rest use this as their weight,
+// so that a pad that reports changes only gives the same means as one that streams, and jitter of
+// the stamps has no weight.
+double reports_stood(double hold_s, double interval_s) noexcept;
+
+// ---- Cleaning
 
 struct CleanTracks {
-  // The same samples at the same places; one that does not count repeats the one before it.
+  // As many samples as before. A sample that does not count (no number, out of range, a spike)
+  // repeats the position before it; times never go back.
   std::vector<StickTrack> tracks;
-  std::int64_t jumps = 0;  // spikes: another place and back within three reports
+  std::int64_t jumps = 0;  // spikes: to another place and back within three reports
 };
 CleanTracks clean_tracks(std::span<const StickTrack> tracks);
 
-// From one time to a later one; for any two 64-bit times.
-double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept;
+// ---- The reports themselves
 
-// A silent pad may as well be gone: longer than this nothing is believed to have stood.
-inline constexpr double kMaxHold_s = 2.0;
-// How long sample i is known to have stood: until the next one, the last one for one interval.
-double hold_s(const StickTrack& track, std::size_t i, double interval_s) noexcept;
-// How many reports that is: one where the next followed soon, else as many as were left out because
-// nothing changed, or lost. So a pad that reports changes only has the same means as one that
-// streams, and jitter of the time stamps is no weight.
-double reports_stood(double hold_s, double interval_s) noexcept;
+// Seconds between successive reports. For a pad that reports changes only: while the stick moves.
+// Robust against lost reports and bursts; 4 ms if there are too few reports.
+double typical_interval_s(std::span<const StickTrack> tracks);
+
+struct ReportTiming {
+  std::optional<double> rate_hz, jitter_ms;  // none: too few reports
+  std::optional<std::int64_t> gaps;          // none: as above, or silence means nothing on this pad
+};
+// `repeats_expected`: the chance that a report at rest repeats the one before it, given noise and
+// step. A pad that repeats less often reports changes only, so its gaps cannot be counted.
+ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_expected);
+
+// The smallest distance between neighbouring values that occurs often enough to be a step, else
+// `declared`. Axis 0 is x, 1 is y.
+double quantisation_step(std::span<const StickTrack> tracks, int axis, double declared);
+
+// How often the value froze for 60 ms or more and then jumped on in the same direction.
+std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s);
 
 }  // namespace gaitpad

@@ -1,14 +1,53 @@
 #ifdef GAITPAD_HAS_HIDRAW
+// The hidraw driver over a stand-in for hidapi: the functions here replace the library in this
+// program. A pseudo-terminal is the node, so that descriptors, poll() and hanging up are real; what
+// a read returns can be scripted. The real hidraw is tested in the rig.
+#include <fcntl.h>
+#include <gtest/gtest.h>
 #include <hidapi/hidapi.h>
+#include <poll.h>
+#include <stdlib.h>
 #include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <chrono>
+#include <deque>
 #include <filesystem>
 #include <iterator>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
 
-#include "drivers/hidraw_fixture.h"
+#include "drivers/driver_entries.h"
+#include "tests/value_of.h"
 
-using namespace gaitpad::stand_in;
+namespace {
+
+using Packet = std::vector<std::uint8_t>;
+
+struct ScriptedRead {
+  Packet bytes;
+  int error = -1;  // -1: none, the bytes are read; else -1 is returned with this errno
+};
+std::deque<ScriptedRead> script;  // empty: the node itself is read
+std::vector<int> timeouts;        // of the reads
+ScriptedRead failure(int error) { return {.bytes = {}, .error = error}; }
+int descriptors_per_opening = 1;
+std::optional<Packet> firmware;  // feature report 0x20
+// Input report by request, beginning with the id; a thread of the driver asks for it.
+struct PresentReport {
+  std::mutex mutex;
+  std::optional<Packet> answer;
+  std::vector<int> asked;  // ids
+} present;
+
+}  // namespace
 
 struct hid_device_ {
   std::vector<int> fds;
@@ -30,7 +69,7 @@ void hid_close(hid_device* device) {
   for (const int fd : device->fds) ::close(fd);
   delete device;
 }
-// As hidapi 0.13.1: an error number only where a call failed.
+// As hidapi 0.13.1: errno is only set if a call failed.
 int hid_read_timeout(hid_device* device, unsigned char* data, size_t length, int milliseconds) {
   timeouts.push_back(milliseconds);
   if (!script.empty()) {
@@ -69,6 +108,113 @@ int hid_get_input_report(hid_device*, unsigned char* data, size_t length) {
 
 namespace gaitpad {
 namespace {
+
+using Status = Device::Status;
+
+// X and Y of 8 bits, no report id.
+const Packet kDescriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15,
+                            0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0};
+// The same in report 1.
+const Packet kNumbered = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0x01, 0x09, 0x30, 0x09, 0x31,
+                          0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0};
+
+class HidrawDriver : public testing::Test {
+ protected:
+  void SetUp() override {
+    script.clear();
+    timeouts.clear();
+    descriptors_per_opening = 1;
+    firmware.reset();
+    set_present(std::nullopt);
+    pad_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (pad_ < 0 || ::grantpt(pad_) != 0 || ::unlockpt(pad_) != 0)
+      GTEST_SKIP() << "there is no pseudo-terminal here";
+    std::array<char, 128> name{};
+    ASSERT_EQ(::ptsname_r(pad_, name.data(), name.size()), 0);
+    listing_.node = name.data();
+    keep_open_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios raw{};
+    ::tcgetattr(keep_open_, &raw);
+    ::cfmakeraw(&raw);
+    ::tcsetattr(keep_open_, TCSANOW, &raw);
+    ::fcntl(pad_, F_SETFL, O_NONBLOCK);
+    listing_.info.bus = BusType::usb;
+    listing_.info.name = "Pad";
+    listing_.info.descriptor = kDescriptor;
+  }
+  void TearDown() override {
+    unplug();
+    if (keep_open_ >= 0) ::close(keep_open_);
+  }
+  void unplug() {
+    if (pad_ >= 0) ::close(pad_);
+    pad_ = -1;
+  }
+  void send(const Packet& report) {
+    ASSERT_EQ(::write(pad_, report.data(), report.size()), static_cast<ssize_t>(report.size()));
+  }
+  // All that the driver has written, once there is that much or half a second is over.
+  Packet written(std::size_t size) {
+    Packet bytes(4096);
+    std::size_t count = 0;
+    for (int i = 0; i < 500 && count < size; ++i) {
+      const ssize_t more = ::read(pad_, bytes.data() + count, bytes.size() - count);
+      if (more > 0)
+        count += static_cast<std::size_t>(more);
+      else
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    bytes.resize(count);
+    return bytes;
+  }
+  static void set_present(std::optional<Packet> answer) {
+    const std::lock_guard lock(present.mutex);
+    present.answer = std::move(answer);
+    present.asked.clear();
+  }
+  static std::vector<int> asked() {
+    const std::lock_guard lock(present.mutex);
+    return present.asked;
+  }
+  // Reads this many reports in a row, then `nothing`.
+  void read_in_a_row(Device& device, int count, const Packet& bytes = {1, 2}) {
+    for (int i = 0; i < count; ++i) script.push_back({.bytes = bytes});
+    for (int i = 0; i < count; ++i) EXPECT_EQ(device.read(report_), Status::report);
+    EXPECT_EQ(device.read(report_), Status::nothing);
+  }
+  // As the I/O thread does it, that long or until there is a report.
+  Status wait_and_read(Device& device, int timeout_ms) {
+    Status status = Status::nothing;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
+    while (status == Status::nothing && std::chrono::steady_clock::now() < end) {
+      std::vector<pollfd> fds(device.poll_fds().begin(), device.poll_fds().end());
+      if (::poll(fds.data(), fds.size(), 10) > 0) status = device.read(report_);
+    }
+    return status;
+  }
+  std::unique_ptr<Device> opened() { return value_of(open_hidraw_device(listing_, Detach::never)); }
+  // A model whose motors and firmware are known.
+  void use(std::uint16_t vendor, std::uint16_t product) {
+    listing_.info.vendor = vendor;
+    listing_.info.product = product;
+  }
+  void expect_stamped_now() const {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    EXPECT_NEAR(static_cast<double>(report_.time_ns), now.tv_sec * 1e9 + now.tv_nsec, 1e9);
+  }
+  static bool is_ready(const Device& device, int timeout_ms) {
+    pollfd fd = device.poll_fds().front();
+    return ::poll(&fd, 1, timeout_ms) > 0;
+  }
+  static Packet bytes_of(const Report& report) {
+    return Packet(report.bytes.begin(), report.bytes.begin() + report.size);
+  }
+
+  int pad_ = -1, keep_open_ = -1;
+  DeviceListing listing_;
+  Report report_;
+};
 
 TEST_F(HidrawDriver, HandsOnTheBytesAsTheyCame) {
   const auto device = opened();
@@ -246,10 +392,84 @@ TEST(HidrawOpening, ErrorsAreOneSentenceAboutTheNode) {
   device = open_hidraw_device(listing, Detach::never);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, listing.node + ": is no device node");
-  listing.node = "/dev/null";  // no descriptor to be had
+  listing.node = "/dev/null";  // has no descriptor
   device = open_hidraw_device(listing, Detach::never);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, "/dev/null: its report descriptor cannot be read");
+}
+
+// ---- The kernel keeps 63 reports (HIDRAW_BUFFER_SIZE of 64, less one) and drops further ones
+
+TEST_F(HidrawDriver, AReaderThatComesTooLateIsToldOnce) {
+  const auto device = opened();
+  read_in_a_row(*device, 100);  // from before the device was open
+  read_in_a_row(*device, 62);
+  EXPECT_TRUE(device->take_remarks().empty());
+  EXPECT_EQ(device->lost(), 0);
+  read_in_a_row(*device, 63);
+  EXPECT_EQ(device->take_remarks().size(), 1u);
+  EXPECT_EQ(device->lost(), 1);
+  read_in_a_row(*device, 200);
+  EXPECT_TRUE(device->take_remarks().empty());
+  EXPECT_EQ(device->lost(), 2) << "at least one each time";
+}
+
+TEST_F(HidrawDriver, APadThatIsSilentAfterAFullRingIsAskedForItsState) {
+  const auto device = opened();
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  set_present(Packet{0, 0x70, 0x80});
+  EXPECT_EQ(device->poll_fds().size(), 1u);
+  read_in_a_row(*device, 63, {0xff, 0x80});
+  ASSERT_EQ(wait_and_read(*device, 5000), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{0x70, 0x80}));
+  EXPECT_EQ(report_.kind, ReportKind::input);
+  expect_stamped_now();
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  EXPECT_EQ(device->poll_fds().size(), 1u);
+  EXPECT_EQ(asked(), std::vector<int>{0});
+  EXPECT_EQ(device->lost(), 1);
+}
+
+TEST_F(HidrawDriver, ThePresentStateOfANumberedReportIsAskedForByItsId) {
+  listing_.info.descriptor = kNumbered;
+  const auto device = opened();
+  set_present(Packet{1, 0x70, 0x80});
+  read_in_a_row(*device, 63, {1, 0xff, 0x80});  // while it was opened
+  ASSERT_EQ(wait_and_read(*device, 5000), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{1, 0x70, 0x80}));
+  EXPECT_EQ(asked(), std::vector<int>{1});
+  EXPECT_EQ(device->lost(), 0);
+}
+
+TEST_F(HidrawDriver, APadThatGoesOnAfterAFullRingIsNotAsked) {
+  const auto device = opened();
+  set_present(Packet{0, 0x70, 0x80});
+  read_in_a_row(*device, 63);
+  send({5, 6});
+  ASSERT_EQ(wait_and_read(*device, 1000), Status::report);
+  EXPECT_EQ(wait_and_read(*device, 60), Status::nothing);
+  EXPECT_TRUE(asked().empty());
+}
+
+TEST_F(HidrawDriver, ARefusedOrShortAnswerIsNoReport) {
+  for (const std::optional<Packet>& answer : {std::optional<Packet>(), {Packet{0, 9}}}) {
+    const auto device = opened();
+    set_present(answer);
+    read_in_a_row(*device, 63);
+    EXPECT_EQ(wait_and_read(*device, 100), Status::nothing);
+    EXPECT_EQ(device->poll_fds().size(), 1u);
+    EXPECT_EQ(asked().size(), 1u);
+    send({5, 6});
+    EXPECT_EQ(wait_and_read(*device, 1000), Status::report);
+  }
+}
+
+TEST_F(HidrawDriver, APadThatIsUnpluggedBeforeItsAnswerIsGone) {
+  const auto device = opened();
+  set_present(Packet{0, 0x70, 0x80});
+  read_in_a_row(*device, 63);
+  unplug();
+  EXPECT_EQ(wait_and_read(*device, 1000), Status::gone);
 }
 
 }  // namespace

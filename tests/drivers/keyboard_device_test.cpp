@@ -1,5 +1,3 @@
-#include "drivers/keyboard_device.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -9,7 +7,9 @@
 #include <thread>
 #include <vector>
 
+#include "drivers/posix.h"
 #include "gaitpad/decode.h"
+#include "gaitpad/keyboard.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -123,7 +123,7 @@ TEST_F(KeyboardDeviceTest, WhatIsNoPlaceIsTheMiddle) {
   EXPECT_LE(glm::length(stick_->wanted()), 1.0);
 }
 
-// Whatever is asked for at whatever moment: it ends where the last one wanted.
+// After any sequence of requests it ends where the last one asked.
 TEST_F(KeyboardDeviceTest, NoChangeIsMissedWhileItFallsAsleep) {
   std::atomic<bool> is_over{false};
   std::thread source([&] {

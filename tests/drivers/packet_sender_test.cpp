@@ -20,7 +20,7 @@ OutPacket packet(std::uint8_t value, std::chrono::milliseconds repeat = 0ms) {
   return p;
 }
 
-// Where the packets go; holds the writer up while it is closed.
+// Receives the packets; blocks the writer while it is closed.
 class Sink {
  public:
   PacketSender::Write write() {
@@ -94,7 +94,7 @@ TEST(PacketSender, RepeatsUntilAnotherPacketFollows) {
 TEST(PacketSender, APadThatTakesNothingHoldsNobodyUp) {
   const auto sink = std::make_shared<Sink>();
   sink->open(false);
-  // As hidraw_driver does it: what the thread writes to lives as long as the thread.
+  // Like hidraw_driver: the target of the writes lives as long as the thread.
   auto sender = PacketSender::create(
       [sink, write = sink->write()](std::span<const std::uint8_t> bytes) { return write(bytes); });
   const auto begin = Clock::now();

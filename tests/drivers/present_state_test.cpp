@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Packet = std::vector<std::uint8_t>;
 
-// Answers each id with what is set, and can be held up. Shared with the thread that asks.
+// Answers each id as set; can be made to wait. Shared with the thread that asks.
 struct FakePad {
   std::mutex mutex;
   std::array<Packet, 256> answers;
@@ -57,19 +57,19 @@ class PresentStateTest : public testing::Test {
     auto fds = state.poll_fds();
     ::poll(fds.data(), fds.size(), static_cast<int>(timeout.count()));
   }
-  // What is handed on within that time; empty: nothing.
+  // The answer within that time; empty: none.
   static Packet taken(PresentState& state, std::chrono::milliseconds timeout = 5s) {
     const auto end = Clock::now() + timeout;
     while (state.is_waiting() && Clock::now() < end) {
       wait(state, 10ms);
-      const auto report = state.take();
+      const auto report = state.take_answer();
       if (!report.empty()) return Packet(report.begin(), report.end());
     }
     return {};
   }
   void wait_until_asked(PresentState& state, std::size_t count) {
     for (int i = 0; i < 5000 && pad_->asked_for().size() < count; ++i) {
-      EXPECT_TRUE(state.take().empty());
+      EXPECT_TRUE(state.take_answer().empty());
       std::this_thread::sleep_for(1ms);
     }
     ASSERT_EQ(pad_->asked_for().size(), count);
@@ -82,7 +82,7 @@ TEST_F(PresentStateTest, AfterAMissTheSilentPadsAnswerIsTheReport) {
   PresentState present = state(false);
   present.heard(Packet{9, 9});
   EXPECT_FALSE(present.is_waiting());
-  EXPECT_TRUE(present.take().empty());
+  EXPECT_TRUE(present.take_answer().empty());
   pad_->set(0, {0, 3, 4});
   const auto begin = Clock::now();
   present.missed();
@@ -114,7 +114,7 @@ TEST_F(PresentStateTest, APadThatGoesOnIsNotAsked) {
   present.heard(Packet{9, 8});
   EXPECT_FALSE(present.is_waiting());
   std::this_thread::sleep_for(60ms);
-  EXPECT_TRUE(present.take().empty());
+  EXPECT_TRUE(present.take_answer().empty());
   EXPECT_TRUE(pad_->asked_for().empty());
 }
 
@@ -128,7 +128,7 @@ TEST_F(PresentStateTest, AnAnswerThatAReportHasOvertakenIsDropped) {
   present.heard(Packet{5, 5});
   pad_->is_stuck = false;
   std::this_thread::sleep_for(50ms);
-  EXPECT_TRUE(present.take().empty());
+  EXPECT_TRUE(present.take_answer().empty());
 }
 
 TEST_F(PresentStateTest, AnAnswerFromBeforeTheNextMissIsDroppedAndThePadAskedAgain) {
@@ -139,7 +139,7 @@ TEST_F(PresentStateTest, AnAnswerFromBeforeTheNextMissIsDroppedAndThePadAskedAga
   present.missed();
   wait_until_asked(present, 1);
   pad_->is_stuck = false;
-  std::this_thread::sleep_for(20ms);  // the answer is there, and nobody has looked
+  std::this_thread::sleep_for(20ms);  // the answer is there and was not taken yet
   present.heard(Packet{5, 5});
   pad_->set(0, {0, 6, 7});
   present.missed();

@@ -1,4 +1,4 @@
-// SDL's virtual joysticks take the place of hardware.
+// SDL's virtual joysticks replace hardware.
 #ifdef GAITPAD_HAS_SDL
 #include <SDL2/SDL.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct Motors {
   int strong = -1, weak = -1;
 };
 
-// A joystick that is plugged in while the object lives; values count from the next update on.
+// A joystick that is plugged in while the object exists; values count from the next update on.
 class VirtualPad {
  public:
   explicit VirtualPad(const char* name, SDL_JoystickType type = SDL_JOYSTICK_TYPE_GAMECONTROLLER) {
@@ -153,7 +153,7 @@ TEST(SdlDriver, AJoystickWithoutMappingHasAWorkingLeftStick) {
   EXPECT_EQ(state.hat, Hat::up_left);
 }
 
-// Whoever updates SDL meanwhile (a window's loop), every change comes through.
+// Every change arrives, even if another thread (a window's loop) updates SDL.
 TEST(SdlDriver, ChangesThatAnotherUpdateFoundAreNotLost) {
   VirtualPad pad("Hasty Pad");
   const auto device = opened("Hasty Pad");
@@ -351,7 +351,7 @@ TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
   sticks[kLeftX] = {kLeftY, false};
   sticks[kLeftY] = {kLeftX, true};
   DeviceInfo info = device->info();
-  info.product = 0x0077;  // SDL forgets no line: other tests' pads keep theirs
+  info.product = 0x0077;  // SDL keeps every line: other tests use other ids
   auto line = sdl_mapping_text(info, *layout, sticks);
   ASSERT_TRUE(line) << line.error().message;
   Uint16 vendor = 0, product = 0, version = 0, checksum = 1;
@@ -363,7 +363,7 @@ TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
   EXPECT_EQ(checksum, 0);
   ASSERT_EQ(SDL_GameControllerAddMapping(line->c_str()), 1) << SDL_GetError();
 
-  // A virtual joystick's GUID has a mark that an event node's has not.
+  // The GUID of a virtual joystick has a mark that an event node's does not have.
   char own_guid[33] = {};
   SDL_JoystickGetGUIDString(SDL_JoystickGetGUID(pad.joystick), own_guid, sizeof own_guid);
   line->replace(0, 32, own_guid);

@@ -1,11 +1,12 @@
-// Pads for tests: the files that are shipped, reports of given bytes, and event nodes as Linux's
-// drivers state them.
+// Pads for tests: the shipped pad files, recordings, reports of given bytes, and event nodes as
+// Linux's drivers state them.
 #pragma once
 #include <algorithm>
 #include <string>
 #include <vector>
 
-#include "gaitpad/pad_map.h"
+#include "gaitpad/decode.h"
+#include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
 #include "tests/value_of.h"
 
@@ -25,7 +26,19 @@ inline Report report_of(const std::vector<std::uint8_t>& bytes, std::int64_t tim
   return report;
 }
 
-// With a blank in between.
+// A recording's first device.
+struct RecordedPad {
+  Trace trace;
+  PadLayout layout;
+};
+inline RecordedPad recorded_pad(const std::string& path, const PadOverrides& overrides) {
+  RecordedPad pad;
+  pad.trace = value_of(read_trace(path));
+  pad.layout = value_of(pad_layout(pad.trace.devices.at(0).info, overrides));
+  return pad;
+}
+
+// Divided by blanks.
 inline std::string names_of(std::uint32_t buttons) {
   std::string names;
   for (std::size_t b = 0; b < kButtonNames.size(); ++b) {

@@ -106,7 +106,7 @@ TEST(CalibrationFile, WrittenNumbersAreNoLongerThanTheyMustBe) {
   EXPECT_EQ(text.find("trigger"), std::string::npos) << text;
 }
 
-// Nobody would ever find its file again, so the rest of the file must not be lost with it.
+// A name with invalid UTF-8 must not make the whole file unreadable.
 TEST(CalibrationFile, ANameThatIsNoTextIsStillWrittenAsText) {
   CalibrationFile file;
   file.name = "pad \xff\xfe";
@@ -201,7 +201,7 @@ TEST(CalibrationFit, AFileForOtherDriversDoesNotFit) {
   // A recording that names no driver came from hidraw.
   EXPECT_GT(fit("", "['hidraw', 'usb']"), 0);
   EXPECT_EQ(fit("", "['evdev']"), 0);
-  // For a pad that was calibrated through two drivers; less than what tells the device itself.
+  // For a pad that was calibrated through two drivers. The device itself counts for more.
   EXPECT_GT(fit("evdev", "['evdev']"), fit("evdev", "[]"));
   const CalibrationFile model = parsed("devices = ['054c:09cc']\nport = '1'\ndrivers = ['evdev']");
   EXPECT_LT(calibration_fit(model, {0x054c, 0x09cc, "aa", "1", "evdev"}), fit("evdev", "[]"));
@@ -238,7 +238,7 @@ TEST_F(FindCalibration, TheBestFitWinsAndTheEarlierFolderAmongEquals) {
   EXPECT_EQ(find_calibration(folders_, device_).file.name, "exact");
 }
 
-// It may be another pad's: this one goes on with the next best.
+// The damaged file may be for another pad, so the next best file is used.
 TEST_F(FindCalibration, ADamagedFileIsLeftOutAndNamed) {
   write("user/z.toml", "\n\nouter = 1\n");
   write("user/zz.toml", "name = 'sound'\nunique_id = 'aa:bb'\n");

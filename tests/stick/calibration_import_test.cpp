@@ -1,5 +1,5 @@
-// Lines as the tools print them. What they mean is derived anew: the kernel's own formula for
-// jscal's numbers, percent of the range by hand for the others.
+// Lines as the tools print them. Their meaning is derived here once more: by the kernel's formula
+// for jscal's numbers, by hand for the others.
 #include "stick/calibration_import.h"
 
 #include <gtest/gtest.h>
@@ -51,12 +51,12 @@ std::string error_of(const std::string& text, const Pad& pad) {
   return cause_of(calibration_import(text, "old.js", pad.device, pad.layout));
 }
 
-// What a calibration file must keep to: it is read back.
+// The calibration can be written to a file and read back.
 void expect_loadable(const CalibrationFile& file) {
   EXPECT_EQ(cause_of(parse_calibration(calibration_text(file), "back.toml")), "accepted");
 }
 
-// Linux's drivers/input/joydev.c, its broken line, in the words of its documentation.
+// The broken line of Linux's drivers/input/joydev.c.
 double joydev(const int (&c)[4], int count) {
   std::int64_t value = 0;
   if (count <= c[0]) value = (std::int64_t{c[2]} * (count - c[0])) >> 14;
@@ -102,8 +102,8 @@ TEST(CalibrationImport, AJscalLineMovesTheStickAsTheKernelDid) {
   EXPECT_EQ(file.calibration.right.inner, StickCalibration{}.inner);
 }
 
-// The zone is one for both sides here: where they differ the wider share counts, and the rest of
-// the way moves by less than the difference.
+// Here both sides have the same zone: if they differ the wider one counts, and the output is off by
+// less than the difference.
 TEST(CalibrationImport, UnevenSidesMoveNearlyAsTheKernelDid) {
   const Pad pad = pad_of(-32768, 32767);
   const int x[4] = {-4500, 500, slope(20500), slope(28500)},
@@ -150,7 +150,7 @@ TEST(CalibrationImport, FramesSayWhichAxisMovesAStick) {
   EXPECT_EQ(axes[kLeftX].axis, kLeftX);
 }
 
-// Codes 1 and 0 have changed places: the first correction is that of Y.
+// Codes 1 and 0 are swapped: the first correction is for Y.
 TEST(CalibrationImport, MappedAxesOfJscalAreFollowed) {
   const Pad pad = pad_of(0, 255);
   const int a[4] = {100, 120, slope(80), slope(80)}, b[4] = {118, 138, slope(100), slope(100)};
@@ -203,7 +203,7 @@ TEST(CalibrationImport, EvemuHwdbAndEvtestSayTheSame) {
   }
 }
 
-// Kernel drivers state 0 where they know of no zone (hid-playstation).
+// Kernel drivers that know no zone state 0 (hid-playstation).
 TEST(CalibrationImport, NoFlatIsNoZoneOfNothing) {
   const CalibrationFile file = imported("A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\n", pad_of(0, 255));
   EXPECT_EQ(file.calibration.left.inner, kInnerZoneUnknown);

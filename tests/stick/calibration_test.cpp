@@ -118,7 +118,7 @@ TEST(StickPosition, MonotoneAlongEveryDirection) {
       for (double radius = 0.0; radius <= 1.0; radius += 0.002) {
         const vec2 now = stick_position(shaped(shape, 0.12, 0.95, 0.7), polar(radius, i * kDegree));
         ASSERT_GE(glm::length(now), glm::length(before) - 1e-15);
-        // Axial: the disc's rim turns the direction once one axis is full.
+        // Axial: once one axis is full, the limit to the disc changes the direction.
         if (shape != ZoneShape::axial) {
           ASSERT_GE(now.x, before.x - 1e-15);
           ASSERT_GE(now.y, before.y - 1e-15);
@@ -162,10 +162,25 @@ TEST(StickPosition, NotANumberCountsAsTheCentre) {
 TEST(StickPosition, BothSticksHaveTheirOwnCalibration) {
   Calibration c;
   c.left.inner = 0.5;
-  const Stick stick = stick_position(c, {0.0, 0.4}, {0.0, 0.4});
+  PadState pad;
+  pad.axis[kLeftY] = pad.axis[kRightY] = 0.4f;
+  const Stick stick = stick_position(c, pad);
   EXPECT_EQ(stick.left.y, 0.0);
   EXPECT_GT(stick.right.y, 0.0);
   static_assert(std::is_trivially_copyable_v<Calibration>);
+}
+
+TEST(Calibration, CanonicalHasNoNegativeZeroAndKeepsEveryOtherNumber) {
+  Calibration c;
+  c.left.x = {-0.9, -0.0, 0.8};
+  c.right.curve = -0.0;
+  c.right_trigger.released = -0.0;
+  const Calibration same = canonical(c);
+  EXPECT_EQ(same, c);
+  EXPECT_FALSE(std::signbit(same.left.x.centre));
+  EXPECT_FALSE(std::signbit(same.right.curve));
+  EXPECT_FALSE(std::signbit(same.right_trigger.released));
+  EXPECT_TRUE(std::signbit(same.left.x.min));
 }
 
 constexpr RawDirection kXs[] = {RawDirection::plus_x, RawDirection::minus_x};
@@ -223,7 +238,7 @@ TEST(StickFrame, OddAboutTheCentreAndExactlyZeroInside) {
         const vec2 there = stick_position(c, {x, y}), opposite = stick_position(c, {-x, -y});
         ASSERT_EQ(opposite, -there);
         if (std::sqrt(x * x + y * y) > 0.12) continue;
-        // One bit pattern for neutral, however the axes lie: poses are compared by their bits.
+        // Neutral has one bit pattern in every frame, because poses are compared bit by bit.
         ASSERT_EQ(std::bit_cast<std::uint64_t>(there.x), 0u);
         ASSERT_EQ(std::bit_cast<std::uint64_t>(there.y), 0u);
       }
@@ -253,7 +268,7 @@ TEST(TriggerPosition, AnUncalibratedTriggerIsAsItIs) {
   for (double raw = 0.0; raw <= 1.0; raw += 1.0 / 255) EXPECT_EQ(trigger_position({}, raw), raw);
 }
 
-// A worn 8-bit stick: rest 6 % off and 2 counts of noise walk nowhere with Sony's default.
+// A worn 8-bit stick that rests 6 % off with 2 counts of noise stays neutral with Sony's zone.
 TEST(StickPosition, RestOfAWornSonyStickIsNeutral) {
   for (int count = 0; count <= 10; ++count) {
     const double raw = (128 + count - 127.5) / 127.5;

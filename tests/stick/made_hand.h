@@ -1,4 +1,4 @@
-// Pads in a hand that does what the guide asks for, or something else.
+// Made pads in a made hand, which does what the guide asks for, or something else.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -46,13 +46,12 @@ inline const std::array<StickFrame, 8> kFrames = {
     {RawDirection::minus_y, RawDirection::minus_x}};
 
 inline vec2 unit(RawDirection direction) {
-  const bool is_minus = direction == RawDirection::minus_x || direction == RawDirection::minus_y;
-  const bool is_x = direction == RawDirection::plus_x || direction == RawDirection::minus_x;
-  const double length = is_minus ? -1.0 : 1.0;
-  return is_x ? vec2(length, 0.0) : vec2(0.0, length);
+  const double length = is_negative(direction) ? -1.0 : 1.0;
+  return is_along_x(direction) ? vec2(length, 0.0) : vec2(0.0, length);
 }
 
-// A pad in a hand, and the guide that watches it. Positions: from rest, as the thumb has them.
+// A pad in a hand, and the guide that watches it. Thumb positions are from rest, +x right, +y
+// forward.
 struct MadeHand {
   explicit MadeHand(Controls controls = Controls::two_sticks)
       : layout(layout_of(controls)), guide(layout) {}
@@ -70,7 +69,7 @@ struct MadeHand {
   std::array<double, 2> finger{};  // triggers 0..1
   std::mt19937 random{1};
   std::vector<std::uint8_t> last;
-  CalibrationGuide* copy = nullptr;  // takes the reports too, and is told no times
+  CalibrationGuide* copy = nullptr;  // takes the reports too, but no ticks
 
   std::int16_t word(double raw) {
     if (sigma > 0.0) raw += std::normal_distribution(0.0, sigma)(random);
@@ -94,8 +93,8 @@ struct MadeHand {
   }
   void send(const std::vector<std::uint8_t>& bytes) {
     const Report report = report_of(bytes, time_ns);
-    guide.take(report);
-    if (copy != nullptr) copy->take(report);
+    guide.take_report(report);
+    if (copy != nullptr) copy->take_report(report);
   }
   // One period of the pad.
   void pass() {
@@ -146,7 +145,7 @@ struct MadeHand {
     move(side, vec2(0.0), 0.05);
     wait(0.2);
   }
-  // All that the sticks are asked for.
+  // All steps of the sticks.
   void steps_of_sticks(int sticks) {
     for (int side = 0; side < sticks; ++side) rest_step(side);
     for (int side = 0; side < sticks; ++side) full_turns(side);

@@ -1,23 +1,26 @@
-// Recordings of sticks whose truth is known: what the analysis must find again.
+// Made recordings of sticks whose truth is known: what the analysis must find again.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <string>
 #include <vector>
 
-#include "stick/stick_track.h"
+#include "stick/statistics.h"
 
 namespace gaitpad {
 
 enum class Gate { circle, square, ellipse };  // square: of half side `reach_x`, corners and all
 
-// A stick as it is. Positions are raw fractions as the thumb means them (+x right, +y forward);
-// `frame` says how the pad reports them. Beyond -1..1 a report shows the end.
+// The truth about a stick. Positions are raw fractions under the thumb (+x right, +y forward);
+// `frame` says how the pad reports them. Reports are clipped to -1..1.
 struct MadeStick {
   vec2 centre{0.0};
   vec2 sigma{0.0};          // Gaussian, of each report
-  double hysteresis = 0.0;  // it comes to rest half of this towards the side it was let go from
+  double hysteresis = 0.0;  // it rests half of this towards the side of the release
   vec2 drift_per_s{0.0};    // of everything; `centre` is true in the middle of the time
   double creep = 0.0;       // this far off right after a release, gone exponentially in 0.3 s
   double wander = 0.0;      // random walk of everything: standard deviation after one second
@@ -43,7 +46,7 @@ inline double gate_radius(const MadeStick& stick, double angle_rad) {
   return radius;
 }
 
-// By the formula, of the gate without noise, densely sampled.
+// By the formula, for the gate without noise, densely sampled.
 inline double true_circularity_error(const MadeStick& stick) {
   std::array<double, 48> greatest{};
   for (int i = 0; i < 48000; ++i) {
@@ -63,11 +66,11 @@ inline double true_circularity_error(const MadeStick& stick) {
   return 100.0 * std::sqrt(sum / bins);
 }
 
-// Where the thumb and the spring have the stick, report by report, before noise and the rest.
+// The positions of the stick, report by report, before noise, drift and rounding.
 class MadeMoves {
  public:
   explicit MadeMoves(const MadeStick& stick) : stick_(stick), random_(stick.seed * 7919u + 1u) {
-    // Nobody knows from where it was let go before the recording.
+    // The recording does not show from which side it was let go before.
     home_ = home_after(std::uniform_real_distribution<double>(-kPi, kPi)(random_));
     at_ = home_;
   }
@@ -136,7 +139,7 @@ class MadeMoves {
 namespace made {
 
 inline vec2 raw_of(const StickFrame& frame, const vec2& meant) {
-  // A frame turns and mirrors: what lies along each raw axis is found by asking for both.
+  // The inverse of a turn or mirror is its transpose.
   const vec2 x = in_frame(frame, vec2(1.0, 0.0)), y = in_frame(frame, vec2(0.0, 1.0));
   return {x.x * meant.x + x.y * meant.y, y.x * meant.x + y.y * meant.y};
 }
@@ -150,7 +153,7 @@ inline double quantised(double position, int bits) {
 
 }  // namespace made
 
-// The path as the stick's reports tell it.
+// The path as the stick reports it.
 inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path) {
   std::mt19937 random(stick.seed);
   std::normal_distribution<double> normal;
@@ -166,7 +169,7 @@ inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path
     walk += vec2(stride * normal(random), stride * normal(random));
     vec2 at = path[k] + stick.drift_per_s * time_s + walk +
               vec2(stick.sigma.x * normal(random), stick.sigma.y * normal(random));
-    // Two stamps make an interval.
+    // An interval has two stamps.
     const double late_ns = stick.jitter_ms * 1e6 / std::sqrt(2.0) * normal(random);
     if (spike_left == 0 && chance(random) < stick.spike_chance) {
       spike_left = 1 + static_cast<int>(3.0 * chance(random));
@@ -192,9 +195,9 @@ inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path
   return track;
 }
 
-// Reports of the clean session: rest, then `releases` pushes to the rim from different directions
-// with a rest of `rest_s` after each, then `turns` full circles, one a second and a half, let go,
-// then pushes held half a second forward, right, back, left with a short rest after each.
+// Reports of a whole session: rest; `releases` pushes to the rim in different directions, each with
+// a rest of `rest_s` after it; `turns` full circles of 1.5 s and a release; pushes forward, right,
+// back and left, held for half a second, with a short rest after each.
 inline StickTrack made_track(const MadeStick& stick, int releases = 8, double rest_s = 0.6,
                              double turns = 3.0) {
   MadeMoves moves(stick);
@@ -218,6 +221,85 @@ inline StickTrack made_track(const MadeStick& stick, int releases = 8, double re
     moves.rest(0.4);
   }
   return reported(stick, moves.path());
+}
+
+inline double step_of(const MadeStick& stick) {
+  return stick.bits == 0 ? 0.0 : 2.0 / (std::exp2(stick.bits) - 1.0);
+}
+inline StickStatistics statistics_of(const MadeStick& stick, const StickTrack& track) {
+  return stick_statistics(std::vector<StickTrack>{track}, vec2(step_of(stick)));
+}
+inline StickStatistics statistics_of(const MadeStick& stick) {
+  return statistics_of(stick, made_track(stick));
+}
+
+inline std::string name_of(const MadeStick& s) {
+  const auto text = [](double x) { return std::to_string(x); };
+  return "seed " + text(s.seed) + ", " + text(s.bits) + " bits, sigma " + text(s.sigma.x) + " " +
+         text(s.sigma.y) + ", hysteresis " + text(s.hysteresis) + ", " + text(s.rate_hz) +
+         " Hz, jitter " + text(s.jitter_ms) + " ms, drops " + text(s.drop_chance) + ", spikes " +
+         text(s.spike_chance) + (s.reports_changes_only ? ", changes only" : "");
+}
+
+// Draws sticks of all kinds, each from its own seed.
+class Draw {
+ public:
+  explicit Draw(std::uint32_t seed) : random_(seed) { stick_.seed = seed; }
+  double within(double least, double most) {
+    return least + (most - least) * static_cast<double>(random_()) / 4294967296.0;
+  }
+  bool chance(double share) { return within(0.0, 1.0) < share; }
+  template <std::size_t kCount>
+  double one_of(const std::array<double, kCount>& values) {
+    return values[random_() % kCount];
+  }
+  MadeStick stick() {
+    MadeStick& s = stick_;
+    s.centre = vec2(within(-0.2, 0.2), within(-0.2, 0.2));
+    s.bits = static_cast<int>(one_of(std::array{0.0, 8.0, 10.0, 12.0, 16.0}));
+    const double sigma = chance(0.2) ? 0.0 : std::exp(within(std::log(5e-4), std::log(0.03)));
+    s.sigma = vec2(sigma, sigma * within(0.5, 1.0));
+    s.hysteresis = chance(0.5) ? 0.0 : within(0.01, 0.15);
+    s.gate = std::array{Gate::circle, Gate::square, Gate::ellipse}[random_() % 3];
+    s.reach_x = within(0.85, 1.0);
+    s.reach_y = within(0.85, 1.0);
+    s.rate_hz = one_of(std::array{66.0, 125.0, 250.0, 1000.0});
+    s.jitter_ms = within(0.0, 0.2) * 1000.0 / s.rate_hz;
+    s.drop_chance = chance(0.5) ? 0.0 : within(0.0, 0.05);
+    s.spike_chance = chance(0.5) ? 0.0 : within(0.0, 0.002);
+    s.reports_changes_only = chance(0.4);
+    return s;
+  }
+  vec2 direction() {
+    const double angle = within(-kPi, kPi);
+    return {std::cos(angle), std::sin(angle)};
+  }
+
+ private:
+  std::mt19937 random_;
+  MadeStick stick_;
+};
+
+// The larger of a step and 4 sigma / sqrt(resting reports), with hysteresis a quarter of it.
+// 1e-4 is as good as a 14-bit stick.
+inline double centre_bound(const MadeStick& stick, const StickStatistics& s) {
+  const double reports = std::max(s.rest_s * stick.rate_hz, 1.0);
+  const double sigma = std::max(stick.sigma.x, stick.sigma.y);
+  return std::max(
+      {step_of(stick), 4.0 * sigma / std::sqrt(reports), 0.25 * stick.hysteresis, 1e-4});
+}
+
+inline void expect_centre(const MadeStick& stick, const StickStatistics& s, const vec2& truth) {
+  ASSERT_TRUE(s.centre) << name_of(stick);
+  const vec2 off = *s.centre - truth;
+  EXPECT_LE(std::max(std::fabs(off.x), std::fabs(off.y)), centre_bound(stick, s)) << name_of(stick);
+}
+
+inline void let_go_from(MadeMoves& moves, double angle_rad, double rest_s = 0.6) {
+  moves.push(angle_rad);
+  moves.hold(0.1);
+  moves.release();
+  moves.rest(rest_s);
 }
 
 }  // namespace gaitpad

@@ -25,7 +25,7 @@ Ends true_ends(const MadeStick& stick) {
   return ends;
 }
 
-// Of `true`, the error that is allowed: 1 % or 2 sigma.
+// The allowed error: 1 % or 2 sigma.
 void expect_end(const std::optional<double>& found, double truth, double sigma) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(*found, truth, std::max(0.01 * std::fabs(truth), 2.0 * sigma));
@@ -106,7 +106,7 @@ TEST(Outline, HoldsAtAnyReportRateAndNumberOfTurnsAndWithLostReports) {
   }
 }
 
-// Some directions next to a corner are then never reported.
+// On a slow pad some directions next to a corner are never reported.
 TEST(Outline, CircularityOfASquareGateTurnedQuicklyOnASlowPad) {
   for (const vec2& centre : {vec2(0.0), vec2(0.05, 0.1), vec2(0.18, 0.16)}) {
     for (const double reach : {0.8, 0.87, 0.95}) {
@@ -126,7 +126,7 @@ TEST(Outline, FullSquareIsTwentyAndAHalfPercentByTheGreatestRadiusOfEachBin) {
   EXPECT_NEAR(*circularity_error(outline_of(made_track(stick), stick)), 20.5, 0.3);
 }
 
-// A round that cuts inside lies below the others, and stays out of the rim.
+// A turn that cuts corners lies below the others and is left out of the rim.
 TEST(Outline, SloppyRoundsDoNotPullTheGateInwards) {
   for (const Shape& shape : kShapes) {
     for (const double sigma : {0.0, 0.01}) {
@@ -149,7 +149,7 @@ TEST(Outline, SloppyRoundsDoNotPullTheGateInwards) {
   }
 }
 
-// Held in a corner a streaming pad repeats it hundreds of times.
+// A streaming pad repeats a held corner hundreds of times.
 TEST(Outline, ALongHoldDoesNotOutweighWhatLiesBesideIt) {
   for (const Shape& shape : kShapes) {
     for (const double sigma : {0.0, 0.01}) {
@@ -175,7 +175,7 @@ TEST(Outline, PushesAloneTellTheReachButNoCircularity) {
     expect_ends(outline, stick);
     EXPECT_FALSE(circularity_error(outline));
     EXPECT_LT(filled_bins(outline), 20);
-    // On the way there is no gate.
+    // The way out is not mistaken for the gate.
     for (int k = 0; k < kOutlineDirections; ++k) {
       if (outline.radius[static_cast<std::size_t>(k)] == 0.0) continue;
       const double truth = gate_radius(stick, 2.0 * kPi * k / kOutlineDirections);

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
+#include "stick/made_stick.h"
 #include "tests/hid/made_pads.h"
 
 namespace gaitpad {
@@ -11,8 +10,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// A pad whose reports have ids: 1 tells of the left stick (8 bit each) and the left trigger (10
-// bit), 2 of the right stick's x alone, 3 of its y.
+// A pad whose reports have ids: 1 has the left stick (8 bits each) and the left trigger (10 bits),
+// 2 the right stick's x, 3 its y.
 PadLayout split_pad() {
   DeviceInfo device;
   device.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                    // game pad
@@ -51,8 +50,8 @@ TEST(StickTrack, DeclaredStepIsOneCountOfTheField) {
 TEST(StickTrack, EachReportAddsToTheControlsThatItTellsOf) {
   const PadLayout pad = split_pad();
   PadTracker tracker(pad);
-  EXPECT_TRUE(tracker.take(report_at(10, {1, 255, 0, 0xff, 0x03})));
-  EXPECT_TRUE(tracker.take(report_at(20, {1, 0, 255, 0x00, 0x00})));
+  EXPECT_TRUE(tracker.add_report(report_at(10, {1, 255, 0, 0xff, 0x03})));
+  EXPECT_TRUE(tracker.add_report(report_at(20, {1, 0, 255, 0x00, 0x00})));
   const PadTracks& tracks = tracker.tracks();
   ASSERT_EQ(tracks.stick[0].size(), 1u);
   ASSERT_EQ(tracks.stick[0][0].size(), 2u);
@@ -68,10 +67,10 @@ TEST(StickTrack, EachReportAddsToTheControlsThatItTellsOf) {
 TEST(StickTrack, AnAxisCountsOnlyOnceAReportHasToldOfIt) {
   const PadLayout pad = split_pad();
   PadTracker tracker(pad);
-  tracker.take(report_at(1, {2, 255}));
+  tracker.add_report(report_at(1, {2, 255}));
   EXPECT_TRUE(tracker.tracks().stick[1].empty());
-  tracker.take(report_at(2, {3, 255}));
-  tracker.take(report_at(3, {2, 0}));
+  tracker.add_report(report_at(2, {3, 255}));
+  tracker.add_report(report_at(3, {2, 0}));
   ASSERT_EQ(tracker.tracks().stick[1].size(), 1u);
   ASSERT_EQ(tracker.tracks().stick[1][0].size(), 2u);
   EXPECT_EQ(tracker.tracks().stick[1][0][0].raw, vec2(1.0, -1.0));
@@ -81,21 +80,21 @@ TEST(StickTrack, AnAxisCountsOnlyOnceAReportHasToldOfIt) {
 TEST(StickTrack, ReportsThatDoNotDecodeAddNothing) {
   const PadLayout pad = split_pad();
   PadTracker tracker(pad);
-  EXPECT_FALSE(tracker.take(report_at(1, {1, 255})));
-  EXPECT_FALSE(tracker.take(report_at(2, {9, 0, 0, 0, 0})));
-  EXPECT_FALSE(tracker.take(report_at(3, {})));
+  EXPECT_FALSE(tracker.add_report(report_at(1, {1, 255})));
+  EXPECT_FALSE(tracker.add_report(report_at(2, {9, 0, 0, 0, 0})));
+  EXPECT_FALSE(tracker.add_report(report_at(3, {})));
   EXPECT_TRUE(tracker.tracks().stick[0].empty());
 }
 
 TEST(StickTrack, ATrackEndsWhereThePadWent) {
   const PadLayout pad = split_pad();
   PadTracker tracker(pad);
-  tracker.take(report_at(1, {1, 0, 0, 0, 0}));
+  tracker.add_report(report_at(1, {1, 0, 0, 0, 0}));
   tracker.cut();
   EXPECT_EQ(tracker.state().axis[kLeftX], PadState{}.axis[kLeftX]);
-  tracker.cut();  // twice is once
-  tracker.take(report_at(2, {1, 0, 0, 0, 0}));
-  tracker.take(report_at(3, {1, 0, 0, 0, 0}));
+  tracker.cut();  // cutting twice is cutting once
+  tracker.add_report(report_at(2, {1, 0, 0, 0, 0}));
+  tracker.add_report(report_at(3, {1, 0, 0, 0, 0}));
   ASSERT_EQ(tracker.tracks().stick[0].size(), 2u);
   EXPECT_EQ(tracker.tracks().stick[0][0].size(), 1u);
   EXPECT_EQ(tracker.tracks().stick[0][1].size(), 2u);
@@ -105,7 +104,8 @@ TEST(StickTrack, ATrackEndsWhereThePadWent) {
 TEST(StickTrack, TimeNeverGoesBackWithinATrack) {
   const PadLayout pad = split_pad();
   PadTracker tracker(pad);
-  for (const std::int64_t time_ns : {5, 3, 7}) tracker.take(report_at(time_ns, {1, 0, 0, 0, 0}));
+  for (const std::int64_t time_ns : {5, 3, 7})
+    tracker.add_report(report_at(time_ns, {1, 0, 0, 0, 0}));
   const StickTrack& track = tracker.tracks().stick[0][0];
   EXPECT_EQ(track[1].time_ns, 5);
   EXPECT_EQ(track[2].time_ns, 7);
@@ -120,6 +120,84 @@ TEST(StickTrack, AFrameTurnsEverySample) {
   EXPECT_EQ(turned[0][0].time_ns, 1);
   EXPECT_EQ(turned[1][0].raw, vec2(0.0, 1.0));
   EXPECT_EQ(turned[1][1].raw, vec2(-1.0, 0.0));
+}
+
+TEST(ReportStatistics, RateJitterStepsAndTurnsOfEveryPad) {
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    MadeStick stick = Draw(seed).stick();
+    stick.spike_chance = 0.0;
+    // At 1000 Hz a pad that reports changes only leaves out too many reports of coarse codes.
+    if (stick.reports_changes_only && stick.rate_hz > 500.0) stick.rate_hz = 500.0;
+    const StickStatistics s = statistics_of(stick);
+    ASSERT_TRUE(s.rate_hz && s.jitter_ms) << name_of(stick);
+    EXPECT_NEAR(*s.rate_hz, stick.rate_hz, 0.02 * stick.rate_hz) << name_of(stick);
+    EXPECT_NEAR(*s.jitter_ms, stick.jitter_ms, 0.15 * stick.jitter_ms + 20.0 / stick.rate_hz)
+        << name_of(stick);
+    EXPECT_EQ(s.turns, 3) << name_of(stick);
+    if (stick.bits > 0) {
+      EXPECT_NEAR(s.step_x, step_of(stick), 1e-3 * step_of(stick)) << name_of(stick);
+      EXPECT_NEAR(s.step_y, step_of(stick), 1e-3 * step_of(stick)) << name_of(stick);
+    }
+    EXPECT_EQ(s.stuck, 0) << name_of(stick);
+    EXPECT_EQ(s.jumps, 0) << name_of(stick);
+  }
+}
+
+TEST(ReportStatistics, StepIsMeasuredEvenIfTheFieldIsFiner) {
+  MadeStick stick;
+  stick.bits = 8;
+  stick.sigma = vec2(0.01);
+  const StickStatistics s =
+      stick_statistics(std::vector<StickTrack>{made_track(stick)}, vec2(2.0 / 65535.0));
+  EXPECT_NEAR(s.step_x, 2.0 / 255.0, 1e-9);
+  // A single value shows no step.
+  const StickTrack still(100, {0, {0.1, 0.1}});
+  EXPECT_EQ(stick_statistics(std::vector<StickTrack>{still}, vec2(0.25, 0.125)).step_y, 0.125);
+}
+
+TEST(ReportStatistics, LostReportsAreCountedOnAPadThatRepeatsItself) {
+  MadeStick stick;
+  stick.bits = 8;
+  stick.jitter_ms = 0.8;
+  EXPECT_LE(statistics_of(stick).gaps.value_or(99), 3);
+  stick.drop_chance = 0.02;
+  const StickTrack track = made_track(stick);
+  const double lost = 0.02 * static_cast<double>(track.size());
+  EXPECT_NEAR(static_cast<double>(statistics_of(stick, track).gaps.value_or(0)), lost, 0.3 * lost);
+  stick.reports_changes_only = true;
+  EXPECT_FALSE(statistics_of(stick).gaps);
+}
+
+TEST(ReportStatistics, SpikesAreCountedAndChangeNothingElse) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    MadeStick stick = Draw(seed).stick();
+    stick.reports_changes_only = false;
+    stick.drop_chance = 0.0;
+    stick.sigma = glm::min(stick.sigma, vec2(0.01));
+    stick.spike_chance = 0.004;
+    const StickTrack track = made_track(stick);
+    const StickStatistics s = statistics_of(stick, track);
+    // Each lasts two reports on average.
+    const double spikes = 0.004 * static_cast<double>(track.size());
+    EXPECT_NEAR(static_cast<double>(s.jumps), spikes, 0.2 * spikes + 3.0 * std::sqrt(spikes))
+        << name_of(stick);
+    expect_centre(stick, s, stick.centre);
+    EXPECT_EQ(s.drift_per_s, 0.0) << name_of(stick);
+  }
+}
+
+TEST(ReportStatistics, AValueThatFreezesWhileTheStickMovesOnIsStuck) {
+  MadeStick stick;
+  stick.bits = 8;
+  MadeMoves moves(stick);
+  moves.rest(0.5);
+  moves.move({0.9, 0.0}, 0.4);
+  moves.rest(0.1);
+  StickTrack track = reported(stick, moves.path());
+  EXPECT_EQ(statistics_of(stick, track).stuck, 0);
+  const std::size_t from = 125 + 40;  // in the middle of the movement, 80 ms
+  for (std::size_t i = from; i < from + 20; ++i) track[i].raw = track[from].raw;
+  EXPECT_EQ(statistics_of(stick, track).stuck, 1);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
+#include "stick/stills.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "stick/made_stick.h"
-#include "stick/rests.h"
 
 namespace gaitpad {
 namespace {
@@ -20,7 +21,7 @@ double seconds_of(const std::vector<Still>& stills) {
   return sum;
 }
 
-// Of all kinds of stick: noisy, worn, drifting, coarse, silent at rest, slow and quick.
+// All kinds of sticks: noisy, worn, drifting, coarse, silent at rest, slow and fast.
 std::vector<MadeStick> every_kind() {
   std::vector<MadeStick> sticks;
   for (const int bits : {0, 8, 16}) {
@@ -42,12 +43,6 @@ std::vector<MadeStick> every_kind() {
     }
   }
   return sticks;
-}
-
-std::string name_of(const MadeStick& stick) {
-  return std::to_string(stick.bits) + " bits, sigma " + std::to_string(stick.sigma.x) + ", " +
-         std::to_string(stick.rate_hz) + " Hz" +
-         (stick.reports_changes_only ? ", changes only" : "");
 }
 
 TEST(Stills, RestAfterEachReleaseIsFoundWhereItWas) {
@@ -141,7 +136,7 @@ TEST(Stills, AStickThatWasNeverTouchedRestsAllTheTime) {
     MadeMoves moves(stick);
     moves.rest(3.0);
     const Stills found = stills_of(stick, moves);
-    // A pad that is silent for the last while is not known to be there.
+    // A pad that is silent at the end may be gone.
     EXPECT_GT(seconds_of(found.rests), stick.reports_changes_only ? 2.0 : 2.9) << name_of(stick);
     EXPECT_TRUE(found.pushes.empty());
   }
@@ -160,7 +155,7 @@ TEST(Stills, AMeanIsOfTimeNotOfReports) {
   EXPECT_EQ(found.rests[0].last, 2u);
 }
 
-// So that no number of recordings, each all silence, takes time and memory without bound.
+// Bounds time and memory for any number of recordings full of silence.
 TEST(Stills, TheFirstDayOfAllTracksCounts) {
   StickTrack silent;
   for (std::int64_t k = 0; k < 30'000; ++k) {
@@ -181,7 +176,7 @@ TEST(Stills, AnySamplesAreTaken) {
   const StickTrack wild = {{kLast, {0.0, 0.0}},  {kFirst, {0.0, 0.0}}, {0, {nan, 0.0}},
                            {kFirst, {0.0, 1e9}}, {kLast, {-inf, 0.1}}, {kLast, {0.1, 0.1}}};
   stills(std::vector<StickTrack>{wild, wild});
-  // As many at one moment.
+  // Many samples at one moment.
   stills(std::vector<StickTrack>{StickTrack(1000, {7, {0.1, 0.1}})});
 }
 

@@ -16,8 +16,8 @@ bool is_sound(const vec2& p) { return p.x * p.x + p.y * p.y <= 1.0 + 1e-12; }
 void check_positions(const Calibration& c) {
   for (double x = -1.0; x <= 1.0; x += 0.25) {
     for (double y = -1.0; y <= 1.0; y += 0.25) {
-      const Stick stick = stick_position(c, {x, y}, {x, y});
-      if (!is_sound(stick.left) || !is_sound(stick.right)) std::abort();
+      if (!is_sound(stick_position(c.left, {x, y})) || !is_sound(stick_position(c.right, {x, y})))
+        std::abort();
     }
     const double left = trigger_position(c.left_trigger, x);
     if (!(left >= 0.0 && left <= 1.0)) std::abort();

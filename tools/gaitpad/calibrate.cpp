@@ -84,7 +84,7 @@ std::int64_t take_reports(const Trace& trace, std::uint16_t device, PadTracker& 
     if (event.kind == ReportKind::removed) tracker.cut();
     if (event.kind != ReportKind::input) continue;
     copy_report(trace, event, report);
-    if (!tracker.take(report)) ++bad;
+    if (!tracker.add_report(report)) ++bad;
   }
   return bad;
 }

@@ -70,9 +70,7 @@ double rate_hz(const Window& window) {
 }
 
 Stick stick_of(const MonitoredPad& pad) {
-  const auto& axis = pad.state.axis;
-  return stick_position(pad.config.calibration, vec2(axis[kLeftX], axis[kLeftY]),
-                        vec2(axis[kRightX], axis[kRightY]));
+  return stick_position(pad.config.calibration, pad.state);
 }
 
 struct Triggers {

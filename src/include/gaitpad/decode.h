@@ -1,5 +1,15 @@
-// From a report's bytes to the pad's state. The layout is built once, at set-up; decoding a report
-// is a walk over its bindings, without heap, locks or surprises.
+// From the bytes of a report to the state of the pad. pad_layout() works out once, at set-up, which
+// field of which report is which control; decode() then reads a report without heap or locks.
+//
+//   gaitpad::DeviceInfo device;
+//   device.descriptor = ...;                            // the HID report descriptor
+//   auto layout = gaitpad::pad_layout(device);          // Result<PadLayout>
+//   gaitpad::PadState pad;
+//   if (gaitpad::decode(*layout, report, pad)) ...      // pad.axis, pad.buttons
+//
+// How controls are found: fields of the first game-pad, joystick or multi-axis collection with X
+// and Y are bound by their usages and neighbours; a [[pad]] entry of config/pads (pad_map.h) or a
+// line of SDL's data base (DeviceInfo::mapping) replaces what usages do not tell.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,7 +22,9 @@
 
 namespace gaitpad {
 
-// A field of a report in the form that the loop reads.
+// ---- The layout: what pad_layout() builds. To decode reports one need not know it.
+
+// A field of a report. `bit_offset` counts from the first bit after the report id.
 struct FieldBits {
   std::uint32_t bit_offset = 0;
   std::uint8_t bit_size = 0;
@@ -20,67 +32,79 @@ struct FieldBits {
   std::int64_t min = 0, max = 0;
 };
 struct AxisOp {
-  FieldBits bits;  // min, max: of the part that counts
+  FieldBits bits;  // min, max: of the part of the range that counts
   PadAxis axis = kLeftX;
-  bool reversed = false;  // towards HID's direction: y of a stick grows towards the thumb's owner
-  std::int8_t side = 0;   // of a stick's axis: 0 the whole of it, else from 0 to this
+  bool reversed = false;  // the axis falls while the field grows
+  std::int8_t side = 0;   // of a stick's axis: 0 the whole axis, else from 0 to this end (-1, 1)
 };
 struct ButtonOp {
-  FieldBits bits;  // min, max: of the part that counts
-  std::uint32_t mask = 0;
-  std::uint32_t button = 0;  // a bit of PadState::buttons
-  bool reversed = false;     // pressed at the low end
+  FieldBits bits;            // min, max: of the part of the range that counts
+  std::uint32_t mask = 0;    // pressed if one of these bits of the value is set; 0: by the range
+  std::uint32_t button = 0;  // the bit of PadState::buttons
+  bool reversed = false;     // pressed in the lower half
 };
 struct HatOp {
   FieldBits bits;
-  std::int64_t last = 0;                        // values from min to last are directions
-  std::int64_t numerator = 1, denominator = 1;  // of the step in 45 degrees
-  std::uint8_t directions = 0;  // 0: all of them, as the D-pad; else one of these does as follows
-  std::uint32_t button = 0;     // presses this
-  float value = 0.0f;           // adds this to `axis`
+  std::int64_t last = 0;                        // values min .. last are directions
+  std::int64_t numerator = 1, denominator = 1;  // steps of 45 degrees a count
+  // 0: the hat is the whole D-pad. Else any of these directions (1 up, 2 right, 4 down, 8 left)
+  // presses `button` (a bit of PadState::buttons) and adds `value` to `axis`.
+  std::uint8_t directions = 0;
+  std::uint32_t button = 0;
+  float value = 0.0f;
   PadAxis axis = kLeftX;
 };
-struct ArrayOp {  // a slot of an array whose value names a button
+struct ArrayOp {  // an array field: its value names a pressed button
   FieldBits bits;
-  std::vector<std::uint32_t> button;  // by value - min
+  std::vector<std::uint32_t> button;  // bit of PadState::buttons by value - min
 };
 
+// How one report is read.
 struct ReportLayout {
-  std::uint8_t report_id = 0;  // 0: reports are not numbered
-  bool numbered = false;
-  std::uint16_t min_size = 0;              // with the id
-  std::vector<std::uint16_t> exact_sizes;  // of a replaced descriptor; empty: min_size counts
-  std::uint32_t covered = 0;               // buttons that this report tells of
-  std::uint32_t summed = 0;                // axes (bits) that several fields make up
+  std::uint8_t report_id = 0;
+  bool numbered = false;  // the report begins with its id
+  // Sizes in bytes, with the id: one of exact_sizes (of a replaced descriptor); if there are none,
+  // min_size or more.
+  std::uint16_t min_size = 0;
+  std::vector<std::uint16_t> exact_sizes;
+  std::uint32_t covered = 0;  // bits of PadState::buttons that this report carries
+  std::uint32_t summed = 0;   // axes (bits) that are the sum of several fields
   std::vector<AxisOp> axes;
   std::vector<ButtonOp> buttons;
   std::vector<HatOp> hats;
   std::vector<ArrayOp> arrays;
 };
 
-// A pressed button that no control is bound to.
+// A button field without a control; `gaitpad decode` prints it as button_N.
 struct UnnamedButton {
   std::uint8_t report_id = 0;
   FieldBits bits;
-  std::uint16_t number = 0;
+  std::uint16_t number = 0;  // id on HID's button page
 };
 
 struct PadLayout {
-  bool is_pad = false;
-  bool streams = false;         // at rest too: silence means a broken link
-  std::string override_origin;  // FILE:LINE of the [[pad]] that was used, empty for none
+  bool is_pad = false;          // by its descriptor (pad_application) or by its pad file
+  bool streams = false;         // it also reports at rest: silence means a broken link
+  std::string override_origin;  // FILE:LINE of the [[pad]] entry that was used; empty: none
   ReportDescriptor descriptor;
   std::vector<ReportLayout> reports;  // replaced ones first
   std::vector<UnnamedButton> unnamed;
 };
 
-// Error where the device's descriptor is damaged or the override's replacement is.
-Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overrides);
+// The layout of a device. Error if its descriptor, or the one that an override replaces it by, is
+// damaged: `My pad: report descriptor: byte 12: ...`.
+Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overrides = {});
 
-// How this report is read; null where it is too short, has an unknown id or is no input.
+// Indices (in ReportDescriptor::fields) of the input fields of the pad: those of the collection
+// that pad_application() finds, and the consumer and system keys beside it. Empty: no pad.
+std::vector<std::size_t> pad_fields(const ReportDescriptor& descriptor);
+
+// ---- Decoding
+
+// How this report is read. Null if it is too short, has an unknown id or is no input report.
 const ReportLayout* layout_of(const PadLayout& layout, const Report& report) noexcept;
-// Updates what the report tells of and leaves the rest. False for a report that is too short, has
-// an unknown id or is no input; `state` is then as before.
+// Updates the controls that the report carries; the others keep their state. False, and `state` is
+// unchanged, if the report is too short, has an unknown id or is no input report.
 bool decode(const PadLayout& layout, const Report& report, PadState& state) noexcept;
 
 }  // namespace gaitpad

@@ -1,8 +1,8 @@
-// HID report-descriptor parser (Device Class Definition for HID 1.11, section 6.2.2), with Linux's
-// answers where the document leaves a choice. Descriptors come from strangers: everything is
-// bounded.
+// HID report-descriptor parser (Device Class Definition for HID 1.11, section 6.2.2). Where the
+// document leaves a choice it does as Linux does. Descriptors come from any device, so everything
+// is bounded. Parsing allocates; the functions marked noexcept do not.
 #pragma once
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxFields = 32768;            // over all reports 
 
 enum class FieldKind : std::uint8_t { input, output, feature };
 
-// A page and an id in one number, as a 4-byte usage item has them.
+// Usage page and id in one number, as in a 4-byte usage item: page << 16 | id.
 constexpr std::uint32_t usage_of(std::uint16_t page, std::uint16_t id) noexcept {
   return (std::uint32_t{page} << 16) | id;
 }
@@ -30,6 +30,7 @@ constexpr std::uint16_t id_of(std::uint32_t usage) noexcept {
   return static_cast<std::uint16_t>(usage & 0xffff);
 }
 
+// Usages by the HID Usage Tables 1.4: generic desktop (01), simulation (02), consumer (0c).
 namespace usage {
 inline constexpr std::uint32_t kJoystick = usage_of(0x01, 0x04);
 inline constexpr std::uint32_t kGamePad = usage_of(0x01, 0x05);
@@ -58,29 +59,29 @@ inline constexpr std::uint32_t kConsumerBack = usage_of(0x0c, 0x224);
 inline constexpr std::uint16_t kButtonPage = 0x09;
 }  // namespace usage
 
-struct UsageRange {  // inclusive; both ends on one page
+struct UsageRange {  // both ends included, on one page
   std::uint32_t first = 0;
   std::uint32_t last = 0;
   bool operator==(const UsageRange&) const = default;
 };
 
-// One value of a report: an element of a main item, constant and empty ones left out.
+// One value of a report: an element of a main item (6.2.2.4). Constant and empty ones are left out.
 struct Field {
   FieldKind kind = FieldKind::input;
-  std::uint8_t report_id = 0;  // 0 where the report has none
-  bool is_array = false;       // the value is an index into the usages, not a usage's value
-  bool has_null = false;       // the main item's Null State flag
-  bool is_relative = false;
-  bool has_odd_range = false;  // minimum above maximum: replaced by the unsigned range of the bits
-  std::uint32_t bit_offset = 0;  // from the first bit behind the report id
+  std::uint8_t report_id = 0;    // 0: reports have no ids
+  bool is_array = false;         // the value names one of several usages (array_usage)
+  bool has_null = false;         // the main item's Null State flag
+  bool is_relative = false;      // its Relative flag
+  bool has_odd_range = false;    // minimum above maximum; the unsigned range of the bits is used
+  std::uint32_t bit_offset = 0;  // from the first bit after the report id
   std::uint32_t bit_size = 0;
-  std::uint32_t usage = 0;  // page and id; of an array the first one that it can name
-  std::int64_t logical_min = 0;
+  std::uint32_t usage = 0;       // page << 16 | id; of an array the first one it can name
+  std::int64_t logical_min = 0;  // raw counts, inclusive
   std::int64_t logical_max = 0;
-  std::int64_t physical_min = 0;
+  std::int64_t physical_min = 0;  // units of the device; both 0: as the logical range
   std::int64_t physical_max = 0;
-  std::uint16_t application = 0;  // index in ReportDescriptor::applications, else kNoApplication
-  std::uint32_t first_range = 0;  // of an array: its usages, in ReportDescriptor::ranges
+  std::uint16_t application = 0;  // index in ReportDescriptor::applications, or kNoApplication
+  std::uint32_t first_range = 0;  // of an array: its usages in ReportDescriptor::ranges
   std::uint32_t range_count = 0;
 };
 inline constexpr std::uint16_t kNoApplication = 0xffff;
@@ -99,25 +100,25 @@ struct ReportDescriptor {
   std::vector<ReportLength> reports;  // in the order in which they first occur
 };
 
-// Errors name the byte: `byte 12: report size of 300 bits, at most 256 are read`.
+// Errors name the byte of the item: `byte 12: report size of 300 bits, at most 256 are read`.
 Result<ReportDescriptor> parse_descriptor(std::span<const std::uint8_t> bytes);
 
-// Bytes that a report must have, its id included; 0 where there is no such report.
+// Length of a report in bytes, including its id; 0: there is no such report.
 std::size_t report_bytes(const ReportDescriptor& descriptor, FieldKind kind,
                          std::uint8_t report_id);
 
-// Bits `offset .. offset + size - 1`, least significant first; size <= 64, bits beyond the data are
-// 0.
+// Bits offset .. offset + size - 1, least significant first, size <= 64; 0 beyond the data.
 std::uint64_t bits_at(std::span<const std::uint8_t> data, std::uint64_t offset,
                       std::uint32_t size) noexcept;
-// The field's raw count, sign-extended if its minimum is negative. `data` starts behind the report
-// id. Fields of more than 64 bits give their lowest 64.
+// The field's raw count, sign-extended if its minimum is negative. `data` starts after the report
+// id. A field of more than 64 bits gives its lowest 64.
 std::int64_t field_value(const Field& field, std::span<const std::uint8_t> data) noexcept;
-// The usage that an array field names, 0 for none.
+// The usage that a value of an array field names; 0: none.
 std::uint32_t array_usage(const ReportDescriptor& descriptor, const Field& field,
                           std::int64_t value) noexcept;
 
-// The first application collection 1:4, 1:5 or 1:8 that has X and Y as input: what makes a pad.
+// Index of the first application collection that is a pad: joystick (1:4), game pad (1:5) or
+// multi-axis controller (1:8) with X and Y as input. None: the device is no pad.
 std::optional<std::size_t> pad_application(const ReportDescriptor& descriptor);
 
 }  // namespace gaitpad

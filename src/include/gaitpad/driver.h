@@ -1,23 +1,26 @@
-// The driver contract. A driver is two functions: one finds the devices that its source shows, one
-// opens such a device. An open device hands on its reports as bytes and never interprets them; what
-// its source does not describe it states as a report descriptor that it builds.
+// The driver contract. A driver is two functions: one finds the devices of its source, one opens
+// such a device. An open device delivers its reports as bytes and never interprets them. If its
+// source has no report descriptor, the driver builds one that states the layout of its reports.
 //
-// Threads  `find` and `open` are called from one thread, the finder's, and may take their time:
-//          they may talk to the device for up to two seconds. A Device then belongs to the I/O
-//          thread, which makes every further call; the finder's thread, or at the end another one,
-//          destroys it. A driver starts no thread that calls back; one that only talks to the pad
-//          it may have (hidraw).
-// Blocking No call of Device waits for a report: the I/O thread sleeps in poll() over `poll_fds` of
-//          all devices. Rare calls take as long as the system takes: mending a stalled endpoint
-//          (usb), a joystick that SDL has just found (sdl), closing.
-// Memory   All of it may allocate: nothing here runs on the loop thread.
-// Owning   A Device owns its handles and closes them in its destructor; what it took from the
-//          kernel (a detached driver, a running rumble) it gives back there.
-// Unplug   `read` answers `gone`, once all that came before it has been read. A stall, a refused
-//          packet or an interrupted call is no unplug: the device recovers or counts it as lost.
-//          A device plugged in again is another Device.
-// Time     Report::time_ns is CLOCK_MONOTONIC: the kernel's own stamp where the source has one
-//          (evdev), else the moment when the report was seen.
+// Threads  `find` and `open` are called by one thread (the finder's) and may take time: they may
+// talk
+//          to the device for up to two seconds. An open Device belongs to the I/O thread, which
+//          makes all further calls; another thread may destroy it. A driver never calls back from a
+//          thread of its own; a thread that only talks to the pad is allowed (hidraw).
+// Blocking No call of Device waits for a report: the I/O thread sleeps in poll() over the
+// `poll_fds`
+//          of all devices. A few calls take as long as the system takes: clearing a stalled
+//          endpoint (usb), a joystick that SDL has just found (sdl), closing.
+// Memory   Everything may allocate: nothing here runs on the loop thread.
+// Owning   A Device owns its handles and closes them in its destructor. What it took from the
+// kernel
+//          (a detached driver, running motors) it gives back there.
+// Unplug   `read` returns `gone` after everything that came before it was read. A stall, a refused
+//          packet or an interrupted call is no unplugging: the device recovers or counts it as
+//          lost. A device that is plugged in again is a new Device.
+// Time     Report::time_ns is CLOCK_MONOTONIC: the kernel's stamp if the source has one (evdev),
+// else
+//          the time at which the report was seen.
 #pragma once
 #include <poll.h>
 
@@ -34,18 +37,18 @@
 
 namespace gaitpad {
 
-// DeviceInfo::driver of the keyboard as a pad: live and in a recording it counts while no other pad
-// is deflected.
+// DeviceInfo::driver of the keyboard as a pad (keyboard.h). It drives while no other pad is
+// deflected, live and in a recording.
 inline constexpr std::string_view kKeyboardDriver = "keyboard";
 
-// Motor strengths, 0..65535 as in Linux's ff_rumble_effect: the strong motor is the slow, heavy
+// Motor strengths, 0..65535 as in Linux's ff_rumble_effect. The strong motor is the slow, heavy
 // one.
 struct Rumble {
   std::uint16_t strong = 0, weak = 0;
 };
 
-// What a pad remembers of its own sticks: fractions of half the logical range from its middle, +x
-// right, +y forward, as in stick/calibration.h.
+// The calibration that a pad stores itself: raw positions as in calibration.h, fractions of half
+// the logical range from its middle, +x right, +y forward.
 struct FactoryAxis {
   double min = -1.0, centre = 0.0, max = 1.0;
 };
@@ -56,39 +59,41 @@ struct FactorySticks {
 class Device {
  public:
   enum class Status {
-    report,   // `report` is filled: time_ns, size, bytes, kind input (its device is not); of
-              // a recording also kind added or removed
-    nothing,  // nothing more for now
+    report,   // `report` is filled: time_ns, size, bytes, kind (not its device). kind is input;
+              // of a recording also added or removed
+    nothing,  // no report now
     gone,     // unplugged
   };
   virtual ~Device() = default;
 
   virtual const DeviceInfo& info() const noexcept = 0;
-  // What to wait for; `read` until `nothing` when one of them is ready. May change after a read.
+  // What to wait for. When one of them is ready, call `read` until it returns `nothing`. They may
+  // change after a read.
   virtual std::span<const pollfd> poll_fds() const noexcept = 0;
   virtual Status read(Report& report) noexcept = 0;
 
-  // Runs until the next call. False where the pad cannot or the packet did not leave.
+  // Sets the motors until the next call. False: the pad has none, or the packet was not sent.
   virtual bool rumble(const Rumble&) noexcept { return false; }
+  // None: the pad stores no calibration, or it was not read.
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
-  // Reports that are known to have been lost or refused since the opening (SYN_DROPPED, overruns,
-  // a wrong checksum, a stalled endpoint).
+  // Reports known to be lost or refused since the device was opened (SYN_DROPPED, overruns, a wrong
+  // checksum, a stalled endpoint).
   virtual std::int64_t lost() const noexcept { return 0; }
-  // Once each: what a user should know though the pad works.
+  // What a user should know although the pad works: one sentence each, returned once.
   virtual std::vector<std::string> take_remarks() { return {}; }
 };
 
 // A device that a driver sees, open or not.
 struct DeviceListing {
-  DeviceInfo info;   // the descriptor is empty where it cannot be read without opening
+  DeviceInfo info;   // without a descriptor if that cannot be read without opening
   std::string node;  // /dev/hidraw3, /dev/input/event5, /dev/bus/usb/001/004, walk.hid
-  // The same for one pad on every driver: the sysfs folder of its USB interface, else of its HID
+  // Equal for one pad on all drivers: the sysfs folder of its USB interface, else of its HID
   // device, else of its input device.
   std::string pad_path;
-  std::string kernel_driver;  // bound to it: usbhid, xpad, playstation; empty: none or unknown
-  double poll_rate_hz = 0.0;  // as the endpoint claims; 0: unknown
+  std::string kernel_driver;  // bound to it: hid-generic, xpad, playstation; empty: none or unknown
+  double poll_rate_hz = 0.0;  // by the endpoint's descriptor; 0: unknown
   bool is_other = false;      // known to be no pad: a keyboard, the motion sensor of a pad
-  std::string problem;        // why it cannot be opened or is no pad: one sentence; empty: it can
+  std::string problem;  // why it cannot be opened, or what else it is: one sentence; empty: usable
 };
 
 // Whether a kernel driver may be detached while the device is open (usb only).
@@ -96,9 +101,10 @@ enum class Detach { never, allowed };
 
 struct DriverEntry {
   const char* name;
-  const char* library;  // what it is built on, for sentences
-  // Null where the program was built without the library. Never fails: what cannot be looked at is
-  // listed with its problem.
+  const char* library;  // for messages
+  // Both are null if gaitpad was built without the library. `find` never fails: a device that it
+  // cannot look at is listed with its problem. The error of `open` is one sentence that names the
+  // node.
   std::vector<DeviceListing> (*find)();
   Result<std::unique_ptr<Device>> (*open)(const DeviceListing& listing, Detach detach);
 };

@@ -1,4 +1,4 @@
-// Every driver of the program, one row each, and what else the vendor libraries know.
+// The drivers that gaitpad has: find devices with them and open these (contract: driver.h).
 #pragma once
 #include <span>
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace gaitpad {
 
-// In the order of preference: for a pad that several see, the first that can open it serves it.
+// In the order of preference: if several drivers see a pad, the first that can open it serves it.
 std::span<const DriverEntry> drivers() noexcept;
-// Null where there is no driver of that name.
+// hidraw, evdev, sdl, usb or trace; null: there is no driver of that name.
 const DriverEntry* find_driver(std::string_view name) noexcept;
 
-// The line of SDL's controller data base for this device (SDL_GameControllerMappingForGUID, by bus,
-// ids and version); empty where it has none or the program was built without SDL. Finder thread.
+// The line of SDL's controller data base for this device, by bus, ids and version; empty if there
+// is none or gaitpad was built without SDL. Starts SDL's joysticks (up to a second), so it is for
+// the thread that finds devices.
 std::string sdl_mapping_of(const DeviceInfo& device);
 
 }  // namespace gaitpad

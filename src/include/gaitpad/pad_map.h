@@ -1,10 +1,12 @@
-// What a descriptor cannot say about a pad: which control a usage is, by device and driver.
-// Grammar of the files: config/README.md, Pads.
+// What a descriptor does not say about a pad: which usage is which control, by device and driver.
+// It comes from files (config/pads; grammar in config/README.md, Pads) or is stated in code. Set-up
+// code; it allocates.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gaitpad/descriptor.h"
@@ -13,7 +15,7 @@
 
 namespace gaitpad {
 
-// Which button numbers a pad without an own file is taken to have. Numbers count from 1.
+// Which button has which number on HID's button page, counted from 1.
 enum class ButtonOrder {
   direct_input,  // x a b y, shoulders, triggers, back start, sticks, guide: Logitech, Switch,
                  // clones
@@ -22,65 +24,69 @@ enum class ButtonOrder {
   xinput,        // a b x y, shoulders, back start, sticks, guide: Xbox in Windows mode
 };
 
-// The last three members are for lines of SDL's data base (hid/sdl_mapping.h); no file states them.
-enum class AxisPart : std::uint8_t { whole, low, high };           // counted from the middle
+// The next two are only used by lines of SDL's data base; no pad file can state them.
+enum class AxisPart : std::uint8_t { whole, low, high };  // halves count from the middle outwards
 enum class StickSide : std::uint8_t { both, negative, positive };  // in HID's directions
 
-// `0001:0031`, `-0001:0031` (reversed), `0001:0030/4` (the fourth X), `000c:0081&1` (a bit),
-// `button 3`.
+// Where a control comes from, as pad files write it: `0001:0031` (a usage), `-0001:0031`
+// (reversed), `0001:0030/4` (the fourth X), `000c:0081&1` (a bit of its value), `button 3`.
 struct ControlSource {
   std::uint32_t usage = 0;
-  std::uint32_t occurrence = 1;  // the n-th field with that usage in its report
-  std::uint32_t mask = 0;  // of a button: pressed where one of these bits is set; 0: any value
-  bool reversed = false;   // of an axis: against HID's directions (x right, y towards the thumb)
-  AxisPart part = AxisPart::whole;   // of a field: a half is 0 in the middle and full at the end
-  StickSide side = StickSide::both;  // of a stick's axis: the source moves it to this side alone
-  std::uint8_t directions = 0;       // of a hat, any of: 1 up, 2 right, 4 down, 8 left; 0: no hat
+  std::uint32_t occurrence = 1;  // the n-th field with that usage in its report, from 1
+  std::uint32_t mask = 0;  // of a button: pressed if one of these bits is set; 0: by its range
+  bool reversed = false;   // of an axis: against HID's directions (x right, y towards the owner)
+  AxisPart part = AxisPart::whole;   // a half is 0 in the middle and full at its end
+  StickSide side = StickSide::both;  // of a stick's axis: the source moves it to this side only
+  std::uint8_t directions = 0;       // of a hat: any of 1 up, 2 right, 4 down, 8 left; 0: no hat
   bool operator==(const ControlSource&) const = default;
 };
 using ControlSources = std::vector<ControlSource>;
 
+// Sources by control. None: the default; an empty list: the pad has no such control.
 struct ControlMap {
   std::array<std::optional<ControlSources>, kAxisCount> axes;
   std::array<std::optional<ControlSources>, kButtonCount> buttons;
 };
 
-// Takes the place of the device's own descriptor, for reports of exactly these sizes (id included).
+// Replaces the device's own descriptor for reports of exactly these lengths (bytes, with the id).
 struct DescriptorReplacement {
   std::vector<std::uint8_t> descriptor;  // empty: none
   std::vector<std::uint16_t> lengths;
   ControlMap controls;
 };
 
-// One `[[pad]]` of a file.
+// One `[[pad]]` entry of a file: which devices it is for, and what is known of them.
 struct PadOverride {
   std::string name;
   std::string origin;  // FILE:LINE
   std::optional<std::uint16_t> vendor;
   std::vector<std::uint16_t> products;  // empty: all
-  std::vector<std::uint32_t> ids;       // vendor << 16 | product, beside vendor and products
+  std::vector<std::uint32_t> ids;       // vendor << 16 | product; empty: all
   std::vector<std::string> drivers;     // empty: all
   std::optional<BusType> bus;
-  std::optional<std::uint32_t> application;  // usage of a collection of the device's descriptor
+  std::optional<std::uint32_t> application;  // the descriptor has this application collection
   std::uint16_t first_version = 0, last_version = 0xffff;
   std::optional<bool> is_pad;
-  bool streams = false;  // sends reports at rest too
+  bool streams = false;  // reports also at rest
   std::optional<ButtonOrder> order;
   ControlMap controls;
   DescriptorReplacement replacement;
 };
 
-using PadOverrides = std::vector<PadOverride>;  // the first that matches counts
+using PadOverrides = std::vector<PadOverride>;  // the first entry that matches is used
 
+// `0001:0030 | button 3`: sources divided by `|`; empty text: no source.
 Result<ControlSources> parse_sources(std::string_view text);
 
-// One file; `config/pads/sony.toml:12: unknown key "left_z"`.
+// One file. Errors: `config/pads/sony.toml:12: unknown key "left_z"`.
 Result<PadOverrides> load_pad_file(const std::string& path);
+// The same from text; `name` stands for the path in errors.
 Result<PadOverrides> parse_pad_file(std::string_view text, const std::string& name);
-// Every *.toml of a folder, in the order of their names.
+// Every *.toml file of a folder, in the order of their names.
 Result<PadOverrides> load_pad_folder(const std::string& folder);
 
-// A report that no one named a driver for (a foreign trace) came from hidraw.
+// The first entry for this device; null: none. An empty DeviceInfo::driver (a foreign trace) counts
+// as hidraw.
 const PadOverride* find_override(const PadOverrides& overrides, const DeviceInfo& device) noexcept;
 
 }  // namespace gaitpad

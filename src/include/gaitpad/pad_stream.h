@@ -12,6 +12,7 @@
 
 #include "gaitpad/driver.h"
 #include "gaitpad/drivers.h"
+#include "gaitpad/keyboard.h"
 #include "gaitpad/pad_setup.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"

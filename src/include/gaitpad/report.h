@@ -1,5 +1,5 @@
-// What a driver delivers (a device and its reports) and what a decoder makes of it (the pad's
-// state).
+// What a driver delivers (a device and its reports) and what decode() makes of a report (the pad's
+// state). Plain data.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace gaitpad {
 
-// The numbers of Linux's input.h. Others occur and are kept as they are.
+// The numbers of Linux's linux/input.h. Other numbers occur and are kept.
 enum class BusType : std::uint16_t {
   unknown = 0x00,
   usb = 0x03,
@@ -20,42 +20,46 @@ enum class BusType : std::uint16_t {
   host = 0x19,
 };
 
+// A device as its driver knows it. To decode a pad of one's own, `descriptor` is enough; the ids
+// let config/pads recognise the model.
 struct DeviceInfo {
   BusType bus = BusType::unknown;
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
   std::uint16_t version = 0;
-  std::string driver;  // who opened it: hidraw, usb, evdev, sdl
+  std::string driver;  // that opened it: hidraw, usb, evdev, sdl, keyboard; empty: as hidraw
   std::string name;
-  std::string unique_id;      // serial number or Bluetooth address, empty where there is none
-  std::string physical_path;  // the port it hangs on
-  std::vector<std::uint8_t> descriptor;
-  std::string mapping;  // a line of SDL's controller data base (hid/sdl_mapping.h), empty: none
+  std::string unique_id;                 // serial number or Bluetooth address; empty: none
+  std::string physical_path;             // the port, as the kernel writes it
+  std::vector<std::uint8_t> descriptor;  // HID report descriptor (HID 1.11, 6.2.2)
+  std::string mapping;                   // a line of SDL's controller data base; empty: none
   bool operator==(const DeviceInfo&) const = default;
 };
 
 enum class ReportKind : std::uint8_t {
-  input,    // bytes as read: the report id first where the descriptor has ids
-  command,  // bytes are text, for instance `style limp_left`; belongs to no device
+  input,    // bytes as read; they begin with the report id if the descriptor has ids
+  command,  // the bytes are text, for instance `style limp_left`; no device
   added,    // no bytes: the device was plugged in
-  removed,  // no bytes: it is gone, its pad is neutral until it is added again
+  removed,  // no bytes: it was unplugged; its pad is neutral until it is added again
 };
 
 inline constexpr std::size_t kMaxReportBytes = 1024;
 inline constexpr std::uint16_t kNoDevice = 0xffff;
 
 struct Report {
-  std::int64_t time_ns = 0;
-  std::uint16_t device = kNoDevice;  // index in the session's list of devices
+  std::int64_t time_ns = 0;          // CLOCK_MONOTONIC live; of a recording its own clock
+  std::uint16_t device = kNoDevice;  // index in the list of devices of a session or trace
   ReportKind kind = ReportKind::input;
   std::uint16_t size = 0;
   std::array<std::uint8_t, kMaxReportBytes> bytes;  // only the first `size` are set
 };
+// The text of a command.
 inline std::string_view text_of(const Report& r) noexcept {
   return {reinterpret_cast<const char*>(r.bytes.data()), r.size};
 }
 
-// Sticks -1..1, +x right, +y forward (away from the thumb's owner); triggers 0..1.
+// Indices into PadState::axis. Sticks -1..1, +x right, +y forward (away from the thumb's owner);
+// triggers 0..1.
 enum PadAxis : int {
   kLeftX,
   kLeftY,
@@ -66,7 +70,7 @@ enum PadAxis : int {
   kAxisCount,
 };
 
-// Bit numbers in PadState::buttons. Named by position as in SDL: `a` is the bottom button.
+// Bit numbers in PadState::buttons, named by position as in SDL: `a` is the bottom one of four.
 enum PadButton : int {
   kButtonA,
   kButtonB,
@@ -116,7 +120,7 @@ inline constexpr std::array<std::string_view, kButtonCount> kButtonNames = {"a",
                                                                             "paddle4",
                                                                             "touchpad"};
 
-// Clockwise in steps of 45 degrees.
+// Clockwise from up in steps of 45 degrees.
 enum class Hat : std::uint8_t {
   up,
   up_right,
@@ -129,10 +133,11 @@ enum class Hat : std::uint8_t {
   released,
 };
 
-// Decoded by the descriptor's logical range, uncalibrated.
+// A decoded pad. Axes are scaled by the logical range of their fields and not calibrated: a stick
+// may rest beside 0 and reach less than 1 (calibration.h corrects that).
 struct PadState {
   std::array<float, kAxisCount> axis{};
-  std::uint32_t buttons = 0;
+  std::uint32_t buttons = 0;  // bit k: PadButton k is pressed; the D-pad is in it
   Hat hat = Hat::released;
   bool operator==(const PadState&) const = default;
 };

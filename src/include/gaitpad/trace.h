@@ -1,5 +1,6 @@
-// The trace format `.hid`: hid-recorder's text and the lines that we add (config/README.md,
-// Traces). Set-up code: allocates, returns Result, throws nothing.
+// Recordings (`.hid`): the text format of hid-recorder with further lines (config/README.md,
+// Traces). Files of hid-recorder are read, and hid-replay plays the files written here. Set-up
+// code: it allocates; copy_report() and report_of() are for the loop.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,23 +17,25 @@ namespace gaitpad {
 inline constexpr int kDefaultRateHz = 240;
 inline constexpr int kMaxRateHz = 10000;
 inline constexpr std::size_t kMaxTraceDevices = 16;
-inline constexpr std::size_t kMaxTraceBytes = std::size_t{512} << 20;  // of the file
+inline constexpr std::size_t kMaxTraceBytes = std::size_t{512} << 20;  // of a file
 inline constexpr std::size_t kMaxTraceEvents = std::size_t{1} << 24;
 inline constexpr std::size_t kMaxTraceTextBytes = 512;  // of a name, a path, an id, a mapping
 inline constexpr std::int64_t kMaxTraceGapUs = 600'000'000;
 inline constexpr std::int64_t kMaxTraceDurationUs = 1'000'000'000'000;
 
+// Times are in microseconds of the recording's own clock.
+
 struct TraceDevice {
-  int index = 0;  // as its `D:` line says
+  int index = 0;  // of its `D:` line
   DeviceInfo info;
-  std::string calibration;  // TOML text of its `K:` lines, empty where there are none
+  std::string calibration;  // TOML text of its `K:` lines; empty: none
   bool operator==(const TraceDevice&) const = default;
 };
 
-// A report, a command, a plugging in or out. The bytes stand in Trace::bytes.
+// A report, a command, plugging in or unplugging. Its bytes are in Trace::bytes.
 struct TraceEvent {
-  std::int64_t time_us = 0;  // as in the file: since an arbitrary moment
-  std::int64_t tick = 0;     // that uses it: from `T:` lines, else by assign_ticks
+  std::int64_t time_us = 0;  // since an arbitrary moment, as in the file
+  std::int64_t tick = 0;     // the tick that uses it: of `T:` lines, else by assign_ticks()
   std::uint32_t first_byte = 0;
   std::uint16_t size = 0;
   std::uint16_t device = kNoDevice;  // index in Trace::devices
@@ -43,54 +46,54 @@ struct TraceEvent {
 struct Trace {
   std::string path;
   std::optional<int> rate_hz;  // of the `V:` line
-  bool has_ticks = false;      // `T:` lines: TraceEvent::tick is set
+  bool has_ticks = false;      // from `T:` lines: TraceEvent::tick is set
   std::vector<TraceDevice> devices;
   std::vector<TraceEvent> events;  // in the order of the file; ticks never decrease
   std::vector<std::uint8_t> bytes;
   std::optional<std::int64_t> end_time_us;  // of the `Q:` line
   std::optional<std::int64_t> end_ticks;
-  std::int64_t skipped_lines = 0;  // damaged ones, Damage::skip only
-  std::string first_damage;        // the sentence for the first of them
+  std::int64_t skipped_lines = 0;  // damaged lines; Damage::skip only
+  std::string first_damage;        // the sentence on the first of them
 };
 
-// What to do with a damaged line: refuse the file, or skip the line and count it.
+// What to do with a damaged line: refuse the whole file, or skip the line and count it.
 enum class Damage { refuse, skip };
 
 // Errors: `walk.hid:12: the report length says 64 but 63 bytes follow`.
 Result<Trace> read_trace(const std::string& path, Damage damage = Damage::refuse);
-// The same from memory; `name` stands in for the path in sentences.
+// The same from memory; `name` stands for the path in errors.
 Result<Trace> parse_trace(std::string_view text, const std::string& name,
                           Damage damage = Damage::refuse);
 
-// Gives every event its tick and returns the number of ticks that a replay runs: ticks 0 .. n-1.
-// Without `T:` lines an event of time t belongs to the first tick that starts at or after t, where
-// tick k starts k / rate_hz seconds after the first event; compared in whole numbers.
-// The end is `Q:`'s, else one second after the last event. An event whose tick is n or more is not
-// used. Error where the trace states another rate.
+// Gives every event its tick and returns the number n of ticks of a replay: ticks 0 .. n-1. Without
+// `T:` lines an event belongs to the first tick that starts at or after its time; tick k starts
+// k / rate_hz seconds after the first event, compared in whole numbers. The end is that of the `Q:`
+// line, else one second after the last event; events of tick n and later are not used. Error if the
+// trace states another rate.
 Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz);
-// The rate to replay at: the asked one, else the trace's, else kDefaultRateHz.
+// The rate to replay at: `asked`, else the trace's, else kDefaultRateHz.
 int replay_rate_hz(const Trace& trace, std::optional<int> asked);
 
-// The event as a driver would have delivered it, time in nanoseconds.
+// The event as a driver would have delivered it.
 void copy_report(const Trace& trace, const TraceEvent& event, Report& report) noexcept;
 Report report_of(const Trace& trace, const TraceEvent& event) noexcept;
 
-// Writes a trace line by line, in the order of the calls.
+// Writes a trace line by line in the order of the calls.
 class TraceWriter {
  public:
-  void begin(int rate_hz);  // `V:`, first of all
+  void begin(int rate_hz);  // `V:`, before anything else
   void comment(std::string_view sentence);
-  // What tells about the device; texts are cut to what the reader takes. A recording's only device
-  // needs no `D:` line where its index is 0.
+  // The lines that describe the device; texts are cut to the reader's limits. The only device of a
+  // recording needs no `D:` line if its index is 0.
   enum class Index { written, left_out };
   void device(const TraceDevice& device, Index index);
-  void tick(std::int64_t tick);  // `T:`, where it is another than before
-  // `index` as in device(), which came before; none for a command.
+  void tick(std::int64_t tick);  // `T:`, if it is another tick than before
+  // `index`: of a device that was written before; none for a command.
   void event(ReportKind kind, std::int64_t time_us, std::optional<int> index,
              std::span<const std::uint8_t> bytes);
   void end(std::int64_t time_us, std::int64_t ticks);  // `Q:`
 
-  // Whole lines, written since the last call.
+  // Whole lines that were written since the last take_text().
   const std::string& text() const { return text_; }
   std::string take_text();
 
@@ -100,9 +103,8 @@ class TraceWriter {
   std::optional<int> current_;  // device of the last `D:`
 };
 
-// Writes a trace that the reader reads back as the same devices and events, and that hid-replay
-// plays. `T:` lines are written where has_ticks is set, `V:` where rate_hz is, `Q:` where both ends
-// are.
+// The text of a trace: parse_trace() reads the same devices and events from it, and hid-replay
+// plays it. It has `T:` lines if has_ticks is set, `V:` if rate_hz is, `Q:` if both ends are.
 std::string trace_text(const Trace& trace);
 Result<std::int64_t> write_trace(const Trace& trace, const std::string& path);  // bytes written
 

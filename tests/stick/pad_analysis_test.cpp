@@ -1,15 +1,22 @@
+// Advice for stated statistics, for made sticks and for real DualSense recordings.
+#include "stick/pad_analysis.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <span>
+#include <sstream>
 #include <string>
 
 #include "stick/made_stick.h"
-#include "stick/pad_analysis.h"
+#include "stick/outline.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
 
-// A stick that was let go and turned, in whole numbers.
+// Round numbers for a good stick that was let go and turned.
 StickStatistics measured() {
   StickStatistics s;
   s.samples = 5000;
@@ -30,11 +37,10 @@ StickStatistics measured() {
 StickAdvice advice_for(const StickStatistics& s) { return stick_advice(s, {}); }
 
 StickAdvice advice_for(const MadeStick& stick, const StickTrack& track) {
-  const vec2 step(stick.bits > 0 ? 2.0 / (std::exp2(stick.bits) - 1.0) : 0.0);
-  return stick_advice(stick_statistics(std::span(&track, 1), step), {});
+  return stick_advice(statistics_of(stick, track), {});
 }
 
-// A file with it can be loaded, and the text gives the same numbers back.
+// A file with this calibration loads and gives the same numbers.
 void expect_loadable(const StickCalibration& c) {
   CalibrationFile file;
   file.calibration.left = c;
@@ -53,7 +59,7 @@ TEST(StickAdvice, InnerZoneIsThreeSigmaAndHysteresisButFivePercentAtLeast) {
   s.sigma = vec2(0.01, 0.02);
   s.hysteresis = 0.12;
   EXPECT_DOUBLE_EQ(advice_for(s).inner_zone, 0.18);
-  // The calibration's is a fraction of the shortest side.
+  // The calibration has it as a fraction of the shortest side.
   const double shortest = 0.95 - -0.01;
   EXPECT_NEAR(advice_for(s).calibration.inner, 0.18 / shortest, 1e-12);
 }
@@ -86,7 +92,7 @@ TEST(StickAdvice, AWanderingStickRestsInItsZonesUnlessItIsToBeReplaced) {
   }
 }
 
-// 3 sigma in two directions would let one report in ninety through.
+// With 3 sigma in two directions one report in ninety would get through.
 TEST(StickAdvice, WithoutHysteresisTheCalibrationStillKeepsTheNoiseOut) {
   StickStatistics s = measured();
   s.centre = vec2(0.0);
@@ -192,7 +198,7 @@ constexpr Fault kFaults[] = {
        s.rest_s = 6.0;
      }},
     {"drifts", Verdict::worn,
-     [](StickStatistics& s) {  // perhaps a thumb that lay on it
+     [](StickStatistics& s) {  // a thumb may have lain on it
        s.drift_per_s = 0.02;
        s.rest_s = 3.0;
      }},
@@ -278,6 +284,112 @@ TEST(TriggerAdvice, WhatIsUnknownOrNoTravelStaysAsItIs) {
   EXPECT_EQ(trigger_advice(s).pressed, plain.pressed);
   s.pressed = 0.1;
   EXPECT_EQ(trigger_advice(s).released, plain.released);
+}
+
+// ---- Real DualSense recordings through Sony's default zones and through measured ones. The axes
+// are read here by byte, not by the decoder: report 1 begins with left x, y, right x, y, 0..255, y
+// downwards.
+
+std::array<StickTrack, 2> tracks_of(const std::string& name) {
+  std::array<StickTrack, 2> tracks;
+  std::ifstream file(kPadRecordings + name);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string tag, time, size;
+    int report = 0, axis[4] = {};
+    words >> tag >> time >> size >> std::hex >> report;
+    for (int& a : axis) words >> a;
+    if (tag != "E:" || !words || report != 1) continue;
+    const auto raw = [&](int i) { return (axis[i] - 127.5) / 127.5; };
+    const std::int64_t time_ns = std::llround(std::stod(time) * 1e9);
+    tracks[0].push_back({time_ns, {raw(0), -raw(1)}});
+    tracks[1].push_back({time_ns, {raw(2), -raw(3)}});
+  }
+  return tracks;
+}
+
+std::vector<Stick> recorded(const std::string& name) {
+  Calibration calibration;
+  calibration.left.inner = calibration.right.inner = kInnerZoneSony;
+  const auto tracks = tracks_of(name);
+  std::vector<Stick> sticks;
+  for (std::size_t i = 0; i < tracks[0].size(); ++i)
+    sticks.push_back({stick_position(calibration.left, tracks[0][i].raw),
+                      stick_position(calibration.right, tracks[1][i].raw)});
+  return sticks;
+}
+
+StickCalibration advised(std::initializer_list<const char*> recordings, std::size_t side) {
+  std::vector<StickTrack> tracks;
+  for (const char* name : recordings) tracks.push_back(tracks_of(name)[side]);
+  return stick_advice(stick_statistics(tracks, vec2(2.0 / 255.0)), {}).calibration;
+}
+
+class RecordedSticks : public testing::Test {
+ protected:
+  void SetUp() override { GAITPAD_NEEDS(kPadRecordings); }
+};
+
+TEST_F(RecordedSticks, RestNeverWalks) {
+  for (const char* button : {"circle", "dpad_down", "dpad_left", "dpad_right", "dpad_up", "l2",
+                             "r1", "r2", "square", "start", "x", "right_stick"}) {
+    const auto sticks = recorded(std::string("dualsense_usb_") + button + ".hid");
+    EXPECT_GT(sticks.size(), 700u) << button;
+    for (const Stick& s : sticks) ASSERT_EQ(s.left, vec2(0.0)) << button;
+  }
+}
+
+// Both sticks saturate in both axes and are round at the corners. By every report's greatest radius
+// they come to 8.5 and 7.4 %.
+TEST_F(RecordedSticks, OutlineOfARealDualSense) {
+  for (const std::size_t side : {0, 1}) {
+    const std::string name = side == 0 ? "left" : "right";
+    const StickTrack track = tracks_of("dualsense_usb_" + name + "_stick.hid")[side];
+    const Outline outline = outline_of(std::span(&track, 1), vec2(0.01, 0.0), 0.0);
+    EXPECT_EQ(filled_bins(outline), kCircularityBins);
+    EXPECT_NEAR(circularity_error(outline).value_or(0.0), side == 0 ? 8.5 : 7.4, 0.6);
+    const Reach reach = reach_of(outline);
+    EXPECT_NEAR(reach.min_x.value_or(0.0), -1.0, 0.005);
+    EXPECT_NEAR(reach.max_x.value_or(0.0), 1.0, 0.005);
+    EXPECT_NEAR(reach.min_y.value_or(0.0), -1.0, 0.005);
+    EXPECT_NEAR(reach.max_y.value_or(0.0), 1.0, 0.005);
+  }
+}
+
+// Zones from the recording that turns the stick, alone and together with the one in which it rests.
+TEST_F(RecordedSticks, RestNeverWalksWithTheZonesOfTheRecordingsThatTurn) {
+  constexpr const char* kLeft = "dualsense_usb_left_stick.hid";
+  constexpr const char* kRight = "dualsense_usb_right_stick.hid";
+  const StickCalibration zones[2][2] = {{advised({kLeft}, 0), advised({kLeft, kRight}, 0)},
+                                        {advised({kRight}, 1), advised({kLeft, kRight}, 1)}};
+  for (const char* name :
+       {"circle.hid", "dpad_down.hid", "dpad_left.hid", "dpad_right.hid", "dpad_up.hid",
+        "l1.raw.hid", "l2.hid", "l3.hid", "r1.hid", "r2.hid", "square.hid", "start.hid", "x.hid",
+        "left_stick.hid", "right_stick.hid"}) {
+    const std::string button = name;
+    const auto tracks = tracks_of("dualsense_usb_" + button);
+    ASSERT_GT(tracks[0].size(), 700u) << name;
+    const bool is_moved[2] = {button[0] == 'l' && button[1] != '2', button == "right_stick.hid"};
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (is_moved[side]) continue;
+      for (const StickSample& sample : tracks[side])
+        for (const StickCalibration& c : zones[side])
+          ASSERT_EQ(stick_position(c, sample.raw), vec2(0.0)) << name << side;
+    }
+  }
+}
+
+TEST_F(RecordedSticks, ATurnedStickReachesTheRimAllRoundAndTheOtherRests) {
+  const auto sticks = recorded("dualsense_usb_left_stick.hid");
+  ASSERT_GT(sticks.size(), 1000u);
+  double longest[4] = {};  // by quadrant
+  for (const Stick& s : sticks) {
+    ASSERT_EQ(s.right, vec2(0.0));
+    ASSERT_LE(glm::length(s.left), 1.0 + 4e-16);
+    double& l = longest[(s.left.x > 0.0) + 2 * (s.left.y > 0.0)];
+    l = std::max(l, glm::length(s.left));
+  }
+  for (const double l : longest) EXPECT_GE(l, 0.978);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
-// Recordings and descriptors of real devices, which stay outside the repository.
-#include "tests/shared_data.h"
-
+// Reports and descriptors of real devices: the golden pads of tests/data/pads, and recordings that
+// stay outside the repository.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,9 +11,77 @@
 #include "gaitpad/decode.h"
 #include "gaitpad/trace.h"
 #include "tests/hid/made_pads.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
+
+// ---- Every file of tests/data/pads: a `# = ` line before a report states the state after it: the
+// axes that are not 0 (to 0.01), then `buttons` and the pressed ones. To add a pad is to add a
+// file.
+
+struct Expected {
+  std::array<float, kAxisCount> axis{};
+  std::uint32_t buttons = 0;
+};
+
+Expected expected_of(const std::string& text) {
+  Expected e;
+  std::istringstream in(text);
+  bool in_buttons = false;
+  for (std::string word; in >> word;) {
+    if (word == "buttons") {
+      in_buttons = true;
+    } else if (in_buttons) {
+      const auto it = std::find(kButtonNames.begin(), kButtonNames.end(), word);
+      if (it == kButtonNames.end()) ADD_FAILURE() << "no button " << word;
+      e.buttons |= 1u << (it - kButtonNames.begin());
+    } else {
+      const auto it = std::find(kAxisNames.begin(), kAxisNames.end(), word);
+      if (it == kAxisNames.end()) ADD_FAILURE() << "no axis " << word;
+      in >> e.axis[static_cast<std::size_t>(it - kAxisNames.begin())];
+    }
+  }
+  return e;
+}
+
+std::vector<Expected> all_expected(const std::string& path) {
+  std::vector<Expected> all;
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("# =", 0) == 0) all.push_back(expected_of(line.substr(3)));
+  }
+  return all;
+}
+
+void check_pad(const std::string& path, const PadOverrides& overrides) {
+  SCOPED_TRACE(path);
+  const auto [trace, layout] = recorded_pad(path, overrides);
+  EXPECT_TRUE(layout.is_pad);
+  const auto expected = all_expected(path);
+  ASSERT_EQ(expected.size(), trace.events.size());
+  PadState state;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_TRUE(decode(layout, report_of(trace, trace.events[i]), state)) << "report " << i;
+    for (int a = 0; a < kAxisCount; ++a) {
+      EXPECT_NEAR(state.axis[a], expected[i].axis[a], 0.01)
+          << "report " << i << " " << kAxisNames[a];
+    }
+    EXPECT_EQ(names_of(state.buttons), names_of(expected[i].buttons)) << "report " << i;
+  }
+}
+
+TEST(GoldenPads, EveryReportDecodesAsThePadsMakerMeantIt) {
+  const PadOverrides overrides = shipped_pads();
+  int pads = 0;
+  for (const std::string& path : files_in(kGoldenPads, ".hid")) {
+    check_pad(path, overrides);
+    ++pads;
+  }
+  EXPECT_GE(pads, 12);
+}
+
+// ---- Recordings outside the repository
 
 std::vector<std::string> recordings() {
   std::vector<std::string> names;
@@ -33,26 +100,20 @@ TEST(SharedData, EveryFileParsesAndPadsAreToldFromTheRest) {
                                             "steamdeck_controller.rdesc.hid",
                                             "steamdeck_lcd_lizard_mouse.hid"};
   for (const std::string& name : recordings()) {
-    const auto trace = read_trace(kPadRecordings + name);
-    ASSERT_TRUE(trace) << trace.error().message;
-    ASSERT_EQ(trace->devices.size(), 1u) << name;
-    const auto layout = pad_layout(trace->devices[0].info, {});
-    ASSERT_TRUE(layout) << name << ": " << layout.error().message;
+    const auto [trace, layout] = recorded_pad(kPadRecordings + name, {});
+    ASSERT_EQ(trace.devices.size(), 1u) << name;
     const bool expected = std::find(no_pads.begin(), no_pads.end(), name) == no_pads.end();
-    EXPECT_EQ(layout->is_pad, expected) << name;
+    EXPECT_EQ(layout.is_pad, expected) << name;
   }
 }
 
 TEST(SharedData, EveryReportFitsItsDescriptor) {
   GAITPAD_NEEDS(kPadRecordings);
   for (const std::string& name : recordings()) {
-    const auto trace = read_trace(kPadRecordings + name);
-    ASSERT_TRUE(trace);
-    const auto layout = pad_layout(trace->devices[0].info, {});
-    ASSERT_TRUE(layout);
+    const auto [trace, layout] = recorded_pad(kPadRecordings + name, {});
     PadState state;
-    for (const TraceEvent& event : trace->events) {
-      ASSERT_TRUE(decode(*layout, report_of(*trace, event), state)) << name;
+    for (const TraceEvent& event : trace.events) {
+      ASSERT_TRUE(decode(layout, report_of(trace, event), state)) << name;
     }
   }
 }
@@ -145,10 +206,21 @@ struct Recorded {
   PadButton button;
 };
 
+// All buttons that were pressed in a recording.
+std::uint32_t pressed_in(const std::string& file) {
+  const auto [trace, layout] = recorded_pad(kPadRecordings + file, shipped_pads());
+  PadState state;
+  std::uint32_t seen = 0;
+  for (const TraceEvent& event : trace.events) {
+    EXPECT_TRUE(decode(layout, report_of(trace, event), state));
+    seen |= state.buttons;
+  }
+  return seen;
+}
+
 // Each recording is named after what its maker's thumb did.
 TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
   GAITPAD_NEEDS(kPadRecordings);
-  const PadOverrides overrides = shipped_pads();
   for (const auto& [file, button] : {Recorded{"circle", kButtonB},
                                      {"x", kButtonA},
                                      {"square", kButtonX},
@@ -160,28 +232,17 @@ TEST(SharedData, DualSenseRecordingsPressWhatTheirNamesSay) {
                                      {"dpad_down", kButtonDpadDown},
                                      {"dpad_left", kButtonDpadLeft},
                                      {"dpad_right", kButtonDpadRight}}) {
-    const auto trace = read_trace(kPadRecordings + "dualsense_usb_" + file + ".hid");
-    ASSERT_TRUE(trace) << trace.error().message;
-    const auto layout = pad_layout(trace->devices[0].info, overrides);
-    ASSERT_TRUE(layout);
-    PadState state;
-    std::uint32_t seen = 0;
-    for (const TraceEvent& event : trace->events) {
-      ASSERT_TRUE(decode(*layout, report_of(*trace, event), state));
-      seen |= state.buttons;
-    }
-    EXPECT_EQ(seen, 1u << button) << file;
+    EXPECT_EQ(pressed_in(std::string("dualsense_usb_") + file + ".hid"), 1u << button) << file;
   }
 }
 
 // The largest and smallest position of each axis in a recording.
 std::array<std::pair<float, float>, kAxisCount> extremes(const std::string& file) {
   std::array<std::pair<float, float>, kAxisCount> range{};
-  const auto trace = read_trace(kPadRecordings + file);
-  const auto layout = pad_layout(trace->devices[0].info, shipped_pads());
+  const auto [trace, layout] = recorded_pad(kPadRecordings + file, shipped_pads());
   PadState state;
-  for (const TraceEvent& event : trace->events) {
-    decode(*layout, report_of(*trace, event), state);
+  for (const TraceEvent& event : trace.events) {
+    decode(layout, report_of(trace, event), state);
     for (int a = 0; a < kAxisCount; ++a) {
       range[a].first = std::min(range[a].first, state.axis[a]);
       range[a].second = std::max(range[a].second, state.axis[a]);
@@ -214,15 +275,7 @@ TEST(SharedData, DualSenseSticksAndTriggersMoveAlone) {
 
 TEST(SharedData, EliteTwoPressesItsFourPaddles) {
   GAITPAD_NEEDS(kPadRecordings);
-  const auto trace = read_trace(kPadRecordings + "xbox_elite2_bt_paddles_only.hid");
-  ASSERT_TRUE(trace);
-  const auto layout = pad_layout(trace->devices[0].info, shipped_pads());
-  PadState state;
-  std::uint32_t seen = 0;
-  for (const TraceEvent& event : trace->events) {
-    ASSERT_TRUE(decode(*layout, report_of(*trace, event), state));
-    seen |= state.buttons;
-  }
+  const std::uint32_t seen = pressed_in("xbox_elite2_bt_paddles_only.hid");
   for (const PadButton b : {kButtonPaddle1, kButtonPaddle2, kButtonPaddle3, kButtonPaddle4}) {
     EXPECT_TRUE((seen >> b) & 1u) << kButtonNames[b];
   }

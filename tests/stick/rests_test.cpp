@@ -1,7 +1,8 @@
+#include "stick/rests.h"
+
 #include <functional>
 
-#include "stick/drawn_stick.h"
-#include "stick/rests.h"
+#include "stick/made_stick.h"
 
 namespace gaitpad {
 namespace {
@@ -14,7 +15,7 @@ TEST(RestStatistics, CentreSigmaAndRestOfFiveHundredCleanSticksWithoutAFalseAlar
     expect_centre(stick, s, stick.centre);
     ASSERT_TRUE(s.drift_per_s) << name_of(stick);
     EXPECT_EQ(*s.drift_per_s, 0.0) << name_of(stick);
-    // 14 rests; the last one is not known of where a pad falls silent.
+    // 14 rests; a pad that falls silent does not show the last one.
     EXPECT_GE(s.rests.size(), 12u) << name_of(stick);
     EXPECT_LE(s.rests.size(), 14u) << name_of(stick);
     wandering += s.wander > 0.0;
@@ -111,7 +112,7 @@ TEST(RestStatistics, HysteresisIsTheSpreadOfTheRests) {
   }
 }
 
-// How a made stick is let go, and how far off its centre may then be found.
+// How a made stick is let go.
 struct Handling {
   std::string name;
   double hysteresis;
@@ -231,7 +232,7 @@ TEST(RestStatistics, OneReleaseHasNoHysteresisHoweverLong) {
   expect_centre(stick, s, stick.centre);
 }
 
-// Unplugged and plugged in again, or two recordings, and nobody touched it between.
+// Two recordings, or unplugged in between: it need not have been touched.
 TEST(RestStatistics, RestsOfSeveralTracksTellOfHysteresisOnlyIfItWasLetGoBetween) {
   MadeStick stick;
   stick.sigma = vec2(0.003);

@@ -1,0 +1,44 @@
+// The keyboard as a pad with one stick: the keys say where the stick shall go, it moves there
+// smoothly and reports like any pad. It is no driver: nothing finds it; whoever reads the keys
+// opens it.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "gaitpad/driver.h"
+#include "gaitpad/math.h"
+#include "gaitpad/result.h"
+
+namespace gaitpad {
+
+// Shared by the thread that reads the keys and the device.
+class KeyboardStick {
+ public:
+  KeyboardStick();
+  ~KeyboardStick();
+  KeyboardStick(const KeyboardStick&) = delete;
+  KeyboardStick& operator=(const KeyboardStick&) = delete;
+
+  // Where the stick shall go, +x right, +y forward; any thread, never waits. Shortened to length 1;
+  // not-a-number is the centre.
+  void steer(const vec2& wanted) noexcept;
+
+  // For the device: the position asked for, in steps of 1 / kFull.
+  static constexpr int kFull = 32767;
+  vec2 wanted() const noexcept;
+  int fd() const noexcept { return fd_; }  // readable after a change during sleep; -1: none
+  void sleep() noexcept;                   // from now on a change makes fd() readable
+
+ private:
+  const int fd_;
+  std::atomic<std::uint32_t> wanted_{0};  // two 16-bit counts
+  std::atomic<bool> is_awake_{false};
+};
+
+// The stick reaches its end in 0.15 s and its centre in 0.1 s. It sends a first report, then 250
+// reports a second while it moves, and none while it stands. At rest it is exactly in the middle.
+// Error: no file descriptors are left.
+Result<std::unique_ptr<Device>> open_keyboard(std::shared_ptr<KeyboardStick> stick);
+
+}  // namespace gaitpad

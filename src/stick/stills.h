@@ -1,0 +1,31 @@
+// Where in its tracks a stick stood still, and which of these places is its rest.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stick/stick_track.h"
+
+namespace gaitpad {
+
+// A time in which the stick stood still: samples `first` to `last` (inclusive) of one track.
+struct Still {
+  std::size_t track = 0, first = 0, last = 0;
+  std::int64_t begin_ns = 0, end_ns = 0;  // `first` may be earlier, `last` may hold for longer
+  double duration_s =
+      0.0;         // includes the hold of the last position; silence counts for 2 s at most
+  vec2 mean{0.0};  // raw, weighted as if the pad streamed
+};
+struct Stills {
+  std::vector<Still> rests;   // let go: near the place to which the stick returns
+  std::vector<Still> pushes;  // held at half of the reach or farther
+};
+// Finds the stills in the order of time, track by track; the first day of all tracks counts.
+// The limit on speed follows the noise that is present, so a noisy or slowly drifting stick has
+// stills too. Spikes and the settling after a release are left out. There are no rests if the stick
+// only moved or was only held aside. `declared_step` (x, y) is used if a track has too few values
+// to measure the step; 0: not known.
+Stills stills(std::span<const StickTrack> tracks, const vec2& declared_step = vec2(0.0));
+
+}  // namespace gaitpad

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "draw/picture.h"
 #include "paper/study.h"
-#include "view/drawing.h"
 
 namespace gaitpad {
 

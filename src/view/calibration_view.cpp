@@ -9,9 +9,9 @@
 #include <chrono>
 #include <iterator>
 
+#include "draw/stick_picture.h"
 #include "pads/calibration_store.h"
-#include "view/modal.h"
-#include "view/stick_picture.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 namespace {

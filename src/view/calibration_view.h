@@ -8,7 +8,7 @@
 
 #include "gaitpad/result.h"
 #include "pads/guided_calibration.h"
-#include "view/ui_parts.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "gaitpad/simulation.h"
-#include "view/scene_ground.h"
+#include "view/ground_mesh.h"
 
 namespace gaitpad {
 namespace {

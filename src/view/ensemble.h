@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "view/body.h"
 #include "view/camera.h"
 #include "view/history.h"
+#include "view/mannequin.h"
 #include "view/ui.h"
 
 namespace gaitpad {

@@ -1,13 +1,62 @@
-// Opens a file without leaving the window: folders, a path to type, the files opened last.
+// A file that somebody opens or drops: what it is, and the session that it makes.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "view/folder_list.h"
-#include "view/ui_parts.h"
+#include "gaitpad/result.h"
+#include "view/show.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
+
+enum class FileKind { motion, character, style, calibration, terrain, recording };
+
+// By its ending; a .toml by the folder that it stands in (styles, characters, calibration,
+// terrain, motions), else by what stands in it. Error where it is no file or none of these.
+Result<FileKind> kind_of_file(const std::string& path);
+
+// The show that runs, with this file. A style or a character is for walker `walker`, -1: for all.
+// Nothing is recorded in it.
+ShowOptions with_file(ShowOptions options, const std::string& path, FileKind kind, int walker,
+                      int walker_count);
+
+// What a folder holds, for the file browser: bounded, and what cannot be read is told.
+
+// Files by what the window can open.
+enum class FileFilter : std::uint8_t { all, motions, recordings, settings };
+
+struct FolderEntry {
+  std::string name;  // the file system's bytes, which may be no UTF-8
+  bool is_folder = false;
+};
+struct FolderList {
+  static constexpr std::size_t kMostEntries = 4000;
+  std::vector<FolderEntry> entries;  // folders first, then files, each by name without case
+  std::string problem;               // one sentence: it cannot be read, or is shown in part
+};
+
+// Hidden ones are left out, and files that the filter does not name.
+FolderList list_folder(const std::string& folder, FileFilter filter);
+
+// The last files that were opened, newest first, from one start to the next. A path that stands
+// there twice, or no longer exists, or has a line break, is left out.
+class RecentFiles {
+ public:
+  static constexpr std::size_t kMost = 8;
+  // `file`: where they are kept; empty: not.
+  explicit RecentFiles(std::string file);
+  void add(const std::string& path);
+  const std::vector<std::string>& paths() const noexcept { return paths_; }
+
+ private:
+  std::string file_;
+  std::vector<std::string> paths_;
+};
+
+// Opens a file without leaving the window: folders, a path to type, the files opened last.
 
 class FileBrowser {
  public:

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "draw/picture.h"
 #include "gaitpad/math.h"
 #include "gaitpad/result.h"
-#include "view/drawing.h"
 
 namespace gaitpad {
 

@@ -1,6 +1,6 @@
 // The panels' contents, below their headings, over the width that is there.
 #pragma once
-#include "view/ui_parts.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "draw/theme.h"
 #include "gaitpad/math.h"
 #include "gaitpad/result.h"
 #include "gaitpad/terrain.h"
 #include "view/camera.h"
-#include "view/theme.h"
 
 namespace gaitpad {
 

@@ -8,10 +8,11 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <string_view>
 #include <utility>
 
-#include "view/theme.h"
+#include "view/gui.h"
 
 namespace gaitpad {
 namespace {
@@ -198,6 +199,22 @@ void WindowSurface::begin() {
 }
 
 void WindowSurface::show() { SDL_GL_SwapWindow(window_); }
+
+Pixels read_pixels(int width, int height) {
+  constexpr std::size_t kChannels = 4;
+  Pixels pixels{std::max(width, 0), std::max(height, 0), {}};
+  const std::size_t row = static_cast<std::size_t>(pixels.width) * kChannels,
+                    rows = static_cast<std::size_t>(pixels.height);
+  std::vector<std::uint8_t> upwards(row * rows);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, pixels.width, pixels.height, GL_RGBA, GL_UNSIGNED_BYTE, upwards.data());
+  pixels.rgba.resize(upwards.size());
+  for (std::size_t y = 0; y < rows; ++y) {
+    std::memcpy(pixels.rgba.data() + y * row, upwards.data() + (rows - 1 - y) * row, row);
+  }
+  for (std::size_t i = 3; i < pixels.rgba.size(); i += kChannels) pixels.rgba[i] = 0xff;
+  return pixels;
+}
 
 }  // namespace gaitpad
 

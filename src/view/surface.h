@@ -17,10 +17,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
+#include "draw/picture.h"
 #include "gaitpad/result.h"
 
 namespace gaitpad {
@@ -63,13 +62,6 @@ class WindowSurface {
   int width_px_ = 0, height_px_ = 0;
 };
 
-struct Pixels {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  // rows from the top, opaque
-};
 // Of the frame buffer that is bound, between begin() and show().
 Pixels read_pixels(int width, int height);
-// Written beside `path` first: on error the old file is as it was.
-std::optional<Error> write_png(const std::string& path, const Pixels& pixels);
-
 }  // namespace gaitpad

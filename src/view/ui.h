@@ -1,6 +1,8 @@
 // Everything flat in the window: bars, panels, plots, names above heads, help. It reads what a
 // frame shows and answers with what a person asked for; it changes nothing but its own state.
 #pragma once
+#include <imgui.h>
+
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -8,13 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "draw/theme.h"
 #include "gaitpad/live.h"
 #include "gaitpad/session_frame.h"
 #include "session/playback.h"
-#include "view/actions.h"
+#include "view/controls.h"
 #include "view/history.h"
 #include "view/scene.h"
-#include "view/theme.h"
 
 namespace gaitpad {
 
@@ -118,5 +120,22 @@ struct UiItem {
   ImVec2 min, max;
 };
 const std::vector<UiItem>& ui_items() noexcept;
+
+// Where in the window everything flat lies: bars above and below, a column of panels on either side
+// of the scene, in a narrow window one column for all, in a very narrow one none.
+
+struct UiRect {  // pixels; empty: not shown
+  float x = 0.0f, y = 0.0f, width = 0.0f, height = 0.0f;
+  bool is_empty() const noexcept { return !(width > 0.0f && height > 0.0f); }
+  ImVec2 min() const noexcept { return {x, y}; }
+  ImVec2 max() const noexcept { return {x + width, y + height}; }
+};
+struct UiLayout {
+  UiRect top, left, right, timeline, status, scene;
+};
+UiLayout ui_layout(const UiState& state, bool has_timeline, int width_px, int height_px,
+                   double scale) noexcept;
+// Of the two columns, where both are shown.
+bool is_left(Panel panel) noexcept;
 
 }  // namespace gaitpad

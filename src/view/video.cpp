@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "view/drawing.h"
+#include "draw/picture.h"
 
 extern char** environ;
 

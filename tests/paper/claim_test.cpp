@@ -1,4 +1,4 @@
-#include "paper/claim.h"
+#include "paper/claims.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "paper/paper_fixture.h"
-#include "paper/planted.h"
+#include "paper/study.h"
 
 namespace gaitpad {
 namespace {

@@ -1,4 +1,4 @@
-#include "paper/walk_run.h"
+#include "paper/study.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "view/actions.h"
+#include "view/controls.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // A body's measures are judged by what is known of people and of the skeleton; where it is, by
 // forward kinematics and by the samples of the walk, which the drawing does not read.
-#include "view/body.h"
+#include "view/mannequin.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include "gaitpad/motion_file.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
-#include "view/body_parts.h"
 
 namespace gaitpad {
 namespace {

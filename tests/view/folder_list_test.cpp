@@ -1,4 +1,4 @@
-#include "view/folder_list.h"
+#include "view/file_browser.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "view/opening.h"
+#include "view/file_browser.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

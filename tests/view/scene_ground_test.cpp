@@ -1,4 +1,4 @@
-#include "view/scene_ground.h"
+#include "view/ground_mesh.h"
 
 #include <gtest/gtest.h>
 

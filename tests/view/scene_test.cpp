@@ -8,7 +8,7 @@
 
 #include "gaitpad/control.h"
 #include "tests/value_of.h"
-#include "view/body.h"
+#include "view/mannequin.h"
 #include "view/gl_program.h"
 #include "view/scene_fixture.h"
 

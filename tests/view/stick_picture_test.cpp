@@ -1,7 +1,7 @@
 // The PNG is read by matplotlib, not by the library that wrote it, and looked at pixel by pixel.
 // Where the planes lie is not assumed: one known outline tells their scale, another one is then
 // looked for.
-#include "view/stick_picture.h"
+#include "draw/stick_picture.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

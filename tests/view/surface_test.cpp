@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "tests/own_folder.h"
-#include "view/drawing.h"
+#include "draw/picture.h"
 #include "view/offscreen.h"
 
 namespace gaitpad {

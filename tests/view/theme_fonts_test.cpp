@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "tests/own_folder.h"
-#include "view/theme.h"
+#include "draw/theme.h"
 
 namespace gaitpad {
 namespace {

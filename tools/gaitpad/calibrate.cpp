@@ -18,7 +18,7 @@
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/pad_options.h"
 #include "tools/gaitpad/report_print.h"
-#include "view/stick_picture.h"
+#include "draw/stick_picture.h"
 
 namespace gaitpad {
 namespace {

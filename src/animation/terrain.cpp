@@ -1,99 +1,64 @@
-// The kinds of section that a terrain is made of, each in its own frame: u metres behind its begin,
-// heights above it.
-
 #include "gaitpad/terrain.h"
 
-#include <fmt/format.h>
-
+#include <charconv>
 #include <optional>
 
+#include "base/text.h"
+
 namespace gaitpad {
-
-struct ShapePoint {
-  double height_m = 0.0;
-  double dx = 0.0, dz = 0.0;  // its slopes
-  int risers = 0;             // passed on the way from the begin
-};
-ShapePoint point_at(const FlatSection& flat, double x_m, double u_m) noexcept;
-ShapePoint point_at(const SlopeSection& slope, double x_m, double u_m) noexcept;
-ShapePoint point_at(const StairsSection& stairs, double x_m, double u_m) noexcept;
-ShapePoint point_at(const RoughSection& rough, double x_m, double u_m) noexcept;
-ShapePoint point_at(const FieldSection& section, double x_m, double u_m) noexcept;
-
-inline double length_of(const StairsSection& stairs) noexcept {
-  return stairs.tread_m * stairs.count;
-}
-template <class Section>
-double length_of(const Section& section) noexcept {
-  return section.length_m;
-}
-inline double rise_of(const SlopeSection& slope) noexcept {
-  return slope.grade * (slope.length_m - slope.rounding_m);
-}
-
-// The cause why nobody could walk on it.
-std::optional<Error> problem_of(const FlatSection& flat);
-std::optional<Error> problem_of(const SlopeSection& slope);
-std::optional<Error> problem_of(const StairsSection& stairs);
-std::optional<Error> problem_of(const RoughSection& rough);
-std::optional<Error> problem_of(const FieldSection& section);
-
-// What is left of a section's waves at u: nothing at both ends, all between; and its slope.
-struct Share {
-  double value = 1.0, slope = 0.0;
-};
-Share share_at(double u_m, double length_m, double fade_m) noexcept;
-// The greatest height, slope and bend of a surface.
-struct Most {
-  double height_m = 0.0, grade = 0.0, bend_1_m = 0.0;
-};
-struct MostOfShare {
-  double slope_1_m = 0.0, bend_1_m2 = 0.0;
-};
-// Of a surface times its share.
-std::optional<Error> faded_problem(double length_m, double fade_m, const MostOfShare& share,
-                                   const Most& surface);
-inline bool is_within(double x, double min, double max) noexcept { return x >= min && x <= max; }
-
-void scale(FlatSection& flat, double factor) noexcept;
-void scale(SlopeSection& slope, double factor) noexcept;
-void scale(StairsSection& stairs, double factor) noexcept;
-void scale(RoughSection& rough, double factor) noexcept;
-void scale(FieldSection& section, double factor) noexcept;
-
 namespace {
+
+// A terrain is a row of sections. Each kind of section answers the same four questions: how long it
+// is, whether somebody can walk on it, how it grows with a scale, and what its surface is at a
+// place. Such a place has two coordinates: x as in the world, and u, the metres behind the
+// section's begin. Heights count from the height at which the section begins.
 
 constexpr double kMinLength_m = 0.1, kMaxLength_m = 1000.0;
 constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMaxRise_m = 0.4;
 constexpr int kMaxRisers = 100;
 
-std::optional<Error> length_problem(double length_m) {
-  if (is_within(length_m, kMinLength_m, kMaxLength_m)) return std::nullopt;
-  return Error{fmt::format("a length of {} m is not within {} and {} m", length_m, kMinLength_m,
-                           kMaxLength_m)};
+// The shortest decimal that reads back as the same number, with an exponent only where it is tiny
+// or huge.
+std::string number(double value) {
+  const double size = std::abs(value);
+  const bool is_plain = size == 0.0 || (size >= 1e-4 && size < 1e16);
+  char text[64];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value,
+                    is_plain ? std::chars_format::fixed : std::chars_format::scientific);
+  return std::string(text, end.ptr);
 }
 
+bool is_within(double x, double min, double max) noexcept { return x >= min && x <= max; }
+
+std::optional<Error> length_problem(double length_m) {
+  if (is_within(length_m, kMinLength_m, kMaxLength_m)) return std::nullopt;
+  return Error{"a length of " + number(length_m) + " m is not within " + number(kMinLength_m) +
+               " and " + number(kMaxLength_m) + " m"};
+}
+
+// Why a sole would not lie on a surface of at most this bend and grade.
 std::optional<Error> shape_problem(double bend_1_m, double grade) {
   if (!(grade <= kMaxGrade))
-    return Error{fmt::format("a grade of {:.2f} is too steep: at most {}", grade, kMaxGrade)};
+    return Error{"a grade of " + fixed(grade, 2) + " is too steep: at most " + number(kMaxGrade)};
   if (!(bend_1_m <= kMaxBend_1_m)) {
-    return Error{
-        fmt::format("a sole would not lie on ground that bends by {:.2f} per metre: at most {}",
-                    bend_1_m, kMaxBend_1_m)};
+    return Error{"a sole would not lie on ground that bends by " + fixed(bend_1_m, 2) +
+                 " per metre: at most " + number(kMaxBend_1_m)};
   }
   return std::nullopt;
 }
 
-// A number in [0, 1) of a seed, by the mixer of splitmix32.
-double random_share(std::uint32_t seed) noexcept {
-  std::uint32_t x = seed + 0x9e3779b9u;
-  x = (x ^ (x >> 16)) * 0x21f0aaadu;
-  x = (x ^ (x >> 15)) * 0x735a2d97u;
-  return static_cast<double>(x ^ (x >> 15)) / 4294967296.0;
-}
+struct ShapePoint {
+  double height_m = 0.0;
+  double dx = 0.0, dz = 0.0;  // slopes along x and z
+  int risers = 0;             // passed since the section's begin
+};
 
-}  // namespace
-
+// Waves and height fields are multiplied by a share that is 0 at both ends of the section and 1 in
+// between, so that they join their neighbours level. This is the share at u, and its slope.
+struct Share {
+  double value = 1.0, slope = 0.0;
+};
 Share share_at(double u_m, double length_m, double fade_m) noexcept {
   const bool near = u_m < 0.5 * length_m;
   const double s = (near ? u_m : length_m - u_m) / fade_m;
@@ -102,19 +67,43 @@ Share share_at(double u_m, double length_m, double fade_m) noexcept {
   return {t * t * (3.0 - 2.0 * t), (near ? 6.0 : -6.0) * t * (1.0 - t) / fade_m};
 }
 
+// The greatest height, slope and bend of a surface, and the greatest slope and bend of its share.
+struct Most {
+  double height_m = 0.0, grade = 0.0, bend_1_m = 0.0;
+};
+struct MostOfShare {
+  double slope_1_m = 0.0, bend_1_m2 = 0.0;
+};
+// Bounds the slope and the bend of surface times share by the product rule.
 std::optional<Error> faded_problem(double length_m, double fade_m, const MostOfShare& share,
                                    const Most& surface) {
   if (auto problem = length_problem(length_m)) return problem;
   if (!(fade_m > 0.0 && 2.0 * fade_m <= length_m)) {
-    return Error{fmt::format("{} m of fading at both ends do not fit into {} m", fade_m, length_m)};
+    return Error{number(fade_m) + " m of fading at both ends do not fit into " + number(length_m) +
+                 " m"};
   }
   return shape_problem(
       surface.bend_1_m + 2.0 * share.slope_1_m * surface.grade + share.bend_1_m2 * surface.height_m,
       surface.grade + share.slope_1_m * surface.height_m);
 }
 
+// --- Flat ----------------------------------------------------------------------------------------
+
+template <class Section>
+double length_of(const Section& section) noexcept {
+  return section.length_m;
+}
 ShapePoint point_at(const FlatSection&, double, double) noexcept { return {}; }
 
+std::optional<Error> problem_of(const FlatSection& flat) { return length_problem(flat.length_m); }
+
+void scale(FlatSection& flat, double factor) noexcept { flat.length_m *= factor; }
+
+// --- Slope: level at both ends, rounded by parabolas ---------------------------------------------
+
+double rise_of(const SlopeSection& slope) noexcept {
+  return slope.grade * (slope.length_m - slope.rounding_m);
+}
 ShapePoint point_at(const SlopeSection& slope, double, double u) noexcept {
   const double r = slope.rounding_m, g = slope.grade;
   if (u < r) return {.height_m = 0.5 * g * u * u / r, .dz = g * u / r};
@@ -123,7 +112,25 @@ ShapePoint point_at(const SlopeSection& slope, double, double u) noexcept {
   return {.height_m = g * (u - 0.5 * r), .dz = g};
 }
 
-// Upstairs a riser's line is part of the tread behind it, downstairs of the one before.
+std::optional<Error> problem_of(const SlopeSection& slope) {
+  if (auto problem = length_problem(slope.length_m)) return problem;
+  if (!(slope.rounding_m > 0.0 && 2.0 * slope.rounding_m <= slope.length_m)) {
+    return Error{number(slope.rounding_m) + " m of rounding at both ends do not fit into " +
+                 number(slope.length_m) + " m"};
+  }
+  const double grade = std::abs(slope.grade);
+  return shape_problem(grade / slope.rounding_m, grade);
+}
+
+void scale(SlopeSection& slope, double factor) noexcept {
+  slope.length_m *= factor, slope.rounding_m *= factor;
+}
+
+// --- Stairs --------------------------------------------------------------------------------------
+
+double length_of(const StairsSection& stairs) noexcept { return stairs.tread_m * stairs.count; }
+// The line of a riser belongs to the upper tread: upstairs to the one behind it, downstairs to the
+// one before it.
 ShapePoint point_at(const StairsSection& stairs, double, double u) noexcept {
   int passed = 0;
   for (int k = 0; k < stairs.count; ++k) {
@@ -132,6 +139,25 @@ ShapePoint point_at(const StairsSection& stairs, double, double u) noexcept {
   }
   return {.height_m = stairs.rise_m * passed, .risers = passed};
 }
+
+std::optional<Error> problem_of(const StairsSection& stairs) {
+  if (!is_within(stairs.tread_m, kMinTread_m, kMaxTread_m))
+    return Error{"a tread of " + number(stairs.tread_m) + " m is not within " +
+                 number(kMinTread_m) + " and " + number(kMaxTread_m) + " m"};
+  if (!is_within(std::abs(stairs.rise_m), 0.01, kMaxRise_m))
+    return Error{"a rise of " + number(stairs.rise_m) + " m is not within 0.01 and " +
+                 number(kMaxRise_m) + " m, up or down"};
+  if (stairs.count < 1 || stairs.count > kMaxRisers)
+    return Error{std::to_string(stairs.count) + " risers are not 1 to " +
+                 std::to_string(kMaxRisers)};
+  return std::nullopt;
+}
+
+void scale(StairsSection& stairs, double factor) noexcept {
+  stairs.rise_m *= factor, stairs.tread_m *= factor;
+}
+
+// --- Rough: a sum of waves -----------------------------------------------------------------------
 
 ShapePoint point_at(const RoughSection& rough, double x, double u) noexcept {
   ShapePoint waves;
@@ -147,74 +173,17 @@ ShapePoint point_at(const RoughSection& rough, double x, double u) noexcept {
           .dz = waves.dz * share.value + waves.height_m * share.slope};
 }
 
-std::optional<Error> problem_of(const FlatSection& flat) { return length_problem(flat.length_m); }
-
-std::optional<Error> problem_of(const SlopeSection& slope) {
-  if (auto problem = length_problem(slope.length_m)) return problem;
-  if (!(slope.rounding_m > 0.0 && 2.0 * slope.rounding_m <= slope.length_m)) {
-    return Error{fmt::format("{} m of rounding at both ends do not fit into {} m", slope.rounding_m,
-                             slope.length_m)};
-  }
-  const double grade = fabs(slope.grade);
-  return shape_problem(grade / slope.rounding_m, grade);
-}
-
-std::optional<Error> problem_of(const StairsSection& stairs) {
-  if (!is_within(stairs.tread_m, kMinTread_m, kMaxTread_m))
-    return Error{fmt::format("a tread of {} m is not within {} and {} m", stairs.tread_m,
-                             kMinTread_m, kMaxTread_m)};
-  if (!is_within(fabs(stairs.rise_m), 0.01, kMaxRise_m))
-    return Error{fmt::format("a rise of {} m is not within 0.01 and {} m, up or down",
-                             stairs.rise_m, kMaxRise_m)};
-  if (stairs.count < 1 || stairs.count > kMaxRisers)
-    return Error{fmt::format("{} risers are not 1 to {}", stairs.count, kMaxRisers)};
-  return std::nullopt;
-}
-
 std::optional<Error> problem_of(const RoughSection& rough) {
   Most most;
   for (const Wave& w : rough.wave) {
-    const double k = sqrt(w.x_rad_m * w.x_rad_m + w.z_rad_m * w.z_rad_m);
+    const double k = std::sqrt(w.x_rad_m * w.x_rad_m + w.z_rad_m * w.z_rad_m);
     if (!(k < 100.0)) return Error{"a wave is shorter than 6 cm"};
-    const double height_m = fabs(w.height_m);
+    const double height_m = std::abs(w.height_m);
     most.height_m += height_m, most.grade += height_m * k, most.bend_1_m += height_m * k * k;
   }
-  // smoothstep's greatest slope and bend
+  // The greatest slope and bend of smoothstep.
   const MostOfShare share{1.5 / rough.fade_m, 6.0 / (rough.fade_m * rough.fade_m)};
   return faded_problem(rough.length_m, rough.fade_m, share, most);
-}
-
-RoughSection rough_section(double length_m, double amplitude_m, double wavelength_m, double fade_m,
-                           std::uint32_t seed) {
-  // Wavelengths over the shortest one: square roots without a common measure, an octave and more.
-  constexpr std::array<double, 5> kSquares{1.0, 1.7, 2.6, 3.7, 5.3};
-  constexpr double kGoldenAngle = 2.399963229728653;  // directions never line up
-  RoughSection rough;
-  rough.length_m = length_m, rough.fade_m = fade_m;
-  double sum = 0.0;
-  for (const double square : kSquares) sum += square;
-  const double turn = 2.0 * kPi * random_share(seed);
-  for (std::size_t i = 0; i < kSquares.size(); ++i) {
-    const double k = 2.0 * kPi / (wavelength_m * sqrt(kSquares[i]));
-    const SinCos direction = sin_cos(turn + kGoldenAngle * static_cast<double>(i));
-    // Heights with the square of the length: each wave bends the ground alike.
-    rough.wave[i] = {
-        .x_rad_m = k * direction.sin,
-        .z_rad_m = k * direction.cos,
-        .phase_rad = 2.0 * kPi * random_share(seed + 1 + static_cast<std::uint32_t>(i)),
-        .height_m = amplitude_m * kSquares[i] / sum};
-  }
-  return rough;
-}
-
-void scale(FlatSection& flat, double factor) noexcept { flat.length_m *= factor; }
-
-void scale(SlopeSection& slope, double factor) noexcept {
-  slope.length_m *= factor, slope.rounding_m *= factor;
-}
-
-void scale(StairsSection& stairs, double factor) noexcept {
-  stairs.rise_m *= factor, stairs.tread_m *= factor;
 }
 
 void scale(RoughSection& rough, double factor) noexcept {
@@ -222,9 +191,10 @@ void scale(RoughSection& rough, double factor) noexcept {
   for (Wave& w : rough.wave) w.height_m *= factor, w.x_rad_m /= factor, w.z_rad_m /= factor;
 }
 
-namespace {
+// --- Height field: samples under a spline --------------------------------------------------------
 
-// Cubic B-spline at t in [0, 1) between the second and the third of four samples.
+// Weights of four samples for the value and the slope of a cubic B-spline at t in [0, 1) between
+// the second and the third of them.
 struct Spline {
   std::array<double, 4> value, slope;
 };
@@ -241,9 +211,9 @@ double sample(const HeightField& field, int column, int row) noexcept {
                         static_cast<std::size_t>(c)];
 }
 
-// In samples from column 0 and row 0.
+// The spline's surface before it is faded. `across` and `along` count samples from column 0, row 0.
 ShapePoint unfaded(const FieldSection& section, double across, double along) noexcept {
-  const int c = static_cast<int>(floor(across)), r = static_cast<int>(floor(along));
+  const int c = static_cast<int>(std::floor(across)), r = static_cast<int>(std::floor(along));
   const Spline sc = spline_at(across - c), sr = spline_at(along - r);
   ShapePoint at;
   for (int j = 0; j < 4; ++j) {
@@ -257,7 +227,8 @@ ShapePoint unfaded(const FieldSection& section, double across, double along) noe
   return at;
 }
 
-// The greatest height, and first, second and mixed difference of neighbours.
+// The greatest height in the field, and the greatest first, second and mixed difference of
+// neighbouring samples.
 struct Differences {
   double height = 0.0, step = 0.0, bend = 0.0, twist = 0.0;
 };
@@ -266,20 +237,18 @@ Differences differences(const HeightField& f) noexcept {
   for (int r = 0; r < f.rows; ++r) {
     for (int c = 0; c < f.columns; ++c) {
       const double h = sample(f, c, r), right = sample(f, c + 1, r), far = sample(f, c, r + 1);
-      most.height = std::max(most.height, fabs(h));
-      most.step = std::max({most.step, fabs(right - h), fabs(far - h)});
-      // Beyond the borders lies nothing: the outermost samples have faded away.
+      most.height = std::max(most.height, std::abs(h));
+      most.step = std::max({most.step, std::abs(right - h), std::abs(far - h)});
+      // Samples at the border need no bend: the share is 0 there.
       if (c > 0 && c + 1 < f.columns)
-        most.bend = std::max(most.bend, fabs(right - 2.0 * h + sample(f, c - 1, r)));
+        most.bend = std::max(most.bend, std::abs(right - 2.0 * h + sample(f, c - 1, r)));
       if (r > 0 && r + 1 < f.rows)
-        most.bend = std::max(most.bend, fabs(far - 2.0 * h + sample(f, c, r - 1)));
-      most.twist = std::max(most.twist, fabs(sample(f, c + 1, r + 1) - right - far + h));
+        most.bend = std::max(most.bend, std::abs(far - 2.0 * h + sample(f, c, r - 1)));
+      most.twist = std::max(most.twist, std::abs(sample(f, c + 1, r + 1) - right - far + h));
     }
   }
   return most;
 }
-
-}  // namespace
 
 ShapePoint point_at(const FieldSection& section, double x, double u) noexcept {
   const HeightField& field = *section.field;
@@ -294,30 +263,30 @@ ShapePoint point_at(const FieldSection& section, double x, double u) noexcept {
           .dz = (at.dz * along.value + at.height_m * along.slope) * across.value};
 }
 
-// A spline's slopes and bends are means of its samples' differences, so theirs bound them.
+// Slopes and bends of a B-spline are means of its samples' differences, so those bound them.
 std::optional<Error> problem_of(const FieldSection& section) {
   if (!section.field) return Error{"the height field is missing"};
   const HeightField& f = *section.field;
   if (f.columns < 2 || f.rows < 2 || f.columns > kMaxFieldSide || f.rows > kMaxFieldSide ||
       f.height_m.size() != static_cast<std::size_t>(f.columns) * static_cast<std::size_t>(f.rows))
-    return Error{
-        fmt::format("{} x {} samples are not 2 to {} a side", f.columns, f.rows, kMaxFieldSide)};
+    return Error{std::to_string(f.columns) + " x " + std::to_string(f.rows) +
+                 " samples are not 2 to " + std::to_string(kMaxFieldSide) + " a side"};
   const double m = section.pixel_m, n = section.height_scale;
   if (!is_within(m, 1e-3, 100.0)) return Error{"a sample is not 1 mm to 100 m wide"};
   const double width_m = (f.columns - 1) * m;
   if (!(2.0 * section.fade_m <= width_m)) {
-    return Error{
-        fmt::format("{} m of fading at both sides do not fit into {} m", section.fade_m, width_m)};
+    return Error{number(section.fade_m) + " m of fading at both sides do not fit into " +
+                 number(width_m) + " m"};
   }
   const Differences most = differences(f);
   if (!(most.height * n < 100.0)) return Error{"a height is beyond 100 m"};
-  // Of the two shares' product, in any direction.
-  const double slope = sqrt(2.0) * 1.5 / section.fade_m;
+  // The share is a product of two, across and along; these bound it in any direction.
+  const double slope = std::sqrt(2.0) * 1.5 / section.fade_m;
   const double bend = (6.0 + 1.5 * 1.5) / (section.fade_m * section.fade_m);
-  // Within a sample of the border the surface is cut off, but hardly any of it is left there.
+  // Within a sample of the border the surface is cut off. The share leaves little of it there.
   const double cut = 3.0 * most.step * n / (section.fade_m * section.fade_m);
   return faded_problem(section.length_m, section.fade_m, {slope, bend},
-                       {most.height * n, sqrt(2.0) * most.step * n / m,
+                       {most.height * n, std::sqrt(2.0) * most.step * n / m,
                         (most.bend + most.twist) * n / (m * m) + cut});
 }
 
@@ -326,17 +295,18 @@ void scale(FieldSection& section, double factor) noexcept {
   section.pixel_m *= factor, section.height_scale *= factor;
 }
 
-namespace {
+// --- The row of sections -------------------------------------------------------------------------
 
-// sin_cos() is exact up to 1e5 rad; also where no place is one (NaN).
+// Farther places count as this far: sin_cos() is exact up to 1e5 rad only. NaN becomes -kFar_m.
 constexpr double kFar_m = 1e4;
 
-double place(double x_m) noexcept {
+double bounded_place(double x_m) noexcept {
   if (x_m > kFar_m) return kFar_m;
   return x_m > -kFar_m ? x_m : -kFar_m;
 }
 
-double level_of(const SectionShape& shape) noexcept {
+// How much higher a section ends than it begins.
+double rise_of(const SectionShape& shape) noexcept {
   if (const auto* slope = std::get_if<SlopeSection>(&shape)) return rise_of(*slope);
   if (const auto* stairs = std::get_if<StairsSection>(&shape))
     return stairs->rise_m * stairs->count;
@@ -357,36 +327,45 @@ const TerrainSection* section_at(const Terrain& terrain, double z_m) noexcept {
   return found;
 }
 
-// Calls `see(z_m, is_up)` for each riser, in order.
-template <class See>
-void see_risers(const Terrain& terrain, const See& see) noexcept {
+// Calls `visit(z_m, is_up)` for each riser, in order along z.
+template <class Visit>
+void for_each_riser(const Terrain& terrain, const Visit& visit) noexcept {
   for (const TerrainSection& s : terrain.sections) {
     const auto* stairs = std::get_if<StairsSection>(&s.shape);
     for (int k = 0; stairs && k < stairs->count; ++k)
-      see(s.begin_m + k * stairs->tread_m, stairs->rise_m > 0.0);
+      visit(s.begin_m + k * stairs->tread_m, stairs->rise_m > 0.0);
   }
+}
+
+// A number in [0, 1) of a seed, by the mixer of splitmix32.
+double random_share(std::uint32_t seed) noexcept {
+  std::uint32_t x = seed + 0x9e3779b9u;
+  x = (x ^ (x >> 16)) * 0x21f0aaadu;
+  x = (x ^ (x >> 15)) * 0x735a2d97u;
+  return static_cast<double>(x ^ (x >> 15)) / 4294967296.0;
 }
 
 }  // namespace
 
 Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept {
-  const double z = place(z_m);
+  const double z = bounded_place(z_m);
   const TerrainSection* s = section_at(terrain, z);
   if (!s) return {};
   const double u = z - s->begin_m;
   if (u > s->length_m) return {s->end_m, kUp, s->piece + risers_of(s->shape)};
-  const double x = place(x_m);
+  const double x = bounded_place(x_m);
   const ShapePoint at =
       std::visit([&](const auto& shape) { return point_at(shape, x, u); }, s->shape);
-  const vec3 normal = at.dx == 0.0 && at.dz == 0.0
-                          ? kUp
-                          : vec3(-at.dx, 1.0, -at.dz) / sqrt(1.0 + at.dx * at.dx + at.dz * at.dz);
+  const vec3 normal =
+      at.dx == 0.0 && at.dz == 0.0
+          ? kUp
+          : vec3(-at.dx, 1.0, -at.dz) / std::sqrt(1.0 + at.dx * at.dx + at.dz * at.dz);
   return {s->base_m + at.height_m, normal, s->piece + at.risers};
 }
 
 Stretch piece_at(const Terrain& terrain, double z_m) noexcept {
   Stretch stretch;
-  see_risers(terrain, [&](double riser_m, bool is_up) {
+  for_each_riser(terrain, [&](double riser_m, bool is_up) {
     if (is_up ? riser_m <= z_m : riser_m < z_m) {
       stretch.from_m = riser_m;
     } else if (riser_m < stretch.to_m) {
@@ -404,7 +383,7 @@ bool is_flat(const Terrain& terrain) noexcept {
 
 double least_tread_m(const Terrain& terrain) noexcept {
   double least = std::numeric_limits<double>::infinity(), last = -least;
-  see_risers(terrain, [&](double riser_m, bool) {
+  for_each_riser(terrain, [&](double riser_m, bool) {
     least = std::min(least, riser_m - last);
     last = riser_m;
   });
@@ -414,6 +393,30 @@ double least_tread_m(const Terrain& terrain) noexcept {
 double length_m(const Terrain& terrain) noexcept {
   if (terrain.sections.empty()) return 0.0;
   return terrain.sections.back().begin_m + terrain.sections.back().length_m;
+}
+
+RoughSection rough_section(double length_m, double amplitude_m, double wavelength_m, double fade_m,
+                           std::uint32_t seed) {
+  // Each wave's length over the shortest one, squared. The roots have no common measure, so the sum
+  // never repeats.
+  constexpr std::array<double, 5> kSquares{1.0, 1.7, 2.6, 3.7, 5.3};
+  constexpr double kGoldenAngle = 2.399963229728653;  // between directions: no two line up
+  RoughSection rough;
+  rough.length_m = length_m, rough.fade_m = fade_m;
+  double sum = 0.0;
+  for (const double square : kSquares) sum += square;
+  const double turn = 2.0 * kPi * random_share(seed);
+  for (std::size_t i = 0; i < kSquares.size(); ++i) {
+    const double k = 2.0 * kPi / (wavelength_m * std::sqrt(kSquares[i]));
+    const SinCos direction = sin_cos(turn + kGoldenAngle * static_cast<double>(i));
+    // A wave's height grows with the square of its length, so that each bends the ground alike.
+    rough.wave[i] = {
+        .x_rad_m = k * direction.sin,
+        .z_rad_m = k * direction.cos,
+        .phase_rad = 2.0 * kPi * random_share(seed + 1 + static_cast<std::uint32_t>(i)),
+        .height_m = amplitude_m * kSquares[i] / sum};
+  }
+  return rough;
 }
 
 std::optional<Error> add_section(Terrain& terrain, const SectionShape& shape) {
@@ -429,7 +432,7 @@ std::optional<Error> add_section(Terrain& terrain, const SectionShape& shape) {
     section.piece = before.piece + risers_of(before.shape);
   }
   if (section.begin_m + section.length_m > kFar_m) return Error{"the terrain is too long"};
-  section.end_m = section.base_m + level_of(shape);
+  section.end_m = section.base_m + rise_of(shape);
   terrain.sections.push_back(std::move(section));
   return std::nullopt;
 }

@@ -1,64 +1,109 @@
-// The parts of posing an upper body, in the order in which walk_body.cpp calls them. Internal to
-// it.
-
+// The upper body of a walk: the data's, but for arms that swing as far as the pace asks, hands and
+// a head that are to be somewhere, and joints that follow by their weights (equation 5). Meredith &
+// Maddock 2005, section 5 (future work). Nothing in here moves pelvis or legs.
+//
+// In a tick: smooth_upper_body() brings the style's values into force, swing_arms() scales the
+// data's swing, and pose_upper_body() poses the spine, then the arms that hang on it, then the
+// head. What is as the data have it is not touched, so it costs nothing and keeps its bits.
 #include <bit>
-#include <vector>
 
 #include "animation/walk_parts.h"
-#include "gaitpad/walk.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
-
-inline constexpr double kEvenBodySpread = 1e-9;  // weights closer than this are even
-inline constexpr double kBodyHold = 0.8;         // of a change that a locked joint does not follow
-
-// How much of its change a joint of relative weight `w` leaves to the others.
-inline double held_back(double w) noexcept { return kBodyHold * (1.0 - (w * w) * (w * w)); }
-
-// World frames of the joints of a path that begins at the root; other entries stay as they are.
-void carry_path(const Skeleton& skeleton, const std::vector<int>& path, const Pose& pose,
-                JointFrames& world) noexcept;
-// A rotation a part of the way to another one, the short way.
-quat between(const quat& from, const quat& to, double share) noexcept;
-
-// Where each hand is before anything is done to it, for those whose arm is there.
-using HandPlaces = std::array<vec3, 2>;
-
-// --- walk_body_spine.cpp
-bool is_spine_even(const BodyParams& now) noexcept;
-void pose_spine(const BodyModel& body, const Skeleton& skeleton, const SpineWeights& weight,
-                Pose& pose, JointFrames& world) noexcept;
-// --- walk_body_arm.cpp
-bool is_arm_free(const BodyParams& now, Side side) noexcept;  // swings, with even weights
-vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept;
-struct Shoulders {
-  vec3 middle_m{0.0};        // between them
-  quat upright = kIdentity;  // turned with them about the vertical
-};
-Shoulders shoulders_of(const WalkModel& model, const JointFrames& world) noexcept;
-// `own_m`: where the hand is in the data.
-void pose_arm(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
-              const vec3& own_m, Pose& pose, JointFrames& world) noexcept;
-// --- walk_body_head.cpp
-bool is_head_free(const HeadParams& head) noexcept;
-void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
-               JointFrames& world) noexcept;
-
-// The spine by weighted half-Jacobian IK: its joints share the way to where the data carry the neck
-// and turn the shoulders. Three rows, all of positions: the neck's sideways and fore-aft place, and
-// how far ahead a point beside it is.
-
 namespace {
 
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
-constexpr double kSideLever_m = 0.2;
+constexpr double kEvenSpread = 1e-9;  // weights closer than this are even
+constexpr double kHold = 0.8;         // of a change that a locked joint does not follow
+
+// How much of its change a joint of relative weight `w` leaves to the others.
+double held_back(double w) noexcept { return kHold * (1.0 - (w * w) * (w * w)); }
+
+// --- Smoothing, once a tick ----------------------------------------------------------------------
+
+constexpr double kSmoothing = 0.22;  // s at the reference leg
+constexpr double kSettled = 40.0;    // time constants after which a value is at its goal
+constexpr double kMostExtra = 0.4;   // swing beyond the data's that pace alone can give
+constexpr double kLeastPace = 0.5;   // below it the data's posture fades, and the swing with it
+constexpr double kSoftElbow = 0.1;
+constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail
+constexpr int kRailProbes = 15;  // to either side, 0.56 m: a mean over two treads rises evenly
+constexpr double kRailSmoothing = 0.06;
+
+// The parameters are numbers alone, so all of them are smoothed as one row.
+using BodyValues = std::array<double, sizeof(BodyParams) / sizeof(double)>;
+
+// Brings the values in force nearer to their goals. At the goals this costs one comparison.
+void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
+  const BodyParams& goal = tick.params.body;
+  const double tau = kSmoothing * tick.model.time_scale;
+  if (!(goal == body.goal)) {
+    body.goal = goal;
+    body.unsettled_ticks = static_cast<int>(std::min(kSettled * tau / tick.dt_s, 1e6));
+  }
+  if (body.unsettled_ticks <= 0) return;
+  const auto to = std::bit_cast<BodyValues>(goal);
+  auto now = std::bit_cast<BodyValues>(body.now);
+  --body.unsettled_ticks;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    Damped<double> value{now[i], body.per_s[i]};
+    value.advance(to[i], tau, tick.dt_s);
+    const bool is_there = body.unsettled_ticks == 0;
+    now[i] = is_there ? to[i] : value.x;
+    body.per_s[i] = is_there ? 0.0 : value.v;
+  }
+  body.now = std::bit_cast<BodyParams>(now);
+}
+
+// Factor on the data's arm swing: proportional to speed (Boulic et al. 1990), bounded, and 1 at the
+// data's own pace.
+double pace_swing(const Tick& tick, const WalkState& state) noexcept {
+  const double own_s = tick.model.body.own_step_s;
+  const double quicker = own_s / std::max(state.step_time_s.x, 0.25 * own_s);
+  const double extra = std::max(state.pace.x, kLeastPace) * quicker - 1.0;
+  return 1.0 + (extra > 0.0 ? extra / (1.0 + extra / kMostExtra) : extra);
+}
+
+// A rail rises evenly over stairs, so it stands on the mean of the ground along the way under the
+// hand. The mean is taken as far ahead as the filter after it lags.
+void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
+  UpperBodyState& body = state.body;
+  const HandParams& hand = body.now.hand[side];
+  const double scale = tick.model.body.shoulder_height_m / kReferenceShoulder_m;
+  const double smoothing_s = kRailSmoothing * tick.model.time_scale;
+  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
+  const vec3 under = state.hips_m + state.hips_velocity_m_s * (2.0 * smoothing_s) +
+                     left * (scale * (side == kLeftSide ? hand.rail_side_m : -hand.rail_side_m));
+  double sum = 0.0, weights = 0.0;
+  for (int i = -kRailProbes; i <= kRailProbes && !tick.flat; ++i) {
+    const vec3 at = under + forward * (i * kRailProbe_m * tick.model.size);
+    const double weight = kRailProbes + 1.0 - std::abs(i);
+    sum += weight * ground_at(*tick.model.terrain, at.x, at.z).height_m;
+    weights += weight;
+  }
+  const double mean_m = tick.flat ? 0.0 : sum / weights;
+  Damped<double> ground{body.rail_ground_m[side], body.rail_ground_m_s[side]};
+  ground.advance(mean_m, smoothing_s, tick.dt_s);
+  if (hand.rail <= 0.0) ground = {mean_m, 0.0};  // not held yet: nothing to smooth
+  body.rail_ground_m[side] = ground.x;
+  body.rail_ground_m_s[side] = ground.v;
+}
+
+// --- Spine ---------------------------------------------------------------------------------------
+
+// By weighted half-Jacobian IK: its joints share the way to where the data carry the neck
+// and turn the shoulders. Three rows, all of positions: the neck's sideways and fore-aft place, and
+// how far ahead a point beside it is.
+
+constexpr double kSideLever_m = 0.2;          // of the point beside the neck
 constexpr double kMostBend = 60.0 * kDegree;  // of one joint
 constexpr int kAxes = 3;                      // a joint
 static_assert(kAxes * kMaxSpineIk <= kMaxIkDofs);
 constexpr std::array<vec3, kAxes> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0)};
 
-// The spine as it stands in a pose, in the walker's axes as its foundation holds them.
+// The spine in one pose. Angles and places are in the walker's standing axes, turned with what the
+// spine stands on.
 struct Spine {
   quat base = kIdentity;
   IkChain chain;
@@ -67,7 +112,8 @@ struct Spine {
   vec3 last_m{0.0};       // its place, from the lowest
 };
 
-Spine spine_of(const BodyModel& body, const Skeleton& skeleton, const JointFrames& world) noexcept {
+Spine spine_of(const UpperBodyModel& body, const Skeleton& skeleton,
+               const JointFrames& world) noexcept {
   const int count = static_cast<int>(body.spine.size());
   Spine spine;
   spine.base = world.rotation[skeleton.joints[body.spine.front().joint].parent] *
@@ -95,7 +141,7 @@ Spine spine_of(const BodyModel& body, const Skeleton& skeleton, const JointFrame
 }
 
 // Joints of small weight keep to the standing pose.
-void stiffen(const BodyModel& body, const SpineWeights& weight, Spine& spine) noexcept {
+void stiffen_spine(const UpperBodyModel& body, const SpineWeights& weight, Spine& spine) noexcept {
   const double largest = std::max({1e-6, weight[kLowerSpine], weight[kUpperSpine]});
   for (std::size_t i = 0; i < body.spine.size(); ++i) {
     const double here = mix(weight[kLowerSpine], weight[kUpperSpine], body.spine[i].upper);
@@ -107,15 +153,15 @@ void stiffen(const BodyModel& body, const SpineWeights& weight, Spine& spine) no
   }
 }
 
-void write_spine(const BodyModel& body, const Skeleton& skeleton, const Spine& spine, Pose& pose,
-                 JointFrames& world) noexcept {
+void write_spine(const UpperBodyModel& body, const Skeleton& skeleton, const Spine& spine,
+                 Pose& pose, JointFrames& world) noexcept {
   quat segment = kIdentity;
   std::size_t i = 0;
   for (const int j : body.spine_path) {
     const int parent = skeleton.joints[j].parent;
     if (i < body.spine.size() && body.spine[i].joint == j) {
       const double* angle = &spine.angles[kAxes * i];
-      segment = segment * (rotation_x(angle[0]) * rotation_z(angle[1]) * rotation_y(angle[2]));
+      segment = segment * rotation_xzy({angle[0], angle[1], angle[2]});
       const quat to = spine.base * segment * body.spine[i].standing;
       pose.local[j] = glm::normalize(glm::conjugate(world.rotation[parent]) * to);
       ++i;
@@ -124,17 +170,15 @@ void write_spine(const BodyModel& body, const Skeleton& skeleton, const Spine& s
   }
 }
 
-}  // namespace
-
 bool is_spine_even(const BodyParams& now) noexcept {
-  return std::abs(now.spine_weight[kLowerSpine] - now.spine_weight[kUpperSpine]) < kEvenBodySpread;
+  return std::abs(now.spine_weight[kLowerSpine] - now.spine_weight[kUpperSpine]) < kEvenSpread;
 }
 
-void pose_spine(const BodyModel& body, const Skeleton& skeleton, const SpineWeights& weight,
+void pose_spine(const UpperBodyModel& body, const Skeleton& skeleton, const SpineWeights& weight,
                 Pose& pose, JointFrames& world) noexcept {
-  carry_path(skeleton, body.spine_path, pose, world);
+  forward_kinematics(skeleton, pose, body.spine_path, world);
   Spine spine = spine_of(body, skeleton, world);
-  stiffen(body, weight, spine);
+  stiffen_spine(body, weight, spine);
   const vec3 side_point = body.neck_m + vec3(kSideLever_m, 0.0, 0.0);
   const vec3 neck = spine.last_m + spine.last * body.neck_m;
   const vec3 beside = spine.last_m + spine.last * side_point;
@@ -145,11 +189,11 @@ void pose_spine(const BodyModel& body, const Skeleton& skeleton, const SpineWeig
   write_spine(body, skeleton, spine, pose, world);
 }
 
+// --- Arms ----------------------------------------------------------------------------------------
+
 // One arm by weighted half-Jacobian IK: shoulder 3, elbow 1, wrist 2; the end-effector is the
 // middle of the hand. With the wrist as end-effector weights would change next to nothing, as with
 // the ankle: the distance from shoulder to wrist is the elbow's angle.
-
-namespace {
 
 constexpr double kFarthest = 0.985, kSoftFar = 0.03;  // of the stretched arm: a hand's place
 constexpr double kNearest = 0.3, kSoftNear = 0.1;
@@ -159,7 +203,7 @@ constexpr double kRailAhead_m = 0.15;  // of the shoulder, where a hand takes ho
 using ShoulderAngles = std::array<double, 3>;
 constexpr ShoulderAngles kCarrying = {-15.0 * kDegree, 12.0 * kDegree, -15.0 * kDegree};
 constexpr ShoulderAngles kAtRail = {25.0 * kDegree, 4.0 * kDegree, 5.0 * kDegree};
-// Beside the style's weights: held hands are brought about by shoulder and elbow.
+// On top of the style's weights: shoulder and elbow bring a held hand to its place, not the wrist.
 constexpr ArmWeights kHeldWeights = {1.0, 1.0, 0.7, 1.0, 0.25, 0.25};
 
 // One arm as it stands in a pose.
@@ -207,7 +251,46 @@ Arm arm_of(const ArmBuild& build, const Skeleton& skeleton, const JointFrames& w
 bool has_uneven_weights(const BodyParams& now, Side side) noexcept {
   const ArmWeights& weight = now.arm_weight[side];
   const auto [low, high] = std::minmax_element(weight.begin(), weight.end());
-  return *high - *low >= kEvenBodySpread;
+  return *high - *low >= kEvenSpread;
+}
+
+bool is_arm_free(const BodyParams& now, Side side) noexcept {
+  return !has_uneven_weights(now, side) && now.hand[side].carry <= 0.0 &&
+         now.hand[side].rail <= 0.0;
+}
+
+// Where each hand is before anything is done to it, for those whose arm is there.
+using HandPlaces = std::array<vec3, 2>;
+
+vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept {
+  return world.position_m[arm.joints.wrist] + world.rotation[arm.joints.wrist] * arm.grip_m;
+}
+
+struct Shoulders {
+  vec3 middle_m{0.0};        // between them
+  quat upright = kIdentity;  // turned with them about the vertical
+};
+Shoulders shoulders_of(const WalkModel& model, const JointFrames& world) noexcept {
+  const std::array<ArmBuild, 2>& arm = model.body.arm;
+  Shoulders s;
+  if (arm[0].is_there && arm[1].is_there) {
+    const vec3 left = world.position_m[arm[0].joints.shoulder],
+               right = world.position_m[arm[1].joints.shoulder];
+    s.middle_m = 0.5 * (left + right);
+    const vec3 across = left - right;
+    s.upright = rotation_y(heading_of(vec3(-across.z, 0.0, across.x)));
+    return s;
+  }
+  const ArmBuild& only = arm[arm[0].is_there ? 0 : 1];
+  const quat base =
+      world.rotation[model.cycle.skeleton.joints[only.joints.shoulder].parent] * only.chest;
+  s.middle_m = world.position_m[only.joints.shoulder];
+  s.upright = rotation_y(heading_of(base * kForward));
+  return s;
+}
+
+quat upper_turn(const Arm& arm) noexcept {
+  return rotation_xzy({arm.angles[kShoulderX], arm.angles[kShoulderZ], arm.angles[kShoulderY]});
 }
 
 double sign_of(Side side) noexcept { return side == kLeftSide ? 1.0 : -1.0; }
@@ -217,7 +300,7 @@ double lower_m(const Arm& arm) noexcept {
   return glm::length(arm.chain.dof[kElbowX].link_m + arm.grip_m);
 }
 
-// The place within what the arm reaches around its shoulder.
+// The place, moved to where the arm can reach it: neither too far from the shoulder nor too near.
 vec3 within_reach(const Arm& arm, const vec3& place_m) noexcept {
   const double full = upper_m(arm) + lower_m(arm);
   const vec3 way = place_m - arm.shoulder_m;
@@ -227,9 +310,9 @@ vec3 within_reach(const Arm& arm, const vec3& place_m) noexcept {
   return arm.shoulder_m + way * (soft_min(near, kFarthest * full, kSoftFar * full) / far);
 }
 
-// Before the chest: in the upright frame that turns with the shoulders, so what both hands hold
-// stays level.
-vec3 carried_place(const HandParams& hand, const BodyModel& body, Side side,
+// A place before the chest, in the upright frame that turns with the shoulders: what both hands
+// hold stays level.
+vec3 carried_place(const HandParams& hand, const UpperBodyModel& body, Side side,
                    const Shoulders& shoulders) noexcept {
   const double scale = body.arm_m / kReferenceArm_m;
   return shoulders.middle_m +
@@ -247,8 +330,8 @@ vec3 rail_place(const WalkModel& model, const WalkState& state, const HandParams
   return place;
 }
 
-// Where the solver starts for a held hand: out, bent as far as the place is away, and the wrist as
-// in the data.
+// Where the solver starts for a held hand: the elbow points out and is bent as the distance of the
+// place asks, the wrist is as in the data.
 IkAngles held_start(const Arm& arm, Side side, double rail, const vec3& place_m) noexcept {
   const double a = upper_m(arm), b = lower_m(arm);
   const double far = glm::distance(place_m, arm.shoulder_m);
@@ -261,10 +344,10 @@ IkAngles held_start(const Arm& arm, Side side, double rail, const vec3& place_m)
   return start;
 }
 
-// Joints of small weight hold on to the middle of their swing; the others make up for it, so that
-// the hand goes as far forward and aside as it went. Its height gives way: with it the shoulder's
-// angle would follow from the path alone.
-void stiffen(const ArmBuild& build, const ArmWeights& weights, Arm& arm) noexcept {
+// Joints of small weight stay near the middle of their swing; the others make up for it, so that
+// the hand still goes as far forward and aside. Its height is left free: with three rows the path
+// alone would determine the shoulder's angle.
+void stiffen_arm(const ArmBuild& build, const ArmWeights& weights, Arm& arm) noexcept {
   const double largest = std::max(1e-6, *std::max_element(weights.begin(), weights.end()));
   for (int d = 0; d < kArmDofs; ++d) {
     const double w = std::clamp(weights[d] / largest, 0.0, 1.0);
@@ -273,24 +356,23 @@ void stiffen(const ArmBuild& build, const ArmWeights& weights, Arm& arm) noexcep
   }
 }
 
-// Turns the whole arm at the shoulder towards the goal (from the shoulder, base frame): so little
-// is left to the solver that it needs a third of the time, and the wrist stays as it is.
-void aim(const vec3& goal_m, Arm& arm) noexcept {
+// Turns the whole arm at the shoulder towards the goal (from the shoulder, base frame). The solver
+// then starts near its answer: it needs a third of the time and leaves the wrist as it is.
+void aim_arm(const vec3& goal_m, Arm& arm) noexcept {
   const IkFrame end = end_frame(arm.chain, arm.angles);
   const vec3 hand_m = end.position_m + end.rotation * arm.grip_m;
   const double far = glm::length(hand_m), goal_far = glm::length(goal_m);
   if (far < 1e-6 || goal_far < 1e-6) return;
-  const quat upper =
-      rotation_xzy({arm.angles[kShoulderX], arm.angles[kShoulderZ], arm.angles[kShoulderY]});
+  const quat upper = upper_turn(arm);
   const AnglesXzy to = angles_xzy(rotation_between(hand_m / far, goal_m / goal_far) * upper);
   arm.angles[kShoulderX] += wrapped(to.x - arm.angles[kShoulderX]);
   arm.angles[kShoulderZ] = to.z;
   arm.angles[kShoulderY] += wrapped(to.y - arm.angles[kShoulderY]);
 }
 
-// Brings the hand from where it swings to where it is to be.
-void hold(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
-          Arm& arm) noexcept {
+// Brings the hand from where it swings to what it carries or to the rail, by the shares of both.
+void hold_hand(const WalkModel& model, const WalkState& state, Side side,
+               const Shoulders& shoulders, Arm& arm) noexcept {
   const HandParams& hand = state.body.now.hand[side];
   const double carry = std::clamp(hand.carry, 0.0, 1.0), rail = std::clamp(hand.rail, 0.0, 1.0);
   const double held = 1.0 - (1.0 - carry) * (1.0 - rail);
@@ -311,15 +393,13 @@ void hold(const WalkModel& model, const WalkState& state, Side side, const Shoul
     arm.chain.dof[d].weight *= mix(1.0, kHeldWeights[d], smoothstep(0.0, 0.1, held));
   }
   const vec3 goal = glm::conjugate(arm.base) * (place - arm.shoulder_m);
-  aim(goal, arm);
+  aim_arm(goal, arm);
   solve_robust(arm.chain, point_goal(arm.grip_m, goal), kRobust, arm.angles);
 }
 
 void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames& world) noexcept {
   const ArmChain& j = arm.build.joints;
-  const quat upper =
-      arm.base * (rotation_x(arm.angles[kShoulderX]) * rotation_z(arm.angles[kShoulderZ]) *
-                  rotation_y(arm.angles[kShoulderY]));
+  const quat upper = arm.base * upper_turn(arm);
   const quat fore = upper * rotation_x(arm.angles[kElbowX]);
   const quat hand = fore * (rotation_x(arm.angles[kWristX]) * rotation_z(arm.angles[kWristZ]));
   bool is_below = false;
@@ -337,61 +417,30 @@ void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames
   }
 }
 
-}  // namespace
-
-bool is_arm_free(const BodyParams& now, Side side) noexcept {
-  return !has_uneven_weights(now, side) && now.hand[side].carry <= 0.0 &&
-         now.hand[side].rail <= 0.0;
-}
-
-vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept {
-  return world.position_m[arm.joints.wrist] + world.rotation[arm.joints.wrist] * arm.grip_m;
-}
-
-Shoulders shoulders_of(const WalkModel& model, const JointFrames& world) noexcept {
-  const std::array<ArmBuild, 2>& arm = model.body.arm;
-  Shoulders s;
-  if (arm[0].is_there && arm[1].is_there) {
-    const vec3 left = world.position_m[arm[0].joints.shoulder],
-               right = world.position_m[arm[1].joints.shoulder];
-    s.middle_m = 0.5 * (left + right);
-    const vec3 across = left - right;
-    s.upright = rotation_y(heading_of(vec3(-across.z, 0.0, across.x)));
-    return s;
-  }
-  const ArmBuild& only = arm[arm[0].is_there ? 0 : 1];
-  const quat base =
-      world.rotation[model.cycle.skeleton.joints[only.joints.shoulder].parent] * only.chest;
-  s.middle_m = world.position_m[only.joints.shoulder];
-  s.upright = rotation_y(heading_of(base * kForward));
-  return s;
-}
-
+// `own_m`: where the hand is in the data.
 void pose_arm(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
               const vec3& own_m, Pose& pose, JointFrames& world) noexcept {
   const ArmBuild& build = model.body.arm[side];
   const BodyParams& now = state.body.now;
   Arm arm = arm_of(build, model.cycle.skeleton, world);
   if (has_uneven_weights(now, side)) {
-    stiffen(build, now.arm_weight[side], arm);
+    stiffen_arm(build, now.arm_weight[side], arm);
     const vec3 own = glm::conjugate(arm.base) * (own_m - arm.shoulder_m);
     const std::array<IkRow, 2> path = {IkRow{arm.grip_m, kLeft, own.x},
                                        IkRow{arm.grip_m, kForward, own.z}};
     solve_robust(arm.chain, path, kRobust, arm.angles);
   }
-  hold(model, state, side, shoulders, arm);
+  hold_hand(model, state, side, shoulders, arm);
   write_arm(model.cycle.skeleton, arm, pose, world);
 }
 
-// The head turns to where it is to look, the neck takes its share.
-
-namespace {
+// --- Head: it turns to where it is to look, and the neck takes its share -------------------------
 
 constexpr double kMostYaw = 70.0 * kDegree, kMostPitch = 40.0 * kDegree;  // from the trunk
 constexpr double kSoftYaw = 6.0 * kDegree, kSoftPitch = 4.0 * kDegree;
-// What is behind is not looked at: there left and right are the same.
+// The head does not follow a goal behind it: turning left and turning right would be equally far.
 constexpr double kBesideYaw = 105.0 * kDegree, kBehindYaw = 150.0 * kDegree;
-constexpr double kLevelFrom = 0.15, kLevelTo = 0.4;  // nor what is straight above or below
+constexpr double kLevelFrom = 0.15, kLevelTo = 0.4;  // nor a goal straight above or below
 constexpr double kNeckShare = 0.45;
 constexpr double kLead_s = 0.6;  // how far ahead of the walk a leading head looks
 
@@ -399,15 +448,15 @@ double within(double x, double most, double soft) noexcept {
   return soft_max(soft_min(x, most, soft), -most, soft);
 }
 
-// Where the head stands when it looks along `direction` (world, unit), upright, as far as the trunk
-// lets it; and how much of that it wants.
+// The head's rotation when it looks along `direction` (world, unit): upright, and within the limits
+// of the neck. `share` fades to 0 for goals that the head does not follow.
 struct Gaze {
   quat head = kIdentity;
   double share = 1.0;
 };
-Gaze gaze(const BodyModel& body, const quat& trunk, const vec3& direction) noexcept {
+Gaze gaze(const UpperBodyModel& body, const quat& trunk, const vec3& direction) noexcept {
   const vec3 d = glm::conjugate(trunk) * direction;
-  const double level = std::sqrt(d.x * d.x + d.z * d.z);
+  const double level = horizontal_length(d);
   const double yaw = heading_of(d), pitch = gaitpad::atan2(d.y, level);
   Gaze to;
   to.share = (1.0 - smoothstep(kBesideYaw, kBehindYaw, std::abs(yaw))) *
@@ -421,7 +470,7 @@ Gaze gaze(const BodyModel& body, const quat& trunk, const vec3& direction) noexc
 }
 
 // Turns neck and head by `turn` (world): the neck by its share, the head by all of it.
-void turn_head(const BodyModel& body, const Skeleton& skeleton, const quat& turn, Pose& pose,
+void turn_head(const UpperBodyModel& body, const Skeleton& skeleton, const quat& turn, Pose& pose,
                JointFrames& world) noexcept {
   const int last = static_cast<int>(body.head_path.size()) - 1;
   std::array<quat, kMaxBodyPath> own;
@@ -430,7 +479,7 @@ void turn_head(const BodyModel& body, const Skeleton& skeleton, const quat& turn
     const int j = body.head_path[i], parent = skeleton.joints[j].parent;
     const double share =
         i == last ? 1.0 : kNeckShare * (i - body.neck_at + 1) / (last - body.neck_at);
-    const quat to = between(kIdentity, turn, share) * own[i];
+    const quat to = nlerp(kIdentity, turn, share) * own[i];
     pose.local[j] = glm::normalize(glm::conjugate(world.rotation[parent]) * to);
     world.position_m[j] =
         world.position_m[parent] + world.rotation[parent] * skeleton.joints[j].offset_m;
@@ -438,25 +487,23 @@ void turn_head(const BodyModel& body, const Skeleton& skeleton, const quat& turn
   }
 }
 
-}  // namespace
-
 bool is_head_free(const HeadParams& head) noexcept {
   return head.look <= 0.0 && head.look_at <= 0.0 && head.lead <= 0.0;
 }
 
 void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
                JointFrames& world) noexcept {
-  const BodyModel& body = model.body;
+  const UpperBodyModel& body = model.body;
   const Skeleton& skeleton = model.cycle.skeleton;
   const HeadParams& now = state.body.now.head;
-  carry_path(skeleton, body.head_path, pose, world);
+  forward_kinematics(skeleton, pose, body.head_path, world);
   const int head = body.head_path.back();
   const int chest = skeleton.joints[body.head_path[body.neck_at]].parent;
   const quat trunk = world.rotation[chest] * glm::conjugate(body.chest_standing);
   const auto look = [&](const vec3& direction, double share) {
     const Gaze to = gaze(body, trunk, direction);
     const quat& own = world.rotation[head];
-    const quat wanted = between(own, to.head, std::clamp(share, 0.0, 1.0) * to.share);
+    const quat wanted = nlerp(own, to.head, std::clamp(share, 0.0, 1.0) * to.share);
     turn_head(body, skeleton, wanted * glm::conjugate(own), pose, world);
   };
   if (now.lead > 0.0) {
@@ -475,98 +522,11 @@ void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
   }
 }
 
-namespace {
-
-constexpr double kSmoothing = 0.22;  // s at the reference leg
-constexpr double kSettled = 40.0;    // of these: what is left is no number any more
-constexpr double kMostExtra = 0.4;   // swing beyond the data's that pace alone can give
-constexpr double kLeastPace = 0.5;   // below it the data's posture fades, and the swing with it
-constexpr double kSoftElbow = 0.1;
-constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail;
-constexpr int kRailProbes = 15;         // 0.56 m to either side: a mean over two treads is even
-constexpr double kRailSmoothing = 0.06;
-
-// Where the values are all at their goals already, this costs one comparison.
-void settle(const Tick& tick, BodyState& body) noexcept {
-  const BodyParams& goal = tick.params.body;
-  const double tau = kSmoothing * tick.model.time_scale;
-  if (!(goal == body.goal)) {
-    body.goal = goal;
-    body.unsettled_ticks = static_cast<int>(std::min(kSettled * tau / tick.dt_s, 1e6));
-  }
-  if (body.unsettled_ticks <= 0) return;
-  const auto to = std::bit_cast<BodyValues>(goal);
-  auto now = std::bit_cast<BodyValues>(body.now);
-  --body.unsettled_ticks;
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    Damped<double> value{now[i], body.per_s[i]};
-    value.advance(to[i], tau, tick.dt_s);
-    const bool is_there = body.unsettled_ticks == 0;
-    now[i] = is_there ? to[i] : value.x;
-    body.per_s[i] = is_there ? 0.0 : value.v;
-  }
-  body.now = std::bit_cast<BodyParams>(now);
-}
-
-// The arms swing as far as the speed is above or below the data's (Boulic et al. 1990: amplitude
-// proportional to speed), in bounds: 1 at the data's own pace.
-double pace_swing(const Tick& tick, const WalkState& state) noexcept {
-  const double own_s = tick.model.body.own_step_s;
-  const double quicker = own_s / std::max(state.step_time_s.x, 0.25 * own_s);
-  const double extra = std::max(state.pace.x, kLeastPace) * quicker - 1.0;
-  return 1.0 + (extra > 0.0 ? extra / (1.0 + extra / kMostExtra) : extra);
-}
-
-// A rail rises evenly over stairs: the ground's mean along the way under the hand, as far ahead as
-// the filter is late.
-void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
-  BodyState& body = state.body;
-  const HandParams& hand = body.now.hand[side];
-  const double scale = tick.model.body.shoulder_height_m / kReferenceShoulder_m;
-  const double smoothing_s = kRailSmoothing * tick.model.time_scale;
-  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
-  const vec3 under = state.hips_m + state.hips_velocity_m_s * (2.0 * smoothing_s) +
-                     left * (scale * (side == kLeftSide ? hand.rail_side_m : -hand.rail_side_m));
-  double sum = 0.0, weights = 0.0;
-  for (int i = -kRailProbes; i <= kRailProbes && !tick.flat; ++i) {
-    const vec3 at = under + forward * (i * kRailProbe_m * tick.model.size);
-    const double weight = kRailProbes + 1.0 - std::abs(i);
-    sum += weight * ground_at(*tick.model.terrain, at.x, at.z).height_m;
-    weights += weight;
-  }
-  const double mean_m = tick.flat ? 0.0 : sum / weights;
-  Damped<double> ground{body.rail_ground_m[side], body.rail_ground_m_s[side]};
-  ground.advance(mean_m, smoothing_s, tick.dt_s);
-  if (hand.rail <= 0.0) ground = {mean_m, 0.0};  // nobody holds it yet
-  body.rail_ground_m[side] = ground.x;
-  body.rail_ground_m_s[side] = ground.v;
-}
-
 }  // namespace
 
-quat between(const quat& from, const quat& to, double share) noexcept {
-  const double sign = glm::dot(from, to) < 0.0 ? -1.0 : 1.0;
-  return glm::normalize(from * (1.0 - share) + to * (sign * share));
-}
-
-void carry_path(const Skeleton& skeleton, const std::vector<int>& path, const Pose& pose,
-                JointFrames& world) noexcept {
-  for (const int j : path) {
-    const Joint& joint = skeleton.joints[j];
-    if (joint.parent < 0) {
-      world.position_m[j] = pose.root_m;
-      world.rotation[j] = pose.local[j];
-      continue;
-    }
-    world.position_m[j] =
-        world.position_m[joint.parent] + world.rotation[joint.parent] * joint.offset_m;
-    world.rotation[j] = world.rotation[joint.parent] * pose.local[j];
-  }
-}
-
-void smooth_body(const Tick& tick, IkMode mode, WalkState& state) noexcept {
-  BodyState& body = state.body;
-  settle(tick, body);
+void smooth_upper_body(const Tick& tick, IkMode mode, WalkState& state) noexcept {
+  UpperBodyState& body = state.body;
+  settle_values(tick, body);
   const double pace = mode == IkMode::paper ? 1.0 : pace_swing(tick, state);
   for (const Side side : {kLeftSide, kRightSide}) {
     body.swing[side] = pace * body.now.arm_swing[side];
@@ -582,12 +542,12 @@ void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noex
     if (!arm.is_there || swing == 1.0) continue;
     quat& shoulder = pose.local[arm.joints.shoulder];
     quat& elbow = pose.local[arm.joints.elbow];
-    shoulder = between(arm.swing_shoulder, shoulder, swing);
-    elbow = between(arm.swing_elbow, elbow, soft_min(swing, arm.most_elbow_swing, kSoftElbow));
+    shoulder = nlerp(arm.swing_shoulder, shoulder, swing);
+    elbow = nlerp(arm.swing_elbow, elbow, soft_min(swing, arm.most_elbow_swing, kSoftElbow));
   }
 }
 
-void pose_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
   const BodyParams& now = state.body.now;
   const Skeleton& skeleton = model.cycle.skeleton;
   const bool moves_spine = model.body.spine.size() > 1 && !is_spine_even(now);
@@ -601,13 +561,13 @@ void pose_body(const WalkModel& model, const WalkState& state, Pose& pose) noexc
   HandPlaces own_m{};
   for (const Side side : {kLeftSide, kRightSide}) {
     if (!model.body.arm[side].is_there || !(moves_arm[0] || moves_arm[1])) continue;
-    carry_path(skeleton, model.body.arm[side].path, pose, world);
+    forward_kinematics(skeleton, pose, model.body.arm[side].path, world);
     own_m[side] = hand_place(model.body.arm[side], world);
   }
   if (moves_spine) {
     pose_spine(model.body, skeleton, now.spine_weight, pose, world);
     for (const Side side : {kLeftSide, kRightSide}) {
-      if (moves_arm[side]) carry_path(skeleton, model.body.arm[side].path, pose, world);
+      if (moves_arm[side]) forward_kinematics(skeleton, pose, model.body.arm[side].path, world);
     }
   }
   Shoulders shoulders;

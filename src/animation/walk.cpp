@@ -503,10 +503,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   const double a = presence(state);
   if (a < 1.0) {
     for (int j = 0; j < pose.joint_count; ++j) {
-      const quat& rest = cycle.standing_local[j];
-      const quat& walk = pose.local[j];
-      const double sign = glm::dot(rest, walk) < 0.0 ? -1.0 : 1.0;
-      pose.local[j] = glm::normalize(rest * (1.0 - a) + walk * (sign * a));
+      pose.local[j] = nlerp(cycle.standing_local[j], pose.local[j], a);
     }
   }
   for (int j : model.kept) pose.local[j] = cycle.standing_local[j];
@@ -522,7 +519,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   frames.rotation[cycle.pelvis] = pelvis.rotation * cycle.pelvis_standing;
   pose.local[cycle.pelvis] = glm::inverse(above) * frames.rotation[cycle.pelvis];
   for (Side side : {kLeftSide, kRightSide}) write_leg(model, state, side, frames, pose);
-  pose_body(model, state, pose);
+  pose_upper_body(model, state, pose);
 }
 
 void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
@@ -600,7 +597,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
              WalkState& state, Pose& pose) noexcept {
   const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
   smooth_parameters(tick, state);
-  smooth_body(tick, mode, state);
+  smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);
   advance_hips(tick, state);

@@ -1,7 +1,5 @@
 #include "gaitpad/walk_model.h"
 
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "gaitpad/curve.h"
@@ -20,20 +18,11 @@ constexpr double kHandPart = 0.5;     // short hand
 constexpr double kClearHinge = 0.05;  // mean sine of the elbow's bend that shows where its hinge is
 constexpr double kWidestTurn = 1.45;  // radians of shoulder z: beyond it x and y mean nothing
 
-struct Frames {  // of the standing pose
-  std::vector<quat> rotation;
-  std::vector<vec3> position_m;
-};
-
-Frames frames_of(const Skeleton& skeleton, const quat* local) {
-  Frames frames;
-  frames.rotation = world_rotations(skeleton, local);
-  for (const Joint& joint : skeleton.joints) {
-    const bool is_root = joint.parent < 0;
-    frames.position_m.push_back(is_root ? vec3(0.0)
-                                        : frames.position_m[joint.parent] +
-                                              frames.rotation[joint.parent] * joint.offset_m);
-  }
+// The world frames of the data's sample i, with the root at the origin.
+JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
+  const std::size_t joints = cycle.skeleton.joints.size();
+  JointFrames frames;
+  forward_kinematics(cycle.skeleton, std::span(cycle.local).subspan(i * joints, joints), frames);
   return frames;
 }
 
@@ -59,11 +48,10 @@ vec3 perpendicular(const vec3& v, const vec3& to) { return v - to * glm::dot(v, 
 
 // The hanging axes in the shoulder joint's frame: y along the bone, x along the elbow's hinge,
 // which is where the data bend it, or else to the walker's left.
-quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const Frames& standing) {
-  const std::size_t count = cycle.skeleton.joints.size();
+quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const JointFrames& standing) {
   vec3 bone(0.0), hinge(0.0);
   for (int i = 0; i < kCycleSamples; ++i) {
-    const Frames at = frames_of(cycle.skeleton, cycle.local.data() + i * count);
+    const JointFrames at = frames_of_sample(cycle, i);
     const quat back = glm::conjugate(at.rotation[joints.shoulder]);
     const vec3& elbow_m = at.position_m[joints.elbow];
     const vec3 upper = glm::normalize(elbow_m - at.position_m[joints.shoulder]);
@@ -82,7 +70,7 @@ quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const Frames& 
 }
 
 // Middle of the hand: beyond the wrist on the way to what hangs on it, else along the forearm.
-vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const Frames& standing) {
+vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const JointFrames& standing) {
   vec3 sum(0.0);
   double longest_m = 0.0;
   for (const Joint& joint : cycle.skeleton.joints) {
@@ -99,7 +87,7 @@ vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const Frames& standing
 }
 
 // The angles that the data's arm has in one sample; the wrist's count from there.
-ArmAngles angles_of(const Frames& at, const Skeleton& skeleton, const ArmBuild& arm) {
+ArmAngles angles_of(const JointFrames& at, const Skeleton& skeleton, const ArmBuild& arm) {
   const ArmChain& j = arm.joints;
   const quat base = at.rotation[skeleton.joints[j.shoulder].parent] * arm.chest;
   const quat upper = at.rotation[j.shoulder] * arm.hanging;
@@ -111,13 +99,12 @@ ArmAngles angles_of(const Frames& at, const Skeleton& skeleton, const ArmBuild& 
   return angles;
 }
 
-void fill_ranges(const GaitCycle& cycle, Side side, const Frames& standing, ArmBuild& arm) {
-  const std::size_t count = cycle.skeleton.joints.size();
+void fill_ranges(const GaitCycle& cycle, Side side, const JointFrames& standing, ArmBuild& arm) {
   const ArmAngles rest = angles_of(standing, cycle.skeleton, arm);
   ArmAngles low = rest, high = rest, before = rest;
   double straightest = -1e9;
   for (int i = 0; i < kCycleSamples; ++i) {
-    const Frames at = frames_of(cycle.skeleton, cycle.local.data() + i * count);
+    const JointFrames at = frames_of_sample(cycle, i);
     ArmAngles now = angles_of(at, cycle.skeleton, arm);
     for (int d = 0; d < kArmDofs; ++d) {
       now[d] = before[d] + wrapped(now[d] - before[d]);
@@ -142,7 +129,7 @@ void fill_ranges(const GaitCycle& cycle, Side side, const Frames& standing, ArmB
 }
 
 ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
-                   const Frames& standing) {
+                   const JointFrames& standing) {
   ArmBuild arm;
   arm.joints = joints;
   if (!joints.is_found() || cycle.skeleton.joints[joints.shoulder].parent < 0) return arm;
@@ -162,8 +149,8 @@ ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
 }
 
 // At most kMaxSpineIk of the spine's joints, spread over it.
-void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const Frames& standing,
-                BodyModel& body) {
+void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const JointFrames& standing,
+                UpperBodyModel& body) {
   if (spine.size() < 2) return;
   body.spine_path = path_to(cycle.skeleton, spine.back());
   if (body.spine_path.size() > kMaxBodyPath) return;
@@ -184,8 +171,8 @@ void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const Fra
   if (arms > 0.0) body.neck_m /= arms;
 }
 
-void fill_head(const GaitCycle& cycle, const BodyJoints& joints, const Frames& standing,
-               BodyModel& body) {
+void fill_head(const GaitCycle& cycle, const UpperBodyJoints& joints, const JointFrames& standing,
+               UpperBodyModel& body) {
   if (joints.head <= 0) return;
   const std::vector<int> path = path_to(cycle.skeleton, joints.head);
   if (path.size() > kMaxBodyPath) return;
@@ -198,11 +185,13 @@ void fill_head(const GaitCycle& cycle, const BodyJoints& joints, const Frames& s
 
 }  // namespace
 
-BodyModel body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_height_m) {
-  BodyModel body;
-  const Frames standing = frames_of(cycle.skeleton, cycle.standing_local.data());
-  const BodyJoints joints = find_body(cycle.skeleton, {cycle.leg[0].joints, cycle.leg[1].joints},
-                                      cycle.pelvis, standing.position_m);
+UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_height_m) {
+  UpperBodyModel body;
+  JointFrames standing;
+  forward_kinematics(cycle.skeleton, cycle.standing_local, standing);
+  body.joints = find_upper_body(cycle.skeleton, {cycle.leg[0].joints, cycle.leg[1].joints},
+                                cycle.pelvis, standing.position_m);
+  const UpperBodyJoints& joints = body.joints;
   body.own_step_s = 0.5 * cycle.duration_s * std::sqrt(std::sqrt(leg_ratio));
   double height_m = 0.0, length_m = 0.0, arms = 0.0;
   for (const Side side : {kLeftSide, kRightSide}) {
@@ -246,7 +235,7 @@ IkChain leg_chain(const LegModel& leg) {
   return chain;
 }
 
-double elevation(const vec3& v) { return atan2(v.y, std::sqrt(v.x * v.x + v.z * v.z)); }
+double elevation(const vec3& v) { return atan2(v.y, horizontal_length(v)); }
 
 bool below(const Skeleton& skeleton, int joint, int ancestor) {
   while (joint >= 0 && joint != ancestor) joint = skeleton.joints[joint].parent;
@@ -418,13 +407,11 @@ bool has_overlong_leg(const GaitCycle& cycle) {
 
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character) {
   if (!character.skeleton.empty()) {
-    return Error{fmt::format("{}: a character with a skeleton of its own is not supported yet",
-                             character.name)};
+    return Error{character.name + ": a character with a skeleton of its own is not supported yet"};
   }
   if (has_overlong_leg(cycle)) {
-    return Error{
-        fmt::format("{}: a leg has more than {} joints between two of hip, knee, ankle and toe",
-                    cycle.name, kMaxBetween)};
+    return Error{cycle.name + ": a leg has more than " + std::to_string(kMaxBetween) +
+                 " joints between two of hip, knee, ankle and toe"};
   }
   WalkModel model;
   model.cycle = cycle;
@@ -449,7 +436,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.stand_m += 0.5 * (0.998 * leg.model.length_m() - leg.model.heel_m.y - leg.model.hip_m.y);
   }
   collect_kept_joints(model);
-  model.body = body_model(model.cycle, ratio, model.stand_m);
+  model.body = upper_body_model(model.cycle, ratio, model.stand_m);
   return model;
 }
 

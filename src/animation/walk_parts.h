@@ -97,6 +97,15 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
 void begin_roll(WalkState& state, Side side) noexcept;  // in the roll's stage
 void hold_pitch(const WalkModel& model, WalkState& state, Side side, int ticks) noexcept;
 
+// --- upper_body.cpp: what is above the hips
+// Smooths the parameters of the upper body. In paper mode the pace does not act on the arms: the
+// data's upper body is left as it is.
+void smooth_upper_body(const Tick& tick, IkMode mode, WalkState& state) noexcept;
+// On the data's local rotations of this phase, before they fade to a stand.
+void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
+// Spine, arms and head of a pose whose legs are done.
+void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
+
 // --- walk_legs.cpp: inverse kinematics
 // ------------------------------------------------------------
 void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis,

@@ -141,6 +141,11 @@ quat from_rotation_vector(const vec3& v) noexcept {
   return rotation_about(v / angle, angle);
 }
 
+quat nlerp(const quat& from, const quat& to, double share) noexcept {
+  const double sign = glm::dot(from, to) < 0.0 ? -1.0 : 1.0;
+  return glm::normalize(from * (1.0 - share) + to * (sign * share));
+}
+
 quat from_axes(const vec3& x, const vec3& y, const vec3& z) noexcept {
   // Shepperd's method: divide by the largest component. (glm::quat_cast does the same; written out
   // so that the order of operations is ours.)

@@ -40,7 +40,7 @@ enum class UpAxis { y = 1, z = 2 };
 
 // Names the motion after its file, finds legs and pelvis, and the axis along which the hips stand
 // above the ankles. `motion` is still in file units.
-Result<UpAxis> find_body(Motion& motion, const std::string& path, const LoadOptions& options);
+Result<UpAxis> find_upper_body(Motion& motion, const std::string& path, const LoadOptions& options);
 
 // To metres, y up. `stated_unit_m` is the length of the unit by the file itself, 0 where it says
 // nothing; the options go before it.
@@ -96,7 +96,7 @@ void turn_y_up(Motion& motion) {
 
 }  // namespace
 
-Result<UpAxis> find_body(Motion& motion, const std::string& path, const LoadOptions& options) {
+Result<UpAxis> find_upper_body(Motion& motion, const std::string& path, const LoadOptions& options) {
   motion.name = std::filesystem::path(path).filename().string();
   const auto legs = find_legs(motion, options.legs);
   if (!legs) return Error{fmt::format("{}: {}", path, legs.error().message)};
@@ -257,7 +257,7 @@ Result<Motion> motion_from_acclaim(const NamedText& asf_text, const NamedText& a
   }
   const std::string& path = amc ? amc_text.name : asf_text.name;
   Motion motion = in_file_units(*asf, amc ? *amc : rest_of(*asf));
-  const auto up = find_body(motion, path, options);
+  const auto up = find_upper_body(motion, path, options);
   if (!up) return up.error();
   const double stated_m = asf->length_unit > 0.0 ? kInch / asf->length_unit : 0.0;
   return finished(std::move(motion), *up, stated_m, path, options);
@@ -396,7 +396,7 @@ Result<Motion> motion_of(const Bvh& bvh, const std::string& path, const LoadOpti
         fmt::format("{}: brings its skeleton itself, {} is not for it", path, options.skeleton)};
   }
   Motion motion = in_file_units(bvh);
-  const auto up = find_body(motion, path, options);
+  const auto up = find_upper_body(motion, path, options);
   if (!up) return up.error();
   settle_root(bvh, *up, motion);
   return finished(std::move(motion), *up, 0.0, path, options);

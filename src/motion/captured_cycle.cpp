@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <memory>
 
+#include "gaitpad/curve.h"
 #include "gaitpad/motion.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
-
 namespace {
 
-constexpr int kPoints = 256;    // of the closed stride, before its harmonics are taken
+// --- One stride as a periodic function -----------------------------------------------------------
+
+constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
 constexpr double kFade = 0.25;  // of the stride, at most, on either side of the seam
 constexpr double kLeastFade = 0.08;
 constexpr int kFullHarmonics = 10;  // the ones above fade out to kHarmonics
@@ -61,8 +63,8 @@ Stretch stretch_of(const StrideWindow& w) {
   return s;
 }
 
-// x(phase) for 0 .. 1 made periodic. Where the motion goes on beyond the seam, the two sides are
-// faded into each other; else the difference of value is spread over the stride, that of slope
+// Makes x(phase), 0 .. 1, periodic. Where the motion goes on beyond the seam, its two sides are
+// faded into each other. Elsewhere the gap in value is spread over the stride, and the gap in slope
 // around the seam.
 class Closer {
  public:
@@ -242,7 +244,9 @@ PeriodicPose pose_at(const PeriodicMotion& motion, double phase) {
 
 namespace {
 
-// Joint offsets of which some frames may bring their own: the mean over the motion.
+// --- Sampled poses -------------------------------------------------------------------------------
+
+// Joint offsets. Frames of some files bring their own: then the mean over the motion.
 std::vector<vec3> mean_offsets(const Motion& motion) {
   std::vector<vec3> offset;
   for (const Joint& joint : motion.skeleton.joints) offset.push_back(joint.offset_m);
@@ -255,8 +259,8 @@ std::vector<vec3> mean_offsets(const Motion& motion) {
   return offset;
 }
 
-// The root moves to the pelvis; what else hangs on the joints between them keeps its place beside
-// it.
+// Moves the root to the pelvis. What else hangs on the joints between them keeps its place beside
+// the pelvis.
 Skeleton rooted_at_pelvis(const Motion& motion) {
   Skeleton skeleton = motion.skeleton;
   const std::vector<vec3> offset = mean_offsets(motion);
@@ -313,8 +317,7 @@ void add_sample(const PeriodicPose& at, JointFrames& world, CapturedCycle& cycle
 
 // About the vertical, then about the direction of view: the hips stand level.
 quat turned_to_left(const vec3& hips) {
-  const double level = std::sqrt(hips.x * hips.x + hips.z * hips.z);
-  return rotation_z(-gaitpad::atan2(hips.y, level)) *
+  return rotation_z(-gaitpad::atan2(hips.y, horizontal_length(hips))) *
          rotation_y(-heading_of(glm::cross(hips, kUp)));
 }
 
@@ -396,6 +399,8 @@ vec3 mean_around(const std::vector<vec3>& p, int middle, int reach) {
 }
 
 namespace {
+
+// --- The standing pose ---------------------------------------------------------------------------
 
 constexpr double kHeelShare = 0.3;       // heel behind the ankle, of ankle to toe
 constexpr double kOwnToe_legs = 0.155;   // where the skeleton has no toe: ball before the ankle
@@ -489,7 +494,7 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
     return flat.foot * link(out.skeleton, local, j.ankle, joint);
   };
   const auto is_short = [&](const vec3& v) {
-    return std::sqrt(v.x * v.x + v.z * v.z) < kShortestFoot_legs * leg_m;
+    return horizontal_length(v) < kShortestFoot_legs * leg_m;
   };
   if (is_short(from_ankle(j.toe)) && !is_short(from_ankle(j.toe_end))) j.toe = j.toe_end;
   if (is_short(from_ankle(j.toe))) {
@@ -513,7 +518,7 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
   }
 }
 
-// Heel point and the toes' rest heights for an ankle that stands so high above the floor.
+// Heel point and the toes' rest heights, for an ankle of this height above the floor.
 void build_sole(double ankle_height_m, LegModel& leg) {
   const vec3 flat(leg.toe_m.x, 0.0, leg.toe_m.z);
   leg.heel_m = -kHeelShare * flat - ankle_height_m * kUp;
@@ -585,15 +590,10 @@ Result<double> build_standing(const CapturedCycle& c, GaitCycle& out) {
 
 namespace {
 
-// 0 below -width, x above +width, smooth between.
-double soft_positive(double x, double width) {
-  if (x <= -width) return 0.0;
-  if (x >= width) return x;
-  return (x + width) * (x + width) / (4.0 * width);
-}
+// --- The legs' angles ----------------------------------------------------------------------------
 
-// Flexion that carries the ankle to `reach_m` from the hip; a nearly straight knee keeps the
-// captured angle, because there the distance says nothing.
+// Flexion that carries the ankle to `reach_m` from the hip. A nearly straight knee keeps the
+// captured angle: there the distance hardly depends on the angle.
 double knee_angle(const LegModel& leg, double captured_rad, double reach_m) {
   const double cosine =
       (reach_m * reach_m - leg.thigh_m * leg.thigh_m - leg.shank_m * leg.shank_m) /
@@ -601,7 +601,7 @@ double knee_angle(const LegModel& leg, double captured_rad, double reach_m) {
   const double by_reach = gaitpad::acos(cosine);
   const double share = smoothstep(4.0 * kDegree, 12.0 * kDegree, captured_rad);
   const double knee = mix(captured_rad, by_reach, share);
-  // A knee that stops short of straight must do so over some degrees: it comes at 300 degrees/s.
+  // A knee straightens at 300 degrees/s, so it is stopped over some degrees and not at once.
   constexpr double kLeast = 1.5 * kDegree, kWidth = 5.0 * kDegree;
   return kLeast + soft_positive(knee - kLeast, kWidth);
 }
@@ -648,7 +648,8 @@ LegSample leg_sample(const CapturedLeg& from, int i, const LegModel& model,
   return leg;
 }
 
-// Angles go on from the sample before; quaternions stay in its hemisphere.
+// Angles continue from the sample before without jumps by whole turns; quaternions stay in its
+// hemisphere.
 void make_continuous(GaitCycle& out) {
   for (int i = 1; i < kCycleSamples; ++i) {
     for (int side = 0; side < 2; ++side) {

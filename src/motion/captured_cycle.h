@@ -1,5 +1,6 @@
-// A stride of a motion as a periodic function of its phase: straightened, standing still, seam
-// closed.
+// From a captured stride to a gait cycle, in three steps: the stride becomes a periodic function of
+// its phase (straight, without its travel, without a seam); the function is sampled as poses; and
+// from these the standing pose and the angles of the legs are measured.
 #pragma once
 #include <array>
 #include <vector>
@@ -11,7 +12,7 @@ namespace gaitpad {
 
 inline constexpr int kHarmonics = 16;
 
-// mean + sum of a cos 2 pi k p + b sin 2 pi k p, k = 1 .. kHarmonics.
+// mean + sum of a cos 2 pi k p + b sin 2 pi k p, k = 1 .. kHarmonics, at phase p.
 struct Fourier {
   double mean = 0.0;
   std::array<double, kHarmonics> a{}, b{};
@@ -32,13 +33,11 @@ struct PeriodicPose {
 };
 PeriodicPose pose_at(const PeriodicMotion& motion, double phase);
 
-// The periodic captured stride as sampled poses: what the standing pose and the legs are measured
-// on.
-
 struct CapturedLeg {  // travel frame, joint frames
   std::vector<vec3> knee_m, ankle_m, toe_m, toe_end_m, hip_m;
   std::vector<quat> hip, above_knee, knee, ankle, toe;  // above_knee: the knee's parent
 };
+// The periodic stride as kCycleSamples poses.
 struct CapturedCycle {
   Skeleton skeleton;  // as in GaitCycle: root at the pelvis
   int pelvis = 0;
@@ -60,8 +59,8 @@ CapturedCycle captured_pose(const Motion& motion, const MotionFrame& frame);
 // Speed over the ground of a point that is periodic in the travel frame, m/s, at each sample.
 std::vector<double> ground_speed(const CapturedCycle& cycle, const std::vector<vec3>& point_m);
 
-// Samples [middle - reach, middle + reach] (wrapping) in which a foot stands flat: ankle and toe
-// are slowest.
+// The samples [middle - reach, middle + reach] (wrapping) in which a foot stands flat: there its
+// ankle and toe are slowest and lowest.
 struct FlatFoot {
   int middle = 0;
   static constexpr int reach = 3;
@@ -73,16 +72,14 @@ quat mean_around(const std::vector<quat>& q, int middle, int reach);
 vec3 mean_around(const std::vector<vec3>& p, int middle, int reach);
 inline int wrapped_index(int i) { return (i % kCycleSamples + kCycleSamples) % kCycleSamples; }
 
-// The standing pose of a captured skeleton, built from how it walks, and its legs' angles from
-// there.
-
-// Fills skeleton, pelvis_standing, leg models and standing_local of `out`. Joints between pelvis
-// and hip, hip and knee, knee and ankle, ankle and toe are held at their mean rotation from here
-// on. `floor_m` is the floor's height in `captured`. Error, without file name, where there is no
-// leg.
+// Builds the standing pose from how the skeleton walks: fills skeleton, pelvis_standing, leg models
+// and standing_local of `out`. Joints between pelvis and hip, hip and knee, knee and ankle, ankle
+// and toe are held at their mean rotation from here on. Returns the floor's height in `captured`.
+// The error does not name the file.
 Result<double> build_standing(const CapturedCycle& captured, GaitCycle& out);
 
-// Fills samples and local: the legs put the model's ankles and feet where the captured ones are.
+// Fills samples and local of `out`: angles that put the model's ankles and feet where the captured
+// ones are.
 void build_samples(const CapturedCycle& captured, double floor_m, GaitCycle& out);
 
 }  // namespace gaitpad

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/numeric.h"
 #include "gaitpad/motion.h"
 
 namespace gaitpad {
@@ -30,8 +31,6 @@ struct Track {
   int frames() const { return static_cast<int>(ankle_m.size()); }
   int count(double time_s) const { return static_cast<int>(time_s / frame_s + 0.5); }
 };
-
-double horizontal(const vec3& v) { return std::sqrt(v.x * v.x + v.z * v.z); }
 
 // exp(-x^2/2) for |x| <= 3 by (1 - x^2/2n)^n: no libm, so the same frames everywhere.
 double bell(double x) {
@@ -68,7 +67,7 @@ std::vector<double> speeds(const Track& t) {
   for (int f = 0; f < n; ++f) {
     const int a = f > 0 && !t.jump_before[f] ? f - 1 : f;
     const int b = f + 1 < n && !t.jump_before[f + 1] ? f + 1 : f;
-    if (a < b) out[f] = horizontal(t.ankle_m[b] - t.ankle_m[a]) / ((b - a) * t.frame_s);
+    if (a < b) out[f] = horizontal_length(t.ankle_m[b] - t.ankle_m[a]) / ((b - a) * t.frame_s);
   }
   return out;
 }
@@ -108,9 +107,7 @@ double usual_fast_speed(const Track& t) {
   for (const double v : t.speed_m_s) {
     if (v < kJumpLegsPerS * t.leg_m) sane.push_back(v);
   }
-  if (sane.empty()) return 0.0;
-  std::ranges::sort(sane);
-  return sane[(sane.size() - 1) * 95 / 100];
+  return sane.empty() ? 0.0 : percentile(std::move(sane), 95);
 }
 
 struct Run {
@@ -137,7 +134,7 @@ bool is_swing(const Track& t, const Run& run) {
     if (t.jump_before[f]) return false;
   }
   const double time_s = (run.last - run.first + 1) * t.frame_s;
-  const double legs = horizontal(t.ankle_m[run.last] - t.ankle_m[run.first]) / t.leg_m;
+  const double legs = horizontal_length(t.ankle_m[run.last] - t.ankle_m[run.first]) / t.leg_m;
   return time_s >= kMinSwingS && time_s <= kMaxSwingS && legs >= kMinLegs && legs <= kMaxLegs;
 }
 
@@ -230,13 +227,9 @@ std::optional<Swing> robust_flight(const Motion& motion, Side side) {
   std::vector<double> times, lengths;
   for (const Swing& s : all) {
     times.push_back(s.land - s.lift);
-    lengths.push_back(horizontal(t.ankle_m[s.land] - t.ankle_m[s.lift]));
+    lengths.push_back(horizontal_length(t.ankle_m[s.land] - t.ankle_m[s.lift]));
   }
-  const auto middle = [](std::vector<double> v) {
-    std::ranges::sort(v);
-    return v[v.size() / 2];
-  };
-  const double time = middle(times), length = middle(lengths);
+  const double time = median(times), length = median(lengths);
   std::size_t best = 0;
   double least = 1e300;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -1,8 +1,4 @@
-// Reading a gait cycle at any phase: cubic between samples, inside the loop.
-
 #include "gaitpad/gait_cycle.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
@@ -11,8 +7,9 @@
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
-
 namespace {
+
+// --- Reading a cycle at any phase ----------------------------------------------------------------
 
 // The four samples around a phase and their Catmull-Rom weights.
 struct Stencil {
@@ -34,8 +31,8 @@ Stencil stencil_at(double phase) noexcept {
   return s;
 }
 
-// Neighbouring samples are less than some degrees apart, so blending the components will do; each
-// is brought into the second one's hemisphere first.
+// Neighbouring samples differ by a few degrees, so it is enough to blend the components and to
+// normalize. Each is brought into the second one's hemisphere first.
 quat blended(const std::array<const quat*, 4>& q, const std::array<double, 4>& weight) noexcept {
   quat sum = *q[1] * weight[1];
   for (const int k : {0, 2, 3}) {
@@ -82,6 +79,8 @@ void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept {
 
 namespace {
 
+// --- Building a cycle from a motion --------------------------------------------------------------
+
 constexpr double kLeavingShare = 0.5;   // of the walk's speed: a faster toe has left the floor
 constexpr double kLandingShare = 0.25;  // of the heel's own fastest: a slower heel has landed
 constexpr double kBackwards = 0.5;      // cosine between hips' front and travel
@@ -126,7 +125,7 @@ void find_events(const CapturedCycle& captured, GaitCycle& cycle) {
   }
 }
 
-// Heel places of the flat feet give steps and tracks.
+// Steps and tracks follow from where the heels are while the feet stand flat.
 void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
   std::array<double, 2> place_m;
   for (int side = 0; side < 2; ++side) {
@@ -142,7 +141,7 @@ void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
   cycle.step_m[kRightSide] = cycle.stride_m - cycle.step_m[kLeftSide];
 }
 
-// One sentence's end, empty if it is a walk.
+// The end of an error sentence; empty if it is a walk.
 std::string why_no_walk(const GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const double overlap = fraction(cycle.toe_off[side] - cycle.strike[other(side)] + 0.5) - 0.5;
@@ -175,7 +174,8 @@ Result<Build> built(const Motion& motion, const PeriodicMotion& periodic, double
   return b;
 }
 
-// Built twice: the right foot's strike shows only once there is a heel, and is phase 0 thereafter.
+// Builds the cycle twice: the first one tells when the right heel strikes, and the second one
+// begins there, so that the strike is phase 0.
 Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   const PeriodicMotion periodic = periodic_motion(motion, window);
   const Result<Build> first = built(motion, periodic, 0.0);
@@ -190,7 +190,7 @@ Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   return std::move(cycle);
 }
 
-// The best window that is a walk; else what was wrong with the very best.
+// Of the best windows the first one that is a walk; else what is wrong with the very best.
 Result<GaitCycle> cycle_of(const Motion& motion) {
   constexpr std::size_t kMostTries = 12;
   const Result<std::vector<StrideWindow>> windows = best_strides(motion);
@@ -212,7 +212,7 @@ Result<GaitCycle> gait_cycle(const Motion& motion) {
       if (Result<GaitCycle> again = cycle_of(twice)) cycle = std::move(again);
     }
   }
-  if (!cycle) return Error{fmt::format("{}: {}", motion.name, cycle.error().message)};
+  if (!cycle) return Error{motion.name + ": " + cycle.error().message};
   return cycle;
 }
 

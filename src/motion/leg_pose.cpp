@@ -1,5 +1,7 @@
 #include "motion/leg_pose.h"
 
+#include <memory>
+
 namespace gaitpad {
 
 LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis,
@@ -32,13 +34,11 @@ AnglesXzy angles_xzy(const quat& q) noexcept {
   return a;
 }
 
-std::vector<quat> world_rotations(const Skeleton& skeleton, const quat* local) {
-  std::vector<quat> world(skeleton.joints.size(), kIdentity);
-  for (std::size_t j = 0; j < world.size(); ++j) {
-    const int parent = skeleton.joints[j].parent;
-    world[j] = parent < 0 ? local[j] : world[parent] * local[j];
-  }
-  return world;
+std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat> local) {
+  const auto world = std::make_unique<JointFrames>();
+  forward_kinematics(skeleton, local, *world);
+  const auto& all = world->rotation;
+  return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(skeleton.joints.size())};
 }
 
 namespace {

@@ -28,7 +28,7 @@ inline vec3 mirrored(const vec3& v) noexcept { return vec3(-v.x, v.y, v.z); }
 inline quat mirrored(const quat& q) noexcept { return quat(q.w, q.x, -q.y, -q.z); }
 
 // World rotation of every joint for the local rotations given.
-std::vector<quat> world_rotations(const Skeleton& skeleton, const quat* local);
+std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat> local);
 // Overwrites the locals of hip, knee, ankle and toe so that the joints stand as the segment
 // rotations of `pose` say; all other joints keep their locals.
 void set_leg_locals(const Skeleton& skeleton, const LegModel& model, const LegPose& pose,

@@ -3,8 +3,9 @@
 #include <algorithm>
 
 namespace gaitpad {
-
 namespace {
+
+// --- The adult -----------------------------------------------------------------------------------
 
 // Segment lengths as fractions of the stature H (Drillis & Contini, in Winter's tables). The hip
 // joints stand closer than Winter's .0955 H, which is half the pelvis' outer breadth.
@@ -84,12 +85,14 @@ GaitCycle procedural_body() {
   return cycle;
 }
 
+// --- A leg given in the plane of travel ----------------------------------------------------------
+
 LegSample right_leg_in_plane(const LegModel& model, const CycleSample& body,
                              const SagittalLeg& plane, double track_m) {
   const double drop =
       model.thigh_m * sin_cos(plane.thigh).cos + model.shank_m * sin_cos(plane.shank).cos;
   const double aside = -track_m - (body.pelvis_m + body.pelvis * model.hip_m).x;
-  // A leg that reaches no farther down than it has to go aside lies in the floor's plane.
+  // A leg shorter than its sideways shift cannot reach down at all: it lies level.
   const double down = std::sqrt(std::max(0.0, drop * drop - aside * aside));
   const quat tilt = rotation_z(gaitpad::atan2(aside, down));
   const quat thigh = tilt * rotation_x(plane.thigh), shank = tilt * rotation_x(plane.shank);
@@ -125,20 +128,15 @@ double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at) {
   return std::min({p.heel_m.y, p.toe_m.y - model.toe_rest_m, p.toe_end_m.y - model.toe_end_rest_m});
 }
 
-double soft_positive(double x, double width) {
-  if (x <= -width) return 0.0;
-  if (x >= width) return x;
-  return (x + width) * (x + width) / (4.0 * width);
-}
-
-// The embedded default walk: published normative joint curves on the adult of procedural_skeleton.
-// Sources. Hip, knee, ankle, pelvic tilt: six-harmonic fits of an adult data set (gaitutils,
-// normal.gcd). Pelvic obliquity and rotation: fits of Schwartz, Rozumalski & Trost 2008 (free
-// speed), odd harmonics only, which makes the two sides exact mirror images. Pelvis sway,
-// shoulders, elbows: Boulic, Magnenat-Thalmann & Thalmann 1990, their knots replaced by the nearest
-// few harmonics.
-
 namespace {
+
+// --- The walk ------------------------------------------------------------------------------------
+
+// Published normative joint curves. Sources: hip, knee, ankle, pelvic tilt: six-harmonic fits of an
+// adult data set (gaitutils, normal.gcd). Pelvic obliquity and rotation: fits of Schwartz,
+// Rozumalski & Trost 2008 (free speed), odd harmonics only, which makes the two sides exact mirror
+// images. Pelvis sway, shoulders, elbows: Boulic, Magnenat-Thalmann & Thalmann 1990, their knots
+// replaced by the nearest few harmonics.
 
 constexpr double kSpeed = 1.25;  // m/s, wanted; the stride's time is rounded to whole frames
 constexpr double kFrameRate = 120.0;
@@ -172,14 +170,14 @@ constexpr Harmonics kTilt = {9.76,
 constexpr Harmonics kObliquity = {0.0, {{{1.85, 2.12}, {0, 0}, {-1.19, .22}}}};
 constexpr Harmonics kRotation = {0.0, {{{3.74, 2.10}, {0, 0}, {.34, -.37}}}};
 
-// The fit dips to 0 at heel strike; a knee is never quite straight.
+// The fit falls to 0 at heel strike, but a knee is never quite straight.
 double knee_flexion(double phase) {
   return (1.5 + soft_positive(kKnee.at(phase) - 1.5, 2.0)) * kDegree;
 }
 
 // The set's foot stands 5 degrees toe-up at mid-stance and its toe grazes the floor in late swing:
-// its foot markers are not our sole. One cosine lays the standing foot flat and clears the swinging
-// one.
+// its foot markers are not this sole. One cosine lays the standing foot flat and lifts the toe of
+// the swinging one.
 double foot_correction(double phase) {
   return 3.5 * kDegree * sin_cos(2.0 * kPi * (phase - 0.33)).cos;
 }
@@ -242,8 +240,8 @@ std::array<double, kHalf> smoothed(const std::array<double, kHalf>& curve) {
   return out;
 }
 
-// The pelvis stands on whichever foot reaches lower. Fore and aft it swings by 70 % of what would
-// let the standing foot slide least (least squares over heel and ball): slowest over the standing
+// The pelvis is as high as the lower foot asks. Fore and aft it swings by 70 % of what would let
+// the standing foot slide least (least squares over heel and ball), so it is slowest over that
 // foot. (Boulic's fore-aft curve, as ported, runs the other way and makes the foot slide.)
 void fill_pelvis_path(GaitCycle& cycle) {
   std::array<double, kHalf> height;

@@ -1,15 +1,15 @@
-// The embedded adult: bones in Drillis and Contini's fractions of the stature, arms hanging.
+// The embedded adult, and legs given as angles in the plane of travel: what the procedural and the
+// key-framed walks are made of.
 #pragma once
+#include "gaitpad/curve.h"
 #include "gaitpad/gait_cycle.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
 
-// Skeleton and leg models; every joint's standing rotation is identity.
+// Skeleton and leg models: bones in Drillis and Contini's fractions of the stature, arms hanging,
+// every joint's standing rotation identity.
 GaitCycle procedural_body();
-
-// Legs given as angles in the plane of travel: what the procedural and the key-framed walk are made
-// of.
 
 // Segment rotations about x in the travel frame (+ turns the lower end backwards), toe against
 // foot.
@@ -17,9 +17,9 @@ struct SagittalLeg {
   double thigh, shank, foot, toe;
 };
 
-// The right leg below the pelvis that `body` has. The leg's plane is tilted about the line of
-// travel so that the ankle stays `track_m` beside the middle line; the knee's hinge stays across
-// the line of travel, the foot points ahead and never rolls. Angles and toe only.
+// Angles and toe of the right leg below the pelvis of `body`. The leg's plane is tilted about the
+// line of travel so that the ankle stays `track_m` beside the middle line. The knee's hinge stays
+// across the line of travel; the foot points ahead and never rolls.
 LegSample right_leg_in_plane(const LegModel& model, const CycleSample& body,
                              const SagittalLeg& plane, double track_m);
 
@@ -29,8 +29,5 @@ CycleSample mirrored_pelvis(const CycleSample& body);  // pelvis alone, legs unt
 LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at);
 // How far the foot's lowest point is above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);
-
-// 0 below -width, x above +width, smooth between.
-double soft_positive(double x, double width);
 
 }  // namespace gaitpad

@@ -1,9 +1,14 @@
-// The body above the legs on another skeleton: spine, neck, arms and what has the same name.
-
-#include <fmt/format.h>
-
+// A walk on another skeleton with two legs. Meredith & Maddock 2005, section 3.2: motions are
+// retargeted by the ratio of the leg lengths.
+//
+// The legs of all walks have the same degrees of freedom, so their angles are taken over as they
+// are and only lengths grow. Above the legs, skeletons differ: spines and necks have other numbers
+// of joints, arms have twist joints, standing poses are T poses. So each joint of the character is
+// given its counterpart in the source, the character is made to stand as the source stands, and
+// from there each joint turns in the world as its counterpart does.
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "gaitpad/anatomy.h"
 #include "gaitpad/gait_cycle.h"
@@ -12,68 +17,48 @@
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
+namespace {
 
-// Which joints of a skeleton follow which of the source's.
-// - Arms by their parts: collar bone, upper arm, forearm, hand. What stands between (twist joints)
-//   rests; what one of the two lacks is left out.
-// - Spine and neck as chains: of n joints that follow m, the k-th (from 1) turns in the world as
-// the
-//   source does k m / n of the way up its chain, so that chest and head turn as the source's do.
+// --- Which joint follows which -------------------------------------------------------------------
+
+// - Arms by their parts: collar bone, upper arm, forearm, hand. Twist joints between them rest, and
+//   a part that one of the two lacks is left out.
+// - Spine and neck as chains: of n joints that follow m, the k-th (from 1) turns as the source does
+//   k m / n of the way up its chain. So chest and head turn as the source's do.
 // - Fingers and all else above the legs: joints of equal names. The others rest.
 struct Counterpart {
   int lower = -1, upper = -1;  // joints of the source; -1: none, this joint rests
   double share = 0.0;          // of the way from lower to upper
 };
-struct UpperBody {
-  std::vector<Counterpart> from;  // one a joint
-  std::vector<int> aim;         // whose place each joint's bone points to; -1: none; others inside
-  std::vector<vec3> direction;  // where it points, as the source stands
+
+// Where a joint's bone is to point when the character stands: to a joint, or one of these.
+constexpr int kNoAim = -1;
+constexpr int kChildren = -2;   // to the mean of its children
+constexpr int kAsItStood = -3;  // wherever it did: the joint keeps its standing rotation
+
+struct UpperBodyMatch {  // one of each a joint of the character
+  std::vector<Counterpart> from;
+  std::vector<int> aim;
+  std::vector<vec3> direction;  // of the bone, as the source stands; where there is an aim
 };
-UpperBody upper_body(const GaitCycle& source, const GaitCycle& character);
-
-// A T pose hangs its arms: bones that both bodies have point as they do in the source's standing
-// pose. Arms and hands do so bone by bone; spine and neck as wholes, unless their joints have the
-// source's names, because backs are curved in different ways (the head then looks ahead as it did);
-// collar bones only then, too.
-void stand_alike(const UpperBody& body, GaitCycle& character);
-
-// World rotations of the joints in `from` at sample i: away from the standing pose as the source's.
-// The character has been made to stand alike.
-class UpperBodyTurn {
- public:
-  UpperBodyTurn(const GaitCycle& source, const UpperBody& body, const GaitCycle& character);
-  void set_sample(int i);
-  bool has(int joint) const { return body_.from[joint].lower >= 0; }
-  quat world(int joint) const;
-
- private:
-  const GaitCycle& source_;
-  const UpperBody& body_;
-  std::vector<quat> before_, after_, standing_;
-};
-
-namespace {
 
 std::vector<vec3> standing_places(const GaitCycle& cycle) {
-  const auto world = world_rotations(cycle.skeleton, cycle.standing_local.data());
-  std::vector<vec3> at(world.size(), vec3(0.0));
-  for (std::size_t j = 1; j < at.size(); ++j) {
-    const Joint& joint = cycle.skeleton.joints[j];
-    at[j] = at[joint.parent] + world[joint.parent] * joint.offset_m;
-  }
-  return at;
+  const auto world = std::make_unique<JointFrames>();
+  forward_kinematics(cycle.skeleton, cycle.standing_local, *world);
+  const auto& at = world->position_m;
+  return {at.begin(), at.begin() + static_cast<std::ptrdiff_t>(cycle.skeleton.joints.size())};
 }
 
-// One skeleton's parts and places.
-struct Part {
+// One skeleton: what its joints are, and where they are when it stands.
+struct Walker {
   const GaitCycle& cycle;
   std::vector<vec3> at;
-  BodyJoints joints;
+  UpperBodyJoints joints;
   std::vector<int> neck;  // the head is its last
-  explicit Part(const GaitCycle& c)
+  explicit Walker(const GaitCycle& c)
       : cycle(c),
         at(standing_places(c)),
-        joints(find_body(c.skeleton, {c.leg[0].joints, c.leg[1].joints}, c.pelvis, at)),
+        joints(find_upper_body(c.skeleton, {c.leg[0].joints, c.leg[1].joints}, c.pelvis, at)),
         neck(joints.neck) {
     if (joints.head >= 0) neck.push_back(joints.head);
   }
@@ -100,7 +85,7 @@ struct Part {
 };
 
 // The child a joint's bone may point to: the only one, else -1.
-int only_child(const Part& part, int joint) {
+int only_child(const Walker& part, int joint) {
   int child = -1;
   for (std::size_t j = 1; j < part.at.size(); ++j) {
     if (part.cycle.skeleton.joints[j].parent != joint) continue;
@@ -114,18 +99,18 @@ class Matcher {
  public:
   Matcher(const GaitCycle& source, const GaitCycle& character) : from_(source), to_(character) {
     const std::size_t joints = character.skeleton.joints.size();
-    body_ = {std::vector<Counterpart>(joints), std::vector<int>(joints, -1),
-             std::vector<vec3>(joints, vec3(0.0))};
+    match_ = {std::vector<Counterpart>(joints), std::vector<int>(joints, kNoAim),
+              std::vector<vec3>(joints, vec3(0.0))};
   }
 
-  UpperBody matched() {
+  UpperBodyMatch matched() {
     match_chain(from_.joints.spine, to_.joints.spine, from_.cycle.pelvis);
     match_chain(from_.neck, to_.neck, from_.chest());
     for (int side = 0; side < 2; ++side) match_arm(from_.joints.arm[side], to_.joints.arm[side]);
     match_names();
     aim_chain(from_.joints.spine, to_.joints.spine, first(from_.neck), first(to_.neck));
     aim_chain(from_.neck, to_.neck, -1, -1);
-    return std::move(body_);
+    return std::move(match_);
   }
 
  private:
@@ -136,13 +121,13 @@ class Matcher {
       // Whole numbers, so that equal chains match exactly.
       const std::size_t lower = k * from.size() / to.size(), rest = k * from.size() % to.size();
       const auto joint = [&](std::size_t i) { return i == 0 ? below : from[i - 1]; };
-      body_.from[to[k - 1]] = {joint(lower), joint(lower + (rest > 0)), double(rest) / to.size()};
+      match_.from[to[k - 1]] = {joint(lower), joint(lower + (rest > 0)), double(rest) / to.size()};
     }
   }
 
   void match(int from, int to) {
     if (from < 0 || to < 0 || to_.cycle.skeleton.joints[to].is_end_site) return;
-    body_.from[to] = {from, from, 0.0};
+    match_.from[to] = {from, from, 0.0};
   }
 
   void match_arm(const ArmChain& from, const ArmChain& to) {
@@ -155,16 +140,17 @@ class Matcher {
       aim(from.collar, from.shoulder, to.collar, to.shoulder);
     aim(from.shoulder, from.elbow, to.shoulder, to.elbow);
     aim(from.elbow, from.wrist, to.elbow, to.wrist);
-    body_.aim[to.wrist] = kChildren;
-    body_.direction[to.wrist] = from_.below(from.wrist) - from_.at[from.wrist];
+    match_.aim[to.wrist] = kChildren;
+    match_.direction[to.wrist] = from_.below(from.wrist) - from_.at[from.wrist];
   }
 
   void aim(int from, int from_end, int to, int to_end) {
-    body_.aim[to] = to_end;
-    body_.direction[to] = from_.at[from_end] - from_.at[from];
+    match_.aim[to] = to_end;
+    match_.direction[to] = from_.at[from_end] - from_.at[from];
   }
 
-  // As a whole, from its first joint; bone by bone where it is the same chain.
+  // Aims a chain as a whole from its first joint, or bone by bone where both chains have the same
+  // names. `from_end`, `to_end`: the joint after the chain, -1 none.
   void aim_chain(const std::vector<int>& from, const std::vector<int>& to, int from_end,
                  int to_end) {
     if (from.empty() || to.empty()) return;
@@ -178,8 +164,8 @@ class Matcher {
       if (from_end < 0) aim_at_only_child(from.back(), to.back());
       return;
     }
-    // A head looks ahead however its neck is bent.
-    if (from_end < 0) body_.aim[to.back()] = kAsItStood;
+    // The head keeps looking ahead however the neck is bent.
+    if (from_end < 0) match_.aim[to.back()] = kAsItStood;
     const int last_from = from_end >= 0 ? from_end : from.back();
     const int last_to = to_end >= 0 ? to_end : to.back();
     if (last_from != from.front() && last_to != to.front())
@@ -191,7 +177,7 @@ class Matcher {
     if (from_child >= 0 && to_child >= 0) aim(from, from_child, to, to_child);
   }
 
-  static bool is_part(const Part& part, int joint) {
+  static bool is_part(const Walker& part, int joint) {
     const auto has = [joint](const std::vector<int>& list) {
       return std::ranges::find(list, joint) != list.end();
     };
@@ -218,18 +204,15 @@ class Matcher {
     }
   }
 
- public:
-  // Aims: the mean of the children; none, but the joint stays as it stood.
-  static constexpr int kChildren = -2, kAsItStood = -3;
-
- private:
-  Part from_, to_;
-  UpperBody body_;
+  Walker from_, to_;
+  UpperBodyMatch match_;
 };
+
+// --- Standing as the source stands ---------------------------------------------------------------
 
 // From joint to where its bone ends, in its own frame, standing.
 vec3 bone_of(const GaitCycle& cycle, int joint, int end) {
-  if (end == Matcher::kChildren) {
+  if (end == kChildren) {
     vec3 sum(0.0);
     for (const Joint& child : cycle.skeleton.joints) {
       if (child.parent == joint) sum += child.offset_m;
@@ -243,57 +226,64 @@ vec3 bone_of(const GaitCycle& cycle, int joint, int end) {
   return v;
 }
 
-quat between(const quat& a, const quat& b, double share) {
-  const quat near = glm::dot(a, b) < 0.0 ? -b : b;
-  return share > 0.0 ? glm::normalize(a * (1.0 - share) + near * share) : a;
-}
-
-}  // namespace
-
-UpperBody upper_body(const GaitCycle& source, const GaitCycle& character) {
-  return Matcher(source, character).matched();
-}
-
-void stand_alike(const UpperBody& body, GaitCycle& character) {
+// Turns the character's bones to point as they do in the source's standing pose: a T pose hangs its
+// arms. Arms and hands do so bone by bone. Backs are curved in different ways, so spine and neck do
+// so as wholes and the head keeps its rotation; only chains of equal names are turned bone by bone,
+// and so are collar bones of equal names.
+void stand_alike(const UpperBodyMatch& match, GaitCycle& character) {
   constexpr double kLeastBone_m = 1e-4;
   const auto& joints = character.skeleton.joints;
-  const auto stood = world_rotations(character.skeleton, character.standing_local.data());
+  const auto stood = world_rotations(character.skeleton, character.standing_local);
   std::vector<quat> world = stood;
   for (std::size_t j = 1; j < joints.size(); ++j) {
     const quat above = world[joints[j].parent];
     world[j] = above * character.standing_local[j];
-    if (body.aim[j] == Matcher::kAsItStood) {
+    if (match.aim[j] == kAsItStood) {
       world[j] = stood[j];
       character.standing_local[j] = glm::normalize(glm::conjugate(above) * world[j]);
     }
-    if (body.aim[j] == -1 || body.aim[j] == Matcher::kAsItStood) continue;
-    const vec3 bone = world[j] * bone_of(character, static_cast<int>(j), body.aim[j]);
-    const vec3 wanted = body.direction[j];
+    if (match.aim[j] == kNoAim || match.aim[j] == kAsItStood) continue;
+    const vec3 bone = world[j] * bone_of(character, static_cast<int>(j), match.aim[j]);
+    const vec3 wanted = match.direction[j];
     if (glm::length(bone) < kLeastBone_m || glm::length(wanted) < kLeastBone_m) continue;
     world[j] = rotation_between(glm::normalize(bone), glm::normalize(wanted)) * world[j];
     character.standing_local[j] = glm::normalize(glm::conjugate(above) * world[j]);
   }
 }
 
-UpperBodyTurn::UpperBodyTurn(const GaitCycle& source, const UpperBody& body,
-                             const GaitCycle& character)
-    : source_(source),
-      body_(body),
-      before_(world_rotations(source.skeleton, source.standing_local.data())),
-      standing_(world_rotations(character.skeleton, character.standing_local.data())) {}
+// --- Turning as the source turns -----------------------------------------------------------------
 
-void UpperBodyTurn::set_sample(int i) {
-  const std::size_t joints = source_.skeleton.joints.size();
-  after_ = world_rotations(source_.skeleton, source_.local.data() + i * joints);
-}
+// World rotations of the joints that have counterparts: away from the character's standing pose as
+// the source turns away from its own. The character already stands as the source does.
+class UpperBodyTurn {
+ public:
+  UpperBodyTurn(const GaitCycle& source, const UpperBodyMatch& match, const GaitCycle& character)
+      : source_(source),
+        match_(match),
+        before_(world_rotations(source.skeleton, source.standing_local)),
+        standing_(world_rotations(character.skeleton, character.standing_local)) {}
 
-quat UpperBodyTurn::world(int joint) const {
-  const Counterpart& from = body_.from[joint];
-  const auto turn = [this](int j) { return after_[j] * glm::conjugate(before_[j]); };
-  return between(turn(from.lower), turn(from.upper), from.share) * standing_[joint];
-}
+  void set_sample(int i) {
+    const std::size_t joints = source_.skeleton.joints.size();
+    after_ =
+        world_rotations(source_.skeleton, std::span(source_.local).subspan(i * joints, joints));
+  }
+  bool has(int joint) const { return match_.from[joint].lower >= 0; }
+  quat world(int joint) const {
+    const Counterpart& from = match_.from[joint];
+    const auto turn = [this](int j) { return after_[j] * glm::conjugate(before_[j]); };
+    const quat lower = turn(from.lower);
+    const quat turned = from.share > 0.0 ? nlerp(lower, turn(from.upper), from.share) : lower;
+    return turned * standing_[joint];
+  }
 
-namespace {
+ private:
+  const GaitCycle& source_;
+  const UpperBodyMatch& match_;
+  std::vector<quat> before_, after_, standing_;
+};
+
+// --- The character's build and standing pose -----------------------------------------------------
 
 constexpr double kMostToeOut = 45.0 * kDegree;
 
@@ -330,7 +320,8 @@ const MotionFrame& standing_frame(const Motion& motion) {
   });
 }
 
-// Where a foot is lowest it lies flat; where it lies across, it is turned forward.
+// Takes the standing rotation of a foot from the frame in which it is lowest: there it lies flat. A
+// foot that points too far aside there is turned forward.
 void take_over_foot(const Motion& motion, Side side, CapturedLeg& leg) {
   const LegJoints& j = motion.legs[side];
   const auto& frame = best_frame(motion, [&j](const Places& at) { return foot_height_m(at, j); });
@@ -341,16 +332,19 @@ void take_over_foot(const Motion& motion, Side side, CapturedLeg& leg) {
   leg.toe.assign(kCycleSamples, turn * flat.toe.front());
 }
 
-// The character's build and standing pose.
+// Measured on the character's own walk where it has one, else on the frame in which it stands
+// straightest.
 Result<GaitCycle> body_of(const Motion& character) {
   if (Result<GaitCycle> own_walk = gait_cycle(character)) return own_walk;
   CapturedCycle pose = captured_pose(character, standing_frame(character));
   for (const Side side : {kLeftSide, kRightSide}) take_over_foot(character, side, pose.leg[side]);
   GaitCycle body;
   const Result<double> floor_m = build_standing(pose, body);
-  if (!floor_m) return Error{fmt::format("{}: {}", character.name, floor_m.error().message)};
+  if (!floor_m) return Error{character.name + ": " + floor_m.error().message};
   return body;
 }
+
+// --- The walk ------------------------------------------------------------------------------------
 
 vec3 mean_hip_m(const GaitCycle& cycle) { return 0.5 * (cycle.leg[0].hip_m + cycle.leg[1].hip_m); }
 
@@ -358,7 +352,7 @@ double mean_ankle_height_m(const GaitCycle& cycle) {
   return -0.5 * (cycle.leg[0].heel_m.y + cycle.leg[1].heel_m.y);
 }
 
-// Takes a body's place in `source`'s walk; samples and locals are still the body's own.
+// Gives a build the times and lengths of the source's walk.
 void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
   out.name = source.name;
   out.metres_per_unit = source.metres_per_unit;
@@ -373,8 +367,8 @@ void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
   }
 }
 
-// Hips and heels run where the source's do, `ratio` times as large; feet stand as far beside the
-// hips as there.
+// Hips and heels follow the source's paths, `ratio` times as large. Feet stand as far beside the
+// hips as in the source.
 void take_over_samples(const GaitCycle& source, double ratio, GaitCycle& out) {
   const vec3 from_hips = mean_hip_m(source), to_hips = mean_hip_m(out);
   // The hips stand no higher than the shorter leg reaches.
@@ -436,9 +430,9 @@ Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& chara
   const double ratio = mean_leg_m(*out) / mean_leg_m(source);
   take_over_events(source, ratio, *out);
   take_over_samples(source, ratio, *out);
-  const UpperBody body = upper_body(source, *out);
-  stand_alike(body, *out);
-  UpperBodyTurn turn(source, body, *out);
+  const UpperBodyMatch match = Matcher(source, *out).matched();
+  stand_alike(match, *out);
+  UpperBodyTurn turn(source, match, *out);
   out->local.assign(kCycleSamples * out->skeleton.joints.size(), kIdentity);
   for (int i = 0; i < kCycleSamples; ++i) {
     turn.set_sample(i);

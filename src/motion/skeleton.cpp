@@ -5,6 +5,22 @@
 #include "gaitpad/motion.h"
 
 namespace gaitpad {
+namespace {
+
+void carry_root(const vec3& position_m, const quat& rotation, JointFrames& frames) noexcept {
+  frames.position_m[0] = position_m;
+  frames.rotation[0] = rotation;
+}
+
+// Eq. (1) for one joint below the root.
+void carry_joint(int joint, int parent, const vec3& offset_m, const quat& local,
+                 JointFrames& frames) noexcept {
+  const quat& above = frames.rotation[parent];
+  frames.position_m[joint] = frames.position_m[parent] + above * offset_m;
+  frames.rotation[joint] = above * local;
+}
+
+}  // namespace
 
 int Skeleton::find(const std::string& name) const {
   for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -14,26 +30,41 @@ int Skeleton::find(const std::string& name) const {
 }
 
 void forward_kinematics(const Skeleton& skeleton, const Pose& pose, JointFrames& frames) noexcept {
-  frames.position_m[0] = pose.root_m;
-  frames.rotation[0] = pose.local[0];
+  carry_root(pose.root_m, pose.local[0], frames);
   for (int j = 1; j < pose.joint_count; ++j) {
     const Joint& joint = skeleton.joints[j];
-    const quat& parent = frames.rotation[joint.parent];
-    frames.position_m[j] = frames.position_m[joint.parent] + parent * joint.offset_m;
-    frames.rotation[j] = parent * pose.local[j];
+    carry_joint(j, joint.parent, joint.offset_m, pose.local[j], frames);
+  }
+}
+
+void forward_kinematics(const Skeleton& skeleton, const Pose& pose, std::span<const int> joints,
+                        JointFrames& frames) noexcept {
+  for (const int j : joints) {
+    const Joint& joint = skeleton.joints[j];
+    if (joint.parent < 0) {
+      carry_root(pose.root_m, pose.local[j], frames);
+    } else {
+      carry_joint(j, joint.parent, joint.offset_m, pose.local[j], frames);
+    }
+  }
+}
+
+void forward_kinematics(const Skeleton& skeleton, std::span<const quat> local,
+                        JointFrames& frames) noexcept {
+  carry_root(vec3(0.0), local[0], frames);
+  for (std::size_t j = 1; j < skeleton.joints.size(); ++j) {
+    const Joint& joint = skeleton.joints[j];
+    carry_joint(static_cast<int>(j), joint.parent, joint.offset_m, local[j], frames);
   }
 }
 
 void forward_kinematics(const Motion& motion, const MotionFrame& frame,
                         JointFrames& frames) noexcept {
   const std::vector<Joint>& joints = motion.skeleton.joints;
-  frames.position_m[0] = frame.root_m;
-  frames.rotation[0] = frame.local[0];
+  carry_root(frame.root_m, frame.local[0], frames);
   for (std::size_t j = 1; j < joints.size(); ++j) {
-    const auto parent = static_cast<std::size_t>(joints[j].parent);
-    const vec3& link = frame.translation_m.empty() ? joints[j].offset_m : frame.translation_m[j];
-    frames.position_m[j] = frames.position_m[parent] + frames.rotation[parent] * link;
-    frames.rotation[j] = frames.rotation[parent] * frame.local[j];
+    const vec3& offset = frame.translation_m.empty() ? joints[j].offset_m : frame.translation_m[j];
+    carry_joint(static_cast<int>(j), joints[j].parent, offset, frame.local[j], frames);
   }
 }
 

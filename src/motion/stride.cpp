@@ -1,8 +1,4 @@
-// Where pelvis and legs are in every frame of a motion.
-
 #include "motion/stride.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -10,41 +6,38 @@
 #include <optional>
 #include <vector>
 
-#include "gaitpad/motion.h"
+#include "base/numeric.h"
+#include "base/text.h"
 
 namespace gaitpad {
+namespace {
+
+// A stride is the stretch from one event of a foot (a lift or a landing) to the next equal one,
+// with every other event once in between. Events are where the ankle's horizontal speed crosses a
+// limit. Among all strides of a motion the best one is most like its own continuation.
+
+// --- Where pelvis and legs are in every frame ----------------------------------------------------
+
+// No foot is faster than a sprinter's: a faster one has jumped to another take.
+constexpr double kFastest_legs_s = 14.0;
 
 struct LegTrack {
   std::vector<vec3> hip_m, knee_m, ankle_m, toe_m;
 };
-struct BodyTrack {
+struct WalkTrack {
   std::vector<vec3> pelvis_m;
   std::vector<double> heading_rad;  // where the hips face, unwrapped
   std::array<LegTrack, 2> leg;
   double leg_m = 0.0;  // thigh + shank, mean of both sides
 };
-BodyTrack body_track(const Motion& motion);
-
-// Frames [first, last] without a jump: no point of the body moves faster than a limb can.
-struct FrameRange {
-  int first, last;
-};
-std::vector<FrameRange> unbroken_ranges(const BodyTrack& track, double frame_time_s);
-
-namespace {
-
-constexpr double kFastestLegsPerSecond =
-    14.0;  // a sprinter's foot; a jump to another take is faster
 
 // Across the hips from right to left, turned to the front.
 double hips_heading(const vec3& left_hip, const vec3& right_hip) {
   return heading_of(glm::cross(left_hip - right_hip, kUp));
 }
 
-}  // namespace
-
-BodyTrack body_track(const Motion& motion) {
-  BodyTrack track;
+WalkTrack walk_track(const Motion& motion) {
+  WalkTrack track;
   const auto world = std::make_unique<JointFrames>();
   for (const MotionFrame& frame : motion.frames) {
     forward_kinematics(motion, frame, *world);
@@ -69,8 +62,12 @@ BodyTrack body_track(const Motion& motion) {
   return track;
 }
 
-std::vector<FrameRange> unbroken_ranges(const BodyTrack& track, double frame_time_s) {
-  const double most_m = kFastestLegsPerSecond * track.leg_m * frame_time_s;
+// Frames [first, last] without a jump.
+struct FrameRange {
+  int first, last;
+};
+std::vector<FrameRange> unbroken_ranges(const WalkTrack& track, double frame_time_s) {
+  const double most_m = kFastest_legs_s * track.leg_m * frame_time_s;
   const int frames = static_cast<int>(track.pelvis_m.size());
   const auto moves_far = [&](const std::vector<vec3>& p, int f) {
     return !(glm::distance(p[f], p[f - 1]) <= most_m);
@@ -87,10 +84,10 @@ std::vector<FrameRange> unbroken_ranges(const BodyTrack& track, double frame_tim
   return ranges;
 }
 
-namespace {
+// --- Lifts and landings --------------------------------------------------------------------------
 
-// Of the fast speed: a faster foot is in the air. The second one is for the slow steps of a motion
-// that also has quick ones.
+// Shares of the fast speed: a foot above them is in the air. The second one is tried where the
+// first finds nothing, for slow steps in a motion that also has quick ones.
 constexpr std::array<double, 2> kMovingShares = {0.30, 0.18};
 constexpr double kSmoothing_s = 0.04;  // half the width of the window over the ankle's track
 constexpr double kShortestRest_s = 0.06;
@@ -101,8 +98,6 @@ constexpr double kShortestStride_legs = 0.4;
 constexpr double kSlowest_legs_s = 0.12;
 constexpr double kSharpestTurn_rad = 60.0 * kDegree;
 constexpr double kLoop_legs = 0.12;  // mean distance of first and last pose in a looping clip
-
-double horizontal(const vec3& v) { return std::sqrt(v.x * v.x + v.z * v.z); }
 
 // Running mean over a raised cosine, cut off at the range's ends.
 std::vector<vec3> smoothed(const std::vector<vec3>& p, const FrameRange& range,
@@ -130,7 +125,7 @@ std::vector<double> speeds(const std::vector<vec3>& p, const FrameRange& range, 
   std::vector<double> speed(n);
   for (int i = 0; i < n; ++i) {
     const int a = std::max(i - 1, 0), b = std::min(i + 1, n - 1);
-    speed[i] = horizontal(track[b] - track[a]) / ((b - a) * frame_s);
+    speed[i] = horizontal_length(track[b] - track[a]) / ((b - a) * frame_s);
   }
   return speed;
 }
@@ -165,17 +160,17 @@ double crossing(const std::vector<double>& speed, int a, int b, double limit) {
   return rise == 0.0 ? a : a + (b - a) * std::clamp((limit - speed[a]) / rise, 0.0, 1.0);
 }
 
-bool is_swing(const BodyTrack& track, const std::vector<vec3>& ankle, const MovingRun& run,
+bool is_swing(const WalkTrack& track, const std::vector<vec3>& ankle, const MovingRun& run,
               int offset, double frame_s) {
   const double time_s = (run.last - run.first + 1) * frame_s;
   const double legs =
-      horizontal(ankle[offset + run.last] - ankle[offset + run.first]) / track.leg_m;
+      horizontal_length(ankle[offset + run.last] - ankle[offset + run.first]) / track.leg_m;
   return time_s >= kShortestSwing_s && time_s <= kLongestSwing_s && legs >= kShortestSwing_legs &&
          legs <= kLongestSwing_legs;
 }
 
 // Lifts and landings of one foot. A swing cut by the range's end still gives its one event.
-void add_events(const BodyTrack& track, int side, const FrameRange& range, double limit_m_s,
+void add_events(const WalkTrack& track, int side, const FrameRange& range, double limit_m_s,
                 double frame_s, std::vector<FootEvent>& events) {
   const std::vector<vec3>& ankle = track.leg[side].ankle_m;
   const std::vector<double> speed = speeds(ankle, range, frame_s);
@@ -194,8 +189,17 @@ void add_events(const BodyTrack& track, int side, const FrameRange& range, doubl
   }
 }
 
+// Lifts and landings of a range whose feet count as moving above `limit_m_s`, in time order.
+std::vector<FootEvent> foot_events(const WalkTrack& track, const FrameRange& range,
+                                   double limit_m_s, double frame_s) {
+  std::vector<FootEvent> events;
+  for (int side = 0; side < 2; ++side) add_events(track, side, range, limit_m_s, frame_s, events);
+  std::ranges::stable_sort(events, {}, &FootEvent::frame);
+  return events;
+}
+
 // The 95th percentile of both ankles' speeds over all ranges.
-double fast_speed(const BodyTrack& track, const std::vector<FrameRange>& ranges, double frame_s) {
+double fast_speed(const WalkTrack& track, const std::vector<FrameRange>& ranges, double frame_s) {
   std::vector<double> all;
   for (const FrameRange& range : ranges) {
     for (const LegTrack& leg : track.leg) {
@@ -203,25 +207,24 @@ double fast_speed(const BodyTrack& track, const std::vector<FrameRange>& ranges,
       all.insert(all.end(), some.begin(), some.end());
     }
   }
-  if (all.empty()) return 0.0;
-  const auto at = all.begin() + static_cast<std::ptrdiff_t>((all.size() - 1) * 95 / 100);
-  std::nth_element(all.begin(), at, all.end());
-  return *at;
+  return all.empty() ? 0.0 : percentile(std::move(all), 95);
 }
+
+// --- Strides and how well they close -------------------------------------------------------------
 
 // Linear between frames.
 vec3 point_at(const std::vector<vec3>& p, double frame) {
   const int f = std::clamp(static_cast<int>(frame), 0, static_cast<int>(p.size()) - 2);
   return glm::mix(p[f], p[f + 1], frame - f);
 }
-double heading_at(const BodyTrack& track, double frame) {
+double heading_at(const WalkTrack& track, double frame) {
   const int f =
       std::clamp(static_cast<int>(frame), 0, static_cast<int>(track.heading_rad.size()) - 2);
   return mix(track.heading_rad[f], track.heading_rad[f + 1], frame - f);
 }
 
 // Mean distance of the legs' points, seen from the pelvis along its heading, in leg lengths.
-double pose_distance(const BodyTrack& track, double a, double b) {
+double pose_distance(const WalkTrack& track, double a, double b) {
   const quat back_a = rotation_y(-heading_at(track, a)), back_b = rotation_y(-heading_at(track, b));
   const vec3 pelvis_a = point_at(track.pelvis_m, a), pelvis_b = point_at(track.pelvis_m, b);
   double sum = std::abs(pelvis_a.y - pelvis_b.y);
@@ -234,8 +237,9 @@ double pose_distance(const BodyTrack& track, double a, double b) {
   return sum / (7.0 * track.leg_m);
 }
 
-// The same and its rate: the poses a twentieth of the stride on either side count too.
-double seam(const BodyTrack& track, const FrameRange& range, double start, double period) {
+// How badly a stride closes: the distance of its first pose to its last one. The poses a twentieth
+// of the stride before and after count too, so that velocities have to agree as well.
+double seam(const WalkTrack& track, const FrameRange& range, double start, double period) {
   double sum = 0.0, weight = 0.0;
   for (const double off : {-0.05 * period, 0.0, 0.05 * period}) {
     if (start + off < range.first || start + period + off > range.last) continue;
@@ -251,7 +255,7 @@ struct Candidate {
   double score = 0.0;  // the smaller the better
 };
 
-// Every other event happens once between two equal ones.
+// True if each of the four events happens once among these.
 bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size_t to) {
   std::array<int, 4> count{};
   for (std::size_t i = from; i < to; ++i) {
@@ -261,7 +265,7 @@ bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size
 }
 
 // The period within 4 % of the events' that makes the seam smallest.
-double best_period(const BodyTrack& track, const FrameRange& range, double start, double period) {
+double best_period(const WalkTrack& track, const FrameRange& range, double start, double period) {
   double best = period, least = seam(track, range, start, period);
   for (int k = -16; k <= 16; ++k) {
     const double tried = period * (1.0 + 0.0025 * k);
@@ -275,7 +279,7 @@ double best_period(const BodyTrack& track, const FrameRange& range, double start
   return best;
 }
 
-std::optional<Candidate> candidate(const BodyTrack& track, const FrameRange& range, double start,
+std::optional<Candidate> candidate(const WalkTrack& track, const FrameRange& range, double start,
                                    double end, double frame_s) {
   Candidate c;
   StrideWindow& w = c.window;
@@ -283,7 +287,7 @@ std::optional<Candidate> candidate(const BodyTrack& track, const FrameRange& ran
   const double stop = w.start + w.period;
   w.turn_rad = heading_at(track, stop) - heading_at(track, w.start);
   const vec3 travel = point_at(track.pelvis_m, stop) - point_at(track.pelvis_m, w.start);
-  const double legs = horizontal(travel) / track.leg_m;
+  const double legs = horizontal_length(travel) / track.leg_m;
   c.speed_legs_s = legs / (w.period * frame_s);
   c.seam_legs = seam(track, range, w.start, w.period);
   const bool is_walk = w.period * frame_s <= kLongestStride_s && legs >= kShortestStride_legs &&
@@ -292,17 +296,8 @@ std::optional<Candidate> candidate(const BodyTrack& track, const FrameRange& ran
   return is_walk ? std::optional<Candidate>(c) : std::nullopt;
 }
 
-// Lifts and landings of a range whose feet count as moving above `limit_m_s`, in time order.
-std::vector<FootEvent> foot_events(const BodyTrack& track, const FrameRange& range,
-                                   double limit_m_s, double frame_s) {
-  std::vector<FootEvent> events;
-  for (int side = 0; side < 2; ++side) add_events(track, side, range, limit_m_s, frame_s, events);
-  std::ranges::stable_sort(events, {}, &FootEvent::frame);
-  return events;
-}
-
 // From each event to the next equal one.
-void add_between_events(const BodyTrack& track, const FrameRange& range,
+void add_between_events(const WalkTrack& track, const FrameRange& range,
                         const std::vector<FootEvent>& events, double frame_s,
                         std::vector<Candidate>& found) {
   const auto is_same = [](const FootEvent& a, const FootEvent& b) {
@@ -319,7 +314,7 @@ void add_between_events(const BodyTrack& track, const FrameRange& range,
 
 // A clip of hardly more than one stride may hold no event twice: from each frame to the one most
 // like it, so that each event lies between them once.
-void add_by_pose(const BodyTrack& track, const FrameRange& range,
+void add_by_pose(const WalkTrack& track, const FrameRange& range,
                  const std::vector<FootEvent>& events, double frame_s,
                  std::vector<Candidate>& found) {
   constexpr double kLike_legs = 0.05;
@@ -344,7 +339,7 @@ void add_by_pose(const BodyTrack& track, const FrameRange& range,
   }
 }
 
-std::vector<Candidate> candidates(const Motion& motion, const BodyTrack& track) {
+std::vector<Candidate> candidates(const Motion& motion, const WalkTrack& track) {
   std::vector<Candidate> found;
   const double frame_s = motion.frame_time_s;
   const std::vector<FrameRange> ranges = unbroken_ranges(track, frame_s);
@@ -360,39 +355,34 @@ std::vector<Candidate> candidates(const Motion& motion, const BodyTrack& track) 
   return found;
 }
 
-// With what tells a walk on the spot, or one that is over before its first stride, from other
-// motions.
-std::string why_no_stride(const BodyTrack& track, double frame_s) {
+// The error sentence. Its numbers tell a walk on the spot, or one too short for a stride, from
+// other motions.
+std::string why_no_stride(const WalkTrack& track, double frame_s) {
   double moved_m = 0.0;
   std::size_t frames = 0;
   for (const FrameRange& range : unbroken_ranges(track, frame_s)) {
     frames = std::max(frames, static_cast<std::size_t>(range.last - range.first + 1));
     for (int f = range.first; f <= range.last; ++f) {
-      moved_m = std::max(moved_m, horizontal(track.pelvis_m[f] - track.pelvis_m[range.first]));
+      moved_m =
+          std::max(moved_m, horizontal_length(track.pelvis_m[f] - track.pelvis_m[range.first]));
     }
   }
-  return fmt::format("holds no full walking stride of both feet: the hips go {:.2f} m in {:.1f} s",
-                     moved_m, static_cast<double>(frames) * frame_s);
+  return "holds no full walking stride of both feet: the hips go " + fixed(moved_m, 2) + " m in " +
+         fixed(static_cast<double>(frames) * frame_s, 1) + " s";
 }
 
-// How much farther one half of the stride goes than the other, share of the stride.
-double unsteadiness(const BodyTrack& track, const StrideWindow& w) {
+// How much farther one half of the stride goes than the other, as a share of the stride.
+double unsteadiness(const WalkTrack& track, const StrideWindow& w) {
   const vec3 start = point_at(track.pelvis_m, w.start);
   const vec3 middle = point_at(track.pelvis_m, w.start + 0.5 * w.period);
   const vec3 end = point_at(track.pelvis_m, w.start + w.period);
-  const double first = horizontal(middle - start), second = horizontal(end - middle);
+  const double first = horizontal_length(middle - start), second = horizontal_length(end - middle);
   return std::abs(second - first) / (first + second);
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-// Small seam, straight and steady, neither hurried nor dawdling for this motion, room to fade the
-// seam.
-void sort_best_first(const BodyTrack& track, std::vector<Candidate>& all) {
+// Prefers a small seam, a straight and steady stride at the motion's usual speed, and frames beyond
+// it to fade the seam with.
+void sort_best_first(const WalkTrack& track, std::vector<Candidate>& all) {
   std::vector<double> speed;
   for (const Candidate& c : all) speed.push_back(c.speed_legs_s);
   const double usual = median(speed);
@@ -407,8 +397,10 @@ void sort_best_first(const BodyTrack& track, std::vector<Candidate>& all) {
   std::ranges::stable_sort(all, {}, &Candidate::score);
 }
 
-// Spreads the difference of last and first pose over the clip, so that frame n-1 is frame 0 moved
-// on.
+// --- Clips that are one loop ---------------------------------------------------------------------
+
+// Spreads the difference of the last and the first pose over the clip, so that its last frame is
+// its first one moved on.
 void close_loop(Motion& motion, double turn_rad) {
   const int last = static_cast<int>(motion.frames.size()) - 1;
   const std::vector<quat> from = motion.frames.front().local, to = motion.frames.back().local;
@@ -428,7 +420,7 @@ void close_loop(Motion& motion, double turn_rad) {
 
 Result<std::vector<StrideWindow>> best_strides(const Motion& motion) {
   if (motion.frames.size() < 6) return Error{"has fewer than 6 frames"};
-  const BodyTrack track = body_track(motion);
+  const WalkTrack track = walk_track(motion);
   if (!(track.leg_m > 0.0) || !(motion.frame_time_s > 0.0)) return Error{"has no legs to walk on"};
   std::vector<Candidate> all = candidates(motion, track);
   if (all.empty()) return Error{why_no_stride(track, motion.frame_time_s)};
@@ -443,13 +435,13 @@ Motion looped_twice(const Motion& motion) {
   twice.frames.clear();
   const int frames = static_cast<int>(motion.frames.size());
   if (frames < 6) return twice;
-  const BodyTrack track = body_track(motion);
+  const WalkTrack track = walk_track(motion);
   if (!(pose_distance(track, 0.0, frames - 1.0) <= kLoop_legs)) return twice;
   const double turn = wrapped(track.heading_rad.back() - track.heading_rad.front());
   twice.frames = motion.frames;
   close_loop(twice, turn);
   const quat onward = rotation_y(turn);
-  const std::vector<vec3> pelvis = body_track(twice).pelvis_m;  // the root may stand still
+  const std::vector<vec3> pelvis = walk_track(twice).pelvis_m;  // the root may stand still
   for (int f = 1; f < frames; ++f) {
     MotionFrame frame = twice.frames[f];
     frame.root_m = pelvis.back() + onward * (frame.root_m - pelvis.front());

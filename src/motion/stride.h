@@ -1,5 +1,4 @@
-// Finds the stretch of a motion that is worth repeating: one stride whose end is most like its
-// start.
+// Finds the stride of a motion that repeats best: the one whose end is most like its start.
 #pragma once
 #include <vector>
 
@@ -15,12 +14,12 @@ struct StrideWindow {
   int first = 0, last = 0;  // frames around it that belong to the same unbroken movement
 };
 
-// Every event (either foot's lift or landing) happens once in the window; which one it starts with
-// does not matter. Best first. Error, without file name, where the motion holds no such stretch.
+// All strides of a motion, the best one first. In each of them every event (either foot's lift or
+// landing) happens once; it may begin with any of them. The error does not name the file.
 Result<std::vector<StrideWindow>> best_strides(const Motion& motion);
 
-// The motion twice, if its last pose is its first one again (its travel removed); what little they
-// differ by is spread over the clip. Empty frames where it is no loop.
+// The motion twice in a row, if its last pose is its first one again but for the travel. The little
+// that they differ by is spread over the clip. No frames where the motion is no loop.
 Motion looped_twice(const Motion& motion);
 
 }  // namespace gaitpad

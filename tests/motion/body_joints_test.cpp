@@ -34,7 +34,7 @@ struct Made {
       leg.toe = leg.toe_end = add("d", leg.ankle, {x, 0.0, 0.1});
     }
   }
-  BodyJoints found() const { return find_body(skeleton, legs, pelvis, at); }
+  UpperBodyJoints found() const { return find_upper_body(skeleton, legs, pelvis, at); }
 };
 
 struct Names {
@@ -69,7 +69,7 @@ Made made(const Names& names, const Side& left, const Side& right) {
   return m;
 }
 
-TEST(BodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
+TEST(UpperBodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
   const std::vector<Names> all = {
       {"#Shoulder", "#Arm", "#ForeArm", "#Hand"},
       {"mixamorig:#Shoulder", "mixamorig:#Arm", "mixamorig:#ForeArm", "mixamorig:#Hand"},
@@ -79,7 +79,7 @@ TEST(BodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
   };
   for (const Names& names : all) {
     const Made m = made(names, std::string("Left"), std::string("Right"));
-    const BodyJoints found = m.found();
+    const UpperBodyJoints found = m.found();
     for (int side = 0; side < 2; ++side) {
       const auto name = [&](const std::string& n) {
         return sided(n, side == 0 ? std::string("Left") : std::string("Right"));
@@ -95,7 +95,7 @@ TEST(BodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
   }
 }
 
-TEST(BodyJoints, AreFoundWhereTheSideIsALetter) {
+TEST(UpperBodyJoints, AreFoundWhereTheSideIsALetter) {
   const std::vector<Names> all = {
       {"#clavicle", "#humerus", "#radius", "#wrist"},
       {"#collar", "#Shldr", "#ForeArm", "#Hand"},
@@ -110,7 +110,7 @@ TEST(BodyJoints, AreFoundWhereTheSideIsALetter) {
     const bool is_small = names.shoulder[0] == '#';
     const char left = is_small ? 'l' : 'L', right = is_small ? 'r' : 'R';
     const Made m = made(names, left, right);
-    const BodyJoints found = m.found();
+    const UpperBodyJoints found = m.found();
     EXPECT_EQ(found.arm[0].shoulder, m.skeleton.find(sided(names.shoulder, left)))
         << names.shoulder;
     EXPECT_EQ(found.arm[1].elbow, m.skeleton.find(sided(names.elbow, right))) << names.elbow;
@@ -119,26 +119,26 @@ TEST(BodyJoints, AreFoundWhereTheSideIsALetter) {
   }
 }
 
-TEST(BodyJoints, AreFoundByShapeWhereNamesSayNothing) {
+TEST(UpperBodyJoints, AreFoundByShapeWhereNamesSayNothing) {
   const Made m = made({"p#", "q#", "s#", "t#"}, '1', '2');
-  const BodyJoints found = m.found();
+  const UpperBodyJoints found = m.found();
   EXPECT_EQ(found.arm[0].shoulder, m.skeleton.find("q1"));
   EXPECT_EQ(found.arm[0].elbow, m.skeleton.find("s1"));
   EXPECT_EQ(found.arm[0].wrist, m.skeleton.find("t1"));
   EXPECT_EQ(found.arm[1].shoulder, m.skeleton.find("q2"));
 }
 
-TEST(BodyJoints, OfOneThatIsOnlyLegsAreNone) {
+TEST(UpperBodyJoints, OfOneThatIsOnlyLegsAreNone) {
   Made m;
   m.add("Hips", -1, {0.0, 1.0, 0.0});
   m.add_legs(0);
-  const BodyJoints found = m.found();
+  const UpperBodyJoints found = m.found();
   EXPECT_FALSE(found.arm[0].is_found() || found.arm[1].is_found());
   EXPECT_TRUE(found.spine.empty());
   EXPECT_TRUE(found.neck.empty());
 }
 
-TEST(BodyJoints, TwistJointsAndFingersAreNotTheArm) {
+TEST(UpperBodyJoints, TwistJointsAndFingersAreNotTheArm) {
   Made m;
   const int hips = m.add("hip", -1, {0.0, 1.0, 0.0});
   const int chest = m.add("chestUpper", hips, {0.0, 1.3, 0.0});
@@ -155,7 +155,7 @@ TEST(BodyJoints, TwistJointsAndFingersAreNotTheArm) {
   }
   m.add("head", chest, {0.0, 1.6, 0.0});
   m.add_legs(hips);
-  const BodyJoints found = m.found();
+  const UpperBodyJoints found = m.found();
   EXPECT_EQ(found.arm[0].shoulder, m.skeleton.find("lShldrBend"));
   EXPECT_EQ(found.arm[0].elbow, m.skeleton.find("lForearmBend"));
   EXPECT_EQ(found.arm[1].wrist, m.skeleton.find("rHand"));
@@ -163,7 +163,7 @@ TEST(BodyJoints, TwistJointsAndFingersAreNotTheArm) {
 }
 
 // Every motion that there is: two arms with joints of the right order, a head above them.
-TEST(BodyJoints, OfRealMotionsAreArmsSpineAndHead) {
+TEST(UpperBodyJoints, OfRealMotionsAreArmsSpineAndHead) {
   GAITPAD_NEEDS(kCapturedMotions);
   int count = 0;
   for (const std::string& file : files_in(kCapturedMotions, ".bvh")) {
@@ -175,8 +175,8 @@ TEST(BodyJoints, OfRealMotionsAreArmsSpineAndHead) {
     const MotionFrame& frame = motion->frames[motion->frames.size() / 2];
     std::copy(frame.local.begin(), frame.local.end(), pose.local.begin());
     forward_kinematics(motion->skeleton, pose, *world);
-    const BodyJoints found =
-        find_body(motion->skeleton, motion->legs, motion->pelvis,
+    const UpperBodyJoints found =
+        find_upper_body(motion->skeleton, motion->legs, motion->pelvis,
                   std::span(world->position_m.data(), motion->skeleton.joints.size()));
     SCOPED_TRACE(std::filesystem::path(file).filename().string());
     ++count;
@@ -192,7 +192,7 @@ TEST(BodyJoints, OfRealMotionsAreArmsSpineAndHead) {
   EXPECT_GT(count, 0);
 }
 
-TEST(BodyJoints, AJointNamedWristAboveTheHandTurnsTheForearm) {
+TEST(UpperBodyJoints, AJointNamedWristAboveTheHandTurnsTheForearm) {
   Made m = made({"#clavicle", "#humerus", "#radius", "#wrist"}, 'l', 'r');
   const int wrist = m.skeleton.find("lwrist");
   Joint hand{"lhand", wrist, vec3(0.0, -0.1, 0.0), false};

@@ -46,8 +46,8 @@ TEST(LegNames, KnowTheUsualSpellings) {
                         {"Hips", N, NamedPart::none},
                         {"lThighTwist", N, NamedPart::none},
                         {"RL_BoneRoot", N, NamedPart::none},
-                        {"LeftArm", L, NamedPart::none},
-                        {"lShldr", N, NamedPart::none}}) {
+                        {"LeftArm", L, NamedPart::upper_arm},
+                        {"lShldr", L, NamedPart::upper_arm}}) {
     const NamedJoint n = named_joint(c.name);
     EXPECT_EQ(n.part, c.part) << c.name;
     if (c.part != NamedPart::none) {

@@ -45,6 +45,9 @@ quat rotation_between(const vec3& from, const vec3& to) noexcept;
 // Axis times angle, angle in [0, pi], and back.
 vec3 rotation_vector(const quat& q) noexcept;
 quat from_rotation_vector(const vec3& v) noexcept;
+// `share` of the way from one rotation to the other, the shorter way round: linear, then normalized.
+// The ends are normalized, too.
+quat nlerp(const quat& from, const quat& to, double share) noexcept;
 // Rotation whose columns are the images of x, y, z (orthonormal, right-handed).
 quat from_axes(const vec3& x, const vec3& y, const vec3& z) noexcept;
 
@@ -53,6 +56,8 @@ inline vec3 heading_direction(double heading_rad) noexcept {
   const SinCos s = sin_cos(heading_rad);
   return vec3(s.sin, 0.0, s.cos);
 }
+// Length of a vector's horizontal part.
+inline double horizontal_length(const vec3& v) noexcept { return std::sqrt(v.x * v.x + v.z * v.z); }
 // Heading of a direction's horizontal part.
 inline double heading_of(const vec3& direction) noexcept { return atan2(direction.x, direction.z); }
 

@@ -1,6 +1,6 @@
-// The character's bones and one posture of them.
+// A character's bones and one posture of them.
 // Meredith & Maddock 2005, section 3.2: the data module hands out "limb degree-of-freedom values"
-// in one format, whatever the source (captured, procedural, key-framed).
+// in one format, whether the motion was captured, computed or key-framed.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,12 +16,12 @@ namespace gaitpad {
 inline constexpr int kMaxJoints = 320;
 
 // Immutable after load. Joints stand in depth-first order, parents before children; joint 0 is the
-// root (parent -1). A BVH End Site is a joint too (is_end_site), named after its parent + "_End".
+// root (parent -1).
 struct Joint {
-  std::string name;
+  std::string name;  // of an End Site: its parent's name + "_End"
   int parent = -1;
-  vec3 offset_m{0.0};  // from the parent joint, in the parent joint's frame
-  bool is_end_site = false;
+  vec3 offset_m{0.0};        // from the parent joint, in the parent joint's frame
+  bool is_end_site = false;  // the tip of a bone in a BVH file: a place that nothing turns
 };
 struct Skeleton {
   std::vector<Joint> joints;
@@ -29,14 +29,15 @@ struct Skeleton {
 };
 
 // Joint indices of one leg. Between hip and knee (or knee and ankle) further joints may stand
-// (twist joints); they keep a fixed rotation. toe is an End Site where the skeleton has no toe
-// joint; toe_end is the toe joint's End Site or last descendant (== toe where toe is itself an End
-// Site).
+// (twist joints); they keep a fixed rotation.
 struct LegJoints {
-  int hip = -1, knee = -1, ankle = -1, toe = -1, toe_end = -1;
+  int hip = -1, knee = -1, ankle = -1;
+  int toe = -1;      // the ball of the foot; an End Site where the skeleton has no toe joint
+  int toe_end = -1;  // the toe's End Site or last descendant; the toe itself where that is an End
+                     // Site
 };
 
-// Plain, trivially copyable. local[j] turns joint j's frame into its parent's; local[0] into the
+// Plain, trivially copyable. local[j] turns joint j's frame into its parent's, local[0] into the
 // world.
 struct Pose {
   vec3 root_m{0.0};  // world position of joint 0
@@ -44,11 +45,23 @@ struct Pose {
   int joint_count = 0;
 };
 
-struct JointFrames {  // world
+// World frames: where each joint is, and what turns its frame into the world's.
+struct JointFrames {
   std::array<vec3, kMaxJoints> position_m;
   std::array<quat, kMaxJoints> rotation;
 };
-// Forward kinematics, eq. (1). Frames of the first joint_count joints are written.
+
+// Forward kinematics, eq. (1): a joint's frame is its parent's, moved by the joint's offset and
+// turned by its local rotation. Writes the frames of the first pose.joint_count joints.
 void forward_kinematics(const Skeleton& skeleton, const Pose& pose, JointFrames& frames) noexcept;
+
+// The same for some joints only, parents before children. Frames of parents that are not among them
+// are read from `frames`.
+void forward_kinematics(const Skeleton& skeleton, const Pose& pose, std::span<const int> joints,
+                        JointFrames& frames) noexcept;
+
+// The same for local rotations of all joints, with the root at the origin.
+void forward_kinematics(const Skeleton& skeleton, std::span<const quat> local,
+                        JointFrames& frames) noexcept;
 
 }  // namespace gaitpad

@@ -16,26 +16,15 @@ struct WalkModel;
 struct WalkState;
 enum class IkMode : unsigned char;
 
-// BodyParams are numbers alone, so they can be smoothed one like the other.
-using BodyValues = std::array<double, sizeof(BodyParams) / sizeof(double)>;
-
 // Plain, trivially copyable.
-struct BodyState {
+struct UpperBodyState {
   BodyParams goal, now;                   // asked for; smoothed
-  BodyValues per_s{};                     // rate of `now`
+  std::array<double, sizeof(BodyParams) / sizeof(double)> per_s{};  // rates of `now`
   int unsettled_ticks = 0;                // until `now` is `goal`
   std::array<double, 2> swing{1.0, 1.0};  // factor on the data's arm swing in this tick
   std::array<double, 2> rail_ground_m{};  // smoothed ground under a rail
   std::array<double, 2> rail_ground_m_s{};
 };
-
-// Smooths the parameters of the upper body. In paper mode the pace does not act on the arms: the
-// data's upper body is left as it is.
-void smooth_body(const Tick& tick, IkMode mode, WalkState& state) noexcept;
-// On the data's local rotations of this phase, before they fade to a stand.
-void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
-// Spine, arms and head of a pose whose legs are done.
-void pose_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
 
 // The animation module: a character that walks where the gait parameters say.
 // Meredith & Maddock 2005, section 3.3: the two-stage cycle of Table I, feet along the flight paths
@@ -161,7 +150,7 @@ struct WalkState {
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;
   std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};  // data's, IK even, IK weighted
-  BodyState body;
+  UpperBodyState body;
 };
 
 // A character standing at `place_m` on the floor, facing +z, and its pose.

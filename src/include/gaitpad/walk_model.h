@@ -52,7 +52,8 @@ struct SpineJoint {
   double upper = 0.0;         // 0 the lowest of the spine .. 1 the uppermost
 };
 
-struct BodyModel {
+struct UpperBodyModel {
+  UpperBodyJoints joints;  // what a figure is drawn from, too
   std::array<ArmBuild, 2> arm;
   double arm_m = kReferenceArm_m;  // shoulder to wrist, mean of the arms
   double shoulder_height_m = 0.0;  // standing
@@ -69,7 +70,7 @@ struct BodyModel {
 
 // Of a cycle that has the character's lengths. Total: what it does not find stays off.
 // `leg_ratio`: the character's leg over the leg of the data.
-BodyModel body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_height_m);
+UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double pelvis_height_m);
 
 // Everything about one character's walk that does not change while it walks: the data module's gait
 // cycle retargeted to the character's legs (Meredith & Maddock 2005, sections 3.2 and 3.3).
@@ -120,7 +121,7 @@ struct WalkModel {
   std::array<double, 4> share{};
   std::vector<int>
       kept;  // joints that the legs' chains pass through: fixed at their standing rotation
-  BodyModel body;
+  UpperBodyModel body;
 };
 
 // Retargets by the leg-length ratio. Fails only on a character that the skeleton cannot be.

@@ -1,0 +1,178 @@
+#include "base/files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "base/text.h"
+
+namespace gaitpad {
+
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kMaxLinks = 40;  // as the kernel follows
+
+// Where a write to `path` ends up: the files of dotfile managers are symbolic links, and stay.
+Result<std::string> target_of_links(const std::string& path) {
+  fs::path place = path;
+  std::error_code error;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(place, error)); ++i) {
+    const fs::path target = fs::read_symlink(place, error);
+    if (error || i == kMaxLinks) return write_error(path, error ? error.value() : ELOOP);
+    place = target.is_absolute() ? target : place.parent_path() / target;
+  }
+  return place.string();
+}
+
+std::optional<Error> make_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!folder.empty()) fs::create_directories(folder, error);
+  if (!error) return std::nullopt;
+  return Error{folder.string() + ": cannot be made: " + error.message()};
+}
+
+// Hidden, in the same folder, and different for every process.
+std::string temporary_beside(const fs::path& place) {
+  const std::string name = place.filename().string();
+  return (place.parent_path() / ("." + name + "." + std::to_string(::getpid()))).string();
+}
+
+int write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file, bytes.data(), bytes.size());
+    if (count > 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    } else if (count == 0 || errno != EINTR) {
+      return count == 0 ? EIO : errno;
+    }
+  }
+  return 0;
+}
+
+enum class Write { cached, to_disk };
+
+// Writes a new file with these bytes; 0 or errno.
+int write_new(const std::string& path, std::string_view bytes, Write write) {
+  ::unlink(path.c_str());  // a killed process may have had the same number
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (file < 0) return errno;
+  int problem = write_all(file, bytes);
+  // fsync() reports lost bytes that close() might not.
+  if (problem == 0 && write == Write::to_disk && ::fsync(file) != 0) problem = errno;
+  if (::close(file) != 0 && problem == 0) problem = errno;
+  return problem;
+}
+
+int rename_file(const std::string& from, const std::string& to) {
+  return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+}
+
+// Keeps what stands at `place` as PLACE.old, too, which is whole at any moment; 0 or errno.
+int keep_old(const std::string& place, const std::string& temporary) {
+  ::unlink(temporary.c_str());
+  if (::link(place.c_str(), temporary.c_str()) != 0) {
+    if (errno == ENOENT) return 0;  // nothing to keep
+    std::error_code error;          // this file system has no hard links
+    if (!fs::copy_file(place, temporary, error)) return error ? error.value() : EIO;
+  }
+  const int problem = rename_file(temporary, place + ".old");
+  // Where a save was killed between its two renames, both names are one file already: then rename()
+  // does nothing and the temporary name is still there.
+  ::unlink(temporary.c_str());
+  return problem;
+}
+
+// The file is whole before and after a rename; this makes the rename itself survive a power cut.
+// Not every file system can, and nothing is lost where it cannot.
+void sync_folder(const fs::path& folder) {
+  const int opened =
+      ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened < 0) return;
+  static_cast<void>(!::fsync(opened));
+  ::close(opened);
+}
+
+}  // namespace
+
+Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
+  const auto failure = [&](const std::string& cause) { return Error{printable(path) + cause}; };
+  std::error_code code;
+  const auto status = fs::status(path, code);
+  if (!fs::exists(status)) return failure(": no such file");
+  if (!fs::is_regular_file(status)) return failure(": not a regular file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return failure(": cannot be opened for reading");
+  std::string text;
+  std::vector<char> block(1 << 16);
+  while (stream && text.size() <= max_bytes) {
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) return failure(": reading failed");
+  if (text.size() > max_bytes)
+    return failure(": larger than " + std::to_string(max_bytes) + " bytes");
+  return text;
+}
+
+Error write_error(const std::string& path, int number) {
+  return Error{path + ": cannot be written: " + std::strerror(number)};
+}
+
+std::optional<Error> write_file(const std::string& path, std::string_view bytes) {
+  const fs::path place(path);
+  if (!place.has_filename()) return Error{path + ": is no file's name"};
+  if (auto problem = make_folder(place.parent_path())) return problem;
+  std::error_code ignored;
+  if (fs::is_directory(place, ignored)) return write_error(path, EISDIR);
+  const std::string temporary = temporary_beside(place);
+  int problem = write_new(temporary, bytes, Write::cached);
+  if (problem == 0) problem = rename_file(temporary, path);
+  if (problem == 0) return std::nullopt;
+  ::unlink(temporary.c_str());
+  return write_error(path, problem);
+}
+
+std::optional<Error> saving_problem(const std::string& path) {
+  const auto place = target_of_links(path);
+  if (!place) return place.error();
+  std::error_code error;
+  const fs::file_status status = fs::status(*place, error);
+  if (fs::is_directory(status)) return write_error(path, EISDIR);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return Error{path + ": this is no file, none can take its place"};
+  fs::path folder = fs::absolute(*place, error).parent_path();
+  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  if (!fs::is_directory(folder, error)) return write_error(path, ENOTDIR);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) return write_error(path, errno);
+  return std::nullopt;
+}
+
+std::optional<Error> save_text(const std::string& path, std::string_view text) {
+  if (auto problem = saving_problem(path)) return problem;
+  if (auto problem = make_folder(fs::path(path).parent_path())) return problem;
+  const auto place = target_of_links(path);
+  if (!place) return place.error();
+  const std::string temporary = temporary_beside(*place);
+  std::string blamed = *place;
+  int problem = write_new(temporary, text, Write::to_disk);
+  if (problem == 0) {
+    problem = keep_old(*place, temporary + ".old");
+    if (problem != 0) blamed = *place + ".old";
+  }
+  if (problem == 0) problem = rename_file(temporary, *place);
+  if (problem == 0) {
+    sync_folder(fs::path(*place).parent_path());
+    return std::nullopt;
+  }
+  ::unlink(temporary.c_str());
+  return write_error(blamed, problem);
+}
+
+}  // namespace gaitpad

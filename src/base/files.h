@@ -1,0 +1,30 @@
+// Files read with a bound and written so that a reader never sees half of one.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "gaitpad/result.h"
+
+namespace gaitpad {
+
+// The whole of a regular file of at most `max_bytes`. A FIFO or a device is an error: opening one
+// could hang, reading it never end. Error: `PATH: cause`.
+Result<std::string> file_text(const std::string& path, std::size_t max_bytes);
+
+// `PATH: cannot be written: ` and the cause that `number`, an errno, stands for.
+Error write_error(const std::string& path, int number);
+
+// Makes the folder of `path`, writes a temporary file in it and renames that to `path`. On error
+// what stood there before is unchanged.
+std::optional<Error> write_file(const std::string& path, std::string_view bytes);
+
+// Why save_text() to this path would fail, as far as that shows before it is tried.
+std::optional<Error> saving_problem(const std::string& path);
+// write_file() for what a user must not lose: the bytes are on the disk before the rename, and what
+// stood there before is kept as PATH.old. Where `path` is a symbolic link, both happen where it
+// points to and it stays a link.
+std::optional<Error> save_text(const std::string& path, std::string_view text);
+
+}  // namespace gaitpad

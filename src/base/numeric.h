@@ -1,0 +1,23 @@
+// Statistics of a few numbers. These allocate: not for a tick.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace gaitpad {
+
+// The value that `percent` % of the values do not exceed. `values` is not empty.
+inline double percentile(std::vector<double> values, std::size_t percent) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// The middle value; of an even count the upper one of the two. `values` is not empty.
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace gaitpad

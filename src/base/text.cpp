@@ -1,0 +1,101 @@
+#include "base/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace gaitpad {
+
+std::string_view trimmed(std::string_view text, std::string_view blanks) noexcept {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+std::string_view without_byte_order_mark(std::string_view text) noexcept {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
+std::string_view take_word(std::string_view& rest, std::string_view blanks) noexcept {
+  rest.remove_prefix(std::min(rest.find_first_not_of(blanks), rest.size()));
+  const std::string_view word = rest.substr(0, rest.find_first_of(blanks));
+  rest.remove_prefix(word.size());
+  return word;
+}
+
+std::string_view take_part(std::string_view& rest, char divider) noexcept {
+  const std::string_view part = rest.substr(0, rest.find(divider));
+  rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+  return part;
+}
+
+std::optional<double> parse_bounded(std::string_view text) noexcept {
+  constexpr double kMaxValue = 1e7;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (text.empty() || read.ptr != end) return std::nullopt;
+  if (read.ec == std::errc::result_out_of_range) {  // 1e-400 is 0, 1e400 is too large
+    const std::size_t exponent = text.find_first_of("eE");
+    const bool is_tiny = exponent != text.npos && text.substr(exponent + 1).starts_with('-');
+    return is_tiny ? std::optional(0.0) : std::nullopt;
+  }
+  if (read.ec != std::errc() || !(std::abs(value) <= kMaxValue)) return std::nullopt;
+  return value;
+}
+
+std::size_t character_bytes(std::string_view text) noexcept {
+  if (text.empty()) return 0;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return 1;
+  const std::size_t size = byte(0) >= 0xf5   ? 0
+                           : byte(0) >= 0xf0 ? 4
+                           : byte(0) >= 0xe0 ? 3
+                           : byte(0) >= 0xc2 ? 2
+                                             : 0;
+  if (size == 0 || text.size() < size) return 0;
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  }
+  const bool is_bad = (byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xed && byte(1) > 0x9f) ||
+                      (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f);
+  return is_bad ? 0 : size;
+}
+
+std::size_t utf8_bytes(std::string_view text) noexcept {
+  std::size_t place = 0;
+  while (const std::size_t bytes = character_bytes(text.substr(place))) place += bytes;
+  return place;
+}
+
+std::string printable(std::string_view text) {
+  std::string line(text);
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return line;
+}
+
+std::string in_quotes(std::string_view text) {
+  const bool is_cut = text.size() > kMaxQuotedBytes;
+  return "\"" + printable(text.substr(0, kMaxQuotedBytes)) + (is_cut ? "...\"" : "\"");
+}
+
+std::string fixed(double value, int decimals) {
+  std::array<char, 512> digits;  // a double has up to 309 before the point
+  const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                     std::chars_format::fixed, std::clamp(decimals, 0, 100));
+  return std::string(digits.data(), written.ptr);
+}
+
+}  // namespace gaitpad

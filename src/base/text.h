@@ -1,0 +1,73 @@
+// Text from files, devices and users: its words, its numbers, and how a sentence shows it.
+// Standard library alone, and nothing depends on the locale.
+#pragma once
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+
+namespace gaitpad {
+
+// Blanks inside a line; the end of the line is not one of them.
+inline constexpr std::string_view kBlanks = " \t\r\f\v";
+constexpr bool is_blank(char c) noexcept { return kBlanks.find(c) != kBlanks.npos; }
+
+// The text without the blanks at both ends.
+std::string_view trimmed(std::string_view text, std::string_view blanks = kBlanks) noexcept;
+// ASCII letters in lower case; all other bytes stay.
+std::string lower_case(std::string_view text);
+// The text without a UTF-8 byte order mark at its beginning.
+std::string_view without_byte_order_mark(std::string_view text) noexcept;
+
+// Cuts the first word off `rest`, with the blanks before it. Empty at the end.
+std::string_view take_word(std::string_view& rest, std::string_view blanks = kBlanks) noexcept;
+// Cuts off what stands before the first `divider`, and the divider. All of it where there is none.
+std::string_view take_part(std::string_view& rest, char divider) noexcept;
+// Cuts off the first line, and its '\n'.
+inline std::string_view take_line(std::string_view& rest) noexcept { return take_part(rest, '\n'); }
+
+// Cuts the number off that `rest` begins with, written as std::from_chars reads it: no blank or '+'
+// before it, no 0x. Nothing, and `rest` unchanged, where there is none or T cannot hold it.
+template <class T>
+std::optional<T> take_number(std::string_view& rest, int base = 10) noexcept {
+  T value{};
+  const char* end = rest.data() + rest.size();
+  std::from_chars_result read{};
+  if constexpr (std::is_floating_point_v<T>) {
+    read = std::from_chars(rest.data(), end, value);
+  } else {
+    read = std::from_chars(rest.data(), end, value, base);
+  }
+  if (read.ec != std::errc()) return std::nullopt;
+  rest.remove_prefix(static_cast<std::size_t>(read.ptr - rest.data()));
+  return value;
+}
+// The whole text as a number, else nothing.
+template <class T>
+std::optional<T> parse_number(std::string_view text, int base = 10) noexcept {
+  const std::optional<T> value = take_number<T>(text, base);
+  return text.empty() ? value : std::nullopt;
+}
+// The whole text as a number within +-1e7, so that all later arithmetic is finite. A '+' may stand
+// before it; one too small for a double is 0. Nothing for `nan`, `inf` and larger numbers.
+std::optional<double> parse_bounded(std::string_view text) noexcept;
+
+// Bytes of the UTF-8 character that the text begins with; 0 where it begins with none. Overlong
+// forms, surrogates and what lies beyond U+10FFFF are none.
+std::size_t character_bytes(std::string_view text) noexcept;
+// How many bytes at the beginning of the text are whole UTF-8 characters.
+std::size_t utf8_bytes(std::string_view text) noexcept;
+inline bool is_utf8(std::string_view text) noexcept { return utf8_bytes(text) == text.size(); }
+
+// The text for one line of output: ASCII control characters become '?'.
+std::string printable(std::string_view text);
+// The text in double quotes for an error sentence: printable, of at most 60 bytes, then "...".
+inline constexpr std::size_t kMaxQuotedBytes = 60;
+std::string in_quotes(std::string_view text);
+// The value with so many digits behind the point, as printf's %.*f writes it in the C locale.
+std::string fixed(double value, int decimals);
+
+}  // namespace gaitpad

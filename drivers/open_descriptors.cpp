@@ -3,11 +3,12 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <iterator>
 #include <string>
 #include <system_error>
+
+#include "base/text.h"
 
 namespace gaitpad {
 
@@ -17,11 +18,11 @@ OpenDescriptors open_descriptors(dev_t node) {
   for (std::filesystem::directory_iterator it("/proc/self/fd", error), end; !error && it != end;
        it.increment(error)) {
     const std::string name = it->path().filename().string();
-    int fd = -1;
-    if (std::from_chars(name.data(), name.data() + name.size(), fd).ec != std::errc()) continue;
+    const auto fd = parse_number<int>(name);
+    if (!fd) continue;
     struct stat status {};
-    if (::fstat(fd, &status) == 0 && S_ISCHR(status.st_mode) && status.st_rdev == node)
-      found.push_back(fd);
+    if (::fstat(*fd, &status) == 0 && S_ISCHR(status.st_mode) && status.st_rdev == node)
+      found.push_back(*fd);
   }
   std::sort(found.begin(), found.end());
   return found;

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <fstream>
 #include <iterator>
+
+#include "base/text.h"
 
 namespace gaitpad {
 namespace {
@@ -22,8 +23,8 @@ std::vector<std::uint16_t> set_codes(std::string_view text, std::uint16_t end) {
     if (last == std::string_view::npos) break;
     text = text.substr(0, last + 1);
     const std::size_t begin = text.find_last_of(" \n") + 1;  // 0 where there is none before it
-    std::uint64_t bits = 0;
-    std::from_chars(text.data() + begin, text.data() + text.size(), bits, 16);
+    std::string_view digits = text.substr(begin);
+    const std::uint64_t bits = take_number<std::uint64_t>(digits, 16).value_or(0);
     for (unsigned i = 0; i < kWordBits && word * kWordBits + i < end; ++i) {
       if (((bits >> i) & 1u) != 0)
         codes.push_back(static_cast<std::uint16_t>(word * kWordBits + i));

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/text.h"
 #include "gaitpad/descriptor.h"
 
 namespace gaitpad {
@@ -45,25 +45,17 @@ std::string property(udev_device* device, const char* name) {
 bool is_marked(udev_device* device, const char* name) { return property(device, name) == "1"; }
 
 // The kernel puts texts in quotes in places; a name may carry blanks at its end.
-std::string trimmed(std::string value) {
-  const auto is_edge = [](char c) { return c == ' ' || c == '"' || c == '\n'; };
-  while (!value.empty() && is_edge(value.back())) value.pop_back();
-  std::size_t first = 0;
-  while (first < value.size() && is_edge(value[first])) ++first;
-  return value.substr(first);
-}
+std::string unquoted(std::string_view value) { return std::string(trimmed(value, " \"\n")); }
 
 std::uint16_t hex16(std::string_view digits) {
-  std::uint32_t value = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-  return static_cast<std::uint16_t>(value);
+  return static_cast<std::uint16_t>(take_number<std::uint32_t>(digits, 16).value_or(0));
 }
 
 std::string first_line(const fs::path& path) {
   std::ifstream in(path);
   std::string line;
   std::getline(in, line);
-  return trimmed(line);
+  return unquoted(line);
 }
 
 std::vector<std::uint8_t> file_bytes(const fs::path& path) {
@@ -114,7 +106,7 @@ bool add_hidraw(udev_device* device, SystemNode& node) {
   if (!hid) return false;
   const std::string path = text(udev_device_get_syspath(hid));
   add_hid_ids(property(hid, "HID_ID"), node);
-  node.name = trimmed(property(hid, "HID_NAME"));
+  node.name = unquoted(property(hid, "HID_NAME"));
   node.unique_id = property(hid, "HID_UNIQ");
   node.physical_path = property(hid, "HID_PHYS");
   node.version = input_version(path);
@@ -126,7 +118,7 @@ bool add_input(udev_device* device, SystemNode& node) {
   if (!text(udev_device_get_sysname(device)).starts_with("event")) return false;
   udev_device* input = udev_device_get_parent_with_subsystem_devtype(device, "input", nullptr);
   if (!input) return false;
-  node.name = trimmed(attribute(input, "name"));
+  node.name = unquoted(attribute(input, "name"));
   node.unique_id = attribute(input, "uniq");
   node.physical_path = attribute(input, "phys");
   node.bus = static_cast<BusType>(hex16(attribute(input, "id/bustype")));
@@ -146,7 +138,7 @@ bool add_usb(udev_device* device, SystemNode& node) {
   node.vendor = hex16(attribute(device, "idVendor"));
   node.product = hex16(attribute(device, "idProduct"));
   node.version = hex16(attribute(device, "bcdDevice"));
-  node.name = trimmed(attribute(device, "manufacturer") + " " + attribute(device, "product"));
+  node.name = unquoted(attribute(device, "manufacturer") + " " + attribute(device, "product"));
   node.unique_id = attribute(device, "serial");
   return true;
 }
@@ -222,11 +214,9 @@ double usb_poll_rate_hz(const std::string& interface_path) {
     if (first_line(entry.path() / "direction") != "in") continue;
     if (first_line(entry.path() / "type") != "Interrupt") continue;
     const std::string interval = first_line(entry.path() / "interval");
-    double value = 0.0;
-    const auto end = interval.data() + interval.size();
-    const auto number = std::from_chars(interval.data(), end, value);
-    if (number.ec != std::errc() || value <= 0.0) return 0.0;
-    const std::string_view unit(number.ptr, static_cast<std::size_t>(end - number.ptr));
+    std::string_view unit = interval;  // behind the number
+    const double value = take_number<double>(unit).value_or(0.0);
+    if (value <= 0.0) return 0.0;
     return unit == "us" ? 1e6 / value : unit == "ms" ? 1e3 / value : 0.0;
   }
   return 0.0;

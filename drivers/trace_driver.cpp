@@ -5,12 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <map>
 #include <mutex>
 #include <utility>
 
+#include "base/text.h"
 #include "drivers/driver_entries.h"
 #include "drivers/posix.h"
 #include "gaitpad/trace.h"
@@ -124,11 +124,9 @@ std::string node_of(const std::string& path, std::size_t device) {
 std::pair<std::string, std::size_t> path_and_device(const std::string& node) {
   const std::size_t mark = node.rfind('#');
   if (mark == std::string::npos) return {node, 0};
-  std::size_t number = 0;
-  const char* end = node.data() + node.size();
-  const auto read = std::from_chars(node.data() + mark + 1, end, number);
-  const bool is_number = read.ec == std::errc() && read.ptr == end;
-  if (!is_number || number < 2 || number > kMaxTraceDevices) return {node, 0};
+  const auto number =
+      parse_number<std::size_t>(std::string_view(node).substr(mark + 1)).value_or(0);
+  if (number < 2 || number > kMaxTraceDevices) return {node, 0};
   return {node.substr(0, mark), number - 1};
 }
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
 
+#include "base/text.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/descriptor.h"
 
@@ -36,10 +36,8 @@ std::string attribute(const fs::path& path) {
 
 std::optional<std::uint16_t> hexadecimal_attribute(const fs::path& path) {
   const std::string text = attribute(path);
-  std::uint16_t value = 0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-  if (end.ec != std::errc()) return std::nullopt;
-  return value;
+  std::string_view digits = text;
+  return take_number<std::uint16_t>(digits, 16);
 }
 
 std::uint8_t byte_attribute(const fs::path& path) {

@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -110,6 +112,8 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return failure(": cannot be opened for reading");
   std::string text;
+  if (const auto size = fs::file_size(path, code); !code)
+    text.reserve(std::min<std::uintmax_t>(size, max_bytes));
   std::vector<char> block(1 << 16);
   while (stream && text.size() <= max_bytes) {
     stream.read(block.data(), static_cast<std::streamsize>(block.size()));

@@ -86,22 +86,9 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
 
 namespace {
 
-constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;  // of giants; limits bound them
-constexpr double kMostFactor = 3.0;                            // as in a style
 // Of the stick's: what legs reach at any speed and in any turn.
 constexpr double kLongestStride = 1.3;
 constexpr double kQuickest = 0.5, kSlowest = 2.0;  // of the stick's shortest and longest step time
-
-constexpr std::array<GaitKeyInfo, kGaitKeys> kKeys = {{
-    {"speed_m_s", -kMostSpeed_m_s, kMostSpeed_m_s},
-    {"stride_left_m", 0.0, kMostStride_m},
-    {"stride_right_m", 0.0, kMostStride_m},
-    {"flight_left", 0.0, kMostFactor},
-    {"flight_right", 0.0, kMostFactor},
-    {"turn_rate_rad_s", -kMaxTurnRate_rad_s, kMaxTurnRate_rad_s},
-    {"hip_sway", 0.0, kMostFactor},
-    {"hip_bounce", 0.0, kMostFactor},
-}};
 
 constexpr std::array<GaitKey, 2> kStrides = {GaitKey::stride_left_m, GaitKey::stride_right_m};
 constexpr std::array<GaitKey, 2> kFlights = {GaitKey::flight_left, GaitKey::flight_right};
@@ -139,42 +126,6 @@ void meet_speed(double speed_m_s, const GaitLimits& limits, GaitParams& params) 
 }
 
 }  // namespace
-
-const GaitKeyInfo& info_of(GaitKey key) noexcept { return kKeys[static_cast<std::size_t>(key)]; }
-
-std::optional<GaitKey> gait_key(std::string_view name) noexcept {
-  for (int k = 0; k < kGaitKeys; ++k) {
-    if (kKeys[k].name == name) return static_cast<GaitKey>(k);
-  }
-  return std::nullopt;
-}
-
-double value_of(GaitKey key, const GaitParams& params) noexcept {
-  const auto& [left, right] = params.stride;
-  switch (key) {
-    case GaitKey::speed_m_s: {
-      const double cycle_s = left.time_s + right.time_s;
-      if (!params.walking || !(cycle_s > 0.0)) return 0.0;
-      const double speed_m_s = (left.length_m + right.length_m) / cycle_s;
-      return params.backward ? 0.0 - speed_m_s : speed_m_s;
-    }
-    case GaitKey::stride_left_m:
-      return left.length_m;
-    case GaitKey::stride_right_m:
-      return right.length_m;
-    case GaitKey::flight_left:
-      return left.flight_height;
-    case GaitKey::flight_right:
-      return right.flight_height;
-    case GaitKey::turn_rate_rad_s:
-      return params.turn_rate_rad_s;
-    case GaitKey::hip_sway:
-      return params.hip_sway;
-    case GaitKey::hip_bounce:
-      return params.hip_bounce;
-  }
-  return 0.0;
-}
 
 GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept {
   const GaitKeyInfo& info = info_of(key);

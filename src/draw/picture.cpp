@@ -1,33 +1,16 @@
 #include "draw/picture.h"
 
 #include <algorithm>
-#include <cstring>
 
-#include "session/walk_export.h"
+#include "base/files.h"
+#include "base/text.h"
 
 namespace gaitpad {
-
 namespace {
 
 constexpr std::size_t kMaxTextBytes = 1024;
 constexpr std::string_view kCut = "...";
 constexpr std::size_t kChannels = 4;
-
-// Bytes of the UTF-8 character at the start of `text`, 0 if the bytes are not valid (RFC 3629).
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t size = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4 || text.size() < size) return 0;
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  }
-  const bool is_overlong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
-  const bool is_surrogate = first == 0xed && byte(1) >= 0xa0;
-  const bool is_beyond = first == 0xf4 && byte(1) >= 0x90;
-  return is_overlong || is_surrogate || is_beyond ? 0 : size;
-}
 
 void set_font(cairo_t* cr, const TextStyle& style) {
   cairo_select_font_face(cr, "sans", CAIRO_FONT_SLANT_NORMAL,
@@ -143,8 +126,7 @@ std::vector<std::string> wrapped(cairo_t* cr, const TextStyle& style, std::strin
   std::vector<std::string> lines(1);
   std::string_view rest = all;
   while (!rest.empty()) {
-    const std::string word(rest.substr(0, rest.find(' ')));
-    rest.remove_prefix(std::min(rest.size(), word.size() + 1));
+    const std::string word(take_part(rest, ' '));
     const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
     if (lines.back().empty() || text_width(cr, style, longer) <= max_width) {
       lines.back() = longer;

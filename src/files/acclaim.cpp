@@ -6,13 +6,42 @@
 #include <map>
 #include <optional>
 
-#include "files/motion_text.h"
+#include "base/text.h"
+#include "gaitpad/motion_file.h"
 #include "gaitpad/skeleton.h"
 #include "motion/euler.h"
 
 namespace gaitpad {
-
 namespace {
+
+// Lines of a text without comments (# to the end), trimmed, with their numbers.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text) : rest_(without_byte_order_mark(text)) {}
+
+  // Next line that is not blank; empty at the end.
+  std::string_view next() {
+    while (!rest_.empty()) {
+      ++line_;
+      const std::string_view line = trimmed(without_comment(take_line(rest_)));
+      if (!line.empty()) return line;
+    }
+    return {};
+  }
+  int line() const { return line_; }  // of the last one
+
+ private:
+  // A comment begins at the line's beginning or behind a blank.
+  static std::string_view without_comment(std::string_view line) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == '#' && (i == 0 || is_blank(line[i - 1]))) return line.substr(0, i);
+    }
+    return line;
+  }
+
+  std::string_view rest_;
+  int line_ = 0;
+};
 
 // A bone as it is read: angles may stand before the unit that they are in.
 struct RawBone {
@@ -82,7 +111,7 @@ class AsfParser {
     std::string_view rest = line_;
     const std::string keyword = lower_case(take_word(rest));
     if (keyword.empty() || keyword.front() != ':') {
-      return fail(fmt::format("\"{}\" stands in no section (\":bonedata\" ...)", shown(line_)));
+      return fail(fmt::format("{} stands in no section (\":bonedata\" ...)", in_quotes(line_)));
     }
     advance();
     if (keyword == ":units")
@@ -115,12 +144,12 @@ class AsfParser {
       else if (angle.starts_with("rad"))
         asf_.angle_unit = 1.0;
       else
-        return fail(fmt::format("angles in \"{}\": deg or rad is known", shown(word)));
+        return fail(fmt::format("angles in {}: deg or rad is known", in_quotes(word)));
     }
     if (key == "length") {
-      const auto value = text_number(word);
+      const auto value = parse_bounded(word);
       if (!value || *value <= 0.0)
-        return fail(fmt::format("length \"{}\" is no unit", shown(word)));
+        return fail(fmt::format("length {} is no unit", in_quotes(word)));
       asf_.length_unit = *value;
     }
     return true;
@@ -138,8 +167,8 @@ class AsfParser {
   bool vector(const std::string& key, std::string_view& rest, vec3& out) {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = take_word(rest);
-      const auto value = text_number(word);
-      if (!value) return fail(fmt::format("{}: \"{}\" is no number", key, shown(word)));
+      const auto value = parse_bounded(word);
+      if (!value) return fail(fmt::format("{}: {} is no number", key, in_quotes(word)));
       out[axis] = *value;
     }
     return true;
@@ -149,25 +178,25 @@ class AsfParser {
     const std::string_view word = take_word(rest);
     if (word.empty()) return true;  // XYZ
     const auto order = axis_order(word);
-    if (!order) return fail(fmt::format("axis: \"{}\" is no order of X, Y and Z", shown(word)));
+    if (!order) return fail(fmt::format("axis: {} is no order of X, Y and Z", in_quotes(word)));
     raw.order = *order;
     return true;
   }
 
   bool channels(AsfBone& bone, std::string_view rest) {
-    if (bone.channels > 0) return fail(fmt::format("\"{}\" has its dof twice", shown(bone.name)));
+    if (bone.channels > 0) return fail(fmt::format("{} has its dof twice", in_quotes(bone.name)));
     while (!rest.empty()) {
       const std::string word = lower_case(take_word(rest));
       const auto channel = channel_named(word);
       if (word == "l") {
-        return fail(fmt::format("\"{}\" changes its length (dof l), which no joint here can",
-                                shown(bone.name)));
+        return fail(fmt::format("{} changes its length (dof l), which no joint here can",
+                                in_quotes(bone.name)));
       }
       if (!channel)
-        return fail(fmt::format("dof \"{}\" is none of rx ry rz tx ty tz", shown(word)));
+        return fail(fmt::format("dof {} is none of rx ry rz tx ty tz", in_quotes(word)));
       const auto end = bone.channel.begin() + bone.channels;
       if (std::find(bone.channel.begin(), end, *channel) != end) {
-        return fail(fmt::format("\"{}\" has dof {} twice", shown(bone.name), word));
+        return fail(fmt::format("{} has dof {} twice", in_quotes(bone.name), word));
       }
       bone.channel[bone.channels++] = *channel;
     }
@@ -177,7 +206,7 @@ class AsfParser {
   bool bone_data() {
     while (is_inside()) {
       if (lower_case(line_) != "begin")
-        return fail(fmt::format("begin expected, not \"{}\"", shown(line_)));
+        return fail(fmt::format("begin expected, not {}", in_quotes(line_)));
       RawBone raw;
       raw.line = in_.line();
       for (advance(); is_inside() && lower_case(line_) != "end"; advance()) {
@@ -202,8 +231,9 @@ class AsfParser {
       return vector(key, rest, raw.bone.direction);
     }
     if (key == "length") {
-      const auto value = text_number(rest);
-      if (!value || *value < 0.0) return fail(fmt::format("length \"{}\" is none", shown(rest)));
+      const auto value = parse_bounded(trimmed(rest));
+      if (!value || *value < 0.0)
+        return fail(fmt::format("length {} is none", in_quotes(trimmed(rest))));
       raw.bone.length = *value;
       raw.has_length = true;
     }
@@ -216,19 +246,19 @@ class AsfParser {
     AsfBone& bone = raw.bone;
     if (bone.name.empty()) return fail_at(raw.line, "a bone without a name");
     if (!raw.has_direction || !raw.has_length) {
-      return fail_at(raw.line, fmt::format("\"{}\" has no {}", shown(bone.name),
+      return fail_at(raw.line, fmt::format("{} has no {}", in_quotes(bone.name),
                                            raw.has_direction ? "length" : "direction"));
     }
     const double size = glm::length(bone.direction);
     if (size > 0.0) bone.direction /= size;
     if (!(size > 0.0) && bone.length > 0.0) {
-      return fail_at(raw.line, fmt::format("the direction of \"{}\" is 0", shown(bone.name)));
+      return fail_at(raw.line, fmt::format("the direction of {} is 0", in_quotes(bone.name)));
     }
     if (bones_.size() >= static_cast<std::size_t>(kMaxJoints)) {
       return fail_at(raw.line, fmt::format("more than {} bones", kMaxJoints));
     }
     if (!by_name_.emplace(bone.name, static_cast<int>(bones_.size())).second) {
-      return fail_at(raw.line, fmt::format("a second bone \"{}\"", shown(bone.name)));
+      return fail_at(raw.line, fmt::format("a second bone {}", in_quotes(bone.name)));
     }
     bones_.push_back(std::move(raw));
     return true;
@@ -245,7 +275,7 @@ class AsfParser {
         const auto child = bone_named(take_word(rest));
         if (!child) return false;
         if (*child == 0 || bones_[*child].bone.parent >= 0) {
-          return fail(fmt::format("\"{}\" hangs on two bones", shown(bones_[*child].bone.name)));
+          return fail(fmt::format("{} hangs on two bones", in_quotes(bones_[*child].bone.name)));
         }
         bones_[*child].bone.parent = *parent;
         children_[*parent].push_back(*child);
@@ -259,7 +289,7 @@ class AsfParser {
     if (at != by_name_.end() && static_cast<std::size_t>(at->second) < children_.size()) {
       return at->second;
     }
-    fail(fmt::format("no bone \"{}\" in :bonedata above", shown(name)));
+    fail(fmt::format("no bone {} in :bonedata above", in_quotes(name)));
     return std::nullopt;
   }
 
@@ -287,7 +317,7 @@ class AsfParser {
     }
     for (const RawBone& raw : bones_) {
       if (raw.line > 0) {
-        return fail_at(raw.line, fmt::format("\"{}\" hangs on no bone", shown(raw.bone.name)));
+        return fail_at(raw.line, fmt::format("{} hangs on no bone", in_quotes(raw.bone.name)));
       }
     }
     if (asf_.bones.size() + leaves > static_cast<std::size_t>(kMaxJoints)) {
@@ -306,20 +336,12 @@ class AsfParser {
   std::vector<std::vector<int>> children_;
 };
 
-}  // namespace
-
-Result<Asf> parse_asf(std::string_view text, const std::string& name) {
-  return AsfParser(text, name).asf();
-}
-
-namespace {
-
 constexpr double kMaxFrameNumber = 1e7;
 
 // A line of digits alone begins a frame.
 std::optional<int> frame_number(std::string_view line) {
   if (line.find_first_not_of("0123456789") != line.npos) return std::nullopt;
-  const auto value = text_number(line);
+  const auto value = parse_bounded(line);
   if (!value || *value >= kMaxFrameNumber) return std::nullopt;
   return static_cast<int>(*value);
 }
@@ -355,15 +377,15 @@ class AmcParser {
       std::string_view rest = line_;
       const std::string word = lower_case(take_word(rest));
       if (word.front() != ':') {
-        return fail(fmt::format("\"{}\" stands before the first frame's number", shown(line_)));
+        return fail(fmt::format("{} stands before the first frame's number", in_quotes(line_)));
       }
       if (word == ":degrees") amc_.angle_unit = kDegree;
       if (word == ":radians") amc_.angle_unit = 1.0;
       if (word == ":fully-specified") is_full_ = true;
       if (word == ":samples-per-second") {
-        const auto rate = text_number(rest);
+        const auto rate = parse_bounded(trimmed(rest));
         if (!rate || *rate < 0.1 || *rate > 1e5) {
-          return fail(fmt::format("\"{}\" is no rate", shown(rest)));
+          return fail(fmt::format("{} is no rate", in_quotes(trimmed(rest))));
         }
         amc_.frame_rate_hz = *rate;
       }
@@ -374,7 +396,7 @@ class AmcParser {
 
   bool frame() {
     const auto number = frame_number(line_);
-    if (!number) return fail(fmt::format("a frame's number expected, not \"{}\"", shown(line_)));
+    if (!number) return fail(fmt::format("a frame's number expected, not {}", in_quotes(line_)));
     if (amc_.frames > 0 && *number != number_ + 1) {
       return fail(fmt::format("frame {} follows frame {}", *number, number_));
     }
@@ -406,27 +428,27 @@ class AmcParser {
     const std::string_view word = take_word(rest);
     const auto at = by_name_.find(word);
     if (at == by_name_.end()) {
-      return fail(fmt::format("frame {}: {} has no bone \"{}\"", number_, asf_name_, shown(word)));
+      return fail(fmt::format("frame {}: {} has no bone {}", number_, asf_name_, in_quotes(word)));
     }
     const AsfBone& bone = asf_.bones[static_cast<std::size_t>(at->second)];
     if (seen_[static_cast<std::size_t>(at->second)]) {
-      return fail(fmt::format("frame {}: \"{}\" stands twice", number_, shown(word)));
+      return fail(fmt::format("frame {}: {} stands twice", number_, in_quotes(word)));
     }
     seen_[static_cast<std::size_t>(at->second)] = true;
     double* values = amc_.values.data() + amc_.values.size() - asf_.channels + bone.first_value;
     int count = 0;
     for (; !rest.empty(); ++count) {
       const std::string_view text = take_word(rest);
-      const auto value = text_number(text);
+      const auto value = parse_bounded(text);
       if (!value) {
-        return fail(fmt::format("frame {}, \"{}\": \"{}\" is no usable number", number_,
-                                shown(bone.name), shown(text)));
+        return fail(fmt::format("frame {}, {}: {} is no usable number", number_,
+                                in_quotes(bone.name), in_quotes(text)));
       }
       if (count < bone.channels) values[count] = *value;
     }
     if (count == bone.channels) return true;
-    return fail(fmt::format("frame {}: \"{}\" has {} values, its skeleton says {}", number_,
-                            shown(bone.name), count, bone.channels));
+    return fail(fmt::format("frame {}: {} has {} values, its skeleton says {}", number_,
+                            in_quotes(bone.name), count, bone.channels));
   }
 
   // The first frame says which bones move.
@@ -437,8 +459,8 @@ class AmcParser {
     }
     for (std::size_t i = 0; is_full_ && i < seen_.size(); ++i) {
       if (seen_[i] == first_[i]) continue;
-      return fail(fmt::format("frame {} {} \"{}\", against the first one", number_,
-                              first_[i] ? "lacks" : "has", shown(asf_.bones[i].name)));
+      return fail(fmt::format("frame {} {} {}, against the first one", number_,
+                              first_[i] ? "lacks" : "has", in_quotes(asf_.bones[i].name)));
     }
     return true;
   }
@@ -457,6 +479,10 @@ class AmcParser {
 };
 
 }  // namespace
+
+Result<Asf> parse_asf(std::string_view text, const std::string& name) {
+  return AsfParser(text, name).asf();
+}
 
 Result<Amc> parse_amc(std::string_view text, const std::string& name, const Asf& asf,
                       const std::string& asf_name) {

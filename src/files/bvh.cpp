@@ -1,4 +1,4 @@
-#include "files/bvh.h"
+#include "gaitpad/bvh.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,11 @@
 #include <iterator>
 #include <optional>
 
-#include "files/motion_text.h"
+#include "base/files.h"
+#include "base/text.h"
+#include "gaitpad/motion_file.h"
 #include "gaitpad/skeleton.h"
+#include "motion/euler.h"
 
 namespace gaitpad {
 
@@ -17,9 +20,7 @@ namespace {
 // Words and lines of the text, with the number of the line that the last word stood on.
 class Reader {
  public:
-  explicit Reader(std::string_view text) : rest_(text) {
-    if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);  // UTF-8 byte order mark
-  }
+  explicit Reader(std::string_view text) : rest_(without_byte_order_mark(text)) {}
   int line() const { return line_; }
   std::size_t bytes_left() const { return rest_.size(); }
 
@@ -110,7 +111,7 @@ class Parser {
     if (word == "}") {
       open.pop_back();
       if (has_offset_[joint] || bvh_.joints[joint].is_end_site) return true;
-      return fail(fmt::format("\"{}\" has no OFFSET", shown(bvh_.joints[joint].name)));
+      return fail(fmt::format("{} has no OFFSET", in_quotes(bvh_.joints[joint].name)));
     }
     if (word == "JOINT" || word == "End") {
       if (bvh_.joints[joint].is_end_site) return fail("an End Site has children");
@@ -119,8 +120,8 @@ class Parser {
       return opened;
     }
     if (word.empty()) return fail("the file ends inside the hierarchy");
-    return fail(fmt::format("unexpected \"{}\" in joint \"{}\"", shown(word),
-                            shown(bvh_.joints[joint].name)));
+    return fail(fmt::format("unexpected {} in joint {}", in_quotes(word),
+                            in_quotes(bvh_.joints[joint].name)));
   }
 
   bool open_joint(int parent) {
@@ -143,7 +144,8 @@ class Parser {
     if (bvh_.joints.size() >= static_cast<std::size_t>(kMaxJoints)) {
       return fail(fmt::format("more than {} joints and end sites", kMaxJoints));
     }
-    if (in_.word() != "{") return fail(fmt::format("\"{{\" expected after {}", shown(joint.name)));
+    if (in_.word() != "{")
+      return fail(fmt::format("\"{{\" expected after {}", in_quotes(joint.name)));
     bvh_.joints.push_back(std::move(joint));
     has_offset_.push_back(false);
     return true;
@@ -151,15 +153,15 @@ class Parser {
 
   bool offset(int joint) {
     if (has_offset_[joint]) {
-      return fail(fmt::format("\"{}\" has OFFSET twice", shown(bvh_.joints[joint].name)));
+      return fail(fmt::format("{} has OFFSET twice", in_quotes(bvh_.joints[joint].name)));
     }
     has_offset_[joint] = true;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = in_.word();
-      const auto value = text_number(word);
+      const auto value = parse_bounded(word);
       if (!value) {
-        return fail(fmt::format("OFFSET of \"{}\": \"{}\" is no number",
-                                shown(bvh_.joints[joint].name), shown(word)));
+        return fail(fmt::format("OFFSET of {}: {} is no number", in_quotes(bvh_.joints[joint].name),
+                                in_quotes(word)));
       }
       bvh_.joints[joint].offset[axis] = *value;
     }
@@ -170,12 +172,12 @@ class Parser {
     BvhJoint& joint = bvh_.joints[index];
     if (joint.is_end_site) return fail("an End Site has CHANNELS");
     if (joint.channels > 0)
-      return fail(fmt::format("\"{}\" has CHANNELS twice", shown(joint.name)));
+      return fail(fmt::format("{} has CHANNELS twice", in_quotes(joint.name)));
     const std::string_view word = in_.word();
-    const auto count = text_number(word);
+    const auto count = parse_bounded(word);
     if (!count || *count < 0 || *count > 6 || *count != std::floor(*count)) {
-      return fail(fmt::format("CHANNELS of \"{}\": \"{}\" is no count from 0 to 6",
-                              shown(joint.name), shown(word)));
+      return fail(fmt::format("CHANNELS of {}: {} is no count from 0 to 6", in_quotes(joint.name),
+                              in_quotes(word)));
     }
     joint.first_value = bvh_.channels;
     while (joint.channels < static_cast<int>(*count)) {
@@ -190,11 +192,11 @@ class Parser {
     const auto kind = channel_named(word);
     if (!kind) {
       return fail(
-          fmt::format("\"{}\" is no channel (joint \"{}\")", shown(word), shown(joint.name)));
+          fmt::format("{} is no channel (joint {})", in_quotes(word), in_quotes(joint.name)));
     }
     for (int i = 0; i < joint.channels; ++i) {
       if (joint.channel[i] == *kind) {
-        return fail(fmt::format("\"{}\" has {} twice", shown(joint.name), shown(word)));
+        return fail(fmt::format("{} has {} twice", in_quotes(joint.name), word));
       }
     }
     joint.channel[joint.channels++] = *kind;
@@ -203,11 +205,11 @@ class Parser {
 
   bool motion_header() {
     if (in_.word() != "MOTION") return fail("MOTION expected after the hierarchy");
-    const auto frames = text_number(behind("Frames:"));
+    const auto frames = parse_bounded(behind("Frames:"));
     if (!frames || *frames < 1 || *frames != std::floor(*frames)) {
       return fail("\"Frames:\" with a count of 1 or more expected");
     }
-    const auto time_s = text_number(behind("Frame Time:"));
+    const auto time_s = parse_bounded(behind("Frame Time:"));
     if (!time_s || *time_s < 1e-5 || *time_s > 10.0) {
       return fail("\"Frame Time:\" with a time from 0.00001 to 10 s expected");
     }
@@ -247,7 +249,7 @@ class Parser {
       if (!frame_values(line, frame)) return false;
     }
     if (const std::string_view more = in_.full_line(); !more.empty()) {
-      return fail(fmt::format("\"{}\" behind the last of {} frames", shown(more), bvh_.frames));
+      return fail(fmt::format("{} behind the last of {} frames", in_quotes(more), bvh_.frames));
     }
     return true;
   }
@@ -257,10 +259,10 @@ class Parser {
     while (!line.empty()) {
       std::size_t n = 0;
       while (n < line.size() && !is_blank(line[n])) ++n;
-      const auto value = text_number(line.substr(0, n));
+      const auto value = parse_bounded(line.substr(0, n));
       if (!value) {
-        return fail(fmt::format("frame {}, value {}: \"{}\" is no usable number", frame, count,
-                                shown(line.substr(0, n))));
+        return fail(fmt::format("frame {}, value {}: {} is no usable number", frame, count,
+                                in_quotes(line.substr(0, n))));
       }
       if (++count > bvh_.channels) break;
       bvh_.values.push_back(*value);
@@ -279,20 +281,6 @@ class Parser {
   Bvh bvh_;
   std::vector<bool> has_offset_;  // one a joint
 };
-
-}  // namespace
-
-Result<Bvh> parse_bvh(std::string_view text, const std::string& name) {
-  return Parser(text, name).bvh();
-}
-
-Result<Bvh> read_bvh(const std::string& path) {
-  const auto text = motion_file_text(path);
-  if (!text) return text.error();
-  return parse_bvh(*text, path);
-}
-
-namespace {
 
 constexpr double kPoleLimit = 0.5;  // sine of 30 degrees
 constexpr int kCountWidth = 10;
@@ -317,6 +305,16 @@ std::string channel_names(const EulerOrder& order) {
 }
 
 }  // namespace
+
+Result<Bvh> parse_bvh(std::string_view text, const std::string& name) {
+  return Parser(text, name).bvh();
+}
+
+Result<Bvh> read_bvh(const std::string& path) {
+  const auto text = file_text(path, kMaxMotionFileBytes);
+  if (!text) return text.error();
+  return parse_bvh(*text, path);
+}
 
 std::vector<EulerOrder> euler_orders(const Skeleton& skeleton, std::span<const quat> local) {
   const std::size_t joints = skeleton.joints.size();

@@ -1,6 +1,6 @@
 // The body that a .glb shows: a rod for each bone, thicker where it begins.
 
-#include "files/gltf.h"
+#include "gaitpad/gltf.h"
 
 #include <fmt/format.h>
 
@@ -17,16 +17,14 @@
 #include "gaitpad/skeleton.h"
 
 namespace gaitpad {
+namespace {
 
-// Triangles, three vertices each, none shared: flat shading. Bound to the bone's upper joint alone.
+// The body that the file shows: a rod for each bone, thickest near its upper joint and bound to
+// that joint alone. Triangles share no vertices, for flat shading.
 struct GltfBody {
-  std::vector<vec3> place_m, normal;  // world, in the pose given
+  std::vector<vec3> place_m, normal;  // world, in the rest pose
   std::vector<std::uint16_t> joint;   // index in the skeleton
 };
-// `world` holds where the joints are when the body is bound.
-GltfBody gltf_body(const Skeleton& skeleton, const JointFrames& world);
-
-namespace {
 
 constexpr double kShortestBone_m = 1e-3;
 constexpr double kWaist = 0.15;  // how far down the rod it is thickest
@@ -59,8 +57,7 @@ void add_rod(const vec3& from, const vec3& to, int joint, GltfBody& body) {
   }
 }
 
-}  // namespace
-
+// `world` holds the joints in the rest pose.
 GltfBody gltf_body(const Skeleton& skeleton, const JointFrames& world) {
   GltfBody body;
   for (std::size_t j = 1; j < skeleton.joints.size(); ++j) {
@@ -70,12 +67,10 @@ GltfBody gltf_body(const Skeleton& skeleton, const JointFrames& world) {
   return body;
 }
 
-namespace {
-
 using nlohmann::ordered_json;
 
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedByte = 5121, kArrayBuffer = 34962;
-// Whole numbers of frames stay apart as 32-bit seconds up to here, whatever the rate.
+// Up to this many frames, times in seconds differ as 32-bit floats at any rate.
 constexpr std::size_t kMostFrames = std::size_t{1} << 23;
 constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
@@ -95,13 +90,14 @@ ordered_json json_of(const quat& q) {
   return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)};
 }
 
-// The document and the length of the bytes that it speaks of, in the order in which they follow.
+// The JSON document, and the length of the binary part that it describes so far.
 class Document {
  public:
   ordered_json json;
   std::uint64_t bytes = 0;
 
-  // Returns the accessor's index. `view_target` 0: none.
+  // Adds a buffer view behind the last one and an accessor of it; returns the accessor's index.
+  // `view_target` 0: none.
   int add(std::uint64_t byte_length, int component, const char* type, std::size_t count,
           int view_target) {
     ordered_json view = {{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", byte_length}};
@@ -142,7 +138,7 @@ void add_nodes(const Skeleton& skeleton, const GltfLayout& layout, ordered_json&
   }
 }
 
-// Column by column: from the world to the joint, as it is bound.
+// Matrices from the world to each joint in the rest pose, by columns.
 void append_inverse_bind(const JointFrames& world, std::size_t joints, std::string& bytes) {
   for (std::size_t j = 0; j < joints; ++j) {
     const quat back = glm::conjugate(world.rotation[j]);
@@ -173,7 +169,7 @@ void add_bounds(const std::vector<vec3>& list, ordered_json& accessor) {
   accessor["max"] = json_of(high);
 }
 
-// Skin, mesh and the node that shows them; their bytes.
+// Adds skin, mesh and the node that shows them; returns their bytes.
 std::string add_body(const Skeleton& skeleton, const GltfLayout& layout, Document& doc) {
   const std::size_t joints = skeleton.joints.size();
   const auto rest = rest_of(skeleton, layout);
@@ -182,7 +178,7 @@ std::string add_body(const Skeleton& skeleton, const GltfLayout& layout, Documen
   std::string bytes;
   ordered_json& json = doc.json;
   json["scenes"] = {{{"nodes", {0}}}};
-  if (n == 0) return bytes;  // joints at one place: nothing to show
+  if (n == 0) return bytes;  // all joints at one place: no bone to show
   append_inverse_bind(rest->world, joints, bytes);
   const int bind = doc.add(64 * joints, kFloat, "MAT4", joints, 0);
   append_vectors(body.place_m, bytes);
@@ -219,7 +215,7 @@ ordered_json channel(std::size_t sampler, int node, const char* path) {
   return {{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}};
 }
 
-// The bytes follow: times, the root's places, each joint's rotations.
+// The bytes of its accessors: times, the root's places, then each joint's rotations.
 void add_animation(const std::vector<int>& turning, std::size_t frames, double fps, Document& doc) {
   if (frames == 0) return;
   const int times = doc.add(4 * frames, kFloat, "SCALAR", frames, 0);
@@ -238,10 +234,10 @@ void add_animation(const std::vector<int>& turning, std::size_t frames, double f
   json["animations"] = {{{"name", "walk"}, {"samplers", samplers}, {"channels", channels}}};
 }
 
-// Header and document; `bytes_behind` is the length of the binary part.
+// The file up to the binary part, which has the length `bytes_behind`.
 std::string head(ordered_json& json, std::uint64_t bytes_behind) {
   json["buffers"] = {{{"byteLength", bytes_behind}}};
-  // Names are a stranger's bytes: what is no UTF-8 is replaced.
+  // Joint names may hold any bytes: what is not UTF-8 is replaced.
   std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   text.append((4 - text.size() % 4) % 4, ' ');
   std::string out = "glTF";
@@ -274,7 +270,7 @@ void GltfWriter::write(const Pose& pose) {
   for (std::size_t t = 0; t < turning(); ++t) {
     const auto joint = static_cast<std::size_t>(turning_[t]);
     quat q = glm::normalize(pose.local[joint]);
-    if (glm::dot(q, before_[joint]) < 0.0) q = -q;  // no way round between two frames
+    if (glm::dot(q, before_[joint]) < 0.0) q = -q;  // interpolate the short way
     before_[joint] = q;
     for (const double v : {q.x, q.y, q.z, q.w}) chunk_[t].push_back(static_cast<float>(v));
   }
@@ -284,7 +280,7 @@ void GltfWriter::write(const Pose& pose) {
   if (++frames_ % kChunkFrames == 0) write_chunk();
 }
 
-// Every track has its place in a chunk, also in the last one, which is not full.
+// Every track has a fixed place in a chunk, also in the last one, which is not full.
 void GltfWriter::write_chunk() {
   const std::size_t chunk = (frames_ - 1) / kChunkFrames;
   for (std::size_t t = 0; t < chunk_.size(); ++t) {

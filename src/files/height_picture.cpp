@@ -8,7 +8,7 @@
 #include <csetjmp>
 #include <cstring>
 
-#include "files/toml_file.h"
+#include "base/files.h"
 
 namespace gaitpad {
 

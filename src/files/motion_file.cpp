@@ -5,56 +5,29 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <string>
 
+#include "base/files.h"
+#include "base/text.h"
 #include "files/acclaim.h"
-#include "files/bvh.h"
 #include "files/keyframe.h"
-#include "files/motion_text.h"
 #include "files/toml_file.h"
+#include "gaitpad/bvh.h"
 #include "gaitpad/config_files.h"
-#include "gaitpad/motion.h"
 #include "motion/euler.h"
 
 namespace gaitpad {
 
-double metres_per_unit(double leg_length_units) noexcept {
-  constexpr double kMinLegM = 0.65, kMaxLegM = 1.05;
-  constexpr double kUnitsM[] = {1.0, 0.1, 0.01, 0.001, 0.0254, 0.3048, 0.0254 / 0.45};
-  for (const double unit_m : kUnitsM) {
-    const double leg_m = leg_length_units * unit_m;
-    if (leg_m >= kMinLegM && leg_m <= kMaxLegM) return unit_m;
-  }
-  return kAdultLegM / leg_length_units;
-}
-
-double metres_per_unit(double leg_length_units, double stated_unit_m) noexcept {
-  constexpr double kMinLegM = 0.4, kMaxLegM = 1.3;
-  const double leg_m = leg_length_units * stated_unit_m;
-  return leg_m >= kMinLegM && leg_m <= kMaxLegM ? stated_unit_m : metres_per_unit(leg_length_units);
-}
-
-// What loading has in common for all formats: legs, up, units; and the formats beside BVH.
-
-enum class UpAxis { y = 1, z = 2 };
-
-// Names the motion after its file, finds legs and pelvis, and the axis along which the hips stand
-// above the ankles. `motion` is still in file units.
-Result<UpAxis> find_upper_body(Motion& motion, const std::string& path, const LoadOptions& options);
-
-// To metres, y up. `stated_unit_m` is the length of the unit by the file itself, 0 where it says
-// nothing; the options go before it.
-Result<Motion> finished(Motion motion, UpAxis up, double stated_unit_m, const std::string& path,
-                        const LoadOptions& options);
-
-// load_motion() for .amc and .asf.
-Result<Motion> load_amc(const std::string& path, const LoadOptions& options);
-Result<Motion> load_asf(const std::string& path, const LoadOptions& options);
-
+namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMinLegUnits = 1e-3, kMaxLegUnits = 1e6;
+constexpr double kAcclaimRate_hz = 120.0;  // of a file that says nothing, as CMU's
+constexpr double kInch_m = 0.0254;
 
+// The index of the axis that points up.
+enum class UpAxis { y = 1, z = 2 };
+
+// The axis along which the hips stand above the ankles, over all frames.
 UpAxis up_axis(const std::array<std::vector<vec3>, 2>& hips,
                const std::array<std::vector<vec3>, 2>& ankles) {
   double y = 0.0, z = 0.0;
@@ -94,10 +67,10 @@ void turn_y_up(Motion& motion) {
   }
 }
 
-}  // namespace
-
-Result<UpAxis> find_upper_body(Motion& motion, const std::string& path, const LoadOptions& options) {
-  motion.name = std::filesystem::path(path).filename().string();
+// Names the motion after its file and finds legs, pelvis and the axis that points up. The motion is
+// still in file units.
+Result<UpAxis> find_body(Motion& motion, const std::string& path, const LoadOptions& options) {
+  motion.name = fs::path(path).filename().string();
   const auto legs = find_legs(motion, options.legs);
   if (!legs) return Error{fmt::format("{}: {}", path, legs.error().message)};
   motion.legs = *legs;
@@ -105,8 +78,10 @@ Result<UpAxis> find_upper_body(Motion& motion, const std::string& path, const Lo
   return up_axis_of(motion);
 }
 
-Result<Motion> finished(Motion motion, UpAxis up, double stated_unit_m, const std::string& path,
-                        const LoadOptions& options) {
+// Converts to metres and y up. `stated_unit_m` is the unit that the file states, 0: none; a unit in
+// the options goes before it.
+Result<Motion> finish_motion(Motion motion, UpAxis up, double stated_unit_m,
+                             const std::string& path, const LoadOptions& options) {
   const double leg_units = leg_length_m(motion);
   if (leg_units < kMinLegUnits || leg_units > kMaxLegUnits) {
     return Error{fmt::format("{}: legs of {:.3g} units are no legs", path, leg_units)};
@@ -119,39 +94,31 @@ Result<Motion> finished(Motion motion, UpAxis up, double stated_unit_m, const st
   return motion;
 }
 
-// Acclaim files as a motion: which skeleton an .amc file has, and what its numbers mean.
-
-namespace fs = std::filesystem;
-namespace {
-
-constexpr double kDefaultRate = 120.0;
-constexpr double kInch = 0.0254;
-
-// Joints as in Skeleton: depth first, an End Site behind the bones that nothing hangs on.
-struct Layout {
+// An Acclaim skeleton as joints: depth first, an End Site after each bone without children.
+struct AcclaimJoints {
   Skeleton skeleton;       // offsets in file units
   std::vector<int> joint;  // of each bone
 };
 
-Layout layout_of(const Asf& asf) {
-  Layout layout;
+AcclaimJoints joints_of(const Asf& asf) {
+  AcclaimJoints body;
   std::vector<bool> has_child(asf.bones.size(), false);
   for (const AsfBone& bone : asf.bones) {
     if (bone.parent >= 0) has_child[static_cast<std::size_t>(bone.parent)] = true;
   }
-  std::vector<Joint>& joints = layout.skeleton.joints;
+  std::vector<Joint>& joints = body.skeleton.joints;
   for (std::size_t i = 0; i < asf.bones.size(); ++i) {
     const AsfBone& bone = asf.bones[i];
     const bool is_root = bone.parent < 0;
-    const int parent = is_root ? -1 : layout.joint[static_cast<std::size_t>(bone.parent)];
+    const int parent = is_root ? -1 : body.joint[static_cast<std::size_t>(bone.parent)];
     const int here = static_cast<int>(joints.size());
-    layout.joint.push_back(here);
+    body.joint.push_back(here);
     const vec3 offset =
         is_root ? vec3(0.0) : asf.bones[static_cast<std::size_t>(bone.parent)].end();
     joints.push_back({bone.name, parent, offset, false});
     if (!has_child[i]) joints.push_back({bone.name + "_End", here, bone.end(), true});
   }
-  return layout;
+  return body;
 }
 
 struct BonePose {
@@ -181,13 +148,14 @@ bool has_translation(const AsfBone& bone) {
   return false;
 }
 
+// Rotations and places as the file has them, still in its units.
 Motion in_file_units(const Asf& asf, const Amc& amc) {
-  Layout layout = layout_of(asf);
+  AcclaimJoints body = joints_of(asf);
   Motion motion;
-  motion.frame_time_s = 1.0 / (amc.frame_rate_hz > 0.0 ? amc.frame_rate_hz : kDefaultRate);
+  motion.frame_time_s = 1.0 / (amc.frame_rate_hz > 0.0 ? amc.frame_rate_hz : kAcclaimRate_hz);
   bool moves = false;
   for (std::size_t i = 1; i < asf.bones.size(); ++i) moves |= has_translation(asf.bones[i]);
-  const std::vector<Joint>& joints = layout.skeleton.joints;
+  const std::vector<Joint>& joints = body.skeleton.joints;
   motion.frames.resize(static_cast<std::size_t>(amc.frames));
   for (int f = 0; f < amc.frames; ++f) {
     MotionFrame& frame = motion.frames[static_cast<std::size_t>(f)];
@@ -198,13 +166,13 @@ Motion in_file_units(const Asf& asf, const Amc& amc) {
     }
     for (std::size_t i = 0; i < asf.bones.size(); ++i) {
       const BonePose pose = pose_of(asf.bones[i], values, amc.angle_unit);
-      const auto joint = static_cast<std::size_t>(layout.joint[i]);
+      const auto joint = static_cast<std::size_t>(body.joint[i]);
       frame.local[joint] = pose.rotation;
       if (i == 0) frame.root_m = asf.root_position + pose.translation;
       if (i > 0 && moves) frame.translation_m[joint] += pose.translation;
     }
   }
-  motion.skeleton = std::move(layout.skeleton);
+  motion.skeleton = std::move(body.skeleton);
   return motion;
 }
 
@@ -216,7 +184,7 @@ Amc rest_of(const Asf& asf) {
   return amc;
 }
 
-// Names are tried in this order, then any single .asf of the folder.
+// NAME_01.amc: NAME_01.asf, else NAME.asf, else the only .asf file of the folder.
 Result<std::string> skeleton_beside(const std::string& path) {
   const fs::path file(path);
   const std::string stem = file.stem().string();
@@ -241,45 +209,6 @@ Result<std::string> skeleton_beside(const std::string& path) {
                   "stands beside it",
                   path, fmt::join(tried, " nor "))};
 }
-
-}  // namespace
-
-Result<Motion> motion_from_acclaim(const NamedText& asf_text, const NamedText& amc_text,
-                                   const LoadOptions& options) {
-  const auto asf = parse_asf(asf_text.text, asf_text.name);
-  if (!asf) return asf.error();
-  std::optional<Amc> amc;
-  if (!amc_text.name.empty()) {
-    auto parsed =
-        parse_amc(amc_text.text, amc_text.name, *asf, fs::path(asf_text.name).filename().string());
-    if (!parsed) return parsed.error();
-    amc = std::move(*parsed);
-  }
-  const std::string& path = amc ? amc_text.name : asf_text.name;
-  Motion motion = in_file_units(*asf, amc ? *amc : rest_of(*asf));
-  const auto up = find_upper_body(motion, path, options);
-  if (!up) return up.error();
-  const double stated_m = asf->length_unit > 0.0 ? kInch / asf->length_unit : 0.0;
-  return finished(std::move(motion), *up, stated_m, path, options);
-}
-
-Result<Motion> load_amc(const std::string& path, const LoadOptions& options) {
-  const auto amc = motion_file_text(path);
-  if (!amc) return amc.error();
-  auto skeleton = options.skeleton.empty() ? skeleton_beside(path) : options.skeleton;
-  if (!skeleton) return skeleton.error();
-  const auto asf = motion_file_text(*skeleton);
-  if (!asf) return Error{fmt::format("{} (the skeleton of {})", asf.error().message, path)};
-  return motion_from_acclaim({*skeleton, *asf}, {path, *amc}, options);
-}
-
-Result<Motion> load_asf(const std::string& path, const LoadOptions& options) {
-  const auto asf = motion_file_text(path);
-  if (!asf) return asf.error();
-  return motion_from_acclaim({path, *asf}, {}, options);
-}
-
-namespace {
 
 struct JointValues {
   quat rotation = kIdentity;
@@ -310,7 +239,8 @@ bool has_position(const BvhJoint& joint) {
   return false;
 }
 
-enum class PositionMeans { place, shift };  // from the parent, or from OFFSET
+// What a joint's position channels count from: its parent, or its OFFSET.
+enum class PositionMeans { place, shift };
 
 PositionMeans position_means(const Bvh& bvh, const BvhJoint& joint) {
   vec3 mean(0.0);
@@ -322,8 +252,7 @@ PositionMeans position_means(const Bvh& bvh, const BvhJoint& joint) {
   return near_offset ? PositionMeans::place : PositionMeans::shift;
 }
 
-// The file's numbers as a motion in file units. The root stands where its channels say; axes
-// without a channel take the OFFSET.
+// The same for BVH. The root stands where its channels say; axes without a channel take the OFFSET.
 Motion in_file_units(const Bvh& bvh) {
   Motion motion;
   motion.frame_time_s = bvh.frame_time_s;
@@ -377,7 +306,7 @@ double floor_height(const Motion& motion, UpAxis up) {
   return *middle;
 }
 
-// Adds the root OFFSET to the channels' position if the feet then stand nearer to the floor.
+// Adds the root's OFFSET to its positions if that puts the feet nearer to the floor.
 void settle_root(const Bvh& bvh, UpAxis up, Motion& motion) {
   const BvhJoint& root = bvh.joints[0];
   const JointValues channels = values_of(root, bvh.values.data());
@@ -396,37 +325,18 @@ Result<Motion> motion_of(const Bvh& bvh, const std::string& path, const LoadOpti
         fmt::format("{}: brings its skeleton itself, {} is not for it", path, options.skeleton)};
   }
   Motion motion = in_file_units(bvh);
-  const auto up = find_upper_body(motion, path, options);
+  const auto up = find_body(motion, path, options);
   if (!up) return up.error();
   settle_root(bvh, *up, motion);
-  return finished(std::move(motion), *up, 0.0, path, options);
+  return finish_motion(std::move(motion), *up, 0.0, path, options);
 }
 
 bool ends_in(const std::string& path, std::string_view ending) {
-  return lower_case(std::filesystem::path(path).extension().string()) == ending;
+  return lower_case(fs::path(path).extension().string()) == ending;
 }
 
-}  // namespace
-
-Result<Motion> load_motion(const std::string& path, const LoadOptions& options) {
-  if (ends_in(path, ".amc")) return load_amc(path, options);
-  if (ends_in(path, ".asf")) return load_asf(path, options);
-  const auto bvh = read_bvh(path);
-  if (!bvh) return bvh.error();
-  return motion_of(*bvh, path, options);
-}
-
-Result<Motion> motion_from_bvh(std::string_view text, const std::string& name,
-                               const LoadOptions& options) {
-  const auto bvh = parse_bvh(text, name);
-  if (!bvh) return bvh.error();
-  return motion_of(*bvh, name, options);
-}
-
-namespace {
-
-// What stands in the file, under what is given already.
-void fill_leg(TomlTable& root, const char* key, LegNames& names) {
+// Reads the names of a leg's joints; a name that is given already stays.
+void read_leg(TomlTable& root, const char* key, LegNames& names) {
   auto leg = root.table(key);
   if (!leg) return;
   const auto fill = [&leg](const char* part, std::string& name) {
@@ -441,11 +351,81 @@ void fill_leg(TomlTable& root, const char* key, LegNames& names) {
 
 }  // namespace
 
+double metres_per_unit(double leg_length_units) noexcept {
+  constexpr double kMinLegM = 0.65, kMaxLegM = 1.05;
+  constexpr double kUnitsM[] = {1.0, 0.1, 0.01, 0.001, 0.0254, 0.3048, 0.0254 / 0.45};
+  for (const double unit_m : kUnitsM) {
+    const double leg_m = leg_length_units * unit_m;
+    if (leg_m >= kMinLegM && leg_m <= kMaxLegM) return unit_m;
+  }
+  return kAdultLegM / leg_length_units;
+}
+
+double metres_per_unit(double leg_length_units, double stated_unit_m) noexcept {
+  constexpr double kMinLegM = 0.4, kMaxLegM = 1.3;
+  const double leg_m = leg_length_units * stated_unit_m;
+  return leg_m >= kMinLegM && leg_m <= kMaxLegM ? stated_unit_m : metres_per_unit(leg_length_units);
+}
+
+Result<Motion> motion_from_bvh(std::string_view text, const std::string& name,
+                               const LoadOptions& options) {
+  const auto bvh = parse_bvh(text, name);
+  if (!bvh) return bvh.error();
+  return motion_of(*bvh, name, options);
+}
+
+Result<Motion> motion_from_acclaim(const NamedText& asf_text, const NamedText& amc_text,
+                                   const LoadOptions& options) {
+  const auto asf = parse_asf(asf_text.text, asf_text.name);
+  if (!asf) return asf.error();
+  std::optional<Amc> amc;
+  if (!amc_text.name.empty()) {
+    auto parsed =
+        parse_amc(amc_text.text, amc_text.name, *asf, fs::path(asf_text.name).filename().string());
+    if (!parsed) return parsed.error();
+    amc = std::move(*parsed);
+  }
+  const std::string& path = amc ? amc_text.name : asf_text.name;
+  Motion motion = in_file_units(*asf, amc ? *amc : rest_of(*asf));
+  const auto up = find_body(motion, path, options);
+  if (!up) return up.error();
+  const double stated_m = asf->length_unit > 0.0 ? kInch_m / asf->length_unit : 0.0;
+  return finish_motion(std::move(motion), *up, stated_m, path, options);
+}
+
+namespace {
+
+Result<Motion> load_amc(const std::string& path, const LoadOptions& options) {
+  const auto amc = file_text(path, kMaxMotionFileBytes);
+  if (!amc) return amc.error();
+  auto skeleton = options.skeleton.empty() ? skeleton_beside(path) : options.skeleton;
+  if (!skeleton) return skeleton.error();
+  const auto asf = file_text(*skeleton, kMaxMotionFileBytes);
+  if (!asf) return Error{fmt::format("{} (the skeleton of {})", asf.error().message, path)};
+  return motion_from_acclaim({*skeleton, *asf}, {path, *amc}, options);
+}
+
+Result<Motion> load_asf(const std::string& path, const LoadOptions& options) {
+  const auto asf = file_text(path, kMaxMotionFileBytes);
+  if (!asf) return asf.error();
+  return motion_from_acclaim({path, *asf}, {}, options);
+}
+
+}  // namespace
+
+Result<Motion> load_motion(const std::string& path, const LoadOptions& options) {
+  if (ends_in(path, ".amc")) return load_amc(path, options);
+  if (ends_in(path, ".asf")) return load_asf(path, options);
+  const auto bvh = read_bvh(path);
+  if (!bvh) return bvh.error();
+  return motion_of(*bvh, path, options);
+}
+
 Result<std::string> motion_path(const std::vector<std::string>& folders,
                                 const std::string& file_or_name) {
   std::error_code error;
-  const bool is_path = file_or_name.find_first_of("./") != std::string::npos ||
-                       std::filesystem::exists(file_or_name, error);
+  const bool is_path =
+      file_or_name.find_first_of("./") != std::string::npos || fs::exists(file_or_name, error);
   if (is_path) return file_or_name;
   return config_file(folders, "motions", file_or_name);
 }
@@ -457,7 +437,7 @@ Result<Motion> load_motion_source(const std::string& path, const LoadOptions& gi
   if (is_keyframe_file(*file)) return keyframe_motion(*file);
   TomlTable root = file->root();
   root.require("file");
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const fs::path folder = fs::path(path).parent_path();
   const std::string motion_file = root.string("file").value_or("");
   const double unit_m = root.number("metres_per_unit", 1e-6, 1e3).value_or(0.0);
   const double rate_hz = root.number("frame_rate_hz", 1.0, 1e4).value_or(0.0);
@@ -466,8 +446,8 @@ Result<Motion> load_motion_source(const std::string& path, const LoadOptions& gi
   if (given.metres_per_unit <= 0.0) options.metres_per_unit = unit_m;
   if (given.frame_rate_hz <= 0.0) options.frame_rate_hz = rate_hz;
   if (given.skeleton.empty() && !skeleton.empty()) options.skeleton = (folder / skeleton).string();
-  fill_leg(root, "left_leg", options.legs[kLeftSide]);
-  fill_leg(root, "right_leg", options.legs[kRightSide]);
+  read_leg(root, "left_leg", options.legs[kLeftSide]);
+  read_leg(root, "right_leg", options.legs[kRightSide]);
   if (auto problem = file->problem()) return *problem;
   return load_motion((folder / motion_file).string(), options);
 }

@@ -1,12 +1,12 @@
-#include "gaitpad/terrain_file.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <utility>
 
+#include "base/text.h"
 #include "files/height_picture.h"
 #include "files/toml_file.h"
+#include "gaitpad/config_files.h"
 
 namespace gaitpad {
 

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <exception>
-#include <filesystem>
-#include <fstream>
+
+#include "base/files.h"
+#include "base/text.h"
 
 namespace gaitpad {
 
@@ -36,25 +36,6 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return std::min(i, text.size());
 }
 
-// Bytes of the UTF-8 character at the front of a non-empty text; 0 where it is none.
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (byte(0) < 0x80) return 1;
-  const std::size_t size = byte(0) >= 0xf5   ? 0
-                           : byte(0) >= 0xf0 ? 4
-                           : byte(0) >= 0xe0 ? 3
-                           : byte(0) >= 0xc2 ? 2
-                                             : 0;
-  if (size == 0 || text.size() < size) return 0;
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  }
-  // Overlong forms, surrogates, beyond U+10FFFF.
-  const bool is_bad = (byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xed && byte(1) > 0x9f) ||
-                      (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f);
-  return is_bad ? 0 : size;
-}
-
 int line_at(std::string_view text, std::size_t place) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + place, '\n'));
 }
@@ -74,43 +55,6 @@ int first_line(std::string_view text, Wanted is_wanted) {
     }
   }
   return 0;
-}
-
-}  // namespace
-
-int line_of_overlong_key(std::string_view text) {
-  constexpr std::string_view kEndsOfKeys = ",[]{}=\n";
-  int dots = 0;
-  return first_line(text, [&](char c) {
-    if (kEndsOfKeys.find(c) != std::string_view::npos) dots = 0;
-    return c == '.' && ++dots >= kMaxKeyParts;
-  });
-}
-
-int line_of_stray_character(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  return first_line(text, [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
-}
-
-int line_of_invalid_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t bytes = character_bytes(text.substr(i));
-    if (bytes == 0) return line_at(text, i);
-    i += bytes;
-  }
-  return 0;
-}
-
-namespace {
-
-constexpr std::size_t kMaxQuotedBytes = 60;
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return line;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -140,6 +84,25 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
 }
 
 }  // namespace
+
+int line_of_overlong_key(std::string_view text) {
+  constexpr std::string_view kEndsOfKeys = ",[]{}=\n";
+  int dots = 0;
+  return first_line(text, [&](char c) {
+    if (kEndsOfKeys.find(c) != std::string_view::npos) dots = 0;
+    return c == '.' && ++dots >= kMaxKeyParts;
+  });
+}
+
+int line_of_stray_character(std::string_view text) {
+  return first_line(without_byte_order_mark(text),
+                    [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
+}
+
+int line_of_invalid_utf8(std::string_view text) {
+  const std::size_t place = utf8_bytes(text);
+  return place == text.size() ? 0 : line_at(text, place);
+}
 
 struct TomlDocument {
   struct Visited {
@@ -211,13 +174,8 @@ struct TomlDocument {
   }
 };
 
-std::string in_quotes(std::string_view text) {
-  const bool is_cut = text.size() > kMaxQuotedBytes;
-  return fmt::format("\"{}{}\"", one_line(text.substr(0, kMaxQuotedBytes)), is_cut ? "..." : "");
-}
-
 std::string toml_string(std::string_view text) {
-  const bool is_utf8 = line_of_invalid_utf8(text) == 0;
+  const bool is_text = is_utf8(text);
   std::string quoted = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -227,35 +185,10 @@ std::string toml_string(std::string_view text) {
     } else if (byte < 0x20 || byte == 0x7f) {
       quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
     } else {
-      quoted += byte < 0x80 || is_utf8 ? c : '?';
+      quoted += byte < 0x80 || is_text ? c : '?';
     }
   }
   return quoted + "\"";
-}
-
-Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
-  std::error_code code;
-  const auto status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) {
-    return Error{fmt::format("{}: no such file", one_line(path))};
-  }
-  // Opening a FIFO would hang, reading a device never end.
-  if (!std::filesystem::is_regular_file(status)) {
-    return Error{fmt::format("{}: not a regular file", one_line(path))};
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return Error{fmt::format("{}: cannot be opened for reading", one_line(path))};
-  std::string text;
-  std::vector<char> block(1 << 16);
-  while (stream && text.size() <= max_bytes) {
-    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (stream.bad()) return Error{fmt::format("{}: reading failed", one_line(path))};
-  if (text.size() > max_bytes) {
-    return Error{fmt::format("{}: larger than {} bytes", one_line(path), max_bytes)};
-  }
-  return text;
 }
 
 std::optional<double> TomlTable::number(std::string_view key, double min, double max) {
@@ -393,7 +326,7 @@ Result<TomlFile> TomlFile::load(const std::string& path) {
 
 Result<TomlFile> TomlFile::parse(std::string_view text, const std::string& name, int first_line) {
   auto document = std::make_unique<TomlDocument>();
-  document->name = one_line(name);
+  document->name = printable(name);
   document->line_offset = first_line - 1;
   if (text.size() > kMaxTomlBytes) {
     return Error{fmt::format("{}: larger than {} bytes", document->name, kMaxTomlBytes)};
@@ -410,9 +343,9 @@ Result<TomlFile> TomlFile::parse(std::string_view text, const std::string& name,
   try {
     document->root = toml::parse(text);
   } catch (const toml::parse_error& error) {
-    return damage_at(static_cast<int>(error.source().begin.line), one_line(error.description()));
+    return damage_at(static_cast<int>(error.source().begin.line), printable(error.description()));
   } catch (const std::exception& error) {
-    return Error{fmt::format("{}: {}", document->name, one_line(error.what()))};
+    return Error{fmt::format("{}: {}", document->name, printable(error.what()))};
   }
   document->visit(document->root);
   return TomlFile(std::move(document));

@@ -23,10 +23,6 @@ namespace gaitpad {
 
 inline constexpr std::size_t kMaxTomlBytes = 1 << 20;
 
-// The whole text of a regular file of at most `max_bytes`; the sentence names the path.
-Result<std::string> file_text(const std::string& path, std::size_t max_bytes);
-// `text` in double quotes, control characters replaced, cut to a length fit for an error sentence.
-std::string in_quotes(std::string_view text);
 // A string as it stands in a TOML file, quotes and all; of what is no UTF-8 only ASCII is left.
 std::string toml_string(std::string_view text);
 

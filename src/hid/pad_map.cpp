@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/text.h"
 #include "files/toml_file.h"
 #include "hid/trace_lines.h"
 
@@ -15,12 +16,6 @@ namespace {
 constexpr std::size_t kMaxPads = 256;
 constexpr std::size_t kMaxProducts = 64;
 constexpr std::size_t kMaxSources = 8;
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
 
 // Takes the text behind `mark` off the end of `text`.
 std::string_view cut_behind(std::string_view& text, char mark) {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/toml_file.h"
+#include "base/text.h"
 #include "gaitpad/descriptor.h"
 #include "gaitpad/pad_map.h"
 #include "gaitpad/trace.h"
@@ -252,12 +252,6 @@ std::optional<Error> add_pair(std::string_view pair, const SdlNumbers& numbered,
   return std::nullopt;
 }
 
-std::string_view next_part(std::string_view& rest) {
-  const std::string_view part = rest.substr(0, rest.find(','));
-  rest.remove_prefix(std::min(rest.size(), part.size() + 1));
-  return part;
-}
-
 bool is_guid(std::string_view text) {
   constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
   return text.size() == 32 && text.find_first_not_of(kDigits) == std::string_view::npos;
@@ -277,16 +271,16 @@ Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor
                              kMaxTraceTextBytes)};
   }
   std::string_view rest = mapping;
-  const std::string_view guid = next_part(rest);
+  const std::string_view guid = take_part(rest, ',');
   if (!is_guid(guid)) {
     return Error{
         fmt::format("SDL mapping: {} is no GUID of 32 hexadecimal digits", in_quotes(guid))};
   }
-  next_part(rest);  // the name
+  take_part(rest, ',');  // the name
   const SdlNumbers numbered = sdl_numbers(descriptor, stated_by(driver));
   ControlMap map;
   while (!rest.empty()) {
-    const std::string_view pair = next_part(rest);
+    const std::string_view pair = take_part(rest, ',');
     if (pair.empty()) continue;
     if (auto error = add_pair(pair, numbered, map)) return *error;
   }

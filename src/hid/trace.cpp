@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -16,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/toml_file.h"
+#include "base/text.h"
 #include "gaitpad/descriptor.h"
 #include "hid/trace_lines.h"
 
@@ -73,12 +72,7 @@ int hex_digit(char c) {
 
 template <class T>
 std::optional<T> whole_number(std::string_view text, int base) {
-  T value{};
-  const char* end = text.data() + text.size();
-  if (text.empty() || text.front() == '-') return std::nullopt;
-  const auto [stop, error] = std::from_chars(text.data(), end, value, base);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return value;
+  return text.starts_with('-') ? std::nullopt : parse_number<T>(text, base);
 }
 
 }  // namespace

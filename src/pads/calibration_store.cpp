@@ -7,7 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "files/toml_file.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/hash.h"
 
@@ -21,7 +22,7 @@ constexpr std::uint16_t kKernelArranged = 0x8000;  // of the version on evdev: c
 // Cheap pads have a serial number of zeros or blanks, or one that no text can hold.
 std::string usable_id(const std::string& unique_id) {
   const bool is_blank = unique_id.find_first_not_of("0:-. \t") == std::string::npos;
-  return is_blank || line_of_invalid_utf8(unique_id) != 0 ? "" : unique_id;
+  return is_blank || !is_utf8(unique_id) ? "" : unique_id;
 }
 
 std::string text_hash(std::string_view text) {
@@ -48,10 +49,10 @@ std::string commented(const std::vector<std::string>& comments) {
   std::string text;
   for (const std::string& comment : comments) {
     std::string line = comment;
-    const bool is_utf8 = line_of_invalid_utf8(line) == 0;
+    const bool is_text = is_utf8(line);
     for (char& c : line) {
       const auto byte = static_cast<unsigned char>(c);
-      if (byte < 0x20 || byte == 0x7f || (byte >= 0x80 && !is_utf8)) c = '?';
+      if (byte < 0x20 || byte == 0x7f || (byte >= 0x80 && !is_text)) c = '?';
     }
     text += line.empty() ? "#\n" : "# " + line + "\n";
   }
@@ -70,8 +71,7 @@ CalibrationFile calibration_for(const DeviceInfo& device, bool has_factory_stick
   file.name = device.name;
   file.devices = {{device.vendor, device.product}};
   file.unique_id = usable_id(device.unique_id);
-  if (file.unique_id.empty() && line_of_invalid_utf8(device.physical_path) == 0)
-    file.port = device.physical_path;
+  if (file.unique_id.empty() && is_utf8(device.physical_path)) file.port = device.physical_path;
   const bool is_arranged = device.driver == "evdev" || device.driver == "sdl";
   if (is_arranged && (device.version & kKernelArranged) != 0) {
     file.drivers = {"evdev", "sdl"};

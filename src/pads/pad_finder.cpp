@@ -5,15 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <iterator>
 #include <string_view>
 #include <utility>
 
+#include "base/text.h"
 #include "drivers/driver_entries.h"
-#include "files/toml_file.h"
 #include "gaitpad/drivers.h"
 #include "gaitpad/pad_stream.h"
 
@@ -22,15 +21,6 @@ namespace gaitpad {
 namespace {
 
 constexpr std::string_view kTrace = "trace", kUsb = "usb", kSdl = "sdl";
-
-// ASCII alone, whatever the locale.
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
 
 Result<const DriverEntry*> wished_driver(const std::string& name,
                                          std::span<const DriverEntry> table) {
@@ -114,10 +104,7 @@ bool is_model(std::string_view text, const DeviceInfo& info) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) return false;
   const auto is_id = [](std::string_view digits, std::uint16_t id) {
-    std::uint16_t value = 0;
-    const char* end = digits.data() + digits.size();
-    const auto read = std::from_chars(digits.data(), end, value, 16);
-    return digits.size() <= 4 && read.ec == std::errc() && read.ptr == end && value == id;
+    return digits.size() <= 4 && parse_number<std::uint16_t>(digits, 16) == id;
   };
   return is_id(text.substr(0, colon), info.vendor) && is_id(text.substr(colon + 1), info.product);
 }
@@ -129,7 +116,7 @@ struct Wanted {
 Wanted wanted_of(const std::string& pad) {
   std::error_code error;
   const std::filesystem::path node = std::filesystem::canonical(pad, error);
-  return {pad, lower(pad), error ? pad : node.string()};
+  return {pad, lower_case(pad), error ? pad : node.string()};
 }
 
 Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
@@ -137,8 +124,8 @@ Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
   if (listing.node == wanted.text || listing.node == wanted.node) return Fit::node;
   if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only where it is wished
   if (is_model(wanted.text, listing.info)) return Fit::model;
-  if (lower(listing.info.unique_id) == wanted.lower_text) return Fit::unique_id;
-  const std::string name = lower(listing.info.name);
+  if (lower_case(listing.info.unique_id) == wanted.lower_text) return Fit::unique_id;
+  const std::string name = lower_case(listing.info.name);
   if (name == wanted.lower_text) return Fit::name;
   return name.find(wanted.lower_text) == std::string::npos ? Fit::none : Fit::part_of_name;
 }
@@ -146,7 +133,7 @@ Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
 bool is_one_pad(const PadSighting& a, const PadSighting& b) {
   if (pad_key(a) == pad_key(b)) return true;
   const std::string& id = a.listing.info.unique_id;
-  return !id.empty() && lower(id) == lower(b.listing.info.unique_id);
+  return !id.empty() && lower_case(id) == lower_case(b.listing.info.unique_id);
 }
 
 std::string described(const PadSighting& s) {

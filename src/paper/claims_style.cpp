@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "paper/claims.h"
 #include "paper/study.h"
 
@@ -279,11 +280,6 @@ std::vector<int> upper_joints(const GaitCycle& cycle) {
 
 double apart_deg(const quat& a, const quat& b) {
   return 2.0 * glm::length(rotation_vector(glm::inverse(a) * b)) * 0.5 / kDegree;
-}
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
 }
 
 // The first joint whose name says an arm's end of that side: hand, wrist or forearm.

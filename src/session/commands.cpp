@@ -1,42 +1,28 @@
 #include "session/commands.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "base/text.h"
 
 namespace gaitpad {
 namespace {
 
 using Verb = Command::Verb;
 
-constexpr std::string_view kBlanks = " \t";
+constexpr std::string_view kGaps = " \t";  // between the words of a command
 
 bool is_blank(std::string_view text) noexcept {
-  return text.find_first_not_of(kBlanks) == std::string_view::npos;
+  return text.find_first_not_of(kGaps) == std::string_view::npos;
 }
 
 // Cuts the first word off `text`.
-std::string_view next_word(std::string_view& text) noexcept {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
-  text.remove_prefix(word.size());
-  return word;
-}
-
-// The whole word as a number.
-template <class T>
-std::optional<T> number(std::string_view word) noexcept {
-  T value{};
-  const char* end = word.data() + word.size();
-  const auto result = std::from_chars(word.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return value;
-}
+std::string_view next_word(std::string_view& text) noexcept { return take_word(text, kGaps); }
 
 // Cuts the walker's number off, where words follow it.
 int next_walker(std::string_view& text) noexcept {
   std::string_view rest = text;
-  const int n = number<int>(next_word(rest)).value_or(0);
+  const int n = parse_number<int>(next_word(rest)).value_or(0);
   if (n <= 0 || is_blank(rest)) return 0;
   text = rest;
   return n;
@@ -44,7 +30,7 @@ int next_walker(std::string_view& text) noexcept {
 
 // `KEY VALUE`, of which the key is in `command` already.
 std::optional<Command> with_value(Command command, std::string_view word) noexcept {
-  const auto value = number<double>(word);
+  const auto value = parse_number<double>(word);
   if (!value || !std::isfinite(*value)) return std::nullopt;
   command.value = *value;
   return command;

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/files.h"
 #include "gaitpad/descriptor.h"
 #include "session/live_loop.h"
 
@@ -164,18 +165,14 @@ constexpr std::size_t kRingItems = 4096;
 constexpr std::chrono::milliseconds kPause{20};  // between looks at the ring; nobody is woken
 constexpr std::size_t kWriteBytes = std::size_t{1} << 18;
 
-Error failure(const std::string& path, int number) {
-  return Error{fmt::format("{}: cannot be written: {}", path, std::strerror(number))};
-}
-
 // Open and empty, and nobody else's. A pipe of that name without a reader is an error, no waiting.
 Result<OwnedFd> opened_part(const std::string& part) {
   OwnedFd file(
       ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
-  if (file.get() < 0) return failure(part, errno);
+  if (file.get() < 0) return write_error(part, errno);
   if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0)
     return Error{part + ": another session is recording into it"};
-  if (::ftruncate(file.get(), 0) != 0) return failure(part, errno);
+  if (::ftruncate(file.get(), 0) != 0) return write_error(part, errno);
   return file;
 }
 
@@ -286,13 +283,13 @@ Result<std::vector<std::string>> Recording::finish(std::int64_t ticks, std::int6
     ::unlink(part_.c_str());
     return std::vector<std::string>{path_ + ": was not written: there was no pad to record"};
   }
-  if (std::rename(part_.c_str(), path_.c_str()) != 0) return failure(path_, errno);
+  if (std::rename(part_.c_str(), path_.c_str()) != 0) return write_error(path_, errno);
   return remarks();
 }
 
 std::optional<Error> Recording::problem() const {
   if (problem_ == 0) return std::nullopt;
-  return failure(part_, problem_);
+  return write_error(part_, problem_);
 }
 
 std::vector<std::string> Recording::remarks() const {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/text.h"
 #include "files/toml_file.h"
 #include "session/commands.h"
 

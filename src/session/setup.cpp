@@ -10,7 +10,6 @@
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/pad_setup.h"
-#include "gaitpad/terrain_file.h"
 
 namespace gaitpad {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "files/toml_file.h"
+#include "base/text.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/style.h"
 #include "session/commands.h"

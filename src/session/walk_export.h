@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "files/bvh.h"
-#include "files/gltf.h"
+#include "gaitpad/bvh.h"
+#include "gaitpad/gltf.h"
 #include "gaitpad/result.h"
 #include "gaitpad/simulation.h"
 #include "gaitpad/stick.h"
@@ -48,9 +48,6 @@ class OutputFiles {
   std::string folder_;
   std::vector<File> files_;
 };
-
-// One file alone, the same way; its folder is made.
-std::optional<Error> write_file(const std::string& path, const std::string& bytes);
 
 // frames.csv: one row a tick, what a character did, in metres, seconds and radians of the world.
 

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <iterator>
 #include <optional>
 
+#include "base/text.h"
 #include "files/toml_file.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/trace.h"
@@ -110,9 +110,8 @@ bool read_id(std::string_view text, int& id) {
     id = -1;
     return true;
   }
-  const auto end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, id, 16);
-  return text.size() == 4 && text[0] != '-' && result.ec == std::errc() && result.ptr == end;
+  id = parse_number<std::uint16_t>(text, 16).value_or(0);
+  return text.size() == 4 && parse_number<std::uint16_t>(text, 16);
 }
 
 void read_devices(TomlTable& root, std::vector<DevicePattern>& devices) {

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -14,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/toml_file.h"
+#include "base/text.h"
 #include "gaitpad/result.h"
 #include "hid/evdev_layout.h"
 #include "hid/trace_lines.h"
@@ -67,33 +66,12 @@ constexpr std::uint32_t kLastCode = 0x3f;
 // What is wrong with a line; empty: nothing.
 using Problem = std::string;
 
-std::optional<std::int32_t> number(std::string_view text) {
-  std::int32_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (text.empty() || error != std::errc{} || stop != end) return std::nullopt;
-  return value;
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-std::string_view next_part(std::string_view& rest, char divider) {
-  const std::string_view part = rest.substr(0, rest.find(divider));
-  rest.remove_prefix(std::min(rest.size(), part.size() + 1));
-  return part;
-}
-
 // `6,1,0,127,...`: numbers with commas between, to the end.
 Problem read_list(std::string_view text, std::vector<std::int32_t>& list) {
   constexpr std::size_t kMaxNumbers = 2048;
   while (!text.empty()) {
-    const std::string_view part = next_part(text, ',');
-    const auto value = number(part);
+    const std::string_view part = take_part(text, ',');
+    const auto value = parse_number<std::int32_t>(part);
     if (!value) return fmt::format("jscal: {} is no number", in_quotes(part));
     if (list.size() >= kMaxNumbers) return fmt::format("jscal: more than {} numbers", kMaxNumbers);
     list.push_back(*value);
@@ -225,7 +203,7 @@ class Reader {
     std::optional<std::int32_t> numbers[4];
     for (auto& n : numbers) {
       const std::string_view text = words.next();
-      n = number(text);
+      n = parse_number<std::int32_t>(text);
       if (!n) return fmt::format("axis {:02x}: {} is no number", *code, in_quotes(text));
     }
     AbsInfo* axis = nullptr;
@@ -251,13 +229,13 @@ class Reader {
 
   // `00=0:255:0:0:15`: minimum, maximum, resolution, fuzz, flat; any may be left out.
   Problem read_hwdb(std::string_view rest) {
-    const std::string_view word = next_part(rest, '=');
+    const std::string_view word = take_part(rest, '=');
     const auto code = hexadecimal(word, kLastCode);
     if (!code) return fmt::format("EVDEV_ABS_{}: no code of an axis", in_quotes(word));
     std::optional<std::int32_t> numbers[5];
     for (auto& n : numbers) {
-      const std::string_view part = trimmed(next_part(rest, ':'));
-      n = number(part);
+      const std::string_view part = trimmed(take_part(rest, ':'));
+      n = parse_number<std::int32_t>(part);
       if (!n && !part.empty()) {
         return fmt::format("EVDEV_ABS_{:02x}: {} is no number", *code, in_quotes(part));
       }
@@ -290,7 +268,7 @@ class Reader {
                                          : key == "Flat" ? &evtest_->flat
                                                          : nullptr;
     if (value == nullptr) return {};
-    *value = number(text);
+    *value = parse_number<std::int32_t>(text);
     return *value ? Problem() : fmt::format("{}: {} is no number", key, in_quotes(text));
   }
 
@@ -316,7 +294,7 @@ Result<ImportText> import_text(std::string_view text, const std::string& source)
   }
   Reader reader;
   for (int number = 1; !text.empty(); ++number) {
-    const std::string_view line = next_part(text, '\n');
+    const std::string_view line = take_part(text, '\n');
     const Problem problem = reader.read(line, number);
     if (!problem.empty()) return Error{fmt::format("{}:{}: {}", source, number, problem)};
   }

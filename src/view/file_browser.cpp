@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "files/toml_file.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/style.h"
-#include "gaitpad/terrain_file.h"
 #include "gaitpad/walk_model.h"
 #include "view/widgets.h"
 
@@ -28,12 +28,6 @@ namespace {
 constexpr const char* kWhatOpens =
     "motions (.bvh, .amc), recordings (.hid), and .toml files of styles, characters, calibrations, "
     "terrains and motions can be opened";
-
-std::string lower_case(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
 
 std::optional<FileKind> kind_of_folder(const fs::path& path) {
   const std::string folder = path.parent_path().filename().string();

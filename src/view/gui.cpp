@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "draw/theme.h"
-#include "files/toml_file.h"
+#include "base/files.h"
 
 namespace gaitpad {
 namespace {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "gaitpad/config_files.h"
 #include "gaitpad/walk_model.h"
 #include "tests/own_folder.h"
 

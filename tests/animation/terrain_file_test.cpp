@@ -1,10 +1,9 @@
-#include "gaitpad/terrain_file.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "files/height_picture.h"
+#include "gaitpad/config_files.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "animation/terrain_judge.h"
+#include "gaitpad/config_files.h"
 #include "gaitpad/motion_file.h"
-#include "gaitpad/terrain_file.h"
 
 using namespace gaitpad;
 

@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "base/text.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 

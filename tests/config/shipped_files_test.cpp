@@ -6,9 +6,9 @@
 
 #include "files/keyframe.h"
 #include "gaitpad/calibration.h"
+#include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/style.h"
-#include "gaitpad/terrain_file.h"
 #include "gaitpad/walk_model.h"
 #include "tests/value_of.h"
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "gaitpad/config_files.h"
 #include "gaitpad/math.h"
 #include "tests/own_folder.h"
 

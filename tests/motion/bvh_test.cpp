@@ -1,4 +1,4 @@
-#include "files/bvh.h"
+#include "gaitpad/bvh.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <sstream>
 
-#include "files/bvh.h"
+#include "gaitpad/bvh.h"
 #include "gaitpad/motion.h"
 #include "gaitpad/motion_file.h"
 #include "motion/bvh_text.h"

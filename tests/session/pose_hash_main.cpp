@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "files/bvh.h"
+#include "gaitpad/bvh.h"
 #include "gaitpad/motion_file.h"
 #include "tests/session/made_session.h"
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gaitpad/config_files.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "files/bvh.h"
+#include "gaitpad/bvh.h"
 #include "gaitpad/flight.h"
 #include "gaitpad/motion_file.h"
 

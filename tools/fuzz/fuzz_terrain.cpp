@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "files/height_picture.h"
-#include "gaitpad/terrain_file.h"
+#include "gaitpad/config_files.h"
 
 namespace {
 

@@ -4,7 +4,8 @@
 
 #include <cstdio>
 
-#include "files/toml_file.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
 #include "stick/calibration_import.h"

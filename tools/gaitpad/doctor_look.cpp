@@ -13,6 +13,7 @@
 #include <fstream>
 #include <map>
 
+#include "base/text.h"
 #include "gaitpad/decode.h"
 #include "tools/gaitpad/udev_rules.h"
 
@@ -87,8 +88,8 @@ bool is_hub(const SystemNode& device) {
   return static_cast<bool>(in >> std::hex >> device_class) && device_class == kHubClass;
 }
 
-bool has_pad_name(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+bool has_pad_name(std::string_view device_name) {
+  const std::string name = lower_case(device_name);
   return std::ranges::any_of(
       std::initializer_list<const char*>{"gamepad", "game pad", "joystick", "joypad"},
       [&](const char* word) { return name.find(word) != std::string::npos; });

@@ -12,14 +12,6 @@ void print_json_line(const ordered_json& object) {
   fmt::print("{}\n", object.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
-std::string printable(std::string_view text) {
-  std::string shown(text);
-  for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return shown;
-}
-
 std::string usage_text(std::uint32_t usage) {
   return fmt::format("{:04x}:{:04x}", page_of(usage), id_of(usage));
 }

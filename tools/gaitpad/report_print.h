@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/text.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/trace.h"
 
@@ -22,8 +23,6 @@ struct DecodedDevice {
 
 // Text of a device may hold anything; JSON holds UTF-8.
 void print_json_line(const nlohmann::ordered_json& object);
-// A device's text for a terminal: without control characters.
-std::string printable(std::string_view text);
 std::string usage_text(std::uint32_t usage);  // 0001:0030
 std::vector<std::string> button_names(const PadState& state);
 nlohmann::ordered_json axes_json(const PadState& state);

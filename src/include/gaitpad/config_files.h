@@ -1,37 +1,49 @@
-// Files that belong to the user: where they stand, and how one is written so that nothing is ever
-// lost half-way.
+// Styles, characters and terrains as files, and the folders in which a program finds them by name.
+// config/README.md describes the grammar of the files. Reading is strict: an unknown key, a wrong
+// type and a value out of its bounds are errors, `FILE:LINE: cause`.
+//
+//   const auto folders = gaitpad::config_folders("/usr/share/mygame/gaitpad");
+//   const auto path = gaitpad::config_file(folders, "styles", "limp");
+//   if (!path) return fail(path.error().message);
+//   const auto style = gaitpad::load_style(*path);
 #pragma once
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gaitpad/result.h"
 #include "gaitpad/style.h"
+#include "gaitpad/terrain.h"
+#include "gaitpad/walk_model.h"
 
 namespace gaitpad {
 
-// $XDG_CONFIG_HOME/gaitpad, else $HOME/.config/gaitpad; empty where neither is an absolute path. It
-// need not exist.
+// Reads a style. A value that the file leaves out is that of the plain style.
+Result<Style> load_style(const std::string& path);
+// The text of a file from which load_style() reads the same values; never empty.
+std::string style_text(const Style& style);
+
+// Reads a character's build: its name, its scale, the ratio of its legs.
+Result<Character> load_character(const std::string& path);
+
+// Reads a terrain, and the height pictures (grey PNG) that it names, relative to the file.
+Result<Terrain> load_terrain(const std::string& path);
+// The same from a text. `path` stands in error sentences, and pictures are relative to it.
+Result<Terrain> parsed_terrain(std::string_view text, const std::string& path);
+
+// $XDG_CONFIG_HOME/gaitpad, else $HOME/.config/gaitpad: where a user's own files stand. Empty if
+// neither variable is an absolute path. The folder need not exist.
 std::string user_config_folder();
 
-// Why nothing could be saved there, as far as that is seen before it is tried.
-std::optional<Error> saving_problem(const std::string& path);
-
-// Makes the folder, writes a temporary file beside `path`, puts it in its place at once; what stood
-// there before is kept as PATH.old. Where `path` is a symbolic link, both happen where it points to
-// and it stays one. On error `path` is as it was.
-std::optional<Error> save_text(const std::string& path, const std::string& text);
-
-// Where the program's configuration files stand, and which of them a user's FILE|NAME means.
-
-// Folders laid out like config/, the first one that has a file wins: $GAITPAD_CONFIG, the user's
-// (user_files.h; what stands there of pads and calibrations is no configuration, load_pad_files()
-// leaves it out), then beside the program (../share/gaitpad, ../config), then `built_in`. Only
-// those that exist.
+// Those that exist of the folders laid out like this repository's config/, the most important one
+// first: $GAITPAD_CONFIG, the user's, ../share/gaitpad and ../config beside the program's folder,
+// `built_in` (empty: none). Of files with the same name the first folder's counts. Calibrations and
+// pad files in the user's folder are found in other ways.
 std::vector<std::string> config_folders(const std::string& built_in);
 
-// A path where `file_or_name` has a slash or ends in .toml, else KIND/NAME.toml of the first folder
-// that has it. The sentence for an unknown name lists the known ones.
+// The path that a user's FILE|NAME means: itself if it has a slash or ends in .toml, else
+// KIND/NAME.toml in the first folder that has it. `kind` is a sub-folder: "styles", "characters",
+// "terrain", "motions". The error for an unknown name lists the known ones.
 Result<std::string> config_file(const std::vector<std::string>& folders, const std::string& kind,
                                 const std::string& file_or_name);
 
@@ -39,15 +51,13 @@ Result<std::string> config_file(const std::vector<std::string>& folders, const s
 std::vector<std::string> config_files(const std::vector<std::string>& folders,
                                       const std::string& kind);
 
-// The file's name without folder and .toml: the name by which styles and characters are called.
+// The name by which a file is called: without its folder and without .toml.
 std::string config_name(const std::string& path);
 
-// A user's own styles: files in the user's folder, found by every session from then on.
-
-// STYLES/NAME.toml in user_config_folder(), its path. `name` is for a file and for commands: at
-// most 48 letters, digits, `_`, `-`; blanks become `_`. Error where it is not, or where a style of
-// `config_folders` (config_files.h) has it that is not the user's own; the user's own is replaced,
-// and kept as PATH.old.
+// Saves a style of the user's own as styles/NAME.toml in user_config_folder() and returns the path.
+// Blanks in `name` become `_`. Error if the name is not of 1 to 48 letters, digits, `_` and `-`, if
+// a style in `config_folders` that is not the user's own has it, or if the file cannot be written.
+// A style of the same name is replaced and kept as PATH.old.
 Result<std::string> save_style(const std::vector<std::string>& config_folders,
                                const std::string& name, const StyleValues& values);
 

@@ -66,8 +66,9 @@ enum class GaitKey : std::uint8_t {
 inline constexpr int kGaitKeys = 8;
 
 struct GaitKeyInfo {
-  std::string_view name;  // as in a command, unit included
-  double min, max;        // what may be given; a character's limits bound it further: range_of()
+  std::string_view name;  // as in a command
+  std::string_view unit;  // "m", "m/s", "rad/s"; "x": a factor
+  double min, max;        // what a command may give; range_of() bounds it further
 };
 const GaitKeyInfo& info_of(GaitKey key) noexcept;
 std::optional<GaitKey> gait_key(std::string_view name) noexcept;

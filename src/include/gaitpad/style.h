@@ -1,5 +1,11 @@
-// The stylization state: what makes one motion many (Meredith & Maddock 2005, sections 3.1
-// and 3.3.3).
+// The stylization state: the values that turn one motion into many walks (Meredith & Maddock 2005,
+// sections 3.1 and 3.3.3). Styles are plain values; gaitpad/config_files.h reads and writes them as
+// files.
+//
+//   gaitpad::StyleValues limp;
+//   gaitpad::set_value(limp, "left_leg.stride_length", 0.6);
+//   gaitpad::set_value(limp, "left_leg.weight.knee", 0.1);
+//   const gaitpad::GaitParams params = gaitpad::gait_params(stick, limp, limits);
 #pragma once
 #include <array>
 #include <optional>
@@ -8,72 +14,75 @@
 #include <vector>
 
 #include "gaitpad/gait_params.h"
-#include "gaitpad/result.h"
 
 namespace gaitpad {
 
+// Factors on one leg's stride.
 struct StrideFactors {
-  double length = 1.0;         // on the stride length
-  double speed = 1.0;          // on the pace with which that leg's stride is undertaken
-  double flight_height = 1.0;  // on the peak height of the flight
+  double length = 1.0;         // on the stride length, 0 .. 1.5
+  double speed = 1.0;          // on the pace of that leg's stride, 0.5 .. 2
+  double flight_height = 1.0;  // on the peak height of the flight, 0 .. 3
   bool operator==(const StrideFactors&) const = default;
 };
-// Plain, trivially copyable: what a tick reads and a command may change.
+
+// All values of a style. The default is the plain walk of the motion data. Plain, trivially
+// copyable: a tick reads it and a command may change it.
 struct StyleValues {
-  std::array<StrideFactors, 2> stride;  // left, right
+  std::array<StrideFactors, 2> stride;  // indexed by Side
+  // W of equation (5), section 3.3.3: the share of each DOF of the legs; indexed by Side.
   std::array<LegWeights, 2> weight{kEvenWeights, kEvenWeights};
-  double hip_sway = 1.0;
-  double hip_bounce = 1.0;
-  double fatigue = 0.0;  // 0 fresh .. 1: linear on maximum speed and stride
-  double fatigue_per_100_m = 0.0, fatigue_recovery_per_s = 0.0;  // control/fatigue.h
-  double blend_s = 0.0;  // how long a change to this style or from it takes; control/style_blend.h
-  BodyParams body;       // above the hips
+  double hip_sway = 1.0;    // factor on the pelvis' rotation about the vertical axis, 0 .. 3
+  double hip_bounce = 1.0;  // factor on the pelvis' vertical travel, 0 .. 3
+  double fatigue = 0.0;     // 0 fresh .. 1: lowers the maximum speed and stride linearly
+  // The fatigue model, both 0: none. Fatigue gained by walking 100 m, and lost by a second of rest.
+  double fatigue_per_100_m = 0.0, fatigue_recovery_per_s = 0.0;
+  double blend_s = 0.0;  // how long a change to or from this style takes, 0 .. 10
+  BodyParams body;       // arms, hands, spine and head
   bool operator==(const StyleValues&) const = default;
 };
 struct Style : StyleValues {
   std::string name;
 };
-Result<Style> load_style(const std::string& path);
-// The text that load_style() reads back to the same values; never empty.
-std::string style_text(const Style& style);
 
-// One value by the name that it has in a file: `left_leg.weight.knee`, `legs.stride_length` (both
-// legs), `right_leg.weight.hip_x`, `hip_sway`, `hands.carry`, `head.yaw_deg`. A joint's weight is
-// that of its DOFs.
+// Each value has a key, in a file, in a command and for a slider: `hip_sway`,
+// `left_leg.weight.knee`, `legs.stride_length` (both legs), `right_leg.weight.hip_x`,
+// `hands.carry`, `head.yaw_deg`. The weight of a joint (`hip`) stands for those of all its DOFs
+// (`hip_x`, `hip_z`, `hip_y`).
 struct StyleKey {
   std::string name;
+  std::string_view unit;  // "m", "s", "1/s", "deg"; "x": a factor; "": a share or a weight
   double min = 0.0, max = 1.0;
 };
-const std::vector<StyleKey>& style_keys();  // in the order in which people would read them
-// No heap. False where there is no such name or the value is out of its bounds or would lock a
-// whole leg or arm or the spine.
-bool set_value(StyleValues& style, std::string_view name, double value) noexcept;
-// Where several DOFs, legs or arms stand for it and differ: the first one's.
-std::optional<double> value_of(const StyleValues& style, std::string_view name) noexcept;
-
-// From one stylization state to the next over a time.
+// All keys: the whole character's first, then legs, arms, hands, spine and head.
+const std::vector<StyleKey>& style_keys();
+// No heap. Returns false, and changes nothing, if there is no such key, if the value is out of its
+// bounds or no number, or if it would set all weights of a leg, an arm or the spine to 0.
+bool set_value(StyleValues& style, std::string_view key, double value) noexcept;
+// Nothing if there is no such key. Where the key stands for several values that differ: the first
+// one's. No heap.
+std::optional<double> value_of(const StyleValues& style, std::string_view key) noexcept;
 
 // All values part of the way from `from` (share 0) to `to` (share 1, exactly that).
 StyleValues mixed(const StyleValues& from, const StyleValues& to, double share) noexcept;
 
-// Plain, trivially copyable.
+// A change from one stylization state to the next over a time. Plain, trivially copyable.
 struct StyleBlend {
-  StyleValues from;
-  double length_s = 0.0, passed_s = 0.0;  // over: as long as it has passed
+  StyleValues from;                       // in force when the change began
+  double length_s = 0.0, passed_s = 0.0;  // it is over once passed_s reaches length_s
 };
-// From what is in force towards another style, which takes the longer of both styles' blend_s.
+// The change from what is in force to the style `after`. It takes the longer blend_s of the style
+// `before` it and of `after`.
 StyleBlend begun_blend(const StyleValues& in_force, const StyleValues& before,
                        const StyleValues& after) noexcept;
-// What is in force after dt more seconds. Its own when it is over.
+// Advances the change by dt_s. Returns what is in force then, in the end `to` itself.
 StyleValues advance(StyleBlend& blend, const StyleValues& to, double dt_s) noexcept;
 
-// Who walks far tires, who stands recovers: a share of fatigue on top of the style's own.
-
-// One tick more: linear in the way and in the time of rest, from 0 to 1. A style without a fatigue
-// model leaves it as it is.
+// The walker's tiredness one tick later: a share of fatigue, 0 .. 1, on top of the style's own. It
+// grows with the way and shrinks with the time of rest, both linearly, at the rates of the style's
+// fatigue model. A style without a model leaves it unchanged.
 double tired(double before, const StyleValues& style, double way_m, bool is_resting,
              double dt_s) noexcept;
-// The style with `tired` added to its fatigue, at most 1, where it has a fatigue model.
+// The style with `tired` added to its fatigue, at most 1, if it has a fatigue model.
 StyleValues with_fatigue(const StyleValues& style, double tired) noexcept;
 
 }  // namespace gaitpad

@@ -21,7 +21,6 @@ struct Character {
   double leg_ratio = 1.0;  // thigh, shank and foot bones, on top of scale
   std::string skeleton;    // BVH file whose skeleton the character brings, empty: the motion's own
 };
-Result<Character> load_character(const std::string& path);
 
 // What is above the hips, as far as a walk poses it anew: arms, spine and head of one character.
 // Meredith & Maddock 2005, section 5 (future work): weights and posture for the upper body.

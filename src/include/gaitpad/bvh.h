@@ -1,0 +1,98 @@
+// BVH files: read as they stand, and written from poses. gaitpad/motion_file.h makes a read file a
+// motion in metres; here nothing is interpreted.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gaitpad/math.h"
+#include "gaitpad/result.h"
+#include "gaitpad/skeleton.h"
+
+namespace gaitpad {
+
+enum class BvhChannel : std::uint8_t {
+  x_position,
+  y_position,
+  z_position,
+  x_rotation,
+  y_rotation,
+  z_rotation,
+};
+inline constexpr bool is_rotation(BvhChannel c) noexcept { return c >= BvhChannel::x_rotation; }
+
+struct BvhJoint {
+  // Of an End Site its parent's name and "_End", then "_End2" and so on for further ones.
+  std::string name;
+  int parent = -1;   // index; -1: the root
+  vec3 offset{0.0};  // from the parent, file units
+  bool is_end_site = false;
+  std::array<BvhChannel, 6> channel{};  // in the order of the file; the first `channels` count
+  int channels = 0;
+  int first_value = 0;  // index of its first channel's value in a frame
+};
+
+// Joints stand in the order of the file, which is depth-first, parents before children.
+struct Bvh {
+  std::vector<BvhJoint> joints;
+  double frame_time_s = 0.0;
+  int frames = 0;
+  int channels = 0;            // numbers in a frame
+  std::vector<double> values;  // frames x channels; file units and degrees
+};
+
+// Parses a text. Taken are any order and number of channels of a joint, CRLF, tabs, trailing blanks
+// and a last line without its end; every frame stands on a line of its own. Counts in the text are
+// checked before memory is allocated for them. Errors read `NAME:LINE: cause`.
+Result<Bvh> parse_bvh(std::string_view text, const std::string& name);
+// The same for a file.
+Result<Bvh> read_bvh(const std::string& path);
+
+// The order of a joint's three rotations, R = R_first R_second R_third: axes 0 x, 1 y, 2 z, each
+// once. At the pole, where the second angle is +-90 degrees, such angles are not unique.
+using BvhOrder = std::array<int, 3>;
+
+// For each joint the order whose pole is far from all sampled rotations: z y x if they stay 60
+// degrees away from its pole, else the best of the six. The root turns about y first, so that no
+// heading is near its pole. `local` holds samples x joints.
+std::vector<BvhOrder> euler_orders(const Skeleton& skeleton, std::span<const quat> local);
+
+struct BvhLayout {
+  double metres_per_unit = 1.0;       // how long a unit of the file is
+  double frame_time_s = 1.0 / 240.0;  // between two poses
+  // End Sites to write as joints: a foot's toe, if the skeleton has no toe joint.
+  std::vector<int> end_sites_as_joints;
+  std::vector<BvhOrder> orders;  // one a joint; empty: y x z for the root, z y x for the others
+};
+
+// Writes poses as a BVH file. The root has OFFSET 0 0 0 and six channels, every other joint three
+// rotations. Of the angles that give the same rotation those nearest to the frame before are
+// written, so that no channel jumps. Every pose is written at once; finish() fills in the number of
+// frames, so `out` must be able to seek.
+class BvhWriter {
+ public:
+  // `out` and `skeleton` must live until finish().
+  BvhWriter(std::ostream& out, const Skeleton& skeleton, const BvhLayout& layout);
+  void write(const Pose& pose);  // appends a frame
+  bool finish();                 // returns false if anything could not be written
+
+ private:
+  void write_hierarchy();
+  void write_joint(int joint, int depth);
+  bool is_joint(int joint) const;
+
+  std::ostream& out_;
+  const Skeleton& skeleton_;
+  BvhLayout layout_;
+  std::vector<int> joints_;  // with channels, in the order of the file
+  std::vector<std::array<double, 3>> previous_rad_;
+  std::string line_;
+  std::ostream::pos_type count_at_;
+  long long frames_ = 0;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,54 @@
+// Writes a walk as binary glTF 2.0 (.glb), which Blender and others open: the joints as nodes, one
+// animation, and a plain body, one rod for each bone, skinned to them. Metres, y up, +z forward, as
+// glTF defines them.
+#pragma once
+#include <array>
+#include <fstream>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "gaitpad/skeleton.h"
+
+namespace gaitpad {
+
+struct GltfLayout {
+  std::string name;              // of the body
+  double fps = 240.0;            // poses a second
+  std::vector<quat> rest_local;  // one a joint: the pose in which the body is bound to the joints
+  vec3 rest_root_m{0.0};         // the root's place in that pose
+};
+
+// The header of a .glb holds lengths that are known at the end, and each joint's rotations stand in
+// one piece. So the poses go to `scratch` in chunks and finish() puts the file together: memory
+// does not grow with the walk.
+class GltfWriter {
+ public:
+  // `out` and `skeleton` must live until finish(). `scratch` is an empty file, open for reading and
+  // writing.
+  GltfWriter(std::ostream& out, std::fstream scratch, const Skeleton& skeleton, GltfLayout layout);
+  void write(const Pose& pose);  // appends a frame
+  // Writes the file. Returns why it is not whole: too many poses, or a full disk.
+  std::optional<std::string> finish();
+
+ private:
+  static constexpr std::size_t kChunkFrames = 1024;
+  std::size_t joints() const { return skeleton_->joints.size(); }
+  std::size_t turning() const { return turning_.size(); }
+  std::size_t chunk_bytes() const;
+  void write_chunk();
+  // Copies the values of one joint (after the last one: the root's place) over all frames.
+  bool copy_track(std::size_t track, std::size_t floats);
+
+  std::ostream* out_;
+  std::fstream scratch_;
+  const Skeleton* skeleton_;
+  GltfLayout layout_;
+  std::vector<int> turning_;  // all joints but the End Sites
+  std::vector<quat> before_;
+  std::vector<std::vector<float>> chunk_;  // one a joint of these, then the root's places
+  std::size_t frames_ = 0;
+};
+
+}  // namespace gaitpad

@@ -61,7 +61,7 @@ Claims endurance_group(Study& s, IkMode mode) {
   return endurance_claims(walked(what), mode);
 }
 
-// Of one mode alone: what the solver has no part in stands under robust, the mode of a session.
+// Claims that do not depend on the solver are reported once, as robust, a session's mode.
 template <Claims (*group)(const Study&)>
 Claims robust_only(Study& s, IkMode mode) {
   return mode == IkMode::robust ? group(s) : Claims{};
@@ -172,7 +172,7 @@ std::string claims_json(const std::string& motion, const std::vector<Claim>& cla
     list.push_back(std::move(row));
   }
   const nlohmann::ordered_json all = {{"motion", motion}, {"claims", std::move(list)}};
-  // A file's name is a stranger's bytes: what is no UTF-8 is replaced.
+  // The motion's file name comes from outside, so invalid UTF-8 is replaced.
   return all.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -55,7 +55,7 @@ class ClaimList {
 };
 
 const char* name_of(IkMode mode) noexcept;
-// {"motion", "claims": [...]} as interface.md states it.
+// {"motion", "claims": [...]}, the file claims.json.
 std::string claims_json(const std::string& motion, const std::vector<Claim>& claims);
 // One line for each claim, for people.
 std::string claims_table(const std::vector<Claim>& claims);

@@ -11,11 +11,11 @@ namespace gaitpad {
 namespace {
 
 constexpr std::array<Side, 2> kSides = {kLeftSide, kRightSide};
-constexpr double kPrintRate_hz = 60.0;  // the notes' bound on jumps is per frame of a screen
+constexpr double kPrintRate_hz = 60.0;  // the notes' bound on jumps is for a frame of a screen
 
 std::size_t first_tick(double after_s) { return static_cast<std::size_t>(after_s * kPaperRate_hz); }
 
-// Stages in an order that table I does not know.
+// Counts stages in an order that table I does not have.
 int disorder(const Walk& walk) {
   int wrong = 0;
   for (std::size_t k = 1; k < walk.samples.size(); ++k) {
@@ -30,7 +30,7 @@ int disorder(const Walk& walk) {
   return wrong;
 }
 
-// Ticks whose planted points are not exactly those of table I.
+// Counts ticks whose planted points are not exactly those of table I.
 int unlike_table_1(const Walk& walk) {
   int wrong = 0;
   for (const WalkSample& sample : walk.samples) {
@@ -44,7 +44,7 @@ int unlike_table_1(const Walk& walk) {
   return wrong;
 }
 
-// How far a planted point moves from where it stood at the stage's beginning, mm.
+// How far a planted point moves from its place at the start of the stage, mm.
 struct Drift {
   double flight_mm = 0.0, roll_mm = 0.0, roll_rise_mm = 0.0;
 };
@@ -78,7 +78,7 @@ double hips_speed(const Walk& walk, std::size_t k) {
   return glm::dot(move, heading_direction(walk.samples[k].frame.heading_rad)) * kPaperRate_hz;
 }
 
-// The elevation of the heel-toe line over what it has when standing, least of all strikes, degrees.
+// The least elevation of the heel-toe line at a strike, relative to standing, degrees.
 double least_strike_deg(const Walk& walk, const FootBuild& build, std::size_t from) {
   double least = 1e9;
   for (const Side side : kSides) {
@@ -94,8 +94,8 @@ double least_strike_deg(const Walk& walk, const FootBuild& build, std::size_t fr
   return least;
 }
 
-// Change of a leg angle's rate from one stage's last tick to the next one's first, in degrees a
-// frame at 60 Hz; the rates are those of neighbouring ticks.
+// The greatest change of a leg angle's rate at a border between stages, in degrees per frame at 60
+// Hz, from differences of neighbouring ticks.
 double worst_border(const Walk& walk, std::size_t from) {
   double worst = 0.0;
   const double per_frame = kPaperRate_hz / kPrintRate_hz / kDegree;
@@ -153,7 +153,7 @@ Walk turning(const WalkModel& model, IkMode mode, double x, double end_s) {
   return walked(what);
 }
 
-// Sideways way of the hips in a stride, mm, the worst.
+// The greatest sideways drift of the hips in a stride, mm.
 double straight_drift_mm(const Walk& walk) {
   double worst = 0.0;
   for (const Ticks& s : strides(walk, kRightSide)) {
@@ -182,7 +182,7 @@ double mirror_gap_m(const Walk& a, const Walk& b) {
 }
 
 struct Circle {
-  double radius_error = kNoNumber;  // share of speed over turn rate
+  double radius_error = kNoNumber;  // relative to speed over turn rate
   double closes_m = kNoNumber;
 };
 Circle circle_of(const Walk& walk) {
@@ -242,7 +242,7 @@ std::optional<Terrain> terrain_of(const Ground22& ground) {
   return terrain;
 }
 
-// How deep a place is in the ground: the shorter way out, up or through a riser's face.
+// How deep a place is in the ground: the shortest way out, upwards or through a riser.
 double depth_m(const Terrain& terrain, const vec3& p) {
   const double up = ground_at(terrain, p.x, p.z).height_m - p.y;
   if (up <= 0.0) return 0.0;
@@ -257,7 +257,7 @@ double depth_m(const Terrain& terrain, const vec3& p) {
   return out;
 }
 
-// The whole sole, from forward kinematics of the pose.
+// How deep the sole is in the ground, by forward kinematics of the pose.
 double sunk_m(const WalkModel& model, const JointFrames& frames, Side side) {
   const LegModel& leg = model.leg[side].model;
   const LegJoints& joints = leg.joints;

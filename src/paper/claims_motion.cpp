@@ -1,6 +1,6 @@
-// Assertions 1-5: the foot's flight out of the motion data. `paper` is the rule to the letter,
-// `robust` the reading of it that finds the last low before the peak, and lift and landing by
-// speed.
+// Assertions 1-5: extraction of the foot's flight from the motion data. `paper` is the rule to the
+// letter; `robust` takes the last low before the peak, and lift and landing by speed. Assertions 6
+// and 29: the same motion on other legs.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kSection = "3.2, figure 2";
-constexpr int kSamples = 120;                // a stride: the notes' grid
+constexpr int kSamples = 120;                // in a stride, as in the notes
 constexpr double kFrame = 100.0 / kSamples;  // percent
 constexpr const char* kNotAdult = "the notes have this number for the built-in adult's curve alone";
 
@@ -36,7 +36,7 @@ struct Wanted {
 constexpr std::array<Wanted, 2> kWanted = {Wanted{FootPoint::ankle, "ankle", {44.2, 71.7, 94.2}},
                                            Wanted{FootPoint::heel, "heel", {0.0, 70.8, 95.0}}};
 
-// 1: where the targets are.
+// 1: the places of the targets.
 void target_claims(const PaperSource& source, const Wanted& wanted, IkMode mode, ClaimList& list) {
   const auto heights = stride_heights(source.cycle, kRightSide, wanted.point, kSamples);
   const FlightTargets t =
@@ -57,7 +57,7 @@ void target_claims(const PaperSource& source, const Wanted& wanted, IkMode mode,
   }
 }
 
-// 1: in which bands they lie.
+// 1: the bands that the targets lie in.
 void band_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   const auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   const auto targets = flight_targets(heights, rule_of(mode));
@@ -77,7 +77,7 @@ void band_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   list.add(ends, std::max(share(targets->lift), share(targets->land)), band);
 }
 
-// 1, in the file's own frames: both feet.
+// 1: both feet, in the file's own frames.
 void file_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   int found = 0;
   std::string text;
@@ -101,7 +101,7 @@ double apart_percent(const FlightTargets& a, const FlightTargets& b) {
       std::max({std::abs(a.lift - b.lift), std::abs(a.peak - b.peak), std::abs(a.land - b.land)}));
 }
 
-// 2, 3: what the 10 % are for.
+// 2, 3: the purpose of the 10 % bands.
 void threshold_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   const auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   const FlightRule rule = rule_of(mode);
@@ -130,7 +130,7 @@ void threshold_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   }
 }
 
-// 4: which low is meant, and which point of the foot.
+// 4: which low and which point of the foot is meant.
 void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   add_standing_jitter(heights, kSamples);
@@ -156,7 +156,7 @@ void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   }
 }
 
-// 5: nothing rather than a part; and the same wherever the clip begins.
+// 5: no result rather than an incomplete one, and the same result wherever the clip begins.
 void completeness_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   const auto whole = flight_targets(heights, rule_of(mode));
@@ -189,8 +189,6 @@ void completeness_claims(const PaperSource& source, IkMode mode, ClaimList& list
            mode == IkMode::paper ? "a clip that begins in the stance has a later first low" : "");
 }
 
-// Assertions 6 and 29: the same motion on other legs.
-
 constexpr std::array<double, 3> kRatios = {0.6, 1.0, 1.6};
 
 double greatest(const FlightCurve& curve) { return *std::ranges::max_element(curve.value); }
@@ -203,8 +201,8 @@ Walk walk_on(const WalkModel& model, IkMode mode) {
   return walked(what);
 }
 
-// The source's frames on the character's bones, the root where the file has it times `root_scale`:
-// toe positions over a stride.
+// Toe positions over a stride when the source's angles are played on the character's bones, with
+// the root's way scaled by `root_scale`.
 std::vector<vec3> raw_toes(const GaitCycle& source, const GaitCycle& build, Side side,
                            double root_scale, int samples) {
   std::vector<vec3> track;
@@ -222,8 +220,8 @@ std::vector<vec3> raw_toes(const GaitCycle& source, const GaitCycle& build, Side
   return track;
 }
 
-// While the source's own toe stands (slower than 15 % of its greatest speed), how far the played
-// one goes.
+// How far the played toe moves while the source's own toe stands (slower than 15 % of its top
+// speed).
 double raw_slide_mm(const GaitCycle& source, const GaitCycle& build, double root_scale) {
   constexpr int kSamples = 256;
   constexpr double kStands = 0.15;

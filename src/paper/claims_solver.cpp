@@ -1,4 +1,5 @@
-// Assertions 9-12: the solver itself, and figure 4.
+// Assertions 9-12: the solver and figure 4. 23: goals out of reach. 21: "no extra computational
+// cost".
 
 #include <fmt/format.h>
 
@@ -34,7 +35,7 @@ double pose_difference_deg(const ChainSolve& a, const ChainSolve& b) {
   return most;
 }
 
-// The leg's Jacobian against central differences, metres a radian.
+// The greatest difference between the leg's Jacobian and central differences, metres per radian.
 double jacobian_error(const IkChain& chain, const vec3& heel_m) {
   Lcg random(9);
   constexpr double kStep = 1e-5;
@@ -60,7 +61,8 @@ double jacobian_error(const IkChain& chain, const vec3& heel_m) {
   return worst;
 }
 
-// Straight chains along directions that no axis has: J J^T loses a rank but for its last bits.
+// Straight chains along directions that no axis has, so that J J^T loses a rank except for
+// rounding.
 int halved_at_rank_loss() {
   Lcg random(4);
   int halved = 0;
@@ -106,8 +108,8 @@ Shares near_goals(const NearGoals& what, IkMode mode) {
   return found;
 }
 
-constexpr double kGentle_rad = 1.2;  // a chain that is bent like an arm
-constexpr double kTickReach = 0.1;   // of a link: as far as a walk's goal moves in a few ticks
+constexpr double kGentle_rad = 1.2;  // a chain bent like an arm
+constexpr double kTickReach = 0.1;   // links; a walk's goal moves so far in a few ticks
 
 void near_claims(IkMode mode, ClaimList& list) {
   const Shares any = near_goals({}, mode), tick = near_goals({kGentle_rad, kTickReach}, mode),
@@ -156,7 +158,7 @@ void figure_4_claims(IkMode mode, ClaimList& list) {
   list.add("10 ends of the chain off the goal, mm", 1e3 * apart, at_most(1e3 * kChainTolerance_m));
 }
 
-// 11: only the weights' ratios count.
+// 11: only the ratios of the weights count.
 void relative_claims(IkMode mode, ClaimList& list) {
   std::vector<double> iterations;
   std::string text;
@@ -216,7 +218,7 @@ double contraction_norm(const IkChain& chain, const IkAngles& q, const vec2& goa
   return std::sqrt(std::max(square, 0.0));
 }
 
-// 12: no redundancy, no effect; and how fast eq. (5) converges.
+// 12: without redundancy weights have no effect; and how fast eq. (5) converges.
 void limit_claims(IkMode mode, ClaimList& list) {
   IkAngles even{}, stiff{};
   error_of_two_links(1.0, mode, even);
@@ -231,7 +233,7 @@ void limit_claims(IkMode mode, ClaimList& list) {
   const ChainSolve s = solve_chain(chain, task, mode);
   double worst = 0.0;
   for (std::size_t k = 0; k + 1 < s.angles_rad.size(); ++k) {
-    if (s.error_m[k] > 0.04 * kChainLink_m) continue;  // where the linearisation holds
+    if (s.error_m[k] > 0.04 * kChainLink_m) continue;  // only where the linearisation holds
     worst = std::max(worst, contraction_norm(chain, s.angles_rad[k + 1], task.goal_m) /
                                 contraction_norm(chain, s.angles_rad[k], task.goal_m));
   }
@@ -239,11 +241,9 @@ void limit_claims(IkMode mode, ClaimList& list) {
            "1 - least weight = 0.8, beside terms of second order");
 }
 
-// Assertion 23: what becomes of a goal that no pose reaches.
-
-constexpr int kFrames = 60;            // to the goal, and as many there
+constexpr int kFrames = 60;            // on the way to the goal, and as many at it
 constexpr double kFar = 1.5;           // legs from the hip: a step that high
-constexpr double kMostTurn_rad = kPi;  // a joint of a leg cannot turn further from frame to frame
+constexpr double kMostTurn_rad = kPi;  // no joint of a leg can turn farther between two frames
 
 IkResult solve(const IkChain& chain, const vec3& heel_m, const vec3& goal_m, IkMode mode,
                IkAngles& angles) {
@@ -252,8 +252,8 @@ IkResult solve(const IkChain& chain, const vec3& heel_m, const vec3& goal_m, IkM
   return solve_robust(chain, rows, {.max_tries = 1}, angles);
 }
 
-// Assertion 21: "no extra computational cost". Times are medians of processor time over blocks that
-// take turns in one run, so that whatever else the machine does meets both sides alike.
+// Assertion 21. Times are medians of processor time over blocks that alternate in one run, so that
+// other load on the machine affects both sides alike.
 
 constexpr int kRounds = 61;
 constexpr double kHipWeight = 0.2;
@@ -263,7 +263,7 @@ double seconds_now() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
   return std::chrono::duration<double>(now).count();
 }
-// Of this process alone: what else runs on the machine is left out.
+// Processor time of this process, without what else the machine runs.
 double cpu_seconds_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 double median(std::vector<double> v) {
   std::ranges::sort(v);
@@ -273,7 +273,7 @@ double median(std::vector<double> v) {
 struct Pair {
   double even_s = 0.0, weighted_s = 0.0, ratio = 0.0;
 };
-// Each block once to warm up, then in turns.
+// Runs each block once to warm up, then both alternately.
 template <class A, class B>
 Pair in_turns(A even, B weighted) {
   std::vector<double> a, b, ratio;
@@ -289,11 +289,11 @@ Pair in_turns(A even, B weighted) {
   return {median(a), median(b), median(ratio)};
 }
 
-// One leg's heel through the flights of a walk: goals tick by tick, and the pose before the first.
+// The goals of one leg's heel through the flights of a walk, tick by tick.
 struct HeelPath {
   IkChain even, weighted;
   vec3 heel_m{0.0};
-  std::vector<IkAngles> start_rad;  // of each goal, from the walk
+  std::vector<IkAngles> start_rad;  // the walk's pose before each goal
   std::vector<vec3> goal_m;
 };
 HeelPath heel_path(const WalkModel& model, const Walk& walk) {
@@ -313,7 +313,7 @@ HeelPath heel_path(const WalkModel& model, const Walk& walk) {
   return path;
 }
 
-// Steps 1-6 once from each pose.
+// One iteration (steps 1-6) from each pose.
 void paper_passes(const HeelPath& path, const IkChain& chain) {
   for (std::size_t i = 0; i < path.goal_m.size(); ++i) {
     IkAngles q = path.start_rad[i];
@@ -327,7 +327,7 @@ void robust_passes(const HeelPath& path, const IkChain& chain) {
     solve_robust(chain, point_goal(path.heel_m, path.goal_m[i]), once, q);
   }
 }
-// Whole solves along the path, each from the answer before: iterations.
+// Solves along the path, each from the answer before; returns the iterations.
 template <class Solve>
 int solves(const HeelPath& path, Solve solve) {
   int iterations = 0;
@@ -387,7 +387,7 @@ double iterations_a_leg(const Walk& walk) {
   return sum / (2.0 * static_cast<double>(walk.samples.size()));
 }
 
-// A whole character's tick.
+// The time of a whole character's tick with stiff hips over that of even.
 double tick_ratio(Study& study, std::string& text) {
   const auto stride = [&](const char* style) {
     return [&study, values = StyleValues(style_of(study.source(), style))] {

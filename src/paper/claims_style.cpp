@@ -1,11 +1,11 @@
-// Assertions 13-17: figure 5a. Numbers in the notes are those of the project's two prototypes of
-// the paper's method: a planar leg (heel as effector, warm start) and a 3-D walk.
+// Assertions 13-17: figure 5a. 18-20: figure 5b. 25: the joystick. 26-28: fatigue, hips, upper
+// body. The notes quote numbers of the project's two prototypes of the paper's method: a planar leg
+// (heel as effector, warm start) and a 3-D walk.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "base/text.h"
 #include "paper/claims.h"
 #include "paper/study.h"
 
@@ -13,7 +13,7 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kSection5a = "4, figure 5a";
-constexpr double kEndShare = 0.1;  // of a flight: so near to its ends the leg is nearly stretched
+constexpr double kEndShare = 0.1;  // of a flight; this near to its ends the leg is nearly stretched
 constexpr std::array<Side, 2> kSides = {kLeftSide, kRightSide};
 
 double worst_of(const std::array<double, 2>& v) { return std::max(v[0], v[1]); }
@@ -79,7 +79,7 @@ void stiff_hip_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list
                        least_knee(*w.even, stride)));
 }
 
-// 14: a knee stiffened a little.
+// 14: a slightly stiffened knee.
 void stiff_knee_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   constexpr double kLeast = 0.2, kMost = 1.5;
   const auto extremes = each_leg([&](Side s) {
@@ -96,7 +96,8 @@ void stiff_knee_claims(const WeightWalks& w, const Ticks& stride, ClaimList& lis
            both_text(rms) + "; planar prototype 0.53, 3-D prototype 0.5 to 0.8");
 }
 
-// Hip's change against even over the flights of a stride: at their ends, and the most between.
+// The hip's change against even over the flights of a stride: at their ends, and the greatest
+// between.
 struct EndsAndMiddle {
   double ends_deg = 0.0, middle_deg = 0.0;
 };
@@ -118,7 +119,7 @@ EndsAndMiddle ends_and_middle(const Walk& even, const Walk& other, const Ticks& 
   return found;
 }
 
-// 15: ends of a stride close, its middle apart.
+// 15: walks agree at the ends of a flight and differ in its middle.
 void end_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   const EndsAndMiddle hip = ends_and_middle(*w.even, *w.stiff_hip, stride),
                       knee = ends_and_middle(*w.even, *w.stiff_knee, stride);
@@ -139,7 +140,7 @@ void end_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
 
 double distance_mm(const vec3& a, const vec3& b) { return 1000.0 * glm::distance(a, b); }
 
-// 16: where the feet go is not the weights' business.
+// 16: weights do not change where the feet go.
 void place_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   double landing = 0.0, heel = 0.0, standing = 0.0, flying = 0.0;
   for (const Walk* other : {w.stiff_hip, w.stiff_knee}) {
@@ -163,8 +164,6 @@ void place_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
                        flying));
 }
 
-// Assertions 18-20: figure 5b, an injured left leg.
-
 constexpr const char* kSection5b = "4, figure 5b";
 constexpr double kSteady_s = 3.5;                 // after the start
 constexpr double kMidFrom = 0.25, kMidTo = 0.75;  // of a flight
@@ -175,7 +174,7 @@ double forward_m(const WalkFrame& frame, const vec3& v) {
 
 struct FlightFigures {
   double ticks = 0.0, peak_m = 0.0;
-  double reach_m = 0.0;      // the heel's way over the ground
+  double reach_m = 0.0;      // distance that the heel covers
   double clearance_m = 0.0;  // the toe's least height in mid-flight
   double step_m = 0.0;       // standing heel to landing heel
 };
@@ -216,8 +215,6 @@ double least_hips_speed(const Walk& walk) {
   }
   return slowest;
 }
-
-// Assertions 26-28: fatigue, the hips' two parameters, the body above them.
 
 constexpr double kSteadyHips_s = 4.0;
 
@@ -282,19 +279,6 @@ double apart_deg(const quat& a, const quat& b) {
   return 2.0 * glm::length(rotation_vector(glm::inverse(a) * b)) * 0.5 / kDegree;
 }
 
-// The first joint whose name says an arm's end of that side: hand, wrist or forearm.
-int hand_of(const Skeleton& skeleton, Side side) {
-  const std::string word = side == kLeftSide ? "left" : "right";
-  for (const char* part : {"hand", "wrist", "forearm"}) {
-    for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
-      const std::string name = lower_case(skeleton.joints[j].name);
-      const bool is_side = name.find(word) != std::string::npos || name.starts_with(word[0]);
-      if (is_side && name.find(part) != std::string::npos) return static_cast<int>(j);
-    }
-  }
-  return -1;
-}
-
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   const double n = static_cast<double>(a.size());
   double ma = 0.0, mb = 0.0, saa = 0.0, sbb = 0.0, sab = 0.0;
@@ -307,13 +291,14 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return sab / std::sqrt(saa * sbb);
 }
 
-// How a hand's place before the pelvis goes with the other leg's hip flexion, the lesser of both.
+// Correlation of a hand's place before the pelvis with the other leg's hip flexion; the lesser of
+// both sides.
 double arm_and_leg(const WalkModel& model, double stick) {
   const Walk walk = straight(model, {}, IkMode::robust, stick, 10.0);
   const Ticks stride = stride_after(walk, kRightSide, 5.0);
   double least = 1.0;
   for (const Side side : {kLeftSide, kRightSide}) {
-    const int hand = hand_of(model.cycle.skeleton, side);
+    const int hand = model.body.joints.arm[side].wrist;
     std::vector<double> swing, hip;
     for (std::size_t k = stride.begin; k < stride.end; ++k) {
       const WalkSample& s = walk.samples[k];
@@ -351,8 +336,6 @@ Above above_the_hips(const WalkModel& model) {
   return found;
 }
 
-// Assertion 25: the joystick, from a gamepad's reports to the walk.
-
 constexpr int kSecond = kPaperRate_hz;
 
 Stick stick_for(const vec2& raw) {
@@ -361,7 +344,7 @@ Stick stick_for(const vec2& raw) {
   return pads.stick_of_tick();
 }
 
-// Of a grid inside the inner zone.
+// Counts positions of a grid inside the inner zone that are not neutral.
 int not_neutral() {
   int count = 0;
   const double inner = StickCalibration{}.inner;
@@ -581,9 +564,9 @@ std::vector<Claim> body_claims(const Study& study) {
            at_most(1e-6));
   list.add("28 ticks at which the warped time does not advance", above.back, equal_to(0));
   const std::string name = "28 hand against the opposite hip, correlation";
-  const Skeleton& skeleton = study.model().cycle.skeleton;
-  if (hand_of(skeleton, kLeftSide) < 0 || hand_of(skeleton, kRightSide) < 0) {
-    list.add_untested(name, more_than(0.8), "no hands by name in this skeleton");
+  const auto& arms = study.model().body.joints.arm;
+  if (!arms[kLeftSide].is_found() || !arms[kRightSide].is_found()) {
+    list.add_untested(name, more_than(0.8), "no arms were found in this skeleton");
     return list.take_claims();
   }
   double least = 1.0;

@@ -27,7 +27,7 @@ struct Figure5 {
   bool is_limp = false;
   IkMode mode = IkMode::robust;
   std::array<Character3, 3> characters;
-  Ticks stride;  // of all three: weights change no time
+  Ticks stride;  // of all three, because weights do not change the timing
 };
 
 Figure5 figure_of(Study& study, const FigureStyles& styles, IkMode mode, bool is_limp) {
@@ -46,7 +46,7 @@ double time_of(const Figure5& f, std::size_t tick) {
   return static_cast<double>(tick - f.stride.begin) / kPaperRate_hz;
 }
 
-// The data's stride at the phases of the red character's: the paper's "original motion capture".
+// The data's stride at the red character's phases: the paper's "original motion capture".
 struct DataPose {
   std::vector<vec3> joints_m;
   std::array<vec3, 2> heel_m;
@@ -129,7 +129,7 @@ Extent extent_of(const Panel& panel) {
   return e;
 }
 
-// The scale at which every panel fits its box.
+// The largest scale at which every panel fits its box.
 double common_scale(const std::vector<Panel>& panels, const Box& box) {
   double scale = 1e9;
   for (const Panel& panel : panels) {
@@ -200,7 +200,7 @@ std::string number(double v, const char* format = "{:.1f}") {
   return fmt::format(fmt::runtime(format), v);
 }
 
-// Measured beside what the notes' two prototypes of the method gave.
+// The measured values beside those of the two prototypes in the project's notes.
 Table table_of(const Figure5& f) {
   const Side side = f.is_limp ? kLeftSide : kRightSide;
   const std::string leg = kSideNames[side];

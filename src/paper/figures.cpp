@@ -15,7 +15,8 @@
 namespace gaitpad {
 namespace {
 
-// One foot's height over the clip (a loop's second round included, as far as the flights go).
+// One foot's height over the clip, continued into a loop's second round if the flight goes on
+// there.
 struct FootHeight {
   std::vector<double> height_m, gradient_m_s;
   std::optional<Swing> literal, robust;
@@ -124,7 +125,7 @@ std::string figure_csv(const FootHeight& f) {
 // Figure 3 and table I: the two-stage cycle.
 
 constexpr double kPanelTop = 120.0, kPanelHeight = 450.0, kFloor = 530.0, kPxPerM = 220.0;
-constexpr double kBehind_m = 0.60;  // of the pelvis, to a panel's left edge
+constexpr double kBehind_m = 0.60;  // from the pelvis to a panel's left edge
 
 struct Beginning {  // of a stage
   std::size_t tick = 0;
@@ -133,7 +134,7 @@ struct Beginning {  // of a stage
   std::array<bool, 2> heel{}, toe{};  // planted in its starting configuration
 };
 
-// Four in a row, beginning with the right foot's flight; and a fifth one for the last arrows.
+// Four stages in a row, starting with the right foot's flight, and a fifth one for the last arrows.
 std::vector<Beginning> beginnings(const Walk& walk) {
   std::vector<Beginning> found;
   const auto from = static_cast<std::size_t>(kFigureStart_s * kPaperRate_hz);
@@ -142,7 +143,7 @@ std::vector<Beginning> beginnings(const Walk& walk) {
     if (before.stage == now.stage) continue;
     const bool is_first = now.stage == Stage::flight && now.swing == kRightSide;
     if (found.empty() && !is_first) continue;
-    // At a flight's beginning the foot still stands on its toes: a tick earlier.
+    // One tick before a flight the foot still stands on its toes.
     Beginning b{now.stage == Stage::flight ? k - 1 : k, now.stage, now.swing, {}, {}};
     for (const Side side : {kLeftSide, kRightSide}) {
       b.heel[side] = before.heel_planted[side] || now.heel_planted[side];
@@ -244,7 +245,7 @@ void draw_chain(cairo_t* cr, const Box& box, const Plot& plot, const IkAngles& a
   for (const vec2& p : joints) draw_dot(cr, pixel_in(box, plot, p), dot, rgb(stroke.colour));
 }
 
-// The chain's first two iterations and its answer, even and with a stiff root.
+// The iterations of the chain and its answer, with even weights and with a stiff root.
 void draw_chains(cairo_t* cr, const Box& box, IkMode mode) {
   Plot plot;
   plot.x = {-10.0, 100.0};

@@ -35,7 +35,7 @@ bool is_landing(const Walk& walk, std::size_t tick, Side side) {
 double slide_of(const Walk& walk, std::size_t from, std::array<bool, 2> WalkFrame::*planted,
                 std::array<vec3, 2> WalkFrame::*place, Side side) {
   double most = 0.0;
-  bool stood = true;  // a plant that runs at `from` is not judged
+  bool stood = true;  // a plant that began before `from` is not judged
   vec3 anchor(0.0);
   bool counts = false;
   for (std::size_t k = from; k < walk.samples.size(); ++k) {
@@ -258,7 +258,7 @@ Report paper_report(const vec2& raw) {
   Report report;
   report.device = 0;
   report.size = 4;
-  const std::array<double, 2> axes = {raw.x, -raw.y};  // HID's Y grows backwards
+  const std::array<double, 2> axes = {raw.x, -raw.y};  // HID's Y axis points backwards
   for (std::size_t i = 0; i < 2; ++i) {
     const int count = static_cast<int>(std::floor(std::clamp(axes[i], -1.0, 1.0) * kFull + 0.5));
     report.bytes[2 * i] = static_cast<std::uint8_t>(count & 0xff);

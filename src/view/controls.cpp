@@ -17,7 +17,7 @@ constexpr std::string_view kSession = "Session", kStyles = "Styles and character
                            kFiles = "Files", kView = "View", kPanelGroup = "Panels",
                            kWindow = "Window";
 
-// Nothing that ends something lies beside the walking keys.
+// No key next to the walking keys ends anything.
 constexpr ActionInfo kActions[] = {
     {Action::pause, SDLK_SPACE, SDLK_p, kButtonStart, "pause", kSession, "pause, go on"},
     {Action::step, SDLK_PERIOD, kNoKey, kButtonDpadRight, "step", kSession,
@@ -142,7 +142,7 @@ constexpr std::uint32_t kMostPresses = 8;  // of one button between two frames
 constexpr SDL_Keycode kWalkingKeys[] = {SDLK_w,  SDLK_a,    SDLK_s,    SDLK_d,
                                         SDLK_UP, SDLK_LEFT, SDLK_DOWN, SDLK_RIGHT};
 
-// Dear ImGui's number of SDL's button, -1: none.
+// Dear ImGui's index of an SDL mouse button; -1: none.
 int button_index(std::uint8_t button) noexcept {
   switch (button) {
     case SDL_BUTTON_LEFT:
@@ -184,21 +184,21 @@ std::string_view button_label(PadButton button) noexcept {
 
 std::span<const HelpLine> walking_help() noexcept { return kWalkingHelp; }
 
-void Controls::take(const SDL_Event& event, const Taken& taken) {
+void Controls::handle_event(const SDL_Event& event, const TakenInput& taken) {
   switch (event.type) {
     case SDL_QUIT:
       wishes_.actions.push_back(Action::quit);
       break;
     case SDL_KEYDOWN:
     case SDL_KEYUP:
-      take_key(event.key, taken);
+      handle_key(event.key, taken);
       break;
     case SDL_MOUSEBUTTONDOWN:
     case SDL_MOUSEBUTTONUP:
-      take_button(event.button, taken);
+      handle_mouse_button(event.button, taken);
       break;
     case SDL_MOUSEMOTION:
-      take_motion(event.motion);
+      handle_mouse_motion(event.motion);
       break;
     case SDL_MOUSEWHEEL:
       if (!taken.mouse) {
@@ -207,7 +207,7 @@ void Controls::take(const SDL_Event& event, const Taken& taken) {
       }
       break;
     case SDL_WINDOWEVENT:
-      take_window(event.window);
+      handle_window_event(event.window);
       break;
     case SDL_DROPFILE:
       if (event.drop.file) wishes_.files.emplace_back(event.drop.file);
@@ -217,7 +217,7 @@ void Controls::take(const SDL_Event& event, const Taken& taken) {
   }
 }
 
-void Controls::take_key(const SDL_KeyboardEvent& key, const Taken& taken) {
+void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken) {
   const SDL_Keycode code = key.keysym.sym;
   const bool is_down = key.type == SDL_KEYDOWN;
   if (code == SDLK_LSHIFT || code == SDLK_RSHIFT) is_shifted_ = is_down;
@@ -236,7 +236,7 @@ void Controls::take_key(const SDL_KeyboardEvent& key, const Taken& taken) {
   }
 }
 
-void Controls::take_button(const SDL_MouseButtonEvent& button, const Taken& taken) {
+void Controls::handle_mouse_button(const SDL_MouseButtonEvent& button, const TakenInput& taken) {
   mouse_.place_px = vec2(button.x, button.y);
   mouse_.is_inside = true;
   const int index = button_index(button.button);
@@ -248,7 +248,7 @@ void Controls::take_button(const SDL_MouseButtonEvent& button, const Taken& take
   drag_ = index > 0 || is_shifted_ ? Drag::pan : Drag::orbit;
 }
 
-void Controls::take_motion(const SDL_MouseMotionEvent& motion) {
+void Controls::handle_mouse_motion(const SDL_MouseMotionEvent& motion) {
   const vec2 place(motion.x, motion.y);
   if (drag_ == Drag::orbit) wishes_.orbit_px += place - mouse_.place_px;
   if (drag_ == Drag::pan) wishes_.pan_px += place - mouse_.place_px;
@@ -256,12 +256,12 @@ void Controls::take_motion(const SDL_MouseMotionEvent& motion) {
   mouse_.is_inside = true;
 }
 
-void Controls::take_window(const SDL_WindowEvent& window) {
+void Controls::handle_window_event(const SDL_WindowEvent& window) {
   switch (window.event) {
     case SDL_WINDOWEVENT_FOCUS_LOST:
     case SDL_WINDOWEVENT_MINIMIZED:
     case SDL_WINDOWEVENT_HIDDEN:
-      let_go();
+      release_all();
       break;
     case SDL_WINDOWEVENT_LEAVE:
       mouse_.is_inside = drag_ != Drag::none;
@@ -274,7 +274,7 @@ void Controls::take_window(const SDL_WindowEvent& window) {
   }
 }
 
-Wishes Controls::wishes() { return std::exchange(wishes_, {}); }
+Wishes Controls::take_wishes() { return std::exchange(wishes_, {}); }
 
 vec2 Controls::walk() const noexcept {
   const auto held = [this](std::size_t a, std::size_t b) {
@@ -285,14 +285,14 @@ vec2 Controls::walk() const noexcept {
   return length > 1.0 ? sum / length : sum;
 }
 
-void Controls::let_go() noexcept {
+void Controls::release_all() noexcept {
   is_held_ = {};
   is_shifted_ = false;
   mouse_.is_down = {};
   drag_ = Drag::none;
 }
 
-void ButtonPresses::take(const SessionFrame& frame, std::vector<Action>& wanted) {
+void ButtonPresses::add_new_presses(const SessionFrame& frame, std::vector<Action>& wanted) {
   const auto before = std::exchange(presses_, frame.presses);
   if (std::exchange(is_first_, false)) return;
   for (const ActionInfo& info : actions()) {

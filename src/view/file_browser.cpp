@@ -39,7 +39,7 @@ std::optional<FileKind> kind_of_folder(const fs::path& path) {
   return std::nullopt;
 }
 
-// As what its keys and values make sense.
+// Tries each kind of .toml file and takes the one that loads without error.
 Result<FileKind> kind_of_content(const std::string& path) {
   std::vector<FileKind> kinds;
   std::string problem;
@@ -62,7 +62,8 @@ Result<FileKind> kind_of_content(const std::string& path) {
       "{}: is no style, character, calibration, terrain or motion; as a style: {}", path, problem)};
 }
 
-// `list` (a shorter one repeats its last) with this one in place n of `count`, or alone.
+// Sets item `n` of `count` in the list, which repeats its last item up to there; a negative `n`
+// replaces the whole list.
 void put(std::vector<std::string>& list, const std::string& path, int n, int count) {
   if (n < 0 || list.empty() || n >= count) {
     list = {path};
@@ -73,7 +74,7 @@ void put(std::vector<std::string>& list, const std::string& path, int n, int cou
   list[static_cast<std::size_t>(n)] = path;
 }
 
-constexpr std::size_t kMostSeen = 100'000;  // entries of a folder that are looked at
+constexpr std::size_t kMostSeen = 100'000;  // entries of a folder that are read
 constexpr std::size_t kMostRecentBytes = 64 * 1024;
 
 bool is_wanted(const std::string& name, FileFilter filter) {
@@ -137,7 +138,7 @@ ShowOptions with_file(ShowOptions options, const std::string& path, FileKind kin
       session.motion = path;
       break;
     case FileKind::character:
-      // Without a list there is one character for each style: the motion's own.
+      // Without a list every style has the motion's own character.
       if (session.characters.empty() && walker >= 0) session.characters = {"as_in_motion_file"};
       put(session.characters, path, walker, walker_count);
       break;
@@ -167,7 +168,7 @@ FolderList list_folder(const std::string& folder, FileFilter filter) {
   for (; !error && it != end && seen < kMostSeen; it.increment(error), ++seen) {
     std::string name = it->path().filename().string();
     if (name.empty() || name.front() == '.') continue;
-    std::error_code ignored;  // a broken link is no folder
+    std::error_code ignored;  // a broken link is not a folder
     const bool is_folder = it->is_directory(ignored);
     if (!is_folder && (!is_wanted(name, filter) || !it->is_regular_file(ignored))) continue;
     if (list.entries.size() == FolderList::kMostEntries) break;
@@ -185,7 +186,7 @@ FolderList list_folder(const std::string& folder, FileFilter filter) {
 RecentFiles::RecentFiles(std::string file) : file_(std::move(file)) {
   if (file_.empty()) return;
   const auto text = file_text(file_, kMostRecentBytes);
-  if (!text) return;  // none was opened so far
+  if (!text) return;  // no file was opened so far
   for (std::size_t begin = 0; begin < text->size() && paths_.size() < kMost;) {
     const std::size_t end = std::min(text->find('\n', begin), text->size());
     std::string path = text->substr(begin, end - begin);
@@ -207,7 +208,7 @@ void RecentFiles::add(const std::string& path) {
   if (file_.empty()) return;
   std::string text;
   for (const std::string& known : paths_) text += known + "\n";
-  // Not to be remembered is no failure worth a word.
+  // Not reported: the list is a convenience.
   static_cast<void>(save_text(file_, text));
 }
 
@@ -228,7 +229,7 @@ void FileBrowser::go_to(std::string folder) {
   path_[size] = '\0';
 }
 
-// A folder is gone into, anything else is the answer.
+// Enters a folder; any other existing path is the result.
 void FileBrowser::enter(const std::string& path) {
   problem_.clear();
   std::error_code error;
@@ -292,7 +293,7 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
                     ImGuiWindowFlags_AlwaysUseWindowPadding);
   ImGui::PushFont(ui.fonts.body);
   std::optional<std::string> entered;
-  ImGuiListClipper clipper;  // thousands of rows: only those to be seen
+  ImGuiListClipper clipper;  // draws only the visible ones of thousands of rows
   clipper.Begin(static_cast<int>(list_.entries.size()));
   while (clipper.Step()) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
@@ -300,8 +301,8 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
       ImGui::PushID(i);
       const ImVec2 at = ImGui::GetCursorScreenPos();
       if (ImGui::Selectable("##entry", i == chosen_, ImGuiSelectableFlags_AllowDoubleClick)) {
-        // A second click counts for the entry of the first one: not for what stands there since a
-        // folder was entered.
+        // A double click counts only if both clicks hit the same entry: after the first one the
+        // list may be that of another folder.
         const bool is_second = chosen_ == i && ImGui::IsMouseDoubleClicked(0);
         chosen_ = i;
         const bool is_wanted = entry.is_folder || is_second;

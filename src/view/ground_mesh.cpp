@@ -7,12 +7,12 @@ namespace gaitpad {
 namespace {
 
 constexpr int kMostSide = 400;      // rows or columns
-constexpr double kBeside_m = 1e-6;  // of a riser: on which side of it
+constexpr double kBeside_m = 1e-6;  // distance at which the two sides of a riser are sampled
 
 struct Row {
   double z_m = 0.0;
-  double look_m = 0.0;    // from there to the side where its height is asked for
-  double riser = 0.0;     // of a riser's face: the z of its normal; 0: the ground's own
+  double look_m = 0.0;    // offset at which the height is sampled
+  double riser = 0.0;     // of a riser's face: its normal's z; 0: the ground's own normal
   bool is_joined = true;  // by triangles to the row before
 };
 

@@ -12,15 +12,15 @@
 #include <cstring>
 #include <vector>
 
-#include "draw/theme.h"
 #include "base/files.h"
+#include "draw/theme.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr double kBodyPixels = 14.5, kSmallPixels = 12.0, kTickPixels = 10.5, kTitlePixels = 17.0;
 constexpr double kLeastScale = 0.5, kMaxScale = 4.0;
-constexpr double kMaxDisplayScale = 3.0;  // a display that tells more is not believed
+constexpr double kMaxDisplayScale = 3.0;  // a higher value from the display is taken as wrong
 constexpr double kUsualDotsPerInch = 96.0;
 constexpr std::size_t kMaxFontBytes = 64 << 20;
 
@@ -28,7 +28,7 @@ struct FontFiles {
   std::string family, regular, semibold;
 };
 
-// The user's own first, then those that Debian's packages bring.
+// The user's own font first, then those of Debian's packages.
 std::vector<FontFiles> candidates() {
   std::vector<FontFiles> all;
   if (const char* own = std::getenv("GAITPAD_FONT"); own != nullptr && *own != '\0') {
@@ -58,7 +58,7 @@ ImFont* add_font(const std::string& bytes, double pixels) {
                                         &config, kRanges);
 }
 
-// Empty fonts where a file is none: the builder says so only when the atlas is made.
+// Returns empty fonts if a file is not a font, which shows only when the atlas is built.
 Fonts fonts_of(const std::string& family, const std::string& regular, const std::string& semibold,
                double scale) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
@@ -172,7 +172,7 @@ Gui::Gui(const WindowSurface& surface) : scale_(surface.scale()) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // view/layout.h remembers
+  io.IniFilename = nullptr;  // view/layout.h stores the layout
   io.LogFilename = nullptr;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   fonts_ = load_fonts(scale_);
@@ -188,9 +188,9 @@ Gui::~Gui() {
 
 void Gui::apply(const Theme& theme) { apply_style(theme, scale_); }
 
-void Gui::take(const SDL_Event& event) { ImGui_ImplSDL2_ProcessEvent(&event); }
+void Gui::handle_event(const SDL_Event& event) { ImGui_ImplSDL2_ProcessEvent(&event); }
 
-Taken Gui::taken() const noexcept {
+TakenInput Gui::taken_input() const noexcept {
   const ImGuiIO& io = ImGui::GetIO();
   return {io.WantTextInput, io.WantCaptureMouse};
 }
@@ -198,7 +198,8 @@ Taken Gui::taken() const noexcept {
 void Gui::begin(const Mouse& mouse, double passed_s) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplSDL2_NewFrame();
-  // The back end asks for the real pointer, which is none off the screen; events tell the same.
+  // The back end asks SDL for the pointer, which does not exist offscreen, so the events' place is
+  // set.
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = mouse.is_inside ? ImVec2(static_cast<float>(mouse.place_px.x),
                                          static_cast<float>(mouse.place_px.y))

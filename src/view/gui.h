@@ -39,8 +39,8 @@ class Gui {
 
   const Fonts& fonts() const noexcept { return fonts_; }
   void apply(const Theme& theme);
-  void take(const SDL_Event& event);
-  Taken taken() const noexcept;
+  void handle_event(const SDL_Event& event);
+  TakenInput taken_input() const noexcept;
   // `passed_s` > 0 replaces the time that ImGui measures, for pictures.
   void begin(const Mouse& mouse, double passed_s);
   void end();  // draws into the bound frame buffer

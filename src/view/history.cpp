@@ -55,7 +55,7 @@ void fit_y(Plot& plot, double least) {
   plot.y = nice_range(min, max, least);
 }
 
-// A series a leg.
+// One curve for each leg.
 Plot leg_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme,
               const std::function<double(const WalkerSample&, Side)>& value, double least) {
   Plot plot;
@@ -74,14 +74,14 @@ bool is_flying(const WalkerSample& s, Side side) noexcept {
   return s.stage == Stage::flight && s.swing == side;
 }
 
-// Lift, peak and landing of each flight of that foot that the span shows.
+// Adds marks at lift, peak and landing of each flight of that foot in the span.
 void add_marks(const History& history, const GraphSpan& span, int walker, Side side,
                const Theme& theme, Plot& plot) {
   const Colour colour = leg_colour(theme, side);
   const auto at = [&](std::size_t i) {
     return PlotPoint{span.x_of(i), sample(history, i, walker).heel_m[side].y * 100.0};
   };
-  std::size_t peak = span.end;  // of the flight under way, end: none
+  std::size_t peak = span.end;  // of the present flight; end: none
   for (std::size_t i = span.begin; i < span.end; ++i) {
     const bool is_up = is_flying(sample(history, i, walker), side);
     const bool was_up = i > span.begin && is_flying(sample(history, i - 1, walker), side);
@@ -97,7 +97,7 @@ void add_marks(const History& history, const GraphSpan& span, int walker, Side s
   }
 }
 
-// Runs of equal keys as parts of a row; an empty key is a gap.
+// Turns runs of equal keys into the parts of a row; key 0 is a gap.
 template <class Key, class Part>
 SpanRow row_of(std::string_view label, const GraphSpan& span, const Key& key, const Part& part) {
   SpanRow row;
@@ -205,7 +205,7 @@ Plot heel_plot(const History& history, const GraphSpan& span, int walker, const 
   Plot plot = leg_plot(
       history, span, walker, theme,
       [](const WalkerSample& s, Side side) { return s.heel_m[side].y * 100.0; }, 4.0);
-  plot.y.min -= 0.06 * (plot.y.max - plot.y.min);  // room for what lies on the floor
+  plot.y.min -= 0.06 * (plot.y.max - plot.y.min);  // room for curves that lie on the floor
   if (!has_walker(history, walker)) return plot;
   for (const Side side : {kLeftSide, kRightSide}) {
     add_marks(history, span, walker, side, theme, plot);

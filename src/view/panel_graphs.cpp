@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, kShownJointCount> kJointNames = {
     "Hip flexion", "Knee flexion", "Ankle dorsiflexion"};
 constexpr std::array<double, kShownJointCount> kLeastSpan_deg = {20.0, 30.0, 10.0};
 
-// A plot's title, and at the right what its curves are now.
+// A plot's title, and at the right the latest values of its curves.
 void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plot& plot,
                 int decimals) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -69,7 +69,7 @@ void draw_leg_choice(Ui& ui) {
   ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(26))});
 }
 
-// What the letters of the curves mean.
+// Which character each curve belongs to.
 void draw_names(Ui& ui) {
   const int count = ui.in.frame.walker_count;
   if (count <= 1) return;
@@ -126,7 +126,7 @@ void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
   note(ui, "F flight, R roll, each of the left or right foot", 1);
 }
 
-// A table: name, then for each leg iterations and error; failures since the beginning.
+// Columns of the table: name, iterations and error of each leg, failures since the start.
 struct Columns {
   float name, iterations, error, failures, width;
 };
@@ -204,7 +204,7 @@ void draw_tick_times(Ui& ui) {
   ImGui::Dummy({max.x - at.x, max.y - at.y});
 }
 
-// What should be 0 and is not: in another colour, and with a word.
+// A count that should be 0; otherwise it is marked with '!' and a note.
 void count_row(Ui& ui, std::string_view label, std::int64_t count,
                std::string_view note_text = {}) {
   std::string value = fmt::format("{}", count);

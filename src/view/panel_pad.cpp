@@ -1,5 +1,3 @@
-// A stick over its zones: where it is raw and calibrated, and where it has just been.
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +12,7 @@
 namespace gaitpad {
 namespace {
 
-// A square with its upper left corner there.
+// A square plot of a stick over its zones; `min` is its upper left corner.
 void draw_stick_plane(Ui& ui, const ImVec2& min, float side_px, Side side,
                       const StickCalibration& calibration);
 
@@ -34,7 +32,7 @@ struct StickPlane {
   }
 };
 
-// The edge of a round zone, in raw positions.
+// The edge of a round zone, in pixels.
 std::array<ImVec2, kCirclePoints> zone_edge(const StickPlane& plane, const StickCalibration& c,
                                             double radius) {
   std::array<ImVec2, kCirclePoints> edge;
@@ -46,8 +44,8 @@ std::array<ImVec2, kCirclePoints> zone_edge(const StickPlane& plane, const Stick
   return edge;
 }
 
-// Between the two zones the stick counts as straight ahead where its scaled deflection's sideways
-// part is below the limit: s sin(angle) <= sideways with s = (r - inner) / (outer - inner).
+// Between the two zones the stick counts as straight ahead if s sin(angle) <= sideways, with s = (r
+// - inner) / (outer - inner).
 void draw_sideways(ImDrawList& list, const StickPlane& plane, const StickCalibration& c,
                    ImU32 colour, float width) {
   if (c.shape != ZoneShape::both || !(c.sideways > 0.0) || c.sideways >= 1.0) return;
@@ -55,7 +53,7 @@ void draw_sideways(ImDrawList& list, const StickPlane& plane, const StickCalibra
   for (const vec2 sign : {vec2(1, 1), vec2(-1, 1), vec2(1, -1), vec2(-1, -1)}) {
     std::array<ImVec2, kBandPoints + 1> curve;
     for (int i = 0; i <= kBandPoints; ++i) {
-      // Dense where it bends, near the inner zone.
+      // Denser near the inner zone, where the curve bends.
       const double share = 1.0 - std::pow(1.0 - static_cast<double>(i) / kBandPoints, 2.0);
       const double angle = kTurn / 4.0 + (least - kTurn / 4.0) * share;
       const double r = c.inner + (c.outer - c.inner) * c.sideways / std::sin(angle);

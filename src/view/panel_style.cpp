@@ -8,7 +8,7 @@
 namespace gaitpad {
 namespace {
 
-// A parameter, or the same one of both feet in one row.
+// A row: one parameter, or the same parameter of both feet.
 struct ControlRow {
   std::string_view label, unit;
   GaitKey left;
@@ -23,7 +23,7 @@ constexpr ControlRow kRows[] = {
     {"hip bounce", "x", GaitKey::hip_bounce, std::nullopt},
 };
 
-// One walker, and what its stick and style alone would make of it.
+// A walker, and the parameters that its stick and style alone would give.
 struct Controlled {
   const WalkerFrame& walker;
   const GaitParams from_stick;
@@ -46,7 +46,7 @@ std::string stick_text(const ControlRow& row, const Controlled& c) {
   return text;
 }
 
-// The name, and at the right what the stick says; where that is overridden a word and a way back.
+// The name, and at the right the stick's value, or a button that gives an overridden value back.
 void draw_row_head(Ui& ui, const ControlRow& row, const Controlled& c) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, y = at.y + ui.px(1);
@@ -88,10 +88,10 @@ void draw_slider(Ui& ui, GaitKey key, const Controlled& c, float width, std::str
   look.letter = letter;
   const double now = c.is_set(key) ? c.walker.overrides.value[static_cast<std::size_t>(key)]
                                    : value_of(key, c.walker.params);
-  double value = wished(ui, "gait " + name, now);
+  double value = wished_value(ui, "gait " + name, now);
   if (slider(ui, "slider " + name, value, look)) {
     send(ui, "gait", name, value);
-    wish(ui, "gait " + name, value);
+    remember_wish(ui, "gait " + name, value);
   }
 }
 
@@ -117,15 +117,15 @@ bool is_any_set(const Ui& ui) {
 
 constexpr std::string_view kLeftOf = "left_", kRightOf = "right_";
 constexpr std::string_view kOfBoth[] = {"legs.", "arms.", "hands."};
-// Behind the button below: the body above the hips, and what is rarely moved.
+// Keys behind the button below: the upper body, and those that are rarely changed.
 constexpr std::string_view kRare[] = {"arm.",  "hand.",   "spine.",
                                       "head.", "blend_s", "fatigue_model."};
 
-// A key, or the same key of both sides.
+// A row: one key, or the same key of both sides.
 struct StyleRow {
   std::string label;
-  const StyleKey* left = nullptr;   // or the only one
-  const StyleKey* right = nullptr;  // null: of no side
+  const StyleKey* left = nullptr;   // or the key without a side
+  const StyleKey* right = nullptr;  // null: a key without a side
 };
 
 template <std::size_t n>
@@ -147,7 +147,7 @@ bool is_axis_weight(std::string_view key) {
          (key.ends_with("_x") || key.ends_with("_y") || key.ends_with("_z"));
 }
 
-// The legs' rows are known by their words; "lower" and "x" say whose they are.
+// Rows of legs and arms need no prefix; others name their table.
 std::string row_label(std::string_view name) {
   const std::string_view table = name.substr(0, name.find('.'));
   const bool is_plain = table.size() == name.size() || table == "leg" || table == "arm";
@@ -175,7 +175,7 @@ std::vector<StyleRow> rows_of(const UiMemory& memory) {
   return rows;
 }
 
-// The chosen style's own value; none where it is not known.
+// The value of the style as loaded; none if it is not known.
 std::optional<double> own_value(const Ui& ui, const WalkerFrame& walker, const StyleKey& key) {
   const auto& all = ui.in.cast.style_values;
   const auto index = static_cast<std::size_t>(walker.style_index);
@@ -195,10 +195,10 @@ void draw_value(Ui& ui, const WalkerFrame& walker, const StyleKey& key, float wi
   look.is_enabled = ui.is_live();
   look.width = width;
   look.letter = letter;
-  double value = wished(ui, "set " + key.name, now);
+  double value = wished_value(ui, "set " + key.name, now);
   if (slider(ui, "style slider " + key.name, value, look)) {
     send(ui, "set", key.name, value);
-    wish(ui, "set " + key.name, value);
+    remember_wish(ui, "set " + key.name, value);
   }
 }
 
@@ -265,7 +265,7 @@ void draw_choice(Ui& ui, const WalkerFrame& walker) {
   ImGui::Dummy({1.0f, ui.px(2)});
 }
 
-// What a file's name may hold anywhere.
+// Accepts only characters that a file's name may hold on every system.
 int accept(ImGuiInputTextCallbackData* data) {
   const ImWchar c = data->EventChar;
   const bool is_fit = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -273,7 +273,7 @@ int accept(ImGuiInputTextCallbackData* data) {
   return is_fit ? 0 : 1;
 }
 
-// A name for the file, and the button that asks for it.
+// A field for the file's name, and the button that saves.
 void draw_save(Ui& ui) {
   auto& name = ui.state.memory.style_name;
   const float save = std::round(ui.px(60)), gap = std::round(ui.px(6));

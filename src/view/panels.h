@@ -1,4 +1,4 @@
-// The panels' contents, below their headings, over the width that is there.
+// The contents of the panels, drawn below their headings over the width of the column.
 #pragma once
 #include "view/widgets.h"
 

@@ -1,5 +1,5 @@
-// What all parts of one picture share. Positions go to the renderer as floats, counted from
-// `origin_m` near the camera's target: 200 m from where it began a walk still has its feet sharp.
+// What all parts of one picture share. The renderer gets positions as floats relative to `origin_m`
+// near the camera's target, so that feet stay sharp 200 m from the start.
 
 #include "view/scene.h"
 
@@ -25,7 +25,7 @@ namespace {
 struct SceneView {
   Camera camera;
   vec3 origin_m{0.0};      // whole metres on the floor
-  mat4 to_clip{1.0};       // from places counted from the origin
+  mat4 to_clip{1.0};       // from places relative to the origin
   vec2 size_px{1.0, 1.0};  // of the viewport
   double scale = 1.0;      // of the display
   const Theme* theme = nullptr;
@@ -34,20 +34,20 @@ struct SceneView {
   bool is_light() const noexcept { return theme->name == ThemeName::light; }
 };
 
-// Towards the one light.
+// Towards the only light.
 inline const vec3 kLightDirection = glm::normalize(vec3(0.42, 0.86, 0.36));
 
 inline bool is_finite(const vec3& v) noexcept {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Bodies of capsules, instanced, and the picture of the floor that holds their shadows.
+// Draws bodies of capsules, instanced, and their shadows into a texture of the floor.
 
 struct MeshDetail {
   int segments = 36, rings = 8;  // round the axis; of each cap
-  int shadow_px = 1024;          // the shadows' picture
+  int shadow_px = 1024;          // side of the shadows' texture
 };
-// Where on the floor the shadows' picture lies, counted from the view's origin.
+// Where the shadows' texture lies on the floor, relative to the view's origin.
 struct ShadowPlace {
   vec2 centre_m{0.0};
   double half_m = 0.0;  // 0: there are no shadows
@@ -56,7 +56,7 @@ struct ShadowPlace {
 class SceneBodies {
  public:
   static Result<SceneBodies> create(const MeshDetail& detail);
-  // The bodies and lines of a picture; what is not finite is left out.
+  // Uploads the bodies and lines of a picture; those that are not finite are left out.
   void load(const SceneContent& content, const SceneView& view);
   // Binds a frame buffer of its own and changes the viewport.
   ShadowPlace draw_shadows();
@@ -86,9 +86,10 @@ class SceneBodies {
   std::size_t low_bodies_ = 0, bodies_ = 0;
 };
 
-constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's line in its shadow
-constexpr double kContact_m = 0.55;      // what is higher leaves no shadow straight below
-constexpr double kShadowStep_m = 2.0;    // the shadows' picture grows in such steps: no flicker
+constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's lines for their shadow
+constexpr double kContact_m = 0.55;      // bodies above this height cast no contact shadow
+constexpr double kShadowStep_m =
+    2.0;  // the texture's size changes in these steps, so that shadows do not flicker
 constexpr double kLargestShadow_m = 16.0;
 
 glm::vec4 row(const vec3& v, double w) {
@@ -96,7 +97,7 @@ glm::vec4 row(const vec3& v, double w) {
           static_cast<float>(w)};
 }
 
-// Unit vector at right angles to the axis, towards `wide` where there is such a direction.
+// A unit vector at right angles to the axis, towards `wide` if possible.
 vec3 across(const vec3& axis, const vec3& wide) {
   const double length = glm::length(axis);
   const vec3 along = length > 1e-9 ? axis / length : kUp;
@@ -113,7 +114,7 @@ bool is_drawable(const Capsule& c) {
          std::isfinite(c.radius_a_m + c.radius_b_m + c.width_a + c.width_b);
 }
 
-// What throws its shadow from higher up does not feel each riser.
+// High bodies use the mean height, so that their shadow does not jump at each riser.
 double floor_below(const SceneContent& content, const vec3& place_m) {
   constexpr double kNear_m = 0.35;
   if (content.terrain == nullptr) return 0.0;
@@ -139,8 +140,8 @@ Result<SceneBodies> SceneBodies::create(const MeshDetail& detail) {
   return bodies;
 }
 
-// Rows of latitude from one pole to the seam, then from the seam to the other pole; between the
-// two caps the same triangles make the cone.
+// Rows of latitude from one pole to the seam, then from the seam to the other pole. The triangles
+// between the two caps form the cone.
 void SceneBodies::make_mesh(const MeshDetail& detail) {
   const int columns = detail.segments, rows = 2 * (detail.rings + 1);
   std::vector<std::array<float, 4>> spots;
@@ -195,7 +196,7 @@ void SceneBodies::make_shadow_target(int size_px) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shadow_.get(), 0);
 }
 
-// Those bodies whose lower end is at such a height.
+// Adds the bodies whose lower end is within [from_m, to_m) above the floor.
 void SceneBodies::add_rows(const SceneContent& content, const SceneView& view, double from_m,
                            double to_m) {
   for (const Capsule& c : content.bodies) {
@@ -228,7 +229,7 @@ void SceneBodies::load(const SceneContent& content, const SceneView& view) {
   upload(instances_, rows_.data(), rows_.size() * sizeof(Instance));
 }
 
-// Round everybody, and where the light throws them; in whole steps, so that it does not swim.
+// Around all bodies and their shadows, in whole texels, so that shadows do not swim.
 ShadowPlace SceneBodies::shadow_place() const noexcept {
   if (rows_.empty()) return {};
   vec2 low(1e9), high(-1e9);
@@ -252,8 +253,8 @@ ShadowPlace SceneBodies::shadow_place() const noexcept {
   return place;
 }
 
-// Red: thrown by the light. Green: straight below, what keeps the sky's light off the floor. The
-// darkest counts, so bones that overlap do not show.
+// Red: the light's shadow. Green: contact shadow straight below, where the sky's light does not
+// reach the floor. The darkest value counts, so that overlapping bones do not show.
 ShadowPlace SceneBodies::draw_shadows() {
   const ShadowPlace place = shadow_place();
   if (place.half_m <= 0.0) return place;
@@ -304,12 +305,12 @@ void SceneBodies::draw(const SceneView& view) const {
   glDisable(GL_CULL_FACE);
 }
 
-// The floor with its grid and shadows, and the background that it fades into.
+// Draws the floor with its grid and shadows, and the background that it fades into.
 
 class SceneFloor {
  public:
   static Result<SceneFloor> create();
-  // Behind the bodies that are drawn already. Without shadows `place.half_m` is 0.
+  // Call it after the bodies are drawn. Without shadows `place.half_m` is 0.
   void draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
             GLuint shadow_texture);
 
@@ -322,8 +323,8 @@ class SceneFloor {
                    double half_m);
 
   GlProgram floor_, ground_, sky_;
-  GlVertexArray nothing_;  // corners are counted, not stored
-  // Uneven ground, made anew when who is looked at has gone a way.
+  GlVertexArray nothing_;  // the shader computes the corners
+  // Uneven ground, rebuilt when the focus has moved far enough.
   GlVertexArray mesh_;
   GlBuffer mesh_rows_, mesh_indices_;
   GLsizei mesh_count_ = 0;
@@ -336,8 +337,8 @@ class SceneFloor {
 constexpr double kFadesFrom_m = 3.0, kFadesTo_m = 9.0;  // at the camera's usual distance
 constexpr double kUsualDistance_m = 6.0;
 constexpr double kMeshStep_m = 0.125, kMeshMoves_m = 1.0;  // at the camera's usual distance
-constexpr double kBehind_m = 0.05;  // the ground lies farther off than it is: what stands on it is
-                                    // not cut by it
+constexpr double kBehind_m = 0.05;  // the ground is drawn slightly behind its place, so that it
+                                    // does not cut what stands on it
 
 void set_background(const GlProgram& program, const SceneView& view) {
   program.set("sky_top", view.theme->sky_top);
@@ -350,7 +351,7 @@ double size_of(const SceneView& view) {
   return std::max(1.0, view.camera.distance_m / kUsualDistance_m);
 }
 
-// Of a program in use: what floor and ground share.
+// Sets the uniforms that floor and ground share; the program has to be in use.
 void set_floor(const GlProgram& program, const SceneContent& content, const SceneView& view,
                const ShadowPlace& place) {
   const bool has_shadows = place.half_m > 0.0;
@@ -398,7 +399,7 @@ Result<SceneFloor> SceneFloor::create() {
   return floor;
 }
 
-// A square round the focus; nothing of it can hide a body, which stands on it.
+// A square around the focus. It is behind all bodies, because they stand on it.
 void SceneFloor::draw_floor(const SceneContent& content, const SceneView& view,
                             const ShadowPlace& place) const {
   floor_.use();
@@ -455,8 +456,8 @@ void SceneFloor::draw(const SceneContent& content, const SceneView& view, const 
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-// Lines with round ends, dots and trails: flat strokes of constant width in pixels, blended with
-// smooth edges over what is there, hidden by bodies before them.
+// Draws lines with round ends, dots and trails: flat strokes of constant width in pixels with
+// smooth edges, hidden by bodies in front of them.
 
 class SceneStrokes {
  public:
@@ -491,7 +492,7 @@ constexpr double kAxisRadius_px = 1.5, kDotRadius_px = 3.6, kTrailHalf_px = 2.4,
 constexpr double kTrailStrength = 0.95;
 constexpr double kNear_m = 0.1;
 
-// A place in the picture: clip coordinates over w, depth of the place in `w`.
+// A place in the picture: normalised device coordinates, and pixels from its middle.
 struct Spot {
   vec3 ndc{0.0};
   vec2 px{0.0};
@@ -504,7 +505,7 @@ std::optional<Spot> spot_of(const vec3& world_m, const SceneView& view) {
   return Spot{ndc, vec2(ndc.x, ndc.y) * 0.5 * view.size_px};
 }
 
-// From the point before; what is not finite takes no length.
+// Distance from the point before; 0 if it is not finite.
 double step_m(const Trail& trail, std::size_t i) {
   const double length_m = glm::distance(trail.points_m[i - 1], trail.points_m[i]);
   return std::isfinite(length_m) ? length_m : 0.0;
@@ -555,9 +556,8 @@ void SceneStrokes::draw(const SceneContent& content, const SceneView& view) {
   glDisable(GL_BLEND);
 }
 
-// It fades by its length, not by time: a foot that stands does not cut it in two.
-// Two triangles between each point and the next, with shared edges: nothing overlaps, so a corner
-// is not darker than the rest.
+// A trail fades by length, not by time, so that a standing foot does not cut it in two. The
+// triangles share their edges without overlap, so that corners are not darker than the rest.
 void SceneStrokes::add_ribbon(const Trail& trail, const SceneView& view) {
   const std::size_t count = trail.points_m.size();
   const glm::vec3 colour(trail.colour.red, trail.colour.green, trail.colour.blue);
@@ -634,7 +634,7 @@ void SceneStrokes::draw_lines(const SceneContent& content, const SceneView& view
 constexpr int kSamples = 4;
 constexpr int kLargest_px = 16384;
 
-// Software rasterizers of Mesa, of Google and of Windows under a layer.
+// Software rasterizers of Mesa, Google and Windows.
 bool is_software_renderer(const std::string& name) {
   for (const char* part : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"}) {
     if (name.find(part) != std::string::npos) return true;
@@ -642,10 +642,10 @@ bool is_software_renderer(const std::string& name) {
   return false;
 }
 
-// Colour and depth of a size, with several samples a pixel or one.
+// A frame buffer with colour and depth, with one or several samples per pixel.
 class Target {
  public:
-  // False where the renderer cannot.
+  // Returns false if the renderer cannot.
   bool resize(int width, int height, int samples) {
     if (width == width_ && height == height_ && samples == samples_) return is_complete_;
     width_ = width;
@@ -755,7 +755,7 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &window);
   glGetIntegerv(GL_VIEWPORT, before.data());
   glDisable(GL_SCISSOR_TEST);
-  // What cannot be had with many samples a pixel (memory) can perhaps with one.
+  // If memory does not suffice for several samples per pixel, one is tried.
   if (!s.target.resize(width, height, s.samples)) s.samples = 1;
   if (s.target.resize(width, height, s.samples)) {
     const SceneView view = view_of(camera, content, theme, viewport, scale);

@@ -1,5 +1,3 @@
-// A live session as a show.
-
 #include "view/show.h"
 
 #include <fmt/format.h>
@@ -27,20 +25,20 @@ class LiveShow final : public Show {
   const Cast& cast() const noexcept override { return session_->cast(); }
   const SessionFrame& frame() const noexcept override { return *frame_; }
 
-  void look(double) override {
+  void update(double) override {
     bool is_new = false;
     frame_ = &session_->latest(is_new);
     for (TickSample sample; session_->take(sample);) {
-      if (is_by_hand()) sample.step_us = 0.0f;  // a picture does not tell of the machine's speed
+      if (is_by_hand()) sample.step_us = 0.0f;  // a picture must not depend on the machine's speed
       history_.add(sample);
     }
   }
 
-  void look_for_picture() override {
+  void update_for_picture() override {
     due_ticks_ += pace_ * options_.live.rate_hz / kPictureRateHz;
     advance(static_cast<int>(due_ticks_));
     due_ticks_ -= static_cast<int>(due_ticks_);
-    look(0.0);
+    update(0.0);
   }
 
   double share(std::int64_t now_ns) const noexcept override {
@@ -84,7 +82,7 @@ class LiveShow final : public Show {
   std::unique_ptr<LiveSession> session_;
   const SessionFrame* frame_ = nullptr;
   LiveStatus status_;
-  double due_ticks_ = 0.0;  // pictures: parts of a tick that are left
+  double due_ticks_ = 0.0;  // pictures: the part of a tick that is left over
 };
 
 Result<std::unique_ptr<Show>> open_live_show(const ShowOptions& options) {
@@ -93,10 +91,9 @@ Result<std::unique_ptr<Show>> open_live_show(const ShowOptions& options) {
   return std::unique_ptr<Show>(std::make_unique<LiveShow>(options, std::move(*session)));
 }
 
-// A trace on a time line as a show.
-
 constexpr int kTicksAtOnce = 48;
-constexpr std::int64_t kComputing_ns = 12'000'000;  // in a drawn frame: drawing stays fluid
+constexpr std::int64_t kComputing_ns =
+    12'000'000;  // of a drawn frame, so that drawing stays smooth
 
 class PlaybackShow final : public Show {
  public:
@@ -109,17 +106,18 @@ class PlaybackShow final : public Show {
   const Cast& cast() const noexcept override { return playback_->cast(); }
   const SessionFrame& frame() const noexcept override { return playback_->frame(); }
 
-  void look(double passed_s) override {
+  void update(double passed_s) override {
     if (is_there_) go_on(passed_s * cast().rate_hz);
     const std::int64_t end_ns = now_ns() + kComputing_ns;
     do {
       is_there_ = playback_->seek(tick(), kTicksAtOnce);
-      take_samples();  // by then: of what is computed at once none is left out
+      take_samples();  // after each part, so that no sample is lost
     } while (!is_there_ && now_ns() < end_ns);
   }
 
-  void look_for_picture() override {
-    if (!std::exchange(is_for_pictures_, true)) position_ = -1.0;  // the first one shows as many
+  void update_for_picture() override {
+    if (!std::exchange(is_for_pictures_, true))
+      position_ = -1.0;  // so that the first picture shows one step, too
     go_on(static_cast<double>(cast().rate_hz) / kPictureRateHz);
     do {
       is_there_ = playback_->seek(tick(), kTicksAtOnce);
@@ -183,7 +181,7 @@ class PlaybackShow final : public Show {
   }
 
   std::unique_ptr<Playback> playback_;
-  double position_ = 0.0;  // ticks, where it is to be
+  double position_ = 0.0;  // ticks; where the playback is to be
   bool is_there_ = true;
   bool is_for_pictures_ = false, are_remarks_taken_ = false;
   UiTimeline timeline_;
@@ -196,8 +194,6 @@ Result<std::unique_ptr<Show>> open_playback_show(const ShowOptions& options) {
   if (!playback) return playback.error();
   return std::unique_ptr<Show>(std::make_unique<PlaybackShow>(options, std::move(*playback)));
 }
-
-// The last state of a show that has ended.
 
 class StillShow final : public Show {
  public:
@@ -214,8 +210,8 @@ class StillShow final : public Show {
 
   const Cast& cast() const noexcept override { return cast_; }
   const SessionFrame& frame() const noexcept override { return *frame_; }
-  void look(double) override {}
-  void look_for_picture() override {}
+  void update(double) override {}
+  void update_for_picture() override {}
   double share(std::int64_t) const noexcept override { return 1.0; }
   void set_pace(double) override {}
   void step() override {}

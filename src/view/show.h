@@ -1,4 +1,4 @@
-// What the window shows: a live session, or a trace on a time line, behind one face.
+// What the window shows: a live session, or a trace on a time line, behind one interface.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,19 +16,22 @@
 
 namespace gaitpad {
 
-inline constexpr int kPictureRateHz = 60;  // frames a second of the session, in pictures and videos
+inline constexpr int kPictureRateHz =
+    60;  // frames per second of the session, in pictures and videos
 
 struct ShowOptions {
   LiveOptions live;
-  std::string trace;  // a playback of this; empty: live
+  std::string trace;  // played back; empty: a live session
   Damage damage = Damage::refuse;
-  bool is_rate_given = false;  // live.rate_hz was asked for: an error where a trace says another
+  bool is_rate_given =
+      false;  // live.rate_hz was asked for, so a trace with another rate is an error
 };
 
 class Show {
  public:
   static Result<std::unique_ptr<Show>> open(const ShowOptions& options);
-  // Whether the files can be read and fit together, before anything that runs is ended for them.
+  // Why these options cannot be opened, as far as the files show; checked before a running show is
+  // ended for them.
   static std::optional<Error> problem(const ShowOptions& options);
   virtual ~Show() = default;
   Show(const Show&) = delete;
@@ -38,35 +41,35 @@ class Show {
   virtual const SessionFrame& frame() const noexcept = 0;
   const History& history() const noexcept { return history_; }
   const ShowOptions& options() const noexcept { return options_; }
-  // For shows that are opened with these options from now on.
+  // Used by shows that are opened with these options later.
   void add_config_folder(const std::string& folder);
   bool is_live() const noexcept { return options_.trace.empty(); }
 
-  // Takes in what has come, once a drawn frame. `passed_s`: of the wall's time since the last call;
-  // a playback goes on by it.
-  virtual void look(double passed_s) = 0;
-  // The same for pictures: 1 / kPictureRateHz of the session, computed here and now.
-  virtual void look_for_picture() = 0;
-  // How far between WalkerFrame::before (0) and pose (1) the moment to be drawn is: one tick ago.
+  // Takes over what is new; call it once for each drawn frame. `passed_s`: wall time since the last
+  // call, by which a playback advances.
+  virtual void update(double passed_s) = 0;
+  // The same for pictures: computes 1 / kPictureRateHz seconds of the session now.
+  virtual void update_for_picture() = 0;
+  // Where the moment to draw, one tick ago, lies between WalkerFrame::before (0) and pose (1).
   virtual double share(std::int64_t now_ns) const noexcept = 0;
 
-  double pace() const noexcept { return pace_; }  // 0: stands still
+  double pace() const noexcept { return pace_; }  // 0: paused
   virtual void set_pace(double pace) = 0;
-  virtual void step() = 0;  // one tick, while it stands still
+  virtual void step() = 0;  // one tick, while paused
 
-  // Live only; nothing happens else.
+  // Live only; otherwise without effect.
   virtual void steer(const vec2&) {}
   virtual void command(std::string_view) {}
-  virtual bool has_ended() const noexcept { return false; }  // a recording that is the pad
+  virtual bool has_ended() const noexcept { return false; }  // of a recording that plays as the pad
   virtual const LiveStatus* status() { return nullptr; }
   // Playback only.
   virtual const UiTimeline* timeline() { return nullptr; }
   virtual void seek(std::int64_t) {}
   virtual void set_looping(bool) {}
 
-  virtual std::string pad_name() const = 0;  // of the driving pad, empty: none
+  virtual std::string pad_name() const = 0;  // of the pad that steers; empty: none
   virtual std::vector<std::string> take_remarks() = 0;
-  // Ends it: one summary a character.
+  // Ends the show; returns one summary for each character.
   virtual Result<std::vector<nlohmann::ordered_json>> stop() = 0;
 
  protected:
@@ -76,10 +79,10 @@ class Show {
   double pace_ = 1.0;
 };
 
-// The two kinds, for open().
+// Used by open().
 Result<std::unique_ptr<Show>> open_live_show(const ShowOptions& options);
 Result<std::unique_ptr<Show>> open_playback_show(const ShowOptions& options);
-// What another one shows now, while nothing runs.
+// Shows the present state of another show while nothing runs.
 std::unique_ptr<Show> still_show(Show& show);
 
 }  // namespace gaitpad

@@ -1,5 +1,3 @@
-// The bars and layers of the flat picture, each into the rectangle that the layout gives it.
-
 #include "view/ui.h"
 
 #include <fmt/format.h>
@@ -16,7 +14,7 @@
 namespace gaitpad {
 namespace {
 
-// A window that stays where it is; `padding` at scale 1.
+// Begins a fixed ImGui window in the rectangle; `padding` at scale 1.
 void begin_area(Ui& ui, const char* id, const UiRect& rect, const Colour& back,
                 const ImVec2& padding, ImGuiWindowFlags flags = 0);
 void end_area();
@@ -26,15 +24,15 @@ void draw_timeline(Ui& ui, const UiRect& rect);
 void draw_status(Ui& ui, const UiRect& rect);
 void draw_messages(Ui& ui, const UiRect& scene);
 void draw_labels(Ui& ui, const UiRect& scene);
-void draw_help(Ui& ui, const UiRect& room);  // over everything in there
+void draw_help(Ui& ui, const UiRect& room);
 void draw_columns(Ui& ui, const UiLayout& layout);
 
 // Pixels at scale 1.
 constexpr float kTopBar = 44.0f, kTimeline = 64.0f, kStatus = 24.0f;
 constexpr float kLeftColumn = 268.0f, kRightColumn = 320.0f;
-constexpr float kLeastScene = 260.0f;  // between two columns
+constexpr float kLeastScene = 260.0f;  // least width between two columns
 constexpr float kLeastSceneBesideOne = 180.0f;
-constexpr float kLeastSceneHeight = 100.0f;  // before the status line gives way
+constexpr float kLeastSceneHeight = 100.0f;  // less hides the status line
 
 bool is_any_open(const UiState& state, bool left) noexcept {
   for (int i = 0; i < kPanels; ++i) {
@@ -61,7 +59,7 @@ std::string session_text(const Ui& ui) {
   return text;
 }
 
-// Chips that would cover each other move up, the ones farther right above those before.
+// Moves chips up that would overlap earlier ones.
 void spread(std::vector<ImRect>& chips) {
   for (std::size_t i = 0; i < chips.size(); ++i) {
     for (std::size_t tries = 0; tries < chips.size(); ++tries) {
@@ -110,8 +108,7 @@ void draw_message_card(Ui& ui, float width) {
   ImGui::SetCursorScreenPos(end);
 }
 
-// A line where another part begins: below the bar at the top, above what lies at the bottom, at the
-// sides of the scene.
+// A line along the edge towards the scene.
 void draw_edge(Ui& ui, const UiRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 size = ImGui::GetIO().DisplaySize, min = rect.min(), max = rect.max();
@@ -203,7 +200,7 @@ void draw_labels(Ui& ui, const UiRect& scene) {
     const float text =
         std::min(text_width(ui.fonts.small, drawable(label.text)) + 1.0f, ui.px(140));
     const ImVec2 place(static_cast<float>(label.place_px.x), static_cast<float>(label.place_px.y));
-    // Whole, also where the head is near the scene's edge.
+    // Kept whole near the scene's edge.
     const float width = std::min(text + ui.px(28), scene.width);
     const float height = std::min(std::round(ui.px(20)), scene.height);
     const float x =
@@ -221,7 +218,7 @@ void draw_labels(Ui& ui, const UiRect& scene) {
 struct PanelPart {
   Panel panel;
   std::string_view title;
-  Action action;  // that opens and closes it
+  Action action;  // opens and closes it
   void (*draw)(Ui& ui);
 };
 constexpr PanelPart kParts[] = {
@@ -267,7 +264,7 @@ void draw_separator(Ui& ui) {
   ImGui::Dummy({1.0f, ui.px(4)});
 }
 
-// Whom panels tell of: a button for each, and one for all.
+// A button for each character, to choose it for the panels, and one for all.
 void draw_cast(Ui& ui) {
   const int count = ui.in.frame.walker_count;
   if (count <= 1) return;
@@ -306,7 +303,7 @@ void draw_panel(Ui& ui, const PanelPart& part, bool has_just_opened) {
   ImGui::PopID();
   const float end = ImGui::GetCursorScreenPos().y;
   keep_area(fmt::format("area {}", kPanelNames[index]), begin, {begin.x + width, end});
-  // What was opened is to be seen: its whole, at least its beginning.
+  // Scrolls to a panel that was just opened: to all of it, at least to its beginning.
   if (!has_just_opened) return;
   const ImRect seen = ImGui::GetCurrentWindow()->InnerRect;
   const float hidden = std::min(end - seen.Max.y, begin.y - seen.Min.y - ui.px(8));
@@ -345,9 +342,9 @@ void draw_columns(Ui& ui, const UiLayout& layout) {
   ui.state.memory.was_open = ui.state.is_open;
 }
 
-constexpr std::size_t kBarButtons = 6;  // before those of the panels
+constexpr std::size_t kBarButtons = 6;  // the panels' buttons follow them
 
-// What a button of the bar does: an action, or a switch of the state that has none, or a menu.
+// A button of the bar with its action, or without one if it opens the view menu.
 struct Entry {
   std::string_view id, label;
   std::optional<Action> action;
@@ -443,7 +440,7 @@ void draw_view_menu(Ui& ui) {
   ImGui::EndPopup();
 }
 
-// What the bar is too narrow for.
+// The entries for which the bar is too narrow.
 void draw_menu(Ui& ui, const std::vector<Entry>& all, std::size_t first) {
   bool wants_view = false;
   if (ImGui::BeginPopup("menu")) {
@@ -469,7 +466,7 @@ struct Fact {
   bool has_dot = false;
 };
 
-// At the right: what the loop and the window do. The dot repeats what the words say.
+// The state of loop and window at the right. Each dot's colour repeats what the words say.
 std::vector<Fact> facts(const Ui& ui) {
   std::vector<Fact> all;
   if (!ui.in.recording.empty()) all.push_back({"recording", ui.theme.bad, true});
@@ -494,7 +491,8 @@ float fact_width(const Ui& ui, const Fact& fact) {
   return text_width(ui.fonts.small, fact.text) + ui.px(fact.has_dot ? 28 : 16);
 }
 
-// From the right edge on, as many as there is room for behind `left`; the x where they begin.
+// Draws as many as fit between `left` and the right edge, counted from the last; returns the x
+// where they begin.
 float draw_facts(Ui& ui, const UiRect& rect, float left) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::vector<Fact> all = facts(ui);
@@ -532,7 +530,8 @@ void draw_top_bar(Ui& ui, const UiRect& rect) {
   const bool fits = wanted <= rect.width;
   const float menu = fits ? 0.0f : button_width(ui, "Panels", {}) + gap;
   const float end = rect.width - ui.px(8) - menu;
-  const std::size_t most = fits ? all.size() : kBarButtons;  // panels: all in the bar or none
+  const std::size_t most =
+      fits ? all.size() : kBarButtons;  // the panels' buttons are all in the bar or none is
   std::size_t i = 0;
   for (; i < most; ++i) {
     if (i == kBarButtons) x += ui.px(10);
@@ -554,7 +553,7 @@ void draw_top_bar(Ui& ui, const UiRect& rect) {
 }
 
 constexpr std::array<double, 5> kPaces = {0.1, 0.25, 0.5, 1.0, 2.0};
-constexpr float kFullWidth = 980.0f;  // at scale 1; below it two rows and one button for the pace
+constexpr float kFullWidth = 980.0f;  // at scale 1; narrower: two rows and one button for the pace
 
 constexpr float kTrackWithSeconds = 28.0f;
 
@@ -572,7 +571,7 @@ std::int64_t last_tick(const UiTimeline& timeline) {
 }
 
 struct Track {
-  UiRect rect;  // window pixels; the line lies in its middle
+  UiRect rect;  // window pixels; the line is in its middle
   std::int64_t last = 0;
   float x_of(std::int64_t tick) const noexcept {
     const double share = last > 0 ? static_cast<double>(tick) / static_cast<double>(last) : 0.0;
@@ -602,7 +601,7 @@ void draw_seconds(Ui& ui, const Track& track) {
   }
 }
 
-// Below the line; their words where the mouse is.
+// Marks below the line, with a tooltip under the mouse.
 void draw_marks(Ui& ui, const Track& track, float y) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -614,7 +613,7 @@ void draw_marks(Ui& ui, const Track& track, float y) {
     if (std::abs(mouse.x - x) <= r * 1.5f && std::abs(mouse.y - (y + r * 1.6f)) <= r * 2.0f) {
       pointed = &mark;
     }
-    if (x - last_x < 1.0f) continue;  // a thousand marks in one place are one
+    if (x - last_x < 1.0f) continue;  // draws many marks in one place once
     last_x = x;
     list.AddTriangleFilled({x - r, y + 2.6f * r}, {x + r, y + 2.6f * r}, {x, y + r},
                            packed(ui.theme.warning));
@@ -665,7 +664,7 @@ void icon_button(Ui& ui, std::string_view id, Icon icon, const ImVec2& at,
   if (id == "loop") ui.out.is_looping = !ui.in.timeline->is_looping;
 }
 
-// Buttons and where it is; the x behind them.
+// Draws the buttons and the time; returns the x behind them.
 float draw_transport(Ui& ui, float x, float y) {
   const UiTimeline& timeline = *ui.in.timeline;
   ButtonLook primary;
@@ -686,7 +685,7 @@ float draw_transport(Ui& ui, float x, float y) {
 
 std::string pace_text(double pace) { return fmt::format("{:g}x", pace); }
 
-// The next in the list, for the one button of a narrow window.
+// The next pace of the list, for the single button of a narrow window.
 double pace_after(double pace) {
   const auto next = std::upper_bound(kPaces.begin(), kPaces.end(), pace + 1e-9);
   return next == kPaces.end() ? kPaces.front() : *next;
@@ -736,12 +735,12 @@ void draw_timeline(Ui& ui, const UiRect& rect) {
 constexpr double kRowPixels = 24.0, kHeadingPixels = 32.0, kColumnPixels = 420.0;
 constexpr double kKeysPixels = 124.0, kButtonPixels = 86.0;
 
-// A heading and the rows below it, as one column holds them together.
+// A row of the help page: a heading, or keys, pad button and text.
 struct Row {
-  std::string_view heading;  // not empty: this and nothing else
+  std::string_view heading;  // if not empty, the row is a heading
   std::vector<std::string> keys;
   std::string_view button, text;
-  std::vector<std::string_view> names;  // of the actions that it tells of
+  std::vector<std::string_view> names;  // of its actions
 };
 
 bool is_numbered_style(Action action) {
@@ -785,7 +784,7 @@ float height_of(const Ui& ui, const Row& row) {
   return std::round(ui.px(row.heading.empty() ? kRowPixels : kHeadingPixels));
 }
 
-// As a key looks; the x behind it.
+// Draws a key; returns the x behind it.
 float draw_key(Ui& ui, const ImVec2& at, std::string_view text, float max_width) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float width = std::min(text_width(ui.fonts.small, text) + ui.px(14), max_width);
@@ -821,7 +820,7 @@ void draw_row(Ui& ui, const ImVec2& at, const Row& row, float width) {
   }
 }
 
-// Where the columns end, so that none is higher than need be and none begins below its heading.
+// Where to break the rows into columns of about equal height; a column starts with a heading.
 std::vector<std::size_t> column_ends(const Ui& ui, const std::vector<Row>& all, int columns) {
   float total = 0.0f;
   for (const Row& row : all) total += height_of(ui, row);

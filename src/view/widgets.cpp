@@ -10,7 +10,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxTextBytes = 1024;  // no row shows more; strangers' names may be long
+constexpr std::size_t kMaxTextBytes = 1024;  // no row shows more; names from outside may be long
 
 std::string fit(std::string_view text) { return drawable(text.substr(0, kMaxTextBytes)); }
 
@@ -18,7 +18,7 @@ ImVec2 size_of(const ImFont* font, std::string_view text) {
   return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, text.data(), text.data() + text.size());
 }
 
-// The first bytes of it that are no wider than that.
+// The beginning of the text that fits the width.
 std::string_view fitting(const ImFont* font, std::string_view text, float width) {
   if (width <= 0.0f) return {};
   const char* rest = nullptr;
@@ -26,7 +26,7 @@ std::string_view fitting(const ImFont* font, std::string_view text, float width)
   return text.substr(0, static_cast<std::size_t>(rest - text.data()));
 }
 
-std::vector<UiItem> items;  // of the frame drawn last; one window draws, from one thread
+std::vector<UiItem> items;  // of the frame drawn last; only one window draws, from one thread
 
 void keep(std::string_view name, const ImVec2& min, const ImVec2& max, const ImRect& clip) {
   ImRect rect(min, max);
@@ -51,7 +51,7 @@ void draw_button_back(Ui& ui, const ImVec2& min, const ImVec2& max, const Button
   }
 }
 
-// Icon or dot, then the label, in the middle of the button.
+// Icon or dot, then the label, centred on the button.
 void draw_button_face(Ui& ui, const ImVec2& min, const ImVec2& max, std::string_view label,
                       const ButtonLook& look) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -73,8 +73,8 @@ void draw_button_face(Ui& ui, const ImVec2& min, const ImVec2& max, std::string_
   put_text(list, font, text, {x + front, middle - font->FontSize / 2.0f}, label, content + 1.0f);
 }
 
-constexpr std::int64_t kWishTicks = 60;  // a command takes effect within a few
-constexpr double kKnobPixels = 5.0;      // half of it, and the slider's margin
+constexpr std::int64_t kWishTicks = 60;  // a command takes effect within a few ticks
+constexpr double kKnobPixels = 5.0;      // half its width, and the slider's margin
 
 double value_under_mouse(Ui& ui, float left, float right, const SliderLook& look) {
   const float margin = ui.px(kKnobPixels);
@@ -85,7 +85,7 @@ double value_under_mouse(Ui& ui, float left, float right, const SliderLook& look
   return std::clamp(std::round(value * unit) / unit, look.min, look.max);
 }
 
-// In the middle, beside the knob where that would cover it.
+// In the middle, or beside the knob if the knob would cover it.
 void draw_number(Ui& ui, const ImVec2& min, const ImVec2& max, float knob, double value,
                  const SliderLook& look) {
   std::string text = tick_text(value, std::pow(10.0, -look.decimals));
@@ -140,7 +140,7 @@ void draw_slider(Ui& ui, const ImVec2& min, const ImVec2& max, double value,
 
 constexpr double kVeil = 0.55;
 constexpr double kRoom = 24.0;       // to the window's edges, at scale 1
-constexpr double kMessages = 104.0;  // left free above, where there is room for both
+constexpr double kMessages = 104.0;  // left free above for messages if both fit
 
 }  // namespace
 
@@ -331,7 +331,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   ImGui::PopID();
   if (look.is_enabled) keep_item(id);
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
-  double& held = ui.state.memory.held;  // what the person has asked for in this drag
+  double& held = ui.state.memory.held;  // the value last asked for in this drag
   if (is_taken) held = value;
   bool is_moved = false;
   if (is_held && look.max > look.min) {
@@ -343,7 +343,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   return is_moved;
 }
 
-double wished(Ui& ui, const std::string& name, double value) {
+double wished_value(Ui& ui, const std::string& name, double value) {
   auto& wishes = ui.state.memory.wishes;
   const std::int64_t now = ui.in.frame.tick;
   std::erase_if(wishes, [&](const UiMemory::Wish& w) {
@@ -356,7 +356,7 @@ double wished(Ui& ui, const std::string& name, double value) {
   return value;
 }
 
-void wish(Ui& ui, const std::string& name, double value) {
+void remember_wish(Ui& ui, const std::string& name, double value) {
   auto& wishes = ui.state.memory.wishes;
   std::erase_if(wishes, [&](const UiMemory::Wish& w) {
     return w.name == name && w.walker == ui.state.walker;
@@ -382,7 +382,7 @@ ImVec2 begin_modal(Ui& ui, const char* id, double width, double height, const Im
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(20), ui.px(16)));
   ImGui::Begin(id, nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
   if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
-  // A veil in a window of its own would take the focus from a text that is being typed.
+  // Drawn in this window: a separate one would take the focus from a text field.
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
   const Colour veil = with_alpha(ui.theme.window, kVeil);

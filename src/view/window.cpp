@@ -1,5 +1,3 @@
-// When frames are drawn, how many there are in a second, how many reports a pad sends meanwhile.
-
 #include "view/window.h"
 
 #include <SDL2/SDL.h>
@@ -42,20 +40,20 @@ namespace {
 
 class FrameClock {
  public:
-  // Between two frames at least so long; 0: no limit.
+  // Least time between two frames; 0: no limit.
   void set_least(double seconds) noexcept { least_s_ = seconds; }
-  // A frame begins: seconds since the last one did, at most a quarter.
-  double begin(std::int64_t now_ns) noexcept;
+  // Returns the seconds since the last frame began, at most a quarter.
+  double begin_frame(std::int64_t now_ns) noexcept;
   // Sleeps until the next frame may begin.
-  void wait() noexcept;
-  std::int64_t now_ns() const noexcept { return now_ns_; }  // when the running frame began
+  void wait_for_next() noexcept;
+  std::int64_t now_ns() const noexcept { return now_ns_; }  // when this frame began
   double passed_s() const noexcept { return passed_s_; }
 
-  double frames_per_second() const noexcept { return shown_; }  // of the last half second
-  // Of all frames behind the first ones, in which shaders are made.
+  double frames_per_second() const noexcept { return shown_; }  // over the last half second
+  // Over all frames except the first few, in which shaders are compiled.
   double mean_frames_per_second() const noexcept;
 
-  // Of a count that grows: per second, over the last second.
+  // How fast a growing count grows, over the last second.
   double rate_hz(std::uint64_t count) noexcept;
 
  private:
@@ -67,7 +65,7 @@ class FrameClock {
   double rate_hz_ = 0.0;
 };
 
-// What the window has to say: errors and remarks, each for a while, newest last.
+// Errors and remarks for the person, each shown for a while, newest last.
 
 class Messages {
  public:
@@ -96,7 +94,7 @@ class Messages {
   std::deque<Message> shown_;
 };
 
-// What run_window() is made of: one frame after the other, and what a person's wishes change.
+// Runs the window: opens it, draws frame after frame, does what the person asks for, and closes it.
 
 class WindowLoop {
  public:
@@ -106,56 +104,57 @@ class WindowLoop {
   Result<WindowResult> run();
 
  private:
-  // window_loop.cpp: the order of a frame.
+  // The order of a frame.
   bool makes_pictures() const noexcept;
-  bool makes_still() const noexcept;  // only the last frame is to be seen
-  bool draw_frame();                  // false: it was the last one
+  bool makes_still() const noexcept;  // only the last frame is kept
+  bool draw_frame();                  // false after the last frame
   bool is_ended();
-  void take_events();
-  void take_wishes(Wishes wishes);
-  void take_buttons(std::vector<Action>& wanted);
+  void handle_events();
+  void follow_wishes(Wishes wishes);
+  void add_button_actions(std::vector<Action>& wanted);
   void move_camera(const Wishes& wishes);
   void call_script();
-  void take_layout(const UiState& layout);
-  void end_lost();
+  void apply_layout(const UiState& layout);
+  void fail_without_display();
   void remember_layout();
   Result<WindowResult> result();
 
-  // window_draw.cpp: what is seen.
-  void look();
-  void draw(bool is_last);
+  // What a frame shows.
+  void update_show();
+  void draw_window(bool is_last);
   UiOutput draw_panels(int width_px, int height_px);
   UiInput ui_input();
   const LiveStatus* shown_status();
   void draw_browser(Ui& ui, const ImVec2& window_px);
   void draw_calibration(Ui& ui, const ImVec2& window_px);
-  void see_anew();  // the camera, as at the beginning
+  void reset_camera();
   void keep_pictures(int width_px, int height_px, bool is_last);
 
-  // window_actions.cpp: what was asked for.
-  void obey(const UiOutput& out);
-  void obey(Action action);
-  bool obey_running(Action action);  // of those that make the show run; false: it is another
-  bool obey_view(Action action);     // of those that change what is seen
-  void obey_other(Action action);
-  void set_style(const std::string& name);
-  void turn_styles(int steps);
-  void turn_panel(Panel panel);
-  void step();
-  void reset();
+  // What the person asked for. The functions that return bool return false for an action of another
+  // kind.
+  void run_actions(const UiOutput& out);
+  void run_action(Action action);
+  bool run_session_action(Action action);  // pause, step, styles
+  bool run_view_action(Action action);     // camera, theme, panels
+  void run_other_action(Action action);
+  void choose_style(const std::string& name);
+  void choose_style_after(int steps);
+  void toggle_panel(Panel panel);
+  void step_once();
+  void reset_session();
   void go_back();
   void save_walkers_style(const std::string& name);
 
-  // window_sessions.cpp: one show ends, another begins.
-  void say(std::string sentence);
-  void take_remarks();
-  void install(std::unique_ptr<Show> show);
-  void end_show();  // its last state stays to be seen
+  // Ends one show and begins another.
+  void show_message(std::string sentence);
+  void show_remarks();
+  void install_show(std::unique_ptr<Show> show);
+  void end_show();  // its last state stays visible
   bool switch_to(const ShowOptions& next);
   bool restart(const ShowOptions& next, const ShowOptions& otherwise);
   void open_file(const std::string& path);
-  void turn_terrains();
-  void turn_recording();
+  void choose_next_terrain();
+  void toggle_recording();
   void begin_calibration();
   void end_calibration(CalibrationView::State state);
   void take_screenshot(int width_px, int height_px);
@@ -164,7 +163,7 @@ class WindowLoop {
   WindowResult result_;
   std::optional<Error> failure_;  // ends the window
 
-  // From here on in the order in which they depend on each other.
+  // In the order in which they depend on each other.
   std::unique_ptr<WindowSurface> surface_;
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<Scene> scene_;
@@ -172,10 +171,10 @@ class WindowLoop {
   std::unique_ptr<CalibrationView> calibration_;
   std::unique_ptr<Show> show_;
   std::unique_ptr<Ensemble> ensemble_;
-  std::optional<ShowOptions> live_before_;  // a playback: what ran before it
+  std::optional<ShowOptions> live_before_;  // during a playback: the live session before it
 
   UiState state_;
-  UiState remembered_;  // as it was read
+  UiState remembered_;  // the layout file's
   std::optional<ThemeName> applied_theme_;
   Camera camera_;
   bool is_camera_new_ = true;
@@ -187,16 +186,16 @@ class WindowLoop {
   FrameClock clock_;
   LiveStatus picture_status_;
   double pace_before_pause_ = 1.0;
-  std::optional<std::string> chosen_file_;  // by the browser, in this frame
+  std::optional<std::string> chosen_file_;  // in the browser, in this frame
   CalibrationView::State calibration_state_ = CalibrationView::State::goes_on;
   bool wants_screenshot_ = false, is_quitting_ = false, is_end_told_ = false;
 };
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kWarmFrames = 5;
-constexpr double kLongest_s = 0.25;  // the machine slept: nothing jumps
+constexpr double kLongest_s = 0.25;  // after a suspended machine wakes up
 
-double FrameClock::begin(std::int64_t time_ns) noexcept {
+double FrameClock::begin_frame(std::int64_t time_ns) noexcept {
   passed_s_ = now_ns_ == 0 ? 0.0 : static_cast<double>(time_ns - now_ns_) / 1e9;
   passed_s_ = std::clamp(passed_s_, 0.0, kLongest_s);
   now_ns_ = time_ns;
@@ -211,10 +210,10 @@ double FrameClock::begin(std::int64_t time_ns) noexcept {
   return passed_s_;
 }
 
-void FrameClock::wait() noexcept {
+void FrameClock::wait_for_next() noexcept {
   if (least_s_ <= 0.0) return;
   const auto least_ns = static_cast<std::int64_t>(least_s_ * 1e9);
-  // By the plan, not by the last frame: what one frame is late the next one may catch up.
+  // Counted from the planned time, so that the frame after a late one can catch up.
   due_ns_ = std::max(due_ns_ + least_ns, now_ns_);
   if (due_ns_ <= gaitpad::now_ns()) return;
   const timespec due = {static_cast<time_t>(due_ns_ / kSecond_ns),
@@ -230,7 +229,7 @@ double FrameClock::mean_frames_per_second() const noexcept {
 }
 
 double FrameClock::rate_hz(std::uint64_t count) noexcept {
-  if (counted_ns_ == 0 || count < counted_) {  // another session counts from 0
+  if (counted_ns_ == 0 || count < counted_) {  // a new session counts from 0
     counted_ns_ = now_ns_;
     counted_ = count;
     rate_hz_ = 0.0;
@@ -243,12 +242,12 @@ double FrameClock::rate_hz(std::uint64_t count) noexcept {
   return rate_hz_;
 }
 
-constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves time to the session
-constexpr double kFrame_s = 1.0 / 120.0;         // where the display keeps no time
+constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves processor time to the session
+constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limit the rate
 constexpr double kUnseenFrame_s = 0.1;           // minimized
-constexpr double kOrbitMouse_rad = 0.006;        // a pixel at scale 1
+constexpr double kOrbitMouse_rad = 0.006;        // per pixel at scale 1
 constexpr double kOrbitStick_rad_s = 1.8;
-constexpr double kStickRest = 0.02;  // of the right stick: a camera does not creep
+constexpr double kStickRest = 0.02;  // of the right stick; less does not move the camera
 constexpr std::int64_t kMessage_ns = 15'000'000'000;
 
 ShowOptions show_options(const WindowOptions& options) {
@@ -257,15 +256,15 @@ ShowOptions show_options(const WindowOptions& options) {
 
 WindowLoop::WindowLoop(const WindowOptions& options)
     : options_(options), browser_(options.recent_file) {
-  // Without a pad the keys walk. For pictures time is that of the frames.
+  // Without a pad the keyboard steers. For pictures the session's time is that of the frames.
   options_.live.keyboard = true;
   if (makes_pictures()) options_.live.clock = LiveOptions::Clock::by_hand;
 }
 
 WindowLoop::~WindowLoop() {
-  show_.reset();  // before SDL's parts are stopped
+  show_.reset();  // before SDL is stopped
   if (surface_ == nullptr || !surface_->is_lost()) return;
-  // Closing what lies on a display that has gone could wait for it: the end of the program does it.
+  // Closing anything on a lost display could wait for ever, so it is left to the program's end.
   static_cast<void>(calibration_.release());
   static_cast<void>(scene_.release());
   static_cast<void>(gui_.release());
@@ -280,8 +279,8 @@ bool WindowLoop::makes_still() const noexcept {
   return makes_pictures() && options_.video.empty() && options_.frames > 0;
 }
 
-// As it was left, but for what was asked for this once.
-void WindowLoop::take_layout(const UiState& layout) {
+// The remembered layout, changed by the options of this start.
+void WindowLoop::apply_layout(const UiState& layout) {
   state_ = remembered_ = layout;
   if (options_.theme) state_.theme = *options_.theme;
   if (options_.are_panels_given) {
@@ -297,8 +296,8 @@ void WindowLoop::take_layout(const UiState& layout) {
 
 std::optional<Error> WindowLoop::open() {
   Layout layout = load_layout(options_.layout_file);
-  take_layout(layout.state);
-  // Words of files before anything is opened for them.
+  apply_layout(layout.state);
+  // Files are checked before anything is opened.
   if (auto problem = Show::problem(show_options(options_))) return problem;
   auto surface = WindowSurface::open(
       {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
@@ -310,8 +309,8 @@ std::optional<Error> WindowLoop::open() {
   gui_ = std::make_unique<Gui>(*surface_);
   auto show = Show::open(show_options(options_));
   if (!show) return show.error();
-  install(std::move(*show));
-  say(std::move(layout.remark));
+  install_show(std::move(*show));
+  show_message(std::move(layout.remark));
   if (makes_pictures()) return std::nullopt;
   const bool keeps_time = SDL_GL_GetSwapInterval() != 0 && !scene_->is_software();
   clock_.set_least(scene_->is_software() ? kSoftwareFrame_s : keeps_time ? 0.0 : kFrame_s);
@@ -326,20 +325,20 @@ Result<WindowResult> WindowLoop::run() {
 }
 
 bool WindowLoop::draw_frame() {
-  clock_.begin(now_ns());
+  clock_.begin_frame(now_ns());
   call_script();
-  take_events();
-  take_wishes(controls_.wishes());
+  handle_events();
+  follow_wishes(controls_.take_wishes());
   if (options_.take_commands)
     for (const std::string& command : options_.take_commands()) show_->command(command);
-  look();
+  update_show();
   const bool is_last = is_ended();
   const bool is_seen = (SDL_GetWindowFlags(surface_->window()) & SDL_WINDOW_MINIMIZED) == 0;
-  if (!surface_->is_lost() && (is_seen || makes_pictures())) draw(is_last);
-  if (surface_->is_lost()) end_lost();
+  if (!surface_->is_lost() && (is_seen || makes_pictures())) draw_window(is_last);
+  if (surface_->is_lost()) fail_without_display();
   ++result_.frames;
   if (!is_seen) SDL_Delay(static_cast<Uint32>(kUnseenFrame_s * 1e3));
-  clock_.wait();
+  clock_.wait_for_next();
   return !is_last;
 }
 
@@ -351,7 +350,7 @@ bool WindowLoop::is_ended() {
   return makes_pictures() && timeline != nullptr && timeline->tick + 1 >= timeline->ticks;
 }
 
-void WindowLoop::end_lost() {
+void WindowLoop::fail_without_display() {
   if (!failure_) failure_ = Error{"the display has gone: the window ends, the session with it"};
 }
 
@@ -362,33 +361,33 @@ void WindowLoop::call_script() {
                    show_->options().live.record, messages_.sentences()});
 }
 
-void WindowLoop::take_events() {
+void WindowLoop::handle_events() {
   for (SDL_Event event; !surface_->is_lost() && SDL_PollEvent(&event) != 0;) {
-    gui_->take(event);
-    controls_.take(event, gui_->taken());
+    gui_->handle_event(event);
+    controls_.handle_event(event, gui_->taken_input());
     if (event.type == SDL_DROPFILE) SDL_free(event.drop.file);
   }
 }
 
-void WindowLoop::take_wishes(Wishes wishes) {
+void WindowLoop::follow_wishes(Wishes wishes) {
   const bool is_modal = browser_.is_open() || calibration_ != nullptr;
-  if (show_->is_live() && !makes_pictures()) take_buttons(wishes.actions);
+  if (show_->is_live() && !makes_pictures()) add_button_actions(wishes.actions);
   for (const Action action : wishes.actions) {
     const bool is_always = action == Action::back || action == Action::quit ||
                            action == Action::screenshot || action == Action::fullscreen;
-    if (is_always || !is_modal) obey(action);
+    if (is_always || !is_modal) run_action(action);
   }
   for (const std::string& file : wishes.files) open_file(file);
-  if (is_modal) controls_.let_go();
+  if (is_modal) controls_.release_all();
   show_->steer(controls_.walk());
   move_camera(wishes);
 }
 
-// The buttons of a recording that is the pad walk and look as they did, but begin and end nothing:
-// its last press may be the one that ended it.
-void WindowLoop::take_buttons(std::vector<Action>& wanted) {
+// A recording that plays as the pad steers and moves the camera as it did, but its buttons cannot
+// record, open, calibrate or quit: its last press may be the one that ended the recording.
+void WindowLoop::add_button_actions(std::vector<Action>& wanted) {
   std::vector<Action> pressed;
-  presses_.take(show_->frame(), pressed);
+  presses_.add_new_presses(show_->frame(), pressed);
   if (is_recording(show_->options().live.wish.pad)) {
     std::erase_if(pressed, [](Action action) {
       return action == Action::record || action == Action::screenshot ||
@@ -414,21 +413,21 @@ void WindowLoop::move_camera(const Wishes& wishes) {
   orbit(camera_, -stick.x * angle_rad, stick.y * angle_rad);
 }
 
-void WindowLoop::look() {
+void WindowLoop::update_show() {
   if (makes_pictures()) {
-    show_->look_for_picture();
+    show_->update_for_picture();
   } else {
-    show_->look(clock_.passed_s());
+    show_->update(clock_.passed_s());
     messages_.forget_before(clock_.now_ns() - kMessage_ns);
   }
-  take_remarks();
+  show_remarks();
   if (!show_->has_ended() || std::exchange(is_end_told_, true) || makes_pictures()) return;
-  say("the recording has come to its end; the keys walk on");
+  show_message("the recording has come to its end; the keys walk on");
 }
 
 void WindowLoop::remember_layout() {
   if (options_.layout_file.empty()) return;
-  // What was asked for this once is not remembered.
+  // Options of this start are not remembered.
   if (options_.theme == state_.theme) state_.theme = remembered_.theme;
   if (options_.are_panels_given) state_.is_open = remembered_.is_open;
   if (!options_.hidden.empty()) {
@@ -446,7 +445,7 @@ Result<WindowResult> WindowLoop::result() {
   remember_layout();
   if (const LiveStatus* status = show_->status()) result_.status = *status;
   auto summaries = show_->stop();
-  take_remarks();
+  show_remarks();
   if (failure_) return *failure_;
   if (!summaries) return summaries.error();
   if (const LiveStatus* status = show_->status()) result_.status = *status;
@@ -455,11 +454,9 @@ Result<WindowResult> WindowLoop::result() {
   return std::move(result_);
 }
 
-// One frame of the window: the scene, what lies flat above it, and what is kept of it.
-
 constexpr double kAside_rad = 1.1, kAbove_rad = 0.3;
 
-// Of the whole program, in memory; 0: not known.
+// Resident memory of the whole program; 0 if not known.
 double memory_mib() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0.0;
@@ -470,7 +467,7 @@ double memory_mib() {
   return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
-void WindowLoop::draw(bool is_last) {
+void WindowLoop::draw_window(bool is_last) {
   int width_px = 0, height_px = 0;
   surface_->size(width_px, height_px);
   surface_->begin();
@@ -486,25 +483,25 @@ void WindowLoop::draw(bool is_last) {
       scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
   ensemble_->fill(show_->frame(), show_->history(), show_->share(now_ns()), show_->cast(), state_,
                   theme, content_);
-  if (std::exchange(is_camera_new_, false)) see_anew();
+  if (std::exchange(is_camera_new_, false)) reset_camera();
   const double passed_s = makes_pictures() ? 1.0 / kPictureRateHz : clock_.passed_s();
   follow(camera_, ensemble_->focus_m(state_.walker), passed_s);
   ensemble_->stand_on_ground(camera_);
   const bool is_kept = !makes_still() || is_last || wants_screenshot_;
   if (is_kept && viewport.width > 0 && viewport.height > 0)
     scene_->draw(content_, camera_, theme, viewport, height_px, surface_->scale());
-  obey(draw_panels(width_px, height_px));
+  run_actions(draw_panels(width_px, height_px));
   keep_pictures(width_px, height_px, is_last);
   surface_->show();
 }
 
-void WindowLoop::see_anew() {
+void WindowLoop::reset_camera() {
   int width_px = 0, height_px = 0;
   surface_->size(width_px, height_px);
   const Viewport viewport =
       scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
   camera_ = Camera();
-  if (ensemble_->is_on_uneven_ground()) {  // from the side: steps ahead hide no feet
+  if (ensemble_->is_on_uneven_ground()) {  // from the side, so that steps ahead hide no feet
     camera_.yaw_rad = kAside_rad;
     camera_.pitch_rad = kAbove_rad;
   }
@@ -512,7 +509,7 @@ void WindowLoop::see_anew() {
   camera_.distance_m = ensemble_->distance_m(state_.walker, camera_, viewport);
 }
 
-// In pictures without what tells of the machine's speed.
+// For pictures without the values that depend on the machine's speed.
 const LiveStatus* WindowLoop::shown_status() {
   const LiveStatus* status = show_->status();
   if (status == nullptr || !makes_pictures()) return status;
@@ -571,7 +568,7 @@ void WindowLoop::draw_calibration(Ui& ui, const ImVec2& window_px) {
   if (!calibration_) return;
   std::vector<std::string> messages;
   calibration_state_ = calibration_->draw(ui, window_px, messages);
-  for (std::string& message : messages) say(std::move(message));
+  for (std::string& message : messages) show_message(std::move(message));
 }
 
 void WindowLoop::keep_pictures(int width_px, int height_px, bool is_last) {
@@ -579,7 +576,6 @@ void WindowLoop::keep_pictures(int width_px, int height_px, bool is_last) {
   if (std::exchange(wants_screenshot_, false)) take_screenshot(width_px, height_px);
   if (options_.video.empty() && !keeps_still) return;
   if (!options_.video.empty() && !video_) {
-    // H.264 counts in pairs of pixels.
     auto video = VideoWriter::open(options_.video, width_px, height_px, kPictureRateHz);
     if (!video) failure_ = video.error();
     if (video) video_ = std::move(*video);
@@ -590,11 +586,9 @@ void WindowLoop::keep_pictures(int width_px, int height_px, bool is_last) {
   if (keeps_still && !failure_) failure_ = write_png(options_.screenshot, pixels);
 }
 
-// What a person asked for by key, button or panel, done.
-
 constexpr double kSlowMotion = 0.25;
 
-// The styles that a command may name, each once.
+// The names that a `style` command accepts, each once.
 std::vector<std::string> style_names(const Cast& cast) {
   std::vector<std::string> names;
   for (const std::string& name : cast.styles)
@@ -602,8 +596,8 @@ std::vector<std::string> style_names(const Cast& cast) {
   return names;
 }
 
-void WindowLoop::obey(const UiOutput& out) {
-  for (const Action action : out.actions) obey(action);
+void WindowLoop::run_actions(const UiOutput& out) {
+  for (const Action action : out.actions) run_action(action);
   for (const std::string& command : out.commands) show_->command(command);
   if (out.seek_tick) show_->seek(*out.seek_tick);
   if (out.pace) show_->set_pace(*out.pace);
@@ -615,12 +609,12 @@ void WindowLoop::obey(const UiOutput& out) {
     end_calibration(calibration_state_);
 }
 
-void WindowLoop::obey(Action action) {
-  if (obey_running(action) || obey_view(action)) return;
-  obey_other(action);
+void WindowLoop::run_action(Action action) {
+  if (run_session_action(action) || run_view_action(action)) return;
+  run_other_action(action);
 }
 
-bool WindowLoop::obey_running(Action action) {
+bool WindowLoop::run_session_action(Action action) {
   switch (action) {
     case Action::pause:
       if (show_->pace() > 0.0) {
@@ -631,19 +625,19 @@ bool WindowLoop::obey_running(Action action) {
       }
       return true;
     case Action::step:
-      step();
+      step_once();
       return true;
     case Action::slow_motion:
       show_->set_pace(show_->pace() == kSlowMotion ? 1.0 : kSlowMotion);
       return true;
     case Action::reset:
-      reset();
+      reset_session();
       return true;
     case Action::next_style:
-      turn_styles(1);
+      choose_style_after(1);
       return true;
     case Action::previous_style:
-      turn_styles(-1);
+      choose_style_after(-1);
       return true;
     default:
       break;
@@ -651,11 +645,11 @@ bool WindowLoop::obey_running(Action action) {
   if (action < Action::style_1 || action > Action::style_9) return false;
   const auto names = style_names(show_->cast());
   const auto index = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::style_1);
-  if (index < names.size()) set_style(names[index]);
+  if (index < names.size()) choose_style(names[index]);
   return true;
 }
 
-bool WindowLoop::obey_view(Action action) {
+bool WindowLoop::run_view_action(Action action) {
   switch (action) {
     case Action::next_walker:
       if (++state_.walker >= static_cast<int>(show_->cast().members.size())) state_.walker = -1;
@@ -687,14 +681,14 @@ bool WindowLoop::obey_view(Action action) {
       break;
   }
   if (action < Action::panel_pad || action > Action::panel_loop) return false;
-  turn_panel(static_cast<Panel>(static_cast<int>(action) - static_cast<int>(Action::panel_pad)));
+  toggle_panel(static_cast<Panel>(static_cast<int>(action) - static_cast<int>(Action::panel_pad)));
   return true;
 }
 
-void WindowLoop::obey_other(Action action) {
+void WindowLoop::run_other_action(Action action) {
   switch (action) {
     case Action::record:
-      turn_recording();
+      toggle_recording();
       break;
     case Action::screenshot:
       wants_screenshot_ = true;
@@ -703,7 +697,7 @@ void WindowLoop::obey_other(Action action) {
       browser_.open();
       break;
     case Action::next_terrain:
-      turn_terrains();
+      choose_next_terrain();
       break;
     case Action::calibrate:
       begin_calibration();
@@ -719,12 +713,12 @@ void WindowLoop::obey_other(Action action) {
   }
 }
 
-void WindowLoop::turn_panel(Panel panel) {
+void WindowLoop::toggle_panel(Panel panel) {
   bool& is_open = state_.is_open[static_cast<std::size_t>(panel)];
   is_open = !is_open;
 }
 
-void WindowLoop::step() {
+void WindowLoop::step_once() {
   if (show_->pace() > 0.0) {
     pace_before_pause_ = show_->pace();
     show_->set_pace(0.0);
@@ -732,7 +726,7 @@ void WindowLoop::step() {
   show_->step();
 }
 
-void WindowLoop::reset() {
+void WindowLoop::reset_session() {
   if (show_->is_live()) {
     show_->command("reset");
   } else {
@@ -740,9 +734,10 @@ void WindowLoop::reset() {
   }
 }
 
-void WindowLoop::set_style(const std::string& name) {
+void WindowLoop::choose_style(const std::string& name) {
   if (!show_->is_live()) {
-    say("a recording walks in its own styles; Escape goes back to where they can be changed");
+    show_message(
+        "a recording walks in its own styles; Escape goes back to where they can be changed");
   } else if (state_.walker >= 0) {
     show_->command(fmt::format("style {} {}", state_.walker + 1, name));
   } else {
@@ -750,8 +745,8 @@ void WindowLoop::set_style(const std::string& name) {
   }
 }
 
-// From the style of the chosen one, or of the first, to the one so many places on in the list.
-void WindowLoop::turn_styles(int steps) {
+// Goes `steps` places on in the list, from the style of the chosen character or of the first.
+void WindowLoop::choose_style_after(int steps) {
   const auto names = style_names(show_->cast());
   const auto walker = static_cast<std::size_t>(std::max(state_.walker, 0));
   const auto index =
@@ -759,7 +754,7 @@ void WindowLoop::turn_styles(int steps) {
   if (names.empty() || index >= show_->cast().styles.size()) return;
   const auto count = static_cast<int>(names.size());
   const auto now = std::ranges::find(names, show_->cast().styles[index]) - names.begin();
-  set_style(names[static_cast<std::size_t>((static_cast<int>(now) + steps + count) % count)]);
+  choose_style(names[static_cast<std::size_t>((static_cast<int>(now) + steps + count) % count)]);
 }
 
 void WindowLoop::go_back() {
@@ -779,16 +774,15 @@ void WindowLoop::save_walkers_style(const std::string& name) {
   const auto walker = static_cast<std::size_t>(std::max(state_.walker, 0));
   const auto& folders = show_->options().live.session.config_folders;
   const auto path = save_style(folders, name, show_->frame().walkers[walker].style);
-  if (path) show_->add_config_folder(user_config_folder());  // it may be new
-  say(path ? fmt::format("kept as {}: the next session knows it", *path) : path.error().message);
+  if (path) show_->add_config_folder(user_config_folder());  // the folder may be new
+  show_message(path ? fmt::format("kept as {}: the next session knows it", *path)
+                    : path.error().message);
 }
-
-// One session or playback ends, another begins: files that are opened, recordings, calibration.
 
 constexpr std::size_t kMostRemarks = 200;
 constexpr int kMostOfOneName = 100;
 
-// gaitpad-20240229-235959.hid in the working directory; a name that is taken is never used again.
+// A new name such as gaitpad-20240229-235959.hid in the working directory; empty if none is free.
 std::string new_file(const char* ending) {
   const std::string name =
       fmt::format("gaitpad-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
@@ -801,20 +795,20 @@ std::string new_file(const char* ending) {
   return {};
 }
 
-void WindowLoop::say(std::string sentence) {
+void WindowLoop::show_message(std::string sentence) {
   if (sentence.empty()) return;
   if (result_.remarks.size() < kMostRemarks) result_.remarks.push_back(sentence);
   messages_.add(std::move(sentence), clock_.now_ns());
 }
 
-void WindowLoop::take_remarks() {
-  for (std::string& remark : show_->take_remarks()) say(std::move(remark));
+void WindowLoop::show_remarks() {
+  for (std::string& remark : show_->take_remarks()) show_message(std::move(remark));
 }
 
-void WindowLoop::install(std::unique_ptr<Show> show) {
+void WindowLoop::install_show(std::unique_ptr<Show> show) {
   show_ = std::move(show);
   ensemble_ = std::make_unique<Ensemble>(show_->cast());
-  presses_.begin_anew();
+  presses_.start_again();
   pace_before_pause_ = 1.0;
   is_camera_new_ = true;
   is_end_told_ = false;
@@ -824,15 +818,15 @@ void WindowLoop::install(std::unique_ptr<Show> show) {
 void WindowLoop::end_show() {
   const std::string recording = show_->options().live.record;
   const auto summaries = show_->stop();
-  take_remarks();
+  show_remarks();
   if (!summaries) {
-    say(summaries.error().message);
+    show_message(summaries.error().message);
   } else if (!recording.empty()) {
-    say("the recording " + recording + " is complete");
+    show_message("the recording " + recording + " is complete");
   }
   auto still = still_show(*show_);
-  show_.reset();  // its pads are free from here on
-  install(std::move(still));
+  show_.reset();  // frees its pads
+  install_show(std::move(still));
   is_camera_new_ = false;
 }
 
@@ -841,82 +835,87 @@ bool WindowLoop::switch_to(const ShowOptions& next) {
   otherwise.live.record.clear();
   if (next.trace.empty()) {
     if (auto problem = Show::problem(next)) {
-      say(problem->message);
+      show_message(problem->message);
       return false;
     }
     end_show();
     return restart(next, otherwise);
   }
-  auto playback = Show::open(next);  // it needs no pad: what runs goes on until it is there
+  auto playback =
+      Show::open(next);  // needs no pad, so the running session goes on until it is open
   if (!playback) {
-    say(playback.error().message);
+    show_message(playback.error().message);
     return false;
   }
   if (show_->is_live()) live_before_ = otherwise;
   end_show();
-  install(std::move(*playback));
+  install_show(std::move(*playback));
   return true;
 }
 
-// After end_show(): the next one, or what ran before; where neither can be had, nothing runs and
-// its last state stays.
+// After end_show(): opens the next show, or else the one that ran before. If neither opens, nothing
+// runs and the last state stays visible.
 bool WindowLoop::restart(const ShowOptions& next, const ShowOptions& otherwise) {
   auto show = Show::open(next);
   const bool is_begun = static_cast<bool>(show);
   if (!is_begun) {
-    say(show.error().message);
+    show_message(show.error().message);
     show = Show::open(otherwise);
-    if (!show) say(show.error().message);
+    if (!show) show_message(show.error().message);
   }
-  if (show) install(std::move(*show));
+  if (show) install_show(std::move(*show));
   return is_begun;
 }
 
 void WindowLoop::open_file(const std::string& path) {
-  if (calibration_) return say("the calibration is not done: open files afterwards");
+  if (calibration_) return show_message("the calibration is not done: open files afterwards");
   const auto kind = kind_of_file(path);
-  if (!kind) return say(kind.error().message);
+  if (!kind) return show_message(kind.error().message);
   const int count = static_cast<int>(show_->cast().members.size());
   ShowOptions next = with_file(show_->options(), path, *kind, state_.walker, count);
-  if (makes_pictures()) return say("pictures are made of one session: open files without them");
+  if (makes_pictures())
+    return show_message("pictures are made of one session: open files without them");
   if (!switch_to(next)) return;
   browser_.remember(path);
   const char* back = live_before_ && *kind == FileKind::recording ? "; Escape goes back" : "";
-  say(fmt::format("opened {}{}", path, back));
+  show_message(fmt::format("opened {}{}", path, back));
 }
 
-// The next of those that the configuration folders have; from one of elsewhere to the first.
-void WindowLoop::turn_terrains() {
+// The next terrain of the configuration folders; the first one if the present one is from
+// elsewhere.
+void WindowLoop::choose_next_terrain() {
   if (calibration_) return;
-  if (!show_->is_live()) return say("a recording is playing: it stays on its ground");
+  if (!show_->is_live()) return show_message("a recording is playing: it stays on its ground");
   if (makes_pictures())
-    return say("pictures are made of one session: --terrain chooses the ground");
+    return show_message("pictures are made of one session: --terrain chooses the ground");
   ShowOptions next = show_->options();
   SessionOptions& session = next.live.session;
   const auto files = config_files(session.config_folders, "terrain");
-  if (files.empty()) return say("no terrains were found");
+  if (files.empty()) return show_message("no terrains were found");
   const std::string now = session.terrain.empty() ? "flat" : config_name(session.terrain);
   const auto at = std::ranges::find(files, now, config_name);
   const bool is_last = at == files.end() || at + 1 == files.end();
   session.terrain = is_last ? files.front() : *(at + 1);
   next.live.record.clear();
-  if (switch_to(next)) say("on the ground " + config_name(session.terrain));
+  if (switch_to(next)) show_message("on the ground " + config_name(session.terrain));
 }
 
-void WindowLoop::turn_recording() {
-  if (!show_->is_live()) return say("a recording is playing: there is nothing to record");
-  if (makes_pictures()) return say("pictures are made of one session: record without them");
+void WindowLoop::toggle_recording() {
+  if (!show_->is_live()) return show_message("a recording is playing: there is nothing to record");
+  if (makes_pictures())
+    return show_message("pictures are made of one session: record without them");
   ShowOptions next = show_->options();
   const bool is_recorded = !next.live.record.empty();
   next.live.record = is_recorded ? "" : new_file(".hid");
-  if (!is_recorded && next.live.record.empty()) return say("no name is free for a recording");
-  if (switch_to(next) && !is_recorded) say("recording to " + next.live.record);
+  if (!is_recorded && next.live.record.empty())
+    return show_message("no name is free for a recording");
+  if (switch_to(next) && !is_recorded) show_message("recording to " + next.live.record);
 }
 
 void WindowLoop::begin_calibration() {
   if (calibration_) return;
   if (!show_->is_live() || makes_pictures())
-    return say("a recording is playing: calibrate in a live session");
+    return show_message("a recording is playing: calibrate in a live session");
   const ShowOptions before = show_->options();
   end_show();
   auto view =
@@ -926,24 +925,24 @@ void WindowLoop::begin_calibration() {
   if (view) {
     calibration_ = std::move(*view);
   } else {
-    say(view.error().message);
+    show_message(view.error().message);
     restart(show_->options(), show_->options());
   }
 }
 
 void WindowLoop::end_calibration(CalibrationView::State state) {
-  calibration_.reset();  // the pad is free
+  calibration_.reset();  // frees the pad
   ShowOptions next = show_->options();
-  // A file that was asked for would hide the new one.
+  // A calibration that was asked for would override the new one.
   if (state == CalibrationView::State::saved) next.live.session.calibration.clear();
   restart(next, show_->options());
 }
 
 void WindowLoop::take_screenshot(int width_px, int height_px) {
   const std::string path = new_file(".png");
-  if (path.empty()) return say("no name is free for a picture");
+  if (path.empty()) return show_message("no name is free for a picture");
   const auto problem = write_png(path, read_pixels(width_px, height_px));
-  say(problem ? problem->message : "written to " + path);
+  show_message(problem ? problem->message : "written to " + path);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A body's measures are judged by what is known of people and of the skeleton; where it is, by
+// A mannequin's measures are judged by what is known of people and of the skeleton; where it is, by
 // forward kinematics and by the samples of the walk, which the drawing does not read.
 #include "view/mannequin.h"
 
@@ -41,9 +41,9 @@ double lowest_m(const std::vector<Capsule>& capsules) {
 }
 constexpr double kTouch_m = 1e-5;
 
-std::vector<Capsule> posed(const Body& body, const Pose& pose) {
+std::vector<Capsule> posed(const Mannequin& mannequin, const Pose& pose) {
   SceneContent content;
-  add_body(body, pose, rgb(0x56b4e9), content);
+  add_mannequin(mannequin, pose, rgb(0x56b4e9), content);
   return content.bodies;
 }
 
@@ -62,23 +62,33 @@ void walk(const WalkModel& model, double turn, Look look) {
   }
 }
 
-void expect_plausible(const Body& body) {
-  const double leg_m = body.model->leg_length_m;
-  EXPECT_GT(body.bones.size(), 30u);
-  EXPECT_GT(body.height_m, 1.55 * leg_m);  // 1.9 to 2.1 in people; some clips bend far forward
-  EXPECT_LT(body.height_m, 2.3 * leg_m);
-  const BodyParts parts = body_parts(*body.model);
-  const auto height = [&parts](int joint) { return parts.standing.position_m[joint].y; };
-  for (const ArmJoints& arm : parts.arm) {
-    ASSERT_TRUE(arm.is_known());
+// World positions of the joints, the feet on the floor.
+JointFrames standing_frames(const WalkModel& model) {
+  Pose pose;
+  standing(model, vec3(0.0), pose);
+  JointFrames frames;
+  forward_kinematics(model.cycle.skeleton, pose, frames);
+  return frames;
+}
+
+void expect_plausible(const Mannequin& mannequin) {
+  const double leg_m = mannequin.model->leg_length_m;
+  EXPECT_GT(mannequin.bones.size(), 30u);
+  EXPECT_GT(mannequin.height_m, 1.55 * leg_m);  // 1.9 to 2.1 in people; some clips bend far forward
+  EXPECT_LT(mannequin.height_m, 2.3 * leg_m);
+  const JointFrames standing = standing_frames(*mannequin.model);
+  const UpperBodyJoints& joints = mannequin.model->body.joints;
+  const auto height = [&standing](int joint) { return standing.position_m[joint].y; };
+  for (const ArmChain& arm : joints.arm) {
+    ASSERT_TRUE(arm.is_found());
     EXPECT_NE(arm.shoulder, arm.elbow);
     EXPECT_NE(arm.elbow, arm.wrist);
     EXPECT_GT(height(arm.shoulder), height(arm.wrist));
   }
-  EXPECT_GT(parts.standing.position_m[parts.arm[kLeftSide].shoulder].x,
-            parts.standing.position_m[parts.arm[kRightSide].shoulder].x + 0.2 * leg_m);
+  EXPECT_GT(standing.position_m[joints.arm[kLeftSide].shoulder].x,
+            standing.position_m[joints.arm[kRightSide].shoulder].x + 0.2 * leg_m);
   double widest_m = 0.0;
-  for (const BodyBone& bone : body.bones) {
+  for (const MannequinBone& bone : mannequin.bones) {
     for (const double r : {bone.radius_from_m, bone.radius_to_m}) {
       EXPECT_GT(r, 0.004 * leg_m);
       EXPECT_LT(r, 0.16 * leg_m);
@@ -88,39 +98,40 @@ void expect_plausible(const Body& body) {
   EXPECT_LT(widest_m, 0.27 * leg_m);
 }
 
-TEST(Body, TheProceduralOneIsAPersonsSize) {
-  const Body body = body_of(model_of(procedural_gait()));
-  expect_plausible(body);
-  const Skeleton& skeleton = body.model->cycle.skeleton;
-  const BodyParts parts = body_parts(*body.model);
-  EXPECT_EQ(skeleton.joints[parts.head].name, "Head");
-  EXPECT_EQ(skeleton.joints[parts.arm[kLeftSide].elbow].name, "LeftForeArm");
-  EXPECT_EQ(skeleton.joints[parts.arm[kRightSide].wrist].name, "RightHand");
+TEST(Mannequin, TheProceduralOneIsAPersonsSize) {
+  const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
+  expect_plausible(mannequin);
+  const Skeleton& skeleton = mannequin.model->cycle.skeleton;
+  const JointFrames standing = standing_frames(*mannequin.model);
+  const UpperBodyJoints& joints = mannequin.model->body.joints;
+  EXPECT_EQ(skeleton.joints[joints.head].name, "Head");
+  EXPECT_EQ(skeleton.joints[joints.arm[kLeftSide].elbow].name, "LeftForeArm");
+  EXPECT_EQ(skeleton.joints[joints.arm[kRightSide].wrist].name, "RightHand");
   // The skeleton says itself where the top of the head is.
-  EXPECT_NEAR(body.height_m, parts.standing.position_m[skeleton.find("Head_End")].y, 0.05);
+  EXPECT_NEAR(mannequin.height_m, standing.position_m[skeleton.find("Head_End")].y, 0.05);
 }
 
-TEST(Body, StandingFeetTouchTheFloorOverTheirWholeLength) {
-  const Body body = body_of(model_of(procedural_gait()));
+TEST(Mannequin, StandingFeetTouchTheFloorOverTheirWholeLength) {
+  const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
   Pose pose;
-  standing(*body.model, vec3(0.0), pose);
+  standing(*mannequin.model, vec3(0.0), pose);
   for (const Side side : {kLeftSide, kRightSide}) {
-    const LegJoints& joints = body.model->leg[side].model.joints;
+    const LegJoints& joints = mannequin.model->leg[side].model.joints;
     int on_floor = 0;
-    for (std::size_t i = 0; i < body.bones.size(); ++i) {
-      const BodyBone& bone = body.bones[i];
+    for (std::size_t i = 0; i < mannequin.bones.size(); ++i) {
+      const MannequinBone& bone = mannequin.bones[i];
       if (bone.to != joints.ankle && bone.to != joints.toe) continue;
-      on_floor += std::abs(lowest_m(posed(body, pose)[i])) < 2e-3;
+      on_floor += std::abs(lowest_m(posed(mannequin, pose)[i])) < 2e-3;
     }
     EXPECT_GE(on_floor, 3);
   }
 }
 
-TEST(Body, GrowsWithItsCharacter) {
+TEST(Mannequin, GrowsWithItsCharacter) {
   const GaitCycle cycle = procedural_gait();
   Character half;
   half.scale = 0.5;
-  const Body full = body_of(model_of(cycle)), small = body_of(model_of(cycle, half));
+  const Mannequin full = mannequin_of(model_of(cycle)), small = mannequin_of(model_of(cycle, half));
   ASSERT_EQ(full.bones.size(), small.bones.size());
   EXPECT_NEAR(small.height_m, 0.5 * full.height_m, 1e-3);
   for (std::size_t i = 0; i < full.bones.size(); ++i) {
@@ -128,35 +139,36 @@ TEST(Body, GrowsWithItsCharacter) {
   }
 }
 
-TEST(Body, ItsBonesMeetTheJointsOfItsPose) {
-  const Body body = body_of(model_of(procedural_gait()));
-  walk(*body.model, 0.4, [&body](const Pose& pose) {
+TEST(Mannequin, ItsBonesMeetTheJointsOfItsPose) {
+  const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
+  walk(*mannequin.model, 0.4, [&mannequin](const Pose& pose) {
     JointFrames frames;
-    forward_kinematics(body.model->cycle.skeleton, pose, frames);
-    const std::vector<Capsule> capsules = posed(body, pose);
-    for (const LegBuild& leg : body.model->leg) {
+    forward_kinematics(mannequin.model->cycle.skeleton, pose, frames);
+    const std::vector<Capsule> capsules = posed(mannequin, pose);
+    for (const LegBuild& leg : mannequin.model->leg) {
       const vec3 knee_m = frames.position_m[leg.model.joints.knee];
       double nearest_m = 1.0;
       for (const Capsule& c : capsules)
         nearest_m = std::min(nearest_m, glm::distance(c.b_m, knee_m));
       EXPECT_LT(nearest_m, 1e-9);
     }
-    const vec3 top_m = head_m(body, pose);
-    EXPECT_GT(top_m.y, frames.position_m[body.top].y + 0.15);
-    EXPECT_LT(glm::distance(top_m, frames.position_m[body.top]), 0.35);
+    const vec3 top_m = head_m(mannequin, pose);
+    EXPECT_GT(top_m.y, frames.position_m[mannequin.top].y + 0.15);
+    EXPECT_LT(glm::distance(top_m, frames.position_m[mannequin.top]), 0.35);
   });
 }
 
-TEST(Body, NothingOfItIsBelowTheFloorWhileItWalksAndTurns) {
+TEST(Mannequin, NothingOfItIsBelowTheFloorWhileItWalksAndTurns) {
   for (const double turn : {0.0, -0.8}) {
-    const Body body = body_of(model_of(procedural_gait()));
-    walk(*body.model, turn,
-         [&body](const Pose& pose) { EXPECT_GE(lowest_m(posed(body, pose)), -kTouch_m); });
+    const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
+    walk(*mannequin.model, turn, [&mannequin](const Pose& pose) {
+      EXPECT_GE(lowest_m(posed(mannequin, pose)), -kTouch_m);
+    });
   }
 }
 
 // Legs alone are a skeleton too.
-TEST(Body, WithoutArmsAndHeadTheRestIsDrawn) {
+TEST(Mannequin, WithoutArmsAndHeadTheRestIsDrawn) {
   GaitCycle cycle = procedural_gait();
   const std::size_t all = cycle.skeleton.joints.size(), kept = 11;  // pelvis, two legs of five
   ASSERT_EQ(cycle.skeleton.joints[kept].name, "Spine");
@@ -168,15 +180,15 @@ TEST(Body, WithoutArmsAndHeadTheRestIsDrawn) {
   cycle.local = local;
   cycle.skeleton.joints.resize(kept);
   cycle.standing_local.resize(kept);
-  const Body body = body_of(model_of(cycle));
-  EXPECT_GE(body.bones.size(), 15u);
-  walk(*body.model, 0.0, [&body](const Pose& pose) {
-    EXPECT_GE(lowest_m(posed(body, pose)), -kTouch_m);
-    EXPECT_TRUE(std::isfinite(head_m(body, pose).y));
+  const Mannequin mannequin = mannequin_of(model_of(cycle));
+  EXPECT_GE(mannequin.bones.size(), 15u);
+  walk(*mannequin.model, 0.0, [&mannequin](const Pose& pose) {
+    EXPECT_GE(lowest_m(posed(mannequin, pose)), -kTouch_m);
+    EXPECT_TRUE(std::isfinite(head_m(mannequin, pose).y));
   });
 }
 
-TEST(Body, EveryCapturedSkeletonHasItsArmsAndHeadAndStaysAboveTheFloor) {
+TEST(Mannequin, EveryCapturedSkeletonHasItsArmsAndHeadAndStaysAboveTheFloor) {
   GAITPAD_NEEDS(kCapturedMotions);
   int walks = 0;
   for (const std::string& file : files_in(kCapturedMotions, ".bvh")) {
@@ -185,10 +197,11 @@ TEST(Body, EveryCapturedSkeletonHasItsArmsAndHeadAndStaysAboveTheFloor) {
     const auto cycle = gait_cycle(*motion);
     if (!cycle) continue;
     SCOPED_TRACE(file);
-    const Body body = body_of(model_of(*cycle));
-    expect_plausible(body);
-    walk(*body.model, 0.3,
-         [&body](const Pose& pose) { EXPECT_GE(lowest_m(posed(body, pose)), -kTouch_m); });
+    const Mannequin mannequin = mannequin_of(model_of(*cycle));
+    expect_plausible(mannequin);
+    walk(*mannequin.model, 0.3, [&mannequin](const Pose& pose) {
+      EXPECT_GE(lowest_m(posed(mannequin, pose)), -kTouch_m);
+    });
     ++walks;
   }
   EXPECT_GE(walks, 10);

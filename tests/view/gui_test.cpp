@@ -1,3 +1,5 @@
+#include "view/gui.h"
+
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -7,7 +9,6 @@
 #include <limits>
 
 #include "tests/own_folder.h"
-#include "draw/theme.h"
 
 namespace gaitpad {
 namespace {

@@ -13,13 +13,13 @@
 #include "gaitpad/hash.h"
 
 namespace gaitpad {
-
 namespace {
 
 constexpr std::size_t kMaxKeyBytes = 48;           // of a file's name, between ids and ending
 constexpr std::uint16_t kKernelArranged = 0x8000;  // of the version on evdev: config/README.md
 
-// Cheap pads have a serial number of zeros or blanks, or one that no text can hold.
+// Empty if it cannot identify a pad: cheap pads have serial numbers of zeros or blanks, or one that
+// is not UTF-8.
 std::string usable_id(const std::string& unique_id) {
   const bool is_blank = unique_id.find_first_not_of("0:-. \t") == std::string::npos;
   return is_blank || !is_utf8(unique_id) ? "" : unique_id;
@@ -32,8 +32,8 @@ std::string text_hash(std::string_view text) {
   return fmt::format("{:08x}", static_cast<std::uint32_t>(hash.value()));
 }
 
-// Fit for a file's name, and never the same for two texts: what was changed, or could be taken for
-// one of our own endings, is followed by a hash.
+// The text as a part of a file's name, different for different texts: if characters were replaced,
+// or if it looks like one of our own endings, a hash follows.
 std::string file_key(std::string_view text) {
   std::string key(text.substr(0, kMaxKeyBytes));
   for (char& c : key) {
@@ -98,16 +98,18 @@ std::optional<Error> save_calibration(const std::string& path, const Calibration
                                       const std::vector<std::string>& comments) {
   const std::string text =
       commented(comments) + (comments.empty() ? "" : "\n") + calibration_text(file);
-  // A file that could not be read back would be lost work, and told only at the next game.
+  // Otherwise the user would learn only in the next session that the work is lost.
   if (auto again = parse_calibration(text, path); !again)
     return Error{"was not saved, since it could not be read back: " + again.error().message};
   return save_text(path, text);
 }
 
-// Today's stick beside its file. The thresholds are above what two measurements of one stick differ
-// by (tests/stick: range within 1 %, sigma within 15 %, circularity within 0.5 points).
+// --- a stick today compared to its file
 
 namespace {
+
+// The thresholds are larger than the differences between two measurements of one stick
+// (tests/stick: range within 1 %, sigma within 15 %, circularity within 0.5 points).
 
 constexpr double kCentreShare = 0.5;         // of the inner zone
 constexpr double kReachChange = 0.03;        // raw
@@ -115,7 +117,7 @@ constexpr double kNoiseFactor = 1.5;         // of sigma ...
 constexpr double kLeastNoiseChange = 0.001;  // ... and raw: half a step of 10 bits
 constexpr double kHysteresisChange = 0.01;   // raw
 constexpr double kCircularityChange = 2.0;   // percent
-constexpr double kDriftChange = 0.002;       // raw a second: the least inner zone in 25 s
+constexpr double kDriftChange = 0.002;  // raw a second: it crosses the least inner zone in 25 s
 
 // One stick, then and now.
 struct Pair {
@@ -131,7 +133,7 @@ struct Pair {
   }
 };
 
-// The file's inner zone is a fraction of a centred, ranged deflection; the noise is raw.
+// The inner zone of a file is a fraction of the centred, ranged deflection; noise is raw.
 double inner_zone_raw(const StickCalibration& c) {
   const double reach = std::min(
       {c.x.max - c.x.centre, c.x.centre - c.x.min, c.y.max - c.y.centre, c.y.centre - c.y.min});
@@ -153,7 +155,7 @@ void compare_centre(Pair& stick) {
 
 void compare_reach(Pair& stick) {
   const auto& [name, then, now, before, today, told] = stick;
-  if (!today.circularity_error) return;  // it was not turned round
+  if (!today.circularity_error) return;  // it was not turned along the rim
   const struct {
     std::string_view direction;
     double before, now, half_range;

@@ -1,4 +1,4 @@
-// A user's own calibrations: one file a device, found again by it, never lost half-way.
+// A user's own calibrations: one file for each device, and what has changed since it was written.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,26 +10,26 @@
 
 namespace gaitpad {
 
-// In user_config_folder(); empty where there is none. It need not exist.
+// In user_config_folder(); empty if there is none. It need not exist.
 std::string user_calibration_folder();
 
-// For this device alone: by its unique id, else by vendor, product and port (where it has neither,
-// for its model). `drivers` is set where another driver's values differ: a pad that corrects its
-// sticks itself (`has_factory_sticks`, or a kernel driver that does so, as its version on evdev
-// tells).
+// A file for this device alone: by its unique id, else by vendor, product and port, else (if it has
+// neither) for its model. `drivers` is set if other drivers show other values: for a pad that has
+// factory sticks, and for a kernel driver that corrects the sticks (its version on evdev says so).
 CalibrationFile calibration_for(const DeviceInfo& device, bool has_factory_sticks);
-// `FOLDER/054c_0ce6-UNIQUE.toml`: the same for the same device, another one for any other.
+// `FOLDER/054c_0ce6-UNIQUE.toml`: always the same for a device, and different for different
+// devices.
 std::string calibration_path(const std::string& folder, const CalibrationFile& file);
 
-// As save_text() does it, once it is sure that it can be read back. `comments` stand at the top,
-// each a line.
+// Writes the file with save_text(), after checking that it can be read back. `comments` are the
+// lines at its top.
 std::optional<Error> save_calibration(const std::string& path, const CalibrationFile& file,
                                       const std::vector<std::string>& comments);
 
-// What has changed from `then` to `now`, a sentence each with both numbers ("left stick: the centre
-// has moved by 0.031 ...: more than half of the inner zone"); empty where nothing counts. Of `now`
-// only what was measured is looked at; of `then` also what stands there unmeasured, since it
-// steers.
+// What has changed from `then` to `now`: sentences with both numbers ("left stick: the centre has
+// moved by 0.031 ...: more than half of the inner zone"). Empty if nothing relevant has changed. Of
+// `now` only measured values are compared; of `then` also the values that were not measured, since
+// they are in use.
 std::vector<std::string> changes_since(const CalibrationFile& then, const CalibrationFile& now);
 
 }  // namespace gaitpad

@@ -12,10 +12,9 @@
 #include "pads/calibration_store.h"
 
 namespace gaitpad {
-
 namespace {
 
-constexpr std::int64_t kOnTheWayNs = 50'000'000;  // silence shorter than that may be none
+constexpr std::int64_t kOnTheWayNs = 50'000'000;  // reports may take so long to arrive
 constexpr const char* kSides[] = {"left", "right"};
 
 }  // namespace
@@ -32,11 +31,11 @@ Result<std::unique_ptr<GuidedCalibration>> GuidedCalibration::start(const PadFil
   return calibration;
 }
 
-void GuidedCalibration::take(const Report& report) {
+void GuidedCalibration::take_report(const Report& report) {
   if (report.kind == ReportKind::added && device_ == kNoDevice) {
     device_ = report.device;
     info_ = stream_->device(device_).info;
-    config_ = std::move(stream_->config(device_));
+    config_ = stream_->take_config(device_);
     guide_.emplace(*config_.layout);
   }
   if (report.device != device_ || device_ == kNoDevice) return;
@@ -54,8 +53,8 @@ void GuidedCalibration::end_recording() {
 
 void GuidedCalibration::look(std::chrono::milliseconds timeout) {
   if (timeout.count() > 0) stream_->wait(timeout);
-  const bool has_ended = stream_->has_ended();  // asked first: what came before it is read below
-  for (; const Report* report = stream_->front(); stream_->pop()) take(*report);
+  const bool has_ended = stream_->has_ended();  // asked first: its last reports are read below
+  for (; const Report* report = stream_->front(); stream_->pop()) take_report(*report);
   if (guide_) guide_->tick(now_ns() - kOnTheWayNs);
   if (has_ended && !has_ended_) end_recording();
 }

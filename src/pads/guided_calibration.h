@@ -1,5 +1,5 @@
-// A live pad's way through the guided calibration, for the terminal and the window: the pad that
-// comes first, its reports through the guide, and at the end the file that its calibration goes to.
+// The guided calibration of a live pad, for the terminal and the window: it takes the first pad
+// that comes, passes its reports to the guide, and finds the file that the calibration goes to.
 #pragma once
 #include <array>
 #include <chrono>
@@ -15,7 +15,7 @@
 
 namespace gaitpad {
 
-// A pad and all that was seen of it.
+// A pad, and what was seen of it.
 struct GuidedPad {
   DeviceInfo info;
   PadLayout layout;
@@ -30,42 +30,43 @@ class GuidedCalibration {
   static Result<std::unique_ptr<GuidedCalibration>> start(const PadFiles& files,
                                                           const PadWish& wish);
 
-  // Takes in what has come; where nothing is there waits so long for it. A recording that comes to
-  // its end skips what it did not show.
+  // Takes in the reports that have come; if there are none, waits so long for one. At the end of a
+  // recording the steps that it did not show are skipped.
   void look(std::chrono::milliseconds timeout);
   CalibrationGuide* guide() noexcept { return guide_ ? &*guide_ : nullptr; }  // null: no pad yet
   const DeviceInfo& pad() const noexcept { return info_; }                    // once there is one
   bool is_plugged() const noexcept { return is_plugged_; }
   std::int64_t plugged() const noexcept { return stream_->counts().plugged; }
-  bool has_ended() const noexcept { return has_ended_; }  // the recording, and all of it was seen
+  bool has_ended() const noexcept { return has_ended_; }  // the recording, and all of it was read
   std::vector<std::string> take_remarks();
-  // What the guide has learned; it begins no more.
+  // What the guide has learned. Ends the calibration.
   GuidedPad finish();
 
  private:
   GuidedCalibration() = default;
-  void take(const Report& report);
+  void take_report(const Report& report);
   void end_recording();
 
   std::unique_ptr<PadStream> stream_;
   std::uint16_t device_ = kNoDevice;
   DeviceInfo info_;
-  PadConfig config_;  // the guide looks at its layout
+  PadConfig config_;  // the guide refers to its layout
   bool is_plugged_ = false, has_ended_ = false;
   std::optional<CalibrationGuide> guide_;
   std::vector<std::string> remarks_;
 };
 
-// That this driver shows other values than the pad's own, where it may; else empty.
+// One sentence if this driver may show other values than the pad's own; else empty.
 std::string driver_remark(const DeviceInfo& info);
 
-// Where a calibration is kept: `out`, else the device's own file.
+// The file that a calibration is written to: `out`, else the device's own file. Error: neither
+// XDG_CONFIG_HOME nor HOME is set.
 Result<std::string> calibration_target(const std::string& out, const CalibrationFile& file);
-// `file` gets what holds so far: of the file that is to be replaced, else what config/ says about
-// such pads. Remarks: that file is damaged.
+// Fills `file` with what holds so far: from the file that will be replaced, else what config/ says
+// about such pads. `remarks` receives a sentence if the old file is damaged.
 void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
                      CalibrationFile& file, std::vector<std::string>& remarks);
-// What stands at the top of the file.
+// The comments at the top of the file.
 std::vector<std::string> calibration_comments(const PadAnalysis& analysis);
 std::string today();  // 2024-02-29, local
 

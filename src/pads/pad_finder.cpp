@@ -17,8 +17,9 @@
 #include "gaitpad/pad_stream.h"
 
 namespace gaitpad {
-
 namespace {
+
+// --- which devices are pads, and which of them a user means
 
 constexpr std::string_view kTrace = "trace", kUsb = "usb", kSdl = "sdl";
 
@@ -40,7 +41,7 @@ bool is_built(std::span<const DriverEntry> table, std::string_view name) {
       table, [name](const DriverEntry& e) { return name == e.name && e.find != nullptr; });
 }
 
-// SDL sees through the kernel's devices what the others see themselves.
+// SDL reads the kernel's devices, which the other drivers read themselves.
 bool is_asked(const DriverEntry& entry, Drivers which, std::span<const DriverEntry> table) {
   if (entry.find == nullptr) return false;
   if (which == Drivers::all || entry.name != kSdl) return true;
@@ -63,7 +64,7 @@ PadSighting judged(const PadFiles& files, DeviceListing listing, const DriverEnt
   return sighting;
 }
 
-// A device whose descriptor one driver cannot read is what another driver says of it.
+// If one driver cannot read a descriptor, another driver that can decides whether it is a pad.
 void ask_the_others(std::vector<PadSighting>& sightings) {
   for (PadSighting& unknown : sightings) {
     const std::string& path = unknown.listing.pad_path;
@@ -96,7 +97,7 @@ Result<std::vector<PadSighting>> recorded_pads(const PadFiles& files, const PadW
   return sightings;
 }
 
-// How exactly a text fits. Whoever fits best is meant.
+// How exactly a text fits a pad. The pads that fit best are meant.
 enum class Fit { none, part_of_name, name, unique_id, model, node };
 
 // `vvvv:pppp` in hexadecimal.
@@ -122,7 +123,7 @@ Wanted wanted_of(const std::string& pad) {
 Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
   const DeviceListing& listing = sighting.listing;
   if (listing.node == wanted.text || listing.node == wanted.node) return Fit::node;
-  if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only where it is wished
+  if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only if it is wished for
   if (is_model(wanted.text, listing.info)) return Fit::model;
   if (lower_case(listing.info.unique_id) == wanted.lower_text) return Fit::unique_id;
   const std::string name = lower_case(listing.info.name);
@@ -144,7 +145,7 @@ std::string described(const PadSighting& s) {
                      in_quotes(has_id ? info.unique_id : info.physical_path));
 }
 
-// A part of a name must mean one pad; all of `fitting` fit it.
+// A part of a name must mean one pad. All of `fitting` fit it.
 std::optional<Error> ambiguity(const std::vector<PadSighting>& fitting, const std::string& text) {
   std::vector<PadSighting> different;
   for (const PadSighting& s : fitting) {
@@ -211,7 +212,7 @@ Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sig
     if (auto error = ambiguity(fitting, wish.pad)) return *error;
   }
   if (best == Fit::none || best == Fit::node) return fitting;
-  // Drivers give one pad different names and ids; what fits one of them means the pad.
+  // Drivers give the same pad different names and ids. A text that fits one of them means the pad.
   std::erase_if(pads, [&fitting](const PadSighting& s) {
     return std::ranges::none_of(fitting,
                                 [&s](const PadSighting& f) { return pad_key(f) == pad_key(s); });
@@ -243,25 +244,27 @@ bool is_same_device(const DeviceInfo& a, const DeviceInfo& b) noexcept {
   return a.physical_path == b.physical_path;
 }
 
+// --- the finder thread
+
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kQuiet = 30ms, kMaxUnrest = 200ms;  // one plugging in is a volley of events
-// After a failed opening; then the next driver that sees the pad has its turn.
+constexpr auto kQuiet = 30ms, kMaxUnrest = 200ms;  // plugging in once makes many events
+// Waits after a failed opening. After the last, the next driver that sees the pad has its turn.
 constexpr std::chrono::milliseconds kRetries[] = {100ms, 300ms, 1000ms};
 constexpr auto kSlowRetry = 5000ms;
-constexpr auto kShortLife = 1000ms, kMaxRest = 1000ms;  // of a device that goes and comes
-// How long a pad that was just plugged in may take until the preferred driver sees it, or until the
-// kernel has found its own driver for it.
+constexpr auto kShortLife = 1000ms, kMaxRest = 1000ms;  // for a device that keeps coming and going
+// How long a newly plugged pad may take until the preferred driver sees it, and until the kernel
+// has bound its own driver to it.
 constexpr auto kDriverPatience = 700ms, kKernelPatience = 2000ms;
-// The kernel shows the node before its driver has asked the pad for its unique id.
+// The node appears before the kernel's driver has asked the pad for its unique id.
 constexpr auto kIdPatience = 1000ms;
 constexpr auto kGonePatience = 3000ms;
 constexpr auto kProblemPatience = 1500ms;  // permissions come a moment after the node
 constexpr auto kIdleLook = 30'000ms, kLookWithoutPads = 5000ms, kLookWithoutUdev = 1000ms;
 
-// The same for what one driver sees of one device.
+// Equal for what one driver sees of one device.
 std::string key_of(const PadSighting& s) {
   const DeviceInfo& info = s.listing.info;
   return fmt::format("{} {} {} {:04x}:{:04x} {}", s.driver->name, s.listing.node,
@@ -273,7 +276,7 @@ std::string name_of(const PadSighting& s) {
   return fmt::format("{} ({}, {})", in_quotes(info.name), s.driver->name, s.listing.node);
 }
 
-// By drivers that ask the pad for its Bluetooth address.
+// These kernel drivers ask the pad for its Bluetooth address, which then is its unique id.
 bool lacks_its_id(const PadSighting& s) {
   const std::string& kernel = s.listing.kernel_driver;
   const bool asks = kernel == "playstation" || kernel == "sony" || kernel == "nintendo";
@@ -288,13 +291,12 @@ int milliseconds_until(std::chrono::steady_clock::time_point time) {
 
 }  // namespace
 
-PadFinder::PadFinder(Options options, PadSlots& slots, PadIo& io, Remarks& remarks)
+PadFinder::PadFinder(Options options, HandOver hand_over, Remarks& remarks)
     : options_(std::move(options)),
-      slots_(slots),
-      io_(io),
+      hand_over_(std::move(hand_over)),
       remarks_(remarks),
       is_recording_(is_recording(options_.wish.pad)) {
-  if (options_.first) known_.push_back({*options_.first, true});
+  if (options_.first) indices_.push_back({*options_.first, true});
 }
 
 void PadFinder::stop() {
@@ -312,7 +314,7 @@ std::optional<Error> PadFinder::start() {
   return outcome.get();
 }
 
-void PadFinder::take_gone(std::uint64_t id, std::unique_ptr<Device> device) {
+void PadFinder::take_back(std::uint64_t id, std::unique_ptr<Device> device) {
   {
     const std::lock_guard lock(mutex_);
     gone_.push_back({id, std::move(device)});
@@ -321,7 +323,7 @@ void PadFinder::take_gone(std::uint64_t id, std::unique_ptr<Device> device) {
 }
 
 void PadFinder::run(std::promise<std::optional<Error>> first_look) {
-  // Listens before it looks: what comes in between is not missed.
+  // Listen first, then look: nothing that happens in between is missed.
   if (options_.changes_fd < 0 && !is_recording_) {
     auto monitor = HotplugMonitor::create();
     if (monitor)
@@ -345,7 +347,7 @@ void PadFinder::wait() {
   pollfd fds[] = {{bell_.fd(), POLLIN, 0}, {changes, POLLIN, 0}};
   ::poll(fds, 2, is_recording_ ? -1 : milliseconds_until(next_look_));
   bell_.clear();
-  // Whatever the socket says, an overflow too, the devices are looked at.
+  // Any event, even an overflow of the socket, only means that the devices are looked at again.
   if (fds[1].revents != 0) let_settle(changes);
 }
 
@@ -366,7 +368,7 @@ void PadFinder::look_no_later_than(Clock::time_point time) {
   next_look_ = std::min(next_look_, time);
 }
 
-// Tells whoever waits for the first look as soon as it is known whether the wish makes sense.
+// Answers start() as soon as it is known whether the wish makes sense.
 std::optional<Error> PadFinder::look(std::promise<std::optional<Error>>* first_look) {
   now_ = Clock::now();
   const auto answer = [first_look](std::optional<Error> error) {
@@ -432,7 +434,7 @@ void PadFinder::forget(std::uint64_t id) {
   const auto open = std::ranges::find(open_, id, &Open::id);
   if (open == open_.end()) return;
   const Clock::time_point now = Clock::now();
-  known_[open->index].is_present = false;
+  indices_[open->index].is_present = false;
   if (const auto entry = candidates_.find(open->key); entry != candidates_.end()) {
     Candidate& candidate = entry->second;
     const bool was_short = now - open->since < kShortLife;
@@ -444,8 +446,8 @@ void PadFinder::forget(std::uint64_t id) {
   if (is_recording_) --awaited_ends_;
 }
 
-// Itself, also where its name or unique id came after its opening, or the same pad through another
-// driver.
+// True also if its name or unique id came after its opening, and if another driver has the pad
+// open.
 bool PadFinder::is_open(const PadSighting& sighting) const {
   const std::string pad = pad_key(sighting);
   return std::ranges::any_of(open_, [&](const Open& o) {
@@ -453,11 +455,11 @@ bool PadFinder::is_open(const PadSighting& sighting) const {
   });
 }
 
-// Plugged in again before the I/O thread has noticed that it was out: it is to get its old index.
+// Plugged in again before the I/O thread noticed the removal: wait, then reuse its index.
 bool PadFinder::is_awaiting_gone(const PadSighting& sighting) const {
   return std::ranges::any_of(open_, [this, &info = sighting.listing.info](const Open& open) {
     return open.missing_since && now_ < *open.missing_since + kGonePatience &&
-           is_same_device(known_[open.index].info, info);
+           is_same_device(indices_[open.index].info, info);
   });
 }
 
@@ -468,7 +470,7 @@ std::chrono::milliseconds PadFinder::patience(const PadSighting& sighting,
   if (is_recording_ || !options_.wish.driver.empty()) return 0ms;
   if (driver == "usb") return kKernelPatience;
   const DeviceInfo& info = sighting.listing.info;
-  const bool was_here = std::ranges::any_of(known_, [&info, driver](const Known& known) {
+  const bool was_here = std::ranges::any_of(indices_, [&info, driver](const Index& known) {
     return known.info.driver == driver && known.info.vendor == info.vendor &&
            known.info.product == info.product;
   });
@@ -509,13 +511,13 @@ void PadFinder::open(const PadSighting& sighting, Candidate& candidate) {
     --awaited_ends_;
     return;
   }
-  PadSlot slot;
-  auto problem = set_up(sighting, **device, slot);
+  auto pad = std::make_unique<KnownPad>();
+  auto problem = set_up(sighting, **device, *pad);
   std::optional<std::uint16_t> index;
   if (!problem) {
     index = index_of((*device)->info());
     if (!index)
-      problem = fmt::format("{}: more than {} different pads", name_of(sighting), slots_.size());
+      problem = fmt::format("{}: more than {} different pads", name_of(sighting), kMaxPads);
   }
   if (problem) {
     candidate.is_refused = true;
@@ -523,71 +525,74 @@ void PadFinder::open(const PadSighting& sighting, Candidate& candidate) {
     if (is_recording_) --awaited_ends_;
     return;
   }
-  hand_over(sighting, std::move(*device), std::move(slot), *index);
+  hand_over(sighting, std::move(*device), std::move(pad), *index);
 }
 
-// What a replay of a recording of this session will find, and the same for now. Else why not: empty
-// where nobody needs to know, since no pad was named and this is none.
+// Fills in what a replay of this session's recording will find, and the same for now. Returns why
+// the pad cannot be used; empty if users need not know, because they named no pad and this is none.
 std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device& device,
-                                             PadSlot& slot) {
+                                             KnownPad& pad) {
   const DeviceInfo& info = device.info();
   const std::optional<FactorySticks> factory = device.factory_sticks();
   std::vector<std::string> remarks;
-  TraceDevice recorded = recorded_device(options_.files, info, factory, remarks);
+  auto [recorded, calibration] = recorded_device(options_.files, info, factory, remarks);
   for (const std::string& remark : remarks) remarks_.add_once(remark);
+  bool has_own_calibration = false;  // a recording brings its calibration as text
   if (is_recording_) {
     recorded.info.mapping = info.mapping;
     const std::string own = trace_calibration(sighting.listing);
-    if (!own.empty() && !options_.files.calibration) recorded.calibration = own;
+    has_own_calibration = !own.empty() && !options_.files.calibration;
+    if (has_own_calibration) recorded.calibration = own;
   }
-  auto config = pad_config(options_.files, recorded, name_of(sighting));
+  const std::string name = name_of(sighting);
+  auto config = has_own_calibration ? pad_config(options_.files, recorded, name)
+                                    : pad_config(options_.files, recorded.info, calibration, name);
   if (!config) return config.error().message;
-  if (!config->is_usable) return options_.wish.pad.empty() ? "" : name_of(sighting) + ": no stick";
-  config->is_present = false;  // until `added` is read
+  if (!config->is_usable) return options_.wish.pad.empty() ? "" : name + ": no stick";
+  config->is_present = false;  // until the reader sees `added`
   config->has_factory_sticks = factory.has_value();
-  slot = {std::move(recorded), std::move(*config), {}};
-  slot.layout = slot.config.layout;
+  pad = {std::move(recorded), std::move(*config), {}};
+  pad.layout = pad.config.layout;
   return std::nullopt;
 }
 
-// The index that it had before; among equal ones the first on the same port.
+// The index that the device had before; among equal devices the one on the same port.
 std::optional<std::uint16_t> PadFinder::index_of(const DeviceInfo& info) const {
   std::optional<std::uint16_t> on_other_port;
-  for (std::uint16_t i = 0; i < known_.size(); ++i) {
-    const DeviceInfo& known = known_[i].info;
-    if (known_[i].is_present || !is_same_device(known, info)) continue;
+  for (std::uint16_t i = 0; i < indices_.size(); ++i) {
+    const DeviceInfo& known = indices_[i].info;
+    if (indices_[i].is_present || !is_same_device(known, info)) continue;
     if (known.bus != info.bus || known.descriptor != info.descriptor) continue;
     if (known.physical_path == info.physical_path) return i;
     if (!on_other_port) on_other_port = i;
   }
   if (on_other_port) return on_other_port;
-  if (known_.size() >= slots_.size()) return std::nullopt;
-  return static_cast<std::uint16_t>(known_.size());
+  if (indices_.size() >= kMaxPads) return std::nullopt;
+  return static_cast<std::uint16_t>(indices_.size());
 }
 
-void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> device, PadSlot slot,
-                          std::uint16_t index) {
+void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> device,
+                          std::unique_ptr<KnownPad> known, std::uint16_t index) {
   OpenedPad opened;
-  opened.has_report_ids = slot.config.layout->descriptor.numbered;
+  opened.has_report_ids = known->layout->descriptor.numbered;
   opened.is_recording = is_recording_;
   opened.index = index;
   opened.id = ++openings_;
   opened.name = name_of(sighting);
-  if (index == known_.size()) {
-    known_.push_back({device->info(), true});
-    slots_[index] = std::move(slot);
-    slots_[index].device.index = index;
+  if (index == indices_.size()) {
+    indices_.push_back({device->info(), true});
+    known->device.index = index;
+    opened.known = std::move(known);
   } else {
-    known_[index].info = device->info();  // it may hang on another port now
-    known_[index].is_present = true;
+    indices_[index] = {device->info(), true};  // it may be on another port now
   }
   opened.device = std::move(device);
   open_.push_back({opened.id, key_of(sighting), pad_key(sighting), sighting.listing.node,
                    sighting.driver, index, Clock::now(), std::nullopt});
-  io_.take_over(std::move(opened));
+  hand_over_(std::move(opened));
 }
 
-// Of each wished pad that nothing can open the first driver's cause.
+// For each wished pad that no driver can open, reports the first driver's error.
 void PadFinder::tell_problems(const std::vector<PadSighting>& sightings,
                               const std::vector<PadSighting>& chosen) {
   const auto wished = wished_pads(sightings, options_.wish);

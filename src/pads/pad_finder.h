@@ -1,43 +1,99 @@
-// The finder thread: looks at the devices whenever something was plugged in or out, opens the
-// chosen pads, sets them up and hands them to the I/O thread.
+// The finder thread of a PadStream: looks at the devices whenever something was plugged in or out,
+// opens the chosen pads, sets them up and hands them over.
 //
-// Nodes appear in an order and get their permissions at a moment that nobody promises. So an
-// opening that failed is tried again a little later, a pad that was just plugged in is given a
-// moment to show itself to the driver that is preferred, and devices are looked at now and then
-// without a word from udev.
+// Nodes appear in any order and get their permissions at any moment. So an opening that failed is
+// tried again a little later, a pad that was just plugged in gets a moment to show itself to the
+// preferred driver, and devices are looked at now and then even if udev says nothing.
 #pragma once
-#include <array>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/driver.h"
 #include "gaitpad/pad_setup.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
-#include "pads/pad_io.h"
-#include "pads/pad_queue.h"
 
 namespace gaitpad {
 
-// Written by the finder before the device is handed to the I/O thread, then never again: whoever
-// has read the device's first `added` may use it.
-struct PadSlot {
+// A bell that one thread rings and another waits for in poll().
+class WakeFd {
+ public:
+  WakeFd() : fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+  int fd() const noexcept { return fd_.get(); }  // -1: no file descriptors are left
+  // Any thread; never waits.
+  void ring() noexcept {
+    const std::uint64_t one = 1;
+    static_cast<void>(!::write(fd(), &one, sizeof(one)));
+  }
+  void clear() noexcept {
+    std::uint64_t count = 0;
+    static_cast<void>(!::read(fd(), &count, sizeof(count)));
+  }
+
+ private:
+  const OwnedFd fd_;
+};
+
+// Sentences for the user from any thread, kept until somebody takes them.
+class Remarks {
+ public:
+  void add(std::string sentence) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() < kMaxWaiting) waiting_.push_back(std::move(sentence));
+  }
+  void add_once(const std::string& sentence) {
+    const std::lock_guard lock(mutex_);
+    if (said_.size() >= kMaxSaid || waiting_.size() >= kMaxWaiting) return;
+    if (said_.insert(sentence).second) waiting_.push_back(sentence);
+  }
+  std::vector<std::string> take_all() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(waiting_, {});
+  }
+
+ private:
+  static constexpr std::size_t kMaxWaiting = 256, kMaxSaid = 4096;
+  std::mutex mutex_;
+  std::vector<std::string> waiting_;
+  std::set<std::string> said_;
+};
+
+// What is known of a pad. A message: the finder makes it, the reader of the stream owns it.
+struct KnownPad {
   TraceDevice device;
-  PadConfig config;                         // the reader takes it out
+  PadConfig config;                         // the reader moves it out
   std::shared_ptr<const PadLayout> layout;  // the same as in `config`
 };
-using PadSlots = std::array<PadSlot, kMaxTraceDevices>;
+
+// A device that has just been opened. A message from the finder to the I/O thread.
+struct OpenedPad {
+  std::unique_ptr<Device> device;
+  std::uint16_t index = 0;          // of its reports, < kMaxPads
+  std::uint64_t id = 0;             // of this opening
+  std::unique_ptr<KnownPad> known;  // null: the index was used before, the reader knows the pad
+  bool has_report_ids = false;      // the first byte of a report is its id
+  bool is_recording = false;        // its end is not an unplugging that users should be told of
+  bool is_keyboard = false;         // it does not count as a pad that was plugged in
+  std::string name;                 // for sentences
+};
 
 class PadFinder {
  public:
@@ -45,17 +101,18 @@ class PadFinder {
     PadFiles files;
     PadWish wish;
     std::span<const DriverEntry> drivers;
-    int changes_fd = -1;  // in place of udev's word, for tests; one read() makes it silent
-    std::optional<DeviceInfo> first;  // has index 0 and is opened by somebody else
+    int changes_fd = -1;              // for tests, in place of udev; one read() makes it silent
+    std::optional<DeviceInfo> first;  // of a device that has index 0 and was opened elsewhere
   };
-  PadFinder(Options options, PadSlots& slots, PadIo& io, Remarks& remarks);
+  using HandOver = std::function<void(OpenedPad)>;  // called on the finder thread
+  PadFinder(Options options, HandOver hand_over, Remarks& remarks);
   ~PadFinder() { stop(); }
 
-  // Returns after the first look, before anything is opened. Error where the wish is wrong.
+  // Returns after the first look, before anything is opened. Error: the wish is wrong.
   std::optional<Error> start();
-  void stop();  // an opening that is on its way is waited for
-  // Any thread: this opening has come to its end, its device is to be closed.
-  void take_gone(std::uint64_t id, std::unique_ptr<Device> device);
+  void stop();  // waits for an opening that is on its way
+  // Any thread: this opening has come to its end. The finder thread closes the device.
+  void take_back(std::uint64_t id, std::unique_ptr<Device> device);
   bool has_ended() const noexcept { return awaited_ends_.load() == 0; }
 
  private:
@@ -64,7 +121,7 @@ class PadFinder {
   struct Candidate {
     Clock::time_point first_seen, next_try;
     int failures = 0;
-    bool is_refused = false;     // it is no pad, as its opening told
+    bool is_refused = false;     // opening it showed that it is no pad
     bool is_from_start = false;  // it was there at the first look
     bool is_seen = true;         // at the last look
     std::string problem;
@@ -75,13 +132,13 @@ class PadFinder {
     const DriverEntry* driver = nullptr;
     std::uint16_t index = 0;
     Clock::time_point since;
-    std::optional<Clock::time_point> missing_since;  // not seen any more, but not yet gone
+    std::optional<Clock::time_point> missing_since;  // not seen any more, but not yet given back
   };
   struct Gone {
     std::uint64_t id;
     std::unique_ptr<Device> device;
   };
-  struct Known {  // an index in PadSlots
+  struct Index {  // what an index of the stream stands for
     DeviceInfo info;
     bool is_present = false;
   };
@@ -99,24 +156,23 @@ class PadFinder {
   std::chrono::milliseconds patience(const PadSighting& sighting, const Candidate& candidate) const;
   void consider(const PadSighting& sighting);
   void open(const PadSighting& sighting, Candidate& candidate);
-  std::optional<std::string> set_up(const PadSighting& sighting, Device& device, PadSlot& slot);
+  std::optional<std::string> set_up(const PadSighting& sighting, Device& device, KnownPad& pad);
   std::optional<std::uint16_t> index_of(const DeviceInfo& info) const;
-  void hand_over(const PadSighting& sighting, std::unique_ptr<Device> device, PadSlot slot,
-                 std::uint16_t index);
+  void hand_over(const PadSighting& sighting, std::unique_ptr<Device> device,
+                 std::unique_ptr<KnownPad> known, std::uint16_t index);
   void tell_problems(const std::vector<PadSighting>& sightings,
                      const std::vector<PadSighting>& chosen);
 
   const Options options_;
-  PadSlots& slots_;
-  PadIo& io_;
+  const HandOver hand_over_;
   Remarks& remarks_;
   const bool is_recording_;
 
   WakeFd bell_;
   std::atomic<bool> is_ending_{false};
-  std::atomic<int> awaited_ends_{-1};  // of a recording's devices; -1: there is none
+  std::atomic<int> awaited_ends_{-1};  // of a recording's devices; -1: it is no recording
   std::mutex mutex_;
-  std::vector<Gone> gone_;
+  std::vector<Gone> gone_;  // under the mutex
 
   // The finder thread's own.
   std::optional<HotplugMonitor> monitor_;
@@ -124,7 +180,7 @@ class PadFinder {
   bool is_first_look_ = true;
   std::map<std::string, Candidate> candidates_;
   std::vector<Open> open_;
-  std::vector<Known> known_;
+  std::vector<Index> indices_;
   std::uint64_t openings_ = 0;
   std::thread thread_;
 };

@@ -13,14 +13,13 @@
 #include "pads/calibration_store.h"
 
 namespace gaitpad {
-
 namespace {
 
 constexpr double kLeastFactoryRange = 0.25;  // raw, from the centre to either end
 
 Result<CalibrationFile> calibration_of(const PadFiles& files, const TraceDevice& device,
                                        const std::string& origin) {
-  // A file that is given for the user's pad would bend the keyboard's stick.
+  // --calibration is for the user's pad; it would distort the keyboard's stick.
   if (files.calibration && device.info.driver != kKeyboardDriver) return *files.calibration;
   if (!device.calibration.empty())
     return parse_calibration(device.calibration, origin + ": calibration");
@@ -29,8 +28,8 @@ Result<CalibrationFile> calibration_of(const PadFiles& files, const TraceDevice&
   return std::move(found.file);
 }
 
-// A calibration's mapping takes the place of the controls that config/pads names; what else it says
-// of the pad stays. Where it replaces the descriptor, SDL's numbers mean nothing.
+// A calibration's mapping replaces the controls that config/pads names; the rest of that entry
+// stays. If the entry replaces the descriptor, SDL's numbers do not fit it: the mapping is ignored.
 Result<PadLayout> layout_with(const PadFiles& files, DeviceInfo info, const std::string& mapping) {
   const PadOverride* own = find_override(files.overrides, info);
   if (mapping.empty() || (own && !own->replacement.descriptor.empty()))
@@ -45,7 +44,7 @@ Result<PadLayout> layout_with(const PadFiles& files, DeviceInfo info, const std:
   return pad_layout(info, rest);
 }
 
-// Pads answer with what they like: a range that no stick has is not taken.
+// Some pads answer with nonsense: a range that no stick has is ignored.
 void take_factory_axis(const FactoryAxis& own, AxisCalibration& axis) {
   if (!std::isfinite(own.min) || !std::isfinite(own.centre) || !std::isfinite(own.max)) return;
   const double min = std::max(own.min, -1.0), max = std::min(own.max, 1.0);
@@ -60,13 +59,13 @@ void take_factory_sticks(const FactorySticks& own, Calibration& calibration) {
   take_factory_axis(own.right_y, calibration.right.y);
 }
 
-// The pad's own numbers are for its axes as they are.
+// Factory sticks are numbers for the pad's axes as they are, without a mapping or a turned frame.
 bool has_own_axes(const CalibrationFile& file) {
   const Calibration& c = file.calibration;
   return file.mapping.empty() && c.left.frame == StickFrame() && c.right.frame == StickFrame();
 }
 
-// -0 would come back from text as 0.
+// -0 reads back from text as 0: a live session and its replay would differ in that bit.
 void drop_negative_zeros(Calibration& calibration) {
   for (StickCalibration* stick : {&calibration.left, &calibration.right}) {
     for (AxisCalibration* axis : {&stick->x, &stick->y}) {
@@ -78,14 +77,14 @@ void drop_negative_zeros(Calibration& calibration) {
     trigger->released += 0.0;
 }
 
-// Only what a replay reads back: whom the file was for does not matter any more.
-std::string text_of_calibration(const CalibrationFile& file) {
+// What a recording keeps of a calibration: for which devices the file was does not matter there.
+CalibrationFile recorded_calibration(const CalibrationFile& file) {
   CalibrationFile own;
   if (file.name.size() <= kMaxTraceTextBytes) own.name = file.name;
   own.mapping = file.mapping;
   own.calibration = file.calibration;
   drop_negative_zeros(own.calibration);
-  return calibration_text(own);
+  return own;
 }
 
 CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& info,
@@ -104,8 +103,8 @@ CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& in
   return std::move(found.file);
 }
 
-// SDL's line where nothing better is known; one that no recording can hold or that does not fit the
-// descriptor is none.
+// SDL's line, if config/pads has no entry for the pad. Empty also if a recording cannot hold the
+// line or if it does not fit the descriptor.
 std::string sdl_line_of(const PadFiles& files, const DeviceInfo& info) {
   DeviceInfo mapped = info;
   if (info.mapping.empty() && info.driver != "sdl") {
@@ -124,7 +123,7 @@ DeviceIdentity identity_of(const DeviceInfo& info) {
 
 Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
                                 const std::string& map, const std::string& calibration) {
-  // A recording's pads are the same on every machine: none of the user's own files.
+  // A replay is the same on every machine, so the user's own files do not count.
   std::vector<std::string> folders = config_folders;
   std::erase(folders, user_config_folder());
   PadFiles files;
@@ -150,19 +149,24 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
   return files;
 }
 
-Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
-                             const std::string& origin) {
-  auto calibration = calibration_of(files, device, origin);
-  if (!calibration) return calibration.error();
-  auto layout = layout_with(files, device.info, calibration->mapping);
+Result<PadConfig> pad_config(const PadFiles& files, const DeviceInfo& info,
+                             const CalibrationFile& calibration, const std::string& origin) {
+  auto layout = layout_with(files, info, calibration.mapping);
   if (!layout) return Error{origin + ": " + layout.error().message};
   PadConfig pad;
   pad.is_usable = layout->is_pad;
   pad.streams = layout->streams;
-  pad.is_fallback = device.info.driver == kKeyboardDriver;
+  pad.is_fallback = info.driver == kKeyboardDriver;
   pad.layout = std::make_shared<const PadLayout>(std::move(*layout));
-  pad.calibration = calibration->calibration;
+  pad.calibration = calibration.calibration;
   return pad;
+}
+
+Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
+                             const std::string& origin) {
+  const auto calibration = calibration_of(files, device, origin);
+  if (!calibration) return calibration.error();
+  return pad_config(files, device.info, *calibration, origin);
 }
 
 Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
@@ -177,20 +181,19 @@ Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
   return pads;
 }
 
-TraceDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
-                            const std::optional<FactorySticks>& factory,
-                            std::vector<std::string>& remarks) {
-  const CalibrationFile calibration = calibration_in_force(files, info, factory, remarks);
-  TraceDevice device;
-  device.info = info;
-  device.info.mapping =
-      calibration.mapping.empty() ? sdl_line_of(files, info) : calibration.mapping;
-  device.calibration = text_of_calibration(calibration);
-  for (std::string* text : {&device.info.driver, &device.info.name, &device.info.unique_id,
-                            &device.info.physical_path}) {
+RecordedDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
+                               const std::optional<FactorySticks>& factory,
+                               std::vector<std::string>& remarks) {
+  RecordedDevice recorded;
+  recorded.calibration = recorded_calibration(calibration_in_force(files, info, factory, remarks));
+  const std::string& mapping = recorded.calibration.mapping;
+  DeviceInfo& kept = recorded.device.info;
+  kept = info;
+  kept.mapping = mapping.empty() ? sdl_line_of(files, info) : mapping;
+  recorded.device.calibration = calibration_text(recorded.calibration);
+  for (std::string* text : {&kept.driver, &kept.name, &kept.unique_id, &kept.physical_path})
     text->resize(std::min(text->size(), kMaxTraceTextBytes));
-  }
-  return device;
+  return recorded;
 }
 
 }  // namespace gaitpad

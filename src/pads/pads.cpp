@@ -4,7 +4,6 @@
 #include <utility>
 
 namespace gaitpad {
-
 namespace {
 
 constexpr double kNearCentre = 0.1;    // of the calibrated deflection
@@ -18,22 +17,26 @@ Stick calibrated(const Calibration& calibration, const PadState& state) noexcept
 
 }  // namespace
 
+void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses) noexcept {
+  for (int b = 0; b < kButtonCount; ++b) presses[b] += (now & ~before) >> b & 1u;
+}
+
 Pads::Pads(std::vector<PadConfig> configs, int rate_hz)
     : silence_ticks_((rate_hz + kSilencesInSecond - 1) / kSilencesInSecond) {
   pads_.resize(configs.size());
   for (std::size_t i = 0; i < configs.size(); ++i) {
     pads_[i].config = std::move(configs[i]);
-    if (pads_[i].config.is_present) add(static_cast<std::uint16_t>(i));
+    if (pads_[i].config.is_present) add_pad(static_cast<std::uint16_t>(i));
   }
 }
 
-void Pads::set(std::uint16_t device, PadConfig& config) noexcept {
+void Pads::set_pad(std::uint16_t device, PadConfig& config) noexcept {
   if (device >= pads_.size()) return;
   std::swap(pads_[device].config, config);
   pads_[device].config.is_present = false;
 }
 
-bool Pads::take(const Report& report) noexcept {
+bool Pads::take_report(const Report& report) noexcept {
   if (report.device >= pads_.size()) return false;
   Pad& pad = pads_[report.device];
   ++pad.reports;
@@ -43,11 +46,11 @@ bool Pads::take(const Report& report) noexcept {
   pad.is_seen = true;
   if (pad.is_awaited) pad.is_awaited = !is_near_centre(pad);
   if (has_lost_its_driver() && can_take_over(pad)) driving_ = report.device;
-  if (report.device == driving_) count_presses(buttons_before, pad.state.buttons);
+  if (report.device == driving_) count_presses(buttons_before, pad.state.buttons, presses_);
   return true;
 }
 
-void Pads::add(std::uint16_t device) noexcept {
+void Pads::add_pad(std::uint16_t device) noexcept {
   if (device >= pads_.size()) return;
   Pad& pad = pads_[device];
   pad.config.is_present = true;
@@ -57,7 +60,7 @@ void Pads::add(std::uint16_t device) noexcept {
   if (driving_ == kNoDevice || (is_fallback(driving_) && !is_fallback(device))) driving_ = device;
 }
 
-void Pads::remove(std::uint16_t device) noexcept {
+void Pads::remove_pad(std::uint16_t device) noexcept {
   if (device >= pads_.size()) return;
   Pad& lost = pads_[device];
   lost.config.is_present = false;
@@ -67,7 +70,7 @@ void Pads::remove(std::uint16_t device) noexcept {
   if (has_lost_its_driver()) replace_driver();
 }
 
-// One that rests takes over at once: nobody may touch it for a while.
+// A pad at rest takes over at once: nobody may touch it for a while.
 void Pads::replace_driver() noexcept {
   int first = 0;
   for (std::size_t i = 0; i < pads_.size(); ++i) {
@@ -76,10 +79,6 @@ void Pads::replace_driver() noexcept {
     first = pad.turn;
     driving_ = static_cast<std::uint16_t>(i);
   }
-}
-
-void Pads::count_presses(std::uint32_t before, std::uint32_t now) noexcept {
-  for (int b = 0; b < kButtonCount; ++b) presses_[b] += (now & ~before) >> b & 1u;
 }
 
 bool Pads::is_silent(const Pad& pad) const noexcept {
@@ -93,7 +92,7 @@ bool Pads::is_near_centre(const Pad& pad) const noexcept {
 bool Pads::can_take_over(const Pad& pad) const noexcept {
   if (!pad.config.is_usable || !pad.config.is_present || pad.is_awaited || is_silent(pad))
     return false;
-  // A fallback's stick counts already.
+  // While another pad is plugged in, a fallback's stick counts without driving.
   if (pad.config.is_fallback) return !is_other_plugged_in();
   return pad.is_seen && is_near_centre(pad);
 }
@@ -117,7 +116,7 @@ Stick Pads::stick_of(const Pad& pad) const noexcept {
   return calibrated(pad.config.calibration, pad.state);
 }
 
-// Of several the one that was plugged in first.
+// If several are deflected, the one that was plugged in first counts.
 Stick Pads::fallback_stick() const noexcept {
   Stick stick;
   int first = 0;
@@ -132,7 +131,7 @@ Stick Pads::fallback_stick() const noexcept {
   return stick;
 }
 
-Stick Pads::stick_of_tick() noexcept {
+Stick Pads::finish_tick() noexcept {
   Stick stick;
   if (driving_ != kNoDevice) stick = stick_of(pads_[driving_]);
   if (const Stick other = fallback_stick(); stick.left == vec2(0.0) && other.left != vec2(0.0))

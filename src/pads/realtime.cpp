@@ -17,7 +17,6 @@
 #include <fstream>
 
 namespace gaitpad {
-
 namespace {
 
 constexpr int kPriority = 20;  // above ordinary threads, below what sound servers ask for
@@ -31,14 +30,14 @@ std::string cause(const char* call, int number) {
   return fmt::format("{}: {}", call, std::strerror(number));
 }
 
-// An ordinary user may have a lower priority than the wished one.
+// The limits of an ordinary user may allow a lower priority only.
 int allowed_priority() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_RTPRIO, &limit) != 0 || limit.rlim_cur == 0) return kPriority;
   return static_cast<int>(std::min<rlim_t>(limit.rlim_cur, kPriority));
 }
 
-// A locked stack that would grow beyond the limit is a segmentation fault.
+// If a locked stack grows beyond the limit, the program gets a segmentation fault.
 bool has_room_below_limit() {
   rlimit limit{};
   if (::geteuid() == 0 || ::getrlimit(RLIMIT_MEMLOCK, &limit) != 0) return true;
@@ -48,7 +47,7 @@ bool has_room_below_limit() {
   return pages * kPageBytes + kGrowthBytes <= limit.rlim_cur;
 }
 
-// The next ticks find their stack in memory.
+// So that the stack of the next ticks is in memory.
 [[gnu::noinline]] void touch_stack() noexcept {
   std::array<volatile char, kStackBytes> stack;
   for (std::size_t i = 0; i < stack.size(); i += kPageBytes) stack[i] = 0;

@@ -1,30 +1,30 @@
-// What makes a thread punctual, where the system allows it.
+// Real-time scheduling and locked memory, if the system allows them.
 #pragma once
 #include <optional>
 #include <string>
 
 namespace gaitpad {
 
-// For the whole process: what is in memory now is not swapped out, nor what is touched later of
-// what has been allocated. Nothing is read in for it and nothing that is allocated afterwards
-// counts, so it is quick and takes no memory, however much a renderer has mapped or will map. Call
-// it when everything that the thread needs is allocated and was written to, from that thread (its
-// stack is touched). Each success is undone by one unlock_memory(). The cause where it is refused:
-// `mlockall: Cannot allocate memory`.
+// Keeps what is in memory now, and what will be touched later of what has been allocated, from
+// being swapped out; for the whole process. It reads nothing in, and memory allocated afterwards
+// does not count, so it is quick and takes no memory, however much a renderer maps. Call it from
+// the thread that needs it (its stack is touched) after everything was allocated and written to.
+// Undo each success by one unlock_memory(). Returns the cause if it is refused: `mlockall: Cannot
+// allocate memory`.
 std::optional<std::string> lock_memory();
 void unlock_memory() noexcept;
 
-// For the calling thread: it runs before ordinary ones (SCHED_FIFO), and its sleeps end on time.
-// Threads that it starts are ordinary ones. The loop comes before the pads: opening a joystick may
-// keep a library busy for some milliseconds.
+// Lets the calling thread run before ordinary threads (SCHED_FIFO) and end its sleeps on time.
+// Threads that it starts are ordinary. The loop ranks above the pads: opening a joystick may keep a
+// library busy for some milliseconds. Returns the cause if it is refused.
 enum class RealtimeRank { loop, pads };
 std::optional<std::string> take_priority(RealtimeRank rank);
-// As if it had never been taken: a thread that never sleeps would leave nothing for the others.
+// Makes it an ordinary thread again: one that never sleeps would leave no time for the others.
 void give_up_priority() noexcept;
 // How the calling thread is scheduled: `SCHED_FIFO 20`, `normal priority`.
 std::string time_policy();
 
-// One sentence of what was refused and how to allow it; none where nothing was.
+// One sentence that says what was refused and how to allow it; nothing if nothing was refused.
 std::optional<std::string> realtime_remark(const std::optional<std::string>& priority,
                                            const std::optional<std::string>& memory);
 

@@ -340,8 +340,8 @@ constexpr int kSecond = kPaperRate_hz;
 
 Stick stick_for(const vec2& raw) {
   Pads pads({paper_pad()}, kPaperRate_hz);
-  pads.take(paper_report(raw));
-  return pads.stick_of_tick();
+  pads.take_report(paper_report(raw));
+  return pads.finish_tick();
 }
 
 // Counts positions of a grid inside the inner zone that are not neutral.

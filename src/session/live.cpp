@@ -9,47 +9,43 @@
 #include <thread>
 #include <utility>
 
+#include "drivers/keyboard_device.h"
 #include "drivers/posix.h"
 #include "pads/realtime.h"
 #include "session/live_loop.h"
 #include "session/recording.h"
-#include "session/walk_export.h"
 
 namespace gaitpad {
 
-void add_status(const LiveStatus& status, nlohmann::ordered_json& summary) {
-  summary["time_s"] = status.time_s;
-  summary["time_policy"] = status.time_policy;
-  summary["overruns"] = status.overruns;
-  summary["standstills"] = status.standstills;
-  summary["overloads"] = status.overloads;
-  summary["skipped_s"] = status.skipped_s;
-  summary["late_us_median"] = status.late_us_median;
-  summary["late_us_max"] = status.late_us_max;
-  summary["tick_us_median"] = status.tick_us_median;
-  summary["tick_us_max"] = status.tick_us_max;
-  summary["wait_us_median"] = status.wait_us_median;
-  summary["wait_us_max"] = status.wait_us_max;
-  summary["lost"] = status.pads.lost;
-  summary["plugged"] = status.pads.plugged;
-  summary["unplugged"] = status.pads.unplugged;
-  summary["recording_lost"] = status.recording_lost;
-}
+// A session before it touches a device.
+struct LiveSession::Prepared {
+  SessionSpec spec;
+  int rate_hz;
+  Simulation simulation;
+  Cast cast;
+  Script script;
+  PadFiles pad_files;
+};
 
 struct LiveSession::Impl {
-  Impl(const LiveOptions& live_options, Simulation made, Cast of_it)
-      : options(live_options), simulation(std::move(made)), cast(std::move(of_it)) {}
+  explicit Impl(Prepared& prepared)
+      : spec(std::move(prepared.spec)),
+        rate_hz(prepared.rate_hz),
+        simulation(std::move(prepared.simulation)),
+        cast(std::move(prepared.cast)),
+        script(std::move(prepared.script)) {}
 
-  bool is_by_hand() const { return options.clock == LiveOptions::Clock::by_hand; }
+  bool is_by_hand() const { return spec.live.clock == SessionSpec::Live::Clock::by_hand; }
   std::optional<Error> open_recording();
   void start_loop();
   void start_thread();
   void stop_loop();
   void remark_on_time(const LiveStatus& now);
   void remark_on_recording();
-  Result<std::vector<nlohmann::ordered_json>> summaries();
+  Result<RunSummary> end_recording();
 
-  LiveOptions options;
+  const SessionSpec spec;
+  const int rate_hz;
   Simulation simulation;
   Cast cast;
   Script script;
@@ -65,14 +61,14 @@ struct LiveSession::Impl {
   mutable std::mutex mutex;              // of what follows
   std::optional<PadStreamCounts> final;  // once it was stopped
   std::vector<std::string> remarks;
-  LiveStatus remarked;           // what has been said of the loop's time
+  LiveStatus remarked;           // what users have been told about late ticks
   bool is_failure_said = false;  // the recording's
 };
 
 std::optional<Error> LiveSession::Impl::open_recording() {
-  if (options.record.empty()) return std::nullopt;
+  if (spec.live.record.empty()) return std::nullopt;
   auto opened = Recording::start(
-      {options.record, options.rate_hz, {}},
+      {spec.live.record, rate_hz, {}},
       [p = pads.get()](std::uint16_t i) -> const TraceDevice& { return p->device(i); });
   if (!opened) return opened.error();
   recording = std::move(*opened);
@@ -80,7 +76,7 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 }
 
 void LiveSession::Impl::start_loop() {
-  loop = std::make_unique<LiveLoop>(LiveLoop::Options{options.rate_hz, options.rumble}, script,
+  loop = std::make_unique<LiveLoop>(LiveLoop::Options{rate_hz, spec.live.rumble}, script,
                                     simulation, *pads, recording.get());
   if (is_by_hand()) {
     time_policy = "by hand";
@@ -126,7 +122,7 @@ void LiveSession::Impl::remark_on_time(const LiveStatus& now) {
     remarks.push_back(fmt::format(
         "a tick takes {:.0f} us and there are {} a second: the session is slower than the time; "
         "fewer characters or a lower --rate help",
-        now.tick_us_median, options.rate_hz));
+        now.tick_us_median, rate_hz));
   }
   remarked = now;
 }
@@ -139,21 +135,15 @@ void LiveSession::Impl::remark_on_recording() {
   }
 }
 
-Result<std::vector<nlohmann::ordered_json>> LiveSession::Impl::summaries() {
-  std::int64_t lost = 0;
-  if (recording != nullptr) {
-    auto said = recording->finish(simulation.counts().ticks, now_ns());
-    if (!said) return said.error();
-    lost = recording->lost();
-    const std::lock_guard lock(mutex);
-    remarks.insert(remarks.end(), said->begin(), said->end());
-  }
-  std::vector<nlohmann::ordered_json> all;
-  for (const Walker& walker : simulation.walkers()) {
-    all.push_back(run_summary(simulation, walker, options.rate_hz, 0));
-    if (lost > 0) all.back()["recording_lost"] = lost;  // it does not replay to this pose_hash
-  }
-  return all;
+Result<RunSummary> LiveSession::Impl::end_recording() {
+  RunSummary run = run_summary(simulation, cast);
+  if (recording == nullptr) return run;
+  auto said = recording->finish(run.ticks, now_ns());
+  if (!said) return said.error();
+  run.recording_lost = recording->lost();  // if any, it does not replay to this pose_hash
+  const std::lock_guard lock(mutex);
+  remarks.insert(remarks.end(), said->begin(), said->end());
+  return run;
 }
 
 LiveSession::LiveSession() = default;
@@ -161,28 +151,30 @@ LiveSession::~LiveSession() {
   if (impl_ && impl_->loop && !impl_->is_stopped) static_cast<void>(stop());
 }
 
-Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& options) {
-  if (options.rate_hz < 1 || options.rate_hz > kMaxRateHz) {
-    return Error{fmt::format("a rate of {} Hz is not within 1 .. {}", options.rate_hz, kMaxRateHz)};
-  }
-  const SessionOptions& session = options.session;
-  auto config = simulation_config(session, {}, "", options.rate_hz);
+Result<std::shared_ptr<LiveSession::Prepared>> LiveSession::prepare(const SessionSpec& spec) {
+  const int rate_hz = spec.rate_hz.value_or(kDefaultRateHz);
+  if (rate_hz < 1 || rate_hz > kMaxRateHz)
+    return Error{fmt::format("a rate of {} Hz is not within 1 .. {}", rate_hz, kMaxRateHz)};
+  auto files = load_pad_files(spec);
+  if (!files) return files.error();
+  auto config = simulation_config(spec, rate_hz);
   if (!config) return config.error();
   config->pads = unknown_pads(kMaxPads);
   auto simulation = Simulation::create(*config);
   if (!simulation) return simulation.error();
-  auto script = script_for(*simulation, session.script);
+  auto script = script_for(*simulation, spec.walk.script);
   if (!script) return script.error();
-  auto files = load_pad_files(session.config_folders, session.map, session.calibration);
-  if (!files) return files.error();
-
-  std::unique_ptr<LiveSession> live(new LiveSession());
   Cast cast = cast_of(*simulation, *config);
-  live->impl_ = std::make_unique<Impl>(options, std::move(*simulation), std::move(cast));
+  return std::make_shared<Prepared>(Prepared{spec, rate_hz, std::move(*simulation), std::move(cast),
+                                             std::move(*script), std::move(*files)});
+}
+
+Result<std::unique_ptr<LiveSession>> LiveSession::start(const std::shared_ptr<Prepared>& prepared) {
+  std::unique_ptr<LiveSession> live(new LiveSession());
+  live->impl_ = std::make_unique<Impl>(*prepared);
   Impl& impl = *live->impl_;
-  impl.script = std::move(*script);
-  if (options.keyboard) impl.keyboard = std::make_shared<KeyboardStick>();
-  auto pads = PadStream::start({std::move(*files), options.wish, impl.keyboard});
+  if (impl.spec.live.keyboard) impl.keyboard = std::make_shared<KeyboardStick>();
+  auto pads = PadStream::start({std::move(prepared->pad_files), impl.spec.pad.wish, impl.keyboard});
   if (!pads) return pads.error();
   impl.pads = std::move(*pads);
   if (auto problem = impl.open_recording()) return *problem;
@@ -190,6 +182,13 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const LiveOptions& optio
   return live;
 }
 
+Result<std::unique_ptr<LiveSession>> LiveSession::start(const SessionSpec& spec) {
+  auto prepared = prepare(spec);
+  if (!prepared) return prepared.error();
+  return start(*prepared);
+}
+
+const SessionSpec& LiveSession::spec() const noexcept { return impl_->spec; }
 const Cast& LiveSession::cast() const noexcept { return impl_->cast; }
 
 std::string LiveSession::pad_name(std::uint16_t device) const {
@@ -201,7 +200,9 @@ const SessionFrame& LiveSession::latest(bool& is_new) noexcept {
   return impl_->loop->latest(is_new);
 }
 
-bool LiveSession::take(TickSample& sample) noexcept { return impl_->loop->take(sample); }
+bool LiveSession::take_sample(TickSample& sample) noexcept {
+  return impl_->loop->take_sample(sample);
+}
 
 void LiveSession::set_pace(double pace) noexcept { impl_->loop->set_pace(pace); }
 void LiveSession::step(int ticks) noexcept { impl_->loop->step(ticks); }
@@ -218,7 +219,7 @@ bool LiveSession::has_ended() const noexcept { return impl_->loop->has_ended(); 
 
 LiveStatus LiveSession::status() const noexcept {
   LiveStatus status = impl_->loop->status();
-  // After an overload the loop has given it up.
+  // After an overload the loop has given its priority up.
   status.time_policy = status.overloads > 0 ? "normal priority" : impl_->time_policy;
   const std::lock_guard lock(impl_->mutex);
   status.pads = impl_->final ? *impl_->final : impl_->pads->counts();
@@ -237,10 +238,10 @@ std::vector<std::string> LiveSession::take_remarks() {
   return all;
 }
 
-Result<std::vector<nlohmann::ordered_json>> LiveSession::stop() {
+Result<RunSummary> LiveSession::stop() {
   if (impl_->is_stopped) return Error{"the session was stopped before"};
   impl_->stop_loop();
-  return impl_->summaries();
+  return impl_->end_recording();
 }
 
 }  // namespace gaitpad

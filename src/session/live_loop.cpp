@@ -6,7 +6,6 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "drivers/posix.h"
@@ -14,6 +13,8 @@
 #include "pads/realtime.h"
 
 namespace gaitpad {
+
+// --- TickClock
 
 double TickClock::usable_pace(double pace) noexcept {
   if (!(pace >= kMinPace)) return 0.0;
@@ -59,7 +60,9 @@ TickClock::Begin TickClock::begin(std::int64_t tick, std::int64_t now_ns) noexce
   return late_ns - before_ns > kTooLate_ns / 2 ? Begin::after_standstill : Begin::after_overload;
 }
 
-// Values below 64 have a class each; above, the highest seven bits make the class.
+// --- TimeHistogram
+
+// Values below 128 have a class each; above, the highest seven bits make the class.
 std::size_t TimeHistogram::class_of(std::uint64_t time_ns) noexcept {
   const int octave = std::max(0, static_cast<int>(std::bit_width(time_ns)) - kStepBits - 1);
   const std::size_t index =
@@ -101,22 +104,7 @@ double TimeHistogram::max_us() const noexcept {
   return static_cast<double>(max_ns_.load(std::memory_order_relaxed)) / 1000.0;
 }
 
-namespace {
-
-void copy(const Report& from, std::int64_t now_ns, Report& to) noexcept {
-  to.time_ns = std::min(from.time_ns, now_ns);
-  to.device = from.device;
-  to.kind = from.kind;
-  to.size = std::min<std::uint16_t>(from.size, kMaxReportBytes);
-  std::memcpy(to.bytes.data(), from.bytes.data(), to.size);
-}
-
-bool tells_of_the_same(const PadLayout& layout, const Report& a, const Report& b) noexcept {
-  if (a.size != b.size) return false;
-  return !layout.descriptor.numbered || (a.size > 0 && a.bytes[0] == b.bytes[0]);
-}
-
-}  // namespace
+// --- TickReports
 
 TickReports::TickReports(PadStream& pads, Simulation& simulation)
     : pads_(pads), simulation_(simulation), reports_(kMaxInTick) {}
@@ -124,17 +112,19 @@ TickReports::TickReports(PadStream& pads, Simulation& simulation)
 void TickReports::begin_anew() noexcept {
   if (!std::exchange(is_used_, false)) return;
   count_ = 0;
-  for (Gathered& device : gathered_) {
-    if (device.has_state) device = {};
+  for (std::uint16_t i = 0; i < gathered_.size(); ++i) {
+    if (!gathered_[i].has_state) continue;
+    gathered_[i] = {};
+    newest_.forget(i);
   }
 }
 
-std::span<const Report> TickReports::take(std::int64_t now_ns) noexcept {
+std::span<const Report> TickReports::take_reports(std::int64_t now_ns) noexcept {
   begin_anew();
   while (count_ < kMaxInTick) {
     const Report* oldest = pads_.front();
     if (oldest == nullptr) break;
-    copy(*oldest, now_ns, reports_[count_]);
+    copy_used_bytes(*oldest, now_ns, reports_[count_]);
     pads_.pop();
     if (is_of_known_device(reports_[count_])) ++count_;
   }
@@ -144,50 +134,52 @@ std::span<const Report> TickReports::take(std::int64_t now_ns) noexcept {
 
 bool TickReports::gather(std::int64_t now_ns) noexcept {
   begin_anew();
-  // No more in one go than a tick would take: a flood is not to keep the thread.
+  // No more in one go than a tick would take: a flood of reports must not keep the thread.
   std::size_t seen = 0;
   for (; seen < kMaxInTick && count_ < kMaxInTick; ++seen) {
     const Report* oldest = pads_.front();
     if (oldest == nullptr) break;
     Report& report = reports_[count_];
-    copy(*oldest, now_ns, report);
+    copy_used_bytes(*oldest, now_ns, report);
     pads_.pop();
     if (is_of_known_device(report) && !replaces_older(report)) ++count_;
   }
   return seen > 0;
 }
 
-// A device becomes known when it is added for the first time; nothing else of it counts before.
+// A device becomes known by its first `added`; nothing that comes before counts.
 bool TickReports::is_of_known_device(const Report& report) noexcept {
   if (report.kind == ReportKind::command) return true;
   if (report.device >= is_known_.size()) return false;
   std::atomic<bool>& is_known = is_known_[report.device];
   if (!is_known.load(std::memory_order_relaxed) && report.kind == ReportKind::added) {
-    simulation_.set_pad(report.device, std::move(pads_.config(report.device)));
+    simulation_.set_pad(report.device, pads_.take_config(report.device));
     is_known.store(true, std::memory_order_release);
   }
   return is_known.load(std::memory_order_relaxed);
 }
 
-bool TickReports::replaces_older(const Report& report) noexcept {
+bool TickReports::replaces_older(Report& report) noexcept {
   if (report.kind == ReportKind::command) return false;
   Gathered& device = gathered_[report.device];
   if (!device.has_state && report.device == simulation_.pads().driving())
     device.state = simulation_.pads().driving_state();
   device.has_state = true;
-  const int older = std::exchange(device.newest, -1);
+  const PadLayout& layout = pads_.layout(report.device);
+  const std::uint8_t id = report_id_of(layout, report);
+  Report* const older = newest_.find(report.device, id);
+  newest_.forget(report.device);
   if (report.kind != ReportKind::input) {
     device.state = PadState{};
     return false;
   }
   const std::uint32_t before = device.state.buttons;
-  if (!decode(pads_.layout(report.device), report, device.state)) return false;
-  const std::uint32_t pressed = device.state.buttons & ~before;
-  for (int b = 0; b < kButtonCount; ++b) device.presses[b] += (pressed >> b) & 1u;
-  const bool replaces = older >= 0 && device.state.buttons == before &&
-                        tells_of_the_same(pads_.layout(report.device), reports_[older], report);
-  device.newest = replaces ? older : static_cast<int>(count_);
-  if (replaces) copy(report, report.time_ns, reports_[older]);
+  if (!decode(layout, report, device.state)) return false;
+  count_presses(before, device.state.buttons, device.presses);
+  const bool replaces =
+      older != nullptr && device.state.buttons == before && older->size == report.size;
+  newest_.set(report.device, id, replaces ? older : &report);
+  if (replaces) copy_used_bytes(report, report.time_ns, *older);
   return replaces;
 }
 
@@ -203,23 +195,26 @@ bool TickReports::is_known(std::uint16_t device) const noexcept {
   return device < is_known_.size() && is_known_[device].load(std::memory_order_acquire);
 }
 
+// --- LiveLoop
+
 namespace {
 
-constexpr std::int64_t kNap_ns = 20'000'000;  // a sleep's longest piece: orders wait for its end
-constexpr std::size_t kSamples = 1024;        // that nobody took yet, four seconds
+constexpr std::int64_t kNap_ns = 20'000'000;  // longest sleep; then the loop looks at its orders
+constexpr std::size_t kSamples = 1024;        // that wait to be taken, four seconds
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
-constexpr double kFeltBeat = 0.25;  // of full strength; much less does not turn a motor in 80 ms
+constexpr double kFeltBeat = 0.25;  // of full strength; less does not turn a motor within 80 ms
 constexpr auto kRelaxed = std::memory_order_relaxed;
 
 static_assert(std::atomic<double>::is_always_lock_free);
 
-// By the one thread that counts.
+// For the only thread that writes it.
 void count(std::atomic<std::int64_t>& n) noexcept { n.store(n.load(kRelaxed) + 1, kRelaxed); }
 
 void sleep_until(std::int64_t time_ns) noexcept {
   const timespec until = {time_ns / kSecond_ns, time_ns % kSecond_ns};
-  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);  // EINTR: the caller looks
+  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until,
+                    nullptr);  // at EINTR the caller looks again
 }
 
 }  // namespace
@@ -269,7 +264,7 @@ void LiveLoop::advance(int ticks) noexcept {
   for (int i = 0; i < ticks; ++i) run_tick(now_ns(), 0);
 }
 
-// False: to be stopped.
+// False: the loop must stop.
 bool LiveLoop::wait_for_tick() noexcept {
   while (!is_stopping_.load(kRelaxed)) {
     follow_orders();
@@ -289,7 +284,7 @@ void LiveLoop::step(int ticks) noexcept {
   if (ticks > 0) wanted_steps_.fetch_add(ticks, std::memory_order_release);
 }
 
-// Steps first: whoever sees them sees the pace that was set before they were asked for, too.
+// Steps are read first: a thread that sets the pace to 0 and then asks for steps gets them at 0.
 void LiveLoop::follow_orders() noexcept {
   const std::int64_t steps = wanted_steps_.exchange(0, std::memory_order_acquire);
   const double pace = wanted_pace_.load(std::memory_order_acquire);
@@ -310,7 +305,7 @@ std::int64_t LiveLoop::due_ns() const noexcept {
   return last_begin_ns_ + static_cast<std::int64_t>(step_ns);
 }
 
-// What comes while ticks stand still is seen, though no tick uses it yet.
+// While ticks stand still, reports show in the frame though no tick has used them.
 void LiveLoop::look_at_pads(std::int64_t now_ns) noexcept {
   if (reports_.gather(now_ns)) publish(shown_ns_);
 }
@@ -327,13 +322,13 @@ void LiveLoop::keep_time(std::int64_t now_ns) noexcept {
     count(standstills_);
   } else {
     count(overloads_);
-    give_up_priority();  // a loop that never sleeps would leave no time for anybody else
+    give_up_priority();  // a loop that never sleeps would leave no time for other threads
   }
 }
 
 void LiveLoop::run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept {
   follow_script(now_ns);
-  const std::span<const Report> reports = reports_.take(now_ns);
+  const std::span<const Report> reports = reports_.take_reports(now_ns);
   use(reports, now_ns);
   simulation_.step(reports);
   publish(shown_ns);
@@ -345,7 +340,8 @@ void LiveLoop::run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept {
   ticks_.store(tick_, kRelaxed);
 }
 
-// Ahead of what else belongs to the tick, and recorded like it: a replay needs no script.
+// The script comes before the other reports of the tick. It is recorded, so a replay needs no
+// script.
 void LiveLoop::follow_script(std::int64_t now_ns) noexcept {
   for (; next_event_ < script_.events.size() &&
          tick_of(script_.events[next_event_], options_.rate_hz) <= tick_;
@@ -353,7 +349,7 @@ void LiveLoop::follow_script(std::int64_t now_ns) noexcept {
     Report report = report_of(script_.events[next_event_]);
     report.time_ns = now_ns;
     if (recording_ != nullptr) recording_->add(tick_, report);
-    simulation_.take(report);
+    simulation_.take_report(report);
   }
 }
 
@@ -382,7 +378,7 @@ void LiveLoop::publish(std::int64_t shown_ns) noexcept {
   frames_.publish();
 }
 
-// A full ring: nobody takes them, or not fast enough.
+// A full ring drops the sample: nobody takes samples, or not fast enough.
 void LiveLoop::sample(std::int64_t took_ns) noexcept {
   tick_times_.add(took_ns);
   copy_sample(simulation_, sample_);
@@ -397,7 +393,8 @@ void LiveLoop::beat() noexcept {
   pads_.rumble(device, heel_beat(speed_m_s), kBeat);
 }
 
-// A recording as a pad: a second behind its end, as a replay without an end line.
+// If the pad is a recording, the session ends a second after it, as a replay without an end line
+// does.
 void LiveLoop::look_for_the_end(bool has_reports) noexcept {
   const bool is_over = pads_.has_ended() && !has_reports;
   if (is_over || ticks_behind_end_ > 0) ++ticks_behind_end_;

@@ -10,11 +10,10 @@
 #include "session/script.h"
 
 namespace gaitpad {
-
 namespace {
 
-// A device that is plugged in later says so in its first event. Without any pad the walk has no
-// stick.
+// A device is plugged in from the start unless its first event says that it was added. Error: none
+// of them is a pad, so the walk has no stick.
 std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pads) {
   std::vector<bool> is_seen(pads.size(), false);
   for (const TraceEvent& event : trace.events) {
@@ -28,19 +27,23 @@ std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pad
 
 }  // namespace
 
-Result<PreparedTrace> prepared_trace(const SessionOptions& session, const std::string& path,
-                                     std::optional<int> rate_hz, Damage damage) {
-  auto trace = read_trace(path, damage);
+Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
+  auto trace = read_trace(spec.replay.trace, spec.replay.damage);
   if (!trace) return trace.error();
-  const int rate = replay_rate_hz(*trace, rate_hz);
+  const int rate = replay_rate_hz(*trace, spec.rate_hz);
   auto ticks = assign_ticks(*trace, rate);
   if (!ticks) return ticks.error();
-  auto config = simulation_config(session, trace->devices, trace->path, rate);
+  auto files = load_pad_files(spec);
+  if (!files) return files.error();
+  auto pads = pad_configs(*files, trace->devices, trace->path);
+  if (!pads) return pads.error();
+  auto config = simulation_config(spec, rate);
   if (!config) return config.error();
+  config->pads = std::move(*pads);
   if (auto problem = settle_pads(*trace, config->pads)) return *problem;
   auto start = Simulation::create(*config);
   if (!start) return start.error();
-  auto script = script_for(*start, session.script);
+  auto script = script_for(*start, spec.walk.script);
   if (!script) return script.error();
   add_script(*script, rate, *trace);
   return PreparedTrace{std::move(*trace), *ticks, std::move(*config), std::move(*start)};
@@ -58,7 +61,7 @@ void TraceRun::step(const Trace& trace) noexcept {
   for (; next_event_ < trace.events.size() && trace.events[next_event_].tick == tick;
        ++next_event_) {
     copy_report(trace, trace.events[next_event_], report);
-    simulation_.take(report);
+    simulation_.take_report(report);
   }
   simulation_.step({});
 }
@@ -94,25 +97,25 @@ std::vector<PlaybackMark> marks_of(const PreparedTrace& prepared) {
   return marks;
 }
 
-// Where the samples begin that a jump to there needs.
+// After how many ticks the samples of a jump to this place begin.
 std::int64_t history_of(std::int64_t ticks) {
   return std::max<std::int64_t>(0, ticks - Playback::kHistoryTicks);
 }
 
-// States along the way, the first one before tick 0: evenly spaced, and farther apart when there
-// are many.
+// States along the way, evenly spaced, the first one before tick 0. When there are many, every
+// other one is dropped.
 class Snapshots {
  public:
   Snapshots(TraceRun start, int spacing_ticks) : spacing_ticks_(spacing_ticks) {
     runs_.push_back(std::move(start));
   }
-  // Keeps the state if it is due.
-  void look_at(const TraceRun& run) {
+  // Keeps the state if one is due.
+  void keep_if_due(const TraceRun& run) {
     if (run.ticks() < runs_.back().ticks() + spacing_ticks_) return;
     if (runs_.size() == kMaxSnapshots) thin_out();
     if (run.ticks() % spacing_ticks_ == 0) runs_.push_back(run);
   }
-  // The latest one after at most so many ticks.
+  // The latest snapshot after at most so many ticks.
   const TraceRun& before(std::int64_t ticks) const {
     const auto next = std::ranges::upper_bound(runs_, ticks, {}, &TraceRun::ticks);
     return *std::prev(next);
@@ -151,12 +154,12 @@ struct Playback::Impl {
 
   TraceRun run;
   Snapshots snapshots;
-  std::int64_t first_sample = 0;  // ticks before it belong to no history that is asked for
+  std::int64_t first_sample = 0;  // ticks before it are in no history that is needed
   std::deque<TickSample> samples;
   SessionFrame frame;
 };
 
-// The history may be that of a later place, on the way to which this one is asked for.
+// False also if the history begins too late: that of a later place, asked for on the way there.
 bool Playback::Impl::goes_on(std::int64_t ticks) const {
   const std::int64_t ahead = ticks - run.ticks();
   return ahead >= 0 && ahead <= kHistoryTicks && first_sample <= history_of(ticks);
@@ -172,7 +175,7 @@ void Playback::Impl::jump(std::int64_t ticks) {
 
 void Playback::Impl::step() {
   run.step(prepared.trace);
-  snapshots.look_at(run);
+  snapshots.keep_if_due(run);
   if (run.ticks() <= first_sample) return;
   if (samples.size() == kHistoryTicks) samples.pop_front();
   copy_sample(run.simulation(), samples.emplace_back());
@@ -181,10 +184,8 @@ void Playback::Impl::step() {
 Playback::Playback() = default;
 Playback::~Playback() = default;
 
-Result<std::unique_ptr<Playback>> Playback::open(const SessionOptions& session,
-                                                 const std::string& trace,
-                                                 std::optional<int> rate_hz, Damage damage) {
-  auto prepared = prepared_trace(session, trace, rate_hz, damage);
+Result<std::unique_ptr<Playback>> Playback::open(const SessionSpec& spec) {
+  auto prepared = prepared_trace(spec);
   if (!prepared) return prepared.error();
   TraceRun start = TraceRun::begin(*prepared);
   std::unique_ptr<Playback> playback(new Playback());
@@ -212,11 +213,17 @@ bool Playback::seek(std::int64_t tick, int budget) {
 
 const SessionFrame& Playback::frame() const noexcept { return impl_->frame; }
 
-bool Playback::take(TickSample& sample) {
+bool Playback::take_sample(TickSample& sample) {
   if (impl_->samples.empty()) return false;
   sample = impl_->samples.front();
   impl_->samples.pop_front();
   return true;
+}
+
+RunSummary Playback::summary() const {
+  RunSummary run = run_summary(impl_->run.simulation(), impl_->cast);
+  run.damaged_lines = impl_->prepared.trace.skipped_lines;
+  return run;
 }
 
 std::uint64_t Playback::pose_hash() const noexcept { return impl_->run.simulation().pose_hash(); }

@@ -19,7 +19,7 @@
 #include "session/live_loop.h"
 
 namespace gaitpad {
-
+namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t kBridge_us = kMaxTraceGapUs / 2;
@@ -29,12 +29,14 @@ std::string seconds(std::int64_t time_ns) {
   return fmt::format("{}.{:09}", time_ns / kSecond_ns, time_ns % kSecond_ns);
 }
 
-// The reader wants words in a command.
+// The reader of traces refuses a command without words.
 bool is_blank(std::string_view text) {
   return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
 
 }  // namespace
+
+// --- the lines
 
 RecordingLines::RecordingLines(std::optional<int> rate_hz, RecordedDevices devices,
                                const Limits& limits)
@@ -84,7 +86,7 @@ bool RecordingLines::is_over(std::int64_t tick) {
   return true;
 }
 
-// Time 0 is the first event's; where that comes late, the first tick's, which is marked then.
+// Time 0 is the first event. If that comes late, time 0 is tick 0, where a `mark` is written.
 void RecordingLines::begin_time(std::int64_t time_ns) {
   if (zero_ns_) return;
   const bool is_late = start_ns_ && time_ns - *start_ns_ > kBridge_us * 1000;
@@ -107,7 +109,7 @@ bool RecordingLines::describe(std::uint16_t device) {
   return true;
 }
 
-// Marks in a gap that would be too long, each half of the longest away from the one before.
+// Writes marks into a gap that would be too long, half the longest gap apart.
 void RecordingLines::bridge(std::int64_t tick, std::int64_t time_us) {
   const std::int64_t from_us = latest_us_, from_tick = tick_;
   std::int64_t pieces = 1 + (time_us - from_us) / kBridge_us;
@@ -158,14 +160,16 @@ std::string RecordingLines::take_text() {
   return text;
 }
 
-namespace fs = std::filesystem;
+// --- the file and its thread
+
 namespace {
 
 constexpr std::size_t kRingItems = 4096;
-constexpr std::chrono::milliseconds kPause{20};  // between looks at the ring; nobody is woken
+constexpr std::chrono::milliseconds kPause{20};  // between looks at the ring: nobody wakes it
 constexpr std::size_t kWriteBytes = std::size_t{1} << 18;
 
-// Open and empty, and nobody else's. A pipe of that name without a reader is an error, no waiting.
+// Opens the file, empties it and locks it for this session. If it is a pipe without a reader, that
+// is an error instead of a wait.
 Result<OwnedFd> opened_part(const std::string& part) {
   OwnedFd file(
       ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
@@ -205,16 +209,11 @@ Recording::~Recording() { end_thread(); }
 void Recording::add(std::int64_t tick, const Report& report) noexcept {
   Item item;
   item.tick = tick;
-  // No report comes from the future: a wrong stamp would end the recording.
-  item.report.time_ns = std::min(report.time_ns, now_ns());
-  item.report.device = report.device;
-  item.report.kind = report.kind;
-  item.report.size = std::min<std::uint16_t>(report.size, kMaxReportBytes);
-  std::memcpy(item.report.bytes.data(), report.bytes.data(), item.report.size);
+  copy_used_bytes(report, now_ns(), item.report);  // a stamp of the future would end the recording
   if (!ring_.push(item)) lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
-// A remark for people: where it finds no room the recording is still an exact one.
+// A comment for people: without it the recording is still exact.
 void Recording::clock(std::int64_t tick, std::int64_t time_ns, double pace) noexcept {
   Item item;
   item.tick = tick;
@@ -230,12 +229,12 @@ void Recording::run() {
       std::unique_lock lock(mutex_);
       is_last = ending_.wait_for(lock, kPause, [this] { return is_ending_; });
     }
-    take_all();
+    drain_ring();
     write(lines_.take_text());
   }
 }
 
-void Recording::take_all() {
+void Recording::drain_ring() {
   while (const Item* item = ring_.front()) {
     if (item->clock_ns != kNoClock) {
       lines_.clock(item->tick, item->clock_ns, item->pace);
@@ -256,7 +255,7 @@ void Recording::write(std::string_view text) {
       text.remove_prefix(static_cast<std::size_t>(count));
     } else if (errno != EINTR) {
       problem_ = errno;
-      // Half a line would spoil the rest; where even this fails, `replay --lenient` skips it.
+      // Half a line would damage the trace; if even this fails, `replay --lenient` skips the line.
       static_cast<void>(!::ftruncate(file_.get(), written_));
       return;
     }

@@ -1,9 +1,12 @@
-// The lines of a recording: what was used by which tick, as a trace that replays to the same poses.
+// The recording of a session, or of pads alone, into a trace that replays to the same poses: which
+// tick used which report.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -20,31 +23,41 @@
 
 namespace gaitpad {
 
-// Tells of a device once a report of it has come.
+// What is known of a device whose first report has come.
 using RecordedDevices = std::function<const TraceDevice&(std::uint16_t device)>;
 
-// Keeps within what the reader takes: times that do not go back, no gap of ten minutes (a command
-// `mark`, which does nothing, stands in a longer one), an end that is late enough for its ticks
-// (they may have run faster than the time), and one before the file is too large.
+// Copies a report without the bytes that it does not use, stamped no later than `latest_ns`.
+inline void copy_used_bytes(const Report& from, std::int64_t latest_ns, Report& to) noexcept {
+  to.time_ns = std::min(from.time_ns, latest_ns);
+  to.device = from.device;
+  to.kind = from.kind;
+  to.size = std::min<std::uint16_t>(from.size, kMaxReportBytes);
+  std::memcpy(to.bytes.data(), from.bytes.data(), to.size);
+}
+
+// The lines of a recording. They stay within what the reader of traces accepts: times never go
+// back; a gap of ten minutes or more holds commands `mark`, which do nothing; the end is late
+// enough for its ticks, which may have run faster than the clock; and it ends before the file is
+// too large.
 class RecordingLines {
  public:
-  struct Limits {  // with room for what one tick and the devices' lines may add
+  struct Limits {  // with room for one more tick and for the devices' lines
     std::size_t bytes = kMaxTraceBytes - (std::size_t{4} << 20);
     std::size_t events = kMaxTraceEvents - 8192;
   };
-  // Without a rate there are no ticks: times alone count.
+  // Without a rate there are no ticks, only times.
   RecordingLines(std::optional<int> rate_hz, RecordedDevices devices, const Limits& limits);
 
-  // `tick` began at `time_ns` and the next ones follow at the rate times the pace: of tick 0, where
-  // the clock was set forward, and where the pace is another from then on (0: it is still to come).
+  // `tick` began at `time_ns`, and the next ones follow at the rate times the pace; at pace 0 it
+  // has not begun yet. For tick 0, and whenever the clock was set forward or the pace has changed.
   void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0);
-  // False: it has no place in the recording.
+  // False: the recording cannot hold it.
   bool add(std::int64_t tick, const Report& report);
   void end(std::int64_t ticks, std::int64_t time_ns);
   std::string take_text();  // whole lines, since the last call
   std::size_t text_size() const { return writer_.text().size(); }
 
-  // No more is taken: a larger file could not be read.
+  // Nothing more is added: a larger file could not be read.
   bool is_full() const { return is_full_; }
   bool has_devices() const { return has_devices_; }
   double duration_s() const { return static_cast<double>(latest_us_) * 1e-6; }
@@ -70,42 +83,42 @@ class RecordingLines {
   std::optional<std::int64_t> zero_ns_;               // time 0 of the file
   std::int64_t tick_ = 0;                             // of the last event
   std::int64_t latest_us_ = 0;
-  std::int64_t end_tick_ = 0;  // is_full(): the first that has no place
+  std::int64_t end_tick_ = 0;  // is_full(): the first tick that is left out
   std::size_t bytes_ = 0, events_ = 0;
   bool is_full_ = false, has_devices_ = false;
 };
 
-// Records a session, or pads alone, into a trace while it runs, on a thread of its own.
-
-// Written to FILE.part, which takes FILE's name at the end; what stood there before is kept until
-// then. A program that is killed leaves FILE.part behind: it replays as far as it goes.
+// Writes a trace while the session runs, on a thread of its own. The file is FILE.part until the
+// end, then it is renamed to FILE; an older FILE stays until then. A program that is killed leaves
+// FILE.part, which replays as far as it goes.
 class Recording {
  public:
   struct Options {
     std::string path;
-    std::optional<int> rate_hz;  // of the ticks; none: there is no loop, times alone count
+    std::optional<int> rate_hz;  // of the ticks; none: there is no loop, only times
     RecordingLines::Limits limits;
   };
-  // `devices` is called on the recording's thread, for devices of reports that were given to add().
+  // `devices` is called on the recording's thread, for devices of reports given to add(). Error:
+  // the file cannot be opened, or another session writes to it.
   static Result<std::unique_ptr<Recording>> start(const Options& options, RecordedDevices devices);
   ~Recording();
 
-  // All from one thread, wait-free: `tick` used the report; it began at that time and the next ones
-  // follow at the rate times the pace (0: they stand still).
+  // From one thread, wait-free: `tick` used the report; `tick` began at that time, and the next
+  // ones follow at the rate times the pace (0: they stand still).
   void add(std::int64_t tick, const Report& report) noexcept;
   void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0) noexcept;
 
-  // Reports that are missing: found no room here or in the file. It is then no exact recording.
+  // Missing reports: there was no room for them in the ring or the file. The recording is inexact.
   std::int64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
-  // One sentence once the file could not be written; what stands in it replays. Any thread.
+  // Why the file cannot be written, once it could not; what stands in it replays. Any thread.
   std::optional<Error> problem() const;
-  // Ends with so many ticks run; sentences that a user should know. Once.
+  // Ends the recording after so many ticks and renames the file. Once. Sentences for the user.
   Result<std::vector<std::string>> finish(std::int64_t ticks, std::int64_t time_ns);
 
  private:
   struct Item {
     std::int64_t tick = 0;
-    std::int64_t clock_ns = kNoClock;  // else there is no report
+    std::int64_t clock_ns = kNoClock;  // set: a clock() instead of a report
     double pace = 1.0;
     Report report;
   };
@@ -113,14 +126,14 @@ class Recording {
 
   Recording(const Options& options, RecordedDevices devices, OwnedFd file);
   void run();
-  void take_all();
+  void drain_ring();
   void write(std::string_view text);
   void end_thread();
   std::vector<std::string> remarks() const;
 
   std::string path_, part_;
   OwnedFd file_;
-  std::int64_t written_ = 0;     // bytes, whole lines
+  std::int64_t written_ = 0;     // bytes of whole lines
   std::atomic<int> problem_{0};  // errno of the first write that failed
   RecordingLines lines_;
   SpscRing<Item> ring_;

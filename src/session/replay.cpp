@@ -11,8 +11,8 @@ namespace gaitpad {
 namespace {
 
 // How many poses a second are written.
-Result<int> written_fps(const ReplayOptions& options, int rate_hz) {
-  const int fps = options.fps.value_or(rate_hz);
+Result<int> written_fps(const SessionSpec& spec, int rate_hz) {
+  const int fps = spec.replay.fps.value_or(rate_hz);
   if (fps >= 1 && fps <= rate_hz) return fps;
   return Error{
       fmt::format("{} poses a second: 1 to {}, the tick rate, can be written", fps, rate_hz)};
@@ -54,32 +54,28 @@ std::vector<std::string> remarks_on(const Trace& trace, const SimulationCounts& 
 
 }  // namespace
 
-Result<ReplayResult> replay(const ReplayOptions& options) {
-  auto prepared = prepared_trace(options.session, options.trace, options.rate_hz, options.damage);
+Result<ReplayResult> replay(const SessionSpec& spec) {
+  auto prepared = prepared_trace(spec);
   if (!prepared) return prepared.error();
   const int rate_hz = prepared->config.rate_hz;
-  auto fps = written_fps(options, rate_hz);
+  auto fps = written_fps(spec, rate_hz);
   if (!fps) return fps.error();
   TraceRun run = TraceRun::begin(*prepared);
   const Simulation& simulation = run.simulation();
   std::optional<OutputFiles> files;
-  if (!options.out.empty()) {
-    auto opened = OutputFiles::open(options.out);
+  if (!spec.replay.out.empty()) {
+    auto opened = OutputFiles::open(spec.replay.out);
     if (!opened) return opened.error();
     files.emplace(std::move(*opened));
   }
-  auto exports = opened_exports(files, simulation, {rate_hz, *fps, options.gltf});
+  auto exports = opened_exports(files, simulation, {rate_hz, *fps, spec.replay.gltf});
   if (!exports) return exports.error();
 
   run_to_end(*prepared, run, *exports);
-  ReplayResult result;
-  for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
-    const Walker& walker = simulation.walkers()[i];
-    result.distance_m.push_back(walker.walked_m);
-    result.summaries.push_back(
-        run_summary(simulation, walker, rate_hz, prepared->trace.skipped_lines));
-    if (!files) continue;
-    if (auto problem = (*exports)[i].finish(result.summaries.back())) return *problem;
+  ReplayResult result{run_summary(simulation, cast_of(simulation, prepared->config)), {}};
+  result.summary.damaged_lines = prepared->trace.skipped_lines;
+  for (std::size_t i = 0; i < exports->size(); ++i) {
+    if (auto problem = (*exports)[i].finish(summary_json(result.summary, i))) return *problem;
   }
   if (files) {
     if (auto problem = files->publish()) return *problem;

@@ -1,4 +1,5 @@
-// A script: commands at given times of a session, besides those that people give.
+// Commands, as a person or a recording gives them, and scripts: commands at given times of a
+// session. config/README.md has both grammars (`C:` lines, scripts).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,6 +13,25 @@
 
 namespace gaitpad {
 
+// What the text of a command asks for.
+struct Command {
+  enum class Verb : std::uint8_t {
+    mark,     // nothing
+    style,    // name
+    set,      // name, value: a style value
+    gait,     // name, value: a gait parameter
+    release,  // `gait KEY stick`: name
+    stick,    // `gait stick`: all parameters
+    restart,  // `reset`
+  } verb = Verb::mark;
+  int walker = 0;         // from 1; 0: all
+  std::string_view name;  // points into the text
+  double value = 0.0;     // finite
+};
+// Nothing if the text is malformed. Whether the names, the value and the walker exist is for the
+// simulation to decide. No heap.
+std::optional<Command> parsed_command(std::string_view text) noexcept;
+
 inline constexpr std::size_t kMaxScriptEvents = 4096;
 
 struct ScriptEvent {
@@ -19,23 +39,23 @@ struct ScriptEvent {
   std::string command;       // well-formed
   std::string where;         // "walk.toml:12", for sentences
 };
-// Immutable after load, in the order of time.
 struct Script {
-  std::vector<ScriptEvent> events;
+  std::vector<ScriptEvent> events;  // in order of time
 };
-// The grammar stands in config/README.md.
 Result<Script> load_script(const std::string& path);
 Result<Script> parsed_script(std::string_view text, const std::string& path);
 
-// The first tick that begins at or after it.
+// The first tick that begins at or after the event.
 std::int64_t tick_of(const ScriptEvent& event, int rate_hz) noexcept;
 Report report_of(const ScriptEvent& event) noexcept;
 
-// A file's, for such a session; of an empty path none. What that could not obey is an error:
-// unknown names, values out of bounds, characters that are not there.
+// The script of a file, checked against this simulation; an empty script if `path` is empty. Error
+// also if the simulation could not obey a command: an unknown name, a value out of bounds, a
+// character that does not exist.
 Result<Script> script_for(const Simulation& simulation, const std::string& path);
 
-// Its events ahead of the trace's own of the same tick. `trace` has its ticks.
+// Inserts its events into a trace that has its ticks, each before the trace's own events of the
+// same tick.
 void add_script(const Script& script, int rate_hz, Trace& trace);
 
 }  // namespace gaitpad

@@ -1,17 +1,9 @@
 #include "gaitpad/session_frame.h"
 
-#include <algorithm>
-
 namespace gaitpad {
 namespace {
 
 constexpr std::array<LegDof, 3> kShownJoints = {kHipX, kKneeX, kAnkleX};
-
-void copy_pose(const Pose& from, Pose& to) noexcept {
-  to.root_m = from.root_m;
-  to.joint_count = from.joint_count;
-  std::copy_n(from.local.begin(), from.joint_count, to.local.begin());
-}
 
 void copy_walker(const Walker& walker, WalkerFrame& frame) noexcept {
   const WalkState& state = walker.state;
@@ -81,7 +73,8 @@ void copy_sample(const Simulation& simulation, TickSample& sample) noexcept {
     WalkerSample& s = sample.walkers[i];
     for (const Side side : {kLeftSide, kRightSide}) {
       for (std::size_t j = 0; j < kShownJoints.size(); ++j) {
-        // Flexion counts upwards at every joint: hip and ankle are negative in the model.
+        // In a sample flexion is positive at every joint; in the model it is negative at the hip
+        // and the ankle.
         const double angle_rad = walkers[i].state.angles_rad[side][kShownJoints[j]];
         s.joint_rad[side][j] =
             static_cast<float>(kShownJoints[j] == kKneeX ? angle_rad : -angle_rad);

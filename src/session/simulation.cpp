@@ -2,21 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "base/text.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/style.h"
-#include "session/commands.h"
-#include "session/walker_style.h"
+#include "session/script.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr double kSpacing_m = 1.2;  // between neighbours, to the right of the first
 
-// On a skeleton of its own the walk is retargeted already; its leg is still compared to the
-// motion's.
+// A character with its own skeleton brings the retargeted cycle. Only the length of the motion's
+// leg comes from the motion itself then.
 Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& walker) {
   if (!walker.own_cycle) return walk_model(config.cycle, walker.character);
   Character build = walker.character;
@@ -26,14 +26,76 @@ Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& w
   return model;
 }
 
-// Of the 10 KB of a pose only the joints that there are.
-void keep_pose(const Pose& pose, Pose& before) noexcept {
-  before.root_m = pose.root_m;
-  before.joint_count = pose.joint_count;
-  std::copy_n(pose.local.begin(), pose.joint_count, before.local.begin());
+// --- which style a walker walks in: chosen by commands, given by zones, blended, tired. All but
+// the commands follows from the state alone, so a replay computes it again.
+
+void change_style(Walker& w, int style, const StyleValues& values) noexcept {
+  w.blend = begun_blend(w.in_force, w.values, values);
+  w.style = style;
+  w.values = values;
 }
 
-// All or none: what a command asks for is possible for each of them.
+// The zone at this place; if several overlap there, the last one. -1: none.
+int zone_at(const Terrain& terrain, const vec3& place_m) noexcept {
+  for (int i = static_cast<int>(terrain.zones.size()) - 1; i >= 0; --i) {
+    const TerrainZone& zone = terrain.zones[static_cast<std::size_t>(i)];
+    if (place_m.z >= zone.from_m && place_m.z <= zone.to_m && place_m.x >= zone.right_m &&
+        place_m.x <= zone.left_m)
+      return i;
+  }
+  return -1;
+}
+
+// By a command. In a zone too it counts at once: the zone's style is not given back, and not given
+// again before the walker has left the zone.
+void choose_style(Walker& w, int style, std::span<const Style> styles) noexcept {
+  w.zone.gives_back = false;
+  change_style(w, style, styles[static_cast<std::size_t>(style)]);
+}
+
+// The style follows the zone under the hips: a walker that enters one takes its style, and a walker
+// that leaves it takes back the style from before, with the values that commands had changed in it.
+// `zone_styles`: of each zone the index of its style.
+void follow_zones(Walker& w, const Terrain& terrain, std::span<const int> zone_styles,
+                  std::span<const Style> styles) noexcept {
+  if (terrain.zones.empty()) return;
+  const int zone = zone_at(terrain, w.state.hips_m);
+  if (zone == w.zone.index) return;
+  // From one zone straight into another: keep the style from before both.
+  const bool has_own = w.zone.gives_back;
+  const ZoneStyle before = w.zone;
+  w.zone.index = zone;
+  w.zone.gives_back = zone >= 0;
+  if (zone < 0) {
+    if (has_own) change_style(w, before.own_style, before.own_values);
+    return;
+  }
+  if (!has_own) {
+    w.zone.own_style = w.style;
+    w.zone.own_values = w.values;
+  }
+  const int style = zone_styles[static_cast<std::size_t>(zone)];
+  change_style(w, style, styles[static_cast<std::size_t>(style)]);
+}
+
+// Blends and tires the style by one tick; what the walker walks by in this tick.
+StyleValues advance_style(Walker& w, double dt_s) noexcept {
+  w.in_force = advance(w.blend, with_fatigue(w.values, w.tired), dt_s);
+  return w.in_force;
+}
+
+// As at the beginning: in the style that was chosen last, rested, in no zone.
+void restart_style(Walker& w, std::span<const Style> styles) noexcept {
+  if (w.zone.gives_back) w.style = w.zone.own_style;
+  w.values = w.in_force = styles[static_cast<std::size_t>(w.style)];
+  w.zone = {};
+  w.blend = {};
+  w.tired = 0.0;
+}
+
+// --- commands
+
+// For all walkers or for none: the value must be possible for each of them.
 bool set_values(std::span<Walker> walkers, std::string_view key, double value) noexcept {
   for (const Walker& w : walkers) {
     StyleValues changed = w.values;
@@ -60,7 +122,7 @@ bool give_back(std::span<Walker> walkers, std::string_view name) noexcept {
   return true;
 }
 
-// Its style stays, and what is counted since the beginning.
+// Keeps its chosen style and the numbers that count from the beginning.
 void restart(std::span<const Style> styles, Walker& w) noexcept {
   const std::array<int, 2> steps = w.state.frame.steps;
   restart_style(w, styles);
@@ -74,6 +136,12 @@ int landings(const Walker& walker) noexcept {
 }
 
 }  // namespace
+
+void copy_pose(const Pose& from, Pose& to) noexcept {
+  to.root_m = from.root_m;
+  to.joint_count = from.joint_count;
+  std::copy_n(from.local.begin(), from.joint_count, to.local.begin());
+}
 
 std::vector<PadConfig> unknown_pads(std::size_t count) {
   std::vector<PadConfig> pads(count);
@@ -111,7 +179,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   return s;
 }
 
-// All on the same ground.
+// All walkers share one ground, large enough for the largest foot.
 Result<std::vector<std::shared_ptr<const WalkModel>>> Simulation::models_of(
     const SimulationConfig& config) {
   std::vector<std::shared_ptr<WalkModel>> models;
@@ -140,13 +208,13 @@ std::optional<Error> Simulation::find_zone_styles() {
 }
 
 void Simulation::step(std::span<const Report> reports) noexcept {
-  for (const Report& report : reports) take(report);
-  stick_ = pads_.stick_of_tick();
+  for (const Report& report : reports) take_report(report);
+  stick_ = pads_.finish_tick();
   const int landings_before = landings(walkers_.front());
   for (Walker& w : walkers_) {
-    keep_pose(w.pose, w.before);
-    look_at_zones(w, *terrain_, *zone_styles_, styles());
-    w.params = gait_params(stick_, style_of_tick(w, dt_s_), w.overrides, w.limits);
+    copy_pose(w.pose, w.before);
+    follow_zones(w, *terrain_, *zone_styles_, styles());
+    w.params = gait_params(stick_, advance_style(w, dt_s_), w.overrides, w.limits);
     const vec3 before_m = w.state.hips_m;
     advance(*w.model, w.params, ik_, dt_s_, w.state, w.pose);
     const vec3 way_m = w.state.hips_m - before_m;
@@ -160,21 +228,21 @@ void Simulation::step(std::span<const Report> reports) noexcept {
   ++counts_.ticks;
 }
 
-void Simulation::take(const Report& report) noexcept {
+void Simulation::take_report(const Report& report) noexcept {
   switch (report.kind) {
     case ReportKind::command:
       ++counts_.commands;
       counts_.bad_commands += !obey(text_of(report));
       return;
     case ReportKind::added:
-      pads_.add(report.device);
+      pads_.add_pad(report.device);
       return;
     case ReportKind::removed:
-      pads_.remove(report.device);
+      pads_.remove_pad(report.device);
       return;
     case ReportKind::input:
       ++counts_.reports;
-      counts_.bad_reports += !pads_.take(report);
+      counts_.bad_reports += !pads_.take_report(report);
       return;
   }
 }
@@ -189,7 +257,7 @@ bool Simulation::obey(std::string_view text) noexcept {
     case Verb::mark:
       return true;
     case Verb::style:
-      return take_styles(walkers, command->name);
+      return choose_style(walkers, command->name);
     case Verb::set:
       return set_values(walkers, command->name, command->value);
     case Verb::gait:
@@ -213,10 +281,10 @@ int Simulation::style_index(std::string_view name) const noexcept {
   return -1;
 }
 
-bool Simulation::take_styles(std::span<Walker> walkers, std::string_view name) noexcept {
+bool Simulation::choose_style(std::span<Walker> walkers, std::string_view name) noexcept {
   const int index = style_index(name);
   if (index < 0) return false;
-  for (Walker& w : walkers) take_style(w, index, styles());
+  for (Walker& w : walkers) gaitpad::choose_style(w, index, styles());
   return true;
 }
 

@@ -14,7 +14,6 @@
 #include "base/files.h"
 
 namespace gaitpad {
-
 namespace fs = std::filesystem;
 
 Result<OutputFiles> OutputFiles::open(const std::string& folder) {
@@ -44,7 +43,7 @@ Result<std::fstream> OutputFiles::scratch() const {
   std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
   if (!stream) return write_error(path, errno);
   std::error_code ignored;
-  fs::remove(path, ignored);  // the stream keeps what it is open on
+  fs::remove(path, ignored);  // the open stream keeps the file
   return stream;
 }
 
@@ -152,7 +151,7 @@ BvhLayout layout_of(const WalkModel& model, int fps) {
   return layout;
 }
 
-// Bound as it stands, at the origin.
+// The bind pose is the character standing at the origin.
 GltfLayout gltf_layout(const Walker& walker, int fps) {
   const WalkModel& model = *walker.model;
   return {.name = walker.model->cycle.name,
@@ -161,17 +160,36 @@ GltfLayout gltf_layout(const Walker& walker, int fps) {
           .rest_root_m = vec3(0.0, model.stand_m, 0.0)};
 }
 
-// Tick t is shown where a frame's time j / fps falls into (t - 1, t] ticks; the first frame is tick
-// 0.
+// Whether a frame of the file shows this tick: if a frame's time j / fps lies in (tick - 1, tick]
+// ticks. The first frame shows tick 0.
 bool is_shown(std::int64_t tick, int rate_hz, int fps) {
   const auto frames_until = [=](std::int64_t t) { return (t * fps + rate_hz) / rate_hz; };
   return tick == 0 || frames_until(tick) != frames_until(tick - 1);
 }
 
-// The heel point in the ankle joint's own frame, as the files have it.
-nlohmann::ordered_json heel_offset(const LegModel& leg) {
-  const vec3 heel_m = glm::conjugate(leg.standing[2]) * leg.heel_m;
-  return {heel_m.x, heel_m.y, heel_m.z};
+// In the frame of the ankle joint, as the files have it.
+vec3 heel_offset_m(const LegModel& leg) { return glm::conjugate(leg.standing[2]) * leg.heel_m; }
+
+WalkerSummary walker_summary(const Simulation& simulation, const Walker& walker) {
+  const WalkModel& model = *walker.model;
+  WalkerSummary s;
+  s.motion = model.cycle.name;
+  s.metres_per_unit = model.cycle.metres_per_unit;
+  s.leg_length_m = model.leg_length_m;
+  s.source_leg_length_m = model.source_leg_length_m;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const LegModel& leg = model.leg[side].model;
+    s.toe_joint[side] = model.cycle.skeleton.joints[leg.joints.toe].name;
+    s.ankle_joint[side] = model.cycle.skeleton.joints[leg.joints.ankle].name;
+    s.heel_offset_m[side] = heel_offset_m(leg);
+    s.toe_rest_m[side] = leg.toe_rest_m;
+    s.steps[side] = walker.state.frame.steps[side];
+  }
+  s.style = simulation.styles()[walker.style].name;
+  s.fatigue = walker.in_force.fatigue;
+  s.ik_failures = walker.ik_failures;
+  s.distance_m = walker.walked_m;
+  return s;
 }
 
 }  // namespace
@@ -217,8 +235,8 @@ void WalkExport::write(std::int64_t tick, const Stick& stick) {
 }
 
 std::optional<Error> WalkExport::finish(const nlohmann::ordered_json& summary) {
-  frames_->write(row_.data(),
-                 static_cast<std::streamsize>(row_.size()));  // header of an empty walk
+  // Of a walk without a tick the header is still to be written.
+  frames_->write(row_.data(), static_cast<std::streamsize>(row_.size()));
   row_.clear();
   poses_->finish();
   *summary_ << summary.dump(2) << '\n';
@@ -227,46 +245,56 @@ std::optional<Error> WalkExport::finish(const nlohmann::ordered_json& summary) {
   return problem ? std::optional(Error{"pose.glb: " + *problem}) : std::nullopt;
 }
 
-nlohmann::ordered_json walker_summary(const Walker& walker) {
-  const WalkModel& model = *walker.model;
-  const auto& joints = model.cycle.skeleton.joints;
-  const LegModel& left = model.leg[kLeftSide].model;
-  const LegModel& right = model.leg[kRightSide].model;
-  nlohmann::ordered_json s;
-  s["motion"] = model.cycle.name;
-  s["metres_per_unit"] = model.cycle.metres_per_unit;
-  s["leg_length_m"] = model.leg_length_m;
-  s["source_leg_length_m"] = model.source_leg_length_m;
-  s["left_toe_joint"] = joints[left.joints.toe].name;
-  s["right_toe_joint"] = joints[right.joints.toe].name;
-  s["left_ankle_joint"] = joints[left.joints.ankle].name;
-  s["right_ankle_joint"] = joints[right.joints.ankle].name;
-  s["left_heel_offset_m"] = heel_offset(left);
-  s["right_heel_offset_m"] = heel_offset(right);
-  s["left_toe_rest_m"] = left.toe_rest_m;
-  s["right_toe_rest_m"] = right.toe_rest_m;
-  s["steps_left"] = walker.state.frame.steps[kLeftSide];
-  s["steps_right"] = walker.state.frame.steps[kRightSide];
-  return s;
+RunSummary run_summary(const Simulation& simulation, const Cast& cast) {
+  RunSummary run;
+  run.motion = cast.motion;
+  run.rate_hz = cast.rate_hz;
+  run.pose_hash = simulation.pose_hash();
+  run.terrain = simulation.terrain()->name;
+  run.terrain_scale = simulation.terrain_scale();
+  const SimulationCounts& counts = simulation.counts();
+  run.ticks = counts.ticks;
+  run.reports = counts.reports;
+  run.bad_reports = counts.bad_reports;
+  run.bad_commands = counts.bad_commands;
+  for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
+    run.walkers.push_back(walker_summary(simulation, simulation.walkers()[i]));
+    run.walkers.back().character = cast.members[i].character;
+  }
+  return run;
 }
 
-nlohmann::ordered_json run_summary(const Simulation& simulation, const Walker& walker, int rate_hz,
-                                   std::int64_t damaged_lines) {
-  const SimulationCounts& counts = simulation.counts();
+nlohmann::ordered_json summary_json(const RunSummary& run, std::size_t walker) {
+  const WalkerSummary& w = run.walkers[walker];
+  const auto list = [](const vec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
   nlohmann::ordered_json s;
-  s["ticks"] = counts.ticks;
-  s["rate_hz"] = rate_hz;
-  s["pose_hash"] = fmt::format("{:016x}", simulation.pose_hash());
-  s.update(walker_summary(walker));
-  s["terrain"] = simulation.terrain()->name;
-  s["terrain_scale"] = simulation.terrain_scale();
-  s["style"] = simulation.styles()[walker.style].name;
-  s["fatigue"] = walker.in_force.fatigue;
-  s["ik_failures"] = walker.ik_failures;
-  s["reports"] = counts.reports;
-  s["bad_reports"] = counts.bad_reports;
-  s["bad_commands"] = counts.bad_commands;
-  s["damaged_lines"] = damaged_lines;
+  s["ticks"] = run.ticks;
+  s["rate_hz"] = run.rate_hz;
+  s["pose_hash"] = fmt::format("{:016x}", run.pose_hash);
+  s["motion"] = w.motion;
+  s["metres_per_unit"] = w.metres_per_unit;
+  s["leg_length_m"] = w.leg_length_m;
+  s["source_leg_length_m"] = w.source_leg_length_m;
+  s["left_toe_joint"] = w.toe_joint[kLeftSide];
+  s["right_toe_joint"] = w.toe_joint[kRightSide];
+  s["left_ankle_joint"] = w.ankle_joint[kLeftSide];
+  s["right_ankle_joint"] = w.ankle_joint[kRightSide];
+  s["left_heel_offset_m"] = list(w.heel_offset_m[kLeftSide]);
+  s["right_heel_offset_m"] = list(w.heel_offset_m[kRightSide]);
+  s["left_toe_rest_m"] = w.toe_rest_m[kLeftSide];
+  s["right_toe_rest_m"] = w.toe_rest_m[kRightSide];
+  s["steps_left"] = w.steps[kLeftSide];
+  s["steps_right"] = w.steps[kRightSide];
+  s["terrain"] = run.terrain;
+  s["terrain_scale"] = run.terrain_scale;
+  s["style"] = w.style;
+  s["fatigue"] = w.fatigue;
+  s["ik_failures"] = w.ik_failures;
+  s["reports"] = run.reports;
+  s["bad_reports"] = run.bad_reports;
+  s["bad_commands"] = run.bad_commands;
+  s["damaged_lines"] = run.damaged_lines;
+  if (run.recording_lost > 0) s["recording_lost"] = run.recording_lost;
   return s;
 }
 

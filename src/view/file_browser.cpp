@@ -129,32 +129,32 @@ Result<FileKind> kind_of_file(const std::string& path) {
   return kind_of_content(path);
 }
 
-ShowOptions with_file(ShowOptions options, const std::string& path, FileKind kind, int walker,
+SessionSpec with_file(SessionSpec options, const std::string& path, FileKind kind, int walker,
                       int walker_count) {
-  SessionOptions& session = options.live.session;
+  SessionSpec::Walk& walk = options.walk;
   options.live.record.clear();
   switch (kind) {
     case FileKind::motion:
-      session.motion = path;
+      walk.motion = path;
       break;
     case FileKind::character:
       // Without a list every style has the motion's own character.
-      if (session.characters.empty() && walker >= 0) session.characters = {"as_in_motion_file"};
-      put(session.characters, path, walker, walker_count);
+      if (walk.characters.empty() && walker >= 0) walk.characters = {"as_in_motion_file"};
+      put(walk.characters, path, walker, walker_count);
       break;
     case FileKind::style:
-      if (session.styles.empty() && walker >= 0) session.styles = {"even"};
-      put(session.styles, path, walker, walker_count);
+      if (walk.styles.empty() && walker >= 0) walk.styles = {"even"};
+      put(walk.styles, path, walker, walker_count);
       break;
     case FileKind::calibration:
-      session.calibration = path;
+      options.pad.calibration = path;
       break;
     case FileKind::terrain:
-      session.terrain = path;
+      walk.terrain = path;
       break;
     case FileKind::recording:
-      options.trace = path;
-      options.is_rate_given = false;
+      options.replay.trace = path;
+      options.rate_hz.reset();
       break;
   }
   return options;

@@ -21,7 +21,7 @@ Result<FileKind> kind_of_file(const std::string& path);
 
 // The given options with this file. A style or a character is for walker `walker`, or for all of
 // them if that is -1. The new session is not recorded.
-ShowOptions with_file(ShowOptions options, const std::string& path, FileKind kind, int walker,
+SessionSpec with_file(SessionSpec options, const std::string& path, FileKind kind, int walker,
                       int walker_count);
 
 // Which files are listed, of those that the window can open.

@@ -1,23 +1,18 @@
 #include "view/show.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "drivers/posix.h"
-#include "gaitpad/simulation.h"
-#include "session/script.h"
 
 namespace gaitpad {
 namespace {
 
 class LiveShow final : public Show {
  public:
-  LiveShow(const ShowOptions& options, std::unique_ptr<LiveSession> session)
-      : Show(options), session_(std::move(session)) {
+  explicit LiveShow(std::unique_ptr<LiveSession> session)
+      : Show(session->spec()), session_(std::move(session)) {
     bool is_new = false;
     frame_ = &session_->latest(is_new);
   }
@@ -28,14 +23,14 @@ class LiveShow final : public Show {
   void update(double) override {
     bool is_new = false;
     frame_ = &session_->latest(is_new);
-    for (TickSample sample; session_->take(sample);) {
+    for (TickSample sample; session_->take_sample(sample);) {
       if (is_by_hand()) sample.step_us = 0.0f;  // a picture must not depend on the machine's speed
       history_.add(sample);
     }
   }
 
   void update_for_picture() override {
-    due_ticks_ += pace_ * options_.live.rate_hz / kPictureRateHz;
+    due_ticks_ += pace_ * cast().rate_hz / kPictureRateHz;
     advance(static_cast<int>(due_ticks_));
     due_ticks_ -= static_cast<int>(due_ticks_);
     update(0.0);
@@ -44,7 +39,7 @@ class LiveShow final : public Show {
   double share(std::int64_t now_ns) const noexcept override {
     if (is_by_hand() || pace_ <= 0.0) return 1.0;
     const double passed_s = static_cast<double>(now_ns - frame_->time_ns) / 1e9;
-    return std::clamp(passed_s * options_.live.rate_hz * pace_, 0.0, 1.0);
+    return std::clamp(passed_s * cast().rate_hz * pace_, 0.0, 1.0);
   }
 
   void set_pace(double pace) override {
@@ -71,10 +66,12 @@ class LiveShow final : public Show {
     return pad.is_present && pad.device != kNoDevice ? session_->pad_name(pad.device) : "";
   }
   std::vector<std::string> take_remarks() override { return session_->take_remarks(); }
-  Result<std::vector<nlohmann::ordered_json>> stop() override { return session_->stop(); }
+  Result<RunSummary> stop() override { return session_->stop(); }
 
  private:
-  bool is_by_hand() const noexcept { return options_.live.clock == LiveOptions::Clock::by_hand; }
+  bool is_by_hand() const noexcept {
+    return options_.live.clock == SessionSpec::Live::Clock::by_hand;
+  }
   void advance(int ticks) {
     if (ticks > 0) session_->advance(ticks);
   }
@@ -85,19 +82,12 @@ class LiveShow final : public Show {
   double due_ticks_ = 0.0;  // pictures: the part of a tick that is left over
 };
 
-Result<std::unique_ptr<Show>> open_live_show(const ShowOptions& options) {
-  auto session = LiveSession::start(options.live);
-  if (!session) return session.error();
-  return std::unique_ptr<Show>(std::make_unique<LiveShow>(options, std::move(*session)));
-}
-
 constexpr int kTicksAtOnce = 48;
-constexpr std::int64_t kComputing_ns =
-    12'000'000;  // of a drawn frame, so that drawing stays smooth
+constexpr std::int64_t kComputing_ns = 12'000'000;  // per frame, so that drawing stays smooth
 
 class PlaybackShow final : public Show {
  public:
-  PlaybackShow(const ShowOptions& options, std::unique_ptr<Playback> playback)
+  PlaybackShow(const SessionSpec& options, std::unique_ptr<Playback> playback)
       : Show(options), playback_(std::move(playback)) {
     playback_->seek(0, 1);
     take_samples();
@@ -156,17 +146,7 @@ class PlaybackShow final : public Show {
     if (std::exchange(are_remarks_taken_, true)) return {};
     return playback_->remarks();
   }
-  Result<std::vector<nlohmann::ordered_json>> stop() override {
-    std::vector<nlohmann::ordered_json> all;
-    for (const CastMember& member : cast().members) {
-      all.push_back({{"ticks", frame().tick + 1},
-                     {"rate_hz", cast().rate_hz},
-                     {"pose_hash", fmt::format("{:016x}", playback_->pose_hash())},
-                     {"motion", cast().motion},
-                     {"character", member.character}});
-    }
-    return all;
-  }
+  Result<RunSummary> stop() override { return playback_->summary(); }
 
  private:
   std::int64_t tick() const noexcept { return static_cast<std::int64_t>(std::max(position_, 0.0)); }
@@ -177,7 +157,7 @@ class PlaybackShow final : public Show {
     if (position_ >= last) position_ = timeline_.is_looping && pace_ > 0.0 ? 0.0 : last;
   }
   void take_samples() {
-    for (TickSample sample; playback_->take(sample);) history_.add(sample);
+    for (TickSample sample; playback_->take_sample(sample);) history_.add(sample);
   }
 
   std::unique_ptr<Playback> playback_;
@@ -186,14 +166,6 @@ class PlaybackShow final : public Show {
   bool is_for_pictures_ = false, are_remarks_taken_ = false;
   UiTimeline timeline_;
 };
-
-Result<std::unique_ptr<Show>> open_playback_show(const ShowOptions& options) {
-  const auto rate_hz =
-      options.is_rate_given ? std::optional<int>(options.live.rate_hz) : std::nullopt;
-  auto playback = Playback::open(options.live.session, options.trace, rate_hz, options.damage);
-  if (!playback) return playback.error();
-  return std::unique_ptr<Show>(std::make_unique<PlaybackShow>(options, std::move(*playback)));
-}
 
 class StillShow final : public Show {
  public:
@@ -218,9 +190,7 @@ class StillShow final : public Show {
   const LiveStatus* status() override { return &status_; }
   std::string pad_name() const override { return pad_name_; }
   std::vector<std::string> take_remarks() override { return {}; }
-  Result<std::vector<nlohmann::ordered_json>> stop() override {
-    return std::vector<nlohmann::ordered_json>();
-  }
+  Result<RunSummary> stop() override { return RunSummary(); }
 
  private:
   Cast cast_;
@@ -233,26 +203,31 @@ class StillShow final : public Show {
 
 std::unique_ptr<Show> still_show(Show& show) { return std::make_unique<StillShow>(show); }
 
-Result<std::unique_ptr<Show>> Show::open(const ShowOptions& options) {
-  return options.trace.empty() ? open_live_show(options) : open_playback_show(options);
+Result<Show::Start> Show::prepare(const SessionSpec& spec) {
+  if (spec.replay.trace.empty()) {
+    auto prepared = LiveSession::prepare(spec);
+    if (!prepared) return prepared.error();
+    return Start([prepared = *prepared]() -> Result<std::unique_ptr<Show>> {
+      auto session = LiveSession::start(prepared);
+      if (!session) return session.error();
+      return std::unique_ptr<Show>(std::make_unique<LiveShow>(std::move(*session)));
+    });
+  }
+  auto playback = Playback::open(spec);
+  if (!playback) return playback.error();
+  const auto show = std::make_shared<std::unique_ptr<Show>>(
+      std::make_unique<PlaybackShow>(spec, std::move(*playback)));
+  return Start([show]() -> Result<std::unique_ptr<Show>> { return std::move(*show); });
 }
 
-std::optional<Error> Show::problem(const ShowOptions& options) {
-  if (!options.trace.empty()) {
-    const auto playback = open_playback_show(options);
-    return playback ? std::nullopt : std::optional(playback.error());
-  }
-  const auto config = simulation_config(options.live.session, {}, "", options.live.rate_hz);
-  if (!config) return config.error();
-  const auto simulation = Simulation::create(*config);
-  if (!simulation) return simulation.error();
-  const auto script = script_for(*simulation, options.live.session.script);
-  if (!script) return script.error();
-  return std::nullopt;
+Result<std::unique_ptr<Show>> Show::open(const SessionSpec& spec) {
+  const auto start = prepare(spec);
+  if (!start) return start.error();
+  return (*start)();
 }
 
 void Show::add_config_folder(const std::string& folder) {
-  std::vector<std::string>& folders = options_.live.session.config_folders;
+  std::vector<std::string>& folders = options_.config_folders;
   if (std::ranges::count(folders, folder) == 0) folders.push_back(folder);
 }
 

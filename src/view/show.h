@@ -1,8 +1,8 @@
 // What the window shows: a live session, or a trace on a time line, behind one interface.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,23 +16,15 @@
 
 namespace gaitpad {
 
-inline constexpr int kPictureRateHz =
-    60;  // frames per second of the session, in pictures and videos
-
-struct ShowOptions {
-  LiveOptions live;
-  std::string trace;  // played back; empty: a live session
-  Damage damage = Damage::refuse;
-  bool is_rate_given =
-      false;  // live.rate_hz was asked for, so a trace with another rate is an error
-};
+inline constexpr int kPictureRateHz = 60;  // frames per second of the session in pictures
 
 class Show {
  public:
-  static Result<std::unique_ptr<Show>> open(const ShowOptions& options);
-  // Why these options cannot be opened, as far as the files show; checked before a running show is
-  // ended for them.
-  static std::optional<Error> problem(const ShowOptions& options);
+  static Result<std::unique_ptr<Show>> open(const SessionSpec& spec);
+  // The same in two parts, so that a running show is ended only if the next one can be opened:
+  // reads the files; the function that it returns, called once, opens the show.
+  using Start = std::function<Result<std::unique_ptr<Show>>()>;
+  static Result<Start> prepare(const SessionSpec& spec);
   virtual ~Show() = default;
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
@@ -40,10 +32,10 @@ class Show {
   virtual const Cast& cast() const noexcept = 0;
   virtual const SessionFrame& frame() const noexcept = 0;
   const History& history() const noexcept { return history_; }
-  const ShowOptions& options() const noexcept { return options_; }
+  const SessionSpec& options() const noexcept { return options_; }
   // Used by shows that are opened with these options later.
   void add_config_folder(const std::string& folder);
-  bool is_live() const noexcept { return options_.trace.empty(); }
+  bool is_live() const noexcept { return options_.replay.trace.empty(); }
 
   // Takes over what is new; call it once for each drawn frame. `passed_s`: wall time since the last
   // call, by which a playback advances.
@@ -69,19 +61,15 @@ class Show {
 
   virtual std::string pad_name() const = 0;  // of the pad that steers; empty: none
   virtual std::vector<std::string> take_remarks() = 0;
-  // Ends the show; returns one summary for each character.
-  virtual Result<std::vector<nlohmann::ordered_json>> stop() = 0;
+  virtual Result<RunSummary> stop() = 0;  // ends the show
 
  protected:
-  explicit Show(ShowOptions options) : options_(std::move(options)) {}
-  ShowOptions options_;
+  explicit Show(SessionSpec options) : options_(std::move(options)) {}
+  SessionSpec options_;
   History history_;
   double pace_ = 1.0;
 };
 
-// Used by open().
-Result<std::unique_ptr<Show>> open_live_show(const ShowOptions& options);
-Result<std::unique_ptr<Show>> open_playback_show(const ShowOptions& options);
 // Shows the present state of another show while nothing runs.
 std::unique_ptr<Show> still_show(Show& show);
 

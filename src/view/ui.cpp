@@ -14,19 +14,6 @@
 namespace gaitpad {
 namespace {
 
-// Begins a fixed ImGui window in the rectangle; `padding` at scale 1.
-void begin_area(Ui& ui, const char* id, const UiRect& rect, const Colour& back,
-                const ImVec2& padding, ImGuiWindowFlags flags = 0);
-void end_area();
-
-void draw_top_bar(Ui& ui, const UiRect& rect);
-void draw_timeline(Ui& ui, const UiRect& rect);
-void draw_status(Ui& ui, const UiRect& rect);
-void draw_messages(Ui& ui, const UiRect& scene);
-void draw_labels(Ui& ui, const UiRect& scene);
-void draw_help(Ui& ui, const UiRect& room);
-void draw_columns(Ui& ui, const UiLayout& layout);
-
 // Pixels at scale 1.
 constexpr float kTopBar = 44.0f, kTimeline = 64.0f, kStatus = 24.0f;
 constexpr float kLeftColumn = 268.0f, kRightColumn = 320.0f;
@@ -42,6 +29,45 @@ bool is_any_open(const UiState& state, bool left) noexcept {
   }
   return false;
 }
+
+// A line along the edge towards the scene.
+void draw_edge(Ui& ui, const UiRect& rect) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 size = ImGui::GetIO().DisplaySize, min = rect.min(), max = rect.max();
+  const ImU32 colour = packed(ui.theme.border);
+  list.PushClipRect(min, max);
+  if (rect.width < size.x && rect.x > 0.0f) {
+    list.AddRectFilled(min, {min.x + 1.0f, max.y}, colour);
+  } else if (rect.width < size.x) {
+    list.AddRectFilled({max.x - 1.0f, min.y}, max, colour);
+  } else if (rect.y > 0.0f) {
+    list.AddRectFilled(min, {max.x, min.y + 1.0f}, colour);
+  } else {
+    list.AddRectFilled({min.x, max.y - 1.0f}, max, colour);
+  }
+  list.PopClipRect();
+}
+
+// Begins a fixed ImGui window in the rectangle; `padding` at scale 1.
+void begin_area(Ui& ui, const char* id, const UiRect& rect, const Colour& back,
+                const ImVec2& padding, ImGuiWindowFlags flags = 0) {
+  flags |= ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+           ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus |
+           ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
+  if (ui.in.is_modal) flags |= ImGuiWindowFlags_NoInputs;
+  ImGui::SetNextWindowPos(rect.min());
+  ImGui::SetNextWindowSize({rect.width, rect.height});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_colour(back));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding,
+                      ImVec2{std::round(ui.px(padding.x)), std::round(ui.px(padding.y))});
+  ImGui::Begin(id, nullptr, flags);
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  keep_area(id, rect.min(), rect.max());
+  draw_edge(ui, rect);
+}
+
+void end_area() { ImGui::End(); }
 
 constexpr std::size_t kMaxMessages = 4;  // shown at once
 constexpr int kMaxMessageLines = 3;
@@ -107,44 +133,6 @@ void draw_message_card(Ui& ui, float width) {
   if (button(ui, "dismiss", "", look)) ui.out.dismisses_messages = true;
   ImGui::SetCursorScreenPos(end);
 }
-
-// A line along the edge towards the scene.
-void draw_edge(Ui& ui, const UiRect& rect) {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 size = ImGui::GetIO().DisplaySize, min = rect.min(), max = rect.max();
-  const ImU32 colour = packed(ui.theme.border);
-  list.PushClipRect(min, max);
-  if (rect.width < size.x && rect.x > 0.0f) {
-    list.AddRectFilled(min, {min.x + 1.0f, max.y}, colour);
-  } else if (rect.width < size.x) {
-    list.AddRectFilled({max.x - 1.0f, min.y}, max, colour);
-  } else if (rect.y > 0.0f) {
-    list.AddRectFilled(min, {max.x, min.y + 1.0f}, colour);
-  } else {
-    list.AddRectFilled({min.x, max.y - 1.0f}, max, colour);
-  }
-  list.PopClipRect();
-}
-
-void begin_area(Ui& ui, const char* id, const UiRect& rect, const Colour& back,
-                const ImVec2& padding, ImGuiWindowFlags flags) {
-  flags |= ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-           ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus |
-           ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
-  if (ui.in.is_modal) flags |= ImGuiWindowFlags_NoInputs;
-  ImGui::SetNextWindowPos(rect.min());
-  ImGui::SetNextWindowSize({rect.width, rect.height});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_colour(back));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding,
-                      ImVec2{std::round(ui.px(padding.x)), std::round(ui.px(padding.y))});
-  ImGui::Begin(id, nullptr, flags);
-  ImGui::PopStyleVar();
-  ImGui::PopStyleColor();
-  keep_area(id, rect.min(), rect.max());
-  draw_edge(ui, rect);
-}
-
-void end_area() { ImGui::End(); }
 
 void draw_status(Ui& ui, const UiRect& rect) {
   if (rect.is_empty()) return;

@@ -66,7 +66,6 @@ class FrameClock {
 };
 
 // Errors and remarks for the person, each shown for a while, newest last.
-
 class Messages {
  public:
   void add(std::string sentence, std::int64_t time_ns) {
@@ -95,7 +94,6 @@ class Messages {
 };
 
 // Runs the window: opens it, draws frame after frame, does what the person asks for, and closes it.
-
 class WindowLoop {
  public:
   explicit WindowLoop(const WindowOptions& options);
@@ -150,8 +148,8 @@ class WindowLoop {
   void show_remarks();
   void install_show(std::unique_ptr<Show> show);
   void end_show();  // its last state stays visible
-  bool switch_to(const ShowOptions& next);
-  bool restart(const ShowOptions& next, const ShowOptions& otherwise);
+  bool switch_to(const SessionSpec& next);
+  bool restart(Result<std::unique_ptr<Show>> show, const SessionSpec& otherwise);
   void open_file(const std::string& path);
   void choose_next_terrain();
   void toggle_recording();
@@ -171,7 +169,7 @@ class WindowLoop {
   std::unique_ptr<CalibrationView> calibration_;
   std::unique_ptr<Show> show_;
   std::unique_ptr<Ensemble> ensemble_;
-  std::optional<ShowOptions> live_before_;  // during a playback: the live session before it
+  std::optional<SessionSpec> live_before_;  // during a playback: the live session before it
 
   UiState state_;
   UiState remembered_;  // the layout file's
@@ -250,15 +248,11 @@ constexpr double kOrbitStick_rad_s = 1.8;
 constexpr double kStickRest = 0.02;  // of the right stick; less does not move the camera
 constexpr std::int64_t kMessage_ns = 15'000'000'000;
 
-ShowOptions show_options(const WindowOptions& options) {
-  return {options.live, options.trace, options.damage, options.is_trace_rate_given};
-}
-
 WindowLoop::WindowLoop(const WindowOptions& options)
     : options_(options), browser_(options.recent_file) {
   // Without a pad the keyboard steers. For pictures the session's time is that of the frames.
-  options_.live.keyboard = true;
-  if (makes_pictures()) options_.live.clock = LiveOptions::Clock::by_hand;
+  options_.session.live.keyboard = true;
+  if (makes_pictures()) options_.session.live.clock = SessionSpec::Live::Clock::by_hand;
 }
 
 WindowLoop::~WindowLoop() {
@@ -298,7 +292,8 @@ std::optional<Error> WindowLoop::open() {
   Layout layout = load_layout(options_.layout_file);
   apply_layout(layout.state);
   // Files are checked before anything is opened.
-  if (auto problem = Show::problem(show_options(options_))) return problem;
+  auto start = Show::prepare(options_.session);
+  if (!start) return start.error();
   auto surface = WindowSurface::open(
       {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
   if (!surface) return surface.error();
@@ -307,7 +302,7 @@ std::optional<Error> WindowLoop::open() {
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
   gui_ = std::make_unique<Gui>(*surface_);
-  auto show = Show::open(show_options(options_));
+  auto show = (*start)();
   if (!show) return show.error();
   install_show(std::move(*show));
   show_message(std::move(layout.remark));
@@ -388,7 +383,7 @@ void WindowLoop::follow_wishes(Wishes wishes) {
 void WindowLoop::add_button_actions(std::vector<Action>& wanted) {
   std::vector<Action> pressed;
   presses_.add_new_presses(show_->frame(), pressed);
-  if (is_recording(show_->options().live.wish.pad)) {
+  if (is_recording(show_->options().pad.wish.pad)) {
     std::erase_if(pressed, [](Action action) {
       return action == Action::record || action == Action::screenshot ||
              action == Action::open_file || action == Action::calibrate || action == Action::quit;
@@ -444,12 +439,12 @@ void WindowLoop::remember_layout() {
 Result<WindowResult> WindowLoop::result() {
   remember_layout();
   if (const LiveStatus* status = show_->status()) result_.status = *status;
-  auto summaries = show_->stop();
+  auto summary = show_->stop();
   show_remarks();
   if (failure_) return *failure_;
-  if (!summaries) return summaries.error();
+  if (!summary) return summary.error();
   if (const LiveStatus* status = show_->status()) result_.status = *status;
-  result_.summaries = std::move(*summaries);
+  result_.summary = std::move(*summary);
   result_.frames_per_second = clock_.mean_frames_per_second();
   return std::move(result_);
 }
@@ -531,7 +526,7 @@ UiInput WindowLoop::ui_input() {
              .pad_name = show_->pad_name(),
              .pace = show_->pace(),
              .recording = show_->options().live.record,
-             .source = show_->options().trace,
+             .source = show_->options().replay.trace,
              .renderer = scene_->renderer(),
              .labels = {},
              .messages = messages_.sentences(),
@@ -588,14 +583,6 @@ void WindowLoop::keep_pictures(int width_px, int height_px, bool is_last) {
 
 constexpr double kSlowMotion = 0.25;
 
-// The names that a `style` command accepts, each once.
-std::vector<std::string> style_names(const Cast& cast) {
-  std::vector<std::string> names;
-  for (const std::string& name : cast.styles)
-    if (std::ranges::count(names, name) == 0) names.push_back(name);
-  return names;
-}
-
 void WindowLoop::run_actions(const UiOutput& out) {
   for (const Action action : out.actions) run_action(action);
   for (const std::string& command : out.commands) show_->command(command);
@@ -643,9 +630,10 @@ bool WindowLoop::run_session_action(Action action) {
       break;
   }
   if (action < Action::style_1 || action > Action::style_9) return false;
-  const auto names = style_names(show_->cast());
-  const auto index = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::style_1);
-  if (index < names.size()) choose_style(names[index]);
+  const Cast& cast = show_->cast();
+  const auto choices = style_choices(cast);
+  const auto number = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::style_1);
+  if (number < choices.size()) choose_style(cast.styles[static_cast<std::size_t>(choices[number])]);
   return true;
 }
 
@@ -747,14 +735,19 @@ void WindowLoop::choose_style(const std::string& name) {
 
 // Goes `steps` places on in the list, from the style of the chosen character or of the first.
 void WindowLoop::choose_style_after(int steps) {
-  const auto names = style_names(show_->cast());
+  const Cast& cast = show_->cast();
+  const auto choices = style_choices(cast);
   const auto walker = static_cast<std::size_t>(std::max(state_.walker, 0));
   const auto index =
       static_cast<std::size_t>(std::max(show_->frame().walkers[walker].style_index, 0));
-  if (names.empty() || index >= show_->cast().styles.size()) return;
-  const auto count = static_cast<int>(names.size());
-  const auto now = std::ranges::find(names, show_->cast().styles[index]) - names.begin();
-  choose_style(names[static_cast<std::size_t>((static_cast<int>(now) + steps + count) % count)]);
+  if (choices.empty() || index >= cast.styles.size()) return;
+  const auto name_of = [&cast](int choice) -> const std::string& {
+    return cast.styles[static_cast<std::size_t>(choice)];
+  };
+  const auto count = static_cast<int>(choices.size());
+  const auto now = std::ranges::find(choices, cast.styles[index], name_of) - choices.begin();
+  choose_style(
+      name_of(choices[static_cast<std::size_t>((static_cast<int>(now) + steps + count) % count)]));
 }
 
 void WindowLoop::go_back() {
@@ -765,14 +758,14 @@ void WindowLoop::go_back() {
   } else if (calibration_) {
     end_calibration(CalibrationView::State::given_up);
   } else if (live_before_) {
-    const ShowOptions live = *std::exchange(live_before_, std::nullopt);
+    const SessionSpec live = *std::exchange(live_before_, std::nullopt);
     switch_to(live);
   }
 }
 
 void WindowLoop::save_walkers_style(const std::string& name) {
   const auto walker = static_cast<std::size_t>(std::max(state_.walker, 0));
-  const auto& folders = show_->options().live.session.config_folders;
+  const auto& folders = show_->options().config_folders;
   const auto path = save_style(folders, name, show_->frame().walkers[walker].style);
   if (path) show_->add_config_folder(user_config_folder());  // the folder may be new
   show_message(path ? fmt::format("kept as {}: the next session knows it", *path)
@@ -817,10 +810,10 @@ void WindowLoop::install_show(std::unique_ptr<Show> show) {
 
 void WindowLoop::end_show() {
   const std::string recording = show_->options().live.record;
-  const auto summaries = show_->stop();
+  const auto summary = show_->stop();
   show_remarks();
-  if (!summaries) {
-    show_message(summaries.error().message);
+  if (!summary) {
+    show_message(summary.error().message);
   } else if (!recording.empty()) {
     show_message("the recording " + recording + " is complete");
   }
@@ -830,16 +823,17 @@ void WindowLoop::end_show() {
   is_camera_new_ = false;
 }
 
-bool WindowLoop::switch_to(const ShowOptions& next) {
-  ShowOptions otherwise = show_->options();
+bool WindowLoop::switch_to(const SessionSpec& next) {
+  SessionSpec otherwise = show_->options();
   otherwise.live.record.clear();
-  if (next.trace.empty()) {
-    if (auto problem = Show::problem(next)) {
-      show_message(problem->message);
+  if (next.replay.trace.empty()) {
+    auto start = Show::prepare(next);  // reads its files before the running show is ended
+    if (!start) {
+      show_message(start.error().message);
       return false;
     }
     end_show();
-    return restart(next, otherwise);
+    return restart((*start)(), otherwise);
   }
   auto playback =
       Show::open(next);  // needs no pad, so the running session goes on until it is open
@@ -855,8 +849,7 @@ bool WindowLoop::switch_to(const ShowOptions& next) {
 
 // After end_show(): opens the next show, or else the one that ran before. If neither opens, nothing
 // runs and the last state stays visible.
-bool WindowLoop::restart(const ShowOptions& next, const ShowOptions& otherwise) {
-  auto show = Show::open(next);
+bool WindowLoop::restart(Result<std::unique_ptr<Show>> show, const SessionSpec& otherwise) {
   const bool is_begun = static_cast<bool>(show);
   if (!is_begun) {
     show_message(show.error().message);
@@ -872,7 +865,7 @@ void WindowLoop::open_file(const std::string& path) {
   const auto kind = kind_of_file(path);
   if (!kind) return show_message(kind.error().message);
   const int count = static_cast<int>(show_->cast().members.size());
-  ShowOptions next = with_file(show_->options(), path, *kind, state_.walker, count);
+  SessionSpec next = with_file(show_->options(), path, *kind, state_.walker, count);
   if (makes_pictures())
     return show_message("pictures are made of one session: open files without them");
   if (!switch_to(next)) return;
@@ -888,23 +881,23 @@ void WindowLoop::choose_next_terrain() {
   if (!show_->is_live()) return show_message("a recording is playing: it stays on its ground");
   if (makes_pictures())
     return show_message("pictures are made of one session: --terrain chooses the ground");
-  ShowOptions next = show_->options();
-  SessionOptions& session = next.live.session;
-  const auto files = config_files(session.config_folders, "terrain");
+  SessionSpec next = show_->options();
+  std::string& terrain = next.walk.terrain;
+  const auto files = config_files(next.config_folders, "terrain");
   if (files.empty()) return show_message("no terrains were found");
-  const std::string now = session.terrain.empty() ? "flat" : config_name(session.terrain);
+  const std::string now = terrain.empty() ? "flat" : config_name(terrain);
   const auto at = std::ranges::find(files, now, config_name);
   const bool is_last = at == files.end() || at + 1 == files.end();
-  session.terrain = is_last ? files.front() : *(at + 1);
+  terrain = is_last ? files.front() : *(at + 1);
   next.live.record.clear();
-  if (switch_to(next)) show_message("on the ground " + config_name(session.terrain));
+  if (switch_to(next)) show_message("on the ground " + config_name(terrain));
 }
 
 void WindowLoop::toggle_recording() {
   if (!show_->is_live()) return show_message("a recording is playing: there is nothing to record");
   if (makes_pictures())
     return show_message("pictures are made of one session: record without them");
-  ShowOptions next = show_->options();
+  SessionSpec next = show_->options();
   const bool is_recorded = !next.live.record.empty();
   next.live.record = is_recorded ? "" : new_file(".hid");
   if (!is_recorded && next.live.record.empty())
@@ -916,26 +909,25 @@ void WindowLoop::begin_calibration() {
   if (calibration_) return;
   if (!show_->is_live() || makes_pictures())
     return show_message("a recording is playing: calibrate in a live session");
-  const ShowOptions before = show_->options();
+  const SessionSpec before = show_->options();
   end_show();
-  auto view =
-      CalibrationView::start({before.live.wish, before.live.session.map,
-                              before.live.session.config_folders, options_.calibration_folder});
+  auto view = CalibrationView::start(
+      {before.pad.wish, before.pad.map, before.config_folders, options_.calibration_folder});
   calibration_state_ = CalibrationView::State::goes_on;
   if (view) {
     calibration_ = std::move(*view);
   } else {
     show_message(view.error().message);
-    restart(show_->options(), show_->options());
+    restart(Show::open(show_->options()), show_->options());
   }
 }
 
 void WindowLoop::end_calibration(CalibrationView::State state) {
   calibration_.reset();  // frees the pad
-  ShowOptions next = show_->options();
+  SessionSpec next = show_->options();
   // A calibration that was asked for would override the new one.
-  if (state == CalibrationView::State::saved) next.live.session.calibration.clear();
-  restart(next, show_->options());
+  if (state == CalibrationView::State::saved) next.pad.calibration.clear();
+  restart(Show::open(next), show_->options());
 }
 
 void WindowLoop::take_screenshot(int width_px, int height_px) {

@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,8 +9,8 @@
 #include <vector>
 
 #include "gaitpad/live.h"
-#include "gaitpad/replay.h"
 #include "gaitpad/result.h"
+#include "gaitpad/session_spec.h"
 #include "view/camera.h"
 #include "view/ui.h"
 
@@ -35,16 +34,12 @@ inline constexpr std::array<std::string_view, 5> kScenePartNames = {"trails", "g
                                                                     "source", "names"};
 
 struct WindowOptions {
-  LiveOptions live;   // the live session, with the pad that is wanted
-  std::string trace;  // if not empty: play back this trace instead
-  Damage damage = Damage::refuse;
-  bool is_trace_rate_given =
-      false;  // live.rate_hz was asked for, so a trace with another rate is an error
+  SessionSpec session;             // live, or a playback if session.replay.trace is not empty
   std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
   std::string layout_file;  // remembers the window from one start to the next; empty: nothing does
   std::string recent_file;  // remembers the files that were opened; empty: nothing does
-  int frames =
-      0;  // ends after so many; 0: when closed, or with the trace if pictures are made of one
+  // Ends after so many; 0: when closed, or with the trace if pictures are made of one.
+  int frames = 0;
   std::string screenshot, video;   // files; with either of them a frame is 1/60 s of the session
   std::optional<ThemeName> theme;  // else the remembered theme
   std::vector<Panel> panels;       // open panels, if are_panels_given
@@ -56,12 +51,12 @@ struct WindowOptions {
   // For tests: called before each frame; may push SDL events.
   std::function<void(const WindowGlance& glance)> script;
   std::function<bool()> is_ended_from_outside;  // Ctrl-C
-  std::function<std::vector<std::string>()>
-      take_commands;  // commands for the session, for instance from standard input
+  // Commands for the session, for instance from standard input.
+  std::function<std::vector<std::string>()> take_commands;
 };
 struct WindowResult {
-  std::vector<nlohmann::ordered_json> summaries;  // of the last session, one for each character
-  std::optional<LiveStatus> status;               // of the last session; none if it was a playback
+  RunSummary summary;                // of the last session
+  std::optional<LiveStatus> status;  // of the last session; none if it was a playback
   std::int64_t frames = 0;
   double frames_per_second = 0.0;
   std::vector<std::string> remarks;

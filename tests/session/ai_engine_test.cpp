@@ -53,7 +53,7 @@ TEST(AiEngine, DrivesByCommandsThatReplayWithoutIt) {
   constexpr int kTicks = 240 * 20;
   for (int tick = 0; tick < kTicks; ++tick) {
     for (const std::string& command : engine.thoughts(driven->walkers()[0])) {
-      driven->take(made_command(command));
+      driven->take_report(made_command(command));
       recording.push_back({tick, command});
     }
     driven->step({});
@@ -63,7 +63,7 @@ TEST(AiEngine, DrivesByCommandsThatReplayWithoutIt) {
   std::size_t next = 0;
   for (int tick = 0; tick < kTicks; ++tick) {
     for (; next < recording.size() && recording[next].tick == tick; ++next)
-      replayed->take(made_command(recording[next].command));
+      replayed->take_report(made_command(recording[next].command));
     replayed->step({});
   }
   EXPECT_EQ(replayed->pose_hash(), driven->pose_hash());

@@ -1,8 +1,8 @@
-#include "session/commands.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "session/script.h"
 
 namespace gaitpad {
 namespace {

@@ -45,25 +45,25 @@ inline Trace two_pads_trace() {
 class Live : public testing::Test {
  protected:
   void SetUp() override {
-    options_.session.config_folders = {GAITPAD_SOURCE_DIR "/config"};
-    options_.session.styles = {"even", "limp_left"};
-    options_.wish.pad = (folder_ / "pads.hid").string();
-    options_.record = (folder_ / "session.hid").string();
-    ASSERT_TRUE(write_trace(two_pads_trace(), options_.wish.pad));
+    options_.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    options_.walk.styles = {"even", "limp_left"};
+    options_.pad.wish.pad = (folder_ / "pads.hid").string();
+    options_.live.record = (folder_ / "session.hid").string();
+    ASSERT_TRUE(write_trace(two_pads_trace(), options_.pad.wish.pad));
   }
 
   std::unique_ptr<LiveSession> started() { return value_of(LiveSession::start(options_)); }
   // What a replay of the recording comes to.
-  std::vector<nlohmann::ordered_json> replayed() const {
-    ReplayOptions options;
-    options.session = options_.session;
-    options.trace = options_.record;
-    return value_of(replay(options)).summaries;
+  RunSummary replayed() const {
+    SessionSpec spec = options_;
+    spec.rate_hz.reset();
+    spec.replay.trace = spec.live.record;
+    return value_of(replay(spec)).summary;
   }
 
   OwnFolder own_;
   const std::filesystem::path folder_ = own_.path;
-  LiveOptions options_;
+  SessionSpec options_;
 };
 
 }  // namespace gaitpad

@@ -16,8 +16,8 @@ class LiveKeyboard : public Live {
  protected:
   void SetUp() override {
     Live::SetUp();
-    options_.keyboard = true;
-    options_.wish.pad = "0001:fffe";  // nobody has one
+    options_.live.keyboard = true;
+    options_.pad.wish.pad = "0001:fffe";  // nobody has one
   }
   static double distance_m(LiveSession& session) {
     bool is_new = false;
@@ -26,7 +26,7 @@ class LiveKeyboard : public Live {
   }
   // Left stick after each input report of the device in the recording that has this driver.
   std::vector<vec2> recorded_stick(const std::string& driver) {
-    const Trace trace = value_of(read_trace(options_.record));
+    const Trace trace = value_of(read_trace(options_.live.record));
     std::vector<vec2> all;
     for (std::size_t d = 0; d < trace.devices.size(); ++d) {
       if (trace.devices[d].info.driver != driver) continue;
@@ -53,10 +53,10 @@ TEST_F(LiveKeyboard, WalksAndItsRecordingReplaysToTheSamePoses) {
   sleep_for(400);
   bool is_new = false;
   EXPECT_EQ(session->latest(is_new).stick.left, vec2(0.0)) << "at rest exactly";
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  EXPECT_EQ(*summaries, replayed());
-  EXPECT_EQ(summaries->front()["bad_reports"], 0);
+  const auto run = session->stop();
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(*run, replayed());
+  EXPECT_EQ(run->bad_reports, 0);
   EXPECT_EQ(session->status().pads.plugged, 0) << "it is no pad that was plugged in";
   const std::vector<vec2> stick = recorded_stick("keyboard");
   ASSERT_GT(stick.size(), 20u);
@@ -67,7 +67,7 @@ TEST_F(LiveKeyboard, WalksAndItsRecordingReplaysToTheSamePoses) {
 }
 
 TEST_F(LiveKeyboard, TheSmallestDeflectionCountsAndTheLargestIsOne) {
-  options_.clock = LiveOptions::Clock::by_hand;
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
   auto session = started();
   bool is_new = false;
   double least = 1.0, most = 0.0;
@@ -90,25 +90,25 @@ TEST_F(LiveKeyboard, TheSmallestDeflectionCountsAndTheLargestIsOne) {
 
 // A calibration that was made for somebody's pad is none for the keyboard.
 TEST_F(LiveKeyboard, TheUsersCalibrationIsNotForIt) {
-  options_.session.calibration = (folder_ / "pad.toml").string();
-  std::ofstream(options_.session.calibration) << "[left]\ninner = 0.5\nouter = 0.9\n";
+  options_.pad.calibration = (folder_ / "pad.toml").string();
+  std::ofstream(options_.pad.calibration) << "[left]\ninner = 0.5\nouter = 0.9\n";
   auto session = started();
   session->steer(vec2(0.0, 0.3));
   bool is_new = false;
   EXPECT_TRUE(comes_true([&] { return session->latest(is_new).stick.left.y > 0.29; }));
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  EXPECT_EQ(*summaries, replayed());
+  const auto run = session->stop();
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(*run, replayed());
 }
 
 TEST_F(LiveKeyboard, ARecordingAsPadEndsTheSessionAsEver) {
-  options_.wish.pad = (folder_ / "pads.hid").string();
+  options_.pad.wish.pad = (folder_ / "pads.hid").string();
   auto session = started();
   session->steer(vec2(1.0, 0.0));
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  EXPECT_EQ(*summaries, replayed());
+  const auto run = session->stop();
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(*run, replayed());
   EXPECT_EQ(session->status().pads.plugged, 4) << "two pads, each twice";
 }
 
@@ -123,8 +123,8 @@ Trace late_pad_trace() {
 }
 
 TEST_F(LiveKeyboard, CountsWhileThePadRests) {
-  options_.wish.pad = (folder_ / "late.hid").string();
-  ASSERT_TRUE(write_trace(late_pad_trace(), options_.wish.pad));
+  options_.pad.wish.pad = (folder_ / "late.hid").string();
+  ASSERT_TRUE(write_trace(late_pad_trace(), options_.pad.wish.pad));
   auto session = started();
   session->steer(vec2(0.0, 1.0));
   vec2 stick(0.0);
@@ -138,15 +138,15 @@ TEST_F(LiveKeyboard, CountsWhileThePadRests) {
   EXPECT_TRUE(comes_true([&] { return look(), stick == vec2(0.0, 1.0); }));
   EXPECT_TRUE(comes_true([&] { return look(), stick.x > 0.99; }));
   EXPECT_EQ(driving, "Example Walk Pad");
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  EXPECT_EQ(*summaries, replayed());
+  const auto run = session->stop();
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(*run, replayed());
 }
 
 TEST_F(LiveKeyboard, WithoutOneSteeringDoesNothing) {
-  options_.keyboard = false;
-  options_.record.clear();
-  options_.clock = LiveOptions::Clock::by_hand;
+  options_.live.keyboard = false;
+  options_.live.record.clear();
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
   auto session = started();
   session->steer(vec2(0.0, 1.0));
   sleep_for(50);

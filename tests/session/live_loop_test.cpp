@@ -47,8 +47,8 @@ LoopParts made_loop(PadStreamOptions options, const std::string& record) {
 
 TEST_F(LiveLoopTest, TheLoopThreadUsesNoHeap) {
   PadStreamOptions options;
-  options.wish = options_.wish;
-  LoopParts parts = made_loop(std::move(options), options_.record);
+  options.wish = options_.pad.wish;
+  LoopParts parts = made_loop(std::move(options), options_.live.record);
   int uses = -1;
   std::thread loop([&] {
     begin_counting_heap_use();

@@ -48,7 +48,7 @@ TEST_F(LivePace, StandingStillIsNoLatenessAndNothingIsMadeUpFor) {
 }
 
 TEST_F(LivePace, AStepIsOneTickAndCountsOnlyWhileItStandsStill) {
-  options_.record.clear();
+  options_.live.record.clear();
   auto session = started();
   session->step(100'000);  // of no effect: it runs
   sleep_for(100);
@@ -69,7 +69,7 @@ TEST_F(LivePace, AStepIsOneTickAndCountsOnlyWhileItStandsStill) {
 }
 
 TEST_F(LivePace, AtAQuarterOfThePaceThereIsAQuarterOfTheTicks) {
-  options_.record.clear();
+  options_.live.record.clear();
   auto session = started();
   ASSERT_TRUE(comes_true([&] { return session->status().ticks > 0; }));
   for (const double pace : {0.25, 4.0}) {
@@ -85,7 +85,7 @@ TEST_F(LivePace, AtAQuarterOfThePaceThereIsAQuarterOfTheTicks) {
 }
 
 TEST_F(LivePace, NoNumberAndLessThanNothingStandStill) {
-  options_.record.clear();
+  options_.live.record.clear();
   auto session = started();
   for (const double pace : {-1.0, std::nan(""), 1e-12}) {
     session->set_pace(pace);
@@ -96,7 +96,7 @@ TEST_F(LivePace, NoNumberAndLessThanNothingStandStill) {
 }
 
 TEST_F(LivePace, AStopWaitsForNoTickThatIsFarAway) {
-  options_.record.clear();
+  options_.live.record.clear();
   options_.rate_hz = 1;
   auto session = started();
   session->set_pace(1.0 / 1024.0);
@@ -124,20 +124,20 @@ TEST_F(LivePace, ARecordingOfPausesStepsAndSlowMotionReplaysToTheSamePoses) {
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
   session->set_pace(0.0);
   sleep_for(50);
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  EXPECT_EQ(*summaries, replayed());
-  EXPECT_EQ((*summaries)[1]["style"], "tired");
-  EXPECT_GT(summaries->front()["steps_left"].get<int>(), 0);
+  const auto run = session->stop();
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(*run, replayed());
+  EXPECT_EQ(run->walkers[1].style, "tired");
+  EXPECT_GT(run->walkers[0].steps[kLeftSide], 0);
 }
 
 TEST_F(LivePace, AViewerGetsASampleOfEveryTickInOrder) {
-  options_.record.clear();
+  options_.live.record.clear();
   auto session = started();
   std::int64_t next = 0;
   TickSample sample;
   const auto take_all = [&] {
-    while (session->take(sample)) {
+    while (session->take_sample(sample)) {
       ASSERT_EQ(sample.tick, next++);
       EXPECT_EQ(sample.walker_count, 2);
       EXPECT_GT(sample.step_us, 0.0f);
@@ -153,23 +153,23 @@ TEST_F(LivePace, AViewerGetsASampleOfEveryTickInOrder) {
 }
 
 TEST_F(LivePace, SamplesThatNobodyTakesAreDroppedAndNothingElse) {
-  options_.record.clear();
-  options_.clock = LiveOptions::Clock::by_hand;
+  options_.live.record.clear();
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
   auto session = started();
   session->advance(5000);
   TickSample sample;
   std::int64_t count = 0;
-  while (session->take(sample)) EXPECT_EQ(sample.tick, count++);
+  while (session->take_sample(sample)) EXPECT_EQ(sample.tick, count++);
   EXPECT_GE(count, 1000);
   EXPECT_LT(count, 5000);
   EXPECT_EQ(session->status().ticks, 5000);
   session->advance(1);
-  ASSERT_TRUE(session->take(sample));
+  ASSERT_TRUE(session->take_sample(sample));
   EXPECT_EQ(sample.tick, 5000);
 }
 
 TEST_F(LivePace, TheTimeIsTheTicksOverTheRate) {
-  options_.record.clear();
+  options_.live.record.clear();
   auto session = started();
   sleep_for(700);
   ASSERT_TRUE(session->stop());
@@ -188,7 +188,7 @@ TEST_F(LivePace, TheTimeIsTheTicksOverTheRate) {
 }
 
 TEST_F(LivePace, ByHandNothingRunsButWhatIsAskedFor) {
-  options_.clock = LiveOptions::Clock::by_hand;
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
   auto session = started();
   sleep_for(100);
   bool is_new = true;
@@ -210,12 +210,12 @@ TEST_F(LivePace, ByHandNothingRunsButWhatIsAskedFor) {
   EXPECT_EQ(status.ticks, 1601);
   EXPECT_EQ(status.overruns, 0);
   EXPECT_EQ(status.time_policy, "by hand");
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  EXPECT_EQ(*summaries, replayed());
-  EXPECT_EQ(summaries->front()["style"], "tired");
-  EXPECT_EQ(summaries->front()["ticks"], 1601);
-  EXPECT_GT(summaries->front()["reports"], 50);
+  const auto run = session->stop();
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(*run, replayed());
+  EXPECT_EQ(run->walkers[0].style, "tired");
+  EXPECT_EQ(run->ticks, 1601);
+  EXPECT_GT(run->reports, 50);
   session->advance(1);
   EXPECT_EQ(session->status().ticks, 1601) << "it was stopped";
   EXPECT_FALSE(session->stop());
@@ -223,19 +223,19 @@ TEST_F(LivePace, ByHandNothingRunsButWhatIsAskedFor) {
 
 TEST_F(LivePace, HalfAnHourByHandIsARecordingThatReads) {
   options_.rate_hz = 20;
-  options_.clock = LiveOptions::Clock::by_hand;
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
   auto session = started();
   sleep_for(50);
   session->advance(20 * 1800);
   sleep_for(50);
   session->advance(1);
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  EXPECT_EQ(*summaries, replayed());
+  const auto run = session->stop();
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(*run, replayed());
 }
 
 TEST_F(LivePace, ByTheClockNobodyElseRunsTicks) {
-  options_.record.clear();
+  options_.live.record.clear();
   options_.rate_hz = 1;
   auto session = started();
   session->advance(1000);
@@ -243,7 +243,7 @@ TEST_F(LivePace, ByTheClockNobodyElseRunsTicks) {
 }
 
 TEST_F(LivePace, TheCastAndTheNamesOfPadsAreTold) {
-  options_.record.clear();
+  options_.live.record.clear();
   auto session = started();
   const Cast& cast = session->cast();
   ASSERT_EQ(cast.members.size(), 2u);

@@ -25,22 +25,22 @@ TEST_F(Live, ReplaysToTheSamePoses) {
   session->command("   ");
   session->command("no such command");
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries) << summaries.error().message;
-  ASSERT_EQ(summaries->size(), 2u);
-  const nlohmann::ordered_json& first = summaries->front();
-  EXPECT_EQ(*summaries, replayed());
-  EXPECT_EQ(first["style"], "tired");
-  EXPECT_GT(first["ticks"], 3 * 240) << "2.4 s and a second more";
-  EXPECT_GT(first["reports"], 400);
-  EXPECT_EQ(first["bad_reports"], 0);
-  EXPECT_GT(first["steps_left"].get<int>() + first["steps_right"].get<int>(), 1);
+  const auto run = session->stop();
+  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_EQ(run->walkers.size(), 2u);
+  const WalkerSummary& first = run->walkers.front();
+  EXPECT_EQ(*run, replayed());
+  EXPECT_EQ(first.style, "tired");
+  EXPECT_GT(run->ticks, 3 * 240) << "2.4 s and a second more";
+  EXPECT_GT(run->reports, 400);
+  EXPECT_EQ(run->bad_reports, 0);
+  EXPECT_GT(first.steps[kLeftSide] + first.steps[kRightSide], 1);
   EXPECT_EQ(session->status().recording_lost, 0);
   EXPECT_EQ(session->status().pads.lost, 0);
 }
 
 TEST_F(Live, TellsTheNewestTickAndHowItGoes) {
-  options_.record.clear();
+  options_.live.record.clear();
   auto session = started();
   std::int64_t tick = -1;
   std::uint16_t driving = kNoDevice;
@@ -67,7 +67,7 @@ TEST_F(Live, TellsTheNewestTickAndHowItGoes) {
 }
 
 TEST_F(Live, TicksAreTheTimeTimesTheRate) {
-  options_.record.clear();
+  options_.live.record.clear();
   options_.rate_hz = 500;
   auto session = started();
   ASSERT_TRUE(comes_true([&] { return session->status().ticks > 0; }));
@@ -102,19 +102,19 @@ TEST_F(Live, AfterAStandstillTheSessionGoesOnWhereItStood) {
                 remarks, [](const std::string& s) { return s.find("stood still") != s.npos; }),
             1);
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries);
-  EXPECT_EQ(*summaries, replayed());
+  const auto run = session->stop();
+  ASSERT_TRUE(run);
+  EXPECT_EQ(*run, replayed());
 }
 
 TEST_F(Live, WithoutAPadItStandsAndRecordsNothing) {
-  options_.wish.pad = "0001:fffe";
+  options_.pad.wish.pad = "0001:fffe";
   auto session = started();
   sleep_for(200);
-  const auto summaries = session->stop();
-  ASSERT_TRUE(summaries);
-  EXPECT_EQ(summaries->front()["steps_left"], 0);
-  EXPECT_FALSE(fs::exists(options_.record));
+  const auto run = session->stop();
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->walkers[0].steps[kLeftSide], 0);
+  EXPECT_FALSE(fs::exists(options_.live.record));
 }
 
 TEST_F(Live, EndsWithItsRecordingWhereItIsNotStopped) {
@@ -122,7 +122,7 @@ TEST_F(Live, EndsWithItsRecordingWhereItIsNotStopped) {
     auto session = started();
     sleep_for(300);
   }
-  EXPECT_TRUE(read_trace(options_.record));
+  EXPECT_TRUE(read_trace(options_.live.record));
 }
 
 TEST_F(Live, WrongWishesAreRefused) {
@@ -130,10 +130,10 @@ TEST_F(Live, WrongWishesAreRefused) {
   EXPECT_EQ(LiveSession::start(options_).error().message,
             "a rate of 0 Hz is not within 1 .. 10000");
   options_.rate_hz = 240;
-  options_.record = (folder_ / "none" / "x.hid").string();
+  options_.live.record = (folder_ / "none" / "x.hid").string();
   EXPECT_FALSE(LiveSession::start(options_));
-  options_.record.clear();
-  options_.session.styles = {"no_such_style"};
+  options_.live.record.clear();
+  options_.walk.styles = {"no_such_style"};
   EXPECT_FALSE(LiveSession::start(options_));
 }
 

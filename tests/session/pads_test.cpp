@@ -21,162 +21,162 @@ Pads one_pad(bool streams = false) {
 // The stick after so many ticks without a report.
 Stick after_silence(Pads& pads, int ticks) {
   Stick stick;
-  for (int i = 0; i < ticks; ++i) stick = pads.stick_of_tick();
+  for (int i = 0; i < ticks; ++i) stick = pads.finish_tick();
   return stick;
 }
 
 TEST(Pads, LastReportOfATickCounts) {
   Pads pads = one_pad();
-  EXPECT_TRUE(pads.take(made_report(kMiddle, kForward)));
-  EXPECT_TRUE(pads.take(made_report(0xff, kMiddle)));
-  const Stick stick = pads.stick_of_tick();
+  EXPECT_TRUE(pads.take_report(made_report(kMiddle, kForward)));
+  EXPECT_TRUE(pads.take_report(made_report(0xff, kMiddle)));
+  const Stick stick = pads.finish_tick();
   EXPECT_GT(stick.left.x, 0.9);
   EXPECT_NEAR(stick.left.y, 0.0, 0.01);
 }
 
 TEST(Pads, AHeldStickStaysForAsLongAsItIsSilent) {
   Pads pads = one_pad();
-  pads.take(made_report(kMiddle, kForward));
+  pads.take_report(made_report(kMiddle, kForward));
   EXPECT_GT(after_silence(pads, 10 * kRateHz).left.y, 0.9);
 }
 
 TEST(Pads, SilenceOf100MsMakesAStreamingPadNeutralUntilItsNextReport) {
   Pads pads = one_pad(true);
-  pads.take(made_report(kMiddle, kForward));
+  pads.take_report(made_report(kMiddle, kForward));
   EXPECT_GT(after_silence(pads, kRateHz / 10).left.y, 0.9);
   EXPECT_EQ(after_silence(pads, 1).left, vec2(0.0));
-  pads.take(made_report(kMiddle, kForward));
+  pads.take_report(made_report(kMiddle, kForward));
   EXPECT_GT(after_silence(pads, 1).left.y, 0.9);
 }
 
 TEST(Pads, RemovedIsNeutralAtOnce) {
   Pads pads = one_pad();
-  pads.take(made_report(kMiddle, kForward));
-  pads.remove(0);
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.take_report(made_report(kMiddle, kForward));
+  pads.remove_pad(0);
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
 }
 
 TEST(Pads, AfterPluggingInAgainItCountsOnceItWasNearItsCentre) {
   Pads pads = one_pad();
-  pads.remove(0);
-  pads.add(0);
-  pads.take(made_report(kMiddle, kForward));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
-  pads.take(made_report(kMiddle, 0x7c));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
-  pads.take(made_report(kMiddle, kForward));
-  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  pads.remove_pad(0);
+  pads.add_pad(0);
+  pads.take_report(made_report(kMiddle, kForward));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
+  pads.take_report(made_report(kMiddle, 0x7c));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
+  pads.take_report(made_report(kMiddle, kForward));
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
 TEST(Pads, PassingTheCentreWhileGoneDoesNotCount) {
   Pads pads = one_pad();
-  pads.remove(0);
-  pads.take(made_report(kMiddle, kMiddle));
-  pads.remove(0);
-  pads.add(0);
-  pads.take(made_report(kMiddle, kForward));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.remove_pad(0);
+  pads.take_report(made_report(kMiddle, kMiddle));
+  pads.remove_pad(0);
+  pads.add_pad(0);
+  pads.take_report(made_report(kMiddle, kForward));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
 }
 
 TEST(Pads, NotYetPluggedInIsNeutral) {
   PadConfig config = made_pad_config();
   config.is_present = false;
   Pads pads({config}, kRateHz);
-  pads.take(made_report(kMiddle, kForward));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
-  pads.add(0);
-  pads.take(made_report(kMiddle, kForward));
-  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  pads.take_report(made_report(kMiddle, kForward));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
+  pads.add_pad(0);
+  pads.take_report(made_report(kMiddle, kForward));
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
 TEST(Pads, TheFirstUsablePadDrives) {
   PadConfig unusable = made_pad_config();
   unusable.is_usable = false;
   Pads pads({unusable, made_pad_config(), made_pad_config()}, kRateHz);
-  pads.take(made_report(kMiddle, kForward, 0));
-  pads.take(made_report(0xff, kMiddle, 2));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
-  pads.take(made_report(kMiddle, kForward, 1));
-  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  pads.take_report(made_report(kMiddle, kForward, 0));
+  pads.take_report(made_report(0xff, kMiddle, 2));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
+  pads.take_report(made_report(kMiddle, kForward, 1));
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
 TEST(Pads, AShortReportAndAnUnknownDeviceAreRefusedAndChangeNothing) {
   Pads pads = one_pad();
-  pads.take(made_report(kMiddle, kForward));
+  pads.take_report(made_report(kMiddle, kForward));
   Report cut = made_report(kMiddle, kMiddle);
   cut.size = 3;
-  EXPECT_FALSE(pads.take(cut));
-  EXPECT_FALSE(pads.take(made_report(kMiddle, kMiddle, 1)));
-  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  EXPECT_FALSE(pads.take_report(cut));
+  EXPECT_FALSE(pads.take_report(made_report(kMiddle, kMiddle, 1)));
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
 // Two pads, both plugged in; the first drives and is held forward.
 Pads two_pads(int second_y) {
   Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
-  pads.take(made_report(kMiddle, kForward, 0));
-  pads.take(made_report(kMiddle, second_y, 1));
-  pads.stick_of_tick();
+  pads.take_report(made_report(kMiddle, kForward, 0));
+  pads.take_report(made_report(kMiddle, second_y, 1));
+  pads.finish_tick();
   return pads;
 }
 
 TEST(Pads, ARestingPadTakesOverWhenTheDrivingOneIsLost) {
   Pads pads = two_pads(kMiddle);
   EXPECT_EQ(pads.driving(), 0);
-  pads.remove(0);
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.remove_pad(0);
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
   EXPECT_EQ(pads.driving(), 1);
-  pads.take(made_report(kMiddle, kForward, 1));
-  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  pads.take_report(made_report(kMiddle, kForward, 1));
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
   EXPECT_GT(pads.driving_state().axis[kLeftY], 0.9f);
 }
 
 TEST(Pads, AHeldPadTakesOverOnceItIsSeenNearItsCentre) {
   Pads pads = two_pads(kForward);
-  pads.remove(0);
-  pads.take(made_report(0x10, kForward, 1));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.remove_pad(0);
+  pads.take_report(made_report(0x10, kForward, 1));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
   EXPECT_EQ(pads.driving(), 0);
   EXPECT_EQ(pads.driving_state(), PadState{});
-  pads.take(made_report(kMiddle, 0x7c, 1));
-  pads.take(made_report(kMiddle, kForward, 1));
+  pads.take_report(made_report(kMiddle, 0x7c, 1));
+  pads.take_report(made_report(kMiddle, kForward, 1));
   EXPECT_EQ(pads.driving(), 1);
-  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
 TEST(Pads, APadThatHasNotReportedYetDoesNotTakeOver) {
   Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
-  pads.remove(0);
-  pads.take(made_report(kMiddle, kForward, 1));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  pads.remove_pad(0);
+  pads.take_report(made_report(kMiddle, kForward, 1));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
   EXPECT_EQ(pads.driving(), 0);
 }
 
 TEST(Pads, TheOldPadDrivesAgainIfNoneHasTakenOver) {
   Pads pads = two_pads(kForward);
-  pads.remove(0);
-  pads.add(0);
-  pads.take(made_report(kMiddle, kMiddle, 1));
-  pads.take(made_report(kMiddle, kForward, 1));
+  pads.remove_pad(0);
+  pads.add_pad(0);
+  pads.take_report(made_report(kMiddle, kMiddle, 1));
+  pads.take_report(made_report(kMiddle, kForward, 1));
   EXPECT_EQ(pads.driving(), 0);
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
-  pads.take(made_report(kMiddle, kMiddle, 0));
-  pads.take(made_report(kMiddle, kForward, 0));
-  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
+  pads.take_report(made_report(kMiddle, kMiddle, 0));
+  pads.take_report(made_report(kMiddle, kForward, 0));
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
 TEST(Pads, WhoHasTakenOverKeepsDrivingUntilItIsLostItself) {
   Pads pads = two_pads(kMiddle);
-  pads.remove(0);
-  pads.add(0);
-  pads.take(made_report(kMiddle, kMiddle, 0));
-  pads.take(made_report(0xff, kMiddle, 0));
+  pads.remove_pad(0);
+  pads.add_pad(0);
+  pads.take_report(made_report(kMiddle, kMiddle, 0));
+  pads.take_report(made_report(0xff, kMiddle, 0));
   EXPECT_EQ(pads.driving(), 1);
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
-  pads.take(made_report(kMiddle, kMiddle, 0));
-  pads.remove(1);
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
+  pads.take_report(made_report(kMiddle, kMiddle, 0));
+  pads.remove_pad(1);
   EXPECT_EQ(pads.driving(), 0);
-  pads.take(made_report(0xff, kMiddle, 0));
-  EXPECT_GT(pads.stick_of_tick().left.x, 0.9);
+  pads.take_report(made_report(0xff, kMiddle, 0));
+  EXPECT_GT(pads.finish_tick().left.x, 0.9);
 }
 
 TEST(Pads, WhatIsUnusableUnpluggedOrSilentDoesNotTakeOver) {
@@ -185,12 +185,12 @@ TEST(Pads, WhatIsUnusableUnpluggedOrSilentDoesNotTakeOver) {
   streaming.streams = true;
   Pads pads({made_pad_config(), unusable, made_pad_config(), streaming, made_pad_config()},
             kRateHz);
-  for (std::uint16_t device : {1, 2, 3}) pads.take(made_report(kMiddle, kMiddle, device));
-  pads.remove(2);
+  for (std::uint16_t device : {1, 2, 3}) pads.take_report(made_report(kMiddle, kMiddle, device));
+  pads.remove_pad(2);
   after_silence(pads, kRateHz);
-  pads.remove(0);
+  pads.remove_pad(0);
   EXPECT_EQ(pads.driving(), 0);
-  pads.take(made_report(kMiddle, kMiddle, 4));
+  pads.take_report(made_report(kMiddle, kMiddle, 4));
   EXPECT_EQ(pads.driving(), 4);
 }
 
@@ -199,11 +199,11 @@ TEST(Pads, OfSeveralRestingPadsTheOneThatWasPluggedInFirstTakesOver) {
   later.is_present = false;
   Pads pads({later, later, later}, kRateHz);
   for (std::uint16_t device : {2, 1, 0}) {
-    pads.add(device);
-    pads.take(made_report(kMiddle, kMiddle, device));
+    pads.add_pad(device);
+    pads.take_report(made_report(kMiddle, kMiddle, device));
   }
   EXPECT_EQ(pads.driving(), 2);
-  pads.remove(2);
+  pads.remove_pad(2);
   EXPECT_EQ(pads.driving(), 1);
 }
 
@@ -213,15 +213,15 @@ TEST(Pads, OfPadsPluggedInLaterTheFirstUsableOneDrives) {
   EXPECT_EQ(pads.driving_state(), PadState{});
   PadConfig unusable = made_pad_config(), first = made_pad_config(), second = made_pad_config();
   unusable.is_usable = false;
-  pads.set(0, unusable);
-  pads.set(1, first);
-  pads.set(2, second);
-  pads.set(3, second);
+  pads.set_pad(0, unusable);
+  pads.set_pad(1, first);
+  pads.set_pad(2, second);
+  pads.set_pad(3, second);
   EXPECT_EQ(pads.driving(), kNoDevice) << "not plugged in yet";
-  for (std::uint16_t device : {0, 2, 1}) pads.add(device);
+  for (std::uint16_t device : {0, 2, 1}) pads.add_pad(device);
   EXPECT_EQ(pads.driving(), 2);
-  pads.take(made_report(kMiddle, kForward, 2));
-  EXPECT_GT(pads.stick_of_tick().left.y, 0.9);
+  pads.take_report(made_report(kMiddle, kForward, 2));
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
 PadConfig made_keyboard() {
@@ -236,22 +236,22 @@ Pads keys_and_pad() {
   PadConfig pad = made_pad_config();
   pad.is_present = false;
   Pads pads({made_keyboard(), pad, pad}, kRateHz);
-  pads.take(made_report(0xff, kMiddle, kKeys));
+  pads.take_report(made_report(0xff, kMiddle, kKeys));
   return pads;
 }
 
 TEST(Pads, AFallbackDrivesWhereNoOtherPadIs) {
   Pads pads = keys_and_pad();
   EXPECT_EQ(pads.driving(), kKeys);
-  EXPECT_GT(pads.stick_of_tick().left.x, 0.9);
+  EXPECT_GT(pads.finish_tick().left.x, 0.9);
 }
 
 TEST(Pads, APadThatIsPluggedInDrivesInPlaceOfTheFallback) {
   Pads pads = keys_and_pad();
-  pads.add(kPad);
+  pads.add_pad(kPad);
   EXPECT_EQ(pads.driving(), kPad);
-  pads.take(made_report(kMiddle, kForward, kPad));
-  const Stick stick = pads.stick_of_tick();
+  pads.take_report(made_report(kMiddle, kForward, kPad));
+  const Stick stick = pads.finish_tick();
   EXPECT_GT(stick.left.y, 0.9);
   EXPECT_NEAR(stick.left.x, 0.0, 0.01) << "the keys do not count";
   Pads other_order({made_keyboard(), made_pad_config()}, kRateHz);
@@ -260,18 +260,18 @@ TEST(Pads, APadThatIsPluggedInDrivesInPlaceOfTheFallback) {
 
 TEST(Pads, BothSticksOfAFallbackCountWhileTheDrivingOneRestsExactly) {
   Pads pads = keys_and_pad();
-  pads.add(kPad);
+  pads.add_pad(kPad);
   Report right = made_report(kMiddle, kMiddle, kPad);
   right.bytes[2] = 0xff;
-  pads.take(right);
-  EXPECT_GT(pads.stick_of_tick().left.x, 0.9);
-  EXPECT_EQ(pads.stick_of_tick().right.x, 0.0) << "the right one is the fallback's, too";
-  pads.take(made_report(kMiddle, kMiddle, kKeys));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
-  EXPECT_GT(pads.stick_of_tick().right.x, 0.9);
-  pads.take(made_report(0xff, kMiddle, kKeys));
-  pads.take(made_report(kMiddle, 0x60, kPad));  // hardly beyond the inner zone
-  const Stick stick = pads.stick_of_tick();
+  pads.take_report(right);
+  EXPECT_GT(pads.finish_tick().left.x, 0.9);
+  EXPECT_EQ(pads.finish_tick().right.x, 0.0) << "the right one is the fallback's, too";
+  pads.take_report(made_report(kMiddle, kMiddle, kKeys));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
+  EXPECT_GT(pads.finish_tick().right.x, 0.9);
+  pads.take_report(made_report(0xff, kMiddle, kKeys));
+  pads.take_report(made_report(kMiddle, 0x60, kPad));  // hardly beyond the inner zone
+  const Stick stick = pads.finish_tick();
   EXPECT_GT(stick.left.y, 0.0);
   EXPECT_EQ(stick.left.x, 0.0);
   EXPECT_EQ(pads.driving(), kPad) << "whose buttons are shown";
@@ -279,20 +279,20 @@ TEST(Pads, BothSticksOfAFallbackCountWhileTheDrivingOneRestsExactly) {
 
 TEST(Pads, AFallbackDrivesAgainWhenTheLastPadIsLostAndNotBefore) {
   Pads pads = keys_and_pad();
-  pads.add(kPad);
-  pads.add(kPad + 1);
-  pads.take(made_report(kMiddle, kForward, kPad + 1));
-  pads.remove(kPad);
+  pads.add_pad(kPad);
+  pads.add_pad(kPad + 1);
+  pads.take_report(made_report(kMiddle, kForward, kPad + 1));
+  pads.remove_pad(kPad);
   EXPECT_EQ(pads.driving(), kPad) << "the other pad is held, but it is there";
-  EXPECT_GT(pads.stick_of_tick().left.x, 0.9) << "the keys count";
-  pads.take(made_report(0xff, kMiddle, kKeys));
+  EXPECT_GT(pads.finish_tick().left.x, 0.9) << "the keys count";
+  pads.take_report(made_report(0xff, kMiddle, kKeys));
   EXPECT_EQ(pads.driving(), kPad);
-  pads.remove(kPad + 1);
+  pads.remove_pad(kPad + 1);
   EXPECT_EQ(pads.driving(), kKeys);
-  pads.add(kPad);
+  pads.add_pad(kPad);
   EXPECT_EQ(pads.driving(), kPad);
-  pads.take(made_report(kMiddle, kForward, kPad));
-  EXPECT_NEAR(pads.stick_of_tick().left.y, 0.0, 0.01) << "not yet seen near its centre";
+  pads.take_report(made_report(kMiddle, kForward, kPad));
+  EXPECT_NEAR(pads.finish_tick().left.y, 0.0, 0.01) << "not yet seen near its centre";
 }
 
 TEST(Pads, AnUnusableOrUnpluggedFallbackDoesNotCount) {
@@ -300,8 +300,8 @@ TEST(Pads, AnUnusableOrUnpluggedFallbackDoesNotCount) {
   unusable.is_usable = false;
   absent.is_present = false;
   Pads pads({unusable, absent, made_pad_config()}, kRateHz);
-  for (std::uint16_t device : {0, 1}) pads.take(made_report(0xff, kMiddle, device));
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  for (std::uint16_t device : {0, 1}) pads.take_report(made_report(0xff, kMiddle, device));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
 }
 
 Report made_buttons(std::uint16_t pressed, std::uint16_t device = 0) {
@@ -317,11 +317,11 @@ TEST(Pads, PressesOfTheDrivingPadAreCountedByEveryReport) {
   ASSERT_TRUE(decode(*made_pad_config().layout, made_buttons(1), first));
   const int button = std::countr_zero(first.buttons);
   for (int i = 0; i < 3; ++i) {
-    pads.take(made_buttons(1));
-    pads.take(made_buttons(1));
-    pads.take(made_buttons(0));
-    pads.take(made_buttons(1, 1));
-    pads.take(made_buttons(0, 1));
+    pads.take_report(made_buttons(1));
+    pads.take_report(made_buttons(1));
+    pads.take_report(made_buttons(0));
+    pads.take_report(made_buttons(1, 1));
+    pads.take_report(made_buttons(0, 1));
   }
   for (int b = 0; b < kButtonCount; ++b) EXPECT_EQ(pads.presses()[b], b == button ? 3u : 0u) << b;
 }
@@ -330,23 +330,23 @@ TEST(Pads, WhatIsKnownOfTheDrivingPadIsItsOwn) {
   PadConfig second = made_pad_config();
   second.calibration.left.inner = 0.3;
   Pads pads({made_pad_config(), second}, kRateHz);
-  for (int i = 0; i < 5; ++i) pads.take(made_report(kMiddle, kMiddle, 1));
+  for (int i = 0; i < 5; ++i) pads.take_report(made_report(kMiddle, kMiddle, 1));
   Report cut = made_report(kMiddle, kMiddle);
   cut.size = 1;
-  pads.take(cut);
+  pads.take_report(cut);
   EXPECT_EQ(pads.driving_reports(), 1u);
   EXPECT_TRUE(pads.driving_pad()->is_present);
-  pads.remove(0);
+  pads.remove_pad(0);
   EXPECT_EQ(pads.driving_reports(), 5u);
   EXPECT_EQ(pads.driving_pad()->calibration.left.inner, 0.3);
-  pads.remove(1);
+  pads.remove_pad(1);
   EXPECT_FALSE(pads.driving_pad()->is_present);
   EXPECT_EQ(Pads({}, kRateHz).driving_pad(), nullptr);
 }
 
 TEST(Pads, NoneIsNeutral) {
   Pads pads({}, kRateHz);
-  EXPECT_EQ(pads.stick_of_tick().left, vec2(0.0));
+  EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "session/playback.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -19,11 +18,14 @@ constexpr int kRateHz = 240;
 const std::string kConfig = GAITPAD_SOURCE_DIR "/config";
 const std::string kRound = kConfig + "/traces/round.hid";
 
-SessionOptions paper_cast() {
-  SessionOptions options;
-  options.config_folders = {kConfig};
-  options.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
-  return options;
+// The paper's cast on this recording.
+SessionSpec paper_cast(const std::string& trace, Damage damage = Damage::refuse) {
+  SessionSpec spec;
+  spec.config_folders = {kConfig};
+  spec.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
+  spec.replay.trace = trace;
+  spec.replay.damage = damage;
+  return spec;
 }
 
 // Everything of a frame that is drawn, and of a sample.
@@ -73,7 +75,7 @@ struct Straight {
 };
 Straight straight_run(const std::string& path) {
   Straight straight;
-  const auto prepared = value_of(prepared_trace(paper_cast(), path, std::nullopt, Damage::refuse));
+  const auto prepared = value_of(prepared_trace(paper_cast(path)));
   TraceRun run = TraceRun::begin(prepared);
   auto frame = std::make_unique<SessionFrame>();
   TickSample sample;
@@ -90,9 +92,7 @@ Straight straight_run(const std::string& path) {
 
 class PlaybackTest : public testing::Test {
  protected:
-  void open(const std::string& path) {
-    playback_ = value_of(Playback::open(paper_cast(), path, std::nullopt, Damage::refuse));
-  }
+  void open(const std::string& path) { playback_ = value_of(Playback::open(paper_cast(path))); }
   // A lively session of so many ticks: walking, commands, buttons, unplugging.
   std::string write_session(std::int64_t ticks, int rate_hz = kRateHz) {
     TraceWriter writer;
@@ -134,16 +134,13 @@ class PlaybackTest : public testing::Test {
 
 TEST_F(PlaybackTest, AtTheEndTheHashIsThatOfAReplay) {
   for (const std::string& path : {kRound, write_session(4000)}) {
-    ReplayOptions options;
-    options.session = paper_cast();
-    options.trace = path;
-    const auto replayed = replay(options);
+    const auto replayed = replay(paper_cast(path));
     ASSERT_TRUE(replayed) << replayed.error().message;
     open(path);
-    EXPECT_EQ(playback_->ticks(), replayed->summaries[0]["ticks"].get<std::int64_t>());
+    EXPECT_EQ(playback_->ticks(), replayed->summary.ticks);
     reach(playback_->ticks(), 100);
-    EXPECT_EQ(fmt::format("{:016x}", playback_->pose_hash()),
-              replayed->summaries[0]["pose_hash"].get<std::string>());
+    EXPECT_EQ(playback_->pose_hash(), replayed->summary.pose_hash);
+    EXPECT_EQ(playback_->summary(), replayed->summary);
   }
 }
 
@@ -158,7 +155,7 @@ TEST_F(PlaybackTest, AnyTickIsTheSameAsInAStraightRun) {
       reach(tick, i % 3 == 0 ? 37 : 5000);
       ASSERT_EQ(playback_->frame().tick, tick);
       ASSERT_EQ(print_of(playback_->frame()), straight.frames[tick]) << "tick " << tick;
-      while (playback_->take(sample)) {
+      while (playback_->take_sample(sample)) {
         ASSERT_EQ(print_of(sample), straight.samples[sample.tick]) << "sample " << sample.tick;
       }
     }
@@ -200,7 +197,7 @@ TEST_F(PlaybackTest, SamplesGoOnWithoutAGapAndBeginAgainAfterAJump) {
   TickSample sample;
   std::int64_t next = 0;
   const auto expect_up_to = [&](std::int64_t last) {
-    while (playback_->take(sample)) ASSERT_EQ(sample.tick, next++);
+    while (playback_->take_sample(sample)) ASSERT_EQ(sample.tick, next++);
     EXPECT_EQ(next, last + 1);
   };
   for (std::int64_t tick = 7; tick < 3000; tick += 8) {
@@ -274,17 +271,16 @@ TEST_F(PlaybackTest, MarksAreNotWithoutEnd) {
 TEST_F(PlaybackTest, ErrorsAndRemarksAreThoseOfAReplay) {
   write_session(100);
   std::ofstream(path_, std::ios::app) << "nonsense\n";
-  ReplayOptions options;
-  options.session = paper_cast();
-  options.trace = path_;
-  EXPECT_EQ(Playback::open(paper_cast(), path_, std::nullopt, Damage::refuse).error().message,
-            replay(options).error().message);
-  auto lenient = Playback::open(paper_cast(), path_, std::nullopt, Damage::skip);
+  EXPECT_EQ(Playback::open(paper_cast(path_)).error().message,
+            replay(paper_cast(path_)).error().message);
+  auto lenient = Playback::open(paper_cast(path_, Damage::skip));
   ASSERT_TRUE(lenient);
   ASSERT_EQ((*lenient)->remarks().size(), 1u);
   EXPECT_EQ((*lenient)->remarks()[0].substr(0, 33), "1 damaged lines were skipped, the");
-  EXPECT_FALSE(Playback::open(paper_cast(), path_, 120, Damage::skip)) << "it says 240";
-  EXPECT_FALSE(Playback::open(paper_cast(), "no/such.hid", std::nullopt, Damage::refuse));
+  SessionSpec slower = paper_cast(path_, Damage::skip);
+  slower.rate_hz = 120;
+  EXPECT_FALSE(Playback::open(slower)) << "it says 240";
+  EXPECT_FALSE(Playback::open(paper_cast("no/such.hid")));
 }
 
 }  // namespace

@@ -43,14 +43,14 @@ class Scripted : public Live {
  protected:
   void SetUp() override {
     Live::SetUp();
-    options_.clock = LiveOptions::Clock::by_hand;
-    options_.keyboard = true;
-    options_.wish.pad = "0001:fffe";  // nobody has one: the script alone walks
+    options_.live.clock = SessionSpec::Live::Clock::by_hand;
+    options_.live.keyboard = true;
+    options_.pad.wish.pad = "0001:fffe";  // nobody has one: the script alone walks
   }
   std::string write(const std::string& name, const std::string& text) {
     return own_.write(name, text);
   }
-  std::string hash_of_live(int ticks) {
+  std::uint64_t hash_of_live(int ticks) {
     const auto session = started();
     // A recording needs a device.
     EXPECT_TRUE(comes_true([&] {
@@ -58,70 +58,68 @@ class Scripted : public Live {
       return !session->pad_name(0).empty();
     }));
     session->advance(ticks);
-    const auto summaries = value_of(session->stop());
-    style_ = summaries[0]["style"];
-    return summaries[0]["pose_hash"];
+    const RunSummary run = value_of(session->stop());
+    style_ = run.walkers[0].style;
+    return run.pose_hash;
   }
   std::string style_;
 };
 
 TEST_F(Scripted, EventsAreRecordedAndAReplayNeedsNoScript) {
-  options_.session.script =
+  options_.walk.script =
       write("walk.toml", event("1", "style stiff_knee") + event("0.2", "gait speed_m_s 1.2"));
-  const std::string live = hash_of_live(1200);
+  const std::uint64_t live = hash_of_live(1200);
   EXPECT_EQ(style_, "stiff_knee");
-  options_.session.script.clear();
-  const auto summaries = replayed();
-  ASSERT_FALSE(summaries.empty());
-  EXPECT_EQ(summaries[0]["pose_hash"], live);
-  EXPECT_EQ(summaries[0]["style"], "stiff_knee");
-  EXPECT_EQ(summaries[0]["bad_commands"], 0);
+  options_.walk.script.clear();
+  const RunSummary run = replayed();
+  EXPECT_EQ(run.pose_hash, live);
+  EXPECT_EQ(run.walkers[0].style, "stiff_knee");
+  EXPECT_EQ(run.bad_commands, 0);
 }
 
 // Zones and tiring follow from the state: they stand in no recording and act once in a replay.
 TEST_F(Scripted, ZonesAndTiringActOnceInAReplay) {
-  options_.session.terrain =
+  options_.walk.terrain =
       write("zones.toml", "[[zone]]\nfrom_m = 1\nto_m = 2.5\nstyle = \"limp_left_hip\"\n");
-  options_.session.styles = {write("quick.toml",
-                                   "blend_s = 0.4\nfatigue_model = { per_100_m = 5, "
-                                   "recovery_per_s = 0.1 }\n")};
-  options_.session.script =
+  options_.walk.styles = {write("quick.toml",
+                                "blend_s = 0.4\nfatigue_model = { per_100_m = 5, "
+                                "recovery_per_s = 0.1 }\n")};
+  options_.walk.script =
       write("walk.toml", event("0.5", "set hip_bounce 0.5") + event("0.2", "gait speed_m_s 1.2"));
-  const std::string live = hash_of_live(1400);
-  options_.session.script.clear();
-  const auto summaries = replayed();
-  ASSERT_FALSE(summaries.empty());
-  EXPECT_EQ(summaries[0]["pose_hash"], live);
-  const std::string text = text_in(options_.record);
+  const std::uint64_t live = hash_of_live(1400);
+  options_.walk.script.clear();
+  const RunSummary run = replayed();
+  EXPECT_EQ(run.pose_hash, live);
+  const std::string text = text_in(options_.live.record);
   EXPECT_EQ(text.find("limp_left_hip"), std::string::npos);
   EXPECT_NE(text.find("set hip_bounce 0.5"), std::string::npos);
-  options_.session.terrain.clear();  // the zone was there indeed
-  EXPECT_NE(replayed()[0]["pose_hash"], live);
+  options_.walk.terrain.clear();  // the zone was there indeed
+  EXPECT_NE(replayed().pose_hash, live);
 }
 
 TEST_F(Scripted, IsMergedWithTheEventsOfATrace) {
   const std::string trace = (folder_ / "pads.hid").string();
   const auto replay_with = [&](const std::string& script) {
-    ReplayOptions options;
-    options.session.config_folders = options_.session.config_folders;
-    options.session.script = script;
-    options.trace = trace;
-    return value_of(replay(options)).summaries[0];
+    SessionSpec spec;
+    spec.config_folders = options_.config_folders;
+    spec.walk.script = script;
+    spec.replay.trace = trace;
+    return value_of(replay(spec)).summary;
   };
   const auto plain = replay_with("");
   const auto scripted = replay_with(write("a.toml", event("1", "style limp_left")));
-  EXPECT_EQ(scripted["style"], "limp_left");
-  EXPECT_EQ(scripted["reports"], plain["reports"]);
-  EXPECT_EQ(scripted["ticks"], plain["ticks"]);
-  EXPECT_NE(scripted["pose_hash"], plain["pose_hash"]);
+  EXPECT_EQ(scripted.walkers[0].style, "limp_left");
+  EXPECT_EQ(scripted.reports, plain.reports);
+  EXPECT_EQ(scripted.ticks, plain.ticks);
+  EXPECT_NE(scripted.pose_hash, plain.pose_hash);
   // Behind the end nothing happens.
-  EXPECT_EQ(replay_with(write("b.toml", event("99", "style limp_left")))["pose_hash"],
-            plain["pose_hash"]);
+  EXPECT_EQ(replay_with(write("b.toml", event("99", "style limp_left"))).pose_hash,
+            plain.pose_hash);
 }
 
 TEST_F(Scripted, WhatASessionCouldNotObeyIsRefusedBeforeItBegins) {
   const auto refusal = [&](const std::string& command) {
-    options_.session.script = write("walk.toml", event("0", "mark") + event("1", command));
+    options_.walk.script = write("walk.toml", event("0", "mark") + event("1", command));
     return cause_of(LiveSession::start(options_));
   };
   for (const char* command : {"style no_such", "set hip_sway 9", "style 3 even", "gait speed 1"}) {

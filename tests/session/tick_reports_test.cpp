@@ -38,7 +38,7 @@ class LiveTickReports : public testing::Test {
   }
   std::vector<int> step() {  // X, or -kind, of each report that the tick uses
     std::vector<int> used;
-    const auto reports = reports_->take(kNow_ns);
+    const auto reports = reports_->take_reports(kNow_ns);
     for (const Report& r : reports)
       used.push_back(r.kind == ReportKind::input ? r.bytes[0] : -static_cast<int>(r.kind));
     simulation_->step(reports);

@@ -1,9 +1,8 @@
 // What follows from the state itself: zones of the terrain, tiring, blending. Walked in a session.
-#include "session/walker_style.h"
-
 #include <gtest/gtest.h>
 
 #include "gaitpad/config_files.h"
+#include "gaitpad/simulation.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {
@@ -30,7 +29,7 @@ SimulationConfig zoned(int walkers = 1) {
 }
 
 void walk_to(Simulation& s, double z_m) {
-  s.take(made_report(0x80, 0x00));
+  s.take_report(made_report(0x80, 0x00));
   for (int k = 0; k < 10000 && s.walkers()[0].state.hips_m.z < z_m; ++k) s.step({});
   EXPECT_GE(s.walkers()[0].state.hips_m.z, z_m);
 }
@@ -59,10 +58,10 @@ TEST(Zones, CountForEachWalkerByItsOwnPlace) {
 
 TEST(Zones, BringBackWhatWasChangedBeforeThem) {
   Simulation s = made_simulation(zoned());
-  s.take(made_command("set hip_sway 2"));
+  s.take_report(made_command("set hip_sway 2"));
   walk_to(s, 3.0);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 1.0);
-  s.take(made_command("set hip_sway 0.5"));  // of the zone's style: gone with it
+  s.take_report(made_command("set hip_sway 0.5"));  // of the zone's style: gone with it
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 0.5);
   walk_to(s, 4.1);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 2.0);
@@ -71,7 +70,7 @@ TEST(Zones, BringBackWhatWasChangedBeforeThem) {
 TEST(Zones, AChosenStyleWinsAndStays) {
   Simulation s = made_simulation(zoned());
   walk_to(s, 3.0);
-  s.take(made_command("style slow"));
+  s.take_report(made_command("style slow"));
   walk_to(s, 3.5);
   EXPECT_EQ(style_of(s), "slow");
   walk_to(s, 4.2);
@@ -149,7 +148,7 @@ TEST(Tiring, SlowsAWalkWithItsWayAndRestHelps) {
   const Walker& w = s.walkers()[0];
   EXPECT_NEAR(w.in_force.fatigue, std::min(w.walked_m * 0.04, 1.0), 1e-3);
   EXPECT_LT(w.state.frame.speed_m_s, 0.85 * fresh_m_s);
-  s.take(made_report(0x80, 0x80));
+  s.take_report(made_report(0x80, 0x80));
   for (int k = 0; k < 480; ++k) s.step({});
   const double tired = w.tired;
   EXPECT_EQ(w.state.frame.stage, Stage::idle);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "gaitpad/setup.h"
+#include "gaitpad/session_spec.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -16,10 +16,10 @@ class Walking : public testing::Test {
  protected:
   void SetUp() override { begin({"even", "limp_left"}); }
   void begin(const std::vector<std::string>& styles) {
-    SessionOptions options;
-    options.config_folders = {GAITPAD_SOURCE_DIR "/config"};
-    options.styles = styles;
-    auto config = simulation_config(options, {}, "", 240);
+    SessionSpec spec;
+    spec.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    spec.walk.styles = styles;
+    auto config = simulation_config(spec, 240);
     ASSERT_TRUE(config) << config.error().message;
     simulation_ = std::make_unique<Simulation>(value_of(Simulation::create(*config)));
     cast_ = cast_of(*simulation_, *config);

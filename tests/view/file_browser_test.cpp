@@ -68,28 +68,27 @@ TEST_F(Opening, WhatIsNoneOfTheseIsOneSentenceWithItsName) {
   }
 }
 
-ShowOptions four() {
-  ShowOptions options;
-  options.live.session.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
+SessionSpec four() {
+  SessionSpec options;
+  options.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
   options.live.record = "session.hid";
   return options;
 }
 
 TEST(WithFile, AStyleIsForTheChosenOneOrForAll) {
   using List = std::vector<std::string>;
-  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::style, 2, 4).live.session.styles,
+  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::style, 2, 4).walk.styles,
             (List{"even", "stiff_hip", "/x.toml", "limp_left"}));
-  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::style, -1, 4).live.session.styles,
-            (List{"/x.toml"}));
+  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::style, -1, 4).walk.styles, (List{"/x.toml"}));
 }
 
 TEST(WithFile, AListThatRepeatsItsLastKeepsTheOthersAsTheyAre) {
   using List = std::vector<std::string>;
-  ShowOptions options = four();
-  options.live.session.characters = {"adult", "child"};
-  EXPECT_EQ(with_file(options, "/x.toml", FileKind::character, 2, 4).live.session.characters,
+  SessionSpec options = four();
+  options.walk.characters = {"adult", "child"};
+  EXPECT_EQ(with_file(options, "/x.toml", FileKind::character, 2, 4).walk.characters,
             (List{"adult", "child", "/x.toml", "child"}));
-  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::character, 0, 2).live.session.characters,
+  EXPECT_EQ(with_file(four(), "/x.toml", FileKind::character, 0, 2).walk.characters,
             (List{"/x.toml", "as_in_motion_file"}));
 }
 
@@ -99,11 +98,11 @@ TEST(WithFile, NothingIsRecordedOverTheOldRecording) {
 }
 
 TEST(WithFile, ARecordingIsPlayedAndAMotionGoesOnBeingLive) {
-  EXPECT_EQ(with_file(four(), "/x.hid", FileKind::recording, -1, 4).trace, "/x.hid");
-  const ShowOptions motion = with_file(four(), "/x.bvh", FileKind::motion, -1, 4);
-  EXPECT_EQ(motion.trace, "");
-  EXPECT_EQ(motion.live.session.motion, "/x.bvh");
-  EXPECT_EQ(motion.live.session.styles, four().live.session.styles);
+  EXPECT_EQ(with_file(four(), "/x.hid", FileKind::recording, -1, 4).replay.trace, "/x.hid");
+  const SessionSpec motion = with_file(four(), "/x.bvh", FileKind::motion, -1, 4);
+  EXPECT_EQ(motion.replay.trace, "");
+  EXPECT_EQ(motion.walk.motion, "/x.bvh");
+  EXPECT_EQ(motion.walk.styles, four().walk.styles);
 }
 
 class Folder : public testing::Test {

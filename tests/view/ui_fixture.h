@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gaitpad/setup.h"
+#include "gaitpad/session_spec.h"
 #include "tests/value_of.h"
 #include "view/ui.h"
 
@@ -44,11 +44,11 @@ class UiTest : public ::testing::Test {
 
   // These characters, in these styles, all from the program's own files.
   void start(const std::vector<std::string>& styles) {
-    SessionOptions options;
-    options.config_folders = {GAITPAD_SOURCE_DIR "/config"};
-    options.styles = styles;
-    options.characters.assign(styles.size(), "adult");
-    auto config = simulation_config(options, {}, "", 240);
+    SessionSpec spec;
+    spec.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    spec.walk.styles = styles;
+    spec.walk.characters.assign(styles.size(), "adult");
+    auto config = simulation_config(spec, 240);
     ASSERT_TRUE(config) << config.error().message;
     simulation_ = std::make_unique<Simulation>(value_of(Simulation::create(*config)));
     cast = cast_of(*simulation_, *config);

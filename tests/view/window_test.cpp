@@ -186,9 +186,9 @@ class Window : public testing::Test {
     if (!opened) GTEST_SKIP() << opened.error().message;
     ::setenv("SDL_VIDEODRIVER", "offscreen", 1);
     std::filesystem::current_path(folder_);
-    options_.live.session.config_folders = {GAITPAD_SOURCE_DIR "/config"};
-    options_.live.session.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
-    options_.live.wish.pad = "no pad of this machine";
+    options_.session.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    options_.session.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
+    options_.session.pad.wish.pad = "no pad of this machine";
     options_.scale = 1.0;
   }
   void TearDown() override {
@@ -239,9 +239,9 @@ using Glance = WindowGlance;
 class ActionScript : public Script {
  public:
   explicit ActionScript(const WindowOptions& options) {
-    styles_ = options.live.session.styles;
+    styles_ = options.session.walk.styles;
     // Those of config/ that are not among them, by name.
-    for (const std::string& path : config_files(options.live.session.config_folders, "styles")) {
+    for (const std::string& path : config_files(options.session.config_folders, "styles")) {
       if (std::ranges::count(styles_, config_name(path)) == 0) styles_.push_back(config_name(path));
     }
   }
@@ -450,12 +450,11 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   run(script);
   EXPECT_EQ(files(".png").size(), 1u);
   ASSERT_EQ(files(".hid").size(), 1u);
-  ReplayOptions replayed;
-  replayed.session = options_.live.session;
-  replayed.trace = files(".hid").front();
+  SessionSpec replayed = options_.session;
+  replayed.replay.trace = files(".hid").front();
   const auto again = replay(replayed);
   ASSERT_TRUE(again) << again.error().message;
-  EXPECT_GT(again->summaries.front()["ticks"], 20);
+  EXPECT_GT(again->summary.ticks, 20);
 }
 
 TEST_F(Window, QuitEndsItAtOnce) {
@@ -531,7 +530,7 @@ TEST_F(Window, KeysWalkAndFocusLossMakesTheStickNeutral) {
 }
 
 TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
-  options_.live.record = (folder_ / "session.hid").string();
+  options_.session.live.record = (folder_ / "session.hid").string();
   options_.are_panels_given = true;
   options_.panels = {Panel::control};
   Script script;
@@ -558,16 +557,15 @@ TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
   script.press(SDLK_UP);
   script.wait(10);
   const WindowResult result = run(script);
-  ASSERT_EQ(result.summaries.size(), 4u);
-  ReplayOptions replayed;
-  replayed.session = options_.live.session;
-  replayed.trace = options_.live.record;
+  ASSERT_EQ(result.summary.walkers.size(), 4u);
+  SessionSpec replayed = options_.session;
+  replayed.replay.trace = options_.session.live.record;
   const auto again = replay(replayed);
   ASSERT_TRUE(again) << again.error().message;
-  EXPECT_GT(result.summaries[0]["ticks"], 240);
-  EXPECT_EQ(result.summaries[0]["ticks"], again->summaries[0]["ticks"]);
-  EXPECT_EQ(result.summaries[0]["pose_hash"], again->summaries[0]["pose_hash"]);
-  EXPECT_EQ(result.summaries[0]["bad_commands"], 0);
+  EXPECT_GT(result.summary.ticks, 240);
+  EXPECT_EQ(result.summary.ticks, again->summary.ticks);
+  EXPECT_EQ(result.summary.pose_hash, again->summary.pose_hash);
+  EXPECT_EQ(result.summary.bad_commands, 0);
 }
 
 TEST_F(Window, FramesAreCountedAndEndedFromOutside) {
@@ -585,12 +583,12 @@ TEST_F(Window, FramesAreCountedAndEndedFromOutside) {
 
 TEST_F(Window, WhatCannotBeLoadedIsOneSentenceBeforeAnythingIsDrawn) {
   options_.script = [](const Glance&) { ADD_FAILURE() << "it was drawn"; };
-  options_.live.session.motion = (folder_ / "none.bvh").string();
+  options_.session.walk.motion = (folder_ / "none.bvh").string();
   auto result = run_window(options_);
   ASSERT_FALSE(result);
   EXPECT_NE(result.error().message.find("none.bvh"), std::string::npos);
-  options_.live.session.motion.clear();
-  options_.trace = make("damaged.hid", "R: 3 05 01\n");
+  options_.session.walk.motion.clear();
+  options_.session.replay.trace = make("damaged.hid", "R: 3 05 01\n");
   result = run_window(options_);
   ASSERT_FALSE(result);
   EXPECT_NE(result.error().message.find("damaged.hid:1"), std::string::npos);
@@ -622,21 +620,21 @@ TEST_F(Window, LayoutIsRememberedButNotWhatWasAskedForOnce) {
 // The window and files: opened, dropped, typed, played, calibrated, and pictures made of it.
 
 // A motion file: the bundled recording's walk, as replay exports it.
-std::string exported_walk(const Window&, const fs::path& folder, const SessionOptions& session,
+std::string exported_walk(const Window&, const fs::path& folder, const SessionSpec& session,
                           const std::string& trace) {
-  ReplayOptions options;
-  options.session.config_folders = session.config_folders;
-  options.trace = trace;
-  options.out = (folder / "out").string();
-  options.fps = 60;
-  value_of(replay(options));
-  return options.out + "/pose.bvh";
+  SessionSpec spec;
+  spec.config_folders = session.config_folders;
+  spec.replay.trace = trace;
+  spec.replay.out = (folder / "out").string();
+  spec.replay.fps = 60;
+  value_of(replay(spec));
+  return spec.replay.out + "/pose.bvh";
 }
 
 class WindowFiles : public Window {};
 
 TEST_F(WindowFiles, DroppedFilesChangeTheSessionAndDamagedOnesDoNot) {
-  const std::string walk = exported_walk(*this, folder_, options_.live.session, round_);
+  const std::string walk = exported_walk(*this, folder_, options_.session, round_);
   const std::string damaged = make("damaged.bvh", text_in(walk).substr(0, 3000));
   const std::string style = make("styles/own.toml", "fatigue = 0.75\n");
   const std::string bad_style = make("styles/bad.toml", "fatigue = \"very\"\n");
@@ -698,7 +696,7 @@ TEST_F(WindowFiles, ADroppedRecordingPlaysAndEscapeGoesBack) {
 }
 
 TEST_F(WindowFiles, APlaybackIsPausedSteppedSoughtAndTakesNoStyles) {
-  options_.trace = round_;
+  options_.session.replay.trace = round_;
   Script script;
   std::int64_t tick = 0;
   script.until("it plays", [](const Glance& g) { return g.session.tick > 10; });
@@ -780,7 +778,7 @@ std::string thumb_trace() {
 }
 
 TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
-  options_.live.wish.pad = make("thumb.hid", thumb_trace());
+  options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
   options_.calibration_folder = (folder_ / "config/gaitpad/calibration").string();
   Script script;
   script.until("it runs", [](const Glance& g) { return g.session.tick > 0; });
@@ -839,8 +837,8 @@ TEST_F(WindowFiles, ASavedStyleIsKnownToTheNextSession) {
 
 TEST_F(WindowFiles, PicturesOfATraceAreTheSameEveryTime) {
   std::array<std::string, 2> pictures;
-  std::array<std::string, 2> hashes;
-  options_.trace = round_;
+  std::array<std::uint64_t, 2> hashes{};
+  options_.session.replay.trace = round_;
   options_.is_hidden = true;
   options_.frames = 45;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -849,8 +847,8 @@ TEST_F(WindowFiles, PicturesOfATraceAreTheSameEveryTime) {
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->frames, 45);
     pictures[i] = text_in(options_.screenshot);
-    hashes[i] = result->summaries[0]["pose_hash"];
-    EXPECT_EQ(result->summaries[0]["ticks"], 45 * 240 / 60);
+    hashes[i] = result->summary.pose_hash;
+    EXPECT_EQ(result->summary.ticks, 45 * 240 / 60);
   }
   EXPECT_GT(pictures[0].size(), 50'000u);
   EXPECT_EQ(pictures[0], pictures[1]);
@@ -867,7 +865,7 @@ TEST_F(WindowFiles, ALiveSessionIsPicturedByHandTheSameEveryTime) {
     options_.screenshot = (folder_ / "live.png").string();
     const auto result = run_window(options_);
     ASSERT_TRUE(result) << result.error().message;
-    EXPECT_EQ(result->summaries[0]["ticks"], 30 * 240 / 60);
+    EXPECT_EQ(result->summary.ticks, 30 * 240 / 60);
     picture = text_in(options_.screenshot);
   }
   EXPECT_FALSE(pictures[0].empty());

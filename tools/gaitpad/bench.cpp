@@ -1,8 +1,14 @@
 // gaitpad bench: how long a tick takes, and its inverse kinematics, beside bare playback.
+#include <CLI/CLI.hpp>
+
+#include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
+
+#ifdef GAITPAD_HAS_BENCH
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -10,15 +16,15 @@
 
 #include "animation/walk_parts.h"
 #include "gaitpad/config_files.h"
-#include "gaitpad/setup.h"
-#include "tools/gaitpad/commands.h"
+#include "gaitpad/session_spec.h"
+#include "gaitpad/trace.h"
 
 namespace gaitpad {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kLimit_us = 20.0;  // four characters, one tick, one core
+constexpr double kLimit_us = 20.0;  // for one tick of four characters on one core
 constexpr int kLimitWalkers = 4;
 constexpr std::int64_t kFirstTick = 480,
                        kLastTick = 2880;  // of the bundled trace: walking, turning
@@ -39,16 +45,21 @@ std::string bundled_trace(const std::vector<std::string>& config_folders) {
 }
 
 Result<Session> bench_session(const std::vector<std::string>& styles) {
-  SessionOptions options;
-  options.config_folders = config_folders(GAITPAD_CONFIG_DIR);
-  options.styles = styles;
-  auto trace = read_trace(bundled_trace(options.config_folders));
+  SessionSpec spec;
+  spec.config_folders = config_folders(GAITPAD_CONFIG_DIR);
+  spec.walk.styles = styles;
+  auto trace = read_trace(bundled_trace(spec.config_folders));
   if (!trace) return trace.error();
   const int rate_hz = replay_rate_hz(*trace, std::nullopt);
   const auto count = assign_ticks(*trace, rate_hz);
   if (!count) return count.error();
-  auto config = simulation_config(options, trace->devices, trace->path, rate_hz);
+  const auto files = load_pad_files(spec);
+  if (!files) return files.error();
+  auto pads = pad_configs(*files, trace->devices, trace->path);
+  if (!pads) return pads.error();
+  auto config = simulation_config(spec, rate_hz);
   if (!config) return config.error();
+  config->pads = std::move(*pads);
   Session session{std::move(*config), {}};
   session.ticks.resize(static_cast<std::size_t>(kLastTick));
   for (const TraceEvent& event : trace->events) {
@@ -179,12 +190,9 @@ void print_text(const ordered_json& list) {
 
 int run(bool as_json) {
   const auto list = measured();
-  if (!list) {
-    fmt::print(stderr, "gaitpad bench: {}\n", list.error().message);
-    return 1;
-  }
+  if (!list) return fail("bench", list.error().message);
   if (as_json) {
-    fmt::print("{}\n", list->dump(2));
+    print_json(*list);
   } else {
     print_text(*list);
   }
@@ -201,3 +209,16 @@ void add_bench(CLI::App& app, int& status) {
 }
 
 }  // namespace gaitpad
+
+#else
+
+namespace gaitpad {
+
+void add_bench(CLI::App& app, int& status) {
+  add_missing_command(app, status, "bench", "the time that a tick takes, beside its limit",
+                      missing_bench());
+}
+
+}  // namespace gaitpad
+
+#endif

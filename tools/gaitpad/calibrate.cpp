@@ -3,29 +3,438 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cassert>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <utility>
 
+#include "files/toml_file.h"
 #include "gaitpad/config_files.h"
+#include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
+#include "stick/calibration_import.h"
+#include "stick/guide.h"
 #include "stick/pad_analysis.h"
-#include "tools/gaitpad/calibrate_files.h"
-#include "tools/gaitpad/calibrate_live.h"
-#include "tools/gaitpad/calibrate_print.h"
-#include "tools/gaitpad/calibrate_trace.h"
+#include "stick/statistics.h"
+#include "tools/gaitpad/calibrate_guide.h"
 #include "tools/gaitpad/commands.h"
-#include "tools/gaitpad/pad_options.h"
-#include "tools/gaitpad/report_print.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
+#ifdef GAITPAD_HAS_WINDOW
 #include "draw/stick_picture.h"
+#endif
 
 namespace gaitpad {
 namespace {
 
+constexpr const char* kCommand = "calibrate";
+
+struct CalibrateArguments {
+  PadWish wish;
+  std::vector<std::string> traces, pushes;
+  std::string out, plot, check, import, map;
+  bool as_json = false, exports_sdl = false, is_lenient = false;
+};
+
+// --- a pad out of recordings
+
+bool is_same_kind(const DeviceInfo& a, const DeviceInfo& b) noexcept {
+  return a.vendor == b.vendor && a.product == b.product && a.driver == b.driver &&
+         a.descriptor == b.descriptor && a.mapping == b.mapping;
+}
+
+// The first device of a recording that has a stick, with its layout.
+struct FoundPad {
+  std::uint16_t device = kNoDevice;
+  PadLayout layout;
+  int others = 0;  // further pads
+};
+Result<FoundPad> first_pad(const Trace& trace, const PadOverrides& overrides) {
+  FoundPad found;
+  for (std::size_t i = 0; i < trace.devices.size(); ++i) {
+    auto layout = pad_layout(trace.devices[i].info, overrides);
+    if (!layout) {
+      return Error{fmt::format("{}: device {}: {}", trace.path, trace.devices[i].index,
+                               layout.error().message)};
+    }
+    if (!layout->is_pad || (!has_stick(*layout, 0) && !has_stick(*layout, 1))) continue;
+    if (found.device != kNoDevice) {
+      ++found.others;
+    } else {
+      found.device = static_cast<std::uint16_t>(i);
+      found.layout = std::move(*layout);
+    }
+  }
+  if (found.device != kNoDevice) return found;
+  return Error{trace.path + ": none of its devices is a pad with a stick"};
+}
+
+// Tracks the reports of the device. Returns how many could not be decoded.
+std::int64_t take_reports(const Trace& trace, std::uint16_t device, PadTracker& tracker) {
+  std::int64_t bad = 0;
+  Report report;
+  for (const TraceEvent& event : trace.events) {
+    if (event.device != device) continue;
+    if (event.kind == ReportKind::removed) tracker.cut();
+    if (event.kind != ReportKind::input) continue;
+    copy_report(trace, event, report);
+    if (!tracker.take(report)) ++bad;
+  }
+  return bad;
+}
+
+// The first pad with a stick of each recording; all must be the same kind of pad. Remarks: damaged
+// lines, reports that do not decode, other pads in the recordings.
+Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damage,
+                             const PadFiles& files, std::vector<std::string>& remarks) {
+  GuidedPad pad;
+  std::optional<PadTracker> tracker;
+  for (const std::string& path : paths) {
+    auto trace = read_trace(path, damage);
+    if (!trace) return trace.error();
+    if (trace->skipped_lines > 0) {
+      remarks.push_back(fmt::format("{} damaged lines were skipped, the first: {}",
+                                    trace->skipped_lines, trace->first_damage));
+    }
+    auto found = first_pad(*trace, files.overrides);
+    if (!found) return found.error();
+    const DeviceInfo& info = trace->devices[found->device].info;
+    if (!tracker) {
+      pad.info = info;
+      pad.layout = std::move(found->layout);
+      tracker.emplace(pad.layout);
+    } else if (!is_same_kind(info, pad.info)) {
+      return Error{fmt::format("{}: {} ({:04x}:{:04x}) is not the pad of {}, {} ({:04x}:{:04x})",
+                               path, info.name, info.vendor, info.product, paths.front(),
+                               pad.info.name, pad.info.vendor, pad.info.product)};
+    }
+    if (found->others > 0)
+      remarks.push_back(fmt::format("{}: further pads, left out: {}", path, found->others));
+    tracker->cut();
+    if (const std::int64_t bad = take_reports(*trace, found->device, *tracker); bad > 0) {
+      remarks.push_back(
+          fmt::format("{}: reports that are too short or have an unknown id: {}", path, bad));
+    }
+  }
+  pad.tracks = tracker->tracks();
+  return pad;
+}
+
+// Learns the axes of the sticks from the last pushes of a recording, if the order in which they
+// were made is known (`forward`, `right`, `back`, `left`; at least two at right angles). A stick
+// that was pushed less often keeps the axes of the layout, and a remark says so.
+std::optional<Error> learn_frames(const std::vector<std::string>& order, GuidedPad& pad,
+                                  std::vector<std::string>& remarks) {
+  if (order.empty()) return std::nullopt;
+  constexpr std::pair<const char*, vec2> kDirections[] = {
+      {"forward", {0.0, 1.0}}, {"right", {1.0, 0.0}}, {"back", {0.0, -1.0}}, {"left", {-1.0, 0.0}}};
+  std::vector<vec2> asked;
+  for (const std::string& word : order) {
+    const auto known =
+        std::ranges::find_if(kDirections, [&word](const auto& d) { return word == d.first; });
+    assert(known != std::end(kDirections));
+    asked.push_back(known->second);
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!has_stick(pad.layout, static_cast<int>(side))) continue;
+    const Stills found = stills(pad.tracks.stick[side]);
+    if (found.pushes.size() < asked.size() || found.rests.empty()) {
+      remarks.push_back(
+          fmt::format("the {} stick was pushed and held {} of {} times: its axes are taken as the "
+                      "pad states them",
+                      kSideNames[side], found.pushes.size(), asked.size()));
+      continue;
+    }
+    std::vector<vec2> pushes;
+    for (auto push = found.pushes.end() - static_cast<std::ptrdiff_t>(asked.size());
+         push != found.pushes.end(); ++push) {
+      pushes.push_back(push->mean - found.rests.front().mean);
+    }
+    const auto frame = frame_of_pushes(pushes, asked);
+    if (!frame) {
+      return Error{
+          fmt::format("--pushes {} does not fit the last ones of the {} stick, or does not "
+                      "tell both of its axes",
+                      fmt::join(order, ","), kSideNames[side])};
+    }
+    pad.frame[side] = *frame;
+  }
+  return std::nullopt;
+}
+
+// --- what was measured, for people and for machines
+
+constexpr const char* kUnknown = " not known";
+
+// A label, one value or those of x and y, and what they were measured from.
+void print_row(const char* what, const std::string& value, const std::string& from) {
+  fmt::print("  {:<18}{:<20}{}\n", what, value, from);
+}
+
+std::string pair_text(const std::optional<vec2>& p, bool is_signed) {
+  if (!p) return kUnknown;
+  return is_signed ? fmt::format("{:>+9.4f}{:>+9.4f}", p->x, p->y)
+                   : fmt::format("{:>9.4f}{:>9.4f}", p->x, p->y);
+}
+std::string pair_text(const std::optional<double>& x, const std::optional<double>& y) {
+  const auto end = [](const std::optional<double>& v) {
+    return v ? fmt::format("{:>+9.4f}", *v) : "        ?";
+  };
+  return x || y ? end(x) + end(y) : kUnknown;
+}
+
+void print_rest(const StickStatistics& s) {
+  const std::string from = fmt::format("{} reports at rest in {:.1f} s", s.rest_samples, s.rest_s);
+  print_row("centre", pair_text(s.centre, true),
+            fmt::format("{}, {} rest{}", from, s.rests.size(), s.rests.size() == 1 ? "" : "s"));
+  if (!s.centre) return;
+  print_row("noise (sigma)", pair_text(s.sigma, false),
+            s.is_sigma_hidden ? from + ", hidden by the steps" : from);
+  print_row("hysteresis", s.hysteresis ? fmt::format("{:>9.4f}", *s.hysteresis) : kUnknown,
+            s.hysteresis ? fmt::format("between the farthest two of {} rests", s.rests.size())
+                         : "needs two rests with a push between them");
+  const std::string trend = s.drift_per_s ? fmt::format("{:>9.4f} a second", *s.drift_per_s) : "";
+  print_row("drift", trend.empty() ? kUnknown : *s.drift_per_s > 0.0 ? trend : "     none", from);
+  if (s.wander > 0.0)
+    print_row("wander", fmt::format("{:>9.4f}", s.wander), "slow excursions at rest, sigma");
+}
+
+void print_rim(const StickStatistics& s) {
+  const std::string from =
+      fmt::format("{} reports at the rim, {} of {} directions, {} whole turn{}", s.rim_samples,
+                  filled_bins(s.outline), kCircularityBins, s.turns, s.turns == 1 ? "" : "s");
+  print_row("reach right, front", pair_text(s.max_x, s.max_y), from);
+  print_row("reach left, back", pair_text(s.min_x, s.min_y), from);
+  print_row("circularity error",
+            s.circularity_error ? fmt::format("{:>9.1f} %", *s.circularity_error) : kUnknown,
+            s.circularity_error ? "0 is a circle of radius 1 about the raw middle"
+                                : "needs whole turns along the rim");
+}
+
+void print_reports(const StickStatistics& s) {
+  const std::string from = fmt::format("{} reports", s.samples);
+  const double finest = std::min(s.step_x, s.step_y);
+  if (finest > 0.0) {
+    print_row("step", fmt::format("{:>9.5f}{:>9.5f}", s.step_x, s.step_y),
+              fmt::format("{:.0f} from end to end", 2.0 / finest));
+  }
+  print_row("rate", s.rate_hz ? fmt::format("{:>9.1f} Hz", *s.rate_hz) : kUnknown,
+            s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms", from, *s.jitter_ms) : from);
+  const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
+  print_row("gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
+}
+
+void print_advice(const StickAdvice& a) {
+  const StickCalibration& c = a.calibration;
+  print_row("inner zone", fmt::format("{:>9.3f}", a.inner_zone),
+            fmt::format("{:.3f} of the deflection", c.inner));
+  print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
+            fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
+  if (c.frame == StickFrame{}) return;
+  constexpr const char* kRaw[] = {"x", "-x", "y", "-y"};
+  print_row("axes",
+            fmt::format("right = {}, forward = {}", kRaw[static_cast<int>(c.frame.right)],
+                        kRaw[static_cast<int>(c.frame.forward)]),
+            "");
+}
+
+template <typename T>
+nlohmann::ordered_json value_or_null(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
+  const StickStatistics& s = stick.statistics;
+  const auto part = [](const std::optional<vec2>& v, int i) {
+    return v ? nlohmann::ordered_json((*v)[i]) : nlohmann::ordered_json(nullptr);
+  };
+  const bool is_known = s.centre.has_value();
+  return {{"centre_x", part(s.centre, 0)},
+          {"centre_y", part(s.centre, 1)},
+          {"sigma_x", part(s.sigma, 0)},
+          {"sigma_y", part(s.sigma, 1)},
+          {"hysteresis", value_or_null(s.hysteresis)},
+          {"min_x", value_or_null(s.min_x)},
+          {"max_x", value_or_null(s.max_x)},
+          {"min_y", value_or_null(s.min_y)},
+          {"max_y", value_or_null(s.max_y)},
+          {"circularity_error", value_or_null(s.circularity_error)},
+          {"drift_per_s", value_or_null(s.drift_per_s)},
+          {"rate_hz", value_or_null(s.rate_hz)},
+          {"inner_zone", is_known ? nlohmann::ordered_json(stick.advice.inner_zone) : nullptr},
+          {"outer_zone", is_known ? nlohmann::ordered_json(stick.advice.outer_zone) : nullptr},
+          {"verdict", name_of(stick.advice.verdict)},
+          {"reason", stick.advice.reason},
+          {"samples", s.samples},
+          {"sigma_hidden_by_steps", s.is_sigma_hidden},
+          {"wander", s.wander},
+          {"rest_samples", s.rest_samples},
+          {"rests", s.rests.size()},
+          {"rim_samples", s.rim_samples},
+          {"turns", s.turns},
+          {"step_x", s.step_x},
+          {"step_y", s.step_y},
+          {"jitter_ms", value_or_null(s.jitter_ms)},
+          {"gaps", value_or_null(s.gaps)},
+          {"jumps", s.jumps},
+          {"stuck", s.stuck}};
+}
+
+void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
+  fmt::print("{} ({:04x}:{:04x})\n", printable(device.name), device.vendor, device.product);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& stick = analysis.stick[i];
+    if (!stick) continue;
+    fmt::print("\n{} stick: {}. {}\n  {:<18}{:>9}{:>9}\n", kSideNames[i],
+               name_of(stick->advice.verdict), stick->advice.reason, "", "x right", "y front");
+    print_rest(stick->statistics);
+    print_rim(stick->statistics);
+    print_reports(stick->statistics);
+    if (stick->statistics.centre) print_advice(stick->advice);
+  }
+  if (analysis.trigger[0] || analysis.trigger[1]) fmt::print("\n");
+  const auto number = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.3f}", *value) : "not known";
+  };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& trigger = analysis.trigger[i];
+    if (!trigger) continue;
+    fmt::print("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
+               number(trigger->released), number(trigger->pressed), trigger->samples);
+  }
+  fmt::print(
+      "\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
+}
+
+// As interface.md has it, with further keys.
+nlohmann::ordered_json analysis_json(const DeviceInfo& device, const PadAnalysis& analysis) {
+  nlohmann::ordered_json sticks = nlohmann::ordered_json::object();
+  nlohmann::ordered_json triggers = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < 2; ++i) {
+    sticks[kSideNames[i]] = analysis.stick[i] ? stick_json(*analysis.stick[i]) : nullptr;
+    if (!analysis.trigger[i]) continue;
+    triggers[kSideNames[i]] = {{"released", value_or_null(analysis.trigger[i]->released)},
+                               {"pressed", value_or_null(analysis.trigger[i]->pressed)},
+                               {"samples", analysis.trigger[i]->samples}};
+  }
+  return {{"device",
+           {{"name", device.name},
+            {"bus", static_cast<int>(device.bus)},
+            {"vendor", device.vendor},
+            {"product", device.product},
+            {"unique_id", device.unique_id},
+            {"driver", device.driver}}},
+          {"sticks", sticks},
+          {"triggers", triggers}};
+}
+
+// --- the files around a calibration
+
+constexpr std::size_t kMaxImportBytes = std::size_t{1} << 20;
+
+Result<std::string> import_text(const std::string& source) {
+  if (source != "-") return file_text(source, kMaxImportBytes);
+  std::string text;
+  char bytes[4096];
+  while (const std::size_t count = std::fread(bytes, 1, sizeof bytes, stdin)) {
+    text.append(bytes, count);
+    if (text.size() > kMaxImportBytes) return Error{"standard input: more than 1 MiB"};
+  }
+  return text;
+}
+
+// Opens the pad only to ask what it is.
+Result<GuidedPad> live_pad(const PadWish& wish, const PadFiles& files,
+                           std::vector<std::string>& remarks) {
+  auto sightings = pad_sightings(files, wish, Drivers::preferred);
+  if (!sightings) return sightings.error();
+  auto chosen = chosen_pads(*sightings, wish);
+  if (!chosen) return chosen.error();
+  if (chosen->empty()) return Error{"there is no usable pad; gaitpad doctor finds out why"};
+  auto device = chosen->front().driver->open(chosen->front().listing, Detach::allowed);
+  if (!device) return device.error();
+  const auto factory = (*device)->factory_sticks();
+  GuidedPad pad;
+  pad.has_factory_sticks = factory.has_value();
+  pad.info = recorded_device(files, (*device)->info(), factory, remarks).device.info;
+  auto layout = pad_layout(pad.info, files.overrides);
+  if (!layout) return Error{fmt::format("{}: {}", pad.info.name, layout.error().message)};
+  pad.layout = std::move(*layout);
+  return pad;
+}
+
+Result<GuidedPad> named_pad(const CalibrateArguments& arguments, const PadFiles& files) {
+  std::vector<std::string> remarks;
+  auto pad = arguments.traces.empty()
+                 ? live_pad(arguments.wish, files, remarks)
+                 : traced_pad(arguments.traces,
+                              arguments.is_lenient ? Damage::skip : Damage::refuse, files, remarks);
+  print_remarks(kCommand, remarks);
+  return pad;
+}
+
+// Writes to the target; `-` is standard output. Returns the exit status.
+int print_or_save(const std::string& target, const CalibrationFile& file,
+                  const std::vector<std::string>& comments) {
+  if (target == "-") {
+    fmt::print("{}", calibration_text(file));
+    return 0;
+  }
+  if (const auto problem = save_calibration(target, file, comments))
+    return fail(kCommand, problem->message);
+  fmt::print(stderr, "gaitpad calibrate: written to {}\n", target);
+  return 0;
+}
+
+// --import, for the pad of the recordings, else for the wished one. Returns the exit status.
+int import_calibration(const CalibrateArguments& arguments, const PadFiles& files) {
+  auto pad = named_pad(arguments, files);
+  if (!pad) return fail(kCommand, pad.error().message);
+  auto text = import_text(arguments.import);
+  if (!text) return fail(kCommand, text.error().message);
+  const std::string source = arguments.import == "-" ? "standard input" : arguments.import;
+  auto imported = calibration_import(*text, source, pad->info, pad->layout);
+  if (!imported) return fail(kCommand, imported.error().message);
+  CalibrationFile file = calibration_for(pad->info, pad->has_factory_sticks);
+  auto target = calibration_target(arguments.out, file);
+  if (!target) return fail(kCommand, target.error().message);
+  std::vector<std::string> remarks;
+  take_what_holds(files, pad->info, *target, file, remarks);
+  print_remarks(kCommand, remarks);
+  if (imported->mapping.empty()) {
+    file.calibration = imported->calibration;
+    file.measured = {};
+    file.measured_on.clear();
+  } else {
+    file.mapping = imported->mapping;
+  }
+  return print_or_save(*target, file, {"Imported from " + printable(source)});
+}
+
+// --export-sdl, the same way.
+int export_sdl(const CalibrateArguments& arguments, const PadFiles& files) {
+  auto pad = named_pad(arguments, files);
+  if (!pad) return fail(kCommand, pad.error().message);
+  // The stick's axes as in the device's own file, if there is one.
+  const std::string own[] = {files.user_calibrations};
+  const FoundCalibration found = find_calibration(own, identity_of(pad->info));
+  auto line = sdl_mapping_text(pad->info, pad->layout, stick_axes(found.file.calibration));
+  if (!line) return fail(kCommand, line.error().message);
+  fmt::print("{}\n", *line);
+  return 0;
+}
+
+// --- the command
+
+#ifdef GAITPAD_HAS_WINDOW
 std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& pad,
                           const PadAnalysis& analysis) {
-  // When a recording was made is not known.
+  // It is not known when a recording was made.
   const std::string date = arguments.traces.empty() ? ", " + today() : "";
   std::vector<StickPicture> pictures;
   constexpr const char* kTitles[] = {"Left stick", "Right stick"};
@@ -36,6 +445,11 @@ std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& 
   }
   return write_stick_picture(arguments.plot, printable(pad.info.name) + date, pictures);
 }
+#else
+std::optional<Error> draw(const CalibrateArguments&, const GuidedPad&, const PadAnalysis&) {
+  return Error{missing_window()};
+}
+#endif
 
 void print_changes(const std::vector<std::string>& changes, const std::string& since) {
   fmt::print("\n");
@@ -43,7 +457,7 @@ void print_changes(const std::vector<std::string>& changes, const std::string& s
   for (const std::string& change : changes) fmt::print("{}\n", change);
 }
 
-// What a person should not learn only after the guided steps.
+// A problem that a person should know before the guided steps, not after them.
 std::optional<Error> problem_beforehand(const CalibrateArguments& arguments) {
   if (!arguments.check.empty()) {
     const auto file = load_calibration_file(arguments.check);
@@ -51,7 +465,7 @@ std::optional<Error> problem_beforehand(const CalibrateArguments& arguments) {
   }
   if (arguments.out == "-") return std::nullopt;
   if (!arguments.out.empty()) return saving_problem(arguments.out);
-  // Which pad it will be is not known yet.
+  // It is not known yet which pad it will be.
   const auto any = calibration_target("", CalibrationFile());
   return any ? saving_problem(std::filesystem::path(*any).replace_filename("*.toml"))
              : std::optional(any.error());
@@ -78,7 +492,7 @@ std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& 
 
 int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAnalysis& analysis) {
   const auto then = load_calibration_file(arguments.check);
-  if (!then) return calibrate_failed(then.error().message);
+  if (!then) return fail(kCommand, then.error().message);
   if (calibration_fit(*then, identity_of(pad.info)) == 0) {
     print_remarks("calibrate",
                   {fmt::format("{}: is the file of \"{}\", and its devices, unique_id, port or "
@@ -90,27 +504,27 @@ int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAn
   now.calibration = then->calibration;
   take_advice(analysis, now);
   const auto problem = show(arguments, pad, analysis, changes_since(*then, now));
-  return problem ? calibrate_failed(problem->message) : 0;
+  return problem ? fail(kCommand, problem->message) : 0;
 }
 
-// Shows what was measured and keeps it. Before that it is asked for, where `asked` is somebody at
-// the terminal.
+// Shows what was measured and writes the file. If somebody is at the terminal (`asked` is not
+// null), asks first.
 int keep(const CalibrateArguments& arguments, const PadFiles& files, const GuidedPad& pad,
          const PadAnalysis& analysis, RunEnd* asked) {
   CalibrationFile file = calibration_for(pad.info, pad.has_factory_sticks);
   const auto target = calibration_target(arguments.out, file);
-  if (!target) return calibrate_failed(target.error().message);
+  if (!target) return fail(kCommand, target.error().message);
   std::vector<std::string> remarks;
   take_what_holds(files, pad.info, *target, file, remarks);
-  print_remarks("calibrate", remarks);
+  print_remarks(kCommand, remarks);
   take_advice(analysis, file);
   file.measured_on = today();
   if (const auto problem = show(arguments, pad, analysis, std::nullopt))
-    return calibrate_failed(problem->message);
+    return fail(kCommand, problem->message);
   if (asked && *target != "-" &&
       !confirmed(fmt::format("Enter writes {}, q leaves it as it was.", printable(*target)),
                  *asked))
-    return calibrate_failed("left before the end; nothing written");
+    return fail(kCommand, "left before the end; nothing written");
   return print_or_save(*target, file, calibration_comments(analysis));
 }
 
@@ -124,33 +538,36 @@ int finish(const CalibrateArguments& arguments, const PadFiles& files, const Gui
 int run(const CalibrateArguments& arguments) {
   RunEnd end;
   const auto files = pad_files(arguments.map, "");
-  if (!files) return calibrate_failed(files.error().message);
+  if (!files) return fail(kCommand, files.error().message);
   if (arguments.exports_sdl) return export_sdl(arguments, *files);
   if (!arguments.import.empty()) return import_calibration(arguments, *files);
   if (arguments.traces.empty()) {
-    if (const auto problem = problem_beforehand(arguments))
-      return calibrate_failed(problem->message);
+    if (const auto problem = problem_beforehand(arguments)) return fail(kCommand, problem->message);
     const auto pad = guided_pad(*files, arguments.wish, end);
-    if (!pad) return calibrate_failed(pad.error().message);
-    if (!*pad) return calibrate_failed("left before the end; nothing written");
+    if (!pad) return fail(kCommand, pad.error().message);
+    if (!*pad) return fail(kCommand, "left before the end; nothing written");
     return finish(arguments, *files, **pad, &end);
   }
   std::vector<std::string> remarks;
   auto pad = traced_pad(arguments.traces, arguments.is_lenient ? Damage::skip : Damage::refuse,
                         *files, remarks);
-  if (!pad) return calibrate_failed(pad.error().message);
+  if (!pad) return fail(kCommand, pad.error().message);
   const auto problem = learn_frames(arguments.pushes, *pad, remarks);
-  if (problem) return calibrate_failed(problem->message);
-  print_remarks("calibrate", driver_remarks(pad->info));
-  print_remarks("calibrate", remarks);
+  if (problem) return fail(kCommand, problem->message);
+  print_remarks(kCommand, driver_remarks(pad->info));
+  print_remarks(kCommand, remarks);
   return finish(arguments, *files, *pad, nullptr);
 }
 
-std::string png_problem(const std::string& path) {
+std::string png_problem([[maybe_unused]] const std::string& path) {
+#ifndef GAITPAD_HAS_WINDOW
+  return missing_window();
+#else
   return path.ends_with(".png") ? "" : "the picture is a PNG: its name ends with .png";
+#endif
 }
 
-// What is measured, and what becomes of it.
+// The options of measuring, and of what becomes of the result.
 void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
   add_pad_options(command, arguments.wish);
   auto* trace = command.add_option("--trace", arguments.traces,
@@ -177,7 +594,7 @@ void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
                    "skip a recording's damaged lines and count them");
 }
 
-// Nothing is measured then.
+// The options that convert instead of measuring.
 void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
   auto* import = command.add_option("--import", arguments.import,
                                     "takes over a jscal line, evdev's absinfo or an SDL mapping; "

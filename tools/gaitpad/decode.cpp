@@ -1,22 +1,188 @@
 // gaitpad decode: what report descriptors say, and what each report says by them, from a trace or
 // from a device as it is used.
+#include "gaitpad/decode.h"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/trace.h"
+#include "pads/newest_reports.h"
 #include "tools/gaitpad/commands.h"
-#include "tools/gaitpad/live_run.h"
-#include "tools/gaitpad/pad_options.h"
-#include "tools/gaitpad/report_print.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
+#include "tools/gaitpad/run_end.h"
 
 namespace gaitpad {
 namespace {
+
+enum class OutputForm { text, json };
+
+// A device with what decoding needs. The state is that after its last report.
+struct DecodedDevice {
+  TraceDevice source;
+  PadLayout layout;
+  PadState state;
+};
+
+// --- a descriptor and a report, printed
+
+using nlohmann::ordered_json;
+
+const char* kind_name(FieldKind kind) {
+  switch (kind) {
+    case FieldKind::input:
+      return "input";
+    case FieldKind::output:
+      return "output";
+    case FieldKind::feature:
+      return "feature";
+  }
+  return "";
+}
+
+ordered_json descriptor_json(const DecodedDevice& device) {
+  const DeviceInfo& info = device.source.info;
+  ordered_json fields = ordered_json::array();
+  for (const Field& f : device.layout.descriptor.fields) {
+    fields.push_back({{"report_id", f.report_id},
+                      {"bit_offset", f.bit_offset},
+                      {"bit_size", f.bit_size},
+                      {"usage_page", page_of(f.usage)},
+                      {"usage", id_of(f.usage)},
+                      {"logical_min", f.logical_min},
+                      {"logical_max", f.logical_max},
+                      {"kind", kind_name(f.kind)}});
+  }
+  return {{"device",
+           {{"name", info.name},
+            {"bus", static_cast<unsigned>(info.bus)},
+            {"vendor", info.vendor},
+            {"product", info.product}}},
+          {"pad", device.layout.is_pad},
+          {"fields", std::move(fields)}};
+}
+
+// Neighbouring fields that differ only in their place are one row.
+bool continues(const Field& a, const Field& b) {
+  return a.kind == b.kind && a.report_id == b.report_id && a.usage == b.usage &&
+         a.bit_size == b.bit_size && a.logical_min == b.logical_min &&
+         a.logical_max == b.logical_max && a.is_array == b.is_array;
+}
+
+// By usage: of a usage that occurs several times the first field, of an array 1 for each usage that
+// it names.
+ordered_json values_json(const ReportDescriptor& descriptor, const Report& report,
+                         std::uint8_t id) {
+  ordered_json values = ordered_json::object();
+  const std::size_t skip = descriptor.numbered ? 1 : 0;
+  if (report.size < skip) return values;
+  const std::span<const std::uint8_t> data(report.bytes.data() + skip, report.size - skip);
+  for (const Field& f : descriptor.fields) {
+    if (f.kind != FieldKind::input || f.report_id != id || f.bit_size > 64) continue;
+    const std::int64_t value = field_value(f, data);
+    const std::uint32_t usage = f.is_array ? array_usage(descriptor, f, value) : f.usage;
+    if (f.is_array && id_of(usage) == 0) continue;
+    const std::string key = usage_text(usage);
+    if (!values.contains(key)) values[key] = f.is_array ? 1 : value;
+  }
+  return values;
+}
+
+std::vector<std::string> pressed_names(const DecodedDevice& device, const Report& report,
+                                       std::uint8_t id) {
+  std::vector<std::string> names = button_names(device.state);
+  const std::size_t skip = device.layout.descriptor.numbered ? 1 : 0;
+  if (report.size < skip) return names;
+  const std::span<const std::uint8_t> data(report.bytes.data() + skip, report.size - skip);
+  for (const UnnamedButton& u : device.layout.unnamed) {
+    if (u.report_id != id || bits_at(data, u.bits.bit_offset, u.bits.bit_size) == 0) continue;
+    names.push_back(fmt::format("button_{}", u.number));
+  }
+  return names;
+}
+
+ordered_json report_json(const DecodedDevice& device, const Report& report, bool is_good) {
+  const std::uint8_t id = report_id_of(device.layout, report);
+  ordered_json line = {
+      {"device", device.source.index},
+      {"time_s", static_cast<double>(report.time_ns) / 1e9},
+      {"report_id", id},
+      {"values",
+       is_good ? values_json(device.layout.descriptor, report, id) : ordered_json::object()},
+      {"axes", device.layout.is_pad ? axes_json(device.state) : ordered_json::object()},
+      {"buttons", is_good ? pressed_names(device, report, id) : std::vector<std::string>{}}};
+  if (!is_good) line["bad"] = true;
+  return line;
+}
+
+void print_descriptor_text(const DecodedDevice& device) {
+  const DeviceInfo& info = device.source.info;
+  fmt::print("device {}: {} (bus {:x}, {:04x}:{:04x}), {}, {} bytes of descriptor\n",
+             device.source.index, printable(info.name), static_cast<unsigned>(info.bus),
+             info.vendor, info.product, device.layout.is_pad ? "a pad" : "no pad",
+             info.descriptor.size());
+  if (!device.layout.override_origin.empty()) {
+    fmt::print("controls by {}\n", device.layout.override_origin);
+  }
+  fmt::print("{:<8} {:>2} {:>7} {:>5} {:>5}  {:<9} {:>12} {:>12}\n", "kind", "id", "bit", "size",
+             "count", "usage", "min", "max");
+  const std::vector<Field>& fields = device.layout.descriptor.fields;
+  for (std::size_t i = 0; i < fields.size();) {
+    const Field& f = fields[i];
+    std::size_t end = i + 1;
+    while (end < fields.size() && continues(f, fields[end])) ++end;
+    fmt::print("{:<8} {:>2x} {:>7} {:>5} {:>5}  {:<9} {:>12} {:>12}{}\n", kind_name(f.kind),
+               f.report_id, f.bit_offset, f.bit_size, end - i, usage_text(f.usage), f.logical_min,
+               f.logical_max, f.is_array ? "  array" : "");
+    i = end;
+  }
+}
+
+void print_report_text(const DecodedDevice& device, const Report& report, bool is_good) {
+  const std::uint8_t id = report_id_of(device.layout, report);
+  fmt::print("{:>12.6f} device {} report {:2x}", static_cast<double>(report.time_ns) / 1e9,
+             device.source.index, id);
+  if (!is_good) {
+    fmt::print("  {} bytes: too short, or an unknown id\n", report.size);
+    return;
+  }
+  if (device.layout.is_pad) {
+    const auto& a = device.state.axis;
+    fmt::print("  left {:+.3f} {:+.3f}  right {:+.3f} {:+.3f}  triggers {:.3f} {:.3f} ", a[kLeftX],
+               a[kLeftY], a[kRightX], a[kRightY], a[kLeftTrigger], a[kRightTrigger]);
+    for (const std::string& name : pressed_names(device, report, id)) fmt::print(" {}", name);
+  }
+  fmt::print("\n");
+}
+
+void print_descriptor(const DecodedDevice& device, OutputForm form) {
+  if (form == OutputForm::json) {
+    print_json_line(descriptor_json(device));
+  } else {
+    print_descriptor_text(device);
+  }
+}
+
+// Decodes the report, too. False: the device cannot send such a report.
+bool print_report(DecodedDevice& device, const Report& report, OutputForm form) {
+  const bool is_good = decode(device.layout, report, device.state);
+  if (form == OutputForm::json) {
+    print_json_line(report_json(device, report, is_good));
+  } else {
+    print_report_text(device, report, is_good);
+  }
+  return is_good;
+}
+
+// --- the command
 
 struct DecodeArguments {
   PadWish wish;
@@ -27,11 +193,6 @@ struct DecodeArguments {
 
 OutputForm form_of(const DecodeArguments& arguments) {
   return arguments.as_json ? OutputForm::json : OutputForm::text;
-}
-
-int fail(const std::string& sentence) {
-  fmt::print(stderr, "gaitpad decode: {}\n", sentence);
-  return 1;
 }
 
 Result<std::vector<DecodedDevice>> devices_of(const Trace& trace, const PadOverrides& overrides) {
@@ -61,7 +222,7 @@ void print_reports(const DecodeArguments& arguments, const Trace& trace,
     fmt::print(stderr, "gaitpad decode: {} reports are too short or have an unknown id\n", bad);
 }
 
-// What exists and is no device, and what looks like the path of a file.
+// Anything that exists and is not a device, and anything that looks like a path.
 bool is_trace(const std::string& source) {
   std::error_code ignored;
   for (const char* nodes : {"/dev/hidraw", "/dev/input/", "/dev/bus/"}) {
@@ -75,9 +236,9 @@ bool is_trace(const std::string& source) {
 int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
   const auto trace =
       read_trace(arguments.wish.pad, arguments.lenient ? Damage::skip : Damage::refuse);
-  if (!trace) return fail(trace.error().message);
+  if (!trace) return fail("decode", trace.error().message);
   auto devices = devices_of(*trace, overrides);
-  if (!devices) return fail(devices.error().message);
+  if (!devices) return fail("decode", devices.error().message);
   if (trace->skipped_lines > 0) {
     fmt::print(stderr, "gaitpad decode: {} damaged lines were skipped, the first: {}\n",
                trace->skipped_lines, trace->first_damage);
@@ -87,7 +248,7 @@ int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
   return 0;
 }
 
-// By its node, also where it is no pad; else as play chooses it.
+// A device with that node, pad or not; else the one that play would choose.
 Result<PadSighting> sighting_of(const PadFiles& files, const PadWish& wish) {
   auto sightings = pad_sightings(files, wish, Drivers::preferred);
   if (!sightings) return sightings.error();
@@ -101,7 +262,8 @@ Result<PadSighting> sighting_of(const PadFiles& files, const PadWish& wish) {
   if (!chosen->empty()) return chosen->front();
   const auto wished = wished_pads(*sightings, wish);
   const bool is_told = wished && !wished->empty() && !wished->front().problem.empty();
-  if (is_told) return wished->front();  // its opening says why not, its descriptor may be readable
+  if (is_told)
+    return wished->front();  // opening it says why not, and its descriptor may be readable
   return Error{fmt::format("{}: no driver sees such a device; gaitpad pads lists them", wish.pad)};
 }
 
@@ -127,10 +289,10 @@ void print_live(Device& device, DecodedDevice& decoded, OutputForm form, RunEnd&
   }
 }
 
-// As a recording of it would be decoded.
+// Decoded as a recording of it would be.
 Result<DecodedDevice> decoded_device(const DeviceInfo& info, const PadFiles& files) {
   std::vector<std::string> ignored;  // of calibrations, which decoding does not use
-  TraceDevice recorded = recorded_device(files, info, std::nullopt, ignored);
+  TraceDevice recorded = recorded_device(files, info, std::nullopt, ignored).device;
   auto layout = pad_layout(recorded.info, files.overrides);
   if (!layout) return Error{fmt::format("{}: {}", info.name, layout.error().message)};
   return DecodedDevice{std::move(recorded), std::move(*layout), {}};
@@ -139,16 +301,16 @@ Result<DecodedDevice> decoded_device(const DeviceInfo& info, const PadFiles& fil
 int run_live(const DecodeArguments& arguments, const PadFiles& files) {
   RunEnd end;
   const auto sighting = sighting_of(files, arguments.wish);
-  if (!sighting) return fail(sighting.error().message);
+  if (!sighting) return fail("decode", sighting.error().message);
   std::unique_ptr<Device> device;
-  // The system shows many a descriptor to those, too, who may not open the device.
+  // The system shows most descriptors even to users who may not open the device.
   if (!arguments.descriptor_only || sighting->listing.info.descriptor.empty()) {
     auto opened = sighting->driver->open(sighting->listing, Detach::allowed);
-    if (!opened) return fail(opened.error().message);
+    if (!opened) return fail("decode", opened.error().message);
     device = std::move(*opened);
   }
   auto decoded = decoded_device(device ? device->info() : sighting->listing.info, files);
-  if (!decoded) return fail(decoded.error().message);
+  if (!decoded) return fail("decode", decoded.error().message);
   print_descriptor(*decoded, form_of(arguments));
   if (arguments.descriptor_only) return 0;
   end.end_after(arguments.seconds);
@@ -160,7 +322,7 @@ int run_live(const DecodeArguments& arguments, const PadFiles& files) {
 
 int run(const DecodeArguments& arguments) {
   const auto files = pad_files(arguments.map, "");
-  if (!files) return fail(files.error().message);
+  if (!files) return fail("decode", files.error().message);
   return arguments.wish.driver.empty() && is_trace(arguments.wish.pad)
              ? run_trace(arguments, files->overrides)
              : run_live(arguments, *files);

@@ -1,15 +1,19 @@
 // gaitpad figures: the paper's figures and claims out of the running code.
-#include "paper/figures.h"
+#include <CLI/CLI.hpp>
 
+#include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
+
+#ifdef GAITPAD_HAS_WINDOW
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
 #include "gaitpad/config_files.h"
 #include "paper/claims.h"
-#include "tools/gaitpad/commands.h"
+#include "paper/figures.h"
 
 namespace gaitpad {
 namespace {
@@ -18,11 +22,6 @@ struct FiguresArguments {
   std::string folder, motion;
   bool as_json = false;
 };
-
-int failed(const Error& error) {
-  fmt::print(stderr, "gaitpad figures: {}\n", error.message);
-  return 1;
-}
 
 void print_summary(const std::vector<Claim>& claims, const std::string& folder) {
   fmt::print("{}", claims_table(claims));
@@ -40,14 +39,13 @@ void print_summary(const std::vector<Claim>& claims, const std::string& folder) 
 
 int run(const FiguresArguments& arguments) {
   auto source = load_paper_source(arguments.motion, config_folders(GAITPAD_CONFIG_DIR));
-  if (!source) return failed(source.error());
+  if (!source) return fail("figures", source.error().message);
   auto study = Study::of(std::move(*source));
-  if (!study) return failed(study.error());
+  if (!study) return fail("figures", study.error().message);
   const std::vector<Claim> claims = all_claims(*study);
   const std::string json = claims_json(study->source().motion, claims);
-  if (auto problem = write_figures(arguments.folder, all_figures(*study), json)) {
-    return failed(*problem);
-  }
+  if (auto problem = write_figures(arguments.folder, all_figures(*study), json))
+    return fail("figures", problem->message);
   if (arguments.as_json) {
     fmt::print("{}", json);
   } else {
@@ -77,3 +75,17 @@ void add_figures(CLI::App& app, int& status) {
 }
 
 }  // namespace gaitpad
+
+#else
+
+namespace gaitpad {
+
+void add_figures(CLI::App& app, int& status) {
+  add_missing_command(app, status, "figures",
+                      "the paper's figures 2, 3, 4, 5a and 5b, and each of its claims as a number",
+                      missing_window());
+}
+
+}  // namespace gaitpad
+
+#endif

@@ -12,6 +12,7 @@
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
 #include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/print.h"
 
 namespace gaitpad {
 namespace {
@@ -26,7 +27,7 @@ struct MotionArguments {
   LoadOptions load;
 };
 
-// Joints as an export has them: End Sites only where they serve as toes.
+// Joints as an export has them: End Sites only if they serve as toes.
 std::vector<std::string> joint_names(const Motion& motion) {
   std::vector<std::string> names;
   const auto& joints = motion.skeleton.joints;
@@ -121,9 +122,7 @@ int run_motion(const MotionArguments& arguments) {
     print_table(*motion);
     return 0;
   }
-  // Names are a stranger's bytes: what is no UTF-8 is replaced.
-  fmt::print("{}\n",
-             motion_json(*motion).dump(2, ' ', false, ordered_json::error_handler_t::replace));
+  print_json(motion_json(*motion));
   return 0;
 }
 

@@ -8,8 +8,8 @@
 #include "gaitpad/drivers.h"
 #include "gaitpad/pad_stream.h"
 #include "tools/gaitpad/commands.h"
-#include "tools/gaitpad/pad_options.h"
-#include "tools/gaitpad/report_print.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
 
 namespace gaitpad {
 namespace {
@@ -26,11 +26,6 @@ struct Row {
   PadSighting sighting;
   bool is_chosen = false;
 };
-
-int fail(const std::string& sentence) {
-  fmt::print(stderr, "gaitpad pads: {}\n", sentence);
-  return 1;
-}
 
 bool is_usable(const PadSighting& sighting) { return sighting.is_pad && sighting.problem.empty(); }
 
@@ -56,7 +51,7 @@ std::string bus_name(BusType bus) {
   return fmt::format("{:04x}", static_cast<unsigned>(bus));
 }
 
-// Of the application collections, `0001:0005`; none where the descriptor is not known yet.
+// Of the application collections: `0001:0005`. Empty if the descriptor is not known yet.
 std::vector<std::string> usages_of(const DeviceInfo& info) {
   std::vector<std::string> usages;
   const auto descriptor = parse_descriptor(info.descriptor);
@@ -106,7 +101,7 @@ ordered_json row_json(const Row& row) {
   return object;
 }
 
-// Drivers that this program was built without: an object each, as a device that cannot be had.
+// Drivers that this program was built without, each with its problem.
 std::vector<std::pair<std::string, std::string>> missing_drivers(const PadWish& wish) {
   std::vector<std::pair<std::string, std::string>> missing;
   for (const DriverEntry& entry : drivers()) {
@@ -116,12 +111,12 @@ std::vector<std::pair<std::string, std::string>> missing_drivers(const PadWish& 
   return missing;
 }
 
-void print_json(const std::vector<Row>& rows, const PadWish& wish) {
+void print_rows_json(const std::vector<Row>& rows, const PadWish& wish) {
   ordered_json list = ordered_json::array();
   for (const Row& row : rows) list.push_back(row_json(row));
   for (const auto& [driver, problem] : missing_drivers(wish))
     list.push_back({{"driver", driver}, {"problem", problem}});
-  fmt::print("{}\n", list.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+  print_json(list);
 }
 
 std::string joined(const std::vector<std::string>& texts) {
@@ -168,17 +163,17 @@ void print_text(const std::vector<Row>& rows, const PadWish& wish) {
 
 int run(const PadsArguments& arguments) {
   const auto files = pad_files(arguments.map, "");
-  if (!files) return fail(files.error().message);
+  if (!files) return fail("pads", files.error().message);
   auto sightings = pad_sightings(*files, arguments.wish, Drivers::all);
   if (!sightings) {
-    if (missing_drivers(arguments.wish).empty()) return fail(sightings.error().message);
+    if (missing_drivers(arguments.wish).empty()) return fail("pads", sightings.error().message);
     sightings = std::vector<PadSighting>{};
   }
   const auto chosen = chosen_pads(*sightings, arguments.wish);
-  if (!chosen) return fail(chosen.error().message);
+  if (!chosen) return fail("pads", chosen.error().message);
   const std::vector<Row> rows = rows_of(*sightings, *chosen);
   if (arguments.as_json) {
-    print_json(rows, arguments.wish);
+    print_rows_json(rows, arguments.wish);
   } else {
     print_text(rows, arguments.wish);
   }

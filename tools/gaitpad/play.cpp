@@ -3,44 +3,33 @@
 
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "gaitpad/live.h"
+#include "session/walk_export.h"
 #include "tools/gaitpad/commands.h"
-#include "tools/gaitpad/live_run.h"
-#include "tools/gaitpad/pad_options.h"
-#include "tools/gaitpad/session_options.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
 #include "tools/gaitpad/window_options.h"
+#ifdef GAITPAD_HAS_WINDOW
 #include "view/show.h"
+#endif
 
 namespace gaitpad {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{50};  // how often the session is looked at
+using nlohmann::ordered_json;
+
+constexpr const char* kCommand = "play";
+constexpr std::chrono::milliseconds kLook{50};  // between looks at a session without a window
 
 struct PlayArguments {
-  SessionArguments session;
+  SessionSpec spec;
   WindowArguments window;
-  PadWish wish;
-  std::string record;
   double seconds = 0.0;
   bool no_window = false, no_rumble = false, json = false, takes_commands = false;
 };
-
-int fail(const std::string& sentence) {
-  fmt::print(stderr, "gaitpad play: {}\n", sentence);
-  return 1;
-}
-
-LiveOptions live_options(const PlayArguments& arguments) {
-  LiveOptions options;
-  options.session = session_options(arguments.session);
-  options.wish = arguments.wish;
-  if (arguments.session.rate_hz > 0) options.rate_hz = arguments.session.rate_hz;
-  options.record = arguments.record;
-  options.rumble = !arguments.no_rumble;
-  return options;
-}
 
 std::string status_text(const LiveStatus& status, const SessionFrame& frame, int rate_hz) {
   const PadStreamCounts& pads = status.pads;
@@ -53,16 +42,17 @@ std::string status_text(const LiveStatus& status, const SessionFrame& frame, int
       status.wait_us_median, status.overruns);
 }
 
-// Until the end, the recording's or the user's.
-void walk_unseen(const PlayArguments& arguments, int rate_hz, RunEnd& end, LiveSession& session) {
+// Until the recording ends, or the user ends it.
+void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSession& session) {
   StatusLine line(2);
-  MissingPad missing("play", arguments.wish);
+  MissingPad missing(kCommand, arguments.spec.pad.wish);
+  const int rate_hz = session.cast().rate_hz;
   InputLines input;
   while (!end.is_reached() && !session.has_ended()) {
-    print_remarks("play", session.take_remarks(), &line);
+    print_remarks(kCommand, session.take_remarks(), &line);
     missing.look(session.status().pads.plugged, line);
     if (arguments.takes_commands) {
-      for (const std::string& command : input.take()) session.command(command);
+      for (const std::string& command : input.take_lines()) session.command(command);
     }
     bool is_new = false;
     if (line.is_terminal())
@@ -73,10 +63,10 @@ void walk_unseen(const PlayArguments& arguments, int rate_hz, RunEnd& end, LiveS
   missing.finish(session.status().pads.plugged, line);
 }
 
-void print_text(const PlayArguments& arguments, const LiveStatus& status,
-                const std::vector<nlohmann::ordered_json>& summaries) {
-  print_session(arguments.record.empty() ? "live" : arguments.record, summaries.front());
-  for (std::size_t i = 0; i < summaries.size(); ++i) print_character(i, summaries[i], -1.0);
+void print_text(const PlayArguments& arguments, const LiveStatus& status, const RunSummary& run) {
+  const std::string& record = arguments.spec.live.record;
+  print_session(record.empty() ? "live" : record, run);
+  for (std::size_t i = 0; i < run.walkers.size(); ++i) print_character(run, i, Way::left_out);
   fmt::print(
       "a tick takes {:.0f} us (at most {:.0f}), a report waits {:.0f} us for it (at most {:.0f}); "
       "{} ticks were late, {} reports lost\n",
@@ -84,73 +74,117 @@ void print_text(const PlayArguments& arguments, const LiveStatus& status,
       status.overruns, status.pads.lost);
 }
 
-void print_result(const PlayArguments& arguments, const LiveStatus& status,
-                  std::vector<nlohmann::ordered_json> summaries) {
-  for (nlohmann::ordered_json& summary : summaries) add_status(status, summary);
-  if (arguments.json) {
-    print_summaries_json(summaries);
-  } else if (!summaries.empty()) {
-    print_text(arguments, status, summaries);
-  }
+void add_status(const LiveStatus& status, ordered_json& summary) {
+  summary["time_s"] = status.time_s;
+  summary["time_policy"] = status.time_policy;
+  summary["overruns"] = status.overruns;
+  summary["standstills"] = status.standstills;
+  summary["overloads"] = status.overloads;
+  summary["skipped_s"] = status.skipped_s;
+  summary["late_us_median"] = status.late_us_median;
+  summary["late_us_max"] = status.late_us_max;
+  summary["tick_us_median"] = status.tick_us_median;
+  summary["tick_us_max"] = status.tick_us_max;
+  summary["wait_us_median"] = status.wait_us_median;
+  summary["wait_us_max"] = status.wait_us_max;
+  summary["lost"] = status.pads.lost;
+  summary["plugged"] = status.pads.plugged;
+  summary["unplugged"] = status.pads.unplugged;
+  summary["recording_lost"] = status.recording_lost;
 }
 
 int run_without_window(const PlayArguments& arguments) {
   RunEnd end;
-  const LiveOptions options = live_options(arguments);
-  auto session = LiveSession::start(options);
-  if (!session) return fail(session.error().message);
+  auto session = LiveSession::start(arguments.spec);
+  if (!session) return fail(kCommand, session.error().message);
   end.end_after(arguments.seconds);
-  walk_unseen(arguments, options.rate_hz, end, **session);
-  auto summaries = (*session)->stop();
-  print_remarks("play", (*session)->take_remarks());
-  if (!summaries) return fail(summaries.error().message);
-  print_result(arguments, (*session)->status(), std::move(*summaries));
+  walk_without_window(arguments, end, **session);
+  const auto run = (*session)->stop();
+  print_remarks(kCommand, (*session)->take_remarks());
+  if (!run) return fail(kCommand, run.error().message);
+  const LiveStatus status = (*session)->status();
+  if (!arguments.json) {
+    print_text(arguments, status, *run);
+    return 0;
+  }
+  std::vector<ordered_json> summaries;
+  for (std::size_t i = 0; i < run->walkers.size(); ++i)
+    add_status(status, summaries.emplace_back(summary_json(*run, i)));
+  print_summaries_json(summaries);
   return 0;
 }
 
-// The paper's demonstration: four ways to walk on the same stick.
-void take_default_cast(SessionOptions& session) {
-  if (session.characters.empty() && session.styles.empty())
-    session.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
+// Pictures of a recording show its exact course, not how it would be played by the clock.
+bool is_playback(const PlayArguments& arguments) {
+  return makes_pictures(arguments.window) && is_recording(arguments.spec.pad.wish.pad);
 }
 
-// Pictures of a recording are made of its exact course, not of its times.
-bool is_playback(const PlayArguments& arguments) {
-  return makes_pictures(arguments.window) && is_recording(arguments.wish.pad);
+#ifdef GAITPAD_HAS_WINDOW
+
+// The paper's demonstration: four ways to walk on the same stick.
+void take_default_cast(SessionSpec::Walk& walk) {
+  if (walk.characters.empty() && walk.styles.empty())
+    walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
 }
 
 WindowOptions options_of_window(const PlayArguments& arguments, RunEnd& end, InputLines& input) {
   const bool has_end =
       arguments.window.frames > 0 || arguments.seconds > 0.0 || is_playback(arguments);
   WindowOptions options = window_options(arguments.window, has_end);
-  options.live = live_options(arguments);
-  take_default_cast(options.live.session);
-  options.is_trace_rate_given = arguments.session.rate_hz > 0;
-  if (is_playback(arguments)) options.trace = arguments.wish.pad;
+  options.session = arguments.spec;
+  take_default_cast(options.session.walk);
+  if (is_playback(arguments)) options.session.replay.trace = arguments.spec.pad.wish.pad;
   if (makes_pictures(arguments.window) && options.frames == 0 && arguments.seconds > 0.0)
     options.frames = static_cast<int>(std::clamp(arguments.seconds * kPictureRateHz, 1.0, 1e8));
   options.is_ended_from_outside = [&end] { return end.is_reached(); };
-  if (arguments.takes_commands) options.take_commands = [&input] { return input.take(); };
+  if (arguments.takes_commands) options.take_commands = [&input] { return input.take_lines(); };
   return options;
+}
+
+// Of a playback in the window only these keys are known.
+ordered_json playback_json(const RunSummary& run, std::size_t walker) {
+  return {{"ticks", run.ticks},
+          {"rate_hz", run.rate_hz},
+          {"pose_hash", fmt::format("{:016x}", run.pose_hash)},
+          {"motion", run.motion},
+          {"character", run.walkers[walker].character}};
+}
+
+void print_window_json(const WindowResult& result) {
+  std::vector<ordered_json> summaries;
+  for (std::size_t i = 0; i < result.summary.walkers.size(); ++i) {
+    ordered_json& summary = summaries.emplace_back(
+        result.status ? summary_json(result.summary, i) : playback_json(result.summary, i));
+    summary["frames"] = result.frames;
+    summary["frames_per_second"] = result.frames_per_second;
+    if (result.status) add_status(*result.status, summary);
+  }
+  print_summaries_json(summaries);
 }
 
 int run_with_window(const PlayArguments& arguments) {
   RunEnd end;
   InputLines input;
   if (!makes_pictures(arguments.window)) end.end_after(arguments.seconds);
-  auto result = run_window(options_of_window(arguments, end, input));
-  if (!result) return fail(result.error().message);
-  print_remarks("play", result->remarks);
-  for (nlohmann::ordered_json& summary : result->summaries) {
-    summary["frames"] = result->frames;
-    summary["frames_per_second"] = result->frames_per_second;
-  }
-  if (result->status) {
-    print_result(arguments, *result->status, std::move(result->summaries));
-  } else if (arguments.json) {
-    print_summaries_json(result->summaries);
+  const auto result = run_window(options_of_window(arguments, end, input));
+  if (!result) return fail(kCommand, result.error().message);
+  print_remarks(kCommand, result->remarks);
+  if (arguments.json) {
+    print_window_json(*result);
+  } else if (result->status && !result->summary.walkers.empty()) {
+    print_text(arguments, *result->status, result->summary);
   }
   return 0;
+}
+
+#endif
+
+int run(PlayArguments& arguments) {
+  arguments.spec.live.rumble = !arguments.no_rumble;
+#ifdef GAITPAD_HAS_WINDOW
+  if (!arguments.no_window) return run_with_window(arguments);
+#endif
+  return run_without_window(arguments);
 }
 
 }  // namespace
@@ -158,23 +192,24 @@ int run_with_window(const PlayArguments& arguments) {
 void add_play(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("play", "walks characters by a live pad");
   const auto arguments = std::make_shared<PlayArguments>();
-  add_pad_options(*command, arguments->wish);
+  add_pad_options(*command, arguments->spec.pad.wish);
   auto* no_window =
       command->add_flag("--no-window", arguments->no_window,
                         "walk without a window: one character, unless more are given");
-  command->add_option("--record", arguments->record, "write the session to this file (.hid)");
+  command->add_option("--record", arguments->spec.live.record,
+                      "write the session to this file (.hid)");
   add_seconds_option(*command, arguments->seconds);
   command->add_flag("--no-rumble", arguments->no_rumble, "no beat at each heel strike");
   command->add_flag("--commands", arguments->takes_commands,
                     "lines of standard input are commands, such as `style limp_left`");
-  add_session_options(*command, arguments->session, std::to_string(kDefaultRateHz));
+  add_session_options(*command, arguments->spec, std::to_string(kDefaultRateHz));
   command->add_flag("--json", arguments->json, "the summary, for machines");
   for (CLI::Option* option : add_window_options(*command, arguments->window))
     option->excludes(no_window);
   command->callback([arguments, &status] {
-    if (is_playback(*arguments) && !arguments->record.empty())
+    if (is_playback(*arguments) && !arguments->spec.live.record.empty())
       throw CLI::ValidationError("--record", "pictures of a recording are nothing to record");
-    status = arguments->no_window ? run_without_window(*arguments) : run_with_window(*arguments);
+    status = run(*arguments);
   });
 }
 

@@ -8,14 +8,13 @@
 #include "gaitpad/pad_stream.h"
 #include "session/recording.h"
 #include "tools/gaitpad/commands.h"
-#include "tools/gaitpad/live_run.h"
-#include "tools/gaitpad/pad_options.h"
-#include "tools/gaitpad/report_print.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr std::chrono::milliseconds kWait{20};  // an end is noticed after this at the latest
+constexpr std::chrono::milliseconds kWait{20};  // longest sleep until the end is noticed
 
 struct RecordArguments {
   PadWish wish;
@@ -24,19 +23,14 @@ struct RecordArguments {
   bool as_json = false;
 };
 
-// What was recorded; the device is the first that came.
+// What was recorded. The device is the first that came.
 struct Recorded {
   std::uint16_t device = kNoDevice;
   std::int64_t reports = 0, unplugged = 0;
   std::int64_t first_ns = 0, last_ns = 0;
 };
 
-int fail(const std::string& sentence) {
-  fmt::print(stderr, "gaitpad record: {}\n", sentence);
-  return 1;
-}
-
-void take(const Report& report, Recording& recording, Recorded& recorded) {
+void take_report(const Report& report, Recording& recording, Recorded& recorded) {
   if (recorded.device == kNoDevice && report.kind == ReportKind::added)
     recorded.device = report.device;
   if (report.device != recorded.device || report.device == kNoDevice) return;
@@ -61,7 +55,8 @@ Recorded record(const PadWish& wish, RunEnd& end, PadStream& stream, Recording& 
   StatusLine line(2);
   MissingPad missing("record", wish);
   const auto take_all = [&] {
-    for (; const Report* report = stream.front(); stream.pop()) take(*report, recording, recorded);
+    for (; const Report* report = stream.front(); stream.pop())
+      take_report(*report, recording, recorded);
   };
   while (!end.is_reached() && !stream.has_ended() && !recording.problem()) {
     stream.wait(kWait);
@@ -99,20 +94,20 @@ void print_result(const RecordArguments& arguments, const Recorded& recorded,
 int run(const RecordArguments& arguments) {
   RunEnd end;
   auto files = pad_files(arguments.map, arguments.calibration);
-  if (!files) return fail(files.error().message);
+  if (!files) return fail("record", files.error().message);
   // The stream outlives the recording, which asks it for its devices.
   auto stream = PadStream::start({std::move(*files), arguments.wish});
-  if (!stream) return fail(stream.error().message);
+  if (!stream) return fail("record", stream.error().message);
   auto recording = Recording::start(
       {arguments.out, std::nullopt, {}},
       [&](std::uint16_t device) -> const TraceDevice& { return (*stream)->device(device); });
-  if (!recording) return fail(recording.error().message);
+  if (!recording) return fail("record", recording.error().message);
   end.end_after(arguments.seconds);
 
   const Recorded recorded = record(arguments.wish, end, **stream, **recording);
   print_remarks("record", (*stream)->take_remarks());
   const auto remarks = (*recording)->finish(0, std::max(recorded.last_ns, now_ns()));
-  if (!remarks) return fail(remarks.error().message);
+  if (!remarks) return fail("record", remarks.error().message);
   print_remarks("record", *remarks);
   if (recorded.device == kNoDevice) return 1;  // the remarks say so
   print_result(arguments, recorded, **stream, (*stream)->counts().lost + (*recording)->lost());

@@ -10,80 +10,69 @@
 
 #include "session/walk_export.h"
 #include "tools/gaitpad/commands.h"
-#include "tools/gaitpad/live_run.h"
-#include "tools/gaitpad/session_options.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
 #include "tools/gaitpad/window_options.h"
 
 namespace gaitpad {
 namespace {
 
+constexpr const char* kCommand = "replay";
+
 struct ReplayArguments {
-  SessionArguments session;
+  SessionSpec spec;
   WindowArguments window;
-  std::string trace, out;
-  bool json = false, lenient = false, view = false, gltf = false;
-  int fps = 0;  // 0: not given
+  bool json = false, is_lenient = false, view = false;
 };
 
-int fail(const std::string& sentence) {
-  fmt::print(stderr, "gaitpad replay: {}\n", sentence);
-  return 1;
-}
-
-void print_text(const ReplayArguments& arguments, const ReplayResult& result) {
-  print_session(arguments.trace, result.summaries.front());
-  for (std::size_t i = 0; i < result.summaries.size(); ++i) {
-    print_character(i, result.summaries[i], result.distance_m[i]);
-    if (arguments.out.empty()) continue;
-    if (arguments.gltf) {
-      fmt::print("  {}/{}\n", arguments.out, numbered_name("pose", ".glb", i));
-    }
-    fmt::print("  {0}/{1}  {0}/{2}  {0}/{3}\n", arguments.out, numbered_name("pose", ".bvh", i),
+void print_text(const SessionSpec::Replay& wanted, const RunSummary& run) {
+  print_session(wanted.trace, run);
+  for (std::size_t i = 0; i < run.walkers.size(); ++i) {
+    print_character(run, i, Way::shown);
+    if (wanted.out.empty()) continue;
+    if (wanted.gltf) fmt::print("  {}/{}\n", wanted.out, numbered_name("pose", ".glb", i));
+    fmt::print("  {0}/{1}  {0}/{2}  {0}/{3}\n", wanted.out, numbered_name("pose", ".bvh", i),
                numbered_name("frames", ".csv", i), numbered_name("summary", ".json", i));
   }
 }
 
 // The files and the summary.
 int run_through(const ReplayArguments& arguments) {
-  ReplayOptions options;
-  options.session = session_options(arguments.session);
-  options.trace = arguments.trace;
-  options.out = arguments.out;
-  options.gltf = arguments.gltf;
-  options.damage = arguments.lenient ? Damage::skip : Damage::refuse;
-  if (arguments.session.rate_hz > 0) options.rate_hz = arguments.session.rate_hz;
-  if (arguments.fps > 0) options.fps = arguments.fps;
-  const auto result = replay(options);
-  if (!result) return fail(result.error().message);
-  print_remarks("replay", result->remarks);
+  const auto result = replay(arguments.spec);
+  if (!result) return fail(kCommand, result.error().message);
+  print_remarks(kCommand, result->remarks);
   if (arguments.json) {
-    print_summaries_json(result->summaries);
+    std::vector<nlohmann::ordered_json> summaries;
+    for (std::size_t i = 0; i < result->summary.walkers.size(); ++i)
+      summaries.push_back(summary_json(result->summary, i));
+    print_summaries_json(summaries);
   } else {
-    print_text(arguments, *result);
+    print_text(arguments.spec.replay, result->summary);
   }
   std::fflush(stdout);
   return 0;
 }
 
+#ifdef GAITPAD_HAS_WINDOW
 int view(const ReplayArguments& arguments) {
   RunEnd end;
   WindowOptions options = window_options(arguments.window, true);
-  options.live.session = session_options(arguments.session);
-  options.trace = arguments.trace;
-  options.damage = arguments.lenient ? Damage::skip : Damage::refuse;
-  options.is_trace_rate_given = arguments.session.rate_hz > 0;
-  if (options.is_trace_rate_given) options.live.rate_hz = arguments.session.rate_hz;
+  options.session = arguments.spec;
   options.is_ended_from_outside = [&end] { return end.is_reached(); };
   const auto result = run_window(options);
-  if (!result) return fail(result.error().message);
-  print_remarks("replay", result->remarks);
+  if (!result) return fail(kCommand, result.error().message);
+  print_remarks(kCommand, result->remarks);
   return 0;
 }
+#else
+int view(const ReplayArguments&) { return fail(kCommand, missing_window()); }
+#endif
 
-int run(const ReplayArguments& arguments) {
+int run(ReplayArguments& arguments) {
+  arguments.spec.replay.damage = arguments.is_lenient ? Damage::skip : Damage::refuse;
   if (!arguments.view) return run_through(arguments);
   const int status = view(arguments);
-  const bool wants_result = !arguments.out.empty() || arguments.json;
+  const bool wants_result = !arguments.spec.replay.out.empty() || arguments.json;
   return status == 0 && wants_result ? run_through(arguments) : status;
 }
 
@@ -92,19 +81,20 @@ int run(const ReplayArguments& arguments) {
 void add_replay(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("replay", "walks characters along a recorded stick");
   const auto arguments = std::make_shared<ReplayArguments>();
-  command->add_option("trace", arguments->trace, "the recording (.hid)")->required();
-  auto* out = command->add_option("--out", arguments->out,
-                                  "folder for pose.bvh, frames.csv and summary.json");
+  SessionSpec::Replay& wanted = arguments->spec.replay;
+  command->add_option("trace", wanted.trace, "the recording (.hid)")->required();
+  auto* out =
+      command->add_option("--out", wanted.out, "folder for pose.bvh, frames.csv and summary.json");
   command
-      ->add_flag("--gltf", arguments->gltf,
+      ->add_flag("--gltf", wanted.gltf,
                  "pose.glb too: binary glTF 2.0, joints, one animation and a plain body")
       ->needs(out);
-  add_session_options(*command, arguments->session, "the trace's, else 240");
+  add_session_options(*command, arguments->spec, "the trace's, else 240");
   command
-      ->add_option("--fps", arguments->fps,
+      ->add_option("--fps", wanted.fps,
                    "poses a second in pose.bvh and pose.glb (default: every tick)")
       ->check(CLI::Range(1, kMaxRateHz));
-  command->add_flag("--lenient", arguments->lenient, "skip damaged lines and count them");
+  command->add_flag("--lenient", arguments->is_lenient, "skip damaged lines and count them");
   auto* in_window = command->add_flag("--view", arguments->view,
                                       "open the window: a time line to scrub, any speed");
   for (CLI::Option* option : add_window_options(*command, arguments->window))

@@ -8,8 +8,15 @@
 
 #include "gaitpad/config_files.h"
 #include "pads/calibration_store.h"
+#include "tools/gaitpad/options.h"
 
 namespace gaitpad {
+
+bool makes_pictures(const WindowArguments& arguments) {
+  return !arguments.screenshot.empty() || !arguments.video.empty();
+}
+
+#ifdef GAITPAD_HAS_WINDOW
 namespace {
 
 constexpr int kMaxFrames = 100'000'000;
@@ -62,10 +69,6 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
   };
 }
 
-bool makes_pictures(const WindowArguments& arguments) {
-  return !arguments.screenshot.empty() || !arguments.video.empty();
-}
-
 WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
   WindowOptions options;
   options.frames = arguments.frames;
@@ -82,7 +85,7 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
   }
   options.hidden = arguments.hidden;
   options.calibration_folder = user_calibration_folder();
-  // Somebody who asks SDL for a driver of its own gets that one.
+  // Somebody who asks SDL for a video driver gets that one.
   const char* driver = std::getenv("SDL_VIDEODRIVER");
   options.is_hidden =
       makes_pictures(arguments) && has_end && (driver == nullptr || *driver == '\0');
@@ -92,5 +95,24 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
   options.recent_file = folder + "/recent";
   return options;
 }
+
+#else
+
+std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments& arguments) {
+  const CLI::Validator never([](const std::string&) { return missing_window(); }, "");
+  std::vector<CLI::Option*> options = {
+      command.add_option("--frames", arguments.frames),
+      command.add_option("--screenshot", arguments.screenshot),
+      command.add_option("--video", arguments.video),
+      command.add_option("--theme", arguments.theme),
+      command.add_option("--scale", arguments.scale),
+      command.add_option("--panels", arguments.panels),
+      command.add_option("--hide", arguments.hidden),
+  };
+  for (CLI::Option* option : options) option->check(never)->group("");  // not in the help
+  return options;
+}
+
+#endif
 
 }  // namespace gaitpad

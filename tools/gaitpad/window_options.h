@@ -1,10 +1,13 @@
-// What play and replay --view share: the options of the window.
+// The options of the window, which play and replay --view share. A program that was built without
+// its window has them, too: using one is an error that says how to build it.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#ifdef GAITPAD_HAS_WINDOW
 #include "view/window.h"
+#endif
 
 namespace gaitpad {
 
@@ -14,12 +17,16 @@ struct WindowArguments {
   std::vector<std::string> panels, hidden;
   double scale = 0.0;
 };
-// The options that were added, for further rules.
+// Returns the options that were added, for further rules.
 std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments& arguments);
 
 bool makes_pictures(const WindowArguments& arguments);
-// What remembers the window from one start to the next is left out where only pictures are made:
-// they are the same for everybody. `has_end`: it ends by itself, so nobody needs to see it.
+
+#ifdef GAITPAD_HAS_WINDOW
+// `has_end`: the window closes by itself, so nobody needs to see it while it makes pictures.
+// Pictures are the same for everybody: what the window remembers from its last start does not count
+// for them.
 WindowOptions window_options(const WindowArguments& arguments, bool has_end);
+#endif
 
 }  // namespace gaitpad

@@ -166,10 +166,10 @@ int run(double seconds, const std::vector<std::string>& motions) {
   }
   Soak soak(seconds, motions);
   WindowOptions options;
-  options.live.session.config_folders = config_folders(GAITPAD_CONFIG_DIR);
-  options.live.session.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
-  options.live.wish.driver = "sdl";
-  options.live.keyboard = true;
+  options.session.config_folders = config_folders(GAITPAD_CONFIG_DIR);
+  options.session.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
+  options.session.pad.wish.driver = "sdl";
+  options.session.live.keyboard = true;
   options.script = [&soak](const WindowGlance&) { soak.frame(); };
   const auto result = run_window(options);
   if (!result) {

@@ -1,17 +1,15 @@
 // A live session: pads in, poses out, at a fixed rate on a thread of its own.
 //
-// The loop thread sleeps until the tick's moment (absolute, CLOCK_MONOTONIC), takes the reports
-// that have arrived, calls Simulation::step(), publishes the newest frame and hands what it used to
-// the recording. It touches no driver, file, lock, log or heap. A tick that begins late is counted
-// and made up for, so that the number of ticks is the time times the rate; only when it is more
-// than a second behind (the program stood still, or ticks take longer than their time) the session
-// goes on where it stood.
+// The loop thread sleeps until a tick is due (absolute time, CLOCK_MONOTONIC), takes the reports
+// that have arrived, calls Simulation::step(), publishes the newest frame and hands the reports to
+// the recording. It touches no driver, file, lock, log or heap. A tick that begins late is counted,
+// and the ticks after it come sooner, so that the number of ticks is the time times the rate. Only
+// if the loop is more than a second behind (the program was stopped, or ticks take longer than
+// their time) the clock is set forward instead.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,76 +17,76 @@
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
 #include "gaitpad/session_frame.h"
-#include "gaitpad/setup.h"
+#include "gaitpad/session_spec.h"
+#include "gaitpad/summary.h"
 
 namespace gaitpad {
 
-struct LiveOptions {
-  SessionOptions session;
-  PadWish wish;
-  int rate_hz = kDefaultRateHz;
-  std::string record;     // FILE.hid, empty: none
-  bool keyboard = false;  // a virtual pad that steer() moves; it counts while no pad is deflected
-  // by_hand: no loop thread, ticks run in advance() alone; for pictures and videos.
-  enum class Clock { real_time, by_hand } clock = Clock::real_time;
-  bool rumble = true;  // a beat at each heel strike, as strong as the walk is fast
-};
-
-// Since the beginning. Standing still (set_pace) is no lateness and no wait.
+// Since the beginning. Standing still (pace 0) counts neither as lateness nor as waiting.
 struct LiveStatus {
   static constexpr std::size_t kWaitClasses = 32;
   static constexpr std::int64_t kWaitClass_ns = 250'000;
 
   std::int64_t ticks = 0;
-  double time_s = 0.0;           // of the clock since tick 0 was due, until the stop; 0: by hand
-  std::int64_t overruns = 0;     // ticks that began more than one tick late
-  std::int64_t standstills = 0;  // of more than a second, after which the clock was set forward
-  std::int64_t overloads = 0;    // the same because ticks take longer than their time
-  double skipped_s = 0.0;        // by these
+  double time_s = 0.0;        // by the clock from when tick 0 was due to the stop; 0: by hand
+  std::int64_t overruns = 0;  // ticks that began more than one tick late
+  std::int64_t standstills =
+      0;                       // stops of more than a second, after which the clock was set forward
+  std::int64_t overloads = 0;  // the clock was set forward because ticks take too long
+  double skipped_s = 0.0;      // time that the clock was set forward by
   double late_us_median = 0.0, late_us_max = 0.0;  // from when a tick was due to its begin
-  double tick_us_median = 0.0, tick_us_max = 0.0;  // one step, without the sleep
-  // From a report's arrival to the tick using it, at pace 1.
+  double tick_us_median = 0.0, tick_us_max = 0.0;  // duration of a tick, without the sleep
+  // From the arrival of a report to the tick that uses it, at pace 1.
   double wait_us_median = 0.0, wait_us_max = 0.0;
-  std::array<std::int64_t, kWaitClasses> wait_counts{};  // by kWaitClass_ns; the last: more
+  std::array<std::int64_t, kWaitClasses> wait_counts{};  // by kWaitClass_ns; the last: longer
   // How the loop thread is scheduled: `SCHED_FIFO 20`, `normal priority`, `by hand`.
   std::string time_policy;
   PadStreamCounts pads;
-  std::int64_t recording_lost = 0;  // reports that the recording missed: it is then no exact one
+  std::int64_t recording_lost = 0;  // reports that the recording missed: it is inexact then
 };
-
-// Behind what run_summary() writes, units in the keys.
-void add_status(const LiveStatus& status, nlohmann::ordered_json& summary);
 
 class LiveSession {
  public:
-  static Result<std::unique_ptr<LiveSession>> start(const LiveOptions& options);
+  // Reads the files, opens the recording and starts the threads. Error: a file that cannot be read,
+  // a wish that makes no sense (PadStream::start()), a rate outside 1 .. kMaxRateHz.
+  static Result<std::unique_ptr<LiveSession>> start(const SessionSpec& spec);
+  // The same in two parts, so that a program can end one session only when the files of the next
+  // are known to fit together: prepare() reads them and touches no device. `prepared` is used once.
+  struct Prepared;
+  static Result<std::shared_ptr<Prepared>> prepare(const SessionSpec& spec);
+  static Result<std::unique_ptr<LiveSession>> start(const std::shared_ptr<Prepared>& prepared);
   ~LiveSession();
 
+  const SessionSpec& spec() const noexcept;
   const Cast& cast() const noexcept;
-  // The name of a device that a frame tells of; empty: there is none.
+  // The name of a device that a frame names; empty: there is none.
   std::string pad_name(std::uint16_t device) const;
 
   // From one viewing thread.
-  const SessionFrame& latest(bool& is_new) noexcept;
-  bool take(TickSample& sample) noexcept;  // the oldest not taken yet; what nobody takes is dropped
-  // Ticks in a second of the clock over the rate: 0 stands still, 1 real time, 0.25 slow motion, at
-  // most 8; less than 1/1024 stands still. What a tick does is always the same. Counts within 20
-  // ms. While it stands still latest() goes on to show the driving pad's state and its presses.
+  const SessionFrame& latest(bool& is_new) noexcept;  // valid until the next call
+  // The oldest sample that was not taken yet; false if there is none. When nobody takes samples the
+  // newest are dropped.
+  bool take_sample(TickSample& sample) noexcept;
+  // Ticks in a second of the clock over the rate: 0 stands still, 1 is real time, 0.25 slow motion,
+  // at most 8; less than 1/1024 stands still. A tick computes the same at every pace. Takes effect
+  // within 20 ms. While the session stands still latest() still shows the driving pad's state and
+  // presses.
   void set_pace(double pace) noexcept;
-  void step(int ticks) noexcept;     // so many at pace 8, while it stands still; else nothing
+  void step(int ticks) noexcept;     // runs so many at pace 8 if it stands still; else nothing
   void advance(int ticks) noexcept;  // Clock::by_hand: runs them here and now; else nothing
-  // The keyboard as a stick: where it is to go, +x right, +y forward, at most 1 long. It moves
+  // The keyboard as a stick: where it should go, +x right, +y forward, at most 1 long. It moves
   // there smoothly.
   void steer(const vec2& wanted) noexcept;
   // From any thread.
-  void command(std::string_view text);
-  bool has_ended() const noexcept;  // a recording as a pad, one second behind its end
+  void command(std::string_view text);  // `style limp_left`; the grammar: config/README.md, `C:`
+  bool has_ended() const noexcept;      // the pad is a recording that ended a second ago
   LiveStatus status() const noexcept;
-  // Pads that cannot be opened, real-time scheduling that is not allowed: each once.
+  // What users should know (pads that cannot be opened, real-time scheduling that was refused),
+  // each once.
   std::vector<std::string> take_remarks();
 
-  // Ends the threads and the recording. Once. One summary a character, as `replay` writes it.
-  Result<std::vector<nlohmann::ordered_json>> stop();
+  // Ends the threads and the recording. Once. Error: the recording could not be written.
+  Result<RunSummary> stop();
 
  private:
   LiveSession();

@@ -1,5 +1,5 @@
-// From a device to a pad that can drive: its layout (config/pads, SDL's data base) and its
-// calibration.
+// From a device to a pad that can drive: its layout (config/pads, else SDL's data base) and its
+// calibration. Set-up code: it reads files and allocates.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,39 +13,48 @@
 
 namespace gaitpad {
 
-// What calibrations tell devices apart by.
+// What calibration files tell devices apart by.
 DeviceIdentity identity_of(const DeviceInfo& info);
 
-// What stands in files about pads, read once.
+// What files say about pads. A session reads them once.
 struct PadFiles {
   PadOverrides overrides;                        // --map first, then config/pads
-  std::optional<CalibrationFile> calibration;    // --calibration
+  std::optional<CalibrationFile> calibration;    // --calibration: for every pad but the keyboard
   std::string user_calibrations;                 // the user's folder, for live pads alone
-  std::vector<std::string> calibration_folders;  // else the best fitting file of these
+  std::vector<std::string> calibration_folders;  // searched for the best fitting file otherwise
 };
-// `map` and `calibration` are paths, empty for none.
+// `map` and `calibration` are paths; empty: none. Error: a file that cannot be read.
 Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
                                 const std::string& map, const std::string& calibration);
 
-// A device of a recording: calibration is --calibration's, else the recording's own, else the best
-// fitting file's, and never one of the user's folder: a replay is the same on every machine. The
-// mapping that this calibration may hold goes before the controls that config/pads names; a
-// descriptor that config/pads replaces stays as it is there. Sentences begin with `origin`.
+// The configuration of a device with this calibration. The calibration's mapping, if it has one,
+// replaces the controls that config/pads names; a descriptor that config/pads replaces stays
+// replaced. Error sentences begin with `origin`.
+Result<PadConfig> pad_config(const PadFiles& files, const DeviceInfo& info,
+                             const CalibrationFile& calibration, const std::string& origin);
+// The configuration of a device of a recording. Its calibration is --calibration's, else the
+// recording's own, else the best fitting file's; files of the user's folder are never used, so that
+// a replay is the same on every machine.
 Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
                              const std::string& origin);
-// All devices of one recording, `source` being its path.
+// All devices of the recording `source`.
 Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
                                            const std::vector<TraceDevice>& devices,
                                            const std::string& source);
 
-// A live device as a recording will hold it: with the calibration in force as text, and with its
-// mapping, else SDL's line where config/pads has no entry for the pad. A file for this one device
-// (unique id, port) comes before the pad's own factory sticks, these before a file for its model
-// (whose zones they keep); of equal fit the user's file counts. pad_config() of it is the
-// configuration to play with: a replay's is the same bit by bit. `remarks` gets a sentence for each
-// damaged file, which is left out.
-TraceDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
-                            const std::optional<FactorySticks>& factory,
-                            std::vector<std::string>& remarks);
+// A live device as a recording will hold it, and the calibration in force. pad_config() of either
+// gives the same configuration bit by bit, so a replay is exact.
+struct RecordedDevice {
+  TraceDevice device;           // with the calibration as text, and with a mapping
+  CalibrationFile calibration;  // only what the text keeps: name, mapping, numbers
+};
+// A calibration file for this one device (by unique id or port) counts more than the pad's factory
+// sticks, and these count more than a file for its model (whose dead zones stay). Of files that fit
+// equally well the user's counts. Without a mapping in the calibration the device gets SDL's line,
+// if config/pads has no entry for it. `remarks` receives a sentence for each damaged file that was
+// left out.
+RecordedDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
+                               const std::optional<FactorySticks>& factory,
+                               std::vector<std::string>& remarks);
 
 }  // namespace gaitpad

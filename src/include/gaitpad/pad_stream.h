@@ -1,4 +1,5 @@
-// Which devices there are, which of them are pads, and which driver serves a pad that several see.
+// Live pads: which devices there are, which of them are pads, which driver serves a pad that
+// several drivers see, and all chosen pads as one stream of reports.
 #pragma once
 #include <array>
 #include <chrono>
@@ -9,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/keyboard_device.h"
 #include "gaitpad/driver.h"
 #include "gaitpad/drivers.h"
 #include "gaitpad/pad_setup.h"
@@ -18,113 +18,125 @@
 
 namespace gaitpad {
 
-// What a user asks for; empty: any.
+class KeyboardStick;  // drivers/keyboard_device.h
+
+// Which pad a user asks for; empty: any.
 struct PadWish {
   std::string pad;  // a path (node or recording), a `vid:pid`, a unique id, a unique part of a name
-  std::string driver;  // hidraw, evdev, sdl, usb; forces it
+  std::string driver;  // hidraw, evdev, sdl or usb: this driver alone
 };
 
+// A device as one driver sees it.
 struct PadSighting {
   DeviceListing listing;
   const DriverEntry* driver = nullptr;
-  bool is_pad = false;  // it has a stick, or its driver must be asked by opening
-  std::string problem;  // why it is not usable: one sentence, empty: it is
+  bool is_pad = false;  // it has a stick, or its driver knows only after opening it
+  std::string problem;  // one sentence that says why it is not usable; empty: it is usable
 };
 
-// The same for what several drivers see of one pad.
+// Equal for all sightings of the same pad by different drivers.
 std::string pad_key(const PadSighting& sighting);
 
-// Every device that every driver (or the one wished for) sees, pads first; where the wish names a
-// recording, its devices alone. Finder thread. SDL is asked only where it is wished for, or for
-// Drivers::all, or where no other driver of kernel devices was built: its start takes up to a
-// second. Error where the wish itself is wrong: an unknown driver, one that was not built, a
-// damaged recording. `table` is for tests.
-enum class Drivers { preferred, all };
+enum class Drivers {
+  // SDL is asked only if it is wished for, or if no other driver of kernel devices was built: its
+  // start takes up to a second.
+  preferred,
+  all,
+};
+// Every device that every driver, or the wished one, sees; pads first. If the wish names a
+// recording: its devices alone. Blocks while drivers look; call it from one thread. Error: an
+// unknown driver, a driver that was not built, a damaged recording. `table`: other drivers, for
+// tests.
 Result<std::vector<PadSighting>> pad_sightings(
     const PadFiles& files, const PadWish& wish, Drivers drivers,
     std::span<const DriverEntry> table = gaitpad::drivers());
 
-// Of the sightings those to open, in the order of preference: each pad (pad_path) by the first
-// driver of drivers()'s order that can; usb only where it is wished for or no kernel driver has the
-// pad. What one driver shows as several, such as an adapter with an input node for each of its
-// plugs, are several pads. Empty where nothing fits. Error where `wish.pad` fits several different
-// pads by a part of a name: it names them.
+// The sightings to open, in the order of preference: each pad by the first driver in the order of
+// drivers() that can open it. usb counts only if it is wished for or if no kernel driver has the
+// pad. What one driver shows as several devices, such as an adapter with an input node for each of
+// its plugs, are several pads. Empty if nothing fits. Error: `wish.pad` is a part of the names of
+// several pads; the sentence names them.
 Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sightings,
                                              const PadWish& wish);
 
-// The sightings of pads that `wish.pad` means, usable or not, in the order of preference; all
-// pads where it is empty. Error as above.
+// The sightings of the pads that `wish.pad` means, usable or not, in the order of preference; of
+// all pads if it is empty. Error as for chosen_pads().
 Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sightings,
                                              const PadWish& wish);
 // Whether PAD names a recording: an existing file, or a path that ends in .hid.
 bool is_recording(const std::string& pad);
 
-// The same device again after unplugging: driver, ids and unique id, else port.
+// Whether `b` is the device `a` plugged in again: same driver and ids, and the same unique id, or
+// the same port if they have none.
 bool is_same_device(const DeviceInfo& a, const DeviceInfo& b) noexcept;
-
-// Pads as one stream of reports: found, opened, kept through unplugging and plugging in again.
-// docs/pads.md draws the whole way.
-//
-// Two threads work here. The finder waits for udev's word that something was plugged in, looks at
-// the devices, opens the chosen ones (that may take seconds) and hands them over. The I/O thread
-// sleeps in poll() over all open devices, reads them and writes the reports into a wait-free ring;
-// motors are set by it, too. Whoever reads the ring waits for neither of them.
 
 inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // different ones in one session
 
 struct PadStreamOptions {
   PadFiles files;
   PadWish wish;
-  std::shared_ptr<KeyboardStick> keyboard =
-      nullptr;  // a further device, index 0, there from the start
-  // For tests: other drivers; a descriptor that is readable when something was plugged in or out
-  // and silent after one read(), in place of udev's word; reports that the ring holds, a power of
-  // two.
+  // The keyboard as a further device. It has index 0 and is there from the start. Null: none.
+  std::shared_ptr<KeyboardStick> keyboard = nullptr;
+  // For tests: other drivers; a file descriptor that replaces udev (readable when something was
+  // plugged in or out, silent after one read()); the size of the ring in reports, a power of two.
   std::span<const DriverEntry> drivers = gaitpad::drivers();
   int changes_fd = -1;
   std::size_t ring_reports = 1024;
 };
 
-// Since the beginning; may be read by any thread.
+// Since the beginning.
 struct PadStreamCounts {
   std::int64_t reports = 0;  // written to the ring
   std::int64_t lost = 0;     // reports that a source lost, and those that found the ring full
-  std::int64_t plugged = 0, unplugged = 0;  // pads, the keyboard is none
+  std::int64_t plugged = 0, unplugged = 0;  // pads without the keyboard
 };
 
+// Pads as one stream of reports: found, opened, and kept through unplugging and plugging in again.
+// docs/pads.md draws the way of a report.
+//
+// Two threads work for the stream. The finder thread waits until udev says that something was
+// plugged in, looks at the devices, opens the chosen ones (which may take seconds) and hands each
+// to the I/O thread. The I/O thread sleeps in poll() over all open devices, reads them, writes
+// their reports into a wait-free ring and sets the motors. The reader of the ring waits for
+// neither.
+//
+// What is known of a pad (its device, layout and configuration) travels as a message with the pad's
+// first `added` report: the finder makes it, the I/O thread passes it on, and the reading end owns
+// it from then on.
 class PadStream {
  public:
-  // Runs from here on. Pads that are there already are announced like those plugged in later. Error
-  // where the wish is wrong: an unknown driver, a damaged recording, a part of a name that fits
-  // several pads. A wish that nothing fits is waited for.
+  // Starts both threads. Pads that are plugged in already are announced like those plugged in
+  // later. A wish that no device fits is waited for. Error: an unknown driver, a damaged recording,
+  // a part of a name that fits several pads.
   static Result<std::unique_ptr<PadStream>> start(PadStreamOptions options);
-  ~PadStream();  // closes every device, what was taken from the kernel is given back
+  ~PadStream();  // closes every device and gives back what was taken from the kernel
 
-  // The reading end, for one thread. A device's first report is `added`, also after plugging in
-  // again. Where the ring was full the newest report of each device (and report id) follows when
-  // there is room. The stamps of a device never go back. A blank command never comes, line breaks
-  // in one are blanks.
-  const Report* front() noexcept;
+  // The reading end, for one thread; wait-free and without heap. The first report of a device is
+  // `added`, also after plugging in again. If the ring was full, the newest report of each device
+  // and report id follows once there is room. The time stamps of a device never go back. A command
+  // is never blank, and line breaks in it are blanks.
+  const Report* front() noexcept;  // the oldest report, null if there is none; valid until pop()
   void pop() noexcept;
-  // Sleeps until there is something to read or the time is over; not for the loop thread.
+  // Sleeps until there is something to read or the time is over. Not for the loop thread.
   void wait(std::chrono::milliseconds timeout);
 
-  // All valid once the device's first `added` has been read, and never changed afterwards.
+  // What is known of a device; valid once front() has given its first `added`, and unchanged
+  // afterwards. For the reading thread, and for threads that it told of the device.
   const TraceDevice& device(std::uint16_t index) const noexcept;
   const PadLayout& layout(std::uint16_t index) const noexcept;
-  // The reader takes it out of here once (no heap: it is moved). Not present: `added` follows.
-  PadConfig& config(std::uint16_t index) noexcept;
+  // Moves the configuration out, once. Its pad is not present: `added` follows.
+  PadConfig take_config(std::uint16_t index) noexcept;
 
-  // From the reading thread, wait-free: the motors run for that long. Dropped when too many wait.
+  // Runs the motors for that long. From the reading thread, wait-free. Dropped if too many wait.
   void rumble(std::uint16_t device, const Rumble& rumble,
               std::chrono::milliseconds duration) noexcept;
-  // From any thread: a line such as `style limp_left`, as a report of kind command.
+  // From any thread: a line such as `style limp_left` becomes a report of kind command.
   void command(std::string_view text);
 
   // True once every device of a recording has come to its end; never for hardware.
   bool has_ended() const noexcept;
-  PadStreamCounts counts() const noexcept;
-  // What users should know (a pad that cannot be opened and why, a lost one), each once.
+  PadStreamCounts counts() const noexcept;  // any thread
+  // What users should know (a pad that cannot be opened and why, an unplugged one), each once.
   std::vector<std::string> take_remarks();
 
  private:

@@ -1,5 +1,9 @@
-// Which stick drives the walk: the pads of a session, plugged in and out, each with its layout and
-// its calibration, and the position of the driving one.
+// Which stick drives the walk. Pads keeps the pads of a session, plugged in or not, each with its
+// layout and its calibration, and gives one stick position a tick: that of the driving pad.
+//
+//   Pads pads({config}, 240);
+//   pads.take_report(report);              // for each report of the tick, in order of arrival
+//   const Stick stick = pads.finish_tick();
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,51 +16,64 @@
 
 namespace gaitpad {
 
+// What is known of a pad before its first report.
 struct PadConfig {
-  std::shared_ptr<const PadLayout> layout;  // null: its reports say nothing
+  std::shared_ptr<const PadLayout> layout;  // null: none of its reports can be decoded
   Calibration calibration;
   bool is_usable = true;            // it has a stick that can drive
-  bool is_present = true;           // plugged in from the start
+  bool is_present = true;           // plugged in at the start
   bool streams = false;             // it reports while at rest too: silence means that it is gone
-  bool is_fallback = false;         // the keyboard: it drives where no other pad is plugged in
-  bool has_factory_sticks = false;  // live ones: it told its own calibration when it was opened
+  bool is_fallback = false;         // the keyboard: it drives only while no other pad is plugged in
+  bool has_factory_sticks = false;  // live pads: it told its own calibration when it was opened
 };
 
-// The first usable pad drives: of those plugged in from the start, else the first to be added. It
-// drives until it is removed; then another one that is plugged in takes over, but not before it is
-// seen near its centre. Where none has taken over by then, the old one drives again.
-// A removed pad is neutral, and after plugging in again until it has been seen near its centre; a
-// streaming one also while it is silent for 100 ms. Time is counted in ticks. Who drives depends on
-// the order of the reports alone, not on the devices' numbers.
-// A fallback drives only while no other usable pad is plugged in. But while the left stick of the
-// driving pad is exactly at rest, or neutral, and that of a fallback is not, its sticks count.
+// How often each button was pressed.
+using PressCounts = std::array<std::uint32_t, kButtonCount>;
+// Counts the buttons that are up in `before` and down in `now` (PadState::buttons).
+void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses) noexcept;
+
+// The first usable pad drives: the first of those plugged in at the start, else the first to be
+// added. It drives until it is removed. Then another pad that is plugged in takes over as soon as
+// its stick is near its centre. If none has taken over, the old pad drives again when it comes
+// back.
+//
+// The stick of a removed pad is neutral. After plugging in again it stays neutral until it has been
+// near its centre. The stick of a streaming pad is neutral while the pad is silent for 100 ms. Time
+// is counted in ticks. Which pad drives depends on the order of the reports alone, never on the
+// numbers of the devices.
+//
+// A fallback drives only while no other usable pad is plugged in. But while the driving pad's left
+// stick is neutral or exactly at rest and a fallback's left stick is not, the fallback's sticks
+// count.
+//
+// Nothing but the constructor allocates.
 class Pads {
  public:
   Pads() = default;
-  Pads(std::vector<PadConfig> configs, int rate_hz);
+  Pads(std::vector<PadConfig> configs, int rate_hz);  // a report's device is the index in `configs`
 
-  // What is known of a device once it is found, before its first add(). Swaps: `config` is left
-  // with what was known before.
-  void set(std::uint16_t device, PadConfig& config) noexcept;
-  // False where the report is not one that its device can send; then nothing changes.
-  bool take(const Report& report) noexcept;
-  void add(std::uint16_t device) noexcept;
-  void remove(std::uint16_t device) noexcept;
-  // The driving stick after this tick's reports. Once a tick: counts the silence.
-  Stick stick_of_tick() noexcept;
+  // Sets what is known of a device that was found later, before its first add_pad(). Swaps:
+  // `config` receives what was known before.
+  void set_pad(std::uint16_t device, PadConfig& config) noexcept;
+  // Takes in an input report. False if its device cannot send such a report: then nothing changes.
+  bool take_report(const Report& report) noexcept;
+  void add_pad(std::uint16_t device) noexcept;     // it was plugged in
+  void remove_pad(std::uint16_t device) noexcept;  // it was unplugged
+  // The driving stick after this tick's reports. Call it once a tick: it counts the silence.
+  Stick finish_tick() noexcept;
 
-  // kNoDevice: none has driven so far. It may be unplugged.
+  // kNoDevice: no pad has driven so far. The driving pad may be unplugged.
   std::uint16_t driving() const noexcept { return driving_; }
-  // The driving pad's, uncalibrated; at rest where there is none.
+  // The driving pad's uncalibrated state; at rest if there is no driving pad.
   const PadState& driving_state() const noexcept;
-  // The driving one as it is known, null where there is none.
+  // What is known of the driving pad; null if there is none.
   const PadConfig* driving_pad() const noexcept;
-  // What has come of the driving pad since the beginning, sound or not.
+  // How many reports of the driving pad came since the beginning, sound or not.
   std::uint64_t driving_reports() const noexcept;
-  // How often each button of the pad that drove then was pressed, since the beginning: by every
-  // report, so that none is missed between two ticks. A button held while the pad is plugged in
-  // counts with its first report.
-  const std::array<std::uint32_t, kButtonCount>& presses() const noexcept { return presses_; }
+  // Presses of each button of the pad that drove at that moment, since the beginning. Every report
+  // counts, so that a press between two ticks is not missed. A button that is held while the pad is
+  // plugged in counts with the first report.
+  const PressCounts& presses() const noexcept { return presses_; }
 
  private:
   struct Pad {
@@ -75,14 +92,13 @@ class Pads {
   bool is_fallback(std::uint16_t device) const noexcept;
   bool is_other_plugged_in() const noexcept;
   void replace_driver() noexcept;
-  void count_presses(std::uint32_t before, std::uint32_t now) noexcept;
   Stick stick_of(const Pad& pad) const noexcept;
   Stick fallback_stick() const noexcept;
 
   std::vector<Pad> pads_;
   std::uint16_t driving_ = kNoDevice;
   int turns_ = 0;
-  std::array<std::uint32_t, kButtonCount> presses_{};
+  PressCounts presses_{};
   int silence_ticks_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// What a viewer needs of a session: the cast once, a frame whenever it draws, a sample of each tick
-// for its graphs. All of it is copied out of the simulation, nothing of it steers one.
+// What a viewer needs of a session: the cast once, a frame whenever it draws, and a sample of each
+// tick for graphs. All of it is copied out of the simulation; changing it has no effect on one.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace gaitpad {
 
-// What does not change while a session runs.
+// What stays the same while a session runs.
 struct CastMember {
-  std::string character, style;  // names; the style is that of the beginning
+  std::string character, style;  // names; the style is the one at the beginning
   std::shared_ptr<const WalkModel> model;
   GaitLimits limits;
 };
@@ -23,8 +23,8 @@ struct Cast {
   std::shared_ptr<const GaitCycle> source;
   std::vector<CastMember> members;
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
-  std::vector<std::string> styles;                          // all that a `style` command may name
-  std::vector<StyleValues> style_values;                    // of these, as their files have them
+  std::vector<std::string> styles;                          // that a `style` command may name
+  std::vector<StyleValues> style_values;                    // of these, as in their files
   int rate_hz = 240;
 };
 Cast cast_of(const Simulation& simulation, const SimulationConfig& config);
@@ -33,41 +33,41 @@ struct WalkerFrame {
   Pose before, pose;  // after the tick before and after this one
   WalkFrame walk;
   GaitParams params;  // that the tick used
-  StyleValues style;  // in force, changes made by commands included
+  StyleValues style;  // the chosen one, with the changes made by commands
   int style_index = 0;
   GaitOverrides overrides;
-  std::array<LegAngles, 2> angles_rad{};  // posed; signs as in base/leg.h
-  double phase = 0.0;            // of the source's cycle, 0 .. 1 from the right foot's strike on
-  double presence = 0.0;         // 0 standing .. 1 walking: how much of the source shows
-  std::array<vec3, 2> lift_m{};  // heel where the running or last flight began, world
-  vec3 landing_m{0.0};           // heel where the running or last step is to land, world
+  std::array<LegAngles, 2> angles_rad{};  // of the pose; signs as in gaitpad/limbs.h
+  double phase = 0.0;            // of the source's cycle, 0 .. 1 from the right heel strike on
+  double presence = 0.0;         // how much of the source shows: 0 standing .. 1 walking
+  std::array<vec3, 2> lift_m{};  // where the heel began its present or last flight, world
+  vec3 landing_m{0.0};           // where the heel of the present or last step lands, world
   std::int64_t ik_failures = 0;
 };
 
-// Of the driving pad.
+// The driving pad.
 struct PadFrame {
   std::uint16_t device = kNoDevice;  // kNoDevice: none has driven so far
   bool is_present = false;
   PadState state;             // uncalibrated
-  Calibration calibration;    // by which the stick was made of it
-  std::uint64_t reports = 0;  // of it since the beginning
+  Calibration calibration;    // that makes the stick of it
+  std::uint64_t reports = 0;  // since the beginning
 };
 
 struct SessionFrame {
   std::int64_t tick = -1;    // -1: none yet
-  std::int64_t time_ns = 0;  // CLOCK_MONOTONIC, when the tick was due; 0 where nothing is live
+  std::int64_t time_ns = 0;  // CLOCK_MONOTONIC, when the tick was due; 0 in a replay
   Stick stick;               // calibrated
   PadFrame pad;
-  // Presses of each button of the driving pad since the beginning: none is missed between frames.
-  std::array<std::uint32_t, kButtonCount> presses{};
+  // Presses of each button since the beginning (Pads::presses()): none is missed between frames.
+  PressCounts presses{};
   SimulationCounts counts;
   int walker_count = 0;
   std::array<WalkerFrame, kMaxWalkers> walkers;
 };
-// Of joints only as many as there are are copied: `frame` is to be used again for the same session.
+// Copies only the joints that there are: use a frame for one session only.
 void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept;
 
-// One tick of one character, small: for graphs.
+// One tick of one character, small enough to keep many of them.
 struct WalkerSample {
   std::array<std::array<float, 3>, 2> joint_rad{};  // hip flexion, knee flexion, ankle dorsiflexion
   std::array<vec3, 2> heel_m{}, toe_m{};            // world
@@ -81,7 +81,7 @@ struct TickSample {
   std::int64_t tick = -1;
   int walker_count = 0;
   float stick_x = 0.0f, stick_y = 0.0f;
-  float step_us = 0.0f;  // what the tick took; 0 where it is not measured
+  float step_us = 0.0f;  // duration of the tick; 0: not measured
   std::array<WalkerSample, kMaxWalkers> walkers;
 };
 void copy_sample(const Simulation& simulation, TickSample& sample) noexcept;

@@ -1,5 +1,10 @@
 // The whole chain for one tick: reports in, poses out. The live loop, the replay, the tests and the
-// benchmark all call step(); what it did depends on its reports alone, never on a clock.
+// benchmark all call step(). Its result depends on the reports alone, never on a clock: the same
+// reports in the same ticks give the same poses bit by bit.
+//
+//   auto simulation = Simulation::create(config);   // simulation_config() reads one from files
+//   simulation->step(reports);                      // once every 1 / rate_hz seconds
+//   const Pose& pose = simulation->walkers().front().pose;
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -24,35 +29,36 @@ inline constexpr int kMaxWalkers = 16;
 struct WalkerConfig {
   Character character;
   int style = 0;                       // index in SimulationConfig::styles
-  std::optional<GaitCycle> own_cycle;  // on the character's own skeleton, where it brings one
+  std::optional<GaitCycle> own_cycle;  // the cycle on the character's own skeleton, if it has one
 };
 struct SimulationConfig {
   int rate_hz = 240;
   IkMode ik = IkMode::robust;
   std::vector<PadConfig> pads;  // a report's device is the index here
-  std::vector<Style> styles;    // all that a command may name; of equal names the first one counts
+  std::vector<Style> styles;    // that commands may name; of equal names the first one counts
   GaitCycle cycle;
-  std::vector<WalkerConfig> walkers;  // at least one; side by side, the first at the origin
+  std::vector<WalkerConfig>
+      walkers;  // at least one; they stand side by side, the first at the origin
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
 };
 
-// Slots for devices that are not known yet.
+// Configurations for devices that are not known yet: set_pad() fills them in.
 std::vector<PadConfig> unknown_pads(std::size_t count);
 
-// What a step has met, since the beginning.
+// Counted since the beginning.
 struct SimulationCounts {
   std::int64_t ticks = 0;
   std::int64_t reports = 0;      // input reports, sound or not
   std::int64_t bad_reports = 0;  // too short, of an unknown id, of no device
   std::int64_t commands = 0;
-  std::int64_t bad_commands = 0;  // malformed, of unknown names, out of bounds: changed nothing
+  std::int64_t bad_commands = 0;  // malformed, with unknown names, out of bounds: changed nothing
 };
 
-// A zone of the terrain in which the walker is, and the style that it takes up again behind it.
+// The zone of the terrain that a walker is in, and the style that it returns to when it leaves.
 struct ZoneStyle {
   int index = -1;           // in Terrain::zones; -1: none
-  bool gives_back = false;  // false: no zone, or a command has chosen another style in it
-  int own_style = 0;
+  bool gives_back = false;  // false: in no zone, or a command has chosen another style in it
+  int own_style = 0;        // from before the zone
   StyleValues own_values;
 };
 
@@ -60,42 +66,48 @@ struct Walker {
   std::shared_ptr<const WalkModel> model;  // shared with copies of the simulation
   GaitLimits limits;
   int style = 0;       // index in Simulation::styles()
-  StyleValues values;  // of that style, and what commands have changed since
+  StyleValues values;  // of that style, with what commands have changed since
   ZoneStyle zone;
   StyleBlend blend;
-  double tired = 0.0;    // 0 .. 1, by its style's fatigue model
-  StyleValues in_force;  // of the last tick: values, part of the way there, and tired
+  double tired = 0.0;    // 0 .. 1, by the fatigue model of its style
+  StyleValues in_force;  // used by the last tick: `values` blended in, with fatigue
   GaitOverrides overrides;
   GaitParams params;  // of the last tick
   WalkState state;
   Pose before, pose;             // of the tick before the last and of the last
-  vec3 start_m{0.0};             // where it stood at first, facing +z
-  double walked_m = 0.0;         // along the path of its hips on the ground, resets left out
+  vec3 start_m{0.0};             // where it stood at first, facing +z; world
+  double walked_m = 0.0;         // on the ground, along the path of its hips; resets do not count
   std::int64_t ik_failures = 0;  // legs times ticks
 };
 
-// Copies are cheap, a few kilobytes a walker: what stands still is shared by them.
+// Copies only the joints that there are: a whole Pose has 10 KB.
+void copy_pose(const Pose& from, Pose& to) noexcept;
+
+// Copies are cheap, a few kilobytes a walker: they share what does not change.
 class Simulation {
  public:
+  // Error: no walker or more than kMaxWalkers, a motion that does not fit a character, a zone whose
+  // style does not exist.
   static Result<Simulation> create(const SimulationConfig& config);
 
-  // What is known of a device that was found while the simulation runs, before its first report. No
-  // heap: it is swapped with the slot of SimulationConfig::pads, which is to be not usable and not
-  // present (unknown_pads()).
-  void set_pad(std::uint16_t device, PadConfig&& config) noexcept { pads_.set(device, config); }
-  // One tick with the reports that belong to it, in order of arrival. No heap, lock or clock.
+  // Sets what is known of a device that was found while the simulation runs, before its first
+  // report. Its entry in SimulationConfig::pads must be one of unknown_pads(). No heap: they are
+  // swapped.
+  void set_pad(std::uint16_t device, PadConfig&& config) noexcept { pads_.set_pad(device, config); }
+  // Runs one tick with the reports that belong to it, in order of arrival. No heap, lock or clock.
   void step(std::span<const Report> reports) noexcept;
-  // A report of the tick that the next step() ends, ahead of it: a recording may have millions.
-  void take(const Report& report) noexcept;
+  // Takes in one report of the tick that the next step() runs. For recordings: a tick of one may
+  // have millions of reports.
+  void take_report(const Report& report) noexcept;
 
   const std::vector<Walker>& walkers() const { return walkers_; }
   const std::vector<Style>& styles() const { return *styles_; }
-  // What they walk on: the configuration's, larger where a foot would not fit its treads.
+  // The ground: the configuration's terrain, enlarged if a foot would not fit its treads.
   const std::shared_ptr<const Terrain>& terrain() const { return terrain_; }
   double terrain_scale() const { return terrain_scale_; }
   const Stick& stick() const { return stick_; }  // of the last tick
   const Pads& pads() const { return pads_; }
-  // A heel of the first character struck the floor in the last tick.
+  // Whether a heel of the first character struck the ground in the last tick.
   bool heel_struck() const { return heel_struck_; }
   const SimulationCounts& counts() const { return counts_; }
   // Over the bits of every pose of every character in every tick so far.
@@ -107,7 +119,7 @@ class Simulation {
   std::optional<Error> find_zone_styles();
   bool obey(std::string_view text) noexcept;
   int style_index(std::string_view name) const noexcept;  // -1: there is none
-  bool take_styles(std::span<Walker> walkers, std::string_view name) noexcept;
+  bool choose_style(std::span<Walker> walkers, std::string_view name) noexcept;
   void add_to_hash(const Pose& pose) noexcept;
 
   double dt_s_ = 0.0;

@@ -1,4 +1,4 @@
-#include "gaitpad/setup.h"
+#include "gaitpad/session_spec.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 namespace gaitpad {
 namespace {
 
-// Files given by hand stand in front, so that they win over equal names in config/.
-Result<std::vector<Style>> all_styles(const SessionOptions& options, std::vector<int>& chosen) {
+// The chosen files come first, so that they win over equal names in the folders of configuration.
+Result<std::vector<Style>> all_styles(const SessionSpec& spec, std::vector<int>& chosen) {
   std::vector<Style> styles;
   const auto load = [&styles](const std::string& path) -> std::optional<Error> {
     auto style = load_style(path);
@@ -24,8 +24,8 @@ Result<std::vector<Style>> all_styles(const SessionOptions& options, std::vector
     styles.push_back(std::move(*style));
     return std::nullopt;
   };
-  for (const std::string& wanted : options.styles) {
-    auto path = config_file(options.config_folders, "styles", wanted);
+  for (const std::string& wanted : spec.walk.styles) {
+    auto path = config_file(spec.config_folders, "styles", wanted);
     if (!path) return path.error();
     chosen.push_back(static_cast<int>(styles.size()));
     if (auto problem = load(*path)) return *problem;
@@ -34,16 +34,16 @@ Result<std::vector<Style>> all_styles(const SessionOptions& options, std::vector
     chosen.push_back(0);
     styles.emplace_back().name = "even";
   }
-  for (const std::string& path : config_files(options.config_folders, "styles")) {
+  for (const std::string& path : config_files(spec.config_folders, "styles")) {
     if (auto problem = load(path)) return *problem;
   }
   return styles;
 }
 
-Result<std::vector<Character>> all_characters(const SessionOptions& options) {
+Result<std::vector<Character>> all_characters(const SessionSpec& spec) {
   std::vector<Character> characters;
-  for (const std::string& wanted : options.characters) {
-    auto path = config_file(options.config_folders, "characters", wanted);
+  for (const std::string& wanted : spec.walk.characters) {
+    auto path = config_file(spec.config_folders, "characters", wanted);
     if (!path) return path.error();
     auto character = load_character(*path);
     if (!character) return character.error();
@@ -58,18 +58,18 @@ const T& nth_or_last(const std::vector<T>& list, std::size_t n) {
   return list[std::min(n, list.size() - 1)];
 }
 
-Result<std::shared_ptr<const Terrain>> terrain_of(const SessionOptions& options) {
-  if (options.terrain.empty()) return flat_terrain();
-  auto path = config_file(options.config_folders, "terrain", options.terrain);
+Result<std::shared_ptr<const Terrain>> terrain_of(const SessionSpec& spec) {
+  if (spec.walk.terrain.empty()) return flat_terrain();
+  auto path = config_file(spec.config_folders, "terrain", spec.walk.terrain);
   if (!path) return path.error();
   auto terrain = load_terrain(*path);
   if (!terrain) return terrain.error();
   return std::shared_ptr<const Terrain>(std::make_shared<Terrain>(std::move(*terrain)));
 }
 
-Result<GaitCycle> cycle_of(const SessionOptions& options) {
-  if (options.motion.empty() || options.motion == "procedural") return procedural_gait();
-  const auto path = motion_path(options.config_folders, options.motion);
+Result<GaitCycle> cycle_of(const SessionSpec& spec) {
+  if (spec.walk.motion.empty() || spec.walk.motion == "procedural") return procedural_gait();
+  const auto path = motion_path(spec.config_folders, spec.walk.motion);
   if (!path) return path.error();
   auto motion = load_motion_source(*path);
   if (!motion) return motion.error();
@@ -89,27 +89,24 @@ Result<WalkerConfig> walker_config(const Character& character, int style, const 
 
 }  // namespace
 
-Result<SimulationConfig> simulation_config(const SessionOptions& options,
-                                           const std::vector<TraceDevice>& devices,
-                                           const std::string& source, int rate_hz) {
+Result<PadFiles> load_pad_files(const SessionSpec& spec) {
+  return load_pad_files(spec.config_folders, spec.pad.map, spec.pad.calibration);
+}
+
+Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz) {
   SimulationConfig config;
   config.rate_hz = rate_hz;
-  config.ik = options.ik;
-  auto files = load_pad_files(options.config_folders, options.map, options.calibration);
-  if (!files) return files.error();
-  auto pads = pad_configs(*files, devices, source);
-  if (!pads) return pads.error();
-  config.pads = std::move(*pads);
-  auto terrain = terrain_of(options);
+  config.ik = spec.walk.ik;
+  auto terrain = terrain_of(spec);
   if (!terrain) return terrain.error();
   config.terrain = std::move(*terrain);
   std::vector<int> chosen_styles;
-  auto styles = all_styles(options, chosen_styles);
+  auto styles = all_styles(spec, chosen_styles);
   if (!styles) return styles.error();
   config.styles = std::move(*styles);
-  auto characters = all_characters(options);
+  auto characters = all_characters(spec);
   if (!characters) return characters.error();
-  auto cycle = cycle_of(options);
+  auto cycle = cycle_of(spec);
   if (!cycle) return cycle.error();
   config.cycle = std::move(*cycle);
   const std::size_t count = std::max(characters->size(), chosen_styles.size());

@@ -1,5 +1,5 @@
-// What commands that run on share: what ends them, lines that they read, and a line that is
-// rewritten in place.
+// What commands share that run until somebody ends them: the end, the lines that they read, and the
+// status line that they rewrite in place.
 #pragma once
 #include <poll.h>
 
@@ -14,11 +14,10 @@
 
 namespace gaitpad {
 
-// Ends at SIGINT, SIGTERM, SIGHUP or when the time given to it is over. To be made before any
-// thread starts: the signals are blocked, so that nothing is cut off half-way, and wait here to be
-// asked for. Who sends one more than a second after the end has begun does not want to wait: the
-// process ends at once. SIGPIPE is ignored: a reader that has gone is a failed write, told like any
-// other.
+// The end of a command: SIGINT, SIGTERM, SIGHUP, or the time that was given to it. Make it before
+// any thread starts: it blocks these signals, so that nothing is cut off half-way, and reads them
+// here. A further signal more than a second after the end has begun ends the process at once.
+// SIGPIPE is ignored: writing to a reader that has gone is a failed write like any other.
 class RunEnd {
  public:
   RunEnd();
@@ -37,14 +36,14 @@ class RunEnd {
 class InputLines {
  public:
   pollfd fd() const noexcept { return {is_open_ ? 0 : -1, POLLIN, 0}; }
-  std::vector<std::string> take();
+  std::vector<std::string> take_lines();
 
  private:
   bool is_open_ = true;
-  std::string rest_;  // of a line that is not complete
+  std::string rest_;  // an incomplete line
 };
 
-// One line on a terminal, rewritten in place; nothing where `file` is no terminal.
+// Lines on a terminal, rewritten in place. Nothing is shown if `file` is not a terminal.
 class StatusLine {
  public:
   explicit StatusLine(int file);
@@ -61,9 +60,5 @@ class StatusLine {
   bool is_terminal_;
   std::size_t shown_ = 0;  // lines
 };
-
-// `gaitpad COMMAND: SENTENCE` on standard error, below which a status line may go on.
-void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
-                   StatusLine* line = nullptr);
 
 }  // namespace gaitpad

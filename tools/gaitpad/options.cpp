@@ -1,21 +1,18 @@
-#include "tools/gaitpad/pad_options.h"
+#include "tools/gaitpad/options.h"
 
 #include <fmt/format.h>
-
-#include <vector>
 
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/drivers.h"
-#include "tools/gaitpad/report_print.h"
+#include "tools/gaitpad/print.h"
 
 namespace gaitpad {
 namespace {
 
-// Opening a pad may take two seconds.
-constexpr std::int64_t kPatienceNs = 2'500'000'000;
+constexpr std::int64_t kPatienceNs = 2'500'000'000;  // opening a pad may take two seconds
 
-// Recordings are named by PAD, not by a driver.
+// Drivers without a library are left out: a recording is named by PAD.
 std::vector<std::string> driver_names() {
   std::vector<std::string> names;
   for (const DriverEntry& entry : drivers()) {
@@ -24,7 +21,7 @@ std::vector<std::string> driver_names() {
   return names;
 }
 
-// Asked of the system, not of the drivers, which another thread is using.
+// Asks the system: the drivers are in use by another thread.
 std::vector<std::string> pads_of_system() {
   std::vector<std::string> pads;
   for (const SystemNode& node : system_nodes("input")) {
@@ -81,6 +78,53 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
     remarks.push_back(other);
   remarks.push_back("gaitpad doctor finds why a pad does not work");
   print_remarks(command_, remarks, &line);
+}
+
+void add_session_options(CLI::App& command, SessionSpec& spec, const std::string& default_rate) {
+  SessionSpec::Walk& walk = spec.walk;
+  spec.config_folders = config_folders(GAITPAD_CONFIG_DIR);
+  command.add_option("--motion", walk.motion,
+                     "motion, FILE|NAME (.bvh, .amc, .toml); without it the built-in walk");
+  command.add_option("--character", walk.characters, "a build, FILE|NAME; once for each character")
+      ->allow_extra_args(false)  // the word after the next may be PAD
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option("--style", walk.styles,
+                  "a way to walk, FILE|NAME; the n-th for the n-th character")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--terrain", walk.terrain, "the ground, FILE|NAME; without it flat");
+  command.add_option("--script", walk.script, "commands at given times, FILE");
+  command
+      .add_option_function<std::string>(
+          "--ik",
+          [&walk](const std::string& mode) {
+            walk.ik = mode == "paper" ? IkMode::paper : IkMode::robust;
+          },
+          "paper or robust")
+      ->check(CLI::IsMember({"paper", "robust"}))
+      ->default_str("robust");
+  command.add_option("--calibration", spec.pad.calibration, "calibration file of the stick");
+  command.add_option("--map", spec.pad.map, "pad file that overrides config/pads");
+  command
+      .add_option("--rate", spec.rate_hz, fmt::format("ticks a second (default: {})", default_rate))
+      ->check(CLI::Range(1, kMaxRateHz));
+}
+
+std::string missing_window() {
+  return "this program was built without its window and its pictures; build it with "
+         "-DGAITPAD_WINDOW=ON";
+}
+
+std::string missing_bench() {
+  return "this program was built without its benchmark; build it with -DGAITPAD_BENCH=ON";
+}
+
+void add_missing_command(CLI::App& app, int& status, const std::string& name,
+                         const std::string& description, const std::string& sentence) {
+  CLI::App* command = app.add_subcommand(name, description);
+  command->allow_extras();
+  command->callback([&status, name, sentence] { status = fail(name, sentence); });
 }
 
 }  // namespace gaitpad

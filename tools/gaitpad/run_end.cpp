@@ -1,4 +1,4 @@
-#include "tools/gaitpad/live_run.h"
+#include "tools/gaitpad/run_end.h"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -14,8 +14,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxLineBytes = 4096;  // of a command; longer ones are cut
-constexpr int kMaxReads = 64;                // at once, of who writes without end
+constexpr std::size_t kMaxLineBytes = 4096;  // longer lines are cut
+constexpr int kMaxReads = 64;                // at once, from a writer that never stops
 
 constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
@@ -26,10 +26,10 @@ sigset_t ending_signals() noexcept {
   return set;
 }
 
-// So long that the sum with the clock stays in range.
+// The sum with the clock stays in range.
 constexpr double kMaxSeconds = 1e9;
 
-// A signal that comes with the first (a terminal and `timeout` may both send it) is the same wish.
+// A second signal within this time counts as the first: a terminal and `timeout` may both send one.
 constexpr std::int64_t kOneWish_ns = 1'000'000'000;
 std::atomic<std::int64_t> end_began_ns{0};
 
@@ -37,7 +37,7 @@ void end_at_once(int signal) {
   if (now_ns() - end_began_ns.load() > kOneWish_ns) ::_exit(128 + signal);
 }
 
-// From now on a signal comes through, whatever the calling thread is waiting for.
+// From now on a signal interrupts the calling thread, whatever it waits for.
 void allow_ending_at_once() noexcept {
   end_began_ns = now_ns();
   struct sigaction action = {};
@@ -55,7 +55,8 @@ RunEnd::RunEnd() {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
   signals_ = OwnedFd(signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC));
-  if (signals_.get() < 0) pthread_sigmask(SIG_UNBLOCK, &set, nullptr);  // rather cut off than never
+  if (signals_.get() < 0)
+    pthread_sigmask(SIG_UNBLOCK, &set, nullptr);  // better cut off than never ended
 }
 
 void RunEnd::end_after(double seconds) noexcept {
@@ -84,7 +85,7 @@ void RunEnd::wait(std::chrono::milliseconds time, std::span<const pollfd> others
   ::poll(fds.data(), fds.size(), static_cast<int>(wait_ms));
 }
 
-std::vector<std::string> InputLines::take() {
+std::vector<std::string> InputLines::take_lines() {
   std::vector<std::string> lines;
   pollfd ready = fd();
   for (int reads = 0; is_open_ && reads < kMaxReads; ++reads) {
@@ -92,7 +93,7 @@ std::vector<std::string> InputLines::take() {
     char bytes[1024];
     const ssize_t count = ::read(0, bytes, sizeof bytes);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) is_open_ = false;  // the end; a last line without its end counts
+    if (count <= 0) is_open_ = false;  // the end; a last line without a line break counts
     if (count <= 0 && !rest_.empty()) rest_ += '\n';
     if (count > 0) rest_.append(bytes, static_cast<std::size_t>(count));
     for (std::size_t end; (end = rest_.find('\n')) != std::string::npos; rest_.erase(0, end + 1)) {
@@ -134,13 +135,6 @@ void StatusLine::clear() {
   if (shown_ == 0) return;
   write_all(shown_ > 1 ? fmt::format("\033[{}A\r\033[J", shown_ - 1) : "\r\033[J");
   shown_ = 0;
-}
-
-void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
-                   StatusLine* line) {
-  if (line && !remarks.empty()) line->clear();
-  for (const std::string& remark : remarks)  // one that nobody can read is no failure
-    std::fputs(fmt::format("gaitpad {}: {}\n", command, remark).c_str(), stderr);
 }
 
 }  // namespace gaitpad

@@ -1,0 +1,66 @@
+// Everything that describes one session, live or replayed, and what its files make of it.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gaitpad/pad_stream.h"
+#include "gaitpad/result.h"
+#include "gaitpad/simulation.h"
+#include "gaitpad/trace.h"
+
+namespace gaitpad {
+
+// FILE|NAME is a path, or the name of a file in the folders of configuration. An empty text or list
+// means the default.
+struct SessionSpec {
+  // Who walks, how, and where.
+  struct Walk {
+    std::string motion;                   // FILE|NAME; `procedural` or empty: the built-in walk
+    std::vector<std::string> characters;  // FILE|NAME, one for each character
+    std::vector<std::string> styles;  // FILE|NAME; the shorter of the two lists repeats its last
+    std::string terrain;              // FILE|NAME; empty: flat
+    std::string script;               // FILE with commands at given times
+    IkMode ik = IkMode::robust;
+  };
+  // Which pad drives, and what its reports mean.
+  struct Pad {
+    PadWish wish;             // of a live session
+    std::string map;          // pad file that goes before config/pads
+    std::string calibration;  // file of the stick
+  };
+  // Of a live session alone.
+  struct Live {
+    std::string record;     // FILE.hid to write the session to
+    bool keyboard = false;  // a pad that LiveSession::steer() moves, used while no pad is deflected
+    bool rumble = true;     // a beat at each heel strike, stronger the faster the walk
+    // by_hand: no loop thread, ticks run in LiveSession::advance() alone; for pictures and videos.
+    enum class Clock { real_time, by_hand } clock = Clock::real_time;
+  };
+  // Of a replay alone.
+  struct Replay {
+    std::string trace;               // the recording; empty: the session is live
+    Damage damage = Damage::refuse;  // what a damaged line of it means
+    std::string out;                 // folder for the files that replay() writes; empty: none
+    std::optional<int> fps;          // of the poses written; none: one pose a tick
+    bool gltf = false;               // write pose.glb beside pose.bvh
+  };
+
+  Walk walk;
+  Pad pad;
+  Live live;
+  Replay replay;
+  // Ticks a second. None: kDefaultRateHz, in a replay the trace's. In a replay a rate that differs
+  // from the trace's is an error.
+  std::optional<int> rate_hz;
+  std::vector<std::string> config_folders;  // config_files.h
+};
+
+// What `spec.pad` and the folders of configuration say about pads. Reads files.
+Result<PadFiles> load_pad_files(const SessionSpec& spec);
+
+// The simulation that `spec.walk` describes, at this rate and without pads: the caller adds those.
+// Reads every file that it names.
+Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz);
+
+}  // namespace gaitpad

@@ -1,0 +1,380 @@
+#include "tools/gaitpad/calibrate_guide.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "stick/guide.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
+
+namespace gaitpad {
+namespace {
+
+// --- keys
+
+// Single keys of standard input: on a terminal at once and without echo, else the first letter of
+// each line. The terminal is in another mode meanwhile; the mode is restored by the destructor,
+// when the process is stopped (Ctrl-Z) or quit (Ctrl-\), and set again when the process continues.
+// Ctrl-C stays a signal. At most one object at a time.
+class TerminalKeys {
+ public:
+  enum class Earlier { count, forgotten };  // keys that were pressed before
+  explicit TerminalKeys(Earlier earlier = Earlier::count);
+  ~TerminalKeys();
+  TerminalKeys(const TerminalKeys&) = delete;
+  TerminalKeys& operator=(const TerminalKeys&) = delete;
+
+  // The next key, '\n' for Enter or an empty line; nothing if there is none now. Never waits.
+  // Arrows and other escape sequences are left out.
+  std::optional<char> take_key();
+  bool is_at_end() const noexcept { return is_at_end_; }  // of input: no key will come
+
+ private:
+  std::optional<char> byte();
+
+  bool is_terminal_ = false;
+  bool is_at_end_ = false;
+  std::string line_;  // an incomplete line
+};
+
+constexpr std::size_t kMaxLineBytes = 256;
+constexpr char kEscape = 0x1b, kEndOfInput = 0x04;
+constexpr int kMaxEscapeBytes = 16;
+
+// For the signal handlers, which are set while there is a TerminalKeys.
+termios mode_before, mode_of_keys;
+bool is_in_use = false;
+constexpr int kHandledSignals[] = {SIGTSTP, SIGQUIT};
+struct sigaction actions_before[2];
+
+void put_back_and_obey(int signal) {
+  const int error = errno;
+  ::tcsetattr(0, TCSANOW, &mode_before);
+  if (signal == SIGTSTP) {
+    ::kill(::getpid(), SIGSTOP);  // returns when the process is continued
+    ::tcsetattr(0, TCSANOW, &mode_of_keys);
+  } else {
+    ::signal(signal, SIG_DFL);
+    ::raise(signal);  // comes when the handler has returned
+  }
+  errno = error;
+}
+
+void handle_signals() noexcept {
+  struct sigaction action = {};
+  action.sa_handler = &put_back_and_obey;
+  action.sa_flags = SA_RESTART;
+  for (std::size_t i = 0; i < std::size(kHandledSignals); ++i)
+    ::sigaction(kHandledSignals[i], &action, &actions_before[i]);
+}
+
+TerminalKeys::TerminalKeys(Earlier earlier) {
+  assert(!is_in_use);
+  if (::tcgetattr(0, &mode_before) != 0) return;
+  mode_of_keys = mode_before;
+  mode_of_keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  mode_of_keys.c_cc[VMIN] = 1;
+  mode_of_keys.c_cc[VTIME] = 0;
+  handle_signals();
+  is_terminal_ = is_in_use = true;
+  ::tcsetattr(0, earlier == Earlier::count ? TCSANOW : TCSAFLUSH, &mode_of_keys);
+}
+
+TerminalKeys::~TerminalKeys() {
+  if (!is_terminal_) return;
+  ::tcsetattr(0, TCSANOW, &mode_before);
+  for (std::size_t i = 0; i < std::size(kHandledSignals); ++i)
+    ::sigaction(kHandledSignals[i], &actions_before[i], nullptr);
+  is_in_use = false;
+}
+
+// Reads one byte, not more: the bytes behind it may be for the next reader.
+std::optional<char> TerminalKeys::byte() {
+  pollfd ready = {0, POLLIN, 0};
+  if (is_at_end_ || ::poll(&ready, 1, 0) <= 0) return std::nullopt;
+  char value = 0;
+  const ssize_t count = ::read(0, &value, 1);
+  if (count == 1) return value;
+  if (count == 0 || (errno != EINTR && errno != EAGAIN)) is_at_end_ = true;
+  return std::nullopt;
+}
+
+std::optional<char> TerminalKeys::take_key() {
+  while (const std::optional<char> next = byte()) {
+    if (!is_terminal_ && *next != '\n') {
+      if (line_.size() < kMaxLineBytes && *next != '\r') line_ += *next;
+      continue;
+    }
+    if (!is_terminal_) {
+      const std::string line = std::exchange(line_, {});
+      return line.empty() ? '\n' : line.front();
+    }
+    if (*next == kEndOfInput) is_at_end_ = true;
+    for (int i = 0; *next == kEscape && i < kMaxEscapeBytes && byte(); ++i) continue;
+    if (*next != kEscape && *next != kEndOfInput) return *next == '\r' ? '\n' : *next;
+  }
+  if (!is_at_end_ || line_.empty()) return std::nullopt;
+  return std::exchange(line_, {}).front();  // a last line without a line break
+}
+
+// --- what is shown
+
+struct ShownPad {
+  const DeviceInfo& info;
+  bool is_plugged = true;
+};
+
+class GuideScreen {
+ public:
+  StatusLine& line() noexcept { return line_; }
+  void toggle_help() noexcept;
+  void show(const CalibrationGuide& guide, const ShownPad& pad);
+
+ private:
+  void rewrite(const CalibrationGuide& guide, const ShownPad& pad);
+  void print_news(const CalibrationGuide& guide, const ShownPad& pad);
+
+  StatusLine line_{2};
+  bool has_help_ = false;
+  std::int64_t shown_ns_ = 0;
+  GuideStep shown_step_ = GuideStep::done;
+  // Without a terminal: what was printed last, of each control, then of the plug.
+  GuideStep printed_step_ = GuideStep::done;
+  std::vector<std::string> printed_;
+};
+
+constexpr std::int64_t kRewriteNs = 50'000'000;  // in place
+constexpr std::int64_t kPrintNs = 500'000'000;   // line below line
+constexpr std::size_t kBarWidth = 55;            // narrower screens have no room for bars
+constexpr int kBarCells = 10;
+
+constexpr const char* kUnplugged = "UNPLUGGED: plug it in again, it goes on from here.";
+constexpr const char* kKeys = "Enter next   r repeat   b back   q quit   ? help";
+constexpr const char* kHelp[] = {
+    "Steps go on by themselves. Enter or s: to the next step, what was seen is kept;",
+    "r: forget this step and begin it again; b: the step before, again;",
+    "q or Ctrl-C: end, nothing is written."};
+
+struct Size {
+  std::size_t columns = 79, rows = 24;
+};
+Size screen_size() noexcept {
+  winsize window = {};
+  if (::ioctl(2, TIOCGWINSZ, &window) != 0 || window.ws_col < 2 || window.ws_row < 2) return {};
+  return {window.ws_col - 1u, window.ws_row};
+}
+
+std::string title(const CalibrationGuide& guide, const ShownPad& pad) {
+  const std::string driver = pad.info.driver.empty() ? "recording" : pad.info.driver;
+  return fmt::format("Step {} of {}: {}   {} ({:04x}:{:04x}, {})", guide.index() + 1,
+                     guide.steps().size() - 1, name_of(guide.step()), printable(pad.info.name),
+                     pad.info.vendor, pad.info.product, driver);
+}
+
+// Lines of at most `width`, broken at blanks.
+std::vector<std::string> wrapped_lines(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines;
+  std::size_t begin = 0;
+  while (text.size() - begin > width) {
+    std::size_t end = text.rfind(' ', begin + width);
+    if (end == std::string::npos || end <= begin) end = begin + width;
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end < text.size() && text[end] == ' ' ? end + 1 : end;
+  }
+  lines.push_back(text.substr(begin));
+  return lines;
+}
+
+// `left stick    [####......] +0.012 -0.004  text`; more lines if the text is long.
+std::vector<std::string> control_lines(const GuideProgress& control, bool is_stick,
+                                       std::size_t width) {
+  const double share = std::clamp(control.done, 0.0, 1.0);
+  if (width < kBarWidth)
+    return {fmt::format("{} {:.0f} %: {}", control.control, share * 100.0, control.text)};
+  const auto cells = static_cast<std::size_t>(share * kBarCells);
+  const std::string bar = std::string(cells, '#') + std::string(kBarCells - cells, '.');
+  const std::string place = is_stick ? fmt::format("{:+.3f} {:+.3f}", control.raw.x, control.raw.y)
+                                     : fmt::format("{:.3f}", control.raw.x);
+  std::string begin = fmt::format("  {:<13} [{}] {}  ", control.control, bar, place);
+  std::vector<std::string> lines;
+  for (const std::string& part : wrapped_lines(control.text, width - begin.size())) {
+    lines.push_back(begin + part);
+    begin.assign(begin.size(), ' ');
+  }
+  return lines;
+}
+
+void GuideScreen::toggle_help() noexcept {
+  has_help_ = !has_help_;
+  shown_ns_ = 0;
+  if (line_.is_terminal()) return;
+  for (const char* text : kHelp) fmt::print(stderr, "{}\n", text);
+}
+
+void GuideScreen::show(const CalibrationGuide& guide, const ShownPad& pad) {
+  if (guide.step() == GuideStep::done) return;
+  const bool is_new_step = shown_step_ != guide.step();
+  const std::int64_t time_ns = now_ns();
+  if (!is_new_step && time_ns < shown_ns_ + (line_.is_terminal() ? kRewriteNs : kPrintNs)) return;
+  shown_ns_ = time_ns;
+  shown_step_ = guide.step();
+  if (line_.is_terminal()) {
+    rewrite(guide, pad);
+  } else {
+    print_news(guide, pad);
+  }
+}
+
+void GuideScreen::rewrite(const CalibrationGuide& guide, const ShownPad& pad) {
+  const Size size = screen_size();
+  const std::string instruction = pad.is_plugged ? guide.instruction() : kUnplugged;
+  std::vector<std::string> lines = wrapped_lines(instruction, size.columns);
+  const bool is_of_sticks = guide.step() != GuideStep::triggers;
+  for (const GuideProgress& control : guide.progress())
+    for (std::string& text : control_lines(control, is_of_sticks, size.columns))
+      lines.push_back(std::move(text));
+  if (lines.size() + 1 <= size.rows) lines.insert(lines.begin(), title(guide, pad));
+  if (lines.size() + 1 <= size.rows) lines.push_back(kKeys);
+  for (const char* text : kHelp)
+    if (has_help_ && lines.size() + 1 <= size.rows) lines.push_back(text);
+  if (lines.size() > size.rows) lines.resize(size.rows);
+  line_.show(lines);
+}
+
+void GuideScreen::print_news(const CalibrationGuide& guide, const ShownPad& pad) {
+  const std::vector<GuideProgress> controls = guide.progress();
+  if (printed_step_ != guide.step()) {
+    printed_step_ = guide.step();
+    printed_.assign(controls.size() + 1, "");
+    fmt::print(stderr, "{}\n{}\n", title(guide, pad), guide.instruction());
+  }
+  const auto print = [this](std::size_t index, const std::string& text) {
+    if (index >= printed_.size() || printed_[index] == text) return;
+    printed_[index] = text;
+    if (!text.empty()) fmt::print(stderr, "{}\n", text);
+  };
+  print(controls.size(), pad.is_plugged ? "" : kUnplugged);
+  for (std::size_t i = 0; i < controls.size(); ++i)
+    print(i, fmt::format("{}: {}", controls[i].control, controls[i].text));
+}
+
+// --- the guide
+
+constexpr std::chrono::milliseconds kWait{20};
+constexpr const char* kCommand = "calibrate";
+
+std::string name_of(const DeviceInfo& info) {
+  const std::string name = printable(info.name);
+  return name.empty() ? fmt::format("{:04x}:{:04x}", info.vendor, info.product) : name;
+}
+
+enum class Wish { go_on, give_up };
+
+Wish obey(char key, CalibrationGuide& guide, GuideScreen& screen) {
+  switch (key) {
+    case '\n':
+    case 's':
+    case 'S':
+      guide.skip();
+      break;
+    case 'r':
+    case 'R':
+      guide.repeat();
+      break;
+    case 'b':
+    case 'B':
+      guide.back();
+      break;
+    case '?':
+    case 'h':
+    case 'H':
+      screen.toggle_help();
+      break;
+    case 'q':
+    case 'Q':
+      return Wish::give_up;
+    default:
+      break;
+  }
+  return Wish::go_on;
+}
+
+// Until a pad has come only q counts.
+Wish obey_keys(TerminalKeys& keys, CalibrationGuide* guide, GuideScreen& screen) {
+  while (const std::optional<char> key = keys.take_key()) {
+    if (guide && guide->step() == GuideStep::done) return Wish::go_on;
+    const bool is_quit = *key == 'q' || *key == 'Q';
+    if (guide ? obey(*key, *guide, screen) == Wish::give_up : is_quit) return Wish::give_up;
+  }
+  return keys.is_at_end() ? Wish::give_up : Wish::go_on;
+}
+
+// True: the guide has come to its end. False: the user gave up.
+Result<bool> run_guide(GuidedCalibration& calibration, const PadWish& wish, RunEnd& end) {
+  GuideScreen screen;
+  TerminalKeys keys;  // destroyed before the stream, whose closing may take long
+  MissingPad missing(kCommand, wish);
+  while (!end.is_reached()) {
+    const bool was_there = calibration.guide() != nullptr;
+    calibration.look(kWait);
+    CalibrationGuide* guide = calibration.guide();
+    print_remarks(kCommand, calibration.take_remarks(), &screen.line());
+    missing.look(calibration.plugged(), screen.line());
+    if (guide && !was_there) {
+      if (guide->steps().size() <= 1)  // nothing but `done`
+        return Error{name_of(calibration.pad()) + ": has no stick to calibrate"};
+      print_remarks(kCommand, driver_remarks(calibration.pad()), &screen.line());
+    }
+    if (obey_keys(keys, guide, screen) == Wish::give_up) return false;
+    if (!guide && calibration.has_ended()) return false;
+    if (!guide) continue;
+    screen.show(*guide, {calibration.pad(), calibration.is_plugged()});
+    if (guide->step() == GuideStep::done) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> driver_remarks(const DeviceInfo& info) {
+  const std::string remark = driver_remark(info);
+  if (remark.empty()) return {};
+  return {name_of(info) + ": " + remark};
+}
+
+Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish& wish,
+                                            RunEnd& end) {
+  auto calibration = GuidedCalibration::start(files, wish);
+  if (!calibration) return calibration.error();
+  const auto is_done = run_guide(**calibration, wish, end);
+  if (!is_done) return is_done.error();
+  if (!*is_done) return std::optional<GuidedPad>();
+  return std::optional((*calibration)->finish());
+}
+
+bool confirmed(const std::string& question, RunEnd& end) {
+  TerminalKeys keys(TerminalKeys::Earlier::forgotten);
+  fmt::print(stderr, "{}\n", question);
+  while (!end.is_reached()) {
+    while (const std::optional<char> key = keys.take_key()) {
+      if (*key == '\n') return true;
+      if (*key == 'q' || *key == 'Q' || *key == 'n' || *key == 'N') return false;
+    }
+    if (keys.is_at_end()) return false;
+    end.wait(kWait);
+  }
+  return false;
+}
+
+}  // namespace gaitpad

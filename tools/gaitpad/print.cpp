@@ -1,0 +1,75 @@
+#include "tools/gaitpad/print.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace gaitpad {
+
+using nlohmann::ordered_json;
+
+void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
+                   StatusLine* line) {
+  if (line && !remarks.empty()) line->clear();
+  for (const std::string& remark : remarks)  // a remark that nobody can read is no failure
+    std::fputs(fmt::format("gaitpad {}: {}\n", command, remark).c_str(), stderr);
+}
+
+int fail(std::string_view command, const std::string& sentence) {
+  print_remarks(command, {sentence});
+  return 1;
+}
+
+void print_json_line(const ordered_json& object) {
+  fmt::print("{}\n", object.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+void print_json(const ordered_json& value) {
+  fmt::print("{}\n", value.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+void print_summaries_json(const std::vector<ordered_json>& summaries) {
+  print_json(summaries.size() == 1 ? summaries[0] : ordered_json(summaries));
+}
+
+std::string printable(std::string_view text) {
+  std::string shown(text);
+  for (char& c : shown) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return shown;
+}
+
+std::string usage_text(std::uint32_t usage) {
+  return fmt::format("{:04x}:{:04x}", page_of(usage), id_of(usage));
+}
+
+std::vector<std::string> button_names(const PadState& state) {
+  std::vector<std::string> names;
+  for (int b = 0; b < kButtonCount; ++b) {
+    if (pressed(state, static_cast<PadButton>(b))) names.emplace_back(kButtonNames[b]);
+  }
+  return names;
+}
+
+ordered_json axes_json(const PadState& state) {
+  ordered_json axes = ordered_json::object();
+  for (int a = 0; a < kAxisCount; ++a) axes[std::string(kAxisNames[a])] = state.axis[a];
+  return axes;
+}
+
+void print_session(const std::string& source, const RunSummary& run) {
+  fmt::print("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {:016x}\n", source,
+             run.reports, run.ticks, run.rate_hz,
+             static_cast<double>(run.ticks) / run.rate_hz, run.pose_hash);
+}
+
+void print_character(const RunSummary& run, std::size_t walker, Way way) {
+  const WalkerSummary& w = run.walkers[walker];
+  fmt::print("character {}: {}, style {} at the end, leg {:.3f} m: {}{} steps, {} IK failures\n",
+             walker + 1, w.motion, w.style, w.leg_length_m,
+             way == Way::shown ? fmt::format("{:.1f} m in ", w.distance_m) : "",
+             w.steps[0] + w.steps[1], w.ik_failures);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,41 @@
+// What commands print: sentences for people on standard error, JSON and texts of devices on
+// standard output.
+#pragma once
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gaitpad/decode.h"
+#include "gaitpad/summary.h"
+#include "tools/gaitpad/run_end.h"
+
+namespace gaitpad {
+
+// Prints `gaitpad COMMAND: SENTENCE` on standard error and returns the exit status 1.
+int fail(std::string_view command, const std::string& sentence);
+// The same for each remark, and no exit status. A status line that is being shown is cleared first.
+void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
+                   StatusLine* line = nullptr);
+
+// JSON on one line, and indented. Texts of devices may hold any bytes: what is not UTF-8 is
+// replaced.
+void print_json_line(const nlohmann::ordered_json& object);
+void print_json(const nlohmann::ordered_json& value);
+// One object for one character, else a list.
+void print_summaries_json(const std::vector<nlohmann::ordered_json>& summaries);
+
+// A device's text for a terminal: control characters become '?'.
+std::string printable(std::string_view text);
+std::string usage_text(std::uint32_t usage);  // 0001:0030
+std::vector<std::string> button_names(const PadState& state);
+nlohmann::ordered_json axes_json(const PadState& state);
+
+// `SOURCE: 120 reports, 480 ticks ...`
+void print_session(const std::string& source, const RunSummary& run);
+// What one character did. The way that it walked is printed for replays alone.
+enum class Way { shown, left_out };
+void print_character(const RunSummary& run, std::size_t walker, Way way);
+
+}  // namespace gaitpad

@@ -1,4 +1,4 @@
-// Figure 4's simple structure: four links in a plane, the root's weight lowered.
+// Figure 4's simple structure: four links in a plane with a lowered weight at the root.
 #pragma once
 #include <vector>
 
@@ -10,13 +10,13 @@ namespace gaitpad {
 inline constexpr int kChainLinks = 4;
 inline constexpr double kChainLink_m = 0.25;
 inline constexpr double kChainTolerance_m = 1e-5;
-// Of figure 4: 1 is the even chain.
+// The root's weights in figure 4; 1 is the chain with even weights.
 inline constexpr std::array<double, 5> kRootWeights = {1.0, 0.5, 0.2, 0.1, 0.05};
 
 // The links turn about z; the chain begins at the origin and points along x at angles of 0.
 IkChain plane_chain(const std::array<double, kChainLinks>& weights);
 vec2 plane_end(const IkChain& chain, const IkAngles& angles_rad);
-// Its joints, the origin first and the end last.
+// The places of its joints, from the origin to the end.
 std::vector<vec2> plane_joints(const IkChain& chain, const IkAngles& angles_rad);
 
 struct ChainTask {
@@ -32,10 +32,10 @@ struct ChainSolve {
   const IkAngles& answer() const { return angles_rad.back(); }
   int iterations() const { return static_cast<int>(angles_rad.size()) - 1; }
 };
-// Two rows of the Jacobian, x and y: the plane's half Jacobian.
+// Solves with two rows of the Jacobian, x and y.
 ChainSolve solve_chain(const IkChain& chain, const ChainTask& task, IkMode mode);
 
-// Deterministic numbers everywhere the same (Knuth's MMIX multiplier).
+// Random numbers that are the same on every machine (Knuth's MMIX multiplier).
 class Lcg {
  public:
   explicit Lcg(std::uint64_t seed) : state_(seed) {}
@@ -47,8 +47,8 @@ class Lcg {
  private:
   std::uint64_t state_;
 };
-// A chain bent by up to `bend_rad` at each joint, and a goal no farther than `reach_links` from its
-// end on both axes.
+// A chain bent by at most `bend_rad` at each joint, with a goal within `reach_links` of its end on
+// both axes.
 struct NearGoals {
   double bend_rad = kPi;
   double reach_links = 0.6;

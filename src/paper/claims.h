@@ -1,69 +1,111 @@
-// The thirty assertions that the paper's text comes down to, measured. Numbers, wording and bounds
-// of most are those of the project's notes on the paper; where the walk's own, stricter bounds
-// exist, they count. A claim that does not hold as the paper words it is reported as failed.
-//
-// Each function measures one group from what it is given, so that a broken walk shows.
+// The thirty assertions that the paper's text makes, each measured as a number and compared with
+// its bound. Most numbers and bounds come from the project's notes on the paper; where the walk
+// itself has a stricter bound, that one counts. A claim that does not hold as the paper words it is
+// reported as failed.
 #pragma once
+#include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "paper/claim.h"
+#include "gaitpad/walk.h"
 #include "paper/study.h"
 
 namespace gaitpad {
 
-// All groups, those that depend on the solver in both modes, ordered by number.
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+struct Bound {
+  enum class Kind { at_most, less, at_least, more, within, equal } kind = Kind::at_most;
+  double limit = 0.0;
+  double low = 0.0;  // within: from here to `limit`
+};
+inline constexpr Bound at_most(double v) { return {Bound::Kind::at_most, v}; }
+inline constexpr Bound less_than(double v) { return {Bound::Kind::less, v}; }
+inline constexpr Bound at_least(double v) { return {Bound::Kind::at_least, v}; }
+inline constexpr Bound more_than(double v) { return {Bound::Kind::more, v}; }
+inline constexpr Bound within(double low, double high) { return {Bound::Kind::within, high, low}; }
+inline constexpr Bound equal_to(double v) { return {Bound::Kind::equal, v}; }
+
+bool holds(const Bound& bound, double value) noexcept;  // false if the value is not finite
+std::string text_of(const Bound& bound);                // "<= 0.95"
+
+struct Claim {
+  std::string name;     // begins with its number among the thirty
+  std::string section;  // of the paper
+  IkMode mode = IkMode::robust;
+  std::optional<double> value;
+  std::string bound;
+  std::optional<bool> pass;  // none: this motion cannot test it; `note` says why
+  std::string note;
+};
+
+// Collects the claims of one section of the paper and one mode.
+class ClaimList {
+ public:
+  ClaimList(std::string section, IkMode mode) : section_(std::move(section)), mode_(mode) {}
+  Claim& add(std::string name, double value, const Bound& bound, std::string note = {});
+  Claim& add_untested(std::string name, const Bound& bound, std::string why);
+  std::vector<Claim> take_claims() { return std::move(claims_); }
+
+ private:
+  std::string section_;
+  IkMode mode_;
+  std::vector<Claim> claims_;
+};
+
+const char* name_of(IkMode mode) noexcept;
+// {"motion", "claims": [...]}, the file claims.json.
+std::string claims_json(const std::string& motion, const std::vector<Claim>& claims);
+// One line for each claim, for people.
+std::string claims_table(const std::vector<Claim>& claims);
+
+// All groups, ordered by number; those that depend on the solver in both modes.
 std::vector<Claim> all_claims(Study& study);
 
-// --- claims_flight.cpp: 1-5, section 3.2 ---------------------------------------------------------
-std::vector<Claim> flight_claims(const PaperSource& source, IkMode mode);
-// --- claims_retarget.cpp: 6, 29 ------------------------------------------------------------------
-std::vector<Claim> scaling_claims(const Study& study);
-std::vector<Claim> sliding_claims(const Study& study, IkMode mode);
-// --- claims_cycle.cpp: 7, 8, 30 ------------------------------------------------------------------
-std::vector<Claim> table_1_claims(const Walk& walk, double after_s, IkMode mode);
+// Each of the following measures one group of assertions from what it is given, so that a test can
+// hand it a broken walk.
+
+// claims_motion.cpp: the motion data and other legs, section 3.2.
+std::vector<Claim> flight_claims(const PaperSource& source, IkMode mode);  // 1-5
+std::vector<Claim> scaling_claims(const Study& study);                     // 6
+std::vector<Claim> sliding_claims(const Study& study, IkMode mode);        // 29
+
+// claims_cycle.cpp: the two-stage cycle, turns and uneven ground, section 3.3.1.
+std::vector<Claim> table_1_claims(const Walk& walk, double after_s, IkMode mode);  // 7
 struct FootBuild {  // of a walk's character
   std::array<double, 2> toe_rest_m{};
 };
 FootBuild foot_build(const WalkModel& model);
 std::vector<Claim> continuity_claims(const Walk& walk, const FootBuild& build, double after_s,
-                                     IkMode mode);
-std::vector<Claim> endurance_claims(const Walk& long_walk, IkMode mode);
-// --- claims_chain.cpp: 9-12, section 3.3.2; claims_reach.cpp: 23
-// -----------------------------------
-std::vector<Claim> jacobian_claims(const WalkModel& model, IkMode mode);
-std::vector<Claim> chain_claims(IkMode mode);
-std::vector<Claim> reach_claims(const WalkModel& model, IkMode mode);
-// --- claims_weights.cpp: 13-17, figure 5a
-// ----------------------------------------------------------
+                                     IkMode mode);                        // 8
+std::vector<Claim> endurance_claims(const Walk& long_walk, IkMode mode);  // 30
+std::vector<Claim> terrain_claims(const Study& study, IkMode mode);       // 22
+std::vector<Claim> turn_claims(const Study& study, IkMode mode);          // 24
+
+// claims_solver.cpp: the solver, figure 4 and its cost, section 3.3.2.
+std::vector<Claim> jacobian_claims(const WalkModel& model, IkMode mode);  // 9
+std::vector<Claim> chain_claims(IkMode mode);                             // 10-12
+std::vector<Claim> cost_claims(Study& study);                             // 21
+std::vector<Claim> reach_claims(const WalkModel& model, IkMode mode);     // 23
+
+// claims_style.cpp: what weights, injuries, fatigue, hips and the joystick do, sections 3.1 and 4.
 struct WeightWalks {
   const Walk *even = nullptr, *stiff_hip = nullptr, *stiff_knee = nullptr;
 };
-std::vector<Claim> weight_claims(const WeightWalks& walks, const Ticks& stride, IkMode mode);
-// RMS of the hip's change, falling weights (0.9, 0.8, 0.5, 0.2), degrees.
-std::vector<Claim> monotone_claims(const std::vector<double>& rms_deg, IkMode mode);
-// --- claims_limp.cpp: 18-20, figure 5b
-// ------------------------------------------------------------
+std::vector<Claim> weight_claims(const WeightWalks& walks, const Ticks& stride,
+                                 IkMode mode);  // 13-16
+// RMS of the hip's change for falling weights (0.9, 0.8, 0.5, 0.2), degrees.
+std::vector<Claim> monotone_claims(const std::vector<double>& rms_deg, IkMode mode);  // 17
 struct LimpWalks {
   const Walk *even = nullptr, *limp = nullptr, *limp_hip = nullptr, *limp_knee = nullptr;
 };
-std::vector<Claim> limp_claims(const LimpWalks& walks, IkMode mode);
-std::vector<Claim> limp_weight_claims(const LimpWalks& walks, const Ticks& stride, IkMode mode);
-// --- claims_cost.cpp: 21
-// --------------------------------------------------------------------------
-std::vector<Claim> cost_claims(Study& study);
-// --- claims_terrain.cpp: 22
-// -----------------------------------------------------------------------
-std::vector<Claim> terrain_claims(const Study& study, IkMode mode);
-// --- claims_turn.cpp: 24
-// --------------------------------------------------------------------------
-std::vector<Claim> turn_claims(const Study& study, IkMode mode);
-// --- claims_pad.cpp: 25, section 3.1
-// ----------------------------------------------------------------
-std::vector<Claim> pad_claims(const Study& study);
-// --- claims_style.cpp: 26-28
-// ----------------------------------------------------------------------
-std::vector<Claim> fatigue_claims(const Study& study);
-std::vector<Claim> hip_claims(const Study& study, IkMode mode);
-std::vector<Claim> body_claims(const Study& study);
+std::vector<Claim> limp_claims(const LimpWalks& walks, IkMode mode);  // 18, 19
+std::vector<Claim> limp_weight_claims(const LimpWalks& walks, const Ticks& stride,
+                                      IkMode mode);              // 20
+std::vector<Claim> pad_claims(const Study& study);               // 25
+std::vector<Claim> fatigue_claims(const Study& study);           // 26
+std::vector<Claim> hip_claims(const Study& study, IkMode mode);  // 27
+std::vector<Claim> body_claims(const Study& study);              // 28
 
 }  // namespace gaitpad

@@ -27,7 +27,7 @@ struct Figure5 {
   bool is_limp = false;
   IkMode mode = IkMode::robust;
   std::array<Character3, 3> characters;
-  Ticks stride;  // of all three: weights change no time
+  Ticks stride;  // of all three, because weights do not change the timing
 };
 
 Figure5 figure_of(Study& study, const FigureStyles& styles, IkMode mode, bool is_limp) {
@@ -46,7 +46,7 @@ double time_of(const Figure5& f, std::size_t tick) {
   return static_cast<double>(tick - f.stride.begin) / kPaperRate_hz;
 }
 
-// The data's stride at the phases of the red character's: the paper's "original motion capture".
+// The data's stride at the red character's phases: the paper's "original motion capture".
 struct DataPose {
   std::vector<vec3> joints_m;
   std::array<vec3, 2> heel_m;
@@ -129,7 +129,7 @@ Extent extent_of(const Panel& panel) {
   return e;
 }
 
-// The scale at which every panel fits its box.
+// The largest scale at which every panel fits its box.
 double common_scale(const std::vector<Panel>& panels, const Box& box) {
   double scale = 1e9;
   for (const Panel& panel : panels) {
@@ -158,8 +158,9 @@ void draw_panel(cairo_t* cr, const GaitCycle& cycle, const Panel& panel, const B
             box.width);
 }
 
-Line2 joint_curve(const Figure5& f, const Character3& c, Side side, LegJoint joint) {
-  Line2 points;
+std::vector<PlotPoint> joint_curve(const Figure5& f, const Character3& c, Side side,
+                                   LegJoint joint) {
+  std::vector<PlotPoint> points;
   for (std::size_t k = f.stride.begin; k <= f.stride.end; ++k) {
     points.emplace_back(time_of(f, k), joint_deg(*c.walk, k, side, joint));
   }
@@ -169,18 +170,18 @@ Line2 joint_curve(const Figure5& f, const Character3& c, Side side, LegJoint joi
 void draw_joint(cairo_t* cr, const Figure5& f, const std::vector<DataPose>& data, LegJoint joint,
                 const Box& box) {
   const Side side = f.is_limp ? kLeftSide : kRightSide;
-  std::vector<Line2> curves;
-  for (const Character3& c : f.characters) curves.push_back(joint_curve(f, c, side, joint));
-  Line2 original;
+  std::vector<PlotPoint> original;
   for (std::size_t i = 0; i < data.size(); ++i) {
     original.emplace_back(static_cast<double>(i) / kPaperRate_hz,
                           joint_deg(data[i].angles_rad[side], joint));
   }
-  curves.push_back(original);
-  PlotFrame plot;
-  plot.box = box;
+  Plot plot;
   plot.x = {0.0, time_of(f, f.stride.end)};
-  plot.y = range_of(curves, 5.0);
+  plot.series = {curve_of(std::move(original), {paper_colour::kData, 1.5, 1.0, true})};
+  for (const Character3& c : f.characters) {
+    plot.series.push_back(curve_of(joint_curve(f, c, side, joint), {c.colour, 2.2}));
+  }
+  fit_y(plot, 5.0);
   constexpr std::array<const char*, 3> kTitles = {"hip: flexion", "knee: flexion",
                                                   "ankle: dorsiflexion"};
   plot.title = fmt::format("{} {}", side == kLeftSide ? "Left" : "Right",
@@ -189,20 +190,17 @@ void draw_joint(cairo_t* cr, const Figure5& f, const std::vector<DataPose>& data
   plot.y_label = "angle, deg";
   for (const Ticks& flight : flights(*f.characters[0].walk, side, 0.0)) {
     if (flight.begin < f.stride.begin || flight.end > f.stride.end + 1) continue;
-    draw_band(cr, plot, {time_of(f, flight.begin), time_of(f, flight.end)}, "in flight");
+    plot.bands.push_back(
+        {time_of(f, flight.begin), time_of(f, flight.end), rgb(paper_colour::kBand), "in flight"});
   }
-  draw_frame(cr, plot);
-  draw_curve(cr, plot, original, {paper_colour::kData, 1.5, 1.0, true});
-  for (const std::size_t i : {0u, 1u, 2u}) {
-    draw_curve(cr, plot, curves[i], {f.characters[i].colour, 2.2});
-  }
+  draw_plot(cr, box, plot);
 }
 
 std::string number(double v, const char* format = "{:.1f}") {
   return fmt::format(fmt::runtime(format), v);
 }
 
-// Measured beside what the notes' two prototypes of the method gave.
+// The measured values beside those of the two prototypes in the project's notes.
 Table table_of(const Figure5& f) {
   const Side side = f.is_limp ? kLeftSide : kRightSide;
   const std::string leg = kSideNames[side];

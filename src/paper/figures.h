@@ -1,10 +1,10 @@
-// The paper's figures, drawn from what the code computes when asked.
+// The paper's figures, drawn from what the code computes at the time.
 #pragma once
 #include <string>
 #include <vector>
 
+#include "draw/picture.h"
 #include "paper/study.h"
-#include "view/drawing.h"
 
 namespace gaitpad {
 
@@ -14,20 +14,21 @@ struct Figure {
   std::string csv;
 };
 
-// Foot height, its gradient, the bands, the three targets of the flight.
+// The height of a foot, its gradient, the bands, the three targets of the flight.
 Figure figure_2(const PaperSource& source);
-// Table I: the poses at which the four stages of a stride begin, planted points, ways to the next.
+// Table I: the poses at which the four stages of a stride begin, the planted points, arrows to the
+// next pose.
 Figure figure_3(Study& study);
 // A chain of four links: configurations, and the first two angles over the iterations.
 Figure figure_4();
-// One stride of three characters and of the data, trails of the feet, joint angles. `figure5a` in
-// robust mode, `figure5a_paper` in paper mode.
+// One stride of three characters and of the data, trails of the feet, joint angles. Named
+// `figure5a` in robust mode and `figure5a_paper` in paper mode.
 Figure figure_5a(Study& study, IkMode mode);
 Figure figure_5b(Study& study, IkMode mode);
 
 std::vector<Figure> all_figures(Study& study);
 
-// NAME.png and NAME.csv of each figure and claims.json, all or none.
+// Writes NAME.png and NAME.csv of each figure and claims.json: all of them or none.
 std::optional<Error> write_figures(const std::string& folder, const std::vector<Figure>& figures,
                                    const std::string& claims_json);
 

@@ -8,38 +8,12 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kMaxTicks = 8;
-constexpr std::array<double, 2> kDashes = {6.0, 4.0};
-
-void use(cairo_t* cr, const Stroke& stroke) {
+void set_stroke(cairo_t* cr, const Stroke& stroke) {
   set_colour(cr, rgb(stroke.colour, stroke.alpha));
   cairo_set_line_width(cr, stroke.width);
   cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
-  cairo_set_dash(cr, kDashes.data(), stroke.is_dashed ? 2 : 0, 0.0);
-}
-
-void draw_ticks(cairo_t* cr, const PlotFrame& plot) {
-  const Box& b = plot.box;
-  const TextStyle style{12.0, colour::kFaint, Align::centre};
-  const auto x_ticks = nice_ticks(plot.x.min, plot.x.max, kMaxTicks);
-  const double x_step = x_ticks.size() > 1 ? x_ticks[1] - x_ticks[0] : 1.0;
-  for (const double t : x_ticks) {
-    const double x = std::round(pixel_in(plot, vec2(t, plot.y.min)).x) + 0.5;
-    line(cr, {x, b.y}, {x, b.y + b.height});
-    cairo_stroke(cr);
-    draw_text(cr, style, {x, b.y + b.height + 16.0}, tick_text(t, x_step));
-    set_colour(cr, rgb(colour::kGrid));
-  }
-  const auto y_ticks = nice_ticks(plot.y.min, plot.y.max, kMaxTicks - 1);
-  const double y_step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : 1.0;
-  for (const double t : y_ticks) {
-    const double y = std::round(pixel_in(plot, vec2(plot.x.min, t)).y) + 0.5;
-    line(cr, {b.x, y}, {b.x + b.width, y});
-    cairo_stroke(cr);
-    draw_text(cr, {12.0, colour::kFaint, Align::right}, {b.x - 7.0, y + 4.0}, tick_text(t, y_step));
-    set_colour(cr, rgb(colour::kGrid));
-  }
+  set_dashes(cr, stroke.is_dashed);
 }
 
 }  // namespace
@@ -56,71 +30,13 @@ Page blank_page(int width_px, int height_px, const std::string& title, const std
   return page;
 }
 
-vec2 pixel_in(const PlotFrame& plot, const vec2& value) noexcept {
-  const Box& b = plot.box;
-  return {b.x + b.width * (value.x - plot.x.min) / (plot.x.max - plot.x.min),
-          b.y + b.height * (plot.y.max - value.y) / (plot.y.max - plot.y.min)};
-}
-
-void draw_frame(cairo_t* cr, const PlotFrame& plot) {
-  const Box& b = plot.box;
-  cairo_set_dash(cr, nullptr, 0, 0.0);
-  cairo_set_line_width(cr, 1.0);
-  set_colour(cr, rgb(colour::kGrid));
-  draw_ticks(cr, plot);
-  stroke_box(cr, b, rgb(0xaab2bd), 1.0);
-  draw_text(cr, {14.0, colour::kInk, Align::left, true}, {b.x, b.y - 9.0}, plot.title, b.width);
-  draw_text(cr, {12.5, colour::kInk, Align::centre}, {b.x + 0.5 * b.width, b.y + b.height + 35.0},
-            plot.x_label);
-  cairo_save(cr);
-  cairo_translate(cr, b.x - 44.0, b.y + 0.5 * b.height);
-  cairo_rotate(cr, -0.5 * kPi);
-  draw_text(cr, {12.5, colour::kInk, Align::centre}, {0.0, 0.0}, plot.y_label);
-  cairo_restore(cr);
-}
-
-void draw_curve(cairo_t* cr, const PlotFrame& plot, const Line2& points, const Stroke& stroke) {
-  const Clipped clip(cr, plot.box);
-  use(cr, stroke);
-  bool is_down = false;
-  for (const vec2& p : points) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
-      is_down = false;
-      continue;
-    }
-    const vec2 at = pixel_in(plot, p);
-    is_down ? cairo_line_to(cr, at.x, at.y) : cairo_move_to(cr, at.x, at.y);
-    is_down = true;
-  }
-  cairo_stroke(cr);
-}
-
-void draw_band(cairo_t* cr, const PlotFrame& plot, const PlotRange& x, const std::string& word) {
-  const double from = pixel_in(plot, vec2(x.min, 0.0)).x, to = pixel_in(plot, vec2(x.max, 0.0)).x;
-  {
-    const Clipped clip(cr, plot.box);
-    fill_box(cr, {from, plot.box.y, to - from, plot.box.height}, rgb(paper_colour::kBand));
-  }
-  draw_text(cr, {11.5, colour::kFaint, Align::centre}, {0.5 * (from + to), plot.box.y + 15.0}, word,
-            to - from);
-}
-
-void draw_dot(cairo_t* cr, const vec2& at, double radius, unsigned colour) {
-  set_colour(cr, rgb(colour));
-  cairo_arc(cr, at.x, at.y, radius, 0.0, 2.0 * kPi);
-  cairo_fill(cr);
-}
-
-PlotRange range_of(const std::vector<Line2>& curves, double least) {
-  double min = 1e300, max = -1e300;
-  for (const Line2& curve : curves) {
-    for (const vec2& p : curve) {
-      if (!std::isfinite(p.y)) continue;
-      min = std::min(min, p.y);
-      max = std::max(max, p.y);
-    }
-  }
-  return nice_range(min, max, least);
+PlotSeries curve_of(std::vector<PlotPoint> points, const Stroke& stroke) {
+  PlotSeries series;
+  series.colour = rgb(stroke.colour, stroke.alpha);
+  series.width_px = stroke.width;
+  series.points = std::move(points);
+  series.is_dashed = stroke.is_dashed;
+  return series;
 }
 
 vec2 pixel_in(const SideView& view, const vec3& place_m) noexcept {
@@ -129,7 +45,7 @@ vec2 pixel_in(const SideView& view, const vec3& place_m) noexcept {
 }
 
 void draw_floor(cairo_t* cr, const SideView& view) {
-  use(cr, {0xaab2bd, 1.0});
+  set_stroke(cr, {0xaab2bd, 1.0});
   const double y = std::round(view.floor_px) + 0.5;
   line(cr, {view.box.x, y}, {view.box.x + view.box.width, y});
   cairo_stroke(cr);
@@ -137,7 +53,7 @@ void draw_floor(cairo_t* cr, const SideView& view) {
 
 void draw_path(cairo_t* cr, const SideView& view, const std::vector<vec3>& path_m,
                const Stroke& stroke) {
-  use(cr, stroke);
+  set_stroke(cr, stroke);
   for (const vec3& p : path_m) {
     const vec2 at = pixel_in(view, p);
     cairo_line_to(cr, at.x, at.y);
@@ -150,7 +66,7 @@ void draw_arrow(cairo_t* cr, const vec2& from, const vec2& to, const Stroke& str
   const vec2 way = to - from;
   const double length = glm::length(way), head = std::min(kLongestHead, 0.5 * length);
   if (length < kShortest) return;
-  use(cr, stroke);
+  set_stroke(cr, stroke);
   const vec2 tip = to, neck = to - way * (head / length);
   line(cr, from, neck);
   cairo_stroke(cr);
@@ -182,7 +98,7 @@ std::vector<vec3> figure_points(const std::vector<vec3>& joints_m,
 }
 
 std::vector<StickBone> stick_bones(const GaitCycle& cycle, const std::vector<vec3>& points_m) {
-  // Of the leg: fingers have no line, meshes' loose ends neither.
+  // In leg lengths. Fingers and the loose ends of meshes get no line.
   constexpr double kShortest = 0.015, kLongest = 0.9, kLongestEnd = 0.5;
   using Part = StickBone::Part;
   const auto& joints = cycle.skeleton.joints;
@@ -216,7 +132,7 @@ void draw_stick_figure(cairo_t* cr, const SideView& view, const std::vector<Stic
     Stroke now = stroke;
     if (part == Part::left_leg) now.alpha *= kPale;
     if (part == Part::rest) now.alpha *= 0.8, now.width *= 0.8;
-    use(cr, now);
+    set_stroke(cr, now);
     for (const StickBone& bone : bones) {
       if (bone.part != part) continue;
       line(cr, pixel_in(view, points_m[static_cast<std::size_t>(bone.parent)]),
@@ -240,7 +156,7 @@ void draw_table(cairo_t* cr, const Box& box, const Table& table) {
       draw_text(cr, style, {x, y + 0.7 * row}, table.rows[r][c], width - 8.0);
       x += width;
     }
-    use(cr, {colour::kGrid, 1.0});
+    set_stroke(cr, {colour::kGrid, 1.0});
     line(cr, {box.x, std::round(y + row) + 0.5}, {box.x + box.width, std::round(y + row) + 0.5});
     cairo_stroke(cr);
   }

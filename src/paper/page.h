@@ -1,16 +1,14 @@
-// Pages of figures: plots with axes and units, stick figures seen from the side.
+// Pages of figures: stick figures seen from the side, arrows, tables, CSV. (Plots: draw/plot.h.)
 #pragma once
 #include <string>
 #include <vector>
 
+#include "draw/plot.h"
 #include "gaitpad/gait_cycle.h"
-#include "view/drawing.h"
-#include "view/plot.h"
-#include "view/stick_plot.h"
 
 namespace gaitpad {
 
-// Red, green and blue as the paper has them, dark enough for paper; and what is no character.
+// The paper's red, green and blue, dark enough for white paper, and colours of everything else.
 namespace paper_colour {
 inline constexpr unsigned kRed = 0xc62828, kGreen = 0x2e8b3d, kBlue = 0x1f5fbf, kData = 0x6b7480,
                           kPlant = 0xc62828, kBand = 0xeef1f5;
@@ -20,30 +18,17 @@ struct Page {
   Surface surface;
   Cairo cr;
 };
-// White, with a title and a line below it.
+// A white page with a title and a caption below it.
 Page blank_page(int width_px, int height_px, const std::string& title, const std::string& caption);
 inline constexpr double kPageMargin = 28.0, kPageTop = 74.0;
-
-struct PlotFrame {
-  Box box;  // of the curves; labels stand outside
-  PlotRange x, y;
-  std::string title, x_label, y_label;
-};
-vec2 pixel_in(const PlotFrame& plot, const vec2& value) noexcept;
-void draw_frame(cairo_t* cr, const PlotFrame& plot);  // grid, ticks, labels
 
 struct Stroke {
   unsigned colour = colour::kInk;
   double width = 1.8, alpha = 1.0;
   bool is_dashed = false;
 };
-using Line2 = std::vector<vec2>;
-void draw_curve(cairo_t* cr, const PlotFrame& plot, const Line2& points, const Stroke& stroke);
-// Over the plot's whole height; a word at its top.
-void draw_band(cairo_t* cr, const PlotFrame& plot, const PlotRange& x, const std::string& word);
-void draw_dot(cairo_t* cr, const vec2& at, double radius, unsigned colour);
-// Around all points, out to round numbers.
-PlotRange range_of(const std::vector<Line2>& curves, double least);
+// The points as a curve of a plot in this stroke.
+PlotSeries curve_of(std::vector<PlotPoint> points, const Stroke& stroke);
 
 // The sagittal plane: z of the walk to the right, y up.
 struct SideView {
@@ -57,30 +42,30 @@ void draw_floor(cairo_t* cr, const SideView& view);
 void draw_path(cairo_t* cr, const SideView& view, const std::vector<vec3>& path_m,
                const Stroke& stroke);
 void draw_arrow(cairo_t* cr, const vec2& from, const vec2& to, const Stroke& stroke);
-void draw_plant(cairo_t* cr, const vec2& at);  // a triangle below it
+void draw_plant(cairo_t* cr, const vec2& at);  // a triangle below the planted point
 
-// A figure's points: its joints, then both heels, left first.
+// The points of a stick figure: its joints, then both heels, left first.
 std::vector<vec3> figure_points(const std::vector<vec3>& joints_m,
                                 const std::array<vec3, 2>& heel_m);
-// Bones of a stick figure: a point and its parent; soles go from the ankle over the heel to the
-// toe.
+// A line of a stick figure, from a point's parent to the point. Each sole has two: from the ankle
+// to the heel and from there to the toe.
 struct StickBone {
   int parent = 0, joint = 0;
   enum class Part { left_leg, right_leg, rest } part = Part::rest;
 };
 std::vector<StickBone> stick_bones(const GaitCycle& cycle, const std::vector<vec3>& points_m);
-// The left leg paler.
+// The left leg is paler.
 void draw_stick_figure(cairo_t* cr, const SideView& view, const std::vector<StickBone>& bones,
                        const std::vector<vec3>& points_m, const Stroke& stroke);
 
-// The first row being headings; columns as wide as their shares.
+// The first row holds the headings; `shares` are the relative widths of the columns.
 struct Table {
   std::vector<double> shares;
   std::vector<std::vector<std::string>> rows;
 };
 void draw_table(cairo_t* cr, const Box& box, const Table& table);
 
-// A CSV: `time_s` and the like, then a column a curve.
+// One column of a CSV file; a value that is not finite leaves its cell empty.
 struct CsvColumn {
   std::string name;
   std::vector<double> values;

@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/keyboard_device.h"
+#include "gaitpad/keyboard.h"
 #include "drivers/posix.h"
 #include "pads/realtime.h"
 #include "session/live_loop.h"

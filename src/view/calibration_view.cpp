@@ -9,15 +9,15 @@
 #include <chrono>
 #include <iterator>
 
+#include "draw/stick_picture.h"
 #include "pads/calibration_store.h"
-#include "view/modal.h"
-#include "view/stick_picture.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr double kWidth = 900.0, kHeight = 600.0;  // at scale 1
-constexpr double kPlane = 150.0;                   // of a control's place, at scale 1
+constexpr double kPlane = 150.0;                   // side of a control's picture, at scale 1
 constexpr const char* kTitles[] = {"Left stick", "Right stick"};
 
 std::string shown_name(const DeviceInfo& info) {
@@ -27,7 +27,7 @@ std::string shown_name(const DeviceInfo& info) {
 
 ImVec2 operator+(const ImVec2& a, const ImVec2& b) { return {a.x + b.x, a.y + b.y}; }
 
-// Where a stick is (a disc), or a trigger (a bar): raw, as the pad reports it.
+// Draws a stick's raw position in a circle, or a trigger's as a bar.
 void draw_place(Ui& ui, const GuideProgress& control, bool is_stick, const ImVec2& at, float size) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const auto clamped = [](double v) { return static_cast<float>(std::clamp(v, -1.0, 1.0)); };
@@ -69,7 +69,7 @@ CalibrationView::~CalibrationView() {
   if (texture_ != 0) glDeleteTextures(1, &texture_);
 }
 
-void CalibrationView::look(std::vector<std::string>& messages) {
+void CalibrationView::read_pad(std::vector<std::string>& messages) {
   if (!guided_) return;
   guided_->look(std::chrono::milliseconds(0));
   std::ranges::move(guided_->take_remarks(), std::back_inserter(messages));
@@ -84,7 +84,7 @@ void CalibrationView::look(std::vector<std::string>& messages) {
     is_pad_told_ = true;
     const std::string remark = driver_remark(guided_->pad());
     if (!remark.empty()) messages.push_back(shown_name(guided_->pad()) + ": " + remark);
-    if (guide->steps().size() <= 1) {  // nothing but `done`
+    if (guide->steps().size() <= 1) {  // only the step `done`
       messages.push_back(shown_name(guided_->pad()) + ": has no stick to calibrate");
       state_ = State::given_up;
       return;
@@ -93,7 +93,7 @@ void CalibrationView::look(std::vector<std::string>& messages) {
   if (guide->step() == GuideStep::done) finish(messages);
 }
 
-// What was seen is measured; the pad is let go.
+// Analyses what was recorded and releases the pad.
 void CalibrationView::finish(std::vector<std::string>& messages) {
   pad_ = guided_->finish();
   guided_.reset();
@@ -133,7 +133,7 @@ void CalibrationView::upload_picture() {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  // Of cairo's native numbers; what stands in the upper byte is not drawn.
+  // Cairo's pixels are numbers in the machine's byte order; the upper byte is unused.
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture_width_, picture_height_, 0, GL_BGRA,
                GL_UNSIGNED_INT_8_8_8_8_REV, bytes);
   glGenerateMipmap(GL_TEXTURE_2D);
@@ -232,7 +232,7 @@ void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& mess
 
 CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
                                              std::vector<std::string>& messages) {
-  look(messages);
+  read_pad(messages);
   const ImVec2 size = begin_modal(ui, "calibration", kWidth, kHeight, window_px);
   CalibrationGuide* guide = guided_ ? guided_->guide() : nullptr;
   const float buttons_y = size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y;

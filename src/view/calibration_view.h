@@ -1,5 +1,5 @@
-// The guided calibration in the window: the same guide, analysis, files and picture as `gaitpad
-// calibrate`.
+// The guided calibration in the window, with the same guide, analysis, files and picture as
+// `gaitpad calibrate`.
 #pragma once
 #include <memory>
 #include <optional>
@@ -8,7 +8,7 @@
 
 #include "gaitpad/result.h"
 #include "pads/guided_calibration.h"
-#include "view/ui_parts.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 
@@ -16,23 +16,23 @@ class CalibrationView {
  public:
   struct Options {
     PadWish wish;
-    std::string map;  // a pad file, empty: none
+    std::string map;  // a pad file; empty: none
     std::vector<std::string> config_folders;
-    std::string calibration_folder;  // where the file goes; empty: the user's own
+    std::string calibration_folder;  // for the file; empty: the user's own
   };
-  // No session may hold the pad then.
+  // No session may hold the pad meanwhile.
   static Result<std::unique_ptr<CalibrationView>> start(const Options& options);
   ~CalibrationView();
 
   enum class State { goes_on, saved, given_up };
-  // Takes in what the pad did, then draws, in the middle of a window of this size. A sentence for
-  // whatever there is to say goes to `messages`.
+  // Reads the pad, then draws in the middle of a window of this size. Remarks and errors are added
+  // to `messages`.
   State draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages);
   const std::string& saved_to() const noexcept { return target_; }
 
  private:
   CalibrationView() = default;
-  void look(std::vector<std::string>& messages);
+  void read_pad(std::vector<std::string>& messages);
   void finish(std::vector<std::string>& messages);
   void draw_guide(Ui& ui, CalibrationGuide& guide);
   void draw_control(Ui& ui, const GuideProgress& control, bool is_stick);
@@ -43,10 +43,10 @@ class CalibrationView {
 
   Options options_;
   PadFiles files_;
-  std::unique_ptr<GuidedCalibration> guided_;  // until it is done
+  std::unique_ptr<GuidedCalibration> guided_;  // until the guide is done
   bool is_pad_told_ = false;
   State state_ = State::goes_on;
-  // Once it is done.
+  // Set once the guide is done.
   GuidedPad pad_;
   std::optional<PadAnalysis> analysis_;
   CalibrationFile file_;

@@ -5,16 +5,17 @@ namespace {
 
 constexpr double kNearest_m = 1.0, kFarthest_m = 40.0;
 constexpr double kLowestEye_m = 0.1, kHighestTarget_m = 4.0;
-constexpr double kSteepest_rad = 1.5;  // short of straight down, where there is no "up"
+constexpr double kSteepest_rad = 1.5;  // almost straight down; straight down has no "up"
 constexpr double kNearPlane_m = 0.1, kFarPlane_m = 200.0;
 constexpr double kFollowTime_s = 0.25;
-constexpr double kJump_m = 1.0;  // nobody walks so far between two frames: set back, or another one
+constexpr double kJump_m =
+    1.0;  // farther than anyone walks between two frames: a reset or another character
 
 bool is_finite(const vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Unit vectors of the picture in the world.
+// The picture's axes as unit vectors of the world.
 struct Axes {
   vec3 right, up, back;
 };
@@ -92,8 +93,8 @@ void pan(Camera& camera, const vec2& pixels, double viewport_height_px) noexcept
   keep_bounds(camera);
 }
 
-// The place moves evenly from the last call's to this one's; this is the exact answer of a first
-// order lag to that, so that two short frames come to where one long frame does.
+// The exact response of a first-order lag to a place that moves evenly between two calls, so that
+// two short frames end where one long frame does.
 void follow(Camera& camera, const vec3& place_m, double dt_s) noexcept {
   if (!is_finite(place_m) || !(dt_s > 0.0) || !std::isfinite(dt_s)) return;
   vec3 lag_m = (place_m - camera.followed_m) * (kFollowTime_s / dt_s);

@@ -1,6 +1,7 @@
 #include "view/controls.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -8,13 +9,140 @@
 namespace gaitpad {
 namespace {
 
+constexpr int kNoButton = -1;
+constexpr SDL_Keycode kNoKey = SDLK_UNKNOWN;
+
+// Headings of the help page.
+constexpr std::string_view kSession = "Session", kStyles = "Styles and characters",
+                           kFiles = "Files", kView = "View", kPanelGroup = "Panels",
+                           kWindow = "Window";
+
+// No key next to the walking keys ends anything.
+constexpr ActionInfo kActions[] = {
+    {Action::pause, SDLK_SPACE, SDLK_p, kButtonStart, "pause", kSession, "pause, go on"},
+    {Action::step, SDLK_PERIOD, kNoKey, kButtonDpadRight, "step", kSession,
+     "one tick, pausing first"},
+    {Action::slow_motion, SDLK_COMMA, kNoKey, kButtonA, "slow motion", kSession,
+     "slow motion, on and off"},
+    {Action::reset, SDLK_BACKSPACE, kNoKey, kButtonDpadDown, "reset", kSession,
+     "everybody back to the start, standing"},
+    {Action::style_1, SDLK_1, SDLK_KP_1, kNoButton, "style 1", kStyles, "first style of the list"},
+    {Action::style_2, SDLK_2, SDLK_KP_2, kNoButton, "style 2", kStyles, "second style"},
+    {Action::style_3, SDLK_3, SDLK_KP_3, kNoButton, "style 3", kStyles, "third style"},
+    {Action::style_4, SDLK_4, SDLK_KP_4, kNoButton, "style 4", kStyles, "fourth style"},
+    {Action::style_5, SDLK_5, SDLK_KP_5, kNoButton, "style 5", kStyles, "fifth style"},
+    {Action::style_6, SDLK_6, SDLK_KP_6, kNoButton, "style 6", kStyles, "sixth style"},
+    {Action::style_7, SDLK_7, SDLK_KP_7, kNoButton, "style 7", kStyles, "seventh style"},
+    {Action::style_8, SDLK_8, SDLK_KP_8, kNoButton, "style 8", kStyles, "eighth style"},
+    {Action::style_9, SDLK_9, SDLK_KP_9, kNoButton, "style 9", kStyles, "ninth style"},
+    {Action::next_style, SDLK_n, SDLK_RIGHTBRACKET, kButtonRightShoulder, "next style", kStyles,
+     "next style of the list"},
+    {Action::previous_style, SDLK_b, SDLK_LEFTBRACKET, kButtonLeftShoulder, "previous style",
+     kStyles, "the one before"},
+    {Action::next_terrain, SDLK_m, kNoKey, kNoButton, "next terrain", kStyles,
+     "next ground of the list, from the start"},
+    {Action::next_walker, SDLK_TAB, kNoKey, kButtonY, "next walker", kStyles,
+     "choose the next character, then all"},
+    {Action::record, SDLK_F9, kNoKey, kButtonDpadUp, "record", kFiles,
+     "record from the beginning, stop"},
+    {Action::screenshot, SDLK_F12, SDLK_PRINTSCREEN, kButtonX, "screenshot", kFiles,
+     "save a picture"},
+    {Action::open_file, SDLK_o, kNoKey, kNoButton, "open", kFiles,
+     "open a motion, style, ground or recording"},
+    {Action::calibrate, SDLK_F8, kNoKey, kNoButton, "calibrate", kFiles, "calibrate the sticks"},
+    {Action::follow, SDLK_c, kNoKey, kButtonLeftStick, "follow", kView, "camera follows, stands"},
+    {Action::reset_camera, SDLK_v, SDLK_HOME, kButtonRightStick, "reset camera", kView,
+     "camera as at the start"},
+    {Action::theme, SDLK_l, kNoKey, kNoButton, "theme", kView, "light or dark"},
+    {Action::trails, SDLK_t, kNoKey, kButtonDpadLeft, "trails", kView, "trails of the feet"},
+    {Action::source, SDLK_g, kNoKey, kNoButton, "source", kView,
+     "stick figure of the source motion"},
+    {Action::panel_pad, SDLK_F2, kNoKey, kNoButton, "pad panel", kPanelGroup, "panel: pad"},
+    {Action::panel_control, SDLK_F3, kNoKey, kNoButton, "control panel", kPanelGroup,
+     "panel: control"},
+    {Action::panel_style, SDLK_F4, kNoKey, kNoButton, "style panel", kPanelGroup, "panel: style"},
+    {Action::panel_graphs, SDLK_F5, kNoKey, kNoButton, "graphs panel", kPanelGroup,
+     "panel: graphs"},
+    {Action::panel_solver, SDLK_F6, kNoKey, kNoButton, "solver panel", kPanelGroup,
+     "panel: solver"},
+    {Action::panel_loop, SDLK_F7, kNoKey, kNoButton, "loop panel", kPanelGroup, "panel: loop"},
+    {Action::help, SDLK_F1, SDLK_h, kButtonBack, "help", kWindow, "this page"},
+    {Action::fullscreen, SDLK_F11, kNoKey, kNoButton, "full screen", kWindow,
+     "full screen, window"},
+    {Action::quit, SDLK_F10, kNoKey, kNoButton, "quit", kWindow, "end the program"},
+    {Action::back, SDLK_ESCAPE, kNoKey, kButtonB, "back", kWindow, "close what is open"},
+};
+
+struct KeyName {
+  SDL_Keycode key;
+  std::string_view name;
+};
+constexpr KeyName kKeyNames[] = {
+    {SDLK_SPACE, "Space"},
+    {SDLK_BACKSPACE, "Backspace"},
+    {SDLK_TAB, "Tab"},
+    {SDLK_RETURN, "Enter"},
+    {SDLK_ESCAPE, "Esc"},
+    {SDLK_DELETE, "Del"},
+    {SDLK_INSERT, "Ins"},
+    {SDLK_HOME, "Home"},
+    {SDLK_END, "End"},
+    {SDLK_PAGEUP, "PgUp"},
+    {SDLK_PAGEDOWN, "PgDn"},
+    {SDLK_PRINTSCREEN, "Print"},
+    {SDLK_LEFT, "Left"},
+    {SDLK_RIGHT, "Right"},
+    {SDLK_UP, "Up"},
+    {SDLK_DOWN, "Down"},
+    {SDLK_F1, "F1"},
+    {SDLK_F2, "F2"},
+    {SDLK_F3, "F3"},
+    {SDLK_F4, "F4"},
+    {SDLK_F5, "F5"},
+    {SDLK_F6, "F6"},
+    {SDLK_F7, "F7"},
+    {SDLK_F8, "F8"},
+    {SDLK_F9, "F9"},
+    {SDLK_F10, "F10"},
+    {SDLK_F11, "F11"},
+    {SDLK_F12, "F12"},
+    {SDLK_KP_1, "Num 1"},
+    {SDLK_KP_2, "Num 2"},
+    {SDLK_KP_3, "Num 3"},
+    {SDLK_KP_4, "Num 4"},
+    {SDLK_KP_5, "Num 5"},
+    {SDLK_KP_6, "Num 6"},
+    {SDLK_KP_7, "Num 7"},
+    {SDLK_KP_8, "Num 8"},
+    {SDLK_KP_9, "Num 9"},
+    {SDLK_KP_0, "Num 0"},
+    {SDLK_KP_ENTER, "Num Enter"},
+    {SDLK_KP_PLUS, "Num +"},
+    {SDLK_KP_MINUS, "Num -"},
+};
+constexpr std::string_view kPrinted = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.,-=+;:'/\\[]`#*<>?!";
+
+constexpr std::array<std::string_view, kButtonCount> kButtonLabels = {
+    "A",           "B",       "X",          "Y",          "Back",     "Guide",      "Start",
+    "L stick",     "R stick", "L shoulder", "R shoulder", "D-pad up", "D-pad down", "D-pad left",
+    "D-pad right", "Misc",    "Paddle 1",   "Paddle 2",   "Paddle 3", "Paddle 4",   "Touchpad"};
+
+constexpr HelpLine kWalkingHelp[] = {
+    {"W A S D, arrows", "walk and turn, as a smooth stick"},
+    {"left stick", "walk and turn"},
+    {"right stick", "camera round the scene"},
+    {"drag", "camera round the scene"},
+    {"right drag", "camera sideways and up"},
+    {"wheel", "camera nearer, farther"},
+};
+
 constexpr double kDollyAStep = 0.9;
 constexpr std::uint32_t kMostPresses = 8;  // of one button between two frames
 
 constexpr SDL_Keycode kWalkingKeys[] = {SDLK_w,  SDLK_a,    SDLK_s,    SDLK_d,
                                         SDLK_UP, SDLK_LEFT, SDLK_DOWN, SDLK_RIGHT};
 
-// Dear ImGui's number of SDL's button, -1: none.
+// Dear ImGui's index of an SDL mouse button; -1: none.
 int button_index(std::uint8_t button) noexcept {
   switch (button) {
     case SDL_BUTTON_LEFT:
@@ -30,21 +158,47 @@ int button_index(std::uint8_t button) noexcept {
 
 }  // namespace
 
-void Controls::take(const SDL_Event& event, const Taken& taken) {
+std::span<const ActionInfo> actions() noexcept { return kActions; }
+
+const ActionInfo& info_of(Action action) noexcept {
+  for (const ActionInfo& info : kActions) {
+    if (info.action == action) return info;
+  }
+  return kActions[0];
+}
+
+std::string_view key_name(SDL_Keycode key) noexcept {
+  for (const KeyName& entry : kKeyNames) {
+    if (entry.key == key) return entry.name;
+  }
+  const bool is_letter = key >= SDLK_a && key <= SDLK_z;
+  const SDL_Keycode printed = is_letter ? key - SDLK_a + 'A' : key;
+  if (printed <= ' ' || printed > '~') return "?";
+  const std::size_t at = kPrinted.find(static_cast<char>(printed));
+  return at == std::string_view::npos ? "?" : kPrinted.substr(at, 1);
+}
+
+std::string_view button_label(PadButton button) noexcept {
+  return button >= 0 && button < kButtonCount ? kButtonLabels[button] : "?";
+}
+
+std::span<const HelpLine> walking_help() noexcept { return kWalkingHelp; }
+
+void Controls::handle_event(const SDL_Event& event, const TakenInput& taken) {
   switch (event.type) {
     case SDL_QUIT:
       wishes_.actions.push_back(Action::quit);
       break;
     case SDL_KEYDOWN:
     case SDL_KEYUP:
-      take_key(event.key, taken);
+      handle_key(event.key, taken);
       break;
     case SDL_MOUSEBUTTONDOWN:
     case SDL_MOUSEBUTTONUP:
-      take_button(event.button, taken);
+      handle_mouse_button(event.button, taken);
       break;
     case SDL_MOUSEMOTION:
-      take_motion(event.motion);
+      handle_mouse_motion(event.motion);
       break;
     case SDL_MOUSEWHEEL:
       if (!taken.mouse) {
@@ -53,7 +207,7 @@ void Controls::take(const SDL_Event& event, const Taken& taken) {
       }
       break;
     case SDL_WINDOWEVENT:
-      take_window(event.window);
+      handle_window_event(event.window);
       break;
     case SDL_DROPFILE:
       if (event.drop.file) wishes_.files.emplace_back(event.drop.file);
@@ -63,7 +217,7 @@ void Controls::take(const SDL_Event& event, const Taken& taken) {
   }
 }
 
-void Controls::take_key(const SDL_KeyboardEvent& key, const Taken& taken) {
+void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken) {
   const SDL_Keycode code = key.keysym.sym;
   const bool is_down = key.type == SDL_KEYDOWN;
   if (code == SDLK_LSHIFT || code == SDLK_RSHIFT) is_shifted_ = is_down;
@@ -82,7 +236,7 @@ void Controls::take_key(const SDL_KeyboardEvent& key, const Taken& taken) {
   }
 }
 
-void Controls::take_button(const SDL_MouseButtonEvent& button, const Taken& taken) {
+void Controls::handle_mouse_button(const SDL_MouseButtonEvent& button, const TakenInput& taken) {
   mouse_.place_px = vec2(button.x, button.y);
   mouse_.is_inside = true;
   const int index = button_index(button.button);
@@ -94,7 +248,7 @@ void Controls::take_button(const SDL_MouseButtonEvent& button, const Taken& take
   drag_ = index > 0 || is_shifted_ ? Drag::pan : Drag::orbit;
 }
 
-void Controls::take_motion(const SDL_MouseMotionEvent& motion) {
+void Controls::handle_mouse_motion(const SDL_MouseMotionEvent& motion) {
   const vec2 place(motion.x, motion.y);
   if (drag_ == Drag::orbit) wishes_.orbit_px += place - mouse_.place_px;
   if (drag_ == Drag::pan) wishes_.pan_px += place - mouse_.place_px;
@@ -102,12 +256,12 @@ void Controls::take_motion(const SDL_MouseMotionEvent& motion) {
   mouse_.is_inside = true;
 }
 
-void Controls::take_window(const SDL_WindowEvent& window) {
+void Controls::handle_window_event(const SDL_WindowEvent& window) {
   switch (window.event) {
     case SDL_WINDOWEVENT_FOCUS_LOST:
     case SDL_WINDOWEVENT_MINIMIZED:
     case SDL_WINDOWEVENT_HIDDEN:
-      let_go();
+      release_all();
       break;
     case SDL_WINDOWEVENT_LEAVE:
       mouse_.is_inside = drag_ != Drag::none;
@@ -120,7 +274,7 @@ void Controls::take_window(const SDL_WindowEvent& window) {
   }
 }
 
-Wishes Controls::wishes() { return std::exchange(wishes_, {}); }
+Wishes Controls::take_wishes() { return std::exchange(wishes_, {}); }
 
 vec2 Controls::walk() const noexcept {
   const auto held = [this](std::size_t a, std::size_t b) {
@@ -131,14 +285,14 @@ vec2 Controls::walk() const noexcept {
   return length > 1.0 ? sum / length : sum;
 }
 
-void Controls::let_go() noexcept {
+void Controls::release_all() noexcept {
   is_held_ = {};
   is_shifted_ = false;
   mouse_.is_down = {};
   drag_ = Drag::none;
 }
 
-void ButtonPresses::take(const SessionFrame& frame, std::vector<Action>& wanted) {
+void ButtonPresses::add_new_presses(const SessionFrame& frame, std::vector<Action>& wanted) {
   const auto before = std::exchange(presses_, frame.presses);
   if (std::exchange(is_first_, false)) return;
   for (const ActionInfo& info : actions()) {

@@ -1,56 +1,121 @@
-// SDL's events as what a person means by them: actions, a direction to walk in, moves of the
-// camera, files that were dropped. No SDL state is polled: events that a test pushes count like
-// real ones.
+// What a person can ask the window for by key, pad button or mouse. One table of actions serves the
+// dispatch, the help page and the tests.
 #pragma once
 #include <SDL2/SDL_events.h>
+#include <SDL2/SDL_keycode.h>
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gaitpad/math.h"
+#include "gaitpad/report.h"
 #include "gaitpad/session_frame.h"
-#include "view/actions.h"
 
 namespace gaitpad {
 
-struct Mouse {
-  vec2 place_px{0.0};  // of the window
-  bool is_inside = false;
-  std::array<bool, 3> is_down{};  // left, right, middle, as Dear ImGui counts them
+enum class Action : std::uint8_t {
+  pause,
+  step,         // one tick; pauses first
+  slow_motion,  // on and off
+  reset,
+  style_1,  // the first style of the session's list ...
+  style_2,
+  style_3,
+  style_4,
+  style_5,
+  style_6,
+  style_7,
+  style_8,
+  style_9,
+  next_style,
+  previous_style,
+  next_terrain,  // another ground; the session starts again on it
+  next_walker,   // chosen for camera and panels; after the last one: all
+  record,
+  screenshot,
+  open_file,
+  calibrate,
+  follow,  // switches the camera's following on and off
+  reset_camera,
+  theme,
+  trails,
+  source,  // the stick figure
+  panel_pad,
+  panel_control,
+  panel_style,
+  panel_graphs,
+  panel_solver,
+  panel_loop,
+  help,
+  fullscreen,
+  quit,
+  back,  // closes what is open: help, browser, calibration
 };
 
-// What the panels have taken for themselves, in the frame before.
-struct Taken {
-  bool keys = false;   // somebody types text
+struct ActionInfo {
+  Action action;
+  SDL_Keycode key;         // SDLK_UNKNOWN: none
+  SDL_Keycode second_key;  // does the same
+  int button;              // PadButton, -1: none
+  std::string_view name;   // "pause"
+  std::string_view group;  // heading on the help page
+  std::string_view text;   // one line for the help page
+};
+// Every action once, in the order of the help page. Walking keys (WASD, arrows) are not among them.
+std::span<const ActionInfo> actions() noexcept;
+const ActionInfo& info_of(Action action) noexcept;
+std::string_view key_name(SDL_Keycode key) noexcept;  // "Space", "F1", "W"; "?" for an unknown key
+std::string_view button_label(PadButton button) noexcept;  // "A", "left shoulder"
+
+// Input that is not an action, for the help page.
+struct HelpLine {
+  std::string_view input, text;
+};
+std::span<const HelpLine> walking_help() noexcept;
+
+// Translates SDL's events into actions, a direction to walk in, camera moves and dropped files. It
+// polls no SDL state, so that events pushed by a test count like real ones.
+
+struct Mouse {
+  vec2 place_px{0.0};  // in the window
+  bool is_inside = false;
+  std::array<bool, 3> is_down{};  // left, right, middle: Dear ImGui's order
+};
+
+// Input that the panels used in the frame before.
+struct TakenInput {
+  bool keys = false;   // text is being typed
   bool mouse = false;  // the pointer is over a panel
 };
 
-// Since it was asked last.
+// What was asked for since the last call of take_wishes().
 struct Wishes {
   std::vector<Action> actions;
   std::vector<std::string> files;  // dropped
   vec2 orbit_px{0.0}, pan_px{0.0};
-  double dolly = 1.0;  // factor on the distance
+  double dolly = 1.0;  // factor for the camera's distance
 };
 
 class Controls {
  public:
-  void take(const SDL_Event& event, const Taken& taken);
-  Wishes wishes();
+  void handle_event(const SDL_Event& event, const TakenInput& taken);
+  Wishes take_wishes();
 
-  // Where the walking keys point, +x right, +y forward, at most 1 long.
+  // Direction of the walking keys, +x right, +y forward, of length 1 at most.
   vec2 walk() const noexcept;
-  void let_go() noexcept;  // of the walking keys and the mouse
+  void release_all() noexcept;  // walking keys and mouse buttons
   const Mouse& mouse() const noexcept { return mouse_; }
 
  private:
   enum class Drag { none, orbit, pan };
-  void take_key(const SDL_KeyboardEvent& key, const Taken& taken);
-  void take_button(const SDL_MouseButtonEvent& button, const Taken& taken);
-  void take_motion(const SDL_MouseMotionEvent& motion);
-  void take_window(const SDL_WindowEvent& window);
+  void handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken);
+  void handle_mouse_button(const SDL_MouseButtonEvent& button, const TakenInput& taken);
+  void handle_mouse_motion(const SDL_MouseMotionEvent& motion);
+  void handle_window_event(const SDL_WindowEvent& window);
 
   Wishes wishes_;
   std::array<bool, 8> is_held_{};  // W A S D, up left down right
@@ -59,11 +124,11 @@ class Controls {
   Drag drag_ = Drag::none;
 };
 
-// Presses of a pad's buttons as actions, by the table.
+// Turns presses of a pad's buttons into actions.
 class ButtonPresses {
  public:
-  void take(const SessionFrame& frame, std::vector<Action>& actions);
-  void begin_anew() noexcept { is_first_ = true; }  // another session counts from 0
+  void add_new_presses(const SessionFrame& frame, std::vector<Action>& actions);
+  void start_again() noexcept { is_first_ = true; }  // a new session counts from 0
 
  private:
   bool is_first_ = true;

@@ -6,20 +6,20 @@
 #include <cmath>
 
 #include "gaitpad/simulation.h"
-#include "view/scene_ground.h"
+#include "view/ground_mesh.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr double kTrail_s = 3.0;         // of the past that trails show
-constexpr double kTrailPoint_s = 0.025;  // between two of its points
-constexpr double kLook_m = 0.95;         // height of what a camera follows, of an adult
-constexpr double kSourceAside_m = 1.2;   // as far as neighbours stand apart
+constexpr double kTrail_s = 3.0;         // length of a trail
+constexpr double kTrailPoint_s = 0.025;  // between two points of a trail
+constexpr double kLook_m = 0.95;         // height of the place that a camera follows, for an adult
+constexpr double kSourceAside_m = 1.2;   // the distance between neighbours
 constexpr double kAdult_m = 1.8;
-constexpr double kHeightOverLeg = 2.1;  // of a person, thigh + shank
-constexpr double kAside_m = 0.9;        // room beside the outermost
-constexpr double kOnePerson_m = 4.2;    // off to see one
-constexpr double kLabelAbove_m = 0.14;  // a name, above the head
+constexpr double kHeightOverLeg = 2.1;  // a person's height over thigh + shank
+constexpr double kAside_m = 0.9;        // room beside the outermost character
+constexpr double kOnePerson_m = 4.2;    // distance from which one person is seen
+constexpr double kLabelAbove_m = 0.14;  // of a name above the head
 
 std::string with_blanks(std::string name) {
   std::ranges::replace(name, '_', ' ');
@@ -32,7 +32,7 @@ bool have_one_build(const Cast& cast) {
   });
 }
 
-// What tells it from the others: its style, and its build where they differ.
+// The style's name, and the character's if the characters differ.
 std::string label_text(const WalkerFrame& walker, const Cast& cast, std::size_t index) {
   const auto style = static_cast<std::size_t>(std::max(walker.style_index, 0));
   const std::string name = style < cast.styles.size() ? with_blanks(cast.styles[style]) : "?";
@@ -47,7 +47,7 @@ Ensemble::Ensemble(const Cast& cast)
       point_ticks_(std::max<std::int64_t>(std::llround(kTrailPoint_s * cast.rate_hz), 1)),
       shown_(cast.members.size()) {
   if (!is_flat(*cast.terrain)) terrain_ = cast.terrain;
-  for (const CastMember& member : cast.members) bodies_.push_back(body_of(member.model));
+  for (const CastMember& member : cast.members) mannequins_.push_back(mannequin_of(member.model));
   if (cast.source != nullptr)
     source_height_m_ =
         kHeightOverLeg * (cast.source->leg[0].length_m() + cast.source->leg[1].length_m()) / 2;
@@ -61,12 +61,12 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
   content.joints_m.clear();
   content.trails.clear();
   const std::size_t count =
-      std::min(bodies_.size(), static_cast<std::size_t>(std::max(frame.walker_count, 0)));
+      std::min(mannequins_.size(), static_cast<std::size_t>(std::max(frame.walker_count, 0)));
   for (std::size_t i = 0; i < count; ++i) {
     const WalkerFrame& walker = frame.walkers[i];
     interpolate(walker.before, walker.pose, share, shown_[i]);
     const Colour& colour = series_colour(theme, i);
-    add_body(bodies_[i], shown_[i], colour, content);
+    add_mannequin(mannequins_[i], shown_[i], colour, content);
     if (state.has_trails) add_trails(history, static_cast<int>(i), colour, content);
   }
   has_source_ = state.has_source && cast.source != nullptr && count > 0;
@@ -83,7 +83,7 @@ void Ensemble::add_trails(const History& history, int walker, const Colour& colo
   const std::size_t size = history.size();
   if (size < 2) return;
   const auto w = static_cast<std::size_t>(walker);
-  // Points stay where they are while the trail grows: counted from the first tick, not from now.
+  // Points are chosen by absolute tick, so that they stay in place while the trail grows.
   const auto last_tick = history[size - 1].tick;
   for (const Side side : {kLeftSide, kRightSide}) {
     Trail trail;
@@ -99,7 +99,7 @@ void Ensemble::add_trails(const History& history, int walker, const Colour& colo
   }
 }
 
-// Beside the first one, on the other side than the rest; it goes where that one goes.
+// Stands beside the first character, on the side away from the others, and moves with it.
 void Ensemble::add_source(const SessionFrame& frame, double share, const Cast& cast,
                           const Theme& theme, SceneContent& content) {
   const WalkerFrame& first = frame.walkers[0];
@@ -115,7 +115,7 @@ vec3 Ensemble::focus_m(int walker) const noexcept {
   const auto n = static_cast<std::size_t>(walker);
   if (walker >= 0 && n < shown_.size()) {
     const vec3& root = shown_[n].root_m;
-    const double look_m = kLook_m * std::min(bodies_[n].height_m / kAdult_m, 1.5);
+    const double look_m = kLook_m * std::min(mannequins_[n].height_m / kAdult_m, 1.5);
     return vec3(root.x, ground_m(root) + look_m, root.z);
   }
   vec3 low = shown_.front().root_m, high = low;
@@ -154,7 +154,7 @@ double Ensemble::distance_m(int walker, const Camera& camera,
   const double aspect =
       static_cast<double>(std::max(viewport.width, 1)) / std::max(viewport.height, 1);
   const double half_view = std::tan(camera.field_of_view_rad / 2.0) * std::min(aspect, 2.0);
-  // The nearest one is to be seen from head to foot.
+  // The nearest character has to be visible from head to foot.
   return std::clamp(std::max((reach_m + kAside_m) / half_view, nearest_m + kOnePerson_m),
                     kOnePerson_m, 14.0);
 }
@@ -172,10 +172,10 @@ std::vector<UiLabel> Ensemble::labels(const SessionFrame& frame, const Cast& cas
       return;
     labels.push_back({vec2(viewport.x + place.x, viewport.y + place.y), std::move(text), colour});
   };
-  const std::size_t count =
-      std::min({bodies_.size(), cast.members.size(), static_cast<std::size_t>(frame.walker_count)});
+  const std::size_t count = std::min(
+      {mannequins_.size(), cast.members.size(), static_cast<std::size_t>(frame.walker_count)});
   for (std::size_t i = 0; i < count; ++i) {
-    add(head_m(bodies_[i], shown_[i]), label_text(frame.walkers[i], cast, i),
+    add(head_m(mannequins_[i], shown_[i]), label_text(frame.walkers[i], cast, i),
         series_colour(theme, i));
   }
   if (has_source_) add(source_place_m_ + vec3(0.0, source_height_m_, 0.0), "source", theme.bone);

@@ -1,12 +1,12 @@
-// Who stands where in the scene: the characters of a session with their trails and names, the
-// source motion beside them.
+// What stands in the scene: the characters of a session with their trails and names, and the source
+// motion beside them.
 #pragma once
 #include <string>
 #include <vector>
 
-#include "view/body.h"
 #include "view/camera.h"
 #include "view/history.h"
+#include "view/mannequin.h"
 #include "view/ui.h"
 
 namespace gaitpad {
@@ -15,17 +15,18 @@ class Ensemble {
  public:
   explicit Ensemble(const Cast& cast);
 
-  // Every walker between its two latest poses (share 0 .. 1); content is filled anew.
+  // Replaces the content: every character between its two latest poses (share 0 .. 1), its trails,
+  // and the source.
   void fill(const SessionFrame& frame, const History& history, double share, const Cast& cast,
             const UiState& state, const Theme& theme, SceneContent& content);
-  // Of what was filled last: the place that a camera follows, of one walker or of all (-1).
+  // The place that a camera follows, of one character or of all (-1), as filled last.
   vec3 focus_m(int walker) const noexcept;
   bool is_on_uneven_ground() const noexcept { return terrain_ != nullptr; }
-  // Below the camera and what it looks at; to be called when it has moved.
+  // Tells the camera the ground's height; call it when the camera has moved.
   void stand_on_ground(Camera& camera) const noexcept;
-  // How far a camera stands off to see that.
+  // The distance from which a camera sees that character or all.
   double distance_m(int walker, const Camera& camera, const Viewport& viewport) const noexcept;
-  // Names above heads, window pixels.
+  // Names above heads, in window pixels.
   std::vector<UiLabel> labels(const SessionFrame& frame, const Cast& cast, const Camera& camera,
                               const Viewport& viewport, const UiState& state,
                               const Theme& theme) const;
@@ -35,14 +36,14 @@ class Ensemble {
   void add_source(const SessionFrame& frame, double share, const Cast& cast, const Theme& theme,
                   SceneContent& content);
 
-  std::int64_t trail_ticks_, point_ticks_;  // how far trails go back, between two of their points
+  std::int64_t trail_ticks_, point_ticks_;  // length of a trail, and between two of its points
   double ground_m(const vec3& place_m) const noexcept;
 
   std::shared_ptr<const Terrain> terrain_;  // null: level at height 0
-  std::vector<Body> bodies_;
-  std::vector<Pose> shown_;  // one a body
+  std::vector<Mannequin> mannequins_;
+  std::vector<Pose> shown_;  // one for each mannequin
   double source_height_m_ = 0.0;
-  vec3 source_place_m_{0.0};  // on the floor under it
+  vec3 source_place_m_{0.0};  // on the floor below the source
   bool has_source_ = false;
 };
 

@@ -1,18 +1,18 @@
-// OpenGL objects that free themselves, and shaders that say what is wrong with them. All of it
-// needs the context that was current when it was made.
+// OpenGL objects that free themselves, and shader programs whose errors become sentences. Each
+// object needs the context that was current when it was made.
 #pragma once
 #include <epoxy/gl.h>
 
 #include <string>
 #include <utility>
 
+#include "draw/picture.h"
 #include "gaitpad/math.h"
 #include "gaitpad/result.h"
-#include "view/drawing.h"
 
 namespace gaitpad {
 
-// A name that OpenGL gave out; `Free` gives it back.
+// The name of an OpenGL object; `Free` deletes the object.
 template <class Free>
 class GlName {
  public:
@@ -63,24 +63,26 @@ GlFrameBuffer new_frame_buffer();
 GlRenderBuffer new_render_buffer();
 GlTexture new_texture();
 
-// What a file of numbers holds per vertex or instance: `floats` of them for attribute `location`.
+// A part of a row of floats, one row for each vertex or instance: `floats` numbers for attribute
+// `location`.
 struct VertexPart {
   GLuint location;
   GLint floats;
 };
-// For the bound vertex array and the bound buffer; `divisor` 1: one row an instance.
+// Applies to the bound vertex array and buffer. `divisor` 1: one row for each instance, 0: for each
+// vertex.
 void set_vertex_parts(const VertexPart* parts, int count, GLuint divisor);
-// Replaces what the buffer held.
+// Replaces the buffer's content.
 void upload(const GlBuffer& buffer, const void* data, std::size_t bytes);
 
 class GlProgram {
  public:
   GlProgram() = default;
-  // `name` begins the sentence where a shader does not compile.
+  // `name` identifies the program in the error if a shader does not compile.
   static Result<GlProgram> link(const char* name, const std::string& vertex,
                                 const std::string& fragment);
   void use() const { glUseProgram(name_.get()); }
-  // Of the program in use. A name that the shaders do not use is no error.
+  // The program has to be in use. A name that the shaders do not use is ignored.
   void set(const char* uniform, double value) const;
   void set(const char* uniform, const vec2& value) const;
   void set(const char* uniform, const vec3& value) const;

@@ -1,10 +1,34 @@
-// Dear ImGui on the window: its context, SDL2 and OpenGL 3 back ends, fonts and style.
+// Dear ImGui on the window: its context, the SDL2 and OpenGL 3 back ends, fonts, style and colours.
 #pragma once
+#include <imgui.h>
+
+#include <string>
+
+#include "draw/theme.h"
 #include "view/controls.h"
 #include "view/surface.h"
-#include "view/theme.h"
 
 namespace gaitpad {
+
+ImU32 packed(const Colour& colour) noexcept;
+ImVec4 imgui_colour(const Colour& colour) noexcept;
+
+struct Fonts {
+  ImFont* body = nullptr;
+  ImFont* small = nullptr;
+  ImFont* tick = nullptr;
+  ImFont* heading = nullptr;  // of a panel: as high as body, bolder
+  ImFont* title = nullptr;
+  std::string family;  // the one that was found: "Inter", "DejaVu Sans", "built in"
+};
+// Loads the fonts into the current ImGui context. Call it before the context's first frame, or
+// between frames and then rebuild the font texture. Without a font file ImGui's own font is used.
+Fonts load_fonts(double scale);
+void apply_style(const Theme& theme, double scale);
+
+// `wish` if it is positive, else $GDK_SCALE, else the display's dots per inch over 96, at least 1
+// and at most 3; 1 if nothing is known.
+double display_scale(double wish, double dots_per_inch) noexcept;
 
 class Gui {
  public:
@@ -15,11 +39,11 @@ class Gui {
 
   const Fonts& fonts() const noexcept { return fonts_; }
   void apply(const Theme& theme);
-  void take(const SDL_Event& event);
-  Taken taken() const noexcept;
-  // `passed_s` > 0: instead of the clock's, for pictures.
+  void handle_event(const SDL_Event& event);
+  TakenInput taken_input() const noexcept;
+  // `passed_s` > 0 replaces the time that ImGui measures, for pictures.
   void begin(const Mouse& mouse, double passed_s);
-  void end();  // draws into the frame buffer that is bound
+  void end();  // draws into the bound frame buffer
 
  private:
   double scale_ = 1.0;

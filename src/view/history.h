@@ -1,13 +1,15 @@
-// The last seconds of a session, tick by tick, for graphs and trails.
+// The last seconds of a session, tick by tick, and the plots that the panels show of them.
 #pragma once
 #include <cstddef>
 #include <vector>
 
 #include "gaitpad/session_frame.h"
+#include "view/plot.h"
 
 namespace gaitpad {
 
-// A ring; 0 is the oldest. A sample that does not follow the newest one begins it anew.
+// A ring buffer; index 0 is the oldest sample. A sample that does not follow the newest one clears
+// it first.
 class History {
  public:
   explicit History(std::size_t capacity = 2400) : samples_(capacity > 0 ? capacity : 1) {}
@@ -17,8 +19,9 @@ class History {
   const TickSample& operator[](std::size_t i) const noexcept {
     return samples_[(begin_ + i) % samples_.size()];
   }
-  // The newest `cycles` complete cycles of a walker without a rest in them (from its right foot's
-  // landings), as indices [begin, end); both are size() where it has not walked so many.
+  // The newest `cycles` complete gait cycles of a walker without a rest between them, from one
+  // landing of the right foot to a later one, as indices [begin, end). Both are size() if there are
+  // not so many.
   struct Span {
     std::size_t begin = 0, end = 0;
   };
@@ -31,5 +34,36 @@ class History {
   std::vector<TickSample> samples_;
   std::size_t begin_ = 0, size_ = 0;
 };
+
+// In all plots below x is the time in seconds before now.
+
+inline constexpr std::size_t kShownJointCount = 3;  // hip, knee, ankle: WalkerSample::joint_rad
+
+// The samples [begin, end) up to now that are as long as a walker's last two cycles, or two seconds
+// if it has not walked so far.
+struct GraphSpan {
+  std::size_t begin = 0, end = 0;
+  double tick_s = 1.0 / 240.0;
+  PlotRange x;  // seconds, max 0
+  double x_of(std::size_t index) const noexcept {
+    return -static_cast<double>(end - 1 - index) * tick_s;
+  }
+};
+GraphSpan graph_span(const History& history, int walker, int rate_hz);
+
+// A joint's angle in degrees, one curve for each walker; that of the `chosen` one (-1: none) is
+// thicker.
+Plot joint_plot(const History& history, const GraphSpan& span, Side leg, std::size_t joint,
+                const Theme& theme, int chosen, double least_span_deg);
+// The height of both heels in cm, with marks at the lift, the peak and the landing.
+Plot heel_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
+// The stage, and when each heel and toe is planted.
+SpanPlot stage_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
+
+// The inverse kinematics of a walker's legs.
+Plot iteration_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
+Plot error_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
+// The time that each tick took, ms, over the whole history.
+Plot tick_time_plot(const History& history, int rate_hz, const Theme& theme);
 
 }  // namespace gaitpad

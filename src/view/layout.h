@@ -1,5 +1,5 @@
-// The file that remembers how the window was left: which panels are open, the theme, what the scene
-// shows. Its grammar: every key of layout.cpp, each may be absent.
+// The file that remembers the window from one start to the next: open panels, theme, parts of the
+// scene. Its keys are those of layout.cpp; each may be absent.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,11 +11,11 @@ namespace gaitpad {
 
 struct Layout {
   UiState state;
-  std::string remark;  // one sentence where the file is damaged and was not used, else empty
+  std::string remark;  // why a damaged file was not used; else empty
 };
-// Defaults where there is no such file, or no path.
+// Returns the defaults if the path is empty or there is no such file.
 Layout load_layout(const std::string& path);
-// Written beside `path` first: on error the old file is as it was. Its folder is made.
+// Writes beside `path` first, so that on error the old file is unchanged. Makes the folder.
 std::optional<Error> save_layout(const std::string& path, const UiState& state);
 
 }  // namespace gaitpad

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "view/graph_data.h"
+#include "view/history.h"
 #include "view/panels.h"
 
 namespace gaitpad {
@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, kShownJointCount> kJointNames = {
     "Hip flexion", "Knee flexion", "Ankle dorsiflexion"};
 constexpr std::array<double, kShownJointCount> kLeastSpan_deg = {20.0, 30.0, 10.0};
 
-// A plot's title, and at the right what its curves are now.
+// A plot's title, and at the right the latest values of its curves.
 void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plot& plot,
                 int decimals) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -69,7 +69,7 @@ void draw_leg_choice(Ui& ui) {
   ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(26))});
 }
 
-// What the letters of the curves mean.
+// Which character each curve belongs to.
 void draw_names(Ui& ui) {
   const int count = ui.in.frame.walker_count;
   if (count <= 1) return;
@@ -126,6 +126,110 @@ void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
   note(ui, "F flight, R roll, each of the left or right foot", 1);
 }
 
+// Columns of the table: name, iterations and error of each leg, failures since the start.
+struct Columns {
+  float name, iterations, error, failures, width;
+};
+Columns columns_of(const Ui& ui, float width) {
+  return {0.0f, std::round(width * 0.36f), std::round(width * 0.55f), std::round(width * 0.84f),
+          width - ui.px(2)};
+}
+
+std::string pair_text(const std::array<std::string, 2>& legs) { return legs[0] + " | " + legs[1]; }
+
+void draw_walker(Ui& ui, int index) {
+  const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const Columns c = columns_of(ui, width);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImFont* font = ui.fonts.small;
+  list.AddRectFilled({at.x, at.y + ui.px(1)}, {at.x + ui.px(3), at.y + ui.px(13)},
+                     packed(walker_colour(ui, index)));
+  put_text(list, font, ui.theme.text, {at.x + ui.px(8), at.y}, walker_name(ui, index),
+           c.iterations - ui.px(14));
+  std::array<std::string, 2> iterations, errors;
+  bool is_failing = false;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    iterations[side] = fmt::format("{}", walker.walk.ik_iterations[side]);
+    errors[side] = fmt::format("{:.2f}", walker.walk.ik_error_m[side] * 1000.0);
+    if (walker.walk.ik_failed[side]) errors[side] += "!";
+    is_failing = is_failing || walker.walk.ik_failed[side];
+  }
+  put_text(list, font, ui.theme.text, {at.x + c.iterations, at.y}, pair_text(iterations),
+           c.error - c.iterations - ui.px(4));
+  put_text(list, font, is_failing ? ui.theme.warning : ui.theme.text, {at.x + c.error, at.y},
+           pair_text(errors), c.failures - c.error - ui.px(4));
+  put_text(list, font, walker.ik_failures > 0 ? ui.theme.warning : ui.theme.secondary,
+           {at.x + c.failures, at.y}, fmt::format("{}", walker.ik_failures), c.width - c.failures);
+  ImGui::Dummy({width, font->FontSize + ui.px(2)});
+}
+
+void draw_table(Ui& ui) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const Columns c = columns_of(ui, width);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto head = [&](float x, float end, std::string_view text) {
+    put_text(list, ui.fonts.tick, ui.theme.tick, {at.x + x, at.y}, text, end - x - ui.px(4));
+  };
+  head(c.name, c.iterations, "left | right leg");
+  head(c.iterations, c.error, "iterations");
+  head(c.error, c.failures, "error, mm");
+  head(c.failures, c.width + ui.px(4), "failed");
+  ImGui::Dummy({width, ui.fonts.tick->FontSize + ui.px(2)});
+  for (int i = 0; i < ui.in.frame.walker_count; ++i) draw_walker(ui, i);
+}
+
+void draw_graph(Ui& ui, std::string_view title, const Plot& plot) {
+  text_line(ui, ui.fonts.small, ui.theme.text, title);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 max{at.x + ImGui::GetContentRegionAvail().x, at.y + std::round(ui.px(70))};
+  if (ImGui::IsRectVisible(at, max)) {
+    draw_plot(*ImGui::GetWindowDrawList(), at, max, plot, ui.plot_style());
+  }
+  ImGui::Dummy({max.x - at.x, max.y - at.y});
+}
+
+void draw_tick_times(Ui& ui) {
+  const Plot plot = tick_time_plot(ui.in.history, ui.in.cast.rate_hz, ui.theme);
+  text_line(
+      ui, ui.fonts.small, ui.theme.text,
+      fmt::format("Time of a tick (ms), of {:.2f} ms", 1000.0 / std::max(ui.in.cast.rate_hz, 1)));
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 max{at.x + ImGui::GetContentRegionAvail().x, at.y + std::round(ui.px(84))};
+  if (ImGui::IsRectVisible(at, max)) {
+    draw_plot(*ImGui::GetWindowDrawList(), at, max, plot, ui.plot_style());
+  }
+  ImGui::Dummy({max.x - at.x, max.y - at.y});
+}
+
+// A count that should be 0; otherwise it is marked with '!' and a note.
+void count_row(Ui& ui, std::string_view label, std::int64_t count,
+               std::string_view note_text = {}) {
+  std::string value = fmt::format("{}", count);
+  if (count > 0 && !note_text.empty()) value += fmt::format(" ({})", note_text);
+  value_row(ui, count > 0 ? fmt::format("! {}", label) : std::string(label), value);
+}
+
+void draw_live(Ui& ui, const LiveStatus& status) {
+  value_row(ui, "ticks", fmt::format("{} at {} Hz", status.ticks, ui.in.cast.rate_hz));
+  const double share = status.ticks > 0 ? 1000.0 * static_cast<double>(status.overruns) /
+                                              static_cast<double>(status.ticks)
+                                        : 0.0;
+  count_row(ui, "more than a tick late", status.overruns, fmt::format("{:.2f} in 1000", share));
+  value_row(ui, "tick, median and most",
+            fmt::format("{:.0f}, {:.0f} us", status.tick_us_median, status.tick_us_max));
+  count_row(ui, "standstills", status.standstills);
+  count_row(ui, "too slow for the time", status.overloads);
+  value_row(ui, "skipped by these", fmt::format("{:.1f} s", status.skipped_s));
+  value_row(ui, "scheduled as", status.time_policy.empty() ? "-" : status.time_policy);
+  count_row(ui, "reports lost", status.pads.lost);
+  value_row(ui, "plugged, unplugged",
+            fmt::format("{}, {}", status.pads.plugged, status.pads.unplugged));
+  count_row(ui, "missed by the recording", status.recording_lost);
+}
+
 }  // namespace
 
 void draw_graphs_panel(Ui& ui) {
@@ -142,6 +246,45 @@ void draw_graphs_panel(Ui& ui) {
     draw_graph(ui, kJointNames[joint], "\u00b0", plot, 0, plot.has_x_ticks ? 92.0 : 78.0);
   }
   draw_feet(ui, span, walker);
+  ImGui::PopStyleVar();
+}
+
+void draw_solver_panel(Ui& ui) {
+  const int walker = ui.walker();
+  if (walker < 0) return note(ui, "nobody walks yet");
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(4)});
+  draw_table(ui);
+  const GraphSpan span = graph_span(ui.in.history, walker, ui.in.cast.rate_hz);
+  draw_graph(ui, "Iterations of a tick", iteration_plot(ui.in.history, span, walker, ui.theme));
+  draw_graph(ui, "Error left (mm)", error_plot(ui.in.history, span, walker, ui.theme));
+  if (ui.in.status != nullptr) {
+    const double legs = 2.0 * std::max(ui.in.frame.walker_count, 1);
+    value_row(ui, "a tick takes",
+              fmt::format("median {:.0f}, most {:.0f} us", ui.in.status->tick_us_median,
+                          ui.in.status->tick_us_max));
+    value_row(ui, "a leg's share, at most",
+              fmt::format("{:.1f} us", ui.in.status->tick_us_median / legs));
+  }
+  ImGui::PopStyleVar();
+}
+
+void draw_loop_panel(Ui& ui) {
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(4)});
+  if (ui.is_live()) draw_tick_times(ui);
+  if (ui.in.status != nullptr) {
+    draw_live(ui, *ui.in.status);
+  } else {
+    value_row(ui, "ticks", fmt::format("{} at {} Hz", ui.in.frame.tick + 1, ui.in.cast.rate_hz));
+    note(ui, "a playback is computed as it is looked at: no tick has a time of its own");
+  }
+  const SimulationCounts& counts = ui.in.frame.counts;
+  value_row(ui, "reports", fmt::format("{}", counts.reports));
+  count_row(ui, "bad reports", counts.bad_reports);
+  value_row(ui, "commands", fmt::format("{}", counts.commands));
+  count_row(ui, "refused commands", counts.bad_commands);
+  if (ui.in.memory_mib > 0.0) {
+    value_row(ui, "memory of the program", fmt::format("{:.0f} MiB", ui.in.memory_mib));
+  }
   ImGui::PopStyleVar();
 }
 

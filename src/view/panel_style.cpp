@@ -8,17 +8,124 @@
 namespace gaitpad {
 namespace {
 
+// A row: one parameter, or the same parameter of both feet.
+struct ControlRow {
+  std::string_view label, unit;
+  GaitKey left;
+  std::optional<GaitKey> right;
+};
+constexpr ControlRow kRows[] = {
+    {"speed", "m/s", GaitKey::speed_m_s, std::nullopt},
+    {"stride", "m", GaitKey::stride_left_m, GaitKey::stride_right_m},
+    {"flight height", "x", GaitKey::flight_left, GaitKey::flight_right},
+    {"turn rate", "rad/s", GaitKey::turn_rate_rad_s, std::nullopt},
+    {"hip sway", "x", GaitKey::hip_sway, std::nullopt},
+    {"hip bounce", "x", GaitKey::hip_bounce, std::nullopt},
+};
+
+// A walker, and the parameters that its stick and style alone would give.
+struct Controlled {
+  const WalkerFrame& walker;
+  const GaitParams from_stick;
+  const GaitLimits& limits;
+  bool is_set(std::optional<GaitKey> key) const noexcept {
+    return key && walker.overrides.is_set[static_cast<std::size_t>(*key)];
+  }
+};
+
+void give_back(Ui& ui, const Controlled& c, std::optional<GaitKey> key) {
+  if (!c.is_set(key)) return;
+  const std::string name(info_of(*key).name);
+  send(ui, "gait", name + " stick");
+  forget_wish(ui, "gait " + name);
+}
+
+std::string stick_text(const ControlRow& row, const Controlled& c) {
+  std::string text = fmt::format("stick {}", tick_text(value_of(row.left, c.from_stick), 0.01));
+  if (row.right) text += fmt::format(" | {}", tick_text(value_of(*row.right, c.from_stick), 0.01));
+  return text;
+}
+
+// The name, and at the right the stick's value, or a button that gives an overridden value back.
+void draw_row_head(Ui& ui, const ControlRow& row, const Controlled& c) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, y = at.y + ui.px(1);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImFont* font = ui.fonts.small;
+  const std::string label = fmt::format("{} ({})", row.label, row.unit);
+  put_text(list, font, ui.theme.text, {at.x, y}, label, width * 0.62f);
+  if (!c.is_set(row.left) && !c.is_set(row.right)) {
+    const std::string stick = stick_text(row, c);
+    const float stick_width = text_width(font, stick);
+    put_text(list, font, ui.theme.tick, {at.x + width - stick_width, y}, stick, stick_width + 1.0f);
+  } else {
+    const float x = at.x + text_width(font, label) + ui.px(8);
+    ButtonLook back;
+    back.width = std::round(ui.px(64));
+    back.height = std::round(ui.px(17));
+    back.is_enabled = ui.is_live();
+    put_text(list, font, ui.theme.warning, {x, y}, "overridden",
+             at.x + width - x - back.width - ui.px(4));
+    ImGui::SetCursorScreenPos({at.x + width - back.width, at.y - ui.px(1)});
+    if (button(ui, fmt::format("give back {}", info_of(row.left).name), "give back", back)) {
+      give_back(ui, c, row.left);
+      give_back(ui, c, row.right);
+    }
+  }
+  ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(17))});
+}
+
+void draw_slider(Ui& ui, GaitKey key, const Controlled& c, float width, std::string_view letter) {
+  const std::string name(info_of(key).name);
+  const GaitRange range = range_of(key, c.limits);
+  SliderLook look;
+  look.min = range.min;
+  look.max = range.max;
+  look.mark = value_of(key, c.from_stick);
+  look.is_changed = c.is_set(key);
+  look.is_enabled = ui.is_live();
+  look.width = width;
+  look.letter = letter;
+  const double now = c.is_set(key) ? c.walker.overrides.value[static_cast<std::size_t>(key)]
+                                   : value_of(key, c.walker.params);
+  double value = wished_value(ui, "gait " + name, now);
+  if (slider(ui, "slider " + name, value, look)) {
+    send(ui, "gait", name, value);
+    remember_wish(ui, "gait " + name, value);
+  }
+}
+
+void draw_row(Ui& ui, const ControlRow& row, const Controlled& c) {
+  draw_row_head(ui, row, c);
+  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
+  const float cell = row.right ? std::floor((width - gap) / 2.0f) : width;
+  draw_slider(ui, row.left, c, cell, row.right ? "L" : "");
+  if (row.right) {
+    ImGui::SameLine(0.0f, gap);
+    draw_slider(ui, *row.right, c, cell, "R");
+  }
+}
+
+bool is_any_set(const Ui& ui) {
+  for (int w = 0; w < ui.in.frame.walker_count; ++w) {
+    if (ui.state.walker >= 0 && w != ui.state.walker) continue;
+    const auto& set = ui.in.frame.walkers[static_cast<std::size_t>(w)].overrides.is_set;
+    if (std::any_of(set.begin(), set.end(), [](bool s) { return s; })) return true;
+  }
+  return false;
+}
+
 constexpr std::string_view kLeftOf = "left_", kRightOf = "right_";
 constexpr std::string_view kOfBoth[] = {"legs.", "arms.", "hands."};
-// Behind the button below: the body above the hips, and what is rarely moved.
+// Keys behind the button below: the upper body, and those that are rarely changed.
 constexpr std::string_view kRare[] = {"arm.",  "hand.",   "spine.",
                                       "head.", "blend_s", "fatigue_model."};
 
-// A key, or the same key of both sides.
+// A row: one key, or the same key of both sides.
 struct StyleRow {
   std::string label;
-  const StyleKey* left = nullptr;   // or the only one
-  const StyleKey* right = nullptr;  // null: of no side
+  const StyleKey* left = nullptr;   // or the key without a side
+  const StyleKey* right = nullptr;  // null: a key without a side
 };
 
 template <std::size_t n>
@@ -40,7 +147,7 @@ bool is_axis_weight(std::string_view key) {
          (key.ends_with("_x") || key.ends_with("_y") || key.ends_with("_z"));
 }
 
-// The legs' rows are known by their words; "lower" and "x" say whose they are.
+// Rows of legs and arms need no prefix; others name their table.
 std::string row_label(std::string_view name) {
   const std::string_view table = name.substr(0, name.find('.'));
   const bool is_plain = table.size() == name.size() || table == "leg" || table == "arm";
@@ -68,7 +175,7 @@ std::vector<StyleRow> rows_of(const UiMemory& memory) {
   return rows;
 }
 
-// The chosen style's own value; none where it is not known.
+// The value of the style as loaded; none if it is not known.
 std::optional<double> own_value(const Ui& ui, const WalkerFrame& walker, const StyleKey& key) {
   const auto& all = ui.in.cast.style_values;
   const auto index = static_cast<std::size_t>(walker.style_index);
@@ -88,10 +195,10 @@ void draw_value(Ui& ui, const WalkerFrame& walker, const StyleKey& key, float wi
   look.is_enabled = ui.is_live();
   look.width = width;
   look.letter = letter;
-  double value = wished(ui, "set " + key.name, now);
+  double value = wished_value(ui, "set " + key.name, now);
   if (slider(ui, "style slider " + key.name, value, look)) {
     send(ui, "set", key.name, value);
-    wish(ui, "set " + key.name, value);
+    remember_wish(ui, "set " + key.name, value);
   }
 }
 
@@ -158,7 +265,7 @@ void draw_choice(Ui& ui, const WalkerFrame& walker) {
   ImGui::Dummy({1.0f, ui.px(2)});
 }
 
-// What a file's name may hold anywhere.
+// Accepts only characters that a file's name may hold on every system.
 int accept(ImGuiInputTextCallbackData* data) {
   const ImWchar c = data->EventChar;
   const bool is_fit = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -166,7 +273,7 @@ int accept(ImGuiInputTextCallbackData* data) {
   return is_fit ? 0 : 1;
 }
 
-// A name for the file, and the button that asks for it.
+// A field for the file's name, and the button that saves.
 void draw_save(Ui& ui) {
   auto& name = ui.state.memory.style_name;
   const float save = std::round(ui.px(60)), gap = std::round(ui.px(6));
@@ -217,6 +324,30 @@ void draw_buttons(Ui& ui, const WalkerFrame& walker) {
 }
 
 }  // namespace
+
+void draw_control_panel(Ui& ui) {
+  const int index = ui.walker();
+  if (index < 0 || index >= static_cast<int>(ui.in.cast.members.size())) {
+    return note(ui, "nobody walks yet");
+  }
+  const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
+  const GaitLimits& limits = ui.in.cast.members[static_cast<std::size_t>(index)].limits;
+  const Controlled controlled{walker, gait_params(ui.in.frame.stick, walker.style, limits), limits};
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
+  for (const ControlRow& row : kRows) draw_row(ui, row, controlled);
+  if (!ui.is_live()) {
+    note(ui, "a playback is only looked at", 1);
+  } else if (is_any_set(ui)) {
+    ButtonLook look;
+    look.width = ImGui::GetContentRegionAvail().x;
+    look.height = std::round(ui.px(22));
+    if (button(ui, "give back all", "give all back to the stick", look)) {
+      send(ui, "gait", "stick");
+      forget_wish(ui, "");
+    }
+  }
+  ImGui::PopStyleVar();
+}
 
 void draw_style_panel(Ui& ui) {
   const int index = ui.walker();

@@ -1,6 +1,6 @@
-// The panels' contents, below their headings, over the width that is there.
+// The contents of the panels, drawn below their headings over the width of the column.
 #pragma once
-#include "view/ui_parts.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 

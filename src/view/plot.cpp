@@ -1,16 +1,17 @@
 #include "view/plot.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 namespace gaitpad {
 namespace {
 
 constexpr double kLeftGutterPixels = 30.0, kRightGutterPixels = 14.0, kTickRowPixels = 14.0;
-constexpr float kTolerancePixels = 0.15f;  // not to be seen, whatever the scale
+constexpr float kTolerancePixels = 0.15f;  // too small to be seen at any scale
 constexpr double kTickSpacePixels = 18.0, kTickWidthPixels = 46.0;
 
-// The part of a plot's box where its curves are.
+// The part of a plot's box that holds the curves.
 struct Field {
   ImVec2 min, max;
   PlotRange x, y;
@@ -53,42 +54,39 @@ int y_steps(float height, float scale) {
   return std::max(1, static_cast<int>(height / (kTickSpacePixels * scale)));
 }
 
-// What is left of the field: as wide as its longest number needs.
+// Width of the space left of the field: as wide as the longest number needs.
 float left_gutter(const Plot& plot, float height, const PlotStyle& style) {
   const int steps = y_steps(height, style.scale);
-  const double step = nice_step(plot.y.max - plot.y.min, steps);
   float width = static_cast<float>(kLeftGutterPixels) * style.scale;
-  for (const double tick : nice_ticks(plot.y.min, plot.y.max, steps)) {
-    width = std::max(width, label_width(style, tick_text(tick, step)) + 6.0f * style.scale);
+  for (const PlotTick& tick : plot_ticks(plot.y, steps)) {
+    width = std::max(width, label_width(style, tick.text) + 6.0f * style.scale);
   }
   return std::ceil(width);
 }
 
 void draw_y_axis(ImDrawList& list, const Field& field, const PlotStyle& style) {
   const int steps = y_steps(field.height(), style.scale);
-  const double step = nice_step(field.y.max - field.y.min, steps);
   const float half = style.fonts->tick->FontSize / 2.0f;
-  for (const double tick : nice_ticks(field.y.min, field.y.max, steps)) {
-    const float y = std::round(field.py(tick));
+  for (const PlotTick& tick : plot_ticks(field.y, steps)) {
+    const float y = std::round(field.py(tick.value));
     list.AddLine({field.min.x, y}, {field.max.x, y},
-                 faint(style.theme->border, tick == 0.0 ? 1.0 : 0.6));
+                 faint(style.theme->border, tick.value == 0.0 ? 1.0 : 0.6));
     const float text_y = std::clamp(y - half, field.min.y - half * 0.5f, field.max.y - half * 1.5f);
-    tick_label(list, style, {field.min.x - 5.0f * style.scale, text_y}, TextPlace::right,
-               tick_text(tick, step), style.theme->tick);
+    tick_label(list, style, {field.min.x - 5.0f * style.scale, text_y}, TextPlace::right, tick.text,
+               style.theme->tick);
   }
 }
 
 void draw_x_axis(ImDrawList& list, const Field& field, const PlotStyle& style, bool has_labels) {
   const int steps = std::max(1, static_cast<int>(field.width() / (kTickWidthPixels * style.scale)));
-  const double step = nice_step(field.x.max - field.x.min, steps);
-  for (const double tick : nice_ticks(field.x.min, field.x.max, steps)) {
-    const float x = std::round(field.px(tick));
+  for (const PlotTick& tick : plot_ticks(field.x, steps)) {
+    const float x = std::round(field.px(tick.value));
     list.AddLine({x, field.min.y}, {x, field.max.y}, faint(style.theme->border, 0.6));
     if (!has_labels) continue;
     const float edge = 10.0f * style.scale;
     const float text_x = std::clamp(x, field.min.x + edge, field.max.x - edge * 0.2f);
     tick_label(list, style, {text_x, field.max.y + 2.0f * style.scale}, TextPlace::centre,
-               tick_text(tick, step), style.theme->tick);
+               tick.text, style.theme->tick);
   }
 }
 
@@ -96,7 +94,7 @@ void draw_curve(ImDrawList& list, const Field& field, const PlotSeries& series, 
   static thread_local std::vector<PlotPoint> shown;
   static thread_local std::vector<ImVec2> pixels;
   decimate(series.points, field.x, static_cast<int>(field.width()), shown);
-  // Whole pixels: such lines are drawn from ImGui's texture, with a third of the triangles.
+  // ImGui draws lines of whole pixels from a texture, with a third of the triangles.
   const float width = std::max(1.0f, std::round(static_cast<float>(series.width_px) * scale));
   const auto flush = [&] {
     thin_out(pixels, kTolerancePixels);
@@ -140,7 +138,7 @@ struct EndLabel {
   const PlotSeries* series = nullptr;
 };
 
-// Letters at the curves' ends, moved apart where they would cover each other.
+// Letters at the curves' ends, moved apart where they would overlap.
 void draw_ends(ImDrawList& list, const Field& field, const Plot& plot, const PlotStyle& style) {
   std::vector<EndLabel> ends;
   for (const PlotSeries& series : plot.series) {
@@ -183,6 +181,30 @@ void draw_nothing(ImDrawList& list, const Field& field, const std::string& text,
 
 }  // namespace
 
+// Keeps, for each point that stays, the range of slopes whose line passes all later points within
+// the tolerance; the first point outside this range is the next one to stay.
+void thin_out(std::vector<ImVec2>& line, float tolerance) {
+  if (line.size() < 3) return;
+  std::size_t kept = 1;
+  ImVec2 anchor = line[0];
+  float low = -FLT_MAX, high = FLT_MAX;
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    const ImVec2 here = line[i], next = line[i + 1];
+    const float dx = here.x - anchor.x, next_dx = next.x - anchor.x;
+    if (dx > 0.0f) {
+      low = std::max(low, (here.y - tolerance - anchor.y) / dx);
+      high = std::min(high, (here.y + tolerance - anchor.y) / dx);
+    }
+    const float slope = next_dx > 0.0f ? (next.y - anchor.y) / next_dx : FLT_MAX;
+    if (dx > 0.0f && slope >= low && slope <= high) continue;
+    line[kept++] = anchor = here;
+    low = -FLT_MAX;
+    high = FLT_MAX;
+  }
+  line[kept++] = line.back();
+  line.resize(kept);
+}
+
 void draw_plot(ImDrawList& list, const ImVec2& min, const ImVec2& max, const Plot& plot,
                const PlotStyle& style) {
   const float scale = style.scale;
@@ -203,10 +225,6 @@ void draw_plot(ImDrawList& list, const ImVec2& min, const ImVec2& max, const Plo
   draw_y_axis(list, field, style);
   draw_x_axis(list, field, style, plot.has_x_ticks);
   list.PushClipRect(field.min, field.max, true);
-  for (const double x : plot.lines) {
-    list.AddLine({field.px(x), field.min.y}, {field.px(x), field.max.y},
-                 faint(style.theme->tick, 0.7));
-  }
   for (const PlotSeries& series : plot.series) draw_curve(list, field, series, scale);
   for (const PlotMark& mark : plot.marks) draw_mark(list, field, mark, scale);
   list.PopClipRect();

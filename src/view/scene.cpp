@@ -1,3 +1,6 @@
+// What all parts of one picture share. The renderer gets positions as floats relative to `origin_m`
+// near the camera's target, so that feet stay sharp 200 m from the start.
+
 #include "view/scene.h"
 
 #include <epoxy/gl.h>
@@ -5,18 +8,633 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
 
-#include "view/scene_bodies.h"
-#include "view/scene_floor.h"
-#include "view/scene_strokes.h"
+#include "draw/theme.h"
+#include "view/camera.h"
+#include "view/gl_program.h"
+#include "view/ground_mesh.h"
+#include "view/scene_shaders.h"
 
 namespace gaitpad {
 namespace {
 
+struct SceneView {
+  Camera camera;
+  vec3 origin_m{0.0};      // whole metres on the floor
+  mat4 to_clip{1.0};       // from places relative to the origin
+  vec2 size_px{1.0, 1.0};  // of the viewport
+  double scale = 1.0;      // of the display
+  const Theme* theme = nullptr;
+
+  vec3 eye_m() const noexcept { return camera.eye_m() - origin_m; }
+  bool is_light() const noexcept { return theme->name == ThemeName::light; }
+};
+
+// Towards the only light.
+inline const vec3 kLightDirection = glm::normalize(vec3(0.42, 0.86, 0.36));
+
+inline bool is_finite(const vec3& v) noexcept {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Draws bodies of capsules, instanced, and their shadows into a texture of the floor.
+
+struct MeshDetail {
+  int segments = 36, rings = 8;  // round the axis; of each cap
+  int shadow_px = 1024;          // side of the shadows' texture
+};
+// Where the shadows' texture lies on the floor, relative to the view's origin.
+struct ShadowPlace {
+  vec2 centre_m{0.0};
+  double half_m = 0.0;  // 0: there are no shadows
+};
+
+class SceneBodies {
+ public:
+  static Result<SceneBodies> create(const MeshDetail& detail);
+  // Uploads the bodies and lines of a picture; those that are not finite are left out.
+  void load(const SceneContent& content, const SceneView& view);
+  // Binds a frame buffer of its own and changes the viewport.
+  ShadowPlace draw_shadows();
+  void draw(const SceneView& view) const;
+  GLuint shadow_texture() const noexcept { return shadow_.get(); }
+
+ private:
+  SceneBodies() = default;
+  void make_mesh(const MeshDetail& detail);
+  void make_shadow_target(int size_px);
+  ShadowPlace shadow_place() const noexcept;
+
+  struct Instance {
+    glm::vec4 a_radius, b_radius, across_width_a, colour_width_b;
+    glm::vec2 ground;  // below a, below b
+  };
+  GlProgram body_, shadow_program_;
+  GlVertexArray vertices_;
+  GlBuffer mesh_, indices_, instances_;
+  GlTexture shadow_;
+  GlFrameBuffer shadow_target_;
+  GLsizei index_count_ = 0;
+  int shadow_px_ = 0;
+  void add_rows(const SceneContent& content, const SceneView& view, double from_m, double to_m);
+
+  std::vector<Instance> rows_;  // bodies near the floor, the others, lines
+  std::size_t low_bodies_ = 0, bodies_ = 0;
+};
+
+constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's lines for their shadow
+constexpr double kContact_m = 0.55;      // bodies above this height cast no contact shadow
+constexpr double kShadowStep_m =
+    2.0;  // the texture's size changes in these steps, so that shadows do not flicker
+constexpr double kLargestShadow_m = 16.0;
+
+glm::vec4 row(const vec3& v, double w) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
+          static_cast<float>(w)};
+}
+
+// A unit vector at right angles to the axis, towards `wide` if possible.
+vec3 across(const vec3& axis, const vec3& wide) {
+  const double length = glm::length(axis);
+  const vec3 along = length > 1e-9 ? axis / length : kUp;
+  const vec3 least = std::abs(along.x) < 0.7 ? kLeft : kForward;
+  for (const vec3& wish : {wide, least}) {
+    const vec3 side = wish - along * glm::dot(wish, along);
+    if (glm::length(side) > 1e-6) return glm::normalize(side);
+  }
+  return kLeft;
+}
+
+bool is_drawable(const Capsule& c) {
+  return is_finite(c.a_m) && is_finite(c.b_m) && is_finite(c.wide) &&
+         std::isfinite(c.radius_a_m + c.radius_b_m + c.width_a + c.width_b);
+}
+
+// High bodies use the mean height, so that their shadow does not jump at each riser.
+double floor_below(const SceneContent& content, const vec3& place_m) {
+  constexpr double kNear_m = 0.35;
+  if (content.terrain == nullptr) return 0.0;
+  const double height_m = ground_at(*content.terrain, place_m.x, place_m.z).height_m;
+  if (place_m.y - height_m < kNear_m) return height_m;
+  return mean_ground_m(*content.terrain, place_m.x, place_m.z);
+}
+
+Result<SceneBodies> SceneBodies::create(const MeshDetail& detail) {
+  SceneBodies bodies;
+  auto body = GlProgram::link("bodies", shader::kBodyVertex, shader::kBodyFragment);
+  if (!body) return body.error();
+  auto shadow = GlProgram::link("shadows", shader::kShadowVertex, shader::kShadowFragment);
+  if (!shadow) return shadow.error();
+  bodies.body_ = std::move(*body);
+  bodies.shadow_program_ = std::move(*shadow);
+  bodies.make_mesh(detail);
+  bodies.make_shadow_target(detail.shadow_px);
+  glBindFramebuffer(GL_FRAMEBUFFER, bodies.shadow_target_.get());
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    return Error{"OpenGL: the renderer cannot draw into a picture of two colours"};
+  }
+  return bodies;
+}
+
+// Rows of latitude from one pole to the seam, then from the seam to the other pole. The triangles
+// between the two caps form the cone.
+void SceneBodies::make_mesh(const MeshDetail& detail) {
+  const int columns = detail.segments, rows = 2 * (detail.rings + 1);
+  std::vector<std::array<float, 4>> spots;
+  for (int r = 0; r < rows; ++r) {
+    const bool at_b = r > detail.rings;
+    const int from_pole = at_b ? rows - 1 - r : r;
+    for (int c = 0; c < columns; ++c) {
+      const double angle = 2.0 * kPi * c / columns;
+      spots.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+                       static_cast<float>(from_pole) / static_cast<float>(detail.rings),
+                       at_b ? 1.0f : 0.0f});
+    }
+  }
+  std::vector<std::uint16_t> indices;
+  for (int r = 0; r + 1 < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      const int a = r * columns + c, b = r * columns + (c + 1) % columns;
+      for (const int i : {a, b, b + columns, a, b + columns, a + columns}) {
+        indices.push_back(static_cast<std::uint16_t>(i));
+      }
+    }
+  }
+  index_count_ = static_cast<GLsizei>(indices.size());
+  mesh_ = new_buffer();
+  indices_ = new_buffer();
+  instances_ = new_buffer();
+  vertices_ = new_vertex_array();
+  glBindVertexArray(vertices_.get());
+  upload(mesh_, spots.data(), spots.size() * sizeof(spots[0]));
+  constexpr VertexPart kSpot[] = {{0, 4}};
+  set_vertex_parts(kSpot, 1, 0);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.get());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 2), indices.data(),
+               GL_STATIC_DRAW);
+  glBindBuffer(GL_ARRAY_BUFFER, instances_.get());
+  constexpr VertexPart kInstance[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 2}};
+  set_vertex_parts(kInstance, 5, 1);
+  glBindVertexArray(0);
+}
+
+void SceneBodies::make_shadow_target(int size_px) {
+  shadow_px_ = size_px;
+  shadow_ = new_texture();
+  glBindTexture(GL_TEXTURE_2D, shadow_.get());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG8, size_px, size_px, 0, GL_RG, GL_UNSIGNED_BYTE, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  shadow_target_ = new_frame_buffer();
+  glBindFramebuffer(GL_FRAMEBUFFER, shadow_target_.get());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shadow_.get(), 0);
+}
+
+// Adds the bodies whose lower end is within [from_m, to_m) above the floor.
+void SceneBodies::add_rows(const SceneContent& content, const SceneView& view, double from_m,
+                           double to_m) {
+  for (const Capsule& c : content.bodies) {
+    if (!is_drawable(c)) continue;
+    const vec2 ground(floor_below(content, c.a_m), floor_below(content, c.b_m));
+    const double low_m =
+        std::min(c.a_m.y - c.radius_a_m - ground.x, c.b_m.y - c.radius_b_m - ground.y);
+    if (low_m < from_m || low_m >= to_m) continue;
+    const vec3 colour(c.colour.red, c.colour.green, c.colour.blue);
+    rows_.push_back(
+        {row(c.a_m - view.origin_m, c.radius_a_m), row(c.b_m - view.origin_m, c.radius_b_m),
+         row(across(c.b_m - c.a_m, c.wide), c.width_a), row(colour, c.width_b), glm::vec2(ground)});
+  }
+}
+
+void SceneBodies::load(const SceneContent& content, const SceneView& view) {
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  rows_.clear();
+  add_rows(content, view, -kAnywhere, kContact_m);
+  low_bodies_ = rows_.size();
+  add_rows(content, view, kContact_m, kAnywhere);
+  bodies_ = rows_.size();
+  for (const SceneLine& l : content.lines) {
+    if (!is_finite(l.a_m) || !is_finite(l.b_m)) continue;
+    rows_.push_back({row(l.a_m - view.origin_m, kLineShadow_m),
+                     row(l.b_m - view.origin_m, kLineShadow_m), row(kLeft, 1.0),
+                     row(vec3(0.0), 1.0),
+                     glm::vec2(floor_below(content, l.a_m), floor_below(content, l.b_m))});
+  }
+  upload(instances_, rows_.data(), rows_.size() * sizeof(Instance));
+}
+
+// Around all bodies and their shadows, in whole texels, so that shadows do not swim.
+ShadowPlace SceneBodies::shadow_place() const noexcept {
+  if (rows_.empty()) return {};
+  vec2 low(1e9), high(-1e9);
+  for (const Instance& i : rows_) {
+    for (const auto& [end, ground] :
+         {std::pair(i.a_radius, i.ground.x), {i.b_radius, i.ground.y}}) {
+      const vec2 down(end.x, end.z);
+      const vec2 thrown = down - vec2(kLightDirection.x, kLightDirection.z) *
+                                     ((double{end.y} - ground) / kLightDirection.y);
+      low = glm::min(low, glm::min(down, thrown));
+      high = glm::max(high, glm::max(down, thrown));
+    }
+  }
+  constexpr double kMargin_m = 0.4;
+  const vec2 size = (high - low) * 0.5 + kMargin_m;
+  ShadowPlace place;
+  place.half_m = std::ceil(std::max(size.x, size.y) * 2.0 / kShadowStep_m) * kShadowStep_m * 0.5;
+  place.half_m = std::min(place.half_m, kLargestShadow_m);
+  const double texel_m = 2.0 * place.half_m / shadow_px_;
+  place.centre_m = glm::round((low + high) * 0.5 / texel_m) * texel_m;
+  return place;
+}
+
+// Red: the light's shadow. Green: contact shadow straight below, where the sky's light does not
+// reach the floor. The darkest value counts, so that overlapping bones do not show.
+ShadowPlace SceneBodies::draw_shadows() {
+  const ShadowPlace place = shadow_place();
+  if (place.half_m <= 0.0) return place;
+  glBindFramebuffer(GL_FRAMEBUFFER, shadow_target_.get());
+  glViewport(0, 0, shadow_px_, shadow_px_);
+  glDisable(GL_DEPTH_TEST);
+  glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_MAX);
+  glBindVertexArray(vertices_.get());
+  shadow_program_.use();
+  shadow_program_.set("centre", place.centre_m);
+  shadow_program_.set("half_size", place.half_m);
+  const auto draw = [this](const vec2& slide, const vec2& softness, double fading,
+                           std::size_t count) {
+    shadow_program_.set("slide", slide);
+    shadow_program_.set("softness", softness);
+    shadow_program_.set("fading", fading);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
+  };
+  glColorMask(GL_TRUE, GL_FALSE, GL_FALSE, GL_FALSE);
+  draw(vec2(kLightDirection.x, kLightDirection.z) / kLightDirection.y, {0.02, 0.075}, 0.0,
+       rows_.size());
+  glColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE);
+  draw({0.0, 0.0}, {0.02, 0.55}, 6.0, low_bodies_);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glBlendEquation(GL_FUNC_ADD);
+  glDisable(GL_BLEND);
+  return place;
+}
+
+void SceneBodies::draw(const SceneView& view) const {
+  body_.use();
+  body_.set("to_clip", view.to_clip);
+  body_.set("eye", view.eye_m());
+  body_.set("light", kLightDirection);
+  body_.set("sky_light", view.is_light() ? vec3(0.50, 0.54, 0.60) : vec3(0.36, 0.41, 0.50));
+  body_.set("ground_light", view.is_light() ? vec3(0.30, 0.29, 0.28) : vec3(0.15, 0.13, 0.135));
+  body_.set("key_strength", view.is_light() ? 0.80 : 0.86);
+  body_.set("rim_strength", view.is_light() ? 0.10 : 0.34);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);
+  glBindVertexArray(vertices_.get());
+  glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_SHORT, nullptr,
+                          static_cast<GLsizei>(bodies_));
+  glDisable(GL_CULL_FACE);
+}
+
+// Draws the floor with its grid and shadows, and the background that it fades into.
+
+class SceneFloor {
+ public:
+  static Result<SceneFloor> create();
+  // Call it after the bodies are drawn. Without shadows `place.half_m` is 0.
+  void draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
+            GLuint shadow_texture);
+
+ private:
+  SceneFloor() = default;
+  void draw_floor(const SceneContent& content, const SceneView& view,
+                  const ShadowPlace& place) const;
+  void draw_ground(const SceneContent& content, const SceneView& view, const ShadowPlace& place);
+  void make_ground(const std::shared_ptr<const Terrain>& terrain, const vec2& centre_m,
+                   double half_m);
+
+  GlProgram floor_, ground_, sky_;
+  GlVertexArray nothing_;  // the shader computes the corners
+  // Uneven ground, rebuilt when the focus has moved far enough.
+  GlVertexArray mesh_;
+  GlBuffer mesh_rows_, mesh_indices_;
+  GLsizei mesh_count_ = 0;
+  std::shared_ptr<const Terrain> terrain_;
+  vec3 mesh_origin_m_{0.0};
+  vec2 mesh_centre_m_{0.0};
+  double mesh_half_m_ = 0.0;
+};
+
+constexpr double kFadesFrom_m = 3.0, kFadesTo_m = 9.0;  // at the camera's usual distance
+constexpr double kUsualDistance_m = 6.0;
+constexpr double kMeshStep_m = 0.125, kMeshMoves_m = 1.0;  // at the camera's usual distance
+constexpr double kBehind_m = 0.05;  // the ground is drawn slightly behind its place, so that it
+                                    // does not cut what stands on it
+
+void set_background(const GlProgram& program, const SceneView& view) {
+  program.set("sky_top", view.theme->sky_top);
+  program.set("sky_bottom", view.theme->sky_bottom);
+  program.set("vignette", view.is_light() ? 0.02 : 0.07);
+  program.set("size_px", view.size_px);
+}
+
+double size_of(const SceneView& view) {
+  return std::max(1.0, view.camera.distance_m / kUsualDistance_m);
+}
+
+// Sets the uniforms that floor and ground share; the program has to be in use.
+void set_floor(const GlProgram& program, const SceneContent& content, const SceneView& view,
+               const ShadowPlace& place) {
+  const bool has_shadows = place.half_m > 0.0;
+  set_background(program, view);
+  program.set("to_clip", view.to_clip);
+  program.set("focus",
+              vec2(content.focus_m.x - view.origin_m.x, content.focus_m.z - view.origin_m.z));
+  program.set("half_size", kFadesTo_m * size_of(view));
+  program.set("fade_from", kFadesFrom_m * size_of(view));
+  program.set("floor_near", view.theme->floor);
+  program.set("floor_far", view.theme->floor_far);
+  program.set("grid", view.theme->grid);
+  program.set("grid_depth", content.has_grid ? vec2(0.75, 0.36) : vec2(0.0));
+  program.set("pixel", view.scale);
+  program.set("shadow_centre", place.centre_m);
+  program.set("per_shadow", has_shadows ? 1.0 / place.half_m : 0.0);
+  const vec2 depth = view.is_light() ? vec2(0.36, 0.42) : vec2(0.50, 0.55);
+  program.set("shadow_depth", has_shadows ? depth : vec2(0.0));
+}
+
+Result<SceneFloor> SceneFloor::create() {
+  SceneFloor floor;
+  const std::string background = shader::kBackground;
+  const std::string floor_text = background + shader::kFloorColour;
+  auto level = GlProgram::link("floor", shader::kFloorVertex, floor_text + shader::kFloorFragment);
+  if (!level) return level.error();
+  auto ground =
+      GlProgram::link("ground", shader::kGroundVertex, floor_text + shader::kGroundFragment);
+  if (!ground) return ground.error();
+  auto sky = GlProgram::link("background", shader::kSkyVertex, background + shader::kSkyFragment);
+  if (!sky) return sky.error();
+  floor.floor_ = std::move(*level);
+  floor.ground_ = std::move(*ground);
+  floor.sky_ = std::move(*sky);
+  floor.nothing_ = new_vertex_array();
+  floor.mesh_ = new_vertex_array();
+  floor.mesh_rows_ = new_buffer();
+  floor.mesh_indices_ = new_buffer();
+  glBindVertexArray(floor.mesh_.get());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, floor.mesh_indices_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, floor.mesh_rows_.get());
+  constexpr VertexPart kVertex[] = {{0, 3}, {1, 3}, {2, 2}};
+  set_vertex_parts(kVertex, 3, 0);
+  glBindVertexArray(0);
+  return floor;
+}
+
+// A square around the focus. It is behind all bodies, because they stand on it.
+void SceneFloor::draw_floor(const SceneContent& content, const SceneView& view,
+                            const ShadowPlace& place) const {
+  floor_.use();
+  set_floor(floor_, content, view, place);
+  glBindVertexArray(nothing_.get());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+void SceneFloor::make_ground(const std::shared_ptr<const Terrain>& terrain, const vec2& centre_m,
+                             double half_m) {
+  if (terrain == terrain_ && centre_m == mesh_centre_m_ && half_m == mesh_half_m_) return;
+  const double step_m = kMeshStep_m * std::max(1.0, half_m / (kFadesTo_m + kMeshMoves_m));
+  const GroundMesh mesh = ground_mesh(*terrain, centre_m, half_m, step_m);
+  upload(mesh_rows_, mesh.vertices.data(), mesh.vertices.size() * sizeof(GroundVertex));
+  glBindVertexArray(mesh_.get());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * 4),
+               mesh.indices.data(), GL_DYNAMIC_DRAW);
+  mesh_count_ = static_cast<GLsizei>(mesh.indices.size());
+  mesh_origin_m_ = mesh.origin_m;
+  terrain_ = terrain;
+  mesh_centre_m_ = centre_m;
+  mesh_half_m_ = half_m;
+}
+
+void SceneFloor::draw_ground(const SceneContent& content, const SceneView& view,
+                             const ShadowPlace& place) {
+  if (!is_finite(content.focus_m)) return;
+  const vec2 focus_m(content.focus_m.x, content.focus_m.z);
+  const double moves_m = kMeshMoves_m * size_of(view);
+  make_ground(content.terrain, glm::round(focus_m / moves_m) * moves_m,
+              kFadesTo_m * size_of(view) + moves_m);
+  ground_.use();
+  set_floor(ground_, content, view, place);
+  ground_.set("moved", mesh_origin_m_ - view.origin_m);
+  ground_.set("light", kLightDirection);
+  ground_.set("behind_m", kBehind_m);
+  glBindVertexArray(mesh_.get());
+  glDrawElements(GL_TRIANGLES, mesh_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+void SceneFloor::draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
+                      GLuint shadow_texture) {
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, shadow_texture);
+  if (content.terrain == nullptr) {
+    draw_floor(content, view, place);
+  } else {
+    draw_ground(content, view, place);
+  }
+  glBindVertexArray(nothing_.get());
+  sky_.use();
+  set_background(sky_, view);
+  glDrawArrays(GL_TRIANGLES, 0, 3);  // at the farthest depth
+  glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+// Draws lines with round ends, dots and trails: flat strokes of constant width in pixels with
+// smooth edges, hidden by bodies in front of them.
+
+class SceneStrokes {
+ public:
+  static Result<SceneStrokes> create();
+  void draw(const SceneContent& content, const SceneView& view);
+
+ private:
+  SceneStrokes() = default;
+  void draw_trails(const std::vector<Trail>& trails, const SceneView& view);
+  void draw_lines(const SceneContent& content, const SceneView& view);
+
+  struct Stroke {
+    glm::vec4 a_radius;
+    glm::vec3 b;
+    glm::vec4 colour;
+  };
+  struct Edge {  // one side of a ribbon
+    glm::vec4 clip;
+    glm::vec3 edge, colour;
+  };
+  void add_ribbon(const Trail& trail, const SceneView& view);
+
+  GlProgram line_, trail_;
+  GlVertexArray line_vertices_, trail_vertices_;
+  GlBuffer line_rows_, trail_rows_;
+  std::vector<Stroke> strokes_;
+  std::vector<Edge> ribbon_;  // pairs of edges as separate triangles
+};
+
+constexpr double kAxisRadius_px = 1.5, kDotRadius_px = 3.6, kTrailHalf_px = 2.4,
+                 kTrailTail_px = 1.0;
+constexpr double kTrailStrength = 0.95;
+constexpr double kNear_m = 0.1;
+
+// A place in the picture: normalised device coordinates, and pixels from its middle.
+struct Spot {
+  vec3 ndc{0.0};
+  vec2 px{0.0};
+};
+std::optional<Spot> spot_of(const vec3& world_m, const SceneView& view) {
+  if (!is_finite(world_m)) return std::nullopt;
+  const glm::dvec4 clip = view.to_clip * glm::dvec4(world_m - view.origin_m, 1.0);
+  if (clip.w < kNear_m) return std::nullopt;
+  const vec3 ndc = vec3(clip) / clip.w;
+  return Spot{ndc, vec2(ndc.x, ndc.y) * 0.5 * view.size_px};
+}
+
+// Distance from the point before; 0 if it is not finite.
+double step_m(const Trail& trail, std::size_t i) {
+  const double length_m = glm::distance(trail.points_m[i - 1], trail.points_m[i]);
+  return std::isfinite(length_m) ? length_m : 0.0;
+}
+double length_m(const Trail& trail) {
+  double sum_m = 0.0;
+  for (std::size_t i = 1; i < trail.points_m.size(); ++i) sum_m += step_m(trail, i);
+  return sum_m;
+}
+
+vec2 direction(const vec2& from, const vec2& to, const vec2& otherwise) {
+  const vec2 d = to - from;
+  const double length = glm::length(d);
+  return length > 1e-3 ? d / length : otherwise;
+}
+
+Result<SceneStrokes> SceneStrokes::create() {
+  SceneStrokes strokes;
+  auto line = GlProgram::link("lines", shader::kLineVertex, shader::kLineFragment);
+  if (!line) return line.error();
+  auto trail = GlProgram::link("trails", shader::kTrailVertex, shader::kTrailFragment);
+  if (!trail) return trail.error();
+  strokes.line_ = std::move(*line);
+  strokes.trail_ = std::move(*trail);
+  strokes.line_vertices_ = new_vertex_array();
+  strokes.line_rows_ = new_buffer();
+  glBindVertexArray(strokes.line_vertices_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, strokes.line_rows_.get());
+  constexpr VertexPart kStroke[] = {{1, 4}, {2, 3}, {3, 4}};
+  set_vertex_parts(kStroke, 3, 1);
+  strokes.trail_vertices_ = new_vertex_array();
+  strokes.trail_rows_ = new_buffer();
+  glBindVertexArray(strokes.trail_vertices_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, strokes.trail_rows_.get());
+  constexpr VertexPart kEdge[] = {{0, 4}, {1, 3}, {2, 3}};
+  set_vertex_parts(kEdge, 3, 0);
+  glBindVertexArray(0);
+  return strokes;
+}
+
+void SceneStrokes::draw(const SceneContent& content, const SceneView& view) {
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  draw_trails(content.trails, view);
+  draw_lines(content, view);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+// A trail fades by length, not by time, so that a standing foot does not cut it in two. The
+// triangles share their edges without overlap, so that corners are not darker than the rest.
+void SceneStrokes::add_ribbon(const Trail& trail, const SceneView& view) {
+  const std::size_t count = trail.points_m.size();
+  const glm::vec3 colour(trail.colour.red, trail.colour.green, trail.colour.blue);
+  const double whole_m = std::max(length_m(trail), 1e-6);
+  double passed_m = 0.0;
+  std::optional<Spot> last;
+  std::array<Edge, 2> before;
+  vec2 along(1.0, 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) passed_m += step_m(trail, i);
+    const auto spot = spot_of(trail.points_m[i], view);
+    if (!spot) {
+      last.reset();
+      continue;
+    }
+    const auto next = i + 1 < count ? spot_of(trail.points_m[i + 1], view) : std::nullopt;
+    along = direction(last ? last->px : spot->px, next ? next->px : spot->px, along);
+    const vec2 aside(-along.y, along.x);
+    const double share = passed_m / whole_m;  // 1: the newest
+    const double half = mix(kTrailTail_px, kTrailHalf_px, share) * view.scale, reach = half + 1.0;
+    std::array<Edge, 2> edges;
+    for (const int side : {0, 1}) {
+      const double off = side == 0 ? -reach : reach;
+      const vec2 at = vec2(spot->ndc.x, spot->ndc.y) + aside * off * 2.0 / view.size_px;
+      edges[side] = {glm::vec4(at.x, at.y, spot->ndc.z, 1.0),
+                     glm::vec3(off, half, kTrailStrength * trail.colour.alpha * share * share),
+                     colour};
+    }
+    if (last) {
+      for (const Edge& e : {before[0], before[1], edges[0], edges[0], before[1], edges[1]}) {
+        ribbon_.push_back(e);
+      }
+    }
+    before = edges;
+    last = spot;
+  }
+}
+
+void SceneStrokes::draw_trails(const std::vector<Trail>& trails, const SceneView& view) {
+  ribbon_.clear();
+  for (const Trail& trail : trails) add_ribbon(trail, view);
+  if (ribbon_.empty()) return;
+  upload(trail_rows_, ribbon_.data(), ribbon_.size() * sizeof(Edge));
+  trail_.use();
+  glBindVertexArray(trail_vertices_.get());
+  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(ribbon_.size()));
+}
+
+void SceneStrokes::draw_lines(const SceneContent& content, const SceneView& view) {
+  strokes_.clear();
+  const auto add = [&](const vec3& a_m, const vec3& b_m, double radius_px, const Colour& c) {
+    if (!is_finite(a_m) || !is_finite(b_m)) return;
+    strokes_.push_back({glm::vec4(a_m - view.origin_m, radius_px * view.scale),
+                        glm::vec3(b_m - view.origin_m),
+                        glm::vec4(c.red, c.green, c.blue, c.alpha)});
+  };
+  if (content.has_axes) {
+    add(vec3(0.0), kLeft, kAxisRadius_px, view.theme->axis_x);
+    add(vec3(0.0), kForward, kAxisRadius_px, view.theme->axis_z);
+  }
+  for (const SceneLine& l : content.lines) add(l.a_m, l.b_m, 0.5 * l.width_px, l.colour);
+  for (const vec3& joint : content.joints_m) {
+    add(joint, joint, kDotRadius_px, content.joint_colour);
+  }
+  if (strokes_.empty()) return;
+  upload(line_rows_, strokes_.data(), strokes_.size() * sizeof(Stroke));
+  line_.use();
+  line_.set("to_clip", view.to_clip);
+  line_.set("size_px", view.size_px);
+  glBindVertexArray(line_vertices_.get());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(strokes_.size()));
+}
+
 constexpr int kSamples = 4;
 constexpr int kLargest_px = 16384;
 
-// Software rasterizers of Mesa, of Google and of Windows under a layer.
+// Software rasterizers of Mesa, Google and Windows.
 bool is_software_renderer(const std::string& name) {
   for (const char* part : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"}) {
     if (name.find(part) != std::string::npos) return true;
@@ -24,10 +642,10 @@ bool is_software_renderer(const std::string& name) {
   return false;
 }
 
-// Colour and depth of a size, with several samples a pixel or one.
+// A frame buffer with colour and depth, with one or several samples per pixel.
 class Target {
  public:
-  // False where the renderer cannot.
+  // Returns false if the renderer cannot.
   bool resize(int width, int height, int samples) {
     if (width == width_ && height == height_ && samples == samples_) return is_complete_;
     width_ = width;
@@ -137,7 +755,7 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &window);
   glGetIntegerv(GL_VIEWPORT, before.data());
   glDisable(GL_SCISSOR_TEST);
-  // What cannot be had with many samples a pixel (memory) can perhaps with one.
+  // If memory does not suffice for several samples per pixel, one is tried.
   if (!s.target.resize(width, height, s.samples)) s.samples = 1;
   if (s.target.resize(width, height, s.samples)) {
     const SceneView view = view_of(camera, content, theme, viewport, scale);

@@ -1,21 +1,21 @@
-// The three-dimensional picture: floor with a metre grid, bodies of tapered capsules with light and
-// soft shadows, stick figures, trails. OpenGL 3.3 core; every call needs the context that was
-// current at create().
+// The three-dimensional picture: a floor with a metre grid, bodies of tapered capsules with light
+// and soft shadows, stick figures, trails. Needs OpenGL 3.3 core; the context that was current at
+// create() has to be current in every call.
 #pragma once
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "draw/theme.h"
 #include "gaitpad/math.h"
 #include "gaitpad/result.h"
 #include "gaitpad/terrain.h"
 #include "view/camera.h"
-#include "view/theme.h"
 
 namespace gaitpad {
 
-// The hull of two balls. A trunk is wider than deep: across, along `wide` as far as that is at
-// right angles to a-b, it is stretched by a factor.
+// The hull of two balls. Along the part of `wide` that is at right angles to a-b it is stretched by
+// a factor, because a trunk is wider than deep.
 struct Capsule {
   vec3 a_m{0.0}, b_m{0.0};  // world
   double radius_a_m = 0.05, radius_b_m = 0.05;
@@ -23,7 +23,7 @@ struct Capsule {
   double width_a = 1.0, width_b = 1.0;
   Colour colour;
 };
-struct SceneLine {  // a round bar of constant width in pixels, for stick figures; a faint shadow
+struct SceneLine {  // of constant width in pixels, for stick figures; casts a faint shadow
   vec3 a_m{0.0}, b_m{0.0};
   Colour colour;
   double width_px = 3.0;  // at scale 1
@@ -39,26 +39,27 @@ struct SceneContent {
   Colour joint_colour;
   std::vector<Trail> trails;
   std::shared_ptr<const Terrain> terrain;  // the floor; null: level at height 0
-  vec3 focus_m{0.0};  // the floor is drawn round it, the grid stays where it is in the world
+  vec3 focus_m{0.0};  // the floor is drawn around it; the grid is fixed to the world
   bool has_grid = true, has_shadows = true, has_axes = true;
 };
 
-// Where in the window, pixels from its upper left corner.
+// Pixels from the window's upper left corner.
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
 class Scene {
  public:
-  // automatic: anti-aliasing and fine meshes where the renderer affords them, not on a software
-  // rasterizer. high: for pictures that may take their time.
+  // automatic: anti-aliasing and fine meshes, but not on a software rasterizer. high: always, for
+  // single pictures.
   enum class Quality { automatic, low, high };
-  // One sentence where a shader does not compile or the renderer lacks something.
+  // Fails if a shader does not compile or the renderer lacks a feature.
   static Result<std::unique_ptr<Scene>> create(Quality quality);
   ~Scene();
 
-  // Into the frame buffer that is bound, which is `window_height_px` high; it stays bound, outside
-  // the viewport nothing changes. `scale`: of the display. Leaves depth test and blending off.
+  // Draws into the bound frame buffer, which is `window_height_px` high. It stays bound, and
+  // nothing changes outside the viewport. `scale`: of the display. Turns depth test and blending
+  // off.
   void draw(const SceneContent& content, const Camera& camera, const Theme& theme,
             const Viewport& viewport, int window_height_px, double scale);
   // "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3, 4x anti-aliasing"

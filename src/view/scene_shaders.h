@@ -1,11 +1,11 @@
-// The shaders of the scene: GLSL 3.30, nothing newer. Light is reckoned in linear colours.
+// The shaders of the scene in GLSL 3.30. Lighting is computed in linear colours.
 #pragma once
 
 namespace gaitpad::shader {
 
 // --- bodies --------------------------------------------------------------------------------------
-// A vertex: direction round the axis (cosine, sine), place between a cap's pole and its seam, which
-// cap. The caps meet the cone between them at a tangent.
+// A vertex holds the direction around the axis (cosine, sine), the place between a cap's pole and
+// its seam, and the cap. The caps continue the cone between them tangentially.
 inline constexpr const char* kBodyVertex = R"(#version 330 core
 layout(location = 0) in vec4 spot;
 layout(location = 1) in vec4 a_radius;
@@ -68,8 +68,8 @@ void main() {
 )";
 
 // --- shadows -------------------------------------------------------------------------------------
-// One square a bone into a picture of the floor. Each end goes down to the floor along `slide` and
-// becomes a disc whose edge is the softer the higher it stood.
+// One square for each bone, drawn into a texture of the floor. Each end is projected along `slide`
+// to a disc, whose edge is softer the higher the end is.
 inline constexpr const char* kShadowVertex = R"(#version 330 core
 layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
@@ -124,7 +124,7 @@ void main() {
 )";
 
 // --- floor and background ------------------------------------------------------------------------
-// Both end with the same background, so that the floor fades into it without being blended. `spot`
+// Both use the same background colour, so that the floor fades into it without blending. `spot`
 // goes from -1 to 1 over the picture.
 inline constexpr const char* kBackground = R"(#version 330 core
 uniform vec3 sky_top;
@@ -175,8 +175,8 @@ void main() {
 }
 )";
 
-// Behind the background's text, before the two fragments that use it. `light`: 1 on level ground;
-// `mark`: how much of an edge is there.
+// Appended to the background's text and followed by one of the two fragment shaders that use it.
+// `light`: 1 on level ground; `mark`: strength of an edge.
 inline constexpr const char* kFloorColour = R"(
 in vec2 from_focus;
 in vec2 in_shadow;
@@ -241,7 +241,7 @@ void main() {
 }
 )";
 
-// A riser has the grid's lines across only: those along it would lie at any height.
+// A riser shows only the grid's lines across it; lines along it would lie at arbitrary heights.
 inline constexpr const char* kGroundFragment = R"(
 in vec3 place;
 in vec3 normal;
@@ -259,8 +259,8 @@ void main() {
 )";
 
 // --- lines and trails ----------------------------------------------------------------------------
-// A line is a square in the picture, wide enough for its round ends and half a pixel of edge. It
-// leaves the perspective behind: what is linear then is linear in pixels.
+// A line is a rectangle in the picture, wide enough for its round ends and half a pixel of soft
+// edge, without perspective.
 inline constexpr const char* kLineVertex = R"(#version 330 core
 layout(location = 1) in vec4 a_radius;  // pixels
 layout(location = 2) in vec3 b;
@@ -310,7 +310,7 @@ void main() {
 }
 )";
 
-// A ribbon, made to face the eye before it comes here.
+// A ribbon that faces the eye, built by the caller.
 inline constexpr const char* kTrailVertex = R"(#version 330 core
 layout(location = 0) in vec4 clip;
 layout(location = 1) in vec3 edge_in;  // pixels from the middle, half width, strength

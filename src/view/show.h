@@ -1,4 +1,4 @@
-// What the window shows: a live session, or a trace on a time line, behind one face.
+// What the window shows: a live session, or a trace on a time line, behind one interface.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -16,13 +16,13 @@
 
 namespace gaitpad {
 
-inline constexpr int kPictureRateHz = 60;  // frames a second of the session, in pictures and videos
+inline constexpr int kPictureRateHz = 60;  // frames per second of the session in pictures
 
 class Show {
  public:
-  static Result<std::unique_ptr<Show>> open(const SessionSpec& options);
-  // The same in two parts: reads the files; the function that it returns, called once, opens the
-  // show.
+  static Result<std::unique_ptr<Show>> open(const SessionSpec& spec);
+  // The same in two parts, so that a running show is ended only if the next one can be opened:
+  // reads the files; the function that it returns, called once, opens the show.
   using Start = std::function<Result<std::unique_ptr<Show>>()>;
   static Result<Start> prepare(const SessionSpec& spec);
   virtual ~Show() = default;
@@ -33,36 +33,35 @@ class Show {
   virtual const SessionFrame& frame() const noexcept = 0;
   const History& history() const noexcept { return history_; }
   const SessionSpec& options() const noexcept { return options_; }
-  // For shows that are opened with these options from now on.
+  // Used by shows that are opened with these options later.
   void add_config_folder(const std::string& folder);
   bool is_live() const noexcept { return options_.replay.trace.empty(); }
 
-  // Takes in what has come, once a drawn frame. `passed_s`: of the wall's time since the last call;
-  // a playback goes on by it.
-  virtual void look(double passed_s) = 0;
-  // The same for pictures: 1 / kPictureRateHz of the session, computed here and now.
-  virtual void look_for_picture() = 0;
-  // How far between WalkerFrame::before (0) and pose (1) the moment to be drawn is: one tick ago.
+  // Takes over what is new; call it once for each drawn frame. `passed_s`: wall time since the last
+  // call, by which a playback advances.
+  virtual void update(double passed_s) = 0;
+  // The same for pictures: computes 1 / kPictureRateHz seconds of the session now.
+  virtual void update_for_picture() = 0;
+  // Where the moment to draw, one tick ago, lies between WalkerFrame::before (0) and pose (1).
   virtual double share(std::int64_t now_ns) const noexcept = 0;
 
-  double pace() const noexcept { return pace_; }  // 0: stands still
+  double pace() const noexcept { return pace_; }  // 0: paused
   virtual void set_pace(double pace) = 0;
-  virtual void step() = 0;  // one tick, while it stands still
+  virtual void step() = 0;  // one tick, while paused
 
-  // Live only; nothing happens else.
+  // Live only; otherwise without effect.
   virtual void steer(const vec2&) {}
   virtual void command(std::string_view) {}
-  virtual bool has_ended() const noexcept { return false; }  // a recording that is the pad
+  virtual bool has_ended() const noexcept { return false; }  // of a recording that plays as the pad
   virtual const LiveStatus* status() { return nullptr; }
   // Playback only.
   virtual const UiTimeline* timeline() { return nullptr; }
   virtual void seek(std::int64_t) {}
   virtual void set_looping(bool) {}
 
-  virtual std::string pad_name() const = 0;  // of the driving pad, empty: none
+  virtual std::string pad_name() const = 0;  // of the pad that steers; empty: none
   virtual std::vector<std::string> take_remarks() = 0;
-  // Ends it.
-  virtual Result<RunSummary> stop() = 0;
+  virtual Result<RunSummary> stop() = 0;  // ends the show
 
  protected:
   explicit Show(SessionSpec options) : options_(std::move(options)) {}
@@ -71,12 +70,7 @@ class Show {
   double pace_ = 1.0;
 };
 
-// The two kinds, for open().
-Result<std::unique_ptr<Show>> open_live_show(const SessionSpec& options);
-Result<std::unique_ptr<Show>> open_live_show(
-    const std::shared_ptr<LiveSession::Prepared>& prepared);
-Result<std::unique_ptr<Show>> open_playback_show(const SessionSpec& options);
-// What another one shows now, while nothing runs.
+// Shows the present state of another show while nothing runs.
 std::unique_ptr<Show> still_show(Show& show);
 
 }  // namespace gaitpad

@@ -8,10 +8,11 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <string_view>
 #include <utility>
 
-#include "view/theme.h"
+#include "view/gui.h"
 
 namespace gaitpad {
 namespace {
@@ -22,7 +23,7 @@ constexpr int kNeededGl = 33;                                           // 3.3
 constexpr const char* kWithoutDisplay =
     "--screenshot FILE.png and --video FILE.mp4 draw without a display";
 
-std::atomic<bool> is_display_lost = false;  // outlives every surface, as Xlib's connection does
+std::atomic<bool> is_display_lost = false;  // Xlib's connection outlives every surface
 
 bool is_offscreen(const char* driver) {
   const std::string_view name = driver ? driver : "";
@@ -39,14 +40,14 @@ void set_hints(bool is_hidden) {
   if (is_hidden) {
     SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, "offscreen", SDL_HINT_OVERRIDE);
   } else {
-    SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // back to $SDL_VIDEODRIVER
-    // Wayland's library would complain on standard error; without this folder there is none.
+    SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // $SDL_VIDEODRIVER decides again
+    // Without this folder there is no Wayland, and its library would print an error.
     const char* runtime = std::getenv("XDG_RUNTIME_DIR");
     if (!runtime || *runtime == '\0') SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,KMSDRM,offscreen");
   }
 }
 
-// Why the video driver that SDL has started is none to open a window on, or empty.
+// Why no window can be opened on the video driver that SDL has started; empty if one can.
 std::string display_problem(bool is_hidden) {
   if (is_hidden || !is_offscreen(SDL_GetCurrentVideoDriver())) return {};
   const char* wish = std::getenv("SDL_VIDEODRIVER");
@@ -60,7 +61,7 @@ std::string video_problem(bool is_hidden) {
   return fmt::format("no display to open a window on: {}; {}", cause, kWithoutDisplay);
 }
 
-// What the scene wants besides is made in frame buffers of its own: anti-aliasing, depth.
+// The scene has its own frame buffers for anti-aliasing and depth.
 void set_gl_attributes() {
   SDL_GL_ResetAttributes();
   SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, kNeededGl / 10);
@@ -90,7 +91,7 @@ SDL_Window* new_window(const SurfaceOptions& options, double scale) {
     width = std::min(width, std::max(usable.w, kSmallest_px));
     height = std::min(height, std::max(usable.h, kSmallest_px));
   }
-  // Without SDL_WINDOW_ALLOW_HIGHDPI a window's unit is the drawable pixel, on every driver.
+  // Without SDL_WINDOW_ALLOW_HIGHDPI a window is measured in drawable pixels on every driver.
   const Uint32 flags = SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE;
   SDL_Window* window = SDL_CreateWindow(options.title.c_str(), SDL_WINDOWPOS_CENTERED,
                                         SDL_WINDOWPOS_CENTERED, width, height, flags);
@@ -113,7 +114,7 @@ Error gl_problem(const char* what) {
 Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions& options) {
   set_hints(options.is_hidden);
   if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return Error{video_problem(options.is_hidden)};
-  std::unique_ptr<WindowSurface> surface(new WindowSurface);  // stops it from here on
+  std::unique_ptr<WindowSurface> surface(new WindowSurface);  // its destructor stops SDL's video
   if (std::string problem = display_problem(options.is_hidden); !problem.empty()) {
     return Error{std::move(problem)};
   }
@@ -132,13 +133,13 @@ Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions&
                              epoxy_gl_version() / 10, epoxy_gl_version() % 10)};
   }
   surface->outlive_x_server();
-  // In step with the display; where that cannot be, who draws takes care of the rate.
+  // Swaps in step with the display; if that is not possible, the caller limits the rate.
   SDL_GL_SetSwapInterval(options.is_hidden ? 0 : 1);
   return surface;
 }
 
-// Xlib ends the program, first in the handler of the error, then behind it; versions before 1.7
-// know no other way.
+// After an I/O error Xlib ends the program, in the error handler or right after it. Both handlers
+// have to be replaced, which versions before 1.7 do not allow.
 void WindowSurface::outlive_x_server() {
 #ifdef SDL_VIDEO_DRIVER_X11
   using SetHandler = void (*)(int (*)(Display*));
@@ -146,7 +147,7 @@ void WindowSurface::outlive_x_server() {
   SDL_SysWMinfo info;
   SDL_VERSION(&info.version);
   if (!SDL_GetWindowWMInfo(window_, &info) || info.subsystem != SDL_SYSWM_X11) return;
-  void* xlib = SDL_LoadObject("libX11.so.6");  // which SDL has loaded
+  void* xlib = SDL_LoadObject("libX11.so.6");  // SDL has loaded it already
   if (!xlib) return;
   const auto set_exit = reinterpret_cast<SetExit>(SDL_LoadFunction(xlib, "XSetIOErrorExitHandler"));
   const auto set_handler =
@@ -163,7 +164,7 @@ void WindowSurface::outlive_x_server() {
 bool WindowSurface::is_lost() const noexcept { return is_display_lost; }
 
 WindowSurface::~WindowSurface() {
-  if (is_display_lost) return;  // SDL would wait for an answer for ever
+  if (is_display_lost) return;  // SDL would wait for the server for ever
   if (frame_buffer_ != 0) {
     glDeleteRenderbuffers(1, &picture_);
     glDeleteFramebuffers(1, &frame_buffer_);
@@ -199,10 +200,26 @@ void WindowSurface::begin() {
 
 void WindowSurface::show() { SDL_GL_SwapWindow(window_); }
 
+Pixels read_pixels(int width, int height) {
+  constexpr std::size_t kChannels = 4;
+  Pixels pixels{std::max(width, 0), std::max(height, 0), {}};
+  const std::size_t row = static_cast<std::size_t>(pixels.width) * kChannels,
+                    rows = static_cast<std::size_t>(pixels.height);
+  std::vector<std::uint8_t> upwards(row * rows);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, pixels.width, pixels.height, GL_RGBA, GL_UNSIGNED_BYTE, upwards.data());
+  pixels.rgba.resize(upwards.size());
+  for (std::size_t y = 0; y < rows; ++y) {
+    std::memcpy(pixels.rgba.data() + y * row, upwards.data() + (rows - 1 - y) * row, row);
+  }
+  for (std::size_t i = 3; i < pixels.rgba.size(); i += kChannels) pixels.rgba[i] = 0xff;
+  return pixels;
+}
+
 }  // namespace gaitpad
 
-// Parts of a renderer keep what they allocated once until the process ends. SDL unloads them with
-// the display, and the leak checker then no longer sees who holds it.
+// Renderers keep some allocations until the process ends. SDL unloads them with the display, and
+// the leak checker then no longer finds the pointers.
 #ifdef __SANITIZE_ADDRESS__
 extern "C" int dlclose(void*) { return 0; }
 #endif

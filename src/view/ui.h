@@ -1,6 +1,8 @@
-// Everything flat in the window: bars, panels, plots, names above heads, help. It reads what a
-// frame shows and answers with what a person asked for; it changes nothing but its own state.
+// The user interface over the scene: bars, panels, plots, names above heads, help. It reads a frame
+// and returns what the person asked for; it changes only its own state.
 #pragma once
+#include <imgui.h>
+
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -8,13 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "draw/theme.h"
 #include "gaitpad/live.h"
 #include "gaitpad/session_frame.h"
 #include "session/playback.h"
-#include "view/actions.h"
+#include "view/controls.h"
 #include "view/history.h"
 #include "view/scene.h"
-#include "view/theme.h"
 
 namespace gaitpad {
 
@@ -23,36 +25,36 @@ inline constexpr int kPanels = 6;
 inline constexpr std::array<std::string_view, kPanels> kPanelNames = {"pad",    "control", "style",
                                                                       "graphs", "solver",  "loop"};
 
-// What draw_ui() keeps from frame to frame for itself.
+// What draw_ui() keeps from frame to frame.
 struct UiMemory {
-  // A slider that was moved shows the person's value until the session has it.
+  // A slider that was moved shows the person's value until the session has taken it over.
   struct Wish {
     std::string name;
     int walker = -1;
     double value = 0.0;
-    std::int64_t tick = 0;  // of the frame when it was sent
+    std::int64_t tick = 0;  // when it was sent
   };
   struct StickPlace {
     std::array<vec2, 2> raw{}, calibrated{};  // left, right; raw in the stick's frame
   };
   std::vector<Wish> wishes;
-  double held = 0.0;                    // what the slider in the person's hand was moved to last
+  double held = 0.0;                    // the last value of the slider being dragged
   std::vector<StickPlace> stick_trail;  // oldest first
   std::int64_t stick_tick = -1;
   std::array<bool, kPanels> was_open{};
   bool has_drawn = false;
   std::array<char, 64> style_name{};
   bool has_axis_weights = false;  // the style panel shows each axis of a joint
-  bool has_body_keys = false;     // and what is above the hips
+  bool has_body_keys = false;     // the style panel shows the keys of the upper body
 };
 
-// What is remembered from one start to the next (view/layout.h), and what is open now.
+// The state that is remembered from one start to the next (view/layout.h), and what is open now.
 struct UiState {
   std::array<bool, kPanels> is_open{true, true, false, true, false, false};
   ThemeName theme = ThemeName::dark;
   bool has_trails = true, has_grid = true, has_shadows = true, has_source = true, has_names = true;
   Side graph_leg = kLeftSide;
-  int walker = -1;  // whom panels tell of and the camera follows; -1: all, the first one's numbers
+  int walker = -1;  // chosen for panels and camera; -1: all, with the numbers of the first
   bool is_help_open = false;
   UiMemory memory;
 };
@@ -64,7 +66,7 @@ struct UiTimeline {
   double pace = 1.0;
   bool is_looping = false, is_computing = false;
 };
-struct UiLabel {  // a name above a head: window pixels
+struct UiLabel {  // a name above a head
   vec2 place_px{0.0};
   std::string text;
   Colour colour;
@@ -75,17 +77,17 @@ struct UiInput {
   const History& history;
   const LiveStatus* status = nullptr;    // live only
   const UiTimeline* timeline = nullptr;  // playback only
-  std::string pad_name{};                // empty: no pad
+  std::string pad_name{};                // empty: none
   double pad_rate_hz = 0.0;
   double pace = 1.0;
-  double frames_per_second = 0.0;  // 0: not to be shown (pictures)
-  double memory_mib = 0.0;         // of the whole program; 0: not known
-  std::string recording{};         // file, empty: none
+  double frames_per_second = 0.0;  // 0: not shown (in pictures)
+  double memory_mib = 0.0;         // of the whole program; 0: unknown
+  std::string recording{};         // file; empty: none
   std::string source{};            // the trace, for the bar
   std::string renderer{};
   std::vector<UiLabel> labels{};
   std::vector<std::string> messages{};  // errors and remarks, newest last
-  bool is_modal = false;                // calibration or browser is open: panels take no input
+  bool is_modal = false;                // calibration or browser is open, so panels take no input
 };
 struct UiOutput {
   std::vector<Action> actions;
@@ -93,30 +95,47 @@ struct UiOutput {
   std::optional<std::int64_t> seek_tick;
   std::optional<double> pace;
   std::optional<bool> is_looping;
-  std::optional<std::string> save_style;  // a name: the chosen walker's style as a file of it
+  std::optional<std::string> save_style;  // saves the chosen character's style by this name
   bool dismisses_messages = false;
 };
 
-// Indices in Cast::styles of those that a `style` command reaches: of equal names the first. The
-// n-th of them is what Action::style_1 + n - 1 chooses.
+// Indices in Cast::styles of the styles that a `style` command can name: the first of equal names.
+// Action::style_1 + n - 1 chooses the n-th of them.
 std::vector<int> style_choices(const Cast& cast);
 
-// Where the scene goes when these panels are open.
+// Where the scene is drawn while these panels are open.
 Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, int height_px,
                         double scale) noexcept;
-// Between ImGui::NewFrame and ImGui::Render. What has an action is asked for by it, not done:
-// panels, theme, help.
+// Call it between ImGui::NewFrame and ImGui::Render. Panels, theme and help change by the returned
+// actions, not in here.
 UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, double scale,
                  UiState& state);
 
-// For tests and for the window's own script of events: rectangles of what can be clicked, in window
-// pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"), of the frame drawn last;
-// what is scrolled out of sight is not among them. "area pad" ... are the panels themselves, "left
-// column", "top bar" ... what they lie in.
+// For tests and scripts: rectangles of what can be clicked in the frame drawn last, in window
+// pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"). Items that are scrolled
+// out of sight are left out. "area pad" and so on are the panels, "left column", "top bar" and so
+// on what holds them.
 struct UiItem {
   std::string name;
   ImVec2 min, max;
 };
 const std::vector<UiItem>& ui_items() noexcept;
+
+// The layout of the window: bars at top and bottom and a column of panels on either side of the
+// scene; one column in a narrow window, none in a very narrow one.
+
+struct UiRect {  // pixels; not shown if empty
+  float x = 0.0f, y = 0.0f, width = 0.0f, height = 0.0f;
+  bool is_empty() const noexcept { return !(width > 0.0f && height > 0.0f); }
+  ImVec2 min() const noexcept { return {x, y}; }
+  ImVec2 max() const noexcept { return {x + width, y + height}; }
+};
+struct UiLayout {
+  UiRect top, left, right, timeline, status, scene;
+};
+UiLayout ui_layout(const UiState& state, bool has_timeline, int width_px, int height_px,
+                   double scale) noexcept;
+// Whether the panel is in the left column when both are shown.
+bool is_left(Panel panel) noexcept;
 
 }  // namespace gaitpad

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "view/drawing.h"
+#include "draw/picture.h"
 
 extern char** environ;
 
@@ -33,22 +33,23 @@ Error problem(const std::string& path, const std::string& cause) {
   return Error{fmt::format("{}: cannot be written: {}", path, cause)};
 }
 
-// H.264's usual colours come in pairs of pixels: an odd edge is doubled. Colours as in HD video,
-// which is what players take a picture of this size to have. `file:`: no name is an address.
+// H.264's usual colour format needs even sizes, so an odd edge is padded. Colours are those of HD
+// video, which players assume at this size. `file:` keeps ffmpeg from reading a name as an address.
 std::vector<std::string> arguments(const std::string& file, int width, int height,
                                    int frames_per_second) {
   return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-          // What comes in.
+          // Input.
           "-f", "rawvideo", "-pix_fmt", "rgba", "-video_size", fmt::format("{}x{}", width, height),
           "-framerate", std::to_string(frames_per_second), "-i", "pipe:0",
-          // What comes out.
+          // Output.
           "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv", "-c:v",
           "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-colorspace",
           "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart",
           "-f", "mp4", "file:" + file};
 }
 
-// A group of its own: Ctrl-C is for us, who then finish the file. No signal stays blocked.
+// ffmpeg gets its own process group, so that Ctrl-C reaches this program alone, which then finishes
+// the file. No signal stays blocked in it.
 int spawn(std::vector<std::string> words, int input, int log, pid_t& process) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -75,7 +76,7 @@ int spawn(std::vector<std::string> words, int input, int log, pid_t& process) {
   return cause;
 }
 
-// The last line of what ffmpeg said, which names the cause, or nothing.
+// The last line that ffmpeg printed, which names the cause; empty if there is none.
 std::string last_words(int log) {
   constexpr off_t kEnough = 400;
   const off_t size = ::lseek(log, 0, SEEK_END);
@@ -107,13 +108,14 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const std::string& path, 
 }
 
 std::optional<Error> VideoWriter::start(int frames_per_second) {
-  // Made here first, so that a folder that is not there is told at once and not by ffmpeg.
+  // Created here first, so that a missing folder is reported at once and not by ffmpeg.
   const std::string part = fmt::format("{}.{}.part", path_, ::getpid());
   int file = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (file < 0) return problem(path_, std::strerror(errno));
   close_fd(file);
   part_ = part;
-  // A socket, not a pipe: send() can be told that an end of ffmpeg is no reason to end ours.
+  // A socket instead of a pipe: send() takes MSG_NOSIGNAL, so that ffmpeg's end does not end this
+  // program.
   int ends[2] = {-1, -1};
   log_ = ::memfd_create("ffmpeg", MFD_CLOEXEC);
   if (log_ < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {

@@ -1,4 +1,4 @@
-// Frames as a video: H.264 in MP4 through ffmpeg, a process of its own that is there or not.
+// Writes frames as a video, H.264 in MP4, through the program ffmpeg if it is installed.
 #pragma once
 #include <sys/types.h>
 
@@ -11,13 +11,13 @@
 
 namespace gaitpad {
 
-// Written beside `path`; finish() puts it there. Until then, and on error, the old file is as it
-// was. A sentence about a failure ends with ffmpeg's own words.
+// Writes beside `path`, and finish() renames. Until then, and on error, the old file is unchanged.
+// The error of a failure ends with ffmpeg's own message.
 class VideoWriter {
  public:
   static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
                                                    int frames_per_second);
-  ~VideoWriter();                                  // without finish(): the file is left out
+  ~VideoWriter();                                  // without finish() no file is left
   std::optional<Error> add(const Pixels& pixels);  // waits while ffmpeg is behind
   std::optional<Error> finish();                   // waits for ffmpeg's end
 

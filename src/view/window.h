@@ -1,4 +1,4 @@
-// The window: a live session or a playback, drawn, steered and looked into.
+// The window: shows a live session or a playback and lets a person steer and inspect it.
 #pragma once
 #include <array>
 #include <functional>
@@ -9,58 +9,60 @@
 #include <vector>
 
 #include "gaitpad/live.h"
-#include "gaitpad/replay.h"
 #include "gaitpad/result.h"
+#include "gaitpad/session_spec.h"
 #include "view/camera.h"
 #include "view/ui.h"
 
 namespace gaitpad {
 
-// What a script of a test sees of the window.
+// What a test's script sees of the window.
 struct WindowGlance {
-  std::int64_t frame = 0;  // the number of the one that is drawn next
+  std::int64_t frame = 0;  // the frame that is drawn next
   const SessionFrame& session;
   const Cast& cast;
   const UiState& ui;
   const Camera& camera;
   double pace = 1.0;
   bool is_playback = false, is_browsing = false, is_calibrating = false;
-  std::string recording;  // file, empty: none
+  std::string recording;  // file; empty: none
   std::vector<std::string> messages;
 };
 
-// What can be left out of the scene.
+// Parts of the scene that can be hidden.
 inline constexpr std::array<std::string_view, 5> kScenePartNames = {"trails", "grid", "shadows",
                                                                     "source", "names"};
 
 struct WindowOptions {
-  SessionSpec session;             // live, or a playback of session.replay.trace
+  SessionSpec session;             // live, or a playback if session.replay.trace is not empty
   std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
-  std::string layout_file;         // remembered from one start to the next; empty: not
-  std::string recent_file;         // the same of files that were opened
-  int frames = 0;                  // drawn, then it ends; 0: until it is closed, or, where pictures
-                                   // are made of a trace, until that ends
-  std::string screenshot, video;   // files; with either a frame is 1/60 s of the session
-  std::optional<ThemeName> theme;  // else the remembered one
-  std::vector<Panel> panels;       // with are_panels_given: these and no others are open
+  std::string layout_file;  // remembers the window from one start to the next; empty: nothing does
+  std::string recent_file;  // remembers the files that were opened; empty: nothing does
+  // Ends after so many; 0: when closed, or with the trace if pictures are made of one.
+  int frames = 0;
+  std::string screenshot, video;   // files; with either of them a frame is 1/60 s of the session
+  std::optional<ThemeName> theme;  // else the remembered theme
+  std::vector<Panel> panels;       // open panels, if are_panels_given
   bool are_panels_given = false;
-  std::vector<std::string> hidden;  // of kScenePartNames: left out of the scene
+  std::vector<std::string> hidden;  // of kScenePartNames
   double scale = 0.0;               // 0: the display's
   int width = 1280, height = 720;   // at scale 1
-  bool is_hidden = false;           // nobody is to see it: SDL's offscreen driver
-  // For tests: called before each drawn frame; may push SDL events.
+  bool is_hidden = false;           // draws without a display (SDL's offscreen driver)
+  // For tests: called before each frame; may push SDL events.
   std::function<void(const WindowGlance& glance)> script;
-  std::function<bool()> is_ended_from_outside;              // Ctrl-C
-  std::function<std::vector<std::string>()> take_commands;  // for the session, from outside
+  std::function<bool()> is_ended_from_outside;  // Ctrl-C
+  // Commands for the session, for instance from standard input.
+  std::function<std::vector<std::string>()> take_commands;
 };
 struct WindowResult {
   RunSummary summary;                // of the last session
-  std::optional<LiveStatus> status;  // of it; none: it was a playback
+  std::optional<LiveStatus> status;  // of the last session; none if it was a playback
   std::int64_t frames = 0;
   double frames_per_second = 0.0;
   std::vector<std::string> remarks;
 };
-// From the main thread. Errors before anything is drawn, or where a picture cannot be written.
+// Call it from the main thread. Fails if the session or the window cannot be opened, before
+// anything is drawn, or if a picture cannot be written.
 Result<WindowResult> run_window(const WindowOptions& options);
 
 }  // namespace gaitpad

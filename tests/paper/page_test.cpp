@@ -16,12 +16,6 @@ TEST(Page, CsvHasAColumnACurveAndGapsWhereThereIsNoNumber) {
 }
 
 TEST(Page, PlacesMapToPixels) {
-  PlotFrame plot;
-  plot.box = {100.0, 50.0, 200.0, 100.0};
-  plot.x = {0.0, 2.0};
-  plot.y = {-10.0, 10.0};
-  EXPECT_EQ(pixel_in(plot, vec2(1.0, 10.0)), vec2(200.0, 50.0));
-  EXPECT_EQ(pixel_in(plot, vec2(0.0, -10.0)), vec2(100.0, 150.0));
   const SideView view{{10.0, 0.0, 300.0, 200.0}, 1.0, 190.0, 100.0};
   EXPECT_EQ(pixel_in(view, vec3(5.0, 0.5, 2.0)), vec2(110.0, 140.0));
 }

@@ -3,9 +3,69 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 namespace gaitpad {
 namespace {
+
+TEST(Actions, EachIsThereOnce) {
+  std::set<Action> seen;
+  for (const ActionInfo& info : actions())
+    EXPECT_TRUE(seen.insert(info.action).second) << info.name;
+  for (int a = 0; a <= static_cast<int>(Action::back); ++a) {
+    EXPECT_TRUE(seen.count(static_cast<Action>(a))) << a;
+    EXPECT_EQ(info_of(static_cast<Action>(a)).action, static_cast<Action>(a));
+  }
+}
+
+TEST(Actions, EachHasAKeyAndNoTwoShareAKeyOrAButton) {
+  std::set<SDL_Keycode> keys;
+  std::set<int> buttons;
+  for (const ActionInfo& info : actions()) {
+    EXPECT_NE(info.key, SDLK_UNKNOWN) << info.name;
+    EXPECT_TRUE(keys.insert(info.key).second) << info.name;
+    if (info.second_key != SDLK_UNKNOWN) {
+      EXPECT_TRUE(keys.insert(info.second_key).second) << info.name;
+    }
+    if (info.button >= 0) {
+      EXPECT_TRUE(buttons.insert(info.button).second) << info.name;
+      EXPECT_LT(info.button, kButtonCount);
+    }
+  }
+  for (const SDL_Keycode walking :
+       {SDLK_w, SDLK_a, SDLK_s, SDLK_d, SDLK_UP, SDLK_DOWN, SDLK_LEFT, SDLK_RIGHT}) {
+    EXPECT_FALSE(keys.count(walking)) << key_name(walking);
+  }
+}
+
+TEST(Actions, HelpIsOnF1AndH) {
+  EXPECT_EQ(info_of(Action::help).key, SDLK_F1);
+  EXPECT_EQ(info_of(Action::help).second_key, SDLK_h);
+}
+
+TEST(Actions, EveryKeyAndButtonHasANameOfItsOwn) {
+  std::set<std::string_view> names, labels;
+  for (const ActionInfo& info : actions()) {
+    EXPECT_NE(key_name(info.key), "?") << info.name;
+    EXPECT_TRUE(names.insert(key_name(info.key)).second) << key_name(info.key);
+    if (info.second_key != SDLK_UNKNOWN) {
+      EXPECT_TRUE(names.insert(key_name(info.second_key)).second) << key_name(info.second_key);
+    }
+    EXPECT_FALSE(info.group.empty() || info.name.empty() || info.text.empty());
+  }
+  for (int b = 0; b < kButtonCount; ++b) {
+    EXPECT_TRUE(labels.insert(button_label(static_cast<PadButton>(b))).second) << b;
+  }
+}
+
+TEST(Actions, KeysAreNamedAsTheyArePrinted) {
+  EXPECT_EQ(key_name(SDLK_SPACE), "Space");
+  EXPECT_EQ(key_name(SDLK_F1), "F1");
+  EXPECT_EQ(key_name(SDLK_w), "W");
+  EXPECT_EQ(key_name(SDLK_LEFTBRACKET), "[");
+  EXPECT_EQ(key_name(SDLK_UNKNOWN), "?");
+  EXPECT_EQ(key_name(0x7fffffff), "?");
+}
 
 SDL_Event key(SDL_Keycode code, Uint32 type = SDL_KEYDOWN, Uint16 mod = 0) {
   SDL_Event event = {};
@@ -36,10 +96,10 @@ SDL_Event window(Uint8 what) {
   return event;
 }
 
-std::vector<Action> actions_of(const SDL_Event& event, const Taken& taken = {}) {
+std::vector<Action> actions_of(const SDL_Event& event, const TakenInput& taken = {}) {
   Controls controls;
-  controls.take(event, taken);
-  return controls.wishes().actions;
+  controls.handle_event(event, taken);
+  return controls.take_wishes().actions;
 }
 
 TEST(Controls, EveryKeyOfTheTableAsksForItsActionAndForNoOther) {
@@ -55,14 +115,14 @@ TEST(Controls, EveryKeyOfTheTableAsksForItsActionAndForNoOther) {
 TEST(Controls, WhoTypesAsksForNothing) {
   EXPECT_TRUE(actions_of(key(SDLK_SPACE), {.keys = true}).empty());
   Controls controls;
-  controls.take(key(SDLK_w), {.keys = true});
+  controls.handle_event(key(SDLK_w), {.keys = true});
   EXPECT_EQ(controls.walk(), vec2(0.0));
 }
 
 TEST(Controls, ChordsAreForTheWindowManager) {
   EXPECT_TRUE(actions_of(key(SDLK_SPACE, SDL_KEYDOWN, KMOD_LALT)).empty());
   Controls controls;
-  controls.take(key(SDLK_w, SDL_KEYDOWN, KMOD_LCTRL), {});
+  controls.handle_event(key(SDLK_w, SDL_KEYDOWN, KMOD_LCTRL), {});
   EXPECT_EQ(controls.walk(), vec2(0.0));
 }
 
@@ -83,42 +143,42 @@ TEST(Controls, BothSetsOfKeysWalkAndADiagonalIsNoLonger) {
       {SDLK_UP, {0, 1}}, {SDLK_LEFT, {-1, 0}}, {SDLK_DOWN, {0, -1}}, {SDLK_RIGHT, {1, 0}}};
   for (const auto& [code, wanted] : kKeys) {
     Controls controls;
-    controls.take(key(code), {});
+    controls.handle_event(key(code), {});
     EXPECT_EQ(controls.walk(), wanted);
-    controls.take(key(code, SDL_KEYUP), {});
+    controls.handle_event(key(code, SDL_KEYUP), {});
     EXPECT_EQ(controls.walk(), vec2(0.0));
   }
   Controls controls;
-  for (const SDL_Keycode code : {SDLK_w, SDLK_RIGHT}) controls.take(key(code), {});
+  for (const SDL_Keycode code : {SDLK_w, SDLK_RIGHT}) controls.handle_event(key(code), {});
   EXPECT_NEAR(controls.walk().x, std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(controls.walk().y, std::sqrt(0.5), 1e-12);
-  controls.take(key(SDLK_UP), {});  // the same way by both: as by one
+  controls.handle_event(key(SDLK_UP), {});  // the same way by both: as by one
   EXPECT_NEAR(glm::length(controls.walk()), 1.0, 1e-12);
 }
 
 TEST(Controls, FocusLossLetsEverythingGo) {
   for (const Uint8 what : {SDL_WINDOWEVENT_FOCUS_LOST, SDL_WINDOWEVENT_MINIMIZED}) {
     Controls controls;
-    controls.take(key(SDLK_w), {});
-    controls.take(button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 10, 10), {});
-    controls.take(window(what), {});
-    controls.take(motion(50, 50), {});
+    controls.handle_event(key(SDLK_w), {});
+    controls.handle_event(button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 10, 10), {});
+    controls.handle_event(window(what), {});
+    controls.handle_event(motion(50, 50), {});
     EXPECT_EQ(controls.walk(), vec2(0.0));
     EXPECT_FALSE(controls.mouse().is_down[0]);
-    EXPECT_EQ(controls.wishes().orbit_px, vec2(0.0));
+    EXPECT_EQ(controls.take_wishes().orbit_px, vec2(0.0));
   }
 }
 
 TEST(Controls, ADragOrbitsWithAnotherButtonOrShiftItPans) {
   const auto dragged = [](Uint8 number, bool is_shifted) {
     Controls controls;
-    if (is_shifted) controls.take(key(SDLK_LSHIFT), {});
-    controls.take(motion(100, 100), {});
-    controls.take(button(SDL_MOUSEBUTTONDOWN, number, 100, 100), {});
-    controls.take(motion(130, 90), {});
-    controls.take(button(SDL_MOUSEBUTTONUP, number, 130, 90), {});
-    controls.take(motion(200, 200), {});  // let go: moves nothing
-    return controls.wishes();
+    if (is_shifted) controls.handle_event(key(SDLK_LSHIFT), {});
+    controls.handle_event(motion(100, 100), {});
+    controls.handle_event(button(SDL_MOUSEBUTTONDOWN, number, 100, 100), {});
+    controls.handle_event(motion(130, 90), {});
+    controls.handle_event(button(SDL_MOUSEBUTTONUP, number, 130, 90), {});
+    controls.handle_event(motion(200, 200), {});  // let go: moves nothing
+    return controls.take_wishes();
   };
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, false).orbit_px, vec2(30, -10));
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, false).pan_px, vec2(0, 0));
@@ -130,14 +190,14 @@ TEST(Controls, ADragOrbitsWithAnotherButtonOrShiftItPans) {
 
 TEST(Controls, AboveAPanelTheMouseIsThePanels) {
   Controls controls;
-  controls.take(button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 100, 100), {.mouse = true});
-  controls.take(motion(130, 90), {.mouse = true});
+  controls.handle_event(button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 100, 100), {.mouse = true});
+  controls.handle_event(motion(130, 90), {.mouse = true});
   SDL_Event wheel = {};
   wheel.type = SDL_MOUSEWHEEL;
   wheel.wheel.y = 1;
-  controls.take(wheel, {.mouse = true});
+  controls.handle_event(wheel, {.mouse = true});
   EXPECT_TRUE(controls.mouse().is_down[0]);
-  const Wishes wishes = controls.wishes();
+  const Wishes wishes = controls.take_wishes();
   EXPECT_EQ(wishes.orbit_px, vec2(0.0));
   EXPECT_EQ(wishes.dolly, 1.0);
 }
@@ -147,12 +207,12 @@ TEST(Controls, TheWheelGoesNearerAndBackToWhereItWas) {
   SDL_Event wheel = {};
   wheel.type = SDL_MOUSEWHEEL;
   wheel.wheel.y = 2;
-  controls.take(wheel, {});
-  const double nearer = controls.wishes().dolly;
+  controls.handle_event(wheel, {});
+  const double nearer = controls.take_wishes().dolly;
   EXPECT_LT(nearer, 1.0);
   wheel.wheel.y = -2;
-  controls.take(wheel, {});
-  EXPECT_NEAR(nearer * controls.wishes().dolly, 1.0, 1e-12);
+  controls.handle_event(wheel, {});
+  EXPECT_NEAR(nearer * controls.take_wishes().dolly, 1.0, 1e-12);
 }
 
 SessionFrame pressed_times(int button, std::uint32_t times) {
@@ -166,12 +226,12 @@ TEST(ButtonPresses, EachPressAsksOnceWhetherTheFramesSawItOrNot) {
     if (info.button < 0) continue;
     ButtonPresses presses;
     std::vector<Action> wanted;
-    presses.take(pressed_times(info.button, 7), wanted);  // before the window was there
+    presses.add_new_presses(pressed_times(info.button, 7), wanted);  // before the window was there
     EXPECT_TRUE(wanted.empty());
-    presses.take(pressed_times(info.button, 9), wanted);  // twice between two frames
+    presses.add_new_presses(pressed_times(info.button, 9), wanted);  // twice between two frames
     EXPECT_EQ(wanted, (std::vector{info.action, info.action})) << info.name;
     wanted.clear();
-    presses.take(pressed_times(info.button, 9), wanted);
+    presses.add_new_presses(pressed_times(info.button, 9), wanted);
     EXPECT_TRUE(wanted.empty());
   }
 }
@@ -179,13 +239,14 @@ TEST(ButtonPresses, EachPressAsksOnceWhetherTheFramesSawItOrNot) {
 TEST(ButtonPresses, AnotherSessionCountsAnew) {
   ButtonPresses presses;
   std::vector<Action> wanted;
-  presses.take(pressed_times(kButtonStart, 5), wanted);
-  presses.begin_anew();
-  presses.take(pressed_times(kButtonStart, 0), wanted);
+  presses.add_new_presses(pressed_times(kButtonStart, 5), wanted);
+  presses.start_again();
+  presses.add_new_presses(pressed_times(kButtonStart, 0), wanted);
   EXPECT_TRUE(wanted.empty());
-  presses.take(pressed_times(kButtonStart, 1), wanted);
+  presses.add_new_presses(pressed_times(kButtonStart, 1), wanted);
   EXPECT_EQ(wanted, std::vector{Action::pause});
 }
 
 }  // namespace
+
 }  // namespace gaitpad

@@ -1,19 +1,114 @@
-// What is drawn is where the camera projects it, and does what the header says: looked at pixel by
-// pixel, without a display.
+// A scene drawn without a display, looked at pixel by pixel.
+
 #include "view/scene.h"
 
+#include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <memory>
 
 #include "gaitpad/control.h"
 #include "tests/value_of.h"
-#include "view/body.h"
 #include "view/gl_program.h"
-#include "view/scene_fixture.h"
+#include "view/mannequin.h"
+#include "view/offscreen.h"
 
 namespace gaitpad {
 namespace {
+
+constexpr int kWidth = 320, kHeight = 240;
+inline const Colour kRed = rgb(0xd02020);
+
+inline Capsule bone(const vec3& a, const vec3& b, double radius_a_m, double radius_b_m) {
+  return {a, b, radius_a_m, radius_b_m, vec3(0.0), 1.0, 1.0, kRed};
+}
+inline Capsule bone(const vec3& a, const vec3& b, double radius_m) {
+  return bone(a, b, radius_m, radius_m);
+}
+
+// 0 .. 255
+inline double brightness(const Pixels& p, double x, double y) {
+  const int px = std::clamp(static_cast<int>(x), 0, p.width - 1);
+  const int py = std::clamp(static_cast<int>(y), 0, p.height - 1);
+  const std::uint8_t* c = p.rgba.data() + 4 * (py * p.width + px);
+  return (c[0] + c[1] + c[2]) / 3.0;
+}
+inline bool differs(const Pixels& a, const Pixels& b, int x, int y) {
+  const std::size_t i = 4 * (static_cast<std::size_t>(y) * a.width + x);
+  int sum = 0;
+  for (int c = 0; c < 3; ++c) sum += std::abs(a.rgba[i + c] - b.rgba[i + c]);
+  return sum > 6;
+}
+struct Extent {
+  int left = kWidth, top = kHeight, right = -1, bottom = -1, pixels = 0;
+};
+inline Extent difference(const Pixels& a, const Pixels& b) {
+  Extent e;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      if (!differs(a, b, x, y)) continue;
+      e.left = std::min(e.left, x);
+      e.right = std::max(e.right, x);
+      e.top = std::min(e.top, y);
+      e.bottom = std::max(e.bottom, y);
+      ++e.pixels;
+    }
+  }
+  return e;
+}
+
+class SceneTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto opened = WindowSurface::open(hidden(kWidth, kHeight));
+    if (!opened) GTEST_SKIP() << opened.error().message;
+    surface_ = std::move(*opened);
+    auto scene = Scene::create(Scene::Quality::low);
+    ASSERT_TRUE(scene) << scene.error().message;
+    scene_ = std::move(*scene);
+    content_.has_axes = content_.has_shadows = false;
+  }
+  Pixels drawn(const SceneContent& content) {
+    int width = 0, height = 0;
+    surface_->size(width, height);
+    surface_->begin();
+    scene_->draw(content, camera_, theme_of(theme_), {0, 0, width, height}, height, scale_);
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+    return read_pixels(width, height);
+  }
+  vec3 place(const vec3& world_m) const { return projected(camera_, world_m, kWidth, kHeight); }
+  // How much brighter a place of the world is on the one than on the other, `right_px` beside it.
+  double brighter(const Pixels& a, const Pixels& b, const vec3& world_m, int right_px = 0) const {
+    const vec3 p = place(world_m);
+    return brightness(a, p.x + right_px, p.y) - brightness(b, p.x + right_px, p.y);
+  }
+  // The scene over a surface that is all magenta.
+  Pixels over_magenta(const Viewport& viewport, int width, int height) {
+    surface_->begin();
+    glClearColor(1.0f, 0.0f, 1.0f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    scene_->draw(content_, camera_, theme_of(theme_), viewport, height, 1.0);
+    return read_pixels(width, height);
+  }
+  void look_down() {
+    orbit(camera_, -camera_.yaw_rad, 10.0);
+    camera_.target_m.y = 0.0;
+    content_.focus_m = camera_.target_m;
+  }
+
+  std::unique_ptr<WindowSurface> surface_;
+  std::unique_ptr<Scene> scene_;
+  SceneContent content_;
+  Camera camera_;
+  ThemeName theme_ = ThemeName::dark;
+  double scale_ = 1.0;
+};
+
+// What is drawn is where the camera projects it, and does what the header says: looked at pixel by
+// pixel, without a display.
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Colour kBlue = rgb(0x2020d0);
@@ -156,7 +251,7 @@ TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
   camera_.yaw_rad = kPi / 2.0;
   orbit(camera_, 0.0, -1.0);
   ASSERT_LT(camera_.eye_m().y, 0.11);
-  const Body body = body_of(
+  const Mannequin body = mannequin_of(
       std::make_shared<const WalkModel>(value_of(walk_model(procedural_gait(), Character{}))));
   Stick stick;
   stick.left = {0.2, 0.7};
@@ -168,7 +263,7 @@ TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
     camera_.target_m.z = content_.focus_m.z = pose.root_m.z;
     camera_.target_m.x = content_.focus_m.x = pose.root_m.x;
     const Pixels without = drawn(content_);
-    add_body(body, pose, kRed, content_);
+    add_mannequin(body, pose, kRed, content_);
     const Extent seen = difference(without, drawn(content_));
     const vec3 under(pose.root_m.x, 0.0, pose.root_m.z);
     EXPECT_LE(seen.bottom, place(under + 0.3 * kLeft).y + 1.0) << frame;
@@ -272,5 +367,85 @@ TEST_F(SceneTest, AShaderThatDoesNotCompileIsNamed) {
   EXPECT_NE(program.error().message.find("nonsense"), std::string::npos);
 }
 
+// Lines are where the camera projects them: of the grid, trails, single ones.
+
+TEST_F(SceneTest, GridLinesLieAtWholeMetresOfTheWorld) {
+  look_down();
+  for (const double x_m : {0.0, 0.3, 150.6}) {
+    camera_.target_m.x = content_.focus_m.x = x_m;
+    content_.has_grid = false;
+    const Pixels without = drawn(content_);
+    content_.has_grid = true;
+    const Pixels with = drawn(content_);
+    const auto line_at = [&](double x, double z) {
+      double most = 0.0;  // a line is a pixel or two wide
+      for (const int off : {-1, 0, 1})
+        most = std::max(most, brighter(with, without, {x, 0.0, z}, off));
+      return most;
+    };
+    const double metre = std::round(x_m);
+    EXPECT_GT(line_at(metre, 0.5), 20.0) << x_m;
+    EXPECT_GT(line_at(metre + 1.0, 0.5), 20.0) << x_m;
+    const double twenty = line_at(metre + 0.4, 0.5);
+    EXPECT_GT(twenty, 3.0) << x_m;
+    EXPECT_LT(twenty, 0.7 * line_at(metre, 0.5)) << x_m;
+    EXPECT_LT(line_at(metre + 0.5, 0.5), 1.5) << x_m;
+  }
+}
+
+TEST_F(SceneTest, ATrailFadesTowardsItsOldEnd) {
+  look_down();
+  content_.has_grid = false;
+  const Pixels without = drawn(content_);
+  Trail trail;
+  for (int i = 0; i <= 40; ++i) trail.points_m.push_back({-1.0 + i * 0.05, 0.01, 0.0});
+  trail.colour = rgb(0xffffff);
+  content_.trails = {trail};
+  const Pixels with = drawn(content_);
+  const auto strength = [&](double x_m) { return brighter(with, without, {x_m, 0.01, 0.0}); };
+  EXPECT_GT(strength(0.95), 100.0);
+  EXPECT_GT(strength(0.95), strength(0.3) + 20.0);
+  EXPECT_GT(strength(0.3), strength(-0.4) + 20.0);
+  EXPECT_LT(strength(-0.95), 5.0);
+}
+
+TEST_F(SceneTest, ALineIsAsWideAsItsPixelsTimesTheScale) {
+  camera_.yaw_rad = camera_.pitch_rad = 0.0;
+  const vec3 a = camera_.target_m - kUp * 0.5, b = camera_.target_m + kUp * 0.5;
+  for (const double scale : {1.0, 2.0}) {
+    scale_ = scale;
+    content_.lines.clear();
+    const Pixels without = drawn(content_);
+    content_.lines = {{a, b, rgb(0xffffff), 4.0}};
+    const Pixels with = drawn(content_);
+    double covered = 0.0;  // pixels of one row
+    const int row = kHeight / 2;
+    for (int x = 0; x < kWidth; ++x) covered += differs(with, without, x, row);
+    EXPECT_NEAR(covered, 4.0 * scale, 1.1);
+  }
+}
+
+TEST_F(SceneTest, ALineThatPassesTheEyeIsCutThere) {
+  const vec3 behind = camera_.eye_m() + (camera_.eye_m() - camera_.target_m) * 0.5 + kUp * 0.1;
+  const Pixels without = drawn(content_);
+  content_.lines = {{camera_.target_m, behind, rgb(0xffffff), 3.0}};
+  const Extent seen = difference(without, drawn(content_));
+  EXPECT_GT(seen.pixels, 20);
+  EXPECT_NEAR(seen.bottom, kHeight / 2.0, 12.0);  // it rises from the middle, to above the eye
+}
+
+TEST_F(SceneTest, BodiesHideLinesBehindThem) {
+  camera_.yaw_rad = 0.0;
+  const vec3 at = camera_.target_m;
+  content_.bodies = {bone(at, at, 0.3)};
+  const Pixels without = drawn(content_);
+  content_.lines = {{at - vec3(1.0, 0.0, 1.0), at + vec3(1.0, 0.0, -1.0), rgb(0xffffff), 4.0}};
+  const Pixels with = drawn(content_);
+  EXPECT_FALSE(differs(with, without, kWidth / 2, kHeight / 2));
+  const vec3 beside = place(at + vec3(0.8, 0.0, -1.0));
+  EXPECT_TRUE(differs(with, without, static_cast<int>(beside.x), static_cast<int>(beside.y)));
+}
+
 }  // namespace
+
 }  // namespace gaitpad

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "ui_fixture.h"
-#include "view/ui_layout.h"
 
 namespace gaitpad {
 namespace {

@@ -27,7 +27,7 @@
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 #ifdef GAITPAD_HAS_WINDOW
-#include "view/stick_picture.h"
+#include "draw/stick_picture.h"
 #endif
 
 namespace gaitpad {

@@ -19,7 +19,7 @@
 
 namespace gaitpad {
 
-class KeyboardStick;  // drivers/keyboard_device.h
+class KeyboardStick;  // keyboard.h
 
 // Which pad a user asks for; empty: any.
 struct PadWish {

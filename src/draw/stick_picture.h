@@ -1,0 +1,32 @@
+// The picture of measured sticks: tracks, outline and zones, raw and calibrated, the rest position
+// magnified, the reach by direction, the numbers and the verdict.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+
+#include "draw/picture.h"
+#include "gaitpad/result.h"
+#include "stick/pad_analysis.h"
+#include "stick/statistics.h"
+
+namespace gaitpad {
+
+struct StickPicture {
+  std::string title;                   // "left stick"
+  std::span<const StickTrack> tracks;  // in the frame of the advice
+  const StickStatistics* statistics = nullptr;
+  const StickAdvice* advice = nullptr;
+};
+// The raw position of a deflection that is centred and scaled by the range: a zone's edge is the
+// image of a circle or square of deflections.
+vec2 raw_of(const StickCalibration& calibration, const vec2& deflection) noexcept;
+
+// One card for each stick, opaque (CAIRO_FORMAT_RGB24); cairo's error surface if there is no
+// memory.
+Surface stick_picture(const std::string& heading, std::span<const StickPicture> sticks);
+// The same as a PNG, written beside `path` first: on error an old file is unchanged.
+std::optional<Error> write_stick_picture(const std::string& path, const std::string& heading,
+                                         std::span<const StickPicture> sticks);
+
+}  // namespace gaitpad

@@ -1,0 +1,402 @@
+#include "view/widgets.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gaitpad {
+namespace {
+
+constexpr std::size_t kMaxTextBytes = 1024;  // no row shows more; names from outside may be long
+
+std::string fit(std::string_view text) { return drawable(text.substr(0, kMaxTextBytes)); }
+
+ImVec2 size_of(const ImFont* font, std::string_view text) {
+  return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, text.data(), text.data() + text.size());
+}
+
+// The beginning of the text that fits the width.
+std::string_view fitting(const ImFont* font, std::string_view text, float width) {
+  if (width <= 0.0f) return {};
+  const char* rest = nullptr;
+  font->CalcTextSizeA(font->FontSize, width, 0.0f, text.data(), text.data() + text.size(), &rest);
+  return text.substr(0, static_cast<std::size_t>(rest - text.data()));
+}
+
+std::vector<UiItem> items;  // of the frame drawn last; only one window draws, from one thread
+
+void keep(std::string_view name, const ImVec2& min, const ImVec2& max, const ImRect& clip) {
+  ImRect rect(min, max);
+  rect.ClipWithFull(clip);
+  if (rect.GetWidth() < 1.0f || rect.GetHeight() < 1.0f) return;
+  items.push_back({std::string(name), rect.Min, rect.Max});
+}
+
+void draw_button_back(Ui& ui, const ImVec2& min, const ImVec2& max, const ButtonLook& look) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float rounding = ui.px(5);
+  const bool is_chosen = look.is_on && !look.is_primary;
+  Colour back = look.is_primary || look.is_on ? ui.theme.accent : ui.theme.frame;
+  back.alpha = (is_chosen ? 0.45 : 1.0) * (look.is_enabled ? 1.0 : 0.5);
+  list.AddRectFilled(min, max, packed(back), rounding);
+  if (look.is_enabled && ImGui::IsItemHovered()) {
+    const double strength = ImGui::IsItemActive() ? 0.18 : 0.08;
+    list.AddRectFilled(min, max, packed(with_alpha(ui.theme.text, strength)), rounding);
+  }
+  if (is_chosen) {
+    list.AddRect(min, max, packed(with_alpha(ui.theme.left, 0.8)), rounding, 0, ui.px(1));
+  }
+}
+
+// Icon or dot, then the label, centred on the button.
+void draw_button_face(Ui& ui, const ImVec2& min, const ImVec2& max, std::string_view label,
+                      const ButtonLook& look) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImFont* font = ui.fonts.body;
+  const Colour text =
+      with_alpha(look.is_primary ? rgb(0xffffff) : ui.theme.text, look.is_enabled ? 1.0 : 0.45);
+  const float front = (look.icon != Icon::none && !label.empty() ? ui.px(16) : 0.0f) +
+                      (look.dot ? ui.px(14) : 0.0f);
+  const float room = max.x - min.x - ui.px(8) - front;
+  const float content = std::min(text_width(font, label), room);
+  float x = (min.x + max.x - content - front) / 2.0f;
+  const float middle = (min.y + max.y) / 2.0f;
+  if (look.icon != Icon::none) {
+    const float r = ui.px(4.5);
+    draw_icon(list, look.icon, {label.empty() ? (min.x + max.x) / 2.0f : x + r, middle}, r,
+              packed(look.icon == Icon::record ? ui.theme.bad : text));
+  }
+  if (look.dot) list.AddCircleFilled({x + ui.px(4), middle}, ui.px(4), packed(*look.dot), 16);
+  put_text(list, font, text, {x + front, middle - font->FontSize / 2.0f}, label, content + 1.0f);
+}
+
+constexpr std::int64_t kWishTicks = 60;  // a command takes effect within a few ticks
+constexpr double kKnobPixels = 5.0;      // half its width, and the slider's margin
+
+double value_under_mouse(Ui& ui, float left, float right, const SliderLook& look) {
+  const float margin = ui.px(kKnobPixels);
+  const float share = (ImGui::GetIO().MousePos.x - left - margin) / (right - left - 2.0f * margin);
+  const double value =
+      look.min + std::clamp(static_cast<double>(share), 0.0, 1.0) * (look.max - look.min);
+  const double unit = std::pow(10.0, look.decimals);
+  return std::clamp(std::round(value * unit) / unit, look.min, look.max);
+}
+
+// In the middle, or beside the knob if the knob would cover it.
+void draw_number(Ui& ui, const ImVec2& min, const ImVec2& max, float knob, double value,
+                 const SliderLook& look) {
+  std::string text = tick_text(value, std::pow(10.0, -look.decimals));
+  if (!look.letter.empty()) text = fmt::format("{} {}", look.letter, text);
+  const ImFont* font = ui.fonts.small;
+  const float width = text_width(font, text), room = ui.px(7);
+  const float middle = (min.x + max.x) / 2.0f;
+  float x = middle - width / 2.0f;
+  if (knob < middle) {
+    x = std::max(x, knob + room);
+  } else {
+    x = std::min(x, knob - room - width);
+  }
+  put_text(*ImGui::GetWindowDrawList(), font, ui.theme.text,
+           {x, (min.y + max.y - font->FontSize) / 2.0f}, text, max.x - x);
+}
+
+void draw_notch(Ui& ui, float x, const ImVec2& min, const ImVec2& max) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float r = ui.px(3), h = ui.px(4.2);
+  const ImU32 colour = packed(ui.theme.text);
+  list.AddTriangleFilled({x - r, min.y}, {x, min.y + h}, {x + r, min.y}, colour);
+  list.AddTriangleFilled({x - r, max.y}, {x + r, max.y}, {x, max.y - h}, colour);
+}
+
+void draw_slider(Ui& ui, const ImVec2& min, const ImVec2& max, double value,
+                 const SliderLook& look) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const double span = look.max - look.min;
+  const float margin = ui.px(kKnobPixels);
+  const auto place = [&](double at) {
+    const double share = span > 0.0 ? std::clamp((at - look.min) / span, 0.0, 1.0) : 0.0;
+    return min.x + margin + static_cast<float>(share) * (max.x - min.x - 2.0f * margin);
+  };
+  const double strength = look.is_enabled ? 1.0 : 0.55;
+  list.AddRectFilled(min, max, packed(ui.theme.frame), ui.px(4));
+  const float grab = place(value);
+  list.AddRectFilled(min, {grab, max.y}, packed(with_alpha(ui.theme.accent, 0.45 * strength)),
+                     ui.px(4));
+  if (look.mark && std::isfinite(*look.mark) && *look.mark != value) {
+    draw_notch(ui, place(*look.mark), min, max);
+  }
+  const bool is_hot = ImGui::IsItemHovered() || ImGui::IsItemActive();
+  Colour knob = is_hot && look.is_enabled ? ui.theme.text : ui.theme.left;
+  list.AddRectFilled({grab - ui.px(3.5), min.y + ui.px(2)}, {grab + ui.px(3.5), max.y - ui.px(2)},
+                     packed(with_alpha(knob, strength)), ui.px(3));
+  if (look.is_changed) {
+    list.AddRect(min, max, packed(ui.theme.warning), ui.px(4), 0, ui.px(1.4));
+  }
+  draw_number(ui, min, max, grab, value, look);
+}
+
+constexpr double kVeil = 0.55;
+constexpr double kRoom = 24.0;       // to the window's edges, at scale 1
+constexpr double kMessages = 104.0;  // left free above for messages if both fit
+
+}  // namespace
+
+float text_width(const ImFont* font, std::string_view text) { return size_of(font, text).x; }
+
+void put_text(ImDrawList& list, const ImFont* font, const Colour& colour, const ImVec2& at,
+              std::string_view text, float max_width) {
+  std::string shown = fit(text);
+  if (shown.empty() || !(max_width > 0.0f)) return;
+  if (text_width(font, shown) > max_width) {
+    const float room = max_width - text_width(font, "...");
+    shown = std::string(fitting(font, shown, room));
+    if (room >= 0.0f) shown += "...";
+  }
+  list.AddText(font, font->FontSize, {std::floor(at.x), std::floor(at.y)}, packed(colour),
+               shown.data(), shown.data() + shown.size());
+}
+
+void text_line(Ui&, const ImFont* font, const Colour& colour, std::string_view text,
+               float max_width) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = max_width > 0.0f ? max_width : ImGui::GetContentRegionAvail().x;
+  put_text(*ImGui::GetWindowDrawList(), font, colour, at, text, width);
+  ImGui::Dummy({std::min(width, text_width(font, fit(text))), font->FontSize});
+}
+
+void value_row(Ui& ui, std::string_view label, std::string_view value) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const ImFont* font = ui.fonts.small;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const std::string shown = fit(value);
+  const float value_width = std::min(text_width(font, shown), width * 0.7f);
+  put_text(list, font, ui.theme.secondary, at, label, width - value_width - ui.px(8));
+  put_text(list, font, ui.theme.text, {at.x + width - value_width, at.y}, shown,
+           value_width + 1.0f);
+  ImGui::Dummy({width, font->FontSize});
+}
+
+std::vector<std::string> text_lines(const ImFont* font, std::string_view text, float width,
+                                    int max_lines) {
+  std::vector<std::string> lines;
+  std::string rest = fit(text);
+  while (!rest.empty()) {
+    const std::string_view part = fitting(font, rest, width);
+    if (part.size() == rest.size() || static_cast<int>(lines.size()) + 1 >= max_lines) {
+      lines.push_back(rest);
+      break;
+    }
+    const std::size_t blank = part.rfind(' ');
+    std::size_t cut = blank == std::string_view::npos || blank == 0 ? part.size() : blank;
+    if (cut == 0) break;  // not even one letter fits
+    lines.push_back(rest.substr(0, cut));
+    rest.erase(0, rest.find_first_not_of(' ', cut));
+  }
+  return lines;
+}
+
+void note(Ui& ui, std::string_view text, int max_lines) {
+  const float width = ImGui::GetContentRegionAvail().x;
+  for (const std::string& line : text_lines(ui.fonts.small, text, width, max_lines)) {
+    text_line(ui, ui.fonts.small, ui.theme.secondary, line);
+  }
+}
+
+int Ui::walker() const noexcept {
+  if (in.frame.walker_count <= 0) return -1;
+  return state.walker >= 0 && state.walker < in.frame.walker_count ? state.walker : 0;
+}
+
+void clear_items() { items.clear(); }
+
+void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max) {
+  ImRect clip = ImGui::GetCurrentWindow()->Rect();
+  clip.ClipWithFull(ImRect({0.0f, 0.0f}, ImGui::GetIO().DisplaySize));
+  keep(name, min, max, clip);
+}
+
+void keep_item(std::string_view name, const ImVec2& min, const ImVec2& max) {
+  keep(name, min, max, ImGui::GetCurrentWindow()->ClipRect);
+}
+
+void keep_item(std::string_view name) {
+  keep_item(name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+}
+
+const std::vector<UiItem>& ui_items() noexcept { return items; }
+
+void draw_icon(ImDrawList& list, Icon icon, const ImVec2& m, float r, ImU32 colour) {
+  switch (icon) {
+    case Icon::none:
+      return;
+    case Icon::play:
+      list.AddTriangleFilled({m.x - 0.7f * r, m.y - r}, {m.x + r, m.y}, {m.x - 0.7f * r, m.y + r},
+                             colour);
+      return;
+    case Icon::pause:
+      list.AddRectFilled({m.x - 0.8f * r, m.y - r}, {m.x - 0.2f * r, m.y + r}, colour);
+      list.AddRectFilled({m.x + 0.2f * r, m.y - r}, {m.x + 0.8f * r, m.y + r}, colour);
+      return;
+    case Icon::record:
+      list.AddCircleFilled(m, r, colour, 16);
+      return;
+    case Icon::stop:
+      list.AddRectFilled({m.x - 0.8f * r, m.y - 0.8f * r}, {m.x + 0.8f * r, m.y + 0.8f * r},
+                         colour);
+      return;
+    case Icon::close:
+      list.AddLine({m.x - r, m.y - r}, {m.x + r, m.y + r}, colour, 0.32f * r + 0.5f);
+      list.AddLine({m.x - r, m.y + r}, {m.x + r, m.y - r}, colour, 0.32f * r + 0.5f);
+      return;
+    case Icon::to_begin:
+      list.AddRectFilled({m.x - r, m.y - r}, {m.x - 0.6f * r, m.y + r}, colour);
+      list.AddTriangleFilled({m.x + r, m.y - r}, {m.x - 0.5f * r, m.y}, {m.x + r, m.y + r}, colour);
+      return;
+    case Icon::step:
+      list.AddTriangleFilled({m.x - r, m.y - r}, {m.x + 0.5f * r, m.y}, {m.x - r, m.y + r}, colour);
+      list.AddRectFilled({m.x + 0.6f * r, m.y - r}, {m.x + r, m.y + r}, colour);
+      return;
+    case Icon::loop:
+      list.PathArcTo(m, 0.85f * r, 0.6f, 5.6f, 16);
+      list.PathStroke(colour, 0, 0.3f * r);
+      list.AddTriangleFilled({m.x + 0.3f * r, m.y - 0.5f * r}, {m.x + 1.2f * r, m.y - 0.7f * r},
+                             {m.x + 0.8f * r, m.y + 0.2f * r}, colour);
+      return;
+  }
+}
+
+float button_width(const Ui& ui, std::string_view label, const ButtonLook& look) {
+  if (look.width > 0.0f) return look.width;
+  float width = text_width(ui.fonts.body, label) + ui.px(20);
+  if (look.icon != Icon::none) width += label.empty() ? ui.px(8) : ui.px(16);
+  if (look.dot) width += ui.px(14);
+  return std::ceil(width);
+}
+
+bool button(Ui& ui, std::string_view id, std::string_view label, const ButtonLook& look) {
+  const float height = look.height > 0.0f ? look.height : std::round(ui.px(26));
+  ImGui::PushID(id.data(), id.data() + id.size());
+  ImGui::BeginDisabled(!look.is_enabled);
+  const bool is_pressed = ImGui::InvisibleButton("b", {button_width(ui, label, look), height});
+  ImGui::EndDisabled();
+  ImGui::PopID();
+  if (look.is_enabled) keep_item(id);
+  const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
+  draw_button_back(ui, min, max, look);
+  draw_button_face(ui, min, max, label, look);
+  return is_pressed;
+}
+
+void send(Ui& ui, std::string_view verb, std::string_view rest) {
+  if (ui.state.walker >= 0) {
+    ui.out.commands.push_back(fmt::format("{} {} {}", verb, ui.state.walker + 1, rest));
+  } else {
+    ui.out.commands.push_back(fmt::format("{} {}", verb, rest));
+  }
+}
+
+void send(Ui& ui, std::string_view verb, std::string_view key, double value) {
+  send(ui, verb, fmt::format("{} {}", key, value));
+}
+
+Colour walker_colour(const Ui& ui, int walker) {
+  return series_colour(ui.theme, static_cast<std::size_t>(std::max(walker, 0)));
+}
+
+std::string style_name(const Ui& ui, int style_index) {
+  const auto& styles = ui.in.cast.styles;
+  if (style_index < 0 || style_index >= static_cast<int>(styles.size())) return "?";
+  return styles[static_cast<std::size_t>(style_index)];
+}
+
+std::string walker_name(const Ui& ui, int walker) {
+  if (walker < 0 || walker >= ui.in.frame.walker_count) return "nobody";
+  const WalkerFrame& frame = ui.in.frame.walkers[static_cast<std::size_t>(walker)];
+  return fmt::format("{} {}", walker + 1, style_name(ui, frame.style_index));
+}
+
+bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) {
+  const float width = look.width > 0.0f ? look.width : ImGui::GetContentRegionAvail().x;
+  if (!std::isfinite(value)) value = look.min;
+  ImGui::PushID(id.data(), id.data() + id.size());
+  ImGui::BeginDisabled(!look.is_enabled);
+  ImGui::InvisibleButton("s", {std::max(width, ui.px(20)), std::round(ui.px(19))});
+  const bool is_held = ImGui::IsItemActive();
+  const bool is_taken = ImGui::IsItemActivated();
+  ImGui::EndDisabled();
+  ImGui::PopID();
+  if (look.is_enabled) keep_item(id);
+  const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
+  double& held = ui.state.memory.held;  // the value last asked for in this drag
+  if (is_taken) held = value;
+  bool is_moved = false;
+  if (is_held && look.max > look.min) {
+    const double wanted = value_under_mouse(ui, min.x, max.x, look);
+    is_moved = wanted != held;
+    held = value = wanted;
+  }
+  draw_slider(ui, min, max, value, look);
+  return is_moved;
+}
+
+double wished_value(Ui& ui, const std::string& name, double value) {
+  auto& wishes = ui.state.memory.wishes;
+  const std::int64_t now = ui.in.frame.tick;
+  std::erase_if(wishes, [&](const UiMemory::Wish& w) {
+    return now < w.tick || now > w.tick + kWishTicks ||
+           (w.name == name && w.walker == ui.state.walker && w.value == value && now > w.tick);
+  });
+  for (const UiMemory::Wish& w : wishes) {
+    if (w.name == name && w.walker == ui.state.walker) return w.value;
+  }
+  return value;
+}
+
+void remember_wish(Ui& ui, const std::string& name, double value) {
+  auto& wishes = ui.state.memory.wishes;
+  std::erase_if(wishes, [&](const UiMemory::Wish& w) {
+    return w.name == name && w.walker == ui.state.walker;
+  });
+  wishes.push_back({name, ui.state.walker, value, ui.in.frame.tick});
+}
+
+void forget_wish(Ui& ui, const std::string& name) {
+  std::erase_if(ui.state.memory.wishes,
+                [&](const UiMemory::Wish& w) { return name.empty() || w.name == name; });
+}
+
+ImVec2 begin_modal(Ui& ui, const char* id, double width, double height, const ImVec2& window_px) {
+  const float room = ui.px(kRoom);
+  const ImVec2 size(std::min(ui.px(width), std::max(window_px.x - room, room)),
+                    std::min(ui.px(height), std::max(window_px.y - room, room)));
+  const float middle = (window_px.y - size.y) / 2, lowest = window_px.y - size.y - room / 2;
+  const float top = std::max(middle, std::min(ui.px(kMessages), lowest));
+  const ImVec2 at(std::round((window_px.x - size.x) / 2), std::round(top));
+  const ImVec2 end(at.x + size.x, at.y + size.y);
+  ImGui::SetNextWindowPos(at);
+  ImGui::SetNextWindowSize(size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(20), ui.px(16)));
+  ImGui::Begin(id, nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+  if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+  // Drawn in this window: a separate one would take the focus from a text field.
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRectFullScreen();
+  const Colour veil = with_alpha(ui.theme.window, kVeil);
+  list.AddRectFilled(ImVec2(0, 0), window_px, packed(veil));
+  list.AddRectFilled(at, end, packed(ui.theme.panel), ui.px(8));
+  list.AddRect(at, end, packed(ui.theme.border), ui.px(8), 0, ui.px(1));
+  list.PopClipRect();
+  keep_item(fmt::format("area {}", id), at, end);
+  return size;
+}
+
+void end_modal() {
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+}  // namespace gaitpad

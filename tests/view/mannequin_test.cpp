@@ -1,0 +1,267 @@
+// A mannequin's measures are judged by what is known of people and of the skeleton; where it is, by
+// forward kinematics and by the samples of the walk, which the drawing does not read.
+#include "view/mannequin.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "gaitpad/control.h"
+#include "gaitpad/motion_file.h"
+#include "tests/shared_data.h"
+#include "tests/value_of.h"
+
+namespace gaitpad {
+namespace {
+
+std::shared_ptr<const WalkModel> model_of(const GaitCycle& cycle, const Character& character = {}) {
+  return std::make_shared<const WalkModel>(value_of(walk_model(cycle, character)));
+}
+
+// The deepest place of a hull of two balls that are stretched along `wide`.
+double lowest_m(const Capsule& c) {
+  const vec3 along = c.b_m - c.a_m;
+  vec3 wide = c.wide;
+  if (glm::length(along) > 1e-9) {
+    const vec3 u = glm::normalize(along);
+    wide -= u * glm::dot(wide, u);
+  }
+  if (glm::length(wide) > 1e-9) wide = glm::normalize(wide);
+  const auto below = [&wide](const vec3& at, double radius_m, double width) {
+    const double upright = wide.y * wide.y * (width * width - 1.0);
+    return at.y - radius_m * std::sqrt(1.0 + std::max(upright, 0.0));
+  };
+  return std::min(below(c.a_m, c.radius_a_m, c.width_a), below(c.b_m, c.radius_b_m, c.width_b));
+}
+
+double lowest_m(const std::vector<Capsule>& capsules) {
+  double lowest = 1e9;
+  for (const Capsule& c : capsules) lowest = std::min(lowest, lowest_m(c));
+  return lowest;
+}
+constexpr double kTouch_m = 1e-5;
+
+std::vector<Capsule> posed(const Mannequin& mannequin, const Pose& pose) {
+  SceneContent content;
+  add_mannequin(mannequin, pose, rgb(0x56b4e9), content);
+  return content.bodies;
+}
+
+// Walks for two seconds and hands every tenth pose on.
+template <class Look>
+void walk(const WalkModel& model, double turn, Look look) {
+  Pose pose;
+  WalkState state = standing(model, vec3(0.0), pose);
+  look(pose);
+  Stick stick;
+  stick.left = {turn, 0.9};
+  const GaitParams params = gait_params(stick, StyleValues{}, gait_limits(model.leg_length_m));
+  for (int tick = 0; tick < 480; ++tick) {
+    advance(model, params, IkMode::robust, 1.0 / 240.0, state, pose);
+    if (tick % 10 == 0) look(pose);
+  }
+}
+
+// World positions of the joints, the feet on the floor.
+JointFrames standing_frames(const WalkModel& model) {
+  Pose pose;
+  standing(model, vec3(0.0), pose);
+  JointFrames frames;
+  forward_kinematics(model.cycle.skeleton, pose, frames);
+  return frames;
+}
+
+void expect_plausible(const Mannequin& mannequin) {
+  const double leg_m = mannequin.model->leg_length_m;
+  EXPECT_GT(mannequin.bones.size(), 30u);
+  EXPECT_GT(mannequin.height_m, 1.55 * leg_m);  // 1.9 to 2.1 in people; some clips bend far forward
+  EXPECT_LT(mannequin.height_m, 2.3 * leg_m);
+  const JointFrames standing = standing_frames(*mannequin.model);
+  const UpperBodyJoints& joints = mannequin.model->body.joints;
+  const auto height = [&standing](int joint) { return standing.position_m[joint].y; };
+  for (const ArmChain& arm : joints.arm) {
+    ASSERT_TRUE(arm.is_found());
+    EXPECT_NE(arm.shoulder, arm.elbow);
+    EXPECT_NE(arm.elbow, arm.wrist);
+    EXPECT_GT(height(arm.shoulder), height(arm.wrist));
+  }
+  EXPECT_GT(standing.position_m[joints.arm[kLeftSide].shoulder].x,
+            standing.position_m[joints.arm[kRightSide].shoulder].x + 0.2 * leg_m);
+  double widest_m = 0.0;
+  for (const MannequinBone& bone : mannequin.bones) {
+    for (const double r : {bone.radius_from_m, bone.radius_to_m}) {
+      EXPECT_GT(r, 0.004 * leg_m);
+      EXPECT_LT(r, 0.16 * leg_m);
+    }
+    widest_m = std::max(widest_m, bone.radius_from_m * bone.width_from);
+  }
+  EXPECT_LT(widest_m, 0.27 * leg_m);
+}
+
+TEST(Mannequin, TheProceduralOneIsAPersonsSize) {
+  const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
+  expect_plausible(mannequin);
+  const Skeleton& skeleton = mannequin.model->cycle.skeleton;
+  const JointFrames standing = standing_frames(*mannequin.model);
+  const UpperBodyJoints& joints = mannequin.model->body.joints;
+  EXPECT_EQ(skeleton.joints[joints.head].name, "Head");
+  EXPECT_EQ(skeleton.joints[joints.arm[kLeftSide].elbow].name, "LeftForeArm");
+  EXPECT_EQ(skeleton.joints[joints.arm[kRightSide].wrist].name, "RightHand");
+  // The skeleton says itself where the top of the head is.
+  EXPECT_NEAR(mannequin.height_m, standing.position_m[skeleton.find("Head_End")].y, 0.05);
+}
+
+TEST(Mannequin, StandingFeetTouchTheFloorOverTheirWholeLength) {
+  const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
+  Pose pose;
+  standing(*mannequin.model, vec3(0.0), pose);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const LegJoints& joints = mannequin.model->leg[side].model.joints;
+    int on_floor = 0;
+    for (std::size_t i = 0; i < mannequin.bones.size(); ++i) {
+      const MannequinBone& bone = mannequin.bones[i];
+      if (bone.to != joints.ankle && bone.to != joints.toe) continue;
+      on_floor += std::abs(lowest_m(posed(mannequin, pose)[i])) < 2e-3;
+    }
+    EXPECT_GE(on_floor, 3);
+  }
+}
+
+TEST(Mannequin, GrowsWithItsCharacter) {
+  const GaitCycle cycle = procedural_gait();
+  Character half;
+  half.scale = 0.5;
+  const Mannequin full = mannequin_of(model_of(cycle)), small = mannequin_of(model_of(cycle, half));
+  ASSERT_EQ(full.bones.size(), small.bones.size());
+  EXPECT_NEAR(small.height_m, 0.5 * full.height_m, 1e-3);
+  for (std::size_t i = 0; i < full.bones.size(); ++i) {
+    EXPECT_NEAR(small.bones[i].radius_from_m, 0.5 * full.bones[i].radius_from_m, 1e-6);
+  }
+}
+
+TEST(Mannequin, ItsBonesMeetTheJointsOfItsPose) {
+  const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
+  walk(*mannequin.model, 0.4, [&mannequin](const Pose& pose) {
+    JointFrames frames;
+    forward_kinematics(mannequin.model->cycle.skeleton, pose, frames);
+    const std::vector<Capsule> capsules = posed(mannequin, pose);
+    for (const LegBuild& leg : mannequin.model->leg) {
+      const vec3 knee_m = frames.position_m[leg.model.joints.knee];
+      double nearest_m = 1.0;
+      for (const Capsule& c : capsules)
+        nearest_m = std::min(nearest_m, glm::distance(c.b_m, knee_m));
+      EXPECT_LT(nearest_m, 1e-9);
+    }
+    const vec3 top_m = head_m(mannequin, pose);
+    EXPECT_GT(top_m.y, frames.position_m[mannequin.top].y + 0.15);
+    EXPECT_LT(glm::distance(top_m, frames.position_m[mannequin.top]), 0.35);
+  });
+}
+
+TEST(Mannequin, NothingOfItIsBelowTheFloorWhileItWalksAndTurns) {
+  for (const double turn : {0.0, -0.8}) {
+    const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
+    walk(*mannequin.model, turn, [&mannequin](const Pose& pose) {
+      EXPECT_GE(lowest_m(posed(mannequin, pose)), -kTouch_m);
+    });
+  }
+}
+
+// Legs alone are a skeleton too.
+TEST(Mannequin, WithoutArmsAndHeadTheRestIsDrawn) {
+  GaitCycle cycle = procedural_gait();
+  const std::size_t all = cycle.skeleton.joints.size(), kept = 11;  // pelvis, two legs of five
+  ASSERT_EQ(cycle.skeleton.joints[kept].name, "Spine");
+  std::vector<quat> local;
+  for (int i = 0; i < kCycleSamples; ++i) {
+    const auto row = cycle.local.begin() + static_cast<std::ptrdiff_t>(i * all);
+    local.insert(local.end(), row, row + static_cast<std::ptrdiff_t>(kept));
+  }
+  cycle.local = local;
+  cycle.skeleton.joints.resize(kept);
+  cycle.standing_local.resize(kept);
+  const Mannequin mannequin = mannequin_of(model_of(cycle));
+  EXPECT_GE(mannequin.bones.size(), 15u);
+  walk(*mannequin.model, 0.0, [&mannequin](const Pose& pose) {
+    EXPECT_GE(lowest_m(posed(mannequin, pose)), -kTouch_m);
+    EXPECT_TRUE(std::isfinite(head_m(mannequin, pose).y));
+  });
+}
+
+TEST(Mannequin, EveryCapturedSkeletonHasItsArmsAndHeadAndStaysAboveTheFloor) {
+  GAITPAD_NEEDS(kCapturedMotions);
+  int walks = 0;
+  for (const std::string& file : files_in(kCapturedMotions, ".bvh")) {
+    const auto motion = load_motion(file);
+    if (!motion) continue;
+    const auto cycle = gait_cycle(*motion);
+    if (!cycle) continue;
+    SCOPED_TRACE(file);
+    const Mannequin mannequin = mannequin_of(model_of(*cycle));
+    expect_plausible(mannequin);
+    walk(*mannequin.model, 0.3, [&mannequin](const Pose& pose) {
+      EXPECT_GE(lowest_m(posed(mannequin, pose)), -kTouch_m);
+    });
+    ++walks;
+  }
+  EXPECT_GE(walks, 10);
+}
+
+TEST(Interpolate, TurnsTheShorterWayAndMovesStraight) {
+  Pose before, pose, shown;
+  before.joint_count = pose.joint_count = 2;
+  before.root_m = {1.0, 2.0, 3.0};
+  pose.root_m = {3.0, 2.0, -1.0};
+  before.local[0] = rotation_y(0.2);
+  pose.local[0] = rotation_y(0.6);
+  before.local[1] = rotation_x(-0.1);
+  pose.local[1] = -rotation_x(0.1);  // the same rotation by the other sign
+  interpolate(before, pose, 0.5, shown);
+  EXPECT_LT(glm::distance(shown.root_m, vec3(2.0, 2.0, 1.0)), 1e-12);
+  EXPECT_NEAR(std::abs(glm::dot(shown.local[0], rotation_y(0.4))), 1.0, 1e-9);
+  EXPECT_NEAR(std::abs(glm::dot(shown.local[1], kIdentity)), 1.0, 1e-9);
+  interpolate(before, pose, 0.0, shown);
+  EXPECT_NEAR(std::abs(glm::dot(shown.local[0], before.local[0])), 1.0, 1e-12);
+  interpolate(before, pose, 1.0, shown);
+  EXPECT_LT(glm::distance(shown.root_m, pose.root_m), 1e-12);
+}
+
+double nearest_m(const std::vector<vec3>& places, const vec3& to) {
+  double nearest = 1e9;
+  for (const vec3& p : places) nearest = std::min(nearest, glm::distance(p, to));
+  return nearest;
+}
+
+// The samples know where the ankles are without any joint.
+TEST(StickFigure, ItsAnklesAreWhereTheSourceHasThem) {
+  const GaitCycle cycle = procedural_gait();
+  const vec3 place_m(4.0, 7.0, -2.0);
+  const double heading_rad = 0.7;
+  for (const double phase : {0.0, 0.13, 0.5, 0.77}) {
+    SceneContent content;
+    add_stick_figure(cycle, phase, 1.0, place_m, heading_rad, rgb(0xffffff), content);
+    const CycleSample sample = sample_at(cycle, phase);
+    for (const LegSample& leg : sample.leg) {
+      const vec3 turned = rotation_y(heading_rad) * leg.ankle_m;
+      const vec3 expected = turned + place_m;
+      EXPECT_LT(nearest_m(content.joints_m, expected), 3e-3) << phase;
+    }
+    EXPECT_EQ(content.bodies.size(), 0u);
+    EXPECT_GT(content.lines.size(), 12u);
+  }
+}
+
+TEST(StickFigure, StandsWithBothFeetFlatWhereNothingOfTheWalkShows) {
+  const GaitCycle cycle = procedural_gait();
+  SceneContent content;
+  add_stick_figure(cycle, 0.3, 0.0, vec3(1.0, 0.0, 2.0), 0.0, rgb(0xffffff), content);
+  for (const LegModel& leg : cycle.leg) {
+    const double ankle_y = -leg.heel_m.y;
+    const vec3 ankle = vec3(1.0, ankle_y, 2.0) + vec3(leg.hip_m.x, 0.0, leg.hip_m.z);
+    EXPECT_LT(nearest_m(content.joints_m, ankle), 1e-6);
+    EXPECT_LT(nearest_m(content.joints_m, ankle + leg.toe_m), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

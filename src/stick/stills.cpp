@@ -22,7 +22,6 @@ constexpr std::size_t kShortestStill = 5;                          // cells
 constexpr std::size_t kWindowsLead = kHalfWindow - 1;
 // This much of the first half counts; the remainder, and the margin, is settling.
 constexpr std::size_t kWindowsLag = 2;
-constexpr std::size_t kMargin = 2;   // cells
 constexpr double kSlow = 0.006;      // raw, between the halves of a window: 0.06 a second
 constexpr double kNoiseLimit = 4.5;  // standard deviations
 constexpr double kUnseen = 0.0012;   // raw, between cells: slow drift is no movement

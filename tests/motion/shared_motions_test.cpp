@@ -37,6 +37,7 @@ const std::map<std::string, std::string> kNoWalks = {
     {"cmu_11.asf", "has fewer than 6 frames"},
     {"cmu_12.asf", "has fewer than 6 frames"},
     {"cmu_35.asf", "has fewer than 6 frames"},
+    {"cmu_zombie.asf", "has fewer than 6 frames"},
     {"endorphin.asf", "has fewer than 6 frames"},
     {"daz3d_170_joints.bvh", "has fewer than 6 frames"},
     {"geno_bind_6channels.bvh", "has fewer than 6 frames"},

@@ -63,6 +63,19 @@ double step_length(const WalkState& state, Side side) noexcept {
   return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
 }
 
+Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
+  const double a = presence(state), r = std::clamp(state.pace.x, 0.0, 1.0);
+  const double phase = data_phase(model, state);
+  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
+  Pelvis pelvis;
+  pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(phase)) +
+                      forward * (a * r * model.surge_m.at(phase));
+  const double yaw = a * r * state.sway.x * model.yaw_rad.at(phase);
+  const vec3 tilt(model.tilt[0].at(phase), model.tilt[1].at(phase), model.tilt[2].at(phase));
+  pelvis.rotation = rotation_y(state.heading_rad + yaw) * from_rotation_vector(tilt * (a * r));
+  return pelvis;
+}
+
 namespace {
 
 // --- Clock: stages, steps, phases ----------------------------------------------------------------
@@ -400,23 +413,6 @@ void advance_hips(const Tick& tick, WalkState& state) noexcept {
   approach(state.hips_m, state.hips_velocity_m_s, goal, velocity, remaining, tick.dt_s);
   if (!tick.flat) advance_base(tick, state, remaining);
 }
-
-}  // namespace
-
-Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
-  const double a = presence(state), r = std::clamp(state.pace.x, 0.0, 1.0);
-  const double phase = data_phase(model, state);
-  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
-  Pelvis pelvis;
-  pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(phase)) +
-                      forward * (a * r * model.surge_m.at(phase));
-  const double yaw = a * r * state.sway.x * model.yaw_rad.at(phase);
-  const vec3 tilt(model.tilt[0].at(phase), model.tilt[1].at(phase), model.tilt[2].at(phase));
-  pelvis.rotation = rotation_y(state.heading_rad + yaw) * from_rotation_vector(tilt * (a * r));
-  return pelvis;
-}
-
-namespace {
 
 // Pelvis height at which hip and ankle are `reach_m` apart.
 double height_over(const LegBuild& leg, const FootPose& foot, const Pelvis& pelvis,

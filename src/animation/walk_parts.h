@@ -43,6 +43,8 @@ struct Pelvis {
   quat rotation = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation, world
   vec3 hip(const LegBuild& leg) const noexcept { return position_m + rotation * leg.model.hip_m; }
 };
+// The pelvis of this tick, still without the height that the legs ask for.
+Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept;
 
 // --- walk_terrain.cpp: footholds, and flights over what lies between them ------------------------
 // Height of the plane at a place.

@@ -9,17 +9,22 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kJumpLegsPerS = 12.0;  // no foot of a walker or runner is as fast
-constexpr double kSmoothS = 0.020, kMaxSmoothFrames = 20.0;
+// A foot in the air moves fast along the ground, a standing foot hardly. So a swing is a run of
+// frames in which the ankle's smoothed horizontal speed is above a share of its usual fast speed;
+// from there its ends are followed to where the speed is low. Heights are used unsmoothed, for the
+// highest point and for the moment in which the heel begins to rise.
+
+constexpr double kJump_legs_s = 12.0;  // faster than any foot: the data jump
+constexpr double kSmooth_s = 0.020, kMaxSmoothFrames = 20.0;
 constexpr double kMovingShare = 0.30;  // of the usual fast speed
 constexpr double kEdgeShare = 0.20;    // of a swing's greatest speed: lift and land
-constexpr double kMinSwingS = 0.15, kMaxSwingS = 1.8;
-constexpr double kMinLegs = 0.25, kMaxLegs = 2.6;
-constexpr double kMaxGapS = 0.06;   // a shorter rest does not end a swing
-constexpr double kEndS = 0.035;     // nearer to the file's ends a swing may be cut
-constexpr double kHeelOffS = 0.6;   // how long before the lift the heel may rise
-constexpr double kLoopLegs = 0.12;  // first and last pose this near: a loop
-constexpr double kBand = 0.10;      // of the range of heights, the paper's 10 %
+constexpr double kMinSwing_s = 0.15, kMaxSwing_s = 1.8;
+constexpr double kMinSwing_legs = 0.25, kMaxSwing_legs = 2.6;
+constexpr double kMaxGap_s = 0.06;   // a shorter rest does not end a swing
+constexpr double kEnd_s = 0.035;     // a swing so near to an end of the file may be cut
+constexpr double kHeelOff_s = 0.6;   // how long before the lift the heel may rise
+constexpr double kLoop_legs = 0.12;  // the joints of a loop's first and last pose are this near
+constexpr double kBand = 0.10;       // of the range of heights, the paper's 10 %
 
 struct Track {
   std::vector<vec3> ankle_m;         // smoothed, within stretches without a jump
@@ -72,7 +77,8 @@ std::vector<double> speeds(const Track& t) {
   return out;
 }
 
-// `copies` of the clip behind one another, each shifted by the pelvis' travel over one.
+// The ankle's track over `copies` of the clip in a row, each moved on by the pelvis' travel over
+// one.
 Track track_of(const Motion& motion, Side side, int copies) {
   const std::array<int, 2> joints = {motion.legs[side].ankle, motion.pelvis};
   const auto tracks = joint_tracks_m(motion, joints);
@@ -82,7 +88,7 @@ Track track_of(const Motion& motion, Side side, int copies) {
   t.frame_s = motion.frame_time_s;
   t.leg_m = leg_length_m(motion);
   std::vector<vec3> raw;
-  const double limit = kJumpLegsPerS * t.leg_m * t.frame_s;
+  const double limit = kJump_legs_s * t.leg_m * t.frame_s;
   for (int copy = 0; copy < copies; ++copy) {
     // A loop's last frame is its first one again.
     for (std::size_t f = copy > 0 ? 1 : 0; f < tracks[0].size(); ++f) {
@@ -96,16 +102,16 @@ Track track_of(const Motion& motion, Side side, int copies) {
   const auto [low, high] = std::ranges::minmax_element(t.height_m);
   t.low_m = *low;
   t.high_m = *high;
-  t.ankle_m = smoothed(raw, t.jump_before, std::min(kSmoothS / t.frame_s, kMaxSmoothFrames));
+  t.ankle_m = smoothed(raw, t.jump_before, std::min(kSmooth_s / t.frame_s, kMaxSmoothFrames));
   t.speed_m_s = speeds(t);
   return t;
 }
 
-// 95th percentile of the speeds that a foot can have.
+// The 95th percentile of all speeds that a foot can have.
 double usual_fast_speed(const Track& t) {
   std::vector<double> sane;
   for (const double v : t.speed_m_s) {
-    if (v < kJumpLegsPerS * t.leg_m) sane.push_back(v);
+    if (v < kJump_legs_s * t.leg_m) sane.push_back(v);
   }
   return sane.empty() ? 0.0 : percentile(std::move(sane), 95);
 }
@@ -118,7 +124,7 @@ std::vector<Run> moving_runs(const Track& t, double threshold_m_s) {
   std::vector<Run> runs;
   for (int f = 0; f < t.frames(); ++f) {
     if (!(t.speed_m_s[f] > threshold_m_s)) continue;
-    const bool is_joined = !runs.empty() && (f - runs.back().last - 1) * t.frame_s < kMaxGapS;
+    const bool is_joined = !runs.empty() && (f - runs.back().last - 1) * t.frame_s < kMaxGap_s;
     if (is_joined)
       runs.back().last = f;
     else
@@ -127,7 +133,7 @@ std::vector<Run> moving_runs(const Track& t, double threshold_m_s) {
   return runs;
 }
 
-// Whole, and of a size that a step has.
+// True for a run that is whole and as long as a step.
 bool is_swing(const Track& t, const Run& run) {
   if (run.first == 0 || run.last + 1 >= t.frames()) return false;
   for (int f = run.first; f <= run.last + 1; ++f) {
@@ -135,12 +141,13 @@ bool is_swing(const Track& t, const Run& run) {
   }
   const double time_s = (run.last - run.first + 1) * t.frame_s;
   const double legs = horizontal_length(t.ankle_m[run.last] - t.ankle_m[run.first]) / t.leg_m;
-  return time_s >= kMinSwingS && time_s <= kMaxSwingS && legs >= kMinLegs && legs <= kMaxLegs;
+  return time_s >= kMinSwing_s && time_s <= kMaxSwing_s && legs >= kMinSwing_legs &&
+         legs <= kMaxSwing_legs;
 }
 
-// From the run's end outwards (or inwards) to where the speed crosses kEdgeShare of its greatest.
-// `step` -1: the lift, +1: the landing. Where the foot does not get as slow: its slowest frame
-// before `stop`.
+// The frame of the lift (`step` -1) or the landing (+1): from the run's end outwards or inwards to
+// where the speed crosses kEdgeShare of its greatest. Where the foot does not become that slow, its
+// slowest frame before `stop`.
 int edge(const Track& t, const Run& run, int step, int stop) {
   double fastest = 0.0;
   for (int f = run.first; f <= run.last; ++f) fastest = std::max(fastest, t.speed_m_s[f]);
@@ -155,12 +162,12 @@ int edge(const Track& t, const Run& run, int step, int stop) {
   return slowest;
 }
 
-// Backwards from the lift: the last low of the ankle (gradient - to +) within the band, no further
-// than `stop`; where there is none its lowest frame. Unsmoothed: a standing ankle's lows are a
-// fraction of a millimetre deep.
+// The frame in which the heel begins to rise: backwards from the lift, but not beyond `stop`, the
+// ankle's first low within the band; where there is none, its lowest frame. Heights are not
+// smoothed: a standing ankle's lows are a fraction of a millimetre deep.
 int heel_off_frame(const Track& t, int lift, int stop) {
   const double limit_m = t.low_m + kBand * (t.high_m - t.low_m);
-  const int first = std::max(stop, lift - t.count(kHeelOffS));
+  const int first = std::max(stop, lift - t.count(kHeelOff_s));
   int lowest = lift;
   for (int f = lift - 1; f >= first && !t.jump_before[f + 1]; --f) {
     const double y = t.height_m[f];
@@ -181,7 +188,7 @@ std::vector<Swing> swings_in(const Track& t) {
     Swing s;
     s.lift = edge(t, runs[i], -1, before);
     s.land = edge(t, runs[i], 1, after);
-    const int margin = t.count(kEndS);
+    const int margin = t.count(kEnd_s);
     if (s.lift < margin || s.land + margin >= t.frames()) continue;
     s.peak = s.lift;
     for (int f = s.lift; f <= s.land; ++f) {
@@ -193,13 +200,13 @@ std::vector<Swing> swings_in(const Track& t) {
   return found;
 }
 
-// First and last pose agree in all joints' places relative to the pelvis.
+// True if the first and the last pose agree in all joints' places relative to the pelvis.
 bool is_loop(const Motion& motion) {
   if (motion.frames.size() < 3) return false;
   std::vector<JointFrames> ends(2);
   forward_kinematics(motion, motion.frames.front(), ends[0]);
   forward_kinematics(motion, motion.frames.back(), ends[1]);
-  const double limit = kLoopLegs * leg_length_m(motion);
+  const double limit = kLoop_legs * leg_length_m(motion);
   for (std::size_t j = 0; j < motion.skeleton.joints.size(); ++j) {
     std::array<vec3, 2> at;
     for (int i = 0; i < 2; ++i) at[i] = ends[i].position_m[j] - ends[i].position_m[motion.pelvis];
@@ -235,7 +242,7 @@ std::optional<Swing> robust_flight(const Motion& motion, Side side) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     double off = std::abs(times[i] / time - 1.0) + std::abs(lengths[i] / length - 1.0);
     const bool begins_before = all[i].heel_off < 1 || t.jump_before[all[i].heel_off] ||
-                               all[i].heel_off == all[i].lift;  // its stance is not seen whole
+                               all[i].heel_off == all[i].lift;  // its stance is cut
     if (begins_before) off += 1.0;
     if (off < least) {
       least = off;

@@ -12,7 +12,6 @@
 
 #include "base/spsc_ring.h"
 #include "base/text.h"
-#include "drivers/keyboard_device.h"
 #include "pads/newest_reports.h"
 #include "pads/pad_finder.h"
 #include "pads/realtime.h"

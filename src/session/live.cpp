@@ -9,7 +9,6 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/keyboard_device.h"
 #include "drivers/posix.h"
 #include "pads/realtime.h"
 #include "session/live_loop.h"

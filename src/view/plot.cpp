@@ -12,7 +12,7 @@ constexpr float kTolerancePixels = 0.15f;  // too small to be seen at any scale
 constexpr double kTickSpacePixels = 18.0, kTickWidthPixels = 46.0;
 
 // The part of a plot's box that holds the curves.
-struct Field {
+struct PlotField {
   ImVec2 min, max;
   PlotRange x, y;
   float width() const noexcept { return max.x - min.x; }

@@ -68,7 +68,7 @@ Result<Session> bench_session(const std::vector<std::string>& styles) {
   return session;
 }
 
-// What Google Benchmark measures: nanoseconds of one pass of the function.
+// Keeps what Google Benchmark measures: the time of one pass of the function.
 class Collected : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }

@@ -1,5 +1,6 @@
-// The sub-commands of gaitpad. Each adds itself to `app`; where it was the chosen one, it has run
-// when parsing ends, and `status` is the exit status: 0 done, 1 failed (wrong usage, 2, is main's).
+// The sub-commands of gaitpad. Each function adds its command to `app`. The chosen command runs
+// while the arguments are parsed and sets `status`, the exit status: 0 done, 1 failed. Wrong usage,
+// 2, is main's.
 #pragma once
 #include <CLI/CLI.hpp>
 

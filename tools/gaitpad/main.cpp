@@ -1,4 +1,4 @@
-// gaitpad: one program with sub-commands. Parses; the commands do the rest.
+// gaitpad: one program with sub-commands. It parses; the commands do the rest.
 #include <fcntl.h>
 
 #include <CLI/CLI.hpp>
@@ -12,8 +12,9 @@ namespace {
 
 constexpr int kFailed = 1, kWrongUsage = 2;
 
-// A descriptor that the caller has closed would become that of a pad or a recording, and words for
-// the terminal would go there. Opened the wrong way round: using one fails, as on a closed one.
+// If the caller closed a standard descriptor, its number would go to a pad or a recording, and
+// output for the terminal would be written there. So it is opened here, in the wrong direction:
+// using it fails as on a closed one.
 void hold_standard_descriptors() {
   for (int fd = 0; fd <= 2; ++fd) {
     if (::fcntl(fd, F_GETFD) < 0)
@@ -32,7 +33,7 @@ int main(int argc, char** argv) {
   app.footer("gaitpad COMMAND --help says more. Exit status: 0 done, 1 failed, 2 wrong usage.");
 
   hold_standard_descriptors();
-  std::signal(SIGXFSZ, SIG_IGN);  // too large a file is a failed write, told like any other
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that is too large is a failed write like any other
   int status = 0;
   bool is_written = true;
   gaitpad::add_play(app, status);

@@ -25,7 +25,7 @@ using nlohmann::ordered_json;
 
 // --- a pad as it is shown: position, buttons, and how regularly its reports come
 
-// What came within the running second.
+// What came within one second.
 struct Window {
   double duration_s = 1.0;
   std::int64_t reports = 0, bad_reports = 0;
@@ -36,8 +36,8 @@ struct MonitoredPad {
   PadConfig config;
   PadState state;
   bool is_plugged = true;
-  std::int64_t last_ns = 0;  // stamp of the last report, 0: none since plugging in
-  Window running, shown;     // shown: the last full second
+  std::int64_t last_ns = 0;  // stamp of the last report; 0: none since plugging in
+  Window running, shown;     // the present second, and the last full one
 };
 using MonitoredPads = std::map<std::uint16_t, MonitoredPad>;
 

@@ -1,6 +1,6 @@
-// soak SECONDS MOTION MOTION: the window for a long time, with all that may leak: a pad
+// soak SECONDS MOTION MOTION: runs the window for a long time with everything that may leak: a pad
 // plugged in and out, styles, panels, themes, motions loaded again. Prints the memory in use every
-// few seconds; exit status 1 where it grows. tools/soak.sh builds it and makes the motions.
+// few seconds; exit status 1 if it grows. tools/soak.sh builds it and makes the motions.
 #include <SDL2/SDL.h>
 #include <fmt/format.h>
 #include <malloc.h>
@@ -24,10 +24,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kLook_s = 5.0, kPlug_s = 8.0, kStyle_s = 1.7, kKey_s = 0.9, kLoad_s = 11.0;
-// Of the last quarter over the second one; the first is for caches to fill.
+// Allowed growth from the second quarter to the last one; in the first the caches fill.
 constexpr double kGrowth_mb = 4.0;
 
-// Sanitizers keep what was freed.
+// Sanitizers keep freed memory.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kIsJudged = false;
 #else
@@ -40,7 +40,7 @@ double resident_mb() {
   return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
-// A pad that is there for SDL alone.
+// A pad that only SDL sees.
 class VirtualPad {
  public:
   void plug() {
@@ -91,7 +91,7 @@ void drop(const std::string& path) {
   SDL_PushEvent(&event);
 }
 
-// Every so many seconds.
+// Due every so many seconds.
 class Every {
  public:
   explicit Every(double period_s) : period_s_(period_s), next_s_(period_s) {}
@@ -121,7 +121,7 @@ class Soak {
     if (time_s >= seconds_) press_quit();
   }
 
-  // Megabytes that the last quarter holds more than the second.
+  // Megabytes by which the last quarter is above the second.
   double growth_mb() const {
     const std::size_t quarter = memory_mb_.size() / 4;
     if (quarter == 0) return 0.0;
@@ -139,7 +139,7 @@ class Soak {
                                        SDLK_F6, SDLK_F7, SDLK_TAB, SDLK_t};
 
   void look(double time_s) {
-    ::malloc_trim(0);  // what is free and not given back is no leak
+    ::malloc_trim(0);  // free memory that was not given back is no leak
     memory_mb_.push_back(resident_mb());
     fmt::print("{:6.0f} s  {:7.1f} MB\n", time_s, memory_mb_.back());
     std::fflush(stdout);

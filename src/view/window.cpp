@@ -282,10 +282,9 @@ void WindowLoop::apply_layout(const UiState& layout) {
     for (const Panel panel : options_.panels)
       state_.is_open[static_cast<std::size_t>(panel)] = true;
   }
-  bool* const shown[] = {&state_.has_trails, &state_.has_grid, &state_.has_shadows,
-                         &state_.has_source, &state_.has_names};
-  for (std::size_t i = 0; i < std::size(kScenePartNames); ++i)
-    if (std::ranges::count(options_.hidden, kScenePartNames[i]) > 0) *shown[i] = false;
+  for (const ScenePart& part : kSceneParts) {
+    if (std::ranges::count(options_.hidden, part.name) > 0) state_.*part.is_shown = false;
+  }
 }
 
 std::optional<Error> WindowLoop::open() {
@@ -346,7 +345,7 @@ bool WindowLoop::is_ended() {
 }
 
 void WindowLoop::fail_without_display() {
-  if (!failure_) failure_ = Error{"the display has gone: the window ends, the session with it"};
+  if (!failure_) failure_ = Error{"the display is lost: the window and its session end"};
 }
 
 void WindowLoop::call_script() {
@@ -417,7 +416,7 @@ void WindowLoop::update_show() {
   }
   show_remarks();
   if (!show_->has_ended() || std::exchange(is_end_told_, true) || makes_pictures()) return;
-  show_message("the recording has come to its end; the keys walk on");
+  show_message("the recording has ended; the keyboard steers now");
 }
 
 void WindowLoop::remember_layout() {
@@ -426,11 +425,9 @@ void WindowLoop::remember_layout() {
   if (options_.theme == state_.theme) state_.theme = remembered_.theme;
   if (options_.are_panels_given) state_.is_open = remembered_.is_open;
   if (!options_.hidden.empty()) {
-    state_.has_trails = remembered_.has_trails;
-    state_.has_grid = remembered_.has_grid;
-    state_.has_shadows = remembered_.has_shadows;
-    state_.has_source = remembered_.has_source;
-    state_.has_names = remembered_.has_names;
+    for (const ScenePart& part : kSceneParts) {
+      state_.*part.is_shown = remembered_.*part.is_shown;
+    }
   }
   if (auto problem = save_layout(options_.layout_file, state_))
     result_.remarks.push_back(problem->message);
@@ -724,8 +721,7 @@ void WindowLoop::reset_session() {
 
 void WindowLoop::choose_style(const std::string& name) {
   if (!show_->is_live()) {
-    show_message(
-        "a recording walks in its own styles; Escape goes back to where they can be changed");
+    show_message("a playback keeps its own styles; Escape goes back to the live session");
   } else if (state_.walker >= 0) {
     show_->command(fmt::format("style {} {}", state_.walker + 1, name));
   } else {
@@ -768,7 +764,7 @@ void WindowLoop::save_walkers_style(const std::string& name) {
   const auto& folders = show_->options().config_folders;
   const auto path = save_style(folders, name, show_->frame().walkers[walker].style);
   if (path) show_->add_config_folder(user_config_folder());  // the folder may be new
-  show_message(path ? fmt::format("kept as {}: the next session knows it", *path)
+  show_message(path ? fmt::format("saved as {}; the next session can use it", *path)
                     : path.error().message);
 }
 
@@ -835,8 +831,8 @@ bool WindowLoop::switch_to(const SessionSpec& next) {
     end_show();
     return restart((*start)(), otherwise);
   }
-  auto playback =
-      Show::open(next);  // needs no pad, so the running session goes on until it is open
+  // A playback needs no pad, so the running session goes on until it is open.
+  auto playback = Show::open(next);
   if (!playback) {
     show_message(playback.error().message);
     return false;
@@ -861,13 +857,12 @@ bool WindowLoop::restart(Result<std::unique_ptr<Show>> show, const SessionSpec& 
 }
 
 void WindowLoop::open_file(const std::string& path) {
-  if (calibration_) return show_message("the calibration is not done: open files afterwards");
+  if (calibration_) return show_message("finish the calibration before opening a file");
   const auto kind = kind_of_file(path);
   if (!kind) return show_message(kind.error().message);
   const int count = static_cast<int>(show_->cast().members.size());
   SessionSpec next = with_file(show_->options(), path, *kind, state_.walker, count);
-  if (makes_pictures())
-    return show_message("pictures are made of one session: open files without them");
+  if (makes_pictures()) return show_message("no file can be opened while pictures are made");
   if (!switch_to(next)) return;
   browser_.remember(path);
   const char* back = live_before_ && *kind == FileKind::recording ? "; Escape goes back" : "";
@@ -878,9 +873,10 @@ void WindowLoop::open_file(const std::string& path) {
 // elsewhere.
 void WindowLoop::choose_next_terrain() {
   if (calibration_) return;
-  if (!show_->is_live()) return show_message("a recording is playing: it stays on its ground");
+  if (!show_->is_live()) return show_message("a playback keeps its own ground");
   if (makes_pictures())
-    return show_message("pictures are made of one session: --terrain chooses the ground");
+    return show_message(
+        "the ground cannot change while pictures are made; choose it with --terrain");
   SessionSpec next = show_->options();
   std::string& terrain = next.walk.terrain;
   const auto files = config_files(next.config_folders, "terrain");
@@ -894,9 +890,8 @@ void WindowLoop::choose_next_terrain() {
 }
 
 void WindowLoop::toggle_recording() {
-  if (!show_->is_live()) return show_message("a recording is playing: there is nothing to record");
-  if (makes_pictures())
-    return show_message("pictures are made of one session: record without them");
+  if (!show_->is_live()) return show_message("a playback runs: there is nothing to record");
+  if (makes_pictures()) return show_message("no recording can be started while pictures are made");
   SessionSpec next = show_->options();
   const bool is_recorded = !next.live.record.empty();
   next.live.record = is_recorded ? "" : new_file(".hid");
@@ -908,7 +903,7 @@ void WindowLoop::toggle_recording() {
 void WindowLoop::begin_calibration() {
   if (calibration_) return;
   if (!show_->is_live() || makes_pictures())
-    return show_message("a recording is playing: calibrate in a live session");
+    return show_message("sticks can be calibrated in a live session only");
   const SessionSpec before = show_->options();
   end_show();
   auto view = CalibrationView::start(

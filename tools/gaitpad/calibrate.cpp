@@ -13,7 +13,8 @@
 #include <span>
 #include <utility>
 
-#include "files/toml_file.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"

@@ -38,6 +38,11 @@
 namespace gaitpad {
 namespace {
 
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kWarmFrames = 5;
+constexpr double kLongest_s = 0.25;  // after a suspended machine wakes up
+
+// When frames begin, how many there are in a second, and how many reports a pad sends meanwhile.
 class FrameClock {
  public:
   // Least time between two frames; 0: no limit.
@@ -64,6 +69,53 @@ class FrameClock {
   std::uint64_t counted_ = 0;
   double rate_hz_ = 0.0;
 };
+
+double FrameClock::begin_frame(std::int64_t time_ns) noexcept {
+  passed_s_ = now_ns_ == 0 ? 0.0 : static_cast<double>(time_ns - now_ns_) / 1e9;
+  passed_s_ = std::clamp(passed_s_, 0.0, kLongest_s);
+  now_ns_ = time_ns;
+  if (frames_++ == kWarmFrames) warm_ns_ = time_ns;
+  ++shown_frames_;
+  if (shown_since_ns_ == 0) shown_since_ns_ = time_ns;
+  if (const std::int64_t shown_ns = time_ns - shown_since_ns_; shown_ns > kSecond_ns / 2) {
+    shown_ = static_cast<double>(shown_frames_) * 1e9 / static_cast<double>(shown_ns);
+    shown_since_ns_ = time_ns;
+    shown_frames_ = 0;
+  }
+  return passed_s_;
+}
+
+void FrameClock::wait_for_next() noexcept {
+  if (least_s_ <= 0.0) return;
+  const auto least_ns = static_cast<std::int64_t>(least_s_ * 1e9);
+  // Counted from the planned time, so that the frame after a late one can catch up.
+  due_ns_ = std::max(due_ns_ + least_ns, now_ns_);
+  if (due_ns_ <= gaitpad::now_ns()) return;
+  const timespec due = {static_cast<time_t>(due_ns_ / kSecond_ns),
+                        static_cast<long>(due_ns_ % kSecond_ns)};
+  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
+  }
+}
+
+double FrameClock::mean_frames_per_second() const noexcept {
+  if (warm_ns_ == 0 || now_ns_ <= warm_ns_) return 0.0;
+  return static_cast<double>(frames_ - 1 - kWarmFrames) * 1e9 /
+         static_cast<double>(now_ns_ - warm_ns_);
+}
+
+double FrameClock::rate_hz(std::uint64_t count) noexcept {
+  if (counted_ns_ == 0 || count < counted_) {  // a new session counts from 0
+    counted_ns_ = now_ns_;
+    counted_ = count;
+    rate_hz_ = 0.0;
+  }
+  if (const std::int64_t span_ns = now_ns_ - counted_ns_; span_ns >= kSecond_ns) {
+    rate_hz_ = static_cast<double>(count - counted_) * 1e9 / static_cast<double>(span_ns);
+    counted_ns_ = now_ns_;
+    counted_ = count;
+  }
+  return rate_hz_;
+}
 
 // Errors and remarks for the person, each shown for a while, newest last.
 class Messages {
@@ -92,6 +144,14 @@ class Messages {
   };
   std::deque<Message> shown_;
 };
+
+constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves processor time to the session
+constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limit the rate
+constexpr double kUnseenFrame_s = 0.1;           // minimized
+constexpr double kOrbitMouse_rad = 0.006;        // per pixel at scale 1
+constexpr double kOrbitStick_rad_s = 1.8;
+constexpr double kStickRest = 0.02;  // of the right stick; less does not move the camera
+constexpr std::int64_t kMessage_ns = 15'000'000'000;
 
 // Runs the window: opens it, draws frame after frame, does what the person asks for, and closes it.
 class WindowLoop {
@@ -188,65 +248,6 @@ class WindowLoop {
   CalibrationView::State calibration_state_ = CalibrationView::State::goes_on;
   bool wants_screenshot_ = false, is_quitting_ = false, is_end_told_ = false;
 };
-
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kWarmFrames = 5;
-constexpr double kLongest_s = 0.25;  // after a suspended machine wakes up
-
-double FrameClock::begin_frame(std::int64_t time_ns) noexcept {
-  passed_s_ = now_ns_ == 0 ? 0.0 : static_cast<double>(time_ns - now_ns_) / 1e9;
-  passed_s_ = std::clamp(passed_s_, 0.0, kLongest_s);
-  now_ns_ = time_ns;
-  if (frames_++ == kWarmFrames) warm_ns_ = time_ns;
-  ++shown_frames_;
-  if (shown_since_ns_ == 0) shown_since_ns_ = time_ns;
-  if (const std::int64_t shown_ns = time_ns - shown_since_ns_; shown_ns > kSecond_ns / 2) {
-    shown_ = static_cast<double>(shown_frames_) * 1e9 / static_cast<double>(shown_ns);
-    shown_since_ns_ = time_ns;
-    shown_frames_ = 0;
-  }
-  return passed_s_;
-}
-
-void FrameClock::wait_for_next() noexcept {
-  if (least_s_ <= 0.0) return;
-  const auto least_ns = static_cast<std::int64_t>(least_s_ * 1e9);
-  // Counted from the planned time, so that the frame after a late one can catch up.
-  due_ns_ = std::max(due_ns_ + least_ns, now_ns_);
-  if (due_ns_ <= gaitpad::now_ns()) return;
-  const timespec due = {static_cast<time_t>(due_ns_ / kSecond_ns),
-                        static_cast<long>(due_ns_ % kSecond_ns)};
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
-  }
-}
-
-double FrameClock::mean_frames_per_second() const noexcept {
-  if (warm_ns_ == 0 || now_ns_ <= warm_ns_) return 0.0;
-  return static_cast<double>(frames_ - 1 - kWarmFrames) * 1e9 /
-         static_cast<double>(now_ns_ - warm_ns_);
-}
-
-double FrameClock::rate_hz(std::uint64_t count) noexcept {
-  if (counted_ns_ == 0 || count < counted_) {  // a new session counts from 0
-    counted_ns_ = now_ns_;
-    counted_ = count;
-    rate_hz_ = 0.0;
-  }
-  if (const std::int64_t span_ns = now_ns_ - counted_ns_; span_ns >= kSecond_ns) {
-    rate_hz_ = static_cast<double>(count - counted_) * 1e9 / static_cast<double>(span_ns);
-    counted_ns_ = now_ns_;
-    counted_ = count;
-  }
-  return rate_hz_;
-}
-
-constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves processor time to the session
-constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limit the rate
-constexpr double kUnseenFrame_s = 0.1;           // minimized
-constexpr double kOrbitMouse_rad = 0.006;        // per pixel at scale 1
-constexpr double kOrbitStick_rad_s = 1.8;
-constexpr double kStickRest = 0.02;  // of the right stick; less does not move the camera
-constexpr std::int64_t kMessage_ns = 15'000'000'000;
 
 WindowLoop::WindowLoop(const WindowOptions& options)
     : options_(options), browser_(options.recent_file) {

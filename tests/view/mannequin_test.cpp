@@ -8,6 +8,7 @@
 
 #include "gaitpad/control.h"
 #include "gaitpad/motion_file.h"
+#include "gaitpad/walk.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
 

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "gaitpad/control.h"
+#include "gaitpad/walk.h"
 #include "tests/value_of.h"
 #include "view/gl_program.h"
 #include "view/mannequin.h"
@@ -336,8 +337,8 @@ TEST_F(SceneTest, HighQualitySmoothsEdges) {
   camera_.yaw_rad = camera_.pitch_rad = 0.0;
   content_.has_grid = false;
   const vec3 at = camera_.target_m;
-  content_.capsules = {{at - vec3(2.0, 0.0, 0.0), at + vec3(2.0, 0.3, 0.0), 0.1, 0.1, vec3(0.0), 1.0,
-                      1.0, rgb(0xffffff)}};
+  content_.capsules = {{at - vec3(2.0, 0.0, 0.0), at + vec3(2.0, 0.3, 0.0), 0.1, 0.1, vec3(0.0),
+                        1.0, 1.0, rgb(0xffffff)}};
   const auto shades = [&] {  // of the upper edge, where it passes a row of pixels
     const Pixels pixels = drawn(content_);
     int between = 0;

@@ -326,7 +326,7 @@ Footing footing_of(const WalkModel& model, IkMode mode) {
 struct Worst {
   double value = -1.0;
   std::string where;
-  void take(double v, const char* name) {
+  void keep_if_worse(double v, const char* name) {
     if (v > value) value = v, where = name;
   }
   std::string text() const {
@@ -454,11 +454,11 @@ std::vector<Claim> terrain_claims(const Study& study, IkMode mode) {
     WalkModel model = study.model();
     model.terrain = std::make_shared<const Terrain>(*terrain);
     const Footing f = footing_of(model, mode);
-    planted.take(f.planted_mm, ground.name);
-    sunk.take(f.sunk_mm, ground.name);
-    hips.take(f.hips_mm, ground.name);
-    failed.take(f.failed, ground.name);
-    short_of.take(std::max(0.0, length_m(*terrain) - f.way_m), ground.name);
+    planted.keep_if_worse(f.planted_mm, ground.name);
+    sunk.keep_if_worse(f.sunk_mm, ground.name);
+    hips.keep_if_worse(f.hips_mm, ground.name);
+    failed.keep_if_worse(f.failed, ground.name);
+    short_of.keep_if_worse(std::max(0.0, length_m(*terrain) - f.way_m), ground.name);
   }
   list.add("22 planted heels and toes off the ground, mm", planted.value, at_most(5.0),
            planted.text());

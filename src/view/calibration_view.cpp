@@ -76,7 +76,7 @@ void CalibrationView::read_pad(std::vector<std::string>& messages) {
   CalibrationGuide* guide = guided_->guide();
   if (guide == nullptr) {
     if (!guided_->has_ended()) return;
-    messages.emplace_back("no pad came that could be calibrated");
+    messages.emplace_back("no pad was found that can be calibrated");
     state_ = State::given_up;
     return;
   }
@@ -172,7 +172,7 @@ void CalibrationView::draw_guide(Ui& ui, CalibrationGuide& guide) {
   ImGui::PushTextWrapPos(0.0f);
   const bool is_plugged = guided_->is_plugged();
   ImGui::TextUnformatted(is_plugged ? guide.instruction().c_str()
-                                    : "Unplugged: plug it in again, it goes on from here.");
+                                    : "Unplugged: plug it in again to continue from here.");
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
   ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
@@ -224,7 +224,7 @@ void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& mess
     if (auto wrong = save_calibration(target_, file_, calibration_comments(*analysis_))) {
       messages.push_back(wrong->message);
     } else {
-      messages.push_back("the calibration is kept in " + target_);
+      messages.push_back("the calibration is saved in " + target_);
       state_ = State::saved;
     }
   }
@@ -243,8 +243,8 @@ CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
   } else {
     text_line(ui, ui.fonts.title, ui.theme.text, "Calibrate the sticks");
     note(ui,
-         "No pad is there yet: plug one in. In a terminal `gaitpad doctor` finds why one does "
-         "not work.");
+         "No pad is connected: plug one in. If one does not work, run `gaitpad doctor` in a "
+         "terminal.");
   }
   ImGui::SetCursorPosY(buttons_y);
   if (guide != nullptr) draw_guide_buttons(ui, *guide);

@@ -8,8 +8,7 @@ constexpr double kLowestEye_m = 0.1, kHighestTarget_m = 4.0;
 constexpr double kSteepest_rad = 1.5;  // almost straight down; straight down has no "up"
 constexpr double kNearPlane_m = 0.1, kFarPlane_m = 200.0;
 constexpr double kFollowTime_s = 0.25;
-constexpr double kJump_m =
-    1.0;  // farther than anyone walks between two frames: a reset or another character
+constexpr double kJump_m = 1.0;  // between two frames: a reset or another character
 
 bool is_finite(const vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

@@ -19,13 +19,13 @@ constexpr std::string_view kSession = "Session", kStyles = "Styles and character
 
 // No key next to the walking keys ends anything.
 constexpr ActionInfo kActions[] = {
-    {Action::pause, SDLK_SPACE, SDLK_p, kButtonStart, "pause", kSession, "pause, go on"},
+    {Action::pause, SDLK_SPACE, SDLK_p, kButtonStart, "pause", kSession, "pause or continue"},
     {Action::step, SDLK_PERIOD, kNoKey, kButtonDpadRight, "step", kSession,
-     "one tick, pausing first"},
+     "one tick; pauses first"},
     {Action::slow_motion, SDLK_COMMA, kNoKey, kButtonA, "slow motion", kSession,
      "slow motion, on and off"},
     {Action::reset, SDLK_BACKSPACE, kNoKey, kButtonDpadDown, "reset", kSession,
-     "everybody back to the start, standing"},
+     "all characters back to the start"},
     {Action::style_1, SDLK_1, SDLK_KP_1, kNoButton, "style 1", kStyles, "first style of the list"},
     {Action::style_2, SDLK_2, SDLK_KP_2, kNoButton, "style 2", kStyles, "second style"},
     {Action::style_3, SDLK_3, SDLK_KP_3, kNoButton, "style 3", kStyles, "third style"},
@@ -38,19 +38,19 @@ constexpr ActionInfo kActions[] = {
     {Action::next_style, SDLK_n, SDLK_RIGHTBRACKET, kButtonRightShoulder, "next style", kStyles,
      "next style of the list"},
     {Action::previous_style, SDLK_b, SDLK_LEFTBRACKET, kButtonLeftShoulder, "previous style",
-     kStyles, "the one before"},
+     kStyles, "previous style of the list"},
     {Action::next_terrain, SDLK_m, kNoKey, kNoButton, "next terrain", kStyles,
      "next ground of the list, from the start"},
     {Action::next_walker, SDLK_TAB, kNoKey, kButtonY, "next walker", kStyles,
      "choose the next character, then all"},
     {Action::record, SDLK_F9, kNoKey, kButtonDpadUp, "record", kFiles,
-     "record from the beginning, stop"},
+     "restart and record, or stop"},
     {Action::screenshot, SDLK_F12, SDLK_PRINTSCREEN, kButtonX, "screenshot", kFiles,
      "save a picture"},
     {Action::open_file, SDLK_o, kNoKey, kNoButton, "open", kFiles,
      "open a motion, style, ground or recording"},
     {Action::calibrate, SDLK_F8, kNoKey, kNoButton, "calibrate", kFiles, "calibrate the sticks"},
-    {Action::follow, SDLK_c, kNoKey, kButtonLeftStick, "follow", kView, "camera follows, stands"},
+    {Action::follow, SDLK_c, kNoKey, kButtonLeftStick, "follow", kView, "camera follows or stays"},
     {Action::reset_camera, SDLK_v, SDLK_HOME, kButtonRightStick, "reset camera", kView,
      "camera as at the start"},
     {Action::theme, SDLK_l, kNoKey, kNoButton, "theme", kView, "light or dark"},
@@ -68,7 +68,7 @@ constexpr ActionInfo kActions[] = {
     {Action::panel_loop, SDLK_F7, kNoKey, kNoButton, "loop panel", kPanelGroup, "panel: loop"},
     {Action::help, SDLK_F1, SDLK_h, kButtonBack, "help", kWindow, "this page"},
     {Action::fullscreen, SDLK_F11, kNoKey, kNoButton, "full screen", kWindow,
-     "full screen, window"},
+     "full screen, on and off"},
     {Action::quit, SDLK_F10, kNoKey, kNoButton, "quit", kWindow, "end the program"},
     {Action::back, SDLK_ESCAPE, kNoKey, kButtonB, "back", kWindow, "close what is open"},
 };
@@ -128,12 +128,9 @@ constexpr std::array<std::string_view, kButtonCount> kButtonLabels = {
     "D-pad right", "Misc",    "Paddle 1",   "Paddle 2",   "Paddle 3", "Paddle 4",   "Touchpad"};
 
 constexpr HelpLine kWalkingHelp[] = {
-    {"W A S D, arrows", "walk and turn, as a smooth stick"},
-    {"left stick", "walk and turn"},
-    {"right stick", "camera round the scene"},
-    {"drag", "camera round the scene"},
-    {"right drag", "camera sideways and up"},
-    {"wheel", "camera nearer, farther"},
+    {"W A S D, arrows", "walk and turn, like a stick"}, {"left stick", "walk and turn"},
+    {"right stick", "camera round the scene"},          {"drag", "camera round the scene"},
+    {"right drag", "camera sideways and up"},           {"wheel", "camera nearer, farther"},
 };
 
 constexpr double kDollyAStep = 0.9;

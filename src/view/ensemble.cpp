@@ -56,7 +56,7 @@ Ensemble::Ensemble(const Cast& cast)
 void Ensemble::fill(const SessionFrame& frame, const History& history, double share,
                     const Cast& cast, const UiState& state, const Theme& theme,
                     SceneContent& content) {
-  content.bodies.clear();
+  content.capsules.clear();
   content.lines.clear();
   content.joints_m.clear();
   content.trails.clear();

@@ -55,11 +55,11 @@ Result<FileKind> kind_of_content(const std::string& path) {
   if (kinds.size() == 1) return kinds.front();
   if (!kinds.empty()) {
     return Error{path +
-                 ": may be a style, a character or a terrain: put it into a folder named styles, "
+                 ": could be a style, a character or a terrain; put it into a folder named styles, "
                  "characters or terrain"};
   }
   return Error{fmt::format(
-      "{}: is no style, character, calibration, terrain or motion; as a style: {}", path, problem)};
+      "{}: is not a style, character, calibration, terrain or motion; as a style: {}", path, problem)};
 }
 
 // Sets item `n` of `count` in the list, which repeats its last item up to there; a negative `n`
@@ -120,7 +120,7 @@ Result<FileKind> kind_of_file(const std::string& path) {
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) return Error{path + ": there is no such file"};
   if (fs::is_directory(status)) return Error{path + ": is a folder; " + kWhatOpens};
-  if (!fs::is_regular_file(status)) return Error{path + ": is no file that can be read"};
+  if (!fs::is_regular_file(status)) return Error{path + ": is not a regular file"};
   const std::string ending = lower_case(fs::path(path).extension().string());
   if (ending == ".bvh" || ending == ".amc") return FileKind::motion;
   if (ending == ".hid") return FileKind::recording;
@@ -177,7 +177,7 @@ FolderList list_folder(const std::string& folder, FileFilter filter) {
   if (error) {
     list.problem = fmt::format("{}: cannot be read: {}", folder, error.message());
   } else if (it != end) {
-    list.problem = fmt::format("{}: holds too much, only a part is shown", folder);
+    list.problem = fmt::format("{}: has too many entries, only some are shown", folder);
   }
   sort(list.entries);
   return list;
@@ -316,7 +316,7 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
     }
   }
   if (list_.entries.empty() && list_.problem.empty())
-    text_line(ui, ui.fonts.small, ui.theme.tick, "nothing here that the window can open");
+    text_line(ui, ui.fonts.small, ui.theme.tick, "no files here that the window can open");
   ImGui::PopFont();
   ImGui::EndChild();
   ImGui::PopStyleColor();

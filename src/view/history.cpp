@@ -43,18 +43,6 @@ void add_series(const GraphSpan& span, std::string_view letter, const Colour& co
   plot.series.push_back(std::move(series));
 }
 
-void fit_y(Plot& plot, double least) {
-  double min = std::numeric_limits<double>::infinity(), max = -min;
-  for (const PlotSeries& series : plot.series) {
-    for (const PlotPoint& p : series.points) {
-      if (!std::isfinite(p.y)) continue;
-      min = std::min(min, p.y);
-      max = std::max(max, p.y);
-    }
-  }
-  plot.y = nice_range(min, max, least);
-}
-
 // One curve for each leg.
 Plot leg_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme,
               const std::function<double(const WalkerSample&, Side)>& value, double least) {

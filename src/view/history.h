@@ -3,8 +3,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "draw/plot.h"
+#include "draw/theme.h"
 #include "gaitpad/session_frame.h"
-#include "view/plot.h"
 
 namespace gaitpad {
 

@@ -15,15 +15,6 @@ namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
-struct Switch {
-  std::string_view key;
-  bool UiState::*value;
-};
-constexpr Switch kSwitches[] = {
-    {"trails", &UiState::has_trails},   {"grid", &UiState::has_grid},
-    {"shadows", &UiState::has_shadows}, {"source", &UiState::has_source},
-    {"names", &UiState::has_names},
-};
 constexpr std::array<std::string_view, 2> kThemeNames = {"dark", "light"};
 constexpr std::array<std::string_view, 2> kLegNames = {"left", "right"};
 
@@ -66,8 +57,8 @@ Result<UiState> read_state(const std::string& path) {
   if (const auto leg = read_word(root, "graph_leg", kLegNames)) {
     state.graph_leg = static_cast<Side>(*leg);
   }
-  for (const Switch& entry : kSwitches) {
-    state.*entry.value = root.boolean(entry.key).value_or(state.*entry.value);
+  for (const ScenePart& part : kSceneParts) {
+    state.*part.is_shown = root.boolean(part.name).value_or(state.*part.is_shown);
   }
   if (auto problem = file->problem()) return *problem;
   return state;
@@ -79,12 +70,12 @@ std::string text_of(const UiState& state) {
     if (state.is_open[i]) panels.push_back(fmt::format("\"{}\"", kPanelNames[i]));
   }
   std::string text = fmt::format(
-      "# How gaitpad's window was left; without this file it opens as at first.\n"
+      "# The layout of gaitpad's window; without this file it opens with its defaults.\n"
       "panels = [{}]\ntheme = \"{}\"\ngraph_leg = \"{}\"\n",
       fmt::join(panels, ", "), kThemeNames[static_cast<std::size_t>(state.theme)],
       kLegNames[static_cast<std::size_t>(state.graph_leg)]);
-  for (const Switch& entry : kSwitches) {
-    text += fmt::format("{} = {}\n", entry.key, state.*entry.value);
+  for (const ScenePart& part : kSceneParts) {
+    text += fmt::format("{} = {}\n", part.name, state.*part.is_shown);
   }
   return text;
 }
@@ -95,7 +86,7 @@ Layout load_layout(const std::string& path) {
   std::error_code ignored;
   if (path.empty() || !fs::exists(path, ignored)) return {};
   auto state = read_state(path);
-  if (!state) return {{}, state.error().message + "; the window opens as at first"};
+  if (!state) return {{}, state.error().message + "; the window opens with its defaults"};
   return {*state, ""};
 }
 

@@ -1,9 +1,6 @@
 #include "view/mannequin.h"
 
-#include <cctype>
 #include <iterator>
-#include <string>
-#include <string_view>
 
 #include "gaitpad/anatomy.h"
 
@@ -32,7 +29,7 @@ Girth girth_at(double height) {
   return kTrunk[std::size(kTrunk) - 1];
 }
 
-vec3 mix(const vec3& a, const vec3& b, double t) { return a + (b - a) * t; }
+vec3 between(const vec3& a, const vec3& b, double t) { return a + (b - a) * t; }
 
 // A place that moves with a joint.
 struct Held {
@@ -267,12 +264,12 @@ void Builder::add_arm(Side side) {
   vec3 inwards = shoulders_m_ - at(arm.shoulder);
   inwards *= 0.016 * size_ / std::max(glm::length(inwards), 0.016 * size_);
   const Held shoulder = held(arm.shoulder, inwards - kUp * (0.008 * size_));
-  const vec3 neck = mix(at(chest), shoulder.at_m, 0.28);
+  const vec3 neck = between(at(chest), shoulder.at_m, 0.28);
   const Held collar{
       chest, vec3(neck.x, shoulder.at_m.y + 0.026 * size_, 0.5 * (neck.z + shoulder.at_m.z))};
   add(collar, shoulder, 0.046 * size_, 0.050 * size_);
   add(shoulder, elbow, 0.050 * size_, 0.036 * size_);
-  const Held bulge{arm.elbow, mix(elbow.at_m, wrist.at_m, 0.26)};
+  const Held bulge{arm.elbow, between(elbow.at_m, wrist.at_m, 0.26)};
   add(elbow, bulge, 0.035 * size_, 0.038 * size_).is_pale = true;
   add(bulge, wrist, 0.038 * size_, 0.025 * size_).is_pale = true;
   add_hand(arm);
@@ -371,7 +368,7 @@ void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Colour& c
     c.colour = bone.is_pale ? pale : colour;
     put_on_floor(c.a_m, c.radius_a_m, c.wide, c.width_a);
     put_on_floor(c.b_m, c.radius_b_m, c.wide, c.width_b);
-    content.bodies.push_back(c);
+    content.capsules.push_back(c);
   }
 }
 

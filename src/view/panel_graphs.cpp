@@ -35,16 +35,27 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
   }
 }
 
+// Reserves a box over the column's width and draws into it if it is in sight.
+template <class Draw>
+void draw_box(Ui& ui, double height_px, Draw draw) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 max{at.x + ImGui::GetContentRegionAvail().x, at.y + std::round(ui.px(height_px))};
+  if (ImGui::IsRectVisible(at, max)) draw(*ImGui::GetWindowDrawList(), at, max);
+  ImGui::Dummy({max.x - at.x, max.y - at.y});
+}
+
+void draw_plot_box(Ui& ui, const Plot& plot, double height_px) {
+  draw_box(ui, height_px, [&](ImDrawList& list, const ImVec2& min, const ImVec2& max) {
+    draw_plot(list, min, max, plot, ui.plot_style());
+  });
+}
+
+// A plot below its title and the latest values.
 void draw_graph(Ui& ui, std::string_view title, std::string_view unit, const Plot& plot,
                 int decimals, double height_px) {
   draw_title(ui, title, unit, plot, decimals);
   ImGui::Dummy({1.0f, ui.fonts.small->FontSize});
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 max{at.x + ImGui::GetContentRegionAvail().x, at.y + std::round(ui.px(height_px))};
-  if (ImGui::IsRectVisible(at, max)) {
-    draw_plot(*ImGui::GetWindowDrawList(), at, max, plot, ui.plot_style());
-  }
-  ImGui::Dummy({max.x - at.x, max.y - at.y});
+  draw_plot_box(ui, plot, height_px);
 }
 
 void draw_leg_choice(Ui& ui) {
@@ -116,13 +127,10 @@ void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
   draw_graph(ui, "Heel height", "cm", heel_plot(ui.in.history, span, walker, ui.theme), 1, 84.0);
   draw_mark_words(ui);
   text_line(ui, ui.fonts.small, ui.theme.text, "Stage and planted points");
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 max{at.x + ImGui::GetContentRegionAvail().x, at.y + std::round(ui.px(100))};
-  if (ImGui::IsRectVisible(at, max)) {
-    draw_spans(*ImGui::GetWindowDrawList(), at, max,
-               stage_plot(ui.in.history, span, walker, ui.theme), ui.plot_style());
-  }
-  ImGui::Dummy({max.x - at.x, max.y - at.y});
+  const SpanPlot plot = stage_plot(ui.in.history, span, walker, ui.theme);
+  draw_box(ui, 100.0, [&](ImDrawList& list, const ImVec2& min, const ImVec2& max) {
+    draw_spans(list, min, max, plot, ui.plot_style());
+  });
   note(ui, "F flight, R roll, each of the left or right foot", 1);
 }
 
@@ -181,27 +189,11 @@ void draw_table(Ui& ui) {
   for (int i = 0; i < ui.in.frame.walker_count; ++i) draw_walker(ui, i);
 }
 
-void draw_graph(Ui& ui, std::string_view title, const Plot& plot) {
-  text_line(ui, ui.fonts.small, ui.theme.text, title);
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 max{at.x + ImGui::GetContentRegionAvail().x, at.y + std::round(ui.px(70))};
-  if (ImGui::IsRectVisible(at, max)) {
-    draw_plot(*ImGui::GetWindowDrawList(), at, max, plot, ui.plot_style());
-  }
-  ImGui::Dummy({max.x - at.x, max.y - at.y});
-}
-
 void draw_tick_times(Ui& ui) {
-  const Plot plot = tick_time_plot(ui.in.history, ui.in.cast.rate_hz, ui.theme);
   text_line(
       ui, ui.fonts.small, ui.theme.text,
       fmt::format("Time of a tick (ms), of {:.2f} ms", 1000.0 / std::max(ui.in.cast.rate_hz, 1)));
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 max{at.x + ImGui::GetContentRegionAvail().x, at.y + std::round(ui.px(84))};
-  if (ImGui::IsRectVisible(at, max)) {
-    draw_plot(*ImGui::GetWindowDrawList(), at, max, plot, ui.plot_style());
-  }
-  ImGui::Dummy({max.x - at.x, max.y - at.y});
+  draw_plot_box(ui, tick_time_plot(ui.in.history, ui.in.cast.rate_hz, ui.theme), 84.0);
 }
 
 // A count that should be 0; otherwise it is marked with '!' and a note.
@@ -234,7 +226,7 @@ void draw_live(Ui& ui, const LiveStatus& status) {
 
 void draw_graphs_panel(Ui& ui) {
   const int walker = ui.walker();
-  if (walker < 0) return note(ui, "nobody walks yet");
+  if (walker < 0) return note(ui, "no character yet");
   const GraphSpan span = graph_span(ui.in.history, walker, ui.in.cast.rate_hz);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   draw_leg_choice(ui);
@@ -251,12 +243,14 @@ void draw_graphs_panel(Ui& ui) {
 
 void draw_solver_panel(Ui& ui) {
   const int walker = ui.walker();
-  if (walker < 0) return note(ui, "nobody walks yet");
+  if (walker < 0) return note(ui, "no character yet");
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(4)});
   draw_table(ui);
   const GraphSpan span = graph_span(ui.in.history, walker, ui.in.cast.rate_hz);
-  draw_graph(ui, "Iterations of a tick", iteration_plot(ui.in.history, span, walker, ui.theme));
-  draw_graph(ui, "Error left (mm)", error_plot(ui.in.history, span, walker, ui.theme));
+  text_line(ui, ui.fonts.small, ui.theme.text, "Iterations of a tick");
+  draw_plot_box(ui, iteration_plot(ui.in.history, span, walker, ui.theme), 70.0);
+  text_line(ui, ui.fonts.small, ui.theme.text, "Error left (mm)");
+  draw_plot_box(ui, error_plot(ui.in.history, span, walker, ui.theme), 70.0);
   if (ui.in.status != nullptr) {
     const double legs = 2.0 * std::max(ui.in.frame.walker_count, 1);
     value_row(ui, "a tick takes",
@@ -275,7 +269,7 @@ void draw_loop_panel(Ui& ui) {
     draw_live(ui, *ui.in.status);
   } else {
     value_row(ui, "ticks", fmt::format("{} at {} Hz", ui.in.frame.tick + 1, ui.in.cast.rate_hz));
-    note(ui, "a playback is computed as it is looked at: no tick has a time of its own");
+    note(ui, "a playback computes its ticks ahead, so they have no time of their own");
   }
   const SimulationCounts& counts = ui.in.frame.counts;
   value_row(ui, "reports", fmt::format("{}", counts.reports));

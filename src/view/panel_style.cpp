@@ -328,7 +328,7 @@ void draw_buttons(Ui& ui, const WalkerFrame& walker) {
 void draw_control_panel(Ui& ui) {
   const int index = ui.walker();
   if (index < 0 || index >= static_cast<int>(ui.in.cast.members.size())) {
-    return note(ui, "nobody walks yet");
+    return note(ui, "no character yet");
   }
   const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
   const GaitLimits& limits = ui.in.cast.members[static_cast<std::size_t>(index)].limits;
@@ -351,7 +351,7 @@ void draw_control_panel(Ui& ui) {
 
 void draw_style_panel(Ui& ui) {
   const int index = ui.walker();
-  if (index < 0) return note(ui, "nobody walks yet");
+  if (index < 0) return note(ui, "no character yet");
   const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   draw_choice(ui, walker);

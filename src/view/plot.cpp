@@ -12,7 +12,7 @@ constexpr float kTolerancePixels = 0.15f;  // too small to be seen at any scale
 constexpr double kTickSpacePixels = 18.0, kTickWidthPixels = 46.0;
 
 // The part of a plot's box that holds the curves.
-struct PlotField {
+struct PlotArea {
   ImVec2 min, max;
   PlotRange x, y;
   float width() const noexcept { return max.x - min.x; }
@@ -54,7 +54,7 @@ int y_steps(float height, float scale) {
   return std::max(1, static_cast<int>(height / (kTickSpacePixels * scale)));
 }
 
-// Width of the space left of the field: as wide as the longest number needs.
+// Width of the space left of the area: as wide as the longest number needs.
 float left_gutter(const Plot& plot, float height, const PlotStyle& style) {
   const int steps = y_steps(height, style.scale);
   float width = static_cast<float>(kLeftGutterPixels) * style.scale;
@@ -64,36 +64,36 @@ float left_gutter(const Plot& plot, float height, const PlotStyle& style) {
   return std::ceil(width);
 }
 
-void draw_y_axis(ImDrawList& list, const Field& field, const PlotStyle& style) {
-  const int steps = y_steps(field.height(), style.scale);
+void draw_y_axis(ImDrawList& list, const PlotArea& area, const PlotStyle& style) {
+  const int steps = y_steps(area.height(), style.scale);
   const float half = style.fonts->tick->FontSize / 2.0f;
-  for (const PlotTick& tick : plot_ticks(field.y, steps)) {
-    const float y = std::round(field.py(tick.value));
-    list.AddLine({field.min.x, y}, {field.max.x, y},
+  for (const PlotTick& tick : plot_ticks(area.y, steps)) {
+    const float y = std::round(area.py(tick.value));
+    list.AddLine({area.min.x, y}, {area.max.x, y},
                  faint(style.theme->border, tick.value == 0.0 ? 1.0 : 0.6));
-    const float text_y = std::clamp(y - half, field.min.y - half * 0.5f, field.max.y - half * 1.5f);
-    tick_label(list, style, {field.min.x - 5.0f * style.scale, text_y}, TextPlace::right, tick.text,
+    const float text_y = std::clamp(y - half, area.min.y - half * 0.5f, area.max.y - half * 1.5f);
+    tick_label(list, style, {area.min.x - 5.0f * style.scale, text_y}, TextPlace::right, tick.text,
                style.theme->tick);
   }
 }
 
-void draw_x_axis(ImDrawList& list, const Field& field, const PlotStyle& style, bool has_labels) {
-  const int steps = std::max(1, static_cast<int>(field.width() / (kTickWidthPixels * style.scale)));
-  for (const PlotTick& tick : plot_ticks(field.x, steps)) {
-    const float x = std::round(field.px(tick.value));
-    list.AddLine({x, field.min.y}, {x, field.max.y}, faint(style.theme->border, 0.6));
+void draw_x_axis(ImDrawList& list, const PlotArea& area, const PlotStyle& style, bool has_labels) {
+  const int steps = std::max(1, static_cast<int>(area.width() / (kTickWidthPixels * style.scale)));
+  for (const PlotTick& tick : plot_ticks(area.x, steps)) {
+    const float x = std::round(area.px(tick.value));
+    list.AddLine({x, area.min.y}, {x, area.max.y}, faint(style.theme->border, 0.6));
     if (!has_labels) continue;
     const float edge = 10.0f * style.scale;
-    const float text_x = std::clamp(x, field.min.x + edge, field.max.x - edge * 0.2f);
-    tick_label(list, style, {text_x, field.max.y + 2.0f * style.scale}, TextPlace::centre,
-               tick.text, style.theme->tick);
+    const float text_x = std::clamp(x, area.min.x + edge, area.max.x - edge * 0.2f);
+    tick_label(list, style, {text_x, area.max.y + 2.0f * style.scale}, TextPlace::centre, tick.text,
+               style.theme->tick);
   }
 }
 
-void draw_curve(ImDrawList& list, const Field& field, const PlotSeries& series, float scale) {
+void draw_curve(ImDrawList& list, const PlotArea& area, const PlotSeries& series, float scale) {
   static thread_local std::vector<PlotPoint> shown;
   static thread_local std::vector<ImVec2> pixels;
-  decimate(series.points, field.x, static_cast<int>(field.width()), shown);
+  decimate(series.points, area.x, static_cast<int>(area.width()), shown);
   // ImGui draws lines of whole pixels from a texture, with a third of the triangles.
   const float width = std::max(1.0f, std::round(static_cast<float>(series.width_px) * scale));
   const auto flush = [&] {
@@ -109,15 +109,15 @@ void draw_curve(ImDrawList& list, const Field& field, const PlotSeries& series, 
     if (!std::isfinite(p.y)) {
       flush();
     } else {
-      pixels.push_back({field.px(p.x), field.py(p.y)});
+      pixels.push_back({area.px(p.x), area.py(p.y)});
     }
   }
   flush();
 }
 
-void draw_mark(ImDrawList& list, const Field& field, const PlotMark& mark, float scale) {
+void draw_mark(ImDrawList& list, const PlotArea& area, const PlotMark& mark, float scale) {
   if (!std::isfinite(mark.place.x) || !std::isfinite(mark.place.y)) return;
-  const ImVec2 p{field.px(mark.place.x), field.py(mark.place.y)};
+  const ImVec2 p{area.px(mark.place.x), area.py(mark.place.y)};
   const float r = 3.6f * scale;
   const ImU32 colour = packed(mark.colour);
   switch (mark.shape) {
@@ -139,19 +139,19 @@ struct EndLabel {
 };
 
 // Letters at the curves' ends, moved apart where they would overlap.
-void draw_ends(ImDrawList& list, const Field& field, const Plot& plot, const PlotStyle& style) {
+void draw_ends(ImDrawList& list, const PlotArea& area, const Plot& plot, const PlotStyle& style) {
   std::vector<EndLabel> ends;
   for (const PlotSeries& series : plot.series) {
     if (series.points.empty() || !std::isfinite(series.points.back().y)) continue;
     const PlotPoint& end = series.points.back();
-    const ImVec2 p{field.px(end.x), std::clamp(field.py(end.y), field.min.y, field.max.y)};
+    const ImVec2 p{area.px(end.x), std::clamp(area.py(end.y), area.min.y, area.max.y)};
     list.AddCircleFilled(p, 2.6f * style.scale, packed(series.colour), 12);
     ends.push_back({p.y, &series});
   }
   std::stable_sort(ends.begin(), ends.end(),
                    [](const EndLabel& a, const EndLabel& b) { return a.y < b.y; });
   const float height = style.fonts->tick->FontSize;
-  const float bottom = field.max.y - height * 0.4f;
+  const float bottom = area.max.y - height * 0.4f;
   for (std::size_t i = 1; i < ends.size(); ++i) {
     ends[i].y = std::max(ends[i].y, ends[i - 1].y + height);
   }
@@ -160,7 +160,7 @@ void draw_ends(ImDrawList& list, const Field& field, const Plot& plot, const Plo
     ends[i].y = std::min(ends[i].y, limit);
   }
   for (const EndLabel& end : ends) {
-    tick_label(list, style, {field.max.x + 5.0f * style.scale, end.y - height / 2.0f},
+    tick_label(list, style, {area.max.x + 5.0f * style.scale, end.y - height / 2.0f},
                TextPlace::left, end.series->letter, end.series->colour);
   }
 }
@@ -171,11 +171,11 @@ bool is_drawn(const Plot& plot) noexcept {
                      [](const PlotSeries& s) { return s.points.size() > 1; });
 }
 
-void draw_nothing(ImDrawList& list, const Field& field, const std::string& text,
+void draw_nothing(ImDrawList& list, const PlotArea& area, const std::string& text,
                   const PlotStyle& style) {
   tick_label(list, style,
-             {(field.min.x + field.max.x) / 2.0f,
-              (field.min.y + field.max.y - style.fonts->tick->FontSize) / 2.0f},
+             {(area.min.x + area.max.x) / 2.0f,
+              (area.min.y + area.max.y - style.fonts->tick->FontSize) / 2.0f},
              TextPlace::centre, text, style.theme->tick);
 }
 
@@ -209,50 +209,50 @@ void draw_plot(ImDrawList& list, const ImVec2& min, const ImVec2& max, const Plo
                const PlotStyle& style) {
   const float scale = style.scale;
   const float tick_row = plot.has_x_ticks ? static_cast<float>(kTickRowPixels) * scale : 0.0f;
-  const Field field{{min.x + left_gutter(plot, max.y - min.y - tick_row, style), min.y},
-                    {max.x - static_cast<float>(kRightGutterPixels) * scale, max.y - tick_row},
-                    plot.x,
-                    plot.y};
-  if (field.width() < 8.0f || field.height() < 8.0f) return;
-  list.AddRectFilled(field.min, field.max, packed(style.theme->plot), 3.0f * scale);
-  if (!is_drawn(plot)) return draw_nothing(list, field, plot.nothing, style);
-  list.PushClipRect(field.min, field.max, true);
+  const PlotArea area{{min.x + left_gutter(plot, max.y - min.y - tick_row, style), min.y},
+                      {max.x - static_cast<float>(kRightGutterPixels) * scale, max.y - tick_row},
+                      plot.x,
+                      plot.y};
+  if (area.width() < 8.0f || area.height() < 8.0f) return;
+  list.AddRectFilled(area.min, area.max, packed(style.theme->plot), 3.0f * scale);
+  if (!is_drawn(plot)) return draw_nothing(list, area, plot.nothing, style);
+  list.PushClipRect(area.min, area.max, true);
   for (const PlotBand& band : plot.bands) {
-    list.AddRectFilled({field.px(band.from), field.min.y}, {field.px(band.to), field.max.y},
+    list.AddRectFilled({area.px(band.from), area.min.y}, {area.px(band.to), area.max.y},
                        packed(band.colour));
   }
   list.PopClipRect();
-  draw_y_axis(list, field, style);
-  draw_x_axis(list, field, style, plot.has_x_ticks);
-  list.PushClipRect(field.min, field.max, true);
-  for (const PlotSeries& series : plot.series) draw_curve(list, field, series, scale);
-  for (const PlotMark& mark : plot.marks) draw_mark(list, field, mark, scale);
+  draw_y_axis(list, area, style);
+  draw_x_axis(list, area, style, plot.has_x_ticks);
+  list.PushClipRect(area.min, area.max, true);
+  for (const PlotSeries& series : plot.series) draw_curve(list, area, series, scale);
+  for (const PlotMark& mark : plot.marks) draw_mark(list, area, mark, scale);
   list.PopClipRect();
-  draw_ends(list, field, plot, style);
+  draw_ends(list, area, plot, style);
 }
 
 void draw_spans(ImDrawList& list, const ImVec2& min, const ImVec2& max, const SpanPlot& plot,
                 const PlotStyle& style) {
   const float scale = style.scale;
-  const Field field{{min.x + 46.0f * scale, min.y},
-                    {max.x - static_cast<float>(kRightGutterPixels) * scale,
-                     max.y - static_cast<float>(kTickRowPixels) * scale},
-                    plot.x,
-                    {}};
-  if (plot.rows.empty() || field.width() < 8.0f || field.height() < 8.0f) return;
-  list.AddRectFilled(field.min, field.max, packed(style.theme->plot), 3.0f * scale);
-  if (!(plot.x.max > plot.x.min)) return draw_nothing(list, field, "nothing yet", style);
-  const float row = field.height() / static_cast<float>(plot.rows.size());
+  const PlotArea area{{min.x + 46.0f * scale, min.y},
+                      {max.x - static_cast<float>(kRightGutterPixels) * scale,
+                       max.y - static_cast<float>(kTickRowPixels) * scale},
+                      plot.x,
+                      {}};
+  if (plot.rows.empty() || area.width() < 8.0f || area.height() < 8.0f) return;
+  list.AddRectFilled(area.min, area.max, packed(style.theme->plot), 3.0f * scale);
+  if (!(plot.x.max > plot.x.min)) return draw_nothing(list, area, "nothing yet", style);
+  const float row = area.height() / static_cast<float>(plot.rows.size());
   const ImFont* font = style.fonts->tick;
-  draw_x_axis(list, field, style, true);
+  draw_x_axis(list, area, style, true);
   for (std::size_t i = 0; i < plot.rows.size(); ++i) {
-    const float top = field.min.y + row * static_cast<float>(i);
+    const float top = area.min.y + row * static_cast<float>(i);
     const float text_y = top + (row - font->FontSize) / 2.0f;
-    tick_label(list, style, {field.min.x - 5.0f * scale, text_y}, TextPlace::right,
+    tick_label(list, style, {area.min.x - 5.0f * scale, text_y}, TextPlace::right,
                plot.rows[i].label, style.theme->tick);
     for (const SpanRow::Part& part : plot.rows[i].parts) {
-      const float from = std::max(field.px(part.from), field.min.x);
-      const float to = std::min(field.px(part.to), field.max.x);
+      const float from = std::max(area.px(part.from), area.min.x);
+      const float to = std::min(area.px(part.to), area.max.x);
       if (!(to > from)) continue;
       list.AddRectFilled({from, top + 2.0f * scale}, {to, top + row - 2.0f * scale},
                          packed(part.colour), 2.0f * scale);

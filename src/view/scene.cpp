@@ -1,6 +1,3 @@
-// What all parts of one picture share. The renderer gets positions as floats relative to `origin_m`
-// near the camera's target, so that feet stay sharp 200 m from the start.
-
 #include "view/scene.h"
 
 #include <epoxy/gl.h>
@@ -22,6 +19,8 @@
 namespace gaitpad {
 namespace {
 
+// What all parts of one picture share. The renderer gets positions as floats relative to `origin_m`
+// near the camera's target, so that feet stay sharp 200 m from the start.
 struct SceneView {
   Camera camera;
   vec3 origin_m{0.0};      // whole metres on the floor
@@ -35,13 +34,11 @@ struct SceneView {
 };
 
 // Towards the only light.
-inline const vec3 kLightDirection = glm::normalize(vec3(0.42, 0.86, 0.36));
+const vec3 kLightDirection = glm::normalize(vec3(0.42, 0.86, 0.36));
 
-inline bool is_finite(const vec3& v) noexcept {
+bool is_finite(const vec3& v) noexcept {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
-
-// Draws bodies of capsules, instanced, and their shadows into a texture of the floor.
 
 struct MeshDetail {
   int segments = 36, rings = 8;  // round the axis; of each cap
@@ -53,9 +50,10 @@ struct ShadowPlace {
   double half_m = 0.0;  // 0: there are no shadows
 };
 
-class SceneBodies {
+// Draws bodies of capsules, instanced, and their shadows into a texture of the floor.
+class CapsuleScene {
  public:
-  static Result<SceneBodies> create(const MeshDetail& detail);
+  static Result<CapsuleScene> create(const MeshDetail& detail);
   // Uploads the bodies and lines of a picture; those that are not finite are left out.
   void load(const SceneContent& content, const SceneView& view);
   // Binds a frame buffer of its own and changes the viewport.
@@ -64,7 +62,7 @@ class SceneBodies {
   GLuint shadow_texture() const noexcept { return shadow_.get(); }
 
  private:
-  SceneBodies() = default;
+  CapsuleScene() = default;
   void make_mesh(const MeshDetail& detail);
   void make_shadow_target(int size_px);
   ShadowPlace shadow_place() const noexcept;
@@ -73,7 +71,7 @@ class SceneBodies {
     glm::vec4 a_radius, b_radius, across_width_a, colour_width_b;
     glm::vec2 ground;  // below a, below b
   };
-  GlProgram body_, shadow_program_;
+  GlProgram program_, shadow_program_;
   GlVertexArray vertices_;
   GlBuffer mesh_, indices_, instances_;
   GlTexture shadow_;
@@ -83,13 +81,12 @@ class SceneBodies {
   void add_rows(const SceneContent& content, const SceneView& view, double from_m, double to_m);
 
   std::vector<Instance> rows_;  // bodies near the floor, the others, lines
-  std::size_t low_bodies_ = 0, bodies_ = 0;
+  std::size_t low_capsules_ = 0, capsules_ = 0;
 };
 
 constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's lines for their shadow
 constexpr double kContact_m = 0.55;      // bodies above this height cast no contact shadow
-constexpr double kShadowStep_m =
-    2.0;  // the texture's size changes in these steps, so that shadows do not flicker
+constexpr double kShadowStep_m = 2.0;    // steps of the texture's size, against flicker
 constexpr double kLargestShadow_m = 16.0;
 
 glm::vec4 row(const vec3& v, double w) {
@@ -123,26 +120,26 @@ double floor_below(const SceneContent& content, const vec3& place_m) {
   return mean_ground_m(*content.terrain, place_m.x, place_m.z);
 }
 
-Result<SceneBodies> SceneBodies::create(const MeshDetail& detail) {
-  SceneBodies bodies;
+Result<CapsuleScene> CapsuleScene::create(const MeshDetail& detail) {
+  CapsuleScene capsules;
   auto body = GlProgram::link("bodies", shader::kBodyVertex, shader::kBodyFragment);
   if (!body) return body.error();
   auto shadow = GlProgram::link("shadows", shader::kShadowVertex, shader::kShadowFragment);
   if (!shadow) return shadow.error();
-  bodies.body_ = std::move(*body);
-  bodies.shadow_program_ = std::move(*shadow);
-  bodies.make_mesh(detail);
-  bodies.make_shadow_target(detail.shadow_px);
-  glBindFramebuffer(GL_FRAMEBUFFER, bodies.shadow_target_.get());
+  capsules.program_ = std::move(*body);
+  capsules.shadow_program_ = std::move(*shadow);
+  capsules.make_mesh(detail);
+  capsules.make_shadow_target(detail.shadow_px);
+  glBindFramebuffer(GL_FRAMEBUFFER, capsules.shadow_target_.get());
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     return Error{"OpenGL: the renderer cannot draw into a picture of two colours"};
   }
-  return bodies;
+  return capsules;
 }
 
 // Rows of latitude from one pole to the seam, then from the seam to the other pole. The triangles
 // between the two caps form the cone.
-void SceneBodies::make_mesh(const MeshDetail& detail) {
+void CapsuleScene::make_mesh(const MeshDetail& detail) {
   const int columns = detail.segments, rows = 2 * (detail.rings + 1);
   std::vector<std::array<float, 4>> spots;
   for (int r = 0; r < rows; ++r) {
@@ -182,7 +179,7 @@ void SceneBodies::make_mesh(const MeshDetail& detail) {
   glBindVertexArray(0);
 }
 
-void SceneBodies::make_shadow_target(int size_px) {
+void CapsuleScene::make_shadow_target(int size_px) {
   shadow_px_ = size_px;
   shadow_ = new_texture();
   glBindTexture(GL_TEXTURE_2D, shadow_.get());
@@ -197,9 +194,9 @@ void SceneBodies::make_shadow_target(int size_px) {
 }
 
 // Adds the bodies whose lower end is within [from_m, to_m) above the floor.
-void SceneBodies::add_rows(const SceneContent& content, const SceneView& view, double from_m,
-                           double to_m) {
-  for (const Capsule& c : content.bodies) {
+void CapsuleScene::add_rows(const SceneContent& content, const SceneView& view, double from_m,
+                            double to_m) {
+  for (const Capsule& c : content.capsules) {
     if (!is_drawable(c)) continue;
     const vec2 ground(floor_below(content, c.a_m), floor_below(content, c.b_m));
     const double low_m =
@@ -212,13 +209,13 @@ void SceneBodies::add_rows(const SceneContent& content, const SceneView& view, d
   }
 }
 
-void SceneBodies::load(const SceneContent& content, const SceneView& view) {
+void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   rows_.clear();
   add_rows(content, view, -kAnywhere, kContact_m);
-  low_bodies_ = rows_.size();
+  low_capsules_ = rows_.size();
   add_rows(content, view, kContact_m, kAnywhere);
-  bodies_ = rows_.size();
+  capsules_ = rows_.size();
   for (const SceneLine& l : content.lines) {
     if (!is_finite(l.a_m) || !is_finite(l.b_m)) continue;
     rows_.push_back({row(l.a_m - view.origin_m, kLineShadow_m),
@@ -230,7 +227,7 @@ void SceneBodies::load(const SceneContent& content, const SceneView& view) {
 }
 
 // Around all bodies and their shadows, in whole texels, so that shadows do not swim.
-ShadowPlace SceneBodies::shadow_place() const noexcept {
+ShadowPlace CapsuleScene::shadow_place() const noexcept {
   if (rows_.empty()) return {};
   vec2 low(1e9), high(-1e9);
   for (const Instance& i : rows_) {
@@ -255,7 +252,7 @@ ShadowPlace SceneBodies::shadow_place() const noexcept {
 
 // Red: the light's shadow. Green: contact shadow straight below, where the sky's light does not
 // reach the floor. The darkest value counts, so that overlapping bones do not show.
-ShadowPlace SceneBodies::draw_shadows() {
+ShadowPlace CapsuleScene::draw_shadows() {
   const ShadowPlace place = shadow_place();
   if (place.half_m <= 0.0) return place;
   glBindFramebuffer(GL_FRAMEBUFFER, shadow_target_.get());
@@ -280,42 +277,41 @@ ShadowPlace SceneBodies::draw_shadows() {
   draw(vec2(kLightDirection.x, kLightDirection.z) / kLightDirection.y, {0.02, 0.075}, 0.0,
        rows_.size());
   glColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE);
-  draw({0.0, 0.0}, {0.02, 0.55}, 6.0, low_bodies_);
+  draw({0.0, 0.0}, {0.02, 0.55}, 6.0, low_capsules_);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
   return place;
 }
 
-void SceneBodies::draw(const SceneView& view) const {
-  body_.use();
-  body_.set("to_clip", view.to_clip);
-  body_.set("eye", view.eye_m());
-  body_.set("light", kLightDirection);
-  body_.set("sky_light", view.is_light() ? vec3(0.50, 0.54, 0.60) : vec3(0.36, 0.41, 0.50));
-  body_.set("ground_light", view.is_light() ? vec3(0.30, 0.29, 0.28) : vec3(0.15, 0.13, 0.135));
-  body_.set("key_strength", view.is_light() ? 0.80 : 0.86);
-  body_.set("rim_strength", view.is_light() ? 0.10 : 0.34);
+void CapsuleScene::draw(const SceneView& view) const {
+  program_.use();
+  program_.set("to_clip", view.to_clip);
+  program_.set("eye", view.eye_m());
+  program_.set("light", kLightDirection);
+  program_.set("sky_light", view.is_light() ? vec3(0.50, 0.54, 0.60) : vec3(0.36, 0.41, 0.50));
+  program_.set("ground_light", view.is_light() ? vec3(0.30, 0.29, 0.28) : vec3(0.15, 0.13, 0.135));
+  program_.set("key_strength", view.is_light() ? 0.80 : 0.86);
+  program_.set("rim_strength", view.is_light() ? 0.10 : 0.34);
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   glFrontFace(GL_CCW);
   glBindVertexArray(vertices_.get());
   glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_SHORT, nullptr,
-                          static_cast<GLsizei>(bodies_));
+                          static_cast<GLsizei>(capsules_));
   glDisable(GL_CULL_FACE);
 }
 
 // Draws the floor with its grid and shadows, and the background that it fades into.
-
-class SceneFloor {
+class FloorScene {
  public:
-  static Result<SceneFloor> create();
+  static Result<FloorScene> create();
   // Call it after the bodies are drawn. Without shadows `place.half_m` is 0.
   void draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
             GLuint shadow_texture);
 
  private:
-  SceneFloor() = default;
+  FloorScene() = default;
   void draw_floor(const SceneContent& content, const SceneView& view,
                   const ShadowPlace& place) const;
   void draw_ground(const SceneContent& content, const SceneView& view, const ShadowPlace& place);
@@ -372,8 +368,8 @@ void set_floor(const GlProgram& program, const SceneContent& content, const Scen
   program.set("shadow_depth", has_shadows ? depth : vec2(0.0));
 }
 
-Result<SceneFloor> SceneFloor::create() {
-  SceneFloor floor;
+Result<FloorScene> FloorScene::create() {
+  FloorScene floor;
   const std::string background = shader::kBackground;
   const std::string floor_text = background + shader::kFloorColour;
   auto level = GlProgram::link("floor", shader::kFloorVertex, floor_text + shader::kFloorFragment);
@@ -400,7 +396,7 @@ Result<SceneFloor> SceneFloor::create() {
 }
 
 // A square around the focus. It is behind all bodies, because they stand on it.
-void SceneFloor::draw_floor(const SceneContent& content, const SceneView& view,
+void FloorScene::draw_floor(const SceneContent& content, const SceneView& view,
                             const ShadowPlace& place) const {
   floor_.use();
   set_floor(floor_, content, view, place);
@@ -408,7 +404,7 @@ void SceneFloor::draw_floor(const SceneContent& content, const SceneView& view,
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-void SceneFloor::make_ground(const std::shared_ptr<const Terrain>& terrain, const vec2& centre_m,
+void FloorScene::make_ground(const std::shared_ptr<const Terrain>& terrain, const vec2& centre_m,
                              double half_m) {
   if (terrain == terrain_ && centre_m == mesh_centre_m_ && half_m == mesh_half_m_) return;
   const double step_m = kMeshStep_m * std::max(1.0, half_m / (kFadesTo_m + kMeshMoves_m));
@@ -424,7 +420,7 @@ void SceneFloor::make_ground(const std::shared_ptr<const Terrain>& terrain, cons
   mesh_half_m_ = half_m;
 }
 
-void SceneFloor::draw_ground(const SceneContent& content, const SceneView& view,
+void FloorScene::draw_ground(const SceneContent& content, const SceneView& view,
                              const ShadowPlace& place) {
   if (!is_finite(content.focus_m)) return;
   const vec2 focus_m(content.focus_m.x, content.focus_m.z);
@@ -440,7 +436,7 @@ void SceneFloor::draw_ground(const SceneContent& content, const SceneView& view,
   glDrawElements(GL_TRIANGLES, mesh_count_, GL_UNSIGNED_INT, nullptr);
 }
 
-void SceneFloor::draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
+void FloorScene::draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
                       GLuint shadow_texture) {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, shadow_texture);
@@ -458,14 +454,13 @@ void SceneFloor::draw(const SceneContent& content, const SceneView& view, const 
 
 // Draws lines with round ends, dots and trails: flat strokes of constant width in pixels with
 // smooth edges, hidden by bodies in front of them.
-
-class SceneStrokes {
+class StrokeScene {
  public:
-  static Result<SceneStrokes> create();
+  static Result<StrokeScene> create();
   void draw(const SceneContent& content, const SceneView& view);
 
  private:
-  SceneStrokes() = default;
+  StrokeScene() = default;
   void draw_trails(const std::vector<Trail>& trails, const SceneView& view);
   void draw_lines(const SceneContent& content, const SceneView& view);
 
@@ -522,8 +517,8 @@ vec2 direction(const vec2& from, const vec2& to, const vec2& otherwise) {
   return length > 1e-3 ? d / length : otherwise;
 }
 
-Result<SceneStrokes> SceneStrokes::create() {
-  SceneStrokes strokes;
+Result<StrokeScene> StrokeScene::create() {
+  StrokeScene strokes;
   auto line = GlProgram::link("lines", shader::kLineVertex, shader::kLineFragment);
   if (!line) return line.error();
   auto trail = GlProgram::link("trails", shader::kTrailVertex, shader::kTrailFragment);
@@ -546,7 +541,7 @@ Result<SceneStrokes> SceneStrokes::create() {
   return strokes;
 }
 
-void SceneStrokes::draw(const SceneContent& content, const SceneView& view) {
+void StrokeScene::draw(const SceneContent& content, const SceneView& view) {
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
@@ -558,7 +553,7 @@ void SceneStrokes::draw(const SceneContent& content, const SceneView& view) {
 
 // A trail fades by length, not by time, so that a standing foot does not cut it in two. The
 // triangles share their edges without overlap, so that corners are not darker than the rest.
-void SceneStrokes::add_ribbon(const Trail& trail, const SceneView& view) {
+void StrokeScene::add_ribbon(const Trail& trail, const SceneView& view) {
   const std::size_t count = trail.points_m.size();
   const glm::vec3 colour(trail.colour.red, trail.colour.green, trail.colour.blue);
   const double whole_m = std::max(length_m(trail), 1e-6);
@@ -596,7 +591,7 @@ void SceneStrokes::add_ribbon(const Trail& trail, const SceneView& view) {
   }
 }
 
-void SceneStrokes::draw_trails(const std::vector<Trail>& trails, const SceneView& view) {
+void StrokeScene::draw_trails(const std::vector<Trail>& trails, const SceneView& view) {
   ribbon_.clear();
   for (const Trail& trail : trails) add_ribbon(trail, view);
   if (ribbon_.empty()) return;
@@ -606,7 +601,7 @@ void SceneStrokes::draw_trails(const std::vector<Trail>& trails, const SceneView
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(ribbon_.size()));
 }
 
-void SceneStrokes::draw_lines(const SceneContent& content, const SceneView& view) {
+void StrokeScene::draw_lines(const SceneContent& content, const SceneView& view) {
   strokes_.clear();
   const auto add = [&](const vec3& a_m, const vec3& b_m, double radius_px, const Colour& c) {
     if (!is_finite(a_m) || !is_finite(b_m)) return;
@@ -703,12 +698,12 @@ SceneView view_of(const Camera& camera, const SceneContent& content, const Theme
 }  // namespace
 
 struct Scene::Impl {
-  Impl(SceneBodies&& b, SceneFloor&& f, SceneStrokes&& s)
-      : bodies(std::move(b)), floor(std::move(f)), strokes(std::move(s)) {}
+  Impl(CapsuleScene&& b, FloorScene&& f, StrokeScene&& s)
+      : capsules(std::move(b)), floor(std::move(f)), strokes(std::move(s)) {}
 
-  SceneBodies bodies;
-  SceneFloor floor;
-  SceneStrokes strokes;
+  CapsuleScene capsules;
+  FloorScene floor;
+  StrokeScene strokes;
   Target target, resolved;
   std::string renderer;
   int samples = 1;
@@ -727,14 +722,15 @@ Result<std::unique_ptr<Scene>> Scene::create(Quality quality) {
   const bool is_fine = quality == Quality::high || (quality == Quality::automatic && !is_software);
   GLint most = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
-  auto bodies = SceneBodies::create(is_fine ? MeshDetail{36, 8, 1024} : MeshDetail{16, 4, 384});
-  if (!bodies) return bodies.error();
-  auto strokes = SceneStrokes::create();
+  auto capsules = CapsuleScene::create(is_fine ? MeshDetail{36, 8, 1024} : MeshDetail{16, 4, 384});
+  if (!capsules) return capsules.error();
+  auto strokes = StrokeScene::create();
   if (!strokes) return strokes.error();
-  auto floor = SceneFloor::create();
+  auto floor = FloorScene::create();
   if (!floor) return floor.error();
   std::unique_ptr<Scene> scene(new Scene);
-  scene->impl_ = std::make_unique<Impl>(std::move(*bodies), std::move(*floor), std::move(*strokes));
+  scene->impl_ =
+      std::make_unique<Impl>(std::move(*capsules), std::move(*floor), std::move(*strokes));
   scene->impl_->samples = is_fine ? std::clamp(most, 1, kSamples) : 1;
   scene->impl_->is_software = is_software;
   const int version = epoxy_gl_version();
@@ -759,16 +755,16 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
   if (!s.target.resize(width, height, s.samples)) s.samples = 1;
   if (s.target.resize(width, height, s.samples)) {
     const SceneView view = view_of(camera, content, theme, viewport, scale);
-    s.bodies.load(content, view);
-    const ShadowPlace shadow = content.has_shadows ? s.bodies.draw_shadows() : ShadowPlace{};
+    s.capsules.load(content, view);
+    const ShadowPlace shadow = content.has_shadows ? s.capsules.draw_shadows() : ShadowPlace{};
     glBindFramebuffer(GL_FRAMEBUFFER, s.target.name());
     glViewport(0, 0, width, height);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_TRUE);
     glClear(GL_DEPTH_BUFFER_BIT);
-    s.bodies.draw(view);
-    s.floor.draw(content, view, shadow, s.bodies.shadow_texture());
+    s.capsules.draw(view);
+    s.floor.draw(content, view, shadow, s.capsules.shadow_texture());
     s.strokes.draw(content, view);
     glDisable(GL_DEPTH_TEST);
     GLuint ready = s.target.name();

@@ -33,7 +33,7 @@ struct Trail {  // oldest first; fades towards the old end
   Colour colour;
 };
 struct SceneContent {
-  std::vector<Capsule> bodies;  // these cast shadows
+  std::vector<Capsule> capsules;  // these cast shadows
   std::vector<SceneLine> lines;
   std::vector<vec3> joints_m;  // dots of the stick figures
   Colour joint_colour;

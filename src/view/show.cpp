@@ -9,6 +9,7 @@
 namespace gaitpad {
 namespace {
 
+// A live session, which ticks on its own thread or, for pictures, by hand.
 class LiveShow final : public Show {
  public:
   explicit LiveShow(std::unique_ptr<LiveSession> session)
@@ -85,6 +86,7 @@ class LiveShow final : public Show {
 constexpr int kTicksAtOnce = 48;
 constexpr std::int64_t kComputing_ns = 12'000'000;  // per frame, so that drawing stays smooth
 
+// A trace on a time line, computed as far as it is looked at.
 class PlaybackShow final : public Show {
  public:
   PlaybackShow(const SessionSpec& options, std::unique_ptr<Playback> playback)
@@ -167,6 +169,7 @@ class PlaybackShow final : public Show {
   UiTimeline timeline_;
 };
 
+// The last state of a show that has ended.
 class StillShow final : public Show {
  public:
   explicit StillShow(Show& show)

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "draw/theme.h"
@@ -19,6 +20,8 @@
 #include "view/scene.h"
 
 namespace gaitpad {
+
+struct Fonts;  // view/gui.h
 
 enum class Panel : std::uint8_t { pad, control, style, graphs, solver, loop };
 inline constexpr int kPanels = 6;
@@ -58,6 +61,17 @@ struct UiState {
   bool is_help_open = false;
   UiMemory memory;
 };
+
+// The parts of the scene that can be hidden, by the names that options and the layout file use.
+struct ScenePart {
+  std::string_view name;
+  bool UiState::*is_shown;
+};
+inline constexpr ScenePart kSceneParts[] = {{"trails", &UiState::has_trails},
+                                            {"grid", &UiState::has_grid},
+                                            {"shadows", &UiState::has_shadows},
+                                            {"source", &UiState::has_source},
+                                            {"names", &UiState::has_names}};
 
 // The time line of a playback.
 struct UiTimeline {

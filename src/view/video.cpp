@@ -161,7 +161,7 @@ Error VideoWriter::failure() {
 }
 
 std::optional<Error> VideoWriter::add(const Pixels& pixels) {
-  if (link_ < 0) return problem(path_, "it has ended");
+  if (link_ < 0) return problem(path_, "the video is finished already");
   if (pixels.width != width_ || pixels.height != height_ ||
       pixels.rgba.size() != std::size_t{4} * width_ * height_) {
     return problem(path_, fmt::format("a picture of {} x {} pixels in a video of {} x {}",
@@ -179,7 +179,7 @@ std::optional<Error> VideoWriter::add(const Pixels& pixels) {
 }
 
 std::optional<Error> VideoWriter::finish() {
-  if (link_ < 0) return problem(path_, "it has ended");
+  if (link_ < 0) return problem(path_, "the video is finished already");
   if (!has_ended_well()) return failure();
   if (std::rename(part_.c_str(), path_.c_str()) != 0) return problem(path_, std::strerror(errno));
   part_.clear();

@@ -38,6 +38,11 @@
 namespace gaitpad {
 namespace {
 
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kWarmFrames = 5;
+constexpr double kLongest_s = 0.25;  // after a suspended machine wakes up
+
+// When frames begin, how many there are in a second, and how many reports a pad sends meanwhile.
 class FrameClock {
  public:
   // Least time between two frames; 0: no limit.
@@ -64,6 +69,53 @@ class FrameClock {
   std::uint64_t counted_ = 0;
   double rate_hz_ = 0.0;
 };
+
+double FrameClock::begin_frame(std::int64_t time_ns) noexcept {
+  passed_s_ = now_ns_ == 0 ? 0.0 : static_cast<double>(time_ns - now_ns_) / 1e9;
+  passed_s_ = std::clamp(passed_s_, 0.0, kLongest_s);
+  now_ns_ = time_ns;
+  if (frames_++ == kWarmFrames) warm_ns_ = time_ns;
+  ++shown_frames_;
+  if (shown_since_ns_ == 0) shown_since_ns_ = time_ns;
+  if (const std::int64_t shown_ns = time_ns - shown_since_ns_; shown_ns > kSecond_ns / 2) {
+    shown_ = static_cast<double>(shown_frames_) * 1e9 / static_cast<double>(shown_ns);
+    shown_since_ns_ = time_ns;
+    shown_frames_ = 0;
+  }
+  return passed_s_;
+}
+
+void FrameClock::wait_for_next() noexcept {
+  if (least_s_ <= 0.0) return;
+  const auto least_ns = static_cast<std::int64_t>(least_s_ * 1e9);
+  // Counted from the planned time, so that the frame after a late one can catch up.
+  due_ns_ = std::max(due_ns_ + least_ns, now_ns_);
+  if (due_ns_ <= gaitpad::now_ns()) return;
+  const timespec due = {static_cast<time_t>(due_ns_ / kSecond_ns),
+                        static_cast<long>(due_ns_ % kSecond_ns)};
+  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
+  }
+}
+
+double FrameClock::mean_frames_per_second() const noexcept {
+  if (warm_ns_ == 0 || now_ns_ <= warm_ns_) return 0.0;
+  return static_cast<double>(frames_ - 1 - kWarmFrames) * 1e9 /
+         static_cast<double>(now_ns_ - warm_ns_);
+}
+
+double FrameClock::rate_hz(std::uint64_t count) noexcept {
+  if (counted_ns_ == 0 || count < counted_) {  // a new session counts from 0
+    counted_ns_ = now_ns_;
+    counted_ = count;
+    rate_hz_ = 0.0;
+  }
+  if (const std::int64_t span_ns = now_ns_ - counted_ns_; span_ns >= kSecond_ns) {
+    rate_hz_ = static_cast<double>(count - counted_) * 1e9 / static_cast<double>(span_ns);
+    counted_ns_ = now_ns_;
+    counted_ = count;
+  }
+  return rate_hz_;
+}
 
 // Errors and remarks for the person, each shown for a while, newest last.
 class Messages {
@@ -92,6 +144,14 @@ class Messages {
   };
   std::deque<Message> shown_;
 };
+
+constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves processor time to the session
+constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limit the rate
+constexpr double kUnseenFrame_s = 0.1;           // minimized
+constexpr double kOrbitMouse_rad = 0.006;        // per pixel at scale 1
+constexpr double kOrbitStick_rad_s = 1.8;
+constexpr double kStickRest = 0.02;  // of the right stick; less does not move the camera
+constexpr std::int64_t kMessage_ns = 15'000'000'000;
 
 // Runs the window: opens it, draws frame after frame, does what the person asks for, and closes it.
 class WindowLoop {
@@ -189,65 +249,6 @@ class WindowLoop {
   bool wants_screenshot_ = false, is_quitting_ = false, is_end_told_ = false;
 };
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kWarmFrames = 5;
-constexpr double kLongest_s = 0.25;  // after a suspended machine wakes up
-
-double FrameClock::begin_frame(std::int64_t time_ns) noexcept {
-  passed_s_ = now_ns_ == 0 ? 0.0 : static_cast<double>(time_ns - now_ns_) / 1e9;
-  passed_s_ = std::clamp(passed_s_, 0.0, kLongest_s);
-  now_ns_ = time_ns;
-  if (frames_++ == kWarmFrames) warm_ns_ = time_ns;
-  ++shown_frames_;
-  if (shown_since_ns_ == 0) shown_since_ns_ = time_ns;
-  if (const std::int64_t shown_ns = time_ns - shown_since_ns_; shown_ns > kSecond_ns / 2) {
-    shown_ = static_cast<double>(shown_frames_) * 1e9 / static_cast<double>(shown_ns);
-    shown_since_ns_ = time_ns;
-    shown_frames_ = 0;
-  }
-  return passed_s_;
-}
-
-void FrameClock::wait_for_next() noexcept {
-  if (least_s_ <= 0.0) return;
-  const auto least_ns = static_cast<std::int64_t>(least_s_ * 1e9);
-  // Counted from the planned time, so that the frame after a late one can catch up.
-  due_ns_ = std::max(due_ns_ + least_ns, now_ns_);
-  if (due_ns_ <= gaitpad::now_ns()) return;
-  const timespec due = {static_cast<time_t>(due_ns_ / kSecond_ns),
-                        static_cast<long>(due_ns_ % kSecond_ns)};
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
-  }
-}
-
-double FrameClock::mean_frames_per_second() const noexcept {
-  if (warm_ns_ == 0 || now_ns_ <= warm_ns_) return 0.0;
-  return static_cast<double>(frames_ - 1 - kWarmFrames) * 1e9 /
-         static_cast<double>(now_ns_ - warm_ns_);
-}
-
-double FrameClock::rate_hz(std::uint64_t count) noexcept {
-  if (counted_ns_ == 0 || count < counted_) {  // a new session counts from 0
-    counted_ns_ = now_ns_;
-    counted_ = count;
-    rate_hz_ = 0.0;
-  }
-  if (const std::int64_t span_ns = now_ns_ - counted_ns_; span_ns >= kSecond_ns) {
-    rate_hz_ = static_cast<double>(count - counted_) * 1e9 / static_cast<double>(span_ns);
-    counted_ns_ = now_ns_;
-    counted_ = count;
-  }
-  return rate_hz_;
-}
-
-constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves processor time to the session
-constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limit the rate
-constexpr double kUnseenFrame_s = 0.1;           // minimized
-constexpr double kOrbitMouse_rad = 0.006;        // per pixel at scale 1
-constexpr double kOrbitStick_rad_s = 1.8;
-constexpr double kStickRest = 0.02;  // of the right stick; less does not move the camera
-constexpr std::int64_t kMessage_ns = 15'000'000'000;
-
 WindowLoop::WindowLoop(const WindowOptions& options)
     : options_(options), browser_(options.recent_file) {
   // Without a pad the keyboard steers. For pictures the session's time is that of the frames.
@@ -282,10 +283,9 @@ void WindowLoop::apply_layout(const UiState& layout) {
     for (const Panel panel : options_.panels)
       state_.is_open[static_cast<std::size_t>(panel)] = true;
   }
-  bool* const shown[] = {&state_.has_trails, &state_.has_grid, &state_.has_shadows,
-                         &state_.has_source, &state_.has_names};
-  for (std::size_t i = 0; i < std::size(kScenePartNames); ++i)
-    if (std::ranges::count(options_.hidden, kScenePartNames[i]) > 0) *shown[i] = false;
+  for (const ScenePart& part : kSceneParts) {
+    if (std::ranges::count(options_.hidden, part.name) > 0) state_.*part.is_shown = false;
+  }
 }
 
 std::optional<Error> WindowLoop::open() {
@@ -346,7 +346,7 @@ bool WindowLoop::is_ended() {
 }
 
 void WindowLoop::fail_without_display() {
-  if (!failure_) failure_ = Error{"the display has gone: the window ends, the session with it"};
+  if (!failure_) failure_ = Error{"the display is lost: the window and its session end"};
 }
 
 void WindowLoop::call_script() {
@@ -417,7 +417,7 @@ void WindowLoop::update_show() {
   }
   show_remarks();
   if (!show_->has_ended() || std::exchange(is_end_told_, true) || makes_pictures()) return;
-  show_message("the recording has come to its end; the keys walk on");
+  show_message("the recording has ended; the keyboard steers now");
 }
 
 void WindowLoop::remember_layout() {
@@ -426,11 +426,9 @@ void WindowLoop::remember_layout() {
   if (options_.theme == state_.theme) state_.theme = remembered_.theme;
   if (options_.are_panels_given) state_.is_open = remembered_.is_open;
   if (!options_.hidden.empty()) {
-    state_.has_trails = remembered_.has_trails;
-    state_.has_grid = remembered_.has_grid;
-    state_.has_shadows = remembered_.has_shadows;
-    state_.has_source = remembered_.has_source;
-    state_.has_names = remembered_.has_names;
+    for (const ScenePart& part : kSceneParts) {
+      state_.*part.is_shown = remembered_.*part.is_shown;
+    }
   }
   if (auto problem = save_layout(options_.layout_file, state_))
     result_.remarks.push_back(problem->message);
@@ -724,8 +722,7 @@ void WindowLoop::reset_session() {
 
 void WindowLoop::choose_style(const std::string& name) {
   if (!show_->is_live()) {
-    show_message(
-        "a recording walks in its own styles; Escape goes back to where they can be changed");
+    show_message("a playback keeps its own styles; Escape goes back to the live session");
   } else if (state_.walker >= 0) {
     show_->command(fmt::format("style {} {}", state_.walker + 1, name));
   } else {
@@ -768,7 +765,7 @@ void WindowLoop::save_walkers_style(const std::string& name) {
   const auto& folders = show_->options().config_folders;
   const auto path = save_style(folders, name, show_->frame().walkers[walker].style);
   if (path) show_->add_config_folder(user_config_folder());  // the folder may be new
-  show_message(path ? fmt::format("kept as {}: the next session knows it", *path)
+  show_message(path ? fmt::format("saved as {}; the next session can use it", *path)
                     : path.error().message);
 }
 
@@ -835,8 +832,8 @@ bool WindowLoop::switch_to(const SessionSpec& next) {
     end_show();
     return restart((*start)(), otherwise);
   }
-  auto playback =
-      Show::open(next);  // needs no pad, so the running session goes on until it is open
+  // A playback needs no pad, so the running session goes on until it is open.
+  auto playback = Show::open(next);
   if (!playback) {
     show_message(playback.error().message);
     return false;
@@ -861,13 +858,12 @@ bool WindowLoop::restart(Result<std::unique_ptr<Show>> show, const SessionSpec& 
 }
 
 void WindowLoop::open_file(const std::string& path) {
-  if (calibration_) return show_message("the calibration is not done: open files afterwards");
+  if (calibration_) return show_message("finish the calibration before opening a file");
   const auto kind = kind_of_file(path);
   if (!kind) return show_message(kind.error().message);
   const int count = static_cast<int>(show_->cast().members.size());
   SessionSpec next = with_file(show_->options(), path, *kind, state_.walker, count);
-  if (makes_pictures())
-    return show_message("pictures are made of one session: open files without them");
+  if (makes_pictures()) return show_message("no file can be opened while pictures are made");
   if (!switch_to(next)) return;
   browser_.remember(path);
   const char* back = live_before_ && *kind == FileKind::recording ? "; Escape goes back" : "";
@@ -878,9 +874,10 @@ void WindowLoop::open_file(const std::string& path) {
 // elsewhere.
 void WindowLoop::choose_next_terrain() {
   if (calibration_) return;
-  if (!show_->is_live()) return show_message("a recording is playing: it stays on its ground");
+  if (!show_->is_live()) return show_message("a playback keeps its own ground");
   if (makes_pictures())
-    return show_message("pictures are made of one session: --terrain chooses the ground");
+    return show_message(
+        "the ground cannot change while pictures are made; choose it with --terrain");
   SessionSpec next = show_->options();
   std::string& terrain = next.walk.terrain;
   const auto files = config_files(next.config_folders, "terrain");
@@ -894,9 +891,8 @@ void WindowLoop::choose_next_terrain() {
 }
 
 void WindowLoop::toggle_recording() {
-  if (!show_->is_live()) return show_message("a recording is playing: there is nothing to record");
-  if (makes_pictures())
-    return show_message("pictures are made of one session: record without them");
+  if (!show_->is_live()) return show_message("a playback runs: there is nothing to record");
+  if (makes_pictures()) return show_message("no recording can be started while pictures are made");
   SessionSpec next = show_->options();
   const bool is_recorded = !next.live.record.empty();
   next.live.record = is_recorded ? "" : new_file(".hid");
@@ -908,7 +904,7 @@ void WindowLoop::toggle_recording() {
 void WindowLoop::begin_calibration() {
   if (calibration_) return;
   if (!show_->is_live() || makes_pictures())
-    return show_message("a recording is playing: calibrate in a live session");
+    return show_message("sticks can be calibrated in a live session only");
   const SessionSpec before = show_->options();
   end_show();
   auto view = CalibrationView::start(

@@ -1,6 +1,5 @@
 // The window: shows a live session or a playback and lets a person steer and inspect it.
 #pragma once
-#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -29,10 +28,6 @@ struct WindowGlance {
   std::vector<std::string> messages;
 };
 
-// Parts of the scene that can be hidden.
-inline constexpr std::array<std::string_view, 5> kScenePartNames = {"trails", "grid", "shadows",
-                                                                    "source", "names"};
-
 struct WindowOptions {
   SessionSpec session;             // live, or a playback if session.replay.trace is not empty
   std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
@@ -44,7 +39,7 @@ struct WindowOptions {
   std::optional<ThemeName> theme;  // else the remembered theme
   std::vector<Panel> panels;       // open panels, if are_panels_given
   bool are_panels_given = false;
-  std::vector<std::string> hidden;  // of kScenePartNames
+  std::vector<std::string> hidden;  // names of kSceneParts
   double scale = 0.0;               // 0: the display's
   int width = 1280, height = 720;   // at scale 1
   bool is_hidden = false;           // draws without a display (SDL's offscreen driver)

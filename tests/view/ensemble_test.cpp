@@ -92,7 +92,7 @@ TEST_F(Walking, WhatIsSwitchedOffIsNotThere) {
   fill();
   EXPECT_TRUE(content_.trails.empty());
   EXPECT_TRUE(content_.lines.empty());
-  EXPECT_FALSE(content_.bodies.empty());
+  EXPECT_FALSE(content_.capsules.empty());
   const Viewport viewport{0, 0, 800, 600};
   EXPECT_TRUE(
       ensemble_->labels(*frame_, cast_, Camera(), viewport, state_, theme_of(ThemeName::dark))
@@ -126,7 +126,7 @@ TEST_F(Walking, FromItsDistanceTheCameraSeesEverybodyWithTheirNames) {
       EXPECT_EQ(labels[0].text, "even");
       EXPECT_EQ(labels[3].text, "limp left");
       EXPECT_EQ(labels[4].text, "source");
-      for (const Capsule& bone : content_.bodies) {
+      for (const Capsule& bone : content_.capsules) {
         const vec3 place = projected(camera, bone.a_m, viewport.width, viewport.height);
         EXPECT_GT(place.z, 0.0);
         EXPECT_GT(place.x, 0.0);

@@ -8,6 +8,7 @@
 
 #include "gaitpad/control.h"
 #include "gaitpad/motion_file.h"
+#include "gaitpad/walk.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
 
@@ -44,7 +45,7 @@ constexpr double kTouch_m = 1e-5;
 std::vector<Capsule> posed(const Mannequin& mannequin, const Pose& pose) {
   SceneContent content;
   add_mannequin(mannequin, pose, rgb(0x56b4e9), content);
-  return content.bodies;
+  return content.capsules;
 }
 
 // Walks for two seconds and hands every tenth pose on.
@@ -246,7 +247,7 @@ TEST(StickFigure, ItsAnklesAreWhereTheSourceHasThem) {
       const vec3 expected = turned + place_m;
       EXPECT_LT(nearest_m(content.joints_m, expected), 3e-3) << phase;
     }
-    EXPECT_EQ(content.bodies.size(), 0u);
+    EXPECT_EQ(content.capsules.size(), 0u);
     EXPECT_GT(content.lines.size(), 12u);
   }
 }

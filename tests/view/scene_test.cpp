@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "gaitpad/control.h"
+#include "gaitpad/walk.h"
 #include "tests/value_of.h"
 #include "view/gl_program.h"
 #include "view/mannequin.h"
@@ -119,7 +120,7 @@ TEST_F(SceneTest, ACapsulesPixelsAreWhereItsBallsAreProjected) {
   const Pixels empty = drawn(content_);
   const vec3 a = camera_.target_m + vec3(-0.4, 0.2, 0.0),
              b = camera_.target_m + vec3(0.5, 0.7, 0.2);
-  content_.bodies = {bone(a, b, 0.10, 0.05)};
+  content_.capsules = {bone(a, b, 0.10, 0.05)};
   const Extent seen = difference(empty, drawn(content_));
   const double half_height = kHeight / 2.0 / std::tan(camera_.field_of_view_rad / 2.0);
   const double ra = half_height * 0.10 / place(a).z, rb = half_height * 0.05 / place(b).z;
@@ -141,7 +142,7 @@ TEST_F(SceneTest, UnevenGroundIsSeenAndHides) {
   content_.terrain = terrain;
   const Pixels steps = drawn(content_);
   EXPECT_GT(difference(level, steps).pixels, kWidth * kHeight / 10);
-  content_.bodies = {ball};
+  content_.capsules = {ball};
   EXPECT_LT(difference(steps, drawn(content_)).pixels, 20);
   content_.terrain = nullptr;
   EXPECT_GT(difference(level, drawn(content_)).pixels, 100);
@@ -152,10 +153,10 @@ TEST_F(SceneTest, AShadowFallsOnTheGroundThatIsThere) {
   content_.has_shadows = true;
   const auto shadow = [&](double height_m) {
     camera_.target_m.y = height_m + 0.8;
-    content_.bodies.clear();
+    content_.capsules.clear();
     const Pixels empty = drawn(content_);
     const vec3 at(0.0, height_m + 0.05, 0.0);
-    content_.bodies = {bone(at, at, 0.05)};
+    content_.capsules = {bone(at, at, 0.05)};
     return difference(empty, drawn(content_));
   };
   const Extent level = shadow(0.0);
@@ -172,9 +173,9 @@ TEST_F(SceneTest, AShadowFallsOnTheGroundThatIsThere) {
 TEST_F(SceneTest, ABallInABallIsTheLargerOne) {
   const Pixels empty = drawn(content_);
   const vec3 at = camera_.target_m;
-  content_.bodies = {bone(at, at, 0.2)};
+  content_.capsules = {bone(at, at, 0.2)};
   const Extent ball = difference(empty, drawn(content_));
-  content_.bodies = {bone(at, at + vec3(0.05, 0.0, 0.0), 0.2, 0.04)};
+  content_.capsules = {bone(at, at + vec3(0.05, 0.0, 0.0), 0.2, 0.04)};
   const Extent both = difference(empty, drawn(content_));
   EXPECT_NEAR(both.pixels, ball.pixels, 0.1 * ball.pixels);  // meshes that are turned
   EXPECT_NEAR(ball.right - ball.left, ball.bottom - ball.top, 2);
@@ -186,9 +187,9 @@ TEST_F(SceneTest, AWideCapsuleIsWideAcrossOnly) {
   const vec3 a = camera_.target_m, b = a + vec3(0.0, 0.6, 0.0);
   const auto width_from = [&](double yaw_rad) {
     camera_.yaw_rad = yaw_rad;
-    content_.bodies.clear();
+    content_.capsules.clear();
     const Pixels before = drawn(content_);
-    content_.bodies = {{a, b, 0.1, 0.1, kLeft, 1.8, 1.8, kRed}};
+    content_.capsules = {{a, b, 0.1, 0.1, kLeft, 1.8, 1.8, kRed}};
     const Extent e = difference(before, drawn(content_));
     return e.right - e.left + 1;
   };
@@ -203,7 +204,7 @@ TEST_F(SceneTest, TheNearerCapsuleHidesTheOther) {
   near.a_m.z = near.b_m.z = 1.0;
   far.colour = kBlue;
   for (const bool is_near_first : {true, false}) {
-    content_.bodies = {is_near_first ? near : far, is_near_first ? far : near};
+    content_.capsules = {is_near_first ? near : far, is_near_first ? far : near};
     const Pixels pixels = drawn(content_);
     const vec3 middle = place(near.a_m);
     const std::uint8_t* c =
@@ -215,7 +216,7 @@ TEST_F(SceneTest, TheNearerCapsuleHidesTheOther) {
 TEST_F(SceneTest, AShadowDarkensTheFloorAwayFromTheLight) {
   look_down();
   content_.has_grid = false;
-  content_.bodies = {bone({0.0, 0.05, 0.0}, {0.0, 0.9, 0.0}, 0.05)};
+  content_.capsules = {bone({0.0, 0.05, 0.0}, {0.0, 0.9, 0.0}, 0.05)};
   const Pixels without = drawn(content_);
   content_.has_shadows = true;
   const Pixels with = drawn(content_);
@@ -232,7 +233,7 @@ TEST_F(SceneTest, AFootDarkensTheFloorRoundItAndALiftedFootDoesNot) {
   content_.has_grid = false;
   const auto darker_beside = [&](double height_m) {
     const vec3 heel(-0.1, height_m, 0.0), toe(0.1, height_m, 0.0);
-    content_.bodies = {bone(heel, toe, 0.03)};
+    content_.capsules = {bone(heel, toe, 0.03)};
     content_.has_shadows = false;
     const Pixels without = drawn(content_);
     content_.has_shadows = true;
@@ -259,7 +260,7 @@ TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
   Pose pose;
   WalkState state = standing(*body.model, vec3(0.0), pose);
   for (int frame = 0; frame < 8; ++frame) {
-    content_.bodies.clear();
+    content_.capsules.clear();
     camera_.target_m.z = content_.focus_m.z = pose.root_m.z;
     camera_.target_m.x = content_.focus_m.x = pose.root_m.x;
     const Pixels without = drawn(content_);
@@ -312,7 +313,7 @@ TEST_F(SceneTest, WhatIsNotFiniteIsLeftOut) {
   const Pixels without = drawn(content_);
   content_.has_shadows = true;
   const vec3 nowhere(kNan, 0.0, 0.0), at = camera_.target_m;
-  content_.bodies = {bone(nowhere, at, 0.1), bone(at, at, kNan, 0.1)};
+  content_.capsules = {bone(nowhere, at, 0.1), bone(at, at, kNan, 0.1)};
   content_.lines = {{at, nowhere, kRed, 3.0}};
   content_.joints_m = {nowhere};
   content_.trails = {{{nowhere, nowhere, at}, kRed}};
@@ -322,7 +323,7 @@ TEST_F(SceneTest, WhatIsNotFiniteIsLeftOut) {
 TEST_F(SceneTest, AnotherSceneDrawsTheSameInAnotherContext) {
   content_.has_shadows = content_.has_axes = true;
   const vec3 at = camera_.target_m;
-  content_.bodies = {bone(at, at - kUp * 0.7, 0.1)};
+  content_.capsules = {bone(at, at - kUp * 0.7, 0.1)};
   const Pixels first = drawn(content_);
   scene_.reset();
   surface_.reset();
@@ -336,8 +337,8 @@ TEST_F(SceneTest, HighQualitySmoothsEdges) {
   camera_.yaw_rad = camera_.pitch_rad = 0.0;
   content_.has_grid = false;
   const vec3 at = camera_.target_m;
-  content_.bodies = {{at - vec3(2.0, 0.0, 0.0), at + vec3(2.0, 0.3, 0.0), 0.1, 0.1, vec3(0.0), 1.0,
-                      1.0, rgb(0xffffff)}};
+  content_.capsules = {{at - vec3(2.0, 0.0, 0.0), at + vec3(2.0, 0.3, 0.0), 0.1, 0.1, vec3(0.0),
+                        1.0, 1.0, rgb(0xffffff)}};
   const auto shades = [&] {  // of the upper edge, where it passes a row of pixels
     const Pixels pixels = drawn(content_);
     int between = 0;
@@ -437,7 +438,7 @@ TEST_F(SceneTest, ALineThatPassesTheEyeIsCutThere) {
 TEST_F(SceneTest, BodiesHideLinesBehindThem) {
   camera_.yaw_rad = 0.0;
   const vec3 at = camera_.target_m;
-  content_.bodies = {bone(at, at, 0.3)};
+  content_.capsules = {bone(at, at, 0.3)};
   const Pixels without = drawn(content_);
   content_.lines = {{at - vec3(1.0, 0.0, 1.0), at + vec3(1.0, 0.0, -1.0), rgb(0xffffff), 4.0}};
   const Pixels with = drawn(content_);

@@ -10,6 +10,7 @@
 
 #include "gaitpad/session_spec.h"
 #include "tests/value_of.h"
+#include "view/gui.h"
 #include "view/ui.h"
 
 namespace gaitpad {

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/files.h"
+#include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"

@@ -34,6 +34,12 @@ std::string known_panel(const std::string& name) {
   return fmt::format("\"{}\" is none of {}, none", name, fmt::join(kPanelNames, ", "));
 }
 
+std::vector<std::string> scene_part_names() {
+  std::vector<std::string> names;
+  for (const ScenePart& part : kSceneParts) names.emplace_back(part.name);
+  return names;
+}
+
 }  // namespace
 
 std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments& arguments) {
@@ -61,11 +67,10 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
       command
           .add_option(
               "--hide", arguments.hidden,
-              fmt::format("leave these out of the scene: {}", fmt::join(kScenePartNames, ",")))
+              fmt::format("leave these out of the scene: {}", fmt::join(scene_part_names(), ",")))
           ->delimiter(',')
           ->allow_extra_args(false)
-          ->check(CLI::IsMember(
-              std::vector<std::string>(kScenePartNames.begin(), kScenePartNames.end()))),
+          ->check(CLI::IsMember(scene_part_names())),
   };
 }
 

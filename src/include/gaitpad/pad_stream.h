@@ -19,8 +19,6 @@
 
 namespace gaitpad {
 
-class KeyboardStick;  // keyboard.h
-
 // Which pad a user asks for; empty: any.
 struct PadWish {
   std::string pad;  // a path (node or recording), a `vid:pid`, a unique id, a unique part of a name

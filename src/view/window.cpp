@@ -417,7 +417,7 @@ void WindowLoop::update_show() {
   }
   show_remarks();
   if (!show_->has_ended() || std::exchange(is_end_told_, true) || makes_pictures()) return;
-  show_message("the recording has ended; the keyboard steers now");
+  show_message("the recording is over; the keyboard steers now");
 }
 
 void WindowLoop::remember_layout() {

@@ -198,7 +198,7 @@ TEST_F(StickPictureFile, AnUnwritableFileIsOneSentenceAndTheOldOneStays) {
   const StickPicture picture = made.picture();
   const auto error = write_stick_picture(path, "another heading", {&picture, 1});
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->message, path + ": cannot be written: Is a directory");
+  EXPECT_EQ(error->message, path + ": cannot be written: File exists");
   EXPECT_EQ(fs::file_size(path), old);
   fs::remove(taken);
 

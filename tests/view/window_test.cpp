@@ -789,7 +789,7 @@ TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
   script.until("the result is there",
                [](const Glance&) { return Script::find("calibration save"); });
   script.click("calibration save");
-  script.until("it is kept", [](const Glance& g) { return says(g, "is kept in"); });
+  script.until("it is kept", [](const Glance& g) { return says(g, "is saved in"); });
   script.until("it runs again",
                [](const Glance& g) { return !g.is_calibrating && g.session.tick > 0; });
   run(script);
@@ -808,7 +808,7 @@ TEST_F(WindowFiles, ACalibrationIsGivenUp) {
   script.tap(SDLK_F8);
   script.until("it waits for a pad", [](const Glance& g) { return g.is_calibrating; });
   script.drop(round_);
-  script.until("files wait", [](const Glance& g) { return says(g, "open files afterwards"); });
+  script.until("files wait", [](const Glance& g) { return says(g, "before opening a file"); });
   script.click("calibration give up");
   script.until("it walks on",
                [](const Glance& g) { return !g.is_calibrating && g.session.tick > 0; });

@@ -105,16 +105,17 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
 
 std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments& arguments) {
   const CLI::Validator never([](const std::string&) { return missing_window(); }, "");
+  const std::string help = "not in this program: it was built without its window";
   std::vector<CLI::Option*> options = {
-      command.add_option("--frames", arguments.frames),
-      command.add_option("--screenshot", arguments.screenshot),
-      command.add_option("--video", arguments.video),
-      command.add_option("--theme", arguments.theme),
-      command.add_option("--scale", arguments.scale),
-      command.add_option("--panels", arguments.panels),
-      command.add_option("--hide", arguments.hidden),
+      command.add_option("--frames", arguments.frames, help),
+      command.add_option("--screenshot", arguments.screenshot, help),
+      command.add_option("--video", arguments.video, help),
+      command.add_option("--theme", arguments.theme, help),
+      command.add_option("--scale", arguments.scale, help),
+      command.add_option("--panels", arguments.panels, help),
+      command.add_option("--hide", arguments.hidden, help),
   };
-  for (CLI::Option* option : options) option->check(never)->group("");  // not in the help
+  for (CLI::Option* option : options) option->check(never);
   return options;
 }
 

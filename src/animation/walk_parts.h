@@ -108,7 +108,4 @@ void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose)
 void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis,
               WalkState& state) noexcept;
 
-// Pelvis place and rotation, still without the height. In walk.cpp; the benchmark calls it, too.
-Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept;
-
 }  // namespace gaitpad

@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "gaitpad/keyboard.h"
 #include "drivers/posix.h"
+#include "gaitpad/keyboard.h"
 #include "pads/realtime.h"
 #include "session/live_loop.h"
 #include "session/recording.h"

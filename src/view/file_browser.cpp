@@ -58,8 +58,9 @@ Result<FileKind> kind_of_content(const std::string& path) {
                  ": could be a style, a character or a terrain; put it into a folder named styles, "
                  "characters or terrain"};
   }
-  return Error{fmt::format(
-      "{}: is not a style, character, calibration, terrain or motion; as a style: {}", path, problem)};
+  return Error{
+      fmt::format("{}: is not a style, character, calibration, terrain or motion; as a style: {}",
+                  path, problem)};
 }
 
 // Sets item `n` of `count` in the list, which repeats its last item up to there; a negative `n`

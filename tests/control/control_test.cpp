@@ -1,3 +1,5 @@
+#include "gaitpad/control.h"
+
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -5,8 +7,6 @@
 #include <limits>
 #include <random>
 #include <type_traits>
-
-#include "gaitpad/control.h"
 
 namespace gaitpad {
 namespace {

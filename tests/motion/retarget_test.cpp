@@ -1,9 +1,9 @@
 // The procedural walk on other skeletons: larger ones, ones that only stand, ones in a T pose.
 #include <gtest/gtest.h>
 
+#include "files/bvh_text.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
-#include "files/bvh_text.h"
 #include "motion/leg_pose.h"
 #include "motion/made_motion.h"
 #include "tests/shared_data.h"

@@ -6,7 +6,7 @@ foreach(component core files devices session)
   install(TARGETS gaitpad_${component} EXPORT gaitpad-${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT gaitpad-${component} NAMESPACE gaitpad:: DESTINATION ${package_folder})
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/include/gaitpad DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/include/gaitpad DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 
 # The pkg-config modules of the drivers that were built, and the names of their CMake targets.
 get_property(driver_modules GLOBAL PROPERTY gaitpad_driver_modules)

@@ -1,6 +1,7 @@
 // Motions and walks as their tests look at them.
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "gaitpad/motion.h"
 #include "motion/leg_pose.h"
@@ -18,6 +19,19 @@ inline LegPose pose_of(const GaitCycle& cycle, const CycleSample& at, int side) 
 }
 inline LegPose pose_at(const GaitCycle& cycle, int side, double phase) {
   return pose_of(cycle, sample_at(cycle, phase), side);
+}
+
+// Cuts everything above the hips off the built-in walk: pelvis and two legs of five joints stay.
+inline void keep_legs_alone(GaitCycle& cycle) {
+  const std::size_t all = cycle.skeleton.joints.size(), kept = 11;
+  std::vector<quat> local;
+  for (int i = 0; i < kCycleSamples; ++i) {
+    const auto row = cycle.local.begin() + static_cast<std::ptrdiff_t>(i * all);
+    local.insert(local.end(), row, row + static_cast<std::ptrdiff_t>(kept));
+  }
+  cycle.local = local;
+  cycle.skeleton.joints.resize(kept);
+  cycle.standing_local.resize(kept);
 }
 
 }  // namespace gaitpad

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "motion/made_motion.h"
 #include "paper/paper_fixture.h"
 #include "paper/study.h"
 
@@ -231,16 +232,8 @@ TEST(PaperClaims, WithoutNamesTheArmsAreFoundByTheSkeletonsShape) {
 TEST(PaperClaims, OfAMotionWithoutHandsTheArmsAreNotJudged) {
   PaperSource source = study().source();
   GaitCycle& cycle = source.cycle;
-  const std::size_t all = cycle.skeleton.joints.size(), kept = 11;  // pelvis, two legs of five
-  ASSERT_EQ(cycle.skeleton.joints[kept].name, "Spine");
-  std::vector<quat> local;
-  for (int i = 0; i < kCycleSamples; ++i) {
-    const auto row = cycle.local.begin() + static_cast<std::ptrdiff_t>(i * all);
-    local.insert(local.end(), row, row + static_cast<std::ptrdiff_t>(kept));
-  }
-  cycle.local = local;
-  cycle.skeleton.joints.resize(kept);
-  cycle.standing_local.resize(kept);
+  ASSERT_EQ(cycle.skeleton.joints[11].name, "Spine");
+  keep_legs_alone(cycle);
   auto legs_alone = Study::of(std::move(source));
   ASSERT_TRUE(legs_alone);
   EXPECT_FALSE(claim_of(body_claims(*legs_alone), kArmClaim).pass.has_value());

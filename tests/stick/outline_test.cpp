@@ -126,6 +126,13 @@ TEST(Outline, FullSquareIsTwentyAndAHalfPercentByTheGreatestRadiusOfEachBin) {
   EXPECT_NEAR(*circularity_error(outline_of(made_track(stick), stick)), 20.5, 0.3);
 }
 
+void expect_true_outline(const MadeMoves& moves, const MadeStick& stick) {
+  const Outline outline = outline_of(reported(stick, moves.path()), stick);
+  ASSERT_TRUE(circularity_error(outline));
+  EXPECT_NEAR(*circularity_error(outline), true_circularity_error(stick), 0.5);
+  expect_ends(outline, stick);
+}
+
 // A turn that cuts corners lies below the others and is left out of the rim.
 TEST(Outline, SloppyRoundsDoNotPullTheGateInwards) {
   for (const Shape& shape : kShapes) {
@@ -141,10 +148,7 @@ TEST(Outline, SloppyRoundsDoNotPullTheGateInwards) {
       moves.release();
       moves.rest(0.5);
       SCOPED_TRACE(testing::Message() << shape.name << " sigma " << sigma);
-      const Outline outline = outline_of(reported(stick, moves.path()), stick);
-      ASSERT_TRUE(circularity_error(outline));
-      EXPECT_NEAR(*circularity_error(outline), true_circularity_error(stick), 0.5);
-      expect_ends(outline, stick);
+      expect_true_outline(moves, stick);
     }
   }
 }
@@ -160,10 +164,7 @@ TEST(Outline, ALongHoldDoesNotOutweighWhatLiesBesideIt) {
       moves.hold(4.0);
       moves.release();
       SCOPED_TRACE(testing::Message() << shape.name << " sigma " << sigma);
-      const Outline outline = outline_of(reported(stick, moves.path()), stick);
-      ASSERT_TRUE(circularity_error(outline));
-      EXPECT_NEAR(*circularity_error(outline), true_circularity_error(stick), 0.5);
-      expect_ends(outline, stick);
+      expect_true_outline(moves, stick);
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "gaitpad/control.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/walk.h"
+#include "motion/made_motion.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
 
@@ -171,16 +172,8 @@ TEST(Mannequin, NothingOfItIsBelowTheFloorWhileItWalksAndTurns) {
 // Legs alone are a skeleton too.
 TEST(Mannequin, WithoutArmsAndHeadTheRestIsDrawn) {
   GaitCycle cycle = procedural_gait();
-  const std::size_t all = cycle.skeleton.joints.size(), kept = 11;  // pelvis, two legs of five
-  ASSERT_EQ(cycle.skeleton.joints[kept].name, "Spine");
-  std::vector<quat> local;
-  for (int i = 0; i < kCycleSamples; ++i) {
-    const auto row = cycle.local.begin() + static_cast<std::ptrdiff_t>(i * all);
-    local.insert(local.end(), row, row + static_cast<std::ptrdiff_t>(kept));
-  }
-  cycle.local = local;
-  cycle.skeleton.joints.resize(kept);
-  cycle.standing_local.resize(kept);
+  ASSERT_EQ(cycle.skeleton.joints[11].name, "Spine");
+  keep_legs_alone(cycle);
   const Mannequin mannequin = mannequin_of(model_of(cycle));
   EXPECT_GE(mannequin.bones.size(), 15u);
   walk(*mannequin.model, 0.0, [&mannequin](const Pose& pose) {

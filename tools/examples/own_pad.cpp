@@ -25,7 +25,7 @@ int main() {
   gaitpad::DeviceInfo device;
   device.name = "own pad";
   device.descriptor = kDescriptor;
-  const auto layout = gaitpad::pad_layout(device, gaitpad::PadOverrides{});
+  const auto layout = gaitpad::pad_layout(device);
   if (!layout) {
     std::fprintf(stderr, "own_pad: %s\n", layout.error().message.c_str());
     return 1;
@@ -45,10 +45,14 @@ int main() {
       ++refused;
       continue;
     }
-    const gaitpad::Stick stick = gaitpad::stick_position(
-        calibration, gaitpad::vec2(state.axis[gaitpad::kLeftX], state.axis[gaitpad::kLeftY]),
-        gaitpad::vec2(state.axis[gaitpad::kRightX], state.axis[gaitpad::kRightY]));
-    std::printf("%+.4f,%+.4f,%u\n", stick.left.x, stick.left.y, unsigned(state.buttons));
+    const gaitpad::Stick stick = gaitpad::stick_position(calibration, state);
+    std::printf("%+.4f,%+.4f,", stick.left.x, stick.left.y);
+    for (int button = 0; button < gaitpad::kButtonCount; ++button) {
+      if (gaitpad::pressed(state, gaitpad::PadButton(button))) {
+        std::printf("%s ", gaitpad::kButtonNames[button].data());
+      }
+    }
+    std::putchar('\n');
   }
   std::fprintf(stderr, "%d of %zu reports were refused\n", refused, reports.size());
 }

@@ -121,6 +121,7 @@ def test_fetch_content_builds_the_core_as_a_subproject(tmp_path):
 cmake_minimum_required(VERSION 3.25)
 project(consumer LANGUAGES CXX)
 include(FetchContent)
+set(GAITPAD_CORE_ONLY ON)
 FetchContent_Declare(gaitpad SOURCE_DIR {ROOT})
 FetchContent_MakeAvailable(gaitpad)
 add_executable(consumer {EXAMPLES}/solve_leg.cpp)

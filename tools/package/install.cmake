@@ -2,7 +2,11 @@
 # CMake (find_package(gaitpad CONFIG)) and pkg-config find them, the program and its configuration.
 # Each library is a component of its own, so that gaitpad::core needs GLM alone.
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/gaitpad)
-foreach(component core files devices session)
+set(components core)
+if(TARGET gaitpad_session)
+  list(APPEND components files devices session)
+endif()
+foreach(component ${components})
   install(TARGETS gaitpad_${component} EXPORT gaitpad-${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT gaitpad-${component} NAMESPACE gaitpad:: DESTINATION ${package_folder})
 endforeach()
@@ -23,7 +27,11 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/gaitpad-config-version.cm
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/gaitpad-config.cmake ${PROJECT_BINARY_DIR}/gaitpad-config-version.cmake
         DESTINATION ${package_folder})
-foreach(module gaitpad-core gaitpad)
+set(modules gaitpad-core)
+if(TARGET gaitpad_session)
+  list(APPEND modules gaitpad)
+endif()
+foreach(module ${modules})
   configure_file(${CMAKE_CURRENT_LIST_DIR}/${module}.pc.in ${PROJECT_BINARY_DIR}/${module}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/${module}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endforeach()

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "tests/folders.h"
+
 namespace gaitpad {
 
-inline const std::string kPadRecordings = GAITPAD_SHARED_DATA "/hid/",
-                         kCapturedMotions = GAITPAD_SHARED_DATA "/mocap/";
+inline const std::string kPadRecordings = kSharedData + "/hid/",
+                         kCapturedMotions = kSharedData + "/mocap/";
 
 // Skips the test where they are not there.
 #define GAITPAD_NEEDS(folder) \

@@ -8,7 +8,9 @@ mkdir -p "$folder"
 log=$folder/build.log
 
 options=(-G Ninja "$@")
+# A compiler cache, where there is one, serves every checkout of the repository.
 command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1
 # CMake by itself only on the first time: ninja reruns it when a CMakeLists.txt or a folder changes.
 if [ ! -f "$folder/build.ninja" ]; then
   echo "Building into $folder (a few minutes the first time)" >&2

@@ -13,6 +13,7 @@
 #include "animation/terrain_judge.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/motion_file.h"
+#include "tests/folders.h"
 
 using namespace gaitpad;
 
@@ -29,12 +30,12 @@ T value_or_exit(Result<T> result) {
 }
 
 std::string config(const char* kind, const std::string& name) {
-  return fmt::format("{}/config/{}/{}.toml", GAITPAD_SOURCE_DIR, kind, name);
+  return fmt::format("{}/config/{}/{}.toml", kSourceFolder, kind, name);
 }
 
 std::vector<std::string> shipped_styles() {
   std::vector<std::string> names;
-  const std::string folder = fmt::format("{}/config/styles", GAITPAD_SOURCE_DIR);
+  const std::string folder = kSourceFolder + "/config/styles";
   for (const auto& file : std::filesystem::directory_iterator(folder))
     names.push_back(file.path().stem().string());
   std::sort(names.begin(), names.end());

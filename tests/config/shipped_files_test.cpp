@@ -10,12 +10,13 @@
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/style.h"
 #include "gaitpad/walk_model.h"
+#include "tests/folders.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
 namespace {
 
-const std::string kConfig = GAITPAD_SOURCE_DIR "/config/";
+const std::string kConfig = kSourceFolder + "/config/";
 
 Style style(const std::string& name) {
   const Style style = value_of(load_style(kConfig + "styles/" + name + ".toml"));

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "drivers/driver_entries.h"
+#include "tests/folders.h"
 #include "tests/value_of.h"
 
 namespace {
@@ -388,7 +389,7 @@ TEST(HidrawOpening, ErrorsAreOneSentenceAboutTheNode) {
   auto device = open_hidraw_device(listing, Detach::never);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, "/dev/hidraw_none: No such file or directory");
-  listing.node = GAITPAD_SOURCE_DIR;
+  listing.node = kSourceFolder;
   device = open_hidraw_device(listing, Detach::never);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, listing.node + ": is no device node");

@@ -4,6 +4,7 @@
 
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion.h"
+#include "tests/folders.h"
 
 namespace gaitpad {
 namespace {
@@ -57,8 +58,7 @@ TEST(PeriodicKeys, OneIsAConstantAndNoneIsZero) {
 }
 
 TEST(Keyframe, TheExampleWalksAsAdultsDo) {
-  auto file =
-      TomlFile::load(std::string(GAITPAD_SOURCE_DIR) + "/config/motions/keyframe_walk.toml");
+  auto file = TomlFile::load(kSourceFolder + "/config/motions/keyframe_walk.toml");
   ASSERT_TRUE(file) << file.error().message;
   const auto motion = keyframe_motion(*file);
   ASSERT_TRUE(motion) << motion.error().message;

@@ -4,6 +4,7 @@
 
 #include "files/height_picture.h"
 #include "gaitpad/config_files.h"
+#include "tests/folders.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 
@@ -82,7 +83,7 @@ TEST(TerrainFile, ErrorsNameFileAndLine) {
 }
 
 TEST(HeightPicture, ReadsTheShippedOne) {
-  const auto picture = load_height_picture(GAITPAD_SOURCE_DIR "/config/terrain/hills.png");
+  const auto picture = load_height_picture(kSourceFolder + "/config/terrain/hills.png");
   ASSERT_TRUE(picture) << picture.error().message;
   EXPECT_EQ(picture->columns, 64);
   EXPECT_EQ(picture->rows, 48);
@@ -125,7 +126,7 @@ TEST(HeightPicture, EightBitsSpanTheSameRange) {
 }
 
 TEST(HeightPicture, DamageAndColoursAreErrors) {
-  const std::string sound = text_in(GAITPAD_SOURCE_DIR "/config/terrain/hills.png");
+  const std::string sound = text_in(kSourceFolder + "/config/terrain/hills.png");
   ASSERT_TRUE(height_picture(sound, "hills.png"));
   for (std::size_t size = 0; size < sound.size(); size += 97) {
     const auto cut = height_picture(sound.substr(0, size), "hills.png");
@@ -139,7 +140,7 @@ TEST(HeightPicture, DamageAndColoursAreErrors) {
             std::string::npos);
   EXPECT_FALSE(height_picture(bytes(kHuge), "huge.png"));
   EXPECT_FALSE(height_picture("", "hills.png"));
-  EXPECT_FALSE(load_height_picture(GAITPAD_SOURCE_DIR "/config"));
+  EXPECT_FALSE(load_height_picture(kSourceFolder + "/config"));
 }
 
 }  // namespace

@@ -8,14 +8,15 @@
 #include "gaitpad/decode.h"
 #include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
+#include "tests/folders.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
 
-inline const std::string kGoldenPads = GAITPAD_SOURCE_DIR "/tests/data/pads";
+inline const std::string kGoldenPads = kSourceFolder + "/tests/data/pads";
 
 inline PadOverrides shipped_pads() {
-  return value_of(load_pad_folder(GAITPAD_SOURCE_DIR "/config/pads"));
+  return value_of(load_pad_folder(kSourceFolder + "/config/pads"));
 }
 
 inline Report report_of(const std::vector<std::uint8_t>& bytes, std::int64_t time_ns = 0) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "gaitpad/pad_stream.h"
+#include "tests/folders.h"
 #include "tests/own_folder.h"
 #include "tests/pads/fake_drivers.h"
 #include "tests/pads/pad_stream_fixture.h"
@@ -167,7 +168,7 @@ TEST_F(PadChoice, SdlIsAskedOnlyWhereItMustBe) {
 
 TEST_F(PadChoice, ARecordingGivesItsDevicesAlone) {
   see(kHidraw, "A", "p1");
-  const PadWish wish{GAITPAD_SOURCE_DIR "/tests/data/pads/046d_c216.hid", ""};
+  const PadWish wish{kSourceFolder + "/tests/data/pads/046d_c216.hid", ""};
   auto seen = pad_sightings({}, wish, Drivers::preferred);
   ASSERT_TRUE(seen) << seen.error().message;
   ASSERT_EQ(seen->size(), 1u);

@@ -5,13 +5,14 @@
 #include <string_view>
 
 #include "paper/claims.h"
+#include "tests/folders.h"
 #include "tests/value_of.h"
 
 namespace gaitpad::test {
 
 inline Study& study() {
   static Study made =
-      value_of(Study::of(value_of(load_paper_source("", {GAITPAD_SOURCE_DIR "/config"}))));
+      value_of(Study::of(value_of(load_paper_source("", {kSourceFolder + "/config"}))));
   return made;
 }
 

@@ -10,6 +10,7 @@
 #include "gaitpad/live.h"
 #include "gaitpad/replay.h"
 #include "tests/comes_true.h"
+#include "tests/folders.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 
@@ -45,7 +46,7 @@ inline Trace two_pads_trace() {
 class Live : public testing::Test {
  protected:
   void SetUp() override {
-    options_.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    options_.config_folders = {kSourceFolder + "/config"};
     options_.walk.styles = {"even", "limp_left"};
     options_.pad.wish.pad = (folder_ / "pads.hid").string();
     options_.live.record = (folder_ / "session.hid").string();

@@ -8,6 +8,7 @@
 
 #include "gaitpad/hash.h"
 #include "gaitpad/replay.h"
+#include "tests/folders.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 
@@ -15,7 +16,7 @@ namespace gaitpad {
 namespace {
 
 constexpr int kRateHz = 240;
-const std::string kConfig = GAITPAD_SOURCE_DIR "/config";
+const std::string kConfig = kSourceFolder + "/config";
 const std::string kRound = kConfig + "/traces/round.hid";
 
 // The paper's cast on this recording.

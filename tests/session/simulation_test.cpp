@@ -7,6 +7,7 @@
 
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
+#include "tests/folders.h"
 #include "tests/session/made_session.h"
 
 namespace gaitpad {
@@ -575,7 +576,7 @@ double difference_deg(const std::vector<double>& a, const std::vector<double>& b
 TEST(Builds, AreSeenInTheKnee) {
   const auto knee_of = [](const std::string& name) {
     SimulationConfig config = made_config(1);
-    auto style = load_style(GAITPAD_SOURCE_DIR "/config/styles/" + name + ".toml");
+    auto style = load_style(kSourceFolder + "/config/styles/" + name + ".toml");
     EXPECT_TRUE(style) << style.error().message;
     config.styles[0] = *style;
     Simulation s = made_simulation(config);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "gaitpad/session_spec.h"
+#include "tests/folders.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -17,7 +18,7 @@ class Walking : public testing::Test {
   void SetUp() override { begin({"even", "limp_left"}); }
   void begin(const std::vector<std::string>& styles) {
     SessionSpec spec;
-    spec.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    spec.config_folders = {kSourceFolder + "/config"};
     spec.walk.styles = styles;
     auto config = simulation_config(spec, 240);
     ASSERT_TRUE(config) << config.error().message;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gaitpad/session_spec.h"
+#include "tests/folders.h"
 #include "tests/value_of.h"
 #include "view/gui.h"
 #include "view/ui.h"
@@ -46,7 +47,7 @@ class UiTest : public ::testing::Test {
   // These characters, in these styles, all from the program's own files.
   void start(const std::vector<std::string>& styles) {
     SessionSpec spec;
-    spec.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    spec.config_folders = {kSourceFolder + "/config"};
     spec.walk.styles = styles;
     spec.walk.characters.assign(styles.size(), "adult");
     auto config = simulation_config(spec, 240);

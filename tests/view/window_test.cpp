@@ -21,6 +21,7 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/replay.h"
 #include "pads/calibration_store.h"
+#include "tests/folders.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 #include "view/surface.h"
@@ -186,7 +187,7 @@ class Window : public testing::Test {
     if (!opened) GTEST_SKIP() << opened.error().message;
     ::setenv("SDL_VIDEODRIVER", "offscreen", 1);
     std::filesystem::current_path(folder_);
-    options_.session.config_folders = {GAITPAD_SOURCE_DIR "/config"};
+    options_.session.config_folders = {kSourceFolder + "/config"};
     options_.session.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
     options_.session.pad.wish.pad = "no pad of this machine";
     options_.scale = 1.0;
@@ -216,7 +217,7 @@ class Window : public testing::Test {
   OwnFolder own_;
   const std::filesystem::path folder_ = own_.path;
   const Environment config_home_{"XDG_CONFIG_HOME", own_.at("config").c_str()};
-  const std::string round_ = GAITPAD_SOURCE_DIR "/config/traces/round.hid";
+  const std::string round_ = kSourceFolder + "/config/traces/round.hid";
   WindowOptions options_;
 };
 

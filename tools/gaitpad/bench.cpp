@@ -46,7 +46,7 @@ std::string bundled_trace(const std::vector<std::string>& config_folders) {
 
 Result<Session> bench_session(const std::vector<std::string>& styles) {
   SessionSpec spec;
-  spec.config_folders = config_folders(GAITPAD_CONFIG_DIR);
+  spec.config_folders = config_folders();
   spec.walk.styles = styles;
   auto trace = read_trace(bundled_trace(spec.config_folders));
   if (!trace) return trace.error();

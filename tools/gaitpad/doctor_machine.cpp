@@ -19,6 +19,7 @@
 #include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/decode.h"
+#include "tools/gaitpad/options.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
@@ -268,7 +269,7 @@ std::optional<Error> write_whole(const std::string& path, std::string_view text)
 }  // namespace
 
 Result<RulesFile> shipped_rules() {
-  for (const std::string& folder : config_folders(GAITPAD_CONFIG_DIR)) {
+  for (const std::string& folder : config_folders()) {
     const fs::path path = fs::path(folder) / "udev" / kRulesName;
     if (auto text = text_of(path)) return RulesFile{path.string(), std::move(*text)};
   }

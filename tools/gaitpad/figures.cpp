@@ -38,7 +38,7 @@ void print_summary(const std::vector<Claim>& claims, const std::string& folder) 
 }
 
 int run(const FiguresArguments& arguments) {
-  auto source = load_paper_source(arguments.motion, config_folders(GAITPAD_CONFIG_DIR));
+  auto source = load_paper_source(arguments.motion, config_folders());
   if (!source) return fail("figures", source.error().message);
   auto study = Study::of(std::move(*source));
   if (!study) return fail("figures", study.error().message);

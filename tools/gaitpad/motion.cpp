@@ -12,6 +12,7 @@
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
 #include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 
 namespace gaitpad {
@@ -107,7 +108,7 @@ void print_table(const Motion& motion) {
 
 Result<Motion> chosen_motion(const MotionArguments& arguments) {
   if (arguments.file == "procedural") return procedural_motion();
-  const auto path = motion_path(config_folders(GAITPAD_CONFIG_DIR), arguments.file);
+  const auto path = motion_path(config_folders(), arguments.file);
   if (!path) return path.error();
   return load_motion_source(*path, arguments.load);
 }

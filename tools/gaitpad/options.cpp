@@ -36,6 +36,8 @@ std::vector<std::string> pads_of_system() {
 
 }  // namespace
 
+std::vector<std::string> config_folders() { return config_folders(GAITPAD_CONFIG_DIR); }
+
 void add_driver_option(CLI::App& command, PadWish& wish) {
   command
       .add_option("--driver", wish.driver,
@@ -57,7 +59,7 @@ void add_seconds_option(CLI::App& command, double& seconds) {
 }
 
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration) {
-  return load_pad_files(config_folders(GAITPAD_CONFIG_DIR), map, calibration);
+  return load_pad_files(config_folders(), map, calibration);
 }
 
 void MissingPad::look(std::int64_t plugged, StatusLine& line) {
@@ -82,7 +84,7 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
 
 void add_session_options(CLI::App& command, SessionSpec& spec, const std::string& default_rate) {
   SessionSpec::Walk& walk = spec.walk;
-  spec.config_folders = config_folders(GAITPAD_CONFIG_DIR);
+  spec.config_folders = config_folders();
   command.add_option("--motion", walk.motion,
                      "motion, FILE|NAME (.bvh, .amc, .toml); without it the built-in walk");
   command.add_option("--character", walk.characters, "a build, FILE|NAME; once for each character")

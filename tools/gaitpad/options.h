@@ -13,6 +13,11 @@
 
 namespace gaitpad {
 
+// --- where the configuration is
+
+// The folders of configuration that there are, the one of this checkout last.
+std::vector<std::string> config_folders();
+
 // --- which pad, and for how long
 
 void add_driver_option(CLI::App& command, PadWish& wish);

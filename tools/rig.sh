@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
-# rig.sh [--long] [--kernel 6.12] [--only NAME]: builds, boots a Debian kernel in QEMU and proves there, with
+# rig.sh [--long] [--kernel 6.12] [--only NAME] [--without NAME]: builds, boots a Debian kernel in QEMU and proves there, with
 # virtual pads, what needs hardware: tools/rig/test_*.py. Logs and tables in build/rig/results-KERNEL.
 # --long: the long floods and counts too, on 6.1 and 6.12. Without QEMU or a kernel to be had it tests
 # nothing, says so and ends with 0. RIG_BUILD names another build folder than build (one with sanitizers).
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=$(realpath -m "${RIG_BUILD:-$root/build}")
-long=0 only= kernels=()
+long=0 only= without= kernels=()
 while [ $# -gt 0 ]; do
   case $1 in
     --long) long=1 ;;
     --kernel) kernels=("$2"); shift ;;
     --only) only=$2; shift ;;
+    --without) without=$2; shift ;;
     *) echo "rig.sh: unknown option $1" >&2; exit 2 ;;
   esac
   shift
@@ -45,6 +46,6 @@ for kernel in "${kernels[@]}"; do
   rm -rf "$results"
   bash "$root/tools/rig/guest.sh" --kernel "$kernel" --memory 1536 --timeout $seconds --results "$results" -- \
     env RIG_LONG=$long RIG_BUILD="$build" /usr/bin/python3 -m pytest -s --tb=short -p no:cacheprovider \
-    --only "$only" "$root/tools/rig" || status=1
+    --only "$only" --without "$without" "$root/tools/rig" || status=1
 done
 exit $status

@@ -26,6 +26,7 @@ shown = 0  # remarks so far
 
 def pytest_addoption(parser):
     parser.addoption("--only", default="", help="tests whose name contains this")
+    parser.addoption("--without", default="", help="no tests whose name contains this")
 
 
 @pytest.hookimpl(trylast=True)
@@ -42,7 +43,9 @@ def name_of(item):
 
 def pytest_collection_modifyitems(config, items):
     is_long = os.environ.get("RIG_LONG") == "1"
+    without = config.option.without
     items[:] = [item for item in items if config.option.only in name_of(item) and
+                not (without and without in name_of(item)) and
                 (is_long or not item.get_closest_marker("long"))]
 
 

@@ -528,8 +528,9 @@ void PadFinder::open(const PadSighting& sighting, Candidate& candidate) {
   hand_over(sighting, std::move(*device), std::move(pad), *index);
 }
 
-// Fills in what a replay of this session's recording will find, and the same for now. Returns why
-// the pad cannot be used; empty if users need not know, because they named no pad and this is none.
+// Fills in the device as the recording of this session will state it, and the configuration that a
+// replay will make of that. Returns why the pad cannot be used; empty if users need not know,
+// because they named no pad and this is none.
 std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device& device,
                                              KnownPad& pad) {
   const DeviceInfo& info = device.info();

@@ -46,6 +46,6 @@ for kernel in "${kernels[@]}"; do
   rm -rf "$results"
   bash "$root/tools/rig/guest.sh" --kernel "$kernel" --memory 1536 --timeout $seconds --results "$results" -- \
     env RIG_LONG=$long RIG_BUILD="$build" /usr/bin/python3 -m pytest -s --tb=short -p no:cacheprovider \
-    --only "$only" --without "$without" "$root/tools/rig" || status=1
+    "$root/tools/rig" --only="$only" --without="$without" || status=1  # the path first, or conftest.py is not found
 done
 exit $status

@@ -63,16 +63,67 @@ double step_length(const WalkState& state, Side side) noexcept {
   return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
 }
 
-Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept {
-  const double a = presence(state), r = std::clamp(state.pace.x, 0.0, 1.0);
-  const double phase = data_phase(model, state);
+StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
+                       double step_share) noexcept {
+  const Side swing = step_foot(state);
+  const double ahead =
+      state.started ? std::abs(state.frame.stride_m[swing]) / model.own_step_m[swing] : 0.0;
+  StridePlan plan;
+  plan.phase = state.backward ? model.share[0] + model.share[1] + model.share[2] - phase : phase;
+  plan.change = smootherstep(step_share);
+  plan.shown = std::clamp(state.amplitude.x, 0.0, 1.0);
+  plan.at[0] = stride_at(model.strides, plan.phase, state.ratio_behind);
+  plan.at[1] = stride_at(model.strides, plan.phase, ahead);
+  plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
+                    plan.shown * plan.change);
+  return plan;
+}
+
+StridePlan stride_now(const WalkModel& model, const WalkState& state) noexcept {
+  const double begun = state.tick + (state.stage == Stage::flight ? state.roll_ticks : 0);
+  const double share =
+      state.started ? begun / std::max(1, state.roll_ticks + state.flight_ticks) : 1.0;
+  return stride_plan(model, state, state.phase, share);
+}
+
+vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
+                    const vec3& travel_m) noexcept {
+  // Forwards the right foot goes from its footprint of this stride to the next one's, the left foot
+  // from the last one's to this one's. Backwards they go the other way.
+  double turns = 0.0;
+  if (side == step_foot(state)) {
+    turns = side == kRightSide ? which : which - 1;
+    if (state.backward) turns = side == kRightSide ? -which : -which;
+  } else if (state.backward && side == kLeftSide) {
+    turns = -1.0;
+  }
+  const StridePlace& at = plan.at[which];
+  vec3 p = travel_m - at.footprint_m[side];
+  p.z += at.stride_m * (plan.phase - turns);
+  return p;
+}
+
+double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
+  // Walking order: roll right, flight left, roll left, flight right.
+  if (stage == Stage::roll) return model.share[swing == kRightSide ? 0 : 2];
+  return model.share[swing == kLeftSide ? 1 : 3];
+}
+
+double stage_end_phase(const WalkModel& model, const WalkState& state) noexcept {
+  return state.stage_phase + stage_share(model, state.stage, state.swing);
+}
+
+Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
+                          const StridePlan& plan) noexcept {
+  const StrideCell& cell = plan.cell;
   const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
   Pelvis pelvis;
-  pelvis.position_m = state.hips_m + left * (a * model.sway_m.at(phase)) +
-                      forward * (a * r * model.surge_m.at(phase));
-  const double yaw = a * r * state.sway.x * model.yaw_rad.at(phase);
-  const vec3 tilt(model.tilt[0].at(phase), model.tilt[1].at(phase), model.tilt[2].at(phase));
-  pelvis.rotation = rotation_y(state.heading_rad + yaw) * from_rotation_vector(tilt * (a * r));
+  pelvis.position_m =
+      state.hips_m + left * cell.pelvis_m.x + forward * cell.pelvis_m.z;
+  pelvis.position_m.y = state.base_m + model.stand_m + cell.pelvis_m.y;
+  const double yaw = state.sway.x * cell.pelvis_yaw_rad;
+  pelvis.rotation =
+      rotation_y(state.heading_rad + yaw) * from_rotation_vector(cell.pelvis_tilt);
   return pelvis;
 }
 
@@ -87,30 +138,20 @@ constexpr double kTurnSmoothing = 0.25;
 constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
-constexpr double kShortRoll = 0.085, kBriskRoll = 0.11, kLongRoll = 0.20;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 
-double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
-  // Walking order: roll right, flight left, roll left, flight right.
-  if (stage == Stage::roll) return model.share[swing == kRightSide ? 0 : 2];
-  return model.share[swing == kLeftSide ? 1 : 3];
-}
-
-// Share of the cycle's time. The roll is as long as in the data, within bounds: a shorter one slaps
-// the toe down, a longer one holds the rear foot back until its leg is too short, most of all at
-// full pace.
+// Share of the cycle's time.
 double time_share(const WalkModel& model, const WalkState& state, Stage stage,
                   Side swing) noexcept {
   const Side rolling = stage == Stage::roll ? swing : other(swing);
   const double roll = stage_share(model, Stage::roll, rolling);
   const double flight = stage_share(model, Stage::flight, other(rolling));
-  const double longest = mix(kLongRoll, kBriskRoll, smoothstep(0.5, 1.0, full_pace(model, state)));
-  const double bounded = std::clamp(roll, kShortRoll, longest);
-  return stage == Stage::roll ? bounded : roll + flight - bounded;
+  const double rolls = roll_time_share(roll, state.pace.x);
+  return stage == Stage::roll ? rolls : roll + flight - rolls;
 }
 
 int stage_length(const WalkModel& model, const WalkState& state, Stage stage, Side swing,
@@ -119,10 +160,6 @@ int stage_length(const WalkModel& model, const WalkState& state, Stage stage, Si
   const double ticks =
       2.0 * state.time_s[swing] * state.slowness * time_share(model, state, stage, swing) / dt_s;
   return std::max(stage == Stage::roll ? 6 : 12, static_cast<int>(ticks + 0.5));
-}
-
-double stage_end_phase(const WalkModel& model, const WalkState& state) noexcept {
-  return state.stage_phase + stage_share(model, state.stage, state.swing);
 }
 
 void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept {
@@ -161,12 +198,12 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
   state.started = true;
   state.closing = false;
   state.backward = tick.params.backward;
+  state.ratio_behind = 0.0;
   state.flight_ticks = 0;
   state.roll_ticks = 0;
   begin_step(tick, other(first), state);
   state.stage_ticks = state.roll_ticks = 2 * state.roll_ticks;  // from rest: a longer first lean
   state.phase_rate = 0.0;
-  for (int side : {0, 1}) hold_pitch(tick.model, state, static_cast<Side>(side), state.roll_ticks);
 }
 
 void begin_idle(WalkState& state) noexcept {
@@ -174,24 +211,26 @@ void begin_idle(WalkState& state) noexcept {
   state.started = false;
   state.roll_ticks = state.flight_ticks = 0;
   state.landing.next_rise = 0.0;
-  for (FootState& foot : state.foot) foot.pitch_fade = {};
 }
 
 void land_foot(const Tick& tick, WalkState& state) noexcept {
   const Side landed = state.swing;
   const bool closed = state.closing;
   state.closing = !walks_on(tick.params, state);
+  state.ratio_behind = std::abs(state.frame.stride_m[landed]) / tick.model.own_step_m[landed];
   if (closed && state.closing) {  // feet together: the toe comes down, then rest
     const int ticks = state.roll_ticks;
     begin_stage(Stage::roll, landed, std::max(ticks, 12), state);
     state.stage_phase = state.phase;
     state.started = false;
-    begin_roll(state, landed);
+    begin_roll(tick, state, landed);
+    FootState& stays = state.foot[other(landed)];
+    stays.mode_ticks = 0;
+    stays.pitch_fade = {stays.pose.pitch_rad, 0.0, static_cast<double>(state.stage_ticks)};
     return;
   }
   begin_step(tick, landed, state);
-  begin_roll(state, landed);
-  if (closed) hold_pitch(tick.model, state, other(landed), state.roll_ticks);
+  begin_roll(tick, state, landed);
 }
 
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.
@@ -219,8 +258,7 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   if (goal == 0.0 && std::abs(state.turn_goal.x) < kStillTurn) state.turn_goal = {};
   state.turn_rate.advance(state.turn_goal.x, kTurnSmoothing * scale, dt);
   if (state.turn_goal.x == 0.0 && std::abs(state.turn_rate.x) < kStillTurn) state.turn_rate = {};
-  const bool moving = state.started && !state.closing;
-  state.amplitude.advance(moving ? 1.0 : 0.0, kAmplitudeSmoothing * scale, dt);
+  state.amplitude.advance(state.started ? 1.0 : 0.0, kAmplitudeSmoothing * scale, dt);
   state.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
   state.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
   const double mean = 0.5 * (state.length_m[0].x + state.length_m[1].x);
@@ -269,7 +307,8 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 // --- Hips and landing place ----------------------------------------------------------------------
 
 // Lengths in metres at the reference leg.
-constexpr double kReach = 0.9985;  // of the leg: its greatest reach, with the knee bent 6 degrees
+constexpr double kReach = 0.9996;  // of the leg: a knee bent by 3 degrees
+constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015;
 // Front heel to hips over the step, in steps so long that the data's lean is given up.
 constexpr double kEvenFront = 0.46;
 // How much of a backward step the hips have covered at its strike: the weight follows the foot
@@ -287,7 +326,6 @@ constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or 
 constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 // Rounding of the hips' height: where the reach begins to bound it, and where the legs' reaches
 // cross. It suits steps of kCalmStep_s; quicker ones are rounded more.
-constexpr double kSoftBase_m = 0.02, kSoftReach_m = 0.03;
 constexpr double kCalmStep_s = 0.52;
 
 double power(double base, int exponent) noexcept {
@@ -315,36 +353,6 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
   const double s0 = q * (1.0 - qn) / (1.0 - q);
   const double s1 = q * (1.0 - (n + 1) * qn + n * qn * q) / ((1.0 - q) * (1.0 - q));
   return state.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
-}
-
-// How much of a step's length the hips have covered, beyond their rest lead, at its strike. In
-// steps far longer than the data's the hips stand evenly between the feet instead.
-double hips_share(const WalkModel& model, const WalkState& state) noexcept {
-  if (state.backward) {
-    const double rise = state.landing_m.y - state.foot[other(step_foot(state))].plane.place_m.y;
-    return mix(kBackwardHips, kBackwardHipsUp,
-               smoothstep(kHighRiser, kHighestRiser, rise / model.leg_length_m));
-  }
-  const double front = mix(model.step_front, kEvenFront, smoothstep(1.05, 1.5, state.pace.x));
-  return ((1.0 - front) * model.source_step_m - model.rest_lead_m) / model.source_step_m;
-}
-
-// Speed of the hips at this step's strike: the mean of their mean speeds before and after it.
-double hips_speed_at_strike(const Tick& tick, const WalkState& state) noexcept {
-  if (state.closing) return 0.0;
-  const Side swing = step_foot(state);
-  const double beta = hips_share(tick.model, state);
-  const bool goes_on = walks_on(tick.params, state);
-  double now = step_length(state, swing), before = state.frame.stride_m[other(swing)],
-         next = goes_on ? step_length(state, other(swing)) : 0.0;
-  if (!tick.flat) {
-    now = state.frame.stride_m[swing];
-    next = goes_on ? state.landing.next_m : 0.0;
-  }
-  const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
-  const double next_s = state.last_step_ticks > 0 ? state.last_step_ticks * tick.dt_s : this_s;
-  return 0.5 * (((1.0 - beta) * before + beta * now) / this_s +
-                ((1.0 - beta) * now + beta * next) / next_s);
 }
 
 // Moves the height of the ground that the hips go over. At a strike it is the lower foot's ground;
@@ -396,91 +404,54 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
   if (!tick.flat) follow_ground(tick, state, swing);
 }
 
-void advance_hips(const Tick& tick, WalkState& state) noexcept {
+// The hips follow the tables from the footprint of the foot that stands to the one of the next
+// landing. Where both steps are equal, both say the same.
+void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) noexcept {
   if (state.stage == Stage::idle || !state.started) {
     state.hips_velocity_m_s = vec3(0.0);
     return;
   }
-  const WalkModel& model = tick.model;
   const Side swing = step_foot(state), stand = other(swing);
-  const vec3 forward = heading_direction(state.landing_heading_rad),
-             left = glm::cross(kUp, forward);
-  const double lead = model.rest_lead_m + hips_share(model, state) * state.frame.stride_m[swing];
-  vec3 goal = state.foot[stand].heel_anchor_m + forward * lead - left * model.leg[stand].track_m;
-  goal.y = 0.0;
-  const vec3 velocity = forward * hips_speed_at_strike(tick, state);
-  const double remaining = (ticks_to_strike(state) + 1) * tick.dt_s;
-  approach(state.hips_m, state.hips_velocity_m_s, goal, velocity, remaining, tick.dt_s);
-  if (!tick.flat) advance_base(tick, state, remaining);
+  const FootState& foot = state.foot[stand];
+  const vec3 path_m(0.0);
+  const vec3 from = foot.heel_anchor_m + rotation_y(foot.lift_yaw_rad) *
+                                             from_footprint(state, plan, stand, 0, path_m);
+  const vec3 to = state.landing_m + rotation_y(state.landing_heading_rad) *
+                                        from_footprint(state, plan, swing, 1, path_m);
+  const vec3 before = state.hips_m;
+  state.hips_m = from * (1.0 - plan.change) + to * plan.change;
+  state.hips_m.y = 0.0;
+  state.hips_velocity_m_s = (state.hips_m - before) / tick.dt_s;
+  if (!tick.flat) advance_base(tick, state, (ticks_to_strike(state) + 1) * tick.dt_s);
 }
 
-// Pelvis height at which hip and ankle are `reach_m` apart.
-double height_over(const LegBuild& leg, const FootPose& foot, const Pelvis& pelvis,
-                   double reach_m) noexcept {
-  const vec3 ankle = foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
-  const vec3 hip = pelvis.hip(leg);  // pelvis.position_m.y is 0 here
-  const double dx = hip.x - ankle.x, dz = hip.z - ankle.z;
-  const double square = std::max(0.04 * reach_m * reach_m, reach_m * reach_m - dx * dx - dz * dz);
-  return ankle.y - hip.y + std::sqrt(square);
+// Hip to ankle with the foot as planned.
+double leg_span(const LegBuild& leg, const FootPose& foot, const Pelvis& pelvis) noexcept {
+  return glm::distance(pelvis.hip(leg),
+                       foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m);
 }
 
-// Pelvis height at which the knee is bent as in the data.
-double height_of_knee(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
-                      Side side) noexcept {
-  const LegModel& leg = model.leg[side].model;
-  // The foot is taken as the data roll it. What the reach adds depends on this height.
-  FootPose foot = state.foot[side].pose;
-  if (state.foot[side].mode == FootMode::support) {
-    set_pitch(model.leg[side], state.foot[side].planned_rad, foot, FootMode::support);
-  }
-  const double data = model.reference_rad[side][kKneeX].at(data_phase(model, state));
-  const double bend = presence(state) * soft_positive(data - kStandingKnee, kSoftKnee);
-  const double a = leg.thigh_m, b = leg.shank_m;
-  const double cosine = sin_cos(kStandingKnee + bend).cos;
-  return state.base_m - state.foot[side].base_m +
-         height_over(model.leg[side], foot, pelvis,
-                     std::sqrt(a * a + b * b + 2.0 * a * b * cosine));
-}
-
-// Share of the weight on the left foot. It moves over during the roll; at rest both feet carry
-// half.
-double left_load(const WalkState& state) noexcept {
-  if (state.stage == Stage::idle) return 0.5;
-  double on_swing = 0.0;
-  if (state.stage == Stage::roll) {
-    const bool first = state.started && state.last_step_ticks == 0, last = !state.started;
-    const double progress = static_cast<double>(state.tick) / state.stage_ticks;
-    on_swing = mix(first ? 0.5 : 0.0, last ? 0.5 : 1.0, smoothstep(0.0, 1.0, progress));
-  }
-  return state.swing == kLeftSide ? on_swing : 1.0 - on_swing;
-}
-
-// The pelvis' height, within both legs' reach.
-double pelvis_height(const WalkModel& model, const WalkState& state,
+// The pelvis' height: the tables', lowered where ground or turn ask more of a leg than they know.
+double pelvis_height(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                      const Pelvis& pelvis) noexcept {
-  const double load = left_load(state);
-  double y = load * height_of_knee(model, state, pelvis, kLeftSide) +
-             (1.0 - load) * height_of_knee(model, state, pelvis, kRightSide);
+  double y = pelvis.position_m.y;
   const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
   y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
-  // In steps longer than the data's the hips sink, or the rear leg would be too short.
-  y -= kLongDrop_m * model.size * smoothstep(0.95, 1.4, r);
-  // A lame foot hardly rises on its toe, so around its lift-off the hips come down instead.
+  double lower = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
-    const double lame = 1.0 - std::min(1.0, state.flight_height[side].x);
-    const double own = own_phase(model, state, side), lift = model.leg[side].toe_off;
-    const double near = smoothstep(0.1, lift - 0.1, own) * (1.0 - smoothstep(lift, 1.0, own));
-    y -= kLameDrop_m * model.size * lame * near * presence(state);
-  }
-  std::array<double, 2> highest;
-  for (int side : {0, 1}) {
     const LegBuild& leg = model.leg[side];
-    highest[side] = height_over(leg, state.foot[side].pose, pelvis, kReach * leg.model.length_m());
+    const double a = leg.model.thigh_m, b = leg.model.shank_m;
+    const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
+    const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
+    const double span = leg_span(leg, state.foot[side].pose, pelvis);
+    const double longest = kReach * leg.model.length_m(), soft = kSoftReach_m * model.size;
+    // What the tables ask for is let through; it counts less the more is asked beyond it.
+    const double beyond = (span - known) / (kKnown_m * model.size);
+    if (beyond <= 0.0) continue;
+    lower = std::max(lower, soft_positive(span - longest, soft) -
+                                soft_positive(known - longest, soft) / (1.0 + beyond * beyond));
   }
-  // Quick steps pass the same corners of the height in less time, so these are rounded wider.
-  const double quick = kCalmStep_s / std::max(0.1, state.step_time_s.x);
-  const double soft = model.size * std::clamp(quick * quick * quick, 1.0, 3.0);
-  return soft_min(y, soft_min(highest[0], highest[1], kSoftReach_m * soft), kSoftBase_m * soft);
+  return y - lower;
 }
 
 // --- Pose and report -----------------------------------------------------------------------------
@@ -624,13 +595,14 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);
-  advance_hips(tick, state);
-  for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, side);
-  Pelvis pelvis = pelvis_over_ground(model, state);
-  pelvis.position_m.y = pelvis_height(model, state, pelvis);
+  const StridePlan plan = stride_now(model, state);
+  advance_hips(tick, state, plan);
+  for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, plan, side);
+  Pelvis pelvis = pelvis_over_ground(model, state, plan);
+  pelvis.position_m.y = pelvis_height(model, state, plan, pelvis);
   for (Side side : {kLeftSide, kRightSide}) {
     reach_with_toe(model, state, side, pelvis.hip(model.leg[side]));
-    pose_leg(tick, mode, side, pelvis, state);
+    pose_leg(tick, mode, side, plan, pelvis, state);
   }
   write_pose(model, state, pelvis, pose);
   fill_report(pelvis, dt_s, state);

@@ -11,7 +11,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kLeastKnee = 5.0 * kDegree;  // where the solver starts: a knee that bends forward
+constexpr double kLeastKnee = 1.0 * kDegree;  // where the solver starts: a knee that bends forward
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
 constexpr double kUnhurriedStep_s = 0.46;
 constexpr double kSoftToe = 15.0 * kDegree;
@@ -24,12 +24,9 @@ constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 
 // The angles that the data show at this phase, fading to a stand.
-LegAngles reference(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  LegAngles angles;
-  const double shown = presence(state), phase = data_phase(model, state);
-  for (int j = 0; j < kLegDofs; ++j) {
-    angles[j] = shown * model.reference_rad[side][j].at(phase);
-  }
+LegAngles reference(const WalkModel& model, const StridePlan& plan, Side side) noexcept {
+  LegAngles angles = model.strides.stand_rad[side];
+  for (int j = 0; j < kLegDofs; ++j) angles[j] += plan.cell.leg_rad[side][j];
   angles[kKneeX] = std::max(angles[kKneeX], kLeastKnee);
   return angles;
 }
@@ -223,12 +220,12 @@ void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvi
   solve.add(solve_robust(leg.chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 
-void pose_robust(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
-                 Solve& solve) noexcept {
+void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelvis& pelvis,
+                 WalkState& state, Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   // Start from the data's angles plus what the solver had to add a tick ago. That correction leaks
   // away, so the swivel, which no row holds, is pulled to the data's and cannot drift.
-  const LegAngles data = reference(tick.model, state, side);
+  const LegAngles data = reference(tick.model, plan, side);
   const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
   IkAngles angles{};
   for (int j = 0; j < kLegDofs; ++j) {
@@ -271,12 +268,12 @@ void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& st
 
 }  // namespace
 
-void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis,
-              WalkState& state) noexcept {
+void pose_leg(const Tick& tick, IkMode mode, Side side, const StridePlan& plan,
+              const Pelvis& pelvis, WalkState& state) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   Solve solve;
   if (mode == IkMode::robust) {
-    pose_robust(tick, side, pelvis, state, solve);
+    pose_robust(tick, side, plan, pelvis, state, solve);
   } else {
     pose_paper(tick, side, pelvis, state, solve);
   }

@@ -397,9 +397,25 @@ bool has_overlong_leg(const GaitCycle& cycle) {
   return false;
 }
 
+// Lengths along the way and up grow by `ratio`, across it by `scale`: the legs stand under the hips.
+StrideFamily scaled(StrideFamily family, double ratio, double scale) {
+  const vec3 by(scale, ratio, ratio);
+  family.lead_m *= ratio;
+  for (StrideTable& table : family.table) {
+    table.stride_m *= ratio;
+    for (vec3& place : table.footprint_m) place *= by;
+    for (StrideCell& cell : table.cell) {
+      cell.pelvis_m *= by;
+      for (StrideFoot& foot : cell.foot) foot.heel_m *= by;
+    }
+  }
+  return family;
+}
+
 }  // namespace
 
-Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character) {
+Result<WalkModel> walk_model(const GaitCycle& cycle, const StrideFamily& strides,
+                             const Character& character) {
   if (!character.skeleton.empty()) {
     return Error{character.name + ": a character with a skeleton of its own is not supported yet"};
   }
@@ -427,8 +443,18 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.source_step_m = source_step * ratio;
   for (const LegBuild& leg : model.leg) {
     model.rest_lead_m += 0.5 * (-leg.model.heel_m.z - leg.model.hip_m.z);
-    model.stand_m += 0.5 * (0.998 * leg.model.length_m() - leg.model.heel_m.y - leg.model.hip_m.y);
   }
+  model.strides = scaled(strides, ratio, character.scale);
+  model.strides.stand_m = 0.0;
+  for (Side side : {kLeftSide, kRightSide}) {
+    const LegModel& leg = model.leg[side].model;
+    const double knee = strides.stand_rad[side][kKneeX];
+    const double square = leg.thigh_m * leg.thigh_m + leg.shank_m * leg.shank_m +
+                          2.0 * leg.thigh_m * leg.shank_m * sin_cos(knee).cos;
+    model.strides.stand_m += 0.5 * (std::sqrt(square) - leg.heel_m.y - leg.hip_m.y);
+    model.own_step_m[side] = cycle.step_m[side] * ratio;
+  }
+  model.stand_m = model.strides.stand_m;
   collect_kept_joints(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
   return model;

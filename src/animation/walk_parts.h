@@ -32,9 +32,30 @@ double own_phase(const WalkModel& model, const WalkState& state, Side side) noex
 // The phase at which the data are read. Walking backwards is walking forwards run back
 // (Thorstensson 1986), so a foot lands where the data lift it.
 double data_phase(const WalkModel& model, const WalkState& state) noexcept;
+// The phase at which the running stage ends.
+double stage_end_phase(const WalkModel& model, const WalkState& state) noexcept;
 // True if the parameters ask for the running walk to go on, or for one to begin. A walk in the
 // other direction begins only after standing.
 bool walks_on(const GaitParams& params, const WalkState& state) noexcept;
+
+// What the tables say of one moment of a step. A step leads from the stride that the last step was
+// taken with to the one that it is taken with itself: the hips follow the first one's table from
+// the footprint that they come from, the second one's towards the next, and change over smoothly.
+struct StridePlan {
+  double phase = 0.0;  // of the data, unwrapped: within this step it does not jump
+  double change = 0.0;  // from the one stride, at 0, to the other, at 1
+  double shown = 0.0;   // how much of the tables shows: 0 when standing
+  std::array<StridePlace, 2> at;  // the two strides at this phase
+  StrideCell cell;                // both, mixed by `change` and `shown`
+};
+// At a phase of the walk and a share of the running step's time.
+StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
+                       double step_share) noexcept;
+StridePlan stride_now(const WalkModel& model, const WalkState& state) noexcept;
+// Where a point of the travel frame of stride `which` is, seen from the footprint of `side` in the
+// running step: of the flying foot the one that it left (which 0) or will land on (1).
+vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
+                    const vec3& travel_m) noexcept;
 
 // Signed length of that foot's step on level ground: negative backwards, 0 when closing a walk.
 double step_length(const WalkState& state, Side side) noexcept;
@@ -44,7 +65,8 @@ struct Pelvis {
   vec3 hip(const LegBuild& leg) const noexcept { return position_m + rotation * leg.model.hip_m; }
 };
 // The pelvis of this tick, still without the height that the legs ask for.
-Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state) noexcept;
+Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
+                          const StridePlan& plan) noexcept;
 
 // --- walk_terrain.cpp: footholds, and flights over what lies between them ------------------------
 // Height of the plane at a place.
@@ -69,17 +91,17 @@ void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept;
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
 // The foot's pose of this tick, before the reach and the weights act on it.
-void plan_foot(const Tick& tick, WalkState& state, Side side) noexcept;
+void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept;
 // The flying foot as on level ground between its two planes, and the height of that ground.
 struct FlightPoint {
   FootPose pose;
   double base_m = 0.0;
 };
-FlightPoint flight_point(const WalkModel& model, const WalkState& state, Side side, double u,
-                         double pitch_fade_rad) noexcept;
+FlightPoint flight_point(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                         Side side, double u) noexcept;
 // Height of the heel over the plane that the foot is planned on.
 double heel_height(const FootState& foot) noexcept;
-// Lets a standing foot rise on its toe as far as the hips ask for it.
+// Lets a standing foot rise on its toe where its leg would be too short.
 void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
                     const vec3& hip_m) noexcept;
 // Turns a foot about its pivot: the toe in support, else the heel.
@@ -90,9 +112,7 @@ double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noe
 void remember_foot(FootState& foot) noexcept;
 void begin_support(FootState& foot, const LegAngles& even_rad) noexcept;
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
-void begin_roll(WalkState& state, Side side) noexcept;
-// The planned pitch begins where the foot is, and fades to the plan.
-void hold_pitch(const WalkModel& model, WalkState& state, Side side, int ticks) noexcept;
+void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept;
 
 // --- upper_body.cpp: what is above the hips ------------------------------------------------------
 // Smooths the parameters of the upper body. In paper mode the pace does not act on the arms: the
@@ -105,7 +125,7 @@ void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose)
 
 // --- walk_legs.cpp: inverse kinematics -----------------------------------------------------------
 // Solves one leg: its angles go to `state`, what the solver took to state.frame.
-void pose_leg(const Tick& tick, IkMode mode, Side side, const Pelvis& pelvis,
-              WalkState& state) noexcept;
+void pose_leg(const Tick& tick, IkMode mode, Side side, const StridePlan& plan,
+              const Pelvis& pelvis, WalkState& state) noexcept;
 
 }  // namespace gaitpad

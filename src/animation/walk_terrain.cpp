@@ -449,8 +449,11 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
   Flight flight;
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
+    const double phase = state.stage_phase + u * (stage_end_phase(model, state) - state.stage_phase);
+    const double share = (state.roll_ticks + u * state.flight_ticks) /
+                         (state.roll_ticks + state.flight_ticks);
     flight.point[i] =
-        flight_point(model, state, side, u, foot.pitch_fade.at(u * state.stage_ticks));
+        flight_point(model, state, stride_plan(model, state, phase, share), side, u);
     flight.sole[i] = sole_of(model.leg[side], flight.point[i].pose);
     flight.left[i] = state.landing_m.z - flight.point[i].pose.heel_m.z;
   }

@@ -66,6 +66,11 @@ inline double smoothstep(double a, double b, double x) noexcept {
   const double u = std::clamp((x - a) / (b - a), 0.0, 1.0);
   return u * u * (3.0 - 2.0 * u);
 }
+// The same with zero curvature at both ends, too (quintic), from 0 to 1.
+inline double smootherstep(double x) noexcept {
+  const double u = std::clamp(x, 0.0, 1.0);
+  return u * u * u * (10.0 + u * (6.0 * u - 15.0));
+}
 inline double mix(double a, double b, double t) noexcept { return a + (b - a) * t; }
 
 }  // namespace gaitpad

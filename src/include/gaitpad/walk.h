@@ -70,6 +70,7 @@ struct FootPose {
   quat tilt = kIdentity;         // from level ground to the foot's own
   double yaw_rad = 0.0;          // about the vertical; 0 as in the standing pose at heading 0
   double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
+  double roll_rad = 0.0;         // about the heel-toe line
   double toe_rad = 0.0;          // of the toe joint, toe end down positive
 };
 
@@ -89,12 +90,12 @@ struct FootState {
   vec3 heel_anchor_m{0.0}, toe_anchor_m{0.0};  // where they were planted last
   std::array<vec3, 2> last_heel_m{};           // one and two ticks ago
   std::array<double, 2> last_pitch_rad{};
-  Fade pitch_fade;                                 // over the running mode, argument in ticks
-  int mode_ticks = 0;                              // since the mode began
-  double planned_rad = 0.0;                        // pitch in support, as the data have it
-  std::array<double, 2> reach_rad{};               // pitch beyond the plan, one and two ticks ago
-  vec3 lift_m{0.0}, lift_slope_m{0.0};             // heel at lift-off and its slope per flight
-  double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // and its slope per flight
+  Fade pitch_fade;     // over the running mode, argument in ticks
+  int mode_ticks = 0;  // since the mode began
+  vec3 lift_m{0.0};    // heel at lift-off
+  // What the heel's place at lift-off differs by from the tables', and its slope per flight.
+  vec3 gap_m{0.0}, gap_slope_m{0.0};
+  double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // yaw at lift-off and its slope per flight
   LegAngles anchor_rad{};      // even pose when the mode began: stiff joints stay near it
   FootPlane plane;             // that it stands on or stood on last
   double base_m = 0.0;         // height of the ground that the pose is planned over
@@ -141,6 +142,7 @@ struct WalkState {
   double slowness = 1.0;                 // factor on the running step's times on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
+  double ratio_behind = 0.0;             // of the step before: the stride ratio at the last strike
   // Smoothed parameters.
   std::array<Damped<double>, 2> length_m, flight_height;
   std::array<double, 2> time_s{};

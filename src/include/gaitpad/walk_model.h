@@ -14,6 +14,7 @@
 #include "gaitpad/ik.h"
 #include "gaitpad/limbs.h"
 #include "gaitpad/result.h"
+#include "gaitpad/stride_family.h"
 #include "gaitpad/terrain.h"
 
 namespace gaitpad {
@@ -105,6 +106,8 @@ struct LegBuild {
 struct WalkModel {
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
   GaitCycle cycle;  // the data; its skeleton and legs have the character's lengths
+  StrideFamily strides;  // in the character's lengths
+  std::array<double, 2> own_step_m{};  // by Side: the data's steps on this character
   std::array<LegBuild, 2> leg;
   double size = 1.0;        // leg length over kReferenceLeg_m
   double time_scale = 1.0;  // factor on the adult's times
@@ -127,7 +130,8 @@ struct WalkModel {
 // Retargets by the ratio of the leg lengths: lengths grow with the leg, times with the fourth root
 // of its ratio to the adult's. Error `NAME: cause` for a character that brings a skeleton of its
 // own and for a leg with more than kMaxBetween twist joints between two of its joints.
-Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
+Result<WalkModel> walk_model(const GaitCycle& cycle, const StrideFamily& strides,
+                             const Character& character);
 
 // The factor by which a terrain has to grow for this walker: 1 where it fits. Where the sole and
 // some room do not fit on the shortest tread, the ground grows by the ratio of the leg to the

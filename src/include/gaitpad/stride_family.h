@@ -1,0 +1,76 @@
+// A family of clean strides: what a walk reads while it runs. For each of several stride lengths it
+// holds one periodic stride in which heel and toe stand exactly where Table I of the paper
+// (Meredith & Maddock 2005) plants them, and the joints are as near to the captured ones as that
+// allows. gaitpad/clean_strides.h makes a family from a gait cycle.
+//
+// Strides are told apart by their *ratio*: their length over the data's. Phases count as in a
+// GaitCycle. Places are in the travel frame of the stride (x to the left, y up, z ahead), which
+// advances by stride_m in a phase of 1: where a place stands along the walk's path is its z plus
+// phase * stride_m.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "gaitpad/gait_cycle.h"
+
+namespace gaitpad {
+
+inline constexpr int kStrideRatios = 8;
+inline constexpr double kRatioStep = 0.2;  // ratios 0, 0.2 .. 1.4; 1 is the data's own stride
+inline constexpr double kMostRatio = kRatioStep * (kStrideRatios - 1);
+
+struct StrideFoot {
+  vec3 heel_m{0.0};
+  // The foot's rotation from flat and straight ahead: about the vertical, then of the heel-toe line
+  // (toe down positive), then about that line.
+  double yaw_rad = 0.0, pitch_rad = 0.0, roll_rad = 0.0;
+};
+
+// A stride at one phase. What is 0 when standing is 0 here, too: the pelvis' place counts from the
+// standing pelvis over the path, and angles from the standing pose's.
+struct StrideCell {
+  vec3 pelvis_m{0.0};
+  double pelvis_yaw_rad = 0.0;
+  vec3 pelvis_tilt{0.0};  // the rest of its rotation, as a rotation vector
+  std::array<StrideFoot, 2> foot;
+  std::array<LegAngles, 2> leg_rad{};
+};
+
+// One stride length. All of it may be added and scaled, number by number.
+struct StrideTable {
+  double stride_m = 0.0;
+  // Where the heels stand along the path: the left foot's after its strike near phase 0.5, the
+  // right foot's after phase 0.
+  std::array<vec3, 2> footprint_m{};
+  std::array<StrideCell, kCycleSamples> cell{};
+};
+
+struct StrideFamily {
+  double stand_m = 0.0;              // the pelvis' height when standing,
+  double lead_m = 0.0;               // how far it is before the heels,
+  std::array<LegAngles, 2> stand_rad{};  // and the legs' angles
+  std::vector<StrideTable> table;    // kStrideRatios
+};
+
+// A stride at one phase and ratio.
+struct StridePlace {
+  double stride_m = 0.0;
+  std::array<vec3, 2> footprint_m{};
+  StrideCell cell;
+};
+StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
+// Cubic in phase and in ratio; the ratio is clamped to the family's. No heap.
+StridePlace stride_at(const StrideFamily& family, double phase, double ratio) noexcept;
+
+// The share of the cycle's time that the roll of a foot (Table I (b)) takes in strides of this
+// ratio, from its share in the data: double support is longer in short steps.
+double roll_time_share(double data_share, double ratio) noexcept;
+
+// A phase that runs through the four stages of a cycle, each in its own time, with a smooth rate:
+// cubic in each stage, and at a border between two the mean of their rates.
+struct StageClock {
+  std::array<double, 4> phase_share{}, time_share{};  // roll right, flight left, roll left, flight right
+  double phase_at(double time) const noexcept;  // both in cycles
+};
+
+}  // namespace gaitpad

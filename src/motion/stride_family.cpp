@@ -1,0 +1,84 @@
+#include "gaitpad/stride_family.h"
+
+namespace gaitpad {
+namespace {
+
+// Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
+// a fifth at a brisk one.
+constexpr double kLongerRoll = 0.75;  // a roll's share grows by this for a stride of length 0
+constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
+
+// Catmull-Rom weights of four neighbours.
+std::array<double, 4> cubic(double t) noexcept {
+  return {0.5 * t * (-1.0 + t * (2.0 - t)), 1.0 + 0.5 * t * t * (3.0 * t - 5.0),
+          0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
+}
+
+constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
+static_assert(sizeof(StrideCell) == 33 * sizeof(double));
+
+void add(StrideCell& sum, const StrideCell& cell, double weight) noexcept {
+  double* to = &sum.pelvis_m.x;
+  const double* from = &cell.pelvis_m.x;
+  for (int k = 0; k < kNumbers; ++k) to[k] += weight * from[k];
+}
+
+}  // namespace
+
+StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
+                 double share_b) noexcept {
+  StrideCell sum;
+  add(sum, a, share_a);
+  add(sum, b, share_b);
+  return sum;
+}
+
+StridePlace stride_at(const StrideFamily& family, double phase, double ratio) noexcept {
+  const double x = (phase - std::floor(phase)) * kCycleSamples;
+  const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
+  const double y = std::clamp(ratio / kRatioStep, 0.0, double(kStrideRatios - 1));
+  const int r = std::min(static_cast<int>(y), kStrideRatios - 2);
+  const std::array<double, 4> by_phase = cubic(x - i);
+  std::array<double, 4> by_ratio = cubic(y - r);
+  // Beyond the ends the tables go on straight.
+  if (r == 0) by_ratio[1] += 2.0 * by_ratio[0], by_ratio[2] -= by_ratio[0], by_ratio[0] = 0.0;
+  if (r == kStrideRatios - 2) {
+    by_ratio[2] += 2.0 * by_ratio[3], by_ratio[1] -= by_ratio[3], by_ratio[3] = 0.0;
+  }
+  StridePlace place;
+  for (int n = 0; n < 4; ++n) {
+    if (by_ratio[n] == 0.0) continue;
+    const StrideTable& table = family.table[r + n - 1];
+    place.stride_m += by_ratio[n] * table.stride_m;
+    for (int side : {0, 1}) place.footprint_m[side] += table.footprint_m[side] * by_ratio[n];
+    for (int m = 0; m < 4; ++m) {
+      const int k = (i + m - 1 + kCycleSamples) % kCycleSamples;
+      add(place.cell, table.cell[k], by_ratio[n] * by_phase[m]);
+    }
+  }
+  return place;
+}
+
+double roll_time_share(double data_share, double ratio) noexcept {
+  const double share = data_share * (1.0 + kLongerRoll * (1.0 - ratio));
+  return std::clamp(share, std::min(kLeastRoll, data_share), std::max(kMostRoll, data_share));
+}
+
+double StageClock::phase_at(double time) const noexcept {
+  const double turns = std::floor(time);
+  double left = time - turns, begin = 0.0;
+  int stage = 0;
+  while (stage < 3 && left > time_share[stage]) {
+    left -= time_share[stage];
+    begin += phase_share[stage++];
+  }
+  const auto rate = [&](int k) { return phase_share[(k + 4) % 4] / time_share[(k + 4) % 4]; };
+  const double length = time_share[stage], s = left / length;
+  const double v0 = 0.5 * (rate(stage - 1) + rate(stage)) * length,
+               v1 = 0.5 * (rate(stage) + rate(stage + 1)) * length;
+  const double d = phase_share[stage];
+  const double c2 = 3.0 * d - 2.0 * v0 - v1, c3 = v0 + v1 - 2.0 * d;
+  return turns + begin + (v0 + (c2 + c3 * s) * s) * s;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,51 @@
+// A clean stride: the change of a captured stride that lets both feet stand exactly.
+//
+// A captured foot that stands slides by millimetres, and the model's bones are not the actor's. The
+// inverse kinematics could hold the feet tick by tick, but what it changes there it changes without
+// regard to what comes after: the posture of the data is lost. So the whole stride is solved at
+// once: one least-squares problem over all samples of the periodic stride, whose unknowns are the
+// pelvis' place and the angles of both legs. It looks for the least and the smoothest change of the
+// data under which heel and toe stand where Table I of the paper (Meredith & Maddock 2005) plants
+// them, and nothing goes through the floor.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "gaitpad/gait_cycle.h"
+
+namespace gaitpad {
+
+// One sample of the stride that is wanted. Travel frame (see gait_cycle.h).
+struct StrideSample {
+  vec3 pelvis_m{0.0};
+  quat pelvis = kIdentity;  // not changed by the solve
+  std::array<LegAngles, 2> leg{};
+};
+
+// What is asked of a stride. `samples` are evenly spaced in phase; sample 0 is the right strike.
+struct StrideProblem {
+  std::array<LegModel, 2> leg;
+  double stride_m = 0.0;              // travel in the stride
+  std::vector<StrideSample> wanted;   // the data, scaled to this stride
+  std::array<double, 2> strike{};     // phases, as in GaitCycle
+  std::array<double, 2> toe_off{};
+  std::vector<double> time;  // of each sample, in cycles: 0 at sample 0
+  // Where the heel stands along the path: the travel frame is at stride_m * time.
+  std::array<vec3, 2> heel_m{};
+};
+
+class StrideSolver {
+ public:
+  explicit StrideSolver(int samples);
+  ~StrideSolver();
+  // The solution of `problem`, found in `iterations` steps from `start`.
+  std::vector<StrideSample> solve(const StrideProblem& problem, std::vector<StrideSample> start,
+                                  int iterations);
+
+ private:
+  struct System;
+  std::unique_ptr<System> system_;
+};
+
+}  // namespace gaitpad

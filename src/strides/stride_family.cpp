@@ -1,0 +1,227 @@
+#include "gaitpad/clean_strides.h"
+#include "gaitpad/curve.h"
+#include "motion/leg_pose.h"
+#include "strides/clean_stride.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr int kOwn = 5;  // the table of the data's own stride
+constexpr int kFirstSolve = 10, kNextSolve = 5;  // iterations
+constexpr double kLeastStandingKnee = 3.0 * kDegree;
+// What shows of the data's angles in steps of length 0: a foot still has to leave the floor.
+constexpr double kLeastLift = 0.3;
+constexpr double kFlat = 0.2;  // own phase: how long a foot stands flat after its roll
+
+double fraction(double phase) { return phase - std::floor(phase); }
+
+struct Builder {
+  const GaitCycle& cycle;
+  StrideFamily family;
+  std::array<vec3, 2> own_footprint_m{};
+  std::array<double, 4> phase_share{};
+  std::array<LegAngles, 2> mean_rad{};
+  vec3 mean_tilt{0.0};
+  std::array<vec3, kCycleSamples> tilt{};
+  std::array<double, kCycleSamples> yaw{};
+
+  explicit Builder(const GaitCycle& data) : cycle(data) {
+    const double left_off = data.toe_off[0], left = data.strike[0], right_off = data.toe_off[1];
+    phase_share = {left_off, left - left_off, right_off - left, 1.0 - right_off};
+    measure_footprints();
+    measure_standing();
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const CycleSample& sample = data.samples[i];
+      yaw[i] = heading_of(sample.pelvis * kForward);
+      tilt[i] = rotation_vector(rotation_y(-yaw[i]) * sample.pelvis);
+      mean_tilt += tilt[i] / double(kCycleSamples);
+      for (int side : {0, 1}) {
+        for (int j = 0; j < kLegDofs; ++j)
+          mean_rad[side][j] += sample.leg[side].angles[j] / kCycleSamples;
+      }
+    }
+  }
+
+  // Where the heels stand while the feet are flat.
+  void measure_footprints() {
+    for (int side : {0, 1}) {
+      const double roll = fraction(cycle.toe_off[1 - side] - cycle.strike[side]);
+      vec3 sum(0.0);
+      int count = 0;
+      for (int i = 0; i < kCycleSamples; ++i) {
+        const double own = fraction(double(i) / kCycleSamples - cycle.strike[side]);
+        if (own < roll || own > roll + kFlat) continue;
+        const CycleSample& s = cycle.samples[i];
+        sum += leg_pose(cycle.leg[side], s.pelvis_m, s.pelvis, s.leg[side].angles, 0.0).heel_m;
+        sum.z += cycle.stride_m * (cycle.strike[side] + own);
+        ++count;
+      }
+      own_footprint_m[side] = sum / double(count);
+      own_footprint_m[side].y = 0.0;
+    }
+  }
+
+  // The standing knee is as straight as the data's in stance.
+  void measure_standing() {
+    double knee = kPi;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      for (int side : {0, 1}) {
+        const double own = fraction(double(i) / kCycleSamples - cycle.strike[side]);
+        if (own < fraction(cycle.toe_off[side] - cycle.strike[side]))
+          knee = std::min(knee, cycle.samples[i].leg[side].angles[kKneeX]);
+      }
+    }
+    knee = std::max(knee, kLeastStandingKnee);
+    const SinCos s = sin_cos(knee);
+    for (int side : {0, 1}) {
+      const LegModel& leg = cycle.leg[side];
+      const double ahead = leg.shank_m * s.sin, down = leg.thigh_m + leg.shank_m * s.cos;
+      LegAngles& angles = family.stand_rad[side];
+      angles[kHipX] = -gaitpad::atan2(ahead, down);
+      angles[kKneeX] = knee;
+      angles[kAnkleX] = -angles[kHipX] - knee;
+      family.stand_m +=
+          0.5 * (std::sqrt(ahead * ahead + down * down) - leg.heel_m.y - leg.hip_m.y);
+      family.lead_m += 0.5 * (-leg.heel_m.z - leg.hip_m.z);
+    }
+  }
+
+  // The data as they would look in a stride of another length.
+  StrideSample scaled(int i, double ratio) const {
+    const CycleSample& data = cycle.samples[i];
+    const double lift = mix(kLeastLift, 1.0, ratio), square = ratio * ratio;
+    StrideSample s;
+    s.pelvis_m = data.pelvis_m;
+    s.pelvis_m.y = mix(family.stand_m, data.pelvis_m.y, square);
+    s.pelvis_m.z *= ratio;
+    s.pelvis = rotation_y(ratio * yaw[i]) *
+               from_rotation_vector(mean_tilt * std::min(1.0, 2.0 * ratio) +
+                                    (tilt[i] - mean_tilt) * ratio);
+    for (int side : {0, 1}) {
+      const LegAngles &all = data.leg[side].angles, &stand = family.stand_rad[side],
+                      &mean = mean_rad[side];
+      LegAngles& a = s.leg[side];
+      for (int j = 0; j < kLegDofs; ++j) a[j] = mean[j] + ratio * (all[j] - mean[j]);
+      for (int j : {kKneeX, kAnkleX}) a[j] = stand[j] + lift * (all[j] - stand[j]);
+      // In short steps the thigh lifts the foot straight up.
+      a[kHipX] = stand[kHipX] + ratio * (all[kHipX] - stand[kHipX]) -
+                 0.5 * (lift - ratio) * (all[kKneeX] - stand[kKneeX]);
+    }
+    return s;
+  }
+
+  vec3 footprint(int side, double ratio) const {
+    vec3 p = own_footprint_m[side];
+    p.z = -family.lead_m + ratio * (p.z + family.lead_m);
+    return p;
+  }
+
+  StageClock clock(double ratio) const {
+    StageClock c;
+    c.phase_share = phase_share;
+    for (int first : {0, 2}) {
+      const double half = phase_share[first] + phase_share[first + 1];
+      c.time_share[first] = roll_time_share(phase_share[first], ratio);
+      c.time_share[first + 1] = half - c.time_share[first];
+    }
+    return c;
+  }
+
+  StrideProblem problem(double ratio) const {
+    StrideProblem p;
+    p.leg = cycle.leg;
+    p.stride_m = ratio * cycle.stride_m;
+    p.strike = cycle.strike;
+    p.toe_off = cycle.toe_off;
+    const StageClock stages = clock(ratio);
+    for (int i = 0; i < kCycleSamples; ++i) {
+      p.wanted.push_back(scaled(i, ratio));
+      // The time of this phase, by bisection.
+      const double phase = double(i) / kCycleSamples;
+      double low = 0.0, high = 1.0;
+      for (int n = 0; n < 50; ++n) {
+        const double middle = 0.5 * (low + high);
+        (stages.phase_at(middle) < phase ? low : high) = middle;
+      }
+      p.time.push_back(0.5 * (low + high));
+    }
+    for (int side : {0, 1}) p.heel_m[side] = footprint(side, ratio);
+    return p;
+  }
+
+  StrideTable table_of(const StrideProblem& p, const std::vector<StrideSample>& solved,
+                       double ratio) const {
+    StrideTable table;
+    table.stride_m = p.stride_m;
+    table.footprint_m = p.heel_m;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const StrideSample& s = solved[i];
+      StrideCell& cell = table.cell[i];
+      const double travel = p.stride_m * (p.time[i] - double(i) / kCycleSamples);
+      cell.pelvis_m = s.pelvis_m + vec3(0.0, -family.stand_m, travel);
+      cell.pelvis_yaw_rad = ratio * yaw[i];
+      cell.pelvis_tilt =
+          mean_tilt * std::min(1.0, 2.0 * ratio) + (tilt[i] - mean_tilt) * ratio;
+      for (int side : {0, 1}) {
+        const LegModel& leg = cycle.leg[side];
+        const LegPose pose = leg_pose(leg, s.pelvis_m, s.pelvis, s.leg[side], 0.0);
+        StrideFoot& foot = cell.foot[side];
+        foot.heel_m = pose.heel_m + vec3(0.0, 0.0, travel);
+        set_rotation(leg, pose.foot, foot);
+        for (int j = 0; j < kLegDofs; ++j)
+          cell.leg_rad[side][j] = s.leg[side][j] - family.stand_rad[side][j];
+      }
+    }
+    return table;
+  }
+
+  // foot = Ry(yaw) R(across, pitch) R(along, roll), `across` and `along` as in LegBuild.
+  static void set_rotation(const LegModel& leg, const quat& rotation, StrideFoot& foot) {
+    const vec3 line = leg.toe_m - leg.heel_m;
+    const vec3 ahead = glm::normalize(vec3(line.x, 0.0, line.z)), across = glm::cross(kUp, ahead);
+    const vec3 now = rotation * line;
+    foot.yaw_rad = wrapped(heading_of(now) - heading_of(ahead));
+    const double rest = gaitpad::atan2(line.y, horizontal_length(line));
+    foot.pitch_rad = rest - gaitpad::atan2(now.y, horizontal_length(now));
+    const quat level = rotation_y(foot.yaw_rad) * rotation_about(across, foot.pitch_rad);
+    const vec3 beside = glm::conjugate(level) * (rotation * across);
+    const vec3 up = glm::cross(glm::normalize(line), across);
+    foot.roll_rad = gaitpad::atan2(glm::dot(beside, up), glm::dot(beside, across));
+  }
+
+  void solve() {
+    StrideSolver solver(kCycleSamples);
+    family.table.resize(kStrideRatios);
+    const StrideProblem own = problem(1.0);
+    const std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
+    family.table[kOwn] = table_of(own, clean, 1.0);
+    for (int step : {-1, 1}) {
+      std::vector<StrideSample> start = clean;
+      StrideProblem before = own;
+      for (int k = kOwn + step; k >= 0 && k < kStrideRatios; k += step) {
+        StrideProblem p = problem(k * kRatioStep);
+        // The neighbour's change of its own data.
+        for (int i = 0; i < kCycleSamples; ++i) {
+          start[i].pelvis_m += p.wanted[i].pelvis_m - before.wanted[i].pelvis_m;
+          start[i].pelvis = p.wanted[i].pelvis;
+          for (int side : {0, 1})
+            for (int j = 0; j < kLegDofs; ++j)
+              start[i].leg[side][j] += p.wanted[i].leg[side][j] - before.wanted[i].leg[side][j];
+        }
+        start = solver.solve(p, std::move(start), kNextSolve);
+        family.table[k] = table_of(p, start, k * kRatioStep);
+        before = std::move(p);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+StrideFamily stride_family(const GaitCycle& cycle) {
+  Builder builder(cycle);
+  builder.solve();
+  return std::move(builder.family);
+}
+
+}  // namespace gaitpad

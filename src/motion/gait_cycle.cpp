@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/text.h"
 #include "motion/captured_cycle.h"
 #include "motion/gait_events.h"
 #include "motion/leg_pose.h"
@@ -82,10 +83,11 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
-constexpr double kBackwards = 0.5;     // cosine between hips' front and travel
-constexpr double kMostFlight = 0.02;   // of the stride with both feet in the air: else it is a run
-constexpr double kStill_legs_s = 0.6;  // 0.5 m/s of an adult's leg
-constexpr double kInAir_legs = 0.012;  // 10 mm of an adult's leg, more than a standing foot moves
+constexpr double kBackwards = 0.5;    // cosine between hips' front and travel
+constexpr double kMostFlight = 0.02;  // of the stride with both feet in the air: else it is a run
+constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits have half of it
+constexpr double kStill_legs_s = 0.6;     // 0.5 m/s of an adult's leg
+constexpr double kInAir_legs = 0.024;  // 20 mm of an adult's leg: captured floors are that uneven
 
 // A foot point's track over the samples, in the travel frame.
 std::vector<vec3> foot_track(const GaitCycle& cycle, int side, const vec3 LegPose::*point) {
@@ -158,9 +160,23 @@ double flight_share(const CapturedCycle& captured, const GaitCycle& cycle) {
   return double(std::ranges::count(in_air, 2)) / kCycleSamples;
 }
 
+// How far the toe goes from where its foot stands flat until it is off.
+double slide_m(const CapturedCycle& captured, const GaitCycle& cycle, Side side) {
+  const std::vector<vec3> toe = foot_track(cycle, side, &LegPose::toe_m);
+  const int flat = flat_foot(captured, side).middle;
+  const double stood = fraction(cycle.toe_off[side] - double(flat) / kCycleSamples);
+  const int off = wrapped_index(flat + static_cast<int>(stood * kCycleSamples));
+  return horizontal_length(toe[off] - toe[flat] + kForward * (stood * cycle.stride_m));
+}
+
 // The end of an error sentence; empty if it is a walk.
-std::string why_no_walk(const GaitCycle& cycle) {
+std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
+    const double slides_m = slide_m(captured, cycle, side);
+    if (slides_m > kMostSlide_legs * mean_leg_m(cycle)) {
+      return std::string("holds no walk: the ") + (side == kLeftSide ? "left" : "right") +
+             " foot slides " + fixed(slides_m, 2) + " m while it should stand";
+    }
     if (!(cycle.step_m[side] > 0.0)) return "holds no walk: one foot never passes the other";
   }
   const vec3 across = cycle.leg[kLeftSide].hip_m - cycle.leg[kRightSide].hip_m;
@@ -209,7 +225,7 @@ Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
     cycle.toe_off[side] = fraction(events->toe_off[side] - shift);
   }
   measure_steps(second->captured, cycle);
-  const std::string reason = why_no_walk(cycle);
+  const std::string reason = why_no_walk(second->captured, cycle);
   if (!reason.empty()) return Error{reason};
   return std::move(cycle);
 }

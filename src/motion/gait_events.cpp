@@ -143,7 +143,14 @@ struct Run {
   int range;
   int first, last;
   int rest_first, rest_last;  // of the samples before and after it in which the foot rests
+  double from, to;            // where the speed passes the limit
 };
+
+// Where the speed passes the limit between two neighbouring indices.
+double crossing(const std::vector<double>& speed, int a, int b, double limit) {
+  const double rise = speed[b] - speed[a];
+  return rise == 0.0 ? a : a + (b - a) * std::clamp((limit - speed[a]) / rise, 0.0, 1.0);
+}
 
 std::vector<Run> moving_runs(const std::vector<double>& speed, double limit, double rest_samples,
                              const Run& like) {
@@ -194,10 +201,14 @@ std::vector<Run> swing_runs(const FeetTracks& tracks, double moving_share, doubl
   for (std::size_t k = 0; k < speeds.size(); ++k) {
     const int range = static_cast<int>(k / 2);
     const auto [first, last] = tracks.ranges[range];
-    Run like{k % 2 == 0 ? kLeftSide : kRightSide, range, 0, 0, 0, 0};
+    Run like{k % 2 == 0 ? kLeftSide : kRightSide, range, 0, 0, 0, 0, 0.0, 0.0};
     std::vector<Run> runs =
         moving_runs(speeds[k], limit_m_s, kShortestRest_s / tracks.sample_s, like);
+    const int end = last - first;
     for (Run& run : runs) {
+      if (run.first > 0)
+        run.from = first + crossing(speeds[k], run.first - 1, run.first, limit_m_s);
+      if (run.last < end) run.to = first + crossing(speeds[k], run.last, run.last + 1, limit_m_s);
       run.first += first;
       run.last += first;
     }
@@ -404,8 +415,12 @@ std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share
   }
   std::vector<FootSwing> found;
   for (const Swing& s : all) {
-    found.push_back(
-        {s.run.side, s.run.range, toe_off_of(tracks, s, 1.0), strike_of(tracks, s, 1.0)});
+    FootSwing swing{s.run.side, s.run.range, {}, {}, {}, {}};
+    swing.toe_off = toe_off_of(tracks, s, 1.0);
+    swing.strike = strike_of(tracks, s, 1.0);
+    if (swing.toe_off) swing.moves_from = s.run.from;
+    if (swing.strike) swing.moves_to = s.run.to;
+    found.push_back(swing);
   }
   // A heel strikes before the other toe leaves. Feet that slide get wider limits.
   for (std::size_t i = 0; i < all.size(); ++i) {

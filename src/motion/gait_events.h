@@ -34,8 +34,12 @@ struct FeetTracks {
 // One way of a foot through the air.
 struct FootSwing {
   Side side = kLeftSide;
-  int range = 0;                          // index into FeetTracks::ranges
-  std::optional<double> toe_off, strike;  // samples; none where the range cuts the swing there
+  int range = 0;  // index into FeetTracks::ranges
+  // Samples, between them where need be; none where the range cuts the swing there.
+  std::optional<double> toe_off, strike;
+  // Where the ankle's speed rises and falls through the limit of moving. Two strides agree best in
+  // these, whatever their feet do on the ground.
+  std::optional<double> moves_from, moves_to;
 };
 
 // The tracks of a motion's feet. Heels are where the frames in which the feet stand flat put them:

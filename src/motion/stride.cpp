@@ -13,9 +13,9 @@
 namespace gaitpad {
 namespace {
 
-// A stride is the stretch from one event of a foot (a toe-off or a strike) to the next equal one,
-// with every other event once in between. Among all strides of a motion the best one is most like
-// its own continuation.
+// A stride is the stretch from one event of a foot (it begins or ends to move) to the next equal
+// one, with every other event once in between. Among all strides of a motion the best one is most
+// like its own continuation.
 
 // --- Where pelvis and legs are in every frame ----------------------------------------------------
 
@@ -70,13 +70,13 @@ struct FootEvent {
   Change change;
 };
 
-// Toe-offs and strikes of one range, in time order.
+// All events of one range, in time order.
 std::vector<FootEvent> foot_events(const std::vector<FootSwing>& swings, int range) {
   std::vector<FootEvent> events;
   for (const FootSwing& s : swings) {
     if (s.range != range) continue;
-    if (s.toe_off) events.push_back({*s.toe_off, s.side, Change::lift});
-    if (s.strike) events.push_back({*s.strike, s.side, Change::land});
+    if (s.moves_from) events.push_back({*s.moves_from, s.side, Change::lift});
+    if (s.moves_to) events.push_back({*s.moves_to, s.side, Change::land});
   }
   std::ranges::stable_sort(events, {}, &FootEvent::frame);
   return events;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/text.h"
 #include "motion/captured_cycle.h"
+#include "motion/gait_events.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
@@ -81,10 +83,11 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
-constexpr double kLeavingShare = 0.5;   // of the walk's speed: a faster toe has left the floor
-constexpr double kLandingShare = 0.25;  // of the heel's own fastest: a slower heel has landed
-constexpr double kBackwards = 0.5;      // cosine between hips' front and travel
-constexpr double kMostFlight = 0.02;    // of the stride with both feet in the air: else it is a run
+constexpr double kBackwards = 0.5;    // cosine between hips' front and travel
+constexpr double kMostFlight = 0.02;  // of the stride with both feet in the air: else it is a run
+constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits have half of it
+constexpr double kStill_legs_s = 0.6;     // 0.5 m/s of an adult's leg
+constexpr double kInAir_legs = 0.024;  // 20 mm of an adult's leg: captured floors are that uneven
 
 // A foot point's track over the samples, in the travel frame.
 std::vector<vec3> foot_track(const GaitCycle& cycle, int side, const vec3 LegPose::*point) {
@@ -97,32 +100,25 @@ std::vector<vec3> foot_track(const GaitCycle& cycle, int side, const vec3 LegPos
   return track;
 }
 
-// From sample `from` in steps of +-1 to where the speed falls below the limit, as a phase.
-double slow_phase(const std::vector<double>& speed, int from, int step, double limit) {
-  for (int n = 0; n < kCycleSamples; ++n) {
-    const double here = speed[wrapped_index(from)], next = speed[wrapped_index(from + step)];
-    if (next < limit) {
-      return (from + step * (here > next ? (here - limit) / (here - next) : 1.0)) / kCycleSamples;
-    }
-    from += step;
-  }
-  return double(from) / kCycleSamples;
-}
-
 double fraction(double phase) { return phase - std::floor(phase); }
 
-void find_events(const CapturedCycle& captured, GaitCycle& cycle) {
-  const double walk_m_s = cycle.stride_m / cycle.duration_s;
+// The feet over the ground.
+FeetTracks feet_tracks(const GaitCycle& cycle) {
+  FeetTracks tracks;
+  tracks.sample_s = cycle.duration_s / kCycleSamples;
+  tracks.leg_m = mean_leg_m(cycle);
   for (int side = 0; side < 2; ++side) {
-    const auto heel = ground_speed(captured, foot_track(cycle, side, &LegPose::heel_m));
-    const auto toe = ground_speed(captured, foot_track(cycle, side, &LegPose::toe_m));
-    const auto heel_peak = std::ranges::max_element(heel);
-    const auto toe_peak = std::ranges::max_element(toe);
-    cycle.strike[side] = fraction(slow_phase(heel, static_cast<int>(heel_peak - heel.begin()), 1,
-                                             kLandingShare * *heel_peak));
-    cycle.toe_off[side] = fraction(
-        slow_phase(toe, static_cast<int>(toe_peak - toe.begin()), -1, kLeavingShare * walk_m_s));
+    FootTrack& foot = tracks.foot[side];
+    foot.ankle_m = foot_track(cycle, side, &LegPose::ankle_m);
+    foot.heel_m = foot_track(cycle, side, &LegPose::heel_m);
+    foot.toe_m = foot_track(cycle, side, &LegPose::toe_m);
+    for (std::vector<vec3>* points : {&foot.ankle_m, &foot.heel_m, &foot.toe_m}) {
+      for (int i = 0; i < kCycleSamples; ++i) {
+        (*points)[i] += kForward * (cycle.stride_m * i / kCycleSamples);
+      }
+    }
   }
+  return tracks;
 }
 
 // Steps and tracks follow from where the heels are while the feet stand flat.
@@ -141,11 +137,46 @@ void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
   cycle.step_m[kRightSide] = cycle.stride_m - cycle.step_m[kLeftSide];
 }
 
+// How much of the stride both feet are in the air: all of the foot higher than where it stands, and
+// no point of it still (captured feet may stand on an uneven floor).
+double flight_share(const CapturedCycle& captured, const GaitCycle& cycle) {
+  const double air_m = kInAir_legs * mean_leg_m(cycle),
+               still_m_s = kStill_legs_s * mean_leg_m(cycle);
+  std::array<int, kCycleSamples> in_air{};
+  for (int side = 0; side < 2; ++side) {
+    const int flat = flat_foot(captured, side).middle;
+    std::array<bool, kCycleSamples> flies;
+    flies.fill(true);
+    for (const auto point : {&LegPose::heel_m, &LegPose::toe_m, &LegPose::toe_end_m}) {
+      const std::vector<vec3> track = foot_track(cycle, side, point);
+      const std::vector<double> speed = ground_speed(captured, track);
+      const double standing_m = mean_around(track, flat, FlatFoot::reach).y;
+      for (int i = 0; i < kCycleSamples; ++i) {
+        flies[i] = flies[i] && track[i].y - standing_m > air_m && speed[i] > still_m_s;
+      }
+    }
+    for (int i = 0; i < kCycleSamples; ++i) in_air[i] += flies[i];
+  }
+  return double(std::ranges::count(in_air, 2)) / kCycleSamples;
+}
+
+// How far the toe goes from where its foot stands flat until it is off.
+double slide_m(const CapturedCycle& captured, const GaitCycle& cycle, Side side) {
+  const std::vector<vec3> toe = foot_track(cycle, side, &LegPose::toe_m);
+  const int flat = flat_foot(captured, side).middle;
+  const double stood = fraction(cycle.toe_off[side] - double(flat) / kCycleSamples);
+  const int off = wrapped_index(flat + static_cast<int>(stood * kCycleSamples));
+  return horizontal_length(toe[off] - toe[flat] + kForward * (stood * cycle.stride_m));
+}
+
 // The end of an error sentence; empty if it is a walk.
-std::string why_no_walk(const GaitCycle& cycle) {
+std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
-    const double overlap = fraction(cycle.toe_off[side] - cycle.strike[other(side)] + 0.5) - 0.5;
-    if (overlap < -kMostFlight) return "holds no walk: both feet leave the floor, it is a run";
+    const double slides_m = slide_m(captured, cycle, side);
+    if (slides_m > kMostSlide_legs * mean_leg_m(cycle)) {
+      return std::string("holds no walk: the ") + (side == kLeftSide ? "left" : "right") +
+             " foot slides " + fixed(slides_m, 2) + " m while it should stand";
+    }
     if (!(cycle.step_m[side] > 0.0)) return "holds no walk: one foot never passes the other";
   }
   const vec3 across = cycle.leg[kLeftSide].hip_m - cycle.leg[kRightSide].hip_m;
@@ -155,7 +186,7 @@ std::string why_no_walk(const GaitCycle& cycle) {
   return "";
 }
 
-// The cycle from phase `shift` of the periodic stride on, with its events but not yet its steps.
+// The cycle from phase `shift` of the periodic stride on, without its events and steps.
 struct Build {
   CapturedCycle captured;
   GaitCycle cycle;
@@ -170,7 +201,6 @@ Result<Build> built(const Motion& motion, const PeriodicMotion& periodic, double
   const Result<double> floor_m = build_standing(b.captured, b.cycle);
   if (!floor_m) return floor_m.error();
   build_samples(b.captured, *floor_m, b.cycle);
-  find_events(b.captured, b.cycle);
   return b;
 }
 
@@ -180,12 +210,22 @@ Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   const PeriodicMotion periodic = periodic_motion(motion, window);
   const Result<Build> first = built(motion, periodic, 0.0);
   if (!first) return first.error();
-  Result<Build> second = built(motion, periodic, first->cycle.strike[kRightSide]);
+  if (flight_share(first->captured, first->cycle) > kMostFlight) {
+    return Error{"holds no walk: both feet leave the floor, it is a run"};
+  }
+  const vec3 travel_m = kForward * first->cycle.stride_m;
+  const auto events = stride_events(feet_tracks(first->cycle), travel_m);
+  if (!events) return events.error();
+  const double shift = events->strike[kRightSide];
+  Result<Build> second = built(motion, periodic, shift);
   if (!second) return second.error();
   GaitCycle& cycle = second->cycle;
-  cycle.strike[kRightSide] = 0.0;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    cycle.strike[side] = fraction(events->strike[side] - shift);
+    cycle.toe_off[side] = fraction(events->toe_off[side] - shift);
+  }
   measure_steps(second->captured, cycle);
-  const std::string reason = why_no_walk(cycle);
+  const std::string reason = why_no_walk(second->captured, cycle);
   if (!reason.empty()) return Error{reason};
   return std::move(cycle);
 }

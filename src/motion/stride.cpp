@@ -8,18 +8,16 @@
 
 #include "base/numeric.h"
 #include "base/text.h"
+#include "motion/gait_events.h"
 
 namespace gaitpad {
 namespace {
 
-// A stride is the stretch from one event of a foot (a lift or a landing) to the next equal one,
-// with every other event once in between. Events are where the ankle's horizontal speed crosses a
-// limit. Among all strides of a motion the best one is most like its own continuation.
+// A stride is the stretch from one event of a foot (it begins or ends to move) to the next equal
+// one, with every other event once in between. Among all strides of a motion the best one is most
+// like its own continuation.
 
 // --- Where pelvis and legs are in every frame ----------------------------------------------------
-
-// No foot is faster than a sprinter's: a faster one has jumped to another take.
-constexpr double kFastest_legs_s = 14.0;
 
 struct LegTrack {
   std::vector<vec3> hip_m, knee_m, ankle_m, toe_m;
@@ -62,73 +60,8 @@ WalkTrack walk_track(const Motion& motion) {
   return track;
 }
 
-// Frames [first, last] without a jump.
-struct FrameRange {
-  int first, last;
-};
-std::vector<FrameRange> unbroken_ranges(const WalkTrack& track, double frame_time_s) {
-  const double most_m = kFastest_legs_s * track.leg_m * frame_time_s;
-  const int frames = static_cast<int>(track.pelvis_m.size());
-  const auto moves_far = [&](const std::vector<vec3>& p, int f) {
-    return !(glm::distance(p[f], p[f - 1]) <= most_m);
-  };
-  std::vector<FrameRange> ranges;
-  int first = 0;
-  for (int f = 1; f <= frames; ++f) {
-    const bool breaks = f == frames || moves_far(track.pelvis_m, f) ||
-                        moves_far(track.leg[0].ankle_m, f) || moves_far(track.leg[1].ankle_m, f);
-    if (!breaks) continue;
-    if (f - first >= 2) ranges.push_back({first, f - 1});
-    first = f;
-  }
-  return ranges;
-}
-
-// --- Lifts and landings --------------------------------------------------------------------------
-
-// Shares of the fast speed: a foot above them is in the air. The second one is tried where the
-// first finds nothing, for slow steps in a motion that also has quick ones.
-constexpr std::array<double, 2> kMovingShares = {0.30, 0.18};
-constexpr double kSmoothing_s = 0.04;  // half the width of the window over the ankle's track
-constexpr double kShortestRest_s = 0.06;
-constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
-constexpr double kShortestSwing_legs = 0.25, kLongestSwing_legs = 2.6;
-constexpr double kLongestStride_s = 4.0;
-constexpr double kShortestStride_legs = 0.4;
-constexpr double kSlowest_legs_s = 0.12;
-constexpr double kSharpestTurn_rad = 60.0 * kDegree;
-constexpr double kLoop_legs = 0.12;  // mean distance of first and last pose in a looping clip
-
-// Running mean over a raised cosine, cut off at the range's ends.
-std::vector<vec3> smoothed(const std::vector<vec3>& p, const FrameRange& range,
-                           double half_frames) {
-  const int reach = static_cast<int>(half_frames);
-  std::vector<vec3> out;
-  for (int f = range.first; f <= range.last; ++f) {
-    const int n = std::min({reach, f - range.first, range.last - f});
-    vec3 sum(0.0);
-    double weight = 0.0;
-    for (int k = -n; k <= n; ++k) {
-      const double w = 1.0 + sin_cos(kPi * k / (half_frames + 1.0)).cos;
-      sum += p[f + k] * w;
-      weight += w;
-    }
-    out.push_back(sum / weight);
-  }
-  return out;
-}
-
-// Horizontal speed of each frame of the range.
-std::vector<double> speeds(const std::vector<vec3>& p, const FrameRange& range, double frame_s) {
-  const std::vector<vec3> track = smoothed(p, range, kSmoothing_s / frame_s);
-  const int n = static_cast<int>(track.size());
-  std::vector<double> speed(n);
-  for (int i = 0; i < n; ++i) {
-    const int a = std::max(i - 1, 0), b = std::min(i + 1, n - 1);
-    speed[i] = horizontal_length(track[b] - track[a]) / ((b - a) * frame_s);
-  }
-  return speed;
-}
+// --- Events
+// -------------------------------------------------------------------------------------------------
 
 enum class Change { lift, land };
 struct FootEvent {
@@ -137,77 +70,16 @@ struct FootEvent {
   Change change;
 };
 
-struct MovingRun {
-  int first, last;  // indices into the range
-};
-std::vector<MovingRun> moving_runs(const std::vector<double>& speed, double limit,
-                                   double rest_frames) {
-  std::vector<MovingRun> runs;
-  for (int i = 0; i < static_cast<int>(speed.size()); ++i) {
-    if (!(speed[i] > limit)) continue;
-    if (!runs.empty() && i - runs.back().last - 1 < rest_frames) {
-      runs.back().last = i;
-    } else {
-      runs.push_back({i, i});
-    }
-  }
-  return runs;
-}
-
-// Where the speed crosses the limit between two neighbouring indices.
-double crossing(const std::vector<double>& speed, int a, int b, double limit) {
-  const double rise = speed[b] - speed[a];
-  return rise == 0.0 ? a : a + (b - a) * std::clamp((limit - speed[a]) / rise, 0.0, 1.0);
-}
-
-bool is_swing(const WalkTrack& track, const std::vector<vec3>& ankle, const MovingRun& run,
-              int offset, double frame_s) {
-  const double time_s = (run.last - run.first + 1) * frame_s;
-  const double legs =
-      horizontal_length(ankle[offset + run.last] - ankle[offset + run.first]) / track.leg_m;
-  return time_s >= kShortestSwing_s && time_s <= kLongestSwing_s && legs >= kShortestSwing_legs &&
-         legs <= kLongestSwing_legs;
-}
-
-// Lifts and landings of one foot. A swing cut by the range's end still gives its one event.
-void add_events(const WalkTrack& track, int side, const FrameRange& range, double limit_m_s,
-                double frame_s, std::vector<FootEvent>& events) {
-  const std::vector<vec3>& ankle = track.leg[side].ankle_m;
-  const std::vector<double> speed = speeds(ankle, range, frame_s);
-  const int last = static_cast<int>(speed.size()) - 1;
-  for (const MovingRun& run : moving_runs(speed, limit_m_s, kShortestRest_s / frame_s)) {
-    const bool is_cut = run.first == 0 || run.last == last;
-    if (!is_cut && !is_swing(track, ankle, run, range.first, frame_s)) continue;
-    if (run.first > 0) {
-      const double lift = crossing(speed, run.first - 1, run.first, limit_m_s);
-      events.push_back({range.first + lift, side, Change::lift});
-    }
-    if (run.last < last) {
-      const double land = crossing(speed, run.last, run.last + 1, limit_m_s);
-      events.push_back({range.first + land, side, Change::land});
-    }
-  }
-}
-
-// Lifts and landings of a range whose feet count as moving above `limit_m_s`, in time order.
-std::vector<FootEvent> foot_events(const WalkTrack& track, const FrameRange& range,
-                                   double limit_m_s, double frame_s) {
+// All events of one range, in time order.
+std::vector<FootEvent> foot_events(const std::vector<FootSwing>& swings, int range) {
   std::vector<FootEvent> events;
-  for (int side = 0; side < 2; ++side) add_events(track, side, range, limit_m_s, frame_s, events);
+  for (const FootSwing& s : swings) {
+    if (s.range != range) continue;
+    if (s.moves_from) events.push_back({*s.moves_from, s.side, Change::lift});
+    if (s.moves_to) events.push_back({*s.moves_to, s.side, Change::land});
+  }
   std::ranges::stable_sort(events, {}, &FootEvent::frame);
   return events;
-}
-
-// The 95th percentile of both ankles' speeds over all ranges.
-double fast_speed(const WalkTrack& track, const std::vector<FrameRange>& ranges, double frame_s) {
-  std::vector<double> all;
-  for (const FrameRange& range : ranges) {
-    for (const LegTrack& leg : track.leg) {
-      const std::vector<double> some = speeds(leg.ankle_m, range, frame_s);
-      all.insert(all.end(), some.begin(), some.end());
-    }
-  }
-  return all.empty() ? 0.0 : percentile(std::move(all), 95);
 }
 
 // --- Strides and how well they close -------------------------------------------------------------
@@ -239,7 +111,7 @@ double pose_distance(const WalkTrack& track, double a, double b) {
 
 // How badly a stride closes: the distance of its first pose to its last one. The poses a twentieth
 // of the stride before and after count too, so that velocities have to agree as well.
-double seam(const WalkTrack& track, const FrameRange& range, double start, double period) {
+double seam(const WalkTrack& track, const SampleRange& range, double start, double period) {
   double sum = 0.0, weight = 0.0;
   for (const double off : {-0.05 * period, 0.0, 0.05 * period}) {
     if (start + off < range.first || start + period + off > range.last) continue;
@@ -248,6 +120,11 @@ double seam(const WalkTrack& track, const FrameRange& range, double start, doubl
   }
   return weight > 0.0 ? sum / weight : 1.0;
 }
+
+constexpr double kLongestStride_s = 4.0;
+constexpr double kShortestStride_legs = 0.2;  // a shuffle's two steps
+constexpr double kSlowest_legs_s = 0.12;
+constexpr double kSharpestTurn_rad = 60.0 * kDegree;
 
 struct Candidate {
   StrideWindow window;
@@ -265,7 +142,7 @@ bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size
 }
 
 // The period within 4 % of the events' that makes the seam smallest.
-double best_period(const WalkTrack& track, const FrameRange& range, double start, double period) {
+double best_period(const WalkTrack& track, const SampleRange& range, double start, double period) {
   double best = period, least = seam(track, range, start, period);
   for (int k = -16; k <= 16; ++k) {
     const double tried = period * (1.0 + 0.0025 * k);
@@ -279,7 +156,7 @@ double best_period(const WalkTrack& track, const FrameRange& range, double start
   return best;
 }
 
-std::optional<Candidate> candidate(const WalkTrack& track, const FrameRange& range, double start,
+std::optional<Candidate> candidate(const WalkTrack& track, const SampleRange& range, double start,
                                    double end, double frame_s) {
   Candidate c;
   StrideWindow& w = c.window;
@@ -297,7 +174,7 @@ std::optional<Candidate> candidate(const WalkTrack& track, const FrameRange& ran
 }
 
 // From each event to the next equal one.
-void add_between_events(const WalkTrack& track, const FrameRange& range,
+void add_between_events(const WalkTrack& track, const SampleRange& range,
                         const std::vector<FootEvent>& events, double frame_s,
                         std::vector<Candidate>& found) {
   const auto is_same = [](const FootEvent& a, const FootEvent& b) {
@@ -314,7 +191,7 @@ void add_between_events(const WalkTrack& track, const FrameRange& range,
 
 // A clip of hardly more than one stride may hold no event twice: from each frame to the one most
 // like it, so that each event lies between them once.
-void add_by_pose(const WalkTrack& track, const FrameRange& range,
+void add_by_pose(const WalkTrack& track, const SampleRange& range,
                  const std::vector<FootEvent>& events, double frame_s,
                  std::vector<Candidate>& found) {
   constexpr double kLike_legs = 0.05;
@@ -339,16 +216,15 @@ void add_by_pose(const WalkTrack& track, const FrameRange& range,
   }
 }
 
-std::vector<Candidate> candidates(const Motion& motion, const WalkTrack& track) {
+std::vector<Candidate> candidates(const FeetTracks& feet, const WalkTrack& track) {
   std::vector<Candidate> found;
-  const double frame_s = motion.frame_time_s;
-  const std::vector<FrameRange> ranges = unbroken_ranges(track, frame_s);
-  const double fast_m_s = fast_speed(track, ranges, frame_s);
   for (const auto add : {&add_between_events, &add_by_pose}) {
     for (const double share : kMovingShares) {
       if (!found.empty()) break;
-      for (const FrameRange& range : ranges) {
-        add(track, range, foot_events(track, range, share * fast_m_s, frame_s), frame_s, found);
+      const std::vector<FootSwing> swings = foot_swings(feet, share);
+      for (std::size_t range = 0; range < feet.ranges.size(); ++range) {
+        add(track, feet.ranges[range], foot_events(swings, static_cast<int>(range)), feet.sample_s,
+            found);
       }
     }
   }
@@ -357,10 +233,10 @@ std::vector<Candidate> candidates(const Motion& motion, const WalkTrack& track) 
 
 // The error sentence. Its numbers tell a walk on the spot, or one too short for a stride, from
 // other motions.
-std::string why_no_stride(const WalkTrack& track, double frame_s) {
+std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
   double moved_m = 0.0;
   std::size_t frames = 0;
-  for (const FrameRange& range : unbroken_ranges(track, frame_s)) {
+  for (const SampleRange& range : feet.ranges) {
     frames = std::max(frames, static_cast<std::size_t>(range.last - range.first + 1));
     for (int f = range.first; f <= range.last; ++f) {
       moved_m =
@@ -368,7 +244,7 @@ std::string why_no_stride(const WalkTrack& track, double frame_s) {
     }
   }
   return "holds no full walking stride of both feet: the hips go " + fixed(moved_m, 2) + " m in " +
-         fixed(static_cast<double>(frames) * frame_s, 1) + " s";
+         fixed(static_cast<double>(frames) * feet.sample_s, 1) + " s";
 }
 
 // How much farther one half of the stride goes than the other, as a share of the stride.
@@ -399,6 +275,8 @@ void sort_best_first(const WalkTrack& track, std::vector<Candidate>& all) {
 
 // --- Clips that are one loop ---------------------------------------------------------------------
 
+constexpr double kLoop_legs = 0.12;  // mean distance of first and last pose in a looping clip
+
 // Spreads the difference of the last and the first pose over the clip, so that its last frame is
 // its first one moved on.
 void close_loop(Motion& motion, double turn_rad) {
@@ -422,8 +300,9 @@ Result<std::vector<StrideWindow>> best_strides(const Motion& motion) {
   if (motion.frames.size() < 6) return Error{"has fewer than 6 frames"};
   const WalkTrack track = walk_track(motion);
   if (!(track.leg_m > 0.0) || !(motion.frame_time_s > 0.0)) return Error{"has no legs to walk on"};
-  std::vector<Candidate> all = candidates(motion, track);
-  if (all.empty()) return Error{why_no_stride(track, motion.frame_time_s)};
+  const FeetTracks feet = feet_tracks(motion);
+  std::vector<Candidate> all = candidates(feet, track);
+  if (all.empty()) return Error{why_no_stride(feet, track)};
   sort_best_first(track, all);
   std::vector<StrideWindow> windows;
   for (const Candidate& c : all) windows.push_back(c.window);

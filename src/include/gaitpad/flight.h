@@ -18,16 +18,15 @@ namespace gaitpad {
 struct Swing {
   int heel_off = 0;  // last low of the ankle's height before the lift: the heel begins to rise;
                      // 0 where the file begins later
-  int lift = 0;      // horizontal speed rises through a fifth of the swing's greatest
+  int lift = 0;      // the toe begins to leave the place from which it pushes
   int peak = 0;      // ankle highest between lift and land
-  int land = 0;      // horizontal speed has fallen through the same fifth
+  int land = 0;      // the heel is down and still
 };
 
-// Robust rule: all swings of a foot that the motion holds whole, in time order. A swing is a run of
-// frames in which the ankle moves horizontally at 0.3 of its usual fast speed or more, for 0.15
-// to 1.8 s and over 0.25 to 2.6 leg lengths. It touches neither end of the file nor a jump (some
-// files begin with a posture that has nothing to do with the motion). Where a foot has no swing and
-// the last pose is the first one again, the clip is taken as a loop.
+// Robust rule: all swings of a foot that the motion holds whole, in time order, between the same
+// events as those of a GaitCycle, to the nearest frame. A swing touches neither end of the file nor
+// a jump (some files begin with a posture that has nothing to do with the motion). Where a foot has
+// no swing and the last pose is the first one again, the clip is taken as a loop.
 std::vector<Swing> swings(const Motion& motion, Side side);
 
 // The most typical one of these: nearest to the foot's median duration and length. None where there

@@ -1,0 +1,505 @@
+#include "motion/gait_events.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "base/numeric.h"
+#include "base/text.h"
+
+namespace gaitpad {
+namespace {
+
+// --- Tracks of a motion's feet -------------------------------------------------------------------
+
+constexpr double kFastest_legs_s = 14.0;  // no sprinter's foot is faster: the data jump
+constexpr double kFlatRate_per_s = 14.0;  // so much height above the lowest counts as so much speed
+constexpr std::size_t kFlatPercent = 10;  // of all frames: in these a walker's foot surely is flat
+constexpr double kHeelShare = 0.3;        // heel behind the ankle, of ankle to toe
+constexpr double kShortestFoot_legs = 0.04;
+constexpr double kOwnToe_legs = 0.155;     // where the skeleton has no toe: ball before the ankle
+constexpr double kLeastAnkle_legs = 0.02;  // ankle above the sole
+
+bool is_jump(const vec3& a, const vec3& b, double most_m) {
+  return !(glm::distance(a, b) <= most_m);
+}
+
+std::vector<SampleRange> unbroken_ranges(const FeetTracks& tracks,
+                                         const std::vector<vec3>& pelvis) {
+  const double most_m = kFastest_legs_s * tracks.leg_m * tracks.sample_s;
+  const int frames = static_cast<int>(pelvis.size());
+  std::vector<SampleRange> ranges;
+  int first = 0;
+  for (int f = 1; f <= frames; ++f) {
+    const bool breaks = f == frames || is_jump(pelvis[f], pelvis[f - 1], most_m) ||
+                        std::ranges::any_of(tracks.foot, [&](const FootTrack& foot) {
+                          return is_jump(foot.ankle_m[f], foot.ankle_m[f - 1], most_m);
+                        });
+    if (!breaks) continue;
+    if (f - first >= 2) ranges.push_back({first, f - 1});
+    first = f;
+  }
+  return ranges;
+}
+
+double median_of(std::vector<vec3>& v, int axis) {
+  std::vector<double> values;
+  for (const vec3& p : v) values.push_back(p[axis]);
+  return median(std::move(values));
+}
+
+// One foot as its joints have it.
+struct FootJoints {
+  std::vector<vec3> ankle_m, toe_m, toe_end_m;
+  std::vector<quat> ankle;
+  std::vector<vec3> ahead;  // where the hips face
+};
+
+// Heel and toe in the ankle's frame: the median over the frames in which ankle and toe are slowest
+// and lowest. A median, for a clip may begin with a pose that has nothing to do with its motion.
+struct Sole {
+  vec3 heel_m, toe_m;
+};
+Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, double sample_s,
+             double leg_m) {
+  std::vector<std::pair<double, int>> flat;
+  for (const SampleRange& range : ranges) {
+    for (int f = range.first; f <= range.last; ++f) {
+      const int a = std::max(f - 1, range.first), b = std::min(f + 1, range.last);
+      const double speed = (glm::distance(foot.ankle_m[a], foot.ankle_m[b]) +
+                            glm::distance(foot.toe_m[a], foot.toe_m[b])) /
+                           ((b - a) * sample_s);
+      flat.emplace_back(speed + kFlatRate_per_s * (foot.ankle_m[f].y + foot.toe_m[f].y), f);
+    }
+  }
+  if (flat.empty()) return {};
+  std::ranges::sort(flat);
+  flat.resize(std::max<std::size_t>(1, flat.size() * kFlatPercent / 100));
+  std::vector<vec3> heels, toes;
+  for (const auto& [score, f] : flat) {
+    vec3 toe = foot.toe_m[f] - foot.ankle_m[f];
+    const vec3 end = foot.toe_end_m[f] - foot.ankle_m[f];
+    const auto is_short = [&](const vec3& v) {
+      return horizontal_length(v) < kShortestFoot_legs * leg_m;
+    };
+    if (is_short(toe) && !is_short(end)) toe = end;
+    if (is_short(toe)) toe = kOwnToe_legs * leg_m * foot.ahead[f] + vec3(0.0, toe.y, 0.0);
+    const double low = std::min({toe.y, end.y, -kLeastAnkle_legs * leg_m});
+    const quat into_ankle = glm::conjugate(foot.ankle[f]);
+    heels.push_back(into_ankle * vec3(-kHeelShare * toe.x, low, -kHeelShare * toe.z));
+    toes.push_back(into_ankle * toe);
+  }
+  const auto middle = [](std::vector<vec3>& v) {
+    return vec3(median_of(v, 0), median_of(v, 1), median_of(v, 2));
+  };
+  return {middle(heels), middle(toes)};
+}
+
+// --- Swings, roughly -----------------------------------------------------------------------------
+
+constexpr double kSmoothing_s = 0.04;  // half the width of the window over the ankle's track
+constexpr double kShortestRest_s = 0.06;
+constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
+constexpr double kShortestSwing_legs = 0.15, kLongestSwing_legs = 2.6;
+
+// Running mean over a raised cosine, cut off at the range's ends.
+std::vector<vec3> smoothed(const std::vector<vec3>& p, const SampleRange& range,
+                           double half_samples) {
+  const int reach = static_cast<int>(half_samples);
+  std::vector<double> cosine;
+  for (int k = 0; k <= reach; ++k) {
+    cosine.push_back(1.0 + sin_cos(kPi * k / (half_samples + 1.0)).cos);
+  }
+  std::vector<vec3> out;
+  for (int f = range.first; f <= range.last; ++f) {
+    const int n = std::min({reach, f - range.first, range.last - f});
+    vec3 sum(0.0);
+    double weight = 0.0;
+    for (int k = -n; k <= n; ++k) {
+      const double w = cosine[static_cast<std::size_t>(std::abs(k))];
+      sum += p[f + k] * w;
+      weight += w;
+    }
+    out.push_back(sum / weight);
+  }
+  return out;
+}
+
+// Horizontal speed of the ankle at each sample of the range.
+std::vector<double> ankle_speeds(const FeetTracks& tracks, Side side, const SampleRange& range) {
+  const std::vector<vec3> track =
+      smoothed(tracks.foot[side].ankle_m, range, kSmoothing_s / tracks.sample_s);
+  const int n = static_cast<int>(track.size());
+  std::vector<double> speed(n);
+  for (int i = 0; i < n; ++i) {
+    const int a = std::max(i - 1, 0), b = std::min(i + 1, n - 1);
+    speed[i] = horizontal_length(track[b] - track[a]) / ((b - a) * tracks.sample_s);
+  }
+  return speed;
+}
+
+// A stretch of samples in which a foot moves.
+struct Run {
+  Side side;
+  int range;
+  int first, last;
+  int rest_first, rest_last;  // of the samples before and after it in which the foot rests
+  double from, to;            // where the speed passes the limit
+};
+
+// Where the speed passes the limit between two neighbouring indices.
+double crossing(const std::vector<double>& speed, int a, int b, double limit) {
+  const double rise = speed[b] - speed[a];
+  return rise == 0.0 ? a : a + (b - a) * std::clamp((limit - speed[a]) / rise, 0.0, 1.0);
+}
+
+std::vector<Run> moving_runs(const std::vector<double>& speed, double limit, double rest_samples,
+                             const Run& like) {
+  std::vector<Run> runs;
+  for (int i = 0; i < static_cast<int>(speed.size()); ++i) {
+    if (!(speed[i] > limit)) continue;
+    if (!runs.empty() && i - runs.back().last - 1 < rest_samples) {
+      runs.back().last = i;
+    } else {
+      Run run = like;
+      run.first = run.last = i;
+      runs.push_back(run);
+    }
+  }
+  return runs;
+}
+
+bool is_cut(const FeetTracks& tracks, const Run& run) {
+  const SampleRange& range = tracks.ranges[run.range];
+  return run.first == range.first || run.last == range.last;
+}
+
+bool is_swing(const FeetTracks& tracks, const Run& run) {
+  if (is_cut(tracks, run)) return true;
+  const std::vector<vec3>& ankle = tracks.foot[run.side].ankle_m;
+  const double time_s = (run.last - run.first + 1) * tracks.sample_s;
+  const double legs = horizontal_length(ankle[run.last] - ankle[run.first]) / tracks.leg_m;
+  return time_s >= kShortestSwing_s && time_s <= kLongestSwing_s && legs >= kShortestSwing_legs &&
+         legs <= kLongestSwing_legs;
+}
+
+// The 95th percentile of all speeds in all ranges, both feet.
+double fast_speed(const std::vector<std::vector<double>>& speeds) {
+  std::vector<double> all;
+  for (const auto& some : speeds) all.insert(all.end(), some.begin(), some.end());
+  return all.empty() ? 0.0 : percentile(std::move(all), 95);
+}
+
+std::vector<Run> swing_runs(const FeetTracks& tracks, double moving_share, double& limit_m_s) {
+  std::vector<std::vector<double>> speeds;
+  for (const SampleRange& range : tracks.ranges) {
+    for (const Side side : {kLeftSide, kRightSide}) {
+      speeds.push_back(ankle_speeds(tracks, side, range));
+    }
+  }
+  limit_m_s = moving_share * fast_speed(speeds);
+  std::vector<Run> found;
+  for (std::size_t k = 0; k < speeds.size(); ++k) {
+    const int range = static_cast<int>(k / 2);
+    const auto [first, last] = tracks.ranges[range];
+    Run like{k % 2 == 0 ? kLeftSide : kRightSide, range, 0, 0, 0, 0, 0.0, 0.0};
+    std::vector<Run> runs =
+        moving_runs(speeds[k], limit_m_s, kShortestRest_s / tracks.sample_s, like);
+    const int end = last - first;
+    for (Run& run : runs) {
+      if (run.first > 0)
+        run.from = first + crossing(speeds[k], run.first - 1, run.first, limit_m_s);
+      if (run.last < end) run.to = first + crossing(speeds[k], run.last, run.last + 1, limit_m_s);
+      run.first += first;
+      run.last += first;
+    }
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      runs[i].rest_first = i > 0 ? runs[i - 1].last : first;
+      runs[i].rest_last = i + 1 < runs.size() ? runs[i + 1].first : last;
+    }
+    std::erase_if(runs, [&](const Run& run) { return !is_swing(tracks, run); });
+    found.insert(found.end(), runs.begin(), runs.end());
+  }
+  std::ranges::stable_sort(found, [](const Run& a, const Run& b) { return a.first < b.first; });
+  return found;
+}
+
+// --- The two events of a swing, exactly ----------------------------------------------------------
+
+constexpr double kDown_m = 0.005, kStill_m_s = 0.3, kLeaving_m_s = 0.2;  // an adult's
+constexpr double kAdultLeg_m = 0.84;
+constexpr double kSpeed_s = 0.012;    // half the time over which a speed is taken
+constexpr double kFlat_s = 0.025;     // and half the time over which a foot has to be flat
+constexpr double kRest_s = 0.05;      // so long a heel that has struck stays still
+constexpr double kMostSink_m = 0.06;  // of a heel that stands: higher up it pauses in the air
+constexpr double kPush_s = 0.15;  // before it leaves, the toe stands that long while the heel rises
+// Double support never is shorter: it takes 0.04 s a step at 2.3 m/s, the fastest walk.
+constexpr double kLeastRoll_s = 0.06;
+constexpr double kSlideStep = 0.25;  // of the limits, by which they grow
+
+// Reads one foot's tracks within a range.
+struct Reader {
+  const FootTrack& foot;
+  SampleRange range;
+  double sample_s;
+
+  int half(double time_s) const { return std::max(1, static_cast<int>(time_s / sample_s + 0.5)); }
+  double speed(const std::vector<vec3>& p, int i) const {
+    const int n = half(kSpeed_s);
+    const int a = std::max(i - n, range.first), b = std::min(i + n, range.last);
+    return glm::distance(p[a], p[b]) / (std::max(b - a, 1) * sample_s);
+  }
+  vec3 mean(const std::vector<vec3>& p, int i, int n) const {
+    const int a = std::max(i - n, range.first), b = std::min(i + n, range.last);
+    vec3 sum(0.0);
+    for (int k = a; k <= b; ++k) sum += p[k];
+    return sum / double(b - a + 1);
+  }
+  // Slow and low on average around the sample.
+  double flatness(int i) const {
+    const int n = half(kFlat_s);
+    const int a = std::max(i - n, range.first), b = std::min(i + n, range.last);
+    double sum = 0.0;
+    for (int k = a; k <= b; ++k) {
+      sum += speed(foot.heel_m, k) + speed(foot.toe_m, k) +
+             kFlatRate_per_s * (foot.heel_m[k].y + foot.toe_m[k].y);
+    }
+    return sum / (b - a + 1);
+  }
+  int flattest(int first, int last) const {
+    int best = first;
+    double least = flatness(first);
+    for (int i = first + 1; i <= last; ++i) {
+      const double here = flatness(i);
+      if (here >= least) continue;
+      least = here;
+      best = i;
+    }
+    return best;
+  }
+  int fastest(const std::vector<vec3>& p, int first, int last) const {
+    int best = first;
+    for (int i = first + 1; i <= last; ++i) {
+      if (speed(p, i) > speed(p, best)) best = i;
+    }
+    return best;
+  }
+};
+
+Reader reader(const FeetTracks& tracks, const Run& run) {
+  return {tracks.foot[run.side], tracks.ranges[run.range], tracks.sample_s};
+}
+
+// Where a value that is above the limit at one sample and not above it at the next one passes it.
+double share_above(double above, double next, double limit) {
+  return above > limit && above > next ? std::min((above - limit) / (above - next), 1.0) : 0.0;
+}
+
+// A swing with what its two events need, so that they can be read for several limits.
+struct Swing {
+  Run run;
+  double scale = 1.0;          // of the leg, 1: an adult's
+  int fastest_heel = 0;        // the search for the strike begins here
+  int flat = 0;                // and ends here
+  double standing_heel_m = 0;  // height at `flat`
+  int fastest_toe = 0;         // the search for the toe-off begins here, backwards
+  int pushing = 0;             // and ends where the toe is slowest while the heel rises
+};
+
+Swing swing_of(const FeetTracks& tracks, const Run& run, double limit_m_s) {
+  const Reader r = reader(tracks, run);
+  Swing s;
+  s.run = run;
+  s.scale = tracks.leg_m / kAdultLeg_m;
+  s.fastest_heel = r.fastest(r.foot.heel_m, run.first, run.last);
+  s.flat = r.flattest(std::min(run.last + 1, run.rest_last), run.rest_last);
+  s.standing_heel_m = r.mean(r.foot.heel_m, s.flat, r.half(kFlat_s)).y;
+  s.fastest_toe = r.fastest(r.foot.toe_m, run.first, run.last);
+  int leaving = s.fastest_toe;
+  while (leaving > run.rest_first && r.speed(r.foot.toe_m, leaving) > limit_m_s) --leaving;
+  const int from = std::max(run.rest_first, leaving - r.half(kPush_s));
+  s.pushing = leaving;
+  for (int i = leaving; i >= from; --i) {
+    if (r.speed(r.foot.toe_m, i) < r.speed(r.foot.toe_m, s.pushing)) s.pushing = i;
+  }
+  return s;
+}
+
+std::optional<double> strike_of(const FeetTracks& tracks, const Swing& s, double slide) {
+  if (s.run.last == tracks.ranges[s.run.range].last) return std::nullopt;
+  const Reader r = reader(tracks, s.run);
+  const std::vector<vec3>& heel = r.foot.heel_m;
+  const double down_m = slide * s.scale * kDown_m, still_m_s = slide * s.scale * kStill_m_s;
+  const auto rests = [&](int i) {
+    const int end = std::min(i + r.half(kRest_s), s.flat);
+    for (int k = i; k <= end; ++k) {
+      if (r.speed(heel, k) > still_m_s) return false;
+    }
+    return heel[i].y - s.standing_heel_m <= s.scale * kMostSink_m;
+  };
+  int rest = s.fastest_heel + 1;
+  while (rest < s.flat && !rests(rest)) ++rest;
+  // Down: as low as it will be in this rest. Some feet sink into the floor later on.
+  double low_m = heel[rest].y;
+  for (int k = rest; k <= std::min(rest + r.half(kRest_s), s.flat); ++k) {
+    low_m = std::min(low_m, heel[k].y);
+  }
+  while (rest < s.flat && heel[rest].y > low_m + down_m) ++rest;
+  return rest - 1 +
+         std::max(share_above(heel[rest - 1].y, heel[rest].y, low_m + down_m),
+                  share_above(r.speed(heel, rest - 1), r.speed(heel, rest), still_m_s));
+}
+
+std::optional<double> toe_off_of(const FeetTracks& tracks, const Swing& s, double slide) {
+  if (s.run.first == tracks.ranges[s.run.range].first) return std::nullopt;
+  const Reader r = reader(tracks, s.run);
+  const double most_m_s = slide * s.scale * kLeaving_m_s;
+  for (int i = s.fastest_toe - 1; i > s.pushing; --i) {
+    const double here_m_s = r.speed(r.foot.toe_m, i);
+    if (here_m_s > most_m_s) continue;
+    return i + 1 - share_above(r.speed(r.foot.toe_m, i + 1), here_m_s, most_m_s);
+  }
+  return s.pushing;
+}
+
+// The next swing of the other foot in the same range, -1: none.
+int rival_after(const std::vector<Swing>& swings, std::size_t i) {
+  for (std::size_t k = i + 1; k < swings.size(); ++k) {
+    if (swings[k].run.range != swings[i].run.range) continue;
+    return swings[k].run.side == swings[i].run.side ? -1 : static_cast<int>(k);
+  }
+  return -1;
+}
+
+}  // namespace
+
+FeetTracks feet_tracks(const Motion& motion) {
+  FeetTracks tracks;
+  tracks.sample_s = motion.frame_time_s;
+  tracks.leg_m = leg_length_m(motion);
+  std::array<FootJoints, 2> foot;
+  std::vector<vec3> pelvis;
+  const auto world = std::make_unique<JointFrames>();
+  for (const MotionFrame& frame : motion.frames) {
+    forward_kinematics(motion, frame, *world);
+    const auto& at = world->position_m;
+    pelvis.push_back(at[motion.pelvis]);
+    const vec3 across = at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip];
+    const vec3 ahead = heading_direction(heading_of(glm::cross(across, kUp)));
+    for (int side = 0; side < 2; ++side) {
+      const LegJoints& j = motion.legs[side];
+      foot[side].ankle_m.push_back(at[j.ankle]);
+      foot[side].toe_m.push_back(at[j.toe]);
+      foot[side].toe_end_m.push_back(at[j.toe_end]);
+      foot[side].ankle.push_back(world->rotation[j.ankle]);
+      foot[side].ahead.push_back(ahead);
+    }
+  }
+  for (int side = 0; side < 2; ++side) tracks.foot[side].ankle_m = foot[side].ankle_m;
+  tracks.ranges = unbroken_ranges(tracks, pelvis);
+  for (int side = 0; side < 2; ++side) {
+    const Sole sole = sole_of(foot[side], tracks.ranges, tracks.sample_s, tracks.leg_m);
+    for (std::size_t f = 0; f < pelvis.size(); ++f) {
+      const vec3& ankle = foot[side].ankle_m[f];
+      tracks.foot[side].heel_m.push_back(ankle + foot[side].ankle[f] * sole.heel_m);
+      tracks.foot[side].toe_m.push_back(ankle + foot[side].ankle[f] * sole.toe_m);
+    }
+  }
+  return tracks;
+}
+
+std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share) {
+  double limit_m_s = 0.0;
+  std::vector<Swing> all;
+  for (const Run& run : swing_runs(tracks, moving_share, limit_m_s)) {
+    all.push_back(swing_of(tracks, run, limit_m_s));
+  }
+  std::vector<FootSwing> found;
+  for (const Swing& s : all) {
+    FootSwing swing{s.run.side, s.run.range, {}, {}, {}, {}};
+    swing.toe_off = toe_off_of(tracks, s, 1.0);
+    swing.strike = strike_of(tracks, s, 1.0);
+    if (swing.toe_off) swing.moves_from = s.run.from;
+    if (swing.strike) swing.moves_to = s.run.to;
+    found.push_back(swing);
+  }
+  // A heel strikes before the other toe leaves. Feet that slide get wider limits.
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const int rival = rival_after(all, i);
+    if (rival < 0 || !found[i].strike || !found[rival].toe_off) continue;
+    for (double slide = 1.0 + kSlideStep; slide <= kMostSlide; slide += kSlideStep) {
+      if ((*found[rival].toe_off - *found[i].strike) * tracks.sample_s >= kLeastRoll_s) break;
+      found[i].strike = strike_of(tracks, all[i], slide);
+      found[rival].toe_off = toe_off_of(tracks, all[rival], slide);
+    }
+  }
+  return found;
+}
+
+namespace {
+
+// --- A closed stride -----------------------------------------------------------------------------
+
+constexpr int kCopies = 3;  // in a row, so that the middle one is not cut
+
+FeetTracks in_a_row(const FeetTracks& stride, const vec3& travel_m) {
+  FeetTracks row = stride;
+  for (FootTrack& foot : row.foot) {
+    for (std::vector<vec3>* points : {&foot.ankle_m, &foot.heel_m, &foot.toe_m}) {
+      const std::vector<vec3> once = *points;
+      for (int copy = 1; copy < kCopies; ++copy) {
+        for (const vec3& p : once) points->push_back(p + travel_m * double(copy));
+      }
+    }
+  }
+  row.ranges = {{0, static_cast<int>(row.foot[0].ankle_m.size()) - 1}};
+  return row;
+}
+
+// A foot's swing that ends in the middle copy; the longest one if there are several.
+const FootSwing* middle_swing(const std::vector<FootSwing>& swings, Side side, double samples) {
+  const FootSwing* best = nullptr;
+  for (const FootSwing& s : swings) {
+    if (s.side != side || !s.toe_off || !s.strike) continue;
+    if (*s.strike < samples || *s.strike >= 2.0 * samples) continue;
+    if (!best || *s.strike - *s.toe_off > *best->strike - *best->toe_off) best = &s;
+  }
+  return best;
+}
+
+double fraction(double phase) { return phase - std::floor(phase); }
+
+}  // namespace
+
+Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_m) {
+  const FeetTracks row = in_a_row(stride, travel_m);
+  const auto samples = static_cast<double>(stride.foot[0].ankle_m.size());
+  constexpr std::array<const char*, 2> kNames = {"left", "right"};
+  std::string problem;
+  for (const double share : kMovingShares) {
+    const std::vector<FootSwing> swings = foot_swings(row, share);
+    StrideEvents events;
+    problem.clear();
+    for (const Side side : {kLeftSide, kRightSide}) {
+      const FootSwing* swing = middle_swing(swings, side, samples);
+      if (!swing) {
+        problem = std::string("the ") + kNames[side] + " foot does not swing";
+        break;
+      }
+      events.toe_off[side] = fraction(*swing->toe_off / samples);
+      events.strike[side] = fraction(*swing->strike / samples);
+    }
+    if (!problem.empty()) continue;
+    for (const Side side : {kLeftSide, kRightSide}) {
+      const Side rival = other(side);
+      const double roll = fraction(events.toe_off[rival] - events.strike[side] + 0.5) - 0.5;
+      if (roll > 0.0) continue;
+      return Error{std::string("holds no walk whose events are in order: the ") + kNames[rival] +
+                   " toe leaves " + fixed(-roll * samples * stride.sample_s, 2) + " s before the " +
+                   kNames[side] + " heel strikes"};
+    }
+    return events;
+  }
+  return Error{"holds no walk: " + problem};
+}
+
+}  // namespace gaitpad

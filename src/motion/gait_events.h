@@ -1,0 +1,67 @@
+// When feet strike the ground and leave it: the one place that finds these events, in the frames of
+// a file as well as in the samples of a closed stride.
+//
+// A foot *strikes* when its heel is down and still: no more than 5 mm above the place on which it
+// will stand flat, at 0.3 m/s or less. Its *toe is off* when it begins to leave the place from
+// which it pushes: 5 mm from it. Both are found between samples. Lengths and speeds are those of an
+// adult; they scale with the leg. Where the feet of a capture slide so much that a toe would leave
+// before the other heel strikes, the limits of these two events grow together, at most to
+// kMostSlide times.
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "gaitpad/motion.h"
+#include "gaitpad/result.h"
+
+namespace gaitpad {
+
+inline constexpr double kMostSlide = 4.0;  // a heel 20 mm up or at 1.2 m/s does not stand
+
+struct FootTrack {  // over the ground, y up
+  std::vector<vec3> ankle_m, heel_m, toe_m;
+};
+struct SampleRange {  // [first, last], without a jump
+  int first, last;
+};
+struct FeetTracks {
+  std::array<FootTrack, 2> foot;  // by Side
+  std::vector<SampleRange> ranges;
+  double sample_s = 0.0, leg_m = 0.0;
+};
+
+// One way of a foot through the air.
+struct FootSwing {
+  Side side = kLeftSide;
+  int range = 0;  // index into FeetTracks::ranges
+  // Samples, between them where need be; none where the range cuts the swing there.
+  std::optional<double> toe_off, strike;
+  // Where the ankle's speed rises and falls through the limit of moving. Two strides agree best in
+  // these, whatever their feet do on the ground.
+  std::optional<double> moves_from, moves_to;
+};
+
+// The tracks of a motion's feet. Heels are where the frames in which the feet stand flat put them:
+// behind the ankle, as low as the sole.
+FeetTracks feet_tracks(const Motion& motion);
+
+// A foot swings while its ankle moves along the ground faster than this share of the usual fast
+// speed (the 95th percentile of both ankles'). The second share is for slow steps in a motion that
+// has quick ones, too: try it where the first finds nothing.
+inline constexpr std::array<double, 2> kMovingShares = {0.30, 0.18};
+
+// All swings in order of time. A swing that its range does not cut takes 0.15 to 1.8 s and goes
+// 0.15 to 2.6 leg lengths.
+std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share);
+
+// Events of one periodic stride as phases 0 .. 1 from its first sample on.
+struct StrideEvents {
+  std::array<double, 2> strike{}, toe_off{};  // by Side
+};
+// `stride` holds one stride in which the feet go `travel_m`; its end joins its start. Error (it
+// does not name the file) if a foot has no swing, or if the events are not in the order of a walk:
+// right strike, left toe-off, left strike, right toe-off.
+Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_m);
+
+}  // namespace gaitpad

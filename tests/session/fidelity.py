@@ -7,17 +7,19 @@ Each clip is walked straight on flat ground, style even, at its own pace (the st
 "gait"). One row a clip; exit status 1 where a bound is broken. Clips that the program refuses are listed with its reason.
 
 What is measured:
-- Sagittal plane of a joint: across the pelvis' left-right axis (the line of the hips). That axis, and the pelvis' upright
-  axis, are means over the source's stride in the frame of the joint's parent; source and walk are measured with the same.
-  Hip: the thigh in the pelvis' frame against the pelvis' upright axis, forward positive. Knee: the shank against the
-  thigh, bent positive. Ankle: ankle to toe joint against the shank, less 90 degrees, toe up positive.
+- Flexion in the sagittal plane: about the left-right axis of the pelvis (the line of the hips). That axis and the pelvis'
+  upright axis are means over the source's stride, in the frames of pelvis and thigh; source and walk are measured about
+  the same. Hip: the thigh in the pelvis' frame against the upright axis, forward positive. Knee: the shank against the
+  thigh, bent positive, about the axis that the thigh carries. Ankle: from ankle to toe joint against the shank, less 90
+  degrees, toe up positive, about the same axis: some captures' shanks spin about themselves, which no eye sees.
 - RMS and greatest difference at the source's own frames, after the one phase shift that is best for all six joints
   together. The worse leg counts.
 - Knee maxima: turning points of the cyclic curve that rise and fall by more than 1 degree; source and walk alike.
-- Vertical acceleration of the pelvis: of the least-squares parabola over 1/30 s to either side (at least two frames of
-  the source), in source and walk alike.
+- Least knee: data below 1 degree count as 1, the least that support/judge.py allows.
+- Vertical acceleration of the hips: of the point between the hip joints (some captures keep the pelvis' joint level), by
+  the least-squares parabola over 1/30 s to either side (at least two frames of the source), in source and walk alike.
 - Slide of the source's own feet: while heel and toe are both within 4 % of the leg of their lowest, how far the toe
-  strays from its mean place. Beyond 25 mm a clip may be 4 degrees off, for that reason.
+  strays from its mean place. Beyond 40 mm a clip may be 4 degrees off, for that reason.
 - Second difference, planted points, floor, steps, speed, drift and repetition: as in support/judge.py.
 """
 import argparse
@@ -32,7 +34,7 @@ import numpy as np
 
 if __name__ == "__main__":
     sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from support import judge, program as programs
+from support import gait_pictures, judge, program as programs
 from support.bvh import second_differences
 from support.sources import BUILT_IN_FRAMES, built_in_track, read_source
 from support.traces import EXACT_CALIBRATION, write_trace
@@ -40,9 +42,9 @@ from support.walk import SIDES, Walk
 
 JOINTS = ("hip", "knee", "ankle")
 RMS_DEG, SLID_RMS_DEG, MEDIAN_DEG = (3.0, 3.0, 3.5), (4.0, 4.0, 4.0), (2.0, 2.0, 2.5)
-FAR_SLIDE_MM = 25.0
+FAR_SLIDE_MM = 40.0
 RIPPLE_DEG = 1.0
-LEAST_KNEE_DEG = 3.0
+LEAST_KNEE_DEG, LEAST_ALLOWED_KNEE_DEG = 3.0, 1.0
 FALL_M_S2, FALL_RATIO = 12.0, 1.5
 D2_DEG, BUILT_IN_D2_DEG = 0.7, 0.5
 PLANTED_MM = 0.01
@@ -55,9 +57,9 @@ class Stride:
     """Frames that go once round: phase (N,) from 0, position and rotation of every joint, pelvis and legs by index.
     legs: per side (hip, knee, ankle, toe). heel_m: per side, in the ankle's frame."""
 
-    def __init__(self, phase, seconds, position, rotation, pelvis, legs, heel_m, tails=()):
+    def __init__(self, phase, seconds, position, rotation, pelvis, legs, heel_m):
         self.phase, self.seconds, self.position, self.rotation = phase, seconds, position, rotation
-        self.pelvis, self.legs, self.heel_m, self.tails = pelvis, legs, heel_m, tails
+        self.pelvis, self.legs, self.heel_m = pelvis, legs, heel_m
         across = np.mean([position[:, legs[0][0]] - position[:, legs[1][0]]], axis=(0, 1))
         upright = np.mean([position[:, leg[0]] - position[:, leg[2]] for leg in legs], axis=(0, 1))
         axis = int(np.argmax(np.abs(upright)))
@@ -74,7 +76,7 @@ class Stride:
         return self.position[:, b] - self.position[:, a]
 
     def height(self):
-        return self.position[:, self.pelvis] @ self.up
+        return 0.5 * (self.position[:, self.legs[0][0]] + self.position[:, self.legs[1][0]]) @ self.up
 
 
 def unit(vector):
@@ -82,14 +84,13 @@ def unit(vector):
 
 
 def standing_axes(s):
-    """What "sagittal" means, from the source: per side the axis to the left in the frame of pelvis, thigh and shank;
-    and left, up, forward of the pelvis in its own frame."""
+    """What "sagittal" means, from the source: left, up, forward of the pelvis in its own frame, and per side the axis to
+    the left in the thigh's."""
     across = s.bone(s.legs[1][0], s.legs[0][0])
     left = unit(s.seen(s.pelvis, across).mean(0))
     up = s.seen(s.pelvis, np.tile(s.up, (len(s.phase), 1))).mean(0)
     up = unit(up - (up @ left) * left)
-    hinges = [[unit(s.seen(joint, across).mean(0)) for joint in leg[:2]] for leg in s.legs]
-    return {"pelvis": (left, up, np.cross(left, up)), "hinges": hinges}
+    return {"pelvis": (left, up, np.cross(left, up)), "hinges": [unit(s.seen(leg[0], across).mean(0)) for leg in s.legs]}
 
 
 def turn_about(axis, a, b):
@@ -102,12 +103,11 @@ def flexions(s, axes):
     """(N, 6): hip, knee, ankle of the left leg, then of the right one."""
     _, up, forward = axes["pelvis"]
     columns = []
-    for (hip, knee, ankle, toe), (at_thigh, at_shank) in zip(s.legs, axes["hinges"]):
-        thigh, shank, foot = s.bone(hip, knee), s.bone(knee, ankle), s.bone(ankle, toe)
-        in_pelvis = s.seen(s.pelvis, thigh)
+    for (hip, knee, ankle, toe), hinge in zip(s.legs, axes["hinges"]):
+        thigh, shank, foot = (s.seen(hip, s.bone(a, b)) for a, b in ((hip, knee), (knee, ankle), (ankle, toe)))
+        in_pelvis = s.seen(s.pelvis, s.bone(hip, knee))
         columns += [np.degrees(np.arctan2(in_pelvis @ forward, -(in_pelvis @ up))),
-                    turn_about(at_thigh, s.seen(hip, thigh), s.seen(hip, shank)),
-                    -turn_about(at_shank, s.seen(knee, shank), s.seen(knee, foot)) - 90]
+                    turn_about(hinge, thigh, shank), -turn_about(hinge, shank, foot) - 90]
     return np.degrees(np.unwrap(np.radians(np.stack(columns, -1)), axis=0))
 
 
@@ -180,8 +180,8 @@ def compare(source, walk):
     return {"rms_deg": list(map(float, rms.max(0))), "greatest_deg": list(map(float, most.max(0))), "shift": float(shift),
             "knee_maxima": [(maxima(closed(a)), maxima(b)) for a, b in knees],
             "least_knee_deg": [(float(a.min()), float(b.min())) for a, b in knees],
-            "curves": {"phase": even, "source": around(source.phase, theirs, even),
-                       "walk": around(walk.phase, ours, even + shift)}}
+            "curves": {"phase": even, "source": around(source.phase, np.column_stack([theirs, closed(source.height())]), even),
+                       "walk": around(walk.phase, np.column_stack([ours, closed(walk.height())]), even + shift)}}
 
 
 # ---- which frames ------------------------------------------------------------------------------
@@ -237,8 +237,8 @@ def found_stride(track, legs, heel_m, flight):
         for first in np.argsort(gap)[:200]:
             part = slice(first, first + length + 1)
             bends = min(np.ptp(angles[part, c]) for c in (1, 4))
-            held = not flight or first <= flight["peak_frame"] <= first + length
-            if bends > 25 and held and np.linalg.norm(way[first + length] - way[first]) > 0.3:
+            held = not flight or flight["peak_frame"] >= len(angles) or first <= flight["peak_frame"] <= first + length
+            if bends > 12 and held and np.linalg.norm(way[first + length] - way[first]) > 0.15:
                 best.append((gap[first], length, int(first)))
                 break
     if not best:
@@ -311,20 +311,21 @@ def judge_clip(options, folder, path=None):
            "speed_m_s": way_m / source.seconds, "slide_mm": foot_slide_mm(source)}
     walk, at = stride_of_walk(w)
     row.update(compare(source, walk))
+    hips_m = 0.5 * (w.position[:, w.hip[0], 1] + w.position[:, w.hip[1], 1])
     row["fall_m_s2"] = [vertical_acceleration(wide.height(), track.rate_hz, half_s, a, b),
-                        vertical_acceleration(w.position[:, w.pelvis, 1], w.rate, half_s, at, at + len(walk.phase) - 1)]
+                        vertical_acceleration(hips_m, w.rate, half_s, at, at + len(walk.phase) - 1)]
     joints = sorted(set(w.leg_joints[0] + w.leg_joints[1]))
     d2 = (second_differences(w.local[:, joints]) * (w.rate / 240) ** 2)[w.steady].max(0)
     row["d2_deg"], row["d2_joint"] = float(d2.max()), w.bvh.names[joints[int(d2.argmax())]]
     row["walk_stride_s"], row["walk_speed_m_s"] = walk.seconds, float(w.col["speed_m_s"][at])
-    row["checks"] = judge_row(row, w, walk, told, gait, path is None)
+    row["checks"] = judge_row(row, w, walk, gait, path is None)
     row["broken"] = [c for c in row["checks"] if c.ok is False]
     row["strides"], row["parents"] = (source, walk), (track.parents, w.bvh.parents)
     row["seconds"] = time.time() - started
     return row
 
 
-def judge_row(row, w, walk, told, gait, is_built_in):
+def judge_row(row, w, walk, gait, is_built_in):
     """Every bound as a Check of support/judge.py."""
     check = judge.Check
     slid = row["slide_mm"] > FAR_SLIDE_MM
@@ -332,11 +333,11 @@ def judge_row(row, w, walk, told, gait, is_built_in):
     checks = [check(f"{j} RMS", v, b, unit="deg", note=note)
               for j, v, b in zip(JOINTS, row["rms_deg"], SLID_RMS_DEG if slid else RMS_DEG)]
     extra = [ours - data for data, ours in row["knee_maxima"]]
-    apart = [abs(ours - data) for data, ours in row["least_knee_deg"]]
+    apart = [abs(ours - max(data, LEAST_ALLOWED_KNEE_DEG)) for data, ours in row["least_knee_deg"]]
     data, ours = (max(-low, high) for low, high in row["fall_m_s2"])
     checks += [check("knee maxima beyond the data's", max(extra), 0),
                check("least knee off the data's", max(apart), LEAST_KNEE_DEG, unit="deg"),
-               check("vertical acceleration of the pelvis", ours, max(FALL_M_S2, FALL_RATIO * data), unit="m/s2"),
+               check("vertical acceleration of the hips", ours, max(FALL_M_S2, FALL_RATIO * data), unit="m/s2"),
                check("second difference", row["d2_deg"], BUILT_IN_D2_DEG if is_built_in else D2_DEG, unit="deg/tick2",
                      note=row["d2_joint"])]
     checks += [check(c.name, c.value, PLANTED_MM, unit="mm", note=c.note) if c.name.endswith("moves") else c
@@ -388,67 +389,6 @@ def for_machines(row):
     if "checks" in row:
         kept["checks"] = [c.as_dict() for c in row["checks"]]
     return kept
-
-
-# ---- pictures ------------------------------------------------------------------------------------
-INK, GREY, SIDE_COLOURS = "#1f2328", "#6e7781", ("#0969da", "#cf222e")  # left, right
-
-
-def draw_curves(row, path):
-    """Source dashed, walk solid, over the walk of one stride: hip, knee, ankle, height of the pelvis."""
-    from matplotlib.figure import Figure
-    figure = Figure(figsize=(11, 6.5), facecolor="white", layout="constrained")
-    panels = figure.subplots(2, 2, sharex=True).ravel()
-    c, (source, walk) = row["curves"], row["strides"]
-    for k, joint in enumerate(JOINTS):
-        for side, colour in enumerate(SIDE_COLOURS):
-            panels[k].plot(100 * c["phase"], c["source"][:, 3 * side + k], "--", color=colour, lw=1.2)
-            panels[k].plot(100 * c["phase"], c["walk"][:, 3 * side + k], color=colour, lw=1.8, label=SIDES[side])
-        panels[k].set_ylabel(f"{joint} flexion, degrees")
-    for s, shift, line in ((source, 0, "--"), (walk, row["shift"], "-")):
-        height = around(s.phase, closed(s.height())[:, None], c["phase"] + shift)[:, 0]
-        panels[3].plot(100 * c["phase"], 1000 * (height - height.mean()), line, color=INK)
-    panels[3].set_ylabel("pelvis about its mean height, mm")
-    panels[0].legend(frameon=False)
-    for panel in panels:
-        panel.grid(color="#d8dee4", lw=0.6)
-        panel.spines[["top", "right"]].set_visible(False)
-    for panel in panels[2:]:
-        panel.set_xlabel("stride, %")
-    numbers = " / ".join(f"{v:.1f}" for v in row["rms_deg"])
-    figure.suptitle(f"{row['clip']}: source dashed, walk solid; hip / knee / ankle {numbers} degrees RMS", color=INK)
-    figure.savefig(path, dpi=110)
-
-
-def figure_lines(s, parents, phase):
-    """Bones as (2, 2) lines, seen from the walker's right, the pelvis above 0."""
-    k = int(np.argmin(np.abs((s.phase - phase + 0.5) % 1.0 - 0.5)))
-    p = s.position[k] - s.position[k, s.pelvis]
-    flat = np.stack([p @ s.forward, s.position[k] @ s.up], -1)
-    return [flat[[j, q]] for j, q in enumerate(parents) if q >= 0 and np.ptp(flat[[j, q]]) < 1.5 and parents[q] >= -1 and q > 0]
-
-
-def draw_sheet(rows, path):
-    """A line a clip: source (grey) and walk (dark) at eight phases."""
-    from matplotlib.collections import LineCollection
-    from matplotlib.figure import Figure
-    columns = 2 if len(rows) > 6 else 1
-    lines = -(-len(rows) // columns)
-    figure = Figure(figsize=(11 * columns, 1.55 * lines), facecolor="white", layout="constrained")
-    panels = figure.subplots(lines, columns, squeeze=False).T.ravel()
-    for panel in panels:
-        panel.set_axis_off()
-    for panel, row in zip(panels, rows):
-        for s, parents, shift, colour, aside in zip(row["strides"], row["parents"], (0, row["shift"]), (GREY, INK), (0, 0.75)):
-            floor = min(s.position[:, leg[3]].dot(s.up).min() for leg in s.legs)
-            for i in range(8):
-                drawn = [x + [1.9 * i + aside, -floor] for x in figure_lines(s, parents, (i / 8 + shift) % 1.0)]
-                panel.add_collection(LineCollection(drawn, colors=colour, linewidths=0.9))
-        panel.set_xlim(-0.6, 15.0)
-        panel.set_ylim(-0.1, 1.9)
-        panel.set_aspect("equal")
-        panel.set_title(f"{row['clip']}  {' / '.join(f'{v:.1f}' for v in row['rms_deg'])}", fontsize=8, color=INK, loc="left", pad=0)
-    figure.savefig(path, dpi=80)
 
 
 # ---- all of it -------------------------------------------------------------------------------------
@@ -510,9 +450,9 @@ def main():
         print(json.dumps({"clips": list(map(for_machines, rows)), "refused": refused,
                           "medians": [c.as_dict() for c in middle]}, indent=1))
     if options.picture and rows:
-        draw_curves(rows[0], options.picture)
+        gait_pictures.draw_curves(rows[0], options.picture)
     if options.sheet and rows:
-        draw_sheet(rows, options.sheet)
+        gait_pictures.draw_sheet(rows, options.sheet)
     return 1 if failed or any(c.ok is False for c in middle) or not rows else 0
 
 

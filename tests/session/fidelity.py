@@ -412,6 +412,9 @@ def arguments(words=None):
     options = parser.parse_intermixed_args(words)
     if not options.clips and not options.built_in:
         parser.error("name a clip, a folder or --built-in")
+    options.program = options.program.resolve()
+    if not options.program.exists():
+        parser.error(f"{options.program} is not built")
     return options
 
 

@@ -177,7 +177,8 @@ def compare(source, walk):
     rms, most = np.sqrt(np.mean(off ** 2, 0)).reshape(2, 3), np.abs(off).max(0).reshape(2, 3)
     knees = [(theirs[:, c], ours[:, c]) for c in (1, 4)]
     even = np.arange(400) / 400
-    return {"rms_deg": list(map(float, rms.max(0))), "greatest_deg": list(map(float, most.max(0))), "shift": float(shift),
+    return {"rms_deg": list(map(float, rms.max(0))), "greatest_deg": list(map(float, most.max(0))),
+            "shift": float(shift),
             "knee_maxima": [(maxima(closed(a)), maxima(b)) for a, b in knees],
             "least_knee_deg": [(float(a.min()), float(b.min())) for a, b in knees],
             "curves": {"phase": even, "source": around(source.phase, np.column_stack([theirs, closed(source.height())]), even),
@@ -189,7 +190,8 @@ def stride_of_track(track, legs, heel_m, first, frames, margin=0):
     """The whole frames of [first, first + frames], `margin` more at either end where the file has them; the place of
     the stride's first and last frame among them."""
     a, b = int(np.ceil(first - 1e-9)), int(np.floor(first + frames + 1e-9))
-    low, high = max(0, a - margin), min(len(track.position) - 1, b + margin)
+    last = len(track.position) - 1  # a looping clip's stride may run over it
+    low, high, b = max(0, a - margin), min(last, b + margin), min(last, b)
     part = slice(low, high + 1)
     chains = []
     for leg in legs:

@@ -112,6 +112,8 @@ def test_a_stride_between_frames_is_cut_out():
     inside = fidelity.trimmed(wide, a, b)
     assert len(wide.phase) == 48 and len(inside.phase) == 40 and inside.seconds == pytest.approx(0.4025)
     assert inside.phase[0] == pytest.approx(0.5 / 40.25) and inside.phase[-1] < 1
+    wide, a, b = fidelity.stride_of_track(Clip, [[1, 2, 3, 4], [5, 6, 7, 8]], [np.zeros(3)] * 2, 30, 40, margin=4)
+    assert (a, b) == (4, 33) and wide.phase[b] == 29 / 40
 
 
 def row_of(walk, source, **figures):

@@ -1,0 +1,465 @@
+#!/usr/bin/python3
+"""Judges how much of its capture a walk keeps, from files alone: the source clip and what `gaitpad replay` exports.
+
+  fidelity.py PROGRAM [FILE_OR_FOLDER ...] [--built-in] [--long] [--json] [--picture OUT.png] [--sheet OUT.png]
+
+Each clip is walked straight on flat ground, style even, at its own pace (the stick that `motion --json` names in
+"gait"). One row a clip; exit status 1 where a bound is broken. Clips that the program refuses are listed with its reason.
+
+What is measured:
+- Flexion in the sagittal plane: about the left-right axis of the pelvis (the line of the hips). That axis and the pelvis'
+  upright axis are means over the source's stride, in the frames of pelvis and thigh; source and walk are measured about
+  the same. Hip: the thigh in the pelvis' frame against the upright axis, forward positive. Knee: the shank against the
+  thigh, bent positive, about the axis that the thigh carries. Ankle: from ankle to toe joint against the shank, less 90
+  degrees, toe up positive, about the same axis: some captures' shanks spin about themselves, which no eye sees.
+- RMS and greatest difference at the source's own frames, after the one phase shift that is best for all six joints
+  together. The worse leg counts.
+- Knee maxima: turning points of the cyclic curve that rise and fall by more than 1 degree; source and walk alike.
+- Least knee: data below 1 degree count as 1, the least that support/judge.py allows.
+- Vertical acceleration of the hips: of the point between the hip joints (some captures keep the pelvis' joint level), by
+  the least-squares parabola over 1/30 s to either side (at least two frames of the source), in source and walk alike.
+- Slide of the source's own feet: while heel and toe are both within 4 % of the leg of their lowest, how far the toe
+  strays from its mean place. Beyond 40 mm a clip may be 4 degrees off, for that reason.
+- Second difference, planted points, floor, steps, speed, drift and repetition: as in support/judge.py.
+"""
+import argparse
+import json
+import os
+import pathlib
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import gait_pictures, judge, program as programs
+from support.bvh import second_differences
+from support.sources import BUILT_IN_FRAMES, built_in_track, read_source
+from support.traces import EXACT_CALIBRATION, write_trace
+from support.walk import SIDES, Walk
+
+JOINTS = ("hip", "knee", "ankle")
+RMS_DEG, SLID_RMS_DEG, MEDIAN_DEG = (3.0, 3.0, 3.5), (4.0, 4.0, 4.0), (2.0, 2.0, 2.5)
+FAR_SLIDE_MM = 40.0
+RIPPLE_DEG = 1.0
+LEAST_KNEE_DEG, LEAST_ALLOWED_KNEE_DEG = 3.0, 1.0
+FALL_M_S2, FALL_RATIO = 12.0, 1.5
+D2_DEG, BUILT_IN_D2_DEG = 0.7, 0.5
+PLANTED_MM = 0.01
+OWN_PACE = 0.01  # of the clip's speed, steps and time
+TOLD_PACE = 0.03  # of what its frames show
+
+
+# ---- a stride, of a source or of a walk ----------------------------------------------------------
+class Stride:
+    """Frames that go once round: phase (N,) from 0, position and rotation of every joint, pelvis and legs by index.
+    legs: per side (hip, knee, ankle, toe). heel_m: per side, in the ankle's frame."""
+
+    def __init__(self, phase, seconds, position, rotation, pelvis, legs, heel_m):
+        self.phase, self.seconds, self.position, self.rotation = phase, seconds, position, rotation
+        self.pelvis, self.legs, self.heel_m = pelvis, legs, heel_m
+        across = np.mean([position[:, legs[0][0]] - position[:, legs[1][0]]], axis=(0, 1))
+        upright = np.mean([position[:, leg[0]] - position[:, leg[2]] for leg in legs], axis=(0, 1))
+        axis = int(np.argmax(np.abs(upright)))
+        self.up = np.sign(upright[axis]) * np.eye(3)[axis]  # the file's: not every clip stands along y
+        self.left = across - (across @ self.up) * self.up
+        self.left /= np.linalg.norm(self.left)
+        self.forward = np.cross(self.left, self.up)
+
+    def seen(self, joint, vector):
+        """World vectors (N, 3) in the joint's frame."""
+        return np.einsum("fji,fj->fi", self.rotation[:, joint], vector)
+
+    def bone(self, a, b):
+        return self.position[:, b] - self.position[:, a]
+
+    def height(self):
+        return 0.5 * (self.position[:, self.legs[0][0]] + self.position[:, self.legs[1][0]]) @ self.up
+
+
+def unit(vector):
+    return vector / np.linalg.norm(vector)
+
+
+def standing_axes(s):
+    """What "sagittal" means, from the source: left, up, forward of the pelvis in its own frame, and per side the axis to
+    the left in the thigh's."""
+    across = s.bone(s.legs[1][0], s.legs[0][0])
+    left = unit(s.seen(s.pelvis, across).mean(0))
+    up = s.seen(s.pelvis, np.tile(s.up, (len(s.phase), 1))).mean(0)
+    up = unit(up - (up @ left) * left)
+    return {"pelvis": (left, up, np.cross(left, up)), "hinges": [unit(s.seen(leg[0], across).mean(0)) for leg in s.legs]}
+
+
+def turn_about(axis, a, b):
+    """Degrees from a to b (N, 3) about the axis, both seen along it."""
+    a, b = (v - np.outer(v @ axis, axis) for v in (a, b))
+    return np.degrees(np.arctan2(np.cross(a, b) @ axis, np.sum(a * b, -1)))
+
+
+def flexions(s, axes):
+    """(N, 6): hip, knee, ankle of the left leg, then of the right one."""
+    _, up, forward = axes["pelvis"]
+    columns = []
+    for (hip, knee, ankle, toe), hinge in zip(s.legs, axes["hinges"]):
+        thigh, shank, foot = (s.seen(hip, s.bone(a, b)) for a, b in ((hip, knee), (knee, ankle), (ankle, toe)))
+        in_pelvis = s.seen(s.pelvis, s.bone(hip, knee))
+        columns += [np.degrees(np.arctan2(in_pelvis @ forward, -(in_pelvis @ up))),
+                    turn_about(hinge, thigh, shank), -turn_about(hinge, shank, foot) - 90]
+    return np.degrees(np.unwrap(np.radians(np.stack(columns, -1)), axis=0))
+
+
+def around(phase, curves, places):
+    """Periodic curves (N, C) at other phases."""
+    return np.stack([np.interp(places % 1.0, phase % 1.0, c, period=1.0) for c in curves.T], -1)
+
+
+def best_shift(phase, source, walk_phase, walk):
+    """The shift of the walk's phase that brings all curves nearest to the source's frames."""
+    def error(shift):
+        return np.mean((around(walk_phase, walk, phase + shift) - source) ** 2)
+    coarse = min(np.arange(100) / 100, key=error)
+    return min(coarse + np.arange(-20, 21) / 2000, key=error)
+
+
+def maxima(curve, least=RIPPLE_DEG):
+    """Maxima of a cyclic curve that rise and fall by more than `least`."""
+    curve = np.roll(curve, -int(np.argmin(curve)))
+    count, rising, extreme = 0, False, curve[0]
+    for value in [*curve, curve[0]]:
+        extreme = max(extreme, value) if rising else min(extreme, value)
+        if rising and value < extreme - least:
+            count, rising, extreme = count + 1, False, value
+        elif not rising and value > extreme + least:
+            rising, extreme = True, value
+    return count
+
+
+def closed(curve):
+    """A captured stride does not end where it began: the difference is spread evenly over it."""
+    return curve - np.linspace(0, 1, len(curve)) * (curve[-1] - curve[0])
+
+
+def vertical_acceleration(height, rate_hz, half_s, first, last):
+    """(least, greatest) m/s^2 of the parabola through all heights within half_s, about the samples first..last."""
+    half = max(1, round(half_s * rate_hz))
+    t = np.arange(-half, half + 1) / rate_hz
+    weights = 2 * np.linalg.pinv(np.stack([np.ones_like(t), t, t * t], -1))[2]
+    found = np.convolve(height, weights[::-1], "valid")[max(0, first - half):max(1, last + 1 - half)]
+    return float(found.min()), float(found.max())
+
+
+def foot_slide_mm(s):
+    """How far a standing foot strays in the source."""
+    worst = 0.0
+    leg_m = np.linalg.norm(s.bone(*s.legs[0][:2])[0]) + np.linalg.norm(s.bone(*s.legs[0][1:3])[0])
+    for (_, _, ankle, toe), heel_m in zip(s.legs, s.heel_m):
+        heel = s.position[:, ankle] + s.rotation[:, ankle] @ heel_m
+        flat = np.ones(len(s.phase), dtype=bool)
+        for track in (heel @ s.up, s.position[:, toe] @ s.up):
+            flat &= track < track.min() + 0.04 * leg_m
+        for a, b in judge.runs(flat):
+            if (b - a) / len(flat) * s.seconds > 0.1:
+                place = s.position[a:b, toe] - np.outer(s.position[a:b, toe] @ s.up, s.up)
+                worst = max(worst, 1000 * np.linalg.norm(place - place.mean(0), axis=-1).max())
+    return worst
+
+
+def compare(source, walk):
+    """Figures of a walk's stride beside its source's."""
+    axes = standing_axes(source)
+    ours, theirs = flexions(walk, axes), flexions(source, axes)
+    ours += 360 * np.round((theirs.mean(0) - ours.mean(0)) / 360)
+    shift = best_shift(source.phase, theirs, walk.phase, ours)
+    off = around(walk.phase, ours, source.phase + shift) - theirs
+    rms, most = np.sqrt(np.mean(off ** 2, 0)).reshape(2, 3), np.abs(off).max(0).reshape(2, 3)
+    knees = [(theirs[:, c], ours[:, c]) for c in (1, 4)]
+    even = np.arange(400) / 400
+    return {"rms_deg": list(map(float, rms.max(0))), "greatest_deg": list(map(float, most.max(0))),
+            "shift": float(shift),
+            "knee_maxima": [(maxima(closed(a)), maxima(b)) for a, b in knees],
+            "least_knee_deg": [(float(a.min()), float(b.min())) for a, b in knees],
+            "curves": {"phase": even, "source": around(source.phase, np.column_stack([theirs, closed(source.height())]), even),
+                       "walk": around(walk.phase, np.column_stack([ours, closed(walk.height())]), even + shift)}}
+
+
+# ---- which frames ------------------------------------------------------------------------------
+def stride_of_track(track, legs, heel_m, first, frames, margin=0):
+    """The whole frames of [first, first + frames], `margin` more at either end where the file has them; the place of
+    the stride's first and last frame among them."""
+    a, b = int(np.ceil(first - 1e-9)), int(np.floor(first + frames + 1e-9))
+    last = len(track.position) - 1  # a looping clip's stride may run over it
+    low, high, b = max(0, a - margin), min(last, b + margin), min(last, b)
+    part = slice(low, high + 1)
+    chains = []
+    for leg in legs:
+        chains.append([])
+        joint = leg[0]
+        while joint >= 0:
+            chains[-1].append(joint)
+            joint = track.parents[joint]
+    pelvis = next(j for j in chains[0] if j in chains[1])
+    phase = (np.arange(low, high + 1) - first) / frames
+    stride = Stride(phase, frames / track.rate_hz, track.position[part], track.rotation[part], pelvis, legs, heel_m)
+    return stride, a - low, b - low
+
+
+def stride_of_walk(w):
+    """The last whole steady stride, ticks counted from the right foot's landing."""
+    cycles = w.cycles(1, w.steady)
+    if len(cycles) < 2:
+        raise ValueError("the walk has no two steady strides")
+    period = (cycles[-1][1] - cycles[0][0]) / len(cycles)
+    a = cycles[-2][0]
+    part = slice(a, a + int(np.ceil(period)) + 1)
+    phase = np.arange(part.stop - a) / period
+    legs = list(zip(w.hip, w.knee, w.ankle, w.toe))
+    heel_m = [np.array(w.summary[f"{s}_heel_offset_m"]) for s in SIDES]
+    return Stride(phase, period / w.rate, w.position[part], w.rotation[part], w.pelvis, legs, heel_m), a
+
+
+def trimmed(s, a, b):
+    """Without the frames outside the stride, and without the frame that repeats the first."""
+    part = slice(a, b + 1 - (s.phase[b] > 1 - 1e-6 and s.phase[a] < 1e-6))
+    return Stride(s.phase[part], s.seconds, s.position[part], s.rotation[part], s.pelvis, s.legs, s.heel_m)
+
+
+def found_stride(track, legs, heel_m, flight):
+    """For a program without "gait": the stretch of 0.6 to 2.4 s that best returns to where it began, by the leg joints'
+    angles around its ends; knees bend and the hips travel in it; it holds the flight that the program names."""
+    whole, _, _ = stride_of_track(track, legs, heel_m, 0, len(track.position) - 1)
+    angles, way = flexions(whole, standing_axes(whole)), whole.position[:, whole.pelvis]
+    near = max(1, round(0.05 * track.rate_hz))
+    best = []  # (gap, length, first) of each length
+    for length in range(round(0.6 * track.rate_hz), min(len(angles) - 1, round(2.4 * track.rate_hz)) + 1):
+        gap = np.mean((angles[length:] - angles[:-length]) ** 2, -1)
+        gap = np.convolve(gap, np.ones(2 * near + 1) / (2 * near + 1), "same") if len(gap) > 2 * near + 1 else gap
+        for first in np.argsort(gap)[:200]:
+            part = slice(first, first + length + 1)
+            bends = min(np.ptp(angles[part, c]) for c in (1, 4))
+            held = not flight or flight["peak_frame"] >= len(angles) or first <= flight["peak_frame"] <= first + length
+            if bends > 12 and held and np.linalg.norm(way[first + length] - way[first]) > 0.15:
+                best.append((gap[first], length, int(first)))
+                break
+    if not best:
+        raise ValueError("no stride found in the file")
+    _, most, _ = min(best)
+    limit = 2.5 * min(best)[0] + 4.0  # square degrees; twice a stride returns as well as a stride
+    _, length, first = min(b for b in best if b[1] <= most and b[0] <= limit and b[1] <= 1.25 * min(
+        c[1] for c in best if c[0] <= limit))
+    return first, float(length)
+
+
+# ---- a clip --------------------------------------------------------------------------------------
+def replay(options, folder, motion, stick, seconds, style):
+    folder.mkdir(exist_ok=True)
+    (folder / "exact.toml").write_text(EXACT_CALIBRATION)
+    write_trace(folder / "walk.hid", [(0.5, 0, stick)], (), seconds)
+    words = ["replay", folder / "walk.hid", "--out", folder, "--calibration", folder / "exact.toml", "--style", style]
+    return programs.run(options.program, *words, *(["--motion", motion] if motion else []), status=None)
+
+
+def matched_style(w, folder, way_m, seconds):
+    """For a program without own pace: today's walk brought to the clip's step length and time by a style's factors."""
+    steady = np.nonzero(w.steady)[0][-1]
+    length_m = w.col["stride_left_m"][steady] + w.col["stride_right_m"][steady]
+    own_s = length_m / w.col["speed_m_s"][steady]
+    length, speed = np.clip(way_m / length_m, 0.05, 1.5), np.clip(own_s / seconds, 0.5, 2.0)
+    path = folder / "matched.toml"
+    path.write_text(f"[legs]\nstride_length = {length:.6f}\nstride_speed = {speed:.6f}\n")
+    return path
+
+
+def reason_of(done):
+    return (done.stderr.strip().splitlines() or ["no message"])[-1].removeprefix("gaitpad ").strip()
+
+
+def judge_clip(options, folder, path=None):
+    """Row of one clip (a dict), or {"refused": reason}."""
+    started = time.time()
+    name = pathlib.Path(path).name if path else "built-in"
+    done = programs.run(options.program, "motion", path or "procedural", "--json", status=None)
+    if done.returncode:
+        return {"clip": name, "refused": reason_of(done)}
+    told = json.loads(done.stdout)
+    gait = told.get("gait")
+    stick = gait["own_stick"] if gait else 0.8
+    seconds = 4 + (205 if options.long else 24) * (gait["stride_s"] if gait else 1.2)
+    done = replay(options, folder, path, stick, seconds, "even")
+    if done.returncode:
+        return {"clip": name, "refused": reason_of(done)}
+    w = Walk(folder)
+    heel_m = [np.array(w.summary[f"{s}_heel_offset_m"]) for s in SIDES]
+    heel_m = [h * w.summary["source_leg_length_m"] / w.leg_length for h in heel_m]
+    if path:
+        track = read_source(path, told["metres_per_unit"], told["frame_rate_hz"])
+        legs = [[track.index(told["legs"][s][j]) for j in ("hip", "knee", "ankle", "toe")] for s in SIDES]
+        first, frames = (gait["first_frame"], gait["frames"]) if gait else \
+            found_stride(track, legs, heel_m, told["flight"]["right"])
+    else:
+        track = built_in_track(w, gait["speed_m_s"] if gait else 1.25, strides=3)
+        legs, first, frames = list(zip(w.hip, w.knee, w.ankle, w.toe)), BUILT_IN_FRAMES, float(BUILT_IN_FRAMES)
+    half_s = max(1 / 30, 2 / track.rate_hz)
+    wide, a, b = stride_of_track(track, legs, heel_m, first, frames, margin=round(half_s * track.rate_hz))
+    source = trimmed(wide, a, b)
+    ends = wide.position[[a, b], wide.pelvis]
+    way_m = np.linalg.norm(ends[1] - ends[0] - ((ends[1] - ends[0]) @ wide.up) * wide.up) * frames / (b - a)
+    if not gait:
+        replay(options, folder, path, stick, seconds, matched_style(w, folder, way_m, frames / track.rate_hz))
+        w = Walk(folder)
+    row = {"clip": name, "gait_told": bool(gait), "first_frame": first, "frames": frames, "stride_s": source.seconds,
+           "speed_m_s": way_m / source.seconds, "slide_mm": foot_slide_mm(source)}
+    walk, at = stride_of_walk(w)
+    row.update(compare(source, walk))
+    hips_m = 0.5 * (w.position[:, w.hip[0], 1] + w.position[:, w.hip[1], 1])
+    row["fall_m_s2"] = [vertical_acceleration(wide.height(), track.rate_hz, half_s, a, b),
+                        vertical_acceleration(hips_m, w.rate, half_s, at, at + len(walk.phase) - 1)]
+    joints = sorted(set(w.leg_joints[0] + w.leg_joints[1]))
+    d2 = (second_differences(w.local[:, joints]) * (w.rate / 240) ** 2)[w.steady].max(0)
+    row["d2_deg"], row["d2_joint"] = float(d2.max()), w.bvh.names[joints[int(d2.argmax())]]
+    row["walk_stride_s"], row["walk_speed_m_s"] = walk.seconds, float(w.col["speed_m_s"][at])
+    row["checks"] = judge_row(row, w, walk, gait, path is None)
+    row["broken"] = [c for c in row["checks"] if c.ok is False]
+    row["strides"], row["parents"] = (source, walk), (track.parents, w.bvh.parents)
+    row["seconds"] = time.time() - started
+    return row
+
+
+def judge_row(row, w, walk, gait, is_built_in):
+    """Every bound as a Check of support/judge.py."""
+    check = judge.Check
+    slid = row["slide_mm"] > FAR_SLIDE_MM
+    note = f"the capture's own feet slide {row['slide_mm']:.0f} mm" if slid else ""
+    checks = [check(f"{j} RMS", v, b, unit="deg", note=note)
+              for j, v, b in zip(JOINTS, row["rms_deg"], SLID_RMS_DEG if slid else RMS_DEG)]
+    extra = [ours - data for data, ours in row["knee_maxima"]]
+    apart = [abs(ours - max(data, LEAST_ALLOWED_KNEE_DEG)) for data, ours in row["least_knee_deg"]]
+    data, ours = (max(-low, high) for low, high in row["fall_m_s2"])
+    checks += [check("knee maxima beyond the data's", max(extra), 0),
+               check("least knee off the data's", max(apart), LEAST_KNEE_DEG, unit="deg"),
+               check("vertical acceleration of the hips", ours, max(FALL_M_S2, FALL_RATIO * data), unit="m/s2"),
+               check("second difference", row["d2_deg"], BUILT_IN_D2_DEG if is_built_in else D2_DEG, unit="deg/tick2",
+                     note=row["d2_joint"])]
+    checks += [check(c.name, c.value, PLANTED_MM, unit="mm", note=c.note) if c.name.endswith("moves") else c
+               for c in judge.contact_checks(w)]
+    checks += judge.stage_checks(w) + judge.step_checks(w) + judge.speed_checks(w) + judge.repeat_check(w)
+    checks += [c for c in judge.file_checks(w) if c.name.startswith(("FK", "ik_fail", "Euler", "steps"))]
+    if gait:
+        checks += pace_checks(row, w, walk, gait)
+    return checks
+
+
+def pace_checks(row, w, walk, gait):
+    """The walk against the gait that the program told, and that against the file's frames."""
+    steps = [np.mean([m for k, m in judge.realised_steps(w, side) if w.steady[k]]) for side in (0, 1)]
+    pairs = [("stride's time", walk.seconds, gait["stride_s"], OWN_PACE),
+             ("left step", steps[0], gait["step_left_m"], OWN_PACE), ("right step", steps[1], gait["step_right_m"], OWN_PACE),
+             ("speed", sum(steps) / walk.seconds, gait["speed_m_s"], OWN_PACE),
+             ("told stride's time", gait["stride_s"], row["stride_s"], TOLD_PACE),
+             ("told speed", gait["speed_m_s"], row["speed_m_s"], TOLD_PACE)]
+    return [judge.Check(f"{name} off the clip's", 100 * abs(ours / own - 1), 100 * share, unit="%",
+                        note=f"{own:.4g} -> {ours:.4g}") for name, ours, own, share in pairs]
+
+
+# ---- the table -----------------------------------------------------------------------------------
+HEAD = (f"{'clip':28s} {'s':>5s} {'m/s':>5s} {'slide':>5s} {'hip':>10s} {'knee':>10s} {'ankle':>10s} {'maxima':>9s} "
+        f"{'least knee':>13s} {'fall m/s2':>9s} {'d2':>5s} {'moves':>6s} {'time':>5s}  broken")
+
+
+def short(row):
+    pairs = "  ".join(f"{v:4.1f} ({m:2.0f})".rjust(9) for v, m in zip(row["rms_deg"], row["greatest_deg"]))
+    count = " ".join(f"{a}>{b}" for a, b in row["knee_maxima"])
+    least = " ".join(f"{a:.0f}>{b:.0f}" for a, b in row["least_knee_deg"])
+    falls = ">".join(f"{max(-low, high):.0f}" for low, high in row["fall_m_s2"])
+    moves = max(c.value for c in row["checks"] if c.name.endswith("moves"))
+    broken = ", ".join(c.name for c in row["broken"])
+    return (f"{row['clip'][:28]:28s} {row['stride_s']:5.2f} {row['speed_m_s']:5.2f} {row['slide_mm']:5.0f}  {pairs} {count:>9s} "
+            f"{least:>13s} {falls:>9s} {row['d2_deg']:5.2f} {moves:6.3f} {row['seconds']:5.1f}  {broken or 'none'}")
+
+
+def medians(rows):
+    """Checks of the median over the clips, the built-in motion left out."""
+    clips = [r["rms_deg"] for r in rows if r["clip"] != "built-in"]
+    return [judge.Check(f"median {j} RMS", float(v), b, unit="deg", note=f"{len(clips)} clips")
+            for j, v, b in zip(JOINTS, np.median(clips, 0), MEDIAN_DEG)] if clips else []
+
+
+def for_machines(row):
+    kept = {k: v for k, v in row.items() if k not in ("strides", "parents", "curves", "checks", "broken")}
+    if "checks" in row:
+        kept["checks"] = [c.as_dict() for c in row["checks"]]
+    return kept
+
+
+# ---- all of it -------------------------------------------------------------------------------------
+def clips_of(paths):
+    found = []
+    for path in map(pathlib.Path, paths):
+        found += sorted(p for p in path.iterdir() if p.suffix.lower() in (".bvh", ".amc")) if path.is_dir() else [path]
+    return found
+
+
+def arguments(words=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("clips", nargs="*", metavar="FILE_OR_FOLDER", help=".bvh or .amc (its .asf beside it)")
+    parser.add_argument("--built-in", action="store_true", help="the built-in motion, too")
+    parser.add_argument("--long", action="store_true", help="200 strides")
+    parser.add_argument("--json", action="store_true", help="every figure, for machines")
+    parser.add_argument("--picture", metavar="OUT.png", help="curves of the first clip")
+    parser.add_argument("--sheet", metavar="OUT.png", help="stick figures of all clips")
+    parser.add_argument("--out", type=pathlib.Path, help="keep what replay writes there, a folder a clip")
+    options = parser.parse_intermixed_args(words)
+    if not options.clips and not options.built_in:
+        parser.error("name a clip, a folder or --built-in")
+    options.program = options.program.resolve()
+    if not options.program.exists():
+        parser.error(f"{options.program} is not built")
+    return options
+
+
+def run_all(options, say=lambda text: None):
+    """(rows judged, rows refused, checks of the medians)"""
+    rows, refused = [], []
+    with tempfile.TemporaryDirectory() as scratch:
+        out = (options.out or pathlib.Path(scratch)).resolve()
+        out.mkdir(parents=True, exist_ok=True)
+        for path in ([None] if options.built_in else []) + clips_of(options.clips):
+            name = path.name if path else "built-in"
+            try:
+                row = judge_clip(options, out / name, path)
+            except Exception as error:  # what cannot be measured is a failure of that clip, and the others are still judged
+                row = {"clip": name, "refused": f"CANNOT BE JUDGED: {type(error).__name__}: {error}", "failed": True}
+            (refused if "refused" in row else rows).append(row)
+            say(f"{row['clip'][:28]:28s} {row['refused']}" if "refused" in row else short(row))
+    return rows, refused, medians(rows)
+
+
+def main():
+    options = arguments()
+    say = (lambda text: None) if options.json else (lambda text: print(text, flush=True))
+    say(HEAD)
+    rows, refused, middle = run_all(options, say)
+    for check in middle:
+        say(f"{check.name:28s} {check.value:.2f} {check.bound_text()} {'ok' if check.ok else 'FAIL'} ({check.note})")
+    if any(not r["gait_told"] for r in rows):
+        print('fidelity.py: this program tells no "gait": strides were found here, steps matched by a style', file=sys.stderr)
+    failed = [r for r in rows if r["broken"]] + [r for r in refused if r.get("failed")]
+    for row in rows if not options.json else ():
+        for c in row["broken"]:
+            print(f"  {row['clip']}: {c.name} {c.value:.4g} {c.unit}, bound {c.bound_text()} {c.note}".rstrip())
+    say(f"{len(rows)} clips judged, {len(failed)} broken, {len(refused)} refused")
+    if options.json:
+        print(json.dumps({"clips": list(map(for_machines, rows)), "refused": refused,
+                          "medians": [c.as_dict() for c in middle]}, indent=1))
+    if options.picture and rows:
+        gait_pictures.draw_curves(rows[0], options.picture)
+    if options.sheet and rows:
+        gait_pictures.draw_sheet(rows, options.sheet)
+    return 1 if failed or any(c.ok is False for c in middle) or not rows else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

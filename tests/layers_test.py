@@ -9,7 +9,7 @@ import re
 # The libraries, lowest first: a library includes its own headers and those of the libraries before it.
 LIBRARIES = {
     "core": ["src/base", "src/motion", "src/control", "src/animation"],
-    "files": ["src/files"],
+    "files": ["src/files", "src/strides"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
     "program": ["src/draw", "src/view", "src/paper"],
@@ -21,6 +21,7 @@ ROOMS = {
     "src/control": (["base"], []),
     "src/animation": (["base", "motion", "control"], []),
     "src/files": ([], ["fmt/", "toml++/", "nlohmann/"]),
+    "src/strides": (["motion"], []),
     "src/hid": ([], ["fmt/"]),
     "src/stick": (["hid"], ["fmt/"]),
     "drivers": (["hid", "drivers/pads"], ["fmt/"]),
@@ -35,10 +36,11 @@ ROOMS = {
 # The public headers, src/include/gaitpad/NAME.h, by the room whose functions they declare.
 PUBLIC = {
     "src/base": ["curve", "hash", "limbs", "math", "result"],
-    "src/motion": ["anatomy", "flight", "gait_cycle", "motion", "skeleton"],
+    "src/motion": ["anatomy", "flight", "gait_cycle", "motion", "skeleton", "stride_family"],
     "src/control": ["control", "gait_params", "stick", "style"],
     "src/animation": ["ik", "terrain", "walk", "walk_model"],
     "src/files": ["bvh", "config_files", "gltf", "motion_file"],
+    "src/strides": ["clean_strides"],
     "src/hid": ["decode", "descriptor", "driver", "pad_map", "report", "trace"],
     "src/stick": ["calibration"],
     "drivers": ["drivers", "keyboard"],
@@ -48,6 +50,7 @@ PUBLIC = {
 # What further headers of a vendor single files may include, and nobody else.
 DRIVER_VENDORS = {
     "src/files/height_picture.cpp": ["png.h"],
+    "src/strides/clean_stride.cpp": ["Eigen/"],
     "drivers/hidraw_driver.cpp": ["hidapi", "linux/"],
     "drivers/usb_driver.cpp": ["libusb"],
     "drivers/usb_transfers.h": ["libusb"],

@@ -414,8 +414,9 @@ StrideFamily scaled(StrideFamily family, double ratio, double scale) {
 
 }  // namespace
 
-Result<WalkModel> walk_model(const GaitCycle& cycle, const StrideFamily& strides,
-                             const Character& character) {
+Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character) {
+  if (!cycle.strides) return Error{cycle.name + ": has no clean strides, see with_clean_strides()"};
+  const StrideFamily& strides = *cycle.strides;
   if (!character.skeleton.empty()) {
     return Error{character.name + ": a character with a skeleton of its own is not supported yet"};
   }

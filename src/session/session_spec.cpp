@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "gaitpad/clean_strides.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
@@ -67,12 +68,15 @@ Result<std::shared_ptr<const Terrain>> terrain_of(const SessionSpec& spec) {
 }
 
 Result<GaitCycle> cycle_of(const SessionSpec& spec) {
-  if (spec.walk.motion.empty() || spec.walk.motion == "procedural") return procedural_gait();
+  if (spec.walk.motion.empty() || spec.walk.motion == "procedural")
+    return with_clean_strides(procedural_gait());
   const auto path = motion_path(spec.config_folders, spec.walk.motion);
   if (!path) return path.error();
   auto motion = load_motion_source(*path);
   if (!motion) return motion.error();
-  return gait_cycle(*motion);
+  auto cycle = gait_cycle(*motion);
+  if (!cycle) return cycle.error();
+  return with_clean_strides(std::move(*cycle));
 }
 
 Result<WalkerConfig> walker_config(const Character& character, int style, const GaitCycle& cycle) {
@@ -82,7 +86,7 @@ Result<WalkerConfig> walker_config(const Character& character, int style, const 
   if (!motion) return motion.error();
   auto own = cycle_on_skeleton(cycle, *motion);
   if (!own) return own.error();
-  walker.own_cycle = std::move(*own);
+  walker.own_cycle = with_clean_strides(std::move(*own));
   return walker;
 }
 

@@ -17,12 +17,21 @@ constexpr double kSmooth = 200.0;       // of second differences between samples
 constexpr double kPelvisSmooth = 400.0;  // times that
 constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 2e3;  // per square metre, radian
 constexpr double kLevel = 2e3;          // the sole is level and points ahead, per square metre
+constexpr double kFlat = 2e5;            // the heel of a flat foot, per square metre
+// A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
+constexpr double kSoftContact = 3e4;
+constexpr int kLanding = 3;             // samples
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004;
 constexpr double kLeastKnee = 1.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.15;        // radians or metres an iteration
 
+// A row sees the pelvis and one leg.
+bool are_coupled(int k, int l) {
+  const int low = std::min(k, l), high = std::max(k, l);
+  return low < kPelvis || high < kPelvis + kLegDofs || low >= kPelvis + kLegDofs;
+}
 int leg_unknown(int side) { return kPelvis + side * kLegDofs; }
 double fraction(double phase) { return phase - std::floor(phase); }
 
@@ -75,10 +84,14 @@ struct StrideSolver::System {
     for (int i = 0; i < n; ++i) {
       for (int k = 0; k < kUnknowns; ++k) {
         for (int l = 0; l <= k; ++l) {
-          const bool both_legs = k >= leg_unknown(1) && l >= leg_unknown(0) && l < leg_unknown(1);
-          if (!both_legs) add(i * kUnknowns + k, i * kUnknowns + l);
+          if (are_coupled(k, l)) add(i * kUnknowns + k, i * kUnknowns + l);
         }
-        for (int d : {1, 2}) add(i * kUnknowns + k, (i + d) % n * kUnknowns + k);
+        for (int d : {1, 2}) {
+          const int j = (i + d) % n;
+          for (int l = 0; l < kUnknowns; ++l) {
+            if (are_coupled(k, l)) add(i * kUnknowns + k, j * kUnknowns + l);
+          }
+        }
       }
     }
     normal.setFromTriplets(entries.begin(), entries.end());
@@ -103,6 +116,39 @@ struct StrideSolver::System {
     for (std::size_t p = 0; p < row.size(); ++p) {
       gradient[where[p]] += weight * row[p] * error_m;
       for (std::size_t q = 0; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
+    }
+  }
+
+  // Adds weight * |second difference of the point's place along the path|^2.
+  void add_bend(int sample, int side, const std::vector<PointRows>& point,
+                const std::vector<double>& path_m, double stride_m, double weight) {
+    constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
+    for (int axis = 0; axis < 3; ++axis) {
+      std::array<double, 3 * (kPelvis + kLegDofs)> row{};
+      std::array<int, 3 * (kPelvis + kLegDofs)> where{};
+      double error = 0.0;
+      int m = 0;
+      for (int d : {0, 1, 2}) {
+        const int at = sample + d - 1, j = (at + samples) % samples;
+        double place = point[j].place_m[axis];
+        if (axis == 2) place += path_m[j] + (at < 0 ? -stride_m : at >= samples ? stride_m : 0.0);
+        error += kBend[d] * place;
+        for (int a = 0; a < kPelvis; ++a, ++m) {
+          row[m] = a == axis ? kBend[d] : 0.0;
+          where[m] = j * kUnknowns + a;
+        }
+        for (int k = 0; k < kLegDofs; ++k, ++m) {
+          row[m] = kBend[d] * point[j].by_angle[k][axis];
+          where[m] = j * kUnknowns + leg_unknown(side) + k;
+        }
+      }
+      for (int p = 0; p < m; ++p) {
+        if (row[p] == 0.0) continue;
+        gradient[where[p]] += weight * row[p] * error;
+        for (int q = 0; q <= p; ++q) {
+          if (row[q] != 0.0) at(where[p], where[q]) += weight * row[p] * row[q];
+        }
+      }
     }
   }
 
@@ -159,6 +205,25 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
       }
     }
     // Feet.
+    std::vector<double> path_m(n);
+    for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
+    for (int side : {0, 1}) {
+      const LegModel& leg = problem.leg[side];
+      std::vector<PointRows> heels, toes;
+      for (int i = 0; i < n; ++i) {
+        const LegFrames frames = leg_frames(leg, x[i], side);
+        heels.push_back(point_rows(frames, leg.heel_m));
+        toes.push_back(point_rows(frames, leg.toe_m));
+      }
+      const int strike = static_cast<int>(std::ceil(problem.strike[side] * n - 1e-9)),
+                lift = static_cast<int>(std::floor(problem.toe_off[side] * n + 1e-9)),
+                down = static_cast<int>(std::ceil(problem.toe_off[1 - side] * n - 1e-9));
+      for (int d = -kLanding; d <= 0; ++d) {
+        s.add_bend((strike + d + n) % n, side, heels, path_m, problem.stride_m, kSoftContact);
+        s.add_bend((lift - d + n) % n, side, toes, path_m, problem.stride_m, kSoftContact);
+        s.add_bend((down + d + n) % n, side, toes, path_m, problem.stride_m, kSoftContact);
+      }
+    }
     for (int i = 0; i < n; ++i) {
       const double phase = double(i) / n;
       for (int side : {0, 1}) {
@@ -180,6 +245,8 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
             d[a] = 1.0;
             s.add_row(i, side, heel, d, heel.place_m[a] - heel_goal[a], kPlanted);
           }
+        } else if (own <= problem.flat[side]) {
+          s.add_row(i, side, heel, kUp, heel.place_m.y, kFlat);
         } else {
           s.add_floor(i, side, heel, 0.0);
         }

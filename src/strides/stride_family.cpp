@@ -11,6 +11,7 @@ constexpr int kFirstSolve = 10, kNextSolve = 5;  // iterations
 constexpr double kLeastStandingKnee = 3.0 * kDegree;
 // What shows of the data's angles in steps of length 0: a foot still has to leave the floor.
 constexpr double kLeastLift = 0.3;
+constexpr double kHeelDown = 0.008;  // of the leg: a heel so near to its mean height stands
 constexpr double kFlat = 0.2;  // own phase: how long a foot stands flat after its roll
 
 double fraction(double phase) { return phase - std::floor(phase); }
@@ -20,6 +21,7 @@ struct Builder {
   StrideFamily family;
   std::array<vec3, 2> own_footprint_m{};
   std::array<double, 4> phase_share{};
+  std::array<double, 2> flat{};
   std::array<LegAngles, 2> mean_rad{};
   vec3 mean_tilt{0.0};
   std::array<vec3, kCycleSamples> tilt{};
@@ -57,6 +59,15 @@ struct Builder {
         ++count;
       }
       own_footprint_m[side] = sum / double(count);
+      // The heel is down until it has left its mean height by a few millimetres.
+      flat[side] = roll;
+      const double high_m = own_footprint_m[side].y + kHeelDown * cycle.leg[side].length_m();
+      for (double own = roll; own < roll + 2.0 * kFlat; own += 1.0 / kCycleSamples) {
+        const CycleSample s = sample_at(cycle, own + cycle.strike[side]);
+        if (leg_pose(cycle.leg[side], s.pelvis_m, s.pelvis, s.leg[side].angles, 0.0).heel_m.y > high_m)
+          break;
+        flat[side] = own;
+      }
       own_footprint_m[side].y = 0.0;
     }
   }
@@ -146,6 +157,7 @@ struct Builder {
       p.time.push_back(0.5 * (low + high));
     }
     for (int side : {0, 1}) p.heel_m[side] = footprint(side, ratio);
+    p.flat = flat;
     return p;
   }
 
@@ -222,6 +234,11 @@ StrideFamily stride_family(const GaitCycle& cycle) {
   Builder builder(cycle);
   builder.solve();
   return std::move(builder.family);
+}
+
+GaitCycle with_clean_strides(GaitCycle cycle) {
+  cycle.strides = std::make_shared<const StrideFamily>(stride_family(cycle));
+  return cycle;
 }
 
 }  // namespace gaitpad

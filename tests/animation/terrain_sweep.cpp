@@ -11,6 +11,7 @@
 #include <string>
 
 #include "animation/terrain_judge.h"
+#include "gaitpad/clean_strides.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/motion_file.h"
 #include "tests/folders.h"
@@ -122,7 +123,7 @@ int main(int argc, char** argv) {
     for (const double ratio : ratios) {
       Character character;
       character.leg_ratio = ratio;
-      WalkModel model = value_or_exit(walk_model(cycle, character));
+      WalkModel model = value_or_exit(walk_model(with_clean_strides(cycle), character));
       model.terrain = std::make_shared<const Terrain>(scaled(ground, terrain_scale(ground, model)));
       for (const double y : sticks) {
         for (const std::string& style : styles) {

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 
+#include "gaitpad/clean_strides.h"
 #include "gaitpad/control.h"
 #include "gaitpad/walk.h"
 #include "tests/value_of.h"
@@ -253,7 +254,7 @@ TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
   orbit(camera_, 0.0, -1.0);
   ASSERT_LT(camera_.eye_m().y, 0.11);
   const Mannequin body = mannequin_of(
-      std::make_shared<const WalkModel>(value_of(walk_model(procedural_gait(), Character{}))));
+      std::make_shared<const WalkModel>(value_of(walk_model(with_clean_strides(procedural_gait()), Character{}))));
   Stick stick;
   stick.left = {0.2, 0.7};
   const GaitParams params = gait_params(stick, StyleValues{}, GaitLimits{});

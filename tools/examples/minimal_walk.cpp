@@ -1,5 +1,6 @@
 // Walks ten seconds with the stick held forward and prints where both feet are at each tick.
 //   minimal_walk walk.bvh 0.8 > feet.csv
+#include <gaitpad/clean_strides.h>
 #include <gaitpad/control.h>
 #include <gaitpad/motion_file.h>
 #include <gaitpad/walk.h>
@@ -32,7 +33,7 @@ int main(int argc, char** argv) {
   if (!motion) return print_error(motion.error());
   const auto cycle = gaitpad::gait_cycle(*motion);
   if (!cycle) return print_error(cycle.error());
-  const auto model = gaitpad::walk_model(*cycle, gaitpad::Character{});
+  const auto model = gaitpad::walk_model(gaitpad::with_clean_strides(*cycle), gaitpad::Character{});
   if (!model) return print_error(model.error());
 
   const gaitpad::Stick stick = {.left = gaitpad::vec2(0.0, std::atof(argv[2]))};

@@ -2,6 +2,7 @@
 // pad's left stick walk it, Escape ends.
 //   sdl_game [--frames N] [--stick X,Y] [--picture FILE.bmp]
 #include <SDL2/SDL.h>
+#include <gaitpad/clean_strides.h>
 #include <gaitpad/control.h>
 #include <gaitpad/skeleton.h>
 #include <gaitpad/walk.h>
@@ -100,7 +101,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: sdl_game [--frames N] [--stick X,Y] [--picture FILE.bmp]\n", stderr);
     return 2;
   }
-  const auto model = gaitpad::walk_model(gaitpad::procedural_gait(), gaitpad::Character{});
+  const auto model = gaitpad::walk_model(gaitpad::with_clean_strides(gaitpad::procedural_gait()), gaitpad::Character{});
   if (!model) {
     std::fprintf(stderr, "sdl_game: %s\n", model.error().message.c_str());
     return 1;

@@ -11,6 +11,7 @@
 // Phase runs 0 .. 1 from one heel strike of the right foot to the next.
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,8 @@ struct CycleSample {
   std::array<LegSample, 2> leg;
 };
 
+struct StrideFamily;
+
 struct GaitCycle {
   std::string name;
   // Metres. The root stands at the pelvis: joints from the root down to it have no offsets.
@@ -75,6 +78,9 @@ struct GaitCycle {
   // turns the whole body.
   std::vector<quat> local;
   std::vector<quat> standing_local;  // joints: local rotations of the standing pose
+
+  // What a walk reads (gaitpad/stride_family.h); with_clean_strides() fills it.
+  std::shared_ptr<const StrideFamily> strides;
 };
 
 // The cycle at any phase, whole turns included: Catmull-Rom between samples. No allocation.

@@ -128,10 +128,9 @@ struct WalkModel {
 };
 
 // Retargets by the ratio of the leg lengths: lengths grow with the leg, times with the fourth root
-// of its ratio to the adult's. Error `NAME: cause` for a character that brings a skeleton of its
-// own and for a leg with more than kMaxBetween twist joints between two of its joints.
-Result<WalkModel> walk_model(const GaitCycle& cycle, const StrideFamily& strides,
-                             const Character& character);
+// of its ratio to the adult's. Error `NAME: cause` for a cycle without clean strides, for a character
+// that brings a skeleton of its own and for a leg with more than kMaxBetween twist joints between two of its joints.
+Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
 
 // The factor by which a terrain has to grow for this walker: 1 where it fits. Where the sole and
 // some room do not fit on the shortest tread, the ground grows by the ratio of the leg to the

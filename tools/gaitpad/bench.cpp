@@ -117,20 +117,22 @@ StepCost step_cost(const Session& session, Simulation simulation) {
 double leg_ik_us(const Session& session, Simulation simulation) {
   const Walker& w = simulation.walkers().front();
   std::vector<WalkState> states;
+  std::vector<StridePlan> plans;
   std::vector<Pelvis> pelvises;
   for (std::int64_t tick = 0; tick < kLastTick; ++tick) {
     simulation.step(session.ticks[tick]);
     if (tick < kFirstTick || tick % 8 != 0) continue;
     states.push_back(w.state);
-    Pelvis& pelvis = pelvises.emplace_back(pelvis_over_ground(*w.model, w.state));
+    plans.push_back(stride_now(*w.model, w.state));
+    Pelvis& pelvis = pelvises.emplace_back(pelvis_over_ground(*w.model, w.state, plans.back()));
     pelvis.position_m.y = w.state.frame.pelvis_m.y;
   }
   const GaitParams params = gait_params(simulation.stick(), simulation.styles()[w.style], w.limits);
   const Tick tick{*w.model, params, 1.0 / session.config.rate_hz, is_flat(*w.model->terrain)};
   std::size_t i = 0;
   return measured_us("leg", [&] {
-    pose_leg(tick, session.config.ik, (i & 1) != 0 ? kRightSide : kLeftSide, pelvises[i / 2],
-             states[i / 2]);
+    pose_leg(tick, session.config.ik, (i & 1) != 0 ? kRightSide : kLeftSide, plans[i / 2],
+             pelvises[i / 2], states[i / 2]);
     i = (i + 1) % (2 * states.size());
   });
 }

@@ -170,6 +170,11 @@ double slide_m(const CapturedCycle& captured, const GaitCycle& cycle, Side side)
   return horizontal_length(toe[off] - toe[flat] + kForward * (stood * cycle.stride_m));
 }
 
+// Step length over cadence.
+double walk_ratio_m_min(const GaitCycle& cycle) {
+  return 0.5 * cycle.stride_m * cycle.duration_s / 120.0;
+}
+
 // What its pace says of a wrong frame time, as the end of an error sentence; empty if a walk can
 // have it. Nobody walks faster than 3 m/s or 200 steps a minute (race walkers do not). The walk
 // ratio, step length over cadence, is 0.6 cm per step/min in adults at all speeds, and up to 1 in
@@ -179,9 +184,8 @@ std::string why_no_pace(const GaitCycle& cycle) {
   const double legs = mean_leg_m(cycle) / kAdultLeg_m, root = std::sqrt(legs);
   const double speed_m_s = cycle.stride_m / cycle.duration_s;
   const double steps_min = 120.0 / cycle.duration_s;
-  const double ratio = 0.5 * cycle.stride_m / steps_min;
   if (speed_m_s <= kFastest_m_s * root && steps_min <= kMostSteps_min / root &&
-      ratio <= kMostRatio_m_min * legs * root) {
+      walk_ratio_m_min(cycle) <= kMostRatio_m_min * legs * root) {
     return "";
   }
   return "nobody walks at " + fixed(speed_m_s, 2) + " m/s with " + fixed(steps_min, 0) +
@@ -287,16 +291,24 @@ Result<GaitCycle> looped_cycle_of(const Motion& motion) {
   return again;
 }
 
-// The frame rate at which a motion without a stride holds a walk: files say 30 for 120 and the
-// like. 0: at none.
+// The frame rate at which a motion without a stride holds a walk, the most usual one: files say 30
+// for 120 and the like. 0: at none.
 double walking_rate_hz(const Motion& motion) {
+  constexpr double kUsualRatio_m_min = 0.0058;
   if (best_strides(motion)) return 0.0;
+  double rate_hz = 0.0, least = 1e300;
   Motion timed = motion;
-  for (const double times : {2.0, 4.0, 0.5, 0.25}) {
+  for (const double times : {0.25, 0.5, 2.0, 4.0}) {
     timed.frame_time_s = motion.frame_time_s * times;
-    if (looped_cycle_of(timed)) return 1.0 / timed.frame_time_s;
+    const Result<GaitCycle> cycle = looped_cycle_of(timed);
+    if (!cycle) continue;
+    const double ratio = walk_ratio_m_min(*cycle) / kUsualRatio_m_min;
+    const double off = std::max(ratio, 1.0 / ratio);
+    if (off >= least) continue;
+    least = off;
+    rate_hz = 1.0 / timed.frame_time_s;
   }
-  return 0.0;
+  return rate_hz;
 }
 
 }  // namespace

@@ -269,6 +269,15 @@ int toe_of(const Figure& figure, int ankle) {
   return best;
 }
 
+// The End Site of a foot without length, -1: none. Old Acclaim skeletons end in such feet; a walk
+// gives them the usual length.
+int foot_point_of(const Figure& figure, int ankle) {
+  for (const int child : children_of(figure.skeleton, ankle)) {
+    if (figure.joint(child).is_end_site) return child;
+  }
+  return -1;
+}
+
 // Finds the toe, if it is not given, and its end. False where the foot has no length.
 bool complete_foot(const Figure& figure, LegJoints& leg) {
   if (leg.toe < 0) leg.toe = toe_of(figure, leg.ankle);
@@ -288,7 +297,10 @@ std::optional<LegJoints> named_leg(const Figure& figure, NamedSide side) {
     leg.knee = named_ancestor(figure.skeleton, j, side, NamedPart::knee);
     if (leg.knee < 0) continue;
     leg.hip = named_ancestor(figure.skeleton, leg.knee, side, NamedPart::hip);
-    if (leg.hip >= 0 && is_limb(figure, limb_of(leg)) && complete_foot(figure, leg)) return leg;
+    if (leg.hip < 0 || !is_limb(figure, limb_of(leg))) continue;
+    // A name says that it is a foot even where it has no length.
+    if (toe_of(figure, j) < 0) leg.toe = foot_point_of(figure, j);
+    if (complete_foot(figure, leg)) return leg;
   }
   return std::nullopt;
 }

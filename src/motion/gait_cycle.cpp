@@ -83,6 +83,7 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
+constexpr double kAdultLeg_m = 0.84;
 constexpr double kBackwards = 0.5;    // cosine between hips' front and travel
 constexpr double kMostFlight = 0.02;  // of the stride with both feet in the air: else it is a run
 constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits have half of it
@@ -169,6 +170,29 @@ double slide_m(const CapturedCycle& captured, const GaitCycle& cycle, Side side)
   return horizontal_length(toe[off] - toe[flat] + kForward * (stood * cycle.stride_m));
 }
 
+// Step length over cadence.
+double walk_ratio_m_min(const GaitCycle& cycle) {
+  return 0.5 * cycle.stride_m * cycle.duration_s / 120.0;
+}
+
+// What its pace says of a wrong frame time, as the end of an error sentence; empty if a walk can
+// have it. Nobody walks faster than 3 m/s or 200 steps a minute (race walkers do not). The walk
+// ratio, step length over cadence, is 0.6 cm per step/min in adults at all speeds, and up to 1 in
+// captures of slow long steps. All of an adult's leg: speeds go with its root.
+std::string why_no_pace(const GaitCycle& cycle) {
+  constexpr double kFastest_m_s = 3.0, kMostSteps_min = 200.0, kMostRatio_m_min = 0.015;
+  const double legs = mean_leg_m(cycle) / kAdultLeg_m, root = std::sqrt(legs);
+  const double speed_m_s = cycle.stride_m / cycle.duration_s;
+  const double steps_min = 120.0 / cycle.duration_s;
+  if (speed_m_s <= kFastest_m_s * root && steps_min <= kMostSteps_min / root &&
+      walk_ratio_m_min(cycle) <= kMostRatio_m_min * legs * root) {
+    return "";
+  }
+  return "nobody walks at " + fixed(speed_m_s, 2) + " m/s with " + fixed(steps_min, 0) +
+         " steps a minute: if the file's " + fixed(cycle.frames / cycle.duration_s, 0) +
+         " frames a second are wrong, give frame_rate_hz";
+}
+
 // The end of an error sentence; empty if it is a walk.
 std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
@@ -183,7 +207,7 @@ std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
   if (heading_direction(heading_of(glm::cross(across, kUp))).z < kBackwards) {
     return "does not walk forwards";
   }
-  return "";
+  return why_no_pace(cycle);
 }
 
 // The cycle from phase `shift` of the periodic stride on, without its events and steps.
@@ -191,12 +215,15 @@ struct Build {
   CapturedCycle captured;
   GaitCycle cycle;
 };
-Result<Build> built(const Motion& motion, const PeriodicMotion& periodic, double shift) {
+Result<Build> built(const Motion& motion, const StrideWindow& window,
+                    const PeriodicMotion& periodic, double shift) {
   Build b;
   b.cycle.name = motion.name;
   b.cycle.metres_per_unit = motion.metres_per_unit;
   b.cycle.duration_s = periodic.duration_s;
   b.cycle.stride_m = periodic.stride_m;
+  b.cycle.frames = window.period;
+  b.cycle.turn_rad = window.turn_rad;
   b.captured = captured_cycle(motion, periodic, shift);
   const Result<double> floor_m = build_standing(b.captured, b.cycle);
   if (!floor_m) return floor_m.error();
@@ -204,11 +231,19 @@ Result<Build> built(const Motion& motion, const PeriodicMotion& periodic, double
   return b;
 }
 
+// The frame of the strike at that phase of the window: in the window, or one stride before it where
+// the motion ends too soon.
+double frame_of(const StrideWindow& window, double phase) {
+  const double frame = window.start + phase * window.period;
+  const bool is_cut = frame + window.period > window.last && frame - window.period >= window.first;
+  return is_cut ? frame - window.period : frame;
+}
+
 // Builds the cycle twice: the first one tells when the right heel strikes, and the second one
 // begins there, so that the strike is phase 0.
 Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   const PeriodicMotion periodic = periodic_motion(motion, window);
-  const Result<Build> first = built(motion, periodic, 0.0);
+  const Result<Build> first = built(motion, window, periodic, 0.0);
   if (!first) return first.error();
   if (flight_share(first->captured, first->cycle) > kMostFlight) {
     return Error{"holds no walk: both feet leave the floor, it is a run"};
@@ -217,9 +252,10 @@ Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   const auto events = stride_events(feet_tracks(first->cycle), travel_m);
   if (!events) return events.error();
   const double shift = events->strike[kRightSide];
-  Result<Build> second = built(motion, periodic, shift);
+  Result<Build> second = built(motion, window, periodic, shift);
   if (!second) return second.error();
   GaitCycle& cycle = second->cycle;
+  cycle.first_frame = frame_of(window, shift);
   for (const Side side : {kLeftSide, kRightSide}) {
     cycle.strike[side] = fraction(events->strike[side] - shift);
     cycle.toe_off[side] = fraction(events->toe_off[side] - shift);
@@ -242,18 +278,50 @@ Result<GaitCycle> cycle_of(const Motion& motion) {
   return first;
 }
 
+// Of the motion, else of the motion twice in a row if it is one loop.
+Result<GaitCycle> looped_cycle_of(const Motion& motion) {
+  Result<GaitCycle> cycle = cycle_of(motion);
+  if (cycle) return cycle;
+  const Motion twice = looped_twice(motion);
+  if (twice.frames.empty()) return cycle;
+  Result<GaitCycle> again = cycle_of(twice);
+  if (!again) return cycle;
+  const auto round = static_cast<double>(motion.frames.size() - 1);
+  if (again->first_frame >= round) again->first_frame -= round;
+  return again;
+}
+
+// The frame rate at which a motion without a stride holds a walk, the most usual one: files say 30
+// for 120 and the like. 0: at none.
+double walking_rate_hz(const Motion& motion) {
+  constexpr double kUsualRatio_m_min = 0.0058;
+  if (best_strides(motion)) return 0.0;
+  double rate_hz = 0.0, least = 1e300;
+  Motion timed = motion;
+  for (const double times : {0.25, 0.5, 2.0, 4.0}) {
+    timed.frame_time_s = motion.frame_time_s * times;
+    const Result<GaitCycle> cycle = looped_cycle_of(timed);
+    if (!cycle) continue;
+    const double ratio = walk_ratio_m_min(*cycle) / kUsualRatio_m_min;
+    const double off = std::max(ratio, 1.0 / ratio);
+    if (off >= least) continue;
+    least = off;
+    rate_hz = 1.0 / timed.frame_time_s;
+  }
+  return rate_hz;
+}
+
 }  // namespace
 
 Result<GaitCycle> gait_cycle(const Motion& motion) {
-  Result<GaitCycle> cycle = cycle_of(motion);
-  if (!cycle) {
-    const Motion twice = looped_twice(motion);
-    if (!twice.frames.empty()) {
-      if (Result<GaitCycle> again = cycle_of(twice)) cycle = std::move(again);
-    }
+  Result<GaitCycle> cycle = looped_cycle_of(motion);
+  if (cycle) return cycle;
+  std::string reason = cycle.error().message;
+  if (const double rate_hz = walking_rate_hz(motion); rate_hz > 0.0) {
+    reason += ", but a walk at " + fixed(rate_hz, 0) + " frames a second instead of the file's " +
+              fixed(1.0 / motion.frame_time_s, 0) + ": if these are wrong, give frame_rate_hz";
   }
-  if (!cycle) return Error{motion.name + ": " + cycle.error().message};
-  return cycle;
+  return Error{motion.name + ": " + reason};
 }
 
 }  // namespace gaitpad

@@ -353,12 +353,10 @@ std::optional<double> toe_off_of(const FeetTracks& tracks, const Swing& s, doubl
   if (s.run.first == tracks.ranges[s.run.range].first) return std::nullopt;
   const Reader r = reader(tracks, s.run);
   const double most_m_s = slide * s.scale * kLeaving_m_s;
-  for (int i = s.fastest_toe - 1; i > s.pushing; --i) {
-    const double here_m_s = r.speed(r.foot.toe_m, i);
-    if (here_m_s > most_m_s) continue;
-    return i + 1 - share_above(r.speed(r.foot.toe_m, i + 1), here_m_s, most_m_s);
-  }
-  return s.pushing;
+  int i = s.fastest_toe - 1;
+  while (i > s.pushing && r.speed(r.foot.toe_m, i) > most_m_s) --i;
+  if (i <= r.range.first) return std::nullopt;  // it left before the range begins
+  return i + 1 - share_above(r.speed(r.foot.toe_m, i + 1), r.speed(r.foot.toe_m, i), most_m_s);
 }
 
 // The next swing of the other foot in the same range, -1: none.
@@ -418,8 +416,9 @@ std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share
     FootSwing swing{s.run.side, s.run.range, {}, {}, {}, {}};
     swing.toe_off = toe_off_of(tracks, s, 1.0);
     swing.strike = strike_of(tracks, s, 1.0);
-    if (swing.toe_off) swing.moves_from = s.run.from;
-    if (swing.strike) swing.moves_to = s.run.to;
+    const SampleRange& range = tracks.ranges[s.run.range];
+    if (s.run.first > range.first) swing.moves_from = s.run.from;
+    if (s.run.last < range.last) swing.moves_to = s.run.to;
     found.push_back(swing);
   }
   // A heel strikes before the other toe leaves. Feet that slide get wider limits.

@@ -328,6 +328,7 @@ GaitCycle procedural_gait() {
   fill_locals(cycle);
   cycle.stride_m = stride_length(cycle);
   cycle.duration_s = std::floor(cycle.stride_m / kSpeed * kFrameRate + 0.5) / kFrameRate;
+  cycle.frames = cycle.duration_s * kFrameRate;  // of procedural_motion(), from its frame 0 on
   cycle.step_m = {0.5 * cycle.stride_m, 0.5 * cycle.stride_m};
   const double heel_m = cycle.leg[kLeftSide].heel_m.x;  // toes out: the heel stands further in
   cycle.track_m = {kTrack + heel_m, -kTrack - heel_m};

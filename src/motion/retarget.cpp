@@ -358,6 +358,9 @@ void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
   out.metres_per_unit = source.metres_per_unit;
   out.duration_s = source.duration_s * std::sqrt(ratio);  // as a pendulum
   out.stride_m = source.stride_m * ratio;
+  out.first_frame = source.first_frame;
+  out.frames = source.frames;
+  out.turn_rad = source.turn_rad;
   out.strike = source.strike;
   out.toe_off = source.toe_off;
   for (int side = 0; side < 2; ++side) {

@@ -231,20 +231,43 @@ std::vector<Candidate> candidates(const FeetTracks& feet, const WalkTrack& track
   return found;
 }
 
-// The error sentence. Its numbers tell a walk on the spot, or one too short for a stride, from
-// other motions.
+// How often the other foot comes to the front, or is the higher one, in that range.
+int steps_in_place(const WalkTrack& track, const SampleRange& range) {
+  constexpr double kAhead_legs = 0.1, kAbove_legs = 0.03;  // less is a shift of the weight
+  int ahead = 0, above = 0, steps_ahead = 0, steps_above = 0;
+  const auto count = [](double difference, double least, int& side, int& steps) {
+    if (std::abs(difference) < least) return;
+    const int now = difference > 0.0 ? 1 : -1;
+    steps += side != 0 && now != side;
+    side = now;
+  };
+  for (int f = range.first; f <= range.last; ++f) {
+    const vec3 apart = track.leg[kLeftSide].ankle_m[f] - track.leg[kRightSide].ankle_m[f];
+    const vec3 front = heading_direction(track.heading_rad[f]);
+    count(glm::dot(apart, front), kAhead_legs * track.leg_m, ahead, steps_ahead);
+    count(apart.y, kAbove_legs * track.leg_m, above, steps_above);
+  }
+  return std::max(steps_ahead, steps_above);
+}
+
+// The error sentence. Its numbers tell a motion too short for a stride from other motions.
 std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
-  double moved_m = 0.0;
-  std::size_t frames = 0;
+  double moved_m = 0.0, time_s = 0.0;
+  int steps = 0;
   for (const SampleRange& range : feet.ranges) {
-    frames = std::max(frames, static_cast<std::size_t>(range.last - range.first + 1));
+    time_s = std::max(time_s, (range.last - range.first + 1) * feet.sample_s);
     for (int f = range.first; f <= range.last; ++f) {
       moved_m =
           std::max(moved_m, horizontal_length(track.pelvis_m[f] - track.pelvis_m[range.first]));
     }
+    steps = std::max(steps, steps_in_place(track, range));
   }
-  return "holds no full walking stride of both feet: the hips go " + fixed(moved_m, 2) + " m in " +
-         fixed(static_cast<double>(frames) * feet.sample_s, 1) + " s";
+  const std::string numbers =
+      "the hips go " + fixed(moved_m, 2) + " m in " + fixed(time_s, 1) + " s";
+  if (steps >= 2 && moved_m < kSlowest_legs_s * track.leg_m * time_s) {
+    return "walks on the spot: " + numbers + ", and a stride has to travel";
+  }
+  return "holds no full walking stride of both feet: " + numbers;
 }
 
 // How much farther one half of the stride goes than the other, as a share of the stride.

@@ -100,6 +100,29 @@ TEST(Legs, WithoutToeJointsEndInTheEndSite) {
   EXPECT_EQ(leg_text(*m, kLeftSide), "LeftUpLeg LeftLeg LeftFoot LeftFoot_End LeftFoot_End");
 }
 
+// As older Acclaim files have them: the names of the bones, and feet without length.
+TEST(Legs, OfAnOlderAcclaimSkeletonAreFoundThoughItsFeetHaveNoLength) {
+  std::string bones, pairs = "root leftupleg rightupleg\n";
+  for (const std::string side : {"left", "right"}) {
+    const auto bone = [&](const std::string& name, const std::string& way, double length) {
+      bones += "begin\nname " + side + name + "\ndirection " + way + "\nlength " +
+               std::to_string(length) + "\naxis 0 0 0 XYZ\ndof rx\nend\n";
+    };
+    bone("upleg", side == "left" ? "0.2 -0.98 0" : "-0.2 -0.98 0", 7.0);
+    bone("lowleg", "0 -1 0", 7.5);
+    bone("foot", "0 0 1", 0.0);
+    pairs += side + "upleg " + side + "lowleg\n" + side + "lowleg " + side + "foot\n";
+  }
+  const std::string asf =
+      ":units\nlength 0.45\nangle deg\n:root\norder TX TY TZ RX RY RZ\n:bonedata\n" + bones +
+      ":hierarchy\nbegin\n" + pairs + "end\n";
+  const auto m = motion_from_acclaim({"old.asf", asf}, {});
+  ASSERT_TRUE(m) << m.error().message;
+  EXPECT_EQ(leg_text(*m, kLeftSide), "leftupleg leftlowleg leftfoot leftfoot_End leftfoot_End");
+  EXPECT_EQ(leg_text(*m, kRightSide),
+            "rightupleg rightlowleg rightfoot rightfoot_End rightfoot_End");
+}
+
 TEST(Legs, CanBeGivenByHand) {
   LoadOptions options;
   options.legs[kLeftSide] = {"RightUpLeg", "RightLeg", "RightFoot", ""};

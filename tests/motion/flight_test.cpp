@@ -53,19 +53,17 @@ Motion walk(double start_s, int frames) {
   return m;
 }
 
-// 6 u (1 - u) L / T falls through a fifth of its peak 1.5 L / T at u = 0.0528.
-constexpr double kCrossingS = 0.0528 * kFlightS;
-
-TEST(Flight, LiftAndLandAreWhereTheHorizontalSpeedCrossesAFifth) {
+// A foot starts and stops with 6 L / T^2 = 45 m/s^2, so it passes 0.2 and 0.3 m/s within 7 ms.
+TEST(Flight, LiftAndLandAreWhereTheFootStartsAndStops) {
   const Motion m = walk(0.8, 260);
   const auto right = swings(m, kRightSide), left = swings(m, kLeftSide);
   ASSERT_EQ(right.size(), 2u);  // lifts at 1.1 and 2.2 s of 0.8 .. 3.4 s; the third is cut
   ASSERT_EQ(left.size(), 2u);   // 1.65 and 2.75 s
   for (int i = 0; i < 2; ++i) {
-    EXPECT_NEAR(right[i].lift * kFrameS + 0.8, 1.1 + i * kCycleS + kCrossingS, 0.02);
-    EXPECT_NEAR(right[i].land * kFrameS + 0.8, 1.1 + i * kCycleS + kFlightS - kCrossingS, 0.02);
+    EXPECT_NEAR(right[i].lift * kFrameS + 0.8, 1.1 + i * kCycleS, 0.011);
+    EXPECT_NEAR(right[i].land * kFrameS + 0.8, 1.1 + i * kCycleS + kFlightS, 0.011);
     EXPECT_NEAR(right[i].peak * kFrameS + 0.8, 1.1 + i * kCycleS + 0.5 * kFlightS, 0.011);
-    EXPECT_NEAR(left[i].lift * kFrameS + 0.8, 1.65 + i * kCycleS + kCrossingS, 0.02);
+    EXPECT_NEAR(left[i].lift * kFrameS + 0.8, 1.65 + i * kCycleS, 0.011);
   }
 }
 
@@ -107,8 +105,8 @@ TEST(Flight, ALoopingClipIsSearchedOverItsEnd) {
   const Motion m = walk(1.3, 111);  // one cycle, first pose = last; begins inside the right swing
   const auto right = swings(m, kRightSide);
   ASSERT_EQ(right.size(), 1u);
-  EXPECT_NEAR(right[0].lift * kFrameS, 0.9 + kCrossingS, 0.02);
-  EXPECT_NEAR(right[0].land * kFrameS, 0.9 + kFlightS - kCrossingS, 0.02);
+  EXPECT_NEAR(right[0].lift * kFrameS, 0.9, 0.011);
+  EXPECT_NEAR(right[0].land * kFrameS, 0.9 + kFlightS, 0.011);
   EXPECT_GE(right[0].land, 111);
   EXPECT_EQ(swings(m, kLeftSide).size(), 1u);
 }
@@ -125,8 +123,8 @@ TEST(Flight, StandingHoldsNoFlight) {
 TEST(Flight, AStepTooShortToCarryAStrideIsNone) {
   Motion m = walk(0.8, 300);
   for (MotionFrame& f : m.frames) {
-    f.root_m.z *= 0.1;
-    for (const LegJoints& leg : m.legs) f.translation_m[leg.ankle].z *= 0.1;
+    f.root_m.z *= 0.05;
+    for (const LegJoints& leg : m.legs) f.translation_m[leg.ankle].z *= 0.05;
   }
   EXPECT_TRUE(swings(m, kRightSide).empty());
 }
@@ -242,7 +240,8 @@ class Speed {
   std::vector<vec3> at_;
 };
 
-TEST(Flight, SharedSwingsAgreeWithAnotherSpeedCurveWithin80Ms) {
+// A toe leaves before its ankle is fast, and a heel is still after its ankle has been slow.
+TEST(Flight, SharedSwingsAgreeWithTheAnklesSpeedWithin120Ms) {
   GAITPAD_NEEDS(kCapturedMotions);
   int count = 0;
   for (const char* file : kWalks) {
@@ -251,12 +250,12 @@ TEST(Flight, SharedSwingsAgreeWithAnotherSpeedCurveWithin80Ms) {
     for (const Side side : {kLeftSide, kRightSide}) {
       const Speed speed(*m, side);
       for (const Swing& s : swings(*m, side)) {
-        EXPECT_NEAR(s.lift * m->frame_time_s, speed.crossing_s(s, s.lift), 0.080)
+        EXPECT_NEAR(s.lift * m->frame_time_s, speed.crossing_s(s, s.lift), 0.120)
             << file << " lift " << s.lift;
-        EXPECT_NEAR(s.land * m->frame_time_s, speed.crossing_s(s, s.land), 0.080)
+        EXPECT_NEAR(s.land * m->frame_time_s, speed.crossing_s(s, s.land), 0.120)
             << file << " land " << s.land;
         EXPECT_LE(s.heel_off, s.lift);
-        EXPECT_LT(s.lift, s.peak);
+        EXPECT_LE(s.lift, s.peak);
         EXPECT_LT(s.peak, s.land);
         ++count;
       }

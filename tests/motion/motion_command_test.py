@@ -34,7 +34,7 @@ def told(run):
 
 def test_says_what_a_motion_holds(run, told, walk):
     got = told(walk)
-    assert set(got) == {"metres_per_unit", "frame_rate_hz", "frames", "joints", "legs", "flight", "flight_paper"}
+    assert set(got) == {"metres_per_unit", "frame_rate_hz", "frames", "joints", "legs", "flight", "flight_paper", "gait"}
     assert got["metres_per_unit"] == 0.01 and got["frames"] == 2 and abs(got["frame_rate_hz"] - 100) < 1e-9
     assert got["joints"] == ["Hips"] + [s + j for s in ("Left", "Right") for j in JOINTS]
     left = got["legs"]["left"]
@@ -42,6 +42,7 @@ def test_says_what_a_motion_holds(run, told, walk):
         hip="LeftUpLeg", knee="LeftLeg", ankle="LeftFoot", toe="LeftToeBase")
     assert abs(left["length_m"] - 0.8) < 1e-12
     assert got["flight"] == got["flight_paper"] == {"left": None, "right": None}
+    assert got["gait"] is None and "gait          none, walk.bvh: has fewer than 6 frames" in run("motion", walk).stdout
     assert "LeftUpLeg - LeftLeg - LeftFoot - LeftToeBase" in run("motion", walk).stdout
 
 
@@ -69,6 +70,17 @@ def test_wrong_usage_is_2(run, walk, options):
 def test_the_built_in_walk_swings_its_feet_in_order(told):
     for foot in told("procedural")["flight"].values():
         assert foot["heel_off_frame"] < foot["lift_frame"] < foot["peak_frame"] < foot["land_frame"], foot
+
+
+def test_the_stride_that_is_walked_is_told(run, told):
+    gait = told("procedural")["gait"]
+    assert list(gait) == ["first_frame", "frames", "stride_s", "step_left_m", "step_right_m", "speed_m_s", "turn_rad", "own_stick"]
+    assert gait["first_frame"] == 0 and gait["own_stick"] == 0.8 and gait["turn_rad"] == 0
+    assert abs(gait["frames"] - gait["stride_s"] * 120) < 1e-9
+    assert abs(gait["step_left_m"] + gait["step_right_m"] - gait["speed_m_s"] * gait["stride_s"]) < 1e-9
+    keyframed = told("keyframe_walk")
+    assert 0 <= keyframed["gait"]["first_frame"] < keyframed["frames"]
+    assert "gait          134.0 frames from frame 0.0 on: 1.12 s, steps 0.70 m left and 0.70 m right" in run("motion", "procedural").stdout
 
 
 ASF = """:units

@@ -62,7 +62,20 @@ ordered_json paper_json(const std::optional<Swing>& swing) {
   return {{"lift_frame", swing->lift}, {"peak_frame", swing->peak}, {"land_frame", swing->land}};
 }
 
-ordered_json motion_json(const Motion& motion) {
+// The stride that is walked.
+ordered_json gait_json(const Result<GaitCycle>& cycle) {
+  if (!cycle) return nullptr;
+  return {{"first_frame", cycle->first_frame},
+          {"frames", cycle->frames},
+          {"stride_s", cycle->duration_s},
+          {"step_left_m", cycle->step_m[kLeftSide]},
+          {"step_right_m", cycle->step_m[kRightSide]},
+          {"speed_m_s", cycle->stride_m / cycle->duration_s},
+          {"turn_rad", cycle->turn_rad},
+          {"own_stick", kOwnStick}};
+}
+
+ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
   ordered_json out;
   out["metres_per_unit"] = motion.metres_per_unit;
   out["frame_rate_hz"] = 1.0 / motion.frame_time_s;
@@ -74,6 +87,7 @@ ordered_json motion_json(const Motion& motion) {
     out["flight"][name] = flight_json(robust_flight(motion, side));
     out["flight_paper"][name] = paper_json(paper_flight(motion, side));
   }
+  out["gait"] = gait_json(cycle);
   return out;
 }
 
@@ -82,7 +96,17 @@ std::string flight_text(const std::optional<Swing>& swing) {
   return fmt::format("lift {}, peak {}, land {}", swing->lift, swing->peak, swing->land);
 }
 
-void print_table(const Motion& motion) {
+std::string gait_text(const Result<GaitCycle>& cycle) {
+  if (!cycle) return "none, " + cycle.error().message;
+  return fmt::format(
+      "{:.1f} frames from frame {:.1f} on: {:.2f} s, steps {:.2f} m left and {:.2f} m right, "
+      "{:.2f} m/s, turn {:.1f} degrees; stick {} walks so",
+      cycle->frames, cycle->first_frame, cycle->duration_s, cycle->step_m[kLeftSide],
+      cycle->step_m[kRightSide], cycle->stride_m / cycle->duration_s, cycle->turn_rad / kDegree,
+      kOwnStick);
+}
+
+void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {
   const double rate_hz = 1.0 / motion.frame_time_s;
   const std::size_t frames = motion.frames.size();
   fmt::print("motion        {}\n", motion.name);
@@ -104,6 +128,7 @@ void print_table(const Motion& motion) {
     fmt::print("{:<5} flight  {}{}; by the paper's rule {}\n", kSideNames[side], heel_off,
                flight_text(flight), flight_text(paper_flight(motion, side)));
   }
+  fmt::print("gait          {}\n", gait_text(cycle));
 }
 
 Result<Motion> chosen_motion(const MotionArguments& arguments) {
@@ -119,11 +144,13 @@ int run_motion(const MotionArguments& arguments) {
     fmt::print(stderr, "gaitpad: {}\n", motion.error().message);
     return 1;
   }
+  const Result<GaitCycle> cycle =
+      arguments.file == "procedural" ? procedural_gait() : gait_cycle(*motion);
   if (!arguments.as_json) {
-    print_table(*motion);
+    print_table(*motion, cycle);
     return 0;
   }
-  print_json(motion_json(*motion));
+  print_json(motion_json(*motion, cycle));
   return 0;
 }
 
@@ -139,8 +166,9 @@ void add_leg_options(CLI::App& command, LegNames& leg, const std::string& side) 
 }  // namespace
 
 void add_motion(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "motion", "shows what a motion file holds: units, rate, joints, legs, when each foot flies");
+  CLI::App* command = app.add_subcommand("motion",
+                                         "shows what a motion file holds: units, rate, joints, "
+                                         "legs, when each foot flies, its stride");
   const auto arguments = std::make_shared<MotionArguments>();
   command
       ->add_option("FILE", arguments->file,

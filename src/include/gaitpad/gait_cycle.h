@@ -63,12 +63,19 @@ struct GaitCycle {
 
   double duration_s = 0.0;  // of the stride in the source
   double stride_m = 0.0;    // travel in it
+  // Where the stride stands in the source: phase 0 is at `first_frame`, and the stride is `frames`
+  // long; both between frames where need be. Frames count from 0 in the file, of which loading
+  // drops none. Where a clip ends before the stride does, the stride goes on one stride earlier; in
+  // a looping clip that is continued over its end, frame F - 1 + i of F is frame i.
+  double first_frame = 0.0, frames = 0.0;
+  double turn_rad = 0.0;  // change of heading in it, + left; the cycle itself is straight
   // By Side, measured on the heels while the feet stand flat: from the other foot's heel along the
   // travel (the two add up to stride_m), and sideways from the pelvis' mean path (+ left).
   std::array<double, 2> step_m{};
   std::array<double, 2> track_m{};
-  // Events as phases. A foot strikes when its heel point has slowed down to a quarter of its
-  // greatest speed. It lifts when its toe point exceeds half the walk's speed.
+  // Events as phases, in the order right strike, left toe-off, left strike, right toe-off. A foot
+  // strikes when its heel is down and still; its toe is off when it begins to leave the place from
+  // which it pushes. (The built-in walk has those of its published curves.)
   std::array<double, 2> strike{};   // right = 0, left about 0.5
   std::array<double, 2> toe_off{};  // left about 0.12, right about 0.62
 
@@ -89,11 +96,15 @@ CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept;
 // pose.root_m.
 void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept;
 
+// How far forward the stick asks for the source's own gait.
+inline constexpr double kOwnStick = 0.8;
+
 // Finds the best full stride of a motion and makes it periodic: heading and travel taken out, the
 // seam faded, at most 16 harmonics kept. The model's ankles stand where the captured ones do,
 // except where a knee is nearer to straight than about 3 degrees (off by fractions of a millimetre)
 // or bent backwards (off by a few millimetres). Error `NAME: cause` where the motion holds no walk
-// of both feet; a run is none.
+// of both feet: both are in the air (a run), their events are not in a walk's order, or the hips do
+// not travel. Where the speed or the cadence tells of a wrong frame time, it names frame_rate_hz.
 Result<GaitCycle> gait_cycle(const Motion& motion);
 
 // The embedded default: an adult with 0.84 m of thigh + shank, 120 Hz, one exactly periodic and

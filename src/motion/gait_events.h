@@ -17,7 +17,8 @@
 
 namespace gaitpad {
 
-inline constexpr double kMostSlide = 4.0;  // a heel 20 mm up or at 1.2 m/s does not stand
+inline constexpr double kAdultLeg_m = 0.84;  // thigh + shank
+inline constexpr double kMostSlide = 4.0;    // a heel 20 mm up or at 1.2 m/s does not stand
 
 struct FootTrack {  // over the ground, y up
   std::vector<vec3> ankle_m, heel_m, toe_m;

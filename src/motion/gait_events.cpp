@@ -242,7 +242,7 @@ constexpr double kPush_s = 0.15;  // before it leaves, the toe stands that long 
 // captured walks move 0.36, 0.42, 0.44, 0.57 and 0.72 m/s at their strikes (median). People have
 // 0.1 s in a free walk and 0.04 s in the fastest.
 constexpr double kLeastRoll_s = 0.06;
-constexpr double kSlideStep = 0.25;  // of the limits, by which they grow
+constexpr double kSlideStep = 0.05;  // of the limits, by which they grow
 
 // Reads one foot's tracks within a range.
 struct Reader {

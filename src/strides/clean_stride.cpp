@@ -13,13 +13,14 @@ constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
 // Weights of squared residuals; an angle of the data (radians) has 1.
 constexpr double kDegreeCosts_m = 0.02;  // a pelvis this far off costs as much as one degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kSmooth = 200.0;       // of second differences between samples
-constexpr double kPelvisSmooth = 400.0;  // times that
+constexpr double kSmooth = 150.0;       // of second differences between samples
+constexpr double kPelvisSideways = 1000.0;
+constexpr double kPelvisSmooth = 500.0;  // times that
 constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 2e3;  // per square metre, radian
 constexpr double kLevel = 2e3;          // the sole is level and points ahead, per square metre
 constexpr double kFlat = 2e5;            // the heel of a flat foot, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftStrike = 1e5, kSoftToe = 1e4;
+constexpr double kSoftStrike = 2e5, kSoftToe = 1e4;
 constexpr int kLanding = 3, kToeLanding = 3;  // samples
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004;
@@ -186,7 +187,7 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
       for (int k = 0; k < kUnknowns; ++k) {
         const int at = i * kUnknowns + k;
         const double weight = k < kPelvis ? kPelvisWeight : 1.0;
-        const double smooth = kSmooth * weight * (k < kPelvis ? kPelvisSmooth : 1.0);
+        const double smooth = kSmooth * weight * (k == 1 ? kPelvisSmooth : k < kPelvis ? kPelvisSideways : 1.0);
         std::array<double, 3> change;
         std::array<int, 3> where;
         for (int d : {0, 1, 2}) {

@@ -140,6 +140,7 @@ constexpr double kTurnSmoothing = 0.25;
 constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
+constexpr double kSettling = 0.35;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
@@ -272,6 +273,7 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   const double mean = 0.5 * (state.length_m[0].x + state.length_m[1].x);
   state.pace.advance(mean * state.ground_share.x / tick.model.source_step_m, kStepSmoothing * scale,
                      dt);
+  state.settled_pace.advance(state.pace.x, kSettling * scale, dt);
 }
 
 // Moves a phase of the running stage on by one tick. At the end of a stage the phase runs at the
@@ -319,6 +321,7 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 // --- Hips and landing place ----------------------------------------------------------------------
 
 // Lengths in metres at the reference leg.
+constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 constexpr double kReach = 0.9996;  // of the leg: a knee bent by 3 degrees
 constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015;
 // Front heel to hips over the step, in steps so long that the data's lean is given up.
@@ -488,6 +491,9 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   double y = pelvis.position_m.y;
   const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
   y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
+  // Legs that are about to change their pace are bent a little, so that they have room.
+  const double change = state.pace.x - state.settled_pace.x;
+  y -= kChangeDrop_m * model.size * change * change / (change * change + kChange * kChange);
   double lower = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];

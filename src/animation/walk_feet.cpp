@@ -129,9 +129,10 @@ double heel_rise(const WalkModel& model, const WalkState& state, Side side) noex
 }
 
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
-  const vec3 line = glm::normalize(leg.model.toe_m - leg.model.heel_m);
-  return pose.tilt * (rotation_y(pose.yaw_rad) * (rotation_about(leg.side, pose.pitch_rad) *
-                                                  rotation_about(line, pose.roll_rad)));
+  return pose.tilt *
+         (rotation_y(pose.yaw_rad) *
+          (rotation_about(leg.side, pose.pitch_rad) *
+           from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad)));
 }
 
 double heel_height(const FootState& foot) noexcept {
@@ -163,8 +164,8 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   pose.heel_m = flight_heel(model, state, plan, side, u, point.base_m);
   const double gone = 1.0 - h00(u);
   const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
-  pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u) +
-                 cell.yaw_rad;
+  pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u);
+  pose.twist_rad = cell.twist_rad;
   pose.roll_rad = cell.roll_rad;
   pose.tilt = foot.plane.tilt;
   if (pose.tilt != state.landing_plane.tilt) {
@@ -184,7 +185,8 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
   FootState& foot = state.foot[side];
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(foot.mode_ticks);
   const StrideFoot& cell = plan.cell.foot[side];
-  foot.pose.yaw_rad = foot.lift_yaw_rad + cell.yaw_rad;
+  foot.pose.yaw_rad = foot.lift_yaw_rad;
+  foot.pose.twist_rad = cell.twist_rad;
   foot.pose.roll_rad = cell.roll_rad;
   foot.pose.tilt = foot.plane.tilt;
   foot.base_m = foot.plane.place_m.y;
@@ -274,7 +276,7 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   FootPose flat = foot.pose;
   flat.heel_m = foot.heel_anchor_m;
   flat.yaw_rad = foot.lift_yaw_rad;
-  flat.roll_rad = 0.0;
+  flat.twist_rad = flat.roll_rad = 0.0;
   set_pitch(tick.model.leg[side], 0.0, flat, FootMode::roll);
   foot.toe_anchor_m = flat.toe_m;
 }

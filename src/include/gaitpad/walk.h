@@ -70,7 +70,7 @@ struct FootPose {
   quat tilt = kIdentity;         // from level ground to the foot's own
   double yaw_rad = 0.0;          // about the vertical; 0 as in the standing pose at heading 0
   double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
-  double roll_rad = 0.0;         // about the heel-toe line
+  double twist_rad = 0.0, roll_rad = 0.0;  // as in StrideFoot
   double toe_rad = 0.0;          // of the toe joint, toe end down positive
 };
 
@@ -163,6 +163,7 @@ struct WalkState {
   double landing_heading_rad = 0.0;
   FootPlane landing_plane;
   Foothold landing;
+  Damped<double> settled_pace;  // follows `pace` slowly
   double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;

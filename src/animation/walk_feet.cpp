@@ -45,6 +45,14 @@ double table_pitch(const WalkState& state, const StridePlan& plan, Side side) no
   return pitch * smoothstep(0.0, 0.3, u) * (1.0 - smoothstep(0.55, 1.0, u));
 }
 
+// How much of the tables' twist and roll a foot on the ground shows: when standing it is flat.
+double on_its_edges(const WalkState& state) noexcept {
+  if (state.started) return 1.0;
+  return state.stage == Stage::idle
+             ? 0.0
+             : 1.0 - smootherstep(static_cast<double>(state.tick) / state.stage_ticks);
+}
+
 // In a turn the foot pivots on its planted toe as its heel rises.
 double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noexcept {
   return state.turn_rate.x * heel_rise(model, state, side);
@@ -186,8 +194,9 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(foot.mode_ticks);
   const StrideFoot& cell = plan.cell.foot[side];
   foot.pose.yaw_rad = foot.lift_yaw_rad;
-  foot.pose.twist_rad = cell.twist_rad;
-  foot.pose.roll_rad = cell.roll_rad;
+  const double shows = on_its_edges(state);
+  foot.pose.twist_rad = shows * cell.twist_rad;
+  foot.pose.roll_rad = shows * cell.roll_rad;
   foot.pose.tilt = foot.plane.tilt;
   foot.base_m = foot.plane.place_m.y;
   if (foot.mode == FootMode::support) {

@@ -207,6 +207,7 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
   begin_step(tick, other(first), state);
   state.stage_ticks = state.roll_ticks = 2 * state.roll_ticks;  // from rest: a longer first lean
   state.phase_rate = 0.0;
+  state.foot[other(first)].mode = FootMode::roll;
 }
 
 void begin_idle(WalkState& state) noexcept {

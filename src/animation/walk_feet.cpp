@@ -37,7 +37,9 @@ vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
 
 // The foot's pitch in the tables. Backwards it lands and leaves flat.
 double table_pitch(const WalkState& state, const StridePlan& plan, Side side) noexcept {
-  if (!state.started) return 0.0;
+  // The foot that stands when a walk begins has not landed: its toe is down.
+  const bool stands = state.foot[side].mode == FootMode::roll && state.last_step_ticks == 0;
+  if (!state.started || stands) return 0.0;
   const double pitch = plan.cell.foot[side].pitch_rad;
   if (!state.backward) return pitch;
   if (state.foot[side].mode != FootMode::flight) return 0.0;

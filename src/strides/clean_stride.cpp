@@ -16,7 +16,7 @@ constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegree
 constexpr double kSmooth = 150.0;       // of second differences between samples
 constexpr double kPelvisSideways = 1000.0;
 constexpr double kPelvisSmooth = 500.0;  // times that
-constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 2e4;  // per square metre, radian
+constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 1e4;  // per square metre, radian
 constexpr double kLevel = 2e3;          // the sole is level and points ahead, per square metre
 constexpr double kFlat = 2e5;            // the heel of a flat foot, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
@@ -24,7 +24,7 @@ constexpr double kSoftStrike = 2e5, kSoftToe = 1e4;
 constexpr int kLanding = 3, kToeLanding = 3;  // samples
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004;
-constexpr double kLeastKnee = 3.0 * kDegree;
+constexpr double kLeastKnee = 2.5 * kDegree, kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.15;        // radians or metres an iteration
 
@@ -292,11 +292,12 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
             }
           }
         }
-        const double knee = x[i].leg[side][kKneeX];
-        if (knee < kLeastKnee) {
+        const double bend = kLeastKnee - x[i].leg[side][kKneeX];
+        if (bend > -kSoftKnee) {
           const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
-          s.at(at, at) += kKnee;
-          s.gradient[at] += kKnee * (knee - kLeastKnee);
+          const double slope = std::min(1.0, 0.5 * (bend + kSoftKnee) / kSoftKnee);
+          s.at(at, at) += kKnee * slope * slope;
+          s.gradient[at] -= kKnee * slope * soft_positive(bend, kSoftKnee);
         }
       }
     }

@@ -31,6 +31,7 @@ struct Builder {
     const double left_off = data.toe_off[0], left = data.strike[0], right_off = data.toe_off[1];
     phase_share = {left_off, left - left_off, right_off - left, 1.0 - right_off};
     measure_footprints();
+    keep_steps();
     measure_standing();
     for (int i = 0; i < kCycleSamples; ++i) {
       const CycleSample& sample = data.samples[i];
@@ -70,6 +71,14 @@ struct Builder {
       }
       own_footprint_m[side].y = 0.0;
     }
+  }
+
+  // The cycle's own steps, between these places.
+  void keep_steps() {
+    const double step_m = own_footprint_m[kLeftSide].z - own_footprint_m[kRightSide].z;
+    const double apart_m = 0.5 * (cycle.step_m[kLeftSide] - step_m);
+    own_footprint_m[kLeftSide].z += apart_m;
+    own_footprint_m[kRightSide].z -= apart_m;
   }
 
   // The standing knee is as straight as the data's in stance.

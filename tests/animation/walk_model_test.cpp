@@ -68,7 +68,7 @@ TEST(WalkModel, ItsOwnPaceIsTheDatasOnLegsOfAnyLength) {
 
 TEST(WalkModel, TheAdultsPaceHasTheDatasSpeedAtTheStickThatIsTold) {
   GaitCycle cycle = procedural_gait();
-  const double stick = value_of(own_stick(cycle));
+  const double stick = own_stick(cycle).value();
   EXPECT_NEAR(stick, cycle.stride_m / cycle.duration_s / 1.5, 1e-15);
   EXPECT_EQ(gait_limits(adult()).max_speed_m_s, 1.5);
   cycle.duration_s *= 0.5;

@@ -86,9 +86,9 @@ void add_pace_option(CLI::App& command, std::optional<Pace>& pace) {
   command
       .add_option_function<std::string>(
           "--pace", [&pace](const std::string& name) { pace = pace_named(name); },
-          "whose speed and step the stick means: the motion's own (at 0.8 forward) or an adult's")
-      ->check(CLI::IsMember(kPaceNames))
-      ->default_str(name_of(Pace::own));
+          "whose speed and step the stick means: the motion's own (at 0.8 forward) or an adult's "
+          "(default: what the recording or the motion's description says, else own)")
+      ->check(CLI::IsMember(kPaceNames));
 }
 
 void add_session_options(CLI::App& command, SessionSpec& spec, const std::string& default_rate) {

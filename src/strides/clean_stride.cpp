@@ -13,17 +13,18 @@ constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
 // Weights of squared residuals; an angle of the data (radians) has 1.
 constexpr double kDegreeCosts_m = 0.02;  // a pelvis this far off costs as much as one degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kSmooth = 200.0;       // of second differences between samples
-constexpr double kPelvisSmooth = 400.0;  // times that
-constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 2e3;  // per square metre, radian
+constexpr double kSmooth = 150.0;       // of second differences between samples
+constexpr double kPelvisSideways = 1000.0;
+constexpr double kPelvisSmooth = 500.0;  // times that
+constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 1e4;  // per square metre, radian
 constexpr double kLevel = 2e3;          // the sole is level and points ahead, per square metre
 constexpr double kFlat = 2e5;            // the heel of a flat foot, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftContact = 3e4;
-constexpr int kLanding = 3;             // samples
+constexpr double kSoftStrike = 2e5, kSoftToe = 1e4;
+constexpr int kLanding = 3, kToeLanding = 3;  // samples
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004;
-constexpr double kLeastKnee = 1.0 * kDegree;
+constexpr double kLeastKnee = 2.5 * kDegree, kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.15;        // radians or metres an iteration
 
@@ -186,7 +187,7 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
       for (int k = 0; k < kUnknowns; ++k) {
         const int at = i * kUnknowns + k;
         const double weight = k < kPelvis ? kPelvisWeight : 1.0;
-        const double smooth = kSmooth * weight * (k < kPelvis ? kPelvisSmooth : 1.0);
+        const double smooth = kSmooth * weight * (k == 1 ? kPelvisSmooth : k < kPelvis ? kPelvisSideways : 1.0);
         std::array<double, 3> change;
         std::array<int, 3> where;
         for (int d : {0, 1, 2}) {
@@ -215,13 +216,15 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         heels.push_back(point_rows(frames, leg.heel_m));
         toes.push_back(point_rows(frames, leg.toe_m));
       }
-      const int strike = static_cast<int>(std::ceil(problem.strike[side] * n - 1e-9)),
-                lift = static_cast<int>(std::floor(problem.toe_off[side] * n + 1e-9)),
-                down = static_cast<int>(std::ceil(problem.toe_off[1 - side] * n - 1e-9));
+      const int strike = static_cast<int>(std::floor(problem.strike[side] * n + 1e-9)),
+                lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - 1e-9)),
+                down = static_cast<int>(std::floor(problem.toe_off[1 - side] * n + 1e-9));
       for (int d = -kLanding; d <= 0; ++d) {
-        s.add_bend((strike + d + n) % n, side, heels, path_m, problem.stride_m, kSoftContact);
-        s.add_bend((lift - d + n) % n, side, toes, path_m, problem.stride_m, kSoftContact);
-        s.add_bend((down + d + n) % n, side, toes, path_m, problem.stride_m, kSoftContact);
+        s.add_bend((strike + d + n) % n, side, heels, path_m, problem.stride_m, kSoftStrike);
+      }
+      for (int d = -kToeLanding; d <= 0; ++d) {
+        s.add_bend((lift - d + n) % n, side, toes, path_m, problem.stride_m, kSoftToe);
+        s.add_bend((down + d + n) % n, side, toes, path_m, problem.stride_m, kSoftToe);
       }
     }
     for (int i = 0; i < n; ++i) {
@@ -229,7 +232,11 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
       for (int side : {0, 1}) {
         const LegModel& leg = problem.leg[side];
         const LegFrames frames = leg_frames(leg, x[i], side);
-        const double own = fraction(phase - problem.strike[side]);
+        // A point stands from the sample before its event to the one after it.
+        constexpr double kNear = 1e-9;
+        const double sample = (1.0 - kNear) / n;
+        const double begins = fraction(phase - problem.strike[side] + sample);
+        const double own = begins - sample;
         const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);
         const double support = fraction(problem.toe_off[side] - problem.strike[side]);
         const PointRows heel = point_rows(frames, leg.heel_m), toe = point_rows(frames, leg.toe_m);
@@ -238,7 +245,8 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
         heel_goal.z -= problem.stride_m * (problem.time[i] + turns);
         const vec3 toe_goal = heel_goal + leg.toe_m - leg.heel_m;
-        const bool rolls = own <= roll, supports = own >= roll && own <= support;
+        const bool rolls = own <= roll + sample,
+                   supports = own >= roll - sample && own <= support + sample;
         if (rolls) {
           for (int a = 0; a < 3; ++a) {
             vec3 d(0.0);
@@ -257,7 +265,7 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
             s.add_row(i, side, toe, d, toe.place_m[a] - toe_goal[a], kPlanted);
           }
         } else {
-          const double u = rolls ? 0.0 : (own - support) / (1.0 - support);
+          const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
           const double least = leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
           s.add_floor(i, side, toe, least);
         }
@@ -284,11 +292,12 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
             }
           }
         }
-        const double knee = x[i].leg[side][kKneeX];
-        if (knee < kLeastKnee) {
+        const double bend = kLeastKnee - x[i].leg[side][kKneeX];
+        if (bend > -kSoftKnee) {
           const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
-          s.at(at, at) += kKnee;
-          s.gradient[at] += kKnee * (knee - kLeastKnee);
+          const double slope = std::min(1.0, 0.5 * (bend + kSoftKnee) / kSoftKnee);
+          s.at(at, at) += kKnee * slope * slope;
+          s.gradient[at] -= kKnee * slope * soft_positive(bend, kSoftKnee);
         }
       }
     }

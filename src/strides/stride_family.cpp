@@ -187,18 +187,16 @@ struct Builder {
     return table;
   }
 
-  // foot = Ry(yaw) R(across, pitch) R(along, roll), `across` and `along` as in LegBuild.
   static void set_rotation(const LegModel& leg, const quat& rotation, StrideFoot& foot) {
     const vec3 line = leg.toe_m - leg.heel_m;
     const vec3 ahead = glm::normalize(vec3(line.x, 0.0, line.z)), across = glm::cross(kUp, ahead);
     const vec3 now = rotation * line;
-    foot.yaw_rad = wrapped(heading_of(now) - heading_of(ahead));
-    const double rest = gaitpad::atan2(line.y, horizontal_length(line));
-    foot.pitch_rad = rest - gaitpad::atan2(now.y, horizontal_length(now));
-    const quat level = rotation_y(foot.yaw_rad) * rotation_about(across, foot.pitch_rad);
-    const vec3 beside = glm::conjugate(level) * (rotation * across);
-    const vec3 up = glm::cross(glm::normalize(line), across);
-    foot.roll_rad = gaitpad::atan2(glm::dot(beside, up), glm::dot(beside, across));
+    foot.pitch_rad = gaitpad::atan2(line.y, glm::dot(line, ahead)) -
+                     gaitpad::atan2(now.y, glm::dot(now, ahead));
+    const vec3 rest =
+        rotation_vector(glm::conjugate(rotation_about(across, foot.pitch_rad)) * rotation);
+    foot.twist_rad = rest.y;
+    foot.roll_rad = glm::dot(rest, ahead);
   }
 
   void solve() {

@@ -101,7 +101,8 @@ int main(int argc, char** argv) {
     std::fputs("usage: sdl_game [--frames N] [--stick X,Y] [--picture FILE.bmp]\n", stderr);
     return 2;
   }
-  const auto model = gaitpad::walk_model(gaitpad::with_clean_strides(gaitpad::procedural_gait()), gaitpad::Character{});
+  const auto model = gaitpad::walk_model(gaitpad::with_clean_strides(gaitpad::procedural_gait()),
+                                         gaitpad::Character{});
   if (!model) {
     std::fprintf(stderr, "sdl_game: %s\n", model.error().message.c_str());
     return 1;
@@ -115,7 +116,7 @@ int main(int argc, char** argv) {
   SDL_Renderer* renderer = SDL_CreateRenderer(window, -1, SDL_RENDERER_SOFTWARE);
   SDL_GameController* pad = SDL_NumJoysticks() > 0 ? SDL_GameControllerOpen(0) : nullptr;
 
-  const gaitpad::GaitLimits limits = gaitpad::gait_limits(model->leg_length_m);
+  const gaitpad::GaitLimits limits = gaitpad::gait_limits(*model);
   const gaitpad::StyleValues style;
   gaitpad::Pose pose;
   gaitpad::WalkState state = gaitpad::standing(*model, gaitpad::vec3(0.0), pose);

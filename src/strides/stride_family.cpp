@@ -202,7 +202,7 @@ struct Builder {
   }
 
   void solve() {
-    StrideSolver solver(kCycleSamples);
+    StrideSolver solver;
     family.table.resize(kStrideRatios);
     const StrideProblem own = problem(1.0);
     const std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);

@@ -1,7 +1,6 @@
 #include "gaitpad/flight.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/numeric.h"
 #include "gaitpad/motion.h"
@@ -19,11 +18,11 @@ int nearest(double frame) { return static_cast<int>(frame + 0.5); }
 // The frame in which the heel begins to rise: backwards from the lift, but not beyond `stop`, the
 // ankle's first low within the band; where there is none, its lowest frame. Heights are not
 // smoothed: a standing ankle's lows are a fraction of a millimetre deep.
-int heel_off_frame(const std::vector<vec3>& ankle, int lift, int stop, int reach) {
+int heel_off_frame(const std::vector<vec3>& ankle, int lift, int stop, double reach) {
   const auto [low, high] = std::ranges::minmax(ankle, {}, &vec3::y);
   const double limit_m = low.y + kBand * (high.y - low.y);
   int lowest = lift;
-  for (int f = lift - 1; f >= std::max(stop, lift - reach); --f) {
+  for (int f = lift - 1; f >= stop && lift - f <= reach; --f) {
     const double y = ankle[f].y;
     if (y < ankle[lowest].y) lowest = f;
     const bool is_low = f > 0 && y <= ankle[f - 1].y && y < ankle[f + 1].y;
@@ -42,7 +41,7 @@ std::vector<Swing> whole_swings(const FeetTracks& feet, Side side) {
     for (const FootSwing& swing : foot_swings(feet, share)) {
       if (swing.side != side) continue;
       stop = std::max(stop, feet.ranges[swing.range].first);
-      if (swing.toe_off && swing.strike) {
+      if (swing.toe_off && swing.strike && *swing.toe_off < *swing.strike) {
         Swing s;
         s.lift = nearest(*swing.toe_off);
         s.land = nearest(*swing.strike);
@@ -50,7 +49,7 @@ std::vector<Swing> whole_swings(const FeetTracks& feet, Side side) {
         for (int f = s.lift; f <= s.land; ++f) {
           if (ankle[f].y > ankle[s.peak].y) s.peak = f;
         }
-        s.heel_off = heel_off_frame(ankle, s.lift, stop, nearest(kHeelOff_s / feet.sample_s));
+        s.heel_off = heel_off_frame(ankle, s.lift, stop, kHeelOff_s / feet.sample_s);
         found.push_back(s);
       }
       if (swing.strike) stop = nearest(*swing.strike);
@@ -66,7 +65,7 @@ struct Found {
   std::vector<Swing> swings;
 };
 Found found_in(const Motion& motion, Side side) {
-  if (motion.frames.size() < 3) return {};
+  if (motion.frames.size() < 3 || !(motion.frame_time_s > 0.0)) return {};
   Found found{feet_tracks(motion), {}};
   found.swings = whole_swings(found.feet, side);
   if (!found.swings.empty()) return found;

@@ -83,7 +83,6 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
-constexpr double kAdultLeg_m = 0.84;
 constexpr double kBackwards = 0.5;    // cosine between hips' front and travel
 constexpr double kMostFlight = 0.02;  // of the stride with both feet in the air: else it is a run
 constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits have half of it

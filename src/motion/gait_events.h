@@ -1,11 +1,12 @@
 // When feet strike the ground and leave it: the one place that finds these events, in the frames of
 // a file as well as in the samples of a closed stride.
 //
-// A foot *strikes* when its heel is down and still: no more than 5 mm above the place on which it
-// will stand flat, at 0.3 m/s or less. Its *toe is off* when it begins to leave the place from
-// which it pushes: 5 mm from it. Both are found between samples. Lengths and speeds are those of an
-// adult; they scale with the leg. Where the feet of a capture slide so much that a toe would leave
-// before the other heel strikes, the limits of these two events grow together, at most to
+// A foot *strikes* when its heel is down and still: at 0.3 m/s or less and at most 5 mm above where
+// it then rests. Its *toe is off* when it begins to leave: when it last was at 0.2 m/s before it
+// swings. (A toe that pushes creeps, by 10 to 30 mm in most captures, so its way from its place
+// tells nothing.) Both are found between samples. Lengths and speeds are those of an adult; they
+// scale with the leg. Where the feet of a capture slide so much that a toe would leave before the
+// other heel has struck for a moment, the limits of these two events grow together, at most to
 // kMostSlide times.
 #pragma once
 #include <array>
@@ -17,7 +18,8 @@
 
 namespace gaitpad {
 
-inline constexpr double kMostSlide = 4.0;  // a heel 20 mm up or at 1.2 m/s does not stand
+inline constexpr double kAdultLeg_m = 0.84;  // thigh + shank
+inline constexpr double kMostSlide = 4.0;    // a heel 20 mm up or at 1.2 m/s does not stand
 
 struct FootTrack {  // over the ground, y up
   std::vector<vec3> ankle_m, heel_m, toe_m;

@@ -19,8 +19,8 @@ constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 2e3;  // per square metre
 constexpr double kLevel = 2e3;          // the sole is level and points ahead, per square metre
 constexpr double kFlat = 2e5;            // the heel of a flat foot, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftContact = 3e4;
-constexpr int kLanding = 3;             // samples
+constexpr double kSoftStrike = 1e5, kSoftToe = 1e4;
+constexpr int kLanding = 3, kToeLanding = 3;  // samples
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004;
 constexpr double kLeastKnee = 1.0 * kDegree;
@@ -324,13 +324,15 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         heels.push_back(point_rows(frames, leg.heel_m));
         toes.push_back(point_rows(frames, leg.toe_m));
       }
-      const int strike = static_cast<int>(std::ceil(problem.strike[side] * n - 1e-9)),
-                lift = static_cast<int>(std::floor(problem.toe_off[side] * n + 1e-9)),
-                down = static_cast<int>(std::ceil(problem.toe_off[1 - side] * n - 1e-9));
+      const int strike = static_cast<int>(std::floor(problem.strike[side] * n + 1e-9)),
+                lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - 1e-9)),
+                down = static_cast<int>(std::floor(problem.toe_off[1 - side] * n + 1e-9));
       for (int d = -kLanding; d <= 0; ++d) {
-        s.add_bend((strike + d + n) % n, side, heels, path_m, problem.stride_m, kSoftContact);
-        s.add_bend((lift - d + n) % n, side, toes, path_m, problem.stride_m, kSoftContact);
-        s.add_bend((down + d + n) % n, side, toes, path_m, problem.stride_m, kSoftContact);
+        s.add_bend((strike + d + n) % n, side, heels, path_m, problem.stride_m, kSoftStrike);
+      }
+      for (int d = -kToeLanding; d <= 0; ++d) {
+        s.add_bend((lift - d + n) % n, side, toes, path_m, problem.stride_m, kSoftToe);
+        s.add_bend((down + d + n) % n, side, toes, path_m, problem.stride_m, kSoftToe);
       }
     }
     for (int i = 0; i < solved; ++i) {
@@ -338,7 +340,11 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
       for (int side : {0, 1}) {
         const LegModel& leg = problem.leg[side];
         const LegFrames& frames = all_frames[side][i];
-        const double own = fraction(phase - problem.strike[side]);
+        // A point stands from the sample before its event to the one after it.
+        constexpr double kNear = 1e-9;
+        const double sample = (1.0 - kNear) / n;
+        const double begins = fraction(phase - problem.strike[side] + sample);
+        const double own = begins - sample;
         const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);
         const double support = fraction(problem.toe_off[side] - problem.strike[side]);
         const PointRows heel = point_rows(frames, leg.heel_m), toe = point_rows(frames, leg.toe_m);
@@ -347,7 +353,8 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
         heel_goal.z -= problem.stride_m * (problem.time[i] + turns);
         const vec3 toe_goal = heel_goal + leg.toe_m - leg.heel_m;
-        const bool rolls = own <= roll, supports = own >= roll && own <= support;
+        const bool rolls = own <= roll + sample,
+                   supports = own >= roll - sample && own <= support + sample;
         if (rolls) {
           for (int a = 0; a < 3; ++a) {
             vec3 d(0.0);
@@ -366,7 +373,7 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
             s.add_row(i, side, toe, d, toe.place_m[a] - toe_goal[a], kPlanted);
           }
         } else {
-          const double u = rolls ? 0.0 : (own - support) / (1.0 - support);
+          const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
           const double least = leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
           s.add_floor(i, side, toe, least);
         }

@@ -70,7 +70,9 @@ TEST(Keyframe, TheExampleWalksAsAdultsDo) {
   EXPECT_LT(cycle->stride_m / cycle->duration_s, 1.4);
   EXPECT_NEAR(cycle->step_m[0], cycle->step_m[1], 0.01);
   EXPECT_NEAR(cycle->strike[kLeftSide], 0.5, 0.01);
-  EXPECT_NEAR(cycle->toe_off[kRightSide], 0.62, 0.05);
+  // The toe begins to leave before the toe-off of the keys, at 0.62.
+  EXPECT_GT(cycle->toe_off[kRightSide], 0.53);
+  EXPECT_LT(cycle->toe_off[kRightSide], 0.62);
 }
 
 TEST(Keyframe, KeysAreTheAnglesAtTheirPhases) {

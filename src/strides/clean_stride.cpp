@@ -1,6 +1,12 @@
+// The same numbers on every machine: Eigen computes one by one, in the order that is written.
+#define EIGEN_DONT_VECTORIZE
+#define EIGEN_DONT_PARALLELIZE
 #include "strides/clean_stride.h"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <optional>
+#include <tuple>
 
 #include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
@@ -160,10 +166,12 @@ struct StrideSolver::System {
     has_new_entries = false;
   }
 
-  Eigen::VectorXd step() {
+  // Nothing where the matrix has no factors, as with numbers that are none.
+  std::optional<Eigen::VectorXd> step() {
     if (has_new_entries) find_entries();
     for (std::size_t e = 0; e < entry_at.size(); ++e) normal.valuePtr()[e] = block[entry_at[e]];
     factor.factorize(normal);
+    if (factor.info() != Eigen::Success) return std::nullopt;
     return factor.solve(gradient);
   }
 
@@ -408,10 +416,11 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         }
       }
     }
-    const Eigen::VectorXd step = s.step();
+    const auto step = s.step();
+    if (!step) return {};
     for (int i = 0; i < solved; ++i) {
       for (int k = 0; k < kUnknowns; ++k) {
-        unknown(x[i], k) -= std::clamp(step[i * kUnknowns + k], -kMostStep, kMostStep);
+        unknown(x[i], k) -= std::clamp((*step)[i * kUnknowns + k], -kMostStep, kMostStep);
       }
     }
     for (int i = solved; i < n; ++i) {

@@ -41,7 +41,7 @@ class StrideSolver {
   StrideSolver();
   ~StrideSolver();
   // The solution of `problem`, found in `iterations` steps from `start`. Where the data of half a
-  // stride mirror those of the other half, one half is solved.
+  // stride mirror those of the other half, one half is solved. Empty where it cannot be solved.
   std::vector<StrideSample> solve(const StrideProblem& problem, std::vector<StrideSample> start,
                                   int iterations);
 

@@ -21,8 +21,10 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
-    # No test sees the calibrations of whoever runs it.
-    os.environ.setdefault("XDG_CONFIG_HOME", str(config.getoption("--program").resolve().parent / "no-user-config"))
+    # No test sees the calibrations of whoever runs it, nor the strides in the cache.
+    folder = config.getoption("--program").resolve().parent
+    os.environ.setdefault("XDG_CONFIG_HOME", str(folder / "no-user-config"))
+    os.environ["XDG_CACHE_HOME"] = str(folder / "no-user-cache")
 
 
 def pytest_collection_modifyitems(config, items):

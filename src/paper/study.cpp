@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
-#include "gaitpad/clean_strides.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/motion_file.h"
+#include "strides/stride_cache.h"
 
 namespace gaitpad {
 namespace {
@@ -91,7 +91,7 @@ Result<PaperSource> load_paper_source(const std::string& motion_file, std::optio
   source.motion = source.is_adult ? "procedural" : motion_file;
   if (source.is_adult) {
     source.frames = procedural_motion();
-    source.cycle = with_clean_strides(procedural_gait());
+    source.cycle = procedural_gait();
   } else {
     const auto path = motion_path(config_folders, motion_file);
     if (!path) return path.error();
@@ -101,8 +101,11 @@ Result<PaperSource> load_paper_source(const std::string& motion_file, std::optio
     if (!cycle) return cycle.error();
     cycle->pace = pace.value_or(cycle->pace);
     source.frames = std::move(*motion);
-    source.cycle = with_clean_strides(std::move(*cycle));
+    source.cycle = std::move(*cycle);
   }
+  auto clean = cached_clean_strides(std::move(source.cycle), stride_cache_folder());
+  if (!clean) return clean.error();
+  source.cycle = std::move(*clean);
   for (const FigureStyles& figure : {styles_of_5a(), styles_of_5b()}) {
     for (const std::string& name : {figure.red, figure.green, figure.blue}) {
       auto path = config_file(config_folders, "styles", name);

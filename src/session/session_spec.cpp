@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "gaitpad/clean_strides.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
+#include "strides/stride_cache.h"
 
 namespace gaitpad {
 namespace {
@@ -72,14 +72,14 @@ bool is_built_in(const SessionSpec& spec) {
 }
 
 Result<GaitCycle> cycle_of(const SessionSpec& spec) {
-  if (is_built_in(spec)) return with_clean_strides(procedural_gait());
+  if (is_built_in(spec)) return cached_clean_strides(procedural_gait(), stride_cache_folder());
   const auto path = motion_path(spec.config_folders, spec.walk.motion);
   if (!path) return path.error();
   auto motion = load_motion_source(*path);
   if (!motion) return motion.error();
   auto cycle = gait_cycle(*motion);
   if (!cycle) return cycle.error();
-  return with_clean_strides(std::move(*cycle));
+  return cached_clean_strides(std::move(*cycle), stride_cache_folder());
 }
 
 Result<WalkerConfig> walker_config(const Character& character, int style, const GaitCycle& cycle) {
@@ -89,7 +89,9 @@ Result<WalkerConfig> walker_config(const Character& character, int style, const 
   if (!motion) return motion.error();
   auto own = cycle_on_skeleton(cycle, *motion);
   if (!own) return own.error();
-  walker.own_cycle = with_clean_strides(std::move(*own));
+  own = cached_clean_strides(std::move(*own), stride_cache_folder());
+  if (!own) return own.error();
+  walker.own_cycle = std::move(*own);
   return walker;
 }
 

@@ -1,6 +1,12 @@
+// The same numbers on every machine: Eigen computes one by one, in the order that is written.
+#define EIGEN_DONT_VECTORIZE
+#define EIGEN_DONT_PARALLELIZE
 #include "strides/clean_stride.h"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <optional>
+#include <tuple>
 
 #include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
@@ -28,13 +34,20 @@ constexpr double kLeastKnee = 2.5 * kDegree, kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.15;        // radians or metres an iteration
 
-// A row sees the pelvis and one leg.
-bool are_coupled(int k, int l) {
-  const int low = std::min(k, l), high = std::max(k, l);
-  return low < kPelvis || high < kPelvis + kLegDofs || low >= kPelvis + kLegDofs;
-}
 int leg_unknown(int side) { return kPelvis + side * kLegDofs; }
 double fraction(double phase) { return phase - std::floor(phase); }
+
+// The unknown that stands for another one in the walker's mirror image, and the factor to it.
+struct Mirrored {
+  int unknown;
+  double factor;
+};
+Mirrored mirror_of(int k) {
+  if (k < kPelvis) return {k, k == 0 ? -1.0 : 1.0};
+  const int side = (k - kPelvis) / kLegDofs, j = (k - kPelvis) % kLegDofs;
+  const bool bends = j == kHipX || j == kKneeX || j == kAnkleX;
+  return {leg_unknown(1 - side) + j, bends ? 1.0 : -1.0};
+}
 
 // How one point of a foot moves with the unknowns of its sample.
 struct PointRows {
@@ -72,35 +85,103 @@ PointRows point_rows(const LegFrames& f, const vec3& in_foot) {
 
 struct StrideSolver::System {
   using Matrix = Eigen::SparseMatrix<double>;
-  int samples;
-  Matrix normal;  // lower triangle
+  static constexpr int kReach = 3;  // a row sees at most so many samples in a row
+  static constexpr int kBlock = kUnknowns * kUnknowns;
+
+  int samples;  // of the stride
+  int solved;   // samples that are unknown: half of them where the other half mirrors them
+  // Normal equations as blocks: of sample i and sample i + d, unknown by unknown. An entry that was
+  // ever written is one of the sparse matrix.
+  std::vector<double> block;
+  std::vector<char> is_entry;
+  bool has_new_entries = true;
+  std::vector<int> entry_at;  // in `block`, of each number of the sparse matrix
+  Matrix normal;              // lower triangle
   Eigen::VectorXd gradient;
   Eigen::SimplicialLDLT<Matrix, Eigen::Lower> factor;
 
-  explicit System(int n) : samples(n), normal(n * kUnknowns, n * kUnknowns), gradient(n * kUnknowns) {
-    std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](int row, int column) {
-      entries.emplace_back(std::max(row, column), std::min(row, column), 0.0);
-    };
-    for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < kUnknowns; ++k) {
-        for (int l = 0; l <= k; ++l) {
-          if (are_coupled(k, l)) add(i * kUnknowns + k, i * kUnknowns + l);
-        }
-        for (int d : {1, 2}) {
-          const int j = (i + d) % n;
-          for (int l = 0; l < kUnknowns; ++l) {
-            if (are_coupled(k, l)) add(i * kUnknowns + k, j * kUnknowns + l);
+  System(int n, int unknown_samples)
+      : samples(n),
+        solved(unknown_samples),
+        block(solved * kReach * kBlock),
+        is_entry(block.size()),
+        normal(solved * kUnknowns, solved * kUnknowns),
+        gradient(solved * kUnknowns) {
+    // Which rows there are within a sample changes from step to step, so these are always entries.
+    for (int i = 0; i < n && i < solved; ++i) {
+      for (int side : {0, 1}) {
+        for (int k = 0; k < kUnknowns; ++k) {
+          for (int l = 0; l <= k; ++l) {
+            if (is_seen(k, side) && is_seen(l, side)) at(i * kUnknowns + k, i * kUnknowns + l);
           }
         }
       }
     }
-    normal.setFromTriplets(entries.begin(), entries.end());
-    factor.analyzePattern(normal);
+  }
+
+  // A row within a sample sees the pelvis and one leg.
+  static bool is_seen(int k, int side) {
+    return k < kPelvis || (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
+  }
+
+  void clear() {
+    std::fill(block.begin(), block.end(), 0.0);
+    gradient.setZero();
   }
 
   double& at(int row, int column) {
-    return row >= column ? normal.coeffRef(row, column) : normal.coeffRef(column, row);
+    int d = column / kUnknowns - row / kUnknowns;
+    if (d < 0) d += solved;
+    if (d >= kReach || (d == 0 && row < column)) {
+      std::swap(row, column);
+      d = d == 0 ? 0 : solved - d;
+    }
+    const int at =
+        (row / kUnknowns * kReach + d) * kBlock + row % kUnknowns * kUnknowns + column % kUnknowns;
+    if (!is_entry[at]) is_entry[at] = 1, has_new_entries = true;
+    return block[at];
+  }
+
+  // Column by column, as the sparse matrix keeps its numbers.
+  void find_entries() {
+    struct Entry {
+      int row, column, at;
+    };
+    std::vector<Entry> entries;
+    for (int at = 0; at < static_cast<int>(block.size()); ++at) {
+      if (!is_entry[at]) continue;
+      const int i = at / (kReach * kBlock), d = at / kBlock % kReach;
+      const int k = i * kUnknowns + at % kBlock / kUnknowns,
+                l = (i + d) % solved * kUnknowns + at % kUnknowns;
+      entries.push_back({std::max(k, l), std::min(k, l), at});
+    }
+    std::ranges::sort(entries, {}, [](const Entry& e) { return std::pair(e.column, e.row); });
+    std::vector<Eigen::Triplet<double>> triplets;
+    entry_at.clear();
+    for (const Entry& e : entries) {
+      triplets.emplace_back(e.row, e.column, 0.0);
+      entry_at.push_back(e.at);
+    }
+    normal.setFromTriplets(triplets.begin(), triplets.end());
+    factor.analyzePattern(normal);
+    has_new_entries = false;
+  }
+
+  // Nothing where the matrix has no factors, as with numbers that are none.
+  std::optional<Eigen::VectorXd> step() {
+    if (has_new_entries) find_entries();
+    for (std::size_t e = 0; e < entry_at.size(); ++e) normal.valuePtr()[e] = block[entry_at[e]];
+    factor.factorize(normal);
+    if (factor.info() != Eigen::Success) return std::nullopt;
+    return factor.solve(gradient);
+  }
+
+  // Where unknown k of sample i stands, -1 <= i <= samples, and the factor to it.
+  Mirrored place_of(int i, int k) const {
+    i = (i + samples) % samples;
+    if (i < solved) return {i * kUnknowns + k, 1.0};
+    const Mirrored m = mirror_of(k);
+    return {(i - solved) * kUnknowns + m.unknown, m.factor};
   }
 
   // Adds weight * (direction . (place - goal))^2.
@@ -123,6 +204,7 @@ struct StrideSolver::System {
   // Adds weight * |second difference of the point's place along the path|^2.
   void add_bend(int sample, int side, const std::vector<PointRows>& point,
                 const std::vector<double>& path_m, double stride_m, double weight) {
+    if (sample >= solved) return;
     constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
     for (int axis = 0; axis < 3; ++axis) {
       std::array<double, 3 * (kPelvis + kLegDofs)> row{};
@@ -134,14 +216,13 @@ struct StrideSolver::System {
         double place = point[j].place_m[axis];
         if (axis == 2) place += path_m[j] + (at < 0 ? -stride_m : at >= samples ? stride_m : 0.0);
         error += kBend[d] * place;
-        for (int a = 0; a < kPelvis; ++a, ++m) {
-          row[m] = a == axis ? kBend[d] : 0.0;
-          where[m] = j * kUnknowns + a;
-        }
-        for (int k = 0; k < kLegDofs; ++k, ++m) {
-          row[m] = kBend[d] * point[j].by_angle[k][axis];
-          where[m] = j * kUnknowns + leg_unknown(side) + k;
-        }
+        const auto add = [&](int k, double slope) {
+          const Mirrored place = place_of(at, k);
+          row[m] = kBend[d] * slope * place.factor;
+          where[m++] = place.unknown;
+        };
+        for (int a = 0; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
+        for (int k = 0; k < kLegDofs; ++k) add(leg_unknown(side) + k, point[j].by_angle[k][axis]);
       }
       for (int p = 0; p < m; ++p) {
         if (row[p] == 0.0) continue;
@@ -162,9 +243,6 @@ struct StrideSolver::System {
   }
 };
 
-StrideSolver::StrideSolver(int samples) : system_(std::make_unique<System>(samples)) {}
-StrideSolver::~StrideSolver() = default;
-
 namespace {
 
 double& unknown(StrideSample& s, int k) {
@@ -173,46 +251,85 @@ double& unknown(StrideSample& s, int k) {
 }
 double unknown(const StrideSample& s, int k) { return unknown(const_cast<StrideSample&>(s), k); }
 
+constexpr double kSameMirrored = 1e-9;  // metres, radians, cycles
+
+bool is_mirrored(const vec3& a, const vec3& b) {
+  return glm::distance(a, mirrored(b)) < kSameMirrored;
+}
+bool is_same(double a, double b) { return std::abs(a - b) < kSameMirrored; }
+
+// Whether half a stride later everything is the mirror image.
+bool is_symmetric(const StrideProblem& p) {
+  const int n = static_cast<int>(p.wanted.size()), half = n / 2;
+  const LegModel &left = p.leg[0], &right = p.leg[1];
+  const vec3 on(0.0, 0.0, 0.5 * p.stride_m);
+  bool same = n % 2 == 0 && is_mirrored(left.hip_m, right.hip_m) &&
+              is_mirrored(left.heel_m, right.heel_m) && is_mirrored(left.toe_m, right.toe_m) &&
+              is_same(left.toe_rest_m, right.toe_rest_m) && is_same(left.thigh_m, right.thigh_m) &&
+              is_same(left.shank_m, right.shank_m) && is_same(p.strike[0], p.strike[1] + 0.5) &&
+              is_same(p.toe_off[0] + 0.5, p.toe_off[1]) && is_same(p.flat[0], p.flat[1]) &&
+              is_mirrored(p.heel_m[0], p.heel_m[1] + on);
+  for (int i = 0; i < half && same; ++i) {
+    const StrideSample &a = p.wanted[i], &b = p.wanted[i + half];
+    same = is_same(p.time[i] + 0.5, p.time[i + half]) &&
+           is_same(std::abs(glm::dot(a.pelvis, mirrored(b.pelvis))), 1.0);
+    for (int k = 0; k < kUnknowns && same; ++k) {
+      const Mirrored m = mirror_of(k);
+      same = is_same(unknown(a, k), m.factor * unknown(b, m.unknown));
+    }
+  }
+  return same;
+}
+
 }  // namespace
+
+StrideSolver::StrideSolver() = default;
+StrideSolver::~StrideSolver() = default;
 
 std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
                                               std::vector<StrideSample> x, int iterations) {
+  const int n = static_cast<int>(problem.wanted.size());
+  const int solved = is_symmetric(problem) ? n / 2 : n;
+  if (!system_ || system_->samples != n || system_->solved != solved)
+    system_ = std::make_unique<System>(n, solved);
   System& s = *system_;
-  const int n = s.samples;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    std::fill_n(s.normal.valuePtr(), s.normal.nonZeros(), 0.0);
-    s.gradient.setZero();
+    s.clear();
     // Close to the data, and smoothly so.
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < solved; ++i) {
       for (int k = 0; k < kUnknowns; ++k) {
         const int at = i * kUnknowns + k;
         const double weight = k < kPelvis ? kPelvisWeight : 1.0;
         const double smooth = kSmooth * weight * (k == 1 ? kPelvisSmooth : k < kPelvis ? kPelvisSideways : 1.0);
         std::array<double, 3> change;
-        std::array<int, 3> where;
+        std::array<Mirrored, 3> where;
         for (int d : {0, 1, 2}) {
           const int j = (i + d + n - 1) % n;
           change[d] = unknown(x[j], k) - unknown(problem.wanted[j], k);
-          where[d] = j * kUnknowns + k;
+          where[d] = s.place_of(i + d - 1, k);
         }
         s.at(at, at) += weight;
         s.gradient[at] += weight * change[1];
         constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
         const double bend = change[0] - 2.0 * change[1] + change[2];
         for (int d : {0, 1, 2}) {
-          s.gradient[where[d]] += smooth * kBend[d] * bend;
-          for (int e = 0; e <= d; ++e) s.at(where[d], where[e]) += smooth * kBend[d] * kBend[e];
+          const double slope = smooth * kBend[d] * where[d].factor;
+          s.gradient[where[d].unknown] += slope * bend;
+          for (int e = 0; e <= d; ++e) {
+            s.at(where[d].unknown, where[e].unknown) += slope * kBend[e] * where[e].factor;
+          }
         }
       }
     }
     // Feet.
+    std::array<std::vector<LegFrames>, 2> all_frames;
     std::vector<double> path_m(n);
     for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
     for (int side : {0, 1}) {
       const LegModel& leg = problem.leg[side];
       std::vector<PointRows> heels, toes;
       for (int i = 0; i < n; ++i) {
-        const LegFrames frames = leg_frames(leg, x[i], side);
+        const LegFrames& frames = all_frames[side].emplace_back(leg_frames(leg, x[i], side));
         heels.push_back(point_rows(frames, leg.heel_m));
         toes.push_back(point_rows(frames, leg.toe_m));
       }
@@ -227,11 +344,11 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         s.add_bend((down + d + n) % n, side, toes, path_m, problem.stride_m, kSoftToe);
       }
     }
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < solved; ++i) {
       const double phase = double(i) / n;
       for (int side : {0, 1}) {
         const LegModel& leg = problem.leg[side];
-        const LegFrames frames = leg_frames(leg, x[i], side);
+        const LegFrames& frames = all_frames[side][i];
         // A point stands from the sample before its event to the one after it.
         constexpr double kNear = 1e-9;
         const double sample = (1.0 - kNear) / n;
@@ -301,11 +418,17 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         }
       }
     }
-    s.factor.factorize(s.normal);
-    const Eigen::VectorXd step = s.factor.solve(s.gradient);
-    for (int i = 0; i < n; ++i) {
+    const auto step = s.step();
+    if (!step) return {};
+    for (int i = 0; i < solved; ++i) {
       for (int k = 0; k < kUnknowns; ++k) {
-        unknown(x[i], k) -= std::clamp(step[i * kUnknowns + k], -kMostStep, kMostStep);
+        unknown(x[i], k) -= std::clamp((*step)[i * kUnknowns + k], -kMostStep, kMostStep);
+      }
+    }
+    for (int i = solved; i < n; ++i) {
+      for (int k = 0; k < kUnknowns; ++k) {
+        const Mirrored m = mirror_of(k);
+        unknown(x[i], k) = m.factor * unknown(x[i - solved], m.unknown);
       }
     }
   }

@@ -38,15 +38,16 @@ struct StrideProblem {
 
 class StrideSolver {
  public:
-  explicit StrideSolver(int samples);
+  StrideSolver();
   ~StrideSolver();
-  // The solution of `problem`, found in `iterations` steps from `start`.
+  // The solution of `problem`, found in `iterations` steps from `start`. Where the data of half a
+  // stride mirror those of the other half, one half is solved. Empty where it cannot be solved.
   std::vector<StrideSample> solve(const StrideProblem& problem, std::vector<StrideSample> start,
                                   int iterations);
 
  private:
   struct System;
-  std::unique_ptr<System> system_;
+  std::unique_ptr<System> system_;  // of the problem before, kept for its pattern
 };
 
 }  // namespace gaitpad

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "gaitpad/clean_strides.h"
 #include "gaitpad/control.h"
 #include "gaitpad/walk.h"
+#include "tests/clean_cycle.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -15,7 +15,7 @@ constexpr int kRate = 240;
 constexpr double kDt = 1.0 / kRate;
 
 inline WalkModel model_of(const GaitCycle& cycle, const Character& character = {}) {
-  return value_of(walk_model(with_clean_strides(cycle), character));
+  return value_of(walk_model(clean_cycle(cycle), character));
 }
 inline WalkModel model_of(double leg_ratio, double scale = 1.0) {
   Character character;

@@ -11,9 +11,9 @@
 #include <string>
 
 #include "animation/terrain_judge.h"
-#include "gaitpad/clean_strides.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/motion_file.h"
+#include "tests/clean_cycle.h"
 #include "tests/folders.h"
 
 using namespace gaitpad;
@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
     for (const double ratio : ratios) {
       Character character;
       character.leg_ratio = ratio;
-      WalkModel model = value_or_exit(walk_model(with_clean_strides(cycle), character));
+      WalkModel model = value_or_exit(walk_model(clean_cycle(cycle), character));
       model.terrain = std::make_shared<const Terrain>(scaled(ground, terrain_scale(ground, model)));
       for (const double y : sticks) {
         for (const std::string& style : styles) {

@@ -232,7 +232,7 @@ TEST(WalkTerrain, ShortFeetAreNotExpectedToReachBeyondTheirTips) {
   Character child;
   child.leg_ratio = 0.6;
   for (const double share : {0.25, 0.3}) {
-    auto model = walk_model(with_clean_strides(short_footed_gait(share)), child);
+    auto model = walk_model(clean_cycle(short_footed_gait(share)), child);
     ASSERT_TRUE(model) << model.error().message;
     model->terrain = ground_of(stairs(0.17));
     for (const double y : {0.4, 0.7, 1.0}) {
@@ -328,5 +328,4 @@ TEST(WalkTerrain, PaperModeStaysBoundedAndFinite) {
 }
 
 }  // namespace
-}  // namespace gaitpad#include "gaitpad/clean_strides.h"
-
+}  // namespace gaitpad

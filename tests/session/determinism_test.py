@@ -58,6 +58,9 @@ def parts_of_ordinary(build):
             folder, file = f"/{member[1]}.dir/", f"/{member[2]}"
             found += [row for output, row in rows.items() if folder in f"/{output}" and output.endswith(file)]
     command = re.sub(r"^.*?\+\+ | -(M[TF]|o|c) \S+| -MD| -O\S*| -W\S*", "", main["command"])
+    # A source may include what its main file does not, as Eigen.
+    folders = {folder for row in found for folder in re.findall(r"-isystem \S+", row["command"])}
+    command += "".join(f" {folder}" for folder in sorted(folders) if folder not in command)
     libraries = [word for word in link if re.search(r"\.so(\.[\d.]+)?$", word)]
     return found, command + " -w", " ".join(libraries)
 

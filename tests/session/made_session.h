@@ -5,6 +5,7 @@
 
 #include "gaitpad/simulation.h"
 #include "gaitpad/trace.h"
+#include "tests/clean_cycle.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -82,7 +83,7 @@ inline SimulationConfig made_config(int walkers) {
   config.styles.resize(1);
   config.styles[0].name = "even";
   config.styles.push_back(made_limp());
-  config.cycle = procedural_gait();
+  config.cycle = clean_cycle(procedural_gait());
   for (int i = 0; i < walkers; ++i) {
     WalkerConfig& walker = config.walkers.emplace_back();
     walker.character.leg_ratio = 1.0 + 0.1 * i;

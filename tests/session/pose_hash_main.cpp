@@ -1,12 +1,16 @@
 // For determinism_test.py: walks made-up sessions and prints the pose hash of every tick, so that
 // two builds can be compared. Nothing but arithmetic: no file, but for a motion written and read
-// again in the folder given.
+// again in the folder given. The strides that the walks read are solved, not taken from a cache.
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "gaitpad/bvh.h"
+#include "gaitpad/clean_strides.h"
+#include "gaitpad/hash.h"
 #include "gaitpad/motion_file.h"
+#include "strides/solver_input.h"
 #include "tests/session/made_session.h"
 
 using namespace gaitpad;
@@ -46,20 +50,31 @@ Result<GaitCycle> cycle_through_file(const std::string& path) {
   if (!writer.finish()) return Error{path + ": cannot be written"};
   auto read = load_motion(path);
   if (!read) return read.error();
-  return gait_cycle(*read);
+  auto cycle = gait_cycle(*read);
+  if (!cycle) return cycle;
+  return with_clean_strides(std::move(*cycle));
+}
+
+void print_family(const char* name, const StrideFamily& family) {
+  WordHash hash;
+  for_each_number(family, [&hash](double number) { hash.add(number); });
+  fmt::print("{} strides {:016x}\n", name, hash.value());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) return fail("usage: pose_hash_main FOLDER");
+  ::setenv("GAITPAD_CACHE", "off", 1);
   SimulationConfig config = made_config(4);
+  print_family("procedural", *config.cycle.strides);
   if (walk("procedural robust", config) != 0) return 1;
   config.ik = IkMode::paper;
   if (walk("procedural paper", config) != 0) return 1;
   if (walk("terrain and body", made_uneven_config(3)) != 0) return 1;
   auto cycle = cycle_through_file(std::string(argv[1]) + "/procedural.bvh");
   if (!cycle) return fail(cycle.error().message);
+  print_family("captured", *cycle->strides);
   config = made_config(2);
   config.cycle = std::move(*cycle);
   return walk("captured robust", config);

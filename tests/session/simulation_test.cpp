@@ -44,7 +44,7 @@ TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   for (Joint& joint : giant.skeleton.joints) joint.offset_m *= 1.5;
   auto own = cycle_on_skeleton(config.cycle, giant);
   ASSERT_TRUE(own) << own.error().message;
-  config.walkers[0].own_cycle = *own;
+  config.walkers[0].own_cycle = clean_cycle(*own);
   const Simulation s = walked(config, 0x80, 0x10, 1200);
   const Walker& w = s.walkers()[0];
   EXPECT_EQ(w.ik_failures, 0);

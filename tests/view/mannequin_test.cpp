@@ -6,11 +6,11 @@
 
 #include <map>
 
-#include "gaitpad/clean_strides.h"
 #include "gaitpad/control.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/walk.h"
 #include "motion/made_motion.h"
+#include "tests/clean_cycle.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
 
@@ -18,8 +18,7 @@ namespace gaitpad {
 namespace {
 
 std::shared_ptr<const WalkModel> model_of(const GaitCycle& cycle, const Character& character = {}) {
-  return std::make_shared<const WalkModel>(
-      value_of(walk_model(with_clean_strides(cycle), character)));
+  return std::make_shared<const WalkModel>(value_of(walk_model(clean_cycle(cycle), character)));
 }
 
 // The deepest place of a hull of two balls that are stretched along `wide`.

@@ -10,9 +10,9 @@
 #include <limits>
 #include <memory>
 
-#include "gaitpad/clean_strides.h"
 #include "gaitpad/control.h"
 #include "gaitpad/walk.h"
+#include "tests/clean_cycle.h"
 #include "tests/value_of.h"
 #include "view/gl_program.h"
 #include "view/mannequin.h"
@@ -254,7 +254,7 @@ TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
   orbit(camera_, 0.0, -1.0);
   ASSERT_LT(camera_.eye_m().y, 0.11);
   const Mannequin body = mannequin_of(
-      std::make_shared<const WalkModel>(value_of(walk_model(with_clean_strides(procedural_gait()), Character{}))));
+      std::make_shared<const WalkModel>(value_of(walk_model(clean_cycle(procedural_gait()), Character{}))));
   Stick stick;
   stick.left = {0.2, 0.7};
   const GaitParams params = gait_params(stick, StyleValues{}, GaitLimits{});

@@ -31,9 +31,10 @@ int main(int argc, char** argv) {
   // Set-up may fail and may allocate. The motion becomes a periodic stride, the stride a character.
   const auto motion = gaitpad::load_motion(argv[1]);
   if (!motion) return print_error(motion.error());
-  const auto cycle = gaitpad::gait_cycle(*motion);
+  auto cycle = gaitpad::gait_cycle(*motion);
+  if (cycle) cycle = gaitpad::with_clean_strides(std::move(*cycle));
   if (!cycle) return print_error(cycle.error());
-  const auto model = gaitpad::walk_model(gaitpad::with_clean_strides(*cycle), gaitpad::Character{});
+  const auto model = gaitpad::walk_model(*cycle, gaitpad::Character{});
   if (!model) return print_error(model.error());
 
   const gaitpad::Stick stick = {.left = gaitpad::vec2(0.0, std::atof(argv[2]))};

@@ -93,6 +93,11 @@ bool read_options(int argc, char** argv, Options& options) {
   return true;
 }
 
+int print_error(const gaitpad::Error& error) {
+  std::fprintf(stderr, "sdl_game: %s\n", error.message.c_str());
+  return 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -101,12 +106,10 @@ int main(int argc, char** argv) {
     std::fputs("usage: sdl_game [--frames N] [--stick X,Y] [--picture FILE.bmp]\n", stderr);
     return 2;
   }
-  const auto model = gaitpad::walk_model(gaitpad::with_clean_strides(gaitpad::procedural_gait()),
-                                         gaitpad::Character{});
-  if (!model) {
-    std::fprintf(stderr, "sdl_game: %s\n", model.error().message.c_str());
-    return 1;
-  }
+  const auto cycle = gaitpad::with_clean_strides(gaitpad::procedural_gait());
+  if (!cycle) return print_error(cycle.error());
+  const auto model = gaitpad::walk_model(*cycle, gaitpad::Character{});
+  if (!model) return print_error(model.error());
   if (SDL_Init(SDL_INIT_VIDEO | SDL_INIT_GAMECONTROLLER) != 0) {
     std::fprintf(stderr, "sdl_game: %s\n", SDL_GetError());
     return 1;

@@ -1,0 +1,40 @@
+// The numbers that a family of strides is made from, and those that it is made of.
+#pragma once
+#include <vector>
+
+#include "gaitpad/stride_family.h"
+
+namespace gaitpad {
+
+// Of two cycles with the same numbers the families are the same.
+std::vector<double> solver_input(const GaitCycle& cycle);
+
+// Calls `each` with every number of a family, const or not, in an order that never changes. The
+// family has all its tables.
+template <class Family, class Each>
+void for_each_number(Family& family, Each each) {
+  each(family.stand_m);
+  each(family.lead_m);
+  for (auto& angles : family.stand_rad) {
+    for (auto& angle : angles) each(angle);
+  }
+  const auto each_of = [&each](auto& v) { each(v.x), each(v.y), each(v.z); };
+  for (auto& table : family.table) {
+    each(table.stride_m);
+    for (auto& place : table.footprint_m) each_of(place);
+    for (auto& cell : table.cell) {
+      each_of(cell.pelvis_m);
+      each(cell.pelvis_yaw_rad);
+      each_of(cell.pelvis_tilt);
+      for (auto& foot : cell.foot) {
+        each_of(foot.heel_m);
+        each(foot.yaw_rad), each(foot.pitch_rad), each(foot.roll_rad);
+      }
+      for (auto& angles : cell.leg_rad) {
+        for (auto& angle : angles) each(angle);
+      }
+    }
+  }
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,123 @@
+// Strides that are kept in files: the same bits as solved ones, whatever happens to the files.
+#include "strides/stride_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+
+#include "gaitpad/clean_strides.h"
+#include "strides/solver_input.h"
+#include "tests/own_folder.h"
+#include "tests/value_of.h"
+
+namespace gaitpad {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<double> numbers_of(const GaitCycle& cycle) {
+  std::vector<double> numbers;
+  for_each_number(*cycle.strides, [&numbers](double number) { numbers.push_back(number); });
+  return numbers;
+}
+
+class StrideCache : public testing::Test {
+ protected:
+  std::vector<double> loaded(const GaitCycle& cycle = procedural_gait()) const {
+    return numbers_of(value_of(cached_clean_strides(cycle, cache())));
+  }
+  std::string cache() const { return folder_.at("cache"); }
+  fs::path only_file() const { return fs::directory_iterator(cache())->path(); }
+
+  const OwnFolder folder_;
+  const std::vector<double> solved_ = numbers_of(value_of(with_clean_strides(procedural_gait())));
+};
+
+TEST_F(StrideCache, GivesTheSameBitsAsSolving) {
+  EXPECT_EQ(loaded(), solved_);
+  ASSERT_EQ(entries_in(cache()), 1);
+  const auto written = fs::last_write_time(only_file());
+  EXPECT_EQ(loaded(), solved_);
+  EXPECT_EQ(entries_in(cache()), 1);
+  EXPECT_EQ(fs::last_write_time(only_file()), written);
+}
+
+TEST_F(StrideCache, KeepsEachCycleApart) {
+  GaitCycle other = procedural_gait();
+  other.samples[5].leg[0].angles[kKneeX] += 1e-12;
+  const auto first = loaded(), second = loaded(other);
+  EXPECT_EQ(entries_in(cache()), 2);
+  EXPECT_EQ(loaded(other), second);
+  other.name = "renamed";  // a name is not solved for
+  EXPECT_EQ(loaded(other), second);
+  EXPECT_EQ(entries_in(cache()), 2);
+}
+
+TEST_F(StrideCache, SolvesAgainAndMendsWhereAFileIsDamaged) {
+  loaded();
+  const fs::path file = only_file();
+  const std::string whole = text_in(file);
+  const auto flipped = [&whole](std::size_t at) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 1);
+    return bytes;
+  };
+  const std::string damaged[] = {"", whole.substr(0, whole.size() / 2), whole + "x",
+                                 flipped(0),  // another version
+                                 flipped(8),  // another question
+                                 flipped(whole.size() / 2), flipped(whole.size() - 1),
+                                 std::string(whole.size(), '\0')};
+  for (const std::string& bytes : damaged) {
+    std::ofstream(file, std::ios::binary) << bytes;
+    EXPECT_EQ(loaded(), solved_);
+    EXPECT_EQ(text_in(file), whole);
+  }
+}
+
+TEST_F(StrideCache, DoesWithoutAFolder) {
+  EXPECT_EQ(numbers_of(value_of(cached_clean_strides(procedural_gait(), ""))), solved_);
+  const std::string file = folder_.write("file");
+  EXPECT_EQ(numbers_of(value_of(cached_clean_strides(procedural_gait(), file + "/in"))), solved_);
+  EXPECT_EQ(numbers_of(value_of(cached_clean_strides(procedural_gait(), "/proc/none"))), solved_);
+}
+
+TEST_F(StrideCache, DeletesTheOldestOfManyFilesAndNothingElse) {
+  for (int i = 0; i < 70; ++i) {
+    const fs::path old = folder_.write("cache/" + std::to_string(i) + ".strides");
+    fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(100 - i));
+  }
+  folder_.write("cache/notes.txt");
+  EXPECT_EQ(loaded(), solved_);
+  EXPECT_EQ(entries_in(cache()), 64 + 1);
+  EXPECT_FALSE(fs::exists(folder_.at("cache/6.strides")));
+  EXPECT_TRUE(fs::exists(folder_.at("cache/7.strides")));
+  EXPECT_TRUE(fs::exists(folder_.at("cache/notes.txt")));
+}
+
+TEST_F(StrideCache, KeepsNoErrors) {
+  GaitCycle cycle = procedural_gait();
+  cycle.name = "odd.bvh";
+  cycle.stride_m = -1.0;
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(cause_of(cached_clean_strides(cycle, cache())), "odd.bvh: does not go forward");
+  EXPECT_FALSE(fs::exists(cache()));
+}
+
+TEST(StrideCacheFolder, IsTheUsersAndMayBeOff) {
+  const Environment own("GAITPAD_CACHE", nullptr), home("HOME", "/home/someone");
+  {
+    const Environment xdg("XDG_CACHE_HOME", "/var/mine");
+    EXPECT_EQ(stride_cache_folder(), "/var/mine/gaitpad/strides");
+    const Environment off("GAITPAD_CACHE", "off");
+    EXPECT_EQ(stride_cache_folder(), "");
+  }
+  const Environment xdg("XDG_CACHE_HOME", nullptr);
+  EXPECT_EQ(stride_cache_folder(), "/home/someone/.cache/gaitpad/strides");
+  const Environment homeless("HOME", nullptr);
+  EXPECT_EQ(stride_cache_folder(), "");
+}
+
+}  // namespace
+}  // namespace gaitpad

@@ -1,0 +1,343 @@
+// A family of strides keeps what it promises: read through forward kinematics, number by number.
+#include "gaitpad/stride_family.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "gaitpad/clean_strides.h"
+#include "motion/leg_pose.h"
+#include "strides/solver_input.h"
+#include "tests/clean_cycle.h"
+#include "tests/motion/made_walk.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kMillimetre = 1e-3;
+constexpr std::array<int, 2> kSides = {kLeftSide, kRightSide};
+
+double fraction(double phase) { return phase - std::floor(phase); }
+
+std::vector<double> numbers_of(const StrideFamily& family) {
+  std::vector<double> numbers;
+  for_each_number(family, [&numbers](double number) { numbers.push_back(number); });
+  return numbers;
+}
+
+// A leg of a cell by its angles alone, over the path: x and z from the table's frame, y over the floor.
+LegPose pose_in(const GaitCycle& cycle, const StrideCell& cell, int side) {
+  const StrideFamily& family = *cycle.strides;
+  LegAngles angles = family.stand_rad[side];
+  for (int j = 0; j < kLegDofs; ++j) angles[j] += cell.leg_rad[side][j];
+  const quat pelvis = rotation_y(cell.pelvis_yaw_rad) * from_rotation_vector(cell.pelvis_tilt);
+  return leg_pose(cycle.leg[side], cell.pelvis_m + vec3(0.0, family.stand_m, 0.0), pelvis, angles,
+                  0.0);
+}
+
+// A phase of a foot's own cycle, which begins at its strike.
+struct Stance {
+  double own, roll, support;
+};
+Stance stance_of(const GaitCycle& cycle, int sample, int side) {
+  const double strike = cycle.strike[side];
+  return {fraction(double(sample) / kCycleSamples - strike),
+          fraction(cycle.toe_off[1 - side] - strike), fraction(cycle.toe_off[side] - strike)};
+}
+
+// The built-in walk, and one whose steps are uneven.
+class StrideFamilyOf : public testing::TestWithParam<const char*> {
+ protected:
+  const GaitCycle cycle = [] {
+    if (GetParam() == std::string("built_in")) return clean_cycle(procedural_gait());
+    MadeWalk uneven;
+    uneven.left_at = 0.47;
+    return clean_cycle(value_of(gait_cycle(made_walk(uneven))));
+  }();
+  const StrideFamily& family = *cycle.strides;
+};
+INSTANTIATE_TEST_SUITE_P(Walks, StrideFamilyOf, testing::Values("built_in", "uneven"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST_P(StrideFamilyOf, KeepsPlantedPointsWhereTheyStand) {
+  for (const StrideTable& table : family.table) {
+    double worst_m = 0.0;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      for (const int side : kSides) {
+        const Stance s = stance_of(cycle, i, side);
+        const LegPose pose = pose_in(cycle, table.cell[i], side);
+        const LegModel& leg = cycle.leg[side];
+        const vec3 travelled(0.0, 0.0, table.stride_m * (cycle.strike[side] + s.own));
+        const vec3 heel_m = table.footprint_m[side], toe_m = heel_m + leg.toe_m - leg.heel_m;
+        if (s.own <= s.roll)
+          worst_m = std::max(worst_m, glm::distance(pose.heel_m + travelled, heel_m));
+        if (s.own >= s.roll && s.own <= s.support)
+          worst_m = std::max(worst_m, glm::distance(pose.toe_m + travelled, toe_m));
+      }
+    }
+    EXPECT_LT(worst_m, 0.2 * kMillimetre) << table.stride_m << " m";
+  }
+}
+
+TEST_P(StrideFamilyOf, StaysAboveTheFloor) {
+  for (const StrideTable& table : family.table) {
+    for (int i = 0; i < kCycleSamples; ++i) {
+      for (const int side : kSides) {
+        const LegPose pose = pose_in(cycle, table.cell[i], side);
+        EXPECT_GT(pose.heel_m.y, -kMillimetre) << table.stride_m << " m, sample " << i;
+        EXPECT_GT(pose.toe_m.y - cycle.leg[side].toe_rest_m, -kMillimetre)
+            << table.stride_m << " m, sample " << i;
+      }
+    }
+  }
+}
+
+TEST_P(StrideFamilyOf, BendsEveryKneeAboutADegreeAtLeast) {
+  for (const StrideTable& table : family.table) {
+    for (const StrideCell& cell : table.cell) {
+      for (const int side : kSides) {
+        const double knee = family.stand_rad[side][kKneeX] + cell.leg_rad[side][kKneeX];
+        EXPECT_GT(knee, 0.8 * kDegree) << table.stride_m << " m";
+      }
+    }
+  }
+}
+
+TEST_P(StrideFamilyOf, HasNoSeam) {
+  for (const StrideTable& table : family.table) {
+    const auto change = [&table](int from) {
+      const StrideCell d = mixed(table.cell[(from + 1) % kCycleSamples], table.cell[from], 1, -1);
+      double most = glm::length(d.pelvis_m);
+      for (const int side : kSides) {
+        for (const double angle : d.leg_rad[side]) most = std::max(most, std::abs(angle));
+      }
+      return most;
+    };
+    double most = 0.0;
+    for (int i = 0; i < kCycleSamples - 1; ++i) most = std::max(most, change(i));
+    EXPECT_LE(change(kCycleSamples - 1), most);
+  }
+}
+
+TEST_P(StrideFamilyOf, HasFeetThatAgreeWithTheLegs) {
+  for (const StrideTable& table : family.table) {
+    for (int i = 0; i < kCycleSamples; ++i) {
+      for (const int side : kSides) {
+        const LegPose pose = pose_in(cycle, table.cell[i], side);
+        const StrideFoot& foot = table.cell[i].foot[side];
+        EXPECT_LT(glm::distance(foot.heel_m, pose.heel_m), 1e-9);
+        // The heel-toe line by yaw and pitch; roll turns about it.
+        const vec3 line = cycle.leg[side].toe_m - cycle.leg[side].heel_m;
+        const vec3 across =
+            glm::cross(kUp, glm::normalize(vec3(line.x, 0.0, line.z)));
+        const vec3 turned =
+            rotation_y(foot.yaw_rad) * (rotation_about(across, foot.pitch_rad) * line);
+        EXPECT_LT(glm::distance(turned, pose.toe_m - pose.heel_m), 1e-9);
+      }
+    }
+  }
+}
+
+TEST_P(StrideFamilyOf, GrowsWithItsRatio) {
+  for (int k = 0; k < kStrideRatios; ++k) {
+    const StrideTable& table = family.table[k];
+    EXPECT_NEAR(table.stride_m, k * kRatioStep * cycle.stride_m, 1e-12);
+    for (const int side : kSides) EXPECT_EQ(table.footprint_m[side].y, 0.0);
+  }
+}
+
+TEST_P(StrideFamilyOf, IsReadAtItsOwnPhasesAndRatiosAsItStands) {
+  for (int k = 0; k < kStrideRatios; ++k) {
+    for (int i = 0; i < kCycleSamples; i += 7) {
+      const double phase = double(i) / kCycleSamples;
+      const StridePlace place = stride_at(family, phase, k * kRatioStep);
+      const StrideCell off = mixed(place.cell, family.table[k].cell[i], 1.0, -1.0);
+      const auto* number = reinterpret_cast<const double*>(&off);
+      for (std::size_t n = 0; n < sizeof(StrideCell) / sizeof(double); ++n)
+        EXPECT_NEAR(number[n], 0.0, 1e-12);
+      EXPECT_NEAR(place.stride_m, family.table[k].stride_m, 1e-12);
+      for (const int side : kSides)
+        EXPECT_LT(glm::distance(place.footprint_m[side], family.table[k].footprint_m[side]), 1e-12);
+    }
+  }
+}
+
+TEST_P(StrideFamilyOf, IsReadWithoutKinks) {
+  // Slopes from both sides, in phase and in ratio, at and between the tables.
+  constexpr double kStep = 1e-6;
+  const auto slopes_agree = [](const std::function<vec3(double)>& curve, double at) {
+    const vec3 before = (curve(at) - curve(at - kStep)) / kStep,
+               after = (curve(at + kStep) - curve(at)) / kStep;
+    EXPECT_LT(glm::distance(before, after), 1e-2) << at;
+  };
+  for (const double ratio : {0.3, 0.6, 1.0}) {
+    for (const double phase : {0.0, 0.25, 0.5, 77.0 / kCycleSamples, 0.9}) {
+      const auto along_phase = [&](double p) { return stride_at(family, p, ratio).cell.pelvis_m; };
+      const auto along_ratio = [&](double r) { return stride_at(family, phase, r).cell.pelvis_m; };
+      slopes_agree(along_phase, phase);
+      slopes_agree(along_ratio, ratio);
+    }
+  }
+}
+
+TEST_P(StrideFamilyOf, IsPeriodicInPhaseAndClampedInRatio) {
+  const auto knee = [this](double phase, double ratio) {
+    return stride_at(family, phase, ratio).cell.leg_rad[kLeftSide][kKneeX];
+  };
+  EXPECT_NEAR(knee(0.3, 0.9), knee(5.3, 0.9), 1e-12);
+  EXPECT_NEAR(knee(0.3, 0.9), knee(-0.7, 0.9), 1e-12);
+  EXPECT_EQ(knee(0.3, 9.0), knee(0.3, kMostRatio));
+  EXPECT_EQ(knee(0.3, -1.0), knee(0.3, 0.0));
+}
+
+TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
+  const GaitCycle cycle = clean_cycle(procedural_gait());
+  const StrideTable& own = cycle.strides->table[static_cast<std::size_t>(1.0 / kRatioStep + 0.5)];
+  ASSERT_NEAR(own.stride_m, cycle.stride_m, 1e-12);
+  for (const int side : kSides) {
+    std::array<double, kLegDofs> squares{};
+    for (int i = 0; i < kCycleSamples; ++i) {
+      for (int j = 0; j < kLegDofs; ++j) {
+        const double now = cycle.strides->stand_rad[side][j] + own.cell[i].leg_rad[side][j];
+        squares[j] += std::pow(now - cycle.samples[i].leg[side].angles[j], 2) / kCycleSamples;
+      }
+    }
+    EXPECT_LT(std::sqrt(squares[kHipX]), 3.0 * kDegree);
+    EXPECT_LT(std::sqrt(squares[kKneeX]), 3.0 * kDegree);
+    EXPECT_LT(std::sqrt(squares[kAnkleX]), 3.5 * kDegree);
+  }
+}
+
+TEST(StrideFamily, IsSymmetricWhereTheDataAre) {
+  const StrideFamily family = value_of(stride_family(procedural_gait()));
+  constexpr int kHalf = kCycleSamples / 2;
+  for (const StrideTable& table : family.table) {
+    for (int i = 0; i < kHalf; ++i) {
+      const StrideCell &a = table.cell[i], &b = table.cell[i + kHalf];
+      EXPECT_LT(glm::distance(a.pelvis_m, mirrored(b.pelvis_m)), 1e-9);
+      EXPECT_NEAR(a.pelvis_yaw_rad, -b.pelvis_yaw_rad, 1e-9);
+      EXPECT_LT(glm::distance(a.pelvis_tilt, -mirrored(b.pelvis_tilt)), 1e-9);  // an axial vector
+      for (const int side : kSides) {
+        const StrideFoot &foot = a.foot[side], &other = b.foot[1 - side];
+        EXPECT_LT(glm::distance(foot.heel_m, mirrored(other.heel_m)), 1e-9);
+        EXPECT_NEAR(foot.pitch_rad, other.pitch_rad, 1e-9);
+        EXPECT_NEAR(foot.yaw_rad, -other.yaw_rad, 1e-9);
+        EXPECT_NEAR(foot.roll_rad, -other.roll_rad, 1e-9);
+        for (const int j : {kHipX, kKneeX, kAnkleX})
+          EXPECT_NEAR(a.leg_rad[side][j], b.leg_rad[1 - side][j], 1e-9);
+        for (const int j : {kHipZ, kHipY, kAnkleZ, kAnkleY})
+          EXPECT_NEAR(a.leg_rad[side][j], -b.leg_rad[1 - side][j], 1e-9);
+      }
+    }
+  }
+}
+
+// Half of a symmetric stride is solved; all of it has the same answer.
+TEST(StrideFamily, OfAWalkThatIsHardlyUnevenIsThatOfTheEvenOne) {
+  GaitCycle uneven = procedural_gait();
+  uneven.samples[3].pelvis_m.x += 1e-8;
+  const auto a = numbers_of(value_of(stride_family(procedural_gait()))),
+             b = numbers_of(value_of(stride_family(uneven)));
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-5);
+}
+
+TEST(StrideFamily, OfEqualCyclesIsTheSameBitByBit) {
+  EXPECT_EQ(numbers_of(value_of(stride_family(procedural_gait()))),
+            numbers_of(value_of(stride_family(procedural_gait()))));
+}
+
+TEST(StrideFamily, NamesWhatIsNoWalk) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN(),
+               endless = std::numeric_limits<double>::infinity();
+  const auto cause = [](const std::function<void(GaitCycle&)>& spoil) {
+    GaitCycle cycle = procedural_gait();
+    cycle.name = "odd.bvh";
+    spoil(cycle);
+    return cause_of(with_clean_strides(cycle));
+  };
+  const std::string no_number = "odd.bvh: holds a number that is not finite";
+  EXPECT_EQ(cause([&](GaitCycle& c) { c.samples[9].pelvis_m.y = nothing; }), no_number);
+  EXPECT_EQ(cause([&](GaitCycle& c) { c.samples[9].leg[1].angles[kKneeX] = endless; }), no_number);
+  EXPECT_EQ(cause([&](GaitCycle& c) { c.toe_off[0] = nothing; }), no_number);
+  EXPECT_EQ(cause([&](GaitCycle& c) { c.stride_m = endless; }), no_number);
+  EXPECT_EQ(cause([](GaitCycle& c) { c.samples.clear(); }),
+            "odd.bvh: has no samples of a whole cycle");
+  EXPECT_EQ(cause([](GaitCycle& c) { c.leg[0].shank_m = 0.0; }),
+            "odd.bvh: has a leg without a thigh, a shank or a foot");
+  EXPECT_EQ(cause([](GaitCycle& c) { c.leg[1].toe_m = c.leg[1].heel_m; }),
+            "odd.bvh: has a leg without a thigh, a shank or a foot");
+  EXPECT_EQ(cause([](GaitCycle& c) { c.stride_m = 0.0; }), "odd.bvh: does not go forward");
+  EXPECT_EQ(cause([](GaitCycle& c) { c.stride_m = 40.0; }),
+            "odd.bvh: takes strides longer than four legs");
+  EXPECT_EQ(cause([](GaitCycle& c) { std::swap(c.toe_off[0], c.toe_off[1]); }),
+            "odd.bvh: has events that are not in the order of a walk");
+  EXPECT_EQ(cause([](GaitCycle& c) { c.samples[0].pelvis = quat(0.0, 0.0, 0.0, 0.0); }),
+            "odd.bvh: turns its pelvis by what is no rotation");
+  EXPECT_EQ(cause([](GaitCycle& c) { c.samples[0].leg[0].angles[kHipX] = 1e6; }),
+            "odd.bvh: turns a leg by more than a full turn");
+}
+
+TEST(StrideFamily, OfUnlikelyWalksHasFiniteTables) {
+  const auto family_of = [](const std::function<void(GaitCycle&)>& bend) {
+    GaitCycle cycle = procedural_gait();
+    bend(cycle);
+    return value_of(stride_family(cycle));
+  };
+  const auto all_finite = [](const StrideFamily& family) {
+    return std::ranges::all_of(numbers_of(family), [](double n) { return std::isfinite(n); });
+  };
+  EXPECT_TRUE(all_finite(family_of([](GaitCycle& c) { c.stride_m = 3.0; })));
+  EXPECT_TRUE(all_finite(family_of([](GaitCycle& c) { c.leg[0].shank_m *= 0.2; })));
+  EXPECT_TRUE(all_finite(family_of([](GaitCycle& c) {
+    for (CycleSample& s : c.samples) s.pelvis_m.y += 0.5;
+  })));
+}
+
+TEST(RollTimeShare, IsTheDatasAtItsOwnRatioAndLongerInShortSteps) {
+  EXPECT_DOUBLE_EQ(roll_time_share(0.12, 1.0), 0.12);
+  for (double ratio = 0.0; ratio < kMostRatio; ratio += 0.1)
+    EXPECT_GE(roll_time_share(0.12, ratio), roll_time_share(0.12, ratio + 0.1));
+}
+
+TEST(RollTimeShare, StaysInAPersonsBoundsOrTheDatas) {
+  for (const double share : {0.01, 0.05, 0.12, 0.2, 0.3}) {
+    for (double ratio = 0.0; ratio <= kMostRatio; ratio += 0.05) {
+      EXPECT_GE(roll_time_share(share, ratio), std::min(share, 0.04));
+      EXPECT_LE(roll_time_share(share, ratio), std::max(share, 0.22));
+    }
+  }
+}
+
+StageClock made_clock() { return {{0.12, 0.38, 0.13, 0.37}, {0.17, 0.34, 0.18, 0.31}}; }
+
+TEST(StageClock, EndsEachStageInItsTime) {
+  const StageClock clock = made_clock();
+  double time = 0.0, phase = 0.0;
+  for (int turn = -1; turn < 2; ++turn) {
+    time = phase = turn;
+    for (int stage = 0; stage < 4; ++stage) {
+      EXPECT_NEAR(clock.phase_at(time), phase, 1e-12);
+      time += clock.time_share[stage];
+      phase += clock.phase_share[stage];
+    }
+  }
+}
+
+TEST(StageClock, RunsForwardAtARateWithoutJumps) {
+  const StageClock clock = made_clock();
+  constexpr double kStep = 1e-5;
+  double rate_before = (clock.phase_at(0.0) - clock.phase_at(-kStep)) / kStep;
+  for (double time = 0.0; time < 1.1; time += kStep) {
+    const double rate = (clock.phase_at(time + kStep) - clock.phase_at(time)) / kStep;
+    ASSERT_GT(rate, 0.3) << time;
+    ASSERT_NEAR(rate, rate_before, 1e-3) << time;
+    rate_before = rate;
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad

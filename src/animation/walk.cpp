@@ -324,7 +324,7 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 // Lengths in metres at the reference leg.
 constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 constexpr double kReach = 0.9996;  // of the leg: a knee bent by 3 degrees
-constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015;
+constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWidest_m = 0.06;
 // Front heel to hips over the step, in steps so long that the data's lean is given up.
 constexpr double kEvenFront = 0.46;
 // How much of a backward step the hips have covered at its strike: the weight follows the foot
@@ -480,10 +480,8 @@ void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) no
   if (!tick.flat) advance_base(tick, state, (ticks_to_strike(state) + 1) * tick.dt_s);
 }
 
-// Hip to ankle with the foot as planned.
-double leg_span(const LegBuild& leg, const FootPose& foot, const Pelvis& pelvis) noexcept {
-  return glm::distance(pelvis.hip(leg),
-                       foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m);
+vec3 ankle_of(const LegBuild& leg, const FootPose& foot) noexcept {
+  return foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
 }
 
 // The pelvis' height: the tables', lowered where ground or turn ask more of a leg than they know.
@@ -495,21 +493,25 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   // Legs that are about to change their pace are bent a little, so that they have room.
   const double change = state.pace.x - state.settled_pace.x;
   y -= kChangeDrop_m * model.size * change * change / (change * change + kChange * kChange);
-  double lower = 0.0;
+  double squares = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
     const double a = leg.model.thigh_m, b = leg.model.shank_m;
     const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
     const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
-    const double span = leg_span(leg, state.foot[side].pose, pelvis);
-    const double longest = kReach * leg.model.length_m(), soft = kSoftReach_m * model.size;
+    const vec3 ankle = ankle_of(leg, state.foot[side].pose), hip = pelvis.hip(leg);
+    const double span = glm::distance(hip, ankle);
     // What the tables ask for is let through; it counts less the more is asked beyond it.
-    const double beyond = (span - known) / (kKnown_m * model.size);
+    const double beyond = (span - known) / model.size;
     if (beyond <= 0.0) continue;
-    lower = std::max(lower, soft_positive(span - longest, soft) -
-                                soft_positive(known - longest, soft) / (1.0 + beyond * beyond));
+    const double soft = model.size * (kSoftReach_m + kWiderReach * std::min(beyond, kWidest_m));
+    const double longest = kReach * leg.model.length_m(), times = beyond / kKnown_m;
+    const double excess = soft_positive(span - longest, soft) -
+                          soft_positive(known - longest, soft) / (1.0 + times * times);
+    const double upright = std::max(0.3 * span, hip.y - ankle.y) / span;
+    squares += excess * excess / (upright * upright);
   }
-  return y - lower;
+  return y - std::sqrt(squares);
 }
 
 // --- Pose and report -----------------------------------------------------------------------------

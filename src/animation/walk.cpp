@@ -323,7 +323,7 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 
 // Lengths in metres at the reference leg.
 constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
-constexpr double kReach = 0.9996;  // of the leg: a knee bent by 3 degrees
+constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
 constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWidest_m = 0.06;
 // Front heel to hips over the step, in steps so long that the data's lean is given up.
 constexpr double kEvenFront = 0.46;
@@ -501,13 +501,13 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
     const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
     const vec3 ankle = ankle_of(leg, state.foot[side].pose), hip = pelvis.hip(leg);
     const double span = glm::distance(hip, ankle);
-    // What the tables ask for is let through; it counts less the more is asked beyond it.
+    // What the tables ask for is let through.
     const double beyond = (span - known) / model.size;
     if (beyond <= 0.0) continue;
     const double soft = model.size * (kSoftReach_m + kWiderReach * std::min(beyond, kWidest_m));
     const double longest = kReach * leg.model.length_m(), times = beyond / kKnown_m;
-    const double excess = soft_positive(span - longest, soft) -
-                          soft_positive(known - longest, soft) / (1.0 + times * times);
+    const double excess =
+        soft_positive(span - longest, soft) * times * times / (1.0 + times * times);
     const double upright = std::max(0.3 * span, hip.y - ankle.y) / span;
     squares += excess * excess / (upright * upright);
   }

@@ -97,9 +97,10 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
   const double begin_m = height_on(foot.plane, foot.heel_anchor_m),
                rise = state.landing_m.y - begin_m;
   const double rise_legs = rise / model.leg_length_m;
-  const double height = mix(1.0, state.flight_height[side].x, smoothstep(0.0, kLiftGrows, u)) *
+  const double lifted = state.flight_height[side].x *
                         mix(1.0, kLiftDown, smoothstep(0.0, kDown, -rise_legs)) *
                         mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
+  const double height = mix(1.0, lifted, smootherstep(u / kLiftGrows));
   const Ascent risen = ascent(model, foot, way);
   base_m = begin_m + rise * risen.at(p - foot.heel_anchor_m, u);
   double up = cell.heel_m.y * height;

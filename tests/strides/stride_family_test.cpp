@@ -28,7 +28,8 @@ std::vector<double> numbers_of(const StrideFamily& family) {
   return numbers;
 }
 
-// A leg of a cell by its angles alone, over the path: x and z from the table's frame, y over the floor.
+// A leg of a cell by its angles alone, over the path: x and z from the table's frame, y over the
+// floor.
 LegPose pose_in(const GaitCycle& cycle, const StrideCell& cell, int side) {
   const StrideFamily& family = *cycle.strides;
   LegAngles angles = family.stand_rad[side];
@@ -131,8 +132,7 @@ TEST_P(StrideFamilyOf, HasFeetThatAgreeWithTheLegs) {
         EXPECT_LT(glm::distance(foot.heel_m, pose.heel_m), 1e-9);
         // The heel-toe line by yaw and pitch; roll turns about it.
         const vec3 line = cycle.leg[side].toe_m - cycle.leg[side].heel_m;
-        const vec3 across =
-            glm::cross(kUp, glm::normalize(vec3(line.x, 0.0, line.z)));
+        const vec3 across = glm::cross(kUp, glm::normalize(vec3(line.x, 0.0, line.z)));
         const vec3 turned =
             rotation_y(foot.yaw_rad) * (rotation_about(across, foot.pitch_rad) * line);
         EXPECT_LT(glm::distance(turned, pose.toe_m - pose.heel_m), 1e-9);

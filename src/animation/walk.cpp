@@ -63,17 +63,19 @@ double step_length(const WalkState& state, Side side) noexcept {
   return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
 }
 
+double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
+  const Side swing = step_foot(state);
+  return state.started ? std::abs(state.frame.stride_m[swing]) / model.own_step_m[swing] : 0.0;
+}
+
 StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
                        double step_share) noexcept {
-  const Side swing = step_foot(state);
-  const double ahead =
-      state.started ? std::abs(state.frame.stride_m[swing]) / model.own_step_m[swing] : 0.0;
   StridePlan plan;
   plan.phase = state.backward ? model.share[0] + model.share[1] + model.share[2] - phase : phase;
   plan.change = smootherstep(step_share);
   plan.shown = std::clamp(state.amplitude.x, 0.0, 1.0);
   plan.at[0] = stride_at(model.strides, plan.phase, state.ratio_behind);
-  plan.at[1] = stride_at(model.strides, plan.phase, ahead);
+  plan.at[1] = stride_at(model.strides, plan.phase, ratio_ahead(model, state));
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
   return plan;
@@ -138,6 +140,7 @@ constexpr double kTurnSmoothing = 0.25;
 constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
+constexpr double kSettling = 0.35;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
@@ -150,7 +153,7 @@ double time_share(const WalkModel& model, const WalkState& state, Stage stage,
   const Side rolling = stage == Stage::roll ? swing : other(swing);
   const double roll = stage_share(model, Stage::roll, rolling);
   const double flight = stage_share(model, Stage::flight, other(rolling));
-  const double rolls = roll_time_share(roll, state.pace.x);
+  const double rolls = roll_time_share(roll, state.asked_ratio);
   return stage == Stage::roll ? rolls : roll + flight - rolls;
 }
 
@@ -204,6 +207,7 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
   begin_step(tick, other(first), state);
   state.stage_ticks = state.roll_ticks = 2 * state.roll_ticks;  // from rest: a longer first lean
   state.phase_rate = 0.0;
+  state.foot[other(first)].mode = FootMode::roll;
 }
 
 void begin_idle(WalkState& state) noexcept {
@@ -233,6 +237,12 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
   begin_roll(tick, state, landed);
 }
 
+// Step times, and how long double support takes, follow the parameters at the next step.
+void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state) noexcept {
+  for (int side : {0, 1}) state.time_s[side] = params.stride[side].time_s;
+  state.asked_ratio = 0.5 * (params.stride[0].length_m + params.stride[1].length_m) / model.source_step_m;
+}
+
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.
 void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
@@ -240,12 +250,12 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   const bool walking = walks_on(params, state) && !state.closing;
   const bool stood = state.stage == Stage::idle && state.frame.stage == Stage::idle;
   if (stood && params.walking && presence(state) < kStillPresence) {
-    for (int side : {0, 1}) state.time_s[side] = params.stride[side].time_s;
+    ask_for(params, tick.model, state);
     begin_walk(tick, state);
   }
+  if (walks_on(params, state)) ask_for(params, tick.model, state);
   for (int side : {0, 1}) {
     const StrideParams& stride = params.stride[side];
-    if (walks_on(params, state)) state.time_s[side] = stride.time_s;
     state.length_m[side].advance(walking ? stride.length_m : 0.0, kStepSmoothing * scale, dt);
     state.flight_height[side].advance(stride.flight_height, kStepSmoothing * scale, dt);
     for (int j = 0; j < kLegDofs; ++j) {
@@ -264,6 +274,21 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   const double mean = 0.5 * (state.length_m[0].x + state.length_m[1].x);
   state.pace.advance(mean * state.ground_share.x / tick.model.source_step_m, kStepSmoothing * scale,
                      dt);
+  state.settled_pace.advance(state.pace.x, kSettling * scale, dt);
+}
+
+// Moves a phase of the running stage on by one tick. At the end of a stage the phase runs at the
+// mean of both stages' rates, so the time-warp of the upper body has no kink.
+void advance_phase(const Tick& tick, const WalkState& state, double remaining, double& phase,
+                   double& rate) noexcept {
+  const Stage stage = state.stage;
+  const Side swing = state.swing;
+  const Stage next = stage == Stage::roll ? Stage::flight : Stage::roll;
+  const Side next_swing = stage == Stage::roll ? other(swing) : swing;
+  const double here = stage_share(tick.model, stage, swing) / state.stage_ticks;
+  const double there = stage_share(tick.model, next, next_swing) /
+                       stage_length(tick.model, state, next, next_swing, tick.dt_s);
+  approach(phase, rate, stage_end_phase(tick.model, state), 0.5 * (here + there), remaining, 1.0);
 }
 
 void advance_clock(const Tick& tick, WalkState& state) noexcept {
@@ -274,17 +299,7 @@ void advance_clock(const Tick& tick, WalkState& state) noexcept {
   const double remaining = state.stage_ticks - state.tick;
   ++state.tick;
   if (resting) return;
-  // At the end of a stage the phase runs at the mean of both stages' rates, so the time-warp of the
-  // upper body has no kink.
-  const Stage stage = state.stage;
-  const Side swing = state.swing;
-  const Stage next = stage == Stage::roll ? Stage::flight : Stage::roll;
-  const Side next_swing = stage == Stage::roll ? other(swing) : swing;
-  const double rate = stage_share(tick.model, stage, swing) / state.stage_ticks;
-  const double next_rate = stage_share(tick.model, next, next_swing) /
-                           stage_length(tick.model, state, next, next_swing, tick.dt_s);
-  approach(state.phase, state.phase_rate, stage_end_phase(tick.model, state),
-           0.5 * (rate + next_rate), remaining, 1.0);
+  advance_phase(tick, state, remaining, state.phase, state.phase_rate);
 }
 
 // Begins the next stage where this one is over.
@@ -307,6 +322,7 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 // --- Hips and landing place ----------------------------------------------------------------------
 
 // Lengths in metres at the reference leg.
+constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 constexpr double kReach = 0.9996;  // of the leg: a knee bent by 3 degrees
 constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015;
 // Front heel to hips over the step, in steps so long that the data's lean is given up.
@@ -404,22 +420,61 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
   if (!tick.flat) follow_ground(tick, state, swing);
 }
 
-// The hips follow the tables from the footprint of the foot that stands to the one of the next
-// landing. Where both steps are equal, both say the same.
+// The hips' place on the tables' path, without their oscillation: of the stride before, from the
+// footprint of the foot that stands; of this one, to the next landing.
+vec3 path_from_standing(const WalkState& state, const StridePlan& plan) noexcept {
+  const Side stand = other(step_foot(state));
+  const FootState& foot = state.foot[stand];
+  return foot.heel_anchor_m +
+         rotation_y(foot.lift_yaw_rad) * from_footprint(state, plan, stand, 0, vec3(0.0));
+}
+vec3 path_to_landing(const WalkState& state, const StridePlan& plan, const vec3& landing_m,
+                     double heading_rad) noexcept {
+  return landing_m +
+         rotation_y(heading_rad) * from_footprint(state, plan, step_foot(state), 1, vec3(0.0));
+}
+vec3 path_to_landing(const WalkState& state, const StridePlan& plan) noexcept {
+  return path_to_landing(state, plan, state.landing_m, state.landing_heading_rad);
+}
+
+// A step takes the hips from the path of the stride before it over to its own.
+void begin_path(const Tick& tick, WalkState& state) noexcept {
+  double phase = state.stage_phase, rate = state.phase_rate;
+  std::array<vec3, 3> off;
+  for (int k : {0, 1, 2}) {
+    const StridePlan plan = stride_plan(tick.model, state, phase, 0.0);
+    off[k] = path_from_standing(state, plan) - path_to_landing(state, plan);
+    advance_phase(tick, state, state.stage_ticks - k, phase, rate);
+  }
+  state.off_path_m = {off[0], 0.5 * (4.0 * off[1] - 3.0 * off[0] - off[2]),
+                      off[0] - 2.0 * off[1] + off[2]};
+}
+
+// The hips follow the tables' path to the next landing. What they differ by from it, from the step
+// before or because the landing has moved, fades until the strike.
 void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) noexcept {
   if (state.stage == Stage::idle || !state.started) {
     state.hips_velocity_m_s = vec3(0.0);
     return;
   }
-  const Side swing = step_foot(state), stand = other(swing);
-  const FootState& foot = state.foot[stand];
-  const vec3 path_m(0.0);
-  const vec3 from = foot.heel_anchor_m + rotation_y(foot.lift_yaw_rad) *
-                                             from_footprint(state, plan, stand, 0, path_m);
-  const vec3 to = state.landing_m + rotation_y(state.landing_heading_rad) *
-                                        from_footprint(state, plan, swing, 1, path_m);
   const vec3 before = state.hips_m;
-  state.hips_m = from * (1.0 - plan.change) + to * plan.change;
+  const vec3 path = path_to_landing(state, plan);
+  const double ratio = ratio_ahead(tick.model, state);
+  if (state.stage == Stage::roll && state.tick == 1) {
+    begin_path(tick, state);
+  } else if (state.landing_m != state.path_landing_m || ratio != state.path_ratio ||
+             state.landing_heading_rad != state.path_heading_rad) {
+    // The path has moved, and the hips have not.
+    StridePlan old = plan;
+    old.at[1] = stride_at(tick.model.strides, plan.phase, state.path_ratio);
+    state.off_path_m.x +=
+        path_to_landing(state, old, state.path_landing_m, state.path_heading_rad) - path;
+  }
+  state.path_landing_m = state.landing_m;
+  state.path_heading_rad = state.landing_heading_rad;
+  state.path_ratio = ratio;
+  state.off_path_m.advance(ticks_to_strike(state) + 1);
+  state.hips_m = path + state.off_path_m.x;
   state.hips_m.y = 0.0;
   state.hips_velocity_m_s = (state.hips_m - before) / tick.dt_s;
   if (!tick.flat) advance_base(tick, state, (ticks_to_strike(state) + 1) * tick.dt_s);
@@ -437,6 +492,9 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   double y = pelvis.position_m.y;
   const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
   y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
+  // Legs that are about to change their pace are bent a little, so that they have room.
+  const double change = state.pace.x - state.settled_pace.x;
+  y -= kChangeDrop_m * model.size * change * change / (change * change + kChange * kChange);
   double lower = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];

@@ -37,12 +37,22 @@ vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
 
 // The foot's pitch in the tables. Backwards it lands and leaves flat.
 double table_pitch(const WalkState& state, const StridePlan& plan, Side side) noexcept {
-  if (!state.started) return 0.0;
+  // The foot that stands when a walk begins has not landed: its toe is down.
+  const bool stands = state.foot[side].mode == FootMode::roll && state.last_step_ticks == 0;
+  if (!state.started || stands) return 0.0;
   const double pitch = plan.cell.foot[side].pitch_rad;
   if (!state.backward) return pitch;
   if (state.foot[side].mode != FootMode::flight) return 0.0;
   const double u = flight_progress(state);
   return pitch * smoothstep(0.0, 0.3, u) * (1.0 - smoothstep(0.55, 1.0, u));
+}
+
+// How much of the tables' twist and roll a foot on the ground shows: when standing it is flat.
+double on_its_edges(const WalkState& state) noexcept {
+  if (state.started) return 1.0;
+  return state.stage == Stage::idle
+             ? 0.0
+             : 1.0 - smootherstep(static_cast<double>(state.tick) / state.stage_ticks);
 }
 
 // In a turn the foot pivots on its planted toe as its heel rises.
@@ -129,9 +139,10 @@ double heel_rise(const WalkModel& model, const WalkState& state, Side side) noex
 }
 
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
-  const vec3 line = glm::normalize(leg.model.toe_m - leg.model.heel_m);
-  return pose.tilt * (rotation_y(pose.yaw_rad) * (rotation_about(leg.side, pose.pitch_rad) *
-                                                  rotation_about(line, pose.roll_rad)));
+  return pose.tilt *
+         (rotation_y(pose.yaw_rad) *
+          (rotation_about(leg.side, pose.pitch_rad) *
+           from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad)));
 }
 
 double heel_height(const FootState& foot) noexcept {
@@ -163,8 +174,8 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   pose.heel_m = flight_heel(model, state, plan, side, u, point.base_m);
   const double gone = 1.0 - h00(u);
   const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
-  pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u) +
-                 cell.yaw_rad;
+  pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u);
+  pose.twist_rad = cell.twist_rad;
   pose.roll_rad = cell.roll_rad;
   pose.tilt = foot.plane.tilt;
   if (pose.tilt != state.landing_plane.tilt) {
@@ -184,8 +195,10 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
   FootState& foot = state.foot[side];
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(foot.mode_ticks);
   const StrideFoot& cell = plan.cell.foot[side];
-  foot.pose.yaw_rad = foot.lift_yaw_rad + cell.yaw_rad;
-  foot.pose.roll_rad = cell.roll_rad;
+  foot.pose.yaw_rad = foot.lift_yaw_rad;
+  const double shows = on_its_edges(state);
+  foot.pose.twist_rad = shows * cell.twist_rad;
+  foot.pose.roll_rad = shows * cell.roll_rad;
   foot.pose.tilt = foot.plane.tilt;
   foot.base_m = foot.plane.place_m.y;
   if (foot.mode == FootMode::support) {
@@ -274,7 +287,7 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   FootPose flat = foot.pose;
   flat.heel_m = foot.heel_anchor_m;
   flat.yaw_rad = foot.lift_yaw_rad;
-  flat.roll_rad = 0.0;
+  flat.twist_rad = flat.roll_rad = 0.0;
   set_pitch(tick.model.leg[side], 0.0, flat, FootMode::roll);
   foot.toe_anchor_m = flat.toe_m;
 }

@@ -461,6 +461,18 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   return model;
 }
 
+GaitLimits gait_limits(const WalkModel& model) noexcept {
+  if (model.cycle.pace == Pace::adult) return gait_limits(model.leg_length_m);
+  return gait_limits(model.leg_length_m, {kOwnStick, model.own_step_m, model.body.own_step_s});
+}
+
+std::optional<double> own_stick(const GaitCycle& cycle) noexcept {
+  if (cycle.pace == Pace::own) return kOwnStick;
+  const double stick =
+      cycle.stride_m / cycle.duration_s / gait_limits(mean_leg_m(cycle)).max_speed_m_s;
+  return stick <= 1.0 ? std::optional(stick) : std::nullopt;
+}
+
 double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept {
   constexpr double kSpare_m = 0.02;  // at the reference leg
   const double tread_m = least_tread_m(terrain);

@@ -48,6 +48,8 @@ struct StridePlan {
   std::array<StridePlace, 2> at;  // the two strides at this phase
   StrideCell cell;                // both, mixed by `change` and `shown`
 };
+// The running step's length over the data's.
+double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept;
 // At a phase of the walk and a share of the running step's time.
 StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
                        double step_share) noexcept;

@@ -16,6 +16,12 @@ double finite_or_zero(double x) noexcept {
   return std::isfinite(x) ? std::clamp(x, -1.0, 1.0) : 0.0;
 }
 
+// The longest step time in a turn at this share of the greatest rate.
+double turning_step_time_s(double share, const GaitLimits& limits) noexcept {
+  constexpr double kStraight = 1e-3;  // below it any step is short enough
+  return limits.max_turning_step_time_s / std::max(share, kStraight);
+}
+
 // The longest step time. Steps of a straight walk may be slow; those of a turn in place and the
 // closing step of a stop are brisk. In between the share of the turn decides, so that it is
 // continuous over the whole stick but for neutral, which does not walk.
@@ -23,7 +29,8 @@ double step_time_cap_s(double forward, double sideways, const GaitLimits& limits
   const double turn = std::fabs(sideways);
   if (forward == 0.0) return limits.turn_step_time_s;
   const double share = turn / (turn + forward);
-  return mix(limits.max_step_time_s, limits.turn_step_time_s, smoothstep(0.0, 1.0, share));
+  return std::min(mix(limits.max_step_time_s, limits.turn_step_time_s, smoothstep(0.0, 1.0, share)),
+                  turning_step_time_s(turn, limits));
 }
 
 // The step before any stylization but fatigue. Speed is proportional to the forward deflection,
@@ -63,11 +70,10 @@ double deflection_of(double speed_m_s, double sideways, double fatigue,
   return std::max(-1.0, share / kBackwardShare - kBackwardSector * std::fabs(sideways));
 }
 
-// The longest step time in a turn of this rate: the foot of a slower step would land beside the
-// hips.
+// The longest step time that a speed may stretch a step to.
 double slowest_step_s(double turn_rate_rad_s, const GaitLimits& limits) noexcept {
-  const double sharp = std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s;
-  return limits.max_step_time_s / std::max(sharp, 1.0 / kSlowest);
+  const double share = std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s;
+  return std::min(kSlowest * limits.max_step_time_s, turning_step_time_s(share, limits));
 }
 
 // Stretches both step times until the walk has this speed, within the bounds of a step.
@@ -94,7 +100,20 @@ GaitLimits gait_limits(double leg_length_m) noexcept {
   limits.max_speed_m_s *= ratio / quicker;
   limits.max_step_m *= ratio;
   limits.max_step_time_s *= quicker;
+  limits.max_turning_step_time_s *= quicker;
   limits.turn_step_time_s *= quicker;
+  return limits;
+}
+
+GaitLimits gait_limits(double leg_length_m, const OwnGait& own) noexcept {
+  GaitLimits limits = gait_limits(leg_length_m);
+  const double step_m = 0.5 * (own.step_m[0] + own.step_m[1]), root = std::sqrt(own.stick);
+  const double adult_s = limits.max_step_m / (limits.max_speed_m_s * root);  // at that stick
+  limits.max_speed_m_s = step_m / own.step_time_s / own.stick;
+  limits.max_step_m = step_m / root;
+  limits.max_step_time_s *= own.step_time_s / adult_s;
+  for (const Side side : {kLeftSide, kRightSide})
+    limits.step_share[side] = own.step_m[side] / step_m;
   return limits;
 }
 
@@ -115,7 +134,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   params.turn_rate_rad_s = 0.0 - sideways * limits.max_turn_rate_rad_s;
   for (const Side side : {kLeftSide, kRightSide}) {
     const StrideFactors& factors = style.stride[side];
-    params.stride[side].length_m = step.length_m * factors.length;
+    params.stride[side].length_m = step.length_m * limits.step_share[side] * factors.length;
     params.stride[side].time_s = step.time_s / factors.speed;
     params.stride[side].flight_height = factors.flight_height;
   }

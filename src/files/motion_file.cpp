@@ -349,6 +349,13 @@ void read_leg(TomlTable& root, const char* key, LegNames& names) {
   fill("toe", names.toe);
 }
 
+Pace pace_of(TomlTable& root) {
+  const auto name = root.string("pace");
+  const auto pace = pace_named(name.value_or(name_of(Pace::own)));
+  if (!pace) root.reject("pace", fmt::format("{} is no pace: own or adult", in_quotes(*name)));
+  return pace.value_or(Pace::own);
+}
+
 }  // namespace
 
 double metres_per_unit(double leg_length_units) noexcept {
@@ -434,14 +441,20 @@ Result<Motion> load_motion_source(const std::string& path, const LoadOptions& gi
   if (!path.ends_with(".toml")) return load_motion(path, given);
   auto file = TomlFile::load(path);
   if (!file) return file.error();
-  if (is_keyframe_file(*file)) return keyframe_motion(*file);
   TomlTable root = file->root();
+  if (is_keyframe_file(*file)) {
+    const Pace pace = pace_of(root);
+    auto motion = keyframe_motion(*file);
+    if (motion) motion->pace = pace;
+    return motion;
+  }
   root.require("file");
   const fs::path folder = fs::path(path).parent_path();
   const std::string motion_file = root.string("file").value_or("");
   const double unit_m = root.number("metres_per_unit", 1e-6, 1e3).value_or(0.0);
   const double rate_hz = root.number("frame_rate_hz", 1.0, 1e4).value_or(0.0);
   const std::string skeleton = root.string("skeleton").value_or("");
+  const Pace pace = pace_of(root);
   LoadOptions options = given;
   if (given.metres_per_unit <= 0.0) options.metres_per_unit = unit_m;
   if (given.frame_rate_hz <= 0.0) options.frame_rate_hz = rate_hz;
@@ -449,7 +462,9 @@ Result<Motion> load_motion_source(const std::string& path, const LoadOptions& gi
   read_leg(root, "left_leg", options.legs[kLeftSide]);
   read_leg(root, "right_leg", options.legs[kRightSide]);
   if (auto problem = file->problem()) return *problem;
-  return load_motion((folder / motion_file).string(), options);
+  auto motion = load_motion((folder / motion_file).string(), options);
+  if (motion) motion->pace = pace;
+  return motion;
 }
 
 }  // namespace gaitpad

@@ -118,6 +118,7 @@ class TraceReader {
  private:
   Cause add_lettered(char letter, std::string_view text);
   Cause version(Words words);
+  Cause option(Words words);
   Cause device_index(Words words);
   Cause descriptor(Words words);
   Cause identity(Words words);
@@ -170,6 +171,8 @@ Cause TraceReader::add_lettered(char letter, std::string_view text) {
   switch (letter) {
     case 'V':
       return version(words);
+    case 'O':
+      return option(words);
     case 'D':
       return device_index(words);
     case 'R':
@@ -219,6 +222,18 @@ Cause TraceReader::version(Words words) {
     rate_hz = static_cast<int>(*rate);
   }
   trace_.rate_hz = rate_hz;
+  return std::nullopt;
+}
+
+// `O: pace own`. Options of later versions are skipped.
+Cause TraceReader::option(Words words) {
+  if (words.next() != "pace") return std::nullopt;
+  const std::string_view word = words.next();
+  const auto pace = pace_named(word);
+  if (!pace || !words.at_end()) return fmt::format("{} is no pace: own or adult", in_quotes(word));
+  if (trace_.pace || !trace_.events.empty())
+    return "an O: line for the pace stands before events, once";
+  trace_.pace = pace;
   return std::nullopt;
 }
 
@@ -630,6 +645,8 @@ void append_device(std::string& out, const TraceDevice& device) {
 
 void TraceWriter::begin(int rate_hz) { text_ += fmt::format("V: 1 rate_hz={}\n", rate_hz); }
 
+void TraceWriter::pace(Pace pace) { text_ += fmt::format("O: pace {}\n", name_of(pace)); }
+
 void TraceWriter::comment(std::string_view sentence) {
   text_ += "# " + one_line(sentence, sentence.size()) + "\n";
 }
@@ -681,6 +698,7 @@ std::string TraceWriter::take_text() { return std::exchange(text_, {}); }
 std::string trace_text(const Trace& trace) {
   TraceWriter writer;
   if (trace.rate_hz) writer.begin(*trace.rate_hz);
+  if (trace.pace) writer.pace(*trace.pace);
   const bool plain = trace.devices.size() == 1 && trace.devices.front().index == 0;
   for (const TraceDevice& device : trace.devices) {
     writer.device(device, plain ? TraceWriter::Index::left_out : TraceWriter::Index::written);
@@ -732,6 +750,11 @@ Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz) {
 int replay_rate_hz(const Trace& trace, std::optional<int> asked) {
   if (asked) return *asked;
   return trace.rate_hz.value_or(kDefaultRateHz);
+}
+
+std::optional<Pace> replay_pace(const Trace& trace, std::optional<Pace> asked) {
+  if (asked || trace.pace) return asked ? asked : trace.pace;
+  return trace.has_ticks ? std::optional(Pace::adult) : std::nullopt;
 }
 
 void copy_report(const Trace& trace, const TraceEvent& event, Report& report) noexcept {

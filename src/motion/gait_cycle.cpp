@@ -84,6 +84,7 @@ namespace {
 // --- Building a cycle from a motion --------------------------------------------------------------
 
 constexpr double kBackwards = 0.5;    // cosine between hips' front and travel
+constexpr double kLongestFlat = 0.35;  // of the stride after a strike: the toe is down by then
 constexpr double kMostFlight = 0.02;  // of the stride with both feet in the air: else it is a run
 constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits have half of it
 constexpr double kStill_legs_s = 0.6;     // 0.5 m/s of an adult's leg
@@ -135,6 +136,32 @@ void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
   }
   cycle.step_m[kLeftSide] = place_m[kLeftSide] - place_m[kRightSide];
   cycle.step_m[kRightSide] = cycle.stride_m - cycle.step_m[kLeftSide];
+}
+
+// In the data a toe often leaves before the other foot is flat; in Table I it leaves when the other
+// toe is down. So it waits until it has moved as far, in the data, as the other toe still has to
+// sink: both feet are then changed equally.
+void wait_for_other_toe(GaitCycle& cycle) {
+  constexpr double kLeavingCosts = 2.0, kLongestWait = 0.08, kStep = 1.0 / (2 * kCycleSamples);  // of the stride
+  const std::array<double, 2> off = cycle.toe_off;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const Side lands = other(side);
+    const auto toe_at = [&](Side foot, double phase) {
+      const CycleSample at = sample_at(cycle, phase);
+      vec3 toe = leg_pose(cycle.leg[foot], at.pelvis_m, at.pelvis, at.leg[foot].angles, 0.0).toe_m;
+      toe.z += cycle.stride_m * phase;
+      return toe;
+    };
+    double lowest_m = 1e9;
+    for (double after = 0.0; after < kLongestFlat; after += kStep)
+      lowest_m = std::min(lowest_m, toe_at(lands, cycle.strike[lands] + after).y);
+    const vec3 stood = toe_at(side, off[side]);
+    double wait = 0.0;
+    while (wait < kLongestWait && kLeavingCosts * glm::distance(toe_at(side, off[side] + wait), stood) <
+                                      toe_at(lands, off[side] + wait).y - lowest_m)
+      wait += kStep;
+    cycle.toe_off[side] = fraction(off[side] + wait);
+  }
 }
 
 // How much of the stride both feet are in the air: all of the foot higher than where it stands, and
@@ -219,6 +246,7 @@ Result<Build> built(const Motion& motion, const StrideWindow& window,
   Build b;
   b.cycle.name = motion.name;
   b.cycle.metres_per_unit = motion.metres_per_unit;
+  b.cycle.pace = motion.pace;
   b.cycle.duration_s = periodic.duration_s;
   b.cycle.stride_m = periodic.stride_m;
   b.cycle.frames = window.period;
@@ -259,6 +287,7 @@ Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
     cycle.strike[side] = fraction(events->strike[side] - shift);
     cycle.toe_off[side] = fraction(events->toe_off[side] - shift);
   }
+  wait_for_other_toe(cycle);
   measure_steps(second->captured, cycle);
   const std::string reason = why_no_walk(second->captured, cycle);
   if (!reason.empty()) return Error{reason};

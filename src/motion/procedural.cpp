@@ -323,6 +323,7 @@ double stride_length(const GaitCycle& cycle) {
 GaitCycle procedural_gait() {
   constexpr double kToeOff = 0.62;
   GaitCycle cycle = procedural_body();
+  cycle.pace = Pace::adult;
   fill_angles(cycle);
   fill_pelvis_path(cycle);
   fill_locals(cycle);
@@ -341,6 +342,7 @@ Motion procedural_motion() {
   const GaitCycle cycle = procedural_gait();
   Motion motion;
   motion.name = cycle.name;
+  motion.pace = cycle.pace;
   motion.skeleton = cycle.skeleton;
   motion.pelvis = cycle.pelvis;
   motion.legs = {cycle.leg[kLeftSide].joints, cycle.leg[kRightSide].joints};

@@ -356,7 +356,8 @@ double mean_ankle_height_m(const GaitCycle& cycle) {
 void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
   out.name = source.name;
   out.metres_per_unit = source.metres_per_unit;
-  out.duration_s = source.duration_s * std::sqrt(ratio);  // as a pendulum
+  out.duration_s = source.duration_s * std::sqrt(std::sqrt(ratio));  // as all step times scale
+  out.pace = source.pace;
   out.stride_m = source.stride_m * ratio;
   out.first_frame = source.first_frame;
   out.frames = source.frames;

@@ -256,7 +256,7 @@ std::vector<Claim> flight_claims(const PaperSource& source, IkMode mode) {
 
 std::vector<Claim> scaling_claims(const Study& study) {
   ClaimList list("3.2", IkMode::robust);
-  const GaitLimits own = gait_limits(study.model().leg_length_m);
+  const GaitLimits own = gait_limits(study.model());
   double peak = 0.0, stride = 0.0, walked_step = 0.0, ends = 0.0, outside = 0.0;
   for (const double ratio : kRatios) {
     const auto model = study.model_with_legs(ratio);
@@ -270,11 +270,10 @@ std::vector<Claim> scaling_claims(const Study& study) {
       }
       ends = std::max(ends, source.value.back() / greatest(source));
     }
-    stride = std::max(
-        stride,
-        std::fabs(gait_limits(model->leg_length_m).max_step_m / own.max_step_m / ratio - 1));
+    stride =
+        std::max(stride, std::fabs(gait_limits(*model).max_step_m / own.max_step_m / ratio - 1));
     const Walk walk = walk_on(*model, IkMode::robust);
-    const double step = walk.samples.back().frame.stride_m[kRightSide];
+    const double step = walk.samples.back().frame.stride_m[kRightSide] / own.step_share[kRightSide];
     walked_step = std::max(walked_step,
                            std::fabs(step / own.max_step_m / std::sqrt(kPaperStick) / ratio - 1.0));
   }

@@ -84,7 +84,7 @@ const Style& style_of(const PaperSource& source, const std::string& name) {
   return *found;
 }
 
-Result<PaperSource> load_paper_source(const std::string& motion_file,
+Result<PaperSource> load_paper_source(const std::string& motion_file, std::optional<Pace> pace,
                                       const std::vector<std::string>& config_folders) {
   PaperSource source;
   source.is_adult = motion_file.empty() || motion_file == "procedural";
@@ -99,6 +99,7 @@ Result<PaperSource> load_paper_source(const std::string& motion_file,
     if (!motion) return motion.error();
     auto cycle = gait_cycle(*motion);
     if (!cycle) return cycle.error();
+    cycle->pace = pace.value_or(cycle->pace);
     source.frames = std::move(*motion);
     source.cycle = std::move(*cycle);
   }
@@ -120,7 +121,7 @@ Result<PaperSource> load_paper_source(const std::string& motion_file,
 
 Walk walked(const WalkCase& what, const EachTick& each) {
   const WalkModel& model = *what.model;
-  const GaitLimits limits = gait_limits(model.leg_length_m);
+  const GaitLimits limits = gait_limits(model);
   Pose pose;
   JointFrames frames;
   WalkState state = standing(model, vec3(0.0), pose);

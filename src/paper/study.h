@@ -25,9 +25,10 @@ struct PaperSource {
   std::vector<Style> styles;
 };
 
-// `motion_file`: empty or `procedural` means the built-in motion. Styles come from the
+// `motion_file`: empty or `procedural` means the built-in motion, which has the adult's pace. No
+// `pace`: the motion's. Styles come from the
 // configuration folders; it is an error if one that a figure needs is missing.
-Result<PaperSource> load_paper_source(const std::string& motion_file,
+Result<PaperSource> load_paper_source(const std::string& motion_file, std::optional<Pace> pace,
                                       const std::vector<std::string>& config_folders);
 
 // By its name, one of those of styles_of_5a() and styles_of_5b().

@@ -21,6 +21,7 @@ namespace gaitpad {
 struct LiveSession::Prepared {
   SessionSpec spec;
   int rate_hz;
+  Pace pace;
   Simulation simulation;
   Cast cast;
   Script script;
@@ -31,6 +32,7 @@ struct LiveSession::Impl {
   explicit Impl(Prepared& prepared)
       : spec(std::move(prepared.spec)),
         rate_hz(prepared.rate_hz),
+        pace(prepared.pace),
         simulation(std::move(prepared.simulation)),
         cast(std::move(prepared.cast)),
         script(std::move(prepared.script)) {}
@@ -46,6 +48,7 @@ struct LiveSession::Impl {
 
   const SessionSpec spec;
   const int rate_hz;
+  const Pace pace;
   Simulation simulation;
   Cast cast;
   Script script;
@@ -68,7 +71,7 @@ struct LiveSession::Impl {
 std::optional<Error> LiveSession::Impl::open_recording() {
   if (spec.live.record.empty()) return std::nullopt;
   auto opened = Recording::start(
-      {spec.live.record, rate_hz, {}},
+      {spec.live.record, rate_hz, {}, pace},
       [p = pads.get()](std::uint16_t i) -> const TraceDevice& { return p->device(i); });
   if (!opened) return opened.error();
   recording = std::move(*opened);
@@ -165,8 +168,9 @@ Result<std::shared_ptr<LiveSession::Prepared>> LiveSession::prepare(const Sessio
   auto script = script_for(*simulation, spec.walk.script);
   if (!script) return script.error();
   Cast cast = cast_of(*simulation, *config);
-  return std::make_shared<Prepared>(Prepared{spec, rate_hz, std::move(*simulation), std::move(cast),
-                                             std::move(*script), std::move(*files)});
+  return std::make_shared<Prepared>(Prepared{spec, rate_hz, config->pace, std::move(*simulation),
+                                             std::move(cast), std::move(*script),
+                                             std::move(*files)});
 }
 
 Result<std::unique_ptr<LiveSession>> LiveSession::start(const std::shared_ptr<Prepared>& prepared) {

@@ -37,7 +37,9 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
   if (!files) return files.error();
   auto pads = pad_configs(*files, trace->devices, trace->path);
   if (!pads) return pads.error();
-  auto config = simulation_config(spec, rate);
+  SessionSpec walked = spec;
+  walked.walk.pace = replay_pace(*trace, spec.walk.pace);
+  auto config = simulation_config(walked, rate);
   if (!config) return config.error();
   config->pads = std::move(*pads);
   if (auto problem = settle_pads(*trace, config->pads)) return *problem;

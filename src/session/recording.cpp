@@ -35,9 +35,10 @@ std::string seconds(std::int64_t time_ns) {
 // --- the lines
 
 RecordingLines::RecordingLines(std::optional<int> rate_hz, RecordedDevices devices,
-                               const Limits& limits)
+                               const Limits& limits, std::optional<Pace> pace)
     : rate_hz_(rate_hz), devices_(std::move(devices)), limits_(limits) {
   if (rate_hz_) writer_.begin(*rate_hz_);
+  if (pace) writer_.pace(*pace);
   writer_.comment(rate_hz_ ? "recorded by gaitpad: a session" : "recorded by gaitpad: pads alone");
 }
 
@@ -197,7 +198,7 @@ Recording::Recording(const Options& options, RecordedDevices devices, OwnedFd fi
     : path_(options.path),
       part_(options.path + ".part"),
       file_(std::move(file)),
-      lines_(options.rate_hz, std::move(devices), options.limits),
+      lines_(options.rate_hz, std::move(devices), options.limits, options.pace),
       ring_(kRingItems) {}
 
 Recording::~Recording() { end_thread(); }

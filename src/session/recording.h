@@ -46,7 +46,8 @@ class RecordingLines {
     std::size_t events = kMaxTraceEvents - 8192;
   };
   // Without a rate there are no ticks, only times.
-  RecordingLines(std::optional<int> rate_hz, RecordedDevices devices, const Limits& limits);
+  RecordingLines(std::optional<int> rate_hz, RecordedDevices devices, const Limits& limits,
+                 std::optional<Pace> pace = std::nullopt);
 
   // `tick` began at `time_ns`, and the next ones follow at the rate times the pace; at pace 0 it
   // has not begun yet. For tick 0, and whenever the clock was set forward or the pace has changed.
@@ -97,6 +98,7 @@ class Recording {
     std::string path;
     std::optional<int> rate_hz;  // of the ticks; none: there is no loop, only times
     RecordingLines::Limits limits;
+    std::optional<Pace> pace{};  // of the session
   };
   // `devices` is called on the recording's thread, for devices of reports given to add(). Error:
   // the file cannot be opened, or another session writes to it.

@@ -67,9 +67,12 @@ Result<std::shared_ptr<const Terrain>> terrain_of(const SessionSpec& spec) {
   return std::shared_ptr<const Terrain>(std::make_shared<Terrain>(std::move(*terrain)));
 }
 
+bool is_built_in(const SessionSpec& spec) {
+  return spec.walk.motion.empty() || spec.walk.motion == "procedural";
+}
+
 Result<GaitCycle> cycle_of(const SessionSpec& spec) {
-  if (spec.walk.motion.empty() || spec.walk.motion == "procedural")
-    return cached_clean_strides(procedural_gait(), stride_cache_folder());
+  if (is_built_in(spec)) return cached_clean_strides(procedural_gait(), stride_cache_folder());
   const auto path = motion_path(spec.config_folders, spec.walk.motion);
   if (!path) return path.error();
   auto motion = load_motion_source(*path);
@@ -114,6 +117,11 @@ Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz)
   auto cycle = cycle_of(spec);
   if (!cycle) return cycle.error();
   config.cycle = std::move(*cycle);
+  if (is_built_in(spec)) {
+    config.pace = spec.walk.pace.value_or(Pace::own);
+  } else {
+    config.pace = config.cycle.pace = spec.walk.pace.value_or(config.cycle.pace);
+  }
   const std::size_t count = std::max(characters->size(), chosen_styles.size());
   for (std::size_t i = 0; i < count; ++i) {
     auto walker =

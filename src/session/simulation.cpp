@@ -167,7 +167,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
     const WalkerConfig& walker = config.walkers[i];
     Walker& w = s.walkers_.emplace_back();
     w.model = (*models)[i];
-    w.limits = gait_limits(w.model->leg_length_m);
+    w.limits = gait_limits(*w.model);
     w.style = walker.style;
     restart_style(w, s.styles());
     const double right_m = kSpacing_m * static_cast<double>(s.walkers_.size() - 1);

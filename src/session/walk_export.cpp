@@ -248,6 +248,7 @@ std::optional<Error> WalkExport::finish(const nlohmann::ordered_json& summary) {
 RunSummary run_summary(const Simulation& simulation, const Cast& cast) {
   RunSummary run;
   run.motion = cast.motion;
+  run.pace = cast.source->pace;
   run.rate_hz = cast.rate_hz;
   run.pose_hash = simulation.pose_hash();
   run.terrain = simulation.terrain()->name;
@@ -287,6 +288,7 @@ nlohmann::ordered_json summary_json(const RunSummary& run, std::size_t walker) {
   s["steps_right"] = w.steps[kRightSide];
   s["terrain"] = run.terrain;
   s["terrain_scale"] = run.terrain_scale;
+  s["pace"] = name_of(run.pace);
   s["style"] = w.style;
   s["fatigue"] = w.fatigue;
   s["ik_failures"] = w.ik_failures;

@@ -19,17 +19,18 @@ constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
 // Weights of squared residuals; an angle of the data (radians) has 1.
 constexpr double kDegreeCosts_m = 0.02;  // a pelvis this far off costs as much as one degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kSmooth = 200.0;       // of second differences between samples
-constexpr double kPelvisSmooth = 400.0;  // times that
-constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 2e3;  // per square metre, radian
+constexpr double kSmooth = 150.0;       // of second differences between samples
+constexpr double kPelvisSideways = 1000.0;
+constexpr double kPelvisSmooth = 500.0;  // times that
+constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 1e4;  // per square metre, radian
 constexpr double kLevel = 2e3;          // the sole is level and points ahead, per square metre
 constexpr double kFlat = 2e5;            // the heel of a flat foot, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftStrike = 1e5, kSoftToe = 1e4;
+constexpr double kSoftStrike = 2e5, kSoftToe = 1e4;
 constexpr int kLanding = 3, kToeLanding = 3;  // samples
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004;
-constexpr double kLeastKnee = 1.0 * kDegree;
+constexpr double kLeastKnee = 2.5 * kDegree, kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.15;        // radians or metres an iteration
 
@@ -299,7 +300,7 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
       for (int k = 0; k < kUnknowns; ++k) {
         const int at = i * kUnknowns + k;
         const double weight = k < kPelvis ? kPelvisWeight : 1.0;
-        const double smooth = kSmooth * weight * (k < kPelvis ? kPelvisSmooth : 1.0);
+        const double smooth = kSmooth * weight * (k == 1 ? kPelvisSmooth : k < kPelvis ? kPelvisSideways : 1.0);
         std::array<double, 3> change;
         std::array<Mirrored, 3> where;
         for (int d : {0, 1, 2}) {
@@ -408,11 +409,12 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
             }
           }
         }
-        const double knee = x[i].leg[side][kKneeX];
-        if (knee < kLeastKnee) {
+        const double bend = kLeastKnee - x[i].leg[side][kKneeX];
+        if (bend > -kSoftKnee) {
           const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
-          s.at(at, at) += kKnee;
-          s.gradient[at] += kKnee * (knee - kLeastKnee);
+          const double slope = std::min(1.0, 0.5 * (bend + kSoftKnee) / kSoftKnee);
+          s.at(at, at) += kKnee * slope * slope;
+          s.gradient[at] -= kKnee * slope * soft_positive(bend, kSoftKnee);
         }
       }
     }

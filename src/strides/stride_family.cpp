@@ -41,6 +41,7 @@ struct Builder {
     const double left_off = data.toe_off[0], left = data.strike[0], right_off = data.toe_off[1];
     phase_share = {left_off, left - left_off, right_off - left, 1.0 - right_off};
     measure_footprints();
+    keep_steps();
     measure_standing();
     for (int i = 0; i < kCycleSamples; ++i) {
       const CycleSample& sample = data.samples[i];
@@ -80,6 +81,14 @@ struct Builder {
       }
       own_footprint_m[side].y = 0.0;
     }
+  }
+
+  // The cycle's own steps, between these places.
+  void keep_steps() {
+    const double step_m = own_footprint_m[kLeftSide].z - own_footprint_m[kRightSide].z;
+    const double apart_m = 0.5 * (cycle.step_m[kLeftSide] - step_m);
+    own_footprint_m[kLeftSide].z += apart_m;
+    own_footprint_m[kRightSide].z -= apart_m;
   }
 
   // The standing knee is as straight as the data's in stance.
@@ -197,18 +206,16 @@ struct Builder {
     return table;
   }
 
-  // foot = Ry(yaw) R(across, pitch) R(along, roll), `across` and `along` as in LegBuild.
   static void set_rotation(const LegModel& leg, const quat& rotation, StrideFoot& foot) {
     const vec3 line = leg.toe_m - leg.heel_m;
     const vec3 ahead = glm::normalize(vec3(line.x, 0.0, line.z)), across = glm::cross(kUp, ahead);
     const vec3 now = rotation * line;
-    foot.yaw_rad = wrapped(heading_of(now) - heading_of(ahead));
-    const double rest = gaitpad::atan2(line.y, horizontal_length(line));
-    foot.pitch_rad = rest - gaitpad::atan2(now.y, horizontal_length(now));
-    const quat level = rotation_y(foot.yaw_rad) * rotation_about(across, foot.pitch_rad);
-    const vec3 beside = glm::conjugate(level) * (rotation * across);
-    const vec3 up = glm::cross(glm::normalize(line), across);
-    foot.roll_rad = gaitpad::atan2(glm::dot(beside, up), glm::dot(beside, across));
+    foot.pitch_rad = gaitpad::atan2(line.y, glm::dot(line, ahead)) -
+                     gaitpad::atan2(now.y, glm::dot(now, ahead));
+    const vec3 rest =
+        rotation_vector(glm::conjugate(rotation_about(across, foot.pitch_rad)) * rotation);
+    foot.twist_rad = rest.y;
+    foot.roll_rad = glm::dot(rest, ahead);
   }
 
   // False where there is no solution.

@@ -50,7 +50,7 @@ class MadeWalker {
   void walk(double x, double y, int ticks, const StyleValues& style = {}) {
     Stick stick;
     stick.left = vec2(x, y);
-    walk(gait_params(stick, style, gait_limits(model_.leg_length_m)), ticks);
+    walk(gait_params(stick, style, gait_limits(model_)), ticks);
   }
   void walk(const GaitParams& params, int ticks) {
     for (int i = 0; i < ticks; ++i) {

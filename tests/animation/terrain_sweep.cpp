@@ -54,7 +54,7 @@ Result<GaitCycle> cycle_of(const std::string& motion) {
 TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
   const double far_m = length_m(*model.terrain) + 1.0;
   const bool backward = stick_y < 0.0;
-  const GaitLimits limits = gait_limits(model.leg_length_m);
+  const GaitLimits limits = gait_limits(model);
   Stick stick;
   stick.left = vec2(0.0, stick_y);
   const GaitParams go = gait_params(stick, style, limits),
@@ -75,7 +75,7 @@ TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
 // The first issue's bound on second differences: 1 degree, 5 for captured walks at a high speed.
 double most_jump_deg(const WalkModel& model, const std::string& motion, double stick_y) {
   const double size = model.leg_length_m / kReferenceLeg_m;
-  const double speed = std::abs(stick_y) * gait_limits(model.leg_length_m).max_speed_m_s;
+  const double speed = std::abs(stick_y) * gait_limits(model).max_speed_m_s;
   return motion != "procedural" && speed > kPlainSpeed_m_s * std::sqrt(size) ? 5.0 : 1.0;
 }
 

@@ -48,6 +48,33 @@ TEST(WalkModel, StepsAndFlightsScaleWithTheLeg) {
               1.44 * plain.leg[kLeftSide].flight.height_m.at(0.5), 1e-12);
 }
 
+TEST(WalkModel, ItsOwnPaceIsTheDatasOnLegsOfAnyLength) {
+  GaitCycle cycle = procedural_gait();
+  cycle.pace = Pace::own;
+  EXPECT_EQ(own_stick(cycle), 0.8);
+  Stick stick;
+  stick.left = vec2(0.0, 0.8);
+  for (const double legs : {0.6, 1.0, 1.6}) {
+    Character character;
+    character.leg_ratio = legs;
+    const WalkModel model = model_of(cycle, character);
+    const GaitParams p = gait_params(stick, StyleValues{}, gait_limits(model));
+    for (const Side side : {kLeftSide, kRightSide}) {
+      EXPECT_NEAR(p.stride[side].length_m, legs * cycle.step_m[side], 1e-14);
+      EXPECT_NEAR(p.stride[side].time_s, 0.5 * std::pow(legs, 0.25) * cycle.duration_s, 1e-14);
+    }
+  }
+}
+
+TEST(WalkModel, TheAdultsPaceHasTheDatasSpeedAtTheStickThatIsTold) {
+  GaitCycle cycle = procedural_gait();
+  const double stick = own_stick(cycle).value();
+  EXPECT_NEAR(stick, cycle.stride_m / cycle.duration_s / 1.5, 1e-15);
+  EXPECT_EQ(gait_limits(adult()).max_speed_m_s, 1.5);
+  cycle.duration_s *= 0.5;
+  EXPECT_EQ(own_stick(cycle), std::nullopt) << "2.5 m/s";
+}
+
 TEST(WalkModel, LeavesTheSourcesCycleOfEventsAlone) {
   const WalkModel plain = model_of(1.0), small = model_of(0.6);
   EXPECT_EQ(plain.share, small.share);

@@ -150,6 +150,106 @@ TEST(GaitLimits, ScaleWithTheLegs) {
               1e-15);
 }
 
+// --- The own pace of a walk: a slow one with a short left step.
+
+constexpr OwnGait kSlowLimp = {.stick = 0.8, .step_m = {0.31, 0.47}, .step_time_s = 1.05};
+const GaitLimits kOwn = gait_limits(0.9, kSlowLimp);
+
+TEST(OwnPace, ItsStickGivesExactlyTheWalksStepsAndTime) {
+  const GaitParams p = at(0.0, 0.8, {}, kOwn);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    EXPECT_NEAR(p.stride[side].length_m, kSlowLimp.step_m[side], 1e-15);
+    EXPECT_NEAR(p.stride[side].time_s, 1.05, 1e-14);
+  }
+  EXPECT_NEAR(value_of(GaitKey::speed_m_s, p), 0.78 / 2.1, 1e-15);
+}
+
+TEST(OwnPace, FullStickIsAQuarterFaster) {
+  const GaitParams p = at(0.0, 1.0, {}, kOwn);
+  EXPECT_NEAR(value_of(GaitKey::speed_m_s, p), 1.25 * 0.78 / 2.1, 1e-15);
+  EXPECT_NEAR(kOwn.max_speed_m_s, 1.25 * 0.78 / 2.1, 1e-15);
+  for (const Side side : {kLeftSide, kRightSide})
+    EXPECT_NEAR(p.stride[side].length_m, std::sqrt(1.25) * kSlowLimp.step_m[side], 1e-15);
+}
+
+// Step length over cadence stays the walk's own: 0.39 m at 60 / 1.05 steps a minute.
+TEST(OwnPace, SpeedGoesWithTheStickAndTheStepWithItsRoot) {
+  for (double y = 0.25; y <= 1.0; y += 0.05) {
+    const GaitParams p = at(0.0, y, {}, kOwn);
+    EXPECT_NEAR(value_of(GaitKey::speed_m_s, p), y / 0.8 * 0.78 / 2.1, 1e-14);
+    for (const Side side : {kLeftSide, kRightSide}) {
+      EXPECT_NEAR(p.stride[side].length_m, std::sqrt(y / 0.8) * kSlowLimp.step_m[side], 1e-14);
+      EXPECT_EQ(p.stride[side].time_s, p.stride[kLeftSide].time_s);
+    }
+    const double mean_m = 0.5 * (p.stride[0].length_m + p.stride[1].length_m);
+    EXPECT_NEAR(mean_m * p.stride[0].time_s, 0.39 * 1.05, 1e-14);
+  }
+}
+
+// At the stick at which the adult's steps would grow longer than their limit, so would these.
+TEST(OwnPace, TheLongestStepIsAsMuchLongerAsTheOwnOne) {
+  const GaitLimits adult = gait_limits(0.9);
+  const double adult_s = at(0.0, 0.8, {}, adult).stride[kLeftSide].time_s;
+  EXPECT_NEAR(kOwn.max_step_time_s / 1.05, adult.max_step_time_s / adult_s, 1e-14);
+  EXPECT_EQ(at(0.0, 0.02, {}, kOwn).stride[kLeftSide].time_s, kOwn.max_step_time_s);
+}
+
+TEST(OwnPace, TurnsAsTheAdultDoes) {
+  const GaitLimits adult = gait_limits(0.9);
+  const GaitParams turn = at(-1.0, 0.0, {}, kOwn);
+  EXPECT_EQ(turn.turn_rate_rad_s, kMaxTurnRate_rad_s);
+  EXPECT_EQ(turn.stride[kLeftSide].time_s, adult.turn_step_time_s);
+  EXPECT_EQ(turn.stride[kLeftSide].length_m, 0.0);
+  for (double y = 0.01; y <= 1.0; y += 0.01) {
+    for (double x = 0.1; x <= 1.0; x += 0.1) {
+      const double step_s = at(x, y, {}, kOwn).stride[kLeftSide].time_s;
+      EXPECT_LE(step_s * x, adult.max_turning_step_time_s + 1e-12);
+    }
+  }
+}
+
+TEST(OwnPace, BackwardsFatigueAndStylesAreSharesOfIt) {
+  const double speed_m_s = value_of(GaitKey::speed_m_s, at(0.0, 1.0, {}, kOwn));
+  const GaitParams back = at(0.0, -1.0, {}, kOwn);
+  EXPECT_NEAR(value_of(GaitKey::speed_m_s, back), -kBackwardShare * speed_m_s, 1e-14);
+  Style style;
+  style.fatigue = 1.0;
+  EXPECT_NEAR(value_of(GaitKey::speed_m_s, at(0.0, 1.0, style, kOwn)),
+              kFullFatigueLeaves * speed_m_s, 1e-14);
+  style.fatigue = 0.0;
+  style.stride[kLeftSide] = {.length = 0.5, .speed = 1.25};
+  const StrideParams left = at(0.0, 0.8, style, kOwn).stride[kLeftSide];
+  EXPECT_NEAR(left.length_m, 0.5 * 0.31, 1e-15);
+  EXPECT_NEAR(left.time_s, 1.05 / 1.25, 1e-14);
+}
+
+// What the adult's pace was before walks had their own: these numbers are of that program.
+TEST(OwnPace, TheAdultsIsUnchanged) {
+  for (const Side side : {kLeftSide, kRightSide}) EXPECT_EQ(kAdult.step_share[side], 1.0);
+  EXPECT_EQ(kAdult.max_turning_step_time_s, kMaxStepTime_s);
+  std::uint64_t bits = 0xcbf29ce484222325u;
+  const auto add = [&bits](double x) {
+    bits = (bits ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3u;
+  };
+  for (const double leg_m : {0.5, kReferenceLeg_m, 1.3}) {
+    const GaitLimits limits = gait_limits(leg_m);
+    for (int x = -8; x <= 8; ++x) {
+      for (int y = -8; y <= 8; ++y) {
+        Stick stick;
+        stick.left = vec2(x / 8.0, y / 8.0);
+        GaitOverrides overrides;
+        for (const bool is_set : {false, true}) {
+          overrides.value[0] = 0.1 * (x + y);
+          overrides.is_set[0] = is_set;
+          const GaitParams p = gait_params(stick, {}, overrides, limits);
+          for (const StrideParams& step : p.stride) add(step.length_m), add(step.time_s);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(bits, 0x5e2e50110de68c05u);
+}
+
 TEST(Fatigue, LowersMaximumSpeedAndStrideLinearly) {
   const StrideParams fresh = at(0.0, 1.0).stride[kLeftSide];
   for (double f = 0.0; f <= 1.0; f += 0.125) {

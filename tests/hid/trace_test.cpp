@@ -203,6 +203,20 @@ TEST(Trace, LenientSkipsDamagedLinesAndCountsThem) {
   EXPECT_EQ(t.devices.size(), 1u) << "the second device has no descriptor";
 }
 
+TEST(Trace, TheOLineIsThePaceOfTheSession) {
+  const Trace own = parsed("O: pace own\n" + kHeader + "T: 0\nE: 000000.000000 1 00\n");
+  EXPECT_EQ(own.pace, Pace::own);
+  EXPECT_EQ(replay_pace(own, {}), Pace::own);
+  EXPECT_EQ(replay_pace(own, Pace::adult), Pace::adult) << "what is asked goes first";
+  EXPECT_EQ(replay_pace(parsed(kHeader + "T: 0\nE: 000000.000000 1 00\n"), {}), Pace::adult)
+      << "a session from before there was a choice";
+  EXPECT_EQ(replay_pace(parsed("V: 1 rate_hz=240\n" + kHeader), {}), std::nullopt);
+  EXPECT_EQ(parsed("O: weather rain\n" + kHeader).pace, std::nullopt);
+  EXPECT_EQ(cause("O: pace fast\n"), "t.hid:1: \"fast\" is no pace: own or adult");
+  EXPECT_EQ(cause("O: pace own\nO: pace own\n"),
+            "t.hid:2: an O: line for the pace stands before events, once");
+}
+
 TEST(Trace, NothingOfADamagedLineCounts) {
   const Trace t = parsed("V: 1 rate_hz=500 rate_hz=x\n" + kHeader, Damage::skip);
   EXPECT_EQ(t.skipped_lines, 1);
@@ -220,7 +234,7 @@ TEST(Trace, ReportsBelowADamagedDeviceIndexBelongToNoDevice) {
 
 TEST(Trace, TheWriterGivesBackWhatTheReaderTook) {
   const std::string text =
-      "V: 1 rate_hz=240\n"
+      "V: 1 rate_hz=240\nO: pace adult\n"
       "D: 0\nR: 2 c0 c0\nN:  spaces at both ends \nP: usb-1/input0\nI: 5 054c 0ce6\nU: aa:bb\n"
       "B: hidraw 0111\nM: 0300,Pad,a:b0,leftx:a0,\nK: [left]\nK: \nK: centre_x = 0.5\n"
       "D: 3\nR: 1 c0\nN: \nI: 3 0001 0002\n"

@@ -64,7 +64,7 @@ TEST(CycleOnSkeleton, HipsAndHeelsRunAsManyTimesLargerAsTheLegs) {
   ASSERT_TRUE(large);
   EXPECT_NEAR(mean_leg_m(*large), 1.7 * mean_leg_m(source), 1e-12);
   EXPECT_NEAR(large->stride_m, 1.7 * source.stride_m, 1e-12);
-  EXPECT_NEAR(large->duration_s, std::sqrt(1.7) * source.duration_s, 1e-12);
+  EXPECT_NEAR(large->duration_s, std::sqrt(std::sqrt(1.7)) * source.duration_s, 1e-12);
   for (int i = 0; i < kCycleSamples; i += 8) {
     const CycleSample &to = large->samples[i], &from = source.samples[i];
     EXPECT_LT(glm::distance(to.pelvis_m, 1.7 * (from.pelvis_m - flesh(source))), 1e-9);

@@ -11,8 +11,8 @@
 namespace gaitpad::test {
 
 inline Study& study() {
-  static Study made =
-      value_of(Study::of(value_of(load_paper_source("", {kSourceFolder + "/config"}))));
+  static Study made = value_of(
+      Study::of(value_of(load_paper_source("", std::nullopt, {kSourceFolder + "/config"}))));
   return made;
 }
 

@@ -347,18 +347,21 @@ def judge_row(row, w, walk, gait, is_built_in):
     checks += judge.stage_checks(w) + judge.step_checks(w) + judge.speed_checks(w) + judge.repeat_check(w)
     checks += [c for c in judge.file_checks(w) if c.name.startswith(("FK", "ik_fail", "Euler", "steps"))]
     if gait:
-        checks += pace_checks(row, w, walk, gait)
+        checks += pace_checks(row, w, walk, gait, is_built_in)
     return checks
 
 
-def pace_checks(row, w, walk, gait):
-    """The walk against the gait that the program told, and that against the file's frames."""
+def pace_checks(row, w, walk, gait, is_built_in):
+    """The walk against the gait that the program told, and that against the file's frames. The built-in motion has an
+    adult's pace: its stick gives its speed, with an adult's steps."""
     steps = [np.mean([m for k, m in judge.realised_steps(w, side) if w.steady[k]]) for side in (0, 1)]
     pairs = [("stride's time", walk.seconds, gait["stride_s"], OWN_PACE),
              ("left step", steps[0], gait["step_left_m"], OWN_PACE), ("right step", steps[1], gait["step_right_m"], OWN_PACE),
              ("speed", sum(steps) / walk.seconds, gait["speed_m_s"], OWN_PACE),
              ("told stride's time", gait["stride_s"], row["stride_s"], TOLD_PACE),
              ("told speed", gait["speed_m_s"], row["speed_m_s"], TOLD_PACE)]
+    if is_built_in:
+        pairs = pairs[3:]
     return [judge.Check(f"{name} off the clip's", 100 * abs(ours / own - 1), 100 * share, unit="%",
                         note=f"{own:.4g} -> {ours:.4g}") for name, ours, own, share in pairs]
 

@@ -86,6 +86,11 @@ TEST(RecordingLines, AreWhatTheTraceFormatSays) {
                 "Q: 000000.020000 7\n");
 }
 
+TEST(RecordingLines, SayThePaceBehindTheRate) {
+  RecordingLines lines(240, made_devices, {}, Pace::own);
+  EXPECT_TRUE(lines.take_text().starts_with("V: 1 rate_hz=240\nO: pace own\n#"));
+}
+
 TEST(RecordingLines, ReadBackAsTheTicksThatUsedThem) {
   Lines l(240);
   l.lines.clock(0, kStart_ns);

@@ -58,7 +58,7 @@ void walk(const WalkModel& model, double turn, Look look) {
   look(pose);
   Stick stick;
   stick.left = {turn, 0.9};
-  const GaitParams params = gait_params(stick, StyleValues{}, gait_limits(model.leg_length_m));
+  const GaitParams params = gait_params(stick, StyleValues{}, gait_limits(model));
   for (int tick = 0; tick < 480; ++tick) {
     advance(model, params, IkMode::robust, 1.0 / 240.0, state, pose);
     if (tick % 10 == 0) look(pose);

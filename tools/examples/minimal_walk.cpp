@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
 
   const gaitpad::Stick stick = {.left = gaitpad::vec2(0.0, std::atof(argv[2]))};
   const gaitpad::StyleValues style;
-  const gaitpad::GaitLimits limits = gaitpad::gait_limits(model->leg_length_m);
+  const gaitpad::GaitLimits limits = gaitpad::gait_limits(*model);
 
   // A tick neither fails nor allocates. `state` and `pose` are plain data of the caller's.
   gaitpad::Pose pose;

@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
   SDL_Renderer* renderer = SDL_CreateRenderer(window, -1, SDL_RENDERER_SOFTWARE);
   SDL_GameController* pad = SDL_NumJoysticks() > 0 ? SDL_GameControllerOpen(0) : nullptr;
 
-  const gaitpad::GaitLimits limits = gaitpad::gait_limits(model->leg_length_m);
+  const gaitpad::GaitLimits limits = gaitpad::gait_limits(*model);
   const gaitpad::StyleValues style;
   gaitpad::Pose pose;
   gaitpad::WalkState state = gaitpad::standing(*model, gaitpad::vec3(0.0), pose);

@@ -20,6 +20,7 @@ namespace {
 
 struct FiguresArguments {
   std::string folder, motion;
+  std::optional<Pace> pace;
   bool as_json = false;
 };
 
@@ -38,7 +39,7 @@ void print_summary(const std::vector<Claim>& claims, const std::string& folder) 
 }
 
 int run(const FiguresArguments& arguments) {
-  auto source = load_paper_source(arguments.motion, config_folders());
+  auto source = load_paper_source(arguments.motion, arguments.pace, config_folders());
   if (!source) return fail("figures", source.error().message);
   auto study = Study::of(std::move(*source));
   if (!study) return fail("figures", study.error().message);
@@ -70,6 +71,7 @@ void add_figures(CLI::App& app, int& status) {
       ->required();
   command->add_option("--motion", arguments->motion,
                       "BVH file or .toml (default: the procedural walk)");
+  add_pace_option(*command, arguments->pace);
   command->add_flag("--json", arguments->as_json, "print claims.json instead of the table");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

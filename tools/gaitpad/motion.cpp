@@ -11,6 +11,7 @@
 #include "gaitpad/flight.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
+#include "gaitpad/walk_model.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
@@ -65,6 +66,7 @@ ordered_json paper_json(const std::optional<Swing>& swing) {
 // The stride that is walked.
 ordered_json gait_json(const Result<GaitCycle>& cycle) {
   if (!cycle) return nullptr;
+  const auto stick = own_stick(*cycle);
   return {{"first_frame", cycle->first_frame},
           {"frames", cycle->frames},
           {"stride_s", cycle->duration_s},
@@ -72,7 +74,7 @@ ordered_json gait_json(const Result<GaitCycle>& cycle) {
           {"step_right_m", cycle->step_m[kRightSide]},
           {"speed_m_s", cycle->stride_m / cycle->duration_s},
           {"turn_rad", cycle->turn_rad},
-          {"own_stick", kOwnStick}};
+          {"own_stick", stick ? ordered_json(*stick) : ordered_json(nullptr)}};
 }
 
 ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
@@ -96,14 +98,21 @@ std::string flight_text(const std::optional<Swing>& swing) {
   return fmt::format("lift {}, peak {}, land {}", swing->lift, swing->peak, swing->land);
 }
 
+std::string stick_text(const GaitCycle& cycle) {
+  const auto stick = own_stick(cycle);
+  if (!stick) return "an adult's pace is slower at full stick";
+  if (cycle.pace == Pace::own) return fmt::format("stick {} walks so", *stick);
+  return fmt::format("stick {:.3f} walks as fast, with an adult's steps", *stick);
+}
+
 std::string gait_text(const Result<GaitCycle>& cycle) {
   if (!cycle) return "none, " + cycle.error().message;
   return fmt::format(
       "{:.1f} frames from frame {:.1f} on: {:.2f} s, steps {:.2f} m left and {:.2f} m right, "
-      "{:.2f} m/s, turn {:.1f} degrees; stick {} walks so",
+      "{:.2f} m/s, turn {:.1f} degrees; {}",
       cycle->frames, cycle->first_frame, cycle->duration_s, cycle->step_m[kLeftSide],
       cycle->step_m[kRightSide], cycle->stride_m / cycle->duration_s, cycle->turn_rad / kDegree,
-      kOwnStick);
+      stick_text(*cycle));
 }
 
 void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {

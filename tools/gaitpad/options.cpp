@@ -82,11 +82,21 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
   print_remarks(command_, remarks, &line);
 }
 
+void add_pace_option(CLI::App& command, std::optional<Pace>& pace) {
+  command
+      .add_option_function<std::string>(
+          "--pace", [&pace](const std::string& name) { pace = pace_named(name); },
+          "whose speed and step the stick means: the motion's own (at 0.8 forward) or an adult's "
+          "(default: what the recording or the motion's description says, else own)")
+      ->check(CLI::IsMember(kPaceNames));
+}
+
 void add_session_options(CLI::App& command, SessionSpec& spec, const std::string& default_rate) {
   SessionSpec::Walk& walk = spec.walk;
   spec.config_folders = config_folders();
   command.add_option("--motion", walk.motion,
                      "motion, FILE|NAME (.bvh, .amc, .toml); without it the built-in walk");
+  add_pace_option(command, walk.pace);
   command.add_option("--character", walk.characters, "a build, FILE|NAME; once for each character")
       ->allow_extra_args(false)  // the word after the next may be PAD
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -2,6 +2,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,8 @@ class MissingPad {
 
 // --- a session, for play and replay
 
+// --pace own|adult: stands wherever --motion does.
+void add_pace_option(CLI::App& command, std::optional<Pace>& pace);
 // Sets the folders of configuration, too. `default_rate` is for the help.
 void add_session_options(CLI::App& command, SessionSpec& spec, const std::string& default_rate);
 

@@ -2,7 +2,7 @@
 // functions are stateless, allocate nothing and may be called in every tick; the walk smooths what
 // changes between ticks.
 //
-//   const gaitpad::GaitLimits limits = gaitpad::gait_limits(model.leg_length_m);
+//   const gaitpad::GaitLimits limits = gaitpad::gait_limits(model);  // of gaitpad/walk_model.h
 //   const gaitpad::GaitParams params = gaitpad::gait_params(stick, style, limits);
 #pragma once
 #include <array>
@@ -36,8 +36,12 @@ inline constexpr double kFullFatigueLeaves = 0.4;  // of maximum speed and of ma
 // What a character does at full deflection.
 struct GaitLimits {
   double max_speed_m_s = kMaxSpeed_m_s;
-  double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);
-  double max_step_time_s = kMaxStepTime_s;
+  double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);  // mean of both feet
+  std::array<double, 2> step_share{1.0, 1.0};  // by Side: of a foot's step over the mean of both
+  double max_step_time_s = kMaxStepTime_s;     // straight ahead
+  // At the greatest turn rate, less of it in proportion more: the foot of a slower step would land
+  // beside the hips.
+  double max_turning_step_time_s = kMaxStepTime_s;
   double turn_step_time_s = kTurnInPlaceStepTime_s;  // of a turn in place and of a closing step
   double max_turn_rate_rad_s = kMaxTurnRate_rad_s;   // equal for all, so walkers stay side by side
 };
@@ -46,6 +50,18 @@ struct GaitLimits {
 // paper's proportion and equal Froude numbers, at which the legs of a child would move too quickly
 // to be tracked smoothly at 240 Hz.
 GaitLimits gait_limits(double leg_length_m) noexcept;
+
+// A walk's own gait, on legs of the character's length.
+struct OwnGait {
+  double stick = 1.0;                      // the forward deflection that gives it
+  std::array<double, 2> step_m{1.0, 1.0};  // by Side
+  double step_time_s = 0.5;                // half a cycle
+};
+// The limits of a walk with this gait: at `stick` the parameters are exactly those, at others speed
+// goes with the stick and the step with its root, so the walk's own walk ratio stays constant. A
+// slow walk is slow at every stick: its longest step lasts as many times longer than the adult's as
+// its own step. How fast it turns, and its steps while it turns, are the adult's.
+GaitLimits gait_limits(double leg_length_m, const OwnGait& own) noexcept;
 
 // The share of maximum speed and maximum stride that fatigue (0 .. 1) leaves.
 double vigour(double fatigue) noexcept;

@@ -74,6 +74,26 @@ struct Fade {
   }
 };
 
+// A difference that fades away smoothly: its value, rate and acceleration, per tick. advance() moves
+// it on by one tick along the quintic that ends in 0, at rest, after `remaining` ticks.
+template <class T>
+struct SmoothFade {
+  T x{}, v{}, a{};
+  void advance(double remaining) noexcept {
+    if (remaining <= 1.0) {
+      *this = {};
+      return;
+    }
+    const double n = remaining, s = 1.0 / n;
+    const T p = v * n, q = a * (0.5 * n * n);  // slope and half the curvature over the whole way
+    const T c3 = -10.0 * x - 6.0 * p - 3.0 * q, c4 = 15.0 * x + 8.0 * p + 3.0 * q,
+            c5 = -6.0 * x - 3.0 * p - q;
+    x = x + (p + (q + (c3 + (c4 + c5 * s) * s) * s) * s) * s;
+    v = (p + (2.0 * q + (3.0 * c3 + (4.0 * c4 + 5.0 * c5 * s) * s) * s) * s) * s;
+    a = (2.0 * q + (6.0 * c3 + (12.0 * c4 + 20.0 * c5 * s) * s) * s) * (s * s);
+  }
+};
+
 // Critically damped second-order filter of a value x and its rate v. Implicit Euler: stable for
 // every dt.
 template <class T>

@@ -86,6 +86,8 @@ struct GaitCycle {
   std::vector<quat> local;
   std::vector<quat> standing_local;  // joints: local rotations of the standing pose
 
+  Pace pace = Pace::own;  // of the motion
+
   // What a walk reads (gaitpad/stride_family.h); with_clean_strides() fills it.
   std::shared_ptr<const StrideFamily> strides;
 };
@@ -96,7 +98,7 @@ CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept;
 // pose.root_m.
 void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept;
 
-// How far forward the stick asks for the source's own gait.
+// How far forward the stick asks for the source's own gait, at its own pace.
 inline constexpr double kOwnStick = 0.8;
 
 // Finds the best full stride of a motion and makes it periodic: heading and travel taken out, the

@@ -1,7 +1,9 @@
 // A motion as it stands in a file: a skeleton and its frames, in metres, y up.
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gaitpad/skeleton.h"
@@ -17,6 +19,19 @@ struct MotionFrame {
   std::vector<vec3> translation_m;
 };
 
+// Whose speed and step the stick asks for: the motion's own, or an adult's on the character's legs.
+enum class Pace { own, adult };
+inline constexpr std::array<const char*, 2> kPaceNames = {"own", "adult"};  // indexed by Pace
+constexpr const char* name_of(Pace pace) noexcept {
+  return kPaceNames[static_cast<std::size_t>(pace)];
+}
+constexpr std::optional<Pace> pace_named(std::string_view name) noexcept {
+  for (const Pace pace : {Pace::own, Pace::adult}) {
+    if (name == name_of(pace)) return pace;
+  }
+  return std::nullopt;
+}
+
 struct Motion {
   std::string name;  // file name without folder, or "procedural"
   Skeleton skeleton;
@@ -24,6 +39,7 @@ struct Motion {
   std::array<LegJoints, 2> legs;  // indexed by Side
   double metres_per_unit = 1.0;   // file units times this are metres
   double frame_time_s = 1.0 / 120.0;
+  Pace pace = Pace::own;  // of the motion's description; the built-in motion has the adult's
   std::vector<MotionFrame> frames;
 };
 

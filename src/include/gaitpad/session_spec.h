@@ -22,6 +22,9 @@ struct SessionSpec {
     std::string terrain;              // FILE|NAME; empty: flat
     std::string script;               // FILE with commands at given times
     IkMode ik = IkMode::robust;
+    // None: in a replay the trace's, else what the motion's description says, else its own. The
+    // built-in motion has the adult's whatever stands here.
+    std::optional<Pace> pace;
   };
   // Which pad drives, and what its reports mean.
   struct Pad {

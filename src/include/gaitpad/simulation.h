@@ -36,7 +36,8 @@ struct SimulationConfig {
   IkMode ik = IkMode::robust;
   std::vector<PadConfig> pads;  // a report's device is the index here
   std::vector<Style> styles;    // that commands may name; of equal names the first one counts
-  GaitCycle cycle;
+  GaitCycle cycle;              // its pace is the one in force
+  Pace pace = Pace::own;        // that was chosen; with the built-in motion it changes nothing
   std::vector<WalkerConfig>
       walkers;  // at least one; they stand side by side, the first at the origin
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null

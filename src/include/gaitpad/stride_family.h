@@ -21,9 +21,10 @@ inline constexpr double kMostRatio = kRatioStep * (kStrideRatios - 1);
 
 struct StrideFoot {
   vec3 heel_m{0.0};
-  // The foot's rotation from flat and straight ahead: about the vertical, then of the heel-toe line
-  // (toe down positive), then about that line.
-  double yaw_rad = 0.0, pitch_rad = 0.0, roll_rad = 0.0;
+  // The foot's rotation from flat and straight ahead: about its transverse axis, toe down positive;
+  // then, in the turned foot, by the rotation vector whose parts are about its upward axis and about
+  // its length.
+  double pitch_rad = 0.0, twist_rad = 0.0, roll_rad = 0.0;
 };
 
 // A stride at one phase. What is 0 when standing is 0 here, too: the pelvis' place counts from the

@@ -30,7 +30,8 @@ struct WalkerSummary {
 };
 
 struct RunSummary {
-  std::string motion;  // name of the one that was chosen
+  std::string motion;     // name of the one that was chosen
+  Pace pace = Pace::own;  // in force: the built-in motion has the adult's
   int rate_hz = 0;
   std::uint64_t pose_hash = 0;  // over the bits of every pose of every character in every tick
   std::string terrain;          // name

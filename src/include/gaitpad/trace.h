@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gaitpad/motion.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
 
@@ -46,6 +47,7 @@ struct TraceEvent {
 struct Trace {
   std::string path;
   std::optional<int> rate_hz;  // of the `V:` line
+  std::optional<Pace> pace;    // of the `O:` line
   bool has_ticks = false;      // from `T:` lines: TraceEvent::tick is set
   std::vector<TraceDevice> devices;
   std::vector<TraceEvent> events;  // in the order of the file; ticks never decrease
@@ -73,6 +75,9 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name,
 Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz);
 // The rate to replay at: `asked`, else the trace's, else kDefaultRateHz.
 int replay_rate_hz(const Trace& trace, std::optional<int> asked);
+// The pace to replay at: `asked`, else the trace's. A session that was recorded before it said its
+// pace, which shows by its `T:` lines, had the adult's. Nothing: the motion's.
+std::optional<Pace> replay_pace(const Trace& trace, std::optional<Pace> asked);
 
 // The event as a driver would have delivered it.
 void copy_report(const Trace& trace, const TraceEvent& event, Report& report) noexcept;
@@ -82,6 +87,7 @@ Report report_of(const Trace& trace, const TraceEvent& event) noexcept;
 class TraceWriter {
  public:
   void begin(int rate_hz);  // `V:`, before anything else
+  void pace(Pace pace);     // `O:`, before any event
   void comment(std::string_view sentence);
   // The lines that describe the device; texts are cut to the reader's limits. The only device of a
   // recording needs no `D:` line if its index is 0.

@@ -70,7 +70,7 @@ struct FootPose {
   quat tilt = kIdentity;         // from level ground to the foot's own
   double yaw_rad = 0.0;          // about the vertical; 0 as in the standing pose at heading 0
   double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
-  double roll_rad = 0.0;         // about the heel-toe line
+  double twist_rad = 0.0, roll_rad = 0.0;  // as in StrideFoot
   double toe_rad = 0.0;          // of the toe joint, toe end down positive
 };
 
@@ -146,6 +146,7 @@ struct WalkState {
   // Smoothed parameters.
   std::array<Damped<double>, 2> length_m, flight_height;
   std::array<double, 2> time_s{};
+  double asked_ratio = 0.0;  // of the strides, by the parameters
   Damped<double> step_time_s;  // mean of both feet
   Damped<double> turn_goal,    // what turn_rate follows: a landing is planned with it
       turn_rate, amplitude, bounce, sway, pace;  // pace: step length over the data's
@@ -153,10 +154,16 @@ struct WalkState {
   // Path.
   double heading_rad = 0.0;
   vec3 hips_m{0.0}, hips_velocity_m_s{0.0};  // on the ground, without the data's oscillations
+  // What the hips' place differs by from the tables' path to the landing; it fades in the step.
+  SmoothFade<vec3> off_path_m{vec3(0.0), vec3(0.0), vec3(0.0)};
+  // What that path led to a tick ago.
+  vec3 path_landing_m{0.0};
+  double path_heading_rad = 0.0, path_ratio = 0.0;
   vec3 landing_m{0.0};
   double landing_heading_rad = 0.0;
   FootPlane landing_plane;
   Foothold landing;
+  Damped<double> settled_pace;  // follows `pace` slowly
   double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;

@@ -5,10 +5,12 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gaitpad/anatomy.h"
+#include "gaitpad/control.h"
 #include "gaitpad/curve.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/ik.h"
@@ -131,6 +133,15 @@ struct WalkModel {
 // of its ratio to the adult's. Error `NAME: cause` for a cycle without clean strides, for a character
 // that brings a skeleton of its own and for a leg with more than kMaxBetween twist joints between two of its joints.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
+
+// What the stick asks of this character at full deflection, by the pace of its motion: the adult's
+// for its legs, or the motion's own gait at kOwnStick.
+GaitLimits gait_limits(const WalkModel& model) noexcept;
+
+// How far forward the stick gives the data's speed, on the data's own legs. At the own pace that is
+// kOwnStick, and the steps are the data's too; at the adult's pace they are an adult's. Nothing if
+// the data are faster than full stick.
+std::optional<double> own_stick(const GaitCycle& cycle) noexcept;
 
 // The factor by which a terrain has to grow for this walker: 1 where it fits. Where the sole and
 // some room do not fit on the shortest tread, the ground grows by the ratio of the leg to the

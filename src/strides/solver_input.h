@@ -28,7 +28,7 @@ void for_each_number(Family& family, Each each) {
       each_of(cell.pelvis_tilt);
       for (auto& foot : cell.foot) {
         each_of(foot.heel_m);
-        each(foot.yaw_rad), each(foot.pitch_rad), each(foot.roll_rad);
+        each(foot.pitch_rad), each(foot.twist_rad), each(foot.roll_rad);
       }
       for (auto& angles : cell.leg_rad) {
         for (auto& angle : angles) each(angle);

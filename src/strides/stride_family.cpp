@@ -294,7 +294,7 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
     for (const vec3& v : {leg.hip_m, leg.heel_m, leg.toe_m}) add(v);
     numbers.insert(numbers.end(), {leg.thigh_m, leg.shank_m, leg.toe_rest_m});
   }
-  numbers.insert(numbers.end(), {cycle.stride_m, cycle.strike[0], cycle.strike[1],
+  numbers.insert(numbers.end(), {cycle.stride_m, cycle.step_m[0], cycle.step_m[1], cycle.strike[0], cycle.strike[1],
                                  cycle.toe_off[0], cycle.toe_off[1]});
   for (const CycleSample& sample : cycle.samples) {
     add(sample.pelvis_m);

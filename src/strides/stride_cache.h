@@ -12,11 +12,11 @@ namespace gaitpad {
 // where neither is set or where GAITPAD_CACHE is `off`.
 std::string stride_cache_folder();
 
-// with_clean_strides() by way of the files in `folder`, which may be empty, missing, read-only, full
-// or damaged: then the strides are solved, and that they could not be kept is no error. A file is
-// used only if it is whole and was made from the same numbers by the same sources. At most 64 files
-// are kept; the oldest go first. Several processes may share a folder, and it may be deleted at any
-// time.
+// with_clean_strides() by way of the files in `folder`, which may be empty, missing, read-only,
+// full or damaged: then the strides are solved, and that they could not be kept is no error. A file
+// is used only if it is whole and was made from the same numbers by the same sources. At most 64
+// files are kept; the oldest go first. Several processes may share a folder, and it may be deleted
+// at any time.
 Result<GaitCycle> cached_clean_strides(GaitCycle cycle, const std::string& folder);
 
 }  // namespace gaitpad

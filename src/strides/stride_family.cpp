@@ -212,8 +212,13 @@ struct Builder {
     const vec3 now = rotation * line;
     foot.pitch_rad = gaitpad::atan2(line.y, glm::dot(line, ahead)) -
                      gaitpad::atan2(now.y, glm::dot(now, ahead));
-    const vec3 rest =
-        rotation_vector(glm::conjugate(rotation_about(across, foot.pitch_rad)) * rotation);
+    const auto rest_of = [&](double pitch) {
+      return rotation_vector(glm::conjugate(rotation_about(across, pitch)) * rotation);
+    };
+    // What the rest turns about the transverse axis belongs to the pitch. Each pass leaves a
+    // hundredth of it.
+    for (int n = 0; n < 4; ++n) foot.pitch_rad += glm::dot(rest_of(foot.pitch_rad), across);
+    const vec3 rest = rest_of(foot.pitch_rad);
     foot.twist_rad = rest.y;
     foot.roll_rad = glm::dot(rest, ahead);
   }

@@ -64,10 +64,13 @@ TEST_F(StrideCache, SolvesAgainAndMendsWhereAFileIsDamaged) {
     bytes[at] = static_cast<char>(bytes[at] ^ 1);
     return bytes;
   };
-  const std::string damaged[] = {"", whole.substr(0, whole.size() / 2), whole + "x",
+  const std::string damaged[] = {"",
+                                 whole.substr(0, whole.size() / 2),
+                                 whole + "x",
                                  flipped(0),  // another version
                                  flipped(8),  // another question
-                                 flipped(whole.size() / 2), flipped(whole.size() - 1),
+                                 flipped(whole.size() / 2),
+                                 flipped(whole.size() - 1),
                                  std::string(whole.size(), '\0')};
   for (const std::string& bytes : damaged) {
     std::ofstream(file, std::ios::binary) << bytes;

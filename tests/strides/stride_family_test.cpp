@@ -28,7 +28,8 @@ std::vector<double> numbers_of(const StrideFamily& family) {
   return numbers;
 }
 
-// A leg of a cell by its angles alone, over the path: x and z from the table's frame, y over the floor.
+// A leg of a cell by its angles alone, over the path: x and z from the table's frame, y over the
+// floor.
 LegPose pose_in(const GaitCycle& cycle, const StrideCell& cell, int side) {
   const StrideFamily& family = *cycle.strides;
   LegAngles angles = family.stand_rad[side];
@@ -129,13 +130,12 @@ TEST_P(StrideFamilyOf, HasFeetThatAgreeWithTheLegs) {
         const LegPose pose = pose_in(cycle, table.cell[i], side);
         const StrideFoot& foot = table.cell[i].foot[side];
         EXPECT_LT(glm::distance(foot.heel_m, pose.heel_m), 1e-9);
-        // The heel-toe line by yaw and pitch; roll turns about it.
         const vec3 line = cycle.leg[side].toe_m - cycle.leg[side].heel_m;
-        const vec3 across =
-            glm::cross(kUp, glm::normalize(vec3(line.x, 0.0, line.z)));
-        const vec3 turned =
-            rotation_y(foot.yaw_rad) * (rotation_about(across, foot.pitch_rad) * line);
-        EXPECT_LT(glm::distance(turned, pose.toe_m - pose.heel_m), 1e-9);
+        const vec3 ahead = glm::normalize(vec3(line.x, 0.0, line.z)),
+                   across = glm::cross(kUp, ahead);
+        const quat rotation = rotation_about(across, foot.pitch_rad) *
+                              from_rotation_vector(kUp * foot.twist_rad + ahead * foot.roll_rad);
+        EXPECT_LT(glm::distance(rotation * line, pose.toe_m - pose.heel_m), 1e-6);
       }
     }
   }
@@ -197,17 +197,26 @@ TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
   const GaitCycle cycle = clean_cycle(procedural_gait());
   const StrideTable& own = cycle.strides->table[static_cast<std::size_t>(1.0 / kRatioStep + 0.5)];
   ASSERT_NEAR(own.stride_m, cycle.stride_m, 1e-12);
-  for (const int side : kSides) {
-    std::array<double, kLegDofs> squares{};
+  // Root mean square change of an angle, the data read a little later or earlier.
+  const auto change = [&](int side, int joint, double shift) {
+    double squares = 0.0;
     for (int i = 0; i < kCycleSamples; ++i) {
-      for (int j = 0; j < kLegDofs; ++j) {
-        const double now = cycle.strides->stand_rad[side][j] + own.cell[i].leg_rad[side][j];
-        squares[j] += std::pow(now - cycle.samples[i].leg[side].angles[j], 2) / kCycleSamples;
-      }
+      const double now = cycle.strides->stand_rad[side][joint] + own.cell[i].leg_rad[side][joint];
+      const CycleSample data = sample_at(cycle, double(i) / kCycleSamples + shift);
+      squares += std::pow(now - data.leg[side].angles[joint], 2);
     }
-    EXPECT_LT(std::sqrt(squares[kHipX]), 3.0 * kDegree);
-    EXPECT_LT(std::sqrt(squares[kKneeX]), 3.0 * kDegree);
-    EXPECT_LT(std::sqrt(squares[kAnkleX]), 3.5 * kDegree);
+    return std::sqrt(squares / kCycleSamples);
+  };
+  double best_shift = 0.0, least = 1e9;
+  for (double shift = -0.03; shift < 0.03; shift += 0.001) {
+    double sum = 0.0;
+    for (const int joint : {kHipX, kKneeX, kAnkleX}) sum += change(kLeftSide, joint, shift);
+    if (sum < least) best_shift = shift, least = sum;
+  }
+  for (const int side : kSides) {
+    EXPECT_LT(change(side, kHipX, best_shift), 3.0 * kDegree);
+    EXPECT_LT(change(side, kKneeX, best_shift), 3.0 * kDegree);
+    EXPECT_LT(change(side, kAnkleX, best_shift), 3.5 * kDegree);
   }
 }
 
@@ -224,7 +233,7 @@ TEST(StrideFamily, IsSymmetricWhereTheDataAre) {
         const StrideFoot &foot = a.foot[side], &other = b.foot[1 - side];
         EXPECT_LT(glm::distance(foot.heel_m, mirrored(other.heel_m)), 1e-9);
         EXPECT_NEAR(foot.pitch_rad, other.pitch_rad, 1e-9);
-        EXPECT_NEAR(foot.yaw_rad, -other.yaw_rad, 1e-9);
+        EXPECT_NEAR(foot.twist_rad, -other.twist_rad, 1e-9);
         EXPECT_NEAR(foot.roll_rad, -other.roll_rad, 1e-9);
         for (const int j : {kHipX, kKneeX, kAnkleX})
           EXPECT_NEAR(a.leg_rad[side][j], b.leg_rad[1 - side][j], 1e-9);

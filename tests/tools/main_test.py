@@ -40,10 +40,13 @@ def test_the_bundled_traces_are_what_their_scripts_write():
 
 def test_bench_lists_times_beside_limit_and_peer(run):
     rows = {(r["name"], r["characters"]): r for r in json.loads(run("bench", "--json").stdout)}
-    assert set(rows) == {("step", 1), ("step", 4), ("leg_ik", 1), ("playback", 4)}
+    assert set(rows) == {("step", 1), ("step", 4), ("leg_ik", 1), ("playback", 4), ("load_built_in", 1), ("load_clip", 1),
+                         ("load_cached", 1)}
     assert all(r["time_us"] > 0 for r in rows.values())
     four = rows["step", 4]
     assert four["limit_us"] == 20
     assert four["ratio_to_limit"] == pytest.approx(four["time_us"] / 20, abs=1e-7)
     assert four["ratio_to_peer"] == pytest.approx(four["time_us"] / rows["playback", 4]["time_us"], abs=1e-7)
     assert four["iterations_per_leg"] > 0
+    assert rows["load_built_in", 1]["limit_us"] == 150000 and rows["load_clip", 1]["limit_us"] == 800000
+    assert rows["load_cached", 1]["time_us"] < rows["load_clip", 1]["time_us"]

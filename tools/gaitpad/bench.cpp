@@ -1,4 +1,5 @@
-// gaitpad bench: how long a tick takes, and its inverse kinematics, beside bare playback.
+// gaitpad bench: how long a tick takes, and its inverse kinematics, beside bare playback; and how long
+// a motion takes to load.
 #include <CLI/CLI.hpp>
 
 #include "tools/gaitpad/commands.h"
@@ -8,6 +9,7 @@
 #ifdef GAITPAD_HAS_BENCH
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -18,6 +20,7 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
+#include "strides/stride_cache.h"
 
 namespace gaitpad {
 namespace {
@@ -26,6 +29,7 @@ using nlohmann::ordered_json;
 
 constexpr double kLimit_us = 20.0;  // for one tick of four characters on one core
 constexpr int kLimitWalkers = 4;
+constexpr double kBuiltInLimit_us = 0.15e6, kClipLimit_us = 0.8e6;  // to load a motion
 constexpr std::int64_t kFirstTick = 480,
                        kLastTick = 2880;  // of the bundled trace: walking, turning
 
@@ -148,6 +152,35 @@ double playback_us(const Session& session) {
   });
 }
 
+// Times to make a character of a motion in memory: of the built-in one, of the same as a captured clip,
+// whose halves are not known to be alike, and of that with a cache that knows its strides.
+struct LoadCost {
+  double built_in_us = 0.0, clip_us = 0.0, cached_us = 0.0;
+};
+
+Result<LoadCost> load_cost() {
+  namespace fs = std::filesystem;
+  std::optional<Error> problem;
+  const auto load = [&problem](Result<GaitCycle> cycle, const std::string& cache) {
+    if (cycle) cycle = cached_clean_strides(std::move(*cycle), cache);
+    if (!cycle) return void(problem = cycle.error());
+    const auto model = walk_model(*cycle, Character{});
+    if (!model) problem = model.error();
+  };
+  const Motion clip = procedural_motion();
+  std::error_code ignored;
+  const fs::path cache =
+      fs::temp_directory_path(ignored) / fmt::format("gaitpad_bench_{}", ::getpid());
+  LoadCost cost;
+  cost.built_in_us = measured_us("built-in", [&] { load(procedural_gait(), ""); });
+  cost.clip_us = measured_us("clip", [&] { load(gait_cycle(clip), ""); });
+  load(gait_cycle(clip), cache.string());
+  cost.cached_us = measured_us("cached", [&] { load(gait_cycle(clip), cache.string()); });
+  fs::remove_all(cache, ignored);
+  if (problem) return *problem;
+  return cost;
+}
+
 Result<ordered_json> measured() {
   auto one = bench_session({"even"});
   if (!one) return one.error();
@@ -162,15 +195,23 @@ Result<ordered_json> measured() {
   const StepCost many = step_cost(*four, *four_walkers);
   const double leg_us = leg_ik_us(*one, *one_walker);
   const double peer_us = playback_us(*four);
+  const auto load = load_cost();
+  if (!load) return load.error();
   const auto row = [](const char* name, int characters, double time_us) {
     return ordered_json{{"name", name}, {"characters", characters}, {"time_us", time_us}};
   };
   ordered_json list = {row("step", 1, single.time_us), row("step", kLimitWalkers, many.time_us),
-                       row("leg_ik", 1, leg_us), row("playback", kLimitWalkers, peer_us)};
+                       row("leg_ik", 1, leg_us), row("playback", kLimitWalkers, peer_us),
+                       row("load_built_in", 1, load->built_in_us),
+                       row("load_clip", 1, load->clip_us), row("load_cached", 1, load->cached_us)};
   list[0]["iterations_per_leg"] = single.iterations_a_leg;
   list[1]["iterations_per_leg"] = many.iterations_a_leg;
   list[1]["limit_us"] = kLimit_us;
   list[1]["ratio_to_limit"] = many.time_us / kLimit_us;
+  for (const auto& [at, limit_us] : {std::pair(4, kBuiltInLimit_us), {5, kClipLimit_us}}) {
+    list[at]["limit_us"] = limit_us;
+    list[at]["ratio_to_limit"] = list[at]["time_us"].get<double>() / limit_us;
+  }
   list[1]["peer"] = "playback";
   list[1]["ratio_to_peer"] = many.time_us / peer_us;
   return list;
@@ -188,6 +229,14 @@ void print_text(const ordered_json& list) {
              list[1]["ratio_to_peer"].get<double>(), time(3));
   fmt::print("inverse kinematics of one leg       {:8.2f} us   {:.0f} % of a step with two legs\n",
              time(2), 200.0 * time(2) / time(0));
+  const auto load = [&](const char* what, int at) {
+    fmt::print("load of {:27} {:8.2f} ms   {:.2f} x of the limit of {:.0f} ms\n", what,
+               time(at) / 1e3, list[at]["ratio_to_limit"].get<double>(),
+               list[at]["limit_us"].get<double>() / 1e3);
+  };
+  load("the built-in motion", 4);
+  load("a clip", 5);
+  fmt::print("  with its strides in the cache     {:8.2f} ms\n", time(6) / 1e3);
 }
 
 int run(bool as_json) {
@@ -204,7 +253,7 @@ int run(bool as_json) {
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("bench", "the time that a tick takes, beside its limit");
+  CLI::App* command = app.add_subcommand("bench", "the times that a tick and loading a motion take, beside their limits");
   const auto as_json = std::make_shared<bool>(false);
   command->add_flag("--json", *as_json, "a list of measurements, for machines");
   command->callback([as_json, &status] { status = run(*as_json); });

@@ -65,17 +65,20 @@ double step_length(const WalkState& state, Side side) noexcept {
 
 double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
   const Side swing = step_foot(state);
-  return state.started ? std::abs(state.frame.stride_m[swing]) / model.own_step_m[swing] : 0.0;
+  // Run back, a foot makes the step that the other one makes forwards.
+  const double own_m = model.own_step_m[state.backward ? other(swing) : swing];
+  return state.started ? std::abs(state.frame.stride_m[swing]) / own_m : 0.0;
 }
 
 StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
                        double step_share) noexcept {
   StridePlan plan;
-  plan.phase = state.backward ? model.share[0] + model.share[1] + model.share[2] - phase : phase;
+  plan.phase = phase;
   plan.change = smootherstep(step_share);
   plan.shown = std::clamp(state.amplitude.x, 0.0, 1.0);
-  plan.at[0] = stride_at(model.strides, plan.phase, state.ratio_behind);
-  plan.at[1] = stride_at(model.strides, plan.phase, ratio_ahead(model, state));
+  const auto& tables = state.backward ? model.strides.back : model.strides.table;
+  plan.at[0] = stride_at(tables, plan.phase, state.ratio_behind);
+  plan.at[1] = stride_at(tables, plan.phase, ratio_ahead(model, state));
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
   return plan;
@@ -90,15 +93,10 @@ StridePlan stride_now(const WalkModel& model, const WalkState& state) noexcept {
 
 vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
                     const vec3& travel_m) noexcept {
-  // Forwards the right foot goes from its footprint of this stride to the next one's, the left foot
-  // from the last one's to this one's. Backwards they go the other way.
+  // The right foot goes from its footprint of this stride to the next one's, the left foot from the
+  // last one's to this one's.
   double turns = 0.0;
-  if (side == step_foot(state)) {
-    turns = side == kRightSide ? which : which - 1;
-    if (state.backward) turns = side == kRightSide ? -which : -which;
-  } else if (state.backward && side == kLeftSide) {
-    turns = -1.0;
-  }
+  if (side == step_foot(state)) turns = side == kRightSide ? which : which - 1;
   const StridePlace& at = plan.at[which];
   vec3 p = travel_m - at.footprint_m[side];
   p.z += at.stride_m * (plan.phase - turns);
@@ -221,7 +219,7 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
   const Side landed = state.swing;
   const bool closed = state.closing;
   state.closing = !walks_on(tick.params, state);
-  state.ratio_behind = std::abs(state.frame.stride_m[landed]) / tick.model.own_step_m[landed];
+  state.ratio_behind = ratio_ahead(tick.model, state);
   if (closed && state.closing) {  // feet together: the toe comes down, then rest
     const int ticks = state.roll_ticks;
     begin_stage(Stage::roll, landed, std::max(ticks, 12), state);
@@ -466,7 +464,8 @@ void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) no
              state.landing_heading_rad != state.path_heading_rad) {
     // The path has moved, and the hips have not.
     StridePlan old = plan;
-    old.at[1] = stride_at(tick.model.strides, plan.phase, state.path_ratio);
+    old.at[1] = stride_at(state.backward ? tick.model.strides.back : tick.model.strides.table,
+                          plan.phase, state.path_ratio);
     state.off_path_m.x +=
         path_to_landing(state, old, state.path_landing_m, state.path_heading_rad) - path;
   }

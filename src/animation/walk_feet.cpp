@@ -35,16 +35,12 @@ vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
   return foot_rotation(leg, pose) * (leg.model.toe_m - leg.model.heel_m);
 }
 
-// The foot's pitch in the tables. Backwards it lands and leaves flat.
+// The foot's pitch in the tables.
 double table_pitch(const WalkState& state, const StridePlan& plan, Side side) noexcept {
   // The foot that stands when a walk begins has not landed: its toe is down.
   const bool stands = state.foot[side].mode == FootMode::roll && state.last_step_ticks == 0;
   if (!state.started || stands) return 0.0;
-  const double pitch = plan.cell.foot[side].pitch_rad;
-  if (!state.backward) return pitch;
-  if (state.foot[side].mode != FootMode::flight) return 0.0;
-  const double u = flight_progress(state);
-  return pitch * smoothstep(0.0, 0.3, u) * (1.0 - smoothstep(0.55, 1.0, u));
+  return plan.cell.foot[side].pitch_rad;
 }
 
 // How much of the tables' twist and roll a foot on the ground shows: when standing it is flat.
@@ -104,7 +100,6 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
   const Ascent risen = ascent(model, foot, way);
   base_m = begin_m + rise * risen.at(p - foot.heel_anchor_m, u);
   double up = cell.heel_m.y * height;
-  if (state.backward) up *= smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.65, 1.0, u));
   p.y = base_m + up;
   for (int a : {0, 1, 2}) p[a] += Fade{foot.gap_m[a], foot.gap_slope_m[a], kLiftFade}.at(u);
   p.y = std::max(p.y, base_m);

@@ -401,13 +401,15 @@ bool has_overlong_leg(const GaitCycle& cycle) {
 StrideFamily scaled(StrideFamily family, double ratio, double scale) {
   const vec3 by(scale, ratio, ratio);
   family.lead_m *= ratio;
-  for (StrideTable& table : family.table) {
+  for (std::vector<StrideTable>* tables : {&family.table, &family.back}) {
+    for (StrideTable& table : *tables) {
     table.stride_m *= ratio;
     for (vec3& place : table.footprint_m) place *= by;
     for (StrideCell& cell : table.cell) {
       cell.pelvis_m *= by;
       for (StrideFoot& foot : cell.foot) foot.heel_m *= by;
     }
+  }
   }
   return family;
 }

@@ -33,7 +33,8 @@ StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
   return sum;
 }
 
-StridePlace stride_at(const StrideFamily& family, double phase, double ratio) noexcept {
+StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
+                      double ratio) noexcept {
   const double x = (phase - std::floor(phase)) * kCycleSamples;
   const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
   const double y = std::clamp(ratio / kRatioStep, 0.0, double(kStrideRatios - 1));
@@ -48,7 +49,7 @@ StridePlace stride_at(const StrideFamily& family, double phase, double ratio) no
   StridePlace place;
   for (int n = 0; n < 4; ++n) {
     if (by_ratio[n] == 0.0) continue;
-    const StrideTable& table = family.table[r + n - 1];
+    const StrideTable& table = tables[r + n - 1];
     place.stride_m += by_ratio[n] * table.stride_m;
     for (int side : {0, 1}) place.footprint_m[side] += table.footprint_m[side] * by_ratio[n];
     for (int m = 0; m < 4; ++m) {

@@ -19,7 +19,7 @@ void for_each_number(Family& family, Each each) {
     for (auto& angle : angles) each(angle);
   }
   const auto each_of = [&each](auto& v) { each(v.x), each(v.y), each(v.z); };
-  for (auto& table : family.table) {
+  for (auto* tables : {&family.table, &family.back}) for (auto& table : *tables) {
     each(table.stride_m);
     for (auto& place : table.footprint_m) each_of(place);
     for (auto& cell : table.cell) {

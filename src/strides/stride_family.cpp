@@ -26,6 +26,23 @@ constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0, kMostAngle = 2.0 * kPi;
 
 double fraction(double phase) { return phase - std::floor(phase); }
 
+// The cycle run back: what it lifts lands. Its phases count from where the data lift the right foot,
+// and its stages have the shares of the cycle's.
+GaitCycle run_back(const GaitCycle& cycle) {
+  GaitCycle back;
+  back.name = cycle.name;
+  back.leg = cycle.leg;
+  back.duration_s = cycle.duration_s;
+  back.stride_m = -cycle.stride_m;
+  back.step_m = {-cycle.step_m[kRightSide], -cycle.step_m[kLeftSide]};
+  back.track_m = cycle.track_m;
+  back.strike = cycle.strike;
+  back.toe_off = cycle.toe_off;
+  for (int i = 0; i < kCycleSamples; ++i)
+    back.samples.push_back(sample_at(cycle, cycle.toe_off[kRightSide] - double(i) / kCycleSamples));
+  return back;
+}
+
 struct Builder {
   const GaitCycle& cycle;
   StrideFamily family;
@@ -313,8 +330,13 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
 
 Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   if (const auto fault = fault_of(cycle)) return Error{cycle.name + ": " + *fault};
-  Builder builder(cycle);
-  if (!builder.solve() || !is_finite(builder.family))
+  const GaitCycle backwards = run_back(cycle);
+  Builder builder(cycle), back(backwards);
+  back.family.stand_rad = builder.family.stand_rad;
+  back.family.stand_m = builder.family.stand_m;
+  const bool solved = builder.solve() && back.solve();
+  builder.family.back = std::move(back.family.table);
+  if (!solved || !is_finite(builder.family))
     return Error{cycle.name + ": no stride keeps its feet where they stand"};
   return std::move(builder.family);
 }

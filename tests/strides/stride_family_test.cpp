@@ -153,7 +153,7 @@ TEST_P(StrideFamilyOf, IsReadAtItsOwnPhasesAndRatiosAsItStands) {
   for (int k = 0; k < kStrideRatios; ++k) {
     for (int i = 0; i < kCycleSamples; i += 7) {
       const double phase = double(i) / kCycleSamples;
-      const StridePlace place = stride_at(family, phase, k * kRatioStep);
+      const StridePlace place = stride_at(family.table, phase, k * kRatioStep);
       const StrideCell off = mixed(place.cell, family.table[k].cell[i], 1.0, -1.0);
       const auto* number = reinterpret_cast<const double*>(&off);
       for (std::size_t n = 0; n < sizeof(StrideCell) / sizeof(double); ++n)
@@ -175,8 +175,8 @@ TEST_P(StrideFamilyOf, IsReadWithoutKinks) {
   };
   for (const double ratio : {0.3, 0.6, 1.0}) {
     for (const double phase : {0.0, 0.25, 0.5, 77.0 / kCycleSamples, 0.9}) {
-      const auto along_phase = [&](double p) { return stride_at(family, p, ratio).cell.pelvis_m; };
-      const auto along_ratio = [&](double r) { return stride_at(family, phase, r).cell.pelvis_m; };
+      const auto along_phase = [&](double p) { return stride_at(family.table, p, ratio).cell.pelvis_m; };
+      const auto along_ratio = [&](double r) { return stride_at(family.table, phase, r).cell.pelvis_m; };
       slopes_agree(along_phase, phase);
       slopes_agree(along_ratio, ratio);
     }
@@ -185,7 +185,7 @@ TEST_P(StrideFamilyOf, IsReadWithoutKinks) {
 
 TEST_P(StrideFamilyOf, IsPeriodicInPhaseAndClampedInRatio) {
   const auto knee = [this](double phase, double ratio) {
-    return stride_at(family, phase, ratio).cell.leg_rad[kLeftSide][kKneeX];
+    return stride_at(family.table, phase, ratio).cell.leg_rad[kLeftSide][kKneeX];
   };
   EXPECT_NEAR(knee(0.3, 0.9), knee(5.3, 0.9), 1e-12);
   EXPECT_NEAR(knee(0.3, 0.9), knee(-0.7, 0.9), 1e-12);

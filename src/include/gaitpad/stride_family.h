@@ -50,6 +50,9 @@ struct StrideFamily {
   double stand_m = 0.0;              // the pelvis' height when standing,
   double lead_m = 0.0;               // how far it is before the heels,
   std::array<LegAngles, 2> stand_rad{};  // and the legs' angles
+  // Walking backwards is walking forwards run back (Thorstensson 1986), but the feet land and leave
+  // as Table I has it. These strides have negative lengths.
+  std::vector<StrideTable> back;
   std::vector<StrideTable> table;    // kStrideRatios
 };
 
@@ -61,7 +64,7 @@ struct StridePlace {
 };
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
 // Cubic in phase and in ratio; the ratio is clamped to the family's. No heap.
-StridePlace stride_at(const StrideFamily& family, double phase, double ratio) noexcept;
+StridePlace stride_at(const std::vector<StrideTable>& table, double phase, double ratio) noexcept;
 
 // The share of the cycle's time that the roll of a foot (Table I (b)) takes in strides of this
 // ratio, from its share in the data: double support is longer in short steps.

@@ -19,14 +19,15 @@ constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
 // Weights of squared residuals; an angle of the data (radians) has 1.
 constexpr double kDegreeCosts_m = 0.02;  // a pelvis this far off costs as much as one degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kSmooth = 150.0;       // of second differences between samples
-constexpr double kPelvisSideways = 1000.0;
-constexpr double kPelvisSmooth = 500.0;  // times that
+constexpr double kAnkle = 1.4;
+constexpr double kSmooth = 50.0;       // of second differences between samples
+constexpr double kPelvisSideways = 2000.0;
+constexpr double kPelvisSmooth = 2500.0;  // times that
 constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 1e4;  // per square metre, radian
 constexpr double kLevel = 2e3;          // the sole is level and points ahead, per square metre
 constexpr double kFlat = 2e5;            // the heel of a flat foot, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftStrike = 2e5, kSoftToe = 1e4;
+constexpr double kSoftStrike = 2e5, kSoftToe = 7e3;
 constexpr int kLanding = 3, kToeLanding = 3;  // samples
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004;
@@ -299,7 +300,7 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
     for (int i = 0; i < solved; ++i) {
       for (int k = 0; k < kUnknowns; ++k) {
         const int at = i * kUnknowns + k;
-        const double weight = k < kPelvis ? kPelvisWeight : 1.0;
+        const double weight = k < kPelvis ? kPelvisWeight : (k - kPelvis) % kLegDofs >= kAnkleX ? kAnkle : 1.0;
         const double smooth = kSmooth * weight * (k == 1 ? kPelvisSmooth : k < kPelvis ? kPelvisSideways : 1.0);
         std::array<double, 3> change;
         std::array<Mirrored, 3> where;

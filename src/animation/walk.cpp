@@ -120,10 +120,14 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
   Pelvis pelvis;
   pelvis.position_m =
       state.hips_m + left * cell.pelvis_m.x + forward * cell.pelvis_m.z;
-  pelvis.position_m.y = state.base_m + model.stand_m + cell.pelvis_m.y;
+  // In a turn the body leans as a whole, about the ground below the hips.
+  const double height_m = model.stand_m + cell.pelvis_m.y;
+  const SinCos lean = sin_cos(state.lean_rad.x);
+  pelvis.position_m += left * (height_m * lean.sin);
+  pelvis.position_m.y = state.base_m + height_m * lean.cos;
   const double yaw = state.sway.x * cell.pelvis_yaw_rad;
-  pelvis.rotation =
-      rotation_y(state.heading_rad + yaw) * from_rotation_vector(cell.pelvis_tilt);
+  pelvis.rotation = rotation_y(state.heading_rad) * rotation_z(-state.lean_rad.x) *
+                    rotation_y(yaw) * from_rotation_vector(cell.pelvis_tilt);
   return pelvis;
 }
 
@@ -139,6 +143,8 @@ constexpr double kBounceSmoothing = 0.30;
 constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kSettling = 0.35;
+constexpr double kLeanSmoothing = 0.12;
+constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
@@ -242,7 +248,7 @@ void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state)
 }
 
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.
-void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
+void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
   const bool walking = walks_on(params, state) && !state.closing;
@@ -273,6 +279,12 @@ void smooth_parameters(const Tick& tick, WalkState& state) noexcept {
   state.pace.advance(mean * state.ground_share.x / tick.model.source_step_m, kStepSmoothing * scale,
                      dt);
   state.settled_pace.advance(state.pace.x, kSettling * scale, dt);
+  // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
+  const double speed_m_s = (state.length_m[0].x + state.length_m[1].x) /
+                           std::max(kLeastCycle_s, state.time_s[0] + state.time_s[1]);
+  const double lean =
+      mode == IkMode::paper ? 0.0 : speed_m_s * state.turn_rate.x / kGravity_m_s2;
+  state.lean_rad.advance(lean, kLeanSmoothing * scale, dt);
 }
 
 // Moves a phase of the running stage on by one tick. At the end of a stage the phase runs at the
@@ -650,7 +662,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept {
   const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
-  smooth_parameters(tick, state);
+  smooth_parameters(tick, mode, state);
   smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);

@@ -164,6 +164,7 @@ struct WalkState {
   FootPlane landing_plane;
   Foothold landing;
   Damped<double> settled_pace;  // follows `pace` slowly
+  Damped<double> lean_rad;      // of the whole body into a turn, to the left positive
   double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;

@@ -63,7 +63,7 @@ def test_unplugged_while_walking_and_plugged_in_again(case):
     remark(f"unplugged while walking, {case}: {times} times, neutral within 0.1 s each time")
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.timeout(900)
 def test_unplugged_during_open():
     """Blind flapping under a loop of programs that open whatever there is, and under a session."""
     chance = random.Random(1)
@@ -78,7 +78,7 @@ def test_unplugged_during_open():
             pad.command("unplug")
             time.sleep(chance.uniform(0.02, 0.2))
             pad.command("plug")
-            _, errors = opener.communicate(timeout=30)
+            _, errors = opener.communicate(timeout=150)  # with sanitizers it shares the guest's core with a slow session
             assert opener.returncode in (0, 1) and "Sanitizer" not in errors, (opener.returncode, errors)
         pad.wait_ready(60)
         reports = len(session.lines("E:"))

@@ -18,7 +18,8 @@ from pads import LONG, Pad, settle, wait_for
 from session import HAS_SANITIZERS, IDS, PROGRAM, TICK_S, Session, remark, run, ticks_of
 from test_matrix import NAMES, VALUES, expected_stick
 
-TIMES = 50 if LONG else 5
+# A session with sanitizers takes most of the guest's one core.
+TIMES = 50 if LONG else 2 if HAS_SANITIZERS else 5
 NOBODY = 65534
 RULES = "/etc/udev/rules.d/60-gaitpad.rules"
 
@@ -36,7 +37,7 @@ def neutral_in_time(frames, ticks, seconds=0.1):
         assert float(after["stick_x"]) == float(after["stick_y"]) == 0.0, (tick, after["stick_y"])
 
 
-@pytest.mark.timeout(400)
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize("case", ["generic-hidraw", "dualsense-hidraw", "generic-usb", "xbox360-evdev", "generic-sdl"])
 def test_unplugged_while_walking_and_plugged_in_again(case):
     kind, driver = case.split("-")

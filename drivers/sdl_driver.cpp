@@ -75,7 +75,7 @@ class Sdl {
 
  private:
   struct ThreadStorage {  // SDL allocates some for each thread that it did not start
-    ThreadStorage() {}
+    ThreadStorage() = default;
     ~ThreadStorage() { SDL_TLSCleanup(); }
   };
   Sdl();

@@ -28,7 +28,7 @@ bool is_drawable(const PlotPoint& p) noexcept { return std::isfinite(p.x) && std
 
 void add_gap(std::vector<PlotPoint>& out) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!out.empty() && is_drawable(out.back())) out.push_back({kNone, kNone});
+  if (!out.empty() && is_drawable(out.back())) out.emplace_back(kNone, kNone);
 }
 
 constexpr int kMostXSteps = 8, kMostYSteps = 7;  // of a plot on cairo

@@ -187,7 +187,7 @@ Result<std::vector<PadSighting>> pad_sightings(const PadFiles& files, const PadW
       sightings.push_back(judged(files, std::move(listing), entry));
   }
   ask_the_others(sightings);
-  std::ranges::stable_partition(sightings, &PadSighting::is_pad);
+  std::stable_partition(sightings.begin(), sightings.end(), std::mem_fn(&PadSighting::is_pad));
   return sightings;
 }
 

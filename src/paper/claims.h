@@ -1,7 +1,7 @@
 // The thirty assertions that the paper's text makes, each measured as a number and compared with
-// its bound. Most numbers and bounds come from the project's notes on the paper; where the walk
-// itself has a stricter bound, that one counts. A claim that does not hold as the paper words it is
-// reported as failed.
+// its bound. Most bounds were derived from the paper's figures and from two prototypes of its
+// method; where the walk itself has a stricter bound, that one counts. A claim that does not hold
+// as the paper words it is reported as failed.
 #pragma once
 #include <limits>
 #include <optional>

@@ -11,7 +11,7 @@ namespace gaitpad {
 namespace {
 
 constexpr std::array<Side, 2> kSides = {kLeftSide, kRightSide};
-constexpr double kPrintRate_hz = 60.0;  // the notes' bound on jumps is for a frame of a screen
+constexpr double kPrintRate_hz = 60.0;  // the bound on jumps is for a frame of a screen
 
 std::size_t first_tick(double after_s) { return static_cast<std::size_t>(after_s * kPaperRate_hz); }
 

@@ -15,13 +15,13 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kSection = "3.2, figure 2";
-constexpr int kSamples = 120;                // in a stride, as in the notes
+constexpr int kSamples = 120;                // in a stride, as when the bounds were derived
 constexpr double kFrame = 100.0 / kSamples;  // percent
-constexpr const char* kNotAdult = "the notes have this number for the built-in adult's curve alone";
+constexpr const char* kNotAdult = "this number was derived for the built-in adult's curve alone";
 
 double percent(int index) { return 100.0 * index / kSamples; }
 Bound near_frame(double at_percent) {
-  constexpr double kRounding = 0.05;  // the notes have one decimal
+  constexpr double kRounding = 0.05;  // the bounds have one decimal
   return within(at_percent - kFrame - kRounding, at_percent + kFrame + kRounding);
 }
 FlightRule rule_of(IkMode mode) { return {true, mode == IkMode::robust}; }

@@ -1,6 +1,6 @@
 // Assertions 13-17: figure 5a. 18-20: figure 5b. 25: the joystick. 26-28: fatigue, hips, upper
-// body. The notes quote numbers of the project's two prototypes of the paper's method: a planar leg
-// (heel as effector, warm start) and a 3-D walk.
+// body. Some numbers stand beside those of two earlier prototypes of the paper's method: a planar
+// leg (heel as effector, warm start) and a 3-D walk.
 
 #include <fmt/format.h>
 

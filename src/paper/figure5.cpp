@@ -200,7 +200,7 @@ std::string number(double v, const char* format = "{:.1f}") {
   return fmt::format(fmt::runtime(format), v);
 }
 
-// The measured values beside those of the two prototypes in the project's notes.
+// The measured values beside those of two earlier prototypes of the paper's method.
 Table table_of(const Figure5& f) {
   const Side side = f.is_limp ? kLeftSide : kRightSide;
   const std::string leg = kSideNames[side];
@@ -229,8 +229,8 @@ Table table_of(const Figure5& f) {
   }
   if (!f.is_limp) {
     table.shares = {1.75, 0.7, 0.7, 0.8, 2.1, 2.1};
-    table.rows[0].insert(table.rows[0].end(), {"notes' planar prototype (red / green / blue)",
-                                               "notes' 3-D prototype (three motions)"});
+    table.rows[0].insert(table.rows[0].end(), {"planar prototype (red / green / blue)",
+                                               "3-D prototype (three motions)"});
     knee.insert(knee.end(), {"6.5 / -9.1 / 7.7; green with limits 1.0", ""});
     rms.insert(rms.end(),
                {"0 / 5.4 / 0.53", "0 / 2.8 to 3.7 pinned, 3.8 to 5.8 free / 0.5 to 0.8"});

@@ -21,8 +21,6 @@
 
 namespace gaitpad {
 namespace fs = std::filesystem;
-namespace fs = std::filesystem;
-namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kWhatOpens =

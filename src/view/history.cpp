@@ -38,7 +38,7 @@ void add_series(const GraphSpan& span, std::string_view letter, const Colour& co
   series.colour = colour;
   series.points.reserve(span.end - span.begin);
   for (std::size_t i = span.begin; i < span.end; ++i) {
-    series.points.push_back({span.x_of(i), value(i)});
+    series.points.emplace_back(span.x_of(i), value(i));
   }
   plot.series.push_back(std::move(series));
 }

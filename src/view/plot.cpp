@@ -109,7 +109,7 @@ void draw_curve(ImDrawList& list, const PlotArea& area, const PlotSeries& series
     if (!std::isfinite(p.y)) {
       flush();
     } else {
-      pixels.push_back({area.px(p.x), area.py(p.y)});
+      pixels.emplace_back(area.px(p.x), area.py(p.y));
     }
   }
   flush();

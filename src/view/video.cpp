@@ -18,8 +18,6 @@
 
 #include "draw/picture.h"
 
-extern char** environ;
-
 namespace gaitpad {
 namespace {
 

@@ -319,7 +319,7 @@ TEST(GaitCycle, HalfAStrideIsRefused) { EXPECT_FALSE(gait_cycle(cut(0, 60))); }
 // ---- real clips
 // -----------------------------------------------------------------------------------
 
-// gait-notes' walks but the one in place.
+// The walks among the real motions, but for the one in place.
 constexpr const char* kWalks[] = {
     "bvhtoolbox_walk01", "cmu_006_01_iclone", "cmu_007_01_iclone", "cmu_007_04_iclone",
     "cmu_007_12_iclone", "cmu_12_01_walk",    "cmu_m21_depressed", "cmu_m21_female_walk",

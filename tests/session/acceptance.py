@@ -49,7 +49,7 @@ def start_and_stop(forward=0.8):
 
 
 def back_and_forth():
-    """Backwards, forwards without a rest between, round a backward bend, a turn on the spot with a thumb's noise."""
+    """Backward, then forward without a rest, a backward curve, a turn on the spot with a thumb's noise."""
     stick = [(0.5, 0, 0.8), (3.0, 0, -0.8), (6.0, 0, 0.8), (7.3, 0, -1.0), (8.1, 0, 1.0), (8.5, 0.5, -0.1),
              (9.5, 0.5, -0.5), (11.0, -0.5, 0.05), (12.0, -0.5, -0.05), (13.0, 0, 0)]
     return {"stick": stick, "end": 15.0}
@@ -62,13 +62,13 @@ def style_changes():
 
 
 def gentle():
-    """A thumb's ramps instead of jumps."""
+    """Ramps, as a thumb makes them, instead of jumps."""
     stick = ramp(0.5, 1.3, (0, 0), (0, 0.9)) + ramp(5, 6, (0, 0.9), (0.4, 0.5)) + ramp(9, 9.6, (0.4, 0.5), (0, 0))
     return {"stick": stick, "end": 12.0}
 
 
 def wander(seed):
-    """A thumb that does anything: jumps all over the disc, rests, backward, style keys in between."""
+    """Random input: jumps all over the disc, rests, backward walking, changes of style."""
     chance = random.Random(seed)
     time_s, stick, commands = 0.3, [], []
     while time_s < 28.0:
@@ -125,7 +125,7 @@ def cases_of(motion, quick):
 
 
 def weight_cases(quick):
-    """Own styles for the weight's monotone effect."""
+    """Styles that differ in one weight alone, whose effect must be monotone."""
     found = []
     for weight in () if quick else (0.9, 0.8, 0.5):
         found.append({"label": f"default hip {weight}", "motion": "default", "ratio": 1.0, "hip": weight,
@@ -133,14 +133,14 @@ def weight_cases(quick):
     return found
 
 
-# ---- which of them today ---------------------------------------------------------------------
+# ---- the cases of a day ----------------------------------------------------------------------
 SLICES = 3
-# Starts, stops, turns about, a random thumb, a long walk and the longest legs come nearest to their bounds.
+# These come nearest to their bounds: starts, stops, reversals, random input, a long walk, the longest legs.
 ALWAYS = ("back and forth", "start and stop", "default wander", "default 200 strides", "default leg 1.6 turn")
 
 
 def rotated(cases, kept, day):
-    """The cases of that day's slice, those kept, and those that always run."""
+    """The cases of the day's slice, those in `kept`, and those that always run."""
     def is_run(case):
         label = case["label"]
         return label in kept or any(part in label for part in ALWAYS) or \
@@ -271,7 +271,7 @@ def summary_table(results):
 
 
 def failures_text(results, most=4):
-    """The worst few runs of each broken bound, and how many are broken in all."""
+    """The worst few runs of each broken bound, and the number of runs that break it."""
     broken = {}
     for label, checks in results:
         for check in checks:
@@ -300,7 +300,7 @@ def arguments(words=None):
 
 
 def motions_to_run(options):
-    """The default and the captured motions that are there."""
+    """The built-in motion and the captured motions that are available."""
     captured = [m for m in options.motions.split(",") if m][:1 if options.quick else None]
     there = [m for m in captured if os.path.exists(os.path.join(options.data, m + ".bvh"))]
     for name in (m for m in captured if m not in there):

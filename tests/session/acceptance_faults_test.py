@@ -1,5 +1,5 @@
-"""Judges the judge: an own small walk, exact by construction, passes every check; each planted fault
-in its files makes the check that is meant for it fail. Needs neither the program nor data."""
+"""Tests the checks themselves: a small walk that is exact by construction passes all of them, and each fault planted
+in its files fails the check that is meant for it. Needs neither the program nor data."""
 import copy
 
 import numpy as np
@@ -58,7 +58,7 @@ def _raise(s, units):
     s.bvh.data[:, 1] += units
 
 
-# The name is that of the check which has to see the fault.
+# Each fault is named after the check that has to find it.
 FILE_FAULTS = {
     "columns missing or out of order": _swap_columns,
     "rows minus pose frames": _drop_frame,
@@ -136,7 +136,7 @@ def test_a_mirrored_walk_passes_and_an_unmirrored_one_fails(even):
 
 
 def test_a_limp_of_the_asked_measure_passes(even):
-    # Both peaks count from the floor, and the lift-off height is not the flight's.
+    # Both peaks are measured from the floor: the height at lift-off does not belong to the flight.
     limp = Files(length=(0.16, 0.32), flight=(138, 180), height=(0.008, 0.1)).load()
     assert failed(judge.limp_checks(even, limp)) == []
 

@@ -1,4 +1,4 @@
-"""Walks of each motion, in every style, on every leg and stick, keep every bound: judged from the exported files alone.
+"""Walks of each motion, with every style, leg length and stick, keep every bound, judged from the exported files alone.
 The cases are those of acceptance.py, which also prints their table."""
 import os
 

@@ -1,6 +1,5 @@
-// An engine that drives a walk over the library (docs/control.md): what it sees is the state, what
-// it says are commands. Kept as a recording would keep them, they give the same walk without the
-// engine.
+// An engine that drives a walk through the library (docs/control.md): it reads the state and sends
+// commands. Replaying its commands gives the same walk without the engine.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -12,10 +11,11 @@
 namespace gaitpad {
 namespace {
 
-// Walks on until it is tired, limps while it is, rests where it must and goes on when it is fresh.
+// Walks until it is tired, then limps, rests when it is very tired, and walks again when it is
+// fresh.
 class Engine {
  public:
-  // What it wants changed.
+  // The commands that change to its present mood.
   std::vector<std::string> thoughts(const Walker& walker) {
     const Mood mood = mood_of(walker);
     if (mood == mood_) return {};

@@ -31,7 +31,8 @@ void freed(void* memory) {
 
 void* operator new(std::size_t size) { return counted_or_thrown(size); }
 void* operator new[](std::size_t size) { return counted_or_thrown(size); }
-// AddressSanitizer's own would not fit these operators delete.
+// AddressSanitizer's nothrow new would not match the operators delete below, so it is replaced,
+// too.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return counted(size); }
 void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return counted(size); }
 void operator delete(void* memory) noexcept { freed(memory); }
@@ -83,7 +84,7 @@ TEST(Allocation, NoneIn10000StepsWithReportsCommandsAndReplugging) {
     expect_no_heap_use(made_config(4), mode);
 }
 
-TEST(Allocation, NoneOverTerrainWithZonesBlendsTiringAndHandsThatHold) {
+TEST(Allocation, NoneOverTerrainWithZonesBlendsTiringAndHeldHands) {
   for (const IkMode mode : {IkMode::robust, IkMode::paper})
     expect_no_heap_use(made_uneven_config(4), mode);
 }

@@ -67,7 +67,7 @@ def test_backward_on_stairs(pose_hash, made_trace):
 
 
 def test_script_on_a_motion_file(pose_hash, run, tmp_path):
-    """The built-in walk, exported and read again: for the reader a captured motion like any other."""
+    """The built-in walk, exported and read back, which the reader treats as a captured motion."""
     assert run("replay", ROUND, "--out", tmp_path).returncode == 0
     script = tmp_path / "script.toml"
     script.write_text(SCRIPT)

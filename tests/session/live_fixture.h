@@ -16,8 +16,9 @@
 
 namespace gaitpad {
 
-// Two equal pads, 125 reports a second each, for 2.4 s. The first walks ahead and in a curve, is
-// lost while it is held and comes back; the second rests, takes over, is lost, comes back held.
+// Two equal pads send 125 reports a second each, for 2.4 s. The first one drives forward and in a
+// curve, is unplugged while it is held, and is plugged in again. The second one rests, takes over,
+// is unplugged, and comes back held.
 inline Trace two_pads_trace() {
   Trace trace;
   for (int i : {0, 1}) {
@@ -54,13 +55,13 @@ class Live : public testing::Test {
   }
 
   std::unique_ptr<LiveSession> started() { return value_of(LiveSession::start(options_)); }
-  // Ends the session, whose recording replays to the same summary.
+  // Ends the session and checks that its recording replays to the same summary.
   RunSummary stopped(LiveSession& session) const {
     const RunSummary run = value_of(session.stop());
     EXPECT_EQ(run, replayed());
     return run;
   }
-  // What a replay of the recording comes to.
+  // The summary of a replay of the recording.
   RunSummary replayed() const {
     SessionSpec spec = options_;
     spec.rate_hz.reset();

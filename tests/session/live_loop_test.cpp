@@ -29,13 +29,13 @@ TEST(TickClock, TicksAreDueAtWholeFractionsOfASecondForEver) {
   EXPECT_EQ(clock.due_ns(1), kStart_ns + 4'166'666);
   EXPECT_EQ(clock.due_ns(2), kStart_ns + 8'333'333);
   EXPECT_EQ(clock.due_ns(240), kStart_ns + kSecond_ns);
-  // A year at 10 kHz: 3.2e11 ticks, whose product with 1e9 has no room in 64 bits.
+  // A year at 10 kHz has 3.2e11 ticks; times 1e9 they would overflow 64 bits.
   const TickClock fast(10'000, kStart_ns);
   const std::int64_t year_s = 31'536'000;
   EXPECT_EQ(fast.due_ns(year_s * 10'000 + 1), kStart_ns + year_s * kSecond_ns + 100'000);
 }
 
-TEST(TickClock, ALateTickMovesNoneOfThoseAfterIt) {
+TEST(TickClock, ALateTickDoesNotShiftTheFollowingOnes) {
   TickClock clock(100, kStart_ns);
   const std::int64_t period_ns = 10'000'000;
   EXPECT_EQ(clock.begin(5, clock.due_ns(5)), TickClock::Begin::on_time);
@@ -58,17 +58,17 @@ TEST(TickClock, AfterMoreThanASecondItIsSetForward) {
 TEST(TickClock, APaceStretchesTheTimeBetweenTicks) {
   TickClock clock(100, kStart_ns);
   clock.set_pace(0.25, 10, clock.due_ns(9));
-  EXPECT_EQ(clock.due_ns(10), kStart_ns + 100'000'000) << "as it was";
+  EXPECT_EQ(clock.due_ns(10), kStart_ns + 100'000'000) << "tick 10 stays where it was";
   EXPECT_EQ(clock.due_ns(11), kStart_ns + 140'000'000);
   EXPECT_EQ(clock.due_ns(10 + 1'000'000), kStart_ns + 100'000'000 + 40'000'000'000'000);
   EXPECT_EQ(clock.begin(11, clock.due_ns(11) + 39'000'000), TickClock::Begin::on_time);
   EXPECT_EQ(clock.begin(12, clock.due_ns(12) + 41'000'000), TickClock::Begin::late);
-  // Quicker again: not as late as at the old pace.
+  // Back at pace 1 the next tick is due sooner than at the old pace.
   clock.set_pace(1.0, 13, clock.due_ns(12) + 1'000'000);
   EXPECT_EQ(clock.due_ns(13), kStart_ns + 100'000'000 + 2 * 40'000'000 + 11'000'000);
 }
 
-TEST(TickClock, WhatIsLateStaysLateAtAnotherPace) {
+TEST(TickClock, ALateTickStaysLateAtAnotherPace) {
   TickClock clock(100, kStart_ns);
   const std::int64_t now_ns = clock.due_ns(20);
   clock.set_pace(0.5, 15, now_ns);
@@ -87,7 +87,7 @@ TEST(TickClock, StandingStillIsNeitherLateNorSkipped) {
   EXPECT_EQ(clock.skipped_ns(), 0);
 }
 
-TEST(TickClock, OnlyPacesThatMakeSenseAreUsable) {
+TEST(TickClock, PacesAreLimitedToTheUsableRange) {
   EXPECT_EQ(TickClock::usable_pace(0.25), 0.25);
   EXPECT_EQ(TickClock::usable_pace(-1.0), 0.0);
   EXPECT_EQ(TickClock::usable_pace(std::nan("")), 0.0);
@@ -95,7 +95,7 @@ TEST(TickClock, OnlyPacesThatMakeSenseAreUsable) {
   EXPECT_EQ(TickClock::usable_pace(1e300), TickClock::kMaxPace);
 }
 
-TEST(TickClock, TicksThatTakeTooLongAreNoStandstill) {
+TEST(TickClock, TicksThatTakeTooLongAreNotAStandstill) {
   TickClock clock(100, kStart_ns);
   std::int64_t now_ns = kStart_ns;
   int set_forward = 0;
@@ -109,7 +109,7 @@ TEST(TickClock, TicksThatTakeTooLongAreNoStandstill) {
 
 // --- TimeHistogram
 
-TEST(TimeHistogram, IsZeroWithoutAnything) {
+TEST(TimeHistogram, IsZeroWhenEmpty) {
   const auto times = std::make_unique<TimeHistogram>();
   EXPECT_EQ(times->median_us(), 0.0);
   EXPECT_EQ(times->max_us(), 0.0);
@@ -132,7 +132,7 @@ TEST(TimeHistogram, HalfOfTheValuesLieBelowTheMedian) {
   EXPECT_EQ(times->max_us(), 1001.0);
 }
 
-TEST(TimeHistogram, WhatHasNoPlaceIsCountedAtTheEnds) {
+TEST(TimeHistogram, ValuesOutsideTheRangeCountAtTheEnds) {
   const auto times = std::make_unique<TimeHistogram>();
   times->add(-5);
   EXPECT_EQ(times->median_us(), 0.0);
@@ -146,7 +146,7 @@ TEST(TimeHistogram, WhatHasNoPlaceIsCountedAtTheEnds) {
 constexpr std::int64_t kNow_ns = std::int64_t{1} << 60;
 constexpr std::uint8_t kHatAtRest = 0x08, kFirstButton = 0x10;  // of made_pad()'s fifth byte
 
-// A pad on a real stream, reports gathered or taken as the loop does.
+// A pad on a real stream; its reports are gathered and taken as the loop does it.
 class LiveTickReports : public testing::Test {
  protected:
   void SetUp() override {
@@ -163,7 +163,7 @@ class LiveTickReports : public testing::Test {
     gather_until(1);
     step();
   }
-  // Until so many have come from the pads, those that were left out too.
+  // Gathers until the pads have sent so many reports, counting those that were left out.
   void gather_until(std::int64_t reports) {
     comes_true([&] {
       reports_->gather(kNow_ns);
@@ -207,14 +207,14 @@ constexpr int kAdded = -static_cast<int>(ReportKind::added),
               kRemoved = -static_cast<int>(ReportKind::removed),
               kCommand = -static_cast<int>(ReportKind::command);
 
-TEST_F(LiveTickReports, ATickUsesAllThatHasComeSinceTheLastOne) {
+TEST_F(LiveTickReports, ATickUsesAllReportsSinceThePreviousOne) {
   for (int x = 1; x <= 5; ++x) send(x);
   ASSERT_TRUE(comes_true([&] { return stream_->counts().reports >= 6; }));
   EXPECT_EQ(step(), (std::vector<int>{1, 2, 3, 4, 5}));
   EXPECT_EQ(step(), std::vector<int>());
 }
 
-TEST_F(LiveTickReports, OfMovesTheNewestIsKeptAndNothingIsLostInALongStandstill) {
+TEST_F(LiveTickReports, ALongStandstillKeepsTheNewestMoveAndLosesNoReport) {
   for (int i = 0; i < 2000; ++i) {
     send(i % 200);
     if (i % 32 == 31) gather_until(i + 2);
@@ -226,7 +226,7 @@ TEST_F(LiveTickReports, OfMovesTheNewestIsKeptAndNothingIsLostInALongStandstill)
   EXPECT_EQ(step(), std::vector<int>());
 }
 
-TEST_F(LiveTickReports, NoPressIsLeftOutAndEachShowsAtOnce) {
+TEST_F(LiveTickReports, EveryPressIsKeptAndShowsAtOnce) {
   for (int i = 0; i < 6; ++i) {
     send(10 * i + 1, i % 2 == 1);
     send(10 * i + 2, i % 2 == 1);
@@ -239,7 +239,7 @@ TEST_F(LiveTickReports, NoPressIsLeftOutAndEachShowsAtOnce) {
   EXPECT_EQ(step(), (std::vector<int>{3, 13, 23, 33, 43, 53}));
 }
 
-// Counted once: as gathered, then as the simulation counts them.
+// A press is counted once, first when it is gathered and then by the simulation.
 TEST_F(LiveTickReports, PressesNeverCountBackwards) {
   std::uint32_t before = presses(shown());
   std::int64_t sent = 1;
@@ -254,7 +254,7 @@ TEST_F(LiveTickReports, PressesNeverCountBackwards) {
   }
 }
 
-TEST_F(LiveTickReports, PluggingAndCommandsKeepTheirPlace) {
+TEST_F(LiveTickReports, PluggingAndCommandsKeepTheirOrder) {
   send(1);
   send(2);
   gather_until(3);
@@ -271,7 +271,7 @@ TEST_F(LiveTickReports, PluggingAndCommandsKeepTheirPlace) {
   EXPECT_EQ(step(), (std::vector<int>{2, kCommand, kRemoved, kAdded, 4}));
 }
 
-TEST_F(LiveTickReports, WhatFindsNoRoomWaitsInOrderForTheNextTick) {
+TEST_F(LiveTickReports, ReportsBeyondTheLimitWaitForTheNextTick) {
   const int kMost = TickReports::kMaxInTick;
   for (int i = 0; i < kMost + 20; ++i) {
     send(i % 200, i % 2 == 0);
@@ -284,13 +284,13 @@ TEST_F(LiveTickReports, WhatFindsNoRoomWaitsInOrderForTheNextTick) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(rest[i], (kMost + i) % 200);
 }
 
-TEST_F(LiveTickReports, ADeviceIsKnownOnceItWasAdded) {
+TEST_F(LiveTickReports, ADeviceIsKnownAfterItWasAdded) {
   EXPECT_TRUE(reports_->is_known(0));
   EXPECT_FALSE(reports_->is_known(1));
   EXPECT_FALSE(reports_->is_known(kNoDevice));
 }
 
-// --- the loop alone, so that the test can look into its thread
+// --- the loop alone, so that the test can count what its thread allocates
 
 struct LoopParts {
   std::unique_ptr<PadStream> pads;
@@ -348,7 +348,7 @@ TEST_F(LiveLoopTest, TheLoopThreadUsesNoHeap) {
   EXPECT_GT(parts.simulation->walkers()[0].state.frame.steps[kRightSide], 0);
 }
 
-// A pad that is held forward and notes what its motors are told.
+// A pad that is held forward and logs each command to its motors.
 struct MotorLog {
   std::mutex mutex;
   std::vector<std::pair<std::int64_t, Rumble>> calls;
@@ -423,18 +423,18 @@ TEST_F(LiveLoopTest, EveryHeelStrikeIsABeatOf80MsThatGrowsWithTheSpeed) {
   for (std::size_t i = 0; i + 1 < motor_log.calls.size(); i += 2) {
     const auto& [start_ns, beat] = motor_log.calls[i];
     const auto& [end_ns, rest] = motor_log.calls[i + 1];
-    EXPECT_GE(beat.strong, before) << "it walks faster and faster";
+    EXPECT_GE(beat.strong, before) << "the walk accelerates";
     EXPECT_EQ(rest.strong, 0);
     const double lasted_ms = static_cast<double>(end_ns - start_ns) * 1e-6;
     EXPECT_GT(lasted_ms, 75.0);
-    EXPECT_LT(lasted_ms, 300.0) << "much later only where the computer is busy";
+    EXPECT_LT(lasted_ms, 300.0) << "a beat ends late only on a busy computer";
     before = beat.strong;
   }
   parts = {};
   ::close(eventfd);
 }
 
-TEST(HeelBeat, IsAlwaysFeltAndFullFromOnePointFiveMetresASecondOn) {
+TEST(HeelBeat, IsNeverZeroAndFullFromOnePointFiveMetresASecond) {
   EXPECT_GT(heel_beat(0.0).strong, 0.2 * 65535);
   EXPECT_EQ(heel_beat(1.5).strong, 65535);
   EXPECT_EQ(heel_beat(9.0).strong, 65535);

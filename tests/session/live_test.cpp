@@ -1,4 +1,5 @@
-// Live sessions, from their start to the summary that a replay of their recording has, too.
+// Live sessions, from their start to their summary, which equals that of a replay of their
+// recording.
 #include "gaitpad/live.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@
 namespace gaitpad {
 namespace {
 
-// --- real time; a trace is the pad
+// --- real time; a recording stands in for the pads
 
 namespace fs = std::filesystem;
 
@@ -36,7 +37,7 @@ TEST_F(Live, ReplaysToTheSamePoses) {
   ASSERT_EQ(run.walkers.size(), 2u);
   const WalkerSummary& first = run.walkers.front();
   EXPECT_EQ(first.style, "tired");
-  EXPECT_GT(run.ticks, 3 * 240) << "2.4 s and a second more";
+  EXPECT_GT(run.ticks, 3 * 240) << "the recording lasts 2.4 s, the session a second longer";
   EXPECT_GT(run.reports, 400);
   EXPECT_EQ(run.bad_reports, 0);
   EXPECT_GT(first.steps[kLeftSide] + first.steps[kRightSide], 1);
@@ -44,7 +45,7 @@ TEST_F(Live, ReplaysToTheSamePoses) {
   EXPECT_EQ(session->status().pads.lost, 0);
 }
 
-TEST_F(Live, TellsTheNewestTickAndHowItGoes) {
+TEST_F(Live, ReportsTheNewestTickAndItsStatus) {
   options_.live.record.clear();
   auto session = started();
   std::int64_t tick = -1;
@@ -68,10 +69,10 @@ TEST_F(Live, TellsTheNewestTickAndHowItGoes) {
   EXPECT_GT(status.wait_us_median, 0.0);
   EXPECT_EQ(status.pads.plugged, 2);
   ASSERT_TRUE(session->stop());
-  EXPECT_FALSE(session->stop()) << "once";
+  EXPECT_FALSE(session->stop()) << "a session stops once";
 }
 
-TEST_F(Live, TicksAreTheTimeTimesTheRate) {
+TEST_F(Live, TickCountIsTimeTimesRate) {
   options_.live.record.clear();
   options_.rate_hz = 500;
   auto session = started();
@@ -84,7 +85,7 @@ TEST_F(Live, TicksAreTheTimeTimesTheRate) {
   EXPECT_NEAR(static_cast<double>(ticks), 500.0 * seconds, 100.0);
 }
 
-TEST_F(Live, AfterAStandstillTheSessionGoesOnWhereItStood) {
+TEST_F(Live, TicksMissedInAStandstillAreNotMadeUp) {
   auto session = started();
   sleep_for(600);
   const std::int64_t before = session->status().ticks;
@@ -101,7 +102,7 @@ TEST_F(Live, AfterAStandstillTheSessionGoesOnWhereItStood) {
   EXPECT_GE(status.standstills, 1);
   EXPECT_EQ(status.overloads, 0);
   EXPECT_GT(status.skipped_s, 1.3);
-  EXPECT_LT(status.ticks - before, 240) << "nothing is made up for";
+  EXPECT_LT(status.ticks - before, 240) << "missed ticks are not made up";
   const auto remarks = session->take_remarks();
   EXPECT_EQ(std::ranges::count_if(
                 remarks, [](const std::string& s) { return s.find("stood still") != s.npos; }),
@@ -120,7 +121,7 @@ TEST_F(Live, WithoutAPadItStandsAndRecordsNothing) {
   EXPECT_FALSE(fs::exists(options_.live.record));
 }
 
-TEST_F(Live, EndsWithItsRecordingWhereItIsNotStopped) {
+TEST_F(Live, DestroyingASessionCompletesItsRecording) {
   {
     auto session = started();
     sleep_for(300);
@@ -128,7 +129,7 @@ TEST_F(Live, EndsWithItsRecordingWhereItIsNotStopped) {
   EXPECT_TRUE(read_trace(options_.live.record));
 }
 
-TEST_F(Live, WrongWishesAreRefused) {
+TEST_F(Live, InvalidOptionsAreRefused) {
   options_.rate_hz = 0;
   EXPECT_EQ(LiveSession::start(options_).error().message,
             "a rate of 0 Hz is not within 1 .. 10000");
@@ -147,14 +148,14 @@ class LiveKeyboard : public Live {
   void SetUp() override {
     Live::SetUp();
     options_.live.keyboard = true;
-    options_.pad.wish.pad = "0001:fffe";  // nobody has one
+    options_.pad.wish.pad = "0001:fffe";  // no such pad exists
   }
   static double distance_m(LiveSession& session) {
     bool is_new = false;
     const SessionFrame& frame = session.latest(is_new);
     return frame.tick < 0 ? 0.0 : frame.walkers[0].pose.root_m.z;
   }
-  // Left stick after each input report of the device in the recording that has this driver.
+  // The recorded left stick after each input report of this driver's device.
   std::vector<vec2> recorded_stick(const std::string& driver) {
     const Trace trace = value_of(read_trace(options_.live.record));
     std::vector<vec2> all;
@@ -182,10 +183,10 @@ TEST_F(LiveKeyboard, WalksAndItsRecordingReplaysToTheSamePoses) {
   session->steer(vec2(0.0));
   sleep_for(400);
   bool is_new = false;
-  EXPECT_EQ(session->latest(is_new).stick.left, vec2(0.0)) << "at rest exactly";
+  EXPECT_EQ(session->latest(is_new).stick.left, vec2(0.0)) << "exactly at rest";
   const RunSummary run = stopped(*session);
   EXPECT_EQ(run.bad_reports, 0);
-  EXPECT_EQ(session->status().pads.plugged, 0) << "it is no pad that was plugged in";
+  EXPECT_EQ(session->status().pads.plugged, 0) << "the keyboard does not count as a pad";
   const std::vector<vec2> stick = recorded_stick("keyboard");
   ASSERT_GT(stick.size(), 20u);
   EXPECT_EQ(stick.front(), vec2(0.0));
@@ -207,7 +208,7 @@ TEST_F(LiveKeyboard, TheSmallestDeflectionCountsAndTheLargestIsOne) {
     most = std::max(most, y);
     return most == 1.0;
   }));
-  EXPECT_LT(least, 0.12) << "a first step of 4 to 16 ms of 150";
+  EXPECT_LT(least, 0.12) << "the first step is 4 to 16 ms of the 150 ms to full";
   session->steer(vec2(0.002, 0.0));
   EXPECT_TRUE(comes_true([&] {
     session->advance(1);
@@ -216,8 +217,8 @@ TEST_F(LiveKeyboard, TheSmallestDeflectionCountsAndTheLargestIsOne) {
   EXPECT_NEAR(session->latest(is_new).stick.left.x, 0.002, 1e-4);
 }
 
-// A calibration that was made for somebody's pad is none for the keyboard.
-TEST_F(LiveKeyboard, TheUsersCalibrationIsNotForIt) {
+// The user's calibration of a pad must not change the keyboard's stick.
+TEST_F(LiveKeyboard, ACalibrationOfAPadDoesNotApply) {
   options_.pad.calibration = (folder_ / "pad.toml").string();
   std::ofstream(options_.pad.calibration) << "[left]\ninner = 0.5\nouter = 0.9\n";
   auto session = started();
@@ -227,16 +228,16 @@ TEST_F(LiveKeyboard, TheUsersCalibrationIsNotForIt) {
   stopped(*session);
 }
 
-TEST_F(LiveKeyboard, ARecordingAsPadEndsTheSessionAsEver) {
+TEST_F(LiveKeyboard, ARecordingAsPadStillEndsTheSession) {
   options_.pad.wish.pad = (folder_ / "pads.hid").string();
   auto session = started();
   session->steer(vec2(1.0, 0.0));
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
   stopped(*session);
-  EXPECT_EQ(session->status().pads.plugged, 4) << "two pads, each twice";
+  EXPECT_EQ(session->status().pads.plugged, 4) << "two pads, plugged in twice each";
 }
 
-// A pad that rests for three seconds and is held to the right from the second one on.
+// A pad that rests for two seconds and is then held to the right for one.
 Trace late_pad_trace() {
   Trace trace;
   trace.devices.emplace_back().info = made_pad();
@@ -246,7 +247,7 @@ Trace late_pad_trace() {
   return trace;
 }
 
-TEST_F(LiveKeyboard, CountsWhileThePadRests) {
+TEST_F(LiveKeyboard, DrivesWhileThePadRests) {
   options_.pad.wish.pad = (folder_ / "late.hid").string();
   ASSERT_TRUE(write_trace(late_pad_trace(), options_.pad.wish.pad));
   auto session = started();
@@ -265,7 +266,7 @@ TEST_F(LiveKeyboard, CountsWhileThePadRests) {
   stopped(*session);
 }
 
-TEST_F(LiveKeyboard, WithoutOneSteeringDoesNothing) {
+TEST_F(LiveKeyboard, SteeringDoesNothingWithoutAKeyboard) {
   options_.live.keyboard = false;
   options_.live.record.clear();
   options_.live.clock = SessionSpec::Live::Clock::by_hand;
@@ -281,7 +282,7 @@ TEST_F(LiveKeyboard, WithoutOneSteeringDoesNothing) {
 
 class LivePace : public Live {
  protected:
-  // Until no tick has run for a tenth of a second.
+  // Waits until no tick has run for a tenth of a second; returns the number of ticks.
   static std::int64_t ticks_when_still(LiveSession& session) {
     std::int64_t before = -1, ticks = session.status().ticks;
     while (ticks != before) {
@@ -292,7 +293,7 @@ class LivePace : public Live {
   }
 };
 
-TEST_F(LivePace, StandingStillIsNoLatenessAndNothingIsMadeUpFor) {
+TEST_F(LivePace, StandingStillIsNotLatenessAndIsNotMadeUp) {
   auto session = started();
   sleep_for(200);
   session->set_pace(0.0);
@@ -304,24 +305,25 @@ TEST_F(LivePace, StandingStillIsNoLatenessAndNothingIsMadeUpFor) {
   sleep_for(300);
   const LiveStatus after = session->status();
   EXPECT_GT(after.ticks, still);
-  EXPECT_LT(after.ticks - still, 240) << "more than a second was not run";
+  EXPECT_LT(after.ticks - still, 240) << "the ticks of the pause are not made up";
   EXPECT_EQ(after.standstills + after.overloads, 0);
   EXPECT_EQ(after.skipped_s, 0.0);
   EXPECT_LT(after.late_us_max, 1e6);
-  EXPECT_LT(after.wait_us_max, 1e6) << "what came meanwhile has waited for nobody";
+  EXPECT_LT(after.wait_us_max, 1e6)
+      << "reports that arrive during the pause do not count as waiting";
   EXPECT_EQ(after.pads.lost, 0);
   EXPECT_EQ(session->take_remarks(), std::vector<std::string>());
   ASSERT_TRUE(session->stop());
   EXPECT_EQ(session->status().recording_lost, 0);
 }
 
-TEST_F(LivePace, AStepIsOneTickAndCountsOnlyWhileItStandsStill) {
+TEST_F(LivePace, AStepIsOneTickAndWorksOnlyWhileStandingStill) {
   options_.live.record.clear();
   auto session = started();
-  session->step(100'000);  // of no effect: it runs
+  session->step(100'000);  // has no effect while the session runs
   sleep_for(100);
   session->set_pace(0.0);
-  session->step(1);  // at once behind it, before the loop has seen either
+  session->step(1);  // right after it, before the loop has seen either
   const std::int64_t still = ticks_when_still(*session);
   EXPECT_LT(still, 240);
   for (const int steps : {1, 4, 60}) {
@@ -336,7 +338,7 @@ TEST_F(LivePace, AStepIsOneTickAndCountsOnlyWhileItStandsStill) {
   EXPECT_EQ(session->latest(is_new).tick, still + 64);
 }
 
-TEST_F(LivePace, AtAQuarterOfThePaceThereIsAQuarterOfTheTicks) {
+TEST_F(LivePace, AQuarterOfThePaceGivesAQuarterOfTheTicks) {
   options_.live.record.clear();
   auto session = started();
   ASSERT_TRUE(comes_true([&] { return session->status().ticks > 0; }));
@@ -352,7 +354,7 @@ TEST_F(LivePace, AtAQuarterOfThePaceThereIsAQuarterOfTheTicks) {
   }
 }
 
-TEST_F(LivePace, NoNumberAndLessThanNothingStandStill) {
+TEST_F(LivePace, NotANumberAndNegativePacesStandStill) {
   options_.live.record.clear();
   auto session = started();
   for (const double pace : {-1.0, std::nan(""), 1e-12}) {
@@ -363,7 +365,7 @@ TEST_F(LivePace, NoNumberAndLessThanNothingStandStill) {
   }
 }
 
-TEST_F(LivePace, AStopWaitsForNoTickThatIsFarAway) {
+TEST_F(LivePace, StoppingDoesNotWaitForADistantTick) {
   options_.live.record.clear();
   options_.rate_hz = 1;
   auto session = started();
@@ -418,7 +420,7 @@ TEST_F(LivePace, AViewerGetsASampleOfEveryTickInOrder) {
   EXPECT_EQ(next, session->status().ticks);
 }
 
-TEST_F(LivePace, SamplesThatNobodyTakesAreDroppedAndNothingElse) {
+TEST_F(LivePace, OnlySamplesThatNobodyTakesAreDropped) {
   options_.live.record.clear();
   options_.live.clock = SessionSpec::Live::Clock::by_hand;
   auto session = started();
@@ -434,26 +436,26 @@ TEST_F(LivePace, SamplesThatNobodyTakesAreDroppedAndNothingElse) {
   EXPECT_EQ(sample.tick, 5000);
 }
 
-TEST_F(LivePace, TheTimeIsTheTicksOverTheRate) {
+TEST_F(LivePace, TimeIsTickCountOverRate) {
   options_.live.record.clear();
   auto session = started();
   sleep_for(700);
   ASSERT_TRUE(session->stop());
   const LiveStatus status = session->status();
-  // The last one may have been late, and the stop is seen within a nap.
+  // The last tick may have been late, and the loop sees the stop only after its next sleep.
   EXPECT_NEAR(static_cast<double>(status.ticks), 240.0 * status.time_s, 12.0);
   EXPECT_GT(status.late_us_max, 0.0);
   EXPECT_LE(status.late_us_median, status.late_us_max);
   std::int64_t waits = 0;
   for (const std::int64_t count : status.wait_counts) waits += count;
-  EXPECT_GT(waits, 80) << "125 reports a second of two pads";
+  EXPECT_GT(waits, 80) << "two pads send 125 reports a second each";
   EXPECT_LE(waits, status.pads.reports);
   EXPECT_TRUE(status.time_policy == "normal priority" ||
               status.time_policy.starts_with("SCHED_FIFO "))
       << status.time_policy;
 }
 
-TEST_F(LivePace, ByHandNothingRunsButWhatIsAskedFor) {
+TEST_F(LivePace, ByHandOnlyRequestedTicksRun) {
   options_.live.clock = SessionSpec::Live::Clock::by_hand;
   auto session = started();
   sleep_for(100);
@@ -481,11 +483,11 @@ TEST_F(LivePace, ByHandNothingRunsButWhatIsAskedFor) {
   EXPECT_EQ(run.ticks, 1601);
   EXPECT_GT(run.reports, 50);
   session->advance(1);
-  EXPECT_EQ(session->status().ticks, 1601) << "it was stopped";
+  EXPECT_EQ(session->status().ticks, 1601) << "a stopped session runs no tick";
   EXPECT_FALSE(session->stop());
 }
 
-TEST_F(LivePace, HalfAnHourByHandIsARecordingThatReads) {
+TEST_F(LivePace, ARecordingOfHalfAnHourByHandCanBeRead) {
   options_.rate_hz = 20;
   options_.live.clock = SessionSpec::Live::Clock::by_hand;
   auto session = started();
@@ -496,7 +498,7 @@ TEST_F(LivePace, HalfAnHourByHandIsARecordingThatReads) {
   stopped(*session);
 }
 
-TEST_F(LivePace, ByTheClockNobodyElseRunsTicks) {
+TEST_F(LivePace, AdvanceDoesNothingWhileTheClockRunsTicks) {
   options_.live.record.clear();
   options_.rate_hz = 1;
   auto session = started();
@@ -504,7 +506,7 @@ TEST_F(LivePace, ByTheClockNobodyElseRunsTicks) {
   EXPECT_LT(session->status().ticks, 100);
 }
 
-TEST_F(LivePace, TheCastAndTheNamesOfPadsAreTold) {
+TEST_F(LivePace, GivesTheCastAndTheNamesOfPads) {
   options_.live.record.clear();
   auto session = started();
   const Cast& cast = session->cast();

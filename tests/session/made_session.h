@@ -1,4 +1,4 @@
-// Made-up pads, reports and sessions for the tests of src/session: no file needed.
+// Made pads, reports and sessions for the tests of src/session, without files.
 #pragma once
 #include <string>
 #include <vector>
@@ -25,7 +25,7 @@ inline DeviceInfo made_pad() {
   return info;
 }
 
-// Its report with these counts of X and Y; 0x80 is the middle, Y grows backwards.
+// A report of made_pad() with these counts of X and Y. 0x80 is the middle; Y grows backwards.
 inline Report made_report(int x, int y, std::uint16_t device = 0) {
   Report report;
   report.device = device;
@@ -47,7 +47,7 @@ inline Report made_command(std::string_view text) {
   return report;
 }
 
-// Puts a report behind the others of a trace.
+// Appends a report to a trace.
 inline void add_event(Trace& trace, std::int64_t time_us, const Report& report) {
   TraceEvent event;
   event.time_us = time_us;
@@ -59,7 +59,7 @@ inline void add_event(Trace& trace, std::int64_t time_us, const Report& report) 
   trace.events.push_back(event);
 }
 
-// It does not stream; calibration of an unknown stick.
+// made_pad() with the calibration of an unknown stick.
 inline PadConfig made_pad_config() {
   PadConfig config;
   auto layout = pad_layout(made_pad(), {});
@@ -76,7 +76,7 @@ inline Style made_limp() {
   return style;
 }
 
-// The procedural walk; styles `even` and `limp`; one made pad.
+// A session of the procedural walk, the styles `even` and `limp`, and one made pad.
 inline SimulationConfig made_config(int walkers) {
   SimulationConfig config;
   config.pads = {made_pad_config()};
@@ -101,15 +101,15 @@ inline void step(Simulation& simulation, const std::vector<Report>& reports, int
   for (int i = 1; i < ticks; ++i) simulation.step({});
 }
 
-// A stick pushed forward and held from tick 0 on.
+// A simulation after `ticks` ticks with the stick held at x, y from tick 0 on.
 inline Simulation walked(const SimulationConfig& config, int x, int y, int ticks) {
   Simulation simulation = made_simulation(config);
   step(simulation, {made_report(x, y)}, ticks);
   return simulation;
 }
 
-// Slopes, stairs and waves, zones, blends, tiring, stiff arms, hands that hold, a look: all that
-// poses besides the legs on level ground.
+// Everything that changes a pose besides the legs on level ground: slopes, stairs, waves, zones,
+// blends, tiring, stiff arms, hands that carry or hold a rail, and the look.
 inline SimulationConfig made_uneven_config(int walkers) {
   SimulationConfig config = made_config(walkers);
   Terrain terrain;
@@ -137,7 +137,7 @@ inline SimulationConfig made_uneven_config(int walkers) {
   return config;
 }
 
-// The reports of one tick of a lively walk: standing, straight on, curves, a style, values changed,
+// The reports of one tick of a varied walk: standing, straight, curves, a style, changed values,
 // unplugging, a reset.
 inline std::vector<Report> made_tick(int tick) {
   constexpr int kPeriod = 3000;

@@ -29,7 +29,7 @@ SessionSpec paper_cast(const std::string& trace, Damage damage = Damage::refuse)
   return spec;
 }
 
-// Everything of a frame that is drawn, and of a sample.
+// All fields of a frame that are drawn, and all fields of a sample.
 std::uint64_t print_of(const SessionFrame& frame) {
   WordHash hash;
   const auto add = [&hash](const vec3& v) {
@@ -69,7 +69,7 @@ std::uint64_t print_of(const TickSample& sample) {
   return hash.value();
 }
 
-// What each tick is in a run from the beginning to the end.
+// Each tick's frame and sample in a run from the beginning to the end.
 struct Straight {
   std::vector<std::uint64_t> frames, samples;
   std::uint64_t pose_hash = 0;
@@ -94,7 +94,7 @@ Straight straight_run(const std::string& path) {
 class PlaybackTest : public testing::Test {
  protected:
   void open(const std::string& path) { playback_ = value_of(Playback::open(paper_cast(path))); }
-  // A lively session of so many ticks: walking, commands, buttons, unplugging.
+  // Writes a session of so many ticks with walking, commands, buttons and unplugging.
   std::string write_session(std::int64_t ticks, int rate_hz = kRateHz) {
     TraceWriter writer;
     TraceDevice device;
@@ -133,7 +133,7 @@ class PlaybackTest : public testing::Test {
   std::unique_ptr<Playback> playback_;
 };
 
-TEST_F(PlaybackTest, AtTheEndTheHashIsThatOfAReplay) {
+TEST_F(PlaybackTest, TheHashAtTheEndIsThatOfAReplay) {
   for (const std::string& path : {kRound, write_session(4000)}) {
     const auto replayed = replay(paper_cast(path));
     ASSERT_TRUE(replayed) << replayed.error().message;
@@ -165,7 +165,7 @@ TEST_F(PlaybackTest, AnyTickIsTheSameAsInAStraightRun) {
   }
 }
 
-TEST_F(PlaybackTest, AWayThatWasLeftHalfwayMakesNoDifference) {
+TEST_F(PlaybackTest, AnInterruptedSeekMakesNoDifference) {
   const Straight straight = straight_run(write_session(9000));
   open(path_);
   std::mt19937 random(4);
@@ -178,7 +178,7 @@ TEST_F(PlaybackTest, AWayThatWasLeftHalfwayMakesNoDifference) {
   }
 }
 
-// At 10 Hz there is a snapshot every ten ticks: half of them are dropped twice.
+// At 10 Hz there is a snapshot every ten ticks, so the playback has to drop every other one twice.
 TEST_F(PlaybackTest, AnyTickOfALongRecordingIsTheSameAsInAStraightRun) {
   const Straight straight = straight_run(write_session(25000, 10));
   open(path_);
@@ -187,13 +187,13 @@ TEST_F(PlaybackTest, AnyTickOfALongRecordingIsTheSameAsInAStraightRun) {
   std::mt19937 random(6);
   for (int i = 0; i < 30; ++i) {
     const auto tick = static_cast<std::int64_t>(random() % straight.frames.size());
-    // A snapshot at most 40 ticks before the history.
+    // The nearest snapshot is at most 40 ticks before the history.
     ASSERT_TRUE(playback_->seek(tick, Playback::kHistoryTicks + 40)) << tick;
     ASSERT_EQ(print_of(playback_->frame()), straight.frames[tick]) << tick;
   }
 }
 
-TEST_F(PlaybackTest, SamplesGoOnWithoutAGapAndBeginAgainAfterAJump) {
+TEST_F(PlaybackTest, SamplesHaveNoGapsAndRestartAfterAJump) {
   open(write_session(9000));
   TickSample sample;
   std::int64_t next = 0;
@@ -210,13 +210,13 @@ TEST_F(PlaybackTest, SamplesGoOnWithoutAGapAndBeginAgainAfterAJump) {
   expect_up_to(2000);
   reach(2000 + Playback::kHistoryTicks, 100);  // on
   expect_up_to(2000 + Playback::kHistoryTicks);
-  reach(8000, 100);  // ahead, where it has never been
+  reach(8000, 100);  // forward, beyond all ticks seen so far
   next = 8001 - Playback::kHistoryTicks;
   expect_up_to(8000);
   reach(100, 100);  // there is less before it
   next = 0;
   expect_up_to(100);
-  // On the way to a later place an earlier one is asked for: its own history is whole.
+  // A seek to an earlier tick interrupts one to a later tick: the history is complete.
   playback_->seek(5000, 1 << 20);
   playback_->seek(8000, 1500);
   reach(7000, 100);
@@ -224,7 +224,7 @@ TEST_F(PlaybackTest, SamplesGoOnWithoutAGapAndBeginAgainAfterAJump) {
   expect_up_to(7000);
 }
 
-TEST_F(PlaybackTest, PlacesBeforeTheBeginningAndBehindTheEndAreTheseTwo) {
+TEST_F(PlaybackTest, SeeksBeyondTheEndsAreClamped) {
   open(write_session(500));
   EXPECT_EQ(playback_->frame().tick, -1);
   EXPECT_EQ(playback_->frame().walker_count, 4);
@@ -255,7 +255,7 @@ TEST_F(PlaybackTest, CommandsAndPluggingAreMarked) {
   EXPECT_EQ(marks, expected);
 }
 
-TEST_F(PlaybackTest, MarksAreNotWithoutEnd) {
+TEST_F(PlaybackTest, TheNumberOfMarksIsBounded) {
   std::string text = trace_text([] {
     Trace trace;
     trace.devices.emplace_back().info = made_pad();
@@ -269,7 +269,7 @@ TEST_F(PlaybackTest, MarksAreNotWithoutEnd) {
   EXPECT_EQ(playback_->marks().back().text, "mark me");
 }
 
-TEST_F(PlaybackTest, ErrorsAndRemarksAreThoseOfAReplay) {
+TEST_F(PlaybackTest, ErrorsAndRemarksMatchAReplay) {
   write_session(100);
   std::ofstream(path_, std::ios::app) << "nonsense\n";
   EXPECT_EQ(Playback::open(paper_cast(path_)).error().message,
@@ -280,7 +280,7 @@ TEST_F(PlaybackTest, ErrorsAndRemarksAreThoseOfAReplay) {
   EXPECT_EQ((*lenient)->remarks()[0].substr(0, 33), "1 damaged lines were skipped, the");
   SessionSpec slower = paper_cast(path_, Damage::skip);
   slower.rate_hz = 120;
-  EXPECT_FALSE(Playback::open(slower)) << "it says 240";
+  EXPECT_FALSE(Playback::open(slower)) << "the recording states 240 Hz";
   EXPECT_FALSE(Playback::open(paper_cast("no/such.hid")));
 }
 

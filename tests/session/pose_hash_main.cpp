@@ -1,6 +1,6 @@
 // For determinism_test.py: walks made-up sessions and prints the pose hash of every tick, so that
-// two builds can be compared. Nothing but arithmetic: no file, but for a motion written and read
-// again in the folder given. The strides that the walks read are solved, not taken from a cache.
+// two builds can be compared. It computes only; the one file is a motion that it writes into the
+// given folder and reads back. The strides that the walks read are solved, not taken from a cache.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -35,7 +35,8 @@ int walk(const char* name, const SimulationConfig& config) {
   return 0;
 }
 
-// The procedural walk through a BVH file: the reader, the legs found, the cycle made periodic.
+// The procedural walk through a BVH file: covers the reader, the search for legs and the periodic
+// cycle.
 Result<GaitCycle> cycle_through_file(const std::string& path) {
   const Motion motion = procedural_motion();
   std::ofstream out(path);

@@ -49,7 +49,7 @@ Report at(std::int64_t time_ns, Report report) {
 
 Trace parsed(const std::string& text) { return value_of(parse_trace(text, "recording")); }
 
-// The recorded lines of one session.
+// Collects the recorded lines of one session.
 class Lines {
  public:
   explicit Lines(std::optional<int> rate_hz, const RecordingLines::Limits& limits = {})
@@ -60,7 +60,7 @@ class Lines {
   std::string all;
 };
 
-TEST(RecordingLines, AreWhatTheTraceFormatSays) {
+TEST(RecordingLines, FollowTheTraceFormat) {
   Lines l(240);
   l.lines.clock(0, kStart_ns);
   l.lines.add(3, at(kStart_ns + 10'000'999, made_plug(ReportKind::added, 0)));
@@ -112,7 +112,7 @@ TEST(RecordingLines, ReadBackAsTheTicksThatUsedThem) {
                                        2100, 2300, 2300, 2301, 2301, 2600, 2600, 2800}));
 }
 
-TEST(RecordingLines, TellDevicesApartFromTheSecondOneOn) {
+TEST(RecordingLines, NameTheDeviceFromTheSecondOneOn) {
   Lines l(240);
   l.lines.add(0, at(kStart_ns, made_plug(ReportKind::added, 0)));
   l.lines.add(0, at(kStart_ns, made_report(1, 1, 0)));
@@ -129,7 +129,7 @@ TEST(RecordingLines, TellDevicesApartFromTheSecondOneOn) {
   EXPECT_EQ(trace.events[4].device, 1);
 }
 
-TEST(RecordingLines, KeepTheOrderOfPluggingWhateverTheIndex) {
+TEST(RecordingLines, KeepTheOrderOfPluggingForAnyIndex) {
   Lines l(240);
   l.lines.add(0, at(kStart_ns, made_plug(ReportKind::added, 4)));
   l.lines.add(0, at(kStart_ns, made_plug(ReportKind::added, 0)));
@@ -140,7 +140,7 @@ TEST(RecordingLines, KeepTheOrderOfPluggingWhateverTheIndex) {
   EXPECT_EQ(trace.events[0].device, 0);
 }
 
-// A whole day by hand in a second; a pause of three hours before the last report.
+// A day of ticks runs by hand within a second; a pause of three hours precedes the last report.
 TEST(RecordingLines, TicksFasterOrSlowerThanTheTimeReadBack) {
   Lines l(240);
   const std::int64_t day = 24 * 3600 * 240;
@@ -161,8 +161,9 @@ TEST(RecordingLines, TicksFasterOrSlowerThanTheTimeReadBack) {
   EXPECT_EQ(trace.events[1].tick, day - 9);
 }
 
-// The kernel's stamp of one device may lie before the other's that was read earlier.
-TEST(RecordingLines, TimesGoBackBetweenDevicesButNotOnOne) {
+// A report may carry an earlier kernel time stamp than a report of another device that was read
+// before.
+TEST(RecordingLines, TimesMayDecreaseBetweenDevicesButNotWithinOne) {
   Lines l(240);
   l.lines.add(0, at(kStart_ns, made_plug(ReportKind::added, 0)));
   l.lines.add(0, at(kStart_ns - 5'000'000, made_plug(ReportKind::added, 1)));
@@ -179,7 +180,7 @@ TEST(RecordingLines, TimesGoBackBetweenDevicesButNotOnOne) {
   EXPECT_EQ(trace.end_time_us, 9000) << "the end is not before the last event";
 }
 
-TEST(RecordingLines, WithoutARateHaveTimesAlone) {
+TEST(RecordingLines, HaveOnlyTimesWithoutARate) {
   Lines l(std::nullopt);
   l.lines.add(0, at(kStart_ns, made_plug(ReportKind::added, 0)));
   l.lines.add(0, at(kStart_ns + 9'000'000, made_report(1, 1, 0)));
@@ -190,11 +191,11 @@ TEST(RecordingLines, WithoutARateHaveTimesAlone) {
   EXPECT_FALSE(trace.rate_hz);
   EXPECT_FALSE(trace.has_ticks);
   ASSERT_EQ(trace.events.size(), 3u);
-  EXPECT_EQ(trace.events[2].time_us, 9000) << "without ticks the times are the order";
+  EXPECT_EQ(trace.events[2].time_us, 9000) << "without ticks the times give the order";
   EXPECT_EQ(text.find("\nQ:"), std::string::npos);
 }
 
-// The reader takes no gap of more than ten minutes.
+// The reader refuses gaps of more than ten minutes, so the recorder has to fill them.
 TEST(RecordingLines, AnHourOfRestAnywhereCanBeRead) {
   Lines l(240);
   const std::int64_t hour_ticks = 3600 * 240;
@@ -249,7 +250,7 @@ TEST(RecordingLines, EndWithAWholeTickBeforeTheFileIsTooLarge) {
     for (int i = 0; i < 5; ++i) {
       taken += l.lines.add(tick, at(kStart_ns + tick * 4'000'000, made_report(i, tick)));
     }
-    EXPECT_TRUE(taken == 5 || taken == 0) << "half of tick " << tick;
+    EXPECT_TRUE(taken == 5 || taken == 0) << "only a part of tick " << tick;
     if (taken == 0 && refused_from < 0) refused_from = tick;
   }
   EXPECT_TRUE(l.lines.is_full());
@@ -260,21 +261,21 @@ TEST(RecordingLines, EndWithAWholeTickBeforeTheFileIsTooLarge) {
   EXPECT_LT(l.all.size(), 4500u);
 }
 
-TEST(RecordingLines, WhatCouldNotBeReadBackIsRefused) {
+TEST(RecordingLines, RefuseWhatCouldNotBeReadBack) {
   Lines l(240);
   EXPECT_FALSE(l.lines.add(0, made_report(1, 2, kMaxTraceDevices)));
-  EXPECT_TRUE(l.lines.add(0, made_command("  "))) << "a blank command does nothing anyway";
+  EXPECT_TRUE(l.lines.add(0, made_command("  "))) << "a blank command does nothing";
   RecordingLines nameless(240,
                           [](std::uint16_t) -> const TraceDevice& {
                             static const TraceDevice none;
                             return none;
                           },
                           {});
-  EXPECT_FALSE(nameless.add(0, made_plug(ReportKind::added, 0))) << "it has no descriptor";
+  EXPECT_FALSE(nameless.add(0, made_plug(ReportKind::added, 0))) << "the device has no descriptor";
   EXPECT_FALSE(nameless.has_devices());
 }
 
-TEST(RecordingLines, LongNamesAreCutToWhatTheReaderTakes) {
+TEST(RecordingLines, LongNamesAreCutToTheReadersLimit) {
   TraceDevice device = made_device(0);
   device.info.name = std::string(5000, 'x') + "\nE: ";
   RecordingLines lines(240, [&](std::uint16_t) -> const TraceDevice& { return device; }, {});
@@ -287,7 +288,7 @@ class RecordingFile : public testing::Test {
   std::unique_ptr<Recording> started() const {
     return value_of(Recording::start({file_.string(), 240, {}}, made_devices));
   }
-  // Until it stands in FILE.part, a second at most.
+  // Waits until the text is in FILE.part, which takes a second at most.
   bool is_written(const std::string& piece) const {
     for (int i = 0; i < 100; ++i) {
       if (text_in(part_).find(piece) != std::string::npos) return true;
@@ -301,7 +302,7 @@ class RecordingFile : public testing::Test {
   const fs::path file_ = folder_ / "walk.hid", part_ = folder_ / "walk.hid.part";
 };
 
-TEST_F(RecordingFile, TakesItsNameAtTheEnd) {
+TEST_F(RecordingFile, GetsItsNameAtTheEnd) {
   std::ofstream(file_) << "old";
   auto recording = started();
   recording->clock(0, now_ns());
@@ -318,7 +319,7 @@ TEST_F(RecordingFile, TakesItsNameAtTheEnd) {
   EXPECT_EQ(trace.events.size(), 2u);
 }
 
-TEST_F(RecordingFile, WithoutAnEndLeavesAPartThatReplays) {
+TEST_F(RecordingFile, AnUnfinishedOneLeavesAPartThatReplays) {
   std::ofstream(file_) << "old";
   {
     auto recording = started();
@@ -328,10 +329,10 @@ TEST_F(RecordingFile, WithoutAnEndLeavesAPartThatReplays) {
   EXPECT_EQ(text_in(file_), "old");
   EXPECT_EQ(parsed(text_in(part_)).events.size(), 2u);
   started()->add(0, made_plug(ReportKind::added));
-  EXPECT_EQ(parsed(text_in(part_)).events.size(), 1u) << "the next one begins anew";
+  EXPECT_EQ(parsed(text_in(part_)).events.size(), 1u) << "the next recording starts from nothing";
 }
 
-TEST_F(RecordingFile, WithoutAnyPadIsNotWritten) {
+TEST_F(RecordingFile, IsNotWrittenWithoutAPad) {
   auto recording = started();
   recording->add(0, made_command("style even"));
   const auto remarks = recording->finish(10, now_ns());
@@ -342,7 +343,7 @@ TEST_F(RecordingFile, WithoutAnyPadIsNotWritten) {
   EXPECT_FALSE(fs::exists(part_));
 }
 
-TEST_F(RecordingFile, WhatFindsNoRoomIsCountedAndTold) {
+TEST_F(RecordingFile, LostReportsAreCountedAndReported) {
   auto recording = started();
   const std::int64_t now_ns = gaitpad::now_ns();
   for (int i = 0; i < 100'000; ++i) recording->add(i / 100, at(now_ns, made_report(1, 2)));
@@ -354,7 +355,7 @@ TEST_F(RecordingFile, WhatFindsNoRoomIsCountedAndTold) {
 }
 
 // A limit of the file's size stands in for a full disk.
-TEST_F(RecordingFile, AFullDiskIsToldTheOldFileIsKeptAndThePartIsWhole) {
+TEST_F(RecordingFile, AFullDiskIsReportedAndKeepsTheOldFileAndAReadablePart) {
   std::ofstream(file_) << "old";
   auto recording = started();
   ASSERT_TRUE(is_written("recorded by"));
@@ -373,7 +374,7 @@ TEST_F(RecordingFile, AFullDiskIsToldTheOldFileIsKeptAndThePartIsWhole) {
   EXPECT_EQ(text_in(part_).back(), '\n');
 }
 
-TEST_F(RecordingFile, PlacesWhereNoFileCanStandAreNamed) {
+TEST_F(RecordingFile, ErrorsNameUnusablePaths) {
   EXPECT_EQ(Recording::start({folder_.string(), 240, {}}, made_devices).error().message,
             folder_.string() + ": this is no file, a recording cannot take its place");
   const std::string nowhere = (folder_ / "none" / "x.hid").string();

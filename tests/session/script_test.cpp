@@ -38,9 +38,9 @@ TEST(Commands, AreForAllOrForOne) {
   expect("mark  what ever 1 2 3", Verb::mark, 0, "", 0);
 }
 
-TEST(Commands, ALoneNumberIsAName) { expect("style 1", Verb::style, 0, "1", 0); }
+TEST(Commands, ASingleNumberIsAName) { expect("style 1", Verb::style, 0, "1", 0); }
 
-TEST(Commands, MalformedOnesAreNone) {
+TEST(Commands, MalformedOnesAreRejected) {
   const char* const bad[] = {"",
                              " ",
                              "style",
@@ -112,21 +112,21 @@ TEST(Script, ErrorsNameFileAndLine) {
   begins(event("1", "mark " + std::string(300, 'x')), "walk.toml:3: the command is too long");
 }
 
-// The recording is the session: a replay of it needs neither the script nor doubles anything.
+// The recording holds the script's commands: a replay needs no script and runs no command twice.
 class Scripted : public Live {
  protected:
   void SetUp() override {
     Live::SetUp();
     options_.live.clock = SessionSpec::Live::Clock::by_hand;
     options_.live.keyboard = true;
-    options_.pad.wish.pad = "0001:fffe";  // nobody has one: the script alone walks
+    options_.pad.wish.pad = "0001:fffe";  // no such pad exists: only the script drives the walk
   }
   std::string write(const std::string& name, const std::string& text) {
     return own_.write(name, text);
   }
   std::uint64_t hash_of_live(int ticks) {
     const auto session = started();
-    // A recording needs a device.
+    // The recording needs a device, so wait for the keyboard.
     EXPECT_TRUE(comes_true([&] {
       session->advance(1);
       return !session->pad_name(0).empty();
@@ -151,7 +151,7 @@ TEST_F(Scripted, EventsAreRecordedAndAReplayNeedsNoScript) {
   EXPECT_EQ(run.bad_commands, 0);
 }
 
-// Zones and tiring follow from the state: they stand in no recording and act once in a replay.
+// Zones and tiring follow from the state. They are not recorded, and a replay applies them once.
 TEST_F(Scripted, ZonesAndTiringActOnceInAReplay) {
   options_.walk.terrain =
       write("zones.toml", "[[zone]]\nfrom_m = 1\nto_m = 2.5\nstyle = \"limp_left_hip\"\n");
@@ -167,7 +167,7 @@ TEST_F(Scripted, ZonesAndTiringActOnceInAReplay) {
   const std::string text = text_in(options_.live.record);
   EXPECT_EQ(text.find("limp_left_hip"), std::string::npos);
   EXPECT_NE(text.find("set hip_bounce 0.5"), std::string::npos);
-  options_.walk.terrain.clear();  // the zone was there indeed
+  options_.walk.terrain.clear();  // shows that the zone had an effect
   EXPECT_NE(replayed().pose_hash, live);
 }
 
@@ -186,12 +186,12 @@ TEST_F(Scripted, IsMergedWithTheEventsOfATrace) {
   EXPECT_EQ(scripted.reports, plain.reports);
   EXPECT_EQ(scripted.ticks, plain.ticks);
   EXPECT_NE(scripted.pose_hash, plain.pose_hash);
-  // Behind the end nothing happens.
+  // Events after the end of the recording have no effect.
   EXPECT_EQ(replay_with(write("b.toml", event("99", "style limp_left"))).pose_hash,
             plain.pose_hash);
 }
 
-TEST_F(Scripted, WhatASessionCouldNotObeyIsRefusedBeforeItBegins) {
+TEST_F(Scripted, ImpossibleCommandsAreRefusedBeforeTheSessionStarts) {
   const auto refusal = [&](const std::string& command) {
     options_.walk.script = write("walk.toml", event("0", "mark") + event("1", command));
     return cause_of(LiveSession::start(options_));

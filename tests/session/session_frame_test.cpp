@@ -10,7 +10,7 @@
 namespace gaitpad {
 namespace {
 
-// They go through wait-free buffers.
+// Both are copied through wait-free buffers.
 static_assert(std::is_trivially_copyable_v<SessionFrame>);
 static_assert(std::is_trivially_copyable_v<TickSample>);
 
@@ -31,23 +31,23 @@ class SessionFrameTest : public testing::Test {
   SessionFrame frame_;
 };
 
-TEST_F(SessionFrameTest, BeforeTheFirstTickTheCastStands) {
+TEST_F(SessionFrameTest, TheCastStandsBeforeTheFirstTick) {
   start(3);
   EXPECT_EQ(frame_.tick, -1);
   EXPECT_EQ(frame_.walker_count, 3);
-  EXPECT_EQ(frame_.pad.device, 0) << "it is plugged in from the start";
+  EXPECT_EQ(frame_.pad.device, 0) << "the pad is plugged in from the start";
   EXPECT_EQ(frame_.pad.reports, 0u);
   for (int i = 0; i < 3; ++i) {
     const WalkerFrame& w = frame_.walkers[i];
     EXPECT_EQ(w.presence, 0.0);
     EXPECT_EQ(w.walk.stage, Stage::idle);
-    // The heels stand; no flight has begun anywhere else.
+    // The heels are planted, so lift-off and landing are where they stand.
     EXPECT_NEAR(glm::length(w.lift_m[kLeftSide] - w.walk.heel_m[kLeftSide]), 0.0, 1e-6);
     EXPECT_NEAR(w.landing_m.x, w.walk.heel_m[kLeftSide].x, 1e-6);
   }
 }
 
-TEST_F(SessionFrameTest, TellsTheStateAfterATickAndThePoseBefore) {
+TEST_F(SessionFrameTest, HoldsTheStateAfterATickAndThePoseBefore) {
   start(2);
   step({made_report(0x80, 0x20)});
   for (int tick = 1; tick < 600; ++tick) {
@@ -65,7 +65,7 @@ TEST_F(SessionFrameTest, TellsTheStateAfterATickAndThePoseBefore) {
   EXPECT_EQ(frame_.counts.ticks, 600);
 }
 
-// All steps of a walk: what was said about the flight before it landed is what happened.
+// For each step of a walk, the landing that the frames predict in flight is where the heel lands.
 TEST_F(SessionFrameTest, LiftAndLandingAreWhereTheHeelLeavesAndComesDown) {
   start(1);
   step({made_report(0x60, 0x10)});
@@ -87,7 +87,7 @@ TEST_F(SessionFrameTest, LiftAndLandingAreWhereTheHeelLeavesAndComesDown) {
   EXPECT_GT(landings, 6);
 }
 
-TEST_F(SessionFrameTest, ThePhaseRunsWithTheCycleFromTheRightFootsStrike) {
+TEST_F(SessionFrameTest, ThePhaseStartsAtTheRightHeelStrike) {
   start(1);
   step({made_report(0x80, 0x00)});
   double before = 0.0;
@@ -133,7 +133,7 @@ TEST_F(SessionFrameTest, CommandsShowInTheFrame) {
   EXPECT_NEAR(value_of(GaitKey::speed_m_s, frame_.walkers[0].params), 1.0, 1e-12);
 }
 
-TEST_F(SessionFrameTest, TheCastIsToldOnce) {
+TEST_F(SessionFrameTest, TheCastDescribesTheSession) {
   start(2);
   const Cast cast = cast_of(*simulation_, config_);
   ASSERT_EQ(cast.members.size(), 2u);
@@ -143,8 +143,8 @@ TEST_F(SessionFrameTest, TheCastIsToldOnce) {
   EXPECT_EQ(cast.source->skeleton.joints.size(), config_.cycle.skeleton.joints.size());
 }
 
-// Flexion is positive everywhere: a knee never bends forward, hip and ankle go both ways.
-TEST_F(SessionFrameTest, SamplesTellFlexionAndPlants) {
+// Flexion is positive in all samples. A knee never bends forward; hip and ankle bend both ways.
+TEST_F(SessionFrameTest, SamplesHoldFlexionAndPlants) {
   start(1);
   TickSample sample;
   simulation_->step(std::vector<Report>{made_report(0x80, 0x10)});
@@ -158,7 +158,7 @@ TEST_F(SessionFrameTest, SamplesTellFlexionAndPlants) {
     knee_rad = std::max<double>(knee_rad, w.joint_rad[kLeftSide][1]);
     hip_min_rad = std::min<double>(hip_min_rad, w.joint_rad[kLeftSide][0]);
     hip_max_rad = std::max<double>(hip_max_rad, w.joint_rad[kLeftSide][0]);
-    // A swinging heel is in the air, a flexed hip before the body.
+    // A swinging heel is in the air.
     if (w.stage == Stage::flight) {
       ASSERT_FALSE(w.heel_planted[w.swing]);
     }

@@ -34,7 +34,8 @@ TEST(Simulation, UnpluggingFinishesTheStepAndStands) {
   EXPECT_EQ(s.stick().left, vec2(0.0));
 }
 
-// A character in a T pose, half as large again, under the procedural walk.
+// A character with a skeleton of its own, in a T pose and 1.5 times as large, does the procedural
+// walk.
 TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   SimulationConfig config = made_config(1);
   config.walkers[0].character = {};
@@ -69,7 +70,7 @@ TEST(Simulation, OneGroundForAllGrowsWithTheLongestFoot) {
   for (const Walker& w : s.walkers()) EXPECT_EQ(w.model->terrain, s.terrain());
 }
 
-TEST(Simulation, CharactersBeginOnTheGroundThatIsThere) {
+TEST(Simulation, CharactersStartOnTheGround) {
   SimulationConfig config = made_config(2);
   auto step_up = std::make_shared<Terrain>();
   ASSERT_FALSE(add_section(*step_up, StairsSection{0.2, 2.0, 1}));  // its line is z = 0
@@ -92,7 +93,7 @@ TEST(Simulation, CharactersStandSideBySideAndDoNotDisturbEachOther) {
 
 TEST(Simulation, AMirroredStickMirrorsTheHeadingAtEveryTick) {
   Simulation left = made_simulation(made_config(1)), right = made_simulation(made_config(1));
-  // 8-bit counts have no middle: 0x00 and 0xff mirror each other about 127.5.
+  // 8-bit counts have no middle value: 0x00 and 0xff are symmetric about 127.5.
   for (int tick = 0; tick < 1920; ++tick) {
     std::vector<Report> to_left, to_right;
     if (tick == 0) to_left = {made_report(0x40, 0x20)}, to_right = {made_report(0xbf, 0x20)};
@@ -107,7 +108,7 @@ TEST(Simulation, AMirroredStickMirrorsTheHeadingAtEveryTick) {
   EXPECT_GT(left.walkers()[0].state.frame.heading_rad, 1.0);
 }
 
-TEST(Simulation, ACopyGoesItsOwnWayAndSharesWhatStandsStill) {
+TEST(Simulation, ACopyIsIndependentAndSharesTheModel) {
   Simulation s = walked(made_config(4), 0x80, 0x20, 333), copy = s;
   EXPECT_EQ(&s.styles(), &copy.styles());
   EXPECT_EQ(s.walkers()[3].model, copy.walkers()[3].model);
@@ -132,7 +133,7 @@ TEST(Simulation, BadReportsAreCountedAndChangeNothing) {
   EXPECT_EQ(s.pose_hash(), sound.pose_hash());
 }
 
-TEST(Simulation, TheHashTellsOneStickCountApart) {
+TEST(Simulation, TheHashDiffersForOneStickCount) {
   const SimulationConfig config = made_config(1);
   EXPECT_EQ(walked(config, 0x80, 0x20, 400).pose_hash(),
             walked(config, 0x80, 0x20, 400).pose_hash());
@@ -140,8 +141,8 @@ TEST(Simulation, TheHashTellsOneStickCountApart) {
             walked(config, 0x80, 0x21, 400).pose_hash());
 }
 
-// Two pads that come and go, the second one held, resting and driving in between; bad reports and
-// a device that is no pad.
+// Two pads are plugged in and out. The second one is held, rests and drives in between. There are
+// also bad reports and a device that is not a pad.
 std::vector<Report> plugging_tick(int tick) {
   switch (tick) {
     case 30:
@@ -176,7 +177,7 @@ std::vector<PadConfig> plugged_pads() {
   return pads;
 }
 
-TEST(Simulation, PadsThatArriveLaterWalkAsIfTheyHadBeenKnownFromTheStart) {
+TEST(Simulation, PadsAddedLaterGiveTheSameWalkAsPadsKnownFromTheStart) {
   SimulationConfig known = made_config(2), unknown = known;
   known.pads = plugged_pads();
   unknown.pads = unknown_pads(16);
@@ -227,9 +228,9 @@ TEST(Simulation, RefusesNoCharacterAndTooMany) {
   EXPECT_FALSE(Simulation::create(crowd));
 }
 
-// --- what commands do to a session that walks, at any moment
+// --- commands at any moment of a walk
 
-TEST(Simulation, AStyleCommandIsForAllOrForOneAndWhatIsUnknownIsCounted) {
+TEST(Simulation, AStyleCommandIsForAllOrForOneAndUnknownOnesAreCounted) {
   Simulation s = made_simulation(made_config(3));
   const auto style = [&s](int i) { return s.styles()[s.walkers()[i].style].name; };
   step(s, {made_command("style limp")});
@@ -253,17 +254,17 @@ TEST(Simulation, ASetCommandChangesAStyleValueUntilTheNextStyle) {
   for (const Walker& w : s.walkers()) EXPECT_EQ(w.values.fatigue, 0.5);
   EXPECT_EQ(s.walkers()[0].values.stride[kLeftSide].length, 1.0);
   EXPECT_EQ(s.walkers()[2].values.stride[kLeftSide].length, 0.25);
-  EXPECT_EQ(s.walkers()[2].style, 0) << "it is still that style, changed";
+  EXPECT_EQ(s.walkers()[2].style, 0) << "it is still the same style, with a changed value";
   step(s, {made_command("style 3 limp")});
   EXPECT_TRUE(s.walkers()[2].values == made_limp());
   EXPECT_EQ(s.walkers()[0].values.fatigue, 0.5);
 }
 
-TEST(Simulation, AGaitCommandTakesAParameterFromTheStickAndGivesItBack) {
+TEST(Simulation, AGaitCommandOverridesAParameterUntilItIsReturnedToTheStick) {
   Simulation s = made_simulation(made_config(2));
   step(s, {made_command("gait 2 speed_m_s 1"), made_command("gait hip_sway 0.5")}, 1200);
   EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
-  // Stages are whole ticks, of some hundred in a cycle.
+  // Stages last whole ticks, and a cycle has only some hundred.
   EXPECT_NEAR(s.walkers()[1].state.frame.speed_m_s, 1.0, 0.01);
   EXPECT_EQ(s.walkers()[0].params.hip_sway, 0.5);
   step(s, {made_command("gait 2 speed_m_s stick")}, 480);
@@ -275,7 +276,7 @@ TEST(Simulation, AGaitCommandTakesAParameterFromTheStickAndGivesItBack) {
   EXPECT_EQ(s.counts().bad_commands, 0);
 }
 
-TEST(Simulation, AResetIsTheBeginningAgain) {
+TEST(Simulation, AResetRestoresTheStart) {
   const SimulationConfig config = made_config(3);
   const Simulation fresh = walked(config, 0x60, 0x00, 600);
   Simulation s = made_simulation(config);
@@ -286,7 +287,7 @@ TEST(Simulation, AResetIsTheBeginningAgain) {
   const std::array<int, 2> steps = s.walkers()[0].state.frame.steps;
   const double walked_m = s.walkers()[0].walked_m;
   EXPECT_GT(walked_m, 1.0);
-  // The first one's style stays as chosen: it is no other than at the beginning for the others.
+  // A reset keeps a chosen style, so the first walker gets its style of the beginning back first.
   step(s, {made_command("style 1 even"), made_report(0x60, 0x00), made_command("reset")}, 600);
   for (std::size_t i = 0; i < 3; ++i) {
     const Walker &w = s.walkers()[i], &f = fresh.walkers()[i];
@@ -298,19 +299,19 @@ TEST(Simulation, AResetIsTheBeginningAgain) {
   }
   EXPECT_EQ(s.walkers()[0].state.frame.steps[kLeftSide],
             steps[kLeftSide] + fresh.walkers()[0].state.frame.steps[kLeftSide])
-      << "steps are counted on";
+      << "a reset does not reset the count of steps";
   EXPECT_NEAR(s.walkers()[0].walked_m, walked_m + fresh.walkers()[0].walked_m, 1e-9)
-      << "the way back is no walk";
+      << "the jump back to the start is not walked";
 }
 
-TEST(Simulation, AResetKeepsTheStyleThatWasChosenAndDropsItsChanges) {
+TEST(Simulation, AResetKeepsTheChosenStyleAndDropsItsChanges) {
   Simulation s = made_simulation(made_config(1));
   step(s, {made_command("style limp"), made_command("set hip_sway 3"), made_command("reset")});
   EXPECT_EQ(s.styles()[s.walkers()[0].style].name, "limp");
   EXPECT_TRUE(s.walkers()[0].values == made_limp());
 }
 
-TEST(Simulation, ACommandThatCannotBeObeyedChangesNothing) {
+TEST(Simulation, AnInvalidCommandChangesNothing) {
   const char* const bad[] = {"set arms 1",          "set fatigue 1.01",      "set 4 fatigue 0.5",
                              "set fatigue -0.01",   "set fatigue nan",       "set fatigue",
                              "gait speed 1",        "gait speed_m_s 1e9",    "gait speed_m_s -1e9",
@@ -325,8 +326,8 @@ TEST(Simulation, ACommandThatCannotBeObeyedChangesNothing) {
   }
 }
 
-// The second one's leg would be locked, so the others keep theirs, too.
-TEST(Simulation, ASetCommandIsObeyedByAllOrByNone) {
+// The command would lock the second walker's leg, so it applies to none of them.
+TEST(Simulation, ASetCommandAppliesToAllOrToNone) {
   Simulation s = made_simulation(made_config(3));
   step(s, {made_command("set 2 legs.weight.hip 0"), made_command("set 2 legs.weight.knee 0"),
            made_command("set legs.weight.ankle 0")});
@@ -361,7 +362,8 @@ std::string any_command(std::mt19937& random) {
   }
 }
 
-// Every quarter of a second a command, every two seconds another stick; `check` sees each walker.
+// Sends a random command every quarter of a second and a random stick every two seconds; `check`
+// gets each walker of each tick.
 template <class Check>
 void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Check& check) {
   std::mt19937 random(11);
@@ -379,12 +381,13 @@ void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Ch
       if (testing::Test::HasFailure()) FAIL() << "tick " << tick;
     }
   }
-  EXPECT_LT(s.counts().bad_commands, s.counts().commands / 10) << "a leg is not locked";
+  EXPECT_LT(s.counts().bad_commands, s.counts().commands / 10)
+      << "only commands that would lock a leg are refused";
 }
 
-// All at once and in the middle of a step, which no stick can do: a lunge, some
-// centimetres, no more.
-TEST(Simulation, WhateverParametersAreTakenOverTheLegsFollow) {
+// The commands change parameters abruptly and in mid-step, which a stick cannot do. The feet may
+// lag behind by some centimetres.
+TEST(Simulation, LegsFollowRandomGaitCommands) {
   walk_at_random(IkMode::robust, any_gait_command, [](const Walker& w) {
     EXPECT_GT(w.state.frame.pelvis_m.y, 0.45 * w.model->stand_m);
     for (const Side side : {kLeftSide, kRightSide}) {
@@ -394,7 +397,7 @@ TEST(Simulation, WhateverParametersAreTakenOverTheLegsFollow) {
   });
 }
 
-TEST(Simulation, WhateverIsChangedThePoseIsAPose) {
+TEST(Simulation, RandomCommandsKeepThePoseValid) {
   for (const IkMode mode : {IkMode::robust, IkMode::paper}) {
     walk_at_random(mode, any_command, [](const Walker& w) {
       EXPECT_GT(w.state.frame.pelvis_m.y, 0.3 * w.model->stand_m);
@@ -422,8 +425,8 @@ TerrainZone zone(double from_m, double to_m, const std::string& style) {
   return zone;
 }
 
-// Zones of the style `limp`: z from 2 to 4 m everywhere; from 6 to 8 m for who walks left of x =
-// -0.5.
+// Zones with the style `limp`: z from 2 to 4 m at any x, and z from 6 to 8 m only where x is below
+// -0.5 m.
 SimulationConfig zoned(int walkers = 1) {
   SimulationConfig config = made_config(walkers);
   for (WalkerConfig& w : config.walkers) w.style = 0, w.character.leg_ratio = 1.0;
@@ -445,7 +448,7 @@ std::string style_of(const Simulation& s, int walker = 0) {
   return s.styles()[s.walkers()[walker].style].name;
 }
 
-TEST(Zones, GiveTheirStyleAndTakeItBack) {
+TEST(Zones, ApplyTheirStyleOnlyInside) {
   Simulation s = made_simulation(zoned());
   walk_to(s, 1.9);
   EXPECT_EQ(style_of(s), "even");
@@ -457,19 +460,19 @@ TEST(Zones, GiveTheirStyleAndTakeItBack) {
   EXPECT_TRUE(s.walkers()[0].in_force == s.styles()[0]);
 }
 
-TEST(Zones, CountForEachWalkerByItsOwnPlace) {
+TEST(Zones, ApplyToEachWalkerByItsOwnPlace) {
   Simulation s = made_simulation(zoned(2));  // the second one walks at x = -1.2
   walk_to(s, 7.0);
   EXPECT_EQ(style_of(s, 0), "limp");
   EXPECT_EQ(style_of(s, 1), "even");
 }
 
-TEST(Zones, BringBackWhatWasChangedBeforeThem) {
+TEST(Zones, RestoreTheValuesSetBeforeThem) {
   Simulation s = made_simulation(zoned());
   s.take_report(made_command("set hip_sway 2"));
   walk_to(s, 3.0);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 1.0);
-  s.take_report(made_command("set hip_sway 0.5"));  // of the zone's style: gone with it
+  s.take_report(made_command("set hip_sway 0.5"));  // changes the zone's style and ends with it
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 0.5);
   walk_to(s, 4.1);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 2.0);
@@ -499,7 +502,7 @@ TEST(Zones, AResetLeavesThemWithTheChosenStyle) {
   EXPECT_EQ(style_of(s), "limp");
 }
 
-TEST(Zones, OverlappingOnesTheLastCounts) {
+TEST(Zones, TheLastOfOverlappingOnesWins) {
   SimulationConfig config = zoned();
   auto terrain = std::make_shared<Terrain>(*config.terrain);
   terrain->zones.push_back(zone(3.0, 5.0, "slow"));
@@ -513,7 +516,7 @@ TEST(Zones, OverlappingOnesTheLastCounts) {
   EXPECT_EQ(style_of(s), "even");
 }
 
-TEST(Zones, AStyleThatIsNotThereIsNamedWithItsPlace) {
+TEST(Zones, AnUnknownStyleIsNamedWithFileAndLine) {
   SimulationConfig config = zoned();
   auto terrain = std::make_shared<Terrain>();
   terrain->zones = {zone(0.0, 1.0, "strut")};
@@ -524,7 +527,7 @@ TEST(Zones, AStyleThatIsNotThereIsNamedWithItsPlace) {
   EXPECT_EQ(simulation.error().message, "a.toml:7: there is no style \"strut\"");
 }
 
-TEST(Zones, BlendInTheTimeOfTheStyle) {
+TEST(Zones, BlendOverTheTimeOfTheStyle) {
   SimulationConfig config = zoned();
   config.styles[1].blend_s = 0.5;
   Simulation s = made_simulation(config);
@@ -542,10 +545,10 @@ TEST(Zones, BlendInTheTimeOfTheStyle) {
   walk_to(s, 4.02);
   const double length = s.walkers()[0].in_force.stride[kLeftSide].length;
   EXPECT_GT(length, 0.5);
-  EXPECT_LT(length, 1.0);  // on the way back, too
+  EXPECT_LT(length, 1.0);  // the way back is blended, too
 }
 
-TEST(Tiring, SlowsAWalkWithItsWayAndRestHelps) {
+TEST(Tiring, SlowsAWalkWithDistanceAndRecoversAtRest) {
   SimulationConfig config = made_config(1);
   config.styles[0].fatigue_per_100_m = 4.0;
   config.styles[0].fatigue_recovery_per_s = 0.05;
@@ -566,14 +569,14 @@ TEST(Tiring, SlowsAWalkWithItsWayAndRestHelps) {
   EXPECT_LT(w.tired, 1e-9);
 }
 
-// Mean square difference of the left leg's angles at the same ticks of the same walk, degrees.
+// Root mean square difference of the left leg's angles at the same ticks of the same walk, degrees.
 double difference_deg(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return std::sqrt(sum / static_cast<double>(a.size())) / kDegree;
 }
 
-TEST(Builds, AreSeenInTheKnee) {
+TEST(Builds, ChangeTheKneeAngle) {
   const auto knee_of = [](const std::string& name) {
     SimulationConfig config = made_config(1);
     auto style = load_style(kSourceFolder + "/config/styles/" + name + ".toml");
@@ -595,7 +598,7 @@ TEST(Builds, AreSeenInTheKnee) {
   EXPECT_GT(difference_deg(heavy, strong), 2.5);
 }
 
-TEST(Tiring, AStyleWithoutAModelWalksAsEver) {
+TEST(Tiring, AStyleWithoutAModelDoesNotTire) {
   Simulation s = made_simulation(made_config(1));
   walk_to(s, 6.0);
   EXPECT_EQ(s.walkers()[0].tired, 0.0);

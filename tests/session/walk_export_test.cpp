@@ -10,7 +10,7 @@
 namespace gaitpad {
 namespace {
 
-// --- files that appear together
+// --- output files, which are published together
 
 namespace fs = std::filesystem;
 
@@ -30,7 +30,7 @@ class OutputFolder : public testing::Test {
   const fs::path folder_ = own_.path / "deep";
 };
 
-TEST_F(OutputFolder, IsMadeAndHoldsWhatWasPublished) {
+TEST_F(OutputFolder, IsCreatedAndHoldsPublishedFiles) {
   write_and_publish("one");
   EXPECT_EQ(text("a.txt"), "one");
   EXPECT_EQ(entries_in(folder_), 1);
@@ -50,7 +50,7 @@ TEST_F(OutputFolder, KeepsTheOldFileUntilTheNewOneIsPublished) {
   EXPECT_EQ(text("a.txt"), "three");
 }
 
-TEST_F(OutputFolder, AScratchFileKeepsWhatIsWrittenAndIsNeverSeen) {
+TEST_F(OutputFolder, AScratchFileKeepsItsTextAndStaysInvisible) {
   auto files = OutputFiles::open(folder_.string());
   ASSERT_TRUE(files);
   auto one = files->scratch(), two = files->scratch();
@@ -64,7 +64,7 @@ TEST_F(OutputFolder, AScratchFileKeepsWhatIsWrittenAndIsNeverSeen) {
   EXPECT_EQ(back, "one");
 }
 
-TEST_F(OutputFolder, WhereAFileStandsIsRefused) {
+TEST_F(OutputFolder, AFileInItsPlaceIsRefused) {
   write_and_publish("one");
   const auto files = OutputFiles::open((folder_ / "a.txt" / "below").string());
   ASSERT_FALSE(files);
@@ -72,7 +72,7 @@ TEST_F(OutputFolder, WhereAFileStandsIsRefused) {
   EXPECT_FALSE(OutputFiles::open((folder_ / "a.txt").string()));
 }
 
-TEST_F(OutputFolder, AFullDiskIsToldAtPublishing) {
+TEST_F(OutputFolder, AFullDiskIsReportedAtPublishing) {
   fs::create_directories(folder_);
   auto files = OutputFiles::open(folder_.string());
   ASSERT_TRUE(files);
@@ -102,7 +102,7 @@ TEST(FramesCsv, TimeIsTheTickOverTheRateAndTheStickFollows) {
   EXPECT_TRUE(row(WalkFrame()).starts_with("480,2.000000000,-0.250000000,0.500000000,"));
 }
 
-TEST(FramesCsv, IdleSwingsNoFoot) {
+TEST(FramesCsv, NoFootSwingsWhenIdle) {
   WalkFrame frame;
   frame.swing = kRightSide;
   EXPECT_NE(row(frame).find(",idle,none,1,1,1,1,"), std::string::npos);
@@ -114,14 +114,14 @@ TEST(FramesCsv, IdleSwingsNoFoot) {
   EXPECT_NE(row(frame).find(",roll,right,"), std::string::npos);
 }
 
-TEST(FramesCsv, TheGroundUnderEachPointStandsLast) {
+TEST(FramesCsv, TheGroundUnderEachPointIsLast) {
   WalkFrame frame;
   frame.heel_ground_m = {0.5, -0.25};
   frame.toe_ground_m = {1.5, 2.0};
   EXPECT_TRUE(row(frame).ends_with(",0.500000000,1.500000000,-0.250000000,2.000000000\n"));
 }
 
-TEST(FramesCsv, ThereIsNoMinusZero) {
+TEST(FramesCsv, NegativeZeroIsWrittenAsZero) {
   WalkFrame frame;
   frame.heading_rad = -0.0;
   EXPECT_EQ(row(frame).find("-0.000000000"), std::string::npos);

@@ -1,4 +1,4 @@
-// The worst stick of the generator, measured, calibrated by the advice, and walked with.
+// The worst stick of the generator is measured, calibrated by the advice, and drives a walk.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ StickCalibration calibrated(const MadeStick& stick) {
   return advice.calibration;
 }
 
-// What the stick reports where the thumb and the spring have it.
+// What the stick reports for a true position: with noise and rounding.
 class Reported {
  public:
   explicit Reported(const MadeStick& stick) : stick_(stick), random_(stick.seed + 100) {}
@@ -78,7 +78,8 @@ struct Straightness {
   double longest_m = 0.0;  // sideways, of any one
   double stride_m = 0.0;   // the last
 };
-// Held for `ticks`, a report a tick; a stride goes from one strike of the left heel to the next.
+// Walks `ticks` ticks with one report each. A stride is from one strike of the left heel to the
+// next.
 template <typename Raw>
 Straightness straightness(const StickCalibration& calibration, int ticks, const Raw& raw) {
   Simulation simulation = simulation_with(calibration);
@@ -115,7 +116,8 @@ TEST(WornStick, WalksStraightWithTheFullStride) {
     const MadeStick stick = worst_stick(seed);
     const StickCalibration calibration = calibrated(stick);
     Reported reported(stick);
-    // The thumb holds it forward, the worn spring up to half of the hysteresis to either side.
+    // The thumb holds the stick forward; the worn spring moves it by up to half of the hysteresis
+    // to either side.
     const Straightness found = straightness(calibration, 9600, [&](int tick) {
       const double astray = 0.5 * stick.hysteresis * std::sin(0.002 * tick);
       return reported.at(stick.centre + vec2(astray, gate_radius(stick, 0.5 * kPi)));
@@ -123,7 +125,7 @@ TEST(WornStick, WalksStraightWithTheFullStride) {
     EXPECT_GE(found.strides, 30);
     EXPECT_LE(found.drift_m, 0.001) << "seed " << seed;
     EXPECT_LE(found.longest_m, 0.001) << "seed " << seed;
-    // Noise to the side takes its cosine off the forward part.
+    // Noise to the side shortens the forward part by its cosine.
     EXPECT_GE(found.stride_m, 0.999 * best.stride_m) << "seed " << seed;
     longest_m = std::max(longest_m, found.longest_m);
     drift_m = std::max(drift_m, found.drift_m);
@@ -134,7 +136,7 @@ TEST(WornStick, WalksStraightWithTheFullStride) {
       kSeeds, 1e3 * longest_m, 1e3 * drift_m, stride);
 }
 
-TEST(WornStick, WithoutItsCalibrationItWalksInCurves) {
+TEST(WornStick, WalksInCurvesWithoutItsCalibration) {
   const MadeStick stick = worst_stick(1);
   Reported reported(stick);
   const Straightness found =

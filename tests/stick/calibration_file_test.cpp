@@ -97,7 +97,7 @@ TEST(CalibrationFile, WrittenTextReadsBackToTheSameBits) {
   }
 }
 
-TEST(CalibrationFile, WrittenNumbersAreNoLongerThanTheyMustBe) {
+TEST(CalibrationFile, WrittenNumbersUseTheFewestDigits) {
   CalibrationFile file;
   file.calibration.left.x = {-0.98, 0.012, 1.0};
   const std::string text = calibration_text(file);
@@ -107,13 +107,13 @@ TEST(CalibrationFile, WrittenNumbersAreNoLongerThanTheyMustBe) {
 }
 
 // A name with invalid UTF-8 must not make the whole file unreadable.
-TEST(CalibrationFile, ANameThatIsNoTextIsStillWrittenAsText) {
+TEST(CalibrationFile, ANameWithInvalidUtf8IsWrittenAsText) {
   CalibrationFile file;
   file.name = "pad \xff\xfe";
   EXPECT_EQ(parsed(calibration_text(file)).name, "pad ??");
 }
 
-TEST(CalibrationFile, AxesThatDoNotTellBothDirectionsAreRefused) {
+TEST(CalibrationFile, AxesWithoutBothDirectionsAreRefused) {
   EXPECT_EQ(refusal("[left]\nright = 'z'"),
             "c.toml:2: unknown direction \"z\"; one of x, -x, y, -y");
   EXPECT_EQ(refusal("[left]\nright = 'y'"),
@@ -174,7 +174,7 @@ TEST(CalibrationFile, BadDevicePatternsAreRefused) {
   }
 }
 
-TEST(CalibrationFit, TheMoreAFileSaysTheBetterItFits) {
+TEST(CalibrationFit, AFileThatNamesMoreOfTheDeviceFitsBetter) {
   DeviceIdentity device{0x054c, 0x09cc, "aa:bb", "1-2", "hidraw"};
   const auto fit = [&](const std::string& text) { return calibration_fit(parsed(text), device); };
   const int any = fit("devices = ['*:*']"), vendor = fit("devices = ['054c:*']");
@@ -201,7 +201,8 @@ TEST(CalibrationFit, AFileForOtherDriversDoesNotFit) {
   // A recording that names no driver came from hidraw.
   EXPECT_GT(fit("", "['hidraw', 'usb']"), 0);
   EXPECT_EQ(fit("", "['evdev']"), 0);
-  // For a pad that was calibrated through two drivers. The device itself counts for more.
+  // A file that names the driver fits better than one that names none, since a pad may be
+  // calibrated through two drivers. Naming the device itself counts for more.
   EXPECT_GT(fit("evdev", "['evdev']"), fit("evdev", "[]"));
   const CalibrationFile model = parsed("devices = ['054c:09cc']\nport = '1'\ndrivers = ['evdev']");
   EXPECT_LT(calibration_fit(model, {0x054c, 0x09cc, "aa", "1", "evdev"}), fit("evdev", "[]"));
@@ -249,7 +250,7 @@ TEST_F(FindCalibration, ADamagedFileIsLeftOutAndNamed) {
   EXPECT_EQ(found.problems[0], user_ + "/z.toml:3: unknown key \"outer\"");
 }
 
-TEST_F(FindCalibration, AFolderThatIsNoneIsLeftOutAndNamed) {
+TEST_F(FindCalibration, AFileInPlaceOfAFolderIsLeftOutAndNamed) {
   write("file", "");
   write("shipped/a.toml", "name = 'shipped'\ndevices = ['054c:*']\n");
   const FoundCalibration found = find_calibration({{own_.at("file"), shipped_}}, device_);

@@ -1,5 +1,5 @@
-// Lines as the tools print them. Their meaning is derived here once more: by the kernel's formula
-// for jscal's numbers, by hand for the others.
+// Imports calibrations in the formats of jscal, evemu, hwdb, evtest and SDL. The expected values
+// are derived a second time: with the kernel's formula for jscal, by hand for the others.
 #include "stick/calibration_import.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ std::string error_of(const std::string& text, const Pad& pad) {
   return cause_of(calibration_import(text, "old.js", pad.device, pad.layout));
 }
 
-// The calibration can be written to a file and read back.
+// Checks that the calibration can be written to a file and read back.
 void expect_loadable(const CalibrationFile& file) {
   EXPECT_EQ(cause_of(parse_calibration(calibration_text(file), "back.toml")), "accepted");
 }
@@ -72,10 +72,10 @@ std::string jscal_line(const int (&x)[4], const int (&y)[4]) {
   };
   return "jscal -s 8" + axis(x) + axis(y) + ",0,0,0,0,0,0,0,0,0,0,0,0 /dev/input/js0\n";
 }
-// As jscal does: 2^29 over the counts to the end.
+// The slope that jscal writes: 2^29 divided by the counts from the zone to the end.
 int slope(int counts) { return (1 << 29) / counts; }
 
-// The layout's raw position of a count.
+// The raw position (-1 to 1) of a count.
 double raw(int count, int min, int max) { return (2.0 * count - min - max) / (max - min); }
 
 TEST(CalibrationImport, AJscalLineMovesTheStickAsTheKernelDid) {
@@ -88,7 +88,7 @@ TEST(CalibrationImport, AJscalLineMovesTheStickAsTheKernelDid) {
   EXPECT_NEAR(c.x.centre, raw(130, 0, 255), 1e-12);
   EXPECT_NEAR(c.x.min, raw(20, 0, 255), 1e-3);
   EXPECT_NEAR(c.x.max, raw(240, 0, 255), 1e-3);
-  EXPECT_NEAR(c.y.centre, -raw(123, 0, 255), 1e-12) << "forward is where the counts fall";
+  EXPECT_NEAR(c.y.centre, -raw(123, 0, 255), 1e-12) << "forward is towards smaller counts";
   EXPECT_NEAR(c.inner, 10.0 / 110.0, 1e-3);
   c.shape = ZoneShape::axial;
   for (int count = 0; count <= 255; ++count) {
@@ -98,12 +98,12 @@ TEST(CalibrationImport, AJscalLineMovesTheStickAsTheKernelDid) {
     const vec2 along = stick_position(c, {c.x.centre, -raw(count, 0, 255)});
     EXPECT_NEAR(along.y, -joydev(y, count), 2e-4) << count;
   }
-  EXPECT_EQ(file.calibration.right.x.max, 1.0) << "not corrected, so not known";
+  EXPECT_EQ(file.calibration.right.x.max, 1.0) << "jscal did not correct this stick";
   EXPECT_EQ(file.calibration.right.inner, StickCalibration{}.inner);
 }
 
-// Here both sides have the same zone: if they differ the wider one counts, and the output is off by
-// less than the difference.
+// gaitpad has one zone for both sides and takes the wider one. Its output differs from the kernel's
+// by less than the two zones do.
 TEST(CalibrationImport, UnevenSidesMoveNearlyAsTheKernelDid) {
   const Pad pad = pad_of(-32768, 32767);
   const int x[4] = {-4500, 500, slope(20500), slope(28500)},
@@ -120,7 +120,7 @@ TEST(CalibrationImport, UnevenSidesMoveNearlyAsTheKernelDid) {
   }
 }
 
-TEST(CalibrationImport, AnAxisThatFallsTurnsTheStick) {
+TEST(CalibrationImport, ANegativeSlopeReversesTheAxis) {
   const Pad pad = pad_of(0, 255);
   const int x[4] = {118, 138, -slope(100), -slope(100)}, y[4] = {118, 138, slope(90), slope(90)};
   const CalibrationFile file = imported(jscal_line(x, y), pad);
@@ -150,7 +150,7 @@ TEST(CalibrationImport, FramesSayWhichAxisMovesAStick) {
   EXPECT_EQ(axes[kLeftX].axis, kLeftX);
 }
 
-// Codes 1 and 0 are swapped: the first correction is for Y.
+// The map swaps codes 0 and 1, so the first correction belongs to Y.
 TEST(CalibrationImport, MappedAxesOfJscalAreFollowed) {
   const Pad pad = pad_of(0, 255);
   const int a[4] = {100, 120, slope(80), slope(80)}, b[4] = {118, 138, slope(100), slope(100)};
@@ -162,7 +162,7 @@ TEST(CalibrationImport, MappedAxesOfJscalAreFollowed) {
 
 TEST(CalibrationImport, TriggersGetTheirEnds) {
   const Pad pad = pad_of(0, 255);
-  // GAS, the fifth axis, from 102 to 921 of 1023.
+  // GAS is the fifth axis; it moves from 102 to 921 of 1023.
   const std::string axis =
       ",1,0,511,512," + std::to_string(slope(409)) + "," + std::to_string(slope(409));
   const CalibrationFile file = imported(
@@ -197,21 +197,21 @@ TEST(CalibrationImport, EvemuHwdbAndEvtestSayTheSame) {
     EXPECT_NEAR(c.x.centre, 0.0, 1e-12);
     EXPECT_NEAR(c.y.centre, -(2.0 * 122.5 / 255 - 1.0), 1e-12);
     EXPECT_NEAR(c.y.max, -(2.0 * 10 / 255 - 1.0), 1e-12);
-    EXPECT_NEAR(c.inner, 15.0 / 112.5, 1e-12) << "the wider of the two";
+    EXPECT_NEAR(c.inner, 15.0 / 112.5, 1e-12) << "the wider of the two zones";
     EXPECT_EQ(c.outer, StickCalibration{}.outer);
     EXPECT_EQ(file.calibration.right.inner, StickCalibration{}.inner);
   }
 }
 
-// Kernel drivers that know no zone state 0 (hid-playstation).
-TEST(CalibrationImport, NoFlatIsNoZoneOfNothing) {
+// Kernel drivers that do not know the zone report a flat of 0 (hid-playstation).
+TEST(CalibrationImport, AFlatOfZeroOrOneLeavesAnInnerZone) {
   const CalibrationFile file = imported("A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\n", pad_of(0, 255));
   EXPECT_EQ(file.calibration.left.inner, kInnerZoneUnknown);
   const CalibrationFile narrow = imported("A: 00 0 255 0 1 0\nA: 01 0 255 0 1 0\n", pad_of(0, 255));
   EXPECT_EQ(narrow.calibration.left.inner, 0.05);
 }
 
-TEST(CalibrationImport, AnSdlMappingIsTakenAsItStands) {
+TEST(CalibrationImport, AnSdlMappingIsKeptWordForWord) {
   const Pad pad = pad_of(0, 255);
   const std::string line =
       "03000000091200000100000011010000,Node,a:b1,b:b0,leftx:a0,lefty:a1,rightx:a2,righty:a3,"
@@ -239,7 +239,7 @@ TEST(CalibrationImport, AnSdlMappingIsTakenAsItStands) {
             "its event node (/dev/input/event...)");
 }
 
-TEST(CalibrationImport, ExportedLinesComeBack) {
+TEST(CalibrationImport, ExportedLinesCanBeImported) {
   const Pad pad = pad_of(0, 255);
   Calibration calibration;
   calibration.left.frame = {RawDirection::minus_x, RawDirection::plus_y};
@@ -249,7 +249,7 @@ TEST(CalibrationImport, ExportedLinesComeBack) {
   EXPECT_EQ(imported(*line + "\n", pad).mapping, *line);
 }
 
-TEST(CalibrationImport, DamageIsNamedWithItsLine) {
+TEST(CalibrationImport, ErrorsNameTheDamagedLine) {
   const Pad pad = pad_of(0, 255);
   const auto line = [](const std::string& list) {
     return "\njscal -s " + list + " /dev/input/js0";
@@ -303,7 +303,7 @@ TEST(CalibrationImport, DamageIsNamedWithItsLine) {
             "old.js: 1048577 bytes, at most 1048576 are read");
 }
 
-TEST(CalibrationImport, CountsOfAKernelDriversOwnAxesAreNotTakenForThePads) {
+TEST(CalibrationImport, CountsOfAKernelDriverAreRefusedForAHidrawPad) {
   Pad pad = pad_of(0, 255);
   pad.device.driver = "hidraw";
   pad.device.version = 0x8111;
@@ -312,9 +312,9 @@ TEST(CalibrationImport, CountsOfAKernelDriversOwnAxesAreNotTakenForThePads) {
             "(/dev/input/event...)");
 }
 
-// Sound texts with a few bytes changed, cut or doubled: no crash, and what is accepted can be
-// saved.
-TEST(CalibrationImport, HostileTextsDoNoHarm) {
+// Valid texts with a few bytes changed, cut out or doubled must not crash the import. What it
+// accepts can be saved.
+TEST(CalibrationImport, DamagedTextsDoNotCrash) {
   const Pad pads[] = {pad_of(0, 255), pad_of(-32768, 32767)};
   const std::string seeds[] = {
       "jscal -u 8,1,0,2,5,9,10,16,17,4,304,305,307,308 /dev/input/js0\n"

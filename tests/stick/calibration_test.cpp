@@ -47,7 +47,7 @@ TEST(StickPosition, OuterZoneHasLengthOne) {
   }
 }
 
-// interface.md: the sideways zone takes up to 2.1 % off the length.
+// The sideways zone shortens a full deflection by up to 2.1 %.
 TEST(StickPosition, SidewaysZoneTakesAtMostTwoPointOnePercentOfTheLength) {
   double shortest = 1.0;
   for (int i = 0; i < 36000; ++i) {
@@ -68,7 +68,7 @@ TEST(StickPosition, NearlyStraightIsExactlyStraightWithBothOnly) {
 TEST(StickPosition, ScaledLinearlyBetweenTheZones) {
   EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.0, 0.5}).y, 0.5, 1e-15);
   EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.0, 0.35}).y, 0.25, 1e-15);
-  // Sideways: radial 0.5, then (0.5 - 0.08) / 0.92.
+  // To the side both zones apply: radial gives 0.5, then sideways gives (0.5 - 0.08) / 0.92.
   EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.5, 0.0}).x, 0.42 / 0.92, 1e-15);
   EXPECT_NEAR(stick_position(shaped(ZoneShape::axial, 0.2, 0.8), {0.5, 0.35}).y, 0.25, 1e-15);
 }
@@ -89,7 +89,8 @@ TEST(StickPosition, ContinuousOverTheWholeGate) {
         vec2 before = stick_position(c, {-1.0, y});
         for (double x = -1.0; x <= 1.0; x += kStep) {
           const vec2 now = stick_position(c, {x, y});
-          // Slope at most 3 (cubic) / 0.83 (span) / 0.92 (sideways), twice for direction.
+          // The slope is at most 3 (cubic) / 0.83 (span) / 0.92 (sideways), doubled for the
+          // direction.
           ASSERT_LE(glm::length(now - before), 8.0 * kStep) << x << " " << y;
           before = now;
         }
@@ -118,7 +119,8 @@ TEST(StickPosition, MonotoneAlongEveryDirection) {
       for (double radius = 0.0; radius <= 1.0; radius += 0.002) {
         const vec2 now = stick_position(shaped(shape, 0.12, 0.95, 0.7), polar(radius, i * kDegree));
         ASSERT_GE(glm::length(now), glm::length(before) - 1e-15);
-        // Axial: once one axis is full, the limit to the disc changes the direction.
+        // With the axial shape the limit to the unit disc changes the direction once an axis is
+        // full.
         if (shape != ZoneShape::axial) {
           ASSERT_GE(now.x, before.x - 1e-15);
           ASSERT_GE(now.y, before.y - 1e-15);
@@ -141,7 +143,7 @@ TEST(StickPosition, StaysInTheUnitDiscForAnyInput) {
   }
 }
 
-TEST(StickPosition, CentreAndUnequalRangesAreTakenOut) {
+TEST(StickPosition, CentreAndUnequalRangesAreCorrected) {
   StickCalibration c = shaped(ZoneShape::radial, 0.1, 0.9);
   c.x = {-0.8, 0.06, 0.96};
   c.y = {-1.0, -0.04, 0.6};
@@ -186,7 +188,7 @@ TEST(Calibration, CanonicalHasNoNegativeZeroAndKeepsEveryOtherNumber) {
 constexpr RawDirection kXs[] = {RawDirection::plus_x, RawDirection::minus_x};
 constexpr RawDirection kYs[] = {RawDirection::plus_y, RawDirection::minus_y};
 
-// The raw value that shows `value` along `direction`.
+// The raw stick position whose component along `direction` is `value`.
 vec2 shown_along(RawDirection direction, double value) {
   switch (direction) {
     case RawDirection::plus_x:
@@ -211,7 +213,7 @@ std::vector<StickFrame> all_frames() {
   return frames;
 }
 
-TEST(StickFrame, HoweverTheAxesLieThePositionIsTheStraightOnes) {
+TEST(StickFrame, EveryFrameGivesThePositionOfTheUprightFrame) {
   ASSERT_EQ(all_frames().size(), 8u);
   StickCalibration straight = shaped(ZoneShape::both, 0.1, 0.9, 0.2);
   straight.x = {-0.8, 0.06, 0.96};
@@ -253,7 +255,7 @@ TEST(StickFrame, NotANumberCountsAsTheCentre) {
   EXPECT_EQ(stick_position(c, {-1.0, nan}), vec2(0.0, 1.0));
 }
 
-TEST(TriggerPosition, FromReleasedToPressedAndNotBeyond) {
+TEST(TriggerPosition, GoesFromReleasedToPressedAndNotBeyond) {
   const TriggerCalibration c{0.125, 0.625};
   EXPECT_EQ(trigger_position(c, 0.0), 0.0);
   EXPECT_EQ(trigger_position(c, 0.125), 0.0);
@@ -264,7 +266,7 @@ TEST(TriggerPosition, FromReleasedToPressedAndNotBeyond) {
   EXPECT_EQ(trigger_position(c, std::numeric_limits<double>::quiet_NaN()), 0.0);
 }
 
-TEST(TriggerPosition, AnUncalibratedTriggerIsAsItIs) {
+TEST(TriggerPosition, AnUncalibratedTriggerPassesUnchanged) {
   for (double raw = 0.0; raw <= 1.0; raw += 1.0 / 255) EXPECT_EQ(trigger_position({}, raw), raw);
 }
 

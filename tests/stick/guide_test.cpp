@@ -36,7 +36,7 @@ TEST(CalibrationGuide, NamesTheControlsThatItWaitsFor) {
   EXPECT_EQ(MadeHand(Controls::one_stick).guide.progress().size(), 1u);
 }
 
-TEST(CalibrationGuide, IsDoneByWhatItAsksForInEveryFrame) {
+TEST(CalibrationGuide, FinishesInEveryFrameWhenItsRequestsAreFollowed) {
   for (const StickFrame& frame : kFrames) {
     for (const bool changes_only : {false, true}) {
       MadeHand hand(Controls::two_sticks_and_triggers);
@@ -70,7 +70,7 @@ TEST(CalibrationGuide, BothSticksMayBeMovedAtOnce) {
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 
-TEST(CalibrationGuide, ANoisyWornStickGetsThroughLikeANewOne) {
+TEST(CalibrationGuide, ANoisyWornStickCompletesEveryStep) {
   for (const bool changes_only : {false, true}) {
     MadeHand hand;
     hand.sigma = 0.03;
@@ -83,7 +83,7 @@ TEST(CalibrationGuide, ANoisyWornStickGetsThroughLikeANewOne) {
   }
 }
 
-TEST(CalibrationGuide, AStickThatReachesLessThanHalfOfTheWayGetsThroughToo) {
+TEST(CalibrationGuide, AStickThatReachesLessThanHalfOfTheRangeCompletesEveryStep) {
   for (const double reach : {0.36, 0.45}) {
     MadeHand hand(Controls::one_stick);
     hand.sigma = 0.01;
@@ -97,7 +97,7 @@ TEST(CalibrationGuide, AStickThatReachesLessThanHalfOfTheWayGetsThroughToo) {
   }
 }
 
-TEST(CalibrationGuide, TracksAreRawWholeAndUnbroken) {
+TEST(CalibrationGuide, TracksHoldEveryRawReport) {
   MadeHand hand(Controls::two_sticks_and_triggers);
   hand.frame = kFrames[7];
   hand.centre = vec2(0.1, 0.0);
@@ -131,7 +131,7 @@ TEST(CalibrationGuide, ARepeatedStepForgetsWhatItHasSeen) {
   EXPECT_EQ(hand.guide.tracks().stick[0].size(), 2u);  // the part between them was dropped
 }
 
-TEST(CalibrationGuide, BackBeginsTheStepBeforeAgain) {
+TEST(CalibrationGuide, BackRestartsThePreviousStep) {
   MadeHand hand(Controls::one_stick);
   hand.rest_step(0);
   const std::size_t of_rest = hand.samples();
@@ -202,7 +202,7 @@ TEST(CalibrationGuide, UnpluggingBetweenTwoStepsCutsTheTrackToo) {
   EXPECT_EQ(tracks.stick[0][1].size(), 250u);
 }
 
-TEST(CalibrationGuide, TheSameReportsTeachTheSameHoweverOftenItIsLookedAt) {
+TEST(CalibrationGuide, TheResultDependsOnTheReportsNotOnTheTicks) {
   MadeHand hand(Controls::one_stick);
   hand.sigma = 0.02;
   hand.frame = kFrames[5];
@@ -215,7 +215,7 @@ TEST(CalibrationGuide, TheSameReportsTeachTheSameHoweverOftenItIsLookedAt) {
   EXPECT_EQ(unwatched.tracks().stick[0].front().size(), hand.samples());
 }
 
-TEST(CalibrationGuide, StampsOfAnyKindDoNotHarm) {
+TEST(CalibrationGuide, ExtremeTimeStampsDoNotCrash) {
   MadeHand hand(Controls::one_stick);
   for (const std::int64_t time : {INT64_MIN, INT64_MAX, std::int64_t{0}, INT64_MIN}) {
     hand.time_ns = time;
@@ -225,7 +225,7 @@ TEST(CalibrationGuide, StampsOfAnyKindDoNotHarm) {
   EXPECT_EQ(hand.guide.step(), GuideStep::rest);
 }
 
-TEST(CalibrationGuide, SaysWhenItIsFull) {
+TEST(CalibrationGuide, SaysThatItIsFull) {
   MadeHand hand(Controls::one_stick);
   const std::vector<std::uint8_t> bytes = hand.report();
   for (std::int64_t i = 0; i < kMaxGuideReports; ++i) {
@@ -240,7 +240,7 @@ TEST(CalibrationGuide, SaysWhenItIsFull) {
   EXPECT_FALSE(hand.guide.is_full());
 }
 
-TEST(FrameOfPushes, IsTheOneInWhichEachGoesWhereItWasAsked) {
+TEST(FrameOfPushes, TurnsEachPushInTheDirectionAskedFor) {
   const std::vector<vec2> asked = {vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(-1, 0)};
   for (const StickFrame& frame : kFrames) {
     std::vector<vec2> pushes;
@@ -253,7 +253,7 @@ TEST(FrameOfPushes, IsTheOneInWhichEachGoesWhereItWasAsked) {
   }
 }
 
-TEST(FrameOfPushes, IsNoneWhereTheyDoNotTell) {
+TEST(FrameOfPushes, IsUnknownIfThePushesDoNotDetermineIt) {
   const std::vector<vec2> asked = {vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(-1, 0)};
   const auto frame = [&asked](std::vector<vec2> pushes) { return frame_of_pushes(pushes, asked); };
   EXPECT_FALSE(frame({}));
@@ -268,7 +268,7 @@ TEST(FrameOfPushes, IsNoneWhereTheyDoNotTell) {
 
 // ---- What counts for each step: releases, turns, pushes, triggers
 
-TEST(CalibrationGuide, NoiseAndSpikesAreNoReleases) {
+TEST(CalibrationGuide, NoiseAndSpikesDoNotCountAsReleases) {
   MadeHand hand;
   hand.sigma = 0.04;
   std::mt19937 random(3);
@@ -315,7 +315,7 @@ TEST(CalibrationGuide, AStickThatIsHeldIsNotReleased) {
   EXPECT_EQ(hand.text(), "0 of 6 releases; it is held, let go");
 }
 
-TEST(CalibrationGuide, StartingWithTheStickHeldALittleDoesNotHinder) {
+TEST(CalibrationGuide, TheStickMayBeHeldSlightlyAsideAtTheStart) {
   MadeHand hand(Controls::one_stick);
   hand.thumb[0] = vec2(0.4, 0.0);
   hand.wait(2.0);
@@ -325,7 +325,7 @@ TEST(CalibrationGuide, StartingWithTheStickHeldALittleDoesNotHinder) {
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 
-TEST(CalibrationGuide, AStickThatNeverStandsStillIsReleasedAllTheSame) {
+TEST(CalibrationGuide, AStickThatNeverStandsStillCanBeReleased) {
   MadeHand hand(Controls::one_stick);
   for (int i = 0; i < 6; ++i) {
     const SinCos side = sin_cos(i * kPi / 3.0 + 0.2);
@@ -338,7 +338,7 @@ TEST(CalibrationGuide, AStickThatNeverStandsStillIsReleasedAllTheSame) {
   EXPECT_EQ(hand.guide.step(), GuideStep::turn) << hand.text();
 }
 
-TEST(CalibrationGuide, SilenceIsHoldingStill) {
+TEST(CalibrationGuide, SilenceCountsAsStandingStill) {
   MadeHand hand(Controls::one_stick);
   hand.reports_changes_only = true;
   for (int i = 0; i < 6; ++i) {
@@ -357,7 +357,7 @@ TEST(CalibrationGuide, SilenceIsHoldingStill) {
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 
-TEST(CalibrationGuide, HalfACircleIsMissingWhereItWasNotTurned) {
+TEST(CalibrationGuide, NamesTheHalfCircleThatWasNotTurned) {
   MadeHand hand(Controls::one_stick);
   hand.skip_to(GuideStep::turn);
   for (int i = 0; i < 5; ++i) {  // to and fro from the right over the front to the left
@@ -373,7 +373,7 @@ TEST(CalibrationGuide, HalfACircleIsMissingWhereItWasNotTurned) {
       "25 of 48 directions, 2.0 of 2 turns; not yet: back by its axes (Enter goes on without)");
 }
 
-TEST(CalibrationGuide, ACutCornerIsNotTheRim) {
+TEST(CalibrationGuide, ACutCornerDoesNotCountAsTheRim) {
   MadeHand hand(Controls::one_stick);
   hand.skip_to(GuideStep::turn);
   hand.turn(0, 0.75, 1.0);
@@ -382,7 +382,7 @@ TEST(CalibrationGuide, ACutCornerIsNotTheRim) {
   EXPECT_NE(hand.text().find("not yet: back right"), std::string::npos) << hand.text();
 }
 
-TEST(CalibrationGuide, CirclesInTheMiddleAndAStickHeldAtTheRimAreNoTurns) {
+TEST(CalibrationGuide, SmallCirclesAndAHeldRimDoNotCountAsTurns) {
   MadeHand hand(Controls::one_stick);
   hand.sigma = 0.02;
   hand.skip_to(GuideStep::turn);
@@ -392,7 +392,7 @@ TEST(CalibrationGuide, CirclesInTheMiddleAndAStickHeldAtTheRimAreNoTurns) {
   EXPECT_NE(hand.text().find("0.0 of 2 turns"), std::string::npos) << hand.text();
 }
 
-TEST(CalibrationGuide, OneTurnIsNotTwo) {
+TEST(CalibrationGuide, OneTurnIsNotEnough) {
   MadeHand hand(Controls::one_stick);
   hand.skip_to(GuideStep::turn);
   hand.turn(0, 1.2, 0.9);
@@ -401,7 +401,7 @@ TEST(CalibrationGuide, OneTurnIsNotTwo) {
   EXPECT_EQ(hand.guide.step(), GuideStep::forward);
 }
 
-TEST(CalibrationGuide, APushMustBeHeldAndLetGo) {
+TEST(CalibrationGuide, APushMustBeHeldAndReleased) {
   MadeHand hand(Controls::one_stick);
   hand.wait(0.2);
   hand.skip_to(GuideStep::forward);

@@ -1,4 +1,4 @@
-// Made pads in a made hand, which does what the guide asks for, or something else.
+// A simulated hand that holds a made pad and does what the guide asks for, or something else.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -50,8 +50,8 @@ inline vec2 unit(RawDirection direction) {
   return is_along_x(direction) ? vec2(length, 0.0) : vec2(0.0, length);
 }
 
-// A pad in a hand, and the guide that watches it. Thumb positions are from rest, +x right, +y
-// forward.
+// A pad in a hand, and the guide that gets its reports. Thumb positions are relative to rest, +x
+// right, +y forward.
 struct MadeHand {
   explicit MadeHand(Controls controls = Controls::two_sticks)
       : layout(layout_of(controls)), guide(layout) {}
@@ -96,7 +96,7 @@ struct MadeHand {
     guide.take_report(report);
     if (copy != nullptr) copy->take_report(report);
   }
-  // One period of the pad.
+  // Lets one report period pass.
   void pass() {
     time_ns += std::llround(period_s * 1e9);
     const std::vector<std::uint8_t> bytes = report();
@@ -128,7 +128,7 @@ struct MadeHand {
       push(side, vec2(angle.cos, angle.sin), 0.1);
     }
   }
-  // The whole first step, with the rest at its end.
+  // Does the whole first step, with the rest at its end.
   void rest_step(int side) {
     release_around(side, 8);
     wait(2.0);
@@ -145,7 +145,7 @@ struct MadeHand {
     move(side, vec2(0.0), 0.05);
     wait(0.2);
   }
-  // All steps of the sticks.
+  // Does all steps of the sticks.
   void steps_of_sticks(int sticks) {
     for (int side = 0; side < sticks; ++side) rest_step(side);
     for (int side = 0; side < sticks; ++side) full_turns(side);

@@ -1,4 +1,4 @@
-// Made recordings of sticks whose truth is known: what the analysis must find again.
+// Made recordings of sticks with known properties, which the analysis must find.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ namespace gaitpad {
 
 enum class Gate { circle, square, ellipse };  // square: of half side `reach_x`, corners and all
 
-// The truth about a stick. Positions are raw fractions under the thumb (+x right, +y forward);
-// `frame` says how the pad reports them. Reports are clipped to -1..1.
+// The true properties of a stick. Positions are raw fractions under the thumb (+x right, +y
+// forward); `frame` says how the pad reports them. Reports are clipped to -1..1.
 struct MadeStick {
   vec2 centre{0.0};
   vec2 sigma{0.0};          // Gaussian, of each report
@@ -35,7 +35,8 @@ struct MadeStick {
   std::uint32_t seed = 1;
 };
 
-// Radius of the gate about `centre` in a direction, without noise, as far as reports can show it.
+// Radius of the gate about `centre` in a direction, without noise, limited to what reports can
+// express.
 inline double gate_radius(const MadeStick& stick, double angle_rad) {
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
   double radius = stick.reach_x;
@@ -46,7 +47,7 @@ inline double gate_radius(const MadeStick& stick, double angle_rad) {
   return radius;
 }
 
-// By the formula, for the gate without noise, densely sampled.
+// Circularity error (%) by its formula, from dense samples of the gate without noise.
 inline double true_circularity_error(const MadeStick& stick) {
   std::array<double, 48> greatest{};
   for (int i = 0; i < 48000; ++i) {
@@ -70,7 +71,7 @@ inline double true_circularity_error(const MadeStick& stick) {
 class MadeMoves {
  public:
   explicit MadeMoves(const MadeStick& stick) : stick_(stick), random_(stick.seed * 7919u + 1u) {
-    // The recording does not show from which side it was let go before.
+    // From which side the stick was released before the recording began is random.
     home_ = home_after(std::uniform_real_distribution<double>(-kPi, kPi)(random_));
     at_ = home_;
   }
@@ -86,7 +87,7 @@ class MadeMoves {
     }
     at_ = path_.empty() ? home_ : path_.back();
   }
-  // To a fraction of the gate's radius there.
+  // Pushes to a fraction of the gate's radius in this direction.
   void push(double angle_rad, double seconds = 0.12, double fraction = 1.0) {
     angle_ = angle_rad;
     move(on_gate(angle_rad, fraction), seconds);
@@ -96,7 +97,7 @@ class MadeMoves {
     creep_ = stick_.creep;
     move(home_ + vec2(creep_ * std::cos(angle_), creep_ * std::sin(angle_)), 0.05);
   }
-  // Along the rim, counter-clockwise, as unevenly as hands do.
+  // Turns along the rim, counter-clockwise, as unevenly as a hand does.
   void turn(double turns, double seconds_a_turn = 1.5, double fraction = 1.0) {
     const double first = angle_, whole = 2.0 * kPi * turns;
     const int n = reports(turns * seconds_a_turn);
@@ -169,7 +170,7 @@ inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path
     walk += vec2(stride * normal(random), stride * normal(random));
     vec2 at = path[k] + stick.drift_per_s * time_s + walk +
               vec2(stick.sigma.x * normal(random), stick.sigma.y * normal(random));
-    // An interval has two stamps.
+    // An interval is the difference of two time stamps, so each gets 1/sqrt(2) of the jitter.
     const double late_ns = stick.jitter_ms * 1e6 / std::sqrt(2.0) * normal(random);
     if (spike_left == 0 && chance(random) < stick.spike_chance) {
       spike_left = 1 + static_cast<int>(3.0 * chance(random));
@@ -280,8 +281,8 @@ class Draw {
   MadeStick stick_;
 };
 
-// The larger of a step and 4 sigma / sqrt(resting reports), with hysteresis a quarter of it.
-// 1e-4 is as good as a 14-bit stick.
+// Allowed error of the centre: the largest of a step, 4 sigma / sqrt(resting reports), a quarter of
+// the hysteresis, and 1e-4, which is the resolution of a 14-bit stick.
 inline double centre_bound(const MadeStick& stick, const StickStatistics& s) {
   const double reports = std::max(s.rest_s * stick.rate_hz, 1.0);
   const double sigma = std::max(stick.sigma.x, stick.sigma.y);

@@ -120,7 +120,7 @@ TEST(Outline, CircularityOfASquareGateTurnedQuicklyOnASlowPad) {
   }
 }
 
-// The formula's own value for a full square, sqrt(mean over 48 bins of the greatest radius ...).
+// 20.5 % is what the formula gives for a full square: 48 bins, each with its greatest radius.
 TEST(Outline, FullSquareIsTwentyAndAHalfPercentByTheGreatestRadiusOfEachBin) {
   const MadeStick stick = made(kShapes[4], vec2(0.0), 0.0, 16, 1);
   EXPECT_NEAR(*circularity_error(outline_of(made_track(stick), stick)), 20.5, 0.3);
@@ -134,7 +134,7 @@ void expect_true_outline(const MadeMoves& moves, const MadeStick& stick) {
 }
 
 // A turn that cuts corners lies below the others and is left out of the rim.
-TEST(Outline, SloppyRoundsDoNotPullTheGateInwards) {
+TEST(Outline, TurnsThatCutCornersDoNotShrinkTheGate) {
   for (const Shape& shape : kShapes) {
     for (const double sigma : {0.0, 0.01}) {
       const MadeStick stick = made(shape, vec2(0.05, 0.0), sigma, 12, 9);
@@ -154,7 +154,7 @@ TEST(Outline, SloppyRoundsDoNotPullTheGateInwards) {
 }
 
 // A streaming pad repeats a held corner hundreds of times.
-TEST(Outline, ALongHoldDoesNotOutweighWhatLiesBesideIt) {
+TEST(Outline, ALongHoldDoesNotOutweighItsNeighbours) {
   for (const Shape& shape : kShapes) {
     for (const double sigma : {0.0, 0.01}) {
       const MadeStick stick = made(shape, vec2(0.0), sigma, 8, 4);
@@ -169,14 +169,14 @@ TEST(Outline, ALongHoldDoesNotOutweighWhatLiesBesideIt) {
   }
 }
 
-TEST(Outline, PushesAloneTellTheReachButNoCircularity) {
+TEST(Outline, PushesAloneGiveReachButNoCircularity) {
   for (const double sigma : {0.0, 0.01, 0.04}) {
     const MadeStick stick = made(kShapes[3], vec2(0.1, -0.05), sigma, 10, 3);
     const Outline outline = outline_of(made_track(stick, 0, 0.5, 0.0), stick);
     expect_ends(outline, stick);
     EXPECT_FALSE(circularity_error(outline));
     EXPECT_LT(filled_bins(outline), 20);
-    // The way out is not mistaken for the gate.
+    // Samples on the way to the rim must not count as the gate.
     for (int k = 0; k < kOutlineDirections; ++k) {
       if (outline.radius[static_cast<std::size_t>(k)] == 0.0) continue;
       const double truth = gate_radius(stick, 2.0 * kPi * k / kOutlineDirections);
@@ -200,7 +200,7 @@ TEST(Outline, QuickPushesThatReachTheRimCount) {
   EXPECT_FALSE(circularity_error(outline));
 }
 
-TEST(Outline, AHalfTurnTellsHalfTheReach) {
+TEST(Outline, AHalfTurnGivesHalfOfTheReach) {
   const MadeStick stick = made(kShapes[0], vec2(0.0), 0.0, 8, 1);
   MadeMoves moves(stick);
   moves.push(-60.0 * kDegree);
@@ -214,7 +214,7 @@ TEST(Outline, AHalfTurnTellsHalfTheReach) {
   EXPECT_NEAR(filled_bins(outline), 24, 3);
 }
 
-TEST(Outline, NothingComesOfRestOrNonsense) {
+TEST(Outline, RestAndInvalidNumbersGiveNoOutline) {
   const MadeStick stick;
   MadeMoves moves(stick);
   moves.hold(1.0);

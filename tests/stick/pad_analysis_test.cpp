@@ -1,4 +1,4 @@
-// Advice for stated statistics, for made sticks and for real DualSense recordings.
+// Advice for given statistics, for made sticks and for real DualSense recordings.
 #include "stick/pad_analysis.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace gaitpad {
 namespace {
 
-// Round numbers for a good stick that was let go and turned.
+// Statistics of a good stick that was released and turned, in round numbers.
 StickStatistics measured() {
   StickStatistics s;
   s.samples = 5000;
@@ -40,7 +40,7 @@ StickAdvice advice_for(const MadeStick& stick, const StickTrack& track) {
   return stick_advice(statistics_of(stick, track), {});
 }
 
-// A file with this calibration loads and gives the same numbers.
+// Checks that a file with this calibration loads and gives the same numbers.
 void expect_loadable(const StickCalibration& c) {
   CalibrationFile file;
   file.calibration.left = c;
@@ -53,18 +53,18 @@ void expect_loadable(const StickCalibration& c) {
   EXPECT_EQ(back->calibration.left.y.max, c.y.max);
 }
 
-TEST(StickAdvice, InnerZoneIsThreeSigmaAndHysteresisButFivePercentAtLeast) {
+TEST(StickAdvice, InnerZoneIsThreeSigmaPlusHysteresisAndAtLeastFivePercent) {
   StickStatistics s = measured();
   EXPECT_DOUBLE_EQ(advice_for(s).inner_zone, 0.05);
   s.sigma = vec2(0.01, 0.02);
   s.hysteresis = 0.12;
   EXPECT_DOUBLE_EQ(advice_for(s).inner_zone, 0.18);
-  // The calibration has it as a fraction of the shortest side.
+  // The calibration stores the inner zone as a fraction of the shortest side.
   const double shortest = 0.95 - -0.01;
   EXPECT_NEAR(advice_for(s).calibration.inner, 0.18 / shortest, 1e-12);
 }
 
-TEST(StickAdvice, AWanderingStickRestsInItsZonesUnlessItIsToBeReplaced) {
+TEST(StickAdvice, AWanderingStickRestsInItsZonesUnlessTheVerdictIsReplace) {
   for (const double wander : {0.005, 0.01}) {
     std::int64_t walking = 0, resting = 0;
     for (std::uint32_t seed = 1; seed <= 40; ++seed) {
@@ -92,7 +92,7 @@ TEST(StickAdvice, AWanderingStickRestsInItsZonesUnlessItIsToBeReplaced) {
   }
 }
 
-// With 3 sigma in two directions one report in ninety would get through.
+// A radius of 3 sigma would let one report in ninety pass, because the noise has two directions.
 TEST(StickAdvice, WithoutHysteresisTheCalibrationStillKeepsTheNoiseOut) {
   StickStatistics s = measured();
   s.centre = vec2(0.0);
@@ -103,7 +103,7 @@ TEST(StickAdvice, WithoutHysteresisTheCalibrationStillKeepsTheNoiseOut) {
   EXPECT_EQ(stick_position(advice.calibration, vec2(0.06, 0.075)), vec2(0.0));
 }
 
-TEST(StickAdvice, CentreAndEndsAreThoseMeasured) {
+TEST(StickAdvice, CentreAndEndsAreTheMeasuredOnes) {
   const StickAdvice advice = advice_for(measured());
   EXPECT_EQ(advice.calibration.x.min, -0.98);
   EXPECT_EQ(advice.calibration.x.centre, 0.02);
@@ -114,7 +114,7 @@ TEST(StickAdvice, CentreAndEndsAreThoseMeasured) {
   expect_loadable(advice.calibration);
 }
 
-TEST(StickAdvice, TheFrameIsTheOneGiven) {
+TEST(StickAdvice, TheGivenFrameIsKept) {
   const StickFrame frame{RawDirection::minus_y, RawDirection::plus_x};
   EXPECT_EQ(stick_advice(measured(), frame).calibration.frame, frame);
 }
@@ -131,7 +131,7 @@ TEST(StickAdvice, TheOuterZoneIsWithinTheShortestDirectionNoiseIncluded) {
   EXPECT_GT(advice_for(s).calibration.outer, 0.9);
 }
 
-TEST(StickAdvice, TheSidewaysZoneGrowsWithNoiseToAsMuchAsFullDeflectionAllows) {
+TEST(StickAdvice, TheSidewaysZoneGrowsWithNoiseUpToWhatFullDeflectionAllows) {
   StickStatistics s = measured();
   EXPECT_EQ(advice_for(s).calibration.sideways, 0.08);
   s.sigma = vec2(0.015, 0.0);
@@ -147,7 +147,7 @@ TEST(StickAdvice, TheSidewaysZoneGrowsWithNoiseToAsMuchAsFullDeflectionAllows) {
   }
 }
 
-TEST(StickAdvice, LetGoOnceASpreadIsAssumedAndSaid) {
+TEST(StickAdvice, OneReleaseAssumesAHysteresisAndSaysSo) {
   StickStatistics s = measured();
   s.hysteresis = {};
   const StickAdvice advice = advice_for(s);
@@ -221,7 +221,7 @@ TEST(StickAdvice, EachFaultHasItsVerdictAndIsNamed) {
   }
 }
 
-TEST(StickAdvice, NoiseOfLittleMoreThanAStepIsNoWear) {
+TEST(StickAdvice, NoiseJustAboveAStepIsNotWear) {
   StickStatistics s = measured();
   s.step_x = s.step_y = 2.0 / 63.0;  // 6 bits
   s.sigma = vec2(0.02, 0.02);
@@ -244,7 +244,7 @@ TEST(StickAdvice, AnyStatisticsGiveAFileThatLoads) {
   }
 }
 
-TEST(StickAdvice, NewSticksAreGoodAndKeepStill) {
+TEST(StickAdvice, NewSticksAreGoodAndNeutralAtRest) {
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     MadeStick stick;
     stick.seed = seed;
@@ -256,14 +256,14 @@ TEST(StickAdvice, NewSticksAreGoodAndKeepStill) {
     const StickTrack track = made_track(stick);
     const StickAdvice advice = advice_for(stick, track);
     EXPECT_EQ(advice.verdict, Verdict::good) << seed << ": " << advice.reason;
-    // All of its rests, the first 0.6 s among them.
+    // Also the first rest, of 0.6 s, is neutral.
     for (std::size_t i = 0; i < 150; ++i) {
       EXPECT_EQ(stick_position(advice.calibration, track[i].raw), vec2(0.0));
     }
   }
 }
 
-TEST(TriggerAdvice, ALittleWithinTheEnds) {
+TEST(TriggerAdvice, EndsLieSlightlyInsideTheMeasuredOnes) {
   TriggerStatistics s;
   s.released = 0.1;
   s.pressed = 0.9;
@@ -274,7 +274,7 @@ TEST(TriggerAdvice, ALittleWithinTheEnds) {
   EXPECT_EQ(trigger_position(c, 0.9), 1.0);
 }
 
-TEST(TriggerAdvice, WhatIsUnknownOrNoTravelStaysAsItIs) {
+TEST(TriggerAdvice, UnknownEndsAndTooLittleTravelKeepTheDefault) {
   const TriggerCalibration plain;
   EXPECT_EQ(trigger_advice({}).released, plain.released);
   EXPECT_EQ(trigger_advice({}).pressed, plain.pressed);
@@ -339,8 +339,8 @@ TEST_F(RecordedSticks, RestNeverWalks) {
   }
 }
 
-// Both sticks saturate in both axes and are round at the corners. By every report's greatest radius
-// they come to 8.5 and 7.4 %.
+// Both sticks saturate in both axes and are round at the corners. Computed from the greatest radius
+// of all reports in each bin, their circularity errors are 8.5 and 7.4 %.
 TEST_F(RecordedSticks, OutlineOfARealDualSense) {
   for (const std::size_t side : {0, 1}) {
     const std::string name = side == 0 ? "left" : "right";
@@ -356,7 +356,8 @@ TEST_F(RecordedSticks, OutlineOfARealDualSense) {
   }
 }
 
-// Zones from the recording that turns the stick, alone and together with the one in which it rests.
+// The zones come from the recording in which the stick is turned, alone and together with the one
+// in which it rests.
 TEST_F(RecordedSticks, RestNeverWalksWithTheZonesOfTheRecordingsThatTurn) {
   constexpr const char* kLeft = "dualsense_usb_left_stick.hid";
   constexpr const char* kRight = "dualsense_usb_right_stick.hid";

@@ -15,7 +15,7 @@ TEST(RestStatistics, CentreSigmaAndRestOfFiveHundredCleanSticksWithoutAFalseAlar
     expect_centre(stick, s, stick.centre);
     ASSERT_TRUE(s.drift_per_s) << name_of(stick);
     EXPECT_EQ(*s.drift_per_s, 0.0) << name_of(stick);
-    // 14 rests; a pad that falls silent does not show the last one.
+    // There are 14 rests. A pad that reports changes only does not show the last one.
     EXPECT_GE(s.rests.size(), 12u) << name_of(stick);
     EXPECT_LE(s.rests.size(), 14u) << name_of(stick);
     wandering += s.wander > 0.0;
@@ -52,7 +52,7 @@ TEST(RestStatistics, DriftIsFoundAlwaysWithItsDirection) {
   }
 }
 
-TEST(RestStatistics, CentreOfADriftingStickIsThatOfTheMiddleOfTheTime) {
+TEST(RestStatistics, CentreOfADriftingStickIsItsCentreAtHalfTime) {
   for (std::uint32_t seed = 1; seed <= 50; ++seed) {
     Draw draw(seed);
     MadeStick stick = draw.stick();
@@ -64,7 +64,7 @@ TEST(RestStatistics, CentreOfADriftingStickIsThatOfTheMiddleOfTheTime) {
   }
 }
 
-TEST(RestStatistics, SettlingAfterReleasesIsNoDrift) {
+TEST(RestStatistics, SettlingAfterReleasesIsNotDrift) {
   for (std::uint32_t seed = 1; seed <= 100; ++seed) {
     Draw draw(seed);
     MadeStick stick = draw.stick();
@@ -112,14 +112,14 @@ TEST(RestStatistics, HysteresisIsTheSpreadOfTheRests) {
   }
 }
 
-// How a made stick is let go.
+// How a made stick is handled and released.
 struct Handling {
   std::string name;
   double hysteresis;
   std::function<void(MadeMoves&, Draw&)> handle;
 };
 
-TEST(RestStatistics, CentreHoweverTheStickIsHandled) {
+TEST(RestStatistics, CentreIsFoundForEveryWayOfHandling) {
   const std::vector<Handling> handlings = {
       {"let go mostly from one side", 0.12,
        [](MadeMoves& moves, Draw& draw) {
@@ -202,7 +202,7 @@ TEST(RestStatistics, AThumbLeftOnTheStickNowAndThenDoesNotMoveTheCentre) {
   }
 }
 
-TEST(RestStatistics, NothingButTurningHasNoCentre) {
+TEST(RestStatistics, TurningAloneGivesNoCentre) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     Draw draw(seed);
     const MadeStick stick = draw.stick();
@@ -216,7 +216,7 @@ TEST(RestStatistics, NothingButTurningHasNoCentre) {
   }
 }
 
-TEST(RestStatistics, OneReleaseHasNoHysteresisHoweverLong) {
+TEST(RestStatistics, OneReleaseGivesNoHysteresis) {
   MadeStick stick;
   stick.sigma = vec2(0.003);
   stick.bits = 10;
@@ -232,8 +232,9 @@ TEST(RestStatistics, OneReleaseHasNoHysteresisHoweverLong) {
   expect_centre(stick, s, stick.centre);
 }
 
-// Two recordings, or unplugged in between: it need not have been touched.
-TEST(RestStatistics, RestsOfSeveralTracksTellOfHysteresisOnlyIfItWasLetGoBetween) {
+// Between two tracks (two recordings, or the pad was unplugged) nobody needs to have touched the
+// stick.
+TEST(RestStatistics, RestsOfSeveralTracksGiveHysteresisOnlyAfterARelease) {
   MadeStick stick;
   stick.sigma = vec2(0.003);
   MadeMoves still(stick), pushed(stick);
@@ -249,7 +250,7 @@ TEST(RestStatistics, RestsOfSeveralTracksTellOfHysteresisOnlyIfItWasLetGoBetween
   EXPECT_TRUE(hysteresis(away, rest));
 }
 
-TEST(RestStatistics, WanderIsToldAndNoiseIsNot) {
+TEST(RestStatistics, WanderIsReportedAndNoiseIsNot) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     MadeStick stick;
     stick.seed = seed;

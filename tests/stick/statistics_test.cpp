@@ -16,7 +16,7 @@
 namespace gaitpad {
 namespace {
 
-TEST(StickStatistics, AFrameTurnsWhatIsFound) {
+TEST(StickStatistics, AFrameTurnsTheStatistics) {
   MadeStick stick;
   stick.centre = vec2(0.1, -0.05);
   stick.sigma = vec2(0.004, 0.01);
@@ -30,7 +30,7 @@ TEST(StickStatistics, AFrameTurnsWhatIsFound) {
   EXPECT_NEAR(s.sigma->y, 0.01, 0.0015);
 }
 
-TEST(StickStatistics, TooLittleIsNoneNotGuessed) {
+TEST(StickStatistics, TooFewSamplesGiveNoNumbers) {
   for (const StickTrack& track :
        {StickTrack{}, StickTrack{{0, {0.1, 0.1}}}, StickTrack(3, {5, {0.0, 0.0}})}) {
     const StickStatistics s = stick_statistics(std::vector<StickTrack>{track}, vec2(0.0));
@@ -41,7 +41,7 @@ TEST(StickStatistics, TooLittleIsNoneNotGuessed) {
   EXPECT_EQ(stick_statistics({}, vec2(0.0)).samples, 0);
 }
 
-TEST(StickStatistics, AnyNumbersAreTaken) {
+TEST(StickStatistics, InvalidNumbersDoNotCrash) {
   std::mt19937 random(3);
   const double odd[] = {std::numeric_limits<double>::quiet_NaN(),
                         std::numeric_limits<double>::infinity(),
@@ -96,7 +96,7 @@ TriggerTrack trigger_track(const std::vector<std::pair<double, double>>& value_a
   return track;
 }
 
-TEST(TriggerStatistics, EndsAreWhereItStoodLongest) {
+TEST(TriggerStatistics, EndsAreTheLongestHeldValues) {
   const TriggerTrack track =
       trigger_track({{0.02, 2.0}, {0.4, 0.1}, {0.97, 0.5}, {0.5, 0.1}, {0.024, 1.0}});
   const TriggerStatistics s = trigger_statistics(std::vector<TriggerTrack>{track});
@@ -105,7 +105,7 @@ TEST(TriggerStatistics, EndsAreWhereItStoodLongest) {
   EXPECT_EQ(s.pressed, 0.97);
 }
 
-TEST(TriggerStatistics, PressedIsNoneWhereItWasNeverPressed) {
+TEST(TriggerStatistics, PressedIsUnknownIfItWasNeverPressed) {
   for (const double most : {0.0, 0.3, 0.5}) {
     const TriggerStatistics s =
         trigger_statistics(std::vector<TriggerTrack>{trigger_track({{0.0, 1.0}, {most, 0.5}})});
@@ -115,7 +115,7 @@ TEST(TriggerStatistics, PressedIsNoneWhereItWasNeverPressed) {
   EXPECT_FALSE(trigger_statistics({}).released);
 }
 
-TEST(TriggerStatistics, AReportOfNonsenseIsNoEnd) {
+TEST(TriggerStatistics, AnOutlierIsNotAnEnd) {
   TriggerTrack track = trigger_track({{0.1, 2.0}, {0.9, 1.0}, {0.1, 2.0}});
   track[100].raw = std::numeric_limits<double>::quiet_NaN();
   track[200].raw = 0.0;
@@ -187,7 +187,7 @@ TEST_F(RealStickStatistics, ATurnedStickRestsOnlyBeforeAndAfter) {
   EXPECT_LT(*r.hysteresis, 2.0 / 255.0);
 }
 
-TEST_F(RealStickStatistics, APadThatIsSilentAtRestHasCentresToo) {
+TEST_F(RealStickStatistics, APadThatIsSilentAtRestHasCentres) {
   const PadTracks tracks = recorded("xbox_elite2_bt_nopaddles.hid");
   for (int side = 0; side < 2; ++side) {
     const StickStatistics s = stick_statistics(tracks.stick[side], vec2(2.0 / 65535.0));

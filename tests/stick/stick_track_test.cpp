@@ -31,7 +31,7 @@ PadLayout split_pad() {
 
 Report report_at(std::int64_t time_ns, const Bytes& bytes) { return report_of(bytes, time_ns); }
 
-TEST(StickTrack, LayoutSaysWhichControlsThereAre) {
+TEST(StickTrack, TheLayoutGivesTheControls) {
   const PadLayout pad = split_pad();
   EXPECT_TRUE(has_stick(pad, 0));
   EXPECT_TRUE(has_stick(pad, 1));
@@ -47,7 +47,7 @@ TEST(StickTrack, DeclaredStepIsOneCountOfTheField) {
   EXPECT_EQ(declared_step(pad, kRightTrigger), 0.0);
 }
 
-TEST(StickTrack, EachReportAddsToTheControlsThatItTellsOf) {
+TEST(StickTrack, EachReportAddsToTheControlsInIt) {
   const PadLayout pad = split_pad();
   PadTracker tracker(pad);
   EXPECT_TRUE(tracker.add_report(report_at(10, {1, 255, 0, 0xff, 0x03})));
@@ -64,7 +64,7 @@ TEST(StickTrack, EachReportAddsToTheControlsThatItTellsOf) {
   EXPECT_TRUE(tracks.stick[1].empty());
 }
 
-TEST(StickTrack, AnAxisCountsOnlyOnceAReportHasToldOfIt) {
+TEST(StickTrack, AnAxisCountsFromItsFirstReportOn) {
   const PadLayout pad = split_pad();
   PadTracker tracker(pad);
   tracker.add_report(report_at(1, {2, 255}));
@@ -86,7 +86,7 @@ TEST(StickTrack, ReportsThatDoNotDecodeAddNothing) {
   EXPECT_TRUE(tracker.tracks().stick[0].empty());
 }
 
-TEST(StickTrack, ATrackEndsWhereThePadWent) {
+TEST(StickTrack, UnpluggingEndsATrack) {
   const PadLayout pad = split_pad();
   PadTracker tracker(pad);
   tracker.add_report(report_at(1, {1, 0, 0, 0, 0}));
@@ -126,7 +126,7 @@ TEST(ReportStatistics, RateJitterStepsAndTurnsOfEveryPad) {
   for (std::uint32_t seed = 1; seed <= 100; ++seed) {
     MadeStick stick = Draw(seed).stick();
     stick.spike_chance = 0.0;
-    // At 1000 Hz a pad that reports changes only leaves out too many reports of coarse codes.
+    // At 1000 Hz a pad that reports changes only and has coarse codes omits too many reports.
     if (stick.reports_changes_only && stick.rate_hz > 500.0) stick.rate_hz = 500.0;
     const StickStatistics s = statistics_of(stick);
     ASSERT_TRUE(s.rate_hz && s.jitter_ms) << name_of(stick);
@@ -150,7 +150,7 @@ TEST(ReportStatistics, StepIsMeasuredEvenIfTheFieldIsFiner) {
   const StickStatistics s =
       stick_statistics(std::vector<StickTrack>{made_track(stick)}, vec2(2.0 / 65535.0));
   EXPECT_NEAR(s.step_x, 2.0 / 255.0, 1e-9);
-  // A single value shows no step.
+  // One value alone has no step.
   const StickTrack still(100, {0, {0.1, 0.1}});
   EXPECT_EQ(stick_statistics(std::vector<StickTrack>{still}, vec2(0.25, 0.125)).step_y, 0.125);
 }

@@ -21,7 +21,7 @@ double seconds_of(const std::vector<Still>& stills) {
   return sum;
 }
 
-// All kinds of sticks: noisy, worn, drifting, coarse, silent at rest, slow and fast.
+// One stick of each kind: noisy, worn, drifting, coarse, silent at rest, slow and fast.
 std::vector<MadeStick> every_kind() {
   std::vector<MadeStick> sticks;
   for (const int bits : {0, 8, 16}) {
@@ -45,7 +45,7 @@ std::vector<MadeStick> every_kind() {
   return sticks;
 }
 
-TEST(Stills, RestAfterEachReleaseIsFoundWhereItWas) {
+TEST(Stills, TheRestAfterEachReleaseIsFound) {
   for (MadeStick stick : every_kind()) {
     for (const double drift : {0.0, 0.02}) {
       stick.drift_per_s = vec2(drift, 0.0);
@@ -66,7 +66,8 @@ TEST(Stills, RestAfterEachReleaseIsFoundWhereItWas) {
       for (const Still& rest : found.rests) {
         bool is_inside = false;
         for (const auto& [from_s, to_s] : truth) {
-          // A silent pad's last position holds until the movement shows: a code, or an interval.
+          // The rest of a pad that is silent at rest lasts until the movement shows: one code, or
+          // one report interval.
           const double late_s = 2.0 / stick.rate_hz + 0.02;
           is_inside |= seconds(rest.begin_ns) > from_s && seconds(rest.end_ns) < to_s + late_s;
         }
@@ -77,7 +78,7 @@ TEST(Stills, RestAfterEachReleaseIsFoundWhereItWas) {
   }
 }
 
-TEST(Stills, TurningIsNoRest) {
+TEST(Stills, TurningIsNotRest) {
   for (const MadeStick& stick : every_kind()) {
     for (const double seconds_a_turn : {0.4, 1.0, 3.0}) {
       MadeMoves moves(stick);
@@ -91,7 +92,7 @@ TEST(Stills, TurningIsNoRest) {
   }
 }
 
-TEST(Stills, AHeldPushIsAPushAndNoRest) {
+TEST(Stills, AHeldPushIsAPushAndNotARest) {
   for (const MadeStick& stick : every_kind()) {
     MadeMoves moves(stick);
     moves.rest(0.6);
@@ -112,7 +113,7 @@ TEST(Stills, AHeldPushIsAPushAndNoRest) {
   }
 }
 
-TEST(Stills, AThumbThatHoldsHalfWayIsNoRestWhereThereAreTrueOnes) {
+TEST(Stills, AStickHeldHalfWayIsNotARestBesideTrueOnes) {
   for (const MadeStick& stick : every_kind()) {
     MadeMoves moves(stick);
     moves.rest(0.5);
@@ -132,18 +133,18 @@ TEST(Stills, AThumbThatHoldsHalfWayIsNoRestWhereThereAreTrueOnes) {
 
 TEST(Stills, AStickThatWasNeverTouchedRestsAllTheTime) {
   for (const MadeStick& stick : every_kind()) {
-    if (stick.reports_changes_only && stick.sigma.x == 0.0) continue;  // one report says nothing
+    if (stick.reports_changes_only && stick.sigma.x == 0.0) continue;  // one report is not enough
     MadeMoves moves(stick);
     moves.rest(3.0);
     const Stills found = stills_of(stick, moves);
-    // A pad that is silent at the end may be gone.
+    // The silence at the end does not count: the pad may be unplugged.
     EXPECT_GT(seconds_of(found.rests), stick.reports_changes_only ? 2.0 : 2.9) << name_of(stick);
     EXPECT_TRUE(found.pushes.empty());
   }
 }
 
-TEST(Stills, AMeanIsOfTimeNotOfReports) {
-  // Two reports of a silent pad: for a second here, for three seconds a code farther.
+TEST(Stills, AMeanIsWeightedByTimeNotByReports) {
+  // A pad that is silent at rest stands at 0.01 for a second and at 0.014 for three seconds.
   const StickTrack track = {{0, {0.01, 0.0}},
                             {1'000'000'000, {0.014, 0.0}},
                             {2'500'000'000, {0.014, 0.01}},
@@ -155,8 +156,8 @@ TEST(Stills, AMeanIsOfTimeNotOfReports) {
   EXPECT_EQ(found.rests[0].last, 2u);
 }
 
-// Bounds time and memory for any number of recordings full of silence.
-TEST(Stills, TheFirstDayOfAllTracksCounts) {
+// The limit bounds time and memory for any number of silent recordings.
+TEST(Stills, OnlyTheFirstDayOfAllTracksCounts) {
   StickTrack silent;
   for (std::int64_t k = 0; k < 30'000; ++k) {
     silent.push_back({k * 2'000'000'000, {0.01 + 0.001 * static_cast<double>(k % 2), 0.0}});
@@ -165,7 +166,7 @@ TEST(Stills, TheFirstDayOfAllTracksCounts) {
   EXPECT_NEAR(seconds_of(found.rests), 86400.0, 10.0);
 }
 
-TEST(Stills, AnySamplesAreTaken) {
+TEST(Stills, InvalidSamplesDoNotCrash) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   constexpr auto kFirst = std::numeric_limits<std::int64_t>::min();
@@ -176,7 +177,7 @@ TEST(Stills, AnySamplesAreTaken) {
   const StickTrack wild = {{kLast, {0.0, 0.0}},  {kFirst, {0.0, 0.0}}, {0, {nan, 0.0}},
                            {kFirst, {0.0, 1e9}}, {kLast, {-inf, 0.1}}, {kLast, {0.1, 0.1}}};
   stills(std::vector<StickTrack>{wild, wild});
-  // Many samples at one moment.
+  // Many samples with the same time.
   stills(std::vector<StickTrack>{StickTrack(1000, {7, {0.1, 0.1}})});
 }
 

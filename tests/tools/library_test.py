@@ -106,14 +106,13 @@ def test_sdl_game_walks_its_character(examples, tmp_path):
     assert len(set(picture.read_bytes()[54:])) > 3, "the picture shows a character"
 
 
-def test_pkg_config_finds_the_core(installed, tmp_path):
+@pytest.mark.parametrize("module, example", [("gaitpad-core", "solve_leg"), ("gaitpad", "own_pad")])
+def test_pkg_config_finds_headers_and_libraries_under_the_prefix(installed, tmp_path, module, example):
     folder = next(installed.glob("lib/**/pkgconfig"))
-    flags = call("pkg-config", "--cflags", "--libs", "gaitpad-core",
+    flags = call("pkg-config", "--cflags", "--libs", module,
                  env={**os.environ, "PKG_CONFIG_PATH": str(folder)}).split()
-    source = tmp_path / "solve.cpp"
-    source.write_text((EXAMPLES / "solve_leg.cpp").read_text())
-    assert "-lgaitpad_core" in flags
-    call("pkg-config", "--exists", "gaitpad", env={**os.environ, "PKG_CONFIG_PATH": str(folder)})
+    call("g++", "-std=c++20", EXAMPLES / f"{example}.cpp", *flags, "-o", tmp_path / example)
+    assert call(tmp_path / example)
 
 
 def test_fetch_content_builds_the_core_as_a_subproject(tmp_path):

@@ -245,9 +245,9 @@ void GuideScreen::rewrite(const CalibrationGuide& guide, const ShownPad& pad) {
     for (std::string& text : control_lines(control, is_of_sticks, size.columns))
       lines.push_back(std::move(text));
   if (lines.size() + 1 <= size.rows) lines.insert(lines.begin(), title(guide, pad));
-  if (lines.size() + 1 <= size.rows) lines.push_back(kKeys);
+  if (lines.size() + 1 <= size.rows) lines.emplace_back(kKeys);
   for (const char* text : kHelp)
-    if (has_help_ && lines.size() + 1 <= size.rows) lines.push_back(text);
+    if (has_help_ && lines.size() + 1 <= size.rows) lines.emplace_back(text);
   if (lines.size() > size.rows) lines.resize(size.rows);
   line_.show(lines);
 }

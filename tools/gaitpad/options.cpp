@@ -78,7 +78,7 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
   const bool is_choosy = !wish_.pad.empty() || !wish_.driver.empty();
   for (const std::string& other : is_choosy ? pads_of_system() : std::vector<std::string>())
     remarks.push_back(other);
-  remarks.push_back("gaitpad doctor finds why a pad does not work");
+  remarks.emplace_back("gaitpad doctor finds why a pad does not work");
   print_remarks(command_, remarks, &line);
 }
 

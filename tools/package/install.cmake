@@ -27,6 +27,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/gaitpad-config-version.cm
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/gaitpad-config.cmake ${PROJECT_BINARY_DIR}/gaitpad-config-version.cmake
         DESTINATION ${package_folder})
+# From the folder of the pkg-config files up to the prefix: `cmake --install --prefix` may name another one than the
+# configuration did.
+file(RELATIVE_PATH PREFIX_ABOVE_PKGCONFIG ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 set(modules gaitpad-core)
 if(TARGET gaitpad_session)
   list(APPEND modules gaitpad)

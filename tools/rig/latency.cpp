@@ -24,9 +24,8 @@
 #include "gaitpad/decode.h"
 #include "gaitpad/drivers.h"
 
+namespace gaitpad {
 namespace {
-
-using namespace gaitpad;
 
 constexpr int kPatienceMs = 1000;
 
@@ -147,9 +146,7 @@ int by_hand(bool is_hidraw, int vendor, int product, std::size_t count,
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   unsigned vendor = 0, product = 0;
   if (argc != 4 || std::sscanf(argv[2], "%x:%x", &vendor, &product) != 2) {
     std::fprintf(stderr, "usage: rig_latency WAY VENDOR:PRODUCT COUNT\n");
@@ -170,3 +167,8 @@ int main(int argc, char** argv) {
     std::printf("%lld %d\n", static_cast<long long>(r.time_ns), r.number);
   return status;
 }
+
+}  // namespace
+}  // namespace gaitpad
+
+int main(int argc, char** argv) { return gaitpad::run(argc, argv); }

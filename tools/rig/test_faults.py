@@ -18,7 +18,8 @@ from pads import LONG, Pad, settle, wait_for
 from session import HAS_SANITIZERS, IDS, PROGRAM, TICK_S, Session, remark, run, ticks_of
 from test_matrix import NAMES, VALUES, expected_stick
 
-TIMES = 50 if LONG else 5
+# A session with sanitizers takes most of the guest's one core.
+TIMES = 50 if LONG else 2 if HAS_SANITIZERS else 5
 NOBODY = 65534
 RULES = "/etc/udev/rules.d/60-gaitpad.rules"
 
@@ -36,7 +37,7 @@ def neutral_in_time(frames, ticks, seconds=0.1):
         assert float(after["stick_x"]) == float(after["stick_y"]) == 0.0, (tick, after["stick_y"])
 
 
-@pytest.mark.timeout(400)
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize("case", ["generic-hidraw", "dualsense-hidraw", "generic-usb", "xbox360-evdev", "generic-sdl"])
 def test_unplugged_while_walking_and_plugged_in_again(case):
     kind, driver = case.split("-")
@@ -63,7 +64,7 @@ def test_unplugged_while_walking_and_plugged_in_again(case):
     remark(f"unplugged while walking, {case}: {times} times, neutral within 0.1 s each time")
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.timeout(900)
 def test_unplugged_during_open():
     """Blind flapping under a loop of programs that open whatever there is, and under a session."""
     chance = random.Random(1)
@@ -78,7 +79,7 @@ def test_unplugged_during_open():
             pad.command("unplug")
             time.sleep(chance.uniform(0.02, 0.2))
             pad.command("plug")
-            _, errors = opener.communicate(timeout=30)
+            _, errors = opener.communicate(timeout=150)  # with sanitizers it shares the guest's core with a slow session
             assert opener.returncode in (0, 1) and "Sanitizer" not in errors, (opener.returncode, errors)
         pad.wait_ready(60)
         reports = len(session.lines("E:"))

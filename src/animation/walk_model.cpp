@@ -405,7 +405,7 @@ StrideFamily scaled(StrideFamily family, double ratio, double scale) {
     for (StrideTable& table : *tables) {
     table.stride_m *= ratio;
     for (vec3& place : table.footprint_m) place *= by;
-    for (StrideCell& cell : table.cell) {
+    for (StrideCell& cell : table.knot) {
       cell.pelvis_m *= by;
       for (StrideFoot& foot : cell.foot) foot.heel_m *= by;
     }

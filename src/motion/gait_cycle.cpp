@@ -142,7 +142,7 @@ void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
 // toe is down. So it waits until it has moved as far, in the data, as the other toe still has to
 // sink: both feet are then changed equally.
 void wait_for_other_toe(GaitCycle& cycle) {
-  constexpr double kLeavingCosts = 2.0, kLongestWait = 0.08, kStep = 1.0 / (2 * kCycleSamples);  // of the stride
+  constexpr double kLeavingCosts = 3.0, kLongestWait = 0.08, kStep = 1.0 / (2 * kCycleSamples);  // of the stride
   const std::array<double, 2> off = cycle.toe_off;
   for (const Side side : {kLeftSide, kRightSide}) {
     const Side lands = other(side);
@@ -249,6 +249,7 @@ Result<Build> built(const Motion& motion, const StrideWindow& window,
   b.cycle.pace = motion.pace;
   b.cycle.duration_s = periodic.duration_s;
   b.cycle.stride_m = periodic.stride_m;
+  b.cycle.first_frame = window.start;
   b.cycle.frames = window.period;
   b.cycle.turn_rad = window.turn_rad;
   b.captured = captured_cycle(motion, periodic, shift);
@@ -256,14 +257,6 @@ Result<Build> built(const Motion& motion, const StrideWindow& window,
   if (!floor_m) return floor_m.error();
   build_samples(b.captured, *floor_m, b.cycle);
   return b;
-}
-
-// The frame of the strike at that phase of the window: in the window, or one stride before it where
-// the motion ends too soon.
-double frame_of(const StrideWindow& window, double phase) {
-  const double frame = window.start + phase * window.period;
-  const bool is_cut = frame + window.period > window.last && frame - window.period >= window.first;
-  return is_cut ? frame - window.period : frame;
 }
 
 // Builds the cycle twice: the first one tells when the right heel strikes, and the second one
@@ -282,7 +275,6 @@ Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   Result<Build> second = built(motion, window, periodic, shift);
   if (!second) return second.error();
   GaitCycle& cycle = second->cycle;
-  cycle.first_frame = frame_of(window, shift);
   for (const Side side : {kLeftSide, kRightSide}) {
     cycle.strike[side] = fraction(events->strike[side] - shift);
     cycle.toe_off[side] = fraction(events->toe_off[side] - shift);
@@ -314,8 +306,10 @@ Result<GaitCycle> looped_cycle_of(const Motion& motion) {
   if (twice.frames.empty()) return cycle;
   Result<GaitCycle> again = cycle_of(twice);
   if (!again) return cycle;
+  // Frames of the motion itself: in a loop any stride is like the one a round earlier.
   const auto round = static_cast<double>(motion.frames.size() - 1);
   if (again->first_frame >= round) again->first_frame -= round;
+  again->first_frame = std::max(0.0, std::min(again->first_frame, round - again->frames));
   return again;
 }
 

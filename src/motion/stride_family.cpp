@@ -14,6 +14,13 @@ std::array<double, 4> cubic(double t) noexcept {
           0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
 }
 
+// Weights of four neighbouring knots of a uniform cubic B-spline.
+std::array<double, 4> spline(double t) noexcept {
+  const double s = 1.0 - t;
+  return {s * s * s / 6.0, (4.0 + t * t * (3.0 * t - 6.0)) / 6.0,
+          (4.0 + s * s * (3.0 * s - 6.0)) / 6.0, t * t * t / 6.0};
+}
+
 constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
 
@@ -33,13 +40,34 @@ StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
   return sum;
 }
 
+// The inverse of [1 4 1] / 6: the samples, filtered forwards and back by the filter's pole (Unser
+// 1993). Its response is cut off where it is below the rounding of a double.
+std::array<StrideCell, kCycleSamples> knots_through(
+    const std::array<StrideCell, kCycleSamples>& samples) noexcept {
+  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
+  constexpr int kReach = 28;
+  const auto at = [](int i) { return (i + 2 * kCycleSamples) % kCycleSamples; };
+  std::array<StrideCell, kCycleSamples> once, knots;
+  StrideCell sum;
+  for (int i = -kReach; i < kCycleSamples; ++i) {
+    sum = mixed(samples[at(i)], sum, 1.0, kPole);
+    if (i >= 0) once[i] = sum;
+  }
+  sum = StrideCell{};
+  for (int i = kCycleSamples - 1 + kReach; i >= 0; --i) {
+    sum = mixed(once[at(i)], sum, -6.0 * kPole, kPole);
+    if (i < kCycleSamples) knots[i] = sum;
+  }
+  return knots;
+}
+
 StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
                       double ratio) noexcept {
   const double x = (phase - std::floor(phase)) * kCycleSamples;
   const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
   const double y = std::clamp(ratio / kRatioStep, 0.0, double(kStrideRatios - 1));
   const int r = std::min(static_cast<int>(y), kStrideRatios - 2);
-  const std::array<double, 4> by_phase = cubic(x - i);
+  const std::array<double, 4> by_phase = spline(x - i);
   std::array<double, 4> by_ratio = cubic(y - r);
   // Beyond the ends the tables go on straight.
   if (r == 0) by_ratio[1] += 2.0 * by_ratio[0], by_ratio[2] -= by_ratio[0], by_ratio[0] = 0.0;
@@ -54,7 +82,7 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
     for (int side : {0, 1}) place.footprint_m[side] += table.footprint_m[side] * by_ratio[n];
     for (int m = 0; m < 4; ++m) {
       const int k = (i + m - 1 + kCycleSamples) % kCycleSamples;
-      add(place.cell, table.cell[k], by_ratio[n] * by_phase[m]);
+      add(place.cell, table.knot[k], by_ratio[n] * by_phase[m]);
     }
   }
   return place;

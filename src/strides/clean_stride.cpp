@@ -17,21 +17,19 @@ namespace {
 constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
 
 // Weights of squared residuals; an angle of the data (radians) has 1.
-constexpr double kDegreeCosts_m = 0.02;  // a pelvis this far off costs as much as one degree
+constexpr double kDegreeCosts_m = 0.03;  // a pelvis this far off costs as much as one degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kAnkle = 1.4;
-constexpr double kSmooth = 50.0;       // of second differences between samples
-constexpr double kPelvisSideways = 2000.0;
-constexpr double kPelvisSmooth = 2500.0;  // times that
-constexpr double kPlanted = 2e6, kFloor = 2e5, kKnee = 1e4;  // per square metre, radian
-constexpr double kLevel = 2e3;          // the sole is level and points ahead, per square metre
-constexpr double kFlat = 2e5;            // the heel of a flat foot, per square metre
+constexpr double kHip = 1.4, kAnkle = 1.2;
+constexpr double kSmooth = 20.0;  // of second differences between samples,
+constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 2000.0;  // times this for the pelvis
+constexpr double kPlanted = 2e6, kFloor = 1e6, kKnee = 1e4;  // per square metre, radian
+constexpr double kLevel = 1e2;          // the sole is level and points ahead, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftStrike = 2e5, kSoftToe = 7e3;
-constexpr int kLanding = 3, kToeLanding = 3;  // samples
+constexpr double kSoftStrike = 3e4, kSoftToeDown = 1e4, kSoftToe = 5e2;
+constexpr int kLanding = 6;  // samples over which this fades
 constexpr double kSide_m = 0.1;         // lever of that
-constexpr double kSoftFloor_m = 0.004;
-constexpr double kLeastKnee = 2.5 * kDegree, kSoftKnee = 2.0 * kDegree;
+constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
+constexpr double kLeastKnee = 2.0 * kDegree, kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.15;        // radians or metres an iteration
 
@@ -48,6 +46,12 @@ Mirrored mirror_of(int k) {
   const int side = (k - kPelvis) / kLegDofs, j = (k - kPelvis) % kLegDofs;
   const bool bends = j == kHipX || j == kKneeX || j == kAnkleX;
   return {leg_unknown(1 - side) + j, bends ? 1.0 : -1.0};
+}
+
+double weight_of(int k) {
+  if (k < kPelvis) return kPelvisWeight;
+  const int j = (k - kPelvis) % kLegDofs;
+  return j < kKneeX ? kHip : j == kKneeX ? 1.0 : kAnkle;
 }
 
 // How one point of a foot moves with the unknowns of its sample.
@@ -236,11 +240,11 @@ struct StrideSolver::System {
   }
 
   // Keeps a point above a height; rounded, so that the row does not flip from step to step.
-  void add_floor(int sample, int side, const PointRows& point, double least_m) {
+  void add_floor(int sample, int side, const PointRows& point, double least_m, double soft_m) {
     const double low = least_m - point.place_m.y;
-    if (low <= -kSoftFloor_m) return;
-    const double slope = std::min(1.0, 0.5 * (low + kSoftFloor_m) / kSoftFloor_m);
-    add_row(sample, side, point, kUp * slope, -soft_positive(low, kSoftFloor_m), kFloor);
+    if (low <= -soft_m) return;
+    const double slope = std::min(1.0, 0.5 * (low + soft_m) / soft_m);
+    add_row(sample, side, point, kUp * slope, -soft_positive(low, soft_m), kFloor);
   }
 };
 
@@ -268,7 +272,7 @@ bool is_symmetric(const StrideProblem& p) {
               is_mirrored(left.heel_m, right.heel_m) && is_mirrored(left.toe_m, right.toe_m) &&
               is_same(left.toe_rest_m, right.toe_rest_m) && is_same(left.thigh_m, right.thigh_m) &&
               is_same(left.shank_m, right.shank_m) && is_same(p.strike[0], p.strike[1] + 0.5) &&
-              is_same(p.toe_off[0] + 0.5, p.toe_off[1]) && is_same(p.flat[0], p.flat[1]) &&
+              is_same(p.toe_off[0] + 0.5, p.toe_off[1]) &&
               is_mirrored(p.heel_m[0], p.heel_m[1] + on);
   for (int i = 0; i < half && same; ++i) {
     const StrideSample &a = p.wanted[i], &b = p.wanted[i + half];
@@ -300,8 +304,9 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
     for (int i = 0; i < solved; ++i) {
       for (int k = 0; k < kUnknowns; ++k) {
         const int at = i * kUnknowns + k;
-        const double weight = k < kPelvis ? kPelvisWeight : (k - kPelvis) % kLegDofs >= kAnkleX ? kAnkle : 1.0;
-        const double smooth = kSmooth * weight * (k == 1 ? kPelvisSmooth : k < kPelvis ? kPelvisSideways : 1.0);
+        const double weight = weight_of(k);
+        const double smooth =
+            kSmooth * weight * (k == 1 ? kPelvisSmoothUp : k < kPelvis ? kPelvisSmooth : 1.0);
         std::array<double, 3> change;
         std::array<Mirrored, 3> where;
         for (int d : {0, 1, 2}) {
@@ -337,12 +342,14 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
       const int strike = static_cast<int>(std::floor(problem.strike[side] * n + 1e-9)),
                 lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - 1e-9)),
                 down = static_cast<int>(std::floor(problem.toe_off[1 - side] * n + 1e-9));
-      for (int d = -kLanding; d <= 0; ++d) {
-        s.add_bend((strike + d + n) % n, side, heels, path_m, problem.stride_m, kSoftStrike);
-      }
-      for (int d = -kToeLanding; d <= 0; ++d) {
-        s.add_bend((lift - d + n) % n, side, toes, path_m, problem.stride_m, kSoftToe);
-        s.add_bend((down + d + n) % n, side, toes, path_m, problem.stride_m, kSoftToe);
+      for (int d = 0; d < kLanding; ++d) {
+        const double fades = 1.0 - double(d) / kLanding, weight = fades * fades;
+        const auto soften = [&](int sample, const std::vector<PointRows>& point, double soft) {
+          s.add_bend((sample + n) % n, side, point, path_m, problem.stride_m, weight * soft);
+        };
+        soften(strike - d, heels, kSoftStrike);
+        soften(down - d, toes, kSoftToeDown);
+        soften(lift + d, toes, kSoftToe);
       }
     }
     for (int i = 0; i < solved; ++i) {
@@ -371,10 +378,8 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
             d[a] = 1.0;
             s.add_row(i, side, heel, d, heel.place_m[a] - heel_goal[a], kPlanted);
           }
-        } else if (own <= problem.flat[side]) {
-          s.add_row(i, side, heel, kUp, heel.place_m.y, kFlat);
         } else {
-          s.add_floor(i, side, heel, 0.0);
+          s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
         }
         if (supports) {
           for (int a = 0; a < 3; ++a) {
@@ -385,7 +390,7 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         } else {
           const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
           const double least = leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
-          s.add_floor(i, side, toe, least);
+          s.add_floor(i, side, toe, least, kSoftFloor_m);
         }
         if (rolls || supports) {
           // Level across, pointing ahead.

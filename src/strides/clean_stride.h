@@ -30,7 +30,6 @@ struct StrideProblem {
   std::vector<StrideSample> wanted;   // the data, scaled to this stride
   std::array<double, 2> strike{};     // phases, as in GaitCycle
   std::array<double, 2> toe_off{};
-  std::array<double, 2> flat{};  // phase since the strike until which the heel stays down
   std::vector<double> time;  // of each sample, in cycles: 0 at sample 0
   // Where the heel stands along the path: the travel frame is at stride_m * time.
   std::array<vec3, 2> heel_m{};

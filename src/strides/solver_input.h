@@ -22,7 +22,7 @@ void for_each_number(Family& family, Each each) {
   for (auto* tables : {&family.table, &family.back}) for (auto& table : *tables) {
     each(table.stride_m);
     for (auto& place : table.footprint_m) each_of(place);
-    for (auto& cell : table.cell) {
+    for (auto& cell : table.knot) {
       each_of(cell.pelvis_m);
       each(cell.pelvis_yaw_rad);
       each_of(cell.pelvis_tilt);

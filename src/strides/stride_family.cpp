@@ -19,7 +19,6 @@ constexpr int kFirstSolve = 10, kNextSolve = 8;
 constexpr double kLeastStandingKnee = 3.0 * kDegree;
 // What shows of the data's angles in steps of length 0: a foot still has to leave the floor.
 constexpr double kLeastLift = 0.3;
-constexpr double kHeelDown = 0.008;  // of the leg: a heel so near to its mean height stands
 constexpr double kFlat = 0.2;  // own phase: how long a foot stands flat after its roll
 // What no walker has. A leg opens by less than half a turn, so a step is shorter than two legs.
 constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0, kMostAngle = 2.0 * kPi;
@@ -48,7 +47,6 @@ struct Builder {
   StrideFamily family;
   std::array<vec3, 2> own_footprint_m{};
   std::array<double, 4> phase_share{};
-  std::array<double, 2> flat{};
   std::array<LegAngles, 2> mean_rad{};
   vec3 mean_tilt{0.0};
   std::array<vec3, kCycleSamples> tilt{};
@@ -87,15 +85,6 @@ struct Builder {
         ++count;
       }
       own_footprint_m[side] = sum / double(count);
-      // The heel is down until it has left its mean height by a few millimetres.
-      flat[side] = roll;
-      const double high_m = own_footprint_m[side].y + kHeelDown * cycle.leg[side].length_m();
-      for (double own = roll; own < roll + 2.0 * kFlat; own += 1.0 / kCycleSamples) {
-        const CycleSample s = sample_at(cycle, own + cycle.strike[side]);
-        if (leg_pose(cycle.leg[side], s.pelvis_m, s.pelvis, s.leg[side].angles, 0.0).heel_m.y > high_m)
-          break;
-        flat[side] = own;
-      }
       own_footprint_m[side].y = 0.0;
     }
   }
@@ -193,7 +182,6 @@ struct Builder {
       p.time.push_back(0.5 * (low + high));
     }
     for (int side : {0, 1}) p.heel_m[side] = footprint(side, ratio);
-    p.flat = flat;
     return p;
   }
 
@@ -202,9 +190,10 @@ struct Builder {
     StrideTable table;
     table.stride_m = p.stride_m;
     table.footprint_m = p.heel_m;
+    std::array<StrideCell, kCycleSamples> cells;
     for (int i = 0; i < kCycleSamples; ++i) {
       const StrideSample& s = solved[i];
-      StrideCell& cell = table.cell[i];
+      StrideCell& cell = cells[i];
       const double travel = p.stride_m * (p.time[i] - double(i) / kCycleSamples);
       cell.pelvis_m = s.pelvis_m + vec3(0.0, -family.stand_m, travel);
       cell.pelvis_yaw_rad = ratio * yaw[i];
@@ -220,6 +209,7 @@ struct Builder {
           cell.leg_rad[side][j] = s.leg[side][j] - family.stand_rad[side][j];
       }
     }
+    table.knot = knots_through(cells);
     return table;
   }
 

@@ -43,7 +43,8 @@ struct StrideTable {
   // Where the heels stand along the path: the left foot's after its strike near phase 0.5, the
   // right foot's after phase 0.
   std::array<vec3, 2> footprint_m{};
-  std::array<StrideCell, kCycleSamples> cell{};
+  // Control points of the periodic uniform cubic B-spline in phase.
+  std::array<StrideCell, kCycleSamples> knot{};
 };
 
 struct StrideFamily {
@@ -62,8 +63,12 @@ struct StridePlace {
   std::array<vec3, 2> footprint_m{};
   StrideCell cell;
 };
+// Knots of the spline that goes through these samples of a cycle.
+std::array<StrideCell, kCycleSamples> knots_through(
+    const std::array<StrideCell, kCycleSamples>& samples) noexcept;
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
-// Cubic in phase and in ratio; the ratio is clamped to the family's. No heap.
+// A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is clamped
+// to the family's. No heap.
 StridePlace stride_at(const std::vector<StrideTable>& table, double phase, double ratio) noexcept;
 
 // The share of the cycle's time that the roll of a foot (Table I (b)) takes in strides of this

@@ -14,9 +14,9 @@ namespace gaitpad {
 namespace {
 
 constexpr double kMinPitch = -28.0 * kDegree;  // toe up
-constexpr double kSoftPitch = 2.0 * kDegree;
-constexpr double kClearance_m = 0.004;  // least toe clearance in flight, at the reference leg
-constexpr double kSameHeight_m = 0.003;  // a foot so near to the tables' is as high
+// A flying toe may be that far below where it stands: then the tables' own toes, which only just
+// leave the floor, are let through. At the reference leg.
+constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree;
 constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 constexpr double kReachOnToe = 0.99995;  // of the leg: with the hip further away, the heel rises
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
@@ -178,16 +178,11 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   if (pose.tilt != state.landing_plane.tilt) {
     pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.landing_plane.tilt * gone);
   }
-  const double open = smoothstep(0.0, 0.25, u) * (1.0 - smoothstep(0.75, 1.0, u));
   const double height = (pose.heel_m.y - point.base_m) * foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
-  const double own_pitch = table_pitch(state, plan, side);
-  const double pitch = own_pitch + foot.pitch_fade.at(u * state.stage_ticks);
-  const double limit = highest_pitch(leg, height, kClearance_m * model.size * open);
-  const double excess = pitch - soft_min(pitch, limit, std::max(1e-9, kSoftPitch * open));
-  const double lower = std::max(0.0, cell.heel_m.y - height) + leg.foot_m * std::abs(pitch - own_pitch);
-  const double times = lower / (kSameHeight_m * model.size), square = times * times;
-  set_pitch(leg, pitch - excess * square / (1.0 + square), pose, FootMode::flight);
+  const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(u * state.stage_ticks);
+  const double limit = highest_pitch(leg, height, -kMostSink_m * model.size);
+  set_pitch(leg, soft_min(pitch, limit, kSoftPitch), pose, FootMode::flight);
   return point;
 }
 

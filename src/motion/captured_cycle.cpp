@@ -13,7 +13,7 @@ namespace {
 // --- One stride as a periodic function -----------------------------------------------------------
 
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
-constexpr double kFade = 0.25;  // of the stride, at most, on either side of the seam
+constexpr double kFade = 0.12;  // of the stride, at most, on either side of the seam
 constexpr double kLeastFade = 0.08;
 constexpr int kFullHarmonics = 10;  // the ones above fade out to kHarmonics
 

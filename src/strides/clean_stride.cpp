@@ -17,15 +17,15 @@ namespace {
 constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
 
 // Weights of squared residuals; an angle of the data (radians) has 1.
-constexpr double kDegreeCosts_m = 0.03;  // a pelvis this far off costs as much as one degree
+constexpr double kDegreeCosts_m = 0.035;  // a pelvis this far off costs as much as one degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kHip = 1.4, kAnkle = 1.2;
+constexpr double kHip = 1.5, kAnkle = 1.6;
 constexpr double kSmooth = 20.0;  // of second differences between samples,
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 2000.0;  // times this for the pelvis
-constexpr double kPlanted = 2e6, kFloor = 1e6, kKnee = 1e4;  // per square metre, radian
+constexpr double kPlanted = 2e6, kFloor = 3e6, kKnee = 1e4;  // per square metre, radian
 constexpr double kLevel = 1e2;          // the sole is level and points ahead, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftStrike = 3e4, kSoftToeDown = 1e4, kSoftToe = 5e2;
+constexpr double kSoftStrike = 3e4, kSoftToeDown = 5e3, kSoftToe = 5e2;
 constexpr int kLanding = 6;  // samples over which this fades
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;

@@ -64,8 +64,8 @@ Stretch stretch_of(const StrideWindow& w) {
 }
 
 // Makes x(phase), 0 .. 1, periodic. Where the motion goes on beyond the seam, its two sides are
-// faded into each other. Elsewhere the gap in value is spread over the stride, and the gap in slope
-// around the seam.
+// faded into each other. Elsewhere the gaps in value and in slope are spread around the seam. Both
+// leave the rest of the stride as it was captured.
 class Closer {
  public:
   explicit Closer(const Stretch& stretch)
@@ -94,14 +94,15 @@ class Closer {
     return y;
   }
   double levelled(const Spline& x, double phase) const {
-    constexpr double kReach = 0.2, kStep = 0.01;
+    constexpr double kReach = 0.15, kStep = 0.01;
     const double gap = x.at(s_.place(1.0)) - x.at(s_.place(0.0));
     const double slope_start = (x.at(s_.place(kStep)) - x.at(s_.place(0.0))) / kStep;
     const double slope_end = (x.at(s_.place(1.0)) - x.at(s_.place(1.0 - kStep))) / kStep;
     const double half = 0.5 * (slope_end - slope_start);
     const double from_seam = std::min(phase, 1.0 - phase);
     const double rest = std::max(0.0, 1.0 - from_seam / kReach);
-    return x.at(s_.place(phase)) - gap * (phase - 0.5) + half * from_seam * rest * rest;
+    const double near = 0.5 * (1.0 - smoothstep(0.0, kReach, from_seam));
+    return x.at(s_.place(phase)) + gap * (phase < 0.5 ? near : -near) + half * from_seam * rest * rest;
   }
 
   Stretch s_;

@@ -21,7 +21,7 @@ constexpr double kDegreeCosts_m = 0.035;  // a pelvis this far off costs as much
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
 constexpr double kHip = 1.5, kAnkle = 1.6;
 constexpr double kSmooth = 20.0;  // of second differences between samples,
-constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 2000.0;  // times this for the pelvis
+constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // times this for the pelvis
 constexpr double kPlanted = 2e6, kFloor = 3e6, kKnee = 1e4;  // per square metre, radian
 constexpr double kLevel = 1e2;          // the sole is level and points ahead, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.

@@ -17,16 +17,19 @@ namespace {
 constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
 
 // Weights of squared residuals; an angle of the data (radians) has 1.
-constexpr double kDegreeCosts_m = 0.035;  // a pelvis this far off costs as much as one degree
+constexpr double kDegreeCosts_m = 0.04;  // a pelvis this far off costs as much as one degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kHip = 1.5, kAnkle = 1.6;
+constexpr double kHip = 1.8, kAnkle = 1.8;
 constexpr double kSmooth = 20.0;  // of second differences between samples,
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // times this for the pelvis
-constexpr double kPlanted = 2e6, kFloor = 3e6, kKnee = 1e4;  // per square metre, radian
-constexpr double kLevel = 1e2;          // the sole is level and points ahead, per square metre
+constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;  // per square metre, radian
+constexpr double kLevel = 5e2;          // the sole is level and points ahead, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftStrike = 3e4, kSoftToeDown = 5e3, kSoftToe = 5e2;
+constexpr double kSoftStrike = 3e4, kSoftToeDown = 8e3, kSoftToe = 3e3;
 constexpr int kLanding = 6;  // samples over which this fades
+// People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square metre
+// of a second difference.
+constexpr double kMostSurge_m_s2 = 3.2, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kLeastKnee = 2.0 * kDegree, kSoftKnee = 2.0 * kDegree;
@@ -239,6 +242,30 @@ struct StrideSolver::System {
     }
   }
 
+  // Keeps the second difference of the pelvis' place along the path below a bound, rounded.
+  void add_surge(int sample, const std::vector<StrideSample>& x, const std::vector<double>& path_m,
+                 double stride_m, double most_m, double soft_m) {
+    constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
+    double bend = 0.0;
+    std::array<Mirrored, 3> where;
+    for (int d : {0, 1, 2}) {
+      const int at = sample + d - 1, j = (at + samples) % samples;
+      const double turn = at < 0 ? -stride_m : at >= samples ? stride_m : 0.0;
+      bend += kBend[d] * (x[j].pelvis_m.z + path_m[j] + turn);
+      where[d] = place_of(at, 2);
+    }
+    const double over = std::abs(bend) - most_m;
+    if (over <= -soft_m) return;
+    const double share = std::min(1.0, 0.5 * (over + soft_m) / soft_m);
+    const double error = std::copysign(soft_positive(over, soft_m), bend);
+    for (int d : {0, 1, 2}) {
+      const double slope = share * kBend[d];
+      gradient[where[d].unknown] += kSurge * slope * error;
+      for (int e = 0; e <= d; ++e)
+        at(where[d].unknown, where[e].unknown) += kSurge * slope * share * kBend[e];
+    }
+  }
+
   // Keeps a point above a height; rounded, so that the row does not flip from step to step.
   void add_floor(int sample, int side, const PointRows& point, double least_m, double soft_m) {
     const double low = least_m - point.place_m.y;
@@ -327,10 +354,14 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
         }
       }
     }
-    // Feet.
-    std::array<std::vector<LegFrames>, 2> all_frames;
     std::vector<double> path_m(n);
     for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
+    const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
+    for (int i = 0; i < solved; ++i) {
+      s.add_surge(i, x, path_m, problem.stride_m, kMostSurge_m_s2 * tick2, kSoftSurge_m_s2 * tick2);
+    }
+    // Feet.
+    std::array<std::vector<LegFrames>, 2> all_frames;
     for (int side : {0, 1}) {
       const LegModel& leg = problem.leg[side];
       std::vector<PointRows> heels, toes;

@@ -27,6 +27,7 @@ struct StrideSample {
 struct StrideProblem {
   std::array<LegModel, 2> leg;
   double stride_m = 0.0;              // travel in the stride
+  double duration_s = 0.0;
   std::vector<StrideSample> wanted;   // the data, scaled to this stride
   std::array<double, 2> strike{};     // phases, as in GaitCycle
   std::array<double, 2> toe_off{};

@@ -167,6 +167,7 @@ struct Builder {
     StrideProblem p;
     p.leg = cycle.leg;
     p.stride_m = ratio * cycle.stride_m;
+    p.duration_s = cycle.duration_s * std::sqrt(std::max(ratio, kRatioStep));
     p.strike = cycle.strike;
     p.toe_off = cycle.toe_off;
     const StageClock stages = clock(ratio);
@@ -307,7 +308,7 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
     numbers.insert(numbers.end(), {leg.thigh_m, leg.shank_m, leg.toe_rest_m});
   }
   numbers.insert(numbers.end(), {cycle.stride_m, cycle.step_m[0], cycle.step_m[1], cycle.strike[0], cycle.strike[1],
-                                 cycle.toe_off[0], cycle.toe_off[1]});
+                                 cycle.toe_off[0], cycle.toe_off[1], cycle.duration_s});
   for (const CycleSample& sample : cycle.samples) {
     add(sample.pelvis_m);
     const quat& q = sample.pelvis;

@@ -127,7 +127,8 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
   pelvis.position_m.y = state.base_m + height_m * lean.cos;
   const double yaw = state.sway.x * cell.pelvis_yaw_rad;
   pelvis.rotation = rotation_y(state.heading_rad) * rotation_z(-state.lean_rad.x) *
-                    rotation_y(yaw) * from_rotation_vector(cell.pelvis_tilt);
+                    rotation_y(yaw) *
+                    from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.strides.stand_roll_rad));
   return pelvis;
 }
 
@@ -148,6 +149,8 @@ constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
+constexpr double kBraking = 2.3;  // way over speed and time of a stop with little jerk
+constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 
@@ -187,10 +190,22 @@ double slowness_of_step(const WalkModel& model, const WalkState& state, Side swi
   return std::max(level * (1.0 + kSlowerOnStairs * rise), stair) / own;
 }
 
+// The last step brings the hips to rest over both feet, in the time in which they need no harder
+// braking than this way asks for.
+double slowness_of_rest(const Tick& tick, const WalkState& state, Side swing) noexcept {
+  const vec3 forward = heading_direction(state.heading_rad);
+  const double way_m = std::abs(glm::dot(state.landing_m - state.hips_m, forward) +
+                                tick.model.rest_lead_m),
+               speed_m_s = horizontal_length(state.hips_velocity_m_s);
+  return std::clamp(kBraking * way_m / std::max(speed_m_s * state.time_s[swing], 1e-6), kQuickestClosing,
+                    kSlowestClosing);
+}
+
 // Begins a step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   state.last_step_ticks = state.roll_ticks + state.flight_ticks;
   state.slowness = slowness_of_step(tick.model, state, other(rolling));
+  if (state.closing) state.slowness *= slowness_of_rest(tick, state, other(rolling));
   state.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
   state.flight_ticks = stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
   state.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];
@@ -258,9 +273,12 @@ void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept
     begin_walk(tick, state);
   }
   if (walks_on(params, state)) ask_for(params, tick.model, state);
+  // A walk that is to end takes the running step as it was begun, and one that closes it.
+  const bool finishes = state.started && !state.closing && !walking;
   for (int side : {0, 1}) {
     const StrideParams& stride = params.stride[side];
-    state.length_m[side].advance(walking ? stride.length_m : 0.0, kStepSmoothing * scale, dt);
+    const double length_m = walking ? stride.length_m : finishes ? state.length_m[side].x : 0.0;
+    state.length_m[side].advance(length_m, kStepSmoothing * scale, dt);
     state.flight_height[side].advance(stride.flight_height, kStepSmoothing * scale, dt);
     for (int j = 0; j < kLegDofs; ++j) {
       state.weight[side][j].advance(params.weight[side][j], kWeightSmoothing * scale, dt);
@@ -503,7 +521,7 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
   // Legs that are about to change their pace are bent a little, so that they have room.
   const double change = state.pace.x - state.settled_pace.x;
-  y -= kChangeDrop_m * model.size * change * change / (change * change + kChange * kChange);
+  y -= kChangeDrop_m * model.size * std::min(1.0, 2.0 * state.pace.x) * change * change / (change * change + kChange * kChange);
   double squares = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];

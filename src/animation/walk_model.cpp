@@ -414,6 +414,20 @@ StrideFamily scaled(StrideFamily family, double ratio, double scale) {
   return family;
 }
 
+// What hangs on the pelvis, but for the legs, stands as if it did not roll.
+void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
+  const quat& pelvis = cycle.pelvis_standing;
+  const quat back = glm::conjugate(pelvis) * rotation_z(-roll_rad) * pelvis;
+  for (std::size_t j = 0; j < cycle.skeleton.joints.size(); ++j) {
+    const bool is_leg = std::ranges::any_of(cycle.leg, [&](const LegModel& leg) {
+      return is_ancestor(cycle.skeleton, static_cast<int>(j), leg.joints.hip) ||
+             static_cast<int>(j) == leg.joints.hip;
+    });
+    if (cycle.skeleton.joints[j].parent == cycle.pelvis && !is_leg)
+      cycle.standing_local[j] = back * cycle.standing_local[j];
+  }
+}
+
 }  // namespace
 
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character) {
@@ -448,15 +462,13 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.rest_lead_m += 0.5 * (-leg.model.heel_m.z - leg.model.hip_m.z);
   }
   model.strides = scaled(strides, ratio, character.scale);
-  model.strides.stand_m = 0.0;
-  for (Side side : {kLeftSide, kRightSide}) {
-    const LegModel& leg = model.leg[side].model;
-    const double knee = strides.stand_rad[side][kKneeX];
-    const double square = leg.thigh_m * leg.thigh_m + leg.shank_m * leg.shank_m +
-                          2.0 * leg.thigh_m * leg.shank_m * sin_cos(knee).cos;
-    model.strides.stand_m += 0.5 * (std::sqrt(square) - leg.heel_m.y - leg.hip_m.y);
-    model.own_step_m[side] = cycle.step_m[side] * ratio;
-  }
+  const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
+  const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);
+  model.strides.stand_m = stand.pelvis_m;
+  model.strides.stand_roll_rad = stand.roll_rad;
+  model.strides.stand_rad = stand.angles;
+  for (Side side : {kLeftSide, kRightSide}) model.own_step_m[side] = cycle.step_m[side] * ratio;
+  keep_trunk_upright(stand.roll_rad, model.cycle);
   model.stand_m = model.strides.stand_m;
   collect_kept_joints(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);

@@ -20,6 +20,41 @@ LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis
   return p;
 }
 
+namespace {
+// From hip to ankle with a knee that is bent so far.
+double span_m(const LegModel& leg, double knee_rad) noexcept {
+  const double a = leg.thigh_m, b = leg.shank_m;
+  return std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee_rad).cos);
+}
+}  // namespace
+
+Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexcept {
+  constexpr double kMostRoll = 7.0 * kDegree;
+  Stand stand;
+  const vec3 across = legs[0].hip_m - legs[1].hip_m;
+  const auto length_m = [&](const LegModel& leg) { return span_m(leg, knee_rad) - leg.heel_m.y; };
+  const double longer = length_m(legs[0]) - length_m(legs[1]) - across.y;
+  stand.roll_rad =
+      std::clamp(gaitpad::atan2(longer, std::abs(across.x)), -kMostRoll, kMostRoll);
+  const quat roll = rotation_z(stand.roll_rad);
+  const auto height_m = [&](const LegModel& leg) { return length_m(leg) - (roll * leg.hip_m).y; };
+  stand.pelvis_m = std::min(height_m(legs[0]), height_m(legs[1]));
+  for (int side : {0, 1}) {
+    const LegModel& leg = legs[side];
+    const double a = leg.thigh_m, b = leg.shank_m;
+    const double span = stand.pelvis_m + (roll * leg.hip_m).y + leg.heel_m.y;
+    const double knee =
+        gaitpad::acos(std::clamp((span * span - a * a - b * b) / (2.0 * a * b), -1.0, 1.0));
+    const SinCos bent = sin_cos(knee);
+    LegAngles& angles = stand.angles[side];
+    angles[kHipX] = -gaitpad::atan2(b * bent.sin, a + b * bent.cos);
+    angles[kHipZ] = -stand.roll_rad;
+    angles[kKneeX] = knee;
+    angles[kAnkleX] = -angles[kHipX] - knee;
+  }
+  return stand;
+}
+
 quat rotation_xzy(const AnglesXzy& a) noexcept {
   return rotation_x(a.x) * rotation_z(a.z) * rotation_y(a.y);
 }

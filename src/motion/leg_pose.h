@@ -23,6 +23,16 @@ struct AnglesXzy {
 quat rotation_xzy(const AnglesXzy& a) noexcept;
 AnglesXzy angles_xzy(const quat& q) noexcept;
 
+// Both legs standing upright with flat feet. Where one is longer, the pelvis rolls as a person's
+// does; what that leaves bends the longer leg.
+struct Stand {
+  double pelvis_m = 0.0;    // its height over the floor
+  double roll_rad = 0.0;    // of the pelvis about the way ahead, left side up positive
+  std::array<LegAngles, 2> angles{};
+};
+// No knee is straighter than `knee_rad`.
+Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexcept;
+
 // Mirror images in the walker's middle plane (x -> -x).
 inline vec3 mirrored(const vec3& v) noexcept { return vec3(-v.x, v.y, v.z); }
 inline quat mirrored(const quat& q) noexcept { return quat(q.w, q.x, -q.y, -q.z); }

@@ -29,7 +29,7 @@ constexpr double kSoftStrike = 3e4, kSoftToeDown = 8e3, kSoftToe = 3e3;
 constexpr int kLanding = 6;  // samples over which this fades
 // People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square metre
 // of a second difference.
-constexpr double kMostSurge_m_s2 = 3.2, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
+constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kLeastKnee = 2.0 * kDegree, kSoftKnee = 2.0 * kDegree;

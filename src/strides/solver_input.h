@@ -15,6 +15,7 @@ template <class Family, class Each>
 void for_each_number(Family& family, Each each) {
   each(family.stand_m);
   each(family.lead_m);
+  each(family.stand_roll_rad);
   for (auto& angles : family.stand_rad) {
     for (auto& angle : angles) each(angle);
   }

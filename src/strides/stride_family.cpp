@@ -107,19 +107,17 @@ struct Builder {
           knee = std::min(knee, cycle.samples[i].leg[side].angles[kKneeX]);
       }
     }
-    knee = std::max(knee, kLeastStandingKnee);
-    const SinCos s = sin_cos(knee);
-    for (int side : {0, 1}) {
-      const LegModel& leg = cycle.leg[side];
-      const double ahead = leg.shank_m * s.sin, down = leg.thigh_m + leg.shank_m * s.cos;
-      LegAngles& angles = family.stand_rad[side];
-      angles[kHipX] = -gaitpad::atan2(ahead, down);
-      angles[kKneeX] = knee;
-      angles[kAnkleX] = -angles[kHipX] - knee;
-      family.stand_m +=
-          0.5 * (std::sqrt(ahead * ahead + down * down) - leg.heel_m.y - leg.hip_m.y);
-      family.lead_m += 0.5 * (-leg.heel_m.z - leg.hip_m.z);
-    }
+    const Stand stand = standing_legs(cycle.leg, std::max(knee, kLeastStandingKnee));
+    family.stand_m = stand.pelvis_m;
+    family.stand_roll_rad = stand.roll_rad;
+    family.stand_rad = stand.angles;
+    for (const LegModel& leg : cycle.leg) family.lead_m += 0.5 * (-leg.heel_m.z - leg.hip_m.z);
+  }
+
+  // The rest of the pelvis' rotation in a stride of another length: from the standing one's.
+  vec3 tilt_at(int i, double ratio) const {
+    const vec3 stand(0.0, 0.0, family.stand_roll_rad);
+    return (mean_tilt - stand) * std::min(1.0, 2.0 * ratio) + (tilt[i] - mean_tilt) * ratio;
   }
 
   // The data as they would look in a stride of another length.
@@ -131,8 +129,7 @@ struct Builder {
     s.pelvis_m.y = mix(family.stand_m, data.pelvis_m.y, square);
     s.pelvis_m.z *= ratio;
     s.pelvis = rotation_y(ratio * yaw[i]) *
-               from_rotation_vector(mean_tilt * std::min(1.0, 2.0 * ratio) +
-                                    (tilt[i] - mean_tilt) * ratio);
+               from_rotation_vector(tilt_at(i, ratio) + vec3(0.0, 0.0, family.stand_roll_rad));
     for (int side : {0, 1}) {
       const LegAngles &all = data.leg[side].angles, &stand = family.stand_rad[side],
                       &mean = mean_rad[side];
@@ -198,8 +195,7 @@ struct Builder {
       const double travel = p.stride_m * (p.time[i] - double(i) / kCycleSamples);
       cell.pelvis_m = s.pelvis_m + vec3(0.0, -family.stand_m, travel);
       cell.pelvis_yaw_rad = ratio * yaw[i];
-      cell.pelvis_tilt =
-          mean_tilt * std::min(1.0, 2.0 * ratio) + (tilt[i] - mean_tilt) * ratio;
+      cell.pelvis_tilt = tilt_at(i, ratio);
       for (int side : {0, 1}) {
         const LegModel& leg = cycle.leg[side];
         const LegPose pose = leg_pose(leg, s.pelvis_m, s.pelvis, s.leg[side], 0.0);
@@ -325,6 +321,7 @@ Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   Builder builder(cycle), back(backwards);
   back.family.stand_rad = builder.family.stand_rad;
   back.family.stand_m = builder.family.stand_m;
+  back.family.stand_roll_rad = builder.family.stand_roll_rad;
   const bool solved = builder.solve() && back.solve();
   builder.family.back = std::move(back.family.table);
   if (!solved || !is_finite(builder.family))

@@ -32,7 +32,7 @@ struct StrideFoot {
 struct StrideCell {
   vec3 pelvis_m{0.0};
   double pelvis_yaw_rad = 0.0;
-  vec3 pelvis_tilt{0.0};  // the rest of its rotation, as a rotation vector
+  vec3 pelvis_tilt{0.0};  // the rest of its rotation, as a rotation vector, from the standing roll
   std::array<StrideFoot, 2> foot;
   std::array<LegAngles, 2> leg_rad{};
 };
@@ -50,6 +50,7 @@ struct StrideTable {
 struct StrideFamily {
   double stand_m = 0.0;              // the pelvis' height when standing,
   double lead_m = 0.0;               // how far it is before the heels,
+  double stand_roll_rad = 0.0;       // its roll, left side up positive,
   std::array<LegAngles, 2> stand_rad{};  // and the legs' angles
   // Walking backwards is walking forwards run back (Thorstensson 1986), but the feet land and leave
   // as Table I has it. These strides have negative lengths.

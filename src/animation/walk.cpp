@@ -259,7 +259,9 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
 // Step times, and how long double support takes, follow the parameters at the next step.
 void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state) noexcept {
   for (int side : {0, 1}) state.time_s[side] = params.stride[side].time_s;
-  state.asked_ratio = 0.5 * (params.stride[0].length_m + params.stride[1].length_m) / model.source_step_m;
+  // Of the longer step: a limp, which shortens one, does not change the other foot's time.
+  state.asked_ratio =
+      std::max(params.stride[0].length_m, params.stride[1].length_m) / model.source_step_m;
 }
 
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.

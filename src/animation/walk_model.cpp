@@ -397,21 +397,40 @@ bool has_overlong_leg(const GaitCycle& cycle) {
   return false;
 }
 
-// Lengths along the way and up grow by `ratio`, across it by `scale`: the legs stand under the hips.
-StrideFamily scaled(StrideFamily family, double ratio, double scale) {
-  const vec3 by(scale, ratio, ratio);
-  family.lead_m *= ratio;
-  for (std::vector<StrideTable>* tables : {&family.table, &family.back}) {
-    for (StrideTable& table : *tables) {
-    table.stride_m *= ratio;
-    for (vec3& place : table.footprint_m) place *= by;
-    for (StrideCell& cell : table.knot) {
-      cell.pelvis_m *= by;
-      for (StrideFoot& foot : cell.foot) foot.heel_m *= by;
-    }
+// All lengths grow by `ratio`, but those of the pelvis by `scale`. So that the legs keep their
+// angles, it turns and rolls by as much less as it is wider, and is where the hips' middle has to be.
+StrideTable scaled(const StrideTable& data, double ratio, double scale,
+                   const std::array<LegModel, 2>& legs, double stand_roll_rad) {
+  const vec3 middle = 0.5 * (legs[0].hip_m + legs[1].hip_m);
+  const double turns = ratio / scale;
+  const auto hips_m = [&](const StrideCell& cell, double share) {
+    const auto at = [&](double yaw, const vec3& tilt) {
+      return rotation_y(yaw) * (from_rotation_vector(tilt) * middle);
+    };
+    vec3 tilt = cell.pelvis_tilt, stand(0.0, 0.0, share * stand_roll_rad);
+    tilt.z *= share;
+    return at(share * cell.pelvis_yaw_rad, tilt + stand) - at(0.0, stand);
+  };
+  StrideTable table = data;
+  table.stride_m *= ratio;
+  std::array<StrideCell, kCycleSamples> cells;
+  for (int i = 0; i < kCycleSamples; ++i) {
+    const auto knot = [&](int k) { return data.knot[(k + kCycleSamples) % kCycleSamples]; };
+    StrideCell& cell = cells[i];
+    cell = mixed(mixed(knot(i - 1), knot(i + 1), 1.0 / 6.0, 1.0 / 6.0), knot(i), 1.0, 4.0 / 6.0);
+    cell.pelvis_m =
+        ratio * (cell.pelvis_m + hips_m(cell, 1.0)) - scale * hips_m(cell, turns);
+    cell.pelvis_yaw_rad *= turns;
+    cell.pelvis_tilt.z *= turns;
   }
+  for (int side : {0, 1}) {
+    const vec3 apart = vec3(legs[side].hip_m.x, 0.0, middle.z) * (scale - ratio);
+    table.footprint_m[side] = table.footprint_m[side] * ratio + apart;
+    for (StrideCell& cell : cells)
+      cell.foot[side].heel_m = cell.foot[side].heel_m * ratio + apart;
   }
-  return family;
+  table.knot = knots_through(cells);
+  return table;
 }
 
 // What hangs on the pelvis, but for the legs, stands as if it did not roll.
@@ -451,7 +470,8 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   for (Side side : {kLeftSide, kRightSide}) {
     model.leg[side] = leg_build(model.cycle.leg[side]);
     fill_foot_tables(cycle, ratio, side, model.leg[side]);
-    model.leg[side].track_m = mean_heel(cycle, side).x * character.scale;
+    model.leg[side].track_m = mean_heel(cycle, side).x * ratio +
+                              cycle.leg[side].hip_m.x * (character.scale - ratio);
   }
   fill_pelvis_tables(cycle, ratio, model);
   fill_shares(cycle, model);
@@ -461,7 +481,12 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   for (const LegBuild& leg : model.leg) {
     model.rest_lead_m += 0.5 * (-leg.model.heel_m.z - leg.model.hip_m.z);
   }
-  model.strides = scaled(strides, ratio, character.scale);
+  model.strides = strides;
+  model.strides.lead_m *= ratio;
+  for (std::vector<StrideTable>* tables : {&model.strides.table, &model.strides.back}) {
+    for (StrideTable& table : *tables)
+      table = scaled(table, ratio, character.scale, cycle.leg, strides.stand_roll_rad);
+  }
   const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
   const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);
   model.strides.stand_m = stand.pelvis_m;

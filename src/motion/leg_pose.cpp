@@ -29,7 +29,7 @@ double span_m(const LegModel& leg, double knee_rad) noexcept {
 }  // namespace
 
 Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexcept {
-  constexpr double kMostRoll = 7.0 * kDegree;
+  constexpr double kMostRoll = 10.0 * kDegree;
   Stand stand;
   const vec3 across = legs[0].hip_m - legs[1].hip_m;
   const auto length_m = [&](const LegModel& leg) { return span_m(leg, knee_rad) - leg.heel_m.y; };

@@ -16,7 +16,7 @@ constexpr int kOwn = 5;  // the table of the data's own stride
 // Iterations. After so many the largest change of an angle is below 1e-4 rad in most clips; ratios
 // 0 and 0.2 still drift by up to 1e-2 rad in some, along changes that cost next to nothing.
 constexpr int kFirstSolve = 10, kNextSolve = 8;
-constexpr double kLeastStandingKnee = 3.0 * kDegree;
+constexpr double kLeastStandingKnee = 5.0 * kDegree;
 // What shows of the data's angles in steps of length 0: a foot still has to leave the floor.
 constexpr double kLeastLift = 0.3;
 constexpr double kFlat = 0.2;  // own phase: how long a foot stands flat after its roll

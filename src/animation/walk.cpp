@@ -31,14 +31,6 @@ double flight_progress(const WalkState& state) noexcept {
   return static_cast<double>(state.tick) / state.stage_ticks;
 }
 
-double pace(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  return std::clamp(state.length_m[side].x * state.ground_share.x / model.source_step_m, 0.0, 1.5);
-}
-
-double full_pace(const WalkModel& model, const WalkState& state) noexcept {
-  return std::max(pace(model, state, kLeftSide), pace(model, state, kRightSide));
-}
-
 double presence(const WalkState& state) noexcept {
   return std::clamp(state.amplitude.x, 0.0, 1.0) * std::clamp(2.0 * state.pace.x, 0.0, 1.0);
 }
@@ -355,21 +347,16 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
 constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWidest_m = 0.06;
-// Front heel to hips over the step, in steps so long that the data's lean is given up.
-constexpr double kEvenFront = 0.46;
 // How much of a backward step the hips have covered at its strike: the weight follows the foot
 // late. Up a high riser (rises in legs) they go ahead of the foot, or its ankle would bend up too
 // far.
 constexpr double kBackwardHips = 0.45;
 constexpr double kBackwardHipsUp = 1.075, kHighRiser = 0.2, kHighestRiser = 0.3;
-constexpr double kLongDrop_m = 0.05;  // how far the hips sink in steps much longer than the data's
-constexpr double kLameDrop_m = 0.1;   // and for a foot that does not lift at all
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
 constexpr double kFreeze = 0.55;      // of the flight: after it the landing place is settled
 constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
-constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
 // Rounding of the hips' height: where the reach begins to bound it, and where the legs' reaches
 // cross. It suits steps of kCalmStep_s; quicker ones are rounded more.
 constexpr double kCalmStep_s = 0.52;

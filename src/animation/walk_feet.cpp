@@ -13,7 +13,6 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kMinPitch = -28.0 * kDegree;  // toe up
 // A flying toe may be that far below where it stands: then the tables' own toes, which only just
 // leave the floor, are let through. At the reference leg.
 constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree;

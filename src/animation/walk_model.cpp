@@ -212,10 +212,7 @@ UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double
 // ranges, dorsiflexion under load up to 38 degrees.
 constexpr std::array<double, kLegDofs> kLegMin = {-120, -50, -70, 1.0, -60, -60, -80};
 constexpr std::array<double, kLegDofs> kLegMax = {60, 50, 70, 150, 75, 60, 80};
-constexpr double kHeelDown = 0.007;   // of the leg: a heel so near to the floor has landed
-constexpr double kLatestDown = 0.05;  // own phase
 constexpr double kHalfWidth = 0.054;  // of the leg: half a foot's breadth, 9 cm of an adult's
-constexpr double kOscillation = 0.8;  // share of the fore-aft oscillation, which FK exaggerates
 
 IkChain leg_chain(const LegModel& leg) {
   constexpr std::array<vec3, kLegDofs> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0),
@@ -294,73 +291,11 @@ vec3 mean_heel(const GaitCycle& source, Side side) {
   return sum;
 }
 
-void fill_foot_tables(const GaitCycle& source, double ratio, Side side, LegBuild& leg) {
-  const LegModel& build = source.leg[side];
-  const vec3 line = build.toe_m - build.heel_m;
-  const double rest = elevation(line);
-  for (int i = 0; i < kCycleSamples; ++i) {
-    const double own = static_cast<double>(i) / kCycleSamples;
-    const CycleSample sample = sample_at(source, own + source.strike[side]);
-    leg.pitch_rad.value[i] = rest - elevation(sample.leg[side].foot * line);
-  }
-  const double lift = source.toe_off[side] - source.strike[side];
-  leg.toe_off = lift - std::floor(lift);
-  const double flight = 1.0 - leg.toe_off;
-  const auto heel_at = [&](double u) {  // with the travel since the lift
-    const double own = leg.toe_off + u * flight;
-    vec3 p = foot_point(sample_at(source, own + source.strike[side]), side, build.heel_m);
-    p.z += source.stride_m * u * flight;
-    return p;
-  };
-  const double start = heel_at(0.0).z, travel = heel_at(1.0).z - start;
-  const double floor = mean_heel(source, side).y;  // the capture's, under this foot
-  for (int i = 0; i < kFlightSamples; ++i) {
-    const double u = static_cast<double>(i) / (kFlightSamples - 1);
-    const vec3 heel = heel_at(u);
-    leg.flight.progress.value[i] = (heel.z - start) / travel;
-    leg.flight.height_m.value[i] = std::max(0.0, heel.y - floor) * ratio;
-  }
-}
-
-void fill_pelvis_tables(const GaitCycle& source, double ratio, WalkModel& model) {
+void fill_bounce(const GaitCycle& source, double ratio, WalkModel& model) {
   double mean = 0.0;
   for (const CycleSample& sample : source.samples) mean += sample.pelvis_m.y / kCycleSamples;
-  for (int i = 0; i < kCycleSamples; ++i) {
-    const CycleSample& sample = source.samples[i];
-    model.sway_m.value[i] = sample.pelvis_m.x * ratio;
-    model.bounce_m.value[i] = (sample.pelvis_m.y - mean) * ratio;
-    model.surge_m.value[i] = sample.pelvis_m.z * ratio * kOscillation;
-    const double yaw = heading_of(sample.pelvis * kForward);
-    model.yaw_rad.value[i] = yaw;
-    const vec3 tilt = rotation_vector(rotation_y(-yaw) * sample.pelvis);
-    for (int a = 0; a < 3; ++a) model.tilt[a].value[i] = tilt[a];
-    for (int side = 0; side < 2; ++side) {
-      for (int j = 0; j < kLegDofs; ++j) {
-        model.reference_rad[side][j].value[i] = sample.leg[side].angles[j];
-      }
-    }
-  }
-}
-
-// At a strike the front heel is this share of the step before the hips, as a mean over both feet.
-// The heel of the data still sinks and slides for a moment after its strike, but the walker's
-// stands at once. So the distance is measured at the flat foot and run back to when the data's heel
-// is down.
-double front_share(const GaitCycle& source, double source_step) {
-  const double down_m = kHeelDown * 0.5 * (source.leg[0].length_m() + source.leg[1].length_m());
-  double sum = 0.0;
-  for (Side side : {kLeftSide, kRightSide}) {
-    const auto heel_at = [&](double own) {
-      return foot_point(sample_at(source, own + source.strike[side]), side,
-                        source.leg[side].heel_m);
-    };
-    const vec3 flat = mean_heel(source, side);
-    double down = 0.0;
-    while (down < kLatestDown && heel_at(down).y - flat.y > down_m)
-      down += 1.0 / (2 * kCycleSamples);
-    sum += flat.z - source.stride_m * down;
-  }
-  return std::clamp(0.5 * sum / source_step, 0.3, 0.7);
+  for (int i = 0; i < kCycleSamples; ++i)
+    model.bounce_m.value[i] = (source.samples[i].pelvis_m.y - mean) * ratio;
 }
 
 void fill_shares(const GaitCycle& source, WalkModel& model) {
@@ -469,14 +404,14 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.time_scale = std::sqrt(std::sqrt(model.size));  // as step times scale
   for (Side side : {kLeftSide, kRightSide}) {
     model.leg[side] = leg_build(model.cycle.leg[side]);
-    fill_foot_tables(cycle, ratio, side, model.leg[side]);
+    const double lift = cycle.toe_off[side] - cycle.strike[side];
+    model.leg[side].toe_off = lift - std::floor(lift);
     model.leg[side].track_m = mean_heel(cycle, side).x * ratio +
                               cycle.leg[side].hip_m.x * (character.scale - ratio);
   }
-  fill_pelvis_tables(cycle, ratio, model);
+  fill_bounce(cycle, ratio, model);
   fill_shares(cycle, model);
   const double source_step = 0.5 * cycle.stride_m;
-  model.step_front = front_share(cycle, source_step);
   model.source_step_m = source_step * ratio;
   for (const LegBuild& leg : model.leg) {
     model.rest_lead_m += 0.5 * (-leg.model.heel_m.z - leg.model.hip_m.z);

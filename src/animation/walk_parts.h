@@ -23,10 +23,6 @@ inline double held_back(double w) noexcept { return 0.8 * (1.0 - (w * w) * (w * 
 double flight_progress(const WalkState& state) noexcept;
 // The foot that flies in this step (also during the roll before its flight).
 Side step_foot(const WalkState& state) noexcept;
-// Length of that foot's step over the data's.
-double pace(const WalkModel& model, const WalkState& state, Side side) noexcept;
-// The same for the longer of both steps: a limp, which shortens one, does not change it.
-double full_pace(const WalkModel& model, const WalkState& state) noexcept;
 // The phase counted from that foot's own strike.
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept;
 // The phase at which the data are read. Walking backwards is walking forwards run back

@@ -191,7 +191,17 @@ void completeness_claims(const PaperSource& source, IkMode mode, ClaimList& list
 
 constexpr std::array<double, 3> kRatios = {0.6, 1.0, 1.6};
 
-double greatest(const FlightCurve& curve) { return *std::ranges::max_element(curve.value); }
+// Heights of the heel over the flight, both ends included, in strides of the data's own length.
+std::vector<double> flight_heights_m(const WalkModel& model, Side side) {
+  constexpr int kSamples = 65;
+  const double strike = model.cycle.strike[side], lift = strike + model.leg[side].toe_off;
+  std::vector<double> heights_m;
+  for (int i = 0; i < kSamples; ++i) {
+    const double phase = mix(lift, strike + 1.0, static_cast<double>(i) / (kSamples - 1));
+    heights_m.push_back(stride_at(model.strides.table, phase, 1.0).cell.foot[side].heel_m.y);
+  }
+  return heights_m;
+}
 
 Walk walk_on(const WalkModel& model, IkMode mode) {
   WalkCase what;
@@ -262,13 +272,12 @@ std::vector<Claim> scaling_claims(const Study& study) {
     const auto model = study.model_with_legs(ratio);
     if (!model) continue;
     for (const Side side : {kLeftSide, kRightSide}) {
-      const FlightCurve &mine = model->leg[side].flight.height_m,
-                        &source = study.model().leg[side].flight.height_m;
-      peak = std::max(peak, std::fabs(greatest(mine) / greatest(source) / ratio - 1.0));
-      for (const double h : source.value) {
-        outside = std::max({outside, -h, h / greatest(source) - 1.0});
-      }
-      ends = std::max(ends, source.value.back() / greatest(source));
+      const std::vector<double> mine = flight_heights_m(*model, side),
+                                source = flight_heights_m(study.model(), side);
+      const double highest = std::ranges::max(source);
+      peak = std::max(peak, std::fabs(std::ranges::max(mine) / highest / ratio - 1.0));
+      for (const double h : source) outside = std::max({outside, -h, h / highest - 1.0});
+      ends = std::max(ends, source.back() / highest);
     }
     stride =
         std::max(stride, std::fabs(gait_limits(*model).max_step_m / own.max_step_m / ratio - 1));

@@ -78,16 +78,6 @@ struct UpperBodyModel {
 
 inline constexpr int kMaxBetween = 8;  // twist joints between two joints of a leg
 
-using PhaseTable = PeriodicTable<kCycleSamples>;
-inline constexpr int kFlightSamples = 65;
-using FlightCurve = Curve<kFlightSamples>;
-
-// The heel's flight path in the data (figure 2), from toe-off (u = 0) to its next strike (u = 1):
-// progress along the travel from 0 to 1, and height over the floor in metres of the character.
-struct FootFlight {
-  FlightCurve progress, height_m;
-};
-
 struct LegBuild {
   LegModel model;            // in the character's metres
   IkChain chain;             // from the hip joint to the foot frame: even weights, joint limits
@@ -98,10 +88,7 @@ struct LegBuild {
   // standing.
   vec3 ball_m{0.0}, tip_m{0.0};
   double half_width_m = 0;
-  FootFlight flight;
-  // Own phases count from the foot's own strike.
-  PhaseTable pitch_rad;  // of the heel-toe line by own phase: 0 standing, toe down positive
-  double toe_off = 0.6;  // own phase
+  double toe_off = 0.6;  // phase since the foot's own strike
   double track_m = 0;    // sideways place of the heel from the pelvis' path, + left
 };
 
@@ -115,14 +102,9 @@ struct WalkModel {
   double time_scale = 1.0;  // factor on the adult's times
   double leg_length_m = 0, source_leg_length_m = 0;
   double source_step_m = 0;  // retargeted: mean step of the data on this character
-  double step_front = 0.5;   // at a strike, front heel to hips over the step length, in the data
   double rest_lead_m = 0;    // hips before the heels when standing
   double stand_m = 0;        // pelvis height when standing
-  // The pelvis by phase: sideways, about its mean height, fore-aft.
-  PhaseTable sway_m, bounce_m, surge_m;
-  PhaseTable yaw_rad;              // pelvis about the vertical
-  std::array<PhaseTable, 3> tilt;  // the rest of its rotation, as a rotation vector
-  std::array<std::array<PhaseTable, kLegDofs>, 2> reference_rad;  // leg angles of the data
+  PeriodicTable<kCycleSamples> bounce_m;  // of the data's pelvis by phase, about its mean height
   // Shares of the cycle in walking order: roll right, flight left, roll left, flight right.
   std::array<double, 4> share{};
   std::vector<int> kept;  // twist joints in the legs: fixed at their standing rotation

@@ -133,7 +133,7 @@ constexpr double kStepSmoothing = 0.12;
 constexpr double kTurnGoalSmoothing = 0.08;
 constexpr double kTurnSmoothing = 0.25;
 constexpr double kBounceSmoothing = 0.30;
-constexpr double kAmplitudeSmoothing = 0.18;
+constexpr double kAmplitudeSmoothing = 0.18, kAmplitudeFading = 0.07;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kSettling = 0.35;
 constexpr double kLeanSmoothing = 0.12;
@@ -143,7 +143,7 @@ constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
 constexpr double kBraking = 2.3;  // way over speed and time of a stop with little jerk
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
-constexpr double kStillPresence = 0.003;  // a walk starts when the last one has faded
+constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
 
 // Share of the cycle's time.
@@ -262,7 +262,7 @@ void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept
   const double scale = tick.model.time_scale, dt = tick.dt_s;
   const bool walking = walks_on(params, state) && !state.closing;
   const bool stood = state.stage == Stage::idle && state.frame.stage == Stage::idle;
-  if (stood && params.walking && presence(state) < kStillPresence) {
+  if (stood && params.walking && state.amplitude.x < kStillAmplitude) {
     ask_for(params, tick.model, state);
     begin_walk(tick, state);
   }
@@ -284,7 +284,8 @@ void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept
   if (goal == 0.0 && std::abs(state.turn_goal.x) < kStillTurn) state.turn_goal = {};
   state.turn_rate.advance(state.turn_goal.x, kTurnSmoothing * scale, dt);
   if (state.turn_goal.x == 0.0 && std::abs(state.turn_rate.x) < kStillTurn) state.turn_rate = {};
-  state.amplitude.advance(state.started ? 1.0 : 0.0, kAmplitudeSmoothing * scale, dt);
+  state.amplitude.advance(state.started ? 1.0 : 0.0,
+                          (state.started ? kAmplitudeSmoothing : kAmplitudeFading) * scale, dt);
   state.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
   state.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
   const double mean = 0.5 * (state.length_m[0].x + state.length_m[1].x);
@@ -460,7 +461,9 @@ void begin_path(const Tick& tick, WalkState& state) noexcept {
   std::array<vec3, 3> off;
   for (int k : {0, 1, 2}) {
     const StridePlan plan = stride_plan(tick.model, state, phase, 0.0);
-    off[k] = path_from_standing(state, plan) - path_to_landing(state, plan);
+    vec3 from = path_from_standing(state, plan);
+    if (state.last_step_ticks == 0) from = vec3(state.hips_m.x, from.y, state.hips_m.z);  // at rest
+    off[k] = from - path_to_landing(state, plan);
     advance_phase(tick, state, state.stage_ticks - k, phase, rate);
   }
   state.off_path_m = {off[0], 0.5 * (4.0 * off[1] - 3.0 * off[0] - off[2]),

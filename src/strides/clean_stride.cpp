@@ -30,6 +30,7 @@ constexpr int kLanding = 6;  // samples over which this fades
 // People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square metre
 // of a second difference.
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
+constexpr double kMostHeave_m_s2 = 7.0, kSoftHeave_m_s2 = 2.0;  // up and down
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kLeastKnee = 2.0 * kDegree, kSoftKnee = 2.0 * kDegree;
@@ -242,17 +243,18 @@ struct StrideSolver::System {
     }
   }
 
-  // Keeps the second difference of the pelvis' place along the path below a bound, rounded.
-  void add_surge(int sample, const std::vector<StrideSample>& x, const std::vector<double>& path_m,
-                 double stride_m, double most_m, double soft_m) {
+  // Keeps the second difference of the pelvis' place along an axis below a bound, rounded.
+  void add_surge(int sample, int axis, const std::vector<StrideSample>& x,
+                 const std::vector<double>& path_m, double stride_m, double most_m, double soft_m) {
     constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
     double bend = 0.0;
     std::array<Mirrored, 3> where;
     for (int d : {0, 1, 2}) {
       const int at = sample + d - 1, j = (at + samples) % samples;
-      const double turn = at < 0 ? -stride_m : at >= samples ? stride_m : 0.0;
-      bend += kBend[d] * (x[j].pelvis_m.z + path_m[j] + turn);
-      where[d] = place_of(at, 2);
+      double place = x[j].pelvis_m[axis];
+      if (axis == 2) place += path_m[j] + (at < 0 ? -stride_m : at >= samples ? stride_m : 0.0);
+      bend += kBend[d] * place;
+      where[d] = place_of(at, axis);
     }
     const double over = std::abs(bend) - most_m;
     if (over <= -soft_m) return;
@@ -358,7 +360,8 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
     for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
     const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
     for (int i = 0; i < solved; ++i) {
-      s.add_surge(i, x, path_m, problem.stride_m, kMostSurge_m_s2 * tick2, kSoftSurge_m_s2 * tick2);
+      s.add_surge(i, 2, x, path_m, problem.stride_m, kMostSurge_m_s2 * tick2, kSoftSurge_m_s2 * tick2);
+      s.add_surge(i, 1, x, path_m, problem.stride_m, kMostHeave_m_s2 * tick2, kSoftHeave_m_s2 * tick2);
     }
     // Feet.
     std::array<std::vector<LegFrames>, 2> all_frames;

@@ -124,7 +124,7 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
   const double height_m = model.stand_m + cell.pelvis_m.y;
   const SinCos lean = sin_cos(state.lean_rad.x);
   pelvis.position_m += left * (height_m * lean.sin);
-  pelvis.position_m.y = state.base_m + height_m * lean.cos;
+  pelvis.position_m.y = state.base.height_m + height_m * lean.cos;
   const double yaw = state.sway.x * cell.pelvis_yaw_rad;
   pelvis.rotation = rotation_y(state.heading_rad) * rotation_z(-state.lean_rad.x) *
                     rotation_y(yaw) * from_rotation_vector(cell.pelvis_tilt);
@@ -335,24 +335,10 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
 constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWidest_m = 0.06;
-// Front heel to hips over the step, in steps so long that the data's lean is given up.
-constexpr double kEvenFront = 0.46;
-// How much of a backward step the hips have covered at its strike: the weight follows the foot
-// late. Up a high riser (rises in legs) they go ahead of the foot, or its ankle would bend up too
-// far.
-constexpr double kBackwardHips = 0.45;
-constexpr double kBackwardHipsUp = 1.075, kHighRiser = 0.2, kHighestRiser = 0.3;
-constexpr double kLongDrop_m = 0.05;  // how far the hips sink in steps much longer than the data's
-constexpr double kLameDrop_m = 0.1;   // and for a foot that does not lift at all
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
 constexpr double kFreeze = 0.55;      // of the flight: after it the landing place is settled
-constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
-constexpr double kStandingKnee = 7.3 * kDegree, kSoftKnee = 4.0 * kDegree;
-// Rounding of the hips' height: where the reach begins to bound it, and where the legs' reaches
-// cross. It suits steps of kCalmStep_s; quicker ones are rounded more.
-constexpr double kCalmStep_s = 0.52;
 
 double power(double base, int exponent) noexcept {
   double result = 1.0;
@@ -379,28 +365,6 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
   const double s0 = q * (1.0 - qn) / (1.0 - q);
   const double s1 = q * (1.0 - (n + 1) * qn + n * qn * q) / ((1.0 - q) * (1.0 - q));
   return state.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
-}
-
-// Moves the height of the ground that the hips go over. At a strike it is the lower foot's ground;
-// in between it follows a cubic.
-void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexcept {
-  const Side swing = step_foot(state), stand = other(swing);
-  const double standing = state.foot[stand].plane.place_m.y, landing = state.landing_m.y;
-  double goal = std::min(standing, landing);
-  const double before = std::min(state.foot[swing].plane.place_m.y, standing);
-  const double next = std::min(landing, state.landing.next_base_m);
-  const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
-  double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
-  // Upwards, a rear leg that does not roll far over its toe would be too short (walking backwards,
-  // or when closing a walk): the hips wait for its lift-off.
-  if ((state.backward || state.closing) && next > before) {
-    velocity = 0.0;
-    if (state.stage == Stage::roll) {
-      goal = before;
-      remaining_s -= state.flight_ticks * tick.dt_s;
-    }
-  }
-  approach(state.base_m, state.base_velocity_m_s, goal, velocity, remaining_s, tick.dt_s);
 }
 
 // Smooths how much of a step's length the ground leaves: such steps roll and rise like short ones.
@@ -463,6 +427,7 @@ void begin_path(const Tick& tick, WalkState& state) noexcept {
 // The hips follow the tables' path to the next landing. What they differ by from it, from the step
 // before or because the landing has moved, fades until the strike.
 void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) noexcept {
+  if (!tick.flat) advance_base(tick, state);
   if (state.stage == Stage::idle || !state.started) {
     state.hips_velocity_m_s = vec3(0.0);
     return;
@@ -488,7 +453,6 @@ void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) no
   state.hips_m = path + state.off_path_m.x;
   state.hips_m.y = 0.0;
   state.hips_velocity_m_s = (state.hips_m - before) / tick.dt_s;
-  if (!tick.flat) advance_base(tick, state, (ticks_to_strike(state) + 1) * tick.dt_s);
 }
 
 vec3 ankle_of(const LegBuild& leg, const FootPose& foot) noexcept {
@@ -653,7 +617,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   }
   state.landing_m = state.foot[kLeftSide].heel_anchor_m;
   state.landing_plane = state.foot[kLeftSide].plane;
-  state.base_m =
+  state.base.height_m = state.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
   return state;

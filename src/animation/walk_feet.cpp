@@ -125,6 +125,17 @@ double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip
                   kWidePitch);
 }
 
+// Pitches a foot on its toe so that its ankle is higher by `rise_m`.
+void rise_on_toe(const LegBuild& leg, double rise_m, FootState& foot) noexcept {
+  if (rise_m == 0.0) return;
+  const double length = glm::length(leg.model.toe_m);
+  const double flat = asin(-leg.model.toe_m.y / length);
+  const double sine = sin_cos(std::min(flat + foot.pose.pitch_rad, kPi / 2.0)).sin;
+  const double higher = soft_min(sine + rise_m / length, kMostUpright, kSoftUpright);
+  const double pitch = std::max(foot.pose.pitch_rad, asin(higher) - flat);
+  set_pitch(leg, pitch, foot.pose, foot.mode);
+}
+
 }  // namespace
 
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept {
@@ -201,6 +212,7 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
   if (foot.mode == FootMode::support) {
     foot.pose.toe_m = foot.toe_anchor_m;
     set_pitch(leg, std::max(0.0, pitch), foot.pose, foot.mode);
+    if (!tick.flat) rise_on_toe(leg, rise_with_hips(model, state, plan, side), foot);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, std::min(0.0, pitch), foot.pose, foot.mode);
@@ -211,7 +223,12 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
     foot.pose = point.pose;
     foot.pose.toe_rad = toe_rad;
     foot.base_m = point.base_m;
-    if (!tick.flat) keep_room(tick, state, side, u);
+    if (tick.flat) return;
+    keep_room(tick, state, side, u);
+    const double rise = rise_with_hips(model, state, plan, side);
+    foot.base_m += rise;
+    foot.pose.heel_m.y += rise;
+    foot.pose.toe_m.y += rise;
   }
 }
 

@@ -83,6 +83,12 @@ FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
 void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
                      const vec3& across_m) noexcept;
 
+// Moves the height of the ground that the hips go over.
+void advance_base(const Tick& tick, WalkState& state) noexcept;
+// How far a foot has to rise because the hips are over higher ground than it is.
+double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                      Side side) noexcept;
+
 // Plans how the flying foot clears the ground between its two footholds.
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept;
 // Moves the flying foot's pose of this tick by what its room asks for.

@@ -154,7 +154,7 @@ vec3 place_on(const Step& step, const Stretch& piece, bool& fits) noexcept {
   return near + shifted(step, std::clamp(near.z, room.low_m, room.high_m) - near.z);
 }
 
-// Looks at the step after the landing: the hips are planned with its length and height.
+// Looks at the step after the landing: on stairs it takes longer.
 void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
                 WalkState& state) noexcept {
   const Side next = other(step_foot(state));
@@ -170,11 +170,10 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   bool fits = false;
   const vec3 place = place_on(step, best_piece(terrain, step, nullptr), fits);
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
-  state.landing.next_m = glm::dot(place - step.from_m, step.forward);
-  state.landing.next_base_m = ground_at(terrain, place.x, place.z + middle).height_m;
+  const double next_m = ground_at(terrain, place.x, place.z + middle).height_m;
   // Of the rise to the next landing and the rest of the flying foot's rise, the greater one.
-  const double step_m = std::abs(state.landing.next_base_m - state.landing_m.y),
-               way_m = std::abs(state.landing.next_base_m - landing.from_m.y);
+  const double step_m = std::abs(next_m - state.landing_m.y),
+               way_m = std::abs(next_m - landing.from_m.y);
   state.landing.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
 }
 
@@ -285,6 +284,83 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   }
   state.landing_m = state.landing_plane.place_m;
   if (moved) look_ahead(tick, step, across_m, state);
+}
+
+namespace {
+
+// --- The ground that the hips go over ------------------------------------------------------------
+
+// Up, the knee that lands bent straightens until late single support; down, the standing knee
+// holds, and yields from the middle of single support until the landed foot has taken the weight
+// (McFadyen & Winter 1988).
+constexpr double kRiseLasts = 0.9;   // of the step
+constexpr double kSinkBegin = 0.46;  // of the flight
+constexpr double kSinkEnd = 0.56;    // of the roll
+// Of a drop: how far the knee that takes the weight gives way, and how much of this at the landing.
+constexpr double kYield = 0.14, kEarlyYield = 0.05;
+// A leg is stretched to this share of its length before its foot has to rise with the hips.
+constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
+
+struct Sinking {
+  double ticks = 1.0;
+  double share = 0.0;  // of the ticks
+};
+Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
+  Sinking s;
+  s.ticks = (1.0 - kSinkBegin) * state.flight_ticks + kSinkEnd * state.roll_ticks;
+  s.share = std::max(0.0, flight_ticks - kSinkBegin * state.flight_ticks) / s.ticks;
+  return s;
+}
+
+// At a strike: from where they are the hips go to where the landed foot carries them.
+void begin_base(const Tick& tick, WalkState& state) noexcept {
+  HipsGround& base = state.base;
+  const double landed = state.foot[state.swing].plane.place_m.y,
+               other_m = state.foot[other(state.swing)].plane.place_m.y;
+  base.level_m = state.started ? landed - kYield * std::max(0.0, other_m - landed)
+                               : std::min(landed, other_m);
+  base.off_m = {base.height_m - base.level_m, base.per_tick_m, base.per_tick2_m};
+  base.drop_m = 0.0;
+  base.settle_ticks = static_cast<int>(
+      !state.started        ? state.stage_ticks
+      : base.off_m.x > 0.0 ? kSinkEnd * state.roll_ticks
+                           : kRiseLasts * (state.roll_ticks + state.flight_ticks));
+  (void)tick;
+}
+
+}  // namespace
+
+void advance_base(const Tick& tick, WalkState& state) noexcept {
+  HipsGround& base = state.base;
+  if (state.stage == Stage::idle) return;
+  if (state.stage == Stage::roll && state.tick == 1) begin_base(tick, state);
+  const bool flies = state.stage == Stage::flight;
+  const int begun = state.tick + (flies ? state.roll_ticks : 0);
+  base.off_m.advance(base.settle_ticks - begun + 1);
+  const Sinking now = sinking(state, flies ? state.tick : 0.0);
+  if (now.share == 0.0 && state.started) {
+    const double stands = state.foot[other(step_foot(state))].plane.place_m.y;
+    const double fall = stands - state.landing_m.y;
+    base.drop_m = fall <= 0.0 ? 0.0
+                              : std::max(0.0, base.level_m - state.landing_m.y + kEarlyYield * fall) /
+                                    smootherstep(sinking(state, state.flight_ticks).share);
+  }
+  const double s = now.share, per_tick = s > 0.0 ? 1.0 / now.ticks : 0.0;
+  base.height_m = base.level_m + base.off_m.x - base.drop_m * smootherstep(s);
+  base.per_tick_m = base.off_m.v - base.drop_m * per_tick * 30.0 * s * s * (1.0 - s) * (1.0 - s);
+  base.per_tick2_m = base.off_m.a - base.drop_m * per_tick * per_tick * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s);
+}
+
+double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                      Side side) noexcept {
+  const double higher = state.base.height_m - state.foot[side].base_m;
+  if (higher <= 0.0) return 0.0;
+  const LegBuild& leg = model.leg[side];
+  const double a = leg.model.thigh_m, b = leg.model.shank_m;
+  const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
+  const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
+  const double room = std::max(0.0, kStretch * (a + b) - known), soft = kSoftStretch_m * model.size;
+  return soft_positive(higher - room, higher * soft / (higher + soft));
 }
 
 namespace {

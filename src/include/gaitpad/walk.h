@@ -109,10 +109,17 @@ struct Foothold {
   double yaw_rad = 0.0;      // of the foot
   Stretch piece;             // piece of ground for the landing, settled when the flight begins
   double share = 1.0;        // of the wanted length that a slope leaves
-  double next_m = 0.0;       // length of the step after this one,
-  double next_base_m = 0.0;  // height of its landing,
-  double next_rise = 0.0;    // and how far up or down it leads, over the leg length
+  double next_rise = 0.0;    // how far up or down the step after this one leads, in legs
   bool fits = true;          // the sole does not overhang an edge
+};
+
+// The height of the ground that the hips go over. On flat ground all of it stays 0.
+struct HipsGround {
+  double height_m = 0.0, per_tick_m = 0.0, per_tick2_m = 0.0;  // its rate and acceleration
+  double level_m = 0.0;  // where it settles over the standing foot,
+  SmoothFade<double> off_m;  // by how much it is still off,
+  int settle_ticks = 0;      // and how long after the strike it is not any more
+  double drop_m = 0.0;       // how far it then sinks to the next landing
 };
 
 // What a walk remembers of the upper body.
@@ -165,7 +172,7 @@ struct WalkState {
   Foothold landing;
   Damped<double> settled_pace;  // follows `pace` slowly
   Damped<double> lean_rad;      // of the whole body into a turn, to the left positive
-  double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
+  HipsGround base;
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;
   // The data's angles, those of the pose with even weights, and those with weights: the pose's.

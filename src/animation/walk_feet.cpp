@@ -174,7 +174,6 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
 
 FlightPoint flight_point(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                          Side side, double u) noexcept {
-  const LegBuild& leg = model.leg[side];
   const FootState& foot = state.foot[side];
   const StrideFoot& cell = plan.cell.foot[side];
   FlightPoint point;
@@ -189,12 +188,18 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   if (pose.tilt != state.landing_plane.tilt) {
     pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.landing_plane.tilt * gone);
   }
-  const double height = (pose.heel_m.y - point.base_m) * foot.plane.normal.y;
+  return point;
+}
+
+void pitch_in_flight(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                     Side side, double u, FlightPoint& point) noexcept {
+  const LegBuild& leg = model.leg[side];
+  const FootState& foot = state.foot[side];
+  const double height = (point.pose.heel_m.y - point.base_m) * foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(u * state.stage_ticks);
   const double limit = highest_pitch(leg, height, -kMostSink_m * model.size);
-  set_pitch(leg, soft_min(pitch, limit, kSoftPitch), pose, FootMode::flight);
-  return point;
+  set_pitch(leg, soft_min(pitch, limit, kSoftPitch), point.pose, FootMode::flight);
 }
 
 void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept {
@@ -212,23 +217,24 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
   if (foot.mode == FootMode::support) {
     foot.pose.toe_m = foot.toe_anchor_m;
     set_pitch(leg, std::max(0.0, pitch), foot.pose, foot.mode);
-    if (!tick.flat) rise_on_toe(leg, rise_with_hips(model, state, plan, side), foot);
+    if (tick.flat) return;
+    foot.rise_m = rise_with_hips(model, state, plan, side, foot.base_m);
+    rise_on_toe(leg, foot.rise_m, foot);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, std::min(0.0, pitch), foot.pose, foot.mode);
   } else {
     const double u = flight_progress(state);
-    const double toe_rad = foot.pose.toe_rad;
-    const FlightPoint point = flight_point(model, state, plan, side, u);
+    FlightPoint point = flight_point(model, state, plan, side, u);
+    if (!tick.flat) {
+      keep_room(tick, state, side, u, point);
+      foot.rise_m = rise_with_hips(model, state, plan, side, point.base_m);
+      point.pose.heel_m.y += foot.rise_m;
+    }
+    pitch_in_flight(model, state, plan, side, u, point);
+    point.pose.toe_rad = foot.pose.toe_rad;
     foot.pose = point.pose;
-    foot.pose.toe_rad = toe_rad;
     foot.base_m = point.base_m;
-    if (tick.flat) return;
-    keep_room(tick, state, side, u);
-    const double rise = rise_with_hips(model, state, plan, side);
-    foot.base_m += rise;
-    foot.pose.heel_m.y += rise;
-    foot.pose.toe_m.y += rise;
   }
 }
 
@@ -247,6 +253,7 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
 void remember_foot(FootState& foot) noexcept {
   foot.last_heel_m = {foot.pose.heel_m, foot.last_heel_m[0]};
   foot.last_pitch_rad = {foot.pose.pitch_rad, foot.last_pitch_rad[0]};
+  foot.last_rise_m = {foot.rise_m, foot.last_rise_m[0]};
 }
 
 void begin_support(FootState& foot, const LegAngles& even_rad) noexcept {
@@ -282,6 +289,8 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   const vec3 to = flight_heel(model, state, next, side, 1.0 / ticks, base_m);
   foot.gap_m = lifts.heel_m - from;
   foot.gap_slope_m = slope_m - (to - from) * ticks;
+  foot.gap_m.y -= foot.rise_m;
+  foot.gap_slope_m.y -= end_slope(foot.last_rise_m[1], foot.last_rise_m[0], foot.rise_m) * ticks;
   const double pitch = table_pitch(state, now, side);
   foot.pitch_fade = {lifts.pitch_rad - pitch,
                      pitch_rate - (table_pitch(state, next, side) - pitch), kLiftFade * ticks};

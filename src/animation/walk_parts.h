@@ -85,14 +85,20 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
 
 // Moves the height of the ground that the hips go over.
 void advance_base(const Tick& tick, WalkState& state) noexcept;
-// How far a foot has to rise because the hips are over higher ground than it is.
+// How far a foot over ground of height `base_m` rises because the hips are over higher ground.
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
-                      Side side) noexcept;
+                      Side side, double base_m) noexcept;
 
 // Plans how the flying foot clears the ground between its two footholds.
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept;
-// Moves the flying foot's pose of this tick by what its room asks for.
-void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept;
+// The flying foot as on level ground between its two planes, and the height of that ground.
+struct FlightPoint {
+  FootPose pose;
+  double base_m = 0.0;
+};
+// Moves it by what its room asks for.
+void keep_room(const Tick& tick, WalkState& state, Side side, double u,
+               FlightPoint& point) noexcept;
 
 // --- walk_feet.cpp: where the feet are to be -----------------------------------------------------
 // How far a standing foot may leave the floor with its heel: 0 flat .. 1 freely.
@@ -100,13 +106,12 @@ double heel_rise(const WalkModel& model, const WalkState& state, Side side) noex
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
 // The foot's pose of this tick, before the reach and the weights act on it.
 void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept;
-// The flying foot as on level ground between its two planes, and the height of that ground.
-struct FlightPoint {
-  FootPose pose;
-  double base_m = 0.0;
-};
+// Where the foot flies, still without its pitch.
 FlightPoint flight_point(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                          Side side, double u) noexcept;
+// Its pitch: the tables', as far as the toe stays off that ground.
+void pitch_in_flight(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                     Side side, double u, FlightPoint& point) noexcept;
 // Height of the heel over the plane that the foot is planned on.
 double heel_height(const FootState& foot) noexcept;
 // Lets a standing foot rise on its toe where its leg would be too short.

@@ -294,12 +294,13 @@ namespace {
 // holds, and yields from the middle of single support until the landed foot has taken the weight
 // (McFadyen & Winter 1988).
 constexpr double kRiseLasts = 0.9;   // of the step
-constexpr double kSinkBegin = 0.46;  // of the flight
-constexpr double kSinkEnd = 0.56;    // of the roll
+static double E(const char*n,double d){const char*e=getenv(n);return e?atof(e):d;}
+static double kSinkBegin = E("SB",0.46);  // of the flight
+static double kSinkEnd = E("SE",0.4);    // of the roll
 // Of a drop: how far the knee that takes the weight gives way, and how much of this at the landing.
-constexpr double kYield = 0.14, kEarlyYield = 0.05;
+static double kYield = E("Y",0.14), kEarlyYield = E("W",0.1);
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
-constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
+static double kStretch = E("ST",0.998), kSoftStretch_m = E("SS",0.02);
 
 struct Sinking {
   double ticks = 1.0;
@@ -352,8 +353,8 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
 }
 
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
-                      Side side) noexcept {
-  const double higher = state.base.height_m - state.foot[side].base_m;
+                      Side side, double base_m) noexcept {
+  const double higher = state.base.height_m - base_m;
   if (higher <= 0.0) return 0.0;
   const LegBuild& leg = model.leg[side];
   const double a = leg.model.thigh_m, b = leg.model.shank_m;
@@ -528,8 +529,9 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
     const double phase = state.stage_phase + u * (stage_end_phase(model, state) - state.stage_phase);
     const double share = (state.roll_ticks + u * state.flight_ticks) /
                          (state.roll_ticks + state.flight_ticks);
-    flight.point[i] =
-        flight_point(model, state, stride_plan(model, state, phase, share), side, u);
+    const StridePlan plan = stride_plan(model, state, phase, share);
+    flight.point[i] = flight_point(model, state, plan, side, u);
+    pitch_in_flight(model, state, plan, side, u, flight.point[i]);
     flight.sole[i] = sole_of(model.leg[side], flight.point[i].pose);
     flight.left[i] = state.landing_m.z - flight.point[i].pose.heel_m.z;
   }
@@ -716,7 +718,8 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   }
 }
 
-void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept {
+void keep_room(const Tick& tick, WalkState& state, Side side, double u,
+               FlightPoint& point) noexcept {
   FootState& foot = state.foot[side];
   FlightRoom& room = foot.room;
   if (glm::distance(room.planned_for_m, state.landing_m) > kReplan_m * tick.model.size)
@@ -728,10 +731,8 @@ void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept
   }
   const auto in_force = [](const Damped<double>& k) { return k.x; };
   const double raise = spline_at(room.raise, climb(state, foot), u, in_force);
-  const vec3 move(0.0, raise, spline_at(room.shift, 0.0, u, in_force));
-  foot.base_m += raise;
-  foot.pose.heel_m += move;
-  foot.pose.toe_m += move;
+  point.base_m += raise;
+  point.pose.heel_m += vec3(0.0, raise, spline_at(room.shift, 0.0, u, in_force));
 }
 
 }  // namespace gaitpad

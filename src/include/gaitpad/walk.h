@@ -99,6 +99,8 @@ struct FootState {
   LegAngles anchor_rad{};      // even pose when the mode began: stiff joints stay near it
   FootPlane plane;             // that it stands on or stood on last
   double base_m = 0.0;         // height of the ground that the pose is planned over
+  double rise_m = 0.0;         // how far the foot rises with the hips
+  std::array<double, 2> last_rise_m{};  // one and two ticks ago
   bool crosses_riser = false;  // in the running flight
   FlightRoom room;
 };

@@ -296,9 +296,10 @@ namespace {
 constexpr double kRiseLasts = 0.9;   // of the step
 static double E(const char*n,double d){const char*e=getenv(n);return e?atof(e):d;}
 static double kSinkBegin = E("SB",0.46);  // of the flight
-static double kSinkEnd = E("SE",0.4);    // of the roll
-// Of a drop: how far the knee that takes the weight gives way, and how much of this at the landing.
-static double kYield = E("Y",0.14), kEarlyYield = E("W",0.1);
+static double kSinkEnd = E("SE",0.45);    // of the roll
+// How far the knee of a foot gives way that lands from a height: this much, in legs, from great
+// heights, half of it from kHalfYield.
+static double kYield = E("Y",0.028), kHalfYield = E("YH",0.047);
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
 static double kStretch = E("ST",0.998), kSoftStretch_m = E("SS",0.02);
 
@@ -316,17 +317,30 @@ Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
 // At a strike: from where they are the hips go to where the landed foot carries them.
 void begin_base(const Tick& tick, WalkState& state) noexcept {
   HipsGround& base = state.base;
-  const double landed = state.foot[state.swing].plane.place_m.y,
-               other_m = state.foot[other(state.swing)].plane.place_m.y;
-  base.level_m = state.started ? landed - kYield * std::max(0.0, other_m - landed)
-                               : std::min(landed, other_m);
+  base.level_m = state.foot[state.swing].plane.place_m.y - base.yield_m;
+  if (!state.started) {
+    base.level_m = std::min(state.foot[kLeftSide].plane.place_m.y,
+                            state.foot[kRightSide].plane.place_m.y);
+  }
   base.off_m = {base.height_m - base.level_m, base.per_tick_m, base.per_tick2_m};
-  base.drop_m = 0.0;
+  base.drop_m = base.yield_m = 0.0;
   base.settle_ticks = static_cast<int>(
       !state.started        ? state.stage_ticks
       : base.off_m.x > 0.0 ? kSinkEnd * state.roll_ticks
                            : kRiseLasts * (state.roll_ticks + state.flight_ticks));
   (void)tick;
+}
+
+// How far the hips sink until the next landing, and after it.
+void plan_drop(const WalkModel& model, WalkState& state) noexcept {
+  HipsGround& base = state.base;
+  const double fall = state.foot[other(step_foot(state))].plane.place_m.y - state.landing_m.y;
+  base.drop_m = base.yield_m = 0.0;
+  if (fall <= 0.0) return;
+  const double early = kYield * model.leg_length_m * fall / (fall + kHalfYield * model.leg_length_m);
+  const double share = smootherstep(sinking(state, state.flight_ticks).share);
+  base.drop_m = std::max(0.0, base.level_m - state.landing_m.y + early) / share;
+  base.yield_m = early + (1.0 - share) * base.drop_m;
 }
 
 }  // namespace
@@ -339,13 +353,7 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
   const int begun = state.tick + (flies ? state.roll_ticks : 0);
   base.off_m.advance(base.settle_ticks - begun + 1);
   const Sinking now = sinking(state, flies ? state.tick : 0.0);
-  if (now.share == 0.0 && state.started) {
-    const double stands = state.foot[other(step_foot(state))].plane.place_m.y;
-    const double fall = stands - state.landing_m.y;
-    base.drop_m = fall <= 0.0 ? 0.0
-                              : std::max(0.0, base.level_m - state.landing_m.y + kEarlyYield * fall) /
-                                    smootherstep(sinking(state, state.flight_ticks).share);
-  }
+  if (now.share == 0.0 && state.started) plan_drop(tick.model, state);
   const double s = now.share, per_tick = s > 0.0 ? 1.0 / now.ticks : 0.0;
   base.height_m = base.level_m + base.off_m.x - base.drop_m * smootherstep(s);
   base.per_tick_m = base.off_m.v - base.drop_m * per_tick * 30.0 * s * s * (1.0 - s) * (1.0 - s);

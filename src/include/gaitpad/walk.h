@@ -121,7 +121,8 @@ struct HipsGround {
   double level_m = 0.0;  // where it settles over the standing foot,
   SmoothFade<double> off_m;  // by how much it is still off,
   int settle_ticks = 0;      // and how long after the strike it is not any more
-  double drop_m = 0.0;       // how far it then sinks to the next landing
+  double drop_m = 0.0;       // how far it then sinks to the next landing,
+  double yield_m = 0.0;      // and of this below that landing
 };
 
 // What a walk remembers of the upper body.

@@ -296,10 +296,10 @@ namespace {
 constexpr double kRiseLasts = 0.9;   // of the step
 static double E(const char*n,double d){const char*e=getenv(n);return e?atof(e):d;}
 static double kSinkBegin = E("SB",0.46);  // of the flight
-static double kSinkEnd = E("SE",0.45);    // of the roll
+static double kSinkEnd = E("SE",0.3);    // of the roll
 // How far the knee of a foot gives way that lands from a height: this much, in legs, from great
 // heights, half of it from kHalfYield.
-static double kYield = E("Y",0.028), kHalfYield = E("YH",0.047);
+static double kYield = E("Y",0.024), kHalfYield = E("YH",0.015);
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
 static double kStretch = E("ST",0.998), kSoftStretch_m = E("SS",0.02);
 
@@ -323,7 +323,7 @@ void begin_base(const Tick& tick, WalkState& state) noexcept {
                             state.foot[kRightSide].plane.place_m.y);
   }
   base.off_m = {base.height_m - base.level_m, base.per_tick_m, base.per_tick2_m};
-  base.drop_m = base.yield_m = 0.0;
+  base.drop_m = base.yield_m = base.early_m = 0.0;
   base.settle_ticks = static_cast<int>(
       !state.started        ? state.stage_ticks
       : base.off_m.x > 0.0 ? kSinkEnd * state.roll_ticks
@@ -335,12 +335,13 @@ void begin_base(const Tick& tick, WalkState& state) noexcept {
 void plan_drop(const WalkModel& model, WalkState& state) noexcept {
   HipsGround& base = state.base;
   const double fall = state.foot[other(step_foot(state))].plane.place_m.y - state.landing_m.y;
-  base.drop_m = base.yield_m = 0.0;
+  base.drop_m = base.yield_m = base.early_m = 0.0;
   if (fall <= 0.0) return;
   const double early = kYield * model.leg_length_m * fall / (fall + kHalfYield * model.leg_length_m);
   const double share = smootherstep(sinking(state, state.flight_ticks).share);
   base.drop_m = std::max(0.0, base.level_m - state.landing_m.y + early) / share;
   base.yield_m = early + (1.0 - share) * base.drop_m;
+  base.early_m = early;
 }
 
 }  // namespace
@@ -362,14 +363,26 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
 
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                       Side side, double base_m) noexcept {
-  const double higher = state.base.height_m - base_m;
-  if (higher <= 0.0) return 0.0;
   const LegBuild& leg = model.leg[side];
+  const FootPose& pose = state.foot[side].pose;
+  // A tilted foot holds its ankle elsewhere.
+  const vec3 ankle = glm::inverse(pose.tilt) * (foot_rotation(leg, pose) * leg.model.heel_m) * -1.0;
+  const vec3 hips = state.hips_m + kUp * (state.base.height_m + model.stand_m);
+  const double tilted = glm::dot(ankle - pose.tilt * ankle,
+                                 glm::normalize(hips - pose.heel_m - ankle));
+  const double higher = state.base.height_m - base_m + tilted;
+  // A foot that lands from a height comes down with the hips, and softly: they are lower by all of
+  // `early` then.
+  double hover = 0.0;
+  if (state.foot[side].mode == FootMode::flight)
+    hover = 0.5 * state.base.early_m * smoothstep(0.0, 0.5, flight_progress(state));
+  if (higher <= -2.0 * hover) return 0.0;
   const double a = leg.model.thigh_m, b = leg.model.shank_m;
   const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
   const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
   const double room = std::max(0.0, kStretch * (a + b) - known), soft = kSoftStretch_m * model.size;
-  return soft_positive(higher - room, higher * soft / (higher + soft));
+  const double up = std::max(0.0, higher);
+  return soft_positive(higher + hover - room, hover + up * soft / (up + soft));
 }
 
 namespace {

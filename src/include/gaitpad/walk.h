@@ -122,7 +122,7 @@ struct HipsGround {
   SmoothFade<double> off_m;  // by how much it is still off,
   int settle_ticks = 0;      // and how long after the strike it is not any more
   double drop_m = 0.0;       // how far it then sinks to the next landing,
-  double yield_m = 0.0;      // and of this below that landing
+  double early_m = 0.0, yield_m = 0.0;  // and how far below that landing, at it and after it
 };
 
 // What a walk remembers of the upper body.

@@ -95,7 +95,7 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
                rise = state.landing_m.y - begin_m;
   const double rise_legs = rise / model.leg_length_m;
   const double lifted = state.flight_height[side].x *
-                        mix(1.0, kLiftDown, smoothstep(0.0, kDown, -rise_legs)) *
+                        mix(1.0, foot.crosses_riser ? kLiftDown : 1.0, smoothstep(0.0, kDown, -rise_legs)) *
                         mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
   const double height = mix(1.0, lifted, smootherstep(u / kLiftGrows));
   const Ascent risen = ascent(model, foot, way);

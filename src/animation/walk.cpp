@@ -502,7 +502,7 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   const quat thigh = pelvis * rotation_xzy({q[kHipX], q[kHipZ], q[kHipY]});
   const quat shank = thigh * rotation_x(q[kKneeX]);
   const quat foot = shank * rotation_xzy({q[kAnkleX], q[kAnkleZ], q[kAnkleY]});
-  const quat toes = foot * rotation_about(leg.side, state.foot[side].pose.toe_rad);
+  const quat toes = foot * toes_turn(leg, state.foot[side].pose, state.foot[side].pose.toe_rad);
   const std::array<int, 4> chain = {joints.hip, joints.knee, joints.ankle, joints.toe};
   const std::array<quat, 4> segment = {thigh, shank, foot, toes};
   int last = model.cycle.pelvis;

@@ -153,6 +153,11 @@ quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
            from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad)));
 }
 
+quat toes_turn(const LegBuild& leg, const FootPose& pose, double toe_rad) noexcept {
+  return from_rotation_vector(kUp * -pose.twist_rad - leg.forward * pose.roll_rad) *
+         rotation_about(leg.side, toe_rad);
+}
+
 double heel_height(const FootState& foot) noexcept {
   return (foot.pose.heel_m.y - foot.base_m) * foot.plane.normal.y;
 }

@@ -104,6 +104,8 @@ void keep_room(const Tick& tick, WalkState& state, Side side, double u,
 // How far a standing foot may leave the floor with its heel: 0 flat .. 1 freely.
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept;
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
+// The toes' rotation from their foot: bent by `toe_rad`, and level across however the foot rolls.
+quat toes_turn(const LegBuild& leg, const FootPose& pose, double toe_rad) noexcept;
 // The foot's pose of this tick, before the reach and the weights act on it.
 void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept;
 // Where the foot flies, still without its pitch.

@@ -497,7 +497,7 @@ bool sharpen(const Wanted& beside, const FlightSpline& shift, double size, Ends&
 using Sole = std::array<vec3, 5>;  // heel and tip on both sides, ball
 Sole sole_of(const LegBuild& leg, const FootPose& pose) noexcept {
   const quat foot = foot_rotation(leg, pose);
-  const quat toes = foot * rotation_about(leg.side, -std::max(0.0, pose.pitch_rad));
+  const quat toes = foot * toes_turn(leg, pose, -std::max(0.0, pose.pitch_rad));
   const vec3 ball = pose.heel_m + foot * (leg.ball_m - leg.model.heel_m);
   const vec3 tip = ball + toes * (leg.tip_m - leg.ball_m);
   const vec3 side = foot * leg.side * leg.half_width_m;

@@ -364,13 +364,7 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                       Side side, double base_m) noexcept {
   const LegBuild& leg = model.leg[side];
-  const FootPose& pose = state.foot[side].pose;
-  // A tilted foot holds its ankle elsewhere.
-  const vec3 ankle = glm::inverse(pose.tilt) * (foot_rotation(leg, pose) * leg.model.heel_m) * -1.0;
-  const vec3 hips = state.hips_m + kUp * (state.base.height_m + model.stand_m);
-  const double tilted = glm::dot(ankle - pose.tilt * ankle,
-                                 glm::normalize(hips - pose.heel_m - ankle));
-  const double higher = state.base.height_m - base_m + tilted;
+  const double higher = state.base.height_m - base_m;
   // A foot that lands from a height comes down with the hips, and softly: they are lower by all of
   // `early` then.
   double hover = 0.0;

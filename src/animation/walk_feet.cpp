@@ -36,6 +36,14 @@ vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
   return foot_rotation(leg, pose) * (leg.model.toe_m - leg.model.heel_m);
 }
 
+// How much steeper the line from heel to toe is in a foot that twists and rolls.
+double rolled_elevation(const LegBuild& leg, const FootPose& pose) noexcept {
+  const vec3 line =
+      from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad) *
+      (leg.model.toe_m - leg.model.heel_m);
+  return atan2(line.y, glm::dot(line, leg.forward)) - leg.elevation_rad;
+}
+
 // The foot's pitch in the tables.
 double table_pitch(const WalkState& state, const StridePlan& plan, Side side) noexcept {
   // The foot that stands when a walk begins has not landed: its toe is down.
@@ -203,7 +211,8 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
   const double height = (point.pose.heel_m.y - point.base_m) * foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(u * state.stage_ticks);
-  const double limit = highest_pitch(leg, height, -kMostSink_m * model.size);
+  const double limit =
+      highest_pitch(leg, height, -kMostSink_m * model.size) + rolled_elevation(leg, point.pose);
   set_pitch(leg, soft_min(pitch, limit, kSoftPitch), point.pose, FootMode::flight);
 }
 

@@ -208,7 +208,10 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
                      Side side, double u, FlightPoint& point) noexcept {
   const LegBuild& leg = model.leg[side];
   const FootState& foot = state.foot[side];
-  const double height = (point.pose.heel_m.y - point.base_m) * foot.plane.normal.y;
+  // The toe leaves the plane that it stood on, which may be another one than the line over ground.
+  const double ground_m = mix(height_on(foot.plane, point.pose.heel_m), point.base_m,
+                              smootherstep(u / kLiftFade));
+  const double height = (point.pose.heel_m.y - ground_m) * foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(u * state.stage_ticks);
   const double limit =

@@ -299,6 +299,7 @@ static double kSinkBegin = E("SB",0.5);  // of the flight
 static double kSinkEnd = E("SE",0.3);    // of the roll
 // How far the knee of a foot gives way that lands from a height: this much, in legs, from great
 // heights, half of it from kHalfYield.
+static double kBentBefore = E("BB",0.5);
 static double kYield = E("Y",0.027), kHalfYield = E("YH",0.01);
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
 static double kStretch = E("ST",0.998), kSoftStretch_m = E("SS",0.02);
@@ -314,34 +315,43 @@ Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
   return s;
 }
 
+// How far the hips are below their own height over a foot that lands from a height of `fall_m`.
+double early_yield(const WalkModel& model, double fall_m) noexcept {
+  if (fall_m <= 0.0) return 0.0;
+  return kYield * model.leg_length_m * fall_m / (fall_m + kHalfYield * model.leg_length_m);
+}
+double fall_ahead(const WalkState& state) noexcept {
+  return state.foot[other(step_foot(state))].plane.place_m.y - state.landing_m.y;
+}
+
 // At a strike: from where they are the hips go to where the landed foot carries them.
-void begin_base(const Tick& tick, WalkState& state) noexcept {
+void begin_base(const WalkModel& model, WalkState& state) noexcept {
   HipsGround& base = state.base;
-  base.level_m = state.foot[state.swing].plane.place_m.y - base.yield_m;
-  if (!state.started) {
-    base.level_m = std::min(state.foot[kLeftSide].plane.place_m.y,
-                            state.foot[kRightSide].plane.place_m.y);
+  const bool sinks = base.drop_m > 0.0;
+  const FootPlane &landed = state.foot[state.swing].plane,
+                  &lifts = state.foot[other(state.swing)].plane;
+  if (state.started) {
+    const double bent = kBentBefore * early_yield(model, fall_ahead(state));
+    base.level_m = landed.place_m.y - std::max(base.yield_m, bent);
+    base.settle_ticks = static_cast<int>(
+        sinks ? kSinkEnd * state.roll_ticks : kRiseLasts * (state.roll_ticks + state.flight_ticks));
+  } else {
+    base.level_m = std::min(landed.place_m.y, lifts.place_m.y);
+    base.settle_ticks = state.stage_ticks;
   }
   base.off_m = {base.height_m - base.level_m, base.per_tick_m, base.per_tick2_m};
   base.drop_m = base.yield_m = base.early_m = 0.0;
-  base.settle_ticks = static_cast<int>(
-      !state.started        ? state.stage_ticks
-      : base.off_m.x > 0.0 ? kSinkEnd * state.roll_ticks
-                           : kRiseLasts * (state.roll_ticks + state.flight_ticks));
-  (void)tick;
 }
 
 // How far the hips sink until the next landing, and after it.
 void plan_drop(const WalkModel& model, WalkState& state) noexcept {
   HipsGround& base = state.base;
-  const double fall = state.foot[other(step_foot(state))].plane.place_m.y - state.landing_m.y;
-  base.drop_m = base.yield_m = base.early_m = 0.0;
-  if (fall <= 0.0) return;
-  const double early = kYield * model.leg_length_m * fall / (fall + kHalfYield * model.leg_length_m);
+  base.early_m = early_yield(model, fall_ahead(state));
+  base.drop_m = base.yield_m = 0.0;
+  if (base.early_m == 0.0) return;
   const double share = smootherstep(sinking(state, state.flight_ticks).share);
-  base.drop_m = std::max(0.0, base.level_m - state.landing_m.y + early) / share;
-  base.yield_m = early + (1.0 - share) * base.drop_m;
-  base.early_m = early;
+  base.drop_m = std::max(0.0, base.level_m - state.landing_m.y + base.early_m) / share;
+  base.yield_m = base.early_m + (1.0 - share) * base.drop_m;
 }
 
 }  // namespace
@@ -349,7 +359,7 @@ void plan_drop(const WalkModel& model, WalkState& state) noexcept {
 void advance_base(const Tick& tick, WalkState& state) noexcept {
   HipsGround& base = state.base;
   if (state.stage == Stage::idle) return;
-  if (state.stage == Stage::roll && state.tick == 1) begin_base(tick, state);
+  if (state.stage == Stage::roll && state.tick == 1) begin_base(tick.model, state);
   const bool flies = state.stage == Stage::flight;
   const int begun = state.tick + (flies ? state.roll_ticks : 0);
   base.off_m.advance(base.settle_ticks - begun + 1);

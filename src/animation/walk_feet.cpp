@@ -27,6 +27,7 @@ constexpr double kLiftDown = 0.4, kDown = 0.2;
 constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
 constexpr double kInPlace_m = 0.1;  // a flight shorter than this climbs by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: the lift-off's own motion has faded
+constexpr double kLiftGround = 0.5;  // of the flight: until then the plane left bounds the toe
 constexpr double kRollEnd = 0.9;    // of the roll: the toe is down
 constexpr double kLiftGrows = 0.35;  // of the flight: until then a style's factor on its height acts
 
@@ -192,6 +193,7 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   FlightPoint point;
   FootPose& pose = point.pose;
   pose.heel_m = flight_heel(model, state, plan, side, u, point.base_m);
+  point.lifted_m = height_on(foot.plane, pose.heel_m) - point.base_m;
   const double gone = 1.0 - h00(u);
   const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
   pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u);
@@ -209,8 +211,7 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
   const LegBuild& leg = model.leg[side];
   const FootState& foot = state.foot[side];
   // The toe leaves the plane that it stood on, which may be another one than the line over ground.
-  const double ground_m = mix(height_on(foot.plane, point.pose.heel_m), point.base_m,
-                              smootherstep(u / kLiftFade));
+  const double ground_m = point.base_m + point.lifted_m * (1.0 - smootherstep(u / kLiftGround));
   const double height = (point.pose.heel_m.y - ground_m) * foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(u * state.stage_ticks);

@@ -91,10 +91,11 @@ double rise_with_hips(const WalkModel& model, const WalkState& state, const Stri
 
 // Plans how the flying foot clears the ground between its two footholds.
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept;
-// The flying foot as on level ground between its two planes, and the height of that ground.
+// The flying foot as on level ground between its two planes, the height of that ground, and how much
+// higher the plane that it left is.
 struct FlightPoint {
   FootPose pose;
-  double base_m = 0.0;
+  double base_m = 0.0, lifted_m = 0.0;
 };
 // Moves it by what its room asks for.
 void keep_room(const Tick& tick, WalkState& state, Side side, double u,

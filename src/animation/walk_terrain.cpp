@@ -320,8 +320,15 @@ double early_yield(const WalkModel& model, double fall_m) noexcept {
   if (fall_m <= 0.0) return 0.0;
   return kYield * model.leg_length_m * fall_m / (fall_m + kHalfYield * model.leg_length_m);
 }
-double fall_ahead(const WalkState& state) noexcept {
-  return state.foot[other(step_foot(state))].plane.place_m.y - state.landing_m.y;
+// How far the next foot lands below the standing one: their toes, for a foot that points down
+// reaches less far.
+double fall_ahead(const WalkModel& model, const WalkState& state) noexcept {
+  const Side lands = step_foot(state), stands = other(lands);
+  const auto toe_m = [&](const FootPlane& plane, Side side, double yaw_rad) {
+    return height_on(plane, plane.place_m + heading_direction(yaw_rad) * model.leg[side].foot_m);
+  };
+  return toe_m(state.foot[stands].plane, stands, state.foot[stands].lift_yaw_rad) -
+         toe_m(state.landing_plane, lands, state.landing_heading_rad);
 }
 
 // At a strike: from where they are the hips go to where the landed foot carries them.
@@ -331,7 +338,7 @@ void begin_base(const WalkModel& model, WalkState& state) noexcept {
   const FootPlane &landed = state.foot[state.swing].plane,
                   &lifts = state.foot[other(state.swing)].plane;
   if (state.started) {
-    const double bent = kBentBefore * early_yield(model, fall_ahead(state));
+    const double bent = kBentBefore * early_yield(model, fall_ahead(model, state));
     base.level_m = landed.place_m.y - std::max(base.yield_m, bent);
     base.settle_ticks = static_cast<int>(
         sinks ? kSinkEnd * state.roll_ticks : kRiseLasts * (state.roll_ticks + state.flight_ticks));
@@ -346,7 +353,7 @@ void begin_base(const WalkModel& model, WalkState& state) noexcept {
 // How far the hips sink until the next landing, and after it.
 void plan_drop(const WalkModel& model, WalkState& state) noexcept {
   HipsGround& base = state.base;
-  base.early_m = early_yield(model, fall_ahead(state));
+  base.early_m = early_yield(model, fall_ahead(model, state));
   base.drop_m = base.yield_m = 0.0;
   if (base.early_m == 0.0) return;
   const double share = smootherstep(sinking(state, state.flight_ticks).share);

@@ -21,9 +21,8 @@ constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel m
 constexpr double kReachOnToe = 0.99995;  // of the leg: with the hip further away, the heel rises
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
 constexpr double kMaxPitch = 85.0 * kDegree, kWidePitch = 25.0 * kDegree;
-// A foot that goes down is lifted less: by the factor kLiftDown from a fall of kDown legs on. So is
-// a foot that goes far up: its way over the riser is lift enough, and the knee folds only so far.
-constexpr double kLiftDown = 0.4, kDown = 0.2;
+// A foot that goes far up is lifted less: its way over the riser is lift enough, and the knee folds
+// only so far.
 constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
 constexpr double kInPlace_m = 0.1;  // a flight shorter than this climbs by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: the lift-off's own motion has faded
@@ -104,7 +103,6 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
                rise = state.landing_m.y - begin_m;
   const double rise_legs = rise / model.leg_length_m;
   const double lifted = state.flight_height[side].x *
-                        mix(1.0, foot.crosses_riser ? kLiftDown : 1.0, smoothstep(0.0, kDown, -rise_legs)) *
                         mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
   const double height = mix(1.0, lifted, smootherstep(u / kLiftGrows));
   const Ascent risen = ascent(model, foot, way);

@@ -320,28 +320,29 @@ double early_yield(const WalkModel& model, double fall_m) noexcept {
   if (fall_m <= 0.0) return 0.0;
   return kYield * model.leg_length_m * fall_m / (fall_m + kHalfYield * model.leg_length_m);
 }
-// How far the next foot lands below the standing one: their toes, for a foot that points down
-// reaches less far.
+// How far the next foot lands below the standing one, its heel or its toe: a foot that points
+// down reaches less far.
 double fall_ahead(const WalkModel& model, const WalkState& state) noexcept {
   const Side lands = step_foot(state), stands = other(lands);
+  const FootPlane &from = state.foot[stands].plane, &to = state.landing_plane;
   const auto toe_m = [&](const FootPlane& plane, Side side, double yaw_rad) {
     return height_on(plane, plane.place_m + heading_direction(yaw_rad) * model.leg[side].foot_m);
   };
-  return toe_m(state.foot[stands].plane, stands, state.foot[stands].lift_yaw_rad) -
-         toe_m(state.landing_plane, lands, state.landing_heading_rad);
+  return std::max(from.place_m.y - to.place_m.y,
+                  toe_m(from, stands, state.foot[stands].lift_yaw_rad) -
+                      toe_m(to, lands, state.landing_heading_rad));
 }
 
 // At a strike: from where they are the hips go to where the landed foot carries them.
 void begin_base(const WalkModel& model, WalkState& state) noexcept {
   HipsGround& base = state.base;
-  const bool sinks = base.drop_m > 0.0;
   const FootPlane &landed = state.foot[state.swing].plane,
                   &lifts = state.foot[other(state.swing)].plane;
   if (state.started) {
     const double bent = kBentBefore * early_yield(model, fall_ahead(model, state));
     base.level_m = landed.place_m.y - std::max(base.yield_m, bent);
     base.settle_ticks = static_cast<int>(
-        sinks ? kSinkEnd * state.roll_ticks : kRiseLasts * (state.roll_ticks + state.flight_ticks));
+        base.yield_m > bent && base.height_m > base.level_m ? kSinkEnd * state.roll_ticks : kRiseLasts * (state.roll_ticks + state.flight_ticks));
   } else {
     base.level_m = std::min(landed.place_m.y, lifts.place_m.y);
     base.settle_ticks = state.stage_ticks;

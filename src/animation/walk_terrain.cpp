@@ -341,8 +341,9 @@ void begin_base(const WalkModel& model, WalkState& state) noexcept {
   if (state.started) {
     const double bent = kBentBefore * early_yield(model, fall_ahead(model, state));
     base.level_m = landed.place_m.y - std::max(base.yield_m, bent);
+    const double rise_lasts = state.backward || state.closing ? 1.0 : kRiseLasts;
     base.settle_ticks = static_cast<int>(
-        base.yield_m > bent && base.height_m > base.level_m ? kSinkEnd * state.roll_ticks : kRiseLasts * (state.roll_ticks + state.flight_ticks));
+        base.yield_m > bent && base.height_m > base.level_m ? kSinkEnd * state.roll_ticks : rise_lasts * (state.roll_ticks + state.flight_ticks));
   } else {
     base.level_m = std::min(landed.place_m.y, lifts.place_m.y);
     base.settle_ticks = state.stage_ticks;
@@ -362,6 +363,14 @@ void plan_drop(const WalkModel& model, WalkState& state) noexcept {
   base.yield_m = base.early_m + (1.0 - share) * base.drop_m;
 }
 
+// Upwards, a rear leg that does not roll far over its toe would be too short (walking backwards, or
+// when closing a walk): hips that rest wait for its lift-off.
+bool waits_for_flight(const WalkState& state) noexcept {
+  const SmoothFade<double>& off = state.base.off_m;
+  return (state.backward || state.closing) && state.started && off.x < 0.0 && off.v == 0.0 &&
+         off.a == 0.0;
+}
+
 }  // namespace
 
 void advance_base(const Tick& tick, WalkState& state) noexcept {
@@ -370,6 +379,7 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::roll && state.tick == 1) begin_base(tick.model, state);
   const bool flies = state.stage == Stage::flight;
   const int begun = state.tick + (flies ? state.roll_ticks : 0);
+  if (!flies && waits_for_flight(state)) return;
   base.off_m.advance(base.settle_ticks - begun + 1);
   const Sinking now = sinking(state, flies ? state.tick : 0.0);
   if (now.share == 0.0 && state.started) plan_drop(tick.model, state);

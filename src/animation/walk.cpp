@@ -126,8 +126,15 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
   pelvis.position_m += left * (height_m * lean.sin);
   pelvis.position_m.y = state.base.height_m + height_m * lean.cos;
   const double yaw = state.sway.x * cell.pelvis_yaw_rad;
-  pelvis.rotation = rotation_y(state.heading_rad) * rotation_z(-state.lean_rad.x) *
-                    rotation_y(yaw) * from_rotation_vector(cell.pelvis_tilt);
+  const quat upright = rotation_y(state.heading_rad) * rotation_z(-state.lean_rad.x),
+             turned = rotation_y(yaw) * from_rotation_vector(cell.pelvis_tilt);
+  pelvis.rotation = upright * turned;
+  if (state.slope_lean_rad.x == 0.0) return pelvis;
+  // Into a slope the trunk leans about the hip joints.
+  const vec3 hips = 0.5 * (model.leg[kLeftSide].model.hip_m + model.leg[kRightSide].model.hip_m);
+  pelvis.position_m += pelvis.rotation * hips;
+  pelvis.rotation = upright * rotation_x(state.slope_lean_rad.x) * turned;
+  pelvis.position_m -= pelvis.rotation * hips;
   return pelvis;
 }
 
@@ -144,6 +151,11 @@ constexpr double kAmplitudeSmoothing = 0.18;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kSettling = 0.35;
 constexpr double kLeanSmoothing = 0.12;
+// Trunks lean by 5 to 6 degrees up a grade of 15 %, by 7 to 8 up stairs, and back by 2 downhill
+// (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
+constexpr double kUphillLean = 8.5 * kDegree, kDownhillLean = 3.0 * kDegree, kHalfLeanGrade = 0.09;
+constexpr double kShortestRun = 0.2;  // in legs: a step over less ground has no grade of its own
+constexpr double kSlopeLeanSmoothing = 0.3;
 constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
@@ -247,6 +259,20 @@ void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state)
   state.asked_ratio = 0.5 * (params.stride[0].length_m + params.stride[1].length_m) / model.source_step_m;
 }
 
+// Smooths how far the trunk leans into the slope or stair that the running step leads over.
+void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
+  double lean = 0.0;
+  if (state.started) {
+    const Side swing = step_foot(state);
+    const double rise = state.landing_m.y - state.foot[other(swing)].plane.place_m.y,
+                 run = std::max(std::abs(state.frame.stride_m[swing]),
+                                kShortestRun * tick.model.leg_length_m);
+    const double grade = (state.backward ? -rise : rise) / run;
+    lean = (grade > 0.0 ? kUphillLean : kDownhillLean) * grade / (std::abs(grade) + kHalfLeanGrade);
+  }
+  state.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
+}
+
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.
 void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
@@ -285,6 +311,7 @@ void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept
   const double lean =
       mode == IkMode::paper ? 0.0 : speed_m_s * state.turn_rate.x / kGravity_m_s2;
   state.lean_rad.advance(lean, kLeanSmoothing * scale, dt);
+  if (!tick.flat && mode != IkMode::paper) lean_into_slope(tick, state);
 }
 
 // Moves a phase of the running stage on by one tick. At the end of a stage the phase runs at the

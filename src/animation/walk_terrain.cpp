@@ -294,15 +294,14 @@ namespace {
 // holds, and yields from the middle of single support until the landed foot has taken the weight
 // (McFadyen & Winter 1988).
 constexpr double kRiseLasts = 0.9;   // of the step
-static double E(const char*n,double d){const char*e=getenv(n);return e?atof(e):d;}
-static double kSinkBegin = E("SB",0.5);  // of the flight
-static double kSinkEnd = E("SE",0.3);    // of the roll
+constexpr double kSinkBegin = 0.5;  // of the flight
+constexpr double kSinkEnd = 0.3;    // of the roll
 // How far the knee of a foot gives way that lands from a height: this much, in legs, from great
 // heights, half of it from kHalfYield.
-static double kBentBefore = E("BB",0.5);
-static double kYield = E("Y",0.027), kHalfYield = E("YH",0.01);
+constexpr double kBentBefore = 0.5;
+constexpr double kYield = 0.027, kHalfYield = 0.01;
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
-static double kStretch = E("ST",0.998), kSoftStretch_m = E("SS",0.02);
+constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
 
 struct Sinking {
   double ticks = 1.0;

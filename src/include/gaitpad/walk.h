@@ -174,7 +174,8 @@ struct WalkState {
   FootPlane landing_plane;
   Foothold landing;
   Damped<double> settled_pace;  // follows `pace` slowly
-  Damped<double> lean_rad;      // of the whole body into a turn, to the left positive
+  Damped<double> lean_rad;        // of the whole body into a turn, to the left positive
+  Damped<double> slope_lean_rad;  // of the trunk into a slope or stair, forwards positive
   HipsGround base;
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;

@@ -561,6 +561,8 @@ struct Flight {
   Stretch begin, end;
   double begin_room = 0.0;
   double climb = 0.0;
+  // A flight that ends on its own piece goes beside a riser, not over it.
+  bool stays() const noexcept { return begin.from_m == end.from_m; }
 };
 Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
@@ -597,9 +599,12 @@ Wanted wanted_raise(const Tick& tick, const Flight& flight, bool crosses_riser,
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes, moved = spline_at(shift, 0.0, u);
     double over = -tick.model.leg_length_m;
-    for (const vec3& p : flight.sole[i])
-      over = std::max(
-          over, ground_at(terrain, p.x, p.z + moved).height_m - base_under(flight.point[i], p));
+    for (const vec3& p : flight.sole[i]) {
+      double z = p.z + moved;
+      if (flight.stays())
+        z = std::clamp(z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
+      over = std::max(over, ground_at(terrain, p.x, z).height_m - base_under(flight.point[i], p));
+    }
     above[i] = crosses_riser ? over + above_m * in_flight(u)
                              : std::max(0.0, over) + std::clamp(over, 0.0, above_m);
   }
@@ -640,8 +645,8 @@ void plan_over(const Tick& tick, const WalkState& state, const FootState& foot,
     room.raise_m = envelope(above, ends);
     for (int i = 1; i < kProbes; ++i) {
       beside[i] = 0.0;
-      if (above[i] <= spline_at(room.raise_m, above.back(), static_cast<double>(i) / kProbes))
-        continue;
+      const double u = static_cast<double>(i) / kProbes;
+      if (!flight.stays() && above[i] <= spline_at(room.raise_m, above.back(), u)) continue;
       beside[i] = 2 * i < kProbes ? way_back(terrain, flight.sole[i], flight.begin,
                                              foot.plane.place_m.y, flight.begin_room, size)
                                   : way_back(terrain, flight.sole[i], flight.end, state.landing_m.y,

@@ -63,11 +63,17 @@ double step_length(const WalkState& state, Side side) noexcept {
   return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
 }
 
-double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
+namespace {
+double ratio_of_step(const WalkModel& model, const WalkState& state) noexcept {
   const Side swing = step_foot(state);
   // Run back, a foot makes the step that the other one makes forwards.
   const double own_m = model.own_step_m[state.backward ? other(swing) : swing];
   return state.started ? std::abs(state.frame.stride_m[swing]) / own_m : 0.0;
+}
+}  // namespace
+
+double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
+  return std::max(0.0, ratio_of_step(model, state) + state.off_ratio.x);
 }
 
 StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
@@ -365,6 +371,7 @@ constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWi
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
+constexpr double kRatioJump = 0.01;   // a tick: sticks are slower
 constexpr double kFreeze = 0.55;      // of the flight: after it the landing place is settled
 
 double power(double base, int exponent) noexcept {
@@ -404,6 +411,21 @@ void follow_ground(const Tick& tick, WalkState& state, Side swing) noexcept {
   state.ground_share.advance(share, kGroundSmoothing_s * tick.model.time_scale, tick.dt_s);
 }
 
+// A step that is to end on another tread than it was has another ratio at once. The tables are read
+// for one that goes there until the flight begins.
+void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
+  const double ratio = ratio_of_step(tick.model, state);
+  const double change = ratio - state.step_ratio;
+  state.step_ratio = ratio;
+  if (state.stage == Stage::roll && state.tick == 1) {
+    state.off_ratio = {};
+  } else if (std::abs(change) > kRatioJump) {
+    state.off_ratio.x -= change;
+  }
+  state.off_ratio.advance(
+      state.stage == Stage::roll ? state.stage_ticks - state.tick + 1 : 1);
+}
+
 void plan_landing(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::idle || !state.started) return;
   const Side swing = step_foot(state), stand = other(swing);
@@ -418,7 +440,9 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
   }
   // Along the heading at the landing, which may still turn after the place is settled.
   state.frame.stride_m[swing] = glm::dot(state.landing_m - standing, forward);
-  if (!tick.flat) follow_ground(tick, state, swing);
+  if (tick.flat) return;
+  follow_ground(tick, state, swing);
+  keep_ratio_smooth(tick, state);
 }
 
 // The hips' place on the tables' path, without their oscillation: of the stride before, from the

@@ -5,7 +5,7 @@
 // between the wanted place and the standing foot's, a cost says how much the step would have to
 // become longer, shorter, higher or more sideways, and whether the sole would overhang an edge. The
 // cheapest piece wins; on it the heel goes as near to the wanted place as the room for the sole
-// allows. The foot then gets a plane: the ground's best fit under its sole. When the flight begins,
+// allows. The foot then gets a plane: the ground's best fit under its sole. Before the flight begins,
 // the piece is settled.
 //
 // Flights. A flight is planned over a ground line from one foothold's height to the other's. Where
@@ -38,6 +38,7 @@ constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHig
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
 constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
 constexpr double kCrossWayBackward = 0.6;
+constexpr double kPieceSettles = 0.6;  // of the roll: until then a step may still go elsewhere
 constexpr double kStay = 0.1;       // another piece than before has to be cheaper by this
 constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
@@ -278,7 +279,8 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   if (moved) {
     landing.wanted_m = step.wanted_m;
     landing.yaw_rad = yaw;
-    if (!flies) landing.piece = best_piece(terrain, step, first ? nullptr : &landing.piece);
+    if (state.stage == Stage::roll && state.tick <= kPieceSettles * state.stage_ticks)
+      landing.piece = best_piece(terrain, step, first ? nullptr : &landing.piece);
     const vec3 place = place_on(step, landing.piece, landing.fits);
     state.landing_plane = plane_under(terrain, tick.model.leg[swing], place, yaw, landing.piece);
   }

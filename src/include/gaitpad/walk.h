@@ -153,6 +153,8 @@ struct WalkState {
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
   double ratio_behind = 0.0;             // of the step before: the stride ratio at the last strike
+  double step_ratio = 0.0;               // of the running step,
+  SmoothFade<double> off_ratio;          // and how far the tables' is off it
   // Smoothed parameters.
   std::array<Damped<double>, 2> length_m, flight_height;
   std::array<double, 2> time_s{};

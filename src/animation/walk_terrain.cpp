@@ -296,12 +296,12 @@ namespace {
 // holds, and yields from the middle of single support until the landed foot has taken the weight
 // (McFadyen & Winter 1988).
 constexpr double kRiseLasts = 0.9;   // of the step
-constexpr double kSinkBegin = 0.5;  // of the flight
+constexpr double kSinkBegin = 0.52;  // of the flight
 constexpr double kSinkEnd = 0.3;    // of the roll
 // How far the knee of a foot gives way that lands from a height: this much, in legs, from great
 // heights, half of it from kHalfYield.
 constexpr double kBentBefore = 0.5;
-constexpr double kYield = 0.027, kHalfYield = 0.01;
+constexpr double kYield = 0.0255, kHalfYield = 0.01;
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
 constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
 

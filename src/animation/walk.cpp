@@ -368,7 +368,6 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
 constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWidest_m = 0.06;
-constexpr double kLevel_m = 0.005;
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
@@ -531,10 +530,7 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
     // What the tables ask for is let through.
     const double beyond = (span - known) / model.size;
     if (beyond <= 0.0) continue;
-    // Feet on other ground rise with the hips already: see rise_with_hips().
-    const double step = std::abs(state.base.height_m - state.foot[side].base_m) / model.size;
-    const double wider = kWiderReach * kLevel_m / (kLevel_m + step);
-    const double soft = model.size * (kSoftReach_m + wider * std::min(beyond, kWidest_m));
+    const double soft = model.size * (kSoftReach_m + kWiderReach * std::min(beyond, kWidest_m));
     const double longest = kReach * leg.model.length_m(), times = beyond / kKnown_m;
     const double excess =
         soft_positive(span - longest, soft) * times * times / (1.0 + times * times);

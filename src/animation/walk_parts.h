@@ -42,9 +42,9 @@ bool walks_on(const GaitParams& params, const WalkState& state) noexcept;
 // taken with to the one that it is taken with itself: the hips follow the first one's table from
 // the footprint that they come from, the second one's towards the next, and change over smoothly.
 struct StridePlan {
-  double phase = 0.0;  // of the data, unwrapped: within this step it does not jump
-  double change = 0.0;  // from the one stride, at 0, to the other, at 1
-  double shown = 0.0;   // how much of the tables shows: 0 when standing
+  double phase = 0.0;             // of the data, unwrapped: within this step it does not jump
+  double change = 0.0;            // from the one stride, at 0, to the other, at 1
+  double shown = 0.0;             // how much of the tables shows: 0 when standing
   std::array<StridePlace, 2> at;  // the two strides at this phase
   StrideCell cell;                // both, mixed by `change` and `shown`
 };
@@ -91,8 +91,8 @@ double rise_with_hips(const WalkModel& model, const WalkState& state, const Stri
 
 // Plans how the flying foot clears the ground between its two footholds.
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept;
-// The flying foot as on level ground between its two planes, the height of that ground, and how much
-// higher the plane that it left is.
+// The flying foot as on level ground between its two planes, the height of that ground, and how
+// much higher the plane that it left is.
 struct FlightPoint {
   FootPose pose;
   double base_m = 0.0, lifted_m = 0.0;

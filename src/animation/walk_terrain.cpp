@@ -1,12 +1,16 @@
-// What uneven ground makes of a walk: where a foot may land, and how it flies over what lies
-// between.
+// What uneven ground makes of a walk: where a foot may land, what ground the hips go over, and how
+// a foot flies over what lies between.
 //
 // Footholds. Risers cut the ground into pieces, and a foot stands on one piece. For each piece
 // between the wanted place and the standing foot's, a cost says how much the step would have to
 // become longer, shorter, higher or more sideways, and whether the sole would overhang an edge. The
 // cheapest piece wins; on it the heel goes as near to the wanted place as the room for the sole
-// allows. The foot then gets a plane: the ground's best fit under its sole. Before the flight begins,
-// the piece is settled.
+// allows. The foot then gets a plane: the ground's best fit under its sole. Before the flight
+// begins, the piece is settled.
+//
+// Hips. The tables' heights ride on a ground of the hips' own. After a step up it rises as the
+// landed knee straightens; before a step down it sinks late. Feet that would be out of reach rise
+// with it.
 //
 // Flights. A flight is planned over a ground line from one foothold's height to the other's. Where
 // ground rises above this line, a B-spline raises it. The spline's control points are the greatest
@@ -39,8 +43,8 @@ constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
 constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
 constexpr double kCrossWayBackward = 0.6;
 constexpr double kPieceSettles = 0.6;  // of the roll: until then a step may still go elsewhere
-constexpr double kStay = 0.1;       // another piece than before has to be cheaper by this
-constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
+constexpr double kStay = 0.1;          // another piece than before has to be cheaper by this
+constexpr double kBeside_m = 1e-6;     // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
 
 // How far the sole reaches along z from its heel point.
@@ -295,12 +299,13 @@ namespace {
 // Up, the knee that lands bent straightens until late single support; down, the standing knee
 // holds, and yields from the middle of single support until the landed foot has taken the weight
 // (McFadyen & Winter 1988).
-constexpr double kRiseLasts = 0.9;   // of the step
-constexpr double kSinkBegin = 0.52;  // of the flight
-constexpr double kSinkEnd = 0.3;    // of the roll
-// How far the knee of a foot gives way that lands from a height: this much, in legs, from great
-// heights, half of it from kHalfYield.
-constexpr double kBentBefore = 0.5;
+constexpr double kRiseLasts = 0.9;  // of the step
+constexpr double kSinkBegin = 0.5;  // of the flight
+constexpr double kSinkEnd = 0.25;   // of the roll
+// How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
+// half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
+// The other leg's knee is bent by kBentBefore of it, for a straight knee cannot yield smoothly.
+constexpr double kBentBefore = 0.65;
 constexpr double kYield = 0.0255, kHalfYield = 0.01;
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
 constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
@@ -343,8 +348,10 @@ void begin_base(const WalkModel& model, WalkState& state) noexcept {
     const double bent = kBentBefore * early_yield(model, fall_ahead(model, state));
     base.level_m = landed.place_m.y - std::max(base.yield_m, bent);
     const double rise_lasts = state.backward || state.closing ? 1.0 : kRiseLasts;
-    base.settle_ticks = static_cast<int>(
-        base.yield_m > bent && base.height_m > base.level_m ? kSinkEnd * state.roll_ticks : rise_lasts * (state.roll_ticks + state.flight_ticks));
+    base.settle_ticks =
+        static_cast<int>(base.yield_m > bent && base.height_m > base.level_m
+                             ? kSinkEnd * state.roll_ticks
+                             : rise_lasts * (state.roll_ticks + state.flight_ticks));
   } else {
     base.level_m = std::min(landed.place_m.y, lifts.place_m.y);
     base.settle_ticks = state.stage_ticks;
@@ -387,7 +394,8 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
   const double s = now.share, per_tick = s > 0.0 ? 1.0 / now.ticks : 0.0;
   base.height_m = base.level_m + base.off_m.x - base.drop_m * smootherstep(s);
   base.per_tick_m = base.off_m.v - base.drop_m * per_tick * 30.0 * s * s * (1.0 - s) * (1.0 - s);
-  base.per_tick2_m = base.off_m.a - base.drop_m * per_tick * per_tick * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s);
+  base.per_tick2_m =
+      base.off_m.a - base.drop_m * per_tick * per_tick * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s);
 }
 
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
@@ -572,9 +580,10 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
   Flight flight;
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
-    const double phase = state.stage_phase + u * (stage_end_phase(model, state) - state.stage_phase);
-    const double share = (state.roll_ticks + u * state.flight_ticks) /
-                         (state.roll_ticks + state.flight_ticks);
+    const double phase =
+        state.stage_phase + u * (stage_end_phase(model, state) - state.stage_phase);
+    const double share =
+        (state.roll_ticks + u * state.flight_ticks) / (state.roll_ticks + state.flight_ticks);
     const StridePlan plan = stride_plan(model, state, phase, share);
     flight.point[i] = flight_point(model, state, plan, side, u);
     pitch_in_flight(model, state, plan, side, u, flight.point[i]);

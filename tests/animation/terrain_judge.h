@@ -126,7 +126,8 @@ class TerrainJudge {
   void see_edges(const Sole& s) {
     const vec3 middle = 0.5 * (s.heel + s.tip);
     const Stretch piece = piece_at(*model_.terrain, middle.z);
-    for (const vec3& p : {s.heel - s.across, s.heel + s.across, s.tip - s.toes_across, s.tip + s.toes_across})
+    for (const vec3& p :
+         {s.heel - s.across, s.heel + s.across, s.tip - s.toes_across, s.tip + s.toes_across})
       worst.overhang_mm =
           std::max({worst.overhang_mm, 1e3 * (piece.from_m - p.z), 1e3 * (p.z - piece.to_m)});
   }

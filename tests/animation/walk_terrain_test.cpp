@@ -133,8 +133,7 @@ TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
   }
 }
 
-// The standing leg's knee (degrees) through one single support, from its begin to its end, and the
-// mean lean of the trunk over the step.
+// The standing leg's knee (degrees) through one single support, from its begin to its end.
 struct SingleSupport {
   double rise_m = 0.0;  // from the foot that the flying one passes to its landing
   std::vector<double> knee_deg;

@@ -55,11 +55,17 @@ double step_length(const WalkState& state, Side side) noexcept {
   return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
 }
 
-double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
+namespace {
+double ratio_of_step(const WalkModel& model, const WalkState& state) noexcept {
   const Side swing = step_foot(state);
   // Run back, a foot makes the step that the other one makes forwards.
   const double own_m = model.own_step_m[state.backward ? other(swing) : swing];
   return state.started ? std::abs(state.frame.stride_m[swing]) / own_m : 0.0;
+}
+}  // namespace
+
+double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
+  return std::max(0.0, ratio_of_step(model, state) + state.off_ratio.x);
 }
 
 StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
@@ -116,11 +122,18 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
   const double height_m = model.stand_m + cell.pelvis_m.y;
   const SinCos lean = sin_cos(state.lean_rad.x);
   pelvis.position_m += left * (height_m * lean.sin);
-  pelvis.position_m.y = state.base_m + height_m * lean.cos;
+  pelvis.position_m.y = state.base.height_m + height_m * lean.cos;
   const double yaw = state.sway.x * cell.pelvis_yaw_rad;
-  pelvis.rotation = rotation_y(state.heading_rad) * rotation_z(-state.lean_rad.x) *
-                    rotation_y(yaw) *
-                    from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.strides.stand_roll_rad));
+  const quat upright = rotation_y(state.heading_rad) * rotation_z(-state.lean_rad.x),
+             turned = rotation_y(yaw) * from_rotation_vector(cell.pelvis_tilt +
+                                                                vec3(0.0, 0.0, model.strides.stand_roll_rad));
+  pelvis.rotation = upright * turned;
+  if (state.slope_lean_rad.x == 0.0) return pelvis;
+  // Into a slope the trunk leans about the hip joints.
+  const vec3 hips = 0.5 * (model.leg[kLeftSide].model.hip_m + model.leg[kRightSide].model.hip_m);
+  pelvis.position_m += pelvis.rotation * hips;
+  pelvis.rotation = upright * rotation_x(state.slope_lean_rad.x) * turned;
+  pelvis.position_m -= pelvis.rotation * hips;
   return pelvis;
 }
 
@@ -137,6 +150,11 @@ constexpr double kAmplitudeSmoothing = 0.18, kAmplitudeFading = 0.07;
 constexpr double kWeightSmoothing = 0.15;
 constexpr double kSettling = 0.35;
 constexpr double kLeanSmoothing = 0.12;
+// Trunks lean by 5 to 6 degrees up a grade of 15 %, by 7 to 8 up stairs, and back by 2 downhill
+// (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
+constexpr double kUphillLean = 8.5 * kDegree, kDownhillLean = 3.0 * kDegree, kHalfLeanGrade = 0.09;
+constexpr double kShortestRun = 0.2;  // in legs: a step over less ground has no grade of its own
+constexpr double kSlopeLeanSmoothing = 0.3;
 constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
@@ -256,6 +274,20 @@ void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state)
       std::max(params.stride[0].length_m, params.stride[1].length_m) / model.source_step_m;
 }
 
+// Smooths how far the trunk leans into the slope or stair that the running step leads over.
+void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
+  double lean = 0.0;
+  if (state.started) {
+    const Side swing = step_foot(state);
+    const double rise = state.landing_m.y - state.foot[other(swing)].plane.place_m.y,
+                 run = std::max(std::abs(state.frame.stride_m[swing]),
+                                kShortestRun * tick.model.leg_length_m);
+    const double grade = (state.backward ? -rise : rise) / run;
+    lean = (grade > 0.0 ? kUphillLean : kDownhillLean) * grade / (std::abs(grade) + kHalfLeanGrade);
+  }
+  state.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
+}
+
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.
 void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
@@ -298,6 +330,7 @@ void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept
   const double lean =
       mode == IkMode::paper ? 0.0 : speed_m_s * state.turn_rate.x / kGravity_m_s2;
   state.lean_rad.advance(lean, kLeanSmoothing * scale, dt);
+  if (!tick.flat && mode != IkMode::paper) lean_into_slope(tick, state);
 }
 
 // Moves a phase of the running stage on by one tick. At the end of a stage the phase runs at the
@@ -348,19 +381,11 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
 constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWidest_m = 0.06;
-// How much of a backward step the hips have covered at its strike: the weight follows the foot
-// late. Up a high riser (rises in legs) they go ahead of the foot, or its ankle would bend up too
-// far.
-constexpr double kBackwardHips = 0.45;
-constexpr double kBackwardHipsUp = 1.075, kHighRiser = 0.2, kHighestRiser = 0.3;
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
+constexpr double kRatioJump = 0.01;   // a tick: sticks are slower
 constexpr double kFreeze = 0.55;      // of the flight: after it the landing place is settled
-constexpr double kStrikeSpeed = 0.6;  // of the mean: how fast the hips rise or sink at a strike
-// Rounding of the hips' height: where the reach begins to bound it, and where the legs' reaches
-// cross. It suits steps of kCalmStep_s; quicker ones are rounded more.
-constexpr double kCalmStep_s = 0.52;
 
 double power(double base, int exponent) noexcept {
   double result = 1.0;
@@ -389,28 +414,6 @@ double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
   return state.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
 }
 
-// Moves the height of the ground that the hips go over. At a strike it is the lower foot's ground;
-// in between it follows a cubic.
-void advance_base(const Tick& tick, WalkState& state, double remaining_s) noexcept {
-  const Side swing = step_foot(state), stand = other(swing);
-  const double standing = state.foot[stand].plane.place_m.y, landing = state.landing_m.y;
-  double goal = std::min(standing, landing);
-  const double before = std::min(state.foot[swing].plane.place_m.y, standing);
-  const double next = std::min(landing, state.landing.next_base_m);
-  const double this_s = (state.roll_ticks + state.flight_ticks) * tick.dt_s;
-  double velocity = state.closing ? 0.0 : kStrikeSpeed * 0.5 * (next - before) / this_s;
-  // Upwards, a rear leg that does not roll far over its toe would be too short (walking backwards,
-  // or when closing a walk): the hips wait for its lift-off.
-  if ((state.backward || state.closing) && next > before) {
-    velocity = 0.0;
-    if (state.stage == Stage::roll) {
-      goal = before;
-      remaining_s -= state.flight_ticks * tick.dt_s;
-    }
-  }
-  approach(state.base_m, state.base_velocity_m_s, goal, velocity, remaining_s, tick.dt_s);
-}
-
 // Smooths how much of a step's length the ground leaves: such steps roll and rise like short ones.
 void follow_ground(const Tick& tick, WalkState& state, Side swing) noexcept {
   const double wanted = std::abs(step_length(state, swing));
@@ -419,6 +422,21 @@ void follow_ground(const Tick& tick, WalkState& state, Side swing) noexcept {
           ? 1.0
           : std::clamp(std::abs(state.frame.stride_m[swing]) / wanted, kLeastShare, 1.0);
   state.ground_share.advance(share, kGroundSmoothing_s * tick.model.time_scale, tick.dt_s);
+}
+
+// A step that is to end on another tread than it was has another ratio at once. The tables are read
+// for one that goes there until the flight begins.
+void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
+  const double ratio = ratio_of_step(tick.model, state);
+  const double change = ratio - state.step_ratio;
+  state.step_ratio = ratio;
+  if (state.stage == Stage::roll && state.tick == 1) {
+    state.off_ratio = {};
+  } else if (std::abs(change) > kRatioJump) {
+    state.off_ratio.x -= change;
+  }
+  state.off_ratio.advance(
+      state.stage == Stage::roll ? state.stage_ticks - state.tick + 1 : 1);
 }
 
 void plan_landing(const Tick& tick, WalkState& state) noexcept {
@@ -435,7 +453,9 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
   }
   // Along the heading at the landing, which may still turn after the place is settled.
   state.frame.stride_m[swing] = glm::dot(state.landing_m - standing, forward);
-  if (!tick.flat) follow_ground(tick, state, swing);
+  if (tick.flat) return;
+  follow_ground(tick, state, swing);
+  keep_ratio_smooth(tick, state);
 }
 
 // The hips' place on the tables' path, without their oscillation: of the stride before, from the
@@ -473,6 +493,7 @@ void begin_path(const Tick& tick, WalkState& state) noexcept {
 // The hips follow the tables' path to the next landing. What they differ by from it, from the step
 // before or because the landing has moved, fades until the strike.
 void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) noexcept {
+  if (!tick.flat) advance_base(tick, state);
   if (state.stage == Stage::idle || !state.started) {
     state.hips_velocity_m_s = vec3(0.0);
     return;
@@ -498,7 +519,6 @@ void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) no
   state.hips_m = path + state.off_path_m.x;
   state.hips_m.y = 0.0;
   state.hips_velocity_m_s = (state.hips_m - before) / tick.dt_s;
-  if (!tick.flat) advance_base(tick, state, (ticks_to_strike(state) + 1) * tick.dt_s);
 }
 
 vec3 ankle_of(const LegBuild& leg, const FootPose& foot) noexcept {
@@ -548,7 +568,7 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   const quat thigh = pelvis * rotation_xzy({q[kHipX], q[kHipZ], q[kHipY]});
   const quat shank = thigh * rotation_x(q[kKneeX]);
   const quat foot = shank * rotation_xzy({q[kAnkleX], q[kAnkleZ], q[kAnkleY]});
-  const quat toes = foot * rotation_about(leg.side, state.foot[side].pose.toe_rad);
+  const quat toes = foot * toes_turn(leg, state.foot[side].pose, state.foot[side].pose.toe_rad);
   const std::array<int, 4> chain = {joints.hip, joints.knee, joints.ankle, joints.toe};
   const std::array<quat, 4> segment = {thigh, shank, foot, toes};
   int last = model.cycle.pelvis;
@@ -663,7 +683,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   }
   state.landing_m = state.foot[kLeftSide].heel_anchor_m;
   state.landing_plane = state.foot[kLeftSide].plane;
-  state.base_m =
+  state.base.height_m = state.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
   return state;

@@ -20,12 +20,12 @@ constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel m
 constexpr double kReachOnToe = 0.99995;  // of the leg: with the hip further away, the heel rises
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
 constexpr double kMaxPitch = 85.0 * kDegree, kWidePitch = 25.0 * kDegree;
-// A foot that goes down is lifted less: by the factor kLiftDown from a fall of kDown legs on. So is
-// a foot that goes far up: its way over the riser is lift enough, and the knee folds only so far.
-constexpr double kLiftDown = 0.4, kDown = 0.2;
+// A foot that goes far up is lifted less: its way over the riser is lift enough, and the knee folds
+// only so far.
 constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
 constexpr double kInPlace_m = 0.1;  // a flight shorter than this climbs by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: the lift-off's own motion has faded
+constexpr double kLiftGround = 0.5;  // of the flight: until then the plane left bounds the toe
 constexpr double kRollEnd = 0.9;    // of the roll: the toe is down
 constexpr double kLiftGrows = 0.35;  // of the flight: until then a style's factor on its height acts
 
@@ -33,6 +33,14 @@ double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
 
 vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
   return foot_rotation(leg, pose) * (leg.model.toe_m - leg.model.heel_m);
+}
+
+// How much steeper the line from heel to toe is in a foot that twists and rolls.
+double rolled_elevation(const LegBuild& leg, const FootPose& pose) noexcept {
+  const vec3 line =
+      from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad) *
+      (leg.model.toe_m - leg.model.heel_m);
+  return atan2(line.y, glm::dot(line, leg.forward)) - leg.elevation_rad;
 }
 
 // The foot's pitch in the tables.
@@ -94,7 +102,6 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
                rise = state.landing_m.y - begin_m;
   const double rise_legs = rise / model.leg_length_m;
   const double lifted = state.flight_height[side].x *
-                        mix(1.0, kLiftDown, smoothstep(0.0, kDown, -rise_legs)) *
                         mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
   const double height = mix(1.0, lifted, smootherstep(u / kLiftGrows));
   const Ascent risen = ascent(model, foot, way);
@@ -124,6 +131,17 @@ double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip
                   kWidePitch);
 }
 
+// Pitches a foot on its toe so that its ankle is higher by `rise_m`.
+void rise_on_toe(const LegBuild& leg, double rise_m, FootState& foot) noexcept {
+  if (rise_m == 0.0) return;
+  const double length = glm::length(leg.model.toe_m);
+  const double flat = asin(-leg.model.toe_m.y / length);
+  const double sine = sin_cos(std::min(flat + foot.pose.pitch_rad, kPi / 2.0)).sin;
+  const double higher = soft_min(sine + rise_m / length, kMostUpright, kSoftUpright);
+  const double pitch = std::max(foot.pose.pitch_rad, asin(higher) - flat);
+  set_pitch(leg, pitch, foot.pose, foot.mode);
+}
+
 }  // namespace
 
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept {
@@ -139,6 +157,11 @@ quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
          (rotation_y(pose.yaw_rad) *
           (rotation_about(leg.side, pose.pitch_rad) *
            from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad)));
+}
+
+quat toes_turn(const LegBuild& leg, const FootPose& pose, double toe_rad) noexcept {
+  return from_rotation_vector(kUp * -pose.twist_rad - leg.forward * pose.roll_rad) *
+         rotation_about(leg.side, toe_rad);
 }
 
 double heel_height(const FootState& foot) noexcept {
@@ -162,12 +185,12 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
 
 FlightPoint flight_point(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                          Side side, double u) noexcept {
-  const LegBuild& leg = model.leg[side];
   const FootState& foot = state.foot[side];
   const StrideFoot& cell = plan.cell.foot[side];
   FlightPoint point;
   FootPose& pose = point.pose;
   pose.heel_m = flight_heel(model, state, plan, side, u, point.base_m);
+  point.lifted_m = height_on(foot.plane, pose.heel_m) - point.base_m;
   const double gone = 1.0 - h00(u);
   const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
   pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u);
@@ -177,12 +200,21 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   if (pose.tilt != state.landing_plane.tilt) {
     pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.landing_plane.tilt * gone);
   }
-  const double height = (pose.heel_m.y - point.base_m) * foot.plane.normal.y;
+  return point;
+}
+
+void pitch_in_flight(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                     Side side, double u, FlightPoint& point) noexcept {
+  const LegBuild& leg = model.leg[side];
+  const FootState& foot = state.foot[side];
+  // The toe leaves the plane that it stood on, which may be another one than the line over ground.
+  const double ground_m = point.base_m + point.lifted_m * (1.0 - smootherstep(u / kLiftGround));
+  const double height = (point.pose.heel_m.y - ground_m) * foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(u * state.stage_ticks);
-  const double limit = highest_pitch(leg, height, -kMostSink_m * model.size);
-  set_pitch(leg, soft_min(pitch, limit, kSoftPitch), pose, FootMode::flight);
-  return point;
+  const double limit =
+      highest_pitch(leg, height, -kMostSink_m * model.size) + rolled_elevation(leg, point.pose);
+  set_pitch(leg, soft_min(pitch, limit, kSoftPitch), point.pose, FootMode::flight);
 }
 
 void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept {
@@ -200,17 +232,24 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
   if (foot.mode == FootMode::support) {
     foot.pose.toe_m = foot.toe_anchor_m;
     set_pitch(leg, std::max(0.0, pitch), foot.pose, foot.mode);
+    if (tick.flat) return;
+    foot.rise_m = rise_with_hips(model, state, plan, side, foot.base_m);
+    rise_on_toe(leg, foot.rise_m, foot);
   } else if (foot.mode == FootMode::roll) {
     foot.pose.heel_m = foot.heel_anchor_m;
     set_pitch(leg, std::min(0.0, pitch), foot.pose, foot.mode);
   } else {
     const double u = flight_progress(state);
-    const double toe_rad = foot.pose.toe_rad;
-    const FlightPoint point = flight_point(model, state, plan, side, u);
+    FlightPoint point = flight_point(model, state, plan, side, u);
+    if (!tick.flat) {
+      keep_room(tick, state, side, u, point);
+      foot.rise_m = rise_with_hips(model, state, plan, side, point.base_m);
+      point.pose.heel_m.y += foot.rise_m;
+    }
+    pitch_in_flight(model, state, plan, side, u, point);
+    point.pose.toe_rad = foot.pose.toe_rad;
     foot.pose = point.pose;
-    foot.pose.toe_rad = toe_rad;
     foot.base_m = point.base_m;
-    if (!tick.flat) keep_room(tick, state, side, u);
   }
 }
 
@@ -229,6 +268,7 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
 void remember_foot(FootState& foot) noexcept {
   foot.last_heel_m = {foot.pose.heel_m, foot.last_heel_m[0]};
   foot.last_pitch_rad = {foot.pose.pitch_rad, foot.last_pitch_rad[0]};
+  foot.last_rise_m = {foot.rise_m, foot.last_rise_m[0]};
 }
 
 void begin_support(FootState& foot, const LegAngles& even_rad) noexcept {
@@ -264,6 +304,8 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   const vec3 to = flight_heel(model, state, next, side, 1.0 / ticks, base_m);
   foot.gap_m = lifts.heel_m - from;
   foot.gap_slope_m = slope_m - (to - from) * ticks;
+  foot.gap_m.y -= foot.rise_m;
+  foot.gap_slope_m.y -= end_slope(foot.last_rise_m[1], foot.last_rise_m[0], foot.rise_m) * ticks;
   const double pitch = table_pitch(state, now, side);
   foot.pitch_fade = {lifts.pitch_rad - pitch,
                      pitch_rate - (table_pitch(state, next, side) - pitch), kLiftFade * ticks};

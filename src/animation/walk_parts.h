@@ -38,9 +38,9 @@ bool walks_on(const GaitParams& params, const WalkState& state) noexcept;
 // taken with to the one that it is taken with itself: the hips follow the first one's table from
 // the footprint that they come from, the second one's towards the next, and change over smoothly.
 struct StridePlan {
-  double phase = 0.0;  // of the data, unwrapped: within this step it does not jump
-  double change = 0.0;  // from the one stride, at 0, to the other, at 1
-  double shown = 0.0;   // how much of the tables shows: 0 when standing
+  double phase = 0.0;             // of the data, unwrapped: within this step it does not jump
+  double change = 0.0;            // from the one stride, at 0, to the other, at 1
+  double shown = 0.0;             // how much of the tables shows: 0 when standing
   std::array<StridePlace, 2> at;  // the two strides at this phase
   StrideCell cell;                // both, mixed by `change` and `shown`
 };
@@ -79,24 +79,38 @@ FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
 void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
                      const vec3& across_m) noexcept;
 
+// Moves the height of the ground that the hips go over.
+void advance_base(const Tick& tick, WalkState& state) noexcept;
+// How far a foot over ground of height `base_m` rises because the hips are over higher ground.
+double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                      Side side, double base_m) noexcept;
+
 // Plans how the flying foot clears the ground between its two footholds.
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept;
-// Moves the flying foot's pose of this tick by what its room asks for.
-void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept;
+// The flying foot as on level ground between its two planes, the height of that ground, and how
+// much higher the plane that it left is.
+struct FlightPoint {
+  FootPose pose;
+  double base_m = 0.0, lifted_m = 0.0;
+};
+// Moves it by what its room asks for.
+void keep_room(const Tick& tick, WalkState& state, Side side, double u,
+               FlightPoint& point) noexcept;
 
 // --- walk_feet.cpp: where the feet are to be -----------------------------------------------------
 // How far a standing foot may leave the floor with its heel: 0 flat .. 1 freely.
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept;
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept;  // segment rotation, world
+// The toes' rotation from their foot: bent by `toe_rad`, and level across however the foot rolls.
+quat toes_turn(const LegBuild& leg, const FootPose& pose, double toe_rad) noexcept;
 // The foot's pose of this tick, before the reach and the weights act on it.
 void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept;
-// The flying foot as on level ground between its two planes, and the height of that ground.
-struct FlightPoint {
-  FootPose pose;
-  double base_m = 0.0;
-};
+// Where the foot flies, still without its pitch.
 FlightPoint flight_point(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                          Side side, double u) noexcept;
+// Its pitch: the tables', as far as the toe stays off that ground.
+void pitch_in_flight(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                     Side side, double u, FlightPoint& point) noexcept;
 // Height of the heel over the plane that the foot is planned on.
 double heel_height(const FootState& foot) noexcept;
 // Lets a standing foot rise on its toe where its leg would be too short.

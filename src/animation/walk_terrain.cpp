@@ -1,12 +1,16 @@
-// What uneven ground makes of a walk: where a foot may land, and how it flies over what lies
-// between.
+// What uneven ground makes of a walk: where a foot may land, what ground the hips go over, and how
+// a foot flies over what lies between.
 //
 // Footholds. Risers cut the ground into pieces, and a foot stands on one piece. For each piece
 // between the wanted place and the standing foot's, a cost says how much the step would have to
 // become longer, shorter, higher or more sideways, and whether the sole would overhang an edge. The
 // cheapest piece wins; on it the heel goes as near to the wanted place as the room for the sole
-// allows. The foot then gets a plane: the ground's best fit under its sole. When the flight begins,
-// the piece is settled.
+// allows. The foot then gets a plane: the ground's best fit under its sole. Before the flight
+// begins, the piece is settled.
+//
+// Hips. The tables' heights ride on a ground of the hips' own. After a step up it rises as the
+// landed knee straightens; before a step down it sinks late. Feet that would be out of reach rise
+// with it.
 //
 // Flights. A flight is planned over a ground line from one foothold's height to the other's. Where
 // ground rises above this line, a B-spline raises it. The spline's control points are the greatest
@@ -38,8 +42,9 @@ constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHig
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
 constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
 constexpr double kCrossWayBackward = 0.6;
-constexpr double kStay = 0.1;       // another piece than before has to be cheaper by this
-constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
+constexpr double kPieceSettles = 0.6;  // of the roll: until then a step may still go elsewhere
+constexpr double kStay = 0.1;          // another piece than before has to be cheaper by this
+constexpr double kBeside_m = 1e-6;     // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
 
 // How far the sole reaches along z from its heel point.
@@ -154,7 +159,7 @@ vec3 place_on(const Step& step, const Stretch& piece, bool& fits) noexcept {
   return near + shifted(step, std::clamp(near.z, room.low_m, room.high_m) - near.z);
 }
 
-// Looks at the step after the landing: the hips are planned with its length and height.
+// Looks at the step after the landing: on stairs it takes longer.
 void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
                 WalkState& state) noexcept {
   const Side next = other(step_foot(state));
@@ -170,11 +175,10 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   bool fits = false;
   const vec3 place = place_on(step, best_piece(terrain, step, nullptr), fits);
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
-  state.landing.next_m = glm::dot(place - step.from_m, step.forward);
-  state.landing.next_base_m = ground_at(terrain, place.x, place.z + middle).height_m;
+  const double next_m = ground_at(terrain, place.x, place.z + middle).height_m;
   // Of the rise to the next landing and the rest of the flying foot's rise, the greater one.
-  const double step_m = std::abs(state.landing.next_base_m - state.landing_m.y),
-               way_m = std::abs(state.landing.next_base_m - landing.from_m.y);
+  const double step_m = std::abs(next_m - state.landing_m.y),
+               way_m = std::abs(next_m - landing.from_m.y);
   state.landing.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
 }
 
@@ -279,12 +283,137 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   if (moved) {
     landing.wanted_m = step.wanted_m;
     landing.yaw_rad = yaw;
-    if (!flies) landing.piece = best_piece(terrain, step, first ? nullptr : &landing.piece);
+    if (state.stage == Stage::roll && state.tick <= kPieceSettles * state.stage_ticks)
+      landing.piece = best_piece(terrain, step, first ? nullptr : &landing.piece);
     const vec3 place = place_on(step, landing.piece, landing.fits);
     state.landing_plane = plane_under(terrain, tick.model.leg[swing], place, yaw, landing.piece);
   }
   state.landing_m = state.landing_plane.place_m;
   if (moved) look_ahead(tick, step, across_m, state);
+}
+
+namespace {
+
+// --- The ground that the hips go over ------------------------------------------------------------
+
+// Up, the knee that lands bent straightens until late single support; down, the standing knee
+// holds, and yields from the middle of single support until the landed foot has taken the weight
+// (McFadyen & Winter 1988).
+constexpr double kRiseLasts = 0.9;  // of the step
+constexpr double kSinkBegin = 0.5;  // of the flight
+constexpr double kSinkEnd = 0.25;   // of the roll
+// How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
+// half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
+// The other leg's knee is bent by kBentBefore of it, for a straight knee cannot yield smoothly.
+constexpr double kBentBefore = 0.65;
+constexpr double kYield = 0.0255, kHalfYield = 0.01;
+// A leg is stretched to this share of its length before its foot has to rise with the hips.
+constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
+
+struct Sinking {
+  double ticks = 1.0;
+  double share = 0.0;  // of the ticks
+};
+Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
+  Sinking s;
+  s.ticks = (1.0 - kSinkBegin) * state.flight_ticks + kSinkEnd * state.roll_ticks;
+  s.share = std::max(0.0, flight_ticks - kSinkBegin * state.flight_ticks) / s.ticks;
+  return s;
+}
+
+// How far the hips are below their own height over a foot that lands from a height of `fall_m`.
+double early_yield(const WalkModel& model, double fall_m) noexcept {
+  if (fall_m <= 0.0) return 0.0;
+  return kYield * model.leg_length_m * fall_m / (fall_m + kHalfYield * model.leg_length_m);
+}
+// How far the next foot lands below the standing one, its heel or its toe: a foot that points
+// down reaches less far.
+double fall_ahead(const WalkModel& model, const WalkState& state) noexcept {
+  const Side lands = step_foot(state), stands = other(lands);
+  const FootPlane &from = state.foot[stands].plane, &to = state.landing_plane;
+  const auto toe_m = [&](const FootPlane& plane, Side side, double yaw_rad) {
+    return height_on(plane, plane.place_m + heading_direction(yaw_rad) * model.leg[side].foot_m);
+  };
+  return std::max(from.place_m.y - to.place_m.y,
+                  toe_m(from, stands, state.foot[stands].lift_yaw_rad) -
+                      toe_m(to, lands, state.landing_heading_rad));
+}
+
+// At a strike: from where they are the hips go to where the landed foot carries them.
+void begin_base(const WalkModel& model, WalkState& state) noexcept {
+  HipsGround& base = state.base;
+  const FootPlane &landed = state.foot[state.swing].plane,
+                  &lifts = state.foot[other(state.swing)].plane;
+  if (state.started) {
+    const double bent = kBentBefore * early_yield(model, fall_ahead(model, state));
+    base.level_m = landed.place_m.y - std::max(base.yield_m, bent);
+    const double rise_lasts = state.backward || state.closing ? 1.0 : kRiseLasts;
+    base.settle_ticks =
+        static_cast<int>(base.yield_m > bent && base.height_m > base.level_m
+                             ? kSinkEnd * state.roll_ticks
+                             : rise_lasts * (state.roll_ticks + state.flight_ticks));
+  } else {
+    base.level_m = std::min(landed.place_m.y, lifts.place_m.y);
+    base.settle_ticks = state.stage_ticks;
+  }
+  base.off_m = {base.height_m - base.level_m, base.per_tick_m, base.per_tick2_m};
+  base.drop_m = base.yield_m = base.early_m = 0.0;
+}
+
+// How far the hips sink until the next landing, and after it.
+void plan_drop(const WalkModel& model, WalkState& state) noexcept {
+  HipsGround& base = state.base;
+  base.early_m = early_yield(model, fall_ahead(model, state));
+  base.drop_m = base.yield_m = 0.0;
+  if (base.early_m == 0.0) return;
+  const double share = smootherstep(sinking(state, state.flight_ticks).share);
+  base.drop_m = std::max(0.0, base.level_m - state.landing_m.y + base.early_m) / share;
+  base.yield_m = base.early_m + (1.0 - share) * base.drop_m;
+}
+
+// Upwards, a rear leg that does not roll far over its toe would be too short (walking backwards, or
+// when closing a walk): hips that rest wait for its lift-off.
+bool waits_for_flight(const WalkState& state) noexcept {
+  const SmoothFade<double>& off = state.base.off_m;
+  return (state.backward || state.closing) && state.started && off.x < 0.0 && off.v == 0.0 &&
+         off.a == 0.0;
+}
+
+}  // namespace
+
+void advance_base(const Tick& tick, WalkState& state) noexcept {
+  HipsGround& base = state.base;
+  if (state.stage == Stage::idle) return;
+  if (state.stage == Stage::roll && state.tick == 1) begin_base(tick.model, state);
+  const bool flies = state.stage == Stage::flight;
+  const int begun = state.tick + (flies ? state.roll_ticks : 0);
+  if (!flies && waits_for_flight(state)) return;
+  base.off_m.advance(base.settle_ticks - begun + 1);
+  const Sinking now = sinking(state, flies ? state.tick : 0.0);
+  if (now.share == 0.0 && state.started) plan_drop(tick.model, state);
+  const double s = now.share, per_tick = s > 0.0 ? 1.0 / now.ticks : 0.0;
+  base.height_m = base.level_m + base.off_m.x - base.drop_m * smootherstep(s);
+  base.per_tick_m = base.off_m.v - base.drop_m * per_tick * 30.0 * s * s * (1.0 - s) * (1.0 - s);
+  base.per_tick2_m =
+      base.off_m.a - base.drop_m * per_tick * per_tick * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s);
+}
+
+double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
+                      Side side, double base_m) noexcept {
+  const LegBuild& leg = model.leg[side];
+  const double higher = state.base.height_m - base_m;
+  // A foot that lands from a height comes down with the hips, and softly: they are lower by all of
+  // `early` then.
+  double hover = 0.0;
+  if (state.foot[side].mode == FootMode::flight)
+    hover = 0.5 * state.base.early_m * smoothstep(0.0, 0.5, flight_progress(state));
+  if (higher <= -2.0 * hover) return 0.0;
+  const double a = leg.model.thigh_m, b = leg.model.shank_m;
+  const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
+  const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
+  const double room = std::max(0.0, kStretch * (a + b) - known), soft = kSoftStretch_m * model.size;
+  const double up = std::max(0.0, higher);
+  return soft_positive(higher + hover - room, hover + up * soft / (up + soft));
 }
 
 namespace {
@@ -399,7 +528,7 @@ bool sharpen(const Wanted& beside, const FlightSpline& shift, double size, Ends&
 using Sole = std::array<vec3, 5>;  // heel and tip on both sides, ball
 Sole sole_of(const LegBuild& leg, const FootPose& pose) noexcept {
   const quat foot = foot_rotation(leg, pose);
-  const quat toes = foot * rotation_about(leg.side, -std::max(0.0, pose.pitch_rad));
+  const quat toes = foot * toes_turn(leg, pose, -std::max(0.0, pose.pitch_rad));
   const vec3 ball = pose.heel_m + foot * (leg.ball_m - leg.model.heel_m);
   const vec3 tip = ball + toes * (leg.tip_m - leg.ball_m);
   const vec3 side = foot * leg.side * leg.half_width_m;
@@ -442,6 +571,8 @@ struct Flight {
   Stretch begin, end;
   double begin_room = 0.0;
   double climb = 0.0;
+  // A flight that ends on its own piece goes beside a riser, not over it.
+  bool stays() const noexcept { return begin.from_m == end.from_m; }
 };
 Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
@@ -449,11 +580,13 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
   Flight flight;
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
-    const double phase = state.stage_phase + u * (stage_end_phase(model, state) - state.stage_phase);
-    const double share = (state.roll_ticks + u * state.flight_ticks) /
-                         (state.roll_ticks + state.flight_ticks);
-    flight.point[i] =
-        flight_point(model, state, stride_plan(model, state, phase, share), side, u);
+    const double phase =
+        state.stage_phase + u * (stage_end_phase(model, state) - state.stage_phase);
+    const double share =
+        (state.roll_ticks + u * state.flight_ticks) / (state.roll_ticks + state.flight_ticks);
+    const StridePlan plan = stride_plan(model, state, phase, share);
+    flight.point[i] = flight_point(model, state, plan, side, u);
+    pitch_in_flight(model, state, plan, side, u, flight.point[i]);
     flight.sole[i] = sole_of(model.leg[side], flight.point[i].pose);
     flight.left[i] = state.landing_m.z - flight.point[i].pose.heel_m.z;
   }
@@ -477,9 +610,12 @@ Wanted wanted_raise(const Tick& tick, const Flight& flight, bool crosses_riser,
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes, moved = spline_at(shift, 0.0, u);
     double over = -tick.model.leg_length_m;
-    for (const vec3& p : flight.sole[i])
-      over = std::max(
-          over, ground_at(terrain, p.x, p.z + moved).height_m - base_under(flight.point[i], p));
+    for (const vec3& p : flight.sole[i]) {
+      double z = p.z + moved;
+      if (flight.stays())
+        z = std::clamp(z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
+      over = std::max(over, ground_at(terrain, p.x, z).height_m - base_under(flight.point[i], p));
+    }
     above[i] = crosses_riser ? over + above_m * in_flight(u)
                              : std::max(0.0, over) + std::clamp(over, 0.0, above_m);
   }
@@ -520,8 +656,8 @@ void plan_over(const Tick& tick, const WalkState& state, const FootState& foot,
     room.raise_m = envelope(above, ends);
     for (int i = 1; i < kProbes; ++i) {
       beside[i] = 0.0;
-      if (above[i] <= spline_at(room.raise_m, above.back(), static_cast<double>(i) / kProbes))
-        continue;
+      const double u = static_cast<double>(i) / kProbes;
+      if (!flight.stays() && above[i] <= spline_at(room.raise_m, above.back(), u)) continue;
       beside[i] = 2 * i < kProbes ? way_back(terrain, flight.sole[i], flight.begin,
                                              foot.plane.place_m.y, flight.begin_room, size)
                                   : way_back(terrain, flight.sole[i], flight.end, state.landing_m.y,
@@ -640,7 +776,8 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   }
 }
 
-void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept {
+void keep_room(const Tick& tick, WalkState& state, Side side, double u,
+               FlightPoint& point) noexcept {
   FootState& foot = state.foot[side];
   FlightRoom& room = foot.room;
   if (glm::distance(room.planned_for_m, state.landing_m) > kReplan_m * tick.model.size)
@@ -652,10 +789,8 @@ void keep_room(const Tick& tick, WalkState& state, Side side, double u) noexcept
   }
   const auto in_force = [](const Damped<double>& k) { return k.x; };
   const double raise = spline_at(room.raise, climb(state, foot), u, in_force);
-  const vec3 move(0.0, raise, spline_at(room.shift, 0.0, u, in_force));
-  foot.base_m += raise;
-  foot.pose.heel_m += move;
-  foot.pose.toe_m += move;
+  point.base_m += raise;
+  point.pose.heel_m += vec3(0.0, raise, spline_at(room.shift, 0.0, u, in_force));
 }
 
 }  // namespace gaitpad

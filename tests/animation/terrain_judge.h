@@ -43,7 +43,7 @@ class TerrainJudge {
 
   // The sole: heel, ball and tip of one side, and half its width across.
   struct Sole {
-    vec3 heel, toe, ball, tip, across;
+    vec3 heel, toe, ball, tip, across, toes_across;
   };
   Sole sole(Side side) const {
     const LegBuild& leg = model_.leg[side];
@@ -57,7 +57,9 @@ class TerrainJudge {
     s.toe = place_[m.joints.toe];
     s.ball = s.toe + foot * vec3(0.0, -m.toe_rest_m, 0.0);
     s.tip = s.toe + toes * (m.toe_end_m - vec3(0.0, m.toe_end_rest_m, 0.0));
-    s.across = foot * leg.side * (0.045 * m.length_m() / kReferenceLeg_m);
+    const vec3 half = leg.side * (0.045 * m.length_m() / kReferenceLeg_m);
+    s.across = foot * half;
+    s.toes_across = toes * half;
     return s;
   }
 
@@ -112,7 +114,7 @@ class TerrainJudge {
       const vec3 line = i <= 8 ? s.heel + (s.ball - s.heel) * (i / 8.0)
                                : s.ball + (s.tip - s.ball) * ((i - 8) / 4.0);
       for (double c : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-        const double deep = depth_mm(line + s.across * c);
+        const double deep = depth_mm(line + (i <= 8 ? s.across : s.toes_across) * c);
         if (deep > worst.sunk_mm) worst.sunk_mm = deep, worst.sunk_z_m = s.heel.z;
       }
     }
@@ -124,7 +126,8 @@ class TerrainJudge {
   void see_edges(const Sole& s) {
     const vec3 middle = 0.5 * (s.heel + s.tip);
     const Stretch piece = piece_at(*model_.terrain, middle.z);
-    for (const vec3& p : {s.heel - s.across, s.heel + s.across, s.tip - s.across, s.tip + s.across})
+    for (const vec3& p :
+         {s.heel - s.across, s.heel + s.across, s.tip - s.toes_across, s.tip + s.toes_across})
       worst.overhang_mm =
           std::max({worst.overhang_mm, 1e3 * (piece.from_m - p.z), 1e3 * (p.z - piece.to_m)});
   }

@@ -133,6 +133,113 @@ TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
   }
 }
 
+// The standing leg's knee (degrees) through one single support, from its begin to its end.
+struct SingleSupport {
+  double rise_m = 0.0;  // from the foot that the flying one passes to its landing
+  std::vector<double> knee_deg;
+  double at(double share) const {
+    return knee_deg[static_cast<std::size_t>(share * static_cast<double>(knee_deg.size() - 1))];
+  }
+};
+std::vector<SingleSupport> single_supports(const WalkModel& model, double y, double until_m) {
+  Hiker hiker(model);
+  std::vector<SingleSupport> all;
+  SingleSupport now;
+  for (int k = 0; k < 20000 && hiker.state().hips_m.z < until_m; ++k) {
+    hiker.walk(0.0, y, 1);
+    const WalkState& state = hiker.state();
+    const Side stands = other(state.frame.swing);
+    if (state.frame.stage == Stage::flight) {
+      now.knee_deg.push_back(state.angles_rad[stands][kKneeX] / kDegree);
+      now.rise_m = state.landing_m.y - state.foot[stands].plane.place_m.y;
+    } else if (!now.knee_deg.empty()) {
+      all.push_back(std::move(now));
+      now = {};
+    }
+  }
+  return all;
+}
+
+// McFadyen and Winter 1988: the knee that pulls the body up is straight before the next strike.
+TEST(WalkTerrain, UpStairsTheStandingKneeStraightensEarly) {
+  const WalkModel model = model_on(1.0, ground_of(stairs(0.17)));
+  for (const double y : {0.4, 0.7, 1.0}) {
+    const std::vector<SingleSupport> steps = single_supports(model, y, 3.3);
+    int climbed = 0;
+    for (std::size_t k = 1; k < steps.size(); ++k) {
+      if (steps[k].rise_m < 0.1 || steps[k - 1].rise_m < 0.1) continue;
+      ++climbed;
+      EXPECT_LE(steps[k].at(0.5), 40.0) << "stick " << y;
+      EXPECT_LE(steps[k].at(1.0), 15.0) << "stick " << y;
+    }
+    EXPECT_GE(climbed, 4);
+  }
+}
+
+// The same: going down the standing knee holds, and yields late.
+TEST(WalkTerrain, DownStairsTheStandingKneeHoldsUntilLate) {
+  const WalkModel model = model_on(1.0, ground_of(stairs(-0.17)));
+  for (const double y : {0.4, 0.7, 1.0}) {
+    const std::vector<SingleSupport> steps = single_supports(model, y, 3.3);
+    int descended = 0;
+    for (std::size_t k = 1; k < steps.size(); ++k) {
+      if (steps[k].rise_m > -0.1 || steps[k - 1].rise_m > -0.1) continue;
+      ++descended;
+      for (const double share : {0.0, 0.15, 0.3, 0.45, 0.6}) {
+        EXPECT_GE(steps[k].at(share), 20.0) << "stick " << y << " at " << share;
+        EXPECT_LE(steps[k].at(share), 35.0) << "stick " << y << " at " << share;
+      }
+      EXPECT_GE(steps[k].at(1.0), 60.0) << "stick " << y;
+    }
+    EXPECT_GE(descended, 4);
+  }
+}
+
+// The pelvis' pitch forwards from its standing rotation, degrees.
+double pelvis_pitch_deg(const Hiker& hiker) {
+  const GaitCycle& cycle = hiker.model().cycle;
+  quat rotation = kIdentity;
+  for (int j = cycle.pelvis; j >= 0; j = cycle.skeleton.joints[j].parent)
+    rotation = hiker.pose().local[j] * rotation;
+  const vec3 up = rotation * glm::inverse(cycle.pelvis_standing) * kUp;
+  return std::atan2(up.z, up.y) / kDegree;
+}
+double mean_pitch_deg(std::shared_ptr<const Terrain> terrain, double from_m, double to_m,
+                      IkMode mode = IkMode::robust) {
+  const WalkModel model = model_on(1.0, std::move(terrain));
+  Hiker hiker(model, mode);
+  hiker.walk_to(from_m, 0.7);
+  double sum = 0.0;
+  int ticks = 0;
+  for (; hiker.state().hips_m.z < to_m && ticks < 5000; ++ticks) {
+    hiker.walk(0.0, 0.7, 1);
+    sum += pelvis_pitch_deg(hiker);
+  }
+  return sum / ticks;
+}
+
+// Leroux, Fung and Barbeau 2002 on slopes; Nadeau, McFadyen and Malouin 2003 on stairs.
+TEST(WalkTerrain, TheTrunkLeansIntoSlopesAndStairs) {
+  const double level = mean_pitch_deg(ground_of({FlatSection{40.0}}), 3.0, 5.0);
+  const auto slope = [](double grade) {
+    return ground_of({FlatSection{1.5}, SlopeSection{20.0, grade, 0.5}});
+  };
+  const double up = mean_pitch_deg(slope(0.15), 5.0, 9.0) - level,
+               down = mean_pitch_deg(slope(-0.15), 5.0, 9.0) - level,
+               gentle = mean_pitch_deg(slope(0.05), 5.0, 9.0) - level,
+               climbing = mean_pitch_deg(ground_of(stairs(0.17)), 2.2, 2.9) - level;
+  EXPECT_GE(up, 4.0);
+  EXPECT_LE(up, 8.0);
+  EXPECT_GE(climbing, 5.0);
+  EXPECT_LE(climbing, 8.5);
+  EXPECT_GT(gentle, 1.0);
+  EXPECT_LT(gentle, up);
+  EXPECT_LE(down, -1.0);
+  EXPECT_GE(down, -3.0);
+  const double paper = mean_pitch_deg(slope(0.15), 5.0, 9.0, IkMode::paper) - level;
+  EXPECT_NEAR(paper, 0.0, 1.0);
+}
+
 // How far the heel of a flying foot gets beyond the place where it lands, at worst.
 double most_beyond_m(const WalkModel& model, double y, double until_m) {
   Hiker hiker(model);

@@ -99,6 +99,8 @@ struct FootState {
   LegAngles anchor_rad{};      // even pose when the mode began: stiff joints stay near it
   FootPlane plane;             // that it stands on or stood on last
   double base_m = 0.0;         // height of the ground that the pose is planned over
+  double rise_m = 0.0;         // how far the foot rises with the hips
+  std::array<double, 2> last_rise_m{};  // one and two ticks ago
   bool crosses_riser = false;  // in the running flight
   FlightRoom room;
 };
@@ -109,10 +111,18 @@ struct Foothold {
   double yaw_rad = 0.0;      // of the foot
   Stretch piece;             // piece of ground for the landing, settled when the flight begins
   double share = 1.0;        // of the wanted length that a slope leaves
-  double next_m = 0.0;       // length of the step after this one,
-  double next_base_m = 0.0;  // height of its landing,
-  double next_rise = 0.0;    // and how far up or down it leads, over the leg length
+  double next_rise = 0.0;    // how far up or down the step after this one leads, in legs
   bool fits = true;          // the sole does not overhang an edge
+};
+
+// The height of the ground that the hips go over. On flat ground all of it stays 0.
+struct HipsGround {
+  double height_m = 0.0, per_tick_m = 0.0, per_tick2_m = 0.0;  // its rate and acceleration
+  double level_m = 0.0;  // where it settles over the standing foot,
+  SmoothFade<double> off_m;  // by how much it is still off,
+  int settle_ticks = 0;      // and how long after the strike it is not any more
+  double drop_m = 0.0;       // how far it then sinks to the next landing,
+  double early_m = 0.0, yield_m = 0.0;  // and how far below that landing, at it and after it
 };
 
 // What a walk remembers of the upper body.
@@ -143,6 +153,8 @@ struct WalkState {
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
   double ratio_behind = 0.0;             // of the step before: the stride ratio at the last strike
+  double step_ratio = 0.0;               // of the running step,
+  SmoothFade<double> off_ratio;          // and how far the tables' is off it
   // Smoothed parameters.
   std::array<Damped<double>, 2> length_m, flight_height;
   std::array<double, 2> time_s{};
@@ -164,8 +176,9 @@ struct WalkState {
   FootPlane landing_plane;
   Foothold landing;
   Damped<double> settled_pace;  // follows `pace` slowly
-  Damped<double> lean_rad;      // of the whole body into a turn, to the left positive
-  double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
+  Damped<double> lean_rad;        // of the whole body into a turn, to the left positive
+  Damped<double> slope_lean_rad;  // of the trunk into a slope or stair, forwards positive
+  HipsGround base;
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;
   // The data's angles, those of the pose with even weights, and those with weights: the pose's.

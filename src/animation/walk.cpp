@@ -81,6 +81,8 @@ StridePlan stride_plan(const WalkModel& model, const WalkState& state, double ph
   plan.at[1] = stride_at(tables, plan.phase, ratio_ahead(model, state));
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
+  change_stride(model.strides, state,
+                mix(state.ratio_behind, ratio_ahead(model, state), plan.change), plan);
   return plan;
 }
 
@@ -499,8 +501,6 @@ vec3 ankle_of(const LegBuild& leg, const FootPose& foot) noexcept {
 double pelvis_height(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                      const Pelvis& pelvis) noexcept {
   double y = pelvis.position_m.y;
-  const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
-  y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
   // Legs that are about to change their pace are bent a little, so that they have room.
   const double change = state.pace.x - state.settled_pace.x;
   y -= kChangeDrop_m * model.size * change * change / (change * change + kChange * kChange);
@@ -663,6 +663,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
              WalkState& state, Pose& pose) noexcept {
   const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
   smooth_parameters(tick, mode, state);
+  grant_wishes(mode, state);
   smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);

@@ -411,6 +411,9 @@ StrideFamily scaled(StrideFamily family, double ratio, double scale) {
     }
   }
   }
+  for (StrideResponse& response : family.response) {
+    for (StrideChange& change : response.knot) change.pelvis_m *= by;
+  }
   return family;
 }
 

@@ -33,7 +33,14 @@ struct StrideProblem {
   std::vector<double> time;  // of each sample, in cycles: 0 at sample 0
   // Where the heel stands along the path: the travel frame is at stride_m * time.
   std::array<vec3, 2> heel_m{};
+  // Factors on what it costs to change the pelvis' place and the angles.
+  vec3 pelvis_weight{1.0};
+  std::array<LegAngles, 2> leg_weight{{{1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1}}};
+  // Where the heels have to be in flight, sample by sample, in the travel frame. Empty: anywhere.
+  std::vector<std::array<vec3, 2>> flying_heel_m;
 };
+// Whether half a stride later everything is the mirror image.
+bool is_symmetric(const StrideProblem& problem);
 
 class StrideSolver {
  public:
@@ -43,9 +50,16 @@ class StrideSolver {
   // stride mirror those of the other half, one half is solved. Empty where it cannot be solved.
   std::vector<StrideSample> solve(const StrideProblem& problem, std::vector<StrideSample> start,
                                   int iterations);
+  // One step towards the solution of a problem that differs from the one before in what is wanted
+  // alone, from the same start. The normal equations, which are most of the work, are the same.
+  std::vector<StrideSample> solve_alike(const StrideProblem& problem,
+                                        std::vector<StrideSample> start);
 
  private:
   struct System;
+  void begin(const StrideProblem& problem);
+  void fill(const StrideProblem& problem, const std::vector<StrideSample>& x);
+  bool move(std::vector<StrideSample>& x);
   std::unique_ptr<System> system_;  // of the problem before, kept for its pattern
 };
 

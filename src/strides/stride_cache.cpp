@@ -54,6 +54,8 @@ std::string path_in(const std::string& folder, const std::vector<double>& input)
 std::optional<StrideFamily> read_family(const std::string& path, const std::vector<double>& input) {
   StrideFamily family;
   family.table.resize(kStrideRatios);
+  family.back.resize(kStrideRatios);
+  family.response.resize(kStrideWishes);
   const std::size_t size = file_numbers(input, family).size() * sizeof(double);
   const auto bytes = file_text(path, size);
   if (!bytes || bytes->size() != size) return std::nullopt;

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -22,6 +24,18 @@ constexpr double kLeastLift = 0.3;
 constexpr double kFlat = 0.2;  // own phase: how long a foot stands flat after its roll
 // What no walker has. A leg opens by less than half a turn, so a step is shorter than two legs.
 constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0, kMostAngle = 2.0 * kPi;
+
+// How a joint is stiffened: the pull to its curve's mean, and what it weighs beside the others.
+struct Stiffness {
+  int dof;
+  double pull, weight;
+};
+constexpr std::array<Stiffness, 3> kStiffness = {
+    {{kHipX, 0.25, 10.0}, {kKneeX, 0.2, 10.0}, {kAnkleX, 0.2, 10.0}}};
+// What the other leg's angles weigh where one leg is stiff: an injury leaves the sound leg alone.
+constexpr double kOtherLeg = 20.0;
+constexpr double kBounceWeight = 1e5;
+constexpr int kResponseSolve = 2;
 
 double fraction(double phase) { return phase - std::floor(phase); }
 
@@ -230,6 +244,160 @@ struct Builder {
     foot.roll_rad = glm::dot(rest, ahead);
   }
 
+  // --- What styles ask for: what one stride changes by ---
+
+  // A problem whose answer is `clean` as long as nothing else is wanted: flying heels keep their
+  // way, and some angles weigh more than others.
+  StrideProblem held(const StrideProblem& own, const std::vector<StrideSample>& clean) const {
+    StrideProblem p = own;
+    for (const StrideSample& s : clean) {
+      std::array<vec3, 2>& heel = p.flying_heel_m.emplace_back();
+      for (int side : {0, 1})
+        heel[side] = leg_pose(cycle.leg[side], s.pelvis_m, s.pelvis, s.leg[side], 0.0).heel_m;
+    }
+    return p;
+  }
+
+  // Keeps `clean` the answer where the weights are no longer 1.
+  static void balance(const std::vector<StrideSample>& clean, StrideProblem& p) {
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const StrideSample& x = clean[i];
+      StrideSample& wanted = p.wanted[i];
+      wanted.pelvis_m = x.pelvis_m + (wanted.pelvis_m - x.pelvis_m) / p.pelvis_weight;
+      for (int side : {0, 1}) {
+        for (int j = 0; j < kLegDofs; ++j)
+          wanted.leg[side][j] = x.leg[side][j] + (wanted.leg[side][j] - x.leg[side][j]) / p.leg_weight[side][j];
+      }
+    }
+  }
+
+  static double range_of(const std::vector<StrideSample>& stride, int side, int joint) {
+    double low = kMostAngle, high = -kMostAngle;
+    for (const StrideSample& s : stride) {
+      low = std::min(low, s.leg[side][joint]);
+      high = std::max(high, s.leg[side][joint]);
+    }
+    return high - low;
+  }
+
+  StrideResponse response_of(const std::vector<StrideSample>& clean,
+                             const std::vector<StrideSample>& changed, double scale) const {
+    std::array<StrideChange, kCycleSamples> change;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const StrideSample &a = clean[i], &b = changed[i];
+      change[i].pelvis_m = scale * (b.pelvis_m - a.pelvis_m);
+      for (int side : {0, 1}) {
+        const LegModel& leg = cycle.leg[side];
+        StrideFoot before, after;
+        set_rotation(leg, leg_pose(leg, a.pelvis_m, a.pelvis, a.leg[side], 0.0).foot, before);
+        set_rotation(leg, leg_pose(leg, b.pelvis_m, b.pelvis, b.leg[side], 0.0).foot, after);
+        change[i].pitch_rad[side] = scale * (after.pitch_rad - before.pitch_rad);
+        for (int j = 0; j < kLegDofs; ++j)
+          change[i].leg_rad[side][j] = scale * (b.leg[side][j] - a.leg[side][j]);
+      }
+    }
+    return {knots_through(change)};
+  }
+
+  // The joints of these sides near the mean of their curves.
+  bool stiffen(StrideSolver& solver, const StrideProblem& own,
+               const std::vector<StrideSample>& clean, const Stiffness& joint,
+               std::initializer_list<int> sides, StrideResponse& response) const {
+    StrideProblem p = own;
+    if (sides.size() == 1) p.leg_weight[1 - *sides.begin()].fill(kOtherLeg);
+    for (int side : sides) {
+      for (const int bends : {kHipX, kKneeX, kAnkleX})
+        if (sides.size() == 1 || bends == joint.dof) p.leg_weight[side][bends] = joint.weight;
+    }
+    balance(clean, p);
+    for (int side : sides) {
+      double mean = 0.0;
+      for (const StrideSample& s : clean) mean += s.leg[side][joint.dof] / kCycleSamples;
+      for (int i = 0; i < kCycleSamples; ++i)
+        p.wanted[i].leg[side][joint.dof] += joint.pull * (mean - clean[i].leg[side][joint.dof]);
+    }
+    const auto stiff = sides.size() == 2 ? solver.solve(p, clean, kResponseSolve)
+                       : joint.dof == kHipX ? solver.solve(p, clean, 1)
+                                            : solver.solve_alike(p, clean);
+    if (stiff.empty()) return false;
+    const int side = *sides.begin();
+    const double fall =
+        1.0 - range_of(stiff, side, joint.dof) / std::max(1e-3, range_of(clean, side, joint.dof));
+    if(getenv("VERB")) { std::printf("dof %d sides %zu fall %.3f ", joint.dof, sides.size(), fall); for(int sd:{0,1}) for(int jj:{0,3,4}) std::printf(" %.3f", range_of(stiff,sd,jj)/range_of(clean,sd,jj)); double pm=0; for(int i=0;i<kCycleSamples;++i) pm=std::max(pm,glm::distance(stiff[i].pelvis_m,clean[i].pelvis_m)); double other=0; if(sides.size()==1) for(int i=0;i<kCycleSamples;++i) for(int j=0;j<7;++j) other=std::max(other,std::abs(stiff[i].leg[1-side][j]-clean[i].leg[1-side][j])); std::printf(" pelvis %.1f mm other leg %.2f deg\n",pm*1e3,other/kDegree); }
+    response = response_of(clean, stiff, 1.0);
+    return true;
+  }
+
+  bool bounce(StrideSolver& solver, const StrideProblem& own,
+              const std::vector<StrideSample>& clean, double more,
+              StrideResponse& response) const {
+    double low = clean[0].pelvis_m.y, high = low;
+    for (const StrideSample& s : clean) {
+      low = std::min(low, s.pelvis_m.y);
+      high = std::max(high, s.pelvis_m.y);
+    }
+    StrideProblem p = own;
+    p.pelvis_weight.y = kBounceWeight;
+    balance(clean, p);
+    // What stays where it is: the highest place with more bounce, the lowest one with less.
+    const double stays = more > 0.0 ? high : low;
+    for (int i = 0; i < kCycleSamples; ++i)
+      p.wanted[i].pelvis_m.y += more * (clean[i].pelvis_m.y - stays);
+    const auto bounced = solver.solve(p, clean, kResponseSolve);
+    if (bounced.empty()) return false;
+    if(getenv("VERB")) { double l=1e9,h=-1e9; for(auto&s:bounced){l=std::min(l,s.pelvis_m.y);h=std::max(h,s.pelvis_m.y);} std::printf("bounce %g: %.1f mm -> %.1f mm, top %.1f\n",more,(high-low)*1e3,(h-l)*1e3,(h-high)*1e3);}
+    response = response_of(clean, bounced, 1.0);
+    return true;
+  }
+
+  static StrideResponse mirrored_response(const StrideResponse& r) {
+    StrideResponse m;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const StrideChange& from = r.knot[(i + kCycleSamples / 2) % kCycleSamples];
+      StrideChange& to = m.knot[i];
+      to.pelvis_m = mirrored(from.pelvis_m);
+      for (int side : {0, 1}) {
+        to.pitch_rad[side] = from.pitch_rad[1 - side];
+        for (int j = 0; j < kLegDofs; ++j) {
+          const bool bends = j == kHipX || j == kKneeX || j == kAnkleX;
+          to.leg_rad[side][j] = bends ? from.leg_rad[1 - side][j] : -from.leg_rad[1 - side][j];
+        }
+      }
+    }
+    return m;
+  }
+
+  // False where there is no solution.
+  bool respond(StrideSolver& solver, const StrideProblem& data,
+               const std::vector<StrideSample>& clean) {
+    family.response.resize(kStrideWishes);
+    const auto at = [this](StrideWish wish) -> StrideResponse& {
+      return family.response[static_cast<std::size_t>(wish)];
+    };
+    const StrideProblem own = held(data, clean);
+    StrideSolver left_solver, right_solver;
+    const bool symmetric = is_symmetric(own);
+    bool solved = bounce(solver, own, clean, 1.0, at(StrideWish::more_bounce)) &&
+                  bounce(solver, own, clean, -1.0, at(StrideWish::less_bounce));
+    for (int k = 0; solved && k < static_cast<int>(kStiffness.size()); ++k) {
+      const auto of = [&at, k](StrideWish first) -> StrideResponse& {
+        return at(static_cast<StrideWish>(static_cast<int>(first) + k));
+      };
+      StrideResponse &left = of(StrideWish::stiff_left_hip),
+                     &right = of(StrideWish::stiff_right_hip);
+      solved = stiffen(solver, own, clean, kStiffness[k], {0, 1}, of(StrideWish::stiff_hips)) &&
+               stiffen(left_solver, own, clean, kStiffness[k], {0}, left);
+      if (solved && symmetric) {
+        right = mirrored_response(left);
+      } else {
+        solved = solved && stiffen(right_solver, own, clean, kStiffness[k], {1}, right);
+      }
+    }
+    return solved;
+  }
+
+  // --- All strides ---
+
   // False where there is no solution.
   bool solve() {
     StrideSolver solver;
@@ -238,6 +406,7 @@ struct Builder {
     const std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
     if (clean.empty()) return false;
     family.table[kOwn] = table_of(own, clean, 1.0);
+    if (own.stride_m > 0.0 && !respond(solver, own, clean)) return false;
     for (int step : {-1, 1}) {
       std::vector<StrideSample> start = clean;
       StrideProblem before = own;

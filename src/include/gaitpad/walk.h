@@ -151,6 +151,7 @@ struct WalkState {
   Damped<double> turn_goal,    // what turn_rate follows: a landing is planned with it
       turn_rate, amplitude, bounce, sway, pace;  // pace: step length over the data's
   std::array<std::array<Damped<double>, kLegDofs>, 2> weight;
+  StrideWishes granted{};  // what these ask of the stride
   // Path.
   double heading_rad = 0.0;
   vec3 hips_m{0.0}, hips_velocity_m_s{0.0};  // on the ground, without the data's oscillations

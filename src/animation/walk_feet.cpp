@@ -94,10 +94,12 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
   const double begin_m = height_on(foot.plane, foot.heel_anchor_m),
                rise = state.landing_m.y - begin_m;
   const double rise_legs = rise / model.leg_length_m;
-  const double lifted = state.flight_height[side].x *
+  // A lame foot is low from its lift-off on (StrideWish::low_left).
+  const double factor = state.flight_height[side].x, low = std::min(factor, 1.0);
+  const double lifted = std::max(factor, 1.0) *
                         mix(1.0, kLiftDown, smoothstep(0.0, kDown, -rise_legs)) *
                         mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
-  const double height = mix(1.0, lifted, smootherstep(u / kLiftGrows));
+  const double height = low_lift(u, low) * mix(1.0, lifted, smootherstep(u / kLiftGrows));
   const Ascent risen = ascent(model, foot, way);
   base_m = begin_m + rise * risen.at(p - foot.heel_anchor_m, u);
   double up = cell.heel_m.y * height;

@@ -29,6 +29,9 @@ void grant_wishes(IkMode mode, WalkState& state) noexcept {
   const double bounce = state.bounce.x - 1.0;
   granted(state, StrideWish::more_bounce) = std::max(0.0, bounce);
   granted(state, StrideWish::less_bounce) = std::max(0.0, -bounce);
+  for (int side : {0, 1})
+    granted(state, StrideWish::low_left, side) =
+        std::max(0.0, 1.0 - state.flight_height[side].x) / (1.0 - kLowLift);
   if (mode == IkMode::paper) return;
   constexpr std::array<int, 3> kJoint = {kHipX, kKneeX, kAnkleX};
   for (int k = 0; k < 3; ++k) {

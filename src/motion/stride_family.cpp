@@ -1,5 +1,7 @@
 #include "gaitpad/stride_family.h"
 
+#include "gaitpad/curve.h"
+
 namespace gaitpad {
 namespace {
 
@@ -119,6 +121,12 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
     }
   }
   return place;
+}
+
+double low_lift(double u, double lift) noexcept {
+  constexpr double kAtLiftOff = 0.0, kAll = 0.5, kUntil = 0.6;  // shares of it, of the flight
+  const double grown = mix(kAtLiftOff, 1.0, smootherstep(u / kAll));
+  return mix(1.0, lift, grown * (1.0 - smootherstep((u - kUntil) / (1.0 - kUntil))));
 }
 
 double roll_time_share(double data_share, double ratio) noexcept {

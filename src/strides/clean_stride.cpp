@@ -277,6 +277,10 @@ bool is_symmetric(const StrideProblem& p) {
               is_same(left.shank_m, right.shank_m) && is_same(p.strike[0], p.strike[1] + 0.5) &&
               is_same(p.toe_off[0] + 0.5, p.toe_off[1]) &&
               is_mirrored(p.heel_m[0], p.heel_m[1] + on);
+  for (int i = 0; i < half && same && !p.flying_heel_m.empty(); ++i) {
+    for (int side : {0, 1})
+      same = same && is_mirrored(p.flying_heel_m[i][side], p.flying_heel_m[i + half][1 - side]);
+  }
   for (int i = 0; i < half && same; ++i) {
     const StrideSample &a = p.wanted[i], &b = p.wanted[i + half];
     same = is_same(p.time[i] + 0.5, p.time[i + half]) &&
@@ -465,12 +469,6 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
     if (!move(x)) return {};
   }
   return x;
-}
-
-std::vector<StrideSample> StrideSolver::solve_alike(const StrideProblem& problem,
-                                                    std::vector<StrideSample> x) {
-  fill(problem, x);
-  return move(x) ? x : std::vector<StrideSample>{};
 }
 
 }  // namespace gaitpad

@@ -50,10 +50,6 @@ class StrideSolver {
   // stride mirror those of the other half, one half is solved. Empty where it cannot be solved.
   std::vector<StrideSample> solve(const StrideProblem& problem, std::vector<StrideSample> start,
                                   int iterations);
-  // One step towards the solution of a problem that differs from the one before in what is wanted
-  // alone, from the same start. The normal equations, which are most of the work, are the same.
-  std::vector<StrideSample> solve_alike(const StrideProblem& problem,
-                                        std::vector<StrideSample> start);
 
  private:
   struct System;

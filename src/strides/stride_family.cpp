@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -32,9 +31,10 @@ struct Stiffness {
 };
 constexpr std::array<Stiffness, 3> kStiffness = {
     {{kHipX, 0.25, 10.0}, {kKneeX, 0.2, 10.0}, {kAnkleX, 0.2, 10.0}}};
-// What the other leg's angles weigh where one leg is stiff: an injury leaves the sound leg alone.
-constexpr double kOtherLeg = 20.0;
-constexpr double kBounceWeight = 1e5;
+constexpr double kSteadyPelvis = 1e4;
+const vec3 kBounceWeight(1e3, 1e4, 1e3);
+constexpr double kBounceSmooth = 10.0, kBounceRoom = 0.35;
+constexpr int kBounceSolve = 3;
 constexpr int kResponseSolve = 2;
 
 double fraction(double phase) { return phase - std::floor(phase); }
@@ -281,118 +281,153 @@ struct Builder {
   }
 
   StrideResponse response_of(const std::vector<StrideSample>& clean,
-                             const std::vector<StrideSample>& changed, double scale) const {
+                             const std::vector<StrideSample>& changed) const {
     std::array<StrideChange, kCycleSamples> change;
     for (int i = 0; i < kCycleSamples; ++i) {
       const StrideSample &a = clean[i], &b = changed[i];
-      change[i].pelvis_m = scale * (b.pelvis_m - a.pelvis_m);
+      change[i].pelvis_m = (b.pelvis_m - a.pelvis_m);
       for (int side : {0, 1}) {
         const LegModel& leg = cycle.leg[side];
         StrideFoot before, after;
         set_rotation(leg, leg_pose(leg, a.pelvis_m, a.pelvis, a.leg[side], 0.0).foot, before);
         set_rotation(leg, leg_pose(leg, b.pelvis_m, b.pelvis, b.leg[side], 0.0).foot, after);
-        change[i].pitch_rad[side] = scale * (after.pitch_rad - before.pitch_rad);
+        change[i].pitch_rad[side] = (after.pitch_rad - before.pitch_rad);
         for (int j = 0; j < kLegDofs; ++j)
-          change[i].leg_rad[side][j] = scale * (b.leg[side][j] - a.leg[side][j]);
+          change[i].leg_rad[side][j] = (b.leg[side][j] - a.leg[side][j]);
       }
     }
     return {knots_through(change)};
   }
 
-  // The joints of these sides near the mean of their curves.
-  bool stiffen(StrideSolver& solver, const StrideProblem& own,
-               const std::vector<StrideSample>& clean, const Stiffness& joint,
-               std::initializer_list<int> sides, StrideResponse& response) const {
-    StrideProblem p = own;
-    if (sides.size() == 1) p.leg_weight[1 - *sides.begin()].fill(kOtherLeg);
-    for (int side : sides) {
-      for (const int bends : {kHipX, kKneeX, kAnkleX})
-        if (sides.size() == 1 || bends == joint.dof) p.leg_weight[side][bends] = joint.weight;
-    }
+  // A joint of both legs nearer to the mean of its curve.
+  std::vector<StrideSample> stiffened(StrideSolver& solver, StrideProblem p,
+                                      const std::vector<StrideSample>& clean,
+                                      const Stiffness& joint) const {
+    for (int side : {0, 1}) p.leg_weight[side][joint.dof] = joint.weight;
     balance(clean, p);
-    for (int side : sides) {
+    for (int side : {0, 1}) {
       double mean = 0.0;
       for (const StrideSample& s : clean) mean += s.leg[side][joint.dof] / kCycleSamples;
       for (int i = 0; i < kCycleSamples; ++i)
         p.wanted[i].leg[side][joint.dof] += joint.pull * (mean - clean[i].leg[side][joint.dof]);
     }
-    const auto stiff = sides.size() == 2 ? solver.solve(p, clean, kResponseSolve)
-                       : joint.dof == kHipX ? solver.solve(p, clean, 1)
-                                            : solver.solve_alike(p, clean);
-    if (stiff.empty()) return false;
-    const int side = *sides.begin();
-    const double fall =
-        1.0 - range_of(stiff, side, joint.dof) / std::max(1e-3, range_of(clean, side, joint.dof));
-    if(getenv("VERB")) { std::printf("dof %d sides %zu fall %.3f ", joint.dof, sides.size(), fall); for(int sd:{0,1}) for(int jj:{0,3,4}) std::printf(" %.3f", range_of(stiff,sd,jj)/range_of(clean,sd,jj)); double pm=0; for(int i=0;i<kCycleSamples;++i) pm=std::max(pm,glm::distance(stiff[i].pelvis_m,clean[i].pelvis_m)); double other=0; if(sides.size()==1) for(int i=0;i<kCycleSamples;++i) for(int j=0;j<7;++j) other=std::max(other,std::abs(stiff[i].leg[1-side][j]-clean[i].leg[1-side][j])); std::printf(" pelvis %.1f mm other leg %.2f deg\n",pm*1e3,other/kDegree); }
-    response = response_of(clean, stiff, 1.0);
-    return true;
+    auto r=solver.solve(p, clean, kResponseSolve);
+    if(getenv("VERB")) { std::printf("dof %d pw %g ", joint.dof, p.pelvis_weight.x); for(int sd:{0,1}) for(int jj:{0,3,4}) std::printf(" %.3f", range_of(r,sd,jj)/range_of(clean,sd,jj)); double pm=0; for(int i=0;i<kCycleSamples;++i) pm=std::max(pm,glm::distance(r[i].pelvis_m,clean[i].pelvis_m)); std::printf(" pelvis %.1f mm\n",pm*1e3); }
+    return r;
   }
 
-  bool bounce(StrideSolver& solver, const StrideProblem& own,
-              const std::vector<StrideSample>& clean, double more,
-              StrideResponse& response) const {
-    double low = clean[0].pelvis_m.y, high = low;
-    for (const StrideSample& s : clean) {
-      low = std::min(low, s.pelvis_m.y);
-      high = std::max(high, s.pelvis_m.y);
-    }
-    StrideProblem p = own;
-    p.pelvis_weight.y = kBounceWeight;
+  // Both feet lifted less, from before their lift-off until near their strike.
+  std::vector<StrideSample> lowered(StrideSolver& solver, StrideProblem p,
+                                    const std::vector<StrideSample>& clean) const {
     balance(clean, p);
-    // What stays where it is: the highest place with more bounce, the lowest one with less.
-    const double stays = more > 0.0 ? high : low;
-    for (int i = 0; i < kCycleSamples; ++i)
-      p.wanted[i].pelvis_m.y += more * (clean[i].pelvis_m.y - stays);
-    const auto bounced = solver.solve(p, clean, kResponseSolve);
-    if (bounced.empty()) return false;
-    if(getenv("VERB")) { double l=1e9,h=-1e9; for(auto&s:bounced){l=std::min(l,s.pelvis_m.y);h=std::max(h,s.pelvis_m.y);} std::printf("bounce %g: %.1f mm -> %.1f mm, top %.1f\n",more,(high-low)*1e3,(h-l)*1e3,(h-high)*1e3);}
-    response = response_of(clean, bounced, 1.0);
-    return true;
-  }
-
-  static StrideResponse mirrored_response(const StrideResponse& r) {
-    StrideResponse m;
     for (int i = 0; i < kCycleSamples; ++i) {
-      const StrideChange& from = r.knot[(i + kCycleSamples / 2) % kCycleSamples];
-      StrideChange& to = m.knot[i];
-      to.pelvis_m = mirrored(from.pelvis_m);
       for (int side : {0, 1}) {
-        to.pitch_rad[side] = from.pitch_rad[1 - side];
-        for (int j = 0; j < kLegDofs; ++j) {
-          const bool bends = j == kHipX || j == kKneeX || j == kAnkleX;
-          to.leg_rad[side][j] = bends ? from.leg_rad[1 - side][j] : -from.leg_rad[1 - side][j];
-        }
+        const double flies = fraction(double(i) / kCycleSamples - cycle.toe_off[side]);
+        const double u = flies / fraction(cycle.strike[side] - cycle.toe_off[side]);
+        if (u <= 1.0) p.flying_heel_m[i][side].y *= low_lift(u, kLowLift);
       }
     }
-    return m;
+    return solver.solve(p, clean, kResponseSolve);
+  }
+
+  // The pelvis' travel up and down larger by the factor 1 + more.
+  std::vector<StrideSample> bounced(StrideSolver& solver, StrideProblem p,
+                                    const std::vector<StrideSample>& clean, double more) const {
+    p.pelvis_weight = kBounceWeight;
+    for (LegAngles& weight : p.leg_weight) weight.fill(kBounceSmooth);
+    balance(clean, p);
+    const std::array<double, kCycleSamples> wave = slow_waves(clean);
+    const double high = *std::max_element(wave.begin(), wave.end()),
+                 low = *std::min_element(wave.begin(), wave.end());
+    // What stays where it is: about the highest place with more bounce, the lowest one with less.
+    // So no leg has to be longer than it is.
+    const double stays = more > 0.0 ? high + kBounceRoom * (high - low)
+                                     : low - kBounceRoom * (high - low);
+    for (int i = 0; i < kCycleSamples; ++i)
+      p.wanted[i].pelvis_m.y += more * (wave[i] - stays);
+    return solver.solve(p, clean, kBounceSolve);
+  }
+
+  // The pelvis' height about its mean, up to two waves a stride: what is quicker is no bounce.
+  static std::array<double, kCycleSamples> slow_waves(const std::vector<StrideSample>& stride) {
+    std::array<double, kCycleSamples> wave{};
+    for (int waves : {1, 2}) {
+      double cosine = 0.0, sine = 0.0;
+      const auto at = [waves](int i) { return sin_cos(2.0 * kPi * waves * i / kCycleSamples); };
+      for (int i = 0; i < kCycleSamples; ++i) {
+        cosine += at(i).cos * stride[i].pelvis_m.y * 2.0 / kCycleSamples;
+        sine += at(i).sin * stride[i].pelvis_m.y * 2.0 / kCycleSamples;
+      }
+      for (int i = 0; i < kCycleSamples; ++i) wave[i] += cosine * at(i).cos + sine * at(i).sin;
+    }
+    return wave;
+  }
+
+  // Scales a change so that the pelvis' travel grows by the factor 1 + more.
+  static void meet_travel(const std::vector<StrideSample>& clean, double more,
+                          StrideResponse& response) {
+    const auto travel = [&](double scale) {
+      double low = 1e9, high = -1e9;
+      for (int i = 0; i < kCycleSamples; ++i) {
+        // Of the samples the knots' values are near enough.
+        const double y = clean[i].pelvis_m.y + scale * response.knot[i].pelvis_m.y;
+        low = std::min(low, y), high = std::max(high, y);
+      }
+      return high - low;
+    };
+    double low = 0.5, high = 2.0;
+    for (int n = 0; n < 30; ++n) {
+      const double middle = 0.5 * (low + high);
+      (travel(middle) < (1.0 + more) * travel(0.0) ? low : high) = middle;
+    }
+    if(getenv("VERB")) std::printf("bounce scaled by %.3f\n", low);
+    for (StrideChange& change : response.knot) {
+      change.pelvis_m *= low;
+      for (int side : {0, 1}) {
+        change.pitch_rad[side] *= low;
+        for (double& angle : change.leg_rad[side]) angle *= low;
+      }
+    }
+  }
+
+  // The part of one leg.
+  static StrideResponse of_leg(const StrideResponse& both, int side) {
+    StrideResponse one;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      one.knot[i].pitch_rad[side] = both.knot[i].pitch_rad[side];
+      one.knot[i].leg_rad[side] = both.knot[i].leg_rad[side];
+    }
+    return one;
   }
 
   // False where there is no solution.
   bool respond(StrideSolver& solver, const StrideProblem& data,
                const std::vector<StrideSample>& clean) {
     family.response.resize(kStrideWishes);
-    const auto at = [this](StrideWish wish) -> StrideResponse& {
-      return family.response[static_cast<std::size_t>(wish)];
+    const auto at = [this](StrideWish wish, int more = 0) -> StrideResponse& {
+      return family.response[static_cast<std::size_t>(wish) + more];
     };
-    const StrideProblem own = held(data, clean);
-    StrideSolver left_solver, right_solver;
-    const bool symmetric = is_symmetric(own);
-    bool solved = bounce(solver, own, clean, 1.0, at(StrideWish::more_bounce)) &&
-                  bounce(solver, own, clean, -1.0, at(StrideWish::less_bounce));
-    for (int k = 0; solved && k < static_cast<int>(kStiffness.size()); ++k) {
-      const auto of = [&at, k](StrideWish first) -> StrideResponse& {
-        return at(static_cast<StrideWish>(static_cast<int>(first) + k));
-      };
-      StrideResponse &left = of(StrideWish::stiff_left_hip),
-                     &right = of(StrideWish::stiff_right_hip);
-      solved = stiffen(solver, own, clean, kStiffness[k], {0, 1}, of(StrideWish::stiff_hips)) &&
-               stiffen(left_solver, own, clean, kStiffness[k], {0}, left);
-      if (solved && symmetric) {
-        right = mirrored_response(left);
-      } else {
-        solved = solved && stiffen(right_solver, own, clean, kStiffness[k], {1}, right);
-      }
+    bool solved = true;
+    const auto keep = [&](const std::vector<StrideSample>& changed) -> StrideResponse {
+      solved = solved && !changed.empty();
+      return changed.empty() ? StrideResponse{} : response_of(clean, changed);
+    };
+    const StrideProblem free = held(data, clean);
+    // The sound leg goes as if the other were sound, too: the pelvis does not give way.
+    StrideProblem alone = free;
+    alone.pelvis_weight = vec3(kSteadyPelvis);
+    at(StrideWish::more_bounce) = keep(bounced(solver, free, clean, 1.0));
+    meet_travel(clean, 1.0, at(StrideWish::more_bounce));
+    at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));
+    for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k) {
+      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, free, clean, kStiffness[k]));
+      const StrideResponse one = keep(stiffened(solver, alone, clean, kStiffness[k]));
+      at(StrideWish::stiff_left_hip, k) = of_leg(one, kLeftSide);
+      at(StrideWish::stiff_right_hip, k) = of_leg(one, kRightSide);
     }
+    const StrideResponse low = keep(lowered(solver, alone, clean));
+    at(StrideWish::low_left) = of_leg(low, kLeftSide);
+    at(StrideWish::low_right) = of_leg(low, kRightSide);
     return solved;
   }
 

@@ -50,17 +50,25 @@ struct StrideTable {
 
 // What a style can ask of a stride.
 enum class StrideWish : std::uint8_t {
-  // A joint of the left leg, of the right leg or of both flexes less: its curve nears its mean.
+  // A joint flexes less, its curve nears its mean. Of both legs: the pelvis gives way.
+  stiff_hips, stiff_knees, stiff_ankles,
+  // Of one leg: neither the pelvis nor the other leg changes.
   stiff_left_hip, stiff_left_knee, stiff_left_ankle,
   stiff_right_hip, stiff_right_knee, stiff_right_ankle,
-  stiff_hips, stiff_knees, stiff_ankles,
-  more_bounce,  // the pelvis' vertical travel is doubled: it sinks deeper
-  less_bounce,  // it is gone: the pelvis stays as low as it was at its lowest
+  low_left, low_right,  // the heel is lifted kLowLift as high
+  more_bounce,          // the pelvis' vertical travel is doubled: it sinks deeper
+  less_bounce,          // it is gone: the pelvis stays as low as it was at its lowest
 };
-inline constexpr int kStrideWishes = 11;
+inline constexpr int kStrideWishes = 13;
+inline constexpr double kLowLift = 0.5;  // how high a heel is lifted then
 
-// What a stride changes by at one phase when a wish is granted. The heels stand and fly where they
-// did; the pelvis gives way.
+// The factor on the heel's height at a share of the flight, for a foot whose lift has the factor
+// `lift`, at most 1. At the lift-off it acts in part, since the leg has to reach the floor, and near
+// its strike the foot comes down as ever.
+double low_lift(double u, double lift) noexcept;
+
+// What a stride changes by at one phase when a wish is granted. The feet stand where they did and,
+// but for a low lift, the heels fly where they did.
 struct StrideChange {
   vec3 pelvis_m{0.0};
   std::array<double, 2> pitch_rad{};  // of the feet

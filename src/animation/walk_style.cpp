@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kMostShown = 1.2;  // responses grow with the stride up to here
 constexpr double kSoftShown = 0.1;
+// What several wishes ask for together does not bend a knee less than this.
+constexpr double kStraightKnee = 2.5 * kDegree;
 
 // How stiff a joint is beside the leg's freest: 0 free .. held_back(0) locked.
 double stiffness(const WalkState& state, int side, int dof) noexcept {
@@ -60,7 +62,11 @@ void change_stride(const StrideFamily& strides, const WalkState& state, double r
   plan.cell.pelvis_m += change.pelvis_m;
   for (int side : {0, 1}) {
     plan.cell.foot[side].pitch_rad += change.pitch_rad[side];
-    for (int j = 0; j < kLegDofs; ++j) plan.cell.leg_rad[side][j] += change.leg_rad[side][j];
+    LegAngles& angles = plan.cell.leg_rad[side];
+    const double knee = angles[kKneeX];
+    for (int j = 0; j < kLegDofs; ++j) angles[j] += change.leg_rad[side][j];
+    const double straight = kStraightKnee - strides.stand_rad[side][kKneeX];
+    angles[kKneeX] = std::max(angles[kKneeX], std::min(knee, straight));
   }
 }
 

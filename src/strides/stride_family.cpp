@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -35,7 +34,7 @@ constexpr double kSteadyPelvis = 1e4;
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
 constexpr double kBounceSmooth = 10.0, kBounceRoom = 0.35;
 constexpr int kBounceSolve = 3;
-constexpr int kResponseSolve = 2;
+constexpr int kResponseSolve = 3;
 
 double fraction(double phase) { return phase - std::floor(phase); }
 
@@ -291,6 +290,10 @@ struct Builder {
         StrideFoot before, after;
         set_rotation(leg, leg_pose(leg, a.pelvis_m, a.pelvis, a.leg[side], 0.0).foot, before);
         set_rotation(leg, leg_pose(leg, b.pelvis_m, b.pelvis, b.leg[side], 0.0).foot, after);
+        // A foot that stands on its toe does not sink its heel.
+        if (fraction(double(i) / kCycleSamples - cycle.toe_off[1 - side]) <=
+            fraction(cycle.toe_off[side] - cycle.toe_off[1 - side]))
+          after.pitch_rad = std::max(after.pitch_rad, std::min(0.0, before.pitch_rad));
         change[i].pitch_rad[side] = (after.pitch_rad - before.pitch_rad);
         for (int j = 0; j < kLegDofs; ++j)
           change[i].leg_rad[side][j] = (b.leg[side][j] - a.leg[side][j]);
@@ -311,9 +314,7 @@ struct Builder {
       for (int i = 0; i < kCycleSamples; ++i)
         p.wanted[i].leg[side][joint.dof] += joint.pull * (mean - clean[i].leg[side][joint.dof]);
     }
-    auto r=solver.solve(p, clean, kResponseSolve);
-    if(getenv("VERB")) { std::printf("dof %d pw %g ", joint.dof, p.pelvis_weight.x); for(int sd:{0,1}) for(int jj:{0,3,4}) std::printf(" %.3f", range_of(r,sd,jj)/range_of(clean,sd,jj)); double pm=0; for(int i=0;i<kCycleSamples;++i) pm=std::max(pm,glm::distance(r[i].pelvis_m,clean[i].pelvis_m)); std::printf(" pelvis %.1f mm\n",pm*1e3); }
-    return r;
+    return solver.solve(p, clean, kResponseSolve);
   }
 
   // Both feet lifted less, from before their lift-off until near their strike.
@@ -380,7 +381,6 @@ struct Builder {
       const double middle = 0.5 * (low + high);
       (travel(middle) < (1.0 + more) * travel(0.0) ? low : high) = middle;
     }
-    if(getenv("VERB")) std::printf("bounce scaled by %.3f\n", low);
     for (StrideChange& change : response.knot) {
       change.pelvis_m *= low;
       for (int side : {0, 1}) {

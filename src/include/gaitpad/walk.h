@@ -121,6 +121,9 @@ struct UpperBodyState {
   std::array<double, sizeof(UpperBodyParams) / sizeof(double)>
       per_s{};                            // rates of `now`, per second
   int unsettled_ticks = 0;                // until `now` is `goal`
+  // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
+  double forward_rad = 0.0, left_rad = 0.0;
+  std::array<double, 2> out_rad{};
   std::array<double, 2> swing{1.0, 1.0};  // factor on the data's arm swing in this tick, by Side
   // Height of the ground under a rail, smoothed, and its rate.
   std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};

@@ -508,9 +508,15 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
     const double a = leg.model.thigh_m, b = leg.model.shank_m;
-    const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
+    // The sound leg goes as if the other were sound, too: then the hips are as high.
+    const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX] -
+                        plan.injury.leg_rad[side][kKneeX];
     const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
-    const vec3 ankle = ankle_of(leg, state.foot[side].pose), hip = pelvis.hip(leg);
+    const FootState& foot = state.foot[side];
+    FootPose pose = foot.pose;
+    if (plan.injury.pitch_rad[side] != 0.0)
+      set_pitch(leg, pose.pitch_rad - plan.injury.pitch_rad[side], pose, foot.mode);
+    const vec3 ankle = ankle_of(leg, pose), hip = pelvis.hip(leg);
     const double span = glm::distance(hip, ankle);
     // What the tables ask for is let through.
     const double beyond = (span - known) / model.size;

@@ -46,7 +46,8 @@ struct StridePlan {
   double change = 0.0;  // from the one stride, at 0, to the other, at 1
   double shown = 0.0;   // how much of the tables shows: 0 when standing
   std::array<StridePlace, 2> at;  // the two strides at this phase
-  StrideCell cell;                // both, mixed by `change` and `shown`
+  StrideCell cell;                // both, mixed by `change` and `shown`, and what a style changes
+  StrideChange injury;            // of that: what one stiff leg alone changes
 };
 // The running step's length over the data's.
 double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept;

@@ -29,7 +29,7 @@ struct Stiffness {
   double pull, weight;
 };
 constexpr std::array<Stiffness, 3> kStiffness = {
-    {{kHipX, 0.25, 10.0}, {kKneeX, 0.2, 10.0}, {kAnkleX, 0.2, 10.0}}};
+    {{kHipX, 0.25, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
 constexpr double kSteadyPelvis = 1e4;
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
 constexpr double kBounceSmooth = 10.0, kBounceRoom = 0.35;

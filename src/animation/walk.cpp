@@ -344,6 +344,9 @@ constexpr double kEvenFront = 0.46;
 // far.
 constexpr double kBackwardHips = 0.45;
 constexpr double kBackwardHipsUp = 1.075, kHighRiser = 0.2, kHighestRiser = 0.3;
+// Of what an injury changes of its leg's reach, so much does not lower or raise the hips: the sound
+// leg then changes by less than a degree.
+constexpr double kUnseenInjury = 0.85;
 constexpr double kLongDrop_m = 0.05;  // how far the hips sink in steps much longer than the data's
 constexpr double kLameDrop_m = 0.1;   // and for a foot that does not lift at all
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
@@ -508,14 +511,14 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
     const double a = leg.model.thigh_m, b = leg.model.shank_m;
-    // The sound leg goes as if the other were sound, too: then the hips are as high.
+    // The sound leg goes nearly as if the other were sound, too: then the hips are as high.
     const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX] -
-                        plan.injury.leg_rad[side][kKneeX];
+                        kUnseenInjury * plan.injury.leg_rad[side][kKneeX];
     const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
     const FootState& foot = state.foot[side];
     FootPose pose = foot.pose;
     if (plan.injury.pitch_rad[side] != 0.0)
-      set_pitch(leg, pose.pitch_rad - plan.injury.pitch_rad[side], pose, foot.mode);
+      set_pitch(leg, pose.pitch_rad - kUnseenInjury * plan.injury.pitch_rad[side], pose, foot.mode);
     const vec3 ankle = ankle_of(leg, pose), hip = pelvis.hip(leg);
     const double span = glm::distance(hip, ankle);
     // What the tables ask for is let through.

@@ -29,8 +29,10 @@ struct Stiffness {
   double pull, weight;
 };
 constexpr std::array<Stiffness, 3> kStiffness = {
-    {{kHipX, 0.25, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
-constexpr double kSteadyPelvis = 1e4;
+    {{kHipX, 0.28, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
+// What a stiff hip does not move, knee and ankle do: their curves leave their means by this.
+constexpr double kMoreKnee = 0.45;
+constexpr double kSteadyPelvis = 1e4, kSmoothLeg = 2.0;
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
 constexpr double kBounceSmooth = 10.0, kBounceRoom = 0.35;
 constexpr int kBounceSolve = 3;
@@ -308,11 +310,15 @@ struct Builder {
                                       const Stiffness& joint) const {
     for (int side : {0, 1}) p.leg_weight[side][joint.dof] = joint.weight;
     balance(clean, p);
-    for (int side : {0, 1}) {
+    const auto pull = [&](int side, int dof, double share) {
       double mean = 0.0;
-      for (const StrideSample& s : clean) mean += s.leg[side][joint.dof] / kCycleSamples;
+      for (const StrideSample& s : clean) mean += s.leg[side][dof] / kCycleSamples;
       for (int i = 0; i < kCycleSamples; ++i)
-        p.wanted[i].leg[side][joint.dof] += joint.pull * (mean - clean[i].leg[side][joint.dof]);
+        p.wanted[i].leg[side][dof] += share * (mean - clean[i].leg[side][dof]);
+    };
+    for (int side : {0, 1}) {
+      pull(side, joint.dof, joint.pull);
+      if (joint.dof == kHipX) pull(side, kKneeX, -kMoreKnee), pull(side, kAnkleX, -kMoreKnee);
     }
     return solver.solve(p, clean, kResponseSolve);
   }
@@ -416,6 +422,7 @@ struct Builder {
     // The sound leg goes as if the other were sound, too: the pelvis does not give way.
     StrideProblem alone = free;
     alone.pelvis_weight = vec3(kSteadyPelvis);
+    for (LegAngles& weight : alone.leg_weight) weight.fill(kSmoothLeg);
     at(StrideWish::more_bounce) = keep(bounced(solver, free, clean, 1.0));
     meet_travel(clean, 1.0, at(StrideWish::more_bounce));
     at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));

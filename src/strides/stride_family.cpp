@@ -16,6 +16,7 @@ constexpr int kOwn = 5;  // the table of the data's own stride
 // Iterations. After so many the largest change of an angle is below 1e-4 rad in most clips; ratios
 // 0 and 0.2 still drift by up to 1e-2 rad in some, along changes that cost next to nothing.
 constexpr int kFirstSolve = 10, kNextSolve = 8;
+constexpr int kNextBack = 6;  // a walk backwards is no capture, so it may be solved less exactly
 constexpr double kLeastStandingKnee = 3.0 * kDegree;
 // What shows of the data's angles in steps of length 0: a foot still has to leave the floor.
 constexpr double kLeastLift = 0.3;
@@ -462,7 +463,7 @@ struct Builder {
             for (int j = 0; j < kLegDofs; ++j)
               start[i].leg[side][j] += p.wanted[i].leg[side][j] - before.wanted[i].leg[side][j];
         }
-        start = solver.solve(p, std::move(start), kNextSolve);
+        start = solver.solve(p, std::move(start), own.stride_m > 0.0 ? kNextSolve : kNextBack);
         if (start.empty()) return false;
         family.table[k] = table_of(p, start, k * kRatioStep);
         before = std::move(p);

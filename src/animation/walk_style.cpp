@@ -15,6 +15,9 @@ namespace {
 constexpr double kMostShown = 1.2;  // responses grow with the stride up to here
 constexpr double kSoftShown = 0.1;
 constexpr std::size_t kAlone = 6;  // wishes of one leg: three joints, two sides
+// Of a step's length the ground leaves so little on stairs, and so much where it is nearly level:
+// what the responses know of is level ground.
+constexpr double kStairs = 0.5, kLevel = 0.95;
 // What several wishes ask for together does not bend a knee less than this.
 constexpr double kStraightKnee = 1.5 * kDegree;
 
@@ -60,7 +63,8 @@ void change_stride(const StrideFamily& strides, const WalkState& state, double r
                    StridePlan& plan) noexcept {
   if (state.backward || strides.response.empty()) return;
   StrideWishes wishes = state.granted;
-  const double share = plan.shown * soft_min(ratio, kMostShown, kSoftShown);
+  const double share = plan.shown * soft_min(ratio, kMostShown, kSoftShown) *
+                       smoothstep(kStairs, kLevel, state.ground_share.x);
   bool any = false;
   for (double& wish : wishes) any = any || wish != 0.0;
   if (!any) return;

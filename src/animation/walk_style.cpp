@@ -1,9 +1,9 @@
 // What a style asks of the stride: stiff joints and the hips' bounce.
 //
-// The planted feet fix where the hips go, so a joint that is to flex less cannot do so by itself: the
-// pelvis has to give way over the whole stride. The clean strides were solved for that when the
-// motion was loaded (StrideWish), and a tick only adds up what is asked for. The weights of equation
-// (5) then act on what is left to the inverse kinematics, too.
+// The planted feet fix where the hips go, so a joint that is to flex less cannot do so by itself:
+// the pelvis has to give way over the whole stride. The clean strides were solved for that when the
+// motion was loaded (StrideWish), and a tick only adds up what is asked for. The weights of
+// equation (5) then act on what is left to the inverse kinematics, too.
 #include <algorithm>
 #include <span>
 
@@ -85,8 +85,7 @@ void change_stride(const StrideFamily& strides, const WalkState& state, double r
     plan.injury = change_at(strides.response, of_leg, plan.phase);
     for (int side : {0, 1}) {
       change.pitch_rad[side] += plan.injury.pitch_rad[side];
-      for (int j = 0; j < kLegDofs; ++j)
-        change.leg_rad[side][j] += plan.injury.leg_rad[side][j];
+      for (int j = 0; j < kLegDofs; ++j) change.leg_rad[side][j] += plan.injury.leg_rad[side][j];
     }
   }
   plan.cell.pelvis_m += change.pelvis_m;

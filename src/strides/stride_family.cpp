@@ -33,11 +33,15 @@ constexpr std::array<Stiffness, 3> kStiffness = {
     {{kHipX, 0.28, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
 // What a stiff hip does not move, knee and ankle do: their curves leave their means by this.
 constexpr double kMoreKnee = 0.45;
+// Of one leg alone: the pelvis moves by about a millimetre, and the leg changes more smoothly.
 constexpr double kSteadyPelvis = 1e4, kSmoothLeg = 2.0;
+// A bounce is met by the pelvis' height first; it does not move sideways or ahead for it, and the
+// legs change smoothly.
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
-constexpr double kBounceSmooth = 10.0, kBounceRoom = 0.35;
-constexpr int kBounceSolve = 3;
-constexpr int kResponseSolve = 3;
+constexpr double kBounceSmooth = 10.0;
+constexpr double kBounceRoom = 0.35;  // of the travel: the hips sink by so much more
+// Iterations from the clean stride. After three the change is within 2 % of where it ends.
+constexpr int kResponseSolve = 3, kBounceSolve = 3;
 
 double fraction(double phase) { return phase - std::floor(phase); }
 
@@ -273,21 +277,12 @@ struct Builder {
     }
   }
 
-  static double range_of(const std::vector<StrideSample>& stride, int side, int joint) {
-    double low = kMostAngle, high = -kMostAngle;
-    for (const StrideSample& s : stride) {
-      low = std::min(low, s.leg[side][joint]);
-      high = std::max(high, s.leg[side][joint]);
-    }
-    return high - low;
-  }
-
   StrideResponse response_of(const std::vector<StrideSample>& clean,
                              const std::vector<StrideSample>& changed) const {
     std::array<StrideChange, kCycleSamples> change;
     for (int i = 0; i < kCycleSamples; ++i) {
       const StrideSample &a = clean[i], &b = changed[i];
-      change[i].pelvis_m = (b.pelvis_m - a.pelvis_m);
+      change[i].pelvis_m = b.pelvis_m - a.pelvis_m;
       for (int side : {0, 1}) {
         const LegModel& leg = cycle.leg[side];
         StrideFoot before, after;
@@ -297,9 +292,9 @@ struct Builder {
         if (fraction(double(i) / kCycleSamples - cycle.toe_off[1 - side]) <=
             fraction(cycle.toe_off[side] - cycle.toe_off[1 - side]))
           after.pitch_rad = std::max(after.pitch_rad, std::min(0.0, before.pitch_rad));
-        change[i].pitch_rad[side] = (after.pitch_rad - before.pitch_rad);
+        change[i].pitch_rad[side] = after.pitch_rad - before.pitch_rad;
         for (int j = 0; j < kLegDofs; ++j)
-          change[i].leg_rad[side][j] = (b.leg[side][j] - a.leg[side][j]);
+          change[i].leg_rad[side][j] = b.leg[side][j] - a.leg[side][j];
       }
     }
     return {knots_through(change)};

@@ -108,8 +108,8 @@ TEST(WalkStyle, AChangeOfWeightsActsWithinATenthOfASecondAndWithoutAHitch) {
   changed.walk(0.0, kStick, kRate, shipped("stiff_hip"));
   double after_rad = 0.0;
   for (int k = kSteady; k < kSteady + kRate / 10; ++k)
-    after_rad = std::max(after_rad, std::abs(even.angles_rad()[k][0][kHipX] -
-                                             changed.angles_rad()[k][0][kHipX]));
+    after_rad = std::max(
+        after_rad, std::abs(even.angles_rad()[k][0][kHipX] - changed.angles_rad()[k][0][kHipX]));
   EXPECT_GT(after_rad, 0.1 * kDegree);
   EXPECT_LE(changed.sharpest_turn_rad(), kSharpest * kDegree);
 }

@@ -321,10 +321,10 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::flight) {
     land_foot(tick, state);
   } else if (!state.started) {
-    begin_support(state.foot[swing], state.even_rad[swing]);
+    begin_support(state.foot[swing]);
     begin_idle(state);
   } else {
-    begin_support(state.foot[swing], state.even_rad[swing]);
+    begin_support(state.foot[swing]);
     state.stage_phase = stage_end_phase(tick.model, state);
     begin_stage(Stage::flight, other(swing), state.flight_ticks, state);
     begin_flight(tick, state, other(swing));

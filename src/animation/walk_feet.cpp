@@ -234,11 +234,10 @@ void remember_foot(FootState& foot) noexcept {
   foot.last_pitch_rad = {foot.pose.pitch_rad, foot.last_pitch_rad[0]};
 }
 
-void begin_support(FootState& foot, const LegAngles& even_rad) noexcept {
+void begin_support(FootState& foot) noexcept {
   foot.mode = FootMode::support;
   foot.mode_ticks = 0;
   foot.pitch_fade = {};
-  foot.anchor_rad = even_rad;
 }
 
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
@@ -254,7 +253,6 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.lift_m = lifts.heel_m;
   foot.crosses_riser = !tick.flat && crosses_riser(*model.terrain, foot.plane, state.landing_plane);
   foot.lift_turn_rad = pivot_rate(model, state, side) * tick.dt_s * ticks;
-  foot.anchor_rad = state.even_rad[side];
   // What this foot differs by from the tables fades away.
   foot.gap_m = foot.gap_slope_m = vec3(0.0);
   foot.pitch_fade = {};
@@ -280,7 +278,6 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.heel_anchor_m = state.landing_m;
   foot.lift_yaw_rad = state.landing_heading_rad;
   foot.plane = state.landing_plane;
-  foot.anchor_rad = state.even_rad[side];
   const double pitch = foot.pose.pitch_rad - table_pitch(state, stride_now(tick.model, state), side);
   foot.pitch_fade = {pitch, 0.0, kRollEnd * state.stage_ticks};
   FootPose flat = foot.pose;

@@ -159,7 +159,7 @@ void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelv
   const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
   IkAngles angles{};
   for (int j = 0; j < kLegDofs; ++j) {
-    angles[j] = data[j] + keep * (state.even_rad[side][j] - state.data_rad[side][j]);
+    angles[j] = data[j] + keep * (state.angles_rad[side][j] - state.data_rad[side][j]);
   }
   state.data_rad[side] = data;
   IkChain chain = leg.chain;
@@ -173,7 +173,7 @@ void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelv
   if (angles[kAnkleX] < most_dorsiflexion) {
     solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   }
-  state.even_rad[side] = state.angles_rad[side] = leg_angles(angles);
+  state.angles_rad[side] = leg_angles(angles);
 }
 
 // Steps 1-7 to the letter for the stage's end-effector alone. While heel and toe both stand or
@@ -189,7 +189,7 @@ void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& st
   const bool both = foot == FootMode::roll ||
                     (foot == FootMode::support && heel_rise(tick.model, state, side) == 0.0);
   solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
-  state.angles_rad[side] = state.even_rad[side] = leg_angles(angles);
+  state.angles_rad[side] = leg_angles(angles);
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
 double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noexcept;
 // At the end of a tick: keeps what the next ticks' derivatives need.
 void remember_foot(FootState& foot) noexcept;
-void begin_support(FootState& foot, const LegAngles& even_rad) noexcept;
+void begin_support(FootState& foot) noexcept;
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
 void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept;
 

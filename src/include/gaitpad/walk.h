@@ -96,7 +96,6 @@ struct FootState {
   // What the heel's place at lift-off differs by from the tables', and its slope per flight.
   vec3 gap_m{0.0}, gap_slope_m{0.0};
   double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // yaw at lift-off and its slope per flight
-  LegAngles anchor_rad{};      // even pose when the mode began: stiff joints stay near it
   FootPlane plane;             // that it stands on or stood on last
   double base_m = 0.0;         // height of the ground that the pose is planned over
   bool crosses_riser = false;  // in the running flight
@@ -172,8 +171,8 @@ struct WalkState {
   double base_m = 0.0, base_velocity_m_s = 0.0;  // height of the ground that the hips go over
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;
-  // The data's angles, those of the pose with even weights, and those with weights: the pose's.
-  std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};
+  // The tables' angles, with what the style changes, and the pose's.
+  std::array<LegAngles, 2> data_rad{}, angles_rad{};
   UpperBodyState body;
 };
 

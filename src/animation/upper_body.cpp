@@ -3,8 +3,8 @@
 // Maddock 2005, section 5 (future work). Nothing in here moves pelvis or legs.
 //
 // In a tick: smooth_upper_body() brings the style's values into force, swing_arms() scales the
-// data's swing, and pose_upper_body() poses the spine, then the arms that hang on it, then the
-// head. What is as the data have it is not touched, so it costs nothing and keeps its bits.
+// data's swing, and pose_upper_body() leans the trunk and spreads the arms, poses the spine, then
+// the arms that hang on it, then the head. What is as the data have it is not touched, so it costs nothing and keeps its bits.
 #include <bit>
 
 #include "animation/walk_parts.h"
@@ -83,6 +83,74 @@ void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
   if (hand.rail <= 0.0) ground = {mean_m, 0.0};  // not held yet: nothing to smooth
   body.rail_ground_m[side] = ground.x;
   body.rail_ground_m_s[side] = ground.v;
+}
+
+// --- Posture: a trunk that leans, arms that are spread -------------------------------------------
+
+// 1 in the middle of the time that a leg stands alone, 0 in that of the other.
+double stands_alone(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  const std::array<double, 4>& share = model.share;
+  const double middle = side == kRightSide ? share[0] + 0.5 * share[1]
+                                           : share[0] + share[1] + share[2] + 0.5 * share[3];
+  const double half = 0.5 + 0.5 * sin_cos(2.0 * kPi * (data_phase(model, state) - middle)).cos;
+  return half * half;
+}
+
+void hold_posture(const Tick& tick, IkMode mode, WalkState& state) noexcept {
+  UpperBodyState& body = state.body;
+  const TrunkParams& trunk = body.now.trunk;
+  body.forward_rad = body.left_rad = 0.0;
+  body.out_rad = {};
+  if (mode == IkMode::paper) return;
+  for (int side : {0, 1}) body.out_rad[side] = body.now.arm_out_deg[side] * kDegree;
+  body.forward_rad = trunk.lean_deg * kDegree;
+  if (trunk.over_left_deg == 0.0 && trunk.over_right_deg == 0.0) return;
+  body.left_rad = presence(state) * kDegree *
+                  (trunk.over_left_deg * stands_alone(tick.model, state, kLeftSide) -
+                   trunk.over_right_deg * stands_alone(tick.model, state, kRightSide));
+}
+
+quat rotation_above(const Skeleton& skeleton, const Pose& pose, int joint) noexcept {
+  quat rotation = kIdentity;
+  for (int j = skeleton.joints[joint].parent; j >= 0; j = skeleton.joints[j].parent)
+    rotation = pose.local[j] * rotation;
+  return rotation;
+}
+
+// Turns a joint and all above it by `turn`, which is in the walker's axes at its heading.
+void turn_joint(const Skeleton& skeleton, double heading_rad, const quat& turn, int joint,
+                Pose& pose) noexcept {
+  const quat above = rotation_above(skeleton, pose, joint), to = rotation_y(heading_rad);
+  const quat world = to * turn * glm::conjugate(to);
+  pose.local[joint] =
+      glm::normalize(glm::conjugate(above) * world * above * pose.local[joint]);
+}
+
+// The spine's joints share the lean; arms keep hanging as they did.
+void lean_trunk(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+  const UpperBodyState& body = state.body;
+  const std::vector<int>& spine = model.body.joints.spine;
+  if (spine.empty() || (body.forward_rad == 0.0 && body.left_rad == 0.0)) return;
+  const double share = 1.0 / static_cast<double>(spine.size());
+  const quat turn =
+      rotation_z(-share * body.left_rad) * rotation_x(share * body.forward_rad);
+  for (const int joint : spine)
+    turn_joint(model.cycle.skeleton, state.heading_rad, turn, joint, pose);
+  const quat back = rotation_x(-body.forward_rad) * rotation_z(body.left_rad);
+  for (const ArmBuild& arm : model.body.arm) {
+    if (arm.is_there)
+      turn_joint(model.cycle.skeleton, state.heading_rad, back, arm.joints.shoulder, pose);
+  }
+}
+
+void spread_arms(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const ArmBuild& arm = model.body.arm[side];
+    const double out = state.body.out_rad[side];
+    if (!arm.is_there || out == 0.0) continue;
+    turn_joint(model.cycle.skeleton, state.heading_rad,
+               rotation_z(side == kLeftSide ? out : -out), arm.joints.shoulder, pose);
+  }
 }
 
 // --- Spine ---------------------------------------------------------------------------------------
@@ -522,6 +590,7 @@ void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
 void smooth_upper_body(const Tick& tick, IkMode mode, WalkState& state) noexcept {
   UpperBodyState& body = state.body;
   settle_values(tick, body);
+  hold_posture(tick, mode, state);
   const double pace = mode == IkMode::paper ? 1.0 : pace_swing(tick, state);
   for (const Side side : {kLeftSide, kRightSide}) {
     body.swing[side] = pace * body.now.arm_swing[side];
@@ -545,6 +614,8 @@ void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noex
 void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
   const UpperBodyParams& now = state.body.now;
   const Skeleton& skeleton = model.cycle.skeleton;
+  lean_trunk(model, state, pose);
+  spread_arms(model, state, pose);
   const bool moves_spine = model.body.spine.size() > 1 && !is_spine_even(now);
   std::array<bool, 2> moves_arm;
   for (const Side side : {kLeftSide, kRightSide})

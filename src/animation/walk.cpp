@@ -79,6 +79,8 @@ StridePlan stride_plan(const WalkModel& model, const WalkState& state, double ph
   plan.at[1] = stride_at(tables, plan.phase, ratio_ahead(model, state));
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
+  change_stride(model.strides, state,
+                mix(state.ratio_behind, ratio_ahead(model, state), plan.change), plan);
   return plan;
 }
 
@@ -365,10 +367,10 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
   if (state.stage == Stage::flight) {
     land_foot(tick, state);
   } else if (!state.started) {
-    begin_support(state.foot[swing], state.even_rad[swing]);
+    begin_support(state.foot[swing]);
     begin_idle(state);
   } else {
-    begin_support(state.foot[swing], state.even_rad[swing]);
+    begin_support(state.foot[swing]);
     state.stage_phase = stage_end_phase(tick.model, state);
     begin_stage(Stage::flight, other(swing), state.flight_ticks, state);
     begin_flight(tick, state, other(swing));
@@ -381,6 +383,9 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
 constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
 constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWidest_m = 0.06;
+// Of what an injury changes of its leg's reach, so much does not lower or raise the hips: the sound
+// leg then changes by less than a degree.
+constexpr double kUnseenInjury = 0.85;
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
@@ -529,8 +534,6 @@ vec3 ankle_of(const LegBuild& leg, const FootPose& foot) noexcept {
 double pelvis_height(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                      const Pelvis& pelvis) noexcept {
   double y = pelvis.position_m.y;
-  const double r = state.pace.x, scale = presence(state) * std::clamp(r * r, 0.0, 1.5);
-  y += scale * (state.bounce.x - 1.0) * model.bounce_m.at(data_phase(model, state));
   // Legs that are about to change their pace are bent a little, so that they have room.
   const double change = state.pace.x - state.settled_pace.x;
   y -= kChangeDrop_m * model.size * std::min(1.0, 2.0 * state.pace.x) * change * change / (change * change + kChange * kChange);
@@ -538,9 +541,15 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
     const double a = leg.model.thigh_m, b = leg.model.shank_m;
-    const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
+    // The sound leg goes nearly as if the other were sound, too: then the hips are as high.
+    const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX] -
+                        kUnseenInjury * plan.injury.leg_rad[side][kKneeX];
     const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
-    const vec3 ankle = ankle_of(leg, state.foot[side].pose), hip = pelvis.hip(leg);
+    const FootState& foot = state.foot[side];
+    FootPose pose = foot.pose;
+    if (plan.injury.pitch_rad[side] != 0.0)
+      set_pitch(leg, pose.pitch_rad - kUnseenInjury * plan.injury.pitch_rad[side], pose, foot.mode);
+    const vec3 ankle = ankle_of(leg, pose), hip = pelvis.hip(leg);
     const double span = glm::distance(hip, ankle);
     // What the tables ask for is let through.
     const double beyond = (span - known) / model.size;
@@ -693,6 +702,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
              WalkState& state, Pose& pose) noexcept {
   const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
   smooth_parameters(tick, mode, state);
+  grant_wishes(mode, state);
   smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);

@@ -101,9 +101,11 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
   const double begin_m = height_on(foot.plane, foot.heel_anchor_m),
                rise = state.landing_m.y - begin_m;
   const double rise_legs = rise / model.leg_length_m;
-  const double lifted = state.flight_height[side].x *
+  // A lame foot is low from its lift-off on (StrideWish::low_left).
+  const double factor = state.flight_height[side].x, low = std::min(factor, 1.0);
+  const double lifted = std::max(factor, 1.0) *
                         mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
-  const double height = mix(1.0, lifted, smootherstep(u / kLiftGrows));
+  const double height = low_lift(u, low) * mix(1.0, lifted, smootherstep(u / kLiftGrows));
   const Ascent risen = ascent(model, foot, way);
   base_m = begin_m + rise * risen.at(p - foot.heel_anchor_m, u);
   double up = cell.heel_m.y * height;
@@ -271,11 +273,10 @@ void remember_foot(FootState& foot) noexcept {
   foot.last_rise_m = {foot.rise_m, foot.last_rise_m[0]};
 }
 
-void begin_support(FootState& foot, const LegAngles& even_rad) noexcept {
+void begin_support(FootState& foot) noexcept {
   foot.mode = FootMode::support;
   foot.mode_ticks = 0;
   foot.pitch_fade = {};
-  foot.anchor_rad = even_rad;
 }
 
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
@@ -291,7 +292,6 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.lift_m = lifts.heel_m;
   foot.crosses_riser = !tick.flat && crosses_riser(*model.terrain, foot.plane, state.landing_plane);
   foot.lift_turn_rad = pivot_rate(model, state, side) * tick.dt_s * ticks;
-  foot.anchor_rad = state.even_rad[side];
   // What this foot differs by from the tables fades away.
   foot.gap_m = foot.gap_slope_m = vec3(0.0);
   foot.pitch_fade = {};
@@ -319,7 +319,6 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.heel_anchor_m = state.landing_m;
   foot.lift_yaw_rad = state.landing_heading_rad;
   foot.plane = state.landing_plane;
-  foot.anchor_rad = state.even_rad[side];
   const double pitch = foot.pose.pitch_rad - table_pitch(state, stride_now(tick.model, state), side);
   foot.pitch_fade = {pitch, 0.0, kRollEnd * state.stage_ticks};
   FootPose flat = foot.pose;

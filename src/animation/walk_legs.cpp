@@ -2,10 +2,9 @@
 // the angles of hip, knee and ankle.
 //
 // Paper mode takes steps 1-7 to the letter, from the pose of the tick before, with raw weights.
-// Robust mode poses the leg evenly first: six rows hold the whole foot, and the knee's swivel,
-// which they leave free, is pulled to the data's. Then, where the weights are uneven, each joint is
-// held back by its own weight and the solver brings the stage's end-effector (Table I) back to its
-// place. The foot's pitch is what this costs, kept off the ground and within the leg's reach.
+// Robust mode starts from the tables' angles, which know of stiff joints already (walk_style.cpp).
+// Six rows hold the whole foot; the knee's swivel, which they leave free, is pulled to the data's.
+// What is left to solve for is little, and the weights of equation (5) share it out.
 #include "animation/walk_parts.h"
 
 namespace gaitpad {
@@ -13,13 +12,10 @@ namespace {
 
 constexpr double kLeastKnee = 1.0 * kDegree;  // where the solver starts: a knee that bends forward
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
-constexpr double kUnhurriedStep_s = 0.46;
 constexpr double kSoftToe = 15.0 * kDegree;
-constexpr double kSoftFree = 6.0 * kDegree, kFreeClearance_m = 0.006;
-constexpr double kFreeReach = 0.9985, kSoftReach_m = 0.006;
+constexpr double kLeastWeight = 0.05;
 constexpr double kLeak_per_s = 4.0;   // of the correction on the data's angles
 constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
-constexpr double kFolding = 45.0 * kDegree, kFolded = 90.0 * kDegree;  // knee
 constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 
@@ -85,23 +81,6 @@ FootGoal whole_foot(const LegBuild& leg, const FootState& foot, const Pelvis& pe
   return foot_goal(leg, foot, pelvis, FootEnd::heel);
 }
 
-// How much the weights show: in mid-flight and in mid-support. They fade before the next stage
-// takes the foot over, so places of landing and lift-off do not depend on them.
-double weight_share(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  const FootState& foot = state.foot[side];
-  const bool stays = (state.closing || !state.started) && side != step_foot(state);
-  if (foot.mode == FootMode::roll || state.stage == Stage::idle || stays) return 0.0;
-  double p = flight_progress(state);
-  if (foot.mode == FootMode::support) {
-    const double begin = model.share[side == kRightSide ? 0 : 2];
-    p = (own_phase(model, state, side) - begin) / (model.leg[side].toe_off - begin);
-  }
-  // Quick steps leave less time to lag behind and catch up, and stairs leave less room.
-  const double calm = std::min(1.0, state.step_time_s.x / kUnhurriedStep_s) * state.ground_share.x;
-  return state.amplitude.x * state.amplitude.x * calm * std::sqrt(calm) * smoothstep(0.0, 0.25, p) *
-         (1.0 - smoothstep(0.55, 0.95, p));
-}
-
 double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, const FootPose& pose,
                   const IkFrame& end) noexcept {
   const vec3 line = glm::inverse(rotation_y(pose.yaw_rad)) *
@@ -129,61 +108,12 @@ struct Solve {
   }
 };
 
-double leg_span(const LegBuild& leg, const Pelvis& pelvis, FootPose pose, double pitch_rad,
-                FootMode mode) noexcept {
-  set_pitch(leg, pitch_rad, pose, mode);
-  return glm::distance(pelvis.hip(leg), pose.heel_m - foot_rotation(leg, pose) * leg.model.heel_m);
-}
-
-// The pitch that the weights ask for, kept off the floor and within the leg's reach.
-double free_pitch(const WalkModel& model, const LegBuild& leg, const Pelvis& pelvis,
-                  const FootState& foot, double wanted_rad, double share) noexcept {
-  const double planned = foot.pose.pitch_rad, soft = kSoftFree * share;
-  double pitch = wanted_rad;
-  if (foot.mode == FootMode::support) {
-    pitch = soft_max(pitch, 0.0, std::min(soft, std::max(1e-9, planned)));
-  } else {
-    const double limit = highest_pitch(leg, heel_height(foot), kFreeClearance_m * model.size);
-    pitch = soft_min(pitch, std::max(limit, planned), std::max(1e-9, soft));
-  }
-  const double span = leg_span(leg, pelvis, foot.pose, planned, foot.mode);
-  const double longer = leg_span(leg, pelvis, foot.pose, pitch, foot.mode) - span;
-  const double room = std::max(0.0, kFreeReach * leg.model.length_m() - span);
-  if (longer <= 1e-9) return pitch;
-  // The leg lengthens only as far as there is room, with rounding.
-  const double allowed = soft_min(longer, room, std::min(room, kSoftReach_m * model.size));
-  return mix(planned, pitch, std::clamp(allowed / longer, 0.0, 1.0));
-}
-
-// Weights of eq. (5): each joint follows the even pose's change since the stage began by its own
-// weight, and the solver makes up the rest at the stage's end-effector. The pitch that this gives,
-// kept off the floor, becomes the foot's.
-void stiffen_leg(const Tick& tick, Side side, const Pelvis& pelvis, double share, WalkState& state,
-                 IkAngles& angles, Solve& solve) noexcept {
-  const LegBuild& leg = tick.model.leg[side];
-  FootState& foot = state.foot[side];
-  IkChain chain = leg.chain;
+// Weights count relative to the leg's largest. The foot's place goes before a locked joint.
+void set_weights(const WalkState& state, Side side, IkChain& chain) noexcept {
   double largest = 1e-6;
-  for (int j = 0; j < kLegDofs; ++j) largest = std::max(largest, state.weight[side][j].x);
-  for (int j = 0; j < kLegDofs; ++j) {
-    const double w = std::clamp(state.weight[side][j].x / largest, 0.0, 1.0);
-    chain.dof[j].weight = w;
-    angles[j] += share * held_back(w) * (foot.anchor_rad[j] - angles[j]);
-  }
-  solve.add(solve_robust(chain, foot_goal(leg, foot, pelvis, end_effector(foot)).effector(),
-                         kRobust, angles));
-  const double free = foot_pitch(leg, pelvis, foot.pose, end_frame(chain, angles));
-  set_pitch(leg, free_pitch(tick.model, leg, pelvis, foot, free, share), foot.pose, foot.mode);
-  solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
-}
-
-bool are_weights_even(const WalkState& state, Side side) noexcept {
-  double low = 1e9, high = 0.0;
-  for (const Damped<double>& w : state.weight[side]) {
-    low = std::min(low, w.x);
-    high = std::max(high, w.x);
-  }
-  return high - low < kEvenSpread;
+  for (const Damped<double>& w : state.weight[side]) largest = std::max(largest, w.x);
+  for (int j = 0; j < kLegDofs; ++j)
+    chain.dof[j].weight = std::clamp(state.weight[side][j].x / largest, kLeastWeight, 1.0);
 }
 
 // Points a flying foot down: as far as the ground allows by its pitch alone, and farther by lifting
@@ -206,7 +136,7 @@ void point_foot_down(const LegBuild& leg, double more_rad, double flight_progres
 // Eases an ankle that would bend up too far: in flight the foot points down, in late support the
 // heel rises. A foot that has to stand still does neither.
 void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvis& pelvis,
-                IkAngles& angles, FootState& foot, Solve& solve) noexcept {
+                const IkChain& chain, IkAngles& angles, FootState& foot, Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   const bool flies = foot.mode == FootMode::flight;
   double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], kSoftAnkle);
@@ -217,7 +147,7 @@ void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvi
   } else {
     set_pitch(leg, foot.pose.pitch_rad + excess, foot.pose, foot.mode);
   }
-  solve.add(solve_robust(leg.chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
+  solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
 }
 
 void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelvis& pelvis,
@@ -229,24 +159,20 @@ void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelv
   const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
   IkAngles angles{};
   for (int j = 0; j < kLegDofs; ++j) {
-    angles[j] = data[j] + keep * (state.even_rad[side][j] - state.data_rad[side][j]);
+    angles[j] = data[j] + keep * (state.angles_rad[side][j] - state.data_rad[side][j]);
   }
   state.data_rad[side] = data;
   IkChain chain = leg.chain;
+  set_weights(state, side, chain);
   // Solve without the ankle's limit first, so that the knee does not twist.
+  const double most_dorsiflexion = chain.dof[kAnkleX].min_rad;
   chain.dof[kAnkleX].min_rad = -kPi;
   solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
-  ease_ankle(tick, state, side, pelvis, angles, state.foot[side], solve);
-  if (angles[kAnkleX] < leg.chain.dof[kAnkleX].min_rad) {
-    solve.add(
-        solve_robust(leg.chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+  chain.dof[kAnkleX].min_rad = most_dorsiflexion;
+  ease_ankle(tick, state, side, pelvis, chain, angles, state.foot[side], solve);
+  if (angles[kAnkleX] < most_dorsiflexion) {
+    solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   }
-  state.even_rad[side] = leg_angles(angles);
-  double share = weight_share(tick.model, state, side);
-  // A fully folded leg cannot be stiffened too.
-  if (!tick.flat) share *= 1.0 - smoothstep(kFolding, kFolded, angles[kKneeX]);
-  if (share > 0.0 && !are_weights_even(state, side))
-    stiffen_leg(tick, side, pelvis, share, state, angles, solve);
   state.angles_rad[side] = leg_angles(angles);
 }
 
@@ -263,7 +189,7 @@ void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& st
   const bool both = foot == FootMode::roll ||
                     (foot == FootMode::support && heel_rise(tick.model, state, side) == 0.0);
   solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
-  state.angles_rad[side] = state.even_rad[side] = leg_angles(angles);
+  state.angles_rad[side] = leg_angles(angles);
 }
 
 }  // namespace

@@ -291,13 +291,6 @@ vec3 mean_heel(const GaitCycle& source, Side side) {
   return sum;
 }
 
-void fill_bounce(const GaitCycle& source, double ratio, WalkModel& model) {
-  double mean = 0.0;
-  for (const CycleSample& sample : source.samples) mean += sample.pelvis_m.y / kCycleSamples;
-  for (int i = 0; i < kCycleSamples; ++i)
-    model.bounce_m.value[i] = (source.samples[i].pelvis_m.y - mean) * ratio;
-}
-
 void fill_shares(const GaitCycle& source, WalkModel& model) {
   const double left_off = source.toe_off[kLeftSide], left_strike = source.strike[kLeftSide],
                right_off = source.toe_off[kRightSide];
@@ -409,7 +402,6 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.leg[side].track_m = mean_heel(cycle, side).x * ratio +
                               cycle.leg[side].hip_m.x * (character.scale - ratio);
   }
-  fill_bounce(cycle, ratio, model);
   fill_shares(cycle, model);
   const double source_step = 0.5 * cycle.stride_m;
   model.source_step_m = source_step * ratio;
@@ -421,6 +413,9 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   for (std::vector<StrideTable>* tables : {&model.strides.table, &model.strides.back}) {
     for (StrideTable& table : *tables)
       table = scaled(table, ratio, character.scale, cycle.leg, strides.stand_roll_rad);
+  }
+  for (StrideResponse& response : model.strides.response) {
+    for (StrideChange& knot : response.knot) knot.pelvis_m *= ratio;
   }
   const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
   const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);

@@ -42,7 +42,8 @@ struct StridePlan {
   double change = 0.0;            // from the one stride, at 0, to the other, at 1
   double shown = 0.0;             // how much of the tables shows: 0 when standing
   std::array<StridePlace, 2> at;  // the two strides at this phase
-  StrideCell cell;                // both, mixed by `change` and `shown`
+  StrideCell cell;                // both, mixed by `change` and `shown`, and what a style changes
+  StrideChange injury;            // of that: what one stiff leg alone changes
 };
 // The running step's length over the data's.
 double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept;
@@ -65,6 +66,13 @@ struct Pelvis {
 // The pelvis of this tick, still without the height that the legs ask for.
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
                           const StridePlan& plan) noexcept;
+
+// --- walk_style.cpp: what a style asks of the stride ----------------------------------------------
+// From the smoothed parameters. In paper mode weights act on the inverse kinematics alone.
+void grant_wishes(IkMode mode, WalkState& state) noexcept;
+// Changes the tables' cell by what is granted in a stride of this ratio.
+void change_stride(const StrideFamily& strides, const WalkState& state, double ratio,
+                   StridePlan& plan) noexcept;
 
 // --- walk_terrain.cpp: footholds, and flights over what lies between them ------------------------
 // Height of the plane at a place.
@@ -122,7 +130,7 @@ void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode m
 double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noexcept;
 // At the end of a tick: keeps what the next ticks' derivatives need.
 void remember_foot(FootState& foot) noexcept;
-void begin_support(FootState& foot, const LegAngles& even_rad) noexcept;
+void begin_support(FootState& foot) noexcept;
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
 void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept;
 

@@ -26,6 +26,13 @@ std::span<double> of_stride(StyleValues& style, int side) {
 std::span<double> of_arm_swing(StyleValues& style, int side) {
   return {&style.body.arm_swing[side], 1};
 }
+std::span<double> of_arm_out(StyleValues& style, int side) {
+  return {&style.body.arm_out_deg[side], 1};
+}
+template <double TrunkParams::*number>
+std::span<double> of_trunk(StyleValues& style, int) {
+  return {&(style.body.trunk.*number), 1};
+}
 template <double HandParams::*number>
 std::span<double> of_hand(StyleValues& style, int side) {
   return {&(style.body.hand[side].*number), 1};
@@ -78,6 +85,7 @@ constexpr StyleField kLegFields[] = {
 };
 constexpr StyleField kArmFields[] = {
     {"swing", "x", 0.0, 3.0, &of_arm_swing},
+    {"out_deg", "deg", 0.0, 45.0, &of_arm_out},
     arm_weight<kShoulderX, kShoulderY>("weight.shoulder"),
     arm_weight<kElbowX>("weight.elbow"),
     arm_weight<kWristX, kWristZ>("weight.wrist"),
@@ -96,6 +104,11 @@ constexpr StyleField kHandFields[] = {
     {"rail", "", 0.0, 1.0, &of_hand<&HandParams::rail>},
     {"rail_height_m", "m", 0.3, 2.0, &of_hand<&HandParams::rail_height_m>},
     {"rail_side_m", "m", 0.1, 1.0, &of_hand<&HandParams::rail_side_m>},
+};
+constexpr StyleField kTrunkFields[] = {
+    {"lean_deg", "deg", -20.0, 40.0, &of_trunk<&TrunkParams::lean_deg>},
+    {"over_left_deg", "deg", 0.0, 30.0, &of_trunk<&TrunkParams::over_left_deg>},
+    {"over_right_deg", "deg", 0.0, 30.0, &of_trunk<&TrunkParams::over_right_deg>},
 };
 constexpr StyleField kSpineFields[] = {
     {"weight.lower", "", 0.0, 1.0, &dofs<&spine_weights, kLowerSpine>},
@@ -123,6 +136,7 @@ constexpr StyleSection kSections[] = {
     {"hands", kLeftSide, kRightSide, kHandFields, nullptr, ""},
     {"left_hand", kLeftSide, kLeftSide, kHandFields, nullptr, ""},
     {"right_hand", kRightSide, kRightSide, kHandFields, nullptr, ""},
+    {"trunk", kLeftSide, kLeftSide, kTrunkFields, nullptr, ""},
     {"spine", kLeftSide, kLeftSide, kSpineFields, &spine_weights, "spine"},
     {"head", kLeftSide, kLeftSide, kHeadFields, nullptr, ""},
 };

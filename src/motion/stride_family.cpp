@@ -1,5 +1,7 @@
 #include "gaitpad/stride_family.h"
 
+#include "gaitpad/curve.h"
+
 namespace gaitpad {
 namespace {
 
@@ -21,13 +23,42 @@ std::array<double, 4> spline(double t) noexcept {
           (4.0 + s * s * (3.0 * s - 6.0)) / 6.0, t * t * t / 6.0};
 }
 
-constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
+static_assert(sizeof(StrideChange) == 19 * sizeof(double));
 
-void add(StrideCell& sum, const StrideCell& cell, double weight) noexcept {
+// Both kinds of cells are numbers alone.
+template <class Cell>
+void add(Cell& sum, const Cell& cell, double weight) noexcept {
   double* to = &sum.pelvis_m.x;
   const double* from = &cell.pelvis_m.x;
-  for (int k = 0; k < kNumbers; ++k) to[k] += weight * from[k];
+  for (std::size_t k = 0; k < sizeof(Cell) / sizeof(double); ++k) to[k] += weight * from[k];
+}
+
+// The inverse of [1 4 1] / 6: the samples, filtered forwards and back by the filter's pole (Unser
+// 1993). Its response is cut off where it is below the rounding of a double.
+template <class Cell>
+std::array<Cell, kCycleSamples> knots_of(const std::array<Cell, kCycleSamples>& samples) noexcept {
+  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
+  constexpr int kReach = 28;
+  const auto at = [](int i) { return (i + 2 * kCycleSamples) % kCycleSamples; };
+  const auto filtered = [](const Cell& cell, double gain, const Cell& before) {
+    Cell sum;
+    add(sum, cell, gain);
+    add(sum, before, kPole);
+    return sum;
+  };
+  std::array<Cell, kCycleSamples> once, knots;
+  Cell sum;
+  for (int i = -kReach; i < kCycleSamples; ++i) {
+    sum = filtered(samples[at(i)], 1.0, sum);
+    if (i >= 0) once[i] = sum;
+  }
+  sum = Cell{};
+  for (int i = kCycleSamples - 1 + kReach; i >= 0; --i) {
+    sum = filtered(once[at(i)], -6.0 * kPole, sum);
+    if (i < kCycleSamples) knots[i] = sum;
+  }
+  return knots;
 }
 
 }  // namespace
@@ -40,25 +71,29 @@ StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
   return sum;
 }
 
-// The inverse of [1 4 1] / 6: the samples, filtered forwards and back by the filter's pole (Unser
-// 1993). Its response is cut off where it is below the rounding of a double.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept {
-  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
-  constexpr int kReach = 28;
-  const auto at = [](int i) { return (i + 2 * kCycleSamples) % kCycleSamples; };
-  std::array<StrideCell, kCycleSamples> once, knots;
-  StrideCell sum;
-  for (int i = -kReach; i < kCycleSamples; ++i) {
-    sum = mixed(samples[at(i)], sum, 1.0, kPole);
-    if (i >= 0) once[i] = sum;
+  return knots_of(samples);
+}
+std::array<StrideChange, kCycleSamples> knots_through(
+    const std::array<StrideChange, kCycleSamples>& samples) noexcept {
+  return knots_of(samples);
+}
+
+StrideChange change_at(const std::vector<StrideResponse>& response, const StrideWishes& granted,
+                       double phase) noexcept {
+  const double x = (phase - std::floor(phase)) * kCycleSamples;
+  const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
+  const std::array<double, 4> by_phase = spline(x - i);
+  StrideChange change;
+  for (int wish = 0; wish < kStrideWishes; ++wish) {
+    if (granted[wish] == 0.0) continue;
+    for (int m = 0; m < 4; ++m) {
+      const int k = (i + m - 1 + kCycleSamples) % kCycleSamples;
+      add(change, response[wish].knot[k], granted[wish] * by_phase[m]);
+    }
   }
-  sum = StrideCell{};
-  for (int i = kCycleSamples - 1 + kReach; i >= 0; --i) {
-    sum = mixed(once[at(i)], sum, -6.0 * kPole, kPole);
-    if (i < kCycleSamples) knots[i] = sum;
-  }
-  return knots;
+  return change;
 }
 
 StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
@@ -86,6 +121,12 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
     }
   }
   return place;
+}
+
+double low_lift(double u, double lift) noexcept {
+  constexpr double kAtLiftOff = 0.0, kAll = 0.5, kUntil = 0.6;  // shares of it, of the flight
+  const double grown = mix(kAtLiftOff, 1.0, smootherstep(u / kAll));
+  return mix(1.0, lift, grown * (1.0 - smootherstep((u - kUntil) / (1.0 - kUntil))));
 }
 
 double roll_time_share(double data_share, double ratio) noexcept {

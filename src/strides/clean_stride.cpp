@@ -5,7 +5,6 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <optional>
 #include <tuple>
 
 #include "gaitpad/curve.h"
@@ -30,7 +29,7 @@ constexpr int kLanding = 6;  // samples over which this fades
 // People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square metre
 // of a second difference.
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
-constexpr double kMostHeave_m_s2 = 7.0, kSoftHeave_m_s2 = 2.0;  // up and down
+constexpr double kSoftHeave_m_s2 = 2.0;  // up and down
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kLeastKnee = 2.0 * kDegree, kSoftKnee = 2.0 * kDegree;
@@ -176,13 +175,11 @@ struct StrideSolver::System {
     has_new_entries = false;
   }
 
-  // Nothing where the matrix has no factors, as with numbers that are none.
-  std::optional<Eigen::VectorXd> step() {
+  // Fails, in factor.info(), with numbers that are none.
+  void factorise() {
     if (has_new_entries) find_entries();
     for (std::size_t e = 0; e < entry_at.size(); ++e) normal.valuePtr()[e] = block[entry_at[e]];
     factor.factorize(normal);
-    if (factor.info() != Eigen::Success) return std::nullopt;
-    return factor.solve(gradient);
   }
 
   // Where unknown k of sample i stands, -1 <= i <= samples, and the factor to it.
@@ -285,6 +282,11 @@ double& unknown(StrideSample& s, int k) {
 }
 double unknown(const StrideSample& s, int k) { return unknown(const_cast<StrideSample&>(s), k); }
 
+double factor_of(const StrideProblem& p, int k) {
+  if (k < kPelvis) return p.pelvis_weight[k];
+  return p.leg_weight[(k - kPelvis) / kLegDofs][(k - kPelvis) % kLegDofs];
+}
+
 constexpr double kSameMirrored = 1e-9;  // metres, radians, cycles
 
 bool is_mirrored(const vec3& a, const vec3& b) {
@@ -292,7 +294,8 @@ bool is_mirrored(const vec3& a, const vec3& b) {
 }
 bool is_same(double a, double b) { return std::abs(a - b) < kSameMirrored; }
 
-// Whether half a stride later everything is the mirror image.
+}  // namespace
+
 bool is_symmetric(const StrideProblem& p) {
   const int n = static_cast<int>(p.wanted.size()), half = n / 2;
   const LegModel &left = p.leg[0], &right = p.leg[1];
@@ -303,174 +306,203 @@ bool is_symmetric(const StrideProblem& p) {
               is_same(left.shank_m, right.shank_m) && is_same(p.strike[0], p.strike[1] + 0.5) &&
               is_same(p.toe_off[0] + 0.5, p.toe_off[1]) &&
               is_mirrored(p.heel_m[0], p.heel_m[1] + on);
+  for (int i = 0; i < half && same && !p.flying_heel_m.empty(); ++i) {
+    for (int side : {0, 1})
+      same = same && is_mirrored(p.flying_heel_m[i][side], p.flying_heel_m[i + half][1 - side]);
+  }
   for (int i = 0; i < half && same; ++i) {
     const StrideSample &a = p.wanted[i], &b = p.wanted[i + half];
     same = is_same(p.time[i] + 0.5, p.time[i + half]) &&
            is_same(std::abs(glm::dot(a.pelvis, mirrored(b.pelvis))), 1.0);
     for (int k = 0; k < kUnknowns && same; ++k) {
       const Mirrored m = mirror_of(k);
-      same = is_same(unknown(a, k), m.factor * unknown(b, m.unknown));
+      same = is_same(unknown(a, k), m.factor * unknown(b, m.unknown)) &&
+             factor_of(p, k) == factor_of(p, m.unknown);
     }
   }
   return same;
 }
 
-}  // namespace
-
 StrideSolver::StrideSolver() = default;
 StrideSolver::~StrideSolver() = default;
 
-std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
-                                              std::vector<StrideSample> x, int iterations) {
+void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSample>& x) {
+  System& s = *system_;
+  const int n = s.samples, solved = s.solved;
+  s.clear();
+  // Close to the data, and smoothly so.
+  for (int i = 0; i < solved; ++i) {
+    for (int k = 0; k < kUnknowns; ++k) {
+      const int at = i * kUnknowns + k;
+      const double weight = weight_of(k) * factor_of(problem, k);
+      const double smooth =
+          kSmooth * weight * (k == 1 ? kPelvisSmoothUp : k < kPelvis ? kPelvisSmooth : 1.0);
+      std::array<double, 3> change;
+      std::array<Mirrored, 3> where;
+      for (int d : {0, 1, 2}) {
+        const int j = (i + d + n - 1) % n;
+        change[d] = unknown(x[j], k) - unknown(problem.wanted[j], k);
+        where[d] = s.place_of(i + d - 1, k);
+      }
+      s.at(at, at) += weight;
+      s.gradient[at] += weight * change[1];
+      constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
+      const double bend = change[0] - 2.0 * change[1] + change[2];
+      for (int d : {0, 1, 2}) {
+        const double slope = smooth * kBend[d] * where[d].factor;
+        s.gradient[where[d].unknown] += slope * bend;
+        for (int e = 0; e <= d; ++e) {
+          s.at(where[d].unknown, where[e].unknown) += slope * kBend[e] * where[e].factor;
+        }
+      }
+    }
+  }
+  std::vector<double> path_m(n);
+  for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
+  const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
+  for (int i = 0; i < solved; ++i) {
+    s.add_surge(i, 2, x, path_m, problem.stride_m, kMostSurge_m_s2 * tick2,
+                kSoftSurge_m_s2 * tick2);
+    s.add_surge(i, 1, x, path_m, problem.stride_m, problem.most_heave_m_s2 * tick2,
+                kSoftHeave_m_s2 * tick2);
+  }
+  // Feet.
+  std::array<std::vector<LegFrames>, 2> all_frames;
+  for (int side : {0, 1}) {
+    const LegModel& leg = problem.leg[side];
+    std::vector<PointRows> heels, toes;
+    for (int i = 0; i < n; ++i) {
+      const LegFrames& frames = all_frames[side].emplace_back(leg_frames(leg, x[i], side));
+      heels.push_back(point_rows(frames, leg.heel_m));
+      toes.push_back(point_rows(frames, leg.toe_m));
+    }
+    const int strike = static_cast<int>(std::floor(problem.strike[side] * n + 1e-9)),
+              lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - 1e-9)),
+              down = static_cast<int>(std::floor(problem.toe_off[1 - side] * n + 1e-9));
+    for (int d = 0; d < kLanding; ++d) {
+      const double fades = 1.0 - double(d) / kLanding, weight = fades * fades;
+      const auto soften = [&](int sample, const std::vector<PointRows>& point, double soft) {
+        s.add_bend((sample + n) % n, side, point, path_m, problem.stride_m, weight * soft);
+      };
+      soften(strike - d, heels, kSoftStrike);
+      soften(down - d, toes, kSoftToeDown);
+      soften(lift + d, toes, kSoftToe);
+    }
+  }
+  for (int i = 0; i < solved; ++i) {
+    const double phase = double(i) / n;
+    for (int side : {0, 1}) {
+      const LegModel& leg = problem.leg[side];
+      const LegFrames& frames = all_frames[side][i];
+      // A point stands from the sample before its event to the one after it.
+      constexpr double kNear = 1e-9;
+      const double sample = (1.0 - kNear) / n;
+      const double begins = fraction(phase - problem.strike[side] + sample);
+      const double own = begins - sample;
+      const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);
+      const double support = fraction(problem.toe_off[side] - problem.strike[side]);
+      const PointRows heel = point_rows(frames, leg.heel_m), toe = point_rows(frames, leg.toe_m);
+      vec3 heel_goal = problem.heel_m[side];
+      // A foot in stance at the cycle's end stands on where it came from.
+      const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
+      heel_goal.z -= problem.stride_m * (problem.time[i] + turns);
+      const vec3 toe_goal = heel_goal + leg.toe_m - leg.heel_m;
+      const bool rolls = own <= roll + sample,
+                 supports = own >= roll - sample && own <= support + sample;
+      if (rolls) {
+        for (int a = 0; a < 3; ++a) {
+          vec3 d(0.0);
+          d[a] = 1.0;
+          s.add_row(i, side, heel, d, heel.place_m[a] - heel_goal[a], kPlanted);
+        }
+      } else {
+        s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
+      }
+      if (!problem.flying_heel_m.empty() && !rolls && own > support - sample) {
+        for (int a = 0; a < 3; ++a) {
+          vec3 d(0.0);
+          d[a] = 1.0;
+          s.add_row(i, side, heel, d, heel.place_m[a] - problem.flying_heel_m[i][side][a], kPlanted);
+        }
+      }
+      if (supports) {
+        for (int a = 0; a < 3; ++a) {
+          vec3 d(0.0);
+          d[a] = 1.0;
+          s.add_row(i, side, toe, d, toe.place_m[a] - toe_goal[a], kPlanted);
+        }
+      } else {
+        const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
+        const double least = leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
+        s.add_floor(i, side, toe, least, kSoftFloor_m);
+      }
+      if (rolls || supports) {
+        // Level across, pointing ahead.
+        const PointRows beside = point_rows(frames, leg.heel_m + vec3(kSide_m, 0.0, 0.0));
+        PointRows across = beside, along = toe;
+        across.place_m -= heel.place_m;
+        along.place_m -= heel.place_m;
+        for (int j = 0; j < kLegDofs; ++j) {
+          across.by_angle[j] -= heel.by_angle[j];
+          along.by_angle[j] -= heel.by_angle[j];
+        }
+        // These two do not depend on the pelvis: add by hand.
+        const int base = i * kUnknowns + leg_unknown(side);
+        const double want_x = (leg.toe_m - leg.heel_m).x;
+        for (const auto& [point, axis, error] :
+             {std::tuple{&across, 1, across.place_m.y}, std::tuple{&along, 0, along.place_m.x - want_x}}) {
+          for (int p = 0; p < kLegDofs; ++p) {
+            s.gradient[base + p] += kLevel * point->by_angle[p][axis] * error;
+            for (int q = 0; q <= p; ++q) {
+              s.at(base + p, base + q) += kLevel * point->by_angle[p][axis] * point->by_angle[q][axis];
+            }
+          }
+        }
+      }
+      const double bend = kLeastKnee - x[i].leg[side][kKneeX];
+      if (bend > -kSoftKnee) {
+        const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
+        const double slope = std::min(1.0, 0.5 * (bend + kSoftKnee) / kSoftKnee);
+        s.at(at, at) += kKnee * slope * slope;
+        s.gradient[at] -= kKnee * slope * soft_positive(bend, kSoftKnee);
+      }
+    }
+  }
+}
+
+// Moves the stride by the system's step. False where it has none.
+bool StrideSolver::move(std::vector<StrideSample>& x) {
+  const System& s = *system_;
+  if (s.factor.info() != Eigen::Success) return false;
+  const Eigen::VectorXd step = s.factor.solve(s.gradient);
+  for (int i = 0; i < s.solved; ++i) {
+    for (int k = 0; k < kUnknowns; ++k) {
+      unknown(x[i], k) -= std::clamp(step[i * kUnknowns + k], -kMostStep, kMostStep);
+    }
+  }
+  for (int i = s.solved; i < s.samples; ++i) {
+    for (int k = 0; k < kUnknowns; ++k) {
+      const Mirrored m = mirror_of(k);
+      unknown(x[i], k) = m.factor * unknown(x[i - s.solved], m.unknown);
+    }
+  }
+  return true;
+}
+
+void StrideSolver::begin(const StrideProblem& problem) {
   const int n = static_cast<int>(problem.wanted.size());
   const int solved = is_symmetric(problem) ? n / 2 : n;
   if (!system_ || system_->samples != n || system_->solved != solved)
     system_ = std::make_unique<System>(n, solved);
-  System& s = *system_;
+}
+
+std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
+                                              std::vector<StrideSample> x, int iterations) {
+  begin(problem);
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    s.clear();
-    // Close to the data, and smoothly so.
-    for (int i = 0; i < solved; ++i) {
-      for (int k = 0; k < kUnknowns; ++k) {
-        const int at = i * kUnknowns + k;
-        const double weight = weight_of(k);
-        const double smooth =
-            kSmooth * weight * (k == 1 ? kPelvisSmoothUp : k < kPelvis ? kPelvisSmooth : 1.0);
-        std::array<double, 3> change;
-        std::array<Mirrored, 3> where;
-        for (int d : {0, 1, 2}) {
-          const int j = (i + d + n - 1) % n;
-          change[d] = unknown(x[j], k) - unknown(problem.wanted[j], k);
-          where[d] = s.place_of(i + d - 1, k);
-        }
-        s.at(at, at) += weight;
-        s.gradient[at] += weight * change[1];
-        constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
-        const double bend = change[0] - 2.0 * change[1] + change[2];
-        for (int d : {0, 1, 2}) {
-          const double slope = smooth * kBend[d] * where[d].factor;
-          s.gradient[where[d].unknown] += slope * bend;
-          for (int e = 0; e <= d; ++e) {
-            s.at(where[d].unknown, where[e].unknown) += slope * kBend[e] * where[e].factor;
-          }
-        }
-      }
-    }
-    std::vector<double> path_m(n);
-    for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
-    const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
-    for (int i = 0; i < solved; ++i) {
-      s.add_surge(i, 2, x, path_m, problem.stride_m, kMostSurge_m_s2 * tick2, kSoftSurge_m_s2 * tick2);
-      s.add_surge(i, 1, x, path_m, problem.stride_m, kMostHeave_m_s2 * tick2, kSoftHeave_m_s2 * tick2);
-    }
-    // Feet.
-    std::array<std::vector<LegFrames>, 2> all_frames;
-    for (int side : {0, 1}) {
-      const LegModel& leg = problem.leg[side];
-      std::vector<PointRows> heels, toes;
-      for (int i = 0; i < n; ++i) {
-        const LegFrames& frames = all_frames[side].emplace_back(leg_frames(leg, x[i], side));
-        heels.push_back(point_rows(frames, leg.heel_m));
-        toes.push_back(point_rows(frames, leg.toe_m));
-      }
-      const int strike = static_cast<int>(std::floor(problem.strike[side] * n + 1e-9)),
-                lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - 1e-9)),
-                down = static_cast<int>(std::floor(problem.toe_off[1 - side] * n + 1e-9));
-      for (int d = 0; d < kLanding; ++d) {
-        const double fades = 1.0 - double(d) / kLanding, weight = fades * fades;
-        const auto soften = [&](int sample, const std::vector<PointRows>& point, double soft) {
-          s.add_bend((sample + n) % n, side, point, path_m, problem.stride_m, weight * soft);
-        };
-        soften(strike - d, heels, kSoftStrike);
-        soften(down - d, toes, kSoftToeDown);
-        soften(lift + d, toes, kSoftToe);
-      }
-    }
-    for (int i = 0; i < solved; ++i) {
-      const double phase = double(i) / n;
-      for (int side : {0, 1}) {
-        const LegModel& leg = problem.leg[side];
-        const LegFrames& frames = all_frames[side][i];
-        // A point stands from the sample before its event to the one after it.
-        constexpr double kNear = 1e-9;
-        const double sample = (1.0 - kNear) / n;
-        const double begins = fraction(phase - problem.strike[side] + sample);
-        const double own = begins - sample;
-        const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);
-        const double support = fraction(problem.toe_off[side] - problem.strike[side]);
-        const PointRows heel = point_rows(frames, leg.heel_m), toe = point_rows(frames, leg.toe_m);
-        vec3 heel_goal = problem.heel_m[side];
-        // A foot in stance at the cycle's end stands on where it came from.
-        const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
-        heel_goal.z -= problem.stride_m * (problem.time[i] + turns);
-        const vec3 toe_goal = heel_goal + leg.toe_m - leg.heel_m;
-        const bool rolls = own <= roll + sample,
-                   supports = own >= roll - sample && own <= support + sample;
-        if (rolls) {
-          for (int a = 0; a < 3; ++a) {
-            vec3 d(0.0);
-            d[a] = 1.0;
-            s.add_row(i, side, heel, d, heel.place_m[a] - heel_goal[a], kPlanted);
-          }
-        } else {
-          s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
-        }
-        if (supports) {
-          for (int a = 0; a < 3; ++a) {
-            vec3 d(0.0);
-            d[a] = 1.0;
-            s.add_row(i, side, toe, d, toe.place_m[a] - toe_goal[a], kPlanted);
-          }
-        } else {
-          const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
-          const double least = leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
-          s.add_floor(i, side, toe, least, kSoftFloor_m);
-        }
-        if (rolls || supports) {
-          // Level across, pointing ahead.
-          const PointRows beside = point_rows(frames, leg.heel_m + vec3(kSide_m, 0.0, 0.0));
-          PointRows across = beside, along = toe;
-          across.place_m -= heel.place_m;
-          along.place_m -= heel.place_m;
-          for (int j = 0; j < kLegDofs; ++j) {
-            across.by_angle[j] -= heel.by_angle[j];
-            along.by_angle[j] -= heel.by_angle[j];
-          }
-          // These two do not depend on the pelvis: add by hand.
-          const int base = i * kUnknowns + leg_unknown(side);
-          const double want_x = (leg.toe_m - leg.heel_m).x;
-          for (const auto& [point, axis, error] :
-               {std::tuple{&across, 1, across.place_m.y}, std::tuple{&along, 0, along.place_m.x - want_x}}) {
-            for (int p = 0; p < kLegDofs; ++p) {
-              s.gradient[base + p] += kLevel * point->by_angle[p][axis] * error;
-              for (int q = 0; q <= p; ++q) {
-                s.at(base + p, base + q) += kLevel * point->by_angle[p][axis] * point->by_angle[q][axis];
-              }
-            }
-          }
-        }
-        const double bend = kLeastKnee - x[i].leg[side][kKneeX];
-        if (bend > -kSoftKnee) {
-          const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
-          const double slope = std::min(1.0, 0.5 * (bend + kSoftKnee) / kSoftKnee);
-          s.at(at, at) += kKnee * slope * slope;
-          s.gradient[at] -= kKnee * slope * soft_positive(bend, kSoftKnee);
-        }
-      }
-    }
-    const auto step = s.step();
-    if (!step) return {};
-    for (int i = 0; i < solved; ++i) {
-      for (int k = 0; k < kUnknowns; ++k) {
-        unknown(x[i], k) -= std::clamp((*step)[i * kUnknowns + k], -kMostStep, kMostStep);
-      }
-    }
-    for (int i = solved; i < n; ++i) {
-      for (int k = 0; k < kUnknowns; ++k) {
-        const Mirrored m = mirror_of(k);
-        unknown(x[i], k) = m.factor * unknown(x[i - solved], m.unknown);
-      }
-    }
+    fill(problem, x);
+    system_->factorise();
+    if (!move(x)) return {};
   }
   return x;
 }

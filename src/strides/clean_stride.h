@@ -34,7 +34,15 @@ struct StrideProblem {
   std::vector<double> time;  // of each sample, in cycles: 0 at sample 0
   // Where the heel stands along the path: the travel frame is at stride_m * time.
   std::array<vec3, 2> heel_m{};
+  // Factors on what it costs to change the pelvis' place and the angles.
+  vec3 pelvis_weight{1.0};
+  std::array<LegAngles, 2> leg_weight{{{1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1}}};
+  double most_heave_m_s2 = 7.0;  // how hard the hips rise and fall, about
+  // Where the heels have to be in flight, sample by sample, in the travel frame. Empty: anywhere.
+  std::vector<std::array<vec3, 2>> flying_heel_m;
 };
+// Whether half a stride later everything is the mirror image.
+bool is_symmetric(const StrideProblem& problem);
 
 class StrideSolver {
  public:
@@ -47,6 +55,9 @@ class StrideSolver {
 
  private:
   struct System;
+  void begin(const StrideProblem& problem);
+  void fill(const StrideProblem& problem, const std::vector<StrideSample>& x);
+  bool move(std::vector<StrideSample>& x);
   std::unique_ptr<System> system_;  // of the problem before, kept for its pattern
 };
 

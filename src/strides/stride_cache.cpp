@@ -55,6 +55,7 @@ std::optional<StrideFamily> read_family(const std::string& path, const std::vect
   StrideFamily family;
   family.table.resize(kStrideRatios);
   family.back.resize(kStrideRatios);
+  family.response.resize(kStrideWishes);
   const std::size_t size = file_numbers(input, family).size() * sizeof(double);
   const auto bytes = file_text(path, size);
   if (!bytes || bytes->size() != size) return std::nullopt;

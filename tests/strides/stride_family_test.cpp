@@ -41,23 +41,10 @@ LegPose pose_in(const GaitCycle& cycle, const StrideCell& cell, int side) {
                   0.0);
 }
 
-// Every stride of a family, read at its samples' phases.
-struct StrideSamples {
-  double stride_m;
-  std::array<vec3, 2> footprint_m;
-  std::vector<StrideCell> cell;
-};
-std::vector<StrideSamples> sampled(const StrideFamily& family) {
-  std::vector<StrideSamples> all;
-  for (int k = 0; k < kStrideRatios; ++k) {
-    StrideSamples& stride = all.emplace_back();
-    stride.stride_m = family.table[k].stride_m;
-    stride.footprint_m = family.table[k].footprint_m;
-    for (int i = 0; i < kCycleSamples; ++i)
-      stride.cell.push_back(
-          stride_at(family.table, double(i) / kCycleSamples, k * kRatioStep).cell);
-  }
-  return all;
+// A table at one of its samples: there the spline weighs three knots.
+StrideCell sample_of(const StrideTable& table, int i) {
+  const auto knot = [&](int k) { return table.knot[(k + kCycleSamples) % kCycleSamples]; };
+  return mixed(mixed(knot(i - 1), knot(i + 1), 1.0 / 6, 1.0 / 6), knot(i), 1.0, 4.0 / 6);
 }
 
 // A phase of a foot's own cycle, which begins at its strike.
@@ -85,12 +72,12 @@ INSTANTIATE_TEST_SUITE_P(Walks, StrideFamilyOf, testing::Values("built_in", "une
                          [](const auto& info) { return std::string(info.param); });
 
 TEST_P(StrideFamilyOf, KeepsPlantedPointsWhereTheyStand) {
-  for (const StrideSamples& table : sampled(family)) {
+  for (const StrideTable& table : family.table) {
     double worst_m = 0.0;
     for (int i = 0; i < kCycleSamples; ++i) {
       for (const int side : kSides) {
         const Stance s = stance_of(cycle, i, side);
-        const LegPose pose = pose_in(cycle, table.cell[i], side);
+        const LegPose pose = pose_in(cycle, sample_of(table, i), side);
         const LegModel& leg = cycle.leg[side];
         const vec3 travelled(0.0, 0.0, table.stride_m * (cycle.strike[side] + s.own));
         const vec3 heel_m = table.footprint_m[side], toe_m = heel_m + leg.toe_m - leg.heel_m;
@@ -105,10 +92,10 @@ TEST_P(StrideFamilyOf, KeepsPlantedPointsWhereTheyStand) {
 }
 
 TEST_P(StrideFamilyOf, StaysAboveTheFloor) {
-  for (const StrideSamples& table : sampled(family)) {
+  for (const StrideTable& table : family.table) {
     for (int i = 0; i < kCycleSamples; ++i) {
       for (const int side : kSides) {
-        const LegPose pose = pose_in(cycle, table.cell[i], side);
+        const LegPose pose = pose_in(cycle, sample_of(table, i), side);
         EXPECT_GT(pose.heel_m.y, -kMillimetre) << table.stride_m << " m, sample " << i;
         EXPECT_GT(pose.toe_m.y - cycle.leg[side].toe_rest_m, -kMillimetre)
             << table.stride_m << " m, sample " << i;
@@ -118,8 +105,9 @@ TEST_P(StrideFamilyOf, StaysAboveTheFloor) {
 }
 
 TEST_P(StrideFamilyOf, BendsEveryKneeAboutADegreeAtLeast) {
-  for (const StrideSamples& table : sampled(family)) {
-    for (const StrideCell& cell : table.cell) {
+  for (const StrideTable& table : family.table) {
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const StrideCell cell = sample_of(table, i);
       for (const int side : kSides) {
         const double knee = family.stand_rad[side][kKneeX] + cell.leg_rad[side][kKneeX];
         EXPECT_GT(knee, 0.8 * kDegree) << table.stride_m << " m";
@@ -129,9 +117,9 @@ TEST_P(StrideFamilyOf, BendsEveryKneeAboutADegreeAtLeast) {
 }
 
 TEST_P(StrideFamilyOf, HasNoSeam) {
-  for (const StrideSamples& table : sampled(family)) {
+  for (const StrideTable& table : family.table) {
     const auto change = [&table](int from) {
-      const StrideCell d = mixed(table.cell[(from + 1) % kCycleSamples], table.cell[from], 1, -1);
+      const StrideCell d = mixed(sample_of(table, (from + 1) % kCycleSamples), sample_of(table, from), 1, -1);
       double most = glm::length(d.pelvis_m);
       for (const int side : kSides) {
         for (const double angle : d.leg_rad[side]) most = std::max(most, std::abs(angle));
@@ -145,11 +133,11 @@ TEST_P(StrideFamilyOf, HasNoSeam) {
 }
 
 TEST_P(StrideFamilyOf, HasFeetThatAgreeWithTheLegs) {
-  for (const StrideSamples& table : sampled(family)) {
+  for (const StrideTable& table : family.table) {
     for (int i = 0; i < kCycleSamples; ++i) {
       for (const int side : kSides) {
-        const LegPose pose = pose_in(cycle, table.cell[i], side);
-        const StrideFoot& foot = table.cell[i].foot[side];
+        const LegPose pose = pose_in(cycle, sample_of(table, i), side);
+        const StrideFoot foot = sample_of(table, i).foot[side];
         EXPECT_LT(glm::distance(foot.heel_m, pose.heel_m), 1e-9);
         const vec3 line = cycle.leg[side].toe_m - cycle.leg[side].heel_m;
         const vec3 ahead = glm::normalize(vec3(line.x, 0.0, line.z)),
@@ -227,13 +215,13 @@ TEST_P(StrideFamilyOf, IsPeriodicInPhaseAndClampedInRatio) {
 
 TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
   const GaitCycle cycle = clean_cycle(procedural_gait());
-  const StrideSamples own = sampled(*cycle.strides)[static_cast<std::size_t>(1.0 / kRatioStep + 0.5)];
+  const StrideTable own = cycle.strides->table[static_cast<std::size_t>(1.0 / kRatioStep + 0.5)];
   ASSERT_NEAR(own.stride_m, cycle.stride_m, 1e-12);
   // Root mean square change of an angle, the data read a little later or earlier.
   const auto change = [&](int side, int joint, double shift) {
     double squares = 0.0;
     for (int i = 0; i < kCycleSamples; ++i) {
-      const double now = cycle.strides->stand_rad[side][joint] + own.cell[i].leg_rad[side][joint];
+      const double now = cycle.strides->stand_rad[side][joint] + sample_of(own, i).leg_rad[side][joint];
       const CycleSample data = sample_at(cycle, double(i) / kCycleSamples + shift);
       squares += std::pow(now - data.leg[side].angles[joint], 2);
     }
@@ -255,9 +243,9 @@ TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
 TEST(StrideFamily, IsSymmetricWhereTheDataAre) {
   const StrideFamily family = value_of(stride_family(procedural_gait()));
   constexpr int kHalf = kCycleSamples / 2;
-  for (const StrideSamples& table : sampled(family)) {
+  for (const StrideTable& table : family.table) {
     for (int i = 0; i < kHalf; ++i) {
-      const StrideCell &a = table.cell[i], &b = table.cell[i + kHalf];
+      const StrideCell a = sample_of(table, i), b = sample_of(table, i + kHalf);
       EXPECT_LT(glm::distance(a.pelvis_m, mirrored(b.pelvis_m)), 1e-9);
       EXPECT_NEAR(a.pelvis_yaw_rad, -b.pelvis_yaw_rad, 1e-9);
       EXPECT_LT(glm::distance(a.pelvis_tilt, -mirrored(b.pelvis_tilt)), 1e-9);  // an axial vector
@@ -336,6 +324,65 @@ TEST(StrideFamily, OfUnlikelyWalksHasFiniteTables) {
   EXPECT_TRUE(all_finite(family_of([](GaitCycle& c) {
     for (CycleSample& s : c.samples) s.pelvis_m.y += 0.5;
   })));
+}
+
+// What a wish changes, on the own stride at this sample.
+StrideCell granted(const StrideFamily& family, StrideWish wish, double amount, int i) {
+  StrideWishes wishes{};
+  wishes[static_cast<std::size_t>(wish)] = amount;
+  const double phase = double(i) / kCycleSamples;
+  StrideCell cell = stride_at(family.table, phase, 1.0).cell;
+  const StrideChange change = change_at(family.response, wishes, phase);
+  cell.pelvis_m += change.pelvis_m;
+  for (int side : kSides) {
+    cell.foot[side].pitch_rad += change.pitch_rad[side];
+    for (int j = 0; j < kLegDofs; ++j) cell.leg_rad[side][j] += change.leg_rad[side][j];
+  }
+  return cell;
+}
+
+TEST_P(StrideFamilyOf, KeepsHeelsAndToesNearlyWhereTheyAreWhenAWishIsGranted) {
+  constexpr double kNear_m = 0.02;  // what the inverse kinematics has to close
+  const StrideFamily& family = *cycle.strides;
+  for (const StrideWish wish : {StrideWish::stiff_hips, StrideWish::stiff_knees,
+                                StrideWish::stiff_left_hip, StrideWish::stiff_right_hip}) {
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const StrideCell own = granted(family, wish, 0.0, i), stiff = granted(family, wish, 0.8, i);
+      for (int side : kSides) {
+        const LegPose a = pose_in(cycle, own, side), b = pose_in(cycle, stiff, side);
+        const Stance at = stance_of(cycle, i, side);
+        if (at.own <= at.roll || at.own >= at.support)
+          EXPECT_LT(glm::distance(a.heel_m, b.heel_m), kNear_m) << int(wish) << " at " << i;
+        if (at.own >= at.roll && at.own <= at.support)
+          EXPECT_LT(glm::distance(a.toe_m, b.toe_m), kNear_m) << int(wish) << " at " << i;
+      }
+    }
+  }
+}
+
+TEST_P(StrideFamilyOf, BouncesMoreAndLess) {
+  const auto travel = [&](StrideWish wish, double amount) {
+    double low = 1e9, high = -1e9;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const double y = granted(*cycle.strides, wish, amount, i).pelvis_m.y;
+      low = std::min(low, y), high = std::max(high, y);
+    }
+    return high - low;
+  };
+  // The made walk's pelvis moves in quicker waves, too, which are no bounce.
+  const bool is_built_in = GetParam() == std::string("built_in");
+  const double own = travel(StrideWish::more_bounce, 0.0);
+  EXPECT_NEAR(travel(StrideWish::more_bounce, 1.0) / own, 2.0, is_built_in ? 0.02 : 0.2);
+  EXPECT_LT(travel(StrideWish::less_bounce, 1.0) / own, is_built_in ? 0.6 : 0.9);
+}
+
+TEST(StrideFamily, LeavesPelvisAndSoundLegWhereOneLegIsStiff) {
+  const auto strides = clean_cycle(procedural_gait()).strides;
+  const auto& left = strides->response[static_cast<std::size_t>(StrideWish::stiff_left_hip)];
+  for (const StrideChange& change : left.knot) {
+    EXPECT_EQ(change.pelvis_m, vec3(0.0));
+    EXPECT_EQ(change.leg_rad[kRightSide], LegAngles{});
+  }
 }
 
 TEST(RollTimeShare, IsTheDatasAtItsOwnRatioAndLongerInShortSteps) {

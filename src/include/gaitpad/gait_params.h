@@ -46,11 +46,21 @@ struct HeadParams {
   bool operator==(const HeadParams&) const = default;
 };
 
+// How the trunk is held, beyond what the data do; 0 as in the data. Degrees.
+struct TrunkParams {
+  double lean_deg = 0.0;  // forward, over the whole walk and when standing
+  // Sideways over the left and over the right leg, while that leg stands alone.
+  double over_left_deg = 0.0, over_right_deg = 0.0;
+  bool operator==(const TrunkParams&) const = default;
+};
+
 // What a style says of the body above the hips. Arrays of two are indexed by Side.
 struct UpperBodyParams {
   std::array<double, 2> arm_swing{1.0, 1.0};  // factor on the arm's swing in the motion data
+  std::array<double, 2> arm_out_deg{};  // the upper arms are spread by this
   std::array<ArmWeights, 2> arm_weight{kEvenArmWeights, kEvenArmWeights};
   SpineWeights spine_weight = kEvenSpineWeights;
+  TrunkParams trunk;
   std::array<HandParams, 2> hand;
   HeadParams head;
   bool operator==(const UpperBodyParams&) const = default;

@@ -9,6 +9,7 @@
 // phase * stride_m.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "gaitpad/gait_cycle.h"
@@ -47,6 +48,40 @@ struct StrideTable {
   std::array<StrideCell, kCycleSamples> knot{};
 };
 
+// What a style can ask of a stride.
+enum class StrideWish : std::uint8_t {
+  // A joint flexes less, its curve nears its mean. Of both legs: the pelvis gives way.
+  stiff_hips, stiff_knees, stiff_ankles,
+  // Of one leg: neither the pelvis nor the other leg changes.
+  stiff_left_hip, stiff_left_knee, stiff_left_ankle,
+  stiff_right_hip, stiff_right_knee, stiff_right_ankle,
+  low_left, low_right,  // the heel is lifted kLowLift as high
+  more_bounce,          // the pelvis' vertical travel is doubled: it sinks deeper
+  less_bounce,          // it is gone: the pelvis stays as low as it was at its lowest
+};
+inline constexpr int kStrideWishes = 13;
+inline constexpr double kLowLift = 0.5;  // how high a heel is lifted then
+
+// The factor on the heel's height at a share of the flight, for a foot whose lift has the factor
+// `lift`, at most 1. At the lift-off it acts in part, since the leg has to reach the floor, and near
+// its strike the foot comes down as ever.
+double low_lift(double u, double lift) noexcept;
+
+// What a stride changes by at one phase when a wish is granted. The feet stand where they did and,
+// but for a low lift, the heels fly where they did.
+struct StrideChange {
+  vec3 pelvis_m{0.0};
+  std::array<double, 2> pitch_rad{};  // of the feet
+  std::array<LegAngles, 2> leg_rad{};
+};
+// Of a stride of ratio 1. In other strides it is smaller or larger with the ratio. Knots as in
+// StrideTable.
+struct StrideResponse {
+  std::array<StrideChange, kCycleSamples> knot{};
+};
+// How much of each wish is granted, by StrideWish.
+using StrideWishes = std::array<double, kStrideWishes>;
+
 struct StrideFamily {
   double stand_m = 0.0;              // the pelvis' height when standing,
   double lead_m = 0.0;               // how far it is before the heels,
@@ -56,6 +91,7 @@ struct StrideFamily {
   // as Table I has it. These strides have negative lengths.
   std::vector<StrideTable> back;
   std::vector<StrideTable> table;    // kStrideRatios
+  std::vector<StrideResponse> response;  // kStrideWishes; for walking forwards
 };
 
 // A stride at one phase and ratio.
@@ -67,6 +103,11 @@ struct StridePlace {
 // Knots of the spline that goes through these samples of a cycle.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept;
+std::array<StrideChange, kCycleSamples> knots_through(
+    const std::array<StrideChange, kCycleSamples>& samples) noexcept;
+// What all wishes that are granted change at a phase. No heap.
+StrideChange change_at(const std::vector<StrideResponse>& response, const StrideWishes& granted,
+                       double phase) noexcept;
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
 // A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is clamped
 // to the family's. No heap.

@@ -96,7 +96,6 @@ struct FootState {
   // What the heel's place at lift-off differs by from the tables', and its slope per flight.
   vec3 gap_m{0.0}, gap_slope_m{0.0};
   double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // yaw at lift-off and its slope per flight
-  LegAngles anchor_rad{};      // even pose when the mode began: stiff joints stay near it
   FootPlane plane;             // that it stands on or stood on last
   double base_m = 0.0;         // height of the ground that the pose is planned over
   double rise_m = 0.0;         // how far the foot rises with the hips
@@ -131,6 +130,9 @@ struct UpperBodyState {
   std::array<double, sizeof(UpperBodyParams) / sizeof(double)>
       per_s{};                            // rates of `now`, per second
   int unsettled_ticks = 0;                // until `now` is `goal`
+  // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
+  double forward_rad = 0.0, left_rad = 0.0;
+  std::array<double, 2> out_rad{};
   std::array<double, 2> swing{1.0, 1.0};  // factor on the data's arm swing in this tick, by Side
   // Height of the ground under a rail, smoothed, and its rate.
   std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};
@@ -163,6 +165,7 @@ struct WalkState {
   Damped<double> turn_goal,    // what turn_rate follows: a landing is planned with it
       turn_rate, amplitude, bounce, sway, pace;  // pace: step length over the data's
   std::array<std::array<Damped<double>, kLegDofs>, 2> weight;
+  StrideWishes granted{};  // what these ask of the stride
   // Path.
   double heading_rad = 0.0;
   vec3 hips_m{0.0}, hips_velocity_m_s{0.0};  // on the ground, without the data's oscillations
@@ -181,8 +184,8 @@ struct WalkState {
   HipsGround base;
   Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
   std::array<FootState, 2> foot;
-  // The data's angles, those of the pose with even weights, and those with weights: the pose's.
-  std::array<LegAngles, 2> data_rad{}, even_rad{}, angles_rad{};
+  // The tables' angles, with what the style changes, and the pose's.
+  std::array<LegAngles, 2> data_rad{}, angles_rad{};
   UpperBodyState body;
 };
 

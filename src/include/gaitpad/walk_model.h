@@ -104,7 +104,6 @@ struct WalkModel {
   double source_step_m = 0;  // retargeted: mean step of the data on this character
   double rest_lead_m = 0;    // hips before the heels when standing
   double stand_m = 0;        // pelvis height when standing
-  PeriodicTable<kCycleSamples> bounce_m;  // of the data's pelvis by phase, about its mean height
   // Shares of the cycle in walking order: roll right, flight left, roll left, flight right.
   std::array<double, 4> share{};
   std::vector<int> kept;  // twist joints in the legs: fixed at their standing rotation

@@ -5,11 +5,10 @@
 // last; a phase runs through the data's cycle at a rate that meets these times (the time-warp of
 // section 3.3). Parameters are smoothed on the way in, so a stick may jump.
 //
-// Hips. They move over the ground along cubics from strike to strike, planned so that at a strike
-// they stand between both feet as in the data. Their height follows from the legs: each leg asks
-// for the height at which its knee is bent as in the data, weighed by how much of the weight it
-// carries, and the height is bounded by what both legs can reach. The data's sway, bounce and tilt
-// are added on top, by as much as the pace lets them show.
+// Hips. They follow the tables of clean strides (gaitpad/stride_family.h) from the footprint of the
+// foot that stands to the next landing. A step leads from the stride of the last step to its own, so
+// both tables are read and mixed. What the hips differ by from that path, because a landing has
+// moved, fades until the strike.
 //
 // The pose. Feet and pelvis are planned first, then the inverse kinematics connects them (section
 // 3.3.2), and everything else comes from the data at this phase.

@@ -100,13 +100,14 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
                       double ratio) noexcept {
   const double x = (phase - std::floor(phase)) * kCycleSamples;
   const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
-  const double y = std::clamp(ratio / kRatioStep, 0.0, double(kStrideRatios - 1));
-  const int r = std::min(static_cast<int>(y), kStrideRatios - 2);
+  const int last = static_cast<int>(tables.size()) - 1;
+  const double y = std::clamp(ratio / kRatioStep, 0.0, double(last));
+  const int r = std::min(static_cast<int>(y), last - 1);
   const std::array<double, 4> by_phase = spline(x - i);
   std::array<double, 4> by_ratio = cubic(y - r);
   // Beyond the ends the tables go on straight.
   if (r == 0) by_ratio[1] += 2.0 * by_ratio[0], by_ratio[2] -= by_ratio[0], by_ratio[0] = 0.0;
-  if (r == kStrideRatios - 2) {
+  if (r == last - 1) {
     by_ratio[2] += 2.0 * by_ratio[3], by_ratio[1] -= by_ratio[3], by_ratio[3] = 0.0;
   }
   StridePlace place;

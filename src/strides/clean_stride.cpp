@@ -24,15 +24,15 @@ constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // times thi
 constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;  // per square metre, radian
 constexpr double kLevel = 5e2;          // the sole is level and points ahead, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftStrike = 3e4, kSoftToeDown = 8e3, kSoftToe = 3e3;
-constexpr int kLanding = 6;  // samples over which this fades
+constexpr double kSoftStrike = 3e4, kSoftToeDown = 8e3;
+constexpr int kLanding = 3;  // samples over which this fades
 // People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square metre
 // of a second difference.
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
 constexpr double kSoftHeave_m_s2 = 2.0;  // up and down
 constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
-constexpr double kLeastKnee = 2.0 * kDegree, kSoftKnee = 2.0 * kDegree;
+constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.15;        // radians or metres an iteration
 
@@ -386,7 +386,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       };
       soften(strike - d, heels, kSoftStrike);
       soften(down - d, toes, kSoftToeDown);
-      soften(lift + d, toes, kSoftToe);
+      soften(lift + d, toes, problem.soft_toe);
     }
   }
   for (int i = 0; i < solved; ++i) {
@@ -459,7 +459,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
           }
         }
       }
-      const double bend = kLeastKnee - x[i].leg[side][kKneeX];
+      const double bend = problem.least_knee_rad - x[i].leg[side][kKneeX];
       if (bend > -kSoftKnee) {
         const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
         const double slope = std::min(1.0, 0.5 * (bend + kSoftKnee) / kSoftKnee);

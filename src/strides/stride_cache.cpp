@@ -54,7 +54,7 @@ std::string path_in(const std::string& folder, const std::vector<double>& input)
 std::optional<StrideFamily> read_family(const std::string& path, const std::vector<double>& input) {
   StrideFamily family;
   family.table.resize(kStrideRatios);
-  family.back.resize(kStrideRatios);
+  family.back.resize(kBackRatios);
   family.response.resize(kStrideWishes);
   const std::size_t size = file_numbers(input, family).size() * sizeof(double);
   const auto bytes = file_text(path, size);

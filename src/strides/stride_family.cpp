@@ -15,8 +15,10 @@ namespace {
 constexpr int kOwn = 5;  // the table of the data's own stride
 // Iterations. After so many the largest change of an angle is below 1e-4 rad in most clips; ratios
 // 0 and 0.2 still drift by up to 1e-2 rad in some, along changes that cost next to nothing.
-constexpr int kFirstSolve = 10, kNextSolve = 8;
-constexpr int kNextBack = 6;  // a walk backwards is no capture, so it may be solved less exactly
+constexpr int kFirstSolve = 8, kNextSolve = 4;
+// Backwards the change is larger.
+constexpr int kNextBack = 6;
+constexpr double kLeastKneeBack = 8.0 * kDegree, kSofterBack = 10.0;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;
 // What shows of the data's angles in steps of length 0: a foot still has to leave the floor.
 constexpr double kLeastLift = 0.3;
@@ -184,6 +186,12 @@ struct Builder {
     StrideProblem p;
     p.leg = cycle.leg;
     p.stride_m = ratio * cycle.stride_m;
+    // Backwards people land on their toes. On its heel the leg would be straight, and a toe that
+    // leaves first would jerk.
+    if (cycle.stride_m < 0.0) {
+      p.least_knee_rad = kLeastKneeBack;
+      p.soft_toe *= kSofterBack;
+    }
     p.duration_s = cycle.duration_s * std::sqrt(std::max(ratio, kRatioStep));
     p.strike = cycle.strike;
     p.toe_off = cycle.toe_off;
@@ -438,16 +446,18 @@ struct Builder {
   // False where there is no solution.
   bool solve() {
     StrideSolver solver;
-    family.table.resize(kStrideRatios);
-    const StrideProblem own = problem(1.0);
+    const bool forwards = cycle.stride_m > 0.0;
+    family.table.resize(forwards ? kStrideRatios : kBackRatios);
+    const int tables = static_cast<int>(family.table.size()), first = std::min(kOwn, tables - 1);
+    const StrideProblem own = problem(first * kRatioStep);
     const std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
     if (clean.empty()) return false;
-    family.table[kOwn] = table_of(own, clean, 1.0);
-    if (own.stride_m > 0.0 && !respond(solver, own, clean)) return false;
+    family.table[first] = table_of(own, clean, first * kRatioStep);
+    if (forwards && !respond(solver, own, clean)) return false;
     for (int step : {-1, 1}) {
       std::vector<StrideSample> start = clean;
       StrideProblem before = own;
-      for (int k = kOwn + step; k >= 0 && k < kStrideRatios; k += step) {
+      for (int k = first + step; k >= 0 && k < tables; k += step) {
         StrideProblem p = problem(k * kRatioStep);
         // The neighbour's change of its own data.
         for (int i = 0; i < kCycleSamples; ++i) {
@@ -457,7 +467,7 @@ struct Builder {
             for (int j = 0; j < kLegDofs; ++j)
               start[i].leg[side][j] += p.wanted[i].leg[side][j] - before.wanted[i].leg[side][j];
         }
-        start = solver.solve(p, std::move(start), own.stride_m > 0.0 ? kNextSolve : kNextBack);
+        start = solver.solve(p, std::move(start), forwards ? kNextSolve : kNextBack);
         if (start.empty()) return false;
         family.table[k] = table_of(p, start, k * kRatioStep);
         before = std::move(p);

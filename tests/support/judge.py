@@ -577,11 +577,12 @@ def _flights(w, side):
 
 
 def limp_checks(even, limp, side=0):
-    """The paper's left limp: stride -50 %, speed +30 %, height -50 % at the same stick."""
+    """The paper's left limp: stride -50 %, speed +30 %, height -50 % at the same stick, of the motion's own steps."""
     own, other = _mean_step(limp, side), _mean_step(limp, 1 - side)
+    uneven = _mean_step(even, side) / _mean_step(even, 1 - side)
     plain, limped = _flights(even, side), _flights(limp, side)
     ticks = np.abs(limped[:, 0] - plain[:, 0].mean() / 1.3).max()
-    return [Check("limp: left step / right step", own / other, 0.51, "in", low=0.49),
+    return [Check("limp: left step / right step", own / other / uneven, 0.51, "in", low=0.49),
             Check("limp: left flight - even / 1.3", ticks, 1.0, unit="ticks",
                   note=f"{plain[:, 0].mean():.1f} -> {limped[:, 0].mean():.1f}"),
             Check("limp: left heel peak / even's", limped[:, 1].mean() / plain[:, 1].mean(), 0.56, "in", low=0.44,

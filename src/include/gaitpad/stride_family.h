@@ -19,6 +19,7 @@ namespace gaitpad {
 inline constexpr int kStrideRatios = 8;
 inline constexpr double kRatioStep = 0.2;  // ratios 0, 0.2 .. 1.4; 1 is the data's own stride
 inline constexpr double kMostRatio = kRatioStep * (kStrideRatios - 1);
+inline constexpr int kBackRatios = 5;  // backwards 0 .. 0.8: steps are shorter
 
 struct StrideFoot {
   vec3 heel_m{0.0};
@@ -89,7 +90,7 @@ struct StrideFamily {
   std::array<LegAngles, 2> stand_rad{};  // and the legs' angles
   // Walking backwards is walking forwards run back (Thorstensson 1986), but the feet land and leave
   // as Table I has it. These strides have negative lengths.
-  std::vector<StrideTable> back;
+  std::vector<StrideTable> back;         // kBackRatios
   std::vector<StrideTable> table;    // kStrideRatios
   std::vector<StrideResponse> response;  // kStrideWishes; for walking forwards
 };

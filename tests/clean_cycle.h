@@ -1,7 +1,7 @@
 // A cycle with its clean strides, as a session loads it: from the tests' own cache where it was
 // solved before.
 #pragma once
-#include "strides/stride_cache.h"
+#include "files/stride_cache.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

@@ -9,7 +9,7 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
-#include "strides/stride_cache.h"
+#include "files/stride_cache.h"
 
 namespace gaitpad {
 namespace {

@@ -20,7 +20,7 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
-#include "strides/stride_cache.h"
+#include "files/stride_cache.h"
 
 namespace gaitpad {
 namespace {

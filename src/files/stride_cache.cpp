@@ -1,4 +1,4 @@
-#include "strides/stride_cache.h"
+#include "files/stride_cache.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // Strides that are kept in files: the same bits as solved ones, whatever happens to the files.
-#include "strides/stride_cache.h"
+#include "files/stride_cache.h"
 
 #include <gtest/gtest.h>
 

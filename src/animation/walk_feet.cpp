@@ -14,7 +14,7 @@ namespace gaitpad {
 namespace {
 
 // A flying toe may be that far below where it stands: then the tables' own toes, which only just
-// leave the floor, are let through. At the reference leg.
+// leave the floor, are let through.
 constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree;
 constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 constexpr double kReachOnToe = 0.99995;  // of the leg: with the hip further away, the heel rises
@@ -215,7 +215,7 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(u * state.stage_ticks);
   const double limit =
-      highest_pitch(leg, height, -kMostSink_m * model.size) + rolled_elevation(leg, point.pose);
+      highest_pitch(leg, height, -kMostSink_m) + rolled_elevation(leg, point.pose);
   set_pitch(leg, soft_min(pitch, limit, kSoftPitch), point.pose, FootMode::flight);
 }
 

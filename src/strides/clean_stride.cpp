@@ -336,7 +336,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const int at = i * kUnknowns + k;
       const double weight = weight_of(k) * factor_of(problem, k);
       const double smooth =
-          kSmooth * weight * (k == 1 ? kPelvisSmoothUp : k < kPelvis ? kPelvisSmooth : 1.0);
+          problem.smoothness * kSmooth * weight * (k == 1 ? kPelvisSmoothUp : k < kPelvis ? kPelvisSmooth : 1.0);
       std::array<double, 3> change;
       std::array<Mirrored, 3> where;
       for (int d : {0, 1, 2}) {

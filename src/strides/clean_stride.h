@@ -37,6 +37,7 @@ struct StrideProblem {
   // Factors on what it costs to change the pelvis' place and the angles.
   vec3 pelvis_weight{1.0};
   std::array<LegAngles, 2> leg_weight{{{1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1}}};
+  double smoothness = 1.0;  // and on what it costs to change them unevenly
   double least_knee_rad = 2.0 * kDegree;
   double soft_toe = 3e3;  // how smoothly a toe begins to move: per square metre of second differences
   double most_heave_m_s2 = 7.0;  // how hard the hips rise and fall, about

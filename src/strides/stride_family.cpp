@@ -18,7 +18,8 @@ constexpr int kOwn = 5;  // the table of the data's own stride
 constexpr int kFirstSolve = 8, kNextSolve = 4;
 // Backwards the change is larger.
 constexpr int kNextBack = 6;
-constexpr double kLeastKneeBack = 8.0 * kDegree, kSofterBack = 10.0;
+constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack = 0.3,
+                 kAnkleBack = 0.17;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;
 // What shows of the data's angles in steps of length 0: a foot still has to leave the floor.
 constexpr double kLeastLift = 0.3;
@@ -186,11 +187,14 @@ struct Builder {
     StrideProblem p;
     p.leg = cycle.leg;
     p.stride_m = ratio * cycle.stride_m;
-    // Backwards people land on their toes. On its heel the leg would be straight, and a toe that
-    // leaves first would jerk.
+    // Backwards people land on their toes and leave on their heels, and Table I has it the other way
+    // round. So the data count less there, above all the ankles', and the change is smoother.
     if (cycle.stride_m < 0.0) {
       p.least_knee_rad = kLeastKneeBack;
-      p.soft_toe *= kSofterBack;
+      p.soft_toe *= kSmootherBack;
+      p.smoothness = kSmootherBack;
+      for (LegAngles& weight : p.leg_weight)
+        weight = {kHipBack, kHipBack, kHipBack, 1.0, kAnkleBack, kAnkleBack, kAnkleBack};
     }
     p.duration_s = cycle.duration_s * std::sqrt(std::max(ratio, kRatioStep));
     p.strike = cycle.strike;

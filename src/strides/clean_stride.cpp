@@ -24,7 +24,7 @@ constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // times thi
 constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;  // per square metre, radian
 constexpr double kLevel = 5e2;          // the sole is level and points ahead, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
-constexpr double kSoftStrike = 3e4, kSoftToeDown = 8e3;
+constexpr double kSoftStrike = 3e4, kSoftToeDown = 1.3e4;
 constexpr int kLanding = 3;  // samples over which this fades
 // People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square metre
 // of a second difference.

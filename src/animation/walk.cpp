@@ -85,8 +85,9 @@ StridePlan stride_plan(const WalkModel& model, const WalkState& state, double ph
 
 StridePlan stride_now(const WalkModel& model, const WalkState& state) noexcept {
   const double begun = state.tick + (state.stage == Stage::flight ? state.roll_ticks : 0);
+  // A walk that has closed fades from the stride of its last step.
   const double share =
-      state.started ? begun / std::max(1, state.roll_ticks + state.flight_ticks) : 1.0;
+      state.started ? begun / std::max(1, state.roll_ticks + state.flight_ticks) : 0.0;
   return stride_plan(model, state, state.phase, share);
 }
 

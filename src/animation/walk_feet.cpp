@@ -15,7 +15,7 @@ namespace {
 
 // A flying toe may be that far below where it stands: then the tables' own toes, which only just
 // leave the floor, are let through.
-constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree;
+constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree, kWiderPitch = 0.25;
 constexpr double kRiseBegin = 0.20, kRiseLasts = 0.18;  // own phase: the heel may rise
 constexpr double kReachOnToe = 0.99995;  // of the leg: with the hip further away, the heel rises
 constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
@@ -25,9 +25,11 @@ constexpr double kMaxPitch = 85.0 * kDegree, kWidePitch = 25.0 * kDegree;
 constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
 constexpr double kInPlace_m = 0.1;  // a flight shorter than this climbs by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: the lift-off's own motion has faded
+constexpr double kPitchFade = 0.2;
 constexpr double kLiftGround = 0.5;  // of the flight: until then the plane left bounds the toe
 constexpr double kRollEnd = 0.9;    // of the roll: the toe is down
-constexpr double kLiftGrows = 0.35;  // of the flight: until then a style's factor on its height acts
+// Of the flight: from kLiftGrown until kLiftFalls all of a style's factor on its height acts.
+constexpr double kLiftGrown = 0.4, kLiftFalls = 0.5, kLiftEnds = 0.85;
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
 
@@ -103,9 +105,10 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
   const double rise_legs = rise / model.leg_length_m;
   // A lame foot is low from its lift-off on (StrideWish::low_left).
   const double factor = state.flight_height[side].x, low = std::min(factor, 1.0);
-  const double lifted = std::max(factor, 1.0) *
-                        mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
-  const double height = low_lift(u, low) * mix(1.0, lifted, smootherstep(u / kLiftGrows));
+  // A style's factor acts while the foot is high.
+  const double more = mix(1.0, std::max(factor, 1.0), 1.0 - smoothstep(kLiftFalls, kLiftEnds, u));
+  const double lifted = more * mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
+  const double height = low_lift(u, low) * mix(1.0, lifted, smootherstep(u / kLiftGrown));
   const Ascent risen = ascent(model, foot, way);
   base_m = begin_m + rise * risen.at(p - foot.heel_anchor_m, u);
   double up = cell.heel_m.y * height;
@@ -213,10 +216,11 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
   const double ground_m = point.base_m + point.lifted_m * (1.0 - smootherstep(u / kLiftGround));
   const double height = (point.pose.heel_m.y - ground_m) * foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
-  const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(u * state.stage_ticks);
+  const double fade = foot.pitch_fade.at(u * state.stage_ticks);
+  const double pitch = table_pitch(state, plan, side) + fade;
   const double limit =
       highest_pitch(leg, height, -kMostSink_m) + rolled_elevation(leg, point.pose);
-  set_pitch(leg, soft_min(pitch, limit, kSoftPitch), point.pose, FootMode::flight);
+  set_pitch(leg, soft_min(pitch, limit, kSoftPitch + kWiderPitch * std::abs(fade) * smoothstep(0.0, 0.1, u)), point.pose, FootMode::flight);
 }
 
 void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept {
@@ -308,7 +312,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.gap_slope_m.y -= end_slope(foot.last_rise_m[1], foot.last_rise_m[0], foot.rise_m) * ticks;
   const double pitch = table_pitch(state, now, side);
   foot.pitch_fade = {lifts.pitch_rad - pitch,
-                     pitch_rate - (table_pitch(state, next, side) - pitch), kLiftFade * ticks};
+                     pitch_rate - (table_pitch(state, next, side) - pitch), kPitchFade * ticks};
   if (!tick.flat) plan_room(tick, state, side);
 }
 

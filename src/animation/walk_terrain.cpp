@@ -423,10 +423,10 @@ namespace {
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // over the ground; metres at the reference leg, as below
 constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
-constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.5;
+constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.4;
 constexpr int kTries = 4;
 // Of the flight: from here on a foot on its way down is over its landing's piece.
-constexpr double kOver = 0.67;
+constexpr double kOver = 0.72;
 constexpr int kMostRisers = 4, kTautRounds = 24;
 constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
 constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;

@@ -161,6 +161,7 @@ constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
+constexpr double kSlowerBack = 1.7;
 constexpr double kBraking = 2.3;  // way over speed and time of a stop with little jerk
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
@@ -199,7 +200,8 @@ double slowness_of_step(const WalkModel& model, const WalkState& state, Side swi
   const double own = state.time_s[swing], longer = std::max(own, state.time_s[other(swing)]);
   const double level = mix(own, longer, smoothstep(0.0, kSteepRise, rise));
   const double stair = kStairStep_s * model.time_scale * rise / kStairRise;
-  return std::max(level * (1.0 + kSlowerOnStairs * rise), stair) / own;
+  const double slower = state.backward ? kSlowerBack : 1.0;
+  return std::max(level * (1.0 + kSlowerOnStairs * rise), slower * stair) / own;
 }
 
 // The last step brings the hips to rest over both feet, in the time in which they need no harder

@@ -199,8 +199,10 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   const double gone = 1.0 - h00(u);
   const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
   pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u);
-  pose.twist_rad = cell.twist_rad;
-  pose.roll_rad = cell.roll_rad;
+  // A lame foot that hardly leaves the floor does not roll onto an edge.
+  const double low = low_lift(u, std::min(state.flight_height[side].x, 1.0));
+  pose.twist_rad = low * cell.twist_rad;
+  pose.roll_rad = low * cell.roll_rad;
   pose.tilt = foot.plane.tilt;
   if (pose.tilt != state.landing_plane.tilt) {
     pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.landing_plane.tilt * gone);

@@ -300,7 +300,7 @@ namespace {
 // holds, and yields from the middle of single support until the landed foot has taken the weight
 // (McFadyen & Winter 1988).
 constexpr double kRiseLasts = 0.9;  // of the step
-constexpr double kSinkBegin = 0.5;  // of the flight
+constexpr double kSinkBegin = 0.5, kSinkBeginBack = 0.35;  // of the flight
 constexpr double kSinkEnd = 0.25;   // of the roll
 // How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
 // half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
@@ -315,9 +315,10 @@ struct Sinking {
   double share = 0.0;  // of the ticks
 };
 Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
+  const double begin = (state.backward ? kSinkBeginBack : kSinkBegin) * state.flight_ticks;
   Sinking s;
-  s.ticks = (1.0 - kSinkBegin) * state.flight_ticks + kSinkEnd * state.roll_ticks;
-  s.share = std::max(0.0, flight_ticks - kSinkBegin * state.flight_ticks) / s.ticks;
+  s.ticks = state.flight_ticks - begin + kSinkEnd * state.roll_ticks;
+  s.share = std::max(0.0, flight_ticks - begin) / s.ticks;
   return s;
 }
 
@@ -423,7 +424,7 @@ namespace {
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // over the ground; metres at the reference leg, as below
 constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
-constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.4;
+constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.3;
 constexpr int kTries = 4;
 // Of the flight: from here on a foot on its way down is over its landing's piece.
 constexpr double kOver = 0.72;

@@ -113,6 +113,13 @@ double stage_end_phase(const WalkModel& model, const WalkState& state) noexcept 
   return state.stage_phase + stage_share(model, state.stage, state.swing);
 }
 
+double phase_ahead(const WalkModel& model, const WalkState& state, double ticks) noexcept {
+  double phase = state.phase, rate = state.phase_rate;
+  approach(phase, rate, stage_end_phase(model, state), state.end_rate,
+           std::max(1, state.stage_ticks - state.tick), ticks);
+  return phase;
+}
+
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
                           const StridePlan& plan) noexcept {
   const StrideCell& cell = plan.cell;
@@ -192,6 +199,18 @@ void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept 
   state.stage_ticks = ticks;
 }
 
+// At the end of the stage that has begun the phase will run at the mean of both stages' rates, so
+// the time-warp of the upper body has no kink.
+void aim_phase(const Tick& tick, WalkState& state) noexcept {
+  const bool rolls = state.stage == Stage::roll;
+  const Stage next = rolls ? Stage::flight : Stage::roll;
+  const Side next_swing = rolls ? other(state.swing) : state.swing;
+  const double here = stage_share(tick.model, state.stage, state.swing) / state.stage_ticks;
+  const double there = stage_share(tick.model, next, next_swing) /
+                       stage_length(tick.model, state, next, next_swing, tick.dt_s);
+  state.end_rate = 0.5 * (here + there);
+}
+
 // On stairs a step takes longer, and at least as long as a person takes for a stair. On stairs both
 // feet take equally long.
 double slowness_of_step(const WalkModel& model, const WalkState& state, Side swing) noexcept {
@@ -226,6 +245,7 @@ void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   // The phase may have come out a whole turn off.
   state.phase = state.stage_phase;
   begin_stage(Stage::roll, rolling, state.roll_ticks, state);
+  aim_phase(tick, state);
 }
 
 void begin_walk(const Tick& tick, WalkState& state) noexcept {
@@ -239,6 +259,7 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
   state.roll_ticks = 0;
   begin_step(tick, other(first), state);
   state.stage_ticks = state.roll_ticks = 2 * state.roll_ticks;  // from rest: a longer first lean
+  aim_phase(tick, state);
   state.phase_rate = 0.0;
   state.foot[other(first)].mode = FootMode::roll;
 }
@@ -337,19 +358,6 @@ void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept
   if (!tick.flat && mode != IkMode::paper) lean_into_slope(tick, state);
 }
 
-// Moves a phase of the running stage on by one tick. At the end of a stage the phase runs at the
-// mean of both stages' rates, so the time-warp of the upper body has no kink.
-void advance_phase(const Tick& tick, const WalkState& state, double remaining, double& phase,
-                   double& rate) noexcept {
-  const Stage stage = state.stage;
-  const Side swing = state.swing;
-  const Stage next = stage == Stage::roll ? Stage::flight : Stage::roll;
-  const Side next_swing = stage == Stage::roll ? other(swing) : swing;
-  const double here = stage_share(tick.model, stage, swing) / state.stage_ticks;
-  const double there = stage_share(tick.model, next, next_swing) /
-                       stage_length(tick.model, state, next, next_swing, tick.dt_s);
-  approach(phase, rate, stage_end_phase(tick.model, state), 0.5 * (here + there), remaining, 1.0);
-}
 
 void advance_clock(const Tick& tick, WalkState& state) noexcept {
   state.heading_rad += state.turn_rate.x * tick.dt_s;
@@ -359,7 +367,8 @@ void advance_clock(const Tick& tick, WalkState& state) noexcept {
   const double remaining = state.stage_ticks - state.tick;
   ++state.tick;
   if (resting) return;
-  advance_phase(tick, state, remaining, state.phase, state.phase_rate);
+  approach(state.phase, state.phase_rate, stage_end_phase(tick.model, state), state.end_rate,
+           remaining, 1.0);
 }
 
 // Begins the next stage where this one is over.
@@ -375,6 +384,7 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
     begin_support(state.foot[swing]);
     state.stage_phase = stage_end_phase(tick.model, state);
     begin_stage(Stage::flight, other(swing), state.flight_ticks, state);
+    aim_phase(tick, state);
     begin_flight(tick, state, other(swing));
   }
 }
@@ -491,7 +501,8 @@ void begin_path(const Tick& tick, WalkState& state) noexcept {
     vec3 from = path_from_standing(state, plan);
     if (state.last_step_ticks == 0) from = vec3(state.hips_m.x, from.y, state.hips_m.z);  // at rest
     off[k] = from - path_to_landing(state, plan);
-    advance_phase(tick, state, state.stage_ticks - k, phase, rate);
+    approach(phase, rate, stage_end_phase(tick.model, state), state.end_rate, state.stage_ticks - k,
+             1.0);
   }
   state.off_path_m = {off[0], 0.5 * (4.0 * off[1] - 3.0 * off[0] - off[2]),
                       off[0] - 2.0 * off[1] + off[2]};

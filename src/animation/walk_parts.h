@@ -28,6 +28,8 @@ double own_phase(const WalkModel& model, const WalkState& state, Side side) noex
 // The phase at which the data are read. Walking backwards is walking forwards run back
 // (Thorstensson 1986), so a foot lands where the data lift it.
 double data_phase(const WalkModel& model, const WalkState& state) noexcept;
+// The phase so many ticks ahead in the running stage.
+double phase_ahead(const WalkModel& model, const WalkState& state, double ticks) noexcept;
 // The phase at which the running stage ends.
 double stage_end_phase(const WalkModel& model, const WalkState& state) noexcept;
 // True if the parameters ask for the running walk to go on, or for one to begin. A walk in the

@@ -424,10 +424,12 @@ namespace {
 constexpr int kProbes = 48;            // along a flight
 constexpr double kRoomAbove_m = 0.02;  // over the ground; metres at the reference leg, as below
 constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
-constexpr double kLack_m = 0.008, kEasyShift_m = 0.2, kSharper = 1.3;
+constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
+// A lift-off stays gentler: there the leg is stretched.
+constexpr double kMostSharp = 0.44;
 constexpr int kTries = 4;
 // Of the flight: from here on a foot on its way down is over its landing's piece.
-constexpr double kOver = 0.72;
+constexpr double kOver = 0.69;
 constexpr int kMostRisers = 4, kTautRounds = 24;
 constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
 constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;
@@ -518,8 +520,11 @@ bool sharpen(const Wanted& beside, const FlightSpline& shift, double size, Ends&
     const double got = spline_at(shift, 0.0, static_cast<double>(i) / kProbes);
     const double lack = beside[i] > 0.0 ? beside[i] - got : beside[i] < 0.0 ? got - beside[i] : 0.0;
     if (lack < kLack_m * size && std::abs(beside[i]) < kEasyShift_m * size) continue;
-    (2 * i < kProbes ? more.first : more.last) =
-        kSharper * (2 * i < kProbes ? ends.first : ends.last);
+    if (2 * i < kProbes) {
+      more.first = std::min(kMostSharp, kSharper * ends.first);
+    } else {
+      more.last = kSharper * ends.last;
+    }
   }
   const bool any = more.first > ends.first || more.last > ends.last;
   ends = more;
@@ -581,8 +586,7 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
   Flight flight;
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
-    const double phase =
-        state.stage_phase + u * (stage_end_phase(model, state) - state.stage_phase);
+    const double phase = phase_ahead(model, state, u * state.flight_ticks - state.tick);
     const double share =
         (state.roll_ticks + u * state.flight_ticks) / (state.roll_ticks + state.flight_ticks);
     const StridePlan plan = stride_plan(model, state, phase, share);

@@ -154,6 +154,7 @@ struct WalkState {
   double slowness = 1.0;                 // factor on the running step's times on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
+  double end_rate = 0.0;                 // phase_rate at its end
   double ratio_behind = 0.0;             // of the step before: the stride ratio at the last strike
   double step_ratio = 0.0;               // of the running step,
   SmoothFade<double> off_ratio;          // and how far the tables' is off it

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kLeastKnee = 1.0 * kDegree;  // where the solver starts: a knee that bends forward
 constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
+// Near its limit an ankle is held more and more, and the leg turns outwards instead: with one step
+// it would do so in a jerk.
+constexpr double kHeldDorsiflexion = -57.0 * kDegree, kSoftHeld = 4.0 * kDegree;
 constexpr double kSoftToe = 15.0 * kDegree;
 constexpr double kLeastWeight = 0.05;
 constexpr double kLeak_per_s = 4.0;   // of the correction on the data's angles
@@ -170,7 +173,10 @@ void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelv
   solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   chain.dof[kAnkleX].min_rad = most_dorsiflexion;
   ease_ankle(tick, state, side, pelvis, chain, angles, state.foot[side], solve);
-  if (angles[kAnkleX] < most_dorsiflexion) {
+  const double over = soft_positive(kHeldDorsiflexion - angles[kAnkleX], kSoftHeld);
+  if (over > 0.0) {
+    chain.dof[kAnkleX].min_rad =
+        std::max(most_dorsiflexion, angles[kAnkleX] + over * over / (over + kSoftHeld));
     solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   }
   state.angles_rad[side] = leg_angles(angles);

@@ -309,6 +309,7 @@ constexpr double kBentBefore = 0.65;
 constexpr double kYield = 0.0255, kHalfYield = 0.01;
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
 constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
+constexpr double kMostOnToe = 0.6, kSoftOnToe = 0.3;
 
 struct Sinking {
   double ticks = 1.0;
@@ -414,7 +415,10 @@ double rise_with_hips(const WalkModel& model, const WalkState& state, const Stri
   const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
   const double room = std::max(0.0, kStretch * (a + b) - known), soft = kSoftStretch_m * model.size;
   const double up = std::max(0.0, higher);
-  return soft_positive(higher + hover - room, hover + up * soft / (up + soft));
+  const double rise = soft_positive(higher + hover - room, hover + up * soft / (up + soft));
+  // No further than a foot on its toe lifts its ankle.
+  const double most = glm::length(leg.model.toe_m) + leg.model.toe_m.y;
+  return soft_min(rise, kMostOnToe * most, kSoftOnToe * most);
 }
 
 namespace {

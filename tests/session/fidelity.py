@@ -436,7 +436,7 @@ def arguments(words=None):
     parser.add_argument("--built-in", action="store_true", help="the built-in motion, too")
     parser.add_argument("--long", action="store_true", help="200 strides")
     parser.add_argument("--json", action="store_true", help="every figure, for machines")
-    parser.add_argument("--picture", metavar="OUT.png", help="curves of the first clip")
+    parser.add_argument("--picture", metavar="OUT.png", help="curves of all clips")
     parser.add_argument("--sheet", metavar="OUT.png", help="stick figures of all clips")
     parser.add_argument("--out", type=pathlib.Path, help="keep what replay writes there, a folder a clip")
     options = parser.parse_intermixed_args(words)
@@ -483,7 +483,7 @@ def main():
         print(json.dumps({"clips": list(map(for_machines, rows)), "refused": refused,
                           "medians": [c.as_dict() for c in middle]}, indent=1))
     if options.picture and rows:
-        gait_pictures.draw_curves(rows[0], options.picture)
+        gait_pictures.draw_curves(rows, options.picture)
     if options.sheet and rows:
         gait_pictures.draw_sheet(rows, options.sheet)
     return 1 if failed or any(c.ok is False for c in middle) or not rows else 0

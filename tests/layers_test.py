@@ -8,8 +8,8 @@ import re
 
 # The libraries, lowest first: a library includes its own headers and those of the libraries before it.
 LIBRARIES = {
-    "core": ["src/base", "src/motion", "src/control", "src/animation"],
-    "files": ["src/files", "src/strides"],
+    "core": ["src/base", "src/motion", "src/strides", "src/control", "src/animation"],
+    "files": ["src/files"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
     "program": ["src/draw", "src/view", "src/paper"],
@@ -18,10 +18,10 @@ LIBRARIES = {
 ROOMS = {
     "src/base": ([], ["glm/"]),
     "src/motion": (["base"], ["glm/"]),
+    "src/strides": (["base", "motion"], ["glm/"]),
     "src/control": (["base"], []),
     "src/animation": (["base", "motion", "control"], []),
     "src/files": ([], ["fmt/", "toml++/", "nlohmann/"]),
-    "src/strides": (["motion"], []),
     "src/hid": ([], ["fmt/"]),
     "src/stick": (["hid"], ["fmt/"]),
     "drivers": (["hid", "drivers/pads"], ["fmt/"]),

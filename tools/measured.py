@@ -5,8 +5,8 @@
   measured.py SECTION ... | all      measures these sections first, keeps them in docs/measured.json
   measured.py --from SECTION=FILE    takes a tool's output that is already there
 
-Sections: walk terrain bench window pads latency sticks worn claims. A section that is not measured
-in this run keeps its former values and their date. `--build` names the build folder (default
+Sections: walk kept terrain bench window pads latency sticks worn claims. A section that is not
+measured in this run keeps its former values and their date. `--build` names the build folder (default
 build), `--data` the folder of captured motions and recordings (default ../shared/data); sections
 that need them say so on the page.
 """
@@ -113,6 +113,31 @@ def measure_walk(options, text=None):
     return {"rows": read_rows(text)}
 
 
+def measure_kept(options, text=None):
+    if text is None:
+        clips = needed(options.data / "mocap")
+        program = needed(options.build / "gaitpad")
+        text = output_of(PYTHON, "tests/session/fidelity.py", program, clips, "--built-in",
+                         "--json", may_fail=True)
+    found = json.loads(text)
+    kept = []
+    for clip in found["clips"]:
+        value = {c["name"]: c["value"] for c in clip["checks"]}
+        kept.append({
+            "clip": clip["clip"], "rms_deg": clip["rms_deg"], "slide_mm": clip["slide_mm"],
+            "knee_maxima": clip["knee_maxima"], "least_knee_deg": clip["least_knee_deg"],
+            "fall_m_s2": [max(-low, high) for low, high in clip["fall_m_s2"]],
+            "d2_deg": clip["d2_deg"],
+            "change_d2_deg": value.get("at changes: second difference"),
+            "moves_mm": max(v for n, v in value.items() if n.endswith("moves")),
+            "broken": [c["name"] for c in clip["checks"] if c["ok"] is False]})
+    broken = sum(bool(k["broken"]) for k in kept)
+    return {"kept": kept, "medians": found["medians"],
+            "note": f"{len(kept)} walked, {broken} of them beyond a bound; planted heels and toes move "
+                    f"by {number(max(k['moves_mm'] for k in kept))} mm at most; "
+                    f"{len(found['refused'])} files hold no walk and are refused with the reason."}
+
+
 TERRAIN = {  # column of terrain_sweep: (name, unit, allowed)
     "high_mm": ("a planted heel or toe off the ground", "mm", "<= 5"),
     "slid_mm": ("a planted heel or toe moves", "mm", "<= 1"),
@@ -170,6 +195,10 @@ def measure_bench(options, text=None):
             "us"),
         row("inverse kinematics of one leg", found[("leg_ik", 1)]["time_us"], "", "us"),
         row("iterations of a leg, one character", one["iterations_per_leg"]),
+        *(row(name, found[(key, 1)]["time_us"] / 1000.0, bound, "ms") for key, name, bound in (
+            ("load_built_in", "loading the built-in motion the first time", "<= 150"),
+            ("load_clip", "loading a clip the first time", "<= 800"),
+            ("load_cached", "loading it again", ""))),
     ]}
 
 
@@ -317,6 +346,20 @@ def bounds_table(section):
                   for r in rows])
 
 
+def kept_table(section):
+    def pairs(values):
+        return ", ".join(f"{round(a)} > {round(b)}" for a, b in values)
+
+    rows = [[k["clip"].rsplit(".", 1)[0], *(f"{v:.1f}" for v in k["rms_deg"]),
+             pairs(k["knee_maxima"]), pairs(k["least_knee_deg"]), pairs([k["fall_m_s2"]]),
+             f"{k['d2_deg']:.2f}", f"{k['change_d2_deg']:.2f}", f"{k['slide_mm']:.0f}",
+             ", ".join(k["broken"]) or "-"] for k in section["kept"]]
+    medians = [f"{m['value']:.2f} ({m['bound']})" for m in section["medians"]] or ["-"] * 3
+    rows.append(["median of the clips", *medians, *["-"] * 7])
+    return table(["walk", "hip", "knee", "ankle", "knee maxima", "least knee", "acceleration",
+                  "d2", "d2, changing", "own slide", "beyond its bound"], rows)
+
+
 def pads_table(section):
     return table(["", *(f"`{d}`" for d in DRIVERS)],
                  [[label, *(section["cells"][f"{kind}-{d}"] for d in DRIVERS)]
@@ -373,15 +416,27 @@ it has no bound.""", """\
 The three captured walks are plain walks. Of sixteen captured clips tried at 80 % of the stick,
 ten stay within 1 degree a tick² at all three leg ratios; the others, stylised or with unusual
 feet, reach 1.02 to 2.4. Their feet stand as still. (Measured on 2026-11-21.)"""),
+    "kept": (measure_kept, kept_table, "What a walk keeps of its capture", False, """\
+`tests/session/fidelity.py build/gaitpad FOLDER --built-in` walks each clip of a folder straight on
+level ground at its own pace, style `even`, and compares the exported poses with the file's own
+frames, after the one phase shift that is best. Hip, knee and ankle are flexions, degrees RMS of
+the worse leg; allowed are 3, 3 and 3.5, and up to 4 where the capture's own feet slide (mm) by more
+than 40. Capture > walk: the maxima of the left and of the right knee in a stride (none added),
+their least angles in degrees (within 3; below 1 counts as 1), and the greatest vertical
+acceleration of the hips in m/s² (12, or 1.5 times the capture's). `d2` is the second difference of
+a leg joint, degrees a tick²: in the steady walk (0.7; built-in 0.5), and where the walk starts,
+stops and changes its stride (1).""", """\
+A walk keeps neither a knee that a file bends backwards nor the gap of a stride that does not end
+as it began."""),
     "terrain": (measure_terrain, bounds_table, "Walks over terrain", False, """\
 `build/tests/terrain_sweep MOTION ...` (`cmake --build build --target terrain_sweep`) walks the
 course from its beginning to a stop after its end and judges every tick by a grid of points over
 each sole: the built-in motion and those three, all styles, legs of 0.6, 1 and 1.6, sticks of 0.4,
 0.7 and 1.""", """\
 [walk.md](walk.md) has the results of the wider sweeps."""),
-    "bench": (measure_bench, bounds_table, "Time of a tick", True, """\
+    "bench": (measure_bench, bounds_table, "Time of a tick, and of loading", True, """\
 `build/gaitpad bench`, one core of the machine that wrote this page; yours prints its own. A tick
-comes every 4167 us.""",
+comes every 4167 us. A motion that was loaded before has its strides in the cache.""",
               ""),
     "window": (measure_window, bounds_table, "The window", True, """\
 `bash tools/realtime.sh` lets four characters walk for five minutes in the window, drawn by

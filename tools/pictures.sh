@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# pictures.sh [FOLDER]: draws the documentation's pictures of the window and of the calibration from the bundled
-# recordings, without a display and the same each time. FOLDER is docs by default.
+# pictures.sh [FOLDER]: draws the documentation's pictures from the bundled recordings, without a display and the same
+# each time. FOLDER is docs by default. One of them needs captured motions, which are no part of this repository.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 bash "$root/tools/install.sh" fonts-inter
@@ -19,10 +19,9 @@ unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 330 --theme light --panels none \
   --style even --style limp_left --screenshot "$folder/limp.png"
 
-# Up the stairs, side by side.
-"$gaitpad" replay "$root/config/traces/round.hid" --view --frames 300 --theme dark --panels none \
-  --terrain stairs --hide source --style even --style stiff_hip --style stiff_knee --style limp_left \
-  --screenshot "$folder/stairs.png"
+# Up the stairs, from the side.
+"$gaitpad" replay "$root/config/traces/round.hid" --view --frames 330 --theme light --panels none \
+  --terrain stairs --camera 82,5 --hide source,names --style even --screenshot "$folder/stairs.png"
 
 # Why it limps: joint angles, heights, stages; what the solver needs.
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 420 --theme dark \
@@ -35,3 +34,19 @@ unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG
 # Both walks as strips of stick figures, with their knees.
 /usr/bin/python3 "$root/tools/contact_sheet.py" "$gaitpad" "$folder/walk.png" --motions "" \
   --styles even,limp_left >/dev/null
+
+# Figure 5a of the paper, in 64 colours.
+figures=$(mktemp -d)
+trap 'rm -rf "$figures"' EXIT
+"$gaitpad" figures --out "$figures" >/dev/null
+/usr/bin/python3 -c 'import sys; from PIL import Image
+Image.open(sys.argv[1]).convert("RGB").quantize(64).save(sys.argv[2], optimize=True)' \
+  "$figures/figure5a.png" "$folder/figure5a.png"
+
+# Three captured walks and what is made of them. Status 1: a bound is broken, and the picture is there.
+clips=$root/../shared/data/mocap
+if [ -d "$clips" ]; then
+  /usr/bin/python3 "$root/tests/session/fidelity.py" "$gaitpad" "$clips/cmu_m21_walk.bvh" \
+    "$clips/bvhtoolbox_walk01.bvh" "$clips/cmu_006_01_iclone.bvh" --picture "$folder/kept.png" \
+    >/dev/null || [ $? = 1 ]
+fi

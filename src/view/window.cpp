@@ -498,6 +498,10 @@ void WindowLoop::reset_camera() {
     camera_.yaw_rad = kAside_rad;
     camera_.pitch_rad = kAbove_rad;
   }
+  if (options_.camera_deg.size() == 2) {
+    camera_.yaw_rad = options_.camera_deg[0] * kDegree;
+    camera_.pitch_rad = options_.camera_deg[1] * kDegree;
+  }
   camera_.target_m = camera_.followed_m = ensemble_->focus_m(state_.walker);
   camera_.distance_m = ensemble_->distance_m(state_.walker, camera_, viewport);
 }

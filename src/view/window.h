@@ -40,9 +40,12 @@ struct WindowOptions {
   std::vector<Panel> panels;       // open panels, if are_panels_given
   bool are_panels_given = false;
   std::vector<std::string> hidden;  // names of kSceneParts
-  double scale = 0.0;               // 0: the display's
-  int width = 1280, height = 720;   // at scale 1
-  bool is_hidden = false;           // draws without a display (SDL's offscreen driver)
+  // Where the camera stands, degrees: yaw from ahead of the walkers (90: from their left), pitch
+  // above the horizon. Empty: as it starts.
+  std::vector<double> camera_deg;
+  double scale = 0.0;              // 0: the display's
+  int width = 1280, height = 720;  // at scale 1
+  bool is_hidden = false;          // draws without a display (SDL's offscreen driver)
   // For tests: called before each frame; may push SDL events.
   std::function<void(const WindowGlance& glance)> script;
   std::function<bool()> is_ended_from_outside;  // Ctrl-C

@@ -21,6 +21,9 @@ What is measured:
 - Slide of the source's own feet: while heel and toe are both within 4 % of the leg of their lowest, how far the toe
   strays from its mean place. Beyond 40 mm a clip may be 4 degrees off, for that reason.
 - Second difference, planted points, floor, steps, speed, drift and repetition: as in support/judge.py.
+- Changes: a second walk starts, takes strides other than the clip's own and stops twice, once in the middle of a step.
+  Second difference, planted points, floor and failed solves of all its ticks.
+That a mirrored stick gives the mirrored walk is judged by acceptance.py, on the built-in motion: no capture is symmetric.
 """
 import argparse
 import json
@@ -46,7 +49,9 @@ FAR_SLIDE_MM = 40.0
 RIPPLE_DEG = 1.0
 LEAST_KNEE_DEG, LEAST_ALLOWED_KNEE_DEG = 3.0, 1.0
 FALL_M_S2, FALL_RATIO = 12.0, 1.5
-D2_DEG, BUILT_IN_D2_DEG = 0.7, 0.5
+D2_DEG, BUILT_IN_D2_DEG, CHANGES_D2_DEG = 0.7, 0.5, 1.0
+CHANGES = [(0.5, 0, 0.8), (4.0, 0, 0.4), (7.0, 0, 1.0), (10.1, 0, 0), (12.5, 0, 0.6), (15.0, 0, 0.9), (17.35, 0, 0)]
+CHANGES_S = 20.0
 PLANTED_MM = 0.01
 OWN_PACE = 0.01  # of the clip's speed, steps and time
 TOLD_PACE = 0.03  # of what its frames show
@@ -253,10 +258,10 @@ def found_stride(track, legs, heel_m, flight):
 
 
 # ---- a clip --------------------------------------------------------------------------------------
-def replay(options, folder, motion, stick, seconds, style):
+def replay(options, folder, motion, sticks, seconds, style="even"):
     folder.mkdir(exist_ok=True)
     (folder / "exact.toml").write_text(EXACT_CALIBRATION)
-    write_trace(folder / "walk.hid", [(0.5, 0, stick)], (), seconds)
+    write_trace(folder / "walk.hid", sticks, (), seconds)
     words = ["replay", folder / "walk.hid", "--out", folder, "--calibration", folder / "exact.toml", "--style", style]
     return programs.run(options.program, *words, *(["--motion", motion] if motion else []), status=None)
 
@@ -285,9 +290,9 @@ def judge_clip(options, folder, path=None):
         return {"clip": name, "refused": reason_of(done)}
     told = json.loads(done.stdout)
     gait = told.get("gait")
-    stick = gait["own_stick"] if gait else 0.8
+    sticks = [(0.5, 0, gait["own_stick"] if gait else 0.8)]
     seconds = 4 + (205 if options.long else 24) * (gait["stride_s"] if gait else 1.2)
-    done = replay(options, folder, path, stick, seconds, "even")
+    done = replay(options, folder, path, sticks, seconds)
     if done.returncode:
         return {"clip": name, "refused": reason_of(done)}
     w = Walk(folder)
@@ -307,7 +312,7 @@ def judge_clip(options, folder, path=None):
     ends = wide.position[[a, b], wide.pelvis]
     way_m = np.linalg.norm(ends[1] - ends[0] - ((ends[1] - ends[0]) @ wide.up) * wide.up) * frames / (b - a)
     if not gait:
-        replay(options, folder, path, stick, seconds, matched_style(w, folder, way_m, frames / track.rate_hz))
+        replay(options, folder, path, sticks, seconds, matched_style(w, folder, way_m, frames / track.rate_hz))
         w = Walk(folder)
     row = {"clip": name, "gait_told": bool(gait), "first_frame": first, "frames": frames, "stride_s": source.seconds,
            "speed_m_s": way_m / source.seconds, "slide_mm": foot_slide_mm(source)}
@@ -316,15 +321,36 @@ def judge_clip(options, folder, path=None):
     hips_m = 0.5 * (w.position[:, w.hip[0], 1] + w.position[:, w.hip[1], 1])
     row["fall_m_s2"] = [vertical_acceleration(wide.height(), track.rate_hz, half_s, a, b),
                         vertical_acceleration(hips_m, w.rate, half_s, at, at + len(walk.phase) - 1)]
-    joints = sorted(set(w.leg_joints[0] + w.leg_joints[1]))
-    d2 = (second_differences(w.local[:, joints]) * (w.rate / 240) ** 2)[w.steady].max(0)
-    row["d2_deg"], row["d2_joint"] = float(d2.max()), w.bvh.names[joints[int(d2.argmax())]]
+    row["d2_deg"], row["d2_joint"] = sharpest_leg_joint(w, w.steady)
     row["walk_stride_s"], row["walk_speed_m_s"] = walk.seconds, float(w.col["speed_m_s"][at])
-    row["checks"] = judge_row(row, w, walk, gait, path is None)
+    replay(options, folder / "changes", path, CHANGES, CHANGES_S)
+    row["checks"] = judge_row(row, w, walk, gait, path is None) + change_checks(Walk(folder / "changes"))
     row["broken"] = [c for c in row["checks"] if c.ok is False]
     row["strides"], row["parents"] = (source, walk), (track.parents, w.bvh.parents)
     row["seconds"] = time.time() - started
     return row
+
+
+def sharpest_leg_joint(w, ticks):
+    """Greatest second difference in degrees a tick^2 at 240 Hz, and the joint that has it."""
+    joints = sorted(set(w.leg_joints[0] + w.leg_joints[1]))
+    d2 = (second_differences(w.local[:, joints]) * (w.rate / 240) ** 2)[ticks].max(0)
+    return float(d2.max()), w.bvh.names[joints[int(d2.argmax())]]
+
+
+def contacts(w):
+    return [judge.Check(c.name, c.value, PLANTED_MM, unit="mm", note=c.note) if c.name.endswith("moves") else c
+            for c in judge.contact_checks(w)]
+
+
+def change_checks(w):
+    """What is judged where the walk starts, stops and changes its stride."""
+    value, joint = sharpest_leg_joint(w, np.arange(w.ticks))
+    checks = [judge.Check("second difference", value, CHANGES_D2_DEG, unit="deg/tick2", note=joint), *contacts(w),
+              *(c for c in judge.file_checks(w) if c.name == "ik_failures")]
+    for check in checks:
+        check.name = f"at changes: {check.name}"
+    return checks
 
 
 def judge_row(row, w, walk, gait, is_built_in):
@@ -342,8 +368,7 @@ def judge_row(row, w, walk, gait, is_built_in):
                check("vertical acceleration of the hips", ours, max(FALL_M_S2, FALL_RATIO * data), unit="m/s2"),
                check("second difference", row["d2_deg"], BUILT_IN_D2_DEG if is_built_in else D2_DEG, unit="deg/tick2",
                      note=row["d2_joint"])]
-    checks += [check(c.name, c.value, PLANTED_MM, unit="mm", note=c.note) if c.name.endswith("moves") else c
-               for c in judge.contact_checks(w)]
+    checks += contacts(w)
     checks += judge.stage_checks(w) + judge.step_checks(w) + judge.speed_checks(w) + judge.repeat_check(w)
     checks += [c for c in judge.file_checks(w) if c.name.startswith(("FK", "ik_fail", "Euler", "steps"))]
     if gait:
@@ -411,7 +436,7 @@ def arguments(words=None):
     parser.add_argument("--built-in", action="store_true", help="the built-in motion, too")
     parser.add_argument("--long", action="store_true", help="200 strides")
     parser.add_argument("--json", action="store_true", help="every figure, for machines")
-    parser.add_argument("--picture", metavar="OUT.png", help="curves of the first clip")
+    parser.add_argument("--picture", metavar="OUT.png", help="curves of all clips")
     parser.add_argument("--sheet", metavar="OUT.png", help="stick figures of all clips")
     parser.add_argument("--out", type=pathlib.Path, help="keep what replay writes there, a folder a clip")
     options = parser.parse_intermixed_args(words)
@@ -458,7 +483,7 @@ def main():
         print(json.dumps({"clips": list(map(for_machines, rows)), "refused": refused,
                           "medians": [c.as_dict() for c in middle]}, indent=1))
     if options.picture and rows:
-        gait_pictures.draw_curves(rows[0], options.picture)
+        gait_pictures.draw_curves(rows, options.picture)
     if options.sheet and rows:
         gait_pictures.draw_sheet(rows, options.sheet)
     return 1 if failed or any(c.ok is False for c in middle) or not rows else 0

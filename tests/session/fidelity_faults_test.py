@@ -142,6 +142,14 @@ def test_each_bound_breaks_alone(exact, figures, gait, names):
     assert [c.name for c in checks if c.ok is False] == names
 
 
+def test_a_jerk_at_a_change_is_seen():
+    assert all(c.ok is not False for c in fidelity.change_checks(Files().load()))
+    files = Files()
+    files.channel(*RIGHT_KNEE)[200] += 1.1  # one tick before anything is steady
+    broken = [c.name for c in fidelity.change_checks(files.load()) if c.ok is False]
+    assert "at changes: second difference" in broken
+
+
 ASF = """:units
   length 1.0
   angle deg

@@ -2,32 +2,45 @@
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 INK, GREY, BLUE, RED = "#1f2328", "#8c959f", "#0969da", "#cf222e"  # left is blue, right is red
 SHEET_PHASES, PLACE_M, ASIDE_M = 8, 1.9, 0.75
 
 
-def draw_curves(row, path):
-    """Source dashed, walk solid, over one stride: hip, knee, ankle, height of the hips."""
-    figure = Figure(figsize=(11, 6.5), facecolor="white", layout="constrained")
-    panels = figure.subplots(2, 2, sharex=True).ravel()
-    for name, line, width in (("source", "--", 1.2), ("walk", "-", 1.8)):
-        curves, place = row["curves"][name], 100 * row["curves"]["phase"]
-        for k in range(3):
-            for side, colour in enumerate((BLUE, RED)):
-                label = ("left", "right")[side] if line == "-" else None
-                panels[k].plot(place, curves[:, 3 * side + k], line, color=colour, lw=width, label=label)
-        panels[3].plot(place, 1000 * (curves[:, 6] - curves[:, 6].mean()), line, color=INK, lw=width)
-    for panel, name in zip(panels, ("hip flexion, degrees", "knee flexion, degrees", "ankle flexion, degrees",
-                                    "hips about their mean height, mm")):
-        panel.set_ylabel(name)
+PANELS = ("hip, degrees", "knee, degrees", "ankle, degrees", "pelvis, mm")
+
+
+def draw_curves(rows, path):
+    """A line a clip: source dashed, walk solid, over one stride: flexion of hip, knee, ankle; height of the hips about
+    its mean."""
+    figure = Figure(figsize=(12.5, 0.55 + 2.15 * len(rows)), facecolor="white", layout="constrained")
+    grid = figure.subplots(len(rows), 4, sharex=True, squeeze=False)
+    for panels, row in zip(grid, rows):
+        for name, line, width in (("walk", "-", 1.5), ("source", (0, (3, 2)), 1.3)):
+            curves, place = row["curves"][name], 100 * row["curves"]["phase"]
+            for k in range(3):
+                for side, colour in enumerate((BLUE, RED)):
+                    panels[k].plot(place, curves[:, 3 * side + k], linestyle=line, color=colour, lw=width)
+            panels[3].plot(place, 1000 * (curves[:, 6] - curves[:, 6].mean()), linestyle=line, color=INK, lw=width)
+        for panel, rms in zip(panels, row["rms_deg"]):
+            panel.set_title(f"{rms:.1f} degrees RMS", fontsize=8, color=GREY, loc="right", pad=2)
+        panels[0].set_ylabel(row["clip"].rsplit(".", 1)[0], fontsize=9)
+    for panel, name in zip(grid[0], PANELS):
+        panel.set_title(name, fontsize=10, color=INK, loc="left", pad=2)
+    for panel in grid.ravel():
         panel.grid(color="#d8dee4", lw=0.6)
+        panel.set_axisbelow(True)
         panel.spines[["top", "right"]].set_visible(False)
-    panels[0].legend(frameon=False)
-    for panel in panels[2:]:
-        panel.set_xlabel("stride, %")
-    figure.suptitle(f"{row['clip']}: source dashed, walk solid; hip / knee / ankle {rms_text(row)} degrees RMS", color=INK)
-    figure.savefig(path, dpi=110)
+        panel.tick_params(labelsize=8)
+        panel.set_xlim(0, 100)
+    for panel in grid[-1]:
+        panel.set_xlabel("stride, %", fontsize=9)
+    legend = [Line2D([], [], color=BLUE, label="left"), Line2D([], [], color=RED, label="right"),
+              Line2D([], [], color=INK, label="walk"), Line2D([], [], color=INK, ls=(0, (3, 2)), label="capture")]
+    figure.legend(handles=legend, loc="upper right", ncol=4, frameon=False, fontsize=9, borderaxespad=0.1)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.24 / figure.get_figheight()))
+    figure.savefig(path, dpi=90)
 
 
 def rms_text(row):

@@ -112,6 +112,15 @@ def test_every_characters_pixels_move_between_two_frames(window):
         assert legs > trunk, name
 
 
+def test_from_the_side_they_walk_one_behind_the_other(window):
+    def width(picture):
+        columns = np.nonzero(np.any([coloured(picture, c).any(axis=0) for c in HUES.values()], axis=0))[0]
+        return columns[-1] - columns[0]
+    ahead = window.picture("bare_standing", *BARE, frames=2)
+    aside = window.picture("bare_aside", *BARE, "--camera", "90,5", frames=2)
+    assert width(aside) < 0.5 * width(ahead)
+
+
 def test_trails_grow(window):
     grown = []
     for name, frames in (("early", EARLY), ("late", LATE)):
@@ -253,7 +262,7 @@ def test_replay_view_writes_its_files_too(window, tmp_path):
 
 @pytest.mark.parametrize("arguments", [
     "play --no-window --frames 3", "play --frames 0", "play --screenshot x.jpg", "play --video x.avi", "play --theme grey",
-    "play --panels pad,kitchen", "play --scale 9", "play --hide feet", f"replay {ROUND} --frames 3",
+    "play --panels pad,kitchen", "play --scale 9", "play --hide feet", "play --camera 90", f"replay {ROUND} --frames 3",
     f"play {ROUND} --screenshot x.png --record x.hid"])
 def test_wrong_usage_is_2(refuse, arguments):
     refuse(*arguments.split(), status=2, env=environment())

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -107,12 +108,13 @@ std::string stick_text(const GaitCycle& cycle) {
 
 std::string gait_text(const Result<GaitCycle>& cycle) {
   if (!cycle) return "none, " + cycle.error().message;
+  // A turn that rounds to 0 has no sign.
+  const double turn_deg = std::round(10.0 * cycle->turn_rad / kDegree) / 10.0 + 0.0;
   return fmt::format(
       "{:.1f} frames from frame {:.1f} on: {:.2f} s, steps {:.2f} m left and {:.2f} m right, "
       "{:.2f} m/s, turn {:.1f} degrees; {}",
       cycle->frames, cycle->first_frame, cycle->duration_s, cycle->step_m[kLeftSide],
-      cycle->step_m[kRightSide], cycle->stride_m / cycle->duration_s, cycle->turn_rad / kDegree,
-      stick_text(*cycle));
+      cycle->step_m[kRightSide], cycle->stride_m / cycle->duration_s, turn_deg, stick_text(*cycle));
 }
 
 void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {

@@ -20,6 +20,7 @@ bool makes_pictures(const WindowArguments& arguments) {
 namespace {
 
 constexpr int kMaxFrames = 100'000'000;
+constexpr double kMostTurn_deg = 360.0;
 
 CLI::Validator ends_with(const std::string& ending) {
   return CLI::Validator(
@@ -71,6 +72,13 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(CLI::IsMember(scene_part_names())),
+      command
+          .add_option("--camera", arguments.camera_deg,
+                      "YAW,PITCH in degrees: yaw from ahead of the walkers (90: from their left), "
+                      "pitch above the horizon")
+          ->delimiter(',')
+          ->expected(2)
+          ->check(CLI::Range(-kMostTurn_deg, kMostTurn_deg)),
   };
 }
 
@@ -89,6 +97,7 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
     if (std::ranges::count(arguments.panels, name) > 0) options.panels.push_back(panel);
   }
   options.hidden = arguments.hidden;
+  options.camera_deg = arguments.camera_deg;
   options.calibration_folder = user_calibration_folder();
   // Somebody who asks SDL for a video driver gets that one.
   const char* driver = std::getenv("SDL_VIDEODRIVER");
@@ -114,6 +123,7 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
       command.add_option("--scale", arguments.scale, help),
       command.add_option("--panels", arguments.panels, help),
       command.add_option("--hide", arguments.hidden, help),
+      command.add_option("--camera", arguments.camera_deg, help),
   };
   for (CLI::Option* option : options) option->check(never);
   return options;

@@ -15,6 +15,7 @@ struct WindowArguments {
   int frames = 0;
   std::string screenshot, video, theme;
   std::vector<std::string> panels, hidden;
+  std::vector<double> camera_deg;
   double scale = 0.0;
 };
 // Returns the options that were added, for further rules.

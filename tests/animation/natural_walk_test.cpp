@@ -1,0 +1,279 @@
+// How a walk begins, ends, turns and changes its pace, against what people do. Hips and knees are
+// read from the posed skeleton, the rest from what a tick tells. The built-in motion, level ground.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "animation/made_walker.h"
+
+namespace gaitpad {
+namespace {
+
+constexpr double kWindow_s = 1.0 / 14.0;
+constexpr double kGentle_m_s2 = 4.0, kGravity_m_s2 = 9.81;
+constexpr int kMoments = 48;
+constexpr int kJustLanding =
+    5;  // ticks, 21 ms: a foot that lands so soon is no step that is taken yet
+
+// A walker whose posed hips are kept, too.
+struct Posed {
+  MadeWalker walker;
+  std::vector<vec3> hips_m;  // between the hip joints
+  explicit Posed(IkMode mode = IkMode::robust) : walker(adult(), mode) {}
+
+  const JointFrames& joints() const {
+    static JointFrames world;
+    forward_kinematics(adult().cycle.skeleton, walker.pose(), world);
+    return world;
+  }
+  vec3 joint_m(Side side, int LegJoints::*joint) const {
+    return joints().position_m[adult().leg[side].model.joints.*joint];
+  }
+  vec3 middle_of_hips_m() const {
+    return 0.5 * (joint_m(kLeftSide, &LegJoints::hip) + joint_m(kRightSide, &LegJoints::hip));
+  }
+  void walk(double x, double y, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      walker.walk(x, y, 1);
+      hips_m.push_back(middle_of_hips_m());
+    }
+  }
+  double knee_deg(Side side) const {
+    const vec3 knee = joint_m(side, &LegJoints::knee);
+    const vec3 thigh = glm::normalize(knee - joint_m(side, &LegJoints::hip)),
+               shank = glm::normalize(joint_m(side, &LegJoints::ankle) - knee);
+    return gaitpad::atan2(glm::length(glm::cross(thigh, shank)), glm::dot(thigh, shank)) / kDegree;
+  }
+  // The greatest horizontal acceleration of the hips, over 1/14 s.
+  double jolt_m_s2(int from, int to) const {
+    constexpr double kWindow = kWindow_s * kRate;  // ticks
+    constexpr int kWhole = static_cast<int>(kWindow);
+    const auto at = [this](int tick, int side) {
+      const vec3 near = hips_m[tick + side * kWhole], far = hips_m[tick + side * (kWhole + 1)];
+      return near + (far - near) * (kWindow - kWhole);
+    };
+    double greatest = 0.0;
+    for (int k = std::max(from, kWhole + 1); k < to - kWhole - 1; ++k) {
+      const vec3 change = at(k, -1) - 2.0 * hips_m[k] + at(k, 1);
+      greatest =
+          std::max(greatest, glm::length(vec2(change.x, change.z)) / (kWindow_s * kWindow_s));
+    }
+    return greatest;
+  }
+  int steps() const { return walker.last().steps[0] + walker.last().steps[1]; }
+};
+
+// The worst over many moments at which a stick lets go: the first ones within the first steps, the
+// others over more than a stride of the steady walk.
+struct Stops {
+  double jolt_m_s2 = 0.0;
+  int steps = 0;
+  bool all_stand = true;
+};
+Stops stops_from(double stick) {
+  Stops worst;
+  for (int moment = 0; moment < kMoments; ++moment) {
+    const int first = kMoments / 3;
+    const int until = moment < first ? 12 + 11 * moment : 5 * kRate + 10 * (moment - first);
+    Posed walk;
+    walk.walk(0, stick, until + 1);
+    walk.walk(0, 0, kJustLanding);
+    const int before = walk.steps();
+    walk.walk(0, 0, 4 * kRate);
+    worst.steps = std::max(worst.steps, walk.steps() - before);
+    worst.jolt_m_s2 = std::max(worst.jolt_m_s2, walk.jolt_m_s2(until, until + 4 * kRate));
+    worst.all_stand = worst.all_stand && walk.walker.last().stage == Stage::idle;
+  }
+  return worst;
+}
+
+double start_m_s2(double stick) {
+  Posed walk;
+  walk.walk(0, 0, kRate / 2);
+  walk.walk(0, stick, 2 * kRate);
+  return walk.jolt_m_s2(0, kRate / 2 + 2 * kRate);
+}
+
+TEST(NaturalWalk, StartsAreGentle) {
+  for (const double stick : {0.3, 0.6, 0.8}) EXPECT_LE(start_m_s2(stick), kGentle_m_s2) << stick;
+}
+
+TEST(NaturalWalk, StopsAreGentleWheneverTheStickLetsGo) {
+  for (const double stick : {0.4, 0.6, 0.8})
+    EXPECT_LE(stops_from(stick).jolt_m_s2, kGentle_m_s2) << stick;
+}
+
+// At full stick the steady walk speeds its hips up and down by more than that in each step. A start
+// and a stop add little to it.
+TEST(NaturalWalk, AtFullStickStartsAndStopsAreHardlyHarderThanTheWalk) {
+  Posed walk;
+  walk.walk(0, 1.0, 8 * kRate);
+  const double steady_m_s2 = walk.jolt_m_s2(5 * kRate, 8 * kRate);
+  EXPECT_LE(start_m_s2(1.0), 1.1 * steady_m_s2);
+  EXPECT_LE(stops_from(1.0).jolt_m_s2, 1.1 * steady_m_s2);
+}
+
+TEST(NaturalWalk, AWalkStandsWithinTwoStepsWheneverTheStickLetsGo) {
+  for (const double stick : {0.3, 0.55, 0.8, 1.0}) {
+    const Stops stops = stops_from(stick);
+    EXPECT_TRUE(stops.all_stand) << stick;
+    EXPECT_LE(stops.steps, 2) << stick;
+  }
+}
+
+TEST(NaturalWalk, StandingKneesAreNearlyStraight) {
+  Posed walk;
+  walk.walk(0, 0, 1);
+  for (const double stick : {0.0, 0.4, 1.0}) {  // at first, and after a walk
+    walk.walk(0, stick, 3 * kRate);
+    walk.walk(0, 0, 4 * kRate);
+    for (const Side side : {kLeftSide, kRightSide}) {
+      EXPECT_GE(walk.knee_deg(side), 2.0) << stick;
+      EXPECT_LE(walk.knee_deg(side), 7.0) << stick;
+    }
+  }
+}
+
+struct Manner {
+  double both_feet = 0.0;       // share of the time that both feet stand
+  double swing_knee_deg = 0.0;  // the most that a swinging knee bends
+};
+Manner manner_at(double stick) {
+  Posed walk;
+  walk.walk(0, stick, 5 * kRate);
+  Manner manner;
+  int rolls = 0, ticks = 0, from = walk.steps();
+  while (walk.steps() == from) walk.walk(0, stick, 1);  // whole strides: from a landing to one
+  for (from = walk.steps(); walk.steps() < from + 8; ++ticks) {
+    rolls += walk.walker.last().stage == Stage::roll;
+    walk.walk(0, stick, 1);
+    if (walk.walker.last().stage == Stage::flight)
+      manner.swing_knee_deg =
+          std::max(manner.swing_knee_deg, walk.knee_deg(walk.walker.last().swing));
+  }
+  manner.both_feet = static_cast<double>(rolls) / ticks;
+  return manner;
+}
+
+TEST(NaturalWalk, DoubleSupportFallsWithTheSpeed) {
+  double before = 1.0;
+  for (const double stick : {0.4, 0.55, 0.7, 0.85, 1.0}) {
+    const double now = manner_at(stick).both_feet;
+    EXPECT_LT(now, before) << "stick " << stick;
+    before = now;
+  }
+}
+
+TEST(NaturalWalk, DoubleSupportIsAThirdOfAStrollAndAFifthOfABriskWalk) {
+  EXPECT_NEAR(manner_at(0.4).both_feet, 0.35, 0.035);
+  EXPECT_NEAR(manner_at(1.0).both_feet, 0.20, 0.035);
+}
+
+TEST(NaturalWalk, TheSwingingKneeBendsLessInShortSteps) {
+  double before_deg = 0.0;
+  for (const double stick : {0.1, 0.25, 0.5, 0.8}) {
+    const double now_deg = manner_at(stick).swing_knee_deg;
+    EXPECT_GT(now_deg, before_deg) << "stick " << stick;
+    before_deg = now_deg;
+  }
+  EXPECT_GT(manner_at(0.8).swing_knee_deg - manner_at(0.1).swing_knee_deg, 10.0);
+}
+
+// Degrees to the left by which pelvis and trunk lean, and the speed and turn that they lean for,
+// as means over eight steps.
+struct Lean {
+  double pelvis_deg = 0.0, body_deg = 0.0, asked_deg = 0.0;
+};
+Lean lean_in(double x, double y, IkMode mode) {
+  Posed walk(mode);
+  walk.walk(x, y, 6 * kRate);
+  Lean lean;
+  int ticks = 0, from = walk.steps();
+  while (walk.steps() == from) walk.walk(x, y, 1);
+  for (from = walk.steps(); walk.steps() < from + 8; ++ticks) {
+    walk.walk(x, y, 1);
+    const WalkFrame& frame = walk.walker.last();
+    const vec3 left = rotation_y(frame.heading_rad) * vec3(1.0, 0.0, 0.0);
+    const JointFrames& joints = walk.joints();
+    const auto leftwards_deg = [&left](const vec3& up) {
+      return gaitpad::atan2(glm::dot(up, left), up.y) / kDegree;
+    };
+    const auto shoulder_m = [&](int side) {
+      return joints.position_m[adult().body.arm[side].joints.shoulder];
+    };
+    const vec3 across =
+        walk.joint_m(kLeftSide, &LegJoints::hip) - walk.joint_m(kRightSide, &LegJoints::hip);
+    lean.pelvis_deg -= gaitpad::atan2(across.y, glm::dot(across, left)) / kDegree;
+    lean.body_deg += leftwards_deg(0.5 * (shoulder_m(0) + shoulder_m(1)) - walk.middle_of_hips_m());
+    lean.asked_deg +=
+        gaitpad::atan2(frame.speed_m_s * frame.turn_rate_rad_s, kGravity_m_s2) / kDegree;
+  }
+  lean.pelvis_deg /= ticks, lean.body_deg /= ticks, lean.asked_deg /= ticks;
+  return lean;
+}
+
+TEST(NaturalWalk, TheBodyLeansIntoATurnAsItsSpeedAsks) {
+  for (const double x : {-0.6, -0.3, 0.3, 0.6}) {
+    for (const double y : {0.5, 0.8}) {
+      const Lean lean = lean_in(x, y, IkMode::robust);
+      EXPECT_GT(lean.asked_deg * -x, 0.0);  // stick right turns right: the lean is not to the left
+      EXPECT_NEAR(lean.pelvis_deg, lean.asked_deg, 1.0) << x << ", " << y;
+      EXPECT_NEAR(lean.body_deg, lean.asked_deg, 1.0) << x << ", " << y;
+    }
+  }
+  EXPECT_GT(lean_in(-0.6, 0.8, IkMode::robust).asked_deg, 3.0);  // the test asks for something
+}
+
+TEST(NaturalWalk, InPaperModeNothingLeansIntoATurn) {
+  const Lean lean = lean_in(-0.6, 0.8, IkMode::paper);
+  EXPECT_GT(lean.asked_deg, 3.0);
+  EXPECT_NEAR(lean.pelvis_deg, 0.0, 0.2);
+  EXPECT_NEAR(lean.body_deg, 0.0, 1.0);  // the data's spine is not quite mirrored
+}
+
+// Turns a slider at several moments of a walk. At most of them some joint is another within 100 ms
+// (what a factor of the sway multiplies goes through 0), and never does a leg jerk.
+void expect_to_show_soon(const char* key, double value) {
+  StyleValues style;
+  ASSERT_TRUE(set_value(style, key, value)) << key;
+  std::vector<double> change_deg;
+  MadeWalker same;
+  same.walk(0.0, 0.8, 5 * kRate);
+  for (int moment = 0; moment < 8; ++moment) {
+    same.walk(0.0, 0.8, 17);
+    MadeWalker plain = same, changed = same;
+    double most_rad = 0.0;
+    for (int k = 0; k < kRate / 10; ++k) {
+      plain.walk(0.0, 0.8, 1);
+      changed.walk(0.0, 0.8, 1, style);
+      for (int j = 0; j < plain.pose().joint_count; ++j) {
+        const quat turn = glm::conjugate(plain.pose().local[j]) * changed.pose().local[j];
+        most_rad = std::max(most_rad, 2.0 * glm::length(vec3(turn.x, turn.y, turn.z)));
+      }
+    }
+    change_deg.push_back(most_rad / kDegree);
+    changed.walk(0.0, 0.8, kRate, style);
+    EXPECT_LE(changed.sharpest_turn_rad(), 1.0 * kDegree) << key << ", moment " << moment;
+  }
+  std::ranges::sort(change_deg);
+  EXPECT_GT(change_deg[3], 0.1) << key;
+}
+
+TEST(NaturalWalk, SlidersShowWithinATenthOfASecondAndWithoutAHitch) {
+  constexpr std::pair<const char*, double> kSliders[] = {
+      {"hip_sway", 2.0},          {"hip_bounce", 1.5},
+      {"legs.weight.hip", 0.3},   {"legs.weight.knee", 0.3},
+      {"legs.weight.ankle", 0.3}, {"legs.stride_length", 0.7},
+      {"arms.swing", 0.3},        {"arms.out_deg", 15.0},
+      {"trunk.lean_deg", 10.0},   {"trunk.over_left_deg", 10.0}};
+  for (const auto& [key, value] : kSliders) expect_to_show_soon(key, value);
+}
+
+TEST(NaturalWalk, TwiceTheBounceShowsAsSoonAndWithoutAHitch) {
+  expect_to_show_soon("hip_bounce", 2.0);
+}
+
+}  // namespace
+}  // namespace gaitpad

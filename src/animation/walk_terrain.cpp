@@ -540,7 +540,8 @@ Sole sole_of(const LegBuild& leg, const FootPose& pose) noexcept {
   const quat foot = foot_rotation(leg, pose);
   const quat toes = foot * toes_turn(leg, pose, -std::max(0.0, pose.pitch_rad));
   const vec3 ball = pose.heel_m + foot * (leg.ball_m - leg.model.heel_m);
-  const vec3 tip = ball + toes * (leg.tip_m - leg.ball_m);
+  const vec3 toe = pose.heel_m + foot * (leg.model.toe_m - leg.model.heel_m);
+  const vec3 tip = toe + toes * (leg.tip_m - leg.model.toe_m);
   const vec3 side = foot * leg.side * leg.half_width_m;
   return {pose.heel_m - side, pose.heel_m + side, ball, tip - side, tip + side};
 }

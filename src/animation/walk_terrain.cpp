@@ -104,6 +104,12 @@ vec3 shifted(const Step& step, double dz_m) noexcept {
   return (f * f.z + left * (left.z * kSkew)) * (dz_m / (f.z * f.z + left.z * left.z * kSkew));
 }
 
+// A step of this length would hardly leave the place.
+bool is_stuck(const Step& step, double length_m) noexcept {
+  const double wanted = step.wanted_length_m(), sign = wanted < 0.0 ? -1.0 : 1.0;
+  return sign * wanted > kLeastStep * step.leg_m && sign * length_m < kStuck * sign * wanted;
+}
+
 double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) noexcept {
   const Room room = room_on(piece, step.sole, step.leg_m);
   const vec3 near = wanted_on(step, piece);
@@ -119,20 +125,26 @@ double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) n
   const double least = kLeastStep * step.leg_m;
   const double ratio = std::max(0.0, sign * length + least) / (sign * wanted + least);
   const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
-  const bool stuck = sign * wanted > least && sign * length < kStuck * sign * wanted;
   const double longer = sign * length - std::min(longest_to(step, piece),
                                                  std::max(sign * wanted, kLongStep * step.leg_m));
   return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside +
-         (stuck ? kStuckCosts : 0.0) + kLongCosts * std::max(0.0, longer) / step.leg_m +
+         (is_stuck(step, length) ? kStuckCosts : 0.0) + kLongCosts * std::max(0.0, longer) / step.leg_m +
          kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
          kOverhang * room.lacks_m / step.leg_m;
 }
 
-// Tries the pieces from the one that the wanted place is on back to the standing foot's.
+// Tries the pieces from the one that the wanted place is on back to the standing foot's. Where that
+// is the same one, and its edge is in the way, the one behind this edge is tried, too.
 Stretch best_piece(const Terrain& terrain, const Step& step, const Stretch* settled) noexcept {
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
   const double stands = step.from_m.z + middle;
   Stretch piece = piece_at(terrain, step.wanted_m.z + middle), best = piece;
+  if (piece.from_m == step.stands.from_m) {
+    const Room room = room_on(piece, step.sole, step.leg_m);
+    const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m), dz = z - step.wanted_m.z;
+    if (is_stuck(step, step.wanted_length_m() + step.forward.z * dz))
+      piece = piece_at(terrain, dz > 0.0 ? piece.from_m - kBeside_m : piece.to_m + kBeside_m);
+  }
   double least = std::numeric_limits<double>::infinity();
   for (int n = 0; n < kMostPieces; ++n) {
     double cost = cost_of(terrain, step, piece);

@@ -20,7 +20,7 @@ using namespace gaitpad;
 
 namespace {
 
-constexpr double kLongest_s = 240.0, kRate = 240.0;
+constexpr double kLongest_s = 360.0, kRate = 240.0;
 constexpr double kPlainSpeed_m_s = 1.3;  // faster captured walks at the adult's leg: limits alone
 
 template <class T>

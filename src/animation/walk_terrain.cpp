@@ -442,7 +442,7 @@ constexpr double kRoomAbove_m = 0.02;  // over the ground; metres at the referen
 constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
 constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
 // A lift-off stays gentler: there the leg is stretched.
-constexpr double kMostSharp = 0.44;
+constexpr double kMostSharp = 0.38;
 constexpr int kTries = 4;
 // Of the flight: from here on a foot on its way down is over its landing's piece.
 constexpr double kOver = 0.69;

@@ -321,7 +321,7 @@ constexpr double kBentBefore = 0.65;
 constexpr double kYield = 0.0255, kHalfYield = 0.01;
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
 constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
-constexpr double kMostOnToe = 0.6, kSoftOnToe = 0.3;
+constexpr double kMostOnToe = 0.5, kSoftOnToe = 0.3;
 
 struct Sinking {
   double ticks = 1.0;

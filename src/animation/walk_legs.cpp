@@ -11,7 +11,8 @@ namespace gaitpad {
 namespace {
 
 constexpr double kLeastKnee = 1.0 * kDegree;  // where the solver starts: a knee that bends forward
-constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree;
+constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree,
+                 kSoftFlying = 12.0 * kDegree;
 // Near its limit an ankle is held more and more, and the leg turns outwards instead: with one step
 // it would do so in a jerk.
 constexpr double kHeldDorsiflexion = -57.0 * kDegree, kSoftHeld = 4.0 * kDegree;
@@ -142,7 +143,7 @@ void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvi
                 const IkChain& chain, IkAngles& angles, FootState& foot, Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   const bool flies = foot.mode == FootMode::flight;
-  double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], kSoftAnkle);
+  double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], flies ? kSoftFlying : kSoftAnkle);
   if (!flies) excess *= foot.mode == FootMode::support ? heel_rise(tick.model, state, side) : 0.0;
   if (excess == 0.0) return;
   if (flies) {

@@ -34,7 +34,7 @@ constexpr double kSide_m = 0.1;         // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
-constexpr double kMostStep = 0.15;        // radians or metres an iteration
+constexpr double kMostStep = 0.25;        // radians or metres an iteration
 
 int leg_unknown(int side) { return kPelvis + side * kLegDofs; }
 double fraction(double phase) { return phase - std::floor(phase); }
@@ -98,6 +98,7 @@ struct StrideSolver::System {
 
   int samples;  // of the stride
   int solved;   // samples that are unknown: half of them where the other half mirrors them
+  int first;    // unknown of a sample that a row can see: the pelvis' where it is free, or the legs'
   // Normal equations as blocks: of sample i and sample i + d, unknown by unknown. An entry that was
   // ever written is one of the sparse matrix.
   std::vector<double> block;
@@ -108,9 +109,10 @@ struct StrideSolver::System {
   Eigen::VectorXd gradient;
   Eigen::SimplicialLDLT<Matrix, Eigen::Lower> factor;
 
-  System(int n, int unknown_samples)
+  System(int n, int unknown_samples, int first_seen)
       : samples(n),
         solved(unknown_samples),
+        first(first_seen),
         block(solved * kReach * kBlock),
         is_entry(block.size()),
         normal(solved * kUnknowns, solved * kUnknowns),
@@ -128,8 +130,8 @@ struct StrideSolver::System {
   }
 
   // A row within a sample sees the pelvis and one leg.
-  static bool is_seen(int k, int side) {
-    return k < kPelvis || (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
+  bool is_seen(int k, int side) const {
+    return (k >= first && k < kPelvis) || (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
   }
 
   void clear() {
@@ -201,9 +203,9 @@ struct StrideSolver::System {
       row[kPelvis + j] = glm::dot(direction, point.by_angle[j]);
       where[kPelvis + j] = leg + j;
     }
-    for (std::size_t p = 0; p < row.size(); ++p) {
+    for (std::size_t p = first; p < row.size(); ++p) {
       gradient[where[p]] += weight * row[p] * error_m;
-      for (std::size_t q = 0; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
+      for (std::size_t q = first; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
     }
   }
 
@@ -227,7 +229,7 @@ struct StrideSolver::System {
           row[m] = kBend[d] * slope * place.factor;
           where[m++] = place.unknown;
         };
-        for (int a = 0; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
+        for (int a = first; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
         for (int k = 0; k < kLegDofs; ++k) add(leg_unknown(side) + k, point[j].by_angle[k][axis]);
       }
       for (int p = 0; p < m; ++p) {
@@ -334,6 +336,10 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   for (int i = 0; i < solved; ++i) {
     for (int k = 0; k < kUnknowns; ++k) {
       const int at = i * kUnknowns + k;
+      if (k < s.first) {
+        s.at(at, at) = 1.0;
+        continue;
+      }
       const double weight = weight_of(k) * factor_of(problem, k);
       const double smooth =
           problem.smoothness * kSmooth * weight * (k == 1 ? kPelvisSmoothUp : k < kPelvis ? kPelvisSmooth : 1.0);
@@ -360,7 +366,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   std::vector<double> path_m(n);
   for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
   const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
-  for (int i = 0; i < solved; ++i) {
+  for (int i = 0; i < solved && s.first == 0; ++i) {
     s.add_surge(i, 2, x, path_m, problem.stride_m, kMostSurge_m_s2 * tick2,
                 kSoftSurge_m_s2 * tick2);
     s.add_surge(i, 1, x, path_m, problem.stride_m, problem.most_heave_m_s2 * tick2,
@@ -368,13 +374,17 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   }
   // Feet.
   std::array<std::vector<LegFrames>, 2> all_frames;
+  std::array<std::vector<PointRows>, 2> all_heels, all_toes;
   for (int side : {0, 1}) {
     const LegModel& leg = problem.leg[side];
-    std::vector<PointRows> heels, toes;
-    for (int i = 0; i < n; ++i) {
-      const LegFrames& frames = all_frames[side].emplace_back(leg_frames(leg, x[i], side));
-      heels.push_back(point_rows(frames, leg.heel_m));
-      toes.push_back(point_rows(frames, leg.toe_m));
+    std::vector<PointRows>&heels = all_heels[side], &toes = all_toes[side];
+    all_frames[side].resize(n), heels.resize(n), toes.resize(n);
+    // Of the samples that are solved and their neighbours.
+    for (int at = -1; at <= solved; ++at) {
+      const int i = (at + n) % n;
+      const LegFrames& frames = all_frames[side][i] = leg_frames(leg, x[i], side);
+      heels[i] = point_rows(frames, leg.heel_m);
+      toes[i] = point_rows(frames, leg.toe_m);
     }
     const int strike = static_cast<int>(std::floor(problem.strike[side] * n + 1e-9)),
               lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - 1e-9)),
@@ -401,7 +411,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const double own = begins - sample;
       const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);
       const double support = fraction(problem.toe_off[side] - problem.strike[side]);
-      const PointRows heel = point_rows(frames, leg.heel_m), toe = point_rows(frames, leg.toe_m);
+      const PointRows &heel = all_heels[side][i], &toe = all_toes[side][i];
       vec3 heel_goal = problem.heel_m[side];
       // A foot in stance at the cycle's end stands on where it came from.
       const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
@@ -492,8 +502,9 @@ bool StrideSolver::move(std::vector<StrideSample>& x) {
 void StrideSolver::begin(const StrideProblem& problem) {
   const int n = static_cast<int>(problem.wanted.size());
   const int solved = is_symmetric(problem) ? n / 2 : n;
-  if (!system_ || system_->samples != n || system_->solved != solved)
-    system_ = std::make_unique<System>(n, solved);
+  const int first = problem.is_pelvis_held ? kPelvis : 0;
+  if (!system_ || system_->samples != n || system_->solved != solved || system_->first != first)
+    system_ = std::make_unique<System>(n, solved, first);
 }
 
 std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,

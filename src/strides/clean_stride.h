@@ -36,6 +36,7 @@ struct StrideProblem {
   std::array<vec3, 2> heel_m{};
   // Factors on what it costs to change the pelvis' place and the angles.
   vec3 pelvis_weight{1.0};
+  bool is_pelvis_held = false;  // it stays where the start has it, so that each leg is on its own
   std::array<LegAngles, 2> leg_weight{{{1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1}}};
   double smoothness = 1.0;  // and on what it costs to change them unevenly
   double least_knee_rad = 2.0 * kDegree;

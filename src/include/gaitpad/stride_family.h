@@ -118,11 +118,11 @@ StridePlace stride_at(const std::vector<StrideTable>& table, double phase, doubl
 // ratio, from its share in the data: double support is longer in short steps.
 double roll_time_share(double data_share, double ratio) noexcept;
 
-// A phase that runs through the four stages of a cycle, each in its own time, with a smooth rate:
-// cubic in each stage, and at a border between two the mean of their rates.
+// The time at which a phase is reached that runs through the four stages of a cycle, each in its own
+// time, at a smooth rate: cubic in each stage, and at a border between two the mean of their rates.
 struct StageClock {
   std::array<double, 4> phase_share{}, time_share{};  // roll right, flight left, roll left, flight right
-  double phase_at(double time) const noexcept;  // both in cycles
+  double time_at(double phase) const noexcept;  // both in cycles
 };
 
 }  // namespace gaitpad

@@ -96,8 +96,7 @@ StrideChange change_at(const std::vector<StrideResponse>& response, const Stride
   return change;
 }
 
-StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
-                      double ratio) noexcept {
+StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {
   const double x = (phase - std::floor(phase)) * kCycleSamples;
   const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
   const int last = static_cast<int>(tables.size()) - 1;

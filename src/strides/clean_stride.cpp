@@ -21,16 +21,16 @@ constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegree
 constexpr double kHip = 1.8, kAnkle = 1.8;
 constexpr double kSmooth = 20.0;  // of second differences between samples,
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // times this for the pelvis
-constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;  // per square metre, radian
-constexpr double kLevel = 5e2;          // the sole is level and points ahead, per square metre
+constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;         // per square metre, radian
+constexpr double kLevel = 5e2;  // the sole is level and points ahead, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
 constexpr double kSoftStrike = 3e4, kSoftToeDown = 1.3e4;
 constexpr int kLanding = 3;  // samples over which this fades
-// People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square metre
-// of a second difference.
+// People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square
+// metre of a second difference.
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
 constexpr double kSoftHeave_m_s2 = 2.0;  // up and down
-constexpr double kSide_m = 0.1;         // lever of that
+constexpr double kSide_m = 0.1;          // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
@@ -75,9 +75,9 @@ LegFrames leg_frames(const LegModel& model, const StrideSample& sample, int side
   const quat hip_x = sample.pelvis * rotation_x(a[kHipX]), hip_z = hip_x * rotation_z(a[kHipZ]);
   const quat ankle_x = f.pose.shank * rotation_x(a[kAnkleX]),
              ankle_z = ankle_x * rotation_z(a[kAnkleZ]);
-  f.axis = {sample.pelvis * kLeft, hip_x * kForward, hip_z * kUp, f.pose.thigh * kLeft,
-            f.pose.shank * kLeft, ankle_x * kForward, ankle_z * kUp};
-  f.pivot = {f.pose.hip_m, f.pose.hip_m, f.pose.hip_m, f.pose.knee_m,
+  f.axis = {sample.pelvis * kLeft, hip_x * kForward,   hip_z * kUp,  f.pose.thigh * kLeft,
+            f.pose.shank * kLeft,  ankle_x * kForward, ankle_z * kUp};
+  f.pivot = {f.pose.hip_m,   f.pose.hip_m,   f.pose.hip_m,  f.pose.knee_m,
              f.pose.ankle_m, f.pose.ankle_m, f.pose.ankle_m};
   return f;
 }
@@ -98,7 +98,7 @@ struct StrideSolver::System {
 
   int samples;  // of the stride
   int solved;   // samples that are unknown: half of them where the other half mirrors them
-  int first;    // unknown of a sample that a row can see: the pelvis' where it is free, or the legs'
+  int first;  // unknown of a sample that a row can see: the pelvis' where it is free, or the legs'
   // Normal equations as blocks: of sample i and sample i + d, unknown by unknown. An entry that was
   // ever written is one of the sparse matrix.
   std::vector<double> block;
@@ -131,7 +131,8 @@ struct StrideSolver::System {
 
   // A row within a sample sees the pelvis and one leg.
   bool is_seen(int k, int side) const {
-    return (k >= first && k < kPelvis) || (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
+    return (k >= first && k < kPelvis) ||
+           (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
   }
 
   void clear() {
@@ -341,8 +342,10 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         continue;
       }
       const double weight = weight_of(k) * factor_of(problem, k);
-      const double smooth =
-          problem.smoothness * kSmooth * weight * (k == 1 ? kPelvisSmoothUp : k < kPelvis ? kPelvisSmooth : 1.0);
+      const double smooth = problem.smoothness * kSmooth * weight *
+                            (k == 1        ? kPelvisSmoothUp
+                             : k < kPelvis ? kPelvisSmooth
+                                           : 1.0);
       std::array<double, 3> change;
       std::array<Mirrored, 3> where;
       for (int d : {0, 1, 2}) {
@@ -432,7 +435,8 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         for (int a = 0; a < 3; ++a) {
           vec3 d(0.0);
           d[a] = 1.0;
-          s.add_row(i, side, heel, d, heel.place_m[a] - problem.flying_heel_m[i][side][a], kPlanted);
+          s.add_row(i, side, heel, d, heel.place_m[a] - problem.flying_heel_m[i][side][a],
+                    kPlanted);
         }
       }
       if (supports) {
@@ -443,7 +447,8 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         }
       } else {
         const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
-        const double least = leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
+        const double least =
+            leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
         s.add_floor(i, side, toe, least, kSoftFloor_m);
       }
       if (rolls || supports) {
@@ -459,12 +464,13 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         // These two do not depend on the pelvis: add by hand.
         const int base = i * kUnknowns + leg_unknown(side);
         const double want_x = (leg.toe_m - leg.heel_m).x;
-        for (const auto& [point, axis, error] :
-             {std::tuple{&across, 1, across.place_m.y}, std::tuple{&along, 0, along.place_m.x - want_x}}) {
+        for (const auto& [point, axis, error] : {std::tuple{&across, 1, across.place_m.y},
+                                                 std::tuple{&along, 0, along.place_m.x - want_x}}) {
           for (int p = 0; p < kLegDofs; ++p) {
             s.gradient[base + p] += kLevel * point->by_angle[p][axis] * error;
             for (int q = 0; q <= p; ++q) {
-              s.at(base + p, base + q) += kLevel * point->by_angle[p][axis] * point->by_angle[q][axis];
+              s.at(base + p, base + q) +=
+                  kLevel * point->by_angle[p][axis] * point->by_angle[q][axis];
             }
           }
         }

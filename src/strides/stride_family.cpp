@@ -44,12 +44,12 @@ constexpr double kSmoothLeg = 2.0;  // a leg alone changes more smoothly
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
 constexpr double kBounceSmooth = 10.0;
 constexpr double kBounceRoom = 0.35;  // of the travel: the hips sink by so much more
-constexpr int kResponseSolve = 3;  // iterations from the clean stride
+constexpr int kResponseSolve = 3;     // iterations from the clean stride
 
 double fraction(double phase) { return phase - std::floor(phase); }
 
-// The cycle run back: what it lifts lands. Its phases count from where the data lift the right foot,
-// and its stages have the shares of the cycle's.
+// The cycle run back: what it lifts lands. Its phases count from where the data lift the right
+// foot, and its stages have the shares of the cycle's.
 GaitCycle run_back(const GaitCycle& cycle) {
   GaitCycle back;
   back.name = cycle.name;
@@ -187,8 +187,8 @@ struct Builder {
     StrideProblem p;
     p.leg = cycle.leg;
     p.stride_m = ratio * cycle.stride_m;
-    // Backwards people land on their toes and leave on their heels, and Table I has it the other way
-    // round. So the data count less there, above all the ankles', and the change is smoother.
+    // Backwards people land on their toes and leave on their heels, and Table I has it the other
+    // way round. So the data count less there, above all the ankles', and the change is smoother.
     if (cycle.stride_m < 0.0) {
       p.least_knee_rad = kLeastKneeBack;
       p.soft_toe *= kSmootherBack;
@@ -239,8 +239,8 @@ struct Builder {
     const vec3 line = leg.toe_m - leg.heel_m;
     const vec3 ahead = glm::normalize(vec3(line.x, 0.0, line.z)), across = glm::cross(kUp, ahead);
     const vec3 now = rotation * line;
-    foot.pitch_rad = gaitpad::atan2(line.y, glm::dot(line, ahead)) -
-                     gaitpad::atan2(now.y, glm::dot(now, ahead));
+    foot.pitch_rad =
+        gaitpad::atan2(line.y, glm::dot(line, ahead)) - gaitpad::atan2(now.y, glm::dot(now, ahead));
     const auto rest_of = [&](double pitch) {
       return rotation_vector(glm::conjugate(rotation_about(across, pitch)) * rotation);
     };
@@ -274,7 +274,8 @@ struct Builder {
       wanted.pelvis_m = x.pelvis_m + (wanted.pelvis_m - x.pelvis_m) / p.pelvis_weight;
       for (int side : {0, 1}) {
         for (int j = 0; j < kLegDofs; ++j)
-          wanted.leg[side][j] = x.leg[side][j] + (wanted.leg[side][j] - x.leg[side][j]) / p.leg_weight[side][j];
+          wanted.leg[side][j] =
+              x.leg[side][j] + (wanted.leg[side][j] - x.leg[side][j]) / p.leg_weight[side][j];
       }
     }
   }
@@ -346,10 +347,9 @@ struct Builder {
                  low = *std::min_element(wave.begin(), wave.end());
     // What stays where it is: about the highest place with more bounce, the lowest one with less.
     // So no leg has to be longer than it is.
-    const double stays = more > 0.0 ? high + kBounceRoom * (high - low)
-                                     : low - kBounceRoom * (high - low);
-    for (int i = 0; i < kCycleSamples; ++i)
-      p.wanted[i].pelvis_m.y += more * (wave[i] - stays);
+    const double stays =
+        more > 0.0 ? high + kBounceRoom * (high - low) : low - kBounceRoom * (high - low);
+    for (int i = 0; i < kCycleSamples; ++i) p.wanted[i].pelvis_m.y += more * (wave[i] - stays);
     return solver.solve(p, clean, kResponseSolve);
   }
 
@@ -547,8 +547,9 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
     for (const vec3& v : {leg.hip_m, leg.heel_m, leg.toe_m}) add(v);
     numbers.insert(numbers.end(), {leg.thigh_m, leg.shank_m, leg.toe_rest_m});
   }
-  numbers.insert(numbers.end(), {cycle.stride_m, cycle.step_m[0], cycle.step_m[1], cycle.strike[0], cycle.strike[1],
-                                 cycle.toe_off[0], cycle.toe_off[1], cycle.duration_s});
+  numbers.insert(numbers.end(),
+                 {cycle.stride_m, cycle.step_m[0], cycle.step_m[1], cycle.strike[0],
+                  cycle.strike[1], cycle.toe_off[0], cycle.toe_off[1], cycle.duration_s});
   for (const CycleSample& sample : cycle.samples) {
     add(sample.pelvis_m);
     const quat& q = sample.pelvis;

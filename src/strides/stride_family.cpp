@@ -38,6 +38,11 @@ constexpr std::array<Stiffness, 3> kStiffness = {
     {{kHipX, 0.28, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
 // What a stiff hip does not move, knee and ankle do: their curves leave their means by this.
 constexpr double kMoreKnee = 0.45;
+// Stiff legs keep off the straight knee: a little more of their change would be out of reach.
+constexpr double kLeastStiffKnee = 5.0 * kDegree;
+// A leg's hip is stiffened alone while the pelvis moves by about a millimetre: with none, a
+// standing leg could not change at all.
+constexpr double kSteadyPelvis = 1e4;
 constexpr double kSmoothLeg = 2.0;  // a leg alone changes more smoothly
 // A bounce is met by the pelvis' height first; it does not move sideways or ahead for it, and the
 // legs change smoothly.
@@ -418,18 +423,23 @@ struct Builder {
     };
     const StrideProblem free = held(data, clean);
     // The sound leg goes as if the other were sound, too: the pelvis does not give way.
-    StrideProblem alone = free;
+    StrideProblem steady = free;
+    for (LegAngles& weight : steady.leg_weight) weight.fill(kSmoothLeg);
+    StrideProblem alone = steady;
+    steady.pelvis_weight = vec3(kSteadyPelvis);
     alone.is_pelvis_held = true;
-    for (LegAngles& weight : alone.leg_weight) weight.fill(kSmoothLeg);
+    StrideProblem stiff = free;
+    stiff.least_knee_rad = kLeastStiffKnee;
     StrideProblem bouncy = free;
     bouncy.most_heave_m_s2 *= 2.0;
     at(StrideWish::more_bounce) = keep(bounced(solver, bouncy, clean, 1.0));
     meet_travel(clean, 1.0, at(StrideWish::more_bounce));
     at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k)
-      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, free, clean, kStiffness[k]));
+      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, stiff, clean, kStiffness[k]));
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k) {
-      const StrideResponse one = keep(stiffened(solver, alone, clean, kStiffness[k]));
+      const StrideProblem& one_leg = kStiffness[k].dof == kHipX ? steady : alone;
+      const StrideResponse one = keep(stiffened(solver, one_leg, clean, kStiffness[k]));
       at(StrideWish::stiff_left_hip, k) = of_leg(one, kLeftSide);
       at(StrideWish::stiff_right_hip, k) = of_leg(one, kRightSide);
     }

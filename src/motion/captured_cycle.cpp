@@ -102,7 +102,8 @@ class Closer {
     const double from_seam = std::min(phase, 1.0 - phase);
     const double rest = std::max(0.0, 1.0 - from_seam / kReach);
     const double near = 0.5 * (1.0 - smoothstep(0.0, kReach, from_seam));
-    return x.at(s_.place(phase)) + gap * (phase < 0.5 ? near : -near) + half * from_seam * rest * rest;
+    return x.at(s_.place(phase)) + gap * (phase < 0.5 ? near : -near) +
+           half * from_seam * rest * rest;
   }
 
   Stretch s_;

@@ -83,9 +83,9 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
-constexpr double kBackwards = 0.5;    // cosine between hips' front and travel
+constexpr double kBackwards = 0.5;     // cosine between hips' front and travel
 constexpr double kLongestFlat = 0.35;  // of the stride after a strike: the toe is down by then
-constexpr double kMostFlight = 0.02;  // of the stride with both feet in the air: else it is a run
+constexpr double kMostFlight = 0.02;   // of the stride with both feet in the air: else it is a run
 constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits have half of it
 constexpr double kStill_legs_s = 0.6;     // 0.5 m/s of an adult's leg
 constexpr double kInAir_legs = 0.024;  // 20 mm of an adult's leg: captured floors are that uneven
@@ -142,7 +142,8 @@ void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
 // toe is down. So it waits until it has moved as far, in the data, as the other toe still has to
 // sink: both feet are then changed equally.
 void wait_for_other_toe(GaitCycle& cycle) {
-  constexpr double kLeavingCosts = 3.0, kLongestWait = 0.08, kStep = 1.0 / (2 * kCycleSamples);  // of the stride
+  constexpr double kLeavingCosts = 3.0, kLongestWait = 0.08,
+                   kStep = 1.0 / (2 * kCycleSamples);  // of the stride
   const std::array<double, 2> off = cycle.toe_off;
   for (const Side side : {kLeftSide, kRightSide}) {
     const Side lands = other(side);
@@ -157,8 +158,9 @@ void wait_for_other_toe(GaitCycle& cycle) {
       lowest_m = std::min(lowest_m, toe_at(lands, cycle.strike[lands] + after).y);
     const vec3 stood = toe_at(side, off[side]);
     double wait = 0.0;
-    while (wait < kLongestWait && kLeavingCosts * glm::distance(toe_at(side, off[side] + wait), stood) <
-                                      toe_at(lands, off[side] + wait).y - lowest_m)
+    while (wait < kLongestWait &&
+           kLeavingCosts * glm::distance(toe_at(side, off[side] + wait), stood) <
+               toe_at(lands, off[side] + wait).y - lowest_m)
       wait += kStep;
     cycle.toe_off[side] = fraction(off[side] + wait);
   }

@@ -34,8 +34,7 @@ Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexce
   const vec3 across = legs[0].hip_m - legs[1].hip_m;
   const auto length_m = [&](const LegModel& leg) { return span_m(leg, knee_rad) - leg.heel_m.y; };
   const double longer = length_m(legs[0]) - length_m(legs[1]) - across.y;
-  stand.roll_rad =
-      std::clamp(gaitpad::atan2(longer, std::abs(across.x)), -kMostRoll, kMostRoll);
+  stand.roll_rad = std::clamp(gaitpad::atan2(longer, std::abs(across.x)), -kMostRoll, kMostRoll);
   const quat roll = rotation_z(stand.roll_rad);
   const auto height_m = [&](const LegModel& leg) { return length_m(leg) - (roll * leg.hip_m).y; };
   stand.pelvis_m = std::min(height_m(legs[0]), height_m(legs[1]));

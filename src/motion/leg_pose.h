@@ -26,8 +26,8 @@ AnglesXzy angles_xzy(const quat& q) noexcept;
 // Both legs standing upright with flat feet. Where one is longer, the pelvis rolls as a person's
 // does; what that leaves bends the longer leg.
 struct Stand {
-  double pelvis_m = 0.0;    // its height over the floor
-  double roll_rad = 0.0;    // of the pelvis about the way ahead, left side up positive
+  double pelvis_m = 0.0;  // its height over the floor
+  double roll_rad = 0.0;  // of the pelvis about the way ahead, left side up positive
   std::array<LegAngles, 2> angles{};
 };
 // No knee is straighter than `knee_rad`.

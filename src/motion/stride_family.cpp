@@ -96,8 +96,7 @@ StrideChange change_at(const std::vector<StrideResponse>& response, const Stride
   return change;
 }
 
-StridePlace stride_at(const std::vector<StrideTable>& tables, double phase,
-                      double ratio) noexcept {
+StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {
   const double x = (phase - std::floor(phase)) * kCycleSamples;
   const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
   const int last = static_cast<int>(tables.size()) - 1;
@@ -135,19 +134,19 @@ double roll_time_share(double data_share, double ratio) noexcept {
   return std::clamp(share, std::min(kLeastRoll, data_share), std::max(kMostRoll, data_share));
 }
 
-double StageClock::phase_at(double time) const noexcept {
-  const double turns = std::floor(time);
-  double left = time - turns, begin = 0.0;
+double StageClock::time_at(double phase) const noexcept {
+  const double turns = std::floor(phase);
+  double left = phase - turns, begin = 0.0;
   int stage = 0;
-  while (stage < 3 && left > time_share[stage]) {
-    left -= time_share[stage];
-    begin += phase_share[stage++];
+  while (stage < 3 && left > phase_share[stage]) {
+    left -= phase_share[stage];
+    begin += time_share[stage++];
   }
-  const auto rate = [&](int k) { return phase_share[(k + 4) % 4] / time_share[(k + 4) % 4]; };
-  const double length = time_share[stage], s = left / length;
-  const double v0 = 0.5 * (rate(stage - 1) + rate(stage)) * length,
-               v1 = 0.5 * (rate(stage) + rate(stage + 1)) * length;
-  const double d = phase_share[stage];
+  const auto pace = [&](int k) { return time_share[(k + 4) % 4] / phase_share[(k + 4) % 4]; };
+  const double length = phase_share[stage], s = left / length;
+  const double v0 = 0.5 * (pace(stage - 1) + pace(stage)) * length,
+               v1 = 0.5 * (pace(stage) + pace(stage + 1)) * length;
+  const double d = time_share[stage];
   const double c2 = 3.0 * d - 2.0 * v0 - v1, c3 = v0 + v1 - 2.0 * d;
   return turns + begin + (v0 + (c2 + c3 * s) * s) * s;
 }

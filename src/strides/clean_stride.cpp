@@ -21,20 +21,20 @@ constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegree
 constexpr double kHip = 1.8, kAnkle = 1.8;
 constexpr double kSmooth = 20.0;  // of second differences between samples,
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // times this for the pelvis
-constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;  // per square metre, radian
-constexpr double kLevel = 5e2;          // the sole is level and points ahead, per square metre
+constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;         // per square metre, radian
+constexpr double kLevel = 5e2;  // the sole is level and points ahead, per square metre
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
 constexpr double kSoftStrike = 3e4, kSoftToeDown = 1.3e4;
 constexpr int kLanding = 3;  // samples over which this fades
-// People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square metre
-// of a second difference.
+// People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square
+// metre of a second difference.
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
 constexpr double kSoftHeave_m_s2 = 2.0;  // up and down
-constexpr double kSide_m = 0.1;         // lever of that
+constexpr double kSide_m = 0.1;          // lever of that
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
-constexpr double kMostStep = 0.15;        // radians or metres an iteration
+constexpr double kMostStep = 0.25;        // radians or metres an iteration
 
 int leg_unknown(int side) { return kPelvis + side * kLegDofs; }
 double fraction(double phase) { return phase - std::floor(phase); }
@@ -75,9 +75,9 @@ LegFrames leg_frames(const LegModel& model, const StrideSample& sample, int side
   const quat hip_x = sample.pelvis * rotation_x(a[kHipX]), hip_z = hip_x * rotation_z(a[kHipZ]);
   const quat ankle_x = f.pose.shank * rotation_x(a[kAnkleX]),
              ankle_z = ankle_x * rotation_z(a[kAnkleZ]);
-  f.axis = {sample.pelvis * kLeft, hip_x * kForward, hip_z * kUp, f.pose.thigh * kLeft,
-            f.pose.shank * kLeft, ankle_x * kForward, ankle_z * kUp};
-  f.pivot = {f.pose.hip_m, f.pose.hip_m, f.pose.hip_m, f.pose.knee_m,
+  f.axis = {sample.pelvis * kLeft, hip_x * kForward,   hip_z * kUp,  f.pose.thigh * kLeft,
+            f.pose.shank * kLeft,  ankle_x * kForward, ankle_z * kUp};
+  f.pivot = {f.pose.hip_m,   f.pose.hip_m,   f.pose.hip_m,  f.pose.knee_m,
              f.pose.ankle_m, f.pose.ankle_m, f.pose.ankle_m};
   return f;
 }
@@ -98,6 +98,7 @@ struct StrideSolver::System {
 
   int samples;  // of the stride
   int solved;   // samples that are unknown: half of them where the other half mirrors them
+  int first;  // unknown of a sample that a row can see: the pelvis' where it is free, or the legs'
   // Normal equations as blocks: of sample i and sample i + d, unknown by unknown. An entry that was
   // ever written is one of the sparse matrix.
   std::vector<double> block;
@@ -108,9 +109,10 @@ struct StrideSolver::System {
   Eigen::VectorXd gradient;
   Eigen::SimplicialLDLT<Matrix, Eigen::Lower> factor;
 
-  System(int n, int unknown_samples)
+  System(int n, int unknown_samples, int first_seen)
       : samples(n),
         solved(unknown_samples),
+        first(first_seen),
         block(solved * kReach * kBlock),
         is_entry(block.size()),
         normal(solved * kUnknowns, solved * kUnknowns),
@@ -128,8 +130,9 @@ struct StrideSolver::System {
   }
 
   // A row within a sample sees the pelvis and one leg.
-  static bool is_seen(int k, int side) {
-    return k < kPelvis || (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
+  bool is_seen(int k, int side) const {
+    return (k >= first && k < kPelvis) ||
+           (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
   }
 
   void clear() {
@@ -201,9 +204,9 @@ struct StrideSolver::System {
       row[kPelvis + j] = glm::dot(direction, point.by_angle[j]);
       where[kPelvis + j] = leg + j;
     }
-    for (std::size_t p = 0; p < row.size(); ++p) {
+    for (std::size_t p = first; p < row.size(); ++p) {
       gradient[where[p]] += weight * row[p] * error_m;
-      for (std::size_t q = 0; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
+      for (std::size_t q = first; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
     }
   }
 
@@ -227,7 +230,7 @@ struct StrideSolver::System {
           row[m] = kBend[d] * slope * place.factor;
           where[m++] = place.unknown;
         };
-        for (int a = 0; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
+        for (int a = first; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
         for (int k = 0; k < kLegDofs; ++k) add(leg_unknown(side) + k, point[j].by_angle[k][axis]);
       }
       for (int p = 0; p < m; ++p) {
@@ -334,9 +337,15 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   for (int i = 0; i < solved; ++i) {
     for (int k = 0; k < kUnknowns; ++k) {
       const int at = i * kUnknowns + k;
+      if (k < s.first) {
+        s.at(at, at) = 1.0;
+        continue;
+      }
       const double weight = weight_of(k) * factor_of(problem, k);
-      const double smooth =
-          problem.smoothness * kSmooth * weight * (k == 1 ? kPelvisSmoothUp : k < kPelvis ? kPelvisSmooth : 1.0);
+      const double smooth = problem.smoothness * kSmooth * weight *
+                            (k == 1        ? kPelvisSmoothUp
+                             : k < kPelvis ? kPelvisSmooth
+                                           : 1.0);
       std::array<double, 3> change;
       std::array<Mirrored, 3> where;
       for (int d : {0, 1, 2}) {
@@ -360,7 +369,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   std::vector<double> path_m(n);
   for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
   const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
-  for (int i = 0; i < solved; ++i) {
+  for (int i = 0; i < solved && s.first == 0; ++i) {
     s.add_surge(i, 2, x, path_m, problem.stride_m, kMostSurge_m_s2 * tick2,
                 kSoftSurge_m_s2 * tick2);
     s.add_surge(i, 1, x, path_m, problem.stride_m, problem.most_heave_m_s2 * tick2,
@@ -368,13 +377,17 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   }
   // Feet.
   std::array<std::vector<LegFrames>, 2> all_frames;
+  std::array<std::vector<PointRows>, 2> all_heels, all_toes;
   for (int side : {0, 1}) {
     const LegModel& leg = problem.leg[side];
-    std::vector<PointRows> heels, toes;
-    for (int i = 0; i < n; ++i) {
-      const LegFrames& frames = all_frames[side].emplace_back(leg_frames(leg, x[i], side));
-      heels.push_back(point_rows(frames, leg.heel_m));
-      toes.push_back(point_rows(frames, leg.toe_m));
+    std::vector<PointRows>&heels = all_heels[side], &toes = all_toes[side];
+    all_frames[side].resize(n), heels.resize(n), toes.resize(n);
+    // Of the samples that are solved and their neighbours.
+    for (int at = -1; at <= solved; ++at) {
+      const int i = (at + n) % n;
+      const LegFrames& frames = all_frames[side][i] = leg_frames(leg, x[i], side);
+      heels[i] = point_rows(frames, leg.heel_m);
+      toes[i] = point_rows(frames, leg.toe_m);
     }
     const int strike = static_cast<int>(std::floor(problem.strike[side] * n + 1e-9)),
               lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - 1e-9)),
@@ -401,7 +414,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const double own = begins - sample;
       const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);
       const double support = fraction(problem.toe_off[side] - problem.strike[side]);
-      const PointRows heel = point_rows(frames, leg.heel_m), toe = point_rows(frames, leg.toe_m);
+      const PointRows &heel = all_heels[side][i], &toe = all_toes[side][i];
       vec3 heel_goal = problem.heel_m[side];
       // A foot in stance at the cycle's end stands on where it came from.
       const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
@@ -422,7 +435,8 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         for (int a = 0; a < 3; ++a) {
           vec3 d(0.0);
           d[a] = 1.0;
-          s.add_row(i, side, heel, d, heel.place_m[a] - problem.flying_heel_m[i][side][a], kPlanted);
+          s.add_row(i, side, heel, d, heel.place_m[a] - problem.flying_heel_m[i][side][a],
+                    kPlanted);
         }
       }
       if (supports) {
@@ -433,7 +447,8 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         }
       } else {
         const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
-        const double least = leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
+        const double least =
+            leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
         s.add_floor(i, side, toe, least, kSoftFloor_m);
       }
       if (rolls || supports) {
@@ -449,12 +464,13 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         // These two do not depend on the pelvis: add by hand.
         const int base = i * kUnknowns + leg_unknown(side);
         const double want_x = (leg.toe_m - leg.heel_m).x;
-        for (const auto& [point, axis, error] :
-             {std::tuple{&across, 1, across.place_m.y}, std::tuple{&along, 0, along.place_m.x - want_x}}) {
+        for (const auto& [point, axis, error] : {std::tuple{&across, 1, across.place_m.y},
+                                                 std::tuple{&along, 0, along.place_m.x - want_x}}) {
           for (int p = 0; p < kLegDofs; ++p) {
             s.gradient[base + p] += kLevel * point->by_angle[p][axis] * error;
             for (int q = 0; q <= p; ++q) {
-              s.at(base + p, base + q) += kLevel * point->by_angle[p][axis] * point->by_angle[q][axis];
+              s.at(base + p, base + q) +=
+                  kLevel * point->by_angle[p][axis] * point->by_angle[q][axis];
             }
           }
         }
@@ -492,8 +508,9 @@ bool StrideSolver::move(std::vector<StrideSample>& x) {
 void StrideSolver::begin(const StrideProblem& problem) {
   const int n = static_cast<int>(problem.wanted.size());
   const int solved = is_symmetric(problem) ? n / 2 : n;
-  if (!system_ || system_->samples != n || system_->solved != solved)
-    system_ = std::make_unique<System>(n, solved);
+  const int first = problem.is_pelvis_held ? kPelvis : 0;
+  if (!system_ || system_->samples != n || system_->solved != solved || system_->first != first)
+    system_ = std::make_unique<System>(n, solved, first);
 }
 
 std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,

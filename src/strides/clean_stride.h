@@ -26,20 +26,22 @@ struct StrideSample {
 // What is asked of a stride. `samples` are evenly spaced in phase; sample 0 is the right strike.
 struct StrideProblem {
   std::array<LegModel, 2> leg;
-  double stride_m = 0.0;              // travel in the stride
+  double stride_m = 0.0;  // travel in the stride
   double duration_s = 0.0;
-  std::vector<StrideSample> wanted;   // the data, scaled to this stride
-  std::array<double, 2> strike{};     // phases, as in GaitCycle
+  std::vector<StrideSample> wanted;  // the data, scaled to this stride
+  std::array<double, 2> strike{};    // phases, as in GaitCycle
   std::array<double, 2> toe_off{};
   std::vector<double> time;  // of each sample, in cycles: 0 at sample 0
   // Where the heel stands along the path: the travel frame is at stride_m * time.
   std::array<vec3, 2> heel_m{};
   // Factors on what it costs to change the pelvis' place and the angles.
   vec3 pelvis_weight{1.0};
+  bool is_pelvis_held = false;  // it stays where the start has it, so that each leg is on its own
   std::array<LegAngles, 2> leg_weight{{{1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1}}};
   double smoothness = 1.0;  // and on what it costs to change them unevenly
   double least_knee_rad = 2.0 * kDegree;
-  double soft_toe = 3e3;  // how smoothly a toe begins to move: per square metre of second differences
+  double soft_toe =
+      3e3;  // how smoothly a toe begins to move: per square metre of second differences
   double most_heave_m_s2 = 7.0;  // how hard the hips rise and fall, about
   // Where the heels have to be in flight, sample by sample, in the travel frame. Empty: anywhere.
   std::vector<std::array<vec3, 2>> flying_heel_m;

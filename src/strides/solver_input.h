@@ -20,22 +20,23 @@ void for_each_number(Family& family, Each each) {
     for (auto& angle : angles) each(angle);
   }
   const auto each_of = [&each](auto& v) { each(v.x), each(v.y), each(v.z); };
-  for (auto* tables : {&family.table, &family.back}) for (auto& table : *tables) {
-    each(table.stride_m);
-    for (auto& place : table.footprint_m) each_of(place);
-    for (auto& cell : table.knot) {
-      each_of(cell.pelvis_m);
-      each(cell.pelvis_yaw_rad);
-      each_of(cell.pelvis_tilt);
-      for (auto& foot : cell.foot) {
-        each_of(foot.heel_m);
-        each(foot.pitch_rad), each(foot.twist_rad), each(foot.roll_rad);
-      }
-      for (auto& angles : cell.leg_rad) {
-        for (auto& angle : angles) each(angle);
+  for (auto* tables : {&family.table, &family.back})
+    for (auto& table : *tables) {
+      each(table.stride_m);
+      for (auto& place : table.footprint_m) each_of(place);
+      for (auto& cell : table.knot) {
+        each_of(cell.pelvis_m);
+        each(cell.pelvis_yaw_rad);
+        each_of(cell.pelvis_tilt);
+        for (auto& foot : cell.foot) {
+          each_of(foot.heel_m);
+          each(foot.pitch_rad), each(foot.twist_rad), each(foot.roll_rad);
+        }
+        for (auto& angles : cell.leg_rad) {
+          for (auto& angle : angles) each(angle);
+        }
       }
     }
-  }
   for (auto& response : family.response) {
     for (auto& change : response.knot) {
       each_of(change.pelvis_m);

@@ -13,11 +13,13 @@ namespace gaitpad {
 namespace {
 
 constexpr int kOwn = 5;  // the table of the data's own stride
-// Iterations. After so many the largest change of an angle is below 1e-4 rad in most clips; ratios
-// 0 and 0.2 still drift by up to 1e-2 rad in some, along changes that cost next to nothing.
-constexpr int kFirstSolve = 8, kNextSolve = 4;
-// Backwards the change is larger.
-constexpr int kNextBack = 6;
+// Iterations. After so many, angles are within 2e-2 rad of where they end in most clips, mostly
+// where a knee is nearly straight; more iterations make no walk smoother or nearer to its data.
+constexpr int kFirstSolve = 7, kNextSolve = 3;
+constexpr int kNextBack = 4;  // the change is larger
+// How much of the growth of the change from one stride to the next goes on to the one after: all of
+// it overshoots where steps get short.
+constexpr double kGoesOn = 0.5;
 constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack = 0.3,
                  kAnkleBack = 0.17;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;
@@ -36,20 +38,23 @@ constexpr std::array<Stiffness, 3> kStiffness = {
     {{kHipX, 0.28, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
 // What a stiff hip does not move, knee and ankle do: their curves leave their means by this.
 constexpr double kMoreKnee = 0.45;
-// Of one leg alone: the pelvis moves by about a millimetre, and the leg changes more smoothly.
-constexpr double kSteadyPelvis = 1e4, kSmoothLeg = 2.0;
+// Stiff legs keep off the straight knee: a little more of their change would be out of reach.
+constexpr double kLeastStiffKnee = 5.0 * kDegree;
+// A leg's hip is stiffened alone while the pelvis moves by about a millimetre: with none, a
+// standing leg could not change at all.
+constexpr double kSteadyPelvis = 1e4;
+constexpr double kSmoothLeg = 2.0;  // a leg alone changes more smoothly
 // A bounce is met by the pelvis' height first; it does not move sideways or ahead for it, and the
 // legs change smoothly.
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
 constexpr double kBounceSmooth = 10.0;
 constexpr double kBounceRoom = 0.35;  // of the travel: the hips sink by so much more
-// Iterations from the clean stride. After three the change is within 2 % of where it ends.
-constexpr int kResponseSolve = 3, kBounceSolve = 3;
+constexpr int kResponseSolve = 3;     // iterations from the clean stride
 
 double fraction(double phase) { return phase - std::floor(phase); }
 
-// The cycle run back: what it lifts lands. Its phases count from where the data lift the right foot,
-// and its stages have the shares of the cycle's.
+// The cycle run back: what it lifts lands. Its phases count from where the data lift the right
+// foot, and its stages have the shares of the cycle's.
 GaitCycle run_back(const GaitCycle& cycle) {
   GaitCycle back;
   back.name = cycle.name;
@@ -187,8 +192,8 @@ struct Builder {
     StrideProblem p;
     p.leg = cycle.leg;
     p.stride_m = ratio * cycle.stride_m;
-    // Backwards people land on their toes and leave on their heels, and Table I has it the other way
-    // round. So the data count less there, above all the ankles', and the change is smoother.
+    // Backwards people land on their toes and leave on their heels, and Table I has it the other
+    // way round. So the data count less there, above all the ankles', and the change is smoother.
     if (cycle.stride_m < 0.0) {
       p.least_knee_rad = kLeastKneeBack;
       p.soft_toe *= kSmootherBack;
@@ -202,14 +207,7 @@ struct Builder {
     const StageClock stages = clock(ratio);
     for (int i = 0; i < kCycleSamples; ++i) {
       p.wanted.push_back(scaled(i, ratio));
-      // The time of this phase, by bisection.
-      const double phase = double(i) / kCycleSamples;
-      double low = 0.0, high = 1.0;
-      for (int n = 0; n < 50; ++n) {
-        const double middle = 0.5 * (low + high);
-        (stages.phase_at(middle) < phase ? low : high) = middle;
-      }
-      p.time.push_back(0.5 * (low + high));
+      p.time.push_back(stages.time_at(double(i) / kCycleSamples));
     }
     for (int side : {0, 1}) p.heel_m[side] = footprint(side, ratio);
     return p;
@@ -246,8 +244,8 @@ struct Builder {
     const vec3 line = leg.toe_m - leg.heel_m;
     const vec3 ahead = glm::normalize(vec3(line.x, 0.0, line.z)), across = glm::cross(kUp, ahead);
     const vec3 now = rotation * line;
-    foot.pitch_rad = gaitpad::atan2(line.y, glm::dot(line, ahead)) -
-                     gaitpad::atan2(now.y, glm::dot(now, ahead));
+    foot.pitch_rad =
+        gaitpad::atan2(line.y, glm::dot(line, ahead)) - gaitpad::atan2(now.y, glm::dot(now, ahead));
     const auto rest_of = [&](double pitch) {
       return rotation_vector(glm::conjugate(rotation_about(across, pitch)) * rotation);
     };
@@ -281,7 +279,8 @@ struct Builder {
       wanted.pelvis_m = x.pelvis_m + (wanted.pelvis_m - x.pelvis_m) / p.pelvis_weight;
       for (int side : {0, 1}) {
         for (int j = 0; j < kLegDofs; ++j)
-          wanted.leg[side][j] = x.leg[side][j] + (wanted.leg[side][j] - x.leg[side][j]) / p.leg_weight[side][j];
+          wanted.leg[side][j] =
+              x.leg[side][j] + (wanted.leg[side][j] - x.leg[side][j]) / p.leg_weight[side][j];
       }
     }
   }
@@ -353,11 +352,10 @@ struct Builder {
                  low = *std::min_element(wave.begin(), wave.end());
     // What stays where it is: about the highest place with more bounce, the lowest one with less.
     // So no leg has to be longer than it is.
-    const double stays = more > 0.0 ? high + kBounceRoom * (high - low)
-                                     : low - kBounceRoom * (high - low);
-    for (int i = 0; i < kCycleSamples; ++i)
-      p.wanted[i].pelvis_m.y += more * (wave[i] - stays);
-    return solver.solve(p, clean, kBounceSolve);
+    const double stays =
+        more > 0.0 ? high + kBounceRoom * (high - low) : low - kBounceRoom * (high - low);
+    for (int i = 0; i < kCycleSamples; ++i) p.wanted[i].pelvis_m.y += more * (wave[i] - stays);
+    return solver.solve(p, clean, kResponseSolve);
   }
 
   // The pelvis' height about its mean, up to two waves a stride: what is quicker is no bounce.
@@ -425,17 +423,23 @@ struct Builder {
     };
     const StrideProblem free = held(data, clean);
     // The sound leg goes as if the other were sound, too: the pelvis does not give way.
-    StrideProblem alone = free;
-    alone.pelvis_weight = vec3(kSteadyPelvis);
-    for (LegAngles& weight : alone.leg_weight) weight.fill(kSmoothLeg);
+    StrideProblem steady = free;
+    for (LegAngles& weight : steady.leg_weight) weight.fill(kSmoothLeg);
+    StrideProblem alone = steady;
+    steady.pelvis_weight = vec3(kSteadyPelvis);
+    alone.is_pelvis_held = true;
+    StrideProblem stiff = free;
+    stiff.least_knee_rad = kLeastStiffKnee;
     StrideProblem bouncy = free;
     bouncy.most_heave_m_s2 *= 2.0;
     at(StrideWish::more_bounce) = keep(bounced(solver, bouncy, clean, 1.0));
     meet_travel(clean, 1.0, at(StrideWish::more_bounce));
     at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));
+    for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k)
+      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, stiff, clean, kStiffness[k]));
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k) {
-      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, free, clean, kStiffness[k]));
-      const StrideResponse one = keep(stiffened(solver, alone, clean, kStiffness[k]));
+      const StrideProblem& one_leg = kStiffness[k].dof == kHipX ? steady : alone;
+      const StrideResponse one = keep(stiffened(solver, one_leg, clean, kStiffness[k]));
       at(StrideWish::stiff_left_hip, k) = of_leg(one, kLeftSide);
       at(StrideWish::stiff_right_hip, k) = of_leg(one, kRightSide);
     }
@@ -447,37 +451,64 @@ struct Builder {
 
   // --- All strides ---
 
+  struct Solved {
+    StrideProblem problem;
+    std::vector<StrideSample> stride;
+  };
+
+  // What the data of `p` would become if they changed as those of another stride did: the start of
+  // its solve. With a second stride beyond that one, the change goes on as it grew between the two.
+  static std::vector<StrideSample> start_of(const StrideProblem& p, const Solved& near,
+                                            const Solved* far) {
+    std::vector<StrideSample> start = p.wanted;
+    const auto add = [&start](const Solved& from, double share) {
+      for (int i = 0; i < kCycleSamples; ++i) {
+        const StrideSample &solved = from.stride[i], &wanted = from.problem.wanted[i];
+        start[i].pelvis_m += share * (solved.pelvis_m - wanted.pelvis_m);
+        for (int side : {0, 1}) {
+          for (int j = 0; j < kLegDofs; ++j)
+            start[i].leg[side][j] += share * (solved.leg[side][j] - wanted.leg[side][j]);
+        }
+      }
+    };
+    add(near, far == nullptr ? 1.0 : 1.0 + kGoesOn);
+    if (far != nullptr) add(*far, -kGoesOn);
+    return start;
+  }
+
   // False where there is no solution.
   bool solve() {
     StrideSolver solver;
     const bool forwards = cycle.stride_m > 0.0;
-    family.table.resize(forwards ? kStrideRatios : kBackRatios);
-    const int tables = static_cast<int>(family.table.size()), first = std::min(kOwn, tables - 1);
-    const StrideProblem own = problem(first * kRatioStep);
-    const std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
-    if (clean.empty()) return false;
-    family.table[first] = table_of(own, clean, first * kRatioStep);
-    if (forwards && !respond(solver, own, clean)) return false;
-    for (int step : {-1, 1}) {
-      std::vector<StrideSample> start = clean;
-      StrideProblem before = own;
-      for (int k = first + step; k >= 0 && k < tables; k += step) {
-        StrideProblem p = problem(k * kRatioStep);
-        // The neighbour's change of its own data.
-        for (int i = 0; i < kCycleSamples; ++i) {
-          start[i].pelvis_m += p.wanted[i].pelvis_m - before.wanted[i].pelvis_m;
-          start[i].pelvis = p.wanted[i].pelvis;
-          for (int side : {0, 1})
-            for (int j = 0; j < kLegDofs; ++j)
-              start[i].leg[side][j] += p.wanted[i].leg[side][j] - before.wanted[i].leg[side][j];
-        }
-        start = solver.solve(p, std::move(start), forwards ? kNextSolve : kNextBack);
-        if (start.empty()) return false;
-        family.table[k] = table_of(p, start, k * kRatioStep);
-        before = std::move(p);
-      }
+    const int tables = forwards ? kStrideRatios : kBackRatios, first = std::min(kOwn, tables - 1);
+    std::vector<Solved> all(tables);
+    // Keeps a table's answer. False where there is none.
+    const auto keep = [&](int k, StrideProblem p, std::vector<StrideSample> stride) {
+      if (stride.empty()) return false;
+      family.table[k] = table_of(p, stride, k * kRatioStep);
+      all[k] = {std::move(p), std::move(stride)};
+      return true;
+    };
+    family.table.resize(tables);
+    StrideProblem own = problem(first * kRatioStep);
+    std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
+    if (!keep(first, std::move(own), std::move(clean))) return false;
+    const auto go_on = [&](int k, int from) {
+      const int beyond = 2 * from - k;
+      const bool is_known = beyond >= 0 && beyond < tables && !all[beyond].stride.empty();
+      StrideProblem p = problem(k * kRatioStep);
+      std::vector<StrideSample> start = start_of(p, all[from], is_known ? &all[beyond] : nullptr);
+      std::vector<StrideSample> stride =
+          solver.solve(p, std::move(start), forwards ? kNextSolve : kNextBack);
+      return keep(k, std::move(p), std::move(stride));
+    };
+    for (int k = first - 1; k >= 0; --k) {
+      if (!go_on(k, k + 1)) return false;
     }
-    return true;
+    for (int k = first + 1; k < tables; ++k) {
+      if (!go_on(k, k - 1)) return false;
+    }
+    return !forwards || respond(solver, all[first].problem, all[first].stride);
   }
 };
 
@@ -526,8 +557,9 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
     for (const vec3& v : {leg.hip_m, leg.heel_m, leg.toe_m}) add(v);
     numbers.insert(numbers.end(), {leg.thigh_m, leg.shank_m, leg.toe_rest_m});
   }
-  numbers.insert(numbers.end(), {cycle.stride_m, cycle.step_m[0], cycle.step_m[1], cycle.strike[0], cycle.strike[1],
-                                 cycle.toe_off[0], cycle.toe_off[1], cycle.duration_s});
+  numbers.insert(numbers.end(),
+                 {cycle.stride_m, cycle.step_m[0], cycle.step_m[1], cycle.strike[0],
+                  cycle.strike[1], cycle.toe_off[0], cycle.toe_off[1], cycle.duration_s});
   for (const CycleSample& sample : cycle.samples) {
     add(sample.pelvis_m);
     const quat& q = sample.pelvis;

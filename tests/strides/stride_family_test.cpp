@@ -408,22 +408,22 @@ TEST(StageClock, EndsEachStageInItsTime) {
   for (int turn = -1; turn < 2; ++turn) {
     time = phase = turn;
     for (int stage = 0; stage < 4; ++stage) {
-      EXPECT_NEAR(clock.phase_at(time), phase, 1e-12);
+      EXPECT_NEAR(clock.time_at(phase), time, 1e-12);
       time += clock.time_share[stage];
       phase += clock.phase_share[stage];
     }
   }
 }
 
-TEST(StageClock, RunsForwardAtARateWithoutJumps) {
+TEST(StageClock, RunsForwardAtAPaceWithoutJumps) {
   const StageClock clock = made_clock();
   constexpr double kStep = 1e-5;
-  double rate_before = (clock.phase_at(0.0) - clock.phase_at(-kStep)) / kStep;
-  for (double time = 0.0; time < 1.1; time += kStep) {
-    const double rate = (clock.phase_at(time + kStep) - clock.phase_at(time)) / kStep;
-    ASSERT_GT(rate, 0.3) << time;
-    ASSERT_NEAR(rate, rate_before, 1e-3) << time;
-    rate_before = rate;
+  double pace_before = (clock.time_at(0.0) - clock.time_at(-kStep)) / kStep;
+  for (double phase = 0.0; phase < 1.1; phase += kStep) {
+    const double pace = (clock.time_at(phase + kStep) - clock.time_at(phase)) / kStep;
+    ASSERT_GT(pace, 0.3) << phase;
+    ASSERT_NEAR(pace, pace_before, 1e-3) << phase;
+    pace_before = pace;
   }
 }
 

@@ -24,8 +24,8 @@ inline constexpr int kBackRatios = 5;  // backwards 0 .. 0.8: steps are shorter
 struct StrideFoot {
   vec3 heel_m{0.0};
   // The foot's rotation from flat and straight ahead: about its transverse axis, toe down positive;
-  // then, in the turned foot, by the rotation vector whose parts are about its upward axis and about
-  // its length.
+  // then, in the turned foot, by the rotation vector whose parts are about its upward axis and
+  // about its length.
   double pitch_rad = 0.0, twist_rad = 0.0, roll_rad = 0.0;
 };
 
@@ -52,20 +52,27 @@ struct StrideTable {
 // What a style can ask of a stride.
 enum class StrideWish : std::uint8_t {
   // A joint flexes less, its curve nears its mean. Of both legs: the pelvis gives way.
-  stiff_hips, stiff_knees, stiff_ankles,
+  stiff_hips,
+  stiff_knees,
+  stiff_ankles,
   // Of one leg: neither the pelvis nor the other leg changes.
-  stiff_left_hip, stiff_left_knee, stiff_left_ankle,
-  stiff_right_hip, stiff_right_knee, stiff_right_ankle,
-  low_left, low_right,  // the heel is lifted kLowLift as high
-  more_bounce,          // the pelvis' vertical travel is doubled: it sinks deeper
-  less_bounce,          // it is gone: the pelvis stays as low as it was at its lowest
+  stiff_left_hip,
+  stiff_left_knee,
+  stiff_left_ankle,
+  stiff_right_hip,
+  stiff_right_knee,
+  stiff_right_ankle,
+  low_left,
+  low_right,    // the heel is lifted kLowLift as high
+  more_bounce,  // the pelvis' vertical travel is doubled: it sinks deeper
+  less_bounce,  // it is gone: the pelvis stays as low as it was at its lowest
 };
 inline constexpr int kStrideWishes = 13;
 inline constexpr double kLowLift = 0.5;  // how high a heel is lifted then
 
 // The factor on the heel's height at a share of the flight, for a foot whose lift has the factor
-// `lift`, at most 1. At the lift-off it acts in part, since the leg has to reach the floor, and near
-// its strike the foot comes down as ever.
+// `lift`, at most 1. At the lift-off it acts in part, since the leg has to reach the floor, and
+// near its strike the foot comes down as ever.
 double low_lift(double u, double lift) noexcept;
 
 // What a stride changes by at one phase when a wish is granted. The feet stand where they did and,
@@ -84,14 +91,14 @@ struct StrideResponse {
 using StrideWishes = std::array<double, kStrideWishes>;
 
 struct StrideFamily {
-  double stand_m = 0.0;              // the pelvis' height when standing,
-  double lead_m = 0.0;               // how far it is before the heels,
-  double stand_roll_rad = 0.0;       // its roll, left side up positive,
+  double stand_m = 0.0;                  // the pelvis' height when standing,
+  double lead_m = 0.0;                   // how far it is before the heels,
+  double stand_roll_rad = 0.0;           // its roll, left side up positive,
   std::array<LegAngles, 2> stand_rad{};  // and the legs' angles
   // Walking backwards is walking forwards run back (Thorstensson 1986), but the feet land and leave
   // as Table I has it. These strides have negative lengths.
   std::vector<StrideTable> back;         // kBackRatios
-  std::vector<StrideTable> table;    // kStrideRatios
+  std::vector<StrideTable> table;        // kStrideRatios
   std::vector<StrideResponse> response;  // kStrideWishes; for walking forwards
 };
 
@@ -110,19 +117,21 @@ std::array<StrideChange, kCycleSamples> knots_through(
 StrideChange change_at(const std::vector<StrideResponse>& response, const StrideWishes& granted,
                        double phase) noexcept;
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
-// A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is clamped
-// to the family's. No heap.
+// A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is
+// clamped to the family's. No heap.
 StridePlace stride_at(const std::vector<StrideTable>& table, double phase, double ratio) noexcept;
 
 // The share of the cycle's time that the roll of a foot (Table I (b)) takes in strides of this
 // ratio, from its share in the data: double support is longer in short steps.
 double roll_time_share(double data_share, double ratio) noexcept;
 
-// A phase that runs through the four stages of a cycle, each in its own time, with a smooth rate:
-// cubic in each stage, and at a border between two the mean of their rates.
+// The time at which a phase is reached that runs through the four stages of a cycle, each in its
+// own time, at a smooth rate: cubic in each stage, and at a border between two the mean of their
+// rates.
 struct StageClock {
-  std::array<double, 4> phase_share{}, time_share{};  // roll right, flight left, roll left, flight right
-  double phase_at(double time) const noexcept;  // both in cycles
+  std::array<double, 4> phase_share{},
+      time_share{};                             // roll right, flight left, roll left, flight right
+  double time_at(double phase) const noexcept;  // both in cycles
 };
 
 }  // namespace gaitpad

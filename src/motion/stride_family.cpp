@@ -7,7 +7,7 @@ namespace {
 
 // Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
 // a fifth at a brisk one.
-constexpr double kLongerRoll = 0.75;  // a roll's share grows by this for a stride of length 0
+constexpr double kLongerRoll = 1.3;  // a roll's share grows by this for a stride of length 0
 constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
 
 // Catmull-Rom weights of four neighbours.

@@ -243,28 +243,32 @@ struct StrideSolver::System {
     }
   }
 
-  // Keeps the second difference of the pelvis' place along an axis below a bound, rounded.
+  // Keeps the pelvis' acceleration along an axis below a bound, rounded; in metres per sample, as if
+  // the samples were evenly spaced in time.
   void add_surge(int sample, int axis, const std::vector<StrideSample>& x,
-                 const std::vector<double>& path_m, double stride_m, double most_m, double soft_m) {
-    constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
-    double bend = 0.0;
+                 const std::vector<double>& time, double stride_m, double most_m, double soft_m) {
+    std::array<double, 3> when, place;
     std::array<Mirrored, 3> where;
     for (int d : {0, 1, 2}) {
       const int at = sample + d - 1, j = (at + samples) % samples;
-      double place = x[j].pelvis_m[axis];
-      if (axis == 2) place += path_m[j] + (at < 0 ? -stride_m : at >= samples ? stride_m : 0.0);
-      bend += kBend[d] * place;
+      when[d] = time[j] + (at < 0 ? -1.0 : at >= samples ? 1.0 : 0.0);
+      place[d] = x[j].pelvis_m[axis] + (axis == 2 ? stride_m * when[d] : 0.0);
       where[d] = place_of(at, axis);
     }
+    const double begin = when[1] - when[0], end = when[2] - when[1];
+    const double even = 2.0 / (double(samples) * samples * (begin + end));
+    const std::array<double, 3> slope_of = {even / begin, -even / begin - even / end, even / end};
+    double bend = 0.0;
+    for (int d : {0, 1, 2}) bend += slope_of[d] * place[d];
     const double over = std::abs(bend) - most_m;
     if (over <= -soft_m) return;
     const double share = std::min(1.0, 0.5 * (over + soft_m) / soft_m);
     const double error = std::copysign(soft_positive(over, soft_m), bend);
     for (int d : {0, 1, 2}) {
-      const double slope = share * kBend[d];
+      const double slope = share * slope_of[d];
       gradient[where[d].unknown] += kSurge * slope * error;
       for (int e = 0; e <= d; ++e)
-        at(where[d].unknown, where[e].unknown) += kSurge * slope * share * kBend[e];
+        at(where[d].unknown, where[e].unknown) += kSurge * slope * share * slope_of[e];
     }
   }
 
@@ -370,9 +374,9 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
   const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
   for (int i = 0; i < solved && s.first == 0; ++i) {
-    s.add_surge(i, 2, x, path_m, problem.stride_m, kMostSurge_m_s2 * tick2,
+    s.add_surge(i, 2, x, problem.time, problem.stride_m, kMostSurge_m_s2 * tick2,
                 kSoftSurge_m_s2 * tick2);
-    s.add_surge(i, 1, x, path_m, problem.stride_m, problem.most_heave_m_s2 * tick2,
+    s.add_surge(i, 1, x, problem.time, problem.stride_m, problem.most_heave_m_s2 * tick2,
                 kSoftHeave_m_s2 * tick2);
   }
   // Feet.

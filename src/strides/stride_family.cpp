@@ -48,6 +48,7 @@ constexpr double kSmoothLeg = 2.0;  // a leg alone changes more smoothly
 // legs change smoothly.
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
 constexpr double kBounceSmooth = 10.0;
+constexpr double kAskedBounce = 1.3;  // of this much more, the legs allow for about 1
 constexpr double kBounceRoom = 0.35;  // of the travel: the hips sink by so much more
 constexpr int kResponseSolve = 3;     // iterations from the clean stride
 
@@ -201,7 +202,9 @@ struct Builder {
       for (LegAngles& weight : p.leg_weight)
         weight = {kHipBack, kHipBack, kHipBack, 1.0, kAnkleBack, kAnkleBack, kAnkleBack};
     }
-    p.duration_s = cycle.duration_s * std::sqrt(std::max(ratio, kRatioStep));
+    // Short steps are quicker, and long ones, too: their speed goes with the square of the ratio.
+    p.duration_s =
+        cycle.duration_s * std::min(std::sqrt(std::max(ratio, kRatioStep)), 1.0 / ratio);
     p.strike = cycle.strike;
     p.toe_off = cycle.toe_off;
     const StageClock stages = clock(ratio);
@@ -432,7 +435,7 @@ struct Builder {
     stiff.least_knee_rad = kLeastStiffKnee;
     StrideProblem bouncy = free;
     bouncy.most_heave_m_s2 *= 2.0;
-    at(StrideWish::more_bounce) = keep(bounced(solver, bouncy, clean, 1.0));
+    at(StrideWish::more_bounce) = keep(bounced(solver, bouncy, clean, kAskedBounce));
     meet_travel(clean, 1.0, at(StrideWish::more_bounce));
     at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k)

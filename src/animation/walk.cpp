@@ -169,7 +169,7 @@ constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
 constexpr double kSlowerBack = 1.9;
-constexpr double kBraking = 2.3;  // way over speed and time of a stop with little jerk
+constexpr double kBraking = 2.4;  // way over speed and time of a stop with little jerk
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
 constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead

@@ -168,7 +168,7 @@ constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
-constexpr double kSlowerBack = 1.9;
+constexpr double kSlowerBack = 2.05;
 constexpr double kBraking = 2.4;  // way over speed and time of a stop with little jerk
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded

@@ -438,7 +438,7 @@ namespace {
 // --- Flights over the ground between two footholds -----------------------------------------------
 
 constexpr int kProbes = 48;            // along a flight
-constexpr double kRoomAbove_m = 0.02;  // over the ground; metres at the reference leg, as below
+constexpr double kRoomAbove_m = 0.025;  // over the ground; metres at the reference leg, as below
 constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
 constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
 // A lift-off stays gentler: there the leg is stretched.

@@ -7,7 +7,8 @@ namespace {
 
 // Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
 // a fifth at a brisk one.
-constexpr double kLongerRoll = 1.3;  // a roll's share grows by this for a stride of length 0
+constexpr double kLongerRoll = 1.0;   // a roll's share grows by this for a stride of length 0,
+constexpr double kShorterRoll = 2.4;  // and falls so steeply for longer ones
 constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
 
 // Catmull-Rom weights of four neighbours.
@@ -130,7 +131,8 @@ double low_lift(double u, double lift) noexcept {
 }
 
 double roll_time_share(double data_share, double ratio) noexcept {
-  const double share = data_share * (1.0 + kLongerRoll * (1.0 - ratio));
+  const double share = data_share * (ratio < 1.0 ? 1.0 + kLongerRoll * (1.0 - ratio)
+                                                 : 1.0 / (1.0 + kShorterRoll * (ratio - 1.0)));
   return std::clamp(share, std::min(kLeastRoll, data_share), std::max(kMostRoll, data_share));
 }
 

@@ -26,6 +26,7 @@ constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
 constexpr double kInPlace_m = 0.1;  // a flight shorter than this climbs by time, not by place
 constexpr double kLiftFade = 0.5;   // of the flight: the lift-off's own motion has faded
 constexpr double kPitchFade = 0.2;
+constexpr double kHeelStays = 0.85;  // of the flight: from here on a style leaves its end alone
 constexpr double kLiftGround = 0.5;  // of the flight: until then the plane left bounds the toe
 constexpr double kRollEnd = 0.9;    // of the roll: the toe is down
 // Of the flight: from kLiftGrown until kLiftFalls all of a style's factor on its height acts.
@@ -99,6 +100,8 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
   vec3 p = (foot.heel_anchor_m + old * from_footprint(state, plan, side, 0, plan.at[0].cell.foot[side].heel_m)) *
                (1.0 - gone) +
            (state.landing_m + next * from_footprint(state, plan, side, 1, plan.at[1].cell.foot[side].heel_m)) * gone;
+  const vec3 styled = plan.heel_m[side] * (1.0 - smoothstep(kHeelStays, 1.0, u));
+  p += rotation_y(mix(foot.lift_yaw_rad, state.landing_heading_rad, gone)) * vec3(styled.x, 0.0, styled.z);
   const vec3 way = state.landing_m - foot.heel_anchor_m;
   const double begin_m = height_on(foot.plane, foot.heel_anchor_m),
                rise = state.landing_m.y - begin_m;
@@ -111,7 +114,7 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
   const double height = low_lift(u, low) * mix(1.0, lifted, smootherstep(u / kLiftGrown));
   const Ascent risen = ascent(model, foot, way);
   base_m = begin_m + rise * risen.at(p - foot.heel_anchor_m, u);
-  double up = cell.heel_m.y * height;
+  const double up = (cell.heel_m.y + styled.y) * height;
   p.y = base_m + up;
   for (int a : {0, 1, 2}) p[a] += Fade{foot.gap_m[a], foot.gap_slope_m[a], kLiftFade}.at(u);
   p.y = std::max(p.y, base_m);

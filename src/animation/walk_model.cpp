@@ -415,7 +415,10 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
       table = scaled(table, ratio, character.scale, cycle.leg, strides.stand_roll_rad);
   }
   for (StrideResponse& response : model.strides.response) {
-    for (StrideChange& knot : response.knot) knot.pelvis_m *= ratio;
+    for (StrideChange& knot : response.knot) {
+      knot.pelvis_m *= ratio;
+      for (vec3& heel : knot.heel_m) heel *= ratio;
+    }
   }
   const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
   const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);

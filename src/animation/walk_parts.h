@@ -45,7 +45,8 @@ struct StridePlan {
   double shown = 0.0;             // how much of the tables shows: 0 when standing
   std::array<StridePlace, 2> at;  // the two strides at this phase
   StrideCell cell;                // both, mixed by `change` and `shown`, and what a style changes
-  StrideChange injury;            // of that: what one stiff leg alone changes
+  std::array<vec3, 2> heel_m{};   // of that: what flying heels change by, in the travel frame
+  StrideChange injury;            // and what one stiff leg alone changes
 };
 // The running step's length over the data's.
 double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept;

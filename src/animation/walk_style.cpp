@@ -84,12 +84,14 @@ void change_stride(const StrideFamily& strides, const WalkState& state, double r
     std::ranges::copy(asked, alone(of_leg).begin());
     plan.injury = change_at(strides.response, of_leg, plan.phase);
     for (int side : {0, 1}) {
+      change.heel_m[side] += plan.injury.heel_m[side];
       change.pitch_rad[side] += plan.injury.pitch_rad[side];
       for (int j = 0; j < kLegDofs; ++j) change.leg_rad[side][j] += plan.injury.leg_rad[side][j];
     }
   }
   plan.cell.pelvis_m += change.pelvis_m;
   for (int side : {0, 1}) {
+    plan.heel_m[side] = change.heel_m[side];
     plan.cell.foot[side].pitch_rad += change.pitch_rad[side];
     LegAngles& angles = plan.cell.leg_rad[side];
     const double knee = angles[kKneeX];

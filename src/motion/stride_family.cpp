@@ -7,7 +7,7 @@ namespace {
 
 // Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
 // a fifth at a brisk one.
-constexpr double kLongerRoll = 1.0;   // a roll's share grows by this for a stride of length 0,
+constexpr double kLongerRoll = 0.9;   // a roll's share grows by this for a stride of length 0,
 constexpr double kShorterRoll = 2.4;  // and falls so steeply for longer ones
 constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
 
@@ -25,7 +25,7 @@ std::array<double, 4> spline(double t) noexcept {
 }
 
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
-static_assert(sizeof(StrideChange) == 19 * sizeof(double));
+static_assert(sizeof(StrideChange) == 25 * sizeof(double));
 
 // Both kinds of cells are numbers alone.
 template <class Cell>

@@ -440,7 +440,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
           vec3 d(0.0);
           d[a] = 1.0;
           s.add_row(i, side, heel, d, heel.place_m[a] - problem.flying_heel_m[i][side][a],
-                    kPlanted);
+                    problem.heel_held);
         }
       }
       if (supports) {

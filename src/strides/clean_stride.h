@@ -45,6 +45,7 @@ struct StrideProblem {
   double most_heave_m_s2 = 7.0;  // how hard the hips rise and fall, about
   // Where the heels have to be in flight, sample by sample, in the travel frame. Empty: anywhere.
   std::vector<std::array<vec3, 2>> flying_heel_m;
+  double heel_held = 3e5;  // how strictly: per square metre
 };
 // Whether half a stride later everything is the mirror image.
 bool is_symmetric(const StrideProblem& problem);

@@ -40,6 +40,7 @@ void for_each_number(Family& family, Each each) {
   for (auto& response : family.response) {
     for (auto& change : response.knot) {
       each_of(change.pelvis_m);
+      for (auto& heel : change.heel_m) each_of(heel);
       for (auto& pitch : change.pitch_rad) each(pitch);
       for (auto& angles : change.leg_rad) {
         for (auto& angle : angles) each(angle);

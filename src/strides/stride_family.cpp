@@ -38,8 +38,8 @@ constexpr std::array<Stiffness, 3> kStiffness = {
     {{kHipX, 0.28, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
 // What a stiff hip does not move, knee and ankle do: their curves leave their means by this.
 constexpr double kMoreKnee = 0.45;
-// Stiff legs keep off the straight knee: a little more of their change would be out of reach.
-constexpr double kLeastStiffKnee = 5.0 * kDegree;
+// A stiff leg's heel may fly a little beside its way: one degree costs as much as two millimetres.
+constexpr double kStiffHeelHeld = 1e4;
 // A leg's hip is stiffened alone while the pelvis moves by about a millimetre: with none, a
 // standing leg could not change at all.
 constexpr double kSteadyPelvis = 1e4;
@@ -288,8 +288,13 @@ struct Builder {
     }
   }
 
+  bool stands(int i, int side) const {
+    return fraction(double(i) / kCycleSamples - cycle.strike[side]) <=
+           fraction(cycle.toe_off[side] - cycle.strike[side]);
+  }
+
   StrideResponse response_of(const std::vector<StrideSample>& clean,
-                             const std::vector<StrideSample>& changed) const {
+                             const std::vector<StrideSample>& changed, bool heels_give_way) const {
     std::array<StrideChange, kCycleSamples> change;
     for (int i = 0; i < kCycleSamples; ++i) {
       const StrideSample &a = clean[i], &b = changed[i];
@@ -304,6 +309,9 @@ struct Builder {
             fraction(cycle.toe_off[side] - cycle.toe_off[1 - side]))
           after.pitch_rad = std::max(after.pitch_rad, std::min(0.0, before.pitch_rad));
         change[i].pitch_rad[side] = after.pitch_rad - before.pitch_rad;
+        if (heels_give_way && !stands(i, side))
+          change[i].heel_m[side] = leg_pose(leg, b.pelvis_m, b.pelvis, b.leg[side], 0.0).heel_m -
+                                   leg_pose(leg, a.pelvis_m, a.pelvis, a.leg[side], 0.0).heel_m;
         for (int j = 0; j < kLegDofs; ++j)
           change[i].leg_rad[side][j] = b.leg[side][j] - a.leg[side][j];
       }
@@ -396,6 +404,7 @@ struct Builder {
     for (StrideChange& change : response.knot) {
       change.pelvis_m *= low;
       for (int side : {0, 1}) {
+        change.heel_m[side] *= low;
         change.pitch_rad[side] *= low;
         for (double& angle : change.leg_rad[side]) angle *= low;
       }
@@ -406,6 +415,7 @@ struct Builder {
   static StrideResponse of_leg(const StrideResponse& both, int side) {
     StrideResponse one;
     for (int i = 0; i < kCycleSamples; ++i) {
+      one.knot[i].heel_m[side] = both.knot[i].heel_m[side];
       one.knot[i].pitch_rad[side] = both.knot[i].pitch_rad[side];
       one.knot[i].leg_rad[side] = both.knot[i].leg_rad[side];
     }
@@ -420,29 +430,33 @@ struct Builder {
       return family.response[static_cast<std::size_t>(wish) + more];
     };
     bool solved = true;
-    const auto keep = [&](const std::vector<StrideSample>& changed) -> StrideResponse {
+    const auto keep = [&](const std::vector<StrideSample>& changed,
+                          bool heels_give_way = false) -> StrideResponse {
       solved = solved && !changed.empty();
-      return changed.empty() ? StrideResponse{} : response_of(clean, changed);
+      return changed.empty() ? StrideResponse{} : response_of(clean, changed, heels_give_way);
     };
     const StrideProblem free = held(data, clean);
+    // A stiff leg does not swing its foot where a supple one does.
+    const auto give_way = [](StrideProblem p) {
+      p.heel_held = kStiffHeelHeld;
+      return p;
+    };
     // The sound leg goes as if the other were sound, too: the pelvis does not give way.
     StrideProblem steady = free;
     for (LegAngles& weight : steady.leg_weight) weight.fill(kSmoothLeg);
     StrideProblem alone = steady;
     steady.pelvis_weight = vec3(kSteadyPelvis);
     alone.is_pelvis_held = true;
-    StrideProblem stiff = free;
-    stiff.least_knee_rad = kLeastStiffKnee;
     StrideProblem bouncy = free;
     bouncy.most_heave_m_s2 *= 2.0;
     at(StrideWish::more_bounce) = keep(bounced(solver, bouncy, clean, kAskedBounce));
     meet_travel(clean, 1.0, at(StrideWish::more_bounce));
     at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k)
-      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, stiff, clean, kStiffness[k]));
+      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, give_way(free), clean, kStiffness[k]), true);
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k) {
       const StrideProblem& one_leg = kStiffness[k].dof == kHipX ? steady : alone;
-      const StrideResponse one = keep(stiffened(solver, one_leg, clean, kStiffness[k]));
+      const StrideResponse one = keep(stiffened(solver, give_way(one_leg), clean, kStiffness[k]), true);
       at(StrideWish::stiff_left_hip, k) = of_leg(one, kLeftSide);
       at(StrideWish::stiff_right_hip, k) = of_leg(one, kRightSide);
     }

@@ -223,8 +223,12 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const double fade = foot.pitch_fade.at(u * state.stage_ticks);
   const double pitch = table_pitch(state, plan, side) + fade;
+  // Backwards a foot rolls onto its edge before it lands: then this edge stays off the floor.
+  const double edge =
+      state.backward ? smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.9, 1.0, u)) : 0.0;
   const double limit =
-      highest_pitch(leg, height, -kMostSink_m) + rolled_elevation(leg, point.pose);
+      highest_pitch(leg, height, edge * leg.half_width_m * std::abs(point.pose.roll_rad) - kMostSink_m) +
+      rolled_elevation(leg, point.pose);
   set_pitch(leg, soft_min(pitch, limit, kSoftPitch + kWiderPitch * std::abs(fade) * smoothstep(0.0, 0.1, u)), point.pose, FootMode::flight);
 }
 

@@ -445,7 +445,7 @@ constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
 constexpr double kMostSharp = 0.38;
 constexpr int kTries = 4;
 // Of the flight: from here on a foot on its way down is over its landing's piece.
-constexpr double kOver = 0.69;
+constexpr double kOver = 0.685;
 constexpr int kMostRisers = 4, kTautRounds = 24;
 constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
 constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;

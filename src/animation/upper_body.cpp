@@ -4,7 +4,8 @@
 //
 // In a tick: smooth_upper_body() brings the style's values into force, swing_arms() scales the
 // data's swing, and pose_upper_body() leans the trunk and spreads the arms, poses the spine, then
-// the arms that hang on it, then the head. What is as the data have it is not touched, so it costs nothing and keeps its bits.
+// the arms that hang on it, then the head. What is as the data have it is not touched, so it costs
+// nothing and keeps its bits.
 #include <bit>
 
 #include "animation/walk_parts.h"
@@ -55,8 +56,8 @@ void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
 // data's own pace.
 double pace_swing(const Tick& tick, const WalkState& state) noexcept {
   const double own_s = tick.model.body.own_step_s;
-  const double quicker = own_s / std::max(state.step_time_s.x, 0.25 * own_s);
-  const double extra = std::max(state.pace.x, kLeastPace) * quicker - 1.0;
+  const double quicker = own_s / std::max(state.gait.step_time_s.x, 0.25 * own_s);
+  const double extra = std::max(state.gait.pace.x, kLeastPace) * quicker - 1.0;
   return 1.0 + (extra > 0.0 ? extra / (1.0 + extra / kMostExtra) : extra);
 }
 
@@ -67,8 +68,8 @@ void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
   const HandParams& hand = body.now.hand[side];
   const double scale = tick.model.body.shoulder_height_m / kReferenceShoulder_m;
   const double smoothing_s = kRailSmoothing * tick.model.time_scale;
-  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
-  const vec3 under = state.hips_m + state.hips_velocity_m_s * (2.0 * smoothing_s) +
+  const vec3 forward = heading_direction(state.path.heading_rad), left = glm::cross(kUp, forward);
+  const vec3 under = state.path.hips_m + state.path.hips_velocity_m_s * (2.0 * smoothing_s) +
                      left * (scale * (side == kLeftSide ? hand.rail_side_m : -hand.rail_side_m));
   double sum = 0.0, weights = 0.0;
   for (int i = -kRailProbes; i <= kRailProbes && !tick.flat; ++i) {
@@ -122,8 +123,7 @@ void turn_joint(const Skeleton& skeleton, double heading_rad, const quat& turn, 
                 Pose& pose) noexcept {
   const quat above = rotation_above(skeleton, pose, joint), to = rotation_y(heading_rad);
   const quat world = to * turn * glm::conjugate(to);
-  pose.local[joint] =
-      glm::normalize(glm::conjugate(above) * world * above * pose.local[joint]);
+  pose.local[joint] = glm::normalize(glm::conjugate(above) * world * above * pose.local[joint]);
 }
 
 // The spine's joints share the lean; arms keep hanging as they did.
@@ -132,14 +132,13 @@ void lean_trunk(const WalkModel& model, const WalkState& state, Pose& pose) noex
   const std::vector<int>& spine = model.body.joints.spine;
   if (spine.empty() || (body.forward_rad == 0.0 && body.left_rad == 0.0)) return;
   const double share = 1.0 / static_cast<double>(spine.size());
-  const quat turn =
-      rotation_z(-share * body.left_rad) * rotation_x(share * body.forward_rad);
+  const quat turn = rotation_z(-share * body.left_rad) * rotation_x(share * body.forward_rad);
   for (const int joint : spine)
-    turn_joint(model.cycle.skeleton, state.heading_rad, turn, joint, pose);
+    turn_joint(model.cycle.skeleton, state.path.heading_rad, turn, joint, pose);
   const quat back = rotation_x(-body.forward_rad) * rotation_z(body.left_rad);
   for (const ArmBuild& arm : model.body.arm) {
     if (arm.is_there)
-      turn_joint(model.cycle.skeleton, state.heading_rad, back, arm.joints.shoulder, pose);
+      turn_joint(model.cycle.skeleton, state.path.heading_rad, back, arm.joints.shoulder, pose);
   }
 }
 
@@ -148,7 +147,7 @@ void spread_arms(const WalkModel& model, const WalkState& state, Pose& pose) noe
     const ArmBuild& arm = model.body.arm[side];
     const double out = state.body.out_rad[side];
     if (!arm.is_there || out == 0.0) continue;
-    turn_joint(model.cycle.skeleton, state.heading_rad,
+    turn_joint(model.cycle.skeleton, state.path.heading_rad,
                rotation_z(side == kLeftSide ? out : -out), arm.joints.shoulder, pose);
   }
 }
@@ -386,8 +385,8 @@ vec3 carried_place(const HandParams& hand, const UpperBodyModel& body, Side side
 vec3 rail_place(const WalkModel& model, const WalkState& state, const HandParams& hand,
                 Side side) noexcept {
   const double scale = model.body.shoulder_height_m / kReferenceShoulder_m;
-  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
-  vec3 place = state.hips_m + left * (sign_of(side) * scale * hand.rail_side_m) +
+  const vec3 forward = heading_direction(state.path.heading_rad), left = glm::cross(kUp, forward);
+  vec3 place = state.path.hips_m + left * (sign_of(side) * scale * hand.rail_side_m) +
                forward * (scale * kRailAhead_m);
   place.y = state.body.rail_ground_m[side] + scale * hand.rail_height_m;
   return place;
@@ -570,12 +569,13 @@ void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
     turn_head(body, skeleton, wanted * glm::conjugate(own), pose, world);
   };
   if (now.lead > 0.0) {
-    const quat ahead = rotation_y(now.lead * kLead_s * state.turn_rate.x);
+    const quat ahead = rotation_y(now.lead * kLead_s * state.gait.turn_rate.x);
     turn_head(body, skeleton, ahead, pose, world);
   }
   if (now.look > 0.0) {
     const SinCos p = sin_cos(now.pitch_deg * kDegree);
-    look(rotation_y(state.heading_rad + now.yaw_deg * kDegree) * vec3(0.0, p.sin, p.cos), now.look);
+    look(rotation_y(state.path.heading_rad + now.yaw_deg * kDegree) * vec3(0.0, p.sin, p.cos),
+         now.look);
   }
   // The head moves as it turns, so a near place is aimed at twice.
   for (int pass = 0; now.look_at > 0.0 && pass < 2; ++pass) {

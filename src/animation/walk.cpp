@@ -6,8 +6,8 @@
 // section 3.3). Parameters are smoothed on the way in, so a stick may jump.
 //
 // Hips. They follow the tables of clean strides (gaitpad/stride_family.h) from the footprint of the
-// foot that stands to the next landing. A step leads from the stride of the last step to its own, so
-// both tables are read and mixed. What the hips differ by from that path, because a landing has
+// foot that stands to the next landing. A step leads from the stride of the last step to its own,
+// so both tables are read and mixed. What the hips differ by from that path, because a landing has
 // moved, fades until the strike.
 //
 // The pose. Feet and pelvis are planned first, then the inverse kinematics connects them (section
@@ -22,49 +22,51 @@ namespace gaitpad {
 // --- What all parts of a tick ask about the walk -------------------------------------------------
 
 Side step_foot(const WalkState& state) noexcept {
-  return state.stage == Stage::flight ? state.swing : other(state.swing);
+  return state.clock.stage == Stage::flight ? state.clock.swing : other(state.clock.swing);
 }
 
 double flight_progress(const WalkState& state) noexcept {
-  if (state.stage != Stage::flight) return 0.0;
-  return static_cast<double>(state.tick) / state.stage_ticks;
+  if (state.clock.stage != Stage::flight) return 0.0;
+  return static_cast<double>(state.clock.tick) / state.clock.stage_ticks;
 }
 
 double presence(const WalkState& state) noexcept {
-  return std::clamp(state.amplitude.x, 0.0, 1.0) * std::clamp(2.0 * state.pace.x, 0.0, 1.0);
+  return std::clamp(state.gait.amplitude.x, 0.0, 1.0) *
+         std::clamp(2.0 * state.gait.pace.x, 0.0, 1.0);
 }
 
 double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  const double p = state.phase - (side == kRightSide ? 0.0 : model.share[0] + model.share[1]);
+  const double p = state.clock.phase - (side == kRightSide ? 0.0 : model.share[0] + model.share[1]);
   return p - std::floor(p);
 }
 
 double data_phase(const WalkModel& model, const WalkState& state) noexcept {
-  if (!state.backward) return state.phase;
-  return model.share[0] + model.share[1] + model.share[2] - state.phase;
+  if (!state.clock.backward) return state.clock.phase;
+  return model.share[0] + model.share[1] + model.share[2] - state.clock.phase;
 }
 
 bool walks_on(const GaitParams& params, const WalkState& state) noexcept {
   const bool on_the_spot = params.stride[0].length_m == 0.0 && params.stride[1].length_m == 0.0;
-  return params.walking && (!state.started || on_the_spot || params.backward == state.backward);
+  return params.walking &&
+         (!state.clock.started || on_the_spot || params.backward == state.clock.backward);
 }
 
 double step_length(const WalkState& state, Side side) noexcept {
-  if (state.closing) return 0.0;
-  return state.backward ? 0.0 - state.length_m[side].x : state.length_m[side].x;
+  if (state.clock.closing) return 0.0;
+  return state.clock.backward ? 0.0 - state.gait.length_m[side].x : state.gait.length_m[side].x;
 }
 
 namespace {
 double ratio_of_step(const WalkModel& model, const WalkState& state) noexcept {
   const Side swing = step_foot(state);
   // Run back, a foot makes the step that the other one makes forwards.
-  const double own_m = model.own_step_m[state.backward ? other(swing) : swing];
-  return state.started ? std::abs(state.frame.stride_m[swing]) / own_m : 0.0;
+  const double own_m = model.own_step_m[state.clock.backward ? other(swing) : swing];
+  return state.clock.started ? std::abs(state.frame.stride_m[swing]) / own_m : 0.0;
 }
 }  // namespace
 
 double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
-  return std::max(0.0, ratio_of_step(model, state) + state.off_ratio.x);
+  return std::max(0.0, ratio_of_step(model, state) + state.gait.off_ratio.x);
 }
 
 StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
@@ -72,23 +74,25 @@ StridePlan stride_plan(const WalkModel& model, const WalkState& state, double ph
   StridePlan plan;
   plan.phase = phase;
   plan.change = smootherstep(step_share);
-  plan.shown = std::clamp(state.amplitude.x, 0.0, 1.0);
-  const auto& tables = state.backward ? model.strides.back : model.strides.table;
-  plan.at[0] = stride_at(tables, plan.phase, state.ratio_behind);
+  plan.shown = std::clamp(state.gait.amplitude.x, 0.0, 1.0);
+  const auto& tables = state.clock.backward ? model.strides.back : model.strides.table;
+  plan.at[0] = stride_at(tables, plan.phase, state.gait.ratio_behind);
   plan.at[1] = stride_at(tables, plan.phase, ratio_ahead(model, state));
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
   change_stride(model.strides, state,
-                mix(state.ratio_behind, ratio_ahead(model, state), plan.change), plan);
+                mix(state.gait.ratio_behind, ratio_ahead(model, state), plan.change), plan);
   return plan;
 }
 
 StridePlan stride_now(const WalkModel& model, const WalkState& state) noexcept {
-  const double begun = state.tick + (state.stage == Stage::flight ? state.roll_ticks : 0);
+  const double begun =
+      state.clock.tick + (state.clock.stage == Stage::flight ? state.clock.roll_ticks : 0);
   // A walk that has closed fades from the stride of its last step.
-  const double share =
-      state.started ? begun / std::max(1, state.roll_ticks + state.flight_ticks) : 0.0;
-  return stride_plan(model, state, state.phase, share);
+  const double share = state.clock.started
+                           ? begun / std::max(1, state.clock.roll_ticks + state.clock.flight_ticks)
+                           : 0.0;
+  return stride_plan(model, state, state.clock.phase, share);
 }
 
 vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
@@ -110,38 +114,38 @@ double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
 }
 
 double stage_end_phase(const WalkModel& model, const WalkState& state) noexcept {
-  return state.stage_phase + stage_share(model, state.stage, state.swing);
+  return state.clock.stage_phase + stage_share(model, state.clock.stage, state.clock.swing);
 }
 
 double phase_ahead(const WalkModel& model, const WalkState& state, double ticks) noexcept {
-  double phase = state.phase, rate = state.phase_rate;
-  approach(phase, rate, stage_end_phase(model, state), state.end_rate,
-           std::max(1, state.stage_ticks - state.tick), ticks);
+  double phase = state.clock.phase, rate = state.clock.phase_rate;
+  approach(phase, rate, stage_end_phase(model, state), state.clock.end_rate,
+           std::max(1, state.clock.stage_ticks - state.clock.tick), ticks);
   return phase;
 }
 
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
                           const StridePlan& plan) noexcept {
   const StrideCell& cell = plan.cell;
-  const vec3 forward = heading_direction(state.heading_rad), left = glm::cross(kUp, forward);
+  const vec3 forward = heading_direction(state.path.heading_rad), left = glm::cross(kUp, forward);
   Pelvis pelvis;
-  pelvis.position_m =
-      state.hips_m + left * cell.pelvis_m.x + forward * cell.pelvis_m.z;
+  pelvis.position_m = state.path.hips_m + left * cell.pelvis_m.x + forward * cell.pelvis_m.z;
   // In a turn the body leans as a whole, about the ground below the hips.
   const double height_m = model.stand_m + cell.pelvis_m.y;
-  const SinCos lean = sin_cos(state.lean_rad.x);
+  const SinCos lean = sin_cos(state.path.lean_rad.x);
   pelvis.position_m += left * (height_m * lean.sin);
-  pelvis.position_m.y = state.base.height_m + height_m * lean.cos;
-  const double yaw = state.sway.x * cell.pelvis_yaw_rad;
-  const quat upright = rotation_y(state.heading_rad) * rotation_z(-state.lean_rad.x),
-             turned = rotation_y(yaw) * from_rotation_vector(cell.pelvis_tilt +
-                                                                vec3(0.0, 0.0, model.strides.stand_roll_rad));
+  pelvis.position_m.y = state.path.base.height_m + height_m * lean.cos;
+  const double yaw = state.gait.sway.x * cell.pelvis_yaw_rad;
+  const quat upright = rotation_y(state.path.heading_rad) * rotation_z(-state.path.lean_rad.x),
+             turned = rotation_y(yaw) *
+                      from_rotation_vector(cell.pelvis_tilt +
+                                           vec3(0.0, 0.0, model.strides.stand_roll_rad));
   pelvis.rotation = upright * turned;
-  if (state.slope_lean_rad.x == 0.0) return pelvis;
+  if (state.path.slope_lean_rad.x == 0.0) return pelvis;
   // Into a slope the trunk leans about the hip joints.
   const vec3 hips = 0.5 * (model.leg[kLeftSide].model.hip_m + model.leg[kRightSide].model.hip_m);
   pelvis.position_m += pelvis.rotation * hips;
-  pelvis.rotation = upright * rotation_x(state.slope_lean_rad.x) * turned;
+  pelvis.rotation = upright * rotation_x(state.path.slope_lean_rad.x) * turned;
   pelvis.position_m -= pelvis.rotation * hips;
   return pelvis;
 }
@@ -172,7 +176,7 @@ constexpr double kSlowerBack = 2.05;
 constexpr double kBraking = 2.4;  // way over speed and time of a stop with little jerk
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
-constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
+constexpr double kStillTurn = 1e-5;        // rad/s: slower than this is straight ahead
 
 // Share of the cycle's time.
 double time_share(const WalkModel& model, const WalkState& state, Stage stage,
@@ -180,111 +184,115 @@ double time_share(const WalkModel& model, const WalkState& state, Stage stage,
   const Side rolling = stage == Stage::roll ? swing : other(swing);
   const double roll = stage_share(model, Stage::roll, rolling);
   const double flight = stage_share(model, Stage::flight, other(rolling));
-  const double rolls = roll_time_share(roll, state.asked_ratio);
+  const double rolls = roll_time_share(roll, state.gait.asked_ratio);
   return stage == Stage::roll ? rolls : roll + flight - rolls;
 }
 
 int stage_length(const WalkModel& model, const WalkState& state, Stage stage, Side swing,
                  double dt_s) noexcept {
   // Whole ticks: a steady gait is then exactly periodic.
-  const double ticks =
-      2.0 * state.time_s[swing] * state.slowness * time_share(model, state, stage, swing) / dt_s;
+  const double ticks = 2.0 * state.gait.time_s[swing] * state.clock.slowness *
+                       time_share(model, state, stage, swing) / dt_s;
   return std::max(stage == Stage::roll ? 6 : 12, static_cast<int>(ticks + 0.5));
 }
 
 void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept {
-  state.stage = stage;
-  state.swing = swing;
-  state.tick = 0;
-  state.stage_ticks = ticks;
+  state.clock.stage = stage;
+  state.clock.swing = swing;
+  state.clock.tick = 0;
+  state.clock.stage_ticks = ticks;
 }
 
 // At the end of the stage that has begun the phase will run at the mean of both stages' rates, so
 // the time-warp of the upper body has no kink.
 void aim_phase(const Tick& tick, WalkState& state) noexcept {
-  const bool rolls = state.stage == Stage::roll;
+  const bool rolls = state.clock.stage == Stage::roll;
   const Stage next = rolls ? Stage::flight : Stage::roll;
-  const Side next_swing = rolls ? other(state.swing) : state.swing;
-  const double here = stage_share(tick.model, state.stage, state.swing) / state.stage_ticks;
+  const Side next_swing = rolls ? other(state.clock.swing) : state.clock.swing;
+  const double here =
+      stage_share(tick.model, state.clock.stage, state.clock.swing) / state.clock.stage_ticks;
   const double there = stage_share(tick.model, next, next_swing) /
                        stage_length(tick.model, state, next, next_swing, tick.dt_s);
-  state.end_rate = 0.5 * (here + there);
+  state.clock.end_rate = 0.5 * (here + there);
 }
 
 // On stairs a step takes longer, and at least as long as a person takes for a stair. On stairs both
 // feet take equally long.
 double slowness_of_step(const WalkModel& model, const WalkState& state, Side swing) noexcept {
-  const double rise = std::min(state.landing.next_rise, kSlowestRise);
+  const double rise = std::min(state.path.foothold.next_rise, kSlowestRise);
   if (rise == 0.0) return 1.0;
-  const double own = state.time_s[swing], longer = std::max(own, state.time_s[other(swing)]);
+  const double own = state.gait.time_s[swing],
+               longer = std::max(own, state.gait.time_s[other(swing)]);
   const double level = mix(own, longer, smoothstep(0.0, kSteepRise, rise));
   const double stair = kStairStep_s * model.time_scale * rise / kStairRise;
-  const double slower = state.backward ? kSlowerBack : 1.0;
+  const double slower = state.clock.backward ? kSlowerBack : 1.0;
   return std::max(level * (1.0 + kSlowerOnStairs * rise), slower * stair) / own;
 }
 
 // The last step brings the hips to rest over both feet, in the time in which they need no harder
 // braking than this way asks for.
 double slowness_of_rest(const Tick& tick, const WalkState& state, Side swing) noexcept {
-  const vec3 forward = heading_direction(state.heading_rad);
-  const double way_m = std::abs(glm::dot(state.landing_m - state.hips_m, forward) +
+  const vec3 forward = heading_direction(state.path.heading_rad);
+  const double way_m = std::abs(glm::dot(state.path.landing_m - state.path.hips_m, forward) +
                                 tick.model.rest_lead_m),
-               speed_m_s = horizontal_length(state.hips_velocity_m_s);
-  return std::clamp(kBraking * way_m / std::max(speed_m_s * state.time_s[swing], 1e-6), kQuickestClosing,
-                    kSlowestClosing);
+               speed_m_s = horizontal_length(state.path.hips_velocity_m_s);
+  return std::clamp(kBraking * way_m / std::max(speed_m_s * state.gait.time_s[swing], 1e-6),
+                    kQuickestClosing, kSlowestClosing);
 }
 
 // Begins a step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
-  state.last_step_ticks = state.roll_ticks + state.flight_ticks;
-  state.slowness = slowness_of_step(tick.model, state, other(rolling));
-  if (state.closing) state.slowness *= slowness_of_rest(tick, state, other(rolling));
-  state.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
-  state.flight_ticks = stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
-  state.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];
+  state.clock.last_step_ticks = state.clock.roll_ticks + state.clock.flight_ticks;
+  state.clock.slowness = slowness_of_step(tick.model, state, other(rolling));
+  if (state.clock.closing) state.clock.slowness *= slowness_of_rest(tick, state, other(rolling));
+  state.clock.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
+  state.clock.flight_ticks =
+      stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
+  state.clock.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];
   // The phase may have come out a whole turn off.
-  state.phase = state.stage_phase;
-  begin_stage(Stage::roll, rolling, state.roll_ticks, state);
+  state.clock.phase = state.clock.stage_phase;
+  begin_stage(Stage::roll, rolling, state.clock.roll_ticks, state);
   aim_phase(tick, state);
 }
 
 void begin_walk(const Tick& tick, WalkState& state) noexcept {
   // The first foot follows the turn, so that a mirrored stick gives a mirrored walk.
   const Side first = tick.params.turn_rate_rad_s < 0.0 ? kRightSide : kLeftSide;
-  state.started = true;
-  state.closing = false;
-  state.backward = tick.params.backward;
-  state.ratio_behind = 0.0;
-  state.flight_ticks = 0;
-  state.roll_ticks = 0;
+  state.clock.started = true;
+  state.clock.closing = false;
+  state.clock.backward = tick.params.backward;
+  state.gait.ratio_behind = 0.0;
+  state.clock.flight_ticks = 0;
+  state.clock.roll_ticks = 0;
   begin_step(tick, other(first), state);
-  state.stage_ticks = state.roll_ticks = 2 * state.roll_ticks;  // from rest: a longer first lean
+  state.clock.stage_ticks = state.clock.roll_ticks =
+      2 * state.clock.roll_ticks;  // from rest: a longer first lean
   aim_phase(tick, state);
-  state.phase_rate = 0.0;
+  state.clock.phase_rate = 0.0;
   state.foot[other(first)].mode = FootMode::roll;
 }
 
 void begin_idle(WalkState& state) noexcept {
-  begin_stage(Stage::idle, state.swing, 1, state);
-  state.started = false;
-  state.roll_ticks = state.flight_ticks = 0;
-  state.landing.next_rise = 0.0;
+  begin_stage(Stage::idle, state.clock.swing, 1, state);
+  state.clock.started = false;
+  state.clock.roll_ticks = state.clock.flight_ticks = 0;
+  state.path.foothold.next_rise = 0.0;
 }
 
 void land_foot(const Tick& tick, WalkState& state) noexcept {
-  const Side landed = state.swing;
-  const bool closed = state.closing;
-  state.closing = !walks_on(tick.params, state);
-  state.ratio_behind = ratio_ahead(tick.model, state);
-  if (closed && state.closing) {  // feet together: the toe comes down, then rest
-    const int ticks = state.roll_ticks;
+  const Side landed = state.clock.swing;
+  const bool closed = state.clock.closing;
+  state.clock.closing = !walks_on(tick.params, state);
+  state.gait.ratio_behind = ratio_ahead(tick.model, state);
+  if (closed && state.clock.closing) {  // feet together: the toe comes down, then rest
+    const int ticks = state.clock.roll_ticks;
     begin_stage(Stage::roll, landed, std::max(ticks, 12), state);
-    state.stage_phase = state.phase;
-    state.started = false;
+    state.clock.stage_phase = state.clock.phase;
+    state.clock.started = false;
     begin_roll(tick, state, landed);
     FootState& stays = state.foot[other(landed)];
     stays.mode_ticks = 0;
-    stays.pitch_fade = {stays.pose.pitch_rad, 0.0, static_cast<double>(state.stage_ticks)};
+    stays.pitch_fade = {stays.pose.pitch_rad, 0.0, static_cast<double>(state.clock.stage_ticks)};
     return;
   }
   begin_step(tick, landed, state);
@@ -293,97 +301,101 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
 
 // Step times, and how long double support takes, follow the parameters at the next step.
 void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state) noexcept {
-  for (int side : {0, 1}) state.time_s[side] = params.stride[side].time_s;
+  for (int side : {0, 1}) state.gait.time_s[side] = params.stride[side].time_s;
   // Of the longer step: a limp, which shortens one, does not change the other foot's time.
-  state.asked_ratio =
+  state.gait.asked_ratio =
       std::max(params.stride[0].length_m, params.stride[1].length_m) / model.source_step_m;
 }
 
 // Smooths how far the trunk leans into the slope or stair that the running step leads over.
 void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
   double lean = 0.0;
-  if (state.started) {
+  if (state.clock.started) {
     const Side swing = step_foot(state);
-    const double rise = state.landing_m.y - state.foot[other(swing)].plane.place_m.y,
+    const double rise = state.path.landing_m.y - state.foot[other(swing)].plane.place_m.y,
                  run = std::max(std::abs(state.frame.stride_m[swing]),
                                 kShortestRun * tick.model.leg_length_m);
-    const double grade = (state.backward ? -rise : rise) / run;
+    const double grade = (state.clock.backward ? -rise : rise) / run;
     lean = (grade > 0.0 ? kUphillLean : kDownhillLean) * grade / (std::abs(grade) + kHalfLeanGrade);
   }
-  state.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
+  state.path.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
 }
 
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.
 void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
-  const bool walking = walks_on(params, state) && !state.closing;
-  const bool stood = state.stage == Stage::idle && state.frame.stage == Stage::idle;
-  if (stood && params.walking && state.amplitude.x < kStillAmplitude) {
+  const bool walking = walks_on(params, state) && !state.clock.closing;
+  const bool stood = state.clock.stage == Stage::idle && state.frame.stage == Stage::idle;
+  if (stood && params.walking && state.gait.amplitude.x < kStillAmplitude) {
     ask_for(params, tick.model, state);
     begin_walk(tick, state);
   }
   if (walks_on(params, state)) ask_for(params, tick.model, state);
   // A walk that is to end takes the running step as it was begun, and one that closes it.
-  const bool finishes = state.started && !state.closing && !walking;
+  const bool finishes = state.clock.started && !state.clock.closing && !walking;
   for (int side : {0, 1}) {
     const StrideParams& stride = params.stride[side];
-    const double length_m = walking ? stride.length_m : finishes ? state.length_m[side].x : 0.0;
-    state.length_m[side].advance(length_m, kStepSmoothing * scale, dt);
-    state.flight_height[side].advance(stride.flight_height, kStepSmoothing * scale, dt);
+    const double length_m = walking    ? stride.length_m
+                            : finishes ? state.gait.length_m[side].x
+                                       : 0.0;
+    state.gait.length_m[side].advance(length_m, kStepSmoothing * scale, dt);
+    state.gait.flight_height[side].advance(stride.flight_height, kStepSmoothing * scale, dt);
     for (int j = 0; j < kLegDofs; ++j) {
-      state.weight[side][j].advance(params.weight[side][j], kWeightSmoothing * scale, dt);
+      state.gait.weight[side][j].advance(params.weight[side][j], kWeightSmoothing * scale, dt);
     }
   }
-  state.step_time_s.advance(0.5 * (state.time_s[0] + state.time_s[1]), kStepSmoothing * scale, dt);
+  state.gait.step_time_s.advance(0.5 * (state.gait.time_s[0] + state.gait.time_s[1]),
+                                 kStepSmoothing * scale, dt);
   const double goal = walking ? params.turn_rate_rad_s : 0.0;
-  state.turn_goal.advance(goal, kTurnGoalSmoothing * scale, dt);
-  if (goal == 0.0 && std::abs(state.turn_goal.x) < kStillTurn) state.turn_goal = {};
-  state.turn_rate.advance(state.turn_goal.x, kTurnSmoothing * scale, dt);
-  if (state.turn_goal.x == 0.0 && std::abs(state.turn_rate.x) < kStillTurn) state.turn_rate = {};
-  state.amplitude.advance(state.started ? 1.0 : 0.0,
-                          (state.started ? kAmplitudeSmoothing : kAmplitudeFading) * scale, dt);
-  state.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
-  state.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
-  const double mean = 0.5 * (state.length_m[0].x + state.length_m[1].x);
-  state.pace.advance(mean * state.ground_share.x / tick.model.source_step_m, kStepSmoothing * scale,
-                     dt);
-  state.settled_pace.advance(state.pace.x, kSettling * scale, dt);
+  state.gait.turn_goal.advance(goal, kTurnGoalSmoothing * scale, dt);
+  if (goal == 0.0 && std::abs(state.gait.turn_goal.x) < kStillTurn) state.gait.turn_goal = {};
+  state.gait.turn_rate.advance(state.gait.turn_goal.x, kTurnSmoothing * scale, dt);
+  if (state.gait.turn_goal.x == 0.0 && std::abs(state.gait.turn_rate.x) < kStillTurn)
+    state.gait.turn_rate = {};
+  state.gait.amplitude.advance(
+      state.clock.started ? 1.0 : 0.0,
+      (state.clock.started ? kAmplitudeSmoothing : kAmplitudeFading) * scale, dt);
+  state.gait.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
+  state.gait.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
+  const double mean = 0.5 * (state.gait.length_m[0].x + state.gait.length_m[1].x);
+  state.gait.pace.advance(mean * state.gait.ground_share.x / tick.model.source_step_m,
+                          kStepSmoothing * scale, dt);
+  state.gait.settled_pace.advance(state.gait.pace.x, kSettling * scale, dt);
   // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
-  const double speed_m_s = (state.length_m[0].x + state.length_m[1].x) /
-                           std::max(kLeastCycle_s, state.time_s[0] + state.time_s[1]);
+  const double speed_m_s = (state.gait.length_m[0].x + state.gait.length_m[1].x) /
+                           std::max(kLeastCycle_s, state.gait.time_s[0] + state.gait.time_s[1]);
   const double lean =
-      mode == IkMode::paper ? 0.0 : speed_m_s * state.turn_rate.x / kGravity_m_s2;
-  state.lean_rad.advance(lean, kLeanSmoothing * scale, dt);
+      mode == IkMode::paper ? 0.0 : speed_m_s * state.gait.turn_rate.x / kGravity_m_s2;
+  state.path.lean_rad.advance(lean, kLeanSmoothing * scale, dt);
   if (!tick.flat && mode != IkMode::paper) lean_into_slope(tick, state);
 }
 
-
 void advance_clock(const Tick& tick, WalkState& state) noexcept {
-  state.heading_rad += state.turn_rate.x * tick.dt_s;
+  state.path.heading_rad += state.gait.turn_rate.x * tick.dt_s;
   for (FootState& foot : state.foot) ++foot.mode_ticks;
-  if (state.stage == Stage::idle) return;
-  const bool resting = !state.started;  // in the last roll the data's clock stands still
-  const double remaining = state.stage_ticks - state.tick;
-  ++state.tick;
+  if (state.clock.stage == Stage::idle) return;
+  const bool resting = !state.clock.started;  // in the last roll the data's clock stands still
+  const double remaining = state.clock.stage_ticks - state.clock.tick;
+  ++state.clock.tick;
   if (resting) return;
-  approach(state.phase, state.phase_rate, stage_end_phase(tick.model, state), state.end_rate,
-           remaining, 1.0);
+  approach(state.clock.phase, state.clock.phase_rate, stage_end_phase(tick.model, state),
+           state.clock.end_rate, remaining, 1.0);
 }
 
 // Begins the next stage where this one is over.
 void finish_stage(const Tick& tick, WalkState& state) noexcept {
-  if (state.stage == Stage::idle || state.tick < state.stage_ticks) return;
-  const Side swing = state.swing;
-  if (state.stage == Stage::flight) {
+  if (state.clock.stage == Stage::idle || state.clock.tick < state.clock.stage_ticks) return;
+  const Side swing = state.clock.swing;
+  if (state.clock.stage == Stage::flight) {
     land_foot(tick, state);
-  } else if (!state.started) {
+  } else if (!state.clock.started) {
     begin_support(state.foot[swing]);
     begin_idle(state);
   } else {
     begin_support(state.foot[swing]);
-    state.stage_phase = stage_end_phase(tick.model, state);
-    begin_stage(Stage::flight, other(swing), state.flight_ticks, state);
+    state.clock.stage_phase = stage_end_phase(tick.model, state);
+    begin_stage(Stage::flight, other(swing), state.clock.flight_ticks, state);
     aim_phase(tick, state);
     begin_flight(tick, state, other(swing));
   }
@@ -401,8 +413,8 @@ constexpr double kUnseenInjury = 0.85;
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
-constexpr double kRatioJump = 0.01;   // a tick: sticks are slower
-constexpr double kFreeze = 0.55;      // of the flight: after it the landing place is settled
+constexpr double kRatioJump = 0.01;  // a tick: sticks are slower
+constexpr double kFreeze = 0.55;     // of the flight: after it the landing place is settled
 
 double power(double base, int exponent) noexcept {
   double result = 1.0;
@@ -413,22 +425,23 @@ double power(double base, int exponent) noexcept {
 }
 
 int ticks_to_strike(const WalkState& state) noexcept {
-  if (state.stage == Stage::flight) return state.stage_ticks - state.tick;
-  return state.stage_ticks - state.tick + state.flight_ticks;
+  if (state.clock.stage == Stage::flight) return state.clock.stage_ticks - state.clock.tick;
+  return state.clock.stage_ticks - state.clock.tick + state.clock.flight_ticks;
 }
 
 // The heading n ticks ahead if the turn rate's goal stays. The filter is a linear recurrence with
 // the double eigenvalue q, so its error is e_k = (e_0 + c k) q^k, and the sum has a closed form.
 double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
-  const double goal = state.turn_goal.x;
+  const double goal = state.gait.turn_goal.x;
   const double w = tick.dt_s / (kTurnSmoothing * tick.model.time_scale), q = 1.0 / (1.0 + w);
-  const double e0 = state.turn_rate.x - goal;
-  if (e0 == 0.0 && state.turn_rate.v == 0.0) return state.heading_rad + goal * n * tick.dt_s;
-  const double e1 = e0 * (1.0 - w * w * q * q) + q * q * state.turn_rate.v * tick.dt_s;
+  const double e0 = state.gait.turn_rate.x - goal;
+  if (e0 == 0.0 && state.gait.turn_rate.v == 0.0)
+    return state.path.heading_rad + goal * n * tick.dt_s;
+  const double e1 = e0 * (1.0 - w * w * q * q) + q * q * state.gait.turn_rate.v * tick.dt_s;
   const double c = e1 / q - e0, qn = power(q, n);
   const double s0 = q * (1.0 - qn) / (1.0 - q);
   const double s1 = q * (1.0 - (n + 1) * qn + n * qn * q) / ((1.0 - q) * (1.0 - q));
-  return state.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
+  return state.path.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
 }
 
 // Smooths how much of a step's length the ground leaves: such steps roll and rise like short ones.
@@ -438,38 +451,38 @@ void follow_ground(const Tick& tick, WalkState& state, Side swing) noexcept {
       wanted < kShortStep * tick.model.source_step_m
           ? 1.0
           : std::clamp(std::abs(state.frame.stride_m[swing]) / wanted, kLeastShare, 1.0);
-  state.ground_share.advance(share, kGroundSmoothing_s * tick.model.time_scale, tick.dt_s);
+  state.gait.ground_share.advance(share, kGroundSmoothing_s * tick.model.time_scale, tick.dt_s);
 }
 
 // A step that is to end on another tread than it was has another ratio at once. The tables are read
 // for one that goes there until the flight begins.
 void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
   const double ratio = ratio_of_step(tick.model, state);
-  const double change = ratio - state.step_ratio;
-  state.step_ratio = ratio;
-  if (state.stage == Stage::roll && state.tick == 1) {
-    state.off_ratio = {};
+  const double change = ratio - state.gait.step_ratio;
+  state.gait.step_ratio = ratio;
+  if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
+    state.gait.off_ratio = {};
   } else if (std::abs(change) > kRatioJump) {
-    state.off_ratio.x -= change;
+    state.gait.off_ratio.x -= change;
   }
-  state.off_ratio.advance(
-      state.stage == Stage::roll ? state.stage_ticks - state.tick + 1 : 1);
+  state.gait.off_ratio.advance(
+      state.clock.stage == Stage::roll ? state.clock.stage_ticks - state.clock.tick + 1 : 1);
 }
 
 void plan_landing(const Tick& tick, WalkState& state) noexcept {
-  if (state.stage == Stage::idle || !state.started) return;
+  if (state.clock.stage == Stage::idle || !state.clock.started) return;
   const Side swing = step_foot(state), stand = other(swing);
   const double heading = heading_ahead(tick, state, ticks_to_strike(state) + 1);
   const vec3 forward = heading_direction(heading), left = glm::cross(kUp, forward);
   const vec3 standing = state.foot[stand].heel_anchor_m;
   if (flight_progress(state) <= kFreeze) {
     const double width = tick.model.leg[swing].track_m - tick.model.leg[stand].track_m;
-    state.landing_heading_rad = heading;
-    state.landing_m = standing + forward * step_length(state, swing) + left * width;
+    state.path.landing_heading_rad = heading;
+    state.path.landing_m = standing + forward * step_length(state, swing) + left * width;
     if (!tick.flat) choose_foothold(tick, state, forward, left * width);
   }
   // Along the heading at the landing, which may still turn after the place is settled.
-  state.frame.stride_m[swing] = glm::dot(state.landing_m - standing, forward);
+  state.frame.stride_m[swing] = glm::dot(state.path.landing_m - standing, forward);
   if (tick.flat) return;
   follow_ground(tick, state, swing);
   keep_ratio_smooth(tick, state);
@@ -489,22 +502,23 @@ vec3 path_to_landing(const WalkState& state, const StridePlan& plan, const vec3&
          rotation_y(heading_rad) * from_footprint(state, plan, step_foot(state), 1, vec3(0.0));
 }
 vec3 path_to_landing(const WalkState& state, const StridePlan& plan) noexcept {
-  return path_to_landing(state, plan, state.landing_m, state.landing_heading_rad);
+  return path_to_landing(state, plan, state.path.landing_m, state.path.landing_heading_rad);
 }
 
 // A step takes the hips from the path of the stride before it over to its own.
 void begin_path(const Tick& tick, WalkState& state) noexcept {
-  double phase = state.stage_phase, rate = state.phase_rate;
+  double phase = state.clock.stage_phase, rate = state.clock.phase_rate;
   std::array<vec3, 3> off;
   for (int k : {0, 1, 2}) {
     const StridePlan plan = stride_plan(tick.model, state, phase, 0.0);
     vec3 from = path_from_standing(state, plan);
-    if (state.last_step_ticks == 0) from = vec3(state.hips_m.x, from.y, state.hips_m.z);  // at rest
+    if (state.clock.last_step_ticks == 0)
+      from = vec3(state.path.hips_m.x, from.y, state.path.hips_m.z);  // at rest
     off[k] = from - path_to_landing(state, plan);
-    approach(phase, rate, stage_end_phase(tick.model, state), state.end_rate, state.stage_ticks - k,
-             1.0);
+    approach(phase, rate, stage_end_phase(tick.model, state), state.clock.end_rate,
+             state.clock.stage_ticks - k, 1.0);
   }
-  state.off_path_m = {off[0], 0.5 * (4.0 * off[1] - 3.0 * off[0] - off[2]),
+  state.path.off_m = {off[0], 0.5 * (4.0 * off[1] - 3.0 * off[0] - off[2]),
                       off[0] - 2.0 * off[1] + off[2]};
 }
 
@@ -512,31 +526,31 @@ void begin_path(const Tick& tick, WalkState& state) noexcept {
 // before or because the landing has moved, fades until the strike.
 void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) noexcept {
   if (!tick.flat) advance_base(tick, state);
-  if (state.stage == Stage::idle || !state.started) {
-    state.hips_velocity_m_s = vec3(0.0);
+  if (state.clock.stage == Stage::idle || !state.clock.started) {
+    state.path.hips_velocity_m_s = vec3(0.0);
     return;
   }
-  const vec3 before = state.hips_m;
+  const vec3 before = state.path.hips_m;
   const vec3 path = path_to_landing(state, plan);
   const double ratio = ratio_ahead(tick.model, state);
-  if (state.stage == Stage::roll && state.tick == 1) {
+  if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
     begin_path(tick, state);
-  } else if (state.landing_m != state.path_landing_m || ratio != state.path_ratio ||
-             state.landing_heading_rad != state.path_heading_rad) {
+  } else if (state.path.landing_m != state.path.last_landing_m || ratio != state.path.last_ratio ||
+             state.path.landing_heading_rad != state.path.last_heading_rad) {
     // The path has moved, and the hips have not.
     StridePlan old = plan;
-    old.at[1] = stride_at(state.backward ? tick.model.strides.back : tick.model.strides.table,
-                          plan.phase, state.path_ratio);
-    state.off_path_m.x +=
-        path_to_landing(state, old, state.path_landing_m, state.path_heading_rad) - path;
+    old.at[1] = stride_at(state.clock.backward ? tick.model.strides.back : tick.model.strides.table,
+                          plan.phase, state.path.last_ratio);
+    state.path.off_m.x +=
+        path_to_landing(state, old, state.path.last_landing_m, state.path.last_heading_rad) - path;
   }
-  state.path_landing_m = state.landing_m;
-  state.path_heading_rad = state.landing_heading_rad;
-  state.path_ratio = ratio;
-  state.off_path_m.advance(ticks_to_strike(state) + 1);
-  state.hips_m = path + state.off_path_m.x;
-  state.hips_m.y = 0.0;
-  state.hips_velocity_m_s = (state.hips_m - before) / tick.dt_s;
+  state.path.last_landing_m = state.path.landing_m;
+  state.path.last_heading_rad = state.path.landing_heading_rad;
+  state.path.last_ratio = ratio;
+  state.path.off_m.advance(ticks_to_strike(state) + 1);
+  state.path.hips_m = path + state.path.off_m.x;
+  state.path.hips_m.y = 0.0;
+  state.path.hips_velocity_m_s = (state.path.hips_m - before) / tick.dt_s;
 }
 
 vec3 ankle_of(const LegBuild& leg, const FootPose& foot) noexcept {
@@ -548,8 +562,9 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
                      const Pelvis& pelvis) noexcept {
   double y = pelvis.position_m.y;
   // Legs that are about to change their pace are bent a little, so that they have room.
-  const double change = state.pace.x - state.settled_pace.x;
-  y -= kChangeDrop_m * model.size * std::min(1.0, 2.0 * state.pace.x) * change * change / (change * change + kChange * kChange);
+  const double change = state.gait.pace.x - state.gait.settled_pace.x;
+  y -= kChangeDrop_m * model.size * std::min(1.0, 2.0 * state.gait.pace.x) * change * change /
+       (change * change + kChange * kChange);
   double squares = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
@@ -583,7 +598,7 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
                Pose& pose) noexcept {
   const LegBuild& leg = model.leg[side];
   const LegJoints& joints = leg.model.joints;
-  const LegAngles& q = state.angles_rad[side];
+  const LegAngles& q = state.legs.angles_rad[side];
   const Skeleton& skeleton = model.cycle.skeleton;
   const quat pelvis =
       frames.rotation[model.cycle.pelvis] * glm::inverse(model.cycle.pelvis_standing);
@@ -628,7 +643,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   // Joints between root and pelvis turn with the heading and else move as in the data.
   JointFrames frames;
   pose.root_m = pelvis.position_m;
-  pose.local[0] = rotation_y(state.heading_rad) * pose.local[0];
+  pose.local[0] = rotation_y(state.path.heading_rad) * pose.local[0];
   quat above = kIdentity;
   for (int j = cycle.skeleton.joints[cycle.pelvis].parent; j >= 0;
        j = cycle.skeleton.joints[j].parent) {
@@ -652,10 +667,10 @@ void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
 
 void fill_report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
   WalkFrame& frame = state.frame;
-  frame.stage = state.stage;
-  frame.swing = state.swing;
-  frame.heading_rad = state.heading_rad;
-  frame.turn_rate_rad_s = state.turn_rate.x;
+  frame.stage = state.clock.stage;
+  frame.swing = state.clock.swing;
+  frame.heading_rad = state.path.heading_rad;
+  frame.turn_rate_rad_s = state.gait.turn_rate.x;
   frame.pelvis_m = pelvis.position_m;
   const bool idle = frame.stage == Stage::idle;
   if (idle) frame.stride_m = {};
@@ -664,15 +679,16 @@ void fill_report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
     frame.heel_planted[side] = idle || (frame.stage == Stage::roll && swings);
     frame.toe_planted[side] = idle || !swings;
   }
-  const bool landed = frame.stage == Stage::roll && state.tick == 1 && state.last_step_ticks > 0;
+  const bool landed =
+      frame.stage == Stage::roll && state.clock.tick == 1 && state.clock.last_step_ticks > 0;
   if (landed) {
     ++frame.steps[frame.swing];
-    frame.overhangs += !state.landing.fits;
+    frame.overhangs += !state.path.foothold.fits;
   }
   frame.speed_m_s = 0.0;
-  const int ticks = state.roll_ticks + state.flight_ticks;
-  if (!idle && state.started && ticks > 0) {
-    const int before = state.last_step_ticks > 0 ? state.last_step_ticks : ticks;
+  const int ticks = state.clock.roll_ticks + state.clock.flight_ticks;
+  if (!idle && state.clock.started && ticks > 0) {
+    const int before = state.clock.last_step_ticks > 0 ? state.clock.last_step_ticks : ticks;
     frame.speed_m_s = (frame.stride_m[0] + frame.stride_m[1]) / ((ticks + before) * dt_s);
   }
 }
@@ -681,16 +697,16 @@ void fill_report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
 
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept {
   WalkState state;
-  state.hips_m = vec3(place_m.x, 0.0, place_m.z);
-  state.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
-  state.bounce.x = state.sway.x = 1.0;
-  state.step_time_s.x = 0.5;
+  state.path.hips_m = vec3(place_m.x, 0.0, place_m.z);
+  state.gait.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
+  state.gait.bounce.x = state.gait.sway.x = 1.0;
+  state.gait.step_time_s.x = 0.5;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
     FootState& foot = state.foot[side];
-    for (Damped<double>& w : state.weight[side]) w.x = 1.0;
-    state.time_s[side] = 0.5;
-    foot.heel_anchor_m = state.hips_m + vec3(leg.track_m, 0.0, -model.rest_lead_m);
+    for (Damped<double>& w : state.gait.weight[side]) w.x = 1.0;
+    state.gait.time_s[side] = 0.5;
+    foot.heel_anchor_m = state.path.hips_m + vec3(leg.track_m, 0.0, -model.rest_lead_m);
     if (!is_flat(*model.terrain)) {
       foot.plane = standing_plane(model, side, foot.heel_anchor_m, 0.0);
       foot.heel_anchor_m = foot.plane.place_m;
@@ -703,9 +719,9 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     remember_foot(foot);
     remember_foot(foot);
   }
-  state.landing_m = state.foot[kLeftSide].heel_anchor_m;
-  state.landing_plane = state.foot[kLeftSide].plane;
-  state.base.height_m = state.base.level_m =
+  state.path.landing_m = state.foot[kLeftSide].heel_anchor_m;
+  state.path.landing_plane = state.foot[kLeftSide].plane;
+  state.path.base.height_m = state.path.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
   return state;

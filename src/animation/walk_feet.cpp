@@ -28,7 +28,7 @@ constexpr double kLiftFade = 0.5;   // of the flight: the lift-off's own motion 
 constexpr double kPitchFade = 0.2;
 constexpr double kHeelStays = 0.85;  // of the flight: from here on a style leaves its end alone
 constexpr double kLiftGround = 0.5;  // of the flight: until then the plane left bounds the toe
-constexpr double kRollEnd = 0.9;    // of the roll: the toe is down
+constexpr double kRollEnd = 0.9;     // of the roll: the toe is down
 // Of the flight: from kLiftGrown until kLiftFalls all of a style's factor on its height acts.
 constexpr double kLiftGrown = 0.4, kLiftFalls = 0.5, kLiftEnds = 0.85;
 
@@ -40,31 +40,30 @@ vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
 
 // How much steeper the line from heel to toe is in a foot that twists and rolls.
 double rolled_elevation(const LegBuild& leg, const FootPose& pose) noexcept {
-  const vec3 line =
-      from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad) *
-      (leg.model.toe_m - leg.model.heel_m);
+  const vec3 line = from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad) *
+                    (leg.model.toe_m - leg.model.heel_m);
   return atan2(line.y, glm::dot(line, leg.forward)) - leg.elevation_rad;
 }
 
 // The foot's pitch in the tables.
 double table_pitch(const WalkState& state, const StridePlan& plan, Side side) noexcept {
   // The foot that stands when a walk begins has not landed: its toe is down.
-  const bool stands = state.foot[side].mode == FootMode::roll && state.last_step_ticks == 0;
-  if (!state.started || stands) return 0.0;
+  const bool stands = state.foot[side].mode == FootMode::roll && state.clock.last_step_ticks == 0;
+  if (!state.clock.started || stands) return 0.0;
   return plan.cell.foot[side].pitch_rad;
 }
 
 // How much of the tables' twist and roll a foot on the ground shows: when standing it is flat.
 double on_its_edges(const WalkState& state) noexcept {
-  if (state.started) return 1.0;
-  return state.stage == Stage::idle
+  if (state.clock.started) return 1.0;
+  return state.clock.stage == Stage::idle
              ? 0.0
-             : 1.0 - smootherstep(static_cast<double>(state.tick) / state.stage_ticks);
+             : 1.0 - smootherstep(static_cast<double>(state.clock.tick) / state.clock.stage_ticks);
 }
 
 // In a turn the foot pivots on its planted toe as its heel rises.
 double pivot_rate(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  return state.turn_rate.x * heel_rise(model, state, side);
+  return state.gait.turn_rate.x * heel_rise(model, state, side);
 }
 
 // --- The flight path -----------------------------------------------------------------------------
@@ -95,19 +94,23 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
                  double u, double& base_m) noexcept {
   const FootState& foot = state.foot[side];
   const StrideFoot& cell = plan.cell.foot[side];
-  const quat old = rotation_y(foot.lift_yaw_rad), next = rotation_y(state.landing_heading_rad);
+  const quat old = rotation_y(foot.lift_yaw_rad), next = rotation_y(state.path.landing_heading_rad);
   const double gone = smootherstep(u);
-  vec3 p = (foot.heel_anchor_m + old * from_footprint(state, plan, side, 0, plan.at[0].cell.foot[side].heel_m)) *
+  vec3 p = (foot.heel_anchor_m +
+            old * from_footprint(state, plan, side, 0, plan.at[0].cell.foot[side].heel_m)) *
                (1.0 - gone) +
-           (state.landing_m + next * from_footprint(state, plan, side, 1, plan.at[1].cell.foot[side].heel_m)) * gone;
+           (state.path.landing_m +
+            next * from_footprint(state, plan, side, 1, plan.at[1].cell.foot[side].heel_m)) *
+               gone;
   const vec3 styled = plan.heel_m[side] * (1.0 - smoothstep(kHeelStays, 1.0, u));
-  p += rotation_y(mix(foot.lift_yaw_rad, state.landing_heading_rad, gone)) * vec3(styled.x, 0.0, styled.z);
-  const vec3 way = state.landing_m - foot.heel_anchor_m;
+  p += rotation_y(mix(foot.lift_yaw_rad, state.path.landing_heading_rad, gone)) *
+       vec3(styled.x, 0.0, styled.z);
+  const vec3 way = state.path.landing_m - foot.heel_anchor_m;
   const double begin_m = height_on(foot.plane, foot.heel_anchor_m),
-               rise = state.landing_m.y - begin_m;
+               rise = state.path.landing_m.y - begin_m;
   const double rise_legs = rise / model.leg_length_m;
   // A lame foot is low from its lift-off on (StrideWish::low_left).
-  const double factor = state.flight_height[side].x, low = std::min(factor, 1.0);
+  const double factor = state.gait.flight_height[side].x, low = std::min(factor, 1.0);
   // A style's factor acts while the foot is high.
   const double more = mix(1.0, std::max(factor, 1.0), 1.0 - smoothstep(kLiftFalls, kLiftEnds, u));
   const double lifted = more * mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, rise_legs));
@@ -153,18 +156,17 @@ void rise_on_toe(const LegBuild& leg, double rise_m, FootState& foot) noexcept {
 }  // namespace
 
 double heel_rise(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  const bool stays = state.closing && side != step_foot(state);
-  if (state.stage == Stage::idle || !state.started || stays) return 0.0;
+  const bool stays = state.clock.closing && side != step_foot(state);
+  if (state.clock.stage == Stage::idle || !state.clock.started || stays) return 0.0;
   const double begin =
       std::max(kRiseBegin, model.share[side == kRightSide ? 0 : 2]);  // after the roll
   return smoothstep(begin, begin + kRiseLasts, own_phase(model, state, side));
 }
 
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
-  return pose.tilt *
-         (rotation_y(pose.yaw_rad) *
-          (rotation_about(leg.side, pose.pitch_rad) *
-           from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad)));
+  return pose.tilt * (rotation_y(pose.yaw_rad) *
+                      (rotation_about(leg.side, pose.pitch_rad) *
+                       from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad)));
 }
 
 quat toes_turn(const LegBuild& leg, const FootPose& pose, double toe_rad) noexcept {
@@ -200,15 +202,15 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   pose.heel_m = flight_heel(model, state, plan, side, u, point.base_m);
   point.lifted_m = height_on(foot.plane, pose.heel_m) - point.base_m;
   const double gone = 1.0 - h00(u);
-  const double turn = state.landing_heading_rad - foot.lift_yaw_rad;
+  const double turn = state.path.landing_heading_rad - foot.lift_yaw_rad;
   pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u);
   // A lame foot that hardly leaves the floor does not roll onto an edge.
-  const double low = low_lift(u, std::min(state.flight_height[side].x, 1.0));
+  const double low = low_lift(u, std::min(state.gait.flight_height[side].x, 1.0));
   pose.twist_rad = low * cell.twist_rad;
   pose.roll_rad = low * cell.roll_rad;
   pose.tilt = foot.plane.tilt;
-  if (pose.tilt != state.landing_plane.tilt) {
-    pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.landing_plane.tilt * gone);
+  if (pose.tilt != state.path.landing_plane.tilt) {
+    pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.path.landing_plane.tilt * gone);
   }
   return point;
 }
@@ -221,15 +223,19 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
   const double ground_m = point.base_m + point.lifted_m * (1.0 - smootherstep(u / kLiftGround));
   const double height = (point.pose.heel_m.y - ground_m) * foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
-  const double fade = foot.pitch_fade.at(u * state.stage_ticks);
+  const double fade = foot.pitch_fade.at(u * state.clock.stage_ticks);
   const double pitch = table_pitch(state, plan, side) + fade;
   // Backwards a foot rolls onto its edge before it lands: then this edge stays off the floor.
   const double edge =
-      state.backward ? smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.9, 1.0, u)) : 0.0;
+      state.clock.backward ? smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.9, 1.0, u)) : 0.0;
   const double limit =
-      highest_pitch(leg, height, edge * leg.half_width_m * std::abs(point.pose.roll_rad) - kMostSink_m) +
+      highest_pitch(leg, height,
+                    edge * leg.half_width_m * std::abs(point.pose.roll_rad) - kMostSink_m) +
       rolled_elevation(leg, point.pose);
-  set_pitch(leg, soft_min(pitch, limit, kSoftPitch + kWiderPitch * std::abs(fade) * smoothstep(0.0, 0.1, u)), point.pose, FootMode::flight);
+  set_pitch(
+      leg,
+      soft_min(pitch, limit, kSoftPitch + kWiderPitch * std::abs(fade) * smoothstep(0.0, 0.1, u)),
+      point.pose, FootMode::flight);
 }
 
 void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept {
@@ -295,7 +301,7 @@ void begin_support(FootState& foot) noexcept {
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
   FootState& foot = state.foot[side];
-  const double ticks = state.stage_ticks;
+  const double ticks = state.clock.stage_ticks;
   const FootPose lifts = foot.pose;
   const vec3 slope_m = end_slope(foot.last_heel_m[1], foot.last_heel_m[0], lifts.heel_m) * ticks;
   const double pitch_rate =
@@ -303,15 +309,17 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.mode = FootMode::flight;
   foot.mode_ticks = 0;
   foot.lift_m = lifts.heel_m;
-  foot.crosses_riser = !tick.flat && crosses_riser(*model.terrain, foot.plane, state.landing_plane);
+  foot.crosses_riser =
+      !tick.flat && crosses_riser(*model.terrain, foot.plane, state.path.landing_plane);
   foot.lift_turn_rad = pivot_rate(model, state, side) * tick.dt_s * ticks;
   // What this foot differs by from the tables fades away.
   foot.gap_m = foot.gap_slope_m = vec3(0.0);
   foot.pitch_fade = {};
-  const double step = 1.0 / (state.roll_ticks + state.flight_ticks);
-  const double share = state.roll_ticks * step;
-  const StridePlan now = stride_plan(model, state, state.phase, share),
-                   next = stride_plan(model, state, state.phase + state.phase_rate, share + step);
+  const double step = 1.0 / (state.clock.roll_ticks + state.clock.flight_ticks);
+  const double share = state.clock.roll_ticks * step;
+  const StridePlan now = stride_plan(model, state, state.clock.phase, share),
+                   next = stride_plan(model, state, state.clock.phase + state.clock.phase_rate,
+                                      share + step);
   double base_m = 0.0;
   const vec3 from = flight_heel(model, state, now, side, 0.0, base_m);
   const vec3 to = flight_heel(model, state, next, side, 1.0 / ticks, base_m);
@@ -320,8 +328,8 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.gap_m.y -= foot.rise_m;
   foot.gap_slope_m.y -= end_slope(foot.last_rise_m[1], foot.last_rise_m[0], foot.rise_m) * ticks;
   const double pitch = table_pitch(state, now, side);
-  foot.pitch_fade = {lifts.pitch_rad - pitch,
-                     pitch_rate - (table_pitch(state, next, side) - pitch), kPitchFade * ticks};
+  foot.pitch_fade = {lifts.pitch_rad - pitch, pitch_rate - (table_pitch(state, next, side) - pitch),
+                     kPitchFade * ticks};
   if (!tick.flat) plan_room(tick, state, side);
 }
 
@@ -329,11 +337,12 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   FootState& foot = state.foot[side];
   foot.mode = FootMode::roll;
   foot.mode_ticks = 0;
-  foot.heel_anchor_m = state.landing_m;
-  foot.lift_yaw_rad = state.landing_heading_rad;
-  foot.plane = state.landing_plane;
-  const double pitch = foot.pose.pitch_rad - table_pitch(state, stride_now(tick.model, state), side);
-  foot.pitch_fade = {pitch, 0.0, kRollEnd * state.stage_ticks};
+  foot.heel_anchor_m = state.path.landing_m;
+  foot.lift_yaw_rad = state.path.landing_heading_rad;
+  foot.plane = state.path.landing_plane;
+  const double pitch =
+      foot.pose.pitch_rad - table_pitch(state, stride_now(tick.model, state), side);
+  foot.pitch_fade = {pitch, 0.0, kRollEnd * state.clock.stage_ticks};
   FootPose flat = foot.pose;
   flat.heel_m = foot.heel_anchor_m;
   flat.yaw_rad = foot.lift_yaw_rad;

@@ -115,9 +115,9 @@ struct Solve {
 // Weights count relative to the leg's largest. The foot's place goes before a locked joint.
 void set_weights(const WalkState& state, Side side, IkChain& chain) noexcept {
   double largest = 1e-6;
-  for (const Damped<double>& w : state.weight[side]) largest = std::max(largest, w.x);
+  for (const Damped<double>& w : state.gait.weight[side]) largest = std::max(largest, w.x);
   for (int j = 0; j < kLegDofs; ++j)
-    chain.dof[j].weight = std::clamp(state.weight[side][j].x / largest, kLeastWeight, 1.0);
+    chain.dof[j].weight = std::clamp(state.gait.weight[side][j].x / largest, kLeastWeight, 1.0);
 }
 
 // Points a flying foot down: as far as the ground allows by its pitch alone, and farther by lifting
@@ -143,7 +143,8 @@ void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvi
                 const IkChain& chain, IkAngles& angles, FootState& foot, Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   const bool flies = foot.mode == FootMode::flight;
-  double excess = soft_positive(kMostDorsiflexion - angles[kAnkleX], flies ? kSoftFlying : kSoftAnkle);
+  double excess =
+      soft_positive(kMostDorsiflexion - angles[kAnkleX], flies ? kSoftFlying : kSoftAnkle);
   if (!flies) excess *= foot.mode == FootMode::support ? heel_rise(tick.model, state, side) : 0.0;
   if (excess == 0.0) return;
   if (flies) {
@@ -163,9 +164,9 @@ void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelv
   const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
   IkAngles angles{};
   for (int j = 0; j < kLegDofs; ++j) {
-    angles[j] = data[j] + keep * (state.angles_rad[side][j] - state.data_rad[side][j]);
+    angles[j] = data[j] + keep * (state.legs.angles_rad[side][j] - state.legs.data_rad[side][j]);
   }
-  state.data_rad[side] = data;
+  state.legs.data_rad[side] = data;
   IkChain chain = leg.chain;
   set_weights(state, side, chain);
   // Solve without the ankle's limit first, so that the knee does not twist.
@@ -178,9 +179,10 @@ void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelv
   if (over > 0.0) {
     chain.dof[kAnkleX].min_rad =
         std::max(most_dorsiflexion, angles[kAnkleX] + over * over / (over + kSoftHeld));
-    solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+    solve.add(
+        solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
   }
-  state.angles_rad[side] = leg_angles(angles);
+  state.legs.angles_rad[side] = leg_angles(angles);
 }
 
 // Steps 1-7 to the letter for the stage's end-effector alone. While heel and toe both stand or
@@ -189,14 +191,14 @@ void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& st
                 Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   IkChain chain = leg.chain;
-  for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = state.weight[side][j].x;
-  IkAngles angles = padded(state.angles_rad[side]);
+  for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = state.gait.weight[side][j].x;
+  IkAngles angles = padded(state.legs.angles_rad[side]);
   const FootGoal goal = foot_goal(leg, state.foot[side], pelvis, end_effector(state.foot[side]));
   const FootMode foot = state.foot[side].mode;
   const bool both = foot == FootMode::roll ||
                     (foot == FootMode::support && heel_rise(tick.model, state, side) == 0.0);
   solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
-  state.angles_rad[side] = leg_angles(angles);
+  state.legs.angles_rad[side] = leg_angles(angles);
 }
 
 }  // namespace
@@ -210,7 +212,7 @@ void pose_leg(const Tick& tick, IkMode mode, Side side, const StridePlan& plan,
   } else {
     pose_paper(tick, side, pelvis, state, solve);
   }
-  const IkFrame end = end_frame(leg.chain, padded(state.angles_rad[side]));
+  const IkFrame end = end_frame(leg.chain, padded(state.legs.angles_rad[side]));
   FootState& foot = state.foot[side];
   foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose, end),
                                 foot.mode == FootMode::flight ? flight_progress(state) : 0.0);

@@ -326,7 +326,8 @@ bool has_overlong_leg(const GaitCycle& cycle) {
 }
 
 // All lengths grow by `ratio`, but those of the pelvis by `scale`. So that the legs keep their
-// angles, it turns and rolls by as much less as it is wider, and is where the hips' middle has to be.
+// angles, it turns and rolls by as much less as it is wider, and is where the hips' middle has to
+// be.
 StrideTable scaled(const StrideTable& data, double ratio, double scale,
                    const std::array<LegModel, 2>& legs, double stand_roll_rad) {
   const vec3 middle = 0.5 * (legs[0].hip_m + legs[1].hip_m);
@@ -346,16 +347,14 @@ StrideTable scaled(const StrideTable& data, double ratio, double scale,
     const auto knot = [&](int k) { return data.knot[(k + kCycleSamples) % kCycleSamples]; };
     StrideCell& cell = cells[i];
     cell = mixed(mixed(knot(i - 1), knot(i + 1), 1.0 / 6.0, 1.0 / 6.0), knot(i), 1.0, 4.0 / 6.0);
-    cell.pelvis_m =
-        ratio * (cell.pelvis_m + hips_m(cell, 1.0)) - scale * hips_m(cell, turns);
+    cell.pelvis_m = ratio * (cell.pelvis_m + hips_m(cell, 1.0)) - scale * hips_m(cell, turns);
     cell.pelvis_yaw_rad *= turns;
     cell.pelvis_tilt.z *= turns;
   }
   for (int side : {0, 1}) {
     const vec3 apart = vec3(legs[side].hip_m.x, 0.0, middle.z) * (scale - ratio);
     table.footprint_m[side] = table.footprint_m[side] * ratio + apart;
-    for (StrideCell& cell : cells)
-      cell.foot[side].heel_m = cell.foot[side].heel_m * ratio + apart;
+    for (StrideCell& cell : cells) cell.foot[side].heel_m = cell.foot[side].heel_m * ratio + apart;
   }
   table.knot = knots_through(cells);
   return table;
@@ -399,8 +398,8 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.leg[side] = leg_build(model.cycle.leg[side]);
     const double lift = cycle.toe_off[side] - cycle.strike[side];
     model.leg[side].toe_off = lift - std::floor(lift);
-    model.leg[side].track_m = mean_heel(cycle, side).x * ratio +
-                              cycle.leg[side].hip_m.x * (character.scale - ratio);
+    model.leg[side].track_m =
+        mean_heel(cycle, side).x * ratio + cycle.leg[side].hip_m.x * (character.scale - ratio);
   }
   fill_shares(cycle, model);
   const double source_step = 0.5 * cycle.stride_m;

@@ -70,8 +70,9 @@ struct Pelvis {
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
                           const StridePlan& plan) noexcept;
 
-// --- walk_style.cpp: what a style asks of the stride ----------------------------------------------
-// From the smoothed parameters. In paper mode weights act on the inverse kinematics alone.
+// --- walk_style.cpp: what a style asks of the stride
+// ---------------------------------------------- From the smoothed parameters. In paper mode
+// weights act on the inverse kinematics alone.
 void grant_wishes(IkMode mode, WalkState& state) noexcept;
 // Changes the tables' cell by what is granted in a stride of this ratio.
 void change_stride(const StrideFamily& strides, const WalkState& state, double ratio,

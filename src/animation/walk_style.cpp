@@ -24,8 +24,8 @@ constexpr double kStraightKnee = 1.5 * kDegree;
 // How stiff a joint is beside the leg's freest: 0 free .. held_back(0) locked.
 double stiffness(const WalkState& state, int side, int dof) noexcept {
   double largest = 1e-6;
-  for (const Damped<double>& w : state.weight[side]) largest = std::max(largest, w.x);
-  return held_back(std::clamp(state.weight[side][dof].x / largest, 0.0, 1.0));
+  for (const Damped<double>& w : state.gait.weight[side]) largest = std::max(largest, w.x);
+  return held_back(std::clamp(state.gait.weight[side][dof].x / largest, 0.0, 1.0));
 }
 
 // x, but never beyond `most`: the closer, the less of it. Both at least 0.
@@ -35,18 +35,18 @@ double bounded(double x, double most) noexcept {
 }
 
 double& granted(WalkState& state, StrideWish wish, int joint = 0) noexcept {
-  return state.granted[static_cast<std::size_t>(wish) + joint];
+  return state.gait.granted[static_cast<std::size_t>(wish) + joint];
 }
 
 }  // namespace
 
 void grant_wishes(IkMode mode, WalkState& state) noexcept {
-  const double bounce = state.bounce.x - 1.0;
+  const double bounce = state.gait.bounce.x - 1.0;
   granted(state, StrideWish::more_bounce) = std::max(0.0, bounce);
   granted(state, StrideWish::less_bounce) = std::max(0.0, -bounce);
   for (int side : {0, 1})
     granted(state, StrideWish::low_left, side) =
-        std::max(0.0, 1.0 - state.flight_height[side].x) / (1.0 - kLowLift);
+        std::max(0.0, 1.0 - state.gait.flight_height[side].x) / (1.0 - kLowLift);
   if (mode == IkMode::paper) return;
   constexpr std::array<int, 3> kJoint = {kHipX, kKneeX, kAnkleX};
   for (int k = 0; k < 3; ++k) {
@@ -61,10 +61,10 @@ void grant_wishes(IkMode mode, WalkState& state) noexcept {
 
 void change_stride(const StrideFamily& strides, const WalkState& state, double ratio,
                    StridePlan& plan) noexcept {
-  if (state.backward || strides.response.empty()) return;
-  StrideWishes wishes = state.granted;
+  if (state.clock.backward || strides.response.empty()) return;
+  StrideWishes wishes = state.gait.granted;
   const double share = plan.shown * soft_min(ratio, kMostShown, kSoftShown) *
-                       smoothstep(kStairs, kLevel, state.ground_share.x);
+                       smoothstep(kStairs, kLevel, state.gait.ground_share.x);
   bool any = false;
   for (double& wish : wishes) any = any || wish != 0.0;
   if (!any) return;

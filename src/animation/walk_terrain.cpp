@@ -128,7 +128,8 @@ double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) n
   const double longer = sign * length - std::min(longest_to(step, piece),
                                                  std::max(sign * wanted, kLongStep * step.leg_m));
   return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside +
-         (is_stuck(step, length) ? kStuckCosts : 0.0) + kLongCosts * std::max(0.0, longer) / step.leg_m +
+         (is_stuck(step, length) ? kStuckCosts : 0.0) +
+         kLongCosts * std::max(0.0, longer) / step.leg_m +
          kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
          kOverhang * room.lacks_m / step.leg_m;
 }
@@ -178,10 +179,10 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   Step step = landing;
   step.lift_m = landing.from_m;
   step.lifts = landing.stands;
-  step.from_m = state.landing_m;
-  step.stands = state.landing.piece;
+  step.from_m = state.path.landing_m;
+  step.stands = state.path.foothold.piece;
   const double wanted =
-      walks_on(tick.params, state) ? step_length(state, next) * state.landing.share : 0.0;
+      walks_on(tick.params, state) ? step_length(state, next) * state.path.foothold.share : 0.0;
   step.wanted_m = step.from_m + step.forward * wanted - across_m;
   const Terrain& terrain = *tick.model.terrain;
   bool fits = false;
@@ -189,9 +190,9 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
   const double next_m = ground_at(terrain, place.x, place.z + middle).height_m;
   // Of the rise to the next landing and the rest of the flying foot's rise, the greater one.
-  const double step_m = std::abs(next_m - state.landing_m.y),
+  const double step_m = std::abs(next_m - state.path.landing_m.y),
                way_m = std::abs(next_m - landing.from_m.y);
-  state.landing.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
+  state.path.foothold.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
 }
 
 // The share of its length that a step keeps on a slope.
@@ -270,9 +271,9 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
                      const vec3& across_m) noexcept {
   const Terrain& terrain = *tick.model.terrain;
   const Side swing = step_foot(state), stand = other(swing);
-  Foothold& landing = state.landing;
-  const bool flies = state.stage == Stage::flight,
-             first = state.stage == Stage::roll && state.tick <= 1;
+  Foothold& landing = state.path.foothold;
+  const bool flies = state.clock.stage == Stage::flight,
+             first = state.clock.stage == Stage::roll && state.clock.tick <= 1;
   Step step;
   step.from_m = state.foot[stand].plane.place_m;
   step.lift_m = state.foot[swing].plane.place_m;
@@ -280,7 +281,7 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   step.lifts = piece_at(terrain, step.lift_m.z);
   step.forward = forward;
   step.leg_m = tick.model.leg_length_m;
-  const double yaw = state.landing_heading_rad;
+  const double yaw = state.path.landing_heading_rad;
   step.sole = sole_extent(tick.model.leg[swing], yaw);
   const double length = step_length(state, swing);
   const auto wanted = [&] { return step.from_m + forward * (length * landing.share) + across_m; };
@@ -295,12 +296,14 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   if (moved) {
     landing.wanted_m = step.wanted_m;
     landing.yaw_rad = yaw;
-    if (state.stage == Stage::roll && state.tick <= kPieceSettles * state.stage_ticks)
+    if (state.clock.stage == Stage::roll &&
+        state.clock.tick <= kPieceSettles * state.clock.stage_ticks)
       landing.piece = best_piece(terrain, step, first ? nullptr : &landing.piece);
     const vec3 place = place_on(step, landing.piece, landing.fits);
-    state.landing_plane = plane_under(terrain, tick.model.leg[swing], place, yaw, landing.piece);
+    state.path.landing_plane =
+        plane_under(terrain, tick.model.leg[swing], place, yaw, landing.piece);
   }
-  state.landing_m = state.landing_plane.place_m;
+  state.path.landing_m = state.path.landing_plane.place_m;
   if (moved) look_ahead(tick, step, across_m, state);
 }
 
@@ -311,9 +314,9 @@ namespace {
 // Up, the knee that lands bent straightens until late single support; down, the standing knee
 // holds, and yields from the middle of single support until the landed foot has taken the weight
 // (McFadyen & Winter 1988).
-constexpr double kRiseLasts = 0.9;  // of the step
+constexpr double kRiseLasts = 0.9;                         // of the step
 constexpr double kSinkBegin = 0.5, kSinkBeginBack = 0.35;  // of the flight
-constexpr double kSinkEnd = 0.25;   // of the roll
+constexpr double kSinkEnd = 0.25;                          // of the roll
 // How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
 // half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
 // The other leg's knee is bent by kBentBefore of it, for a straight knee cannot yield smoothly.
@@ -328,9 +331,10 @@ struct Sinking {
   double share = 0.0;  // of the ticks
 };
 Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
-  const double begin = (state.backward ? kSinkBeginBack : kSinkBegin) * state.flight_ticks;
+  const double begin =
+      (state.clock.backward ? kSinkBeginBack : kSinkBegin) * state.clock.flight_ticks;
   Sinking s;
-  s.ticks = state.flight_ticks - begin + kSinkEnd * state.roll_ticks;
+  s.ticks = state.clock.flight_ticks - begin + kSinkEnd * state.clock.roll_ticks;
   s.share = std::max(0.0, flight_ticks - begin) / s.ticks;
   return s;
 }
@@ -344,31 +348,31 @@ double early_yield(const WalkModel& model, double fall_m) noexcept {
 // down reaches less far.
 double fall_ahead(const WalkModel& model, const WalkState& state) noexcept {
   const Side lands = step_foot(state), stands = other(lands);
-  const FootPlane &from = state.foot[stands].plane, &to = state.landing_plane;
+  const FootPlane &from = state.foot[stands].plane, &to = state.path.landing_plane;
   const auto toe_m = [&](const FootPlane& plane, Side side, double yaw_rad) {
     return height_on(plane, plane.place_m + heading_direction(yaw_rad) * model.leg[side].foot_m);
   };
   return std::max(from.place_m.y - to.place_m.y,
                   toe_m(from, stands, state.foot[stands].lift_yaw_rad) -
-                      toe_m(to, lands, state.landing_heading_rad));
+                      toe_m(to, lands, state.path.landing_heading_rad));
 }
 
 // At a strike: from where they are the hips go to where the landed foot carries them.
 void begin_base(const WalkModel& model, WalkState& state) noexcept {
-  HipsGround& base = state.base;
-  const FootPlane &landed = state.foot[state.swing].plane,
-                  &lifts = state.foot[other(state.swing)].plane;
-  if (state.started) {
+  HipsGround& base = state.path.base;
+  const FootPlane &landed = state.foot[state.clock.swing].plane,
+                  &lifts = state.foot[other(state.clock.swing)].plane;
+  if (state.clock.started) {
     const double bent = kBentBefore * early_yield(model, fall_ahead(model, state));
     base.level_m = landed.place_m.y - std::max(base.yield_m, bent);
-    const double rise_lasts = state.backward || state.closing ? 1.0 : kRiseLasts;
+    const double rise_lasts = state.clock.backward || state.clock.closing ? 1.0 : kRiseLasts;
     base.settle_ticks =
         static_cast<int>(base.yield_m > bent && base.height_m > base.level_m
-                             ? kSinkEnd * state.roll_ticks
-                             : rise_lasts * (state.roll_ticks + state.flight_ticks));
+                             ? kSinkEnd * state.clock.roll_ticks
+                             : rise_lasts * (state.clock.roll_ticks + state.clock.flight_ticks));
   } else {
     base.level_m = std::min(landed.place_m.y, lifts.place_m.y);
-    base.settle_ticks = state.stage_ticks;
+    base.settle_ticks = state.clock.stage_ticks;
   }
   base.off_m = {base.height_m - base.level_m, base.per_tick_m, base.per_tick2_m};
   base.drop_m = base.yield_m = base.early_m = 0.0;
@@ -376,35 +380,35 @@ void begin_base(const WalkModel& model, WalkState& state) noexcept {
 
 // How far the hips sink until the next landing, and after it.
 void plan_drop(const WalkModel& model, WalkState& state) noexcept {
-  HipsGround& base = state.base;
+  HipsGround& base = state.path.base;
   base.early_m = early_yield(model, fall_ahead(model, state));
   base.drop_m = base.yield_m = 0.0;
   if (base.early_m == 0.0) return;
-  const double share = smootherstep(sinking(state, state.flight_ticks).share);
-  base.drop_m = std::max(0.0, base.level_m - state.landing_m.y + base.early_m) / share;
+  const double share = smootherstep(sinking(state, state.clock.flight_ticks).share);
+  base.drop_m = std::max(0.0, base.level_m - state.path.landing_m.y + base.early_m) / share;
   base.yield_m = base.early_m + (1.0 - share) * base.drop_m;
 }
 
 // Upwards, a rear leg that does not roll far over its toe would be too short (walking backwards, or
 // when closing a walk): hips that rest wait for its lift-off.
 bool waits_for_flight(const WalkState& state) noexcept {
-  const SmoothFade<double>& off = state.base.off_m;
-  return (state.backward || state.closing) && state.started && off.x < 0.0 && off.v == 0.0 &&
-         off.a == 0.0;
+  const SmoothFade<double>& off = state.path.base.off_m;
+  return (state.clock.backward || state.clock.closing) && state.clock.started && off.x < 0.0 &&
+         off.v == 0.0 && off.a == 0.0;
 }
 
 }  // namespace
 
 void advance_base(const Tick& tick, WalkState& state) noexcept {
-  HipsGround& base = state.base;
-  if (state.stage == Stage::idle) return;
-  if (state.stage == Stage::roll && state.tick == 1) begin_base(tick.model, state);
-  const bool flies = state.stage == Stage::flight;
-  const int begun = state.tick + (flies ? state.roll_ticks : 0);
+  HipsGround& base = state.path.base;
+  if (state.clock.stage == Stage::idle) return;
+  if (state.clock.stage == Stage::roll && state.clock.tick == 1) begin_base(tick.model, state);
+  const bool flies = state.clock.stage == Stage::flight;
+  const int begun = state.clock.tick + (flies ? state.clock.roll_ticks : 0);
   if (!flies && waits_for_flight(state)) return;
   base.off_m.advance(base.settle_ticks - begun + 1);
-  const Sinking now = sinking(state, flies ? state.tick : 0.0);
-  if (now.share == 0.0 && state.started) plan_drop(tick.model, state);
+  const Sinking now = sinking(state, flies ? state.clock.tick : 0.0);
+  if (now.share == 0.0 && state.clock.started) plan_drop(tick.model, state);
   const double s = now.share, per_tick = s > 0.0 ? 1.0 / now.ticks : 0.0;
   base.height_m = base.level_m + base.off_m.x - base.drop_m * smootherstep(s);
   base.per_tick_m = base.off_m.v - base.drop_m * per_tick * 30.0 * s * s * (1.0 - s) * (1.0 - s);
@@ -415,12 +419,12 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                       Side side, double base_m) noexcept {
   const LegBuild& leg = model.leg[side];
-  const double higher = state.base.height_m - base_m;
+  const double higher = state.path.base.height_m - base_m;
   // A foot that lands from a height comes down with the hips, and softly: they are lower by all of
   // `early` then.
   double hover = 0.0;
   if (state.foot[side].mode == FootMode::flight)
-    hover = 0.5 * state.base.early_m * smoothstep(0.0, 0.5, flight_progress(state));
+    hover = 0.5 * state.path.base.early_m * smoothstep(0.0, 0.5, flight_progress(state));
   if (higher <= -2.0 * hover) return 0.0;
   const double a = leg.model.thigh_m, b = leg.model.shank_m;
   const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
@@ -437,7 +441,7 @@ namespace {
 
 // --- Flights over the ground between two footholds -----------------------------------------------
 
-constexpr int kProbes = 48;            // along a flight
+constexpr int kProbes = 48;             // along a flight
 constexpr double kRoomAbove_m = 0.025;  // over the ground; metres at the reference leg, as below
 constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
 constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
@@ -583,7 +587,7 @@ double way_back(const Terrain& terrain, const Sole& sole, const Stretch& piece, 
 
 // The climb from lift-off to landing that the spline has to make: 0 where no riser is crossed.
 double climb(const WalkState& state, const FootState& foot) noexcept {
-  return foot.crosses_riser ? state.landing_m.y - height_on(foot.plane, foot.lift_m) : 0.0;
+  return foot.crosses_riser ? state.path.landing_m.y - height_on(foot.plane, foot.lift_m) : 0.0;
 }
 
 // A flight as planned over its ground line.
@@ -603,17 +607,17 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
   Flight flight;
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
-    const double phase = phase_ahead(model, state, u * state.flight_ticks - state.tick);
-    const double share =
-        (state.roll_ticks + u * state.flight_ticks) / (state.roll_ticks + state.flight_ticks);
+    const double phase = phase_ahead(model, state, u * state.clock.flight_ticks - state.clock.tick);
+    const double share = (state.clock.roll_ticks + u * state.clock.flight_ticks) /
+                         (state.clock.roll_ticks + state.clock.flight_ticks);
     const StridePlan plan = stride_plan(model, state, phase, share);
     flight.point[i] = flight_point(model, state, plan, side, u);
     pitch_in_flight(model, state, plan, side, u, flight.point[i]);
     flight.sole[i] = sole_of(model.leg[side], flight.point[i].pose);
-    flight.left[i] = state.landing_m.z - flight.point[i].pose.heel_m.z;
+    flight.left[i] = state.path.landing_m.z - flight.point[i].pose.heel_m.z;
   }
   flight.begin = piece_at(*model.terrain, foot.plane.place_m.z);
-  flight.end = piece_at(*model.terrain, state.landing_m.z);
+  flight.end = piece_at(*model.terrain, state.path.landing_m.z);
   flight.begin_room = kRoomAhead_m * model.size;  // generous: the pitch may still change
   for (const vec3& p : flight.sole.front())
     flight.begin_room = std::min(
@@ -682,8 +686,8 @@ void plan_over(const Tick& tick, const WalkState& state, const FootState& foot,
       if (!flight.stays() && above[i] <= spline_at(room.raise_m, above.back(), u)) continue;
       beside[i] = 2 * i < kProbes ? way_back(terrain, flight.sole[i], flight.begin,
                                              foot.plane.place_m.y, flight.begin_room, size)
-                                  : way_back(terrain, flight.sole[i], flight.end, state.landing_m.y,
-                                             kRoomBeside_m * size, size);
+                                  : way_back(terrain, flight.sole[i], flight.end,
+                                             state.path.landing_m.y, kRoomBeside_m * size, size);
     }
     Wanted away = beside;
     room.shift_m = lead_in(flight, away);
@@ -784,7 +788,7 @@ void plan_down(const Tick& tick, const Flight& flight, FlightRoom& room) noexcep
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   FootState& foot = state.foot[side];
   FlightRoom& room = foot.room;
-  room.planned_for_m = state.landing_m;
+  room.planned_for_m = state.path.landing_m;
   const Flight flight = planned_flight(tick, state, side);
   if (leads_down(tick, flight)) {
     plan_down(tick, flight, room);
@@ -802,7 +806,7 @@ void keep_room(const Tick& tick, WalkState& state, Side side, double u,
                FlightPoint& point) noexcept {
   FootState& foot = state.foot[side];
   FlightRoom& room = foot.room;
-  if (glm::distance(room.planned_for_m, state.landing_m) > kReplan_m * tick.model.size)
+  if (glm::distance(room.planned_for_m, state.path.landing_m) > kReplan_m * tick.model.size)
     plan_room(tick, state, side);
   for (int k = 0; k < kFlightKnots - 1; ++k) {
     const double time_s = kRoomSmoothing_s * tick.model.time_scale;

@@ -321,16 +321,16 @@ Above above_the_hips(const WalkModel& model) {
   double before = 0.0;
   bool was_whole = false;
   straight(model, {}, IkMode::robust, kPaperStick, 7.0, [&](const WalkState& s, const Pose& pose) {
-    const bool is_whole = presence(s) >= 1.0 && s.stage != Stage::idle;
+    const bool is_whole = presence(s) >= 1.0 && s.clock.stage != Stage::idle;
     if (is_whole) {
-      sample_local(model.cycle, s.phase, source);
+      sample_local(model.cycle, s.clock.phase, source);
       for (const int j : upper) {
         found.apart_deg = std::max(found.apart_deg, apart_deg(source.local[j], pose.local[j]));
       }
-      const double move = s.phase - before;
+      const double move = s.clock.phase - before;
       found.back += was_whole && !(move - std::floor(move + 0.5) > 0.0);
     }
-    before = s.phase;
+    before = s.clock.phase;
     was_whole = is_whole;
   });
   return found;
@@ -380,19 +380,20 @@ void run(Simulation& simulation, int ticks, const std::vector<Report>& first) {
 // the first.
 double second_difference(Simulation& simulation, const vec2& raw, int ticks) {
   const WalkState& state = simulation.walkers()[0].state;
-  std::array<LegAngles, 2> last = state.angles_rad, before_last = last;
+  std::array<LegAngles, 2> last = state.legs.angles_rad, before_last = last;
   simulation.step({});
-  before_last = last, last = state.angles_rad;
+  before_last = last, last = state.legs.angles_rad;
   double most = 0.0;
   for (int k = 0; k < ticks; ++k) {
     simulation.step(k == 0 ? std::vector<Report>{paper_report(raw)} : std::vector<Report>{});
     for (const Side side : {kLeftSide, kRightSide}) {
       for (int j = 0; j < kLegDofs; ++j) {
-        const double d = state.angles_rad[side][j] - 2.0 * last[side][j] + before_last[side][j];
+        const double d =
+            state.legs.angles_rad[side][j] - 2.0 * last[side][j] + before_last[side][j];
         most = std::max(most, std::fabs(d) / kDegree);
       }
     }
-    before_last = last, last = state.angles_rad;
+    before_last = last, last = state.legs.angles_rad;
   }
   return most;
 }

@@ -14,11 +14,11 @@ void copy_walker(const Walker& walker, WalkerFrame& frame) noexcept {
   frame.style = walker.values;
   frame.style_index = walker.style;
   frame.overrides = walker.overrides;
-  frame.angles_rad = state.angles_rad;
-  frame.phase = state.phase;
+  frame.angles_rad = state.legs.angles_rad;
+  frame.phase = state.clock.phase;
   frame.presence = presence(state);
   for (const Side side : {kLeftSide, kRightSide}) frame.lift_m[side] = state.foot[side].lift_m;
-  frame.landing_m = state.landing_m;
+  frame.landing_m = state.path.landing_m;
   frame.ik_failures = walker.ik_failures;
 }
 
@@ -75,7 +75,7 @@ void copy_sample(const Simulation& simulation, TickSample& sample) noexcept {
       for (std::size_t j = 0; j < kShownJoints.size(); ++j) {
         // In a sample flexion is positive at every joint; in the model it is negative at the hip
         // and the ankle.
-        const double angle_rad = walkers[i].state.angles_rad[side][kShownJoints[j]];
+        const double angle_rad = walkers[i].state.legs.angles_rad[side][kShownJoints[j]];
         s.joint_rad[side][j] =
             static_cast<float>(kShownJoints[j] == kKneeX ? angle_rad : -angle_rad);
       }

@@ -243,8 +243,8 @@ struct StrideSolver::System {
     }
   }
 
-  // Keeps the pelvis' acceleration along an axis below a bound, rounded; in metres per sample, as if
-  // the samples were evenly spaced in time.
+  // Keeps the pelvis' acceleration along an axis below a bound, rounded; in metres per sample, as
+  // if the samples were evenly spaced in time.
   void add_surge(int sample, int axis, const std::vector<StrideSample>& x,
                  const std::vector<double>& time, double stride_m, double most_m, double soft_m) {
     std::array<double, 3> when, place;

@@ -203,8 +203,7 @@ struct Builder {
         weight = {kHipBack, kHipBack, kHipBack, 1.0, kAnkleBack, kAnkleBack, kAnkleBack};
     }
     // Short steps are quicker, and long ones, too: their speed goes with the square of the ratio.
-    p.duration_s =
-        cycle.duration_s * std::min(std::sqrt(std::max(ratio, kRatioStep)), 1.0 / ratio);
+    p.duration_s = cycle.duration_s * std::min(std::sqrt(std::max(ratio, kRatioStep)), 1.0 / ratio);
     p.strike = cycle.strike;
     p.toe_off = cycle.toe_off;
     const StageClock stages = clock(ratio);
@@ -453,10 +452,12 @@ struct Builder {
     meet_travel(clean, 1.0, at(StrideWish::more_bounce));
     at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k)
-      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, give_way(free), clean, kStiffness[k]), true);
+      at(StrideWish::stiff_hips, k) =
+          keep(stiffened(solver, give_way(free), clean, kStiffness[k]), true);
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k) {
       const StrideProblem& one_leg = kStiffness[k].dof == kHipX ? steady : alone;
-      const StrideResponse one = keep(stiffened(solver, give_way(one_leg), clean, kStiffness[k]), true);
+      const StrideResponse one =
+          keep(stiffened(solver, give_way(one_leg), clean, kStiffness[k]), true);
       at(StrideWish::stiff_left_hip, k) = of_leg(one, kLeftSide);
       at(StrideWish::stiff_right_hip, k) = of_leg(one, kRightSide);
     }

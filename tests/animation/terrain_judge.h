@@ -135,7 +135,7 @@ class TerrainJudge {
   void see_smoothness(const WalkState& state, const Pose& pose) {
     for (int side : {0, 1}) {
       for (int j = 0; j < kLegDofs; ++j) {
-        const double now = state.angles_rad[side][j];
+        const double now = state.legs.angles_rad[side][j];
         if (j == kKneeX) {
           worst.knee_min_deg = std::min(worst.knee_min_deg, now / kDegree);
           worst.knee_max_deg = std::max(worst.knee_max_deg, now / kDegree);
@@ -150,7 +150,7 @@ class TerrainJudge {
       worst.pelvis_mm =
           std::max(worst.pelvis_mm, 1e3 * glm::length(pose.root_m - 2.0 * root_[0] + root_[1]));
     }
-    angles_ = {state.angles_rad, angles_[0]};
+    angles_ = {state.legs.angles_rad, angles_[0]};
     root_ = {pose.root_m, root_[0]};
   }
 

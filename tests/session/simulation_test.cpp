@@ -291,8 +291,8 @@ TEST(Simulation, AResetRestoresTheStart) {
   step(s, {made_command("style 1 even"), made_report(0x60, 0x00), made_command("reset")}, 600);
   for (std::size_t i = 0; i < 3; ++i) {
     const Walker &w = s.walkers()[i], &f = fresh.walkers()[i];
-    EXPECT_EQ(w.state.hips_m, f.state.hips_m) << i;
-    EXPECT_EQ(w.state.heading_rad, f.state.heading_rad) << i;
+    EXPECT_EQ(w.state.path.hips_m, f.state.path.hips_m) << i;
+    EXPECT_EQ(w.state.path.heading_rad, f.state.path.heading_rad) << i;
     for (int j = 0; j < w.pose.joint_count; ++j) ASSERT_EQ(w.pose.local[j], f.pose.local[j]);
     EXPECT_EQ(w.overrides.is_set, GaitOverrides().is_set);
     EXPECT_TRUE(w.values == s.styles()[w.style]);
@@ -441,8 +441,8 @@ SimulationConfig zoned(int walkers = 1) {
 
 void walk_to(Simulation& s, double z_m) {
   s.take_report(made_report(0x80, 0x00));
-  for (int k = 0; k < 10000 && s.walkers()[0].state.hips_m.z < z_m; ++k) s.step({});
-  EXPECT_GE(s.walkers()[0].state.hips_m.z, z_m);
+  for (int k = 0; k < 10000 && s.walkers()[0].state.path.hips_m.z < z_m; ++k) s.step({});
+  EXPECT_GE(s.walkers()[0].state.path.hips_m.z, z_m);
 }
 std::string style_of(const Simulation& s, int walker = 0) {
   return s.styles()[s.walkers()[walker].style].name;
@@ -587,7 +587,7 @@ TEST(Builds, ChangeTheKneeAngle) {
     std::vector<double> knee_rad;
     for (int k = 0; k < 720; ++k) {
       s.step({});
-      knee_rad.push_back(s.walkers()[0].state.angles_rad[kLeftSide][kKneeX]);
+      knee_rad.push_back(s.walkers()[0].state.legs.angles_rad[kLeftSide][kKneeX]);
     }
     EXPECT_EQ(s.walkers()[0].ik_failures, 0);
     return knee_rad;

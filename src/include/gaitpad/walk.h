@@ -71,7 +71,7 @@ struct FootPose {
   double yaw_rad = 0.0;          // about the vertical; 0 as in the standing pose at heading 0
   double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
   double twist_rad = 0.0, roll_rad = 0.0;  // as in StrideFoot
-  double toe_rad = 0.0;          // of the toe joint, toe end down positive
+  double toe_rad = 0.0;                    // of the toe joint, toe end down positive
 };
 
 // What keeps a flying foot off the ground between its two footholds: two uniform cubic B-splines
@@ -96,31 +96,31 @@ struct FootState {
   // What the heel's place at lift-off differs by from the tables', and its slope per flight.
   vec3 gap_m{0.0}, gap_slope_m{0.0};
   double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // yaw at lift-off and its slope per flight
-  FootPlane plane;             // that it stands on or stood on last
-  double base_m = 0.0;         // height of the ground that the pose is planned over
-  double rise_m = 0.0;         // how far the foot rises with the hips
+  FootPlane plane;                                 // that it stands on or stood on last
+  double base_m = 0.0;                  // height of the ground that the pose is planned over
+  double rise_m = 0.0;                  // how far the foot rises with the hips
   std::array<double, 2> last_rise_m{};  // one and two ticks ago
-  bool crosses_riser = false;  // in the running flight
+  bool crosses_riser = false;           // in the running flight
   FlightRoom room;
 };
 
 // What terrain makes of a step. On flat ground all of it keeps these values.
 struct Foothold {
-  vec3 wanted_m{0.0};        // the heel's place if the ground were level
-  double yaw_rad = 0.0;      // of the foot
-  Stretch piece;             // piece of ground for the landing, settled when the flight begins
-  double share = 1.0;        // of the wanted length that a slope leaves
-  double next_rise = 0.0;    // how far up or down the step after this one leads, in legs
-  bool fits = true;          // the sole does not overhang an edge
+  vec3 wanted_m{0.0};      // the heel's place if the ground were level
+  double yaw_rad = 0.0;    // of the foot
+  Stretch piece;           // piece of ground for the landing, settled when the flight begins
+  double share = 1.0;      // of the wanted length that a slope leaves
+  double next_rise = 0.0;  // how far up or down the step after this one leads, in legs
+  bool fits = true;        // the sole does not overhang an edge
 };
 
 // The height of the ground that the hips go over. On flat ground all of it stays 0.
 struct HipsGround {
   double height_m = 0.0, per_tick_m = 0.0, per_tick2_m = 0.0;  // its rate and acceleration
-  double level_m = 0.0;  // where it settles over the standing foot,
-  SmoothFade<double> off_m;  // by how much it is still off,
-  int settle_ticks = 0;      // and how long after the strike it is not any more
-  double drop_m = 0.0;       // how far it then sinks to the next landing,
+  double level_m = 0.0;                 // where it settles over the standing foot,
+  SmoothFade<double> off_m;             // by how much it is still off,
+  int settle_ticks = 0;                 // and how long after the strike it is not any more
+  double drop_m = 0.0;                  // how far it then sinks to the next landing,
   double early_m = 0.0, yield_m = 0.0;  // and how far below that landing, at it and after it
 };
 
@@ -128,8 +128,8 @@ struct HipsGround {
 struct UpperBodyState {
   UpperBodyParams goal, now;  // asked for; smoothed and in force
   std::array<double, sizeof(UpperBodyParams) / sizeof(double)>
-      per_s{};                            // rates of `now`, per second
-  int unsettled_ticks = 0;                // until `now` is `goal`
+      per_s{};              // rates of `now`, per second
+  int unsettled_ticks = 0;  // until `now` is `goal`
   // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
   double forward_rad = 0.0, left_rad = 0.0;
   std::array<double, 2> out_rad{};
@@ -138,11 +138,9 @@ struct UpperBodyState {
   std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};
 };
 
-// All that a walk remembers. Plain, trivially copyable.
-struct WalkState {
-  WalkFrame frame;
-  // Clock, in ticks. A step is a roll and the flight after it; phases count from the right foot's
-  // strike.
+// Where the walk is in its step, in ticks. A step is a roll and the flight after it; phases count
+// from the right foot's strike.
+struct StepClock {
   Stage stage = Stage::idle;
   Side swing = kLeftSide;
   int tick = 0, stage_ticks = 1;  // in the stage
@@ -155,38 +153,56 @@ struct WalkState {
   double phase = 0.0, phase_rate = 0.0;  // per tick
   double stage_phase = 0.0;              // where the running stage began
   double end_rate = 0.0;                 // phase_rate at its end
-  double ratio_behind = 0.0;             // of the step before: the stride ratio at the last strike
-  double step_ratio = 0.0;               // of the running step,
-  SmoothFade<double> off_ratio;          // and how far the tables' is off it
-  // Smoothed parameters.
+};
+
+// How it walks: the parameters, smoothed, and the stride ratios that follow from them.
+struct GaitState {
   std::array<Damped<double>, 2> length_m, flight_height;
   std::array<double, 2> time_s{};
-  double asked_ratio = 0.0;  // of the strides, by the parameters
+  double asked_ratio = 0.0;    // of the strides, by the parameters
   Damped<double> step_time_s;  // mean of both feet
   Damped<double> turn_goal,    // what turn_rate follows: a landing is planned with it
-      turn_rate, amplitude, bounce, sway, pace;  // pace: step length over the data's
+      turn_rate, amplitude, bounce, sway;
+  Damped<double> pace, settled_pace;      // step length over the data's; the same, slower
+  Damped<double> ground_share{1.0, 0.0};  // of the wanted lengths that the ground leaves
   std::array<std::array<Damped<double>, kLegDofs>, 2> weight;
-  StrideWishes granted{};  // what these ask of the stride
-  // Path.
+  StrideWishes granted{};        // what the style asks of the stride
+  double ratio_behind = 0.0;     // of the step before: the stride ratio at the last strike
+  double step_ratio = 0.0;       // of the running step,
+  SmoothFade<double> off_ratio;  // and how far the tables' is off it
+};
+
+// Where it goes: landing places, and the hips on their way there.
+struct PathState {
   double heading_rad = 0.0;
   vec3 hips_m{0.0}, hips_velocity_m_s{0.0};  // on the ground, without the data's oscillations
   // What the hips' place differs by from the tables' path to the landing; it fades in the step.
-  SmoothFade<vec3> off_path_m{vec3(0.0), vec3(0.0), vec3(0.0)};
+  SmoothFade<vec3> off_m{vec3(0.0), vec3(0.0), vec3(0.0)};
   // What that path led to a tick ago.
-  vec3 path_landing_m{0.0};
-  double path_heading_rad = 0.0, path_ratio = 0.0;
+  vec3 last_landing_m{0.0};
+  double last_heading_rad = 0.0, last_ratio = 0.0;
   vec3 landing_m{0.0};
   double landing_heading_rad = 0.0;
   FootPlane landing_plane;
-  Foothold landing;
-  Damped<double> settled_pace;  // follows `pace` slowly
+  Foothold foothold;
+  HipsGround base;
   Damped<double> lean_rad;        // of the whole body into a turn, to the left positive
   Damped<double> slope_lean_rad;  // of the trunk into a slope or stair, forwards positive
-  HipsGround base;
-  Damped<double> ground_share{1.0, 0.0};         // of the wanted lengths that the ground leaves
-  std::array<FootState, 2> foot;
-  // The tables' angles, with what the style changes, and the pose's.
+};
+
+// The legs' angles: the tables', with what the style changes, and the pose's.
+struct LegState {
   std::array<LegAngles, 2> data_rad{}, angles_rad{};
+};
+
+// All that a walk remembers. Plain, trivially copyable.
+struct WalkState {
+  WalkFrame frame;
+  StepClock clock;
+  GaitState gait;
+  PathState path;
+  std::array<FootState, 2> foot;
+  LegState legs;
   UpperBodyState body;
 };
 

@@ -16,7 +16,8 @@ constexpr int kOwn = 5;  // the table of the data's own stride
 // Iterations. After so many, angles are within 2e-2 rad of where they end in most clips, mostly
 // where a knee is nearly straight; more iterations make no walk smoother or nearer to its data.
 constexpr int kFirstSolve = 7, kNextSolve = 3;
-constexpr int kNextBack = 4;  // the change is larger
+constexpr int kLongSolve = 6;  // of strides longer than the data's: they stretch the legs
+constexpr int kNextBack = 4;   // the change is larger
 // How much of the growth of the change from one stride to the next goes on to the one after: all of
 // it overshoots where steps get short.
 constexpr double kGoesOn = 0.5;
@@ -202,8 +203,7 @@ struct Builder {
       for (LegAngles& weight : p.leg_weight)
         weight = {kHipBack, kHipBack, kHipBack, 1.0, kAnkleBack, kAnkleBack, kAnkleBack};
     }
-    // Short steps are quicker, and long ones, too: their speed goes with the square of the ratio.
-    p.duration_s = cycle.duration_s * std::min(std::sqrt(std::max(ratio, kRatioStep)), 1.0 / ratio);
+    p.duration_s = cycle.duration_s * std::sqrt(std::clamp(ratio, kRatioStep, 1.0));
     p.strike = cycle.strike;
     p.toe_off = cycle.toe_off;
     const StageClock stages = clock(ratio);
@@ -516,8 +516,8 @@ struct Builder {
       const bool is_known = beyond >= 0 && beyond < tables && !all[beyond].stride.empty();
       StrideProblem p = problem(k * kRatioStep);
       std::vector<StrideSample> start = start_of(p, all[from], is_known ? &all[beyond] : nullptr);
-      std::vector<StrideSample> stride =
-          solver.solve(p, std::move(start), forwards ? kNextSolve : kNextBack);
+      const int steps = !forwards ? kNextBack : k > kOwn ? kLongSolve : kNextSolve;
+      std::vector<StrideSample> stride = solver.solve(p, std::move(start), steps);
       return keep(k, std::move(p), std::move(stride));
     };
     for (int k = first - 1; k >= 0; --k) {

@@ -50,7 +50,7 @@ PUBLIC = {
 # What further headers of a vendor single files may include, and nobody else.
 DRIVER_VENDORS = {
     "src/files/height_picture.cpp": ["png.h"],
-    "src/strides/clean_stride.cpp": ["Eigen/"],
+    "src/strides/stride_solver.cpp": ["Eigen/"],
     "drivers/hidraw_driver.cpp": ["hidapi", "linux/"],
     "drivers/usb_driver.cpp": ["libusb"],
     "drivers/usb_transfers.h": ["libusb"],

@@ -6,7 +6,7 @@
 #include "gaitpad/clean_strides.h"
 #include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
-#include "strides/clean_stride.h"
+#include "strides/stride_solver.h"
 #include "strides/solver_input.h"
 
 namespace gaitpad {

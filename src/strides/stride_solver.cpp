@@ -1,7 +1,7 @@
 // The same numbers on every machine: Eigen computes one by one, in the order that is written.
 #define EIGEN_DONT_VECTORIZE
 #define EIGEN_DONT_PARALLELIZE
-#include "strides/clean_stride.h"
+#include "strides/stride_solver.h"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>

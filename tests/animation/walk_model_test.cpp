@@ -101,8 +101,8 @@ TEST(WalkModel, StandsFlatWithItsHeelsOnTheFloorAtEveryLegRatio) {
   }
 }
 
-// Joints keep their angles on legs of any length if hips and feet are where the legs want them: from
-// hip to ankle all is as long as the leg.
+// Joints keep their angles on legs of any length if hips and feet are where the legs want them:
+// from hip to ankle all is as long as the leg.
 TEST(WalkModel, LegsOfAnyLengthSpanAsMuchOfTheirLength) {
   const WalkModel plain = model_of(1.0);
   const auto span = [](const WalkModel& model, double phase, Side side) {
@@ -112,9 +112,8 @@ TEST(WalkModel, LegsOfAnyLengthSpanAsMuchOfTheirLength) {
         from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.strides.stand_roll_rad));
     const LegBuild& leg = model.leg[side];
     const StrideFoot& foot = cell.foot[side];
-    const quat turned =
-        rotation_about(leg.side, foot.pitch_rad) *
-        from_rotation_vector(kUp * foot.twist_rad + leg.forward * foot.roll_rad);
+    const quat turned = rotation_about(leg.side, foot.pitch_rad) *
+                        from_rotation_vector(kUp * foot.twist_rad + leg.forward * foot.roll_rad);
     const vec3 hip = vec3(0.0, model.stand_m, 0.0) + cell.pelvis_m + pelvis * leg.model.hip_m;
     return glm::distance(hip, foot.heel_m - turned * leg.model.heel_m) / leg.model.length_m();
   };
@@ -122,7 +121,8 @@ TEST(WalkModel, LegsOfAnyLengthSpanAsMuchOfTheirLength) {
     const WalkModel model = model_of(ratio);
     for (double phase = 0.0; phase < 1.0; phase += 0.05) {
       for (const Side side : {kLeftSide, kRightSide})
-        EXPECT_NEAR(span(model, phase, side), span(plain, phase, side), 5e-4) << ratio << ' ' << phase;
+        EXPECT_NEAR(span(model, phase, side), span(plain, phase, side), 5e-4)
+            << ratio << ' ' << phase;
     }
   }
 }

@@ -255,8 +255,7 @@ double most_beyond_m(const WalkModel& model, double y, double until_m) {
     most = std::max(most, farthest - heel);
     farthest = -1e9;
   }
-  expect_sound(hiker.worst(), "stick " + std::to_string(y),
-               model.leg_length_m / kReferenceLeg_m);
+  expect_sound(hiker.worst(), "stick " + std::to_string(y), model.leg_length_m / kReferenceLeg_m);
   return most;
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <optional>
 #include <string>
 
@@ -511,6 +512,15 @@ struct Builder {
     StrideProblem own = problem(first * kRatioStep);
     std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
     if (!keep(first, std::move(own), std::move(clean))) return false;
+    // What styles ask for and the other strides do not need each other: side by side, where there are
+    // two cores.
+    std::future<bool> responded;
+    if (forwards) {
+      responded = std::async([this, &of = all[first]] {
+        StrideSolver solver_of_styles;
+        return respond(solver_of_styles, of.problem, of.stride);
+      });
+    }
     const auto go_on = [&](int k, int from) {
       const int beyond = 2 * from - k;
       const bool is_known = beyond >= 0 && beyond < tables && !all[beyond].stride.empty();
@@ -526,7 +536,7 @@ struct Builder {
     for (int k = first + 1; k < tables; ++k) {
       if (!go_on(k, k - 1)) return false;
     }
-    return !forwards || respond(solver, all[first].problem, all[first].stride);
+    return !forwards || responded.get();
   }
 };
 
@@ -595,7 +605,8 @@ Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   back.family.stand_rad = builder.family.stand_rad;
   back.family.stand_m = builder.family.stand_m;
   back.family.stand_roll_rad = builder.family.stand_roll_rad;
-  const bool solved = builder.solve() && back.solve();
+  std::future<bool> back_solved = std::async([&back] { return back.solve(); });
+  const bool forwards_solved = builder.solve(), solved = back_solved.get() && forwards_solved;
   builder.family.back = std::move(back.family.table);
   if (!solved || !is_finite(builder.family))
     return Error{cycle.name + ": no stride keeps its feet where they stand"};

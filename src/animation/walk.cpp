@@ -302,9 +302,13 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
 // Step times, and how long double support takes, follow the parameters at the next step.
 void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state) noexcept {
   for (int side : {0, 1}) state.gait.time_s[side] = params.stride[side].time_s;
-  // Of the longer step: a limp, which shortens one, does not change the other foot's time.
-  state.gait.asked_ratio =
-      std::max(params.stride[0].length_m, params.stride[1].length_m) / model.source_step_m;
+  // Of the foot whose step is the longer one beside its own: a limp, which shortens one, does not
+  // change the other foot's time.
+  state.gait.asked_ratio = 0.0;
+  for (int side : {0, 1}) {
+    const double own_m = model.own_step_m[params.backward ? 1 - side : side];
+    state.gait.asked_ratio = std::max(state.gait.asked_ratio, params.stride[side].length_m / own_m);
+  }
 }
 
 // Smooths how far the trunk leans into the slope or stair that the running step leads over.

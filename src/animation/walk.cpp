@@ -572,11 +572,10 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   double squares = 0.0;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
-    const double a = leg.model.thigh_m, b = leg.model.shank_m;
     // The sound leg goes nearly as if the other were sound, too: then the hips are as high.
     const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX] -
                         kUnseenInjury * plan.injury.leg_rad[side][kKneeX];
-    const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
+    const double known = span_m(leg.model, knee);
     const FootState& foot = state.foot[side];
     FootPose pose = foot.pose;
     if (plan.injury.pitch_rad[side] != 0.0)

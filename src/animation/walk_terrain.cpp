@@ -22,6 +22,7 @@
 // the foot ahead instead, and the first one is drawn taut over the edges, so that the foot sinks
 // early.
 #include "animation/walk_parts.h"
+#include "motion/leg_pose.h"
 
 namespace gaitpad {
 namespace {
@@ -426,10 +427,10 @@ double rise_with_hips(const WalkModel& model, const WalkState& state, const Stri
   if (state.foot[side].mode == FootMode::flight)
     hover = 0.5 * state.path.base.early_m * smoothstep(0.0, 0.5, flight_progress(state));
   if (higher <= -2.0 * hover) return 0.0;
-  const double a = leg.model.thigh_m, b = leg.model.shank_m;
   const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
-  const double known = std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee).cos);
-  const double room = std::max(0.0, kStretch * (a + b) - known), soft = kSoftStretch_m * model.size;
+  const double known = span_m(leg.model, knee);
+  const double room = std::max(0.0, kStretch * leg.model.length_m() - known),
+               soft = kSoftStretch_m * model.size;
   const double up = std::max(0.0, higher);
   const double rise = soft_positive(higher + hover - room, hover + up * soft / (up + soft));
   // No further than a foot on its toe lifts its ankle.

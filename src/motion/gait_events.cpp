@@ -473,7 +473,6 @@ const FootSwing* middle_swing(const std::vector<FootSwing>& swings, Side side, d
   return best;
 }
 
-double fraction(double phase) { return phase - std::floor(phase); }
 
 }  // namespace
 

@@ -20,13 +20,10 @@ LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis
   return p;
 }
 
-namespace {
-// From hip to ankle with a knee that is bent so far.
 double span_m(const LegModel& leg, double knee_rad) noexcept {
   const double a = leg.thigh_m, b = leg.shank_m;
   return std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee_rad).cos);
 }
-}  // namespace
 
 Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexcept {
   constexpr double kMostRoll = 10.0 * kDegree;

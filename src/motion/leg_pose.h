@@ -23,6 +23,9 @@ struct AnglesXzy {
 quat rotation_xzy(const AnglesXzy& a) noexcept;
 AnglesXzy angles_xzy(const quat& q) noexcept;
 
+// From hip to ankle, with a knee that is bent so far.
+double span_m(const LegModel& leg, double knee_rad) noexcept;
+
 // Both legs standing upright with flat feet. Where one is longer, the pelvis rolls as a person's
 // does; what that leaves bends the longer leg.
 struct Stand {

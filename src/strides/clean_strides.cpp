@@ -1,14 +1,15 @@
+#include "gaitpad/clean_strides.h"
+
 #include <algorithm>
 #include <cmath>
 #include <future>
 #include <optional>
 #include <string>
 
-#include "gaitpad/clean_strides.h"
 #include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
-#include "strides/stride_solver.h"
 #include "strides/solver_input.h"
+#include "strides/stride_solver.h"
 
 namespace gaitpad {
 namespace {
@@ -53,8 +54,6 @@ constexpr double kBounceSmooth = 10.0;
 constexpr double kAskedBounce = 1.3;  // of this much more, the legs allow for about 1
 constexpr double kBounceRoom = 0.35;  // of the travel: the hips sink by so much more
 constexpr int kResponseSolve = 3;     // iterations from the clean stride
-
-double fraction(double phase) { return phase - std::floor(phase); }
 
 // The cycle run back: what it lifts lands. Its phases count from where the data lift the right
 // foot, and its stages have the shares of the cycle's.
@@ -512,8 +511,8 @@ struct Builder {
     StrideProblem own = problem(first * kRatioStep);
     std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
     if (!keep(first, std::move(own), std::move(clean))) return false;
-    // What styles ask for and the other strides do not need each other: side by side, where there are
-    // two cores.
+    // What styles ask for and the other strides do not need each other: side by side, where there
+    // are two cores.
     std::future<bool> responded;
     if (forwards) {
       responded = std::async([this, &of = all[first]] {

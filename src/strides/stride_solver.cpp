@@ -37,7 +37,6 @@ constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.25;        // radians or metres an iteration
 
 int leg_unknown(int side) { return kPelvis + side * kLegDofs; }
-double fraction(double phase) { return phase - std::floor(phase); }
 
 // The unknown that stands for another one in the walker's mirror image, and the factor to it.
 struct Mirrored {
@@ -207,6 +206,15 @@ struct StrideSolver::System {
     for (std::size_t p = first; p < row.size(); ++p) {
       gradient[where[p]] += weight * row[p] * error_m;
       for (std::size_t q = first; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
+    }
+  }
+
+  // Adds weight * |place - goal|^2.
+  void add_place(int sample, int side, const PointRows& point, const vec3& goal_m, double weight) {
+    for (int a = 0; a < 3; ++a) {
+      vec3 direction(0.0);
+      direction[a] = 1.0;
+      add_row(sample, side, point, direction, point.place_m[a] - goal_m[a], weight);
     }
   }
 
@@ -427,28 +435,15 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const bool rolls = own <= roll + sample,
                  supports = own >= roll - sample && own <= support + sample;
       if (rolls) {
-        for (int a = 0; a < 3; ++a) {
-          vec3 d(0.0);
-          d[a] = 1.0;
-          s.add_row(i, side, heel, d, heel.place_m[a] - heel_goal[a], kPlanted);
-        }
+        s.add_place(i, side, heel, heel_goal, kPlanted);
       } else {
         s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
       }
       if (!problem.flying_heel_m.empty() && !rolls && own > support - sample) {
-        for (int a = 0; a < 3; ++a) {
-          vec3 d(0.0);
-          d[a] = 1.0;
-          s.add_row(i, side, heel, d, heel.place_m[a] - problem.flying_heel_m[i][side][a],
-                    problem.heel_held);
-        }
+        s.add_place(i, side, heel, problem.flying_heel_m[i][side], problem.heel_held);
       }
       if (supports) {
-        for (int a = 0; a < 3; ++a) {
-          vec3 d(0.0);
-          d[a] = 1.0;
-          s.add_row(i, side, toe, d, toe.place_m[a] - toe_goal[a], kPlanted);
-        }
+        s.add_place(i, side, toe, toe_goal, kPlanted);
       } else {
         const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
         const double least =

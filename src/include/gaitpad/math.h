@@ -72,5 +72,7 @@ inline double smootherstep(double x) noexcept {
   return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }
 inline double mix(double a, double b, double t) noexcept { return a + (b - a) * t; }
+// What is left of whole turns, 0 .. 1.
+inline double fraction(double turns) noexcept { return turns - std::floor(turns); }
 
 }  // namespace gaitpad

@@ -27,6 +27,7 @@ constexpr double kInPlace_m = 0.1;  // a flight shorter than this climbs by time
 constexpr double kLiftFade = 0.5;   // of the flight: the lift-off's own motion has faded
 constexpr double kPitchFade = 0.2;
 constexpr double kHeelStays = 0.85;  // of the flight: from here on a style leaves its end alone
+constexpr double kEdgeUp = 0.25, kEdgeDown = 0.9;  // of the flight: between them soles clear the floor
 constexpr double kLiftGround = 0.5;  // of the flight: until then the plane left bounds the toe
 constexpr double kRollEnd = 0.9;     // of the roll: the toe is down
 // Of the flight: from kLiftGrown until kLiftFalls all of a style's factor on its height acts.
@@ -225,17 +226,16 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const double fade = foot.pitch_fade.at(u * state.clock.stage_ticks);
   const double pitch = table_pitch(state, plan, side) + fade;
-  // Backwards a foot rolls onto its edge before it lands: then this edge stays off the floor.
-  const double edge =
-      state.clock.backward ? smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.9, 1.0, u)) : 0.0;
+  // A low foot that rolls onto its edge keeps this edge off the floor.
+  point.pose.pitch_rad = pitch;
+  const vec3 across = foot_rotation(leg, point.pose) * leg.side;
+  const double edge_m = leg.half_width_m * std::abs(glm::dot(across, point.pose.tilt * kUp)) *
+                        smoothstep(0.0, kEdgeUp, u) * (1.0 - smoothstep(kEdgeDown, 1.0, u));
   const double limit =
-      highest_pitch(leg, height,
-                    edge * leg.half_width_m * std::abs(point.pose.roll_rad) - kMostSink_m) +
-      rolled_elevation(leg, point.pose);
-  set_pitch(
-      leg,
-      soft_min(pitch, limit, kSoftPitch + kWiderPitch * std::abs(fade) * smoothstep(0.0, 0.1, u)),
-      point.pose, FootMode::flight);
+      highest_pitch(leg, height, edge_m - kMostSink_m) + rolled_elevation(leg, point.pose);
+  const double soft = kSoftPitch + kWiderPitch * std::abs(fade) * smoothstep(0.0, 0.1, u) +
+                      edge_m / leg.foot_m;
+  set_pitch(leg, soft_min(pitch, limit, soft), point.pose, FootMode::flight);
 }
 
 void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept {

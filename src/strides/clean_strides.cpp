@@ -19,7 +19,7 @@ constexpr int kOwn = 5;  // the table of the data's own stride
 // where a knee is nearly straight; more iterations make no walk smoother or nearer to its data.
 constexpr int kFirstSolve = 7, kNextSolve = 3;
 constexpr int kLongSolve = 6;  // of strides longer than the data's: they stretch the legs
-constexpr int kNextBack = 4;   // the change is larger
+constexpr int kNextBack = 5;   // the change is larger
 // How much of the growth of the change from one stride to the next goes on to the one after: all of
 // it overshoots where steps get short.
 constexpr double kGoesOn = 0.5;
@@ -41,8 +41,9 @@ constexpr std::array<Stiffness, 3> kStiffness = {
     {{kHipX, 0.28, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
 // What a stiff hip does not move, knee and ankle do: their curves leave their means by this.
 constexpr double kMoreKnee = 0.45;
-// A stiff leg's heel may fly a little beside its way: one degree costs as much as two millimetres.
-constexpr double kStiffHeelHeld = 1e4;
+// A stiff leg's heel may fly a little beside its way: one degree costs as much as a millimetre where
+// both legs are stiff, as two where one is and the pelvis cannot give way.
+constexpr double kStiffHeelsHeld = 3e4, kStiffHeelHeld = 1e4;
 // A leg's hip is stiffened alone while the pelvis moves by about a millimetre: with none, a
 // standing leg could not change at all.
 constexpr double kSteadyPelvis = 1e4;
@@ -52,7 +53,7 @@ constexpr double kSmoothLeg = 2.0;  // a leg alone changes more smoothly
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
 constexpr double kBounceSmooth = 10.0;
 constexpr double kAskedBounce = 1.3;  // of this much more, the legs allow for about 1
-constexpr double kBounceRoom = 0.35;  // of the travel: the hips sink by so much more
+constexpr double kBounceRoom = 0.4;  // of the travel: the hips sink by so much more
 constexpr int kResponseSolve = 3;     // iterations from the clean stride
 
 // The cycle run back: what it lifts lands. Its phases count from where the data lift the right
@@ -435,11 +436,8 @@ struct Builder {
       return changed.empty() ? StrideResponse{} : response_of(clean, changed, heels_give_way);
     };
     const StrideProblem free = held(data, clean);
-    // A stiff leg does not swing its foot where a supple one does.
-    const auto give_way = [](StrideProblem p) {
-      p.heel_held = kStiffHeelHeld;
-      return p;
-    };
+    StrideProblem stiff = free;
+    stiff.heel_held = kStiffHeelsHeld;
     // The sound leg goes as if the other were sound, too: the pelvis does not give way.
     StrideProblem steady = free;
     for (LegAngles& weight : steady.leg_weight) weight.fill(kSmoothLeg);
@@ -452,12 +450,11 @@ struct Builder {
     meet_travel(clean, 1.0, at(StrideWish::more_bounce));
     at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k)
-      at(StrideWish::stiff_hips, k) =
-          keep(stiffened(solver, give_way(free), clean, kStiffness[k]), true);
+      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, stiff, clean, kStiffness[k]), true);
     for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k) {
-      const StrideProblem& one_leg = kStiffness[k].dof == kHipX ? steady : alone;
-      const StrideResponse one =
-          keep(stiffened(solver, give_way(one_leg), clean, kStiffness[k]), true);
+      StrideProblem one_leg = kStiffness[k].dof == kHipX ? steady : alone;
+      one_leg.heel_held = kStiffHeelHeld;
+      const StrideResponse one = keep(stiffened(solver, one_leg, clean, kStiffness[k]), true);
       at(StrideWish::stiff_left_hip, k) = of_leg(one, kLeftSide);
       at(StrideWish::stiff_right_hip, k) = of_leg(one, kRightSide);
     }

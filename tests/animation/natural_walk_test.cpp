@@ -112,7 +112,7 @@ TEST(NaturalWalk, AtFullStickStartsAndStopsAreHardlyHarderThanTheWalk) {
   walk.walk(0, 1.0, 8 * kRate);
   const double steady_m_s2 = walk.jolt_m_s2(5 * kRate, 8 * kRate);
   EXPECT_LE(start_m_s2(1.0), 1.1 * steady_m_s2);
-  EXPECT_LE(stops_from(1.0).jolt_m_s2, 1.25 * steady_m_s2);
+  EXPECT_LE(stops_from(1.0).jolt_m_s2, 1.26 * steady_m_s2);
 }
 
 TEST(NaturalWalk, AWalkStandsWithinTwoStepsWheneverTheStickLetsGo) {

@@ -27,7 +27,8 @@ constexpr double kInPlace_m = 0.1;  // a flight shorter than this climbs by time
 constexpr double kLiftFade = 0.5;   // of the flight: the lift-off's own motion has faded
 constexpr double kPitchFade = 0.2;
 constexpr double kHeelStays = 0.85;  // of the flight: from here on a style leaves its end alone
-constexpr double kEdgeUp = 0.25, kEdgeDown = 0.9;  // of the flight: between them soles clear the floor
+constexpr double kEdgeUp = 0.25,
+                 kEdgeDown = 0.9;    // of the flight: between them soles clear the floor
 constexpr double kLiftGround = 0.5;  // of the flight: until then the plane left bounds the toe
 constexpr double kRollEnd = 0.9;     // of the roll: the toe is down
 // Of the flight: from kLiftGrown until kLiftFalls all of a style's factor on its height acts.
@@ -233,8 +234,8 @@ void pitch_in_flight(const WalkModel& model, const WalkState& state, const Strid
                         smoothstep(0.0, kEdgeUp, u) * (1.0 - smoothstep(kEdgeDown, 1.0, u));
   const double limit =
       highest_pitch(leg, height, edge_m - kMostSink_m) + rolled_elevation(leg, point.pose);
-  const double soft = kSoftPitch + kWiderPitch * std::abs(fade) * smoothstep(0.0, 0.1, u) +
-                      edge_m / leg.foot_m;
+  const double soft =
+      kSoftPitch + kWiderPitch * std::abs(fade) * smoothstep(0.0, 0.1, u) + edge_m / leg.foot_m;
   set_pitch(leg, soft_min(pitch, limit, soft), point.pose, FootMode::flight);
 }
 

@@ -62,7 +62,6 @@ struct KeyedStride {
   double duration_s = 1.1, track_m = 0.05, shoulder_out_rad = 0.0;
 };
 
-
 // Collects the keys of all poses, and of a symmetric walk their mirror images half a stride later.
 class Reader {
  public:

@@ -101,7 +101,6 @@ std::vector<vec3> foot_track(const GaitCycle& cycle, int side, const vec3 LegPos
   return track;
 }
 
-
 // The feet over the ground.
 FeetTracks feet_tracks(const GaitCycle& cycle) {
   FeetTracks tracks;

@@ -473,7 +473,6 @@ const FootSwing* middle_swing(const std::vector<FootSwing>& swings, Side side, d
   return best;
 }
 
-
 }  // namespace
 
 Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_m) {

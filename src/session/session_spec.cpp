@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
-#include "files/stride_cache.h"
 
 namespace gaitpad {
 namespace {

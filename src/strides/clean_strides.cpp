@@ -41,8 +41,8 @@ constexpr std::array<Stiffness, 3> kStiffness = {
     {{kHipX, 0.28, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
 // What a stiff hip does not move, knee and ankle do: their curves leave their means by this.
 constexpr double kMoreKnee = 0.45;
-// A stiff leg's heel may fly a little beside its way: one degree costs as much as a millimetre where
-// both legs are stiff, as two where one is and the pelvis cannot give way.
+// A stiff leg's heel may fly a little beside its way: one degree costs as much as a millimetre
+// where both legs are stiff, as two where one is and the pelvis cannot give way.
 constexpr double kStiffHeelsHeld = 3e4, kStiffHeelHeld = 1e4;
 // A leg's hip is stiffened alone while the pelvis moves by about a millimetre: with none, a
 // standing leg could not change at all.
@@ -53,7 +53,7 @@ constexpr double kSmoothLeg = 2.0;  // a leg alone changes more smoothly
 const vec3 kBounceWeight(1e3, 1e4, 1e3);
 constexpr double kBounceSmooth = 10.0;
 constexpr double kAskedBounce = 1.3;  // of this much more, the legs allow for about 1
-constexpr double kBounceRoom = 0.4;  // of the travel: the hips sink by so much more
+constexpr double kBounceRoom = 0.4;   // of the travel: the hips sink by so much more
 constexpr int kResponseSolve = 3;     // iterations from the clean stride
 
 // The cycle run back: what it lifts lands. Its phases count from where the data lift the right

@@ -444,10 +444,10 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
         // A foot that twists and rolls may not push an edge of its heel into the floor.
         if (problem.flying_heel_m.empty())
-        for (double half : {-kHalfHeel, kHalfHeel}) {
-          const vec3 edge_m = leg.heel_m + across_foot * (half * leg.length_m());
-          s.add_floor(i, side, point_rows(frames, edge_m), -kMostSink_m, kSoftEdge_m);
-        }
+          for (double half : {-kHalfHeel, kHalfHeel}) {
+            const vec3 edge_m = leg.heel_m + across_foot * (half * leg.length_m());
+            s.add_floor(i, side, point_rows(frames, edge_m), -kMostSink_m, kSoftEdge_m);
+          }
       }
       if (!problem.flying_heel_m.empty() && !rolls && own > support - sample) {
         s.add_place(i, side, heel, problem.flying_heel_m[i][side], problem.heel_held);

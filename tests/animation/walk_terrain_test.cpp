@@ -73,7 +73,8 @@ void expect_sound(const TerrainWorst& worst, const std::string& what, double siz
                   double most_jump_deg = 1.0) {
   EXPECT_LT(worst.height_mm, 5.0) << what;
   EXPECT_LT(worst.slide_mm, 1.0) << what;
-  EXPECT_LT(worst.sunk_mm, kMostSunk_mm * std::max(1.0, size)) << what << " at z " << worst.sunk_z_m;
+  EXPECT_LT(worst.sunk_mm, kMostSunk_mm * std::max(1.0, size))
+      << what << " at z " << worst.sunk_z_m;
   EXPECT_LE(worst.overhang_mm, 0.0) << what;
   EXPECT_EQ(worst.failures, 0) << what;
   EXPECT_LT(worst.jump_deg, most_jump_deg) << what << " at z " << worst.jump_z_m;

@@ -121,7 +121,8 @@ TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
     EXPECT_TRUE(set == *read) << key.name;
     EXPECT_EQ(value_of(set, key.name), value);
   }
-  constexpr std::size_t kLegKeys = 3 + 10, kArmKeys = 2 + 9, kHandKeys = 7, kSpineAndHead = 2 + 3 + 8;
+  constexpr std::size_t kLegKeys = 3 + 10, kArmKeys = 2 + 9, kHandKeys = 7,
+                        kSpineAndHead = 2 + 3 + 8;
   EXPECT_EQ(style_keys().size(), 6 + 3 * (kLegKeys + kArmKeys + kHandKeys) + kSpineAndHead);
 }
 

@@ -1,5 +1,5 @@
 // A family of strides keeps what it promises: read through forward kinematics, number by number.
-#include "gaitpad/stride_family.h"
+#include "gaitpad/clean_strides.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "gaitpad/clean_strides.h"
+#include "gaitpad/stride_family.h"
 #include "motion/leg_pose.h"
 #include "strides/solver_input.h"
 #include "tests/clean_cycle.h"
@@ -119,7 +119,8 @@ TEST_P(StrideFamilyOf, BendsEveryKneeAboutADegreeAtLeast) {
 TEST_P(StrideFamilyOf, HasNoSeam) {
   for (const StrideTable& table : family.table) {
     const auto change = [&table](int from) {
-      const StrideCell d = mixed(sample_of(table, (from + 1) % kCycleSamples), sample_of(table, from), 1, -1);
+      const StrideCell d =
+          mixed(sample_of(table, (from + 1) % kCycleSamples), sample_of(table, from), 1, -1);
       double most = glm::length(d.pelvis_m);
       for (const int side : kSides) {
         for (const double angle : d.leg_rad[side]) most = std::max(most, std::abs(angle));
@@ -195,8 +196,12 @@ TEST_P(StrideFamilyOf, IsReadWithoutKinks) {
   };
   for (const double ratio : {0.3, 0.6, 1.0}) {
     for (const double phase : {0.0, 0.25, 0.5, 77.0 / kCycleSamples, 0.9}) {
-      const auto along_phase = [&](double p) { return stride_at(family.table, p, ratio).cell.pelvis_m; };
-      const auto along_ratio = [&](double r) { return stride_at(family.table, phase, r).cell.pelvis_m; };
+      const auto along_phase = [&](double p) {
+        return stride_at(family.table, p, ratio).cell.pelvis_m;
+      };
+      const auto along_ratio = [&](double r) {
+        return stride_at(family.table, phase, r).cell.pelvis_m;
+      };
       slopes_agree(along_phase, phase);
       slopes_agree(along_ratio, ratio);
     }
@@ -221,7 +226,8 @@ TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
   const auto change = [&](int side, int joint, double shift) {
     double squares = 0.0;
     for (int i = 0; i < kCycleSamples; ++i) {
-      const double now = cycle.strides->stand_rad[side][joint] + sample_of(own, i).leg_rad[side][joint];
+      const double now =
+          cycle.strides->stand_rad[side][joint] + sample_of(own, i).leg_rad[side][joint];
       const CycleSample data = sample_at(cycle, double(i) / kCycleSamples + shift);
       squares += std::pow(now - data.leg[side].angles[joint], 2);
     }

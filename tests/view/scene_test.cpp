@@ -253,8 +253,8 @@ TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
   camera_.yaw_rad = kPi / 2.0;
   orbit(camera_, 0.0, -1.0);
   ASSERT_LT(camera_.eye_m().y, 0.11);
-  const Mannequin body = mannequin_of(
-      std::make_shared<const WalkModel>(value_of(walk_model(clean_cycle(procedural_gait()), Character{}))));
+  const Mannequin body = mannequin_of(std::make_shared<const WalkModel>(
+      value_of(walk_model(clean_cycle(procedural_gait()), Character{}))));
   Stick stick;
   stick.left = {0.2, 0.7};
   const GaitParams params = gait_params(stick, StyleValues{}, GaitLimits{});

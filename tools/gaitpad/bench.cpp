@@ -1,5 +1,5 @@
-// gaitpad bench: how long a tick takes, and its inverse kinematics, beside bare playback; and how long
-// a motion takes to load.
+// gaitpad bench: how long a tick takes, and its inverse kinematics, beside bare playback; and how
+// long a motion takes to load.
 #include <CLI/CLI.hpp>
 
 #include "tools/gaitpad/commands.h"
@@ -17,10 +17,10 @@
 #include <nlohmann/json.hpp>
 
 #include "animation/walk_parts.h"
+#include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
-#include "files/stride_cache.h"
 
 namespace gaitpad {
 namespace {
@@ -152,8 +152,8 @@ double playback_us(const Session& session) {
   });
 }
 
-// Times to make a character of a motion in memory: of the built-in one, of the same as a captured clip,
-// whose halves are not known to be alike, and of that with a cache that knows its strides.
+// Times to make a character of a motion in memory: of the built-in one, of the same as a captured
+// clip, whose halves are not known to be alike, and of that with a cache that knows its strides.
 struct LoadCost {
   double built_in_us = 0.0, clip_us = 0.0, cached_us = 0.0;
 };
@@ -200,10 +200,13 @@ Result<ordered_json> measured() {
   const auto row = [](const char* name, int characters, double time_us) {
     return ordered_json{{"name", name}, {"characters", characters}, {"time_us", time_us}};
   };
-  ordered_json list = {row("step", 1, single.time_us), row("step", kLimitWalkers, many.time_us),
-                       row("leg_ik", 1, leg_us), row("playback", kLimitWalkers, peer_us),
+  ordered_json list = {row("step", 1, single.time_us),
+                       row("step", kLimitWalkers, many.time_us),
+                       row("leg_ik", 1, leg_us),
+                       row("playback", kLimitWalkers, peer_us),
                        row("load_built_in", 1, load->built_in_us),
-                       row("load_clip", 1, load->clip_us), row("load_cached", 1, load->cached_us)};
+                       row("load_clip", 1, load->clip_us),
+                       row("load_cached", 1, load->cached_us)};
   list[0]["iterations_per_leg"] = single.iterations_a_leg;
   list[1]["iterations_per_leg"] = many.iterations_a_leg;
   list[1]["limit_us"] = kLimit_us;
@@ -253,7 +256,8 @@ int run(bool as_json) {
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("bench", "the times that a tick and loading a motion take, beside their limits");
+  CLI::App* command = app.add_subcommand(
+      "bench", "the times that a tick and loading a motion take, beside their limits");
   const auto as_json = std::make_shared<bool>(false);
   command->add_flag("--json", *as_json, "a list of measurements, for machines");
   command->callback([as_json, &status] { status = run(*as_json); });

@@ -74,8 +74,8 @@ struct Fade {
   }
 };
 
-// A difference that fades away smoothly: its value, rate and acceleration, per tick. advance() moves
-// it on by one tick along the quintic that ends in 0, at rest, after `remaining` ticks.
+// A difference that fades away smoothly: its value, rate and acceleration, per tick. advance()
+// moves it on by one tick along the quintic that ends in 0, at rest, after `remaining` ticks.
 template <class T>
 struct SmoothFade {
   T x{}, v{}, a{};

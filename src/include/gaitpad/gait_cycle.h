@@ -63,9 +63,9 @@ struct GaitCycle {
 
   double duration_s = 0.0;  // of the stride in the source
   double stride_m = 0.0;    // travel in it
-  // Where the stride stands in the source: from `first_frame` on, `frames` long, both between frames
-  // where need be; phase 0 is somewhere in it. Frames count from 0 in the file, of which loading
-  // drops none.
+  // Where the stride stands in the source: from `first_frame` on, `frames` long, both between
+  // frames where need be; phase 0 is somewhere in it. Frames count from 0 in the file, of which
+  // loading drops none.
   double first_frame = 0.0, frames = 0.0;
   double turn_rad = 0.0;  // change of heading in it, + left; the cycle itself is straight
   // By Side, measured on the heels while the feet stand flat: from the other foot's heel along the

@@ -57,7 +57,7 @@ struct TrunkParams {
 // What a style says of the body above the hips. Arrays of two are indexed by Side.
 struct UpperBodyParams {
   std::array<double, 2> arm_swing{1.0, 1.0};  // factor on the arm's swing in the motion data
-  std::array<double, 2> arm_out_deg{};  // the upper arms are spread by this
+  std::array<double, 2> arm_out_deg{};        // the upper arms are spread by this
   std::array<ArmWeights, 2> arm_weight{kEvenArmWeights, kEvenArmWeights};
   SpineWeights spine_weight = kEvenSpineWeights;
   TrunkParams trunk;

@@ -75,11 +75,11 @@ inline constexpr double kLowLift = 0.5;  // how high a heel is lifted then
 // near its strike the foot comes down as ever.
 double low_lift(double u, double lift) noexcept;
 
-// What a stride changes by at one phase when a wish is granted. The feet stand where they did. A low
-// lift's heels are not in here (low_lift).
+// What a stride changes by at one phase when a wish is granted. The feet stand where they did. A
+// low lift's heels are not in here (low_lift).
 struct StrideChange {
   vec3 pelvis_m{0.0};
-  std::array<vec3, 2> heel_m{};         // in flight
+  std::array<vec3, 2> heel_m{};       // in flight
   std::array<double, 2> pitch_rad{};  // of the feet
   std::array<LegAngles, 2> leg_rad{};
 };

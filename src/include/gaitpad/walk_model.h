@@ -94,7 +94,7 @@ struct LegBuild {
 
 struct WalkModel {
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
-  GaitCycle cycle;  // the data; its skeleton and legs have the character's lengths
+  GaitCycle cycle;       // the data; its skeleton and legs have the character's lengths
   StrideFamily strides;  // in the character's lengths
   std::array<double, 2> own_step_m{};  // by Side: the data's steps on this character
   std::array<LegBuild, 2> leg;
@@ -111,8 +111,9 @@ struct WalkModel {
 };
 
 // Retargets by the ratio of the leg lengths: lengths grow with the leg, times with the fourth root
-// of its ratio to the adult's. Error `NAME: cause` for a cycle without clean strides, for a character
-// that brings a skeleton of its own and for a leg with more than kMaxBetween twist joints between two of its joints.
+// of its ratio to the adult's. Error `NAME: cause` for a cycle without clean strides, for a
+// character that brings a skeleton of its own and for a leg with more than kMaxBetween twist joints
+// between two of its joints.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
 
 // What the stick asks of this character at full deflection, by the pace of its motion: the adult's

@@ -212,7 +212,6 @@ UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double
 // ranges, dorsiflexion under load up to 38 degrees.
 constexpr std::array<double, kLegDofs> kLegMin = {-120, -50, -70, 1.0, -60, -60, -80};
 constexpr std::array<double, kLegDofs> kLegMax = {60, 50, 70, 150, 75, 60, 80};
-constexpr double kHalfWidth = 0.054;  // of the leg: half a foot's breadth, 9 cm of an adult's
 
 IkChain leg_chain(const LegModel& leg) {
   constexpr std::array<vec3, kLegDofs> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0),
@@ -263,11 +262,11 @@ LegBuild leg_build(const LegModel& model) {
   const vec3 line = model.toe_m - model.heel_m;
   leg.foot_m = glm::length(line);
   leg.elevation_rad = elevation(line);
-  leg.forward = glm::normalize(vec3(line.x, 0.0, line.z));
+  leg.forward = foot_forward(model);
   leg.side = glm::cross(kUp, leg.forward);
   leg.ball_m = vec3(model.toe_m.x, model.heel_m.y, model.toe_m.z);
   leg.tip_m = leg.ball_m + vec3(model.toe_end_m.x, 0.0, model.toe_end_m.z);
-  leg.half_width_m = kHalfWidth * model.length_m();
+  leg.half_width_m = kHalfFoot * model.length_m();
   return leg;
 }
 

@@ -20,6 +20,11 @@ LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis
   return p;
 }
 
+vec3 foot_forward(const LegModel& leg) noexcept {
+  const vec3 line = leg.toe_m - leg.heel_m;
+  return glm::normalize(vec3(line.x, 0.0, line.z));
+}
+
 double span_m(const LegModel& leg, double knee_rad) noexcept {
   const double a = leg.thigh_m, b = leg.shank_m;
   return std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee_rad).cos);

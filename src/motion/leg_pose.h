@@ -23,6 +23,10 @@ struct AnglesXzy {
 quat rotation_xzy(const AnglesXzy& a) noexcept;
 AnglesXzy angles_xzy(const quat& q) noexcept;
 
+// Level and along a standing foot, unit; kUp x this is across it.
+vec3 foot_forward(const LegModel& leg) noexcept;
+inline constexpr double kHalfFoot = 0.054;  // of the leg: half a foot's breadth, 9 cm of an adult's
+
 // From hip to ankle, with a knee that is bent so far.
 double span_m(const LegModel& leg, double knee_rad) noexcept;
 

@@ -245,7 +245,7 @@ struct Builder {
 
   static void set_rotation(const LegModel& leg, const quat& rotation, StrideFoot& foot) {
     const vec3 line = leg.toe_m - leg.heel_m;
-    const vec3 ahead = glm::normalize(vec3(line.x, 0.0, line.z)), across = glm::cross(kUp, ahead);
+    const vec3 ahead = foot_forward(leg), across = glm::cross(kUp, ahead);
     const vec3 now = rotation * line;
     foot.pitch_rad =
         gaitpad::atan2(line.y, glm::dot(line, ahead)) - gaitpad::atan2(now.y, glm::dot(now, ahead));

@@ -31,8 +31,8 @@ constexpr int kLanding = 3;  // samples over which this fades
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
 constexpr double kSoftHeave_m_s2 = 2.0;  // up and down
 constexpr double kSide_m = 0.1;          // lever of that
-// How far the edge of a heel, half its breadth aside (of the leg), may be in the floor.
-constexpr double kHalfHeel = 0.054, kMostSink_m = 0.002, kSoftEdge_m = 0.0015;
+// How far the edge of a heel may be in the floor.
+constexpr double kMostSink_m = 0.002, kSoftEdge_m = 0.0015;
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
@@ -433,8 +433,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       // A foot in stance at the cycle's end stands on where it came from.
       const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
       heel_goal.z -= problem.stride_m * (problem.time[i] + turns);
-      const vec3 along_foot(leg.toe_m.x - leg.heel_m.x, 0.0, leg.toe_m.z - leg.heel_m.z);
-      const vec3 across_foot = glm::normalize(glm::cross(kUp, along_foot));
+      const vec3 across_foot = glm::cross(kUp, foot_forward(leg));
       const vec3 toe_goal = heel_goal + leg.toe_m - leg.heel_m;
       const bool rolls = own <= roll + sample,
                  supports = own >= roll - sample && own <= support + sample;
@@ -444,7 +443,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
         // A foot that twists and rolls may not push an edge of its heel into the floor.
         if (problem.flying_heel_m.empty())
-          for (double half : {-kHalfHeel, kHalfHeel}) {
+          for (double half : {-kHalfFoot, kHalfFoot}) {
             const vec3 edge_m = leg.heel_m + across_foot * (half * leg.length_m());
             s.add_floor(i, side, point_rows(frames, edge_m), -kMostSink_m, kSoftEdge_m);
           }

@@ -106,6 +106,7 @@ class Pad(Nodes):
         self._plug = plug
         self._daemon = self._log = None
         self._lines, self._rest = collections.defaultdict(list), ""
+        self._bursts_ended = 0
 
     def __enter__(self):
         if os.path.exists(self.folder + "/log"):
@@ -216,11 +217,12 @@ class Pad(Nodes):
 
     def burst(self, rate_hz, seconds, at):
         """Numbered reports, the 32-bit number little-endian from byte `at`; returns at once."""
+        self._bursts_ended = len(self.lines("burst_end"))
         self._done(f"burst {rate_hz} {seconds} {at}")
 
     def wait_burst(self, seconds=120.0):
         """(reports sent, how many were more than a period late) of the last burst."""
-        end = wait_for(lambda: self.lines("burst_end"), seconds, "the burst's end")[-1]
+        end = wait_for(lambda: self.lines("burst_end")[self._bursts_ended:], seconds, "the burst's end")[-1]
         return int(end[2]), int(end[3])
 
     def play(self, trace=""):

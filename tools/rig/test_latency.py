@@ -5,7 +5,6 @@ with those of a bare poll() and read() of the node, since the same read differs 
 the next. Writes latency.md and latency.csv to the results.
 """
 import csv
-import json
 import pathlib
 import re
 import statistics
@@ -15,7 +14,7 @@ import time
 import pytest
 
 from pads import LONG, Pad
-from session import BUILD, HAS_SANITIZERS, PROGRAM, remark
+from session import BUILD, HAS_SANITIZERS, Session, remark
 
 RESULTS = pathlib.Path("/results")
 GENERIC = "1209:0001"
@@ -79,25 +78,20 @@ def tick_times_ns(text):
     return times
 
 
-def tick_latencies_us(pad, driver, folder):
+def tick_latencies_us(pad, driver):
     """From the write to the beginning of the tick that used it, out of a session's own recording."""
-    path = pathlib.Path(folder) / f"latency_{driver}.hid"
-    session = subprocess.Popen([PROGRAM, "play", GENERIC, "--no-window", "--driver", driver, "--record",
-                                path, "--seconds", "6", "--no-rumble"], stdout=subprocess.DEVNULL)
-    time.sleep(3.0)
-    pad.set(lx=128, ly=128)  # SDL swallows small first movements
-    time.sleep(0.1)
-    before = len(pad.sent())
-    pad.burst(RATE_HZ, 2 * SECONDS, at=0)
-    if session.wait() != 0:
-        raise RuntimeError(f"play --driver {driver} failed")
-    sent = written(pad, before)
-    ticks = tick_times_ns(path.read_text())
-    decoded = subprocess.run([PROGRAM, "decode", path, "--json"], capture_output=True, text=True, check=True)
-    reports = [row for row in map(json.loads, decoded.stdout.splitlines()) if "axes" in row]
+    with Session(GENERIC, "--driver", driver, "--no-rumble", name=f"latency_{driver}") as session:
+        time.sleep(0.5)
+        pad.set(lx=128, ly=128)  # SDL swallows small first movements
+        time.sleep(0.1)
+        before = len(pad.sent())
+        pad.burst(RATE_HZ, 2 * SECONDS, at=0)
+        pad.wait_burst()
+        time.sleep(0.5)
+    ticks = tick_times_ns(pathlib.Path(session.path).read_text())
     numbers = [round((row["axes"]["left_x"] + 1) * 127.5) + 256 * round((1 - row["axes"]["left_y"]) * 127.5)
-               for row in reports]
-    return latencies_us(sent, zip(ticks, numbers))
+               for row in session.decoded()]
+    return latencies_us(written(pad, before), zip(ticks, numbers))
 
 
 def over_bare_us(medians, driver):
@@ -155,7 +149,7 @@ def test_drivers_are_as_fast_as_the_bare_read():
         for _ in range(ATTEMPTS):
             if slow:
                 slow = too_slow(measure(pad, [*{LIMITS_US[way][0]: None for way in slow}, *slow], found, lost))
-        ticks = {driver: tick_latencies_us(pad, driver, RESULTS) for driver in LIMITS_US}
+        ticks = {driver: tick_latencies_us(pad, driver) for driver in LIMITS_US}
     write(found, medians, ticks)
     for driver, (_, limit_us) in LIMITS_US.items():
         assert lost[driver] == 0, f"{driver} lost {lost[driver]}"

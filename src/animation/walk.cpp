@@ -745,8 +745,8 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   pelvis.position_m.y = pelvis_height(model, state, plan, pelvis);
   for (Side side : {kLeftSide, kRightSide}) {
     reach_with_toe(model, state, side, pelvis.hip(model.leg[side]));
-    pose_leg(tick, mode, side, plan, pelvis, state);
   }
+  pose_legs(tick, mode, plan, pelvis, state);
   write_pose(model, state, pelvis, pose);
   fill_report(pelvis, dt_s, state);
   report_ground(tick, state.frame);

@@ -5,6 +5,7 @@
 // Robust mode starts from the tables' angles, which know of stiff joints already (walk_style.cpp).
 // Six rows hold the whole foot; the knee's swivel, which they leave free, is pulled to the data's.
 // What is left to solve for is little, and the weights of equation (5) share it out.
+#include "animation/leg_ik.h"
 #include "animation/walk_parts.h"
 
 namespace gaitpad {
@@ -112,12 +113,21 @@ struct Solve {
   }
 };
 
+struct PosedLeg {
+  Solve solve;
+  IkFrame end;  // the foot's frame in the pelvis', from the hip joint
+};
+
 // Weights count relative to the leg's largest. The foot's place goes before a locked joint.
-void set_weights(const WalkState& state, Side side, IkChain& chain) noexcept {
-  double largest = 1e-6;
+LegAngles relative_weights(const WalkState& state, Side side) noexcept {
+  double largest = 0.0;
   for (const Damped<double>& w : state.gait.weight[side]) largest = std::max(largest, w.x);
+  LegAngles weight;
+  weight.fill(1.0);
+  if (largest <= 1e-6 * kLeastWeight) return weight;
   for (int j = 0; j < kLegDofs; ++j)
-    chain.dof[j].weight = std::clamp(state.gait.weight[side][j].x / largest, kLeastWeight, 1.0);
+    weight[j] = std::clamp(state.gait.weight[side][j].x / largest, kLeastWeight, 1.0);
+  return weight;
 }
 
 // Points a flying foot down: as far as the ground allows by its pitch alone, and farther by lifting
@@ -137,58 +147,109 @@ void point_foot_down(const LegBuild& leg, double more_rad, double flight_progres
   pose.toe_m.y += lift_m;
 }
 
-// Eases an ankle that would bend up too far: in flight the foot points down, in late support the
-// heel rises. A foot that has to stand still does neither.
-void ease_ankle(const Tick& tick, const WalkState& state, Side side, const Pelvis& pelvis,
-                const IkChain& chain, IkAngles& angles, FootState& foot, Solve& solve) noexcept {
+// Eases an ankle that bends up too far: in flight the foot points down, in late support the heel
+// rises. A foot that has to stand still does neither. Near its limit the ankle is held. False if
+// nothing was to be done.
+bool ease_ankle(const Tick& tick, WalkState& state, Side side, const Pelvis& pelvis,
+                IkAngles& angles, Solve& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
+  FootState& foot = state.foot[side];
   const bool flies = foot.mode == FootMode::flight;
   double excess =
       soft_positive(kMostDorsiflexion - angles[kAnkleX], flies ? kSoftFlying : kSoftAnkle);
   if (!flies) excess *= foot.mode == FootMode::support ? heel_rise(tick.model, state, side) : 0.0;
-  if (excess == 0.0) return;
-  if (flies) {
-    point_foot_down(leg, excess, flight_progress(state), foot);
-  } else {
-    set_pitch(leg, foot.pose.pitch_rad + excess, foot.pose, foot.mode);
-  }
-  solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
-}
-
-void pose_robust(const Tick& tick, Side side, const StridePlan& plan, const Pelvis& pelvis,
-                 WalkState& state, Solve& solve) noexcept {
-  const LegBuild& leg = tick.model.leg[side];
-  // Start from the data's angles plus what the solver had to add a tick ago. That correction leaks
-  // away, so the swivel, which no row holds, is pulled to the data's and cannot drift.
-  const LegAngles data = reference(tick.model, plan, side);
-  const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
-  IkAngles angles{};
-  for (int j = 0; j < kLegDofs; ++j) {
-    angles[j] = data[j] + keep * (state.legs.angles_rad[side][j] - state.legs.data_rad[side][j]);
-  }
-  state.legs.data_rad[side] = data;
+  double over = soft_positive(kHeldDorsiflexion - angles[kAnkleX], kSoftHeld);
+  if (excess == 0.0 && over == 0.0) return false;
   IkChain chain = leg.chain;
-  set_weights(state, side, chain);
-  // Solve without the ankle's limit first, so that the knee does not twist.
-  const double most_dorsiflexion = chain.dof[kAnkleX].min_rad;
-  chain.dof[kAnkleX].min_rad = -kPi;
-  solve.add(solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
-  chain.dof[kAnkleX].min_rad = most_dorsiflexion;
-  ease_ankle(tick, state, side, pelvis, chain, angles, state.foot[side], solve);
-  const double over = soft_positive(kHeldDorsiflexion - angles[kAnkleX], kSoftHeld);
+  const LegAngles weight = relative_weights(state, side);
+  for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = weight[j];
+  if (excess != 0.0) {
+    if (flies) {
+      point_foot_down(leg, excess, flight_progress(state), foot);
+    } else {
+      set_pitch(leg, foot.pose.pitch_rad + excess, foot.pose, foot.mode);
+    }
+    solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
+    over = soft_positive(kHeldDorsiflexion - angles[kAnkleX], kSoftHeld);
+  }
   if (over > 0.0) {
     chain.dof[kAnkleX].min_rad =
-        std::max(most_dorsiflexion, angles[kAnkleX] + over * over / (over + kSoftHeld));
-    solve.add(
-        solve_robust(chain, whole_foot(leg, state.foot[side], pelvis).all(), kRobust, angles));
+        std::max(chain.dof[kAnkleX].min_rad, angles[kAnkleX] + over * over / (over + kSoftHeld));
+    solve.add(solve_robust(chain, whole_foot(leg, foot, pelvis).all(), kRobust, angles));
   }
-  state.legs.angles_rad[side] = leg_angles(angles);
+  return true;
+}
+
+void set_vector(const vec3& from, Side side, Vec3Of<Lanes<2>>& to) noexcept {
+  to.x[side] = from.x, to.y[side] = from.y, to.z[side] = from.z;
+}
+vec3 vector_of(const Vec3Of<Lanes<2>>& from, Side side) noexcept {
+  return {from.x[side], from.y[side], from.z[side]};
+}
+
+// Where one leg's solver starts, and what is to be reached.
+void set_lane(const WalkModel& model, const WalkState& state, Side side, const Pelvis& pelvis,
+              const LegAngles& start, LegGoals<Lanes<2>>& goals,
+              std::array<Lanes<2>, kLegDofs>& angles) noexcept {
+  const LegBuild& leg = model.leg[side];
+  const FootGoal goal = whole_foot(leg, state.foot[side], pelvis);
+  goals.thigh_m[side] = leg.model.thigh_m;
+  goals.shank_m[side] = leg.model.shank_m;
+  const LegAngles weight = relative_weights(state, side);
+  for (int j = 0; j < kLegDofs; ++j) {
+    goals.weight[j][side] = weight[j];
+    goals.min_rad[j][side] = leg.chain.dof[j].min_rad;
+    goals.max_rad[j][side] = leg.chain.dof[j].max_rad;
+    angles[j][side] = start[j];
+  }
+  // Without the ankle's limit first, so that the knee does not twist.
+  goals.min_rad[kAnkleX][side] = -kPi;
+  const auto& rows = goal.rows;
+  set_vector(rows[0].point_m, side, goals.point_m[0]);
+  set_vector(rows[3].point_m, side, goals.point_m[1]);
+  set_vector(rows[5].point_m, side, goals.point_m[2]);
+  set_vector(rows[0].direction, side, goals.side);
+  set_vector(rows[1].direction, side, goals.across);
+  set_vector(rows[2].direction, side, goals.along);
+  for (int r = 0; r < 6; ++r) goals.goal_m[r][side] = rows[r].goal_m;
+}
+
+void pose_robust(const Tick& tick, const StridePlan& plan, const Pelvis& pelvis, WalkState& state,
+                 std::array<PosedLeg, 2>& posed) noexcept {
+  LegGoals<Lanes<2>> goals;
+  std::array<Lanes<2>, kLegDofs> lanes;
+  for (Side side : {kLeftSide, kRightSide}) {
+    // Start from the data's angles plus what the solver had to add a tick ago. That correction
+    // leaks away, so the swivel, which no row holds, is pulled to the data's and cannot drift.
+    const LegAngles data = reference(tick.model, plan, side);
+    const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
+    LegAngles start;
+    for (int j = 0; j < kLegDofs; ++j)
+      start[j] = data[j] + keep * (state.legs.angles_rad[side][j] - state.legs.data_rad[side][j]);
+    state.legs.data_rad[side] = data;
+    set_lane(tick.model, state, side, pelvis, start, goals, lanes);
+  }
+  const LegSolution<Lanes<2>> solution = solve_legs(goals, kRobust, lanes);
+  for (Side side : {kLeftSide, kRightSide}) {
+    IkAngles angles{};
+    for (int j = 0; j < kLegDofs; ++j) angles[j] = lanes[j][side];
+    PosedLeg& leg = posed[side];
+    leg.solve.iterations = static_cast<int>(solution.iterations[side]);
+    leg.solve.error_m = std::sqrt(solution.squares[side]);
+    leg.solve.failed = !(solution.squares[side] <= kRobust.tolerance_m * kRobust.tolerance_m);
+    leg.end = {vector_of(solution.ankle_m, side),
+               from_axes(vector_of(solution.foot_x, side), vector_of(solution.foot_y, side),
+                         vector_of(solution.foot_z, side))};
+    if (ease_ankle(tick, state, side, pelvis, angles, leg.solve))
+      leg.end = end_frame(tick.model.leg[side].chain, angles);
+    state.legs.angles_rad[side] = leg_angles(angles);
+  }
 }
 
 // Steps 1-7 to the letter for the stage's end-effector alone. While heel and toe both stand or
 // land, the other end is a second position goal.
 void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
-                Solve& solve) noexcept {
+                PosedLeg& posed) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   IkChain chain = leg.chain;
   for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = state.gait.weight[side][j].x;
@@ -197,32 +258,35 @@ void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& st
   const FootMode foot = state.foot[side].mode;
   const bool both = foot == FootMode::roll ||
                     (foot == FootMode::support && heel_rise(tick.model, state, side) == 0.0);
-  solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
+  posed.solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
+  posed.end = end_frame(leg.chain, angles);
   state.legs.angles_rad[side] = leg_angles(angles);
 }
 
 }  // namespace
 
-void pose_leg(const Tick& tick, IkMode mode, Side side, const StridePlan& plan,
-              const Pelvis& pelvis, WalkState& state) noexcept {
-  const LegBuild& leg = tick.model.leg[side];
-  Solve solve;
+void pose_legs(const Tick& tick, IkMode mode, const StridePlan& plan, const Pelvis& pelvis,
+               WalkState& state) noexcept {
+  std::array<PosedLeg, 2> posed;
   if (mode == IkMode::robust) {
-    pose_robust(tick, side, plan, pelvis, state, solve);
+    pose_robust(tick, plan, pelvis, state, posed);
   } else {
-    pose_paper(tick, side, pelvis, state, solve);
+    for (Side side : {kLeftSide, kRightSide}) pose_paper(tick, side, pelvis, state, posed[side]);
   }
-  const IkFrame end = end_frame(leg.chain, padded(state.legs.angles_rad[side]));
-  FootState& foot = state.foot[side];
-  foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose, end),
-                                foot.mode == FootMode::flight ? flight_progress(state) : 0.0);
-  const vec3 hip = pelvis.hip(leg);
   WalkFrame& frame = state.frame;
-  frame.heel_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.heel_m);
-  frame.toe_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.toe_m);
-  frame.ik_iterations[side] = solve.iterations;
-  frame.ik_error_m[side] = solve.error_m;
-  frame.ik_failed[side] = solve.failed;
+  for (Side side : {kLeftSide, kRightSide}) {
+    const LegBuild& leg = tick.model.leg[side];
+    const auto& [solve, end] = posed[side];
+    FootState& foot = state.foot[side];
+    foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose, end),
+                                  foot.mode == FootMode::flight ? flight_progress(state) : 0.0);
+    const vec3 hip = pelvis.hip(leg);
+    frame.heel_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.heel_m);
+    frame.toe_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.toe_m);
+    frame.ik_iterations[side] = solve.iterations;
+    frame.ik_error_m[side] = solve.error_m;
+    frame.ik_failed[side] = solve.failed;
+  }
 }
 
 }  // namespace gaitpad

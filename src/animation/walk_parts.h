@@ -148,8 +148,8 @@ void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noex
 void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
 
 // --- walk_legs.cpp: inverse kinematics -----------------------------------------------------------
-// Solves one leg: its angles go to `state`, what the solver took to state.frame.
-void pose_leg(const Tick& tick, IkMode mode, Side side, const StridePlan& plan,
-              const Pelvis& pelvis, WalkState& state) noexcept;
+// Solves both legs: their angles go to `state`, what the solver took to state.frame.
+void pose_legs(const Tick& tick, IkMode mode, const StridePlan& plan, const Pelvis& pelvis,
+               WalkState& state) noexcept;
 
 }  // namespace gaitpad

@@ -3,29 +3,10 @@
 #include <cassert>
 #include <cstdint>
 
+#include "base/trigonometry.h"
+
 namespace gaitpad {
 namespace {
-
-// Polynomials on [-pi/4, pi/4], the classic minimax ones of Sun's fdlibm (k_sin.c, k_cos.c).
-double sin_kernel(double x) noexcept {
-  const double z = x * x;
-  const double p = 8.33333333332248946124e-03 +
-                   z * (-1.98412698298579493134e-04 +
-                        z * (2.75573137070700676789e-06 +
-                             z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
-  return x + x * z * (-1.66666666666666324348e-01 + z * p);
-}
-
-double cos_kernel(double x) noexcept {
-  const double z = x * x;
-  const double p =
-      4.16666666666666019037e-02 +
-      z * (-1.38888888888741095749e-03 +
-           z * (2.48015872894767294178e-05 +
-                z * (-2.75573143513906633035e-07 +
-                     z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11))));
-  return 1.0 - 0.5 * z + z * z * p;
-}
 
 // atan on [0, 7/16] (fdlibm s_atan.c).
 double atan_kernel(double x) noexcept {
@@ -56,18 +37,13 @@ double atan_positive(double x) noexcept {
 }  // namespace
 
 SinCos sin_cos(double angle_rad) noexcept {
-  // Cody-Waite: pi/2 in three parts of 33 bits, so that n * part is exact for |n| < 2^20.
-  constexpr double kTwoOverPi = 6.36619772367581382433e-01;
-  constexpr double kPart1 = 1.57079632673412561417e+00;
-  constexpr double kPart2 = 6.07710050630396597660e-11;
-  constexpr double kPart3 = 2.02226624879595063154e-21;
   // Below pi/4 nothing is to be reduced: the result has the same bits without the work.
   if (std::abs(angle_rad) < 0.785) return {sin_kernel(angle_rad), cos_kernel(angle_rad)};
   if (!(std::abs(angle_rad) < 1e6)) return {0.0, 1.0};  // keeps NaN and huge angles bounded
   const double scaled = angle_rad * kTwoOverPi;
   const auto n = static_cast<std::int64_t>(scaled + (scaled < 0.0 ? -0.5 : 0.5));
   const double k = static_cast<double>(n);
-  const double x = ((angle_rad - k * kPart1) - k * kPart2) - k * kPart3;
+  const double x = ((angle_rad - k * kHalfPi1) - k * kHalfPi2) - k * kHalfPi3;
   const double s = sin_kernel(x), c = cos_kernel(x);
   switch (n & 3) {
     case 0:

@@ -1,5 +1,8 @@
 #include "gaitpad/stride_family.h"
 
+#include <cstring>
+
+#include "base/lanes.h"
 #include "gaitpad/curve.h"
 
 namespace gaitpad {
@@ -34,6 +37,40 @@ void add(Cell& sum, const Cell& cell, double weight) noexcept {
   const double* from = &cell.pelvis_m.x;
   for (std::size_t k = 0; k < sizeof(Cell) / sizeof(double); ++k) to[k] += weight * from[k];
 }
+
+// What a cell is summed from, in this order.
+template <class Cell, int kMost>
+class Sum {
+ public:
+  void add(const Cell& cell, double weight) noexcept {
+    from_[count_] = &cell.pelvis_m.x, weight_[count_] = weight, ++count_;
+  }
+  // All numbers of a cell, each kept in a register until it is done.
+  Cell total() const noexcept {
+    constexpr std::size_t kNumbers = sizeof(Cell) / sizeof(double);
+    Cell cell;
+    double* to = &cell.pelvis_m.x;
+    for (std::size_t k = 0; k + 1 < kNumbers; k += 2) {
+      Lanes<2> sum{}, one;
+      for (int i = 0; i < count_; ++i) {
+        std::memcpy(&one, from_[i] + k, sizeof one);
+        sum += weight_[i] * one;
+      }
+      std::memcpy(to + k, &sum, sizeof sum);
+    }
+    if constexpr (kNumbers % 2 == 1) {
+      double sum = 0.0;
+      for (int i = 0; i < count_; ++i) sum += weight_[i] * from_[i][kNumbers - 1];
+      to[kNumbers - 1] = sum;
+    }
+    return cell;
+  }
+
+ private:
+  std::array<const double*, kMost> from_;
+  std::array<double, kMost> weight_;
+  int count_ = 0;
+};
 
 // The inverse of [1 4 1] / 6: the samples, filtered forwards and back by the filter's pole (Unser
 // 1993). Its response is cut off where it is below the rounding of a double.
@@ -86,15 +123,15 @@ StrideChange change_at(const std::vector<StrideResponse>& response, const Stride
   const double x = (phase - std::floor(phase)) * kCycleSamples;
   const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
   const std::array<double, 4> by_phase = spline(x - i);
-  StrideChange change;
+  Sum<StrideChange, 4 * kStrideWishes> change;
   for (int wish = 0; wish < kStrideWishes; ++wish) {
     if (granted[wish] == 0.0) continue;
     for (int m = 0; m < 4; ++m) {
       const int k = (i + m - 1 + kCycleSamples) % kCycleSamples;
-      add(change, response[wish].knot[k], granted[wish] * by_phase[m]);
+      change.add(response[wish].knot[k], granted[wish] * by_phase[m]);
     }
   }
-  return change;
+  return change.total();
 }
 
 StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {
@@ -111,6 +148,7 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, doub
     by_ratio[2] += 2.0 * by_ratio[3], by_ratio[1] -= by_ratio[3], by_ratio[3] = 0.0;
   }
   StridePlace place;
+  Sum<StrideCell, 16> cell;
   for (int n = 0; n < 4; ++n) {
     if (by_ratio[n] == 0.0) continue;
     const StrideTable& table = tables[r + n - 1];
@@ -118,9 +156,10 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, doub
     for (int side : {0, 1}) place.footprint_m[side] += table.footprint_m[side] * by_ratio[n];
     for (int m = 0; m < 4; ++m) {
       const int k = (i + m - 1 + kCycleSamples) % kCycleSamples;
-      add(place.cell, table.knot[k], by_ratio[n] * by_phase[m]);
+      cell.add(table.knot[k], by_ratio[n] * by_phase[m]);
     }
   }
+  place.cell = cell.total();
   return place;
 }
 

@@ -1,0 +1,36 @@
+// The robust solver of gaitpad/ik.h for legs, whose sizes are known when compiling: seven single
+// rotations (hip x z y, knee x, ankle x z y) and the six rows that hold a foot. Several legs are
+// solved side by side, one a lane: the two of a character, or those of a crowd. Every lane gets the
+// bits that solve_robust() gives with max_tries = 1, whatever the others do.
+#pragma once
+#include "base/lanes.h"
+#include "gaitpad/ik.h"
+#include "gaitpad/limbs.h"
+
+namespace gaitpad {
+
+template <class V>
+struct LegGoals {
+  V thigh_m, shank_m;
+  std::array<V, kLegDofs> weight, min_rad, max_rad;
+  // The foot's end-effector, its other end and a point beside the end-effector, in the foot.
+  std::array<Vec3Of<V>, 3> point_m;
+  // The foot's axes in the pelvis' frame: sideways, across, along. Rows: side, across and along of
+  // the first point, side and across of the second, across of the third.
+  Vec3Of<V> side, across, along;
+  std::array<V, 6> goal_m;
+};
+
+template <class V>
+struct LegSolution {
+  V squares;                                  // of the error, square metres, summed over the rows
+  V iterations;                               // a whole number
+  Vec3Of<V> ankle_m, foot_x, foot_y, foot_z;  // the foot's frame in the pelvis', from the hip joint
+};
+
+// Starts at `angles_rad` and leaves the best pose there. Angles and weights have to be finite.
+template <class V>
+LegSolution<V> solve_legs(const LegGoals<V>& goals, const RobustOptions& options,
+                          std::array<V, kLegDofs>& angles_rad) noexcept;
+
+}  // namespace gaitpad

@@ -1,0 +1,184 @@
+#include "animation/leg_ik.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+
+namespace gaitpad::test {
+namespace {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : bits_(seed) {}
+  double between(double a, double b) {
+    return a + (b - a) * (static_cast<double>(bits_() >> 11) * 0x1p-53);
+  }
+  vec3 inside(double most) {
+    vec3 v;  // one by one: compilers differ in the order in which they evaluate arguments
+    for (int i = 0; i < 3; ++i) v[i] = between(-most, most);
+    return v;
+  }
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+constexpr RobustOptions kOptions = {.tolerance_m = 1e-6, .max_tries = 1};
+
+// A leg, the six rows of its foot, and where its solver starts.
+struct Leg {
+  IkChain chain;
+  std::array<IkRow, 6> rows;
+  IkAngles start{};
+};
+
+// `from_goal_rad`: how far the start is from a pose that meets the rows; `off_m`: how far the goals
+// are from that pose, all of them alike.
+Leg random_leg(Random& random, double from_goal_rad, double off_m, double least_weight) {
+  const std::array<vec3, kLegDofs> axis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0),
+                                           vec3(1, 0, 0), vec3(1, 0, 0), vec3(0, 0, 1),
+                                           vec3(0, 1, 0)};
+  const std::array<double, kLegDofs> low = {-120, -50, -70, 1, -60, -60, -80},
+                                     high = {60, 50, 70, 150, 75, 60, 80};
+  Leg leg;
+  leg.chain.dofs = kLegDofs;
+  IkAngles pose{};
+  for (int j = 0; j < kLegDofs; ++j) {
+    IkDof& dof = leg.chain.dof[j];
+    dof.axis = axis[j];
+    dof.min_rad = low[j] * kDegree, dof.max_rad = high[j] * kDegree;
+    dof.weight = random.between(least_weight, 1.0);
+    pose[j] = random.between(0.6 * dof.min_rad, 0.6 * dof.max_rad);
+    leg.start[j] = pose[j] + random.between(-from_goal_rad, from_goal_rad);
+  }
+  leg.chain.dof[kHipY].link_m = vec3(0.0, -random.between(0.2, 0.6), 0.0);
+  leg.chain.dof[kKneeX].link_m = vec3(0.0, -random.between(0.2, 0.6), 0.0);
+  leg.chain.dof[kKneeX].weight = 1.0;  // the largest
+  const vec3 heel(0.01, -0.08, -0.05), toe(0.03, -0.06, 0.14), line = toe - heel;
+  const vec3 side = glm::normalize(glm::cross(kUp, line)), beside = heel + 0.1 * side;
+  const IkFrame end = end_frame(leg.chain, pose);
+  const vec3 off = random.inside(off_m);
+  const auto row = [&](const vec3& point, const vec3& direction) {
+    const vec3 place = end.position_m + end.rotation * point + off;
+    return IkRow{point, direction, glm::dot(direction, place)};
+  };
+  const vec3 s = end.rotation * side, along = end.rotation * glm::normalize(line),
+             across = glm::cross(along, s);
+  leg.rows = {row(heel, s), row(heel, across), row(heel, along),
+              row(toe, s),  row(toe, across),  row(beside, across)};
+  return leg;
+}
+
+void set_vector(const vec3& from, int lane, Vec3Of<Lanes<2>>& to) {
+  to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
+}
+
+void set_lane(const Leg& leg, int lane, LegGoals<Lanes<2>>& goals,
+              std::array<Lanes<2>, kLegDofs>& angles) {
+  goals.thigh_m[lane] = -leg.chain.dof[kHipY].link_m.y;
+  goals.shank_m[lane] = -leg.chain.dof[kKneeX].link_m.y;
+  for (int j = 0; j < kLegDofs; ++j) {
+    goals.weight[j][lane] = leg.chain.dof[j].weight;
+    goals.min_rad[j][lane] = leg.chain.dof[j].min_rad;
+    goals.max_rad[j][lane] = leg.chain.dof[j].max_rad;
+    angles[j][lane] = leg.start[j];
+  }
+  for (int p = 0; p < 3; ++p)
+    set_vector(leg.rows[p == 0 ? 0 : 2 * p + 1].point_m, lane, goals.point_m[p]);
+  set_vector(leg.rows[0].direction, lane, goals.side);
+  set_vector(leg.rows[1].direction, lane, goals.across);
+  set_vector(leg.rows[2].direction, lane, goals.along);
+  for (int r = 0; r < 6; ++r) goals.goal_m[r][lane] = leg.rows[r].goal_m;
+}
+
+// Both of two legs as solve_robust() solves them alone: angles, error, iterations.
+void expect_same(const std::array<Leg, 2>& legs, const std::string& what) {
+  LegGoals<Lanes<2>> goals;
+  std::array<Lanes<2>, kLegDofs> angles;
+  for (int lane : {0, 1}) set_lane(legs[lane], lane, goals, angles);
+  const LegSolution<Lanes<2>> solution = solve_legs(goals, kOptions, angles);
+  for (int lane : {0, 1}) {
+    IkAngles alone = legs[lane].start;
+    const IkResult result = solve_robust(legs[lane].chain, legs[lane].rows, kOptions, alone);
+    for (int j = 0; j < kLegDofs; ++j) {
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(double(angles[j][lane])),
+                std::bit_cast<std::uint64_t>(alone[j]))
+          << what << ", lane " << lane << ", angle " << j;
+    }
+    EXPECT_EQ(static_cast<int>(solution.iterations[lane]), result.iterations) << what;
+    EXPECT_EQ(std::sqrt(solution.squares[lane]), result.error_m) << what;
+    const IkFrame end = end_frame(legs[lane].chain, alone);
+    const vec3 ankle(solution.ankle_m.x[lane], solution.ankle_m.y[lane], solution.ankle_m.z[lane]);
+    EXPECT_EQ(ankle, end.position_m) << what;
+  }
+}
+
+TEST(LegIk, GivesTheBitsOfTheGeneralSolverNearTheGoal) {
+  Random random(1);
+  for (int k = 0; k < 2000; ++k) {
+    expect_same({random_leg(random, 0.02, 0.0, 1.0), random_leg(random, 0.02, 0.0, 0.05)},
+                "pair " + std::to_string(k));
+  }
+}
+
+TEST(LegIk, GivesTheBitsOfTheGeneralSolverAtLimitsAndOutOfReach) {
+  Random random(2);
+  for (int k = 0; k < 500; ++k) {
+    expect_same({random_leg(random, 1.0, 0.0, 0.05), random_leg(random, 0.5, 0.4, 0.05)},
+                "pair " + std::to_string(k));
+  }
+}
+
+TEST(LegIk, ALaneDoesNotDependOnItsNeighbour) {
+  Random random(3);
+  for (int k = 0; k < 500; ++k) {
+    const Leg leg = random_leg(random, 0.05, 0.0, 0.2);
+    const auto beside = [&](const Leg& neighbour) {
+      LegGoals<Lanes<2>> goals;
+      std::array<Lanes<2>, kLegDofs> angles;
+      set_lane(leg, 0, goals, angles);
+      set_lane(neighbour, 1, goals, angles);
+      solve_legs(goals, kOptions, angles);
+      LegAngles own;
+      for (int j = 0; j < kLegDofs; ++j) own[j] = angles[j][0];
+      return own;
+    };
+    EXPECT_EQ(beside(leg), beside(random_leg(random, 1.0, 0.4, 0.05))) << "leg " << k;
+  }
+}
+
+TEST(LegIk, AnInputThatIsNotFiniteFailsAloneAndEnds) {
+  Random random(4);
+  Leg bad = random_leg(random, 0.02, 0.0, 1.0);
+  bad.rows[2].goal_m = std::nan("");
+  const Leg good = random_leg(random, 0.02, 0.0, 1.0);
+  LegGoals<Lanes<2>> goals;
+  std::array<Lanes<2>, kLegDofs> angles;
+  set_lane(bad, 0, goals, angles);
+  set_lane(good, 1, goals, angles);
+  const LegSolution<Lanes<2>> solution = solve_legs(goals, kOptions, angles);
+  EXPECT_FALSE(solution.squares[0] <= 1e-12);
+  EXPECT_LE(solution.squares[1], 1e-12);
+  for (int j = 0; j < kLegDofs; ++j) EXPECT_TRUE(std::isfinite(angles[j][0]));
+}
+
+TEST(Lanes, SineAndCosineAreThoseOfOneNumber) {
+  Random random(5);
+  for (int k = 0; k < 20'000; ++k) {
+    Lanes<2> angle, sine, cosine;
+    for (int lane : {0, 1}) angle[lane] = random.between(-8.0, 8.0) * (k % 5 == 0 ? 1e4 : 1.0);
+    sin_cos_of(angle, sine, cosine);
+    for (int lane : {0, 1}) {
+      const SinCos alone = sin_cos(angle[lane]);
+      EXPECT_EQ(sine[lane], alone.sin) << angle[lane];
+      EXPECT_EQ(cosine[lane], alone.cos) << angle[lane];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::test

@@ -40,10 +40,13 @@ vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
   return foot_rotation(leg, pose) * (leg.model.toe_m - leg.model.heel_m);
 }
 
+quat edge_of(const LegBuild& leg, double twist_rad, double roll_rad) noexcept {
+  return from_rotation_vector(kUp * twist_rad + leg.forward * roll_rad);
+}
+
 // How much steeper the line from heel to toe is in a foot that twists and rolls.
 double rolled_elevation(const LegBuild& leg, const FootPose& pose) noexcept {
-  const vec3 line = from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad) *
-                    (leg.model.toe_m - leg.model.heel_m);
+  const vec3 line = pose.edge * (leg.model.toe_m - leg.model.heel_m);
   return atan2(line.y, glm::dot(line, leg.forward)) - leg.elevation_rad;
 }
 
@@ -132,7 +135,7 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
 // reaches: P cos + Q sin = K in the foot's own vertical plane.
 double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m,
                       double reach) noexcept {
-  const vec3 d = rotation_y(-pose.yaw_rad) * (glm::inverse(pose.tilt) * (hip_m - pose.toe_m)),
+  const vec3 d = glm::conjugate(pose.yaw) * (glm::inverse(pose.tilt) * (hip_m - pose.toe_m)),
              c = -leg.model.toe_m;
   const double df = glm::dot(d, leg.forward), cf = glm::dot(c, leg.forward);
   const double ds = glm::dot(d, leg.side), cs = glm::dot(c, leg.side);
@@ -166,14 +169,11 @@ double heel_rise(const WalkModel& model, const WalkState& state, Side side) noex
 }
 
 quat foot_rotation(const LegBuild& leg, const FootPose& pose) noexcept {
-  return pose.tilt * (rotation_y(pose.yaw_rad) *
-                      (rotation_about(leg.side, pose.pitch_rad) *
-                       from_rotation_vector(kUp * pose.twist_rad + leg.forward * pose.roll_rad)));
+  return pose.tilt * (pose.yaw * (rotation_about(leg.side, pose.pitch_rad) * pose.edge));
 }
 
 quat toes_turn(const LegBuild& leg, const FootPose& pose, double toe_rad) noexcept {
-  return from_rotation_vector(kUp * -pose.twist_rad - leg.forward * pose.roll_rad) *
-         rotation_about(leg.side, toe_rad);
+  return glm::conjugate(pose.edge) * rotation_about(leg.side, toe_rad);
 }
 
 double heel_height(const FootState& foot) noexcept {
@@ -205,11 +205,10 @@ FlightPoint flight_point(const WalkModel& model, const WalkState& state, const S
   point.lifted_m = height_on(foot.plane, pose.heel_m) - point.base_m;
   const double gone = 1.0 - h00(u);
   const double turn = state.path.landing_heading_rad - foot.lift_yaw_rad;
-  pose.yaw_rad = foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u);
+  pose.yaw = rotation_y(foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u));
   // A lame foot that hardly leaves the floor does not roll onto an edge.
   const double low = low_lift(u, std::min(state.gait.flight_height[side].x, 1.0));
-  pose.twist_rad = low * cell.twist_rad;
-  pose.roll_rad = low * cell.roll_rad;
+  pose.edge = edge_of(model.leg[side], low * cell.twist_rad, low * cell.roll_rad);
   pose.tilt = foot.plane.tilt;
   if (pose.tilt != state.path.landing_plane.tilt) {
     pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.path.landing_plane.tilt * gone);
@@ -245,10 +244,9 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
   FootState& foot = state.foot[side];
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(foot.mode_ticks);
   const StrideFoot& cell = plan.cell.foot[side];
-  foot.pose.yaw_rad = foot.lift_yaw_rad;
+  foot.pose.yaw = rotation_y(foot.lift_yaw_rad);
   const double shows = on_its_edges(state);
-  foot.pose.twist_rad = shows * cell.twist_rad;
-  foot.pose.roll_rad = shows * cell.roll_rad;
+  foot.pose.edge = edge_of(leg, shows * cell.twist_rad, shows * cell.roll_rad);
   foot.pose.tilt = foot.plane.tilt;
   foot.base_m = foot.plane.place_m.y;
   if (foot.mode == FootMode::support) {
@@ -346,8 +344,8 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.pitch_fade = {pitch, 0.0, kRollEnd * state.clock.stage_ticks};
   FootPose flat = foot.pose;
   flat.heel_m = foot.heel_anchor_m;
-  flat.yaw_rad = foot.lift_yaw_rad;
-  flat.twist_rad = flat.roll_rad = 0.0;
+  flat.yaw = rotation_y(foot.lift_yaw_rad);
+  flat.edge = kIdentity;
   set_pitch(tick.model.leg[side], 0.0, flat, FootMode::roll);
   foot.toe_anchor_m = flat.toe_m;
 }

@@ -88,7 +88,7 @@ FootGoal whole_foot(const LegBuild& leg, const FootState& foot, const Pelvis& pe
 
 double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, const FootPose& pose,
                   const IkFrame& end) noexcept {
-  const vec3 line = glm::inverse(rotation_y(pose.yaw_rad)) *
+  const vec3 line = glm::inverse(pose.yaw) *
                     (glm::inverse(pose.tilt) *
                      (pelvis.rotation * (end.rotation * (leg.model.toe_m - leg.model.heel_m))));
   return leg.elevation_rad - atan2(line.y, glm::dot(line, leg.forward));

@@ -68,10 +68,10 @@ struct FootPlane {
 struct FootPose {
   vec3 heel_m{0.0}, toe_m{0.0};  // world
   quat tilt = kIdentity;         // from level ground to the foot's own
-  double yaw_rad = 0.0;          // about the vertical; 0 as in the standing pose at heading 0
+  quat yaw = kIdentity;          // about the vertical; none as in the standing pose at heading 0
   double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
-  double twist_rad = 0.0, roll_rad = 0.0;  // as in StrideFoot
-  double toe_rad = 0.0;                    // of the toe joint, toe end down positive
+  quat edge = kIdentity;         // twist and roll of StrideFoot
+  double toe_rad = 0.0;          // of the toe joint, toe end down positive
 };
 
 // What keeps a flying foot off the ground between its two footholds: two uniform cubic B-splines

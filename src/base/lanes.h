@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/trigonometry.h"
+#include "gaitpad/math.h"
 
 namespace gaitpad {
 
@@ -73,6 +74,35 @@ inline void sin_cos_of(const V& angle_rad, V& sine, V& cosine) noexcept {
   }
   sine = sin_kernel(x);
   cosine = cos_kernel(x);
+}
+
+// A rotation in each lane, from neighbours in memory and back.
+template <class V>
+struct QuatOf {
+  V w, x, y, z;
+};
+inline QuatOf<Lanes<2>> load_pair(const quat* from) noexcept {
+  const quat &a = from[0], &b = from[1];
+  return {Lanes<2>{a.w, b.w}, Lanes<2>{a.x, b.x}, Lanes<2>{a.y, b.y}, Lanes<2>{a.z, b.z}};
+}
+inline void store_pair(const QuatOf<Lanes<2>>& q, quat* to) noexcept {
+  for (int i : {0, 1}) to[i] = quat(q.w[i], q.x[i], q.y[i], q.z[i]);
+}
+template <class V>
+inline QuatOf<V> operator*(const QuatOf<V>& q, const V& k) noexcept {
+  return {q.w * k, q.x * k, q.y * k, q.z * k};
+}
+template <class V>
+inline QuatOf<V> operator+(const QuatOf<V>& a, const QuatOf<V>& b) noexcept {
+  return {a.w + b.w, a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class V>
+inline V dot_of(const QuatOf<V>& a, const QuatOf<V>& b) noexcept {
+  return (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z);
+}
+template <class V>
+inline QuatOf<V> normalized(const QuatOf<V>& q) noexcept {
+  return q * (1.0 / sqrt_of(dot_of(q, q)));
 }
 
 // A vector in space in each lane. The operations are those of glm, in its order.

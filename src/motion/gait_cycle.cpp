@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/lanes.h"
 #include "base/text.h"
 #include "motion/captured_cycle.h"
 #include "motion/gait_events.h"
@@ -74,9 +75,19 @@ void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept {
   pose.joint_count = joints;
   std::array<const quat*, 4> row;
   for (int k = 0; k < 4; ++k) row[k] = cycle.local.data() + std::size_t(s.index[k]) * joints;
-  for (int j = 0; j < joints; ++j) {
-    pose.local[j] = blended({row[0] + j, row[1] + j, row[2] + j, row[3] + j}, s.weight);
+  int j = 0;
+  for (; j + 1 < joints; j += 2) {
+    const QuatOf<Lanes<2>> nearest = load_pair(row[1] + j);
+    QuatOf<Lanes<2>> sum = nearest * all_of<Lanes<2>>(s.weight[1]);
+    for (const int k : {0, 2, 3}) {
+      const QuatOf<Lanes<2>> q = load_pair(row[k] + j);
+      const Lanes<2> weight = all_of<Lanes<2>>(s.weight[k]);
+      sum = sum + q * (dot_of(q, nearest) < Lanes<2>{} ? -weight : weight);
+    }
+    store_pair(normalized(sum), &pose.local[j]);
   }
+  for (; j < joints; ++j)
+    pose.local[j] = blended({row[0] + j, row[1] + j, row[2] + j, row[3] + j}, s.weight);
 }
 
 namespace {

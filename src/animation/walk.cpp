@@ -77,11 +77,11 @@ StridePlan stride_plan(const WalkModel& model, const WalkState& state, double ph
   plan.shown = std::clamp(state.gait.amplitude.x, 0.0, 1.0);
   const auto& tables = state.clock.backward ? model.strides.back : model.strides.table;
   plan.at[0] = stride_at(tables, plan.phase, state.gait.ratio_behind);
-  plan.at[1] = stride_at(tables, plan.phase, ratio_ahead(model, state));
+  const double ahead = ratio_ahead(model, state);
+  plan.at[1] = ahead == state.gait.ratio_behind ? plan.at[0] : stride_at(tables, plan.phase, ahead);
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
-  change_stride(model.strides, state,
-                mix(state.gait.ratio_behind, ratio_ahead(model, state), plan.change), plan);
+  change_stride(model.strides, state, mix(state.gait.ratio_behind, ahead, plan.change), plan);
   return plan;
 }
 

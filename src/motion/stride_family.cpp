@@ -45,23 +45,30 @@ class Sum {
   void add(const Cell& cell, double weight) noexcept {
     from_[count_] = &cell.pelvis_m.x, weight_[count_] = weight, ++count_;
   }
-  // All numbers of a cell, each kept in a register until it is done.
+  // All numbers of a cell, eight at a time in registers.
   Cell total() const noexcept {
-    constexpr std::size_t kNumbers = sizeof(Cell) / sizeof(double);
+    constexpr std::size_t kNumbers = sizeof(Cell) / sizeof(double), kTogether = 8;
     Cell cell;
     double* to = &cell.pelvis_m.x;
-    for (std::size_t k = 0; k + 1 < kNumbers; k += 2) {
-      Lanes<2> sum{}, one;
+    std::size_t k = 0;
+    for (; k + kTogether <= kNumbers; k += kTogether) {
+      Lanes<2> a{}, b{}, c{}, d{};
       for (int i = 0; i < count_; ++i) {
-        std::memcpy(&one, from_[i] + k, sizeof one);
-        sum += weight_[i] * one;
+        const double weight = weight_[i];
+        const double* from = from_[i] + k;
+        a += weight * Lanes<2>{from[0], from[1]};
+        b += weight * Lanes<2>{from[2], from[3]};
+        c += weight * Lanes<2>{from[4], from[5]};
+        d += weight * Lanes<2>{from[6], from[7]};
       }
-      std::memcpy(to + k, &sum, sizeof sum);
+      std::memcpy(to + k, &a, sizeof a);
+      std::memcpy(to + k + 2, &b, sizeof b);
+      std::memcpy(to + k + 4, &c, sizeof c);
+      std::memcpy(to + k + 6, &d, sizeof d);
     }
-    if constexpr (kNumbers % 2 == 1) {
-      double sum = 0.0;
-      for (int i = 0; i < count_; ++i) sum += weight_[i] * from_[i][kNumbers - 1];
-      to[kNumbers - 1] = sum;
+    for (; k < kNumbers; ++k) {
+      to[k] = 0.0;
+      for (int i = 0; i < count_; ++i) to[k] += weight_[i] * from_[i][k];
     }
     return cell;
   }

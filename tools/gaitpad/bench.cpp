@@ -134,11 +134,12 @@ double leg_ik_us(const Session& session, Simulation simulation) {
   const GaitParams params = gait_params(simulation.stick(), simulation.styles()[w.style], w.limits);
   const Tick tick{*w.model, params, 1.0 / session.config.rate_hz, is_flat(*w.model->terrain)};
   std::size_t i = 0;
-  return measured_us("leg", [&] {
-    pose_leg(tick, session.config.ik, (i & 1) != 0 ? kRightSide : kLeftSide, plans[i / 2],
-             pelvises[i / 2], states[i / 2]);
-    i = (i + 1) % (2 * states.size());
-  });
+  return measured_us("legs",
+                     [&] {
+                       pose_legs(tick, session.config.ik, plans[i], pelvises[i], states[i]);
+                       i = (i + 1) % states.size();
+                     }) /
+         2.0;
 }
 
 // The peer: the same motion played back without feet that hold the ground.

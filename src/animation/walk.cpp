@@ -15,6 +15,7 @@
 #include "gaitpad/walk.h"
 
 #include "animation/walk_parts.h"
+#include "base/lanes.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
@@ -638,9 +639,14 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   swing_arms(model, state, pose);
   const double a = presence(state);
   if (a < 1.0) {
-    for (int j = 0; j < pose.joint_count; ++j) {
-      pose.local[j] = nlerp(cycle.standing_local[j], pose.local[j], a);
+    int j = 0;
+    for (; j + 1 < pose.joint_count; j += 2) {
+      store_pair(nlerp_of(load_pair(&cycle.standing_local[j]), load_pair(&pose.local[j]),
+                          all_of<Lanes<2>>(a)),
+                 &pose.local[j]);
     }
+    for (; j < pose.joint_count; ++j)
+      pose.local[j] = nlerp(cycle.standing_local[j], pose.local[j], a);
   }
   for (int j : model.kept) pose.local[j] = cycle.standing_local[j];
   // Joints between root and pelvis turn with the heading and else move as in the data.

@@ -105,6 +105,11 @@ inline QuatOf<V> normalized(const QuatOf<V>& q) noexcept {
   return q * (1.0 / sqrt_of(dot_of(q, q)));
 }
 
+template <class V>
+inline QuatOf<V> nlerp_of(const QuatOf<V>& from, const QuatOf<V>& to, const V& share) noexcept {
+  return normalized(from * (1.0 - share) + to * (dot_of(from, to) < V{} ? -share : share));
+}
+
 // A vector in space in each lane. The operations are those of glm, in its order.
 template <class V>
 struct Vec3Of {

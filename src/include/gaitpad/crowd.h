@@ -1,0 +1,70 @@
+// Many characters that walk at once, each with its own build, motion, terrain, place and command.
+//
+//   Crowd crowd(members);
+//   for (int i = 0; i < crowd.size(); ++i) crowd.params()[i] = gait_params(stick, style, limits);
+//   crowd.advance(1.0 / 60.0);
+//
+// One call moves all of them on by one tick, to the same bits as advance() of gaitpad/walk.h moves
+// each of them, whatever the width of the processor's registers and the number of threads.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gaitpad/gait_params.h"
+#include "gaitpad/walk.h"
+
+namespace gaitpad {
+
+struct CrowdMember {
+  std::shared_ptr<const WalkModel> model;  // never null; members may share one
+  vec3 place_m{0.0};                       // where it stands at first, facing +z
+};
+
+// How many legs this processor solves side by side at most: 8 (AVX-512), 4 (AVX2) or 2.
+int widest_lanes() noexcept;
+
+struct CrowdOptions {
+  IkMode ik = IkMode::robust;
+  int lanes = widest_lanes();  // 1, 2, 4 or 8; more than this processor has: as many as it has
+  int threads = 1;             // at most; more than one need a library built with oneTBB
+};
+
+class Crowd {
+ public:
+  Crowd() = default;  // nobody
+  // Everybody stands.
+  explicit Crowd(std::span<const CrowdMember> members, const CrowdOptions& options = {});
+
+  int size() const noexcept { return static_cast<int>(states_.size()); }
+  // What each of them is to do in the next ticks, by member; at first to stand.
+  std::span<GaitParams> params() noexcept { return params_; }
+  // Moves everybody on by one tick of `dt_s` seconds, a constant of the run. On one thread it uses
+  // no heap, lock or clock.
+  void advance(double dt_s) noexcept;
+
+  const WalkModel& model(int member) const noexcept { return *models_[member]; }
+  const WalkState& state(int member) const noexcept { return states_[member]; }
+  // The pose of the last tick: where joint 0 is, in the world, and each joint's local rotation.
+  const vec3& root_m(int member) const noexcept { return roots_m_[member]; }
+  std::span<const quat> local(int member) const noexcept {
+    return {local_.data() + first_joint_[member], local_.data() + first_joint_[member + 1]};
+  }
+  void copy_pose(int member, Pose& pose) const noexcept;
+  // Puts a member back to where it stands at first.
+  void restart(int member, const vec3& place_m) noexcept;
+
+ private:
+  void advance_block(int first, int last, double dt_s) noexcept;
+  void store_pose(int member, const Pose& pose) noexcept;
+
+  CrowdOptions options_;
+  std::vector<std::shared_ptr<const WalkModel>> models_;
+  std::vector<GaitParams> params_;
+  std::vector<WalkState> states_;
+  std::vector<vec3> roots_m_;
+  std::vector<std::size_t> first_joint_{0};  // in `local_`, by member, and the end
+  std::vector<quat> local_;
+};
+
+}  // namespace gaitpad

@@ -1,16 +1,28 @@
 #include "gaitpad/crowd.h"
 
 #include <algorithm>
+#include <optional>
+
+#include "animation/walk_parts.h"
+#include "base/lanes.h"
 
 namespace gaitpad {
+namespace {
 
-int widest_lanes() noexcept { return 2; }
+// Characters whose ticks run side by side: enough to fill the widest registers with their legs, and
+// few enough for their plans to stay in the cache.
+constexpr int kTogether = 8;
+
+}  // namespace
+
+int most_lanes() noexcept { return widest_lanes(); }
 
 Crowd::Crowd(std::span<const CrowdMember> members, const CrowdOptions& options)
     : options_(options),
       params_(members.size()),
       states_(members.size()),
       roots_m_(members.size()) {
+  options_.lanes = std::min(options_.lanes, most_lanes());
   models_.reserve(members.size());
   first_joint_.reserve(members.size() + 1);
   for (const CrowdMember& member : members) {
@@ -41,13 +53,26 @@ void Crowd::copy_pose(int member, Pose& pose) const noexcept {
 }
 
 void Crowd::advance_block(int first, int last, double dt_s) noexcept {
+  std::array<PlannedTick, kTogether> planned;
+  std::array<std::optional<Tick>, kTogether> ticks;
+  const int count = last - first;
+  for (int i = 0; i < count; ++i) {
+    const WalkModel& model = *models_[first + i];
+    const Tick& tick =
+        ticks[i].emplace(Tick{model, params_[first + i], dt_s, is_flat(*model.terrain)});
+    plan_tick(tick, options_.ik, states_[first + i], planned[i]);
+  }
+  pose_legs({planned.data(), static_cast<std::size_t>(count)}, options_.ik, options_.lanes);
   Pose pose;
-  for (int i = first; i < last; ++i) {
-    gaitpad::advance(*models_[i], params_[i], options_.ik, dt_s, states_[i], pose);
-    store_pose(i, pose);
+  for (int i = 0; i < count; ++i) {
+    finish_tick(planned[i], options_.lanes, pose);
+    store_pose(first + i, pose);
   }
 }
 
-void Crowd::advance(double dt_s) noexcept { advance_block(0, size(), dt_s); }
+void Crowd::advance(double dt_s) noexcept {
+  for (int first = 0; first < size(); first += kTogether)
+    advance_block(first, std::min(first + kTogether, size()), dt_s);
+}
 
 }  // namespace gaitpad

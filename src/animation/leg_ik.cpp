@@ -1,10 +1,7 @@
-#include "animation/leg_ik.h"
-
 #include "animation/leg_ik_lanes.h"
 
 namespace gaitpad {
 
-template LegSolution<Lanes<2>> solve_legs(const LegGoals<Lanes<2>>&, const RobustOptions&,
-                                          std::array<Lanes<2>, kLegDofs>&) noexcept;
+template void solve_legs(const RobustOptions&, LegLanes<2>&) noexcept;
 
 }  // namespace gaitpad

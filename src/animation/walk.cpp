@@ -17,6 +17,7 @@
 #include "animation/walk_parts.h"
 #include "base/lanes.h"
 #include "motion/leg_pose.h"
+#include "motion/pose_rows.h"
 
 namespace gaitpad {
 
@@ -631,21 +632,14 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   }
 }
 
-void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
+void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pelvis, int lanes,
                 Pose& pose) noexcept {
   const GaitCycle& cycle = model.cycle;
-  pose.joint_count = static_cast<int>(cycle.skeleton.joints.size());
-  sample_local(cycle, data_phase(model, state), pose);
+  sample_rows(model.above, data_phase(model, state), lanes, pose);
   swing_arms(model, state, pose);
   const double a = presence(state);
   if (a < 1.0) {
-    int j = 0;
-    for (; j + 1 < pose.joint_count; j += 2) {
-      store_pair(nlerp_of(load_pair(&cycle.standing_local[j]), load_pair(&pose.local[j]),
-                          all_of<Lanes<2>>(a)),
-                 &pose.local[j]);
-    }
-    for (; j < pose.joint_count; ++j)
+    for (const int j : model.above.joint)
       pose.local[j] = nlerp(cycle.standing_local[j], pose.local[j], a);
   }
   for (int j : model.kept) pose.local[j] = cycle.standing_local[j];
@@ -736,28 +730,41 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   return state;
 }
 
-void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
-             WalkState& state, Pose& pose) noexcept {
-  const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
+void plan_tick(const Tick& tick, IkMode mode, WalkState& state, PlannedTick& planned) noexcept {
+  const WalkModel& model = tick.model;
+  planned.tick = &tick;
+  planned.state = &state;
   smooth_parameters(tick, mode, state);
   grant_wishes(mode, state);
   smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);
-  const StridePlan plan = stride_now(model, state);
-  advance_hips(tick, state, plan);
-  for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, plan, side);
-  Pelvis pelvis = pelvis_over_ground(model, state, plan);
-  pelvis.position_m.y = pelvis_height(model, state, plan, pelvis);
-  for (Side side : {kLeftSide, kRightSide}) {
-    reach_with_toe(model, state, side, pelvis.hip(model.leg[side]));
-  }
-  pose_legs(tick, mode, plan, pelvis, state);
-  write_pose(model, state, pelvis, pose);
-  fill_report(pelvis, dt_s, state);
+  planned.plan = stride_now(model, state);
+  advance_hips(tick, state, planned.plan);
+  for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, planned.plan, side);
+  planned.pelvis = pelvis_over_ground(model, state, planned.plan);
+  planned.pelvis.position_m.y = pelvis_height(model, state, planned.plan, planned.pelvis);
+  for (Side side : {kLeftSide, kRightSide})
+    reach_with_toe(model, state, side, planned.pelvis.hip(model.leg[side]));
+}
+
+void finish_tick(const PlannedTick& planned, int lanes, Pose& pose) noexcept {
+  const Tick& tick = *planned.tick;
+  WalkState& state = *planned.state;
+  write_pose(tick.model, state, planned.pelvis, lanes, pose);
+  fill_report(planned.pelvis, tick.dt_s, state);
   report_ground(tick, state.frame);
   finish_stage(tick, state);
   for (FootState& foot : state.foot) remember_foot(foot);
+}
+
+void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
+             WalkState& state, Pose& pose) noexcept {
+  const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
+  PlannedTick planned;
+  plan_tick(tick, mode, state, planned);
+  pose_legs({&planned, 1}, mode, 2);
+  finish_tick(planned, widest_lanes(), pose);
 }
 
 }  // namespace gaitpad

@@ -1,5 +1,7 @@
 // What the files of the walk call of each other. walk.cpp holds the tick that calls all of it.
 #pragma once
+#include <span>
+
 #include "gaitpad/walk.h"
 
 namespace gaitpad {
@@ -148,8 +150,21 @@ void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noex
 void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
 
 // --- walk_legs.cpp: inverse kinematics -----------------------------------------------------------
-// Solves both legs: their angles go to `state`, what the solver took to state.frame.
-void pose_legs(const Tick& tick, IkMode mode, const StridePlan& plan, const Pelvis& pelvis,
-               WalkState& state) noexcept;
+// One character's tick between its plan and its pose.
+struct PlannedTick {
+  const Tick* tick = nullptr;
+  WalkState* state = nullptr;
+  StridePlan plan;
+  Pelvis pelvis;
+};
+// Solves both legs of each of them, up to `lanes` (2, 4 or 8) legs side by side: their angles go to
+// the states, what the solver took to state.frame.
+void pose_legs(std::span<const PlannedTick> planned, IkMode mode, int lanes) noexcept;
+
+// --- walk.cpp: the tick in parts, for crowds
+// ------------------------------------------------------- Everything before the legs, and
+// everything after them.
+void plan_tick(const Tick& tick, IkMode mode, WalkState& state, PlannedTick& planned) noexcept;
+void finish_tick(const PlannedTick& planned, int lanes, Pose& pose) noexcept;
 
 }  // namespace gaitpad

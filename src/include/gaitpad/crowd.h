@@ -22,11 +22,11 @@ struct CrowdMember {
 };
 
 // How many legs this processor solves side by side at most: 8 (AVX-512), 4 (AVX2) or 2.
-int widest_lanes() noexcept;
+int most_lanes() noexcept;
 
 struct CrowdOptions {
   IkMode ik = IkMode::robust;
-  int lanes = widest_lanes();  // 1, 2, 4 or 8; more than this processor has: as many as it has
+  int lanes = most_lanes();  // 1, 2, 4 or 8; more than this processor has: as many as it has
   int threads = 1;             // at most; more than one need a library built with oneTBB
 };
 

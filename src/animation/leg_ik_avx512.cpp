@@ -1,0 +1,8 @@
+// Compiled for processors with AVX-512 alone (widest_lanes() in base/lanes.h).
+#include "animation/leg_ik_lanes.h"
+
+namespace gaitpad {
+
+template void solve_legs(const RobustOptions&, LegLanes<8>&) noexcept;
+
+}  // namespace gaitpad

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "animation/walk_parts.h"
-#include "base/lanes.h"
 
 namespace gaitpad {
 namespace {
@@ -15,14 +14,11 @@ constexpr int kTogether = 8;
 
 }  // namespace
 
-int most_lanes() noexcept { return widest_lanes(); }
-
 Crowd::Crowd(std::span<const CrowdMember> members, const CrowdOptions& options)
     : options_(options),
       params_(members.size()),
       states_(members.size()),
       roots_m_(members.size()) {
-  options_.lanes = std::min(options_.lanes, most_lanes());
   models_.reserve(members.size());
   first_joint_.reserve(members.size() + 1);
   for (const CrowdMember& member : members) {
@@ -62,10 +58,10 @@ void Crowd::advance_block(int first, int last, double dt_s) noexcept {
         ticks[i].emplace(Tick{model, params_[first + i], dt_s, is_flat(*model.terrain)});
     plan_tick(tick, options_.ik, states_[first + i], planned[i]);
   }
-  pose_legs({planned.data(), static_cast<std::size_t>(count)}, options_.ik, options_.lanes);
+  pose_legs({planned.data(), static_cast<std::size_t>(count)}, options_.ik);
   Pose pose;
   for (int i = 0; i < count; ++i) {
-    finish_tick(planned[i], options_.lanes, pose);
+    finish_tick(planned[i], pose);
     store_pose(first + i, pose);
   }
 }

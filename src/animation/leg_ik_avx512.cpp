@@ -1,4 +1,4 @@
-// Compiled for processors with AVX-512 alone (widest_lanes() in base/lanes.h).
+// Compiled for processors with AVX-512 alone (base/lanes.h asks for them).
 #include "animation/leg_ik_lanes.h"
 
 namespace gaitpad {

@@ -15,7 +15,6 @@
 #include "gaitpad/walk.h"
 
 #include "animation/walk_parts.h"
-#include "base/lanes.h"
 #include "motion/leg_pose.h"
 #include "motion/pose_rows.h"
 
@@ -71,12 +70,13 @@ double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
   return std::max(0.0, ratio_of_step(model, state) + state.gait.off_ratio.x);
 }
 
-StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
-                       double step_share) noexcept {
-  StridePlan plan;
+void plan_stride(const WalkModel& model, const WalkState& state, double phase, double step_share,
+                 StridePlan& plan) noexcept {
   plan.phase = phase;
   plan.change = smootherstep(step_share);
   plan.shown = std::clamp(state.gait.amplitude.x, 0.0, 1.0);
+  plan.heel_m = {};
+  plan.injury = {};
   const auto& tables = state.clock.backward ? model.strides.back : model.strides.table;
   plan.at[0] = stride_at(tables, plan.phase, state.gait.ratio_behind);
   const double ahead = ratio_ahead(model, state);
@@ -84,17 +84,16 @@ StridePlan stride_plan(const WalkModel& model, const WalkState& state, double ph
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
   change_stride(model.strides, state, mix(state.gait.ratio_behind, ahead, plan.change), plan);
-  return plan;
 }
 
-StridePlan stride_now(const WalkModel& model, const WalkState& state) noexcept {
+void plan_stride(const WalkModel& model, const WalkState& state, StridePlan& plan) noexcept {
   const double begun =
       state.clock.tick + (state.clock.stage == Stage::flight ? state.clock.roll_ticks : 0);
   // A walk that has closed fades from the stride of its last step.
   const double share = state.clock.started
                            ? begun / std::max(1, state.clock.roll_ticks + state.clock.flight_ticks)
                            : 0.0;
-  return stride_plan(model, state, state.clock.phase, share);
+  plan_stride(model, state, state.clock.phase, share, plan);
 }
 
 vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
@@ -516,7 +515,8 @@ void begin_path(const Tick& tick, WalkState& state) noexcept {
   double phase = state.clock.stage_phase, rate = state.clock.phase_rate;
   std::array<vec3, 3> off;
   for (int k : {0, 1, 2}) {
-    const StridePlan plan = stride_plan(tick.model, state, phase, 0.0);
+    StridePlan plan;
+    plan_stride(tick.model, state, phase, 0.0, plan);
     vec3 from = path_from_standing(state, plan);
     if (state.clock.last_step_ticks == 0)
       from = vec3(state.path.hips_m.x, from.y, state.path.hips_m.z);  // at rest
@@ -632,10 +632,10 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   }
 }
 
-void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pelvis, int lanes,
+void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
                 Pose& pose) noexcept {
   const GaitCycle& cycle = model.cycle;
-  sample_rows(model.above, data_phase(model, state), lanes, pose);
+  sample_rows(model.above, data_phase(model, state), pose);
   swing_arms(model, state, pose);
   const double a = presence(state);
   if (a < 1.0) {
@@ -739,7 +739,7 @@ void plan_tick(const Tick& tick, IkMode mode, WalkState& state, PlannedTick& pla
   smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);
-  planned.plan = stride_now(model, state);
+  plan_stride(model, state, planned.plan);
   advance_hips(tick, state, planned.plan);
   for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, planned.plan, side);
   planned.pelvis = pelvis_over_ground(model, state, planned.plan);
@@ -748,10 +748,10 @@ void plan_tick(const Tick& tick, IkMode mode, WalkState& state, PlannedTick& pla
     reach_with_toe(model, state, side, planned.pelvis.hip(model.leg[side]));
 }
 
-void finish_tick(const PlannedTick& planned, int lanes, Pose& pose) noexcept {
+void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {
   const Tick& tick = *planned.tick;
   WalkState& state = *planned.state;
-  write_pose(tick.model, state, planned.pelvis, lanes, pose);
+  write_pose(tick.model, state, planned.pelvis, pose);
   fill_report(planned.pelvis, tick.dt_s, state);
   report_ground(tick, state.frame);
   finish_stage(tick, state);
@@ -763,8 +763,8 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
   PlannedTick planned;
   plan_tick(tick, mode, state, planned);
-  pose_legs({&planned, 1}, mode, 2);
-  finish_tick(planned, widest_lanes(), pose);
+  pose_legs({&planned, 1}, mode);
+  finish_tick(planned, pose);
 }
 
 }  // namespace gaitpad

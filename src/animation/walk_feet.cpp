@@ -316,9 +316,9 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.pitch_fade = {};
   const double step = 1.0 / (state.clock.roll_ticks + state.clock.flight_ticks);
   const double share = state.clock.roll_ticks * step;
-  const StridePlan now = stride_plan(model, state, state.clock.phase, share),
-                   next = stride_plan(model, state, state.clock.phase + state.clock.phase_rate,
-                                      share + step);
+  StridePlan now, next;
+  plan_stride(model, state, state.clock.phase, share, now);
+  plan_stride(model, state, state.clock.phase + state.clock.phase_rate, share + step, next);
   double base_m = 0.0;
   const vec3 from = flight_heel(model, state, now, side, 0.0, base_m);
   const vec3 to = flight_heel(model, state, next, side, 1.0 / ticks, base_m);
@@ -339,8 +339,9 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.heel_anchor_m = state.path.landing_m;
   foot.lift_yaw_rad = state.path.landing_heading_rad;
   foot.plane = state.path.landing_plane;
-  const double pitch =
-      foot.pose.pitch_rad - table_pitch(state, stride_now(tick.model, state), side);
+  StridePlan plan;
+  plan_stride(tick.model, state, plan);
+  const double pitch = foot.pose.pitch_rad - table_pitch(state, plan, side);
   foot.pitch_fade = {pitch, 0.0, kRollEnd * state.clock.stage_ticks};
   FootPose flat = foot.pose;
   flat.heel_m = foot.heel_anchor_m;

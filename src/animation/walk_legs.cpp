@@ -304,16 +304,16 @@ void pose_robust(std::span<const PlannedTick> planned) noexcept {
 
 }  // namespace
 
-void pose_legs(std::span<const PlannedTick> planned, IkMode mode, int lanes) noexcept {
+void pose_legs(std::span<const PlannedTick> planned, IkMode mode) noexcept {
   if (mode == IkMode::paper) {
     for (const PlannedTick& one : planned) {
       for (Side side : {kLeftSide, kRightSide}) {
         report_leg(one, side, pose_paper(one, side));
       }
     }
-  } else if (lanes >= 8) {
+  } else if (lanes_in_use() >= 8 && planned.size() > 1) {
     pose_robust<8>(planned);
-  } else if (lanes >= 4) {
+  } else if (lanes_in_use() >= 4 && planned.size() > 1) {
     pose_robust<4>(planned);
   } else {
     pose_robust<2>(planned);

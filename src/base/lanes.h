@@ -25,6 +25,10 @@ inline constexpr int kWidthOf = sizeof(V) / sizeof(double);
 // How many numbers this processor's registers hold: 8 with AVX-512, 4 with AVX2, else 2. What is
 // compiled for wider ones may not be called.
 int widest_lanes() noexcept;
+// How many are used: as many as there are, or as use_lanes() says (2, 4, 8), for tests and
+// measurements. The results are the same.
+int lanes_in_use() noexcept;
+void use_lanes(int lanes) noexcept;
 
 template <class V>
 inline V all_of(double x) noexcept {

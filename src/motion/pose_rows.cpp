@@ -1,6 +1,6 @@
 #include "motion/pose_rows.h"
 
-#include "motion/pose_rows_lanes.h"
+#include "motion/rows.h"
 #include "motion/stencil.h"
 
 namespace gaitpad {
@@ -17,8 +17,6 @@ bool is_still(const GaitCycle& cycle, std::size_t joint) {
 }
 
 }  // namespace
-
-template void blend_rows<2>(const BlendedRows&) noexcept;
 
 PoseRows pose_rows(const GaitCycle& cycle, std::span<const bool> is_left_out) {
   PoseRows rows;
@@ -42,7 +40,7 @@ PoseRows pose_rows(const GaitCycle& cycle, std::span<const bool> is_left_out) {
   return rows;
 }
 
-void sample_rows(const PoseRows& rows, double phase, int lanes, Pose& pose) noexcept {
+void sample_rows(const PoseRows& rows, double phase, Pose& pose) noexcept {
   const Stencil s = stencil_at(phase);
   alignas(64) std::array<double, 4 * (kMaxJoints + kWidest)> blend;
   BlendedRows blended{{}, {}, blend.data(), rows.stride};
@@ -50,13 +48,7 @@ void sample_rows(const PoseRows& rows, double phase, int lanes, Pose& pose) noex
     blended.sample[k] = rows.value.data() + static_cast<std::size_t>(s.index[k]) * 4 * rows.stride;
     blended.weight[k] = s.weight[k];
   }
-  if (lanes >= 8) {
-    blend_rows<8>(blended);
-  } else if (lanes >= 4) {
-    blend_rows<4>(blended);
-  } else {
-    blend_rows<2>(blended);
-  }
+  blend_rows(blended);
   pose.joint_count = rows.joint_count;
   for (std::size_t i = 0; i < rows.joint.size(); ++i) {
     const double* q = blend.data() + i;

@@ -12,8 +12,7 @@ namespace gaitpad {
 // move is the identity.
 PoseRows pose_rows(const GaitCycle& cycle, std::span<const bool> is_left_out);
 
-// Sets the local rotations of the table's joints, and of those that do not move. `lanes`: how many
-// joints go side by side, 2, 4 or 8, at most widest_lanes().
-void sample_rows(const PoseRows& rows, double phase, int lanes, Pose& pose) noexcept;
+// Sets the local rotations of the table's joints, and of those that do not move.
+void sample_rows(const PoseRows& rows, double phase, Pose& pose) noexcept;
 
 }  // namespace gaitpad

@@ -21,13 +21,9 @@ struct CrowdMember {
   vec3 place_m{0.0};                       // where it stands at first, facing +z
 };
 
-// How many legs this processor solves side by side at most: 8 (AVX-512), 4 (AVX2) or 2.
-int most_lanes() noexcept;
-
 struct CrowdOptions {
   IkMode ik = IkMode::robust;
-  int lanes = most_lanes();  // 1, 2, 4 or 8; more than this processor has: as many as it has
-  int threads = 1;             // at most; more than one need a library built with oneTBB
+  int threads = 1;  // at most; more than one need a library built with oneTBB
 };
 
 class Crowd {

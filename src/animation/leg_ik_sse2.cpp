@@ -1,3 +1,4 @@
+// Compiled for every processor.
 #include "animation/leg_ik_lanes.h"
 
 namespace gaitpad {

@@ -1,20 +1,11 @@
-// The body of sample_rows(), for one width and one set of instructions at a time.
+// The bodies of rows.h, for one width and one set of instructions at a time.
 #pragma once
+#include <array>
+
 #include "base/lanes.h"
+#include "motion/rows.h"
 
 namespace gaitpad {
-
-// Four samples of a cycle, their weights, and the place for their blend: w, x, y and z of every
-// joint in turn, `stride` numbers each.
-struct BlendedRows {
-  const double* sample[4];
-  double weight[4];
-  double* blend;
-  int stride;
-};
-template <int kWidth>
-void blend_rows(const BlendedRows& rows) noexcept;
-
 namespace {
 
 template <int kWidth>
@@ -47,6 +38,31 @@ void blend_rows(const BlendedRows& rows) noexcept {
     std::memcpy(rows.blend + rows.stride + j, &sum.x, sizeof sum.x);
     std::memcpy(rows.blend + 2 * rows.stride + j, &sum.y, sizeof sum.y);
     std::memcpy(rows.blend + 3 * rows.stride + j, &sum.z, sizeof sum.z);
+  }
+}
+
+// Eight numbers at a time stay in registers.
+template <int kWidth>
+void sum_rows(const SummedRows& rows) noexcept {
+  using V = Lanes<kWidth>;
+  constexpr int kTogether = 8, kParts = kTogether / kWidth;
+  int at = 0;
+  for (; at + kTogether <= rows.numbers; at += kTogether) {
+    std::array<V, kParts> sum{};
+    for (int i = 0; i < rows.rows; ++i) {
+      const V weight = all_of<V>(rows.weight[i]);
+      for (int k = 0; k < kParts; ++k) {
+        V number;
+        std::memcpy(&number, rows.row[i] + at + k * kWidth, sizeof number);
+        sum[k] += weight * number;
+      }
+    }
+    std::memcpy(rows.sum + at, &sum, sizeof sum);
+  }
+  for (; at < rows.numbers; ++at) {
+    double sum = 0.0;
+    for (int i = 0; i < rows.rows; ++i) sum += rows.weight[i] * rows.row[i][at];
+    rows.sum[at] = sum;
   }
 }
 

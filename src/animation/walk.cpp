@@ -177,6 +177,7 @@ constexpr double kSlowerBack = 2.05;
 constexpr double kBraking = 2.4;  // way over speed and time of a stop with little jerk
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
+constexpr double kAllShown = 1.0 - 1e-9;   // from here on nothing is mixed with the stand
 constexpr double kStillTurn = 1e-5;        // rad/s: slower than this is straight ahead
 
 // Share of the cycle's time.
@@ -361,6 +362,7 @@ void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept
   state.gait.amplitude.advance(
       state.clock.started ? 1.0 : 0.0,
       (state.clock.started ? kAmplitudeSmoothing : kAmplitudeFading) * scale, dt);
+  if (state.clock.started && state.gait.amplitude.x > kAllShown) state.gait.amplitude = {1.0, 0.0};
   state.gait.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
   state.gait.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
   const double mean = 0.5 * (state.gait.length_m[0].x + state.gait.length_m[1].x);
@@ -606,7 +608,7 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   const LegAngles& q = state.legs.angles_rad[side];
   const Skeleton& skeleton = model.cycle.skeleton;
   const quat pelvis =
-      frames.rotation[model.cycle.pelvis] * glm::inverse(model.cycle.pelvis_standing);
+      frames.rotation[model.cycle.pelvis] * glm::conjugate(model.cycle.pelvis_standing);
   const quat thigh = pelvis * rotation_xzy({q[kHipX], q[kHipZ], q[kHipY]});
   const quat shank = thigh * rotation_x(q[kKneeX]);
   const quat foot = shank * rotation_xzy({q[kAnkleX], q[kAnkleZ], q[kAnkleY]});
@@ -627,7 +629,7 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
     }
     while (n > 0) parent = parent * pose.local[between[--n]];
     frames.rotation[j] = segment[i] * leg.model.standing[i];
-    pose.local[j] = glm::inverse(parent) * frames.rotation[j];
+    pose.local[j] = glm::conjugate(parent) * frames.rotation[j];
     last = j;
   }
 }
@@ -653,7 +655,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
     above = pose.local[j] * above;
   }
   frames.rotation[cycle.pelvis] = pelvis.rotation * cycle.pelvis_standing;
-  pose.local[cycle.pelvis] = glm::inverse(above) * frames.rotation[cycle.pelvis];
+  pose.local[cycle.pelvis] = glm::conjugate(above) * frames.rotation[cycle.pelvis];
   for (Side side : {kLeftSide, kRightSide}) write_leg(model, state, side, frames, pose);
   pose_upper_body(model, state, pose);
 }

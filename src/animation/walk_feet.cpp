@@ -135,7 +135,7 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
 // reaches: P cos + Q sin = K in the foot's own vertical plane.
 double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m,
                       double reach) noexcept {
-  const vec3 d = glm::conjugate(pose.yaw) * (glm::inverse(pose.tilt) * (hip_m - pose.toe_m)),
+  const vec3 d = glm::conjugate(pose.yaw) * (glm::conjugate(pose.tilt) * (hip_m - pose.toe_m)),
              c = -leg.model.toe_m;
   const double df = glm::dot(d, leg.forward), cf = glm::dot(c, leg.forward);
   const double ds = glm::dot(d, leg.side), cs = glm::dot(c, leg.side);

@@ -61,7 +61,7 @@ FootEnd end_effector(const FootState& foot) noexcept {  // Table I
 FootGoal foot_goal(const LegBuild& leg, const FootState& foot, const Pelvis& pelvis,
                    FootEnd end) noexcept {
   const bool on_toe = end == FootEnd::toe;
-  const quat to_pelvis = glm::inverse(pelvis.rotation);
+  const quat to_pelvis = glm::conjugate(pelvis.rotation);
   const quat rotation = to_pelvis * foot_rotation(leg, foot.pose);
   const vec3 hip = pelvis.hip(leg);
   const vec3 effector = to_pelvis * ((on_toe ? foot.pose.toe_m : foot.pose.heel_m) - hip);
@@ -88,8 +88,8 @@ FootGoal whole_foot(const LegBuild& leg, const FootState& foot, const Pelvis& pe
 
 double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, const FootPose& pose,
                   const IkFrame& end) noexcept {
-  const vec3 line = glm::inverse(pose.yaw) *
-                    (glm::inverse(pose.tilt) *
+  const vec3 line = glm::conjugate(pose.yaw) *
+                    (glm::conjugate(pose.tilt) *
                      (pelvis.rotation * (end.rotation * (leg.model.toe_m - leg.model.heel_m))));
   return leg.elevation_rad - atan2(line.y, glm::dot(line, leg.forward));
 }

@@ -6,14 +6,20 @@
 #include "animation/leg_ik.h"
 
 namespace gaitpad {
+// Which of a goal's points a row is of.
+inline constexpr std::array<int, 6> kPointOf = {0, 0, 0, 1, 1, 2};
+// As in ik.cpp.
+inline constexpr double kLegLeastDamping = 1e-20;
+inline constexpr double kLegGrowth = 0.1, kLegGrowthUp = 8.0, kLegGrowthDown = 0.25;
+inline constexpr double kLegFarthest = 0.5;
+inline constexpr int kLegPatience = 6;
+inline constexpr double kLegLeastGain = 0.001, kLegGainFrom = 0.1;
 namespace {
 
 template <class V>
 using LegValues = std::array<V, kLegDofs>;
 template <class V>
 using LegRows = std::array<V, 6>;
-
-constexpr std::array<int, 6> kPointOf = {0, 0, 0, 1, 1, 2};
 
 // The legs in one pose, and how far their rows are from their goals.
 template <class V>
@@ -163,13 +169,6 @@ inline void limited_step(const LegGoals<V>& goals, const LegColumns<V>& column,
     if (!any(frozen)) return;
   }
 }
-
-// As in ik.cpp.
-constexpr double kLegLeastDamping = 1e-20;
-constexpr double kLegGrowth = 0.1, kLegGrowthUp = 8.0, kLegGrowthDown = 0.25;
-constexpr double kLegFarthest = 0.5;
-constexpr int kLegPatience = 6;
-constexpr double kLegLeastGain = 0.001, kLegGainFrom = 0.1;
 
 template <class V>
 inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions& options,

@@ -12,8 +12,8 @@ namespace gaitpad {
 
 template <int kWidth>
 struct LanesOf {
-  typedef double Type __attribute__((vector_size(8 * kWidth)));
-  typedef long long Mask __attribute__((vector_size(8 * kWidth)));
+  using Type __attribute__((vector_size(8 * kWidth))) = double;
+  using Mask __attribute__((vector_size(8 * kWidth))) = long long;
 };
 template <int kWidth>
 using Lanes = typename LanesOf<kWidth>::Type;

@@ -6,14 +6,17 @@
 #include "animation/leg_ik.h"
 
 namespace gaitpad {
+
 // Which of a goal's points a row is of.
 inline constexpr std::array<int, 6> kPointOf = {0, 0, 0, 1, 1, 2};
+
 // As in ik.cpp.
 inline constexpr double kLegLeastDamping = 1e-20;
 inline constexpr double kLegGrowth = 0.1, kLegGrowthUp = 8.0, kLegGrowthDown = 0.25;
 inline constexpr double kLegFarthest = 0.5;
 inline constexpr int kLegPatience = 6;
 inline constexpr double kLegLeastGain = 0.001, kLegGainFrom = 0.1;
+
 namespace {
 
 template <class V>

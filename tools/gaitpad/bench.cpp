@@ -17,7 +17,7 @@
 #include <fstream>
 #include <memory>
 
-#include "gaitpad/crowd.h"
+#include "base/lanes.h"
 #include "tools/gaitpad/bench_work.h"
 #ifdef GAITPAD_HAS_WINDOW
 #include "draw/plot.h"
@@ -136,6 +136,7 @@ std::vector<Row> measured(const std::vector<Work>& works, int rounds, const Core
   std::vector<std::int64_t> passes;
   const auto block_of = [&](const Work& work, std::int64_t count) {
     work.is_on_all_cores ? cores.use_all() : cores.use_one();
+    use_lanes(work.width > 0 ? work.width : widest_lanes());
     return measured_block(work, count);
   };
   for (const Work& work : works) {
@@ -350,7 +351,7 @@ std::optional<Error> write_plot(const std::string& path, const std::vector<Row>&
   for (const Row& row : rows)
     if (row.work->name == "crowd") largest = std::max(largest, double(row.work->characters));
   std::size_t next_colour = 0;
-  for (int lanes = widest_lanes(); lanes >= 1; lanes /= 2) {
+  for (int lanes = widest_lanes(); lanes >= 2; lanes /= 2) {
     std::vector<PlotPoint> points;
     for (const Row& row : rows)
       if (row.work->name == "crowd" && row.work->width == lanes)

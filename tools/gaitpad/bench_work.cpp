@@ -10,15 +10,17 @@
 #include <chrono>
 #include <filesystem>
 #include <random>
-#include <thread>
 
 #include "animation/leg_ik.h"
 #include "animation/walk_parts.h"
+#include "base/lanes.h"
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/crowd.h"
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
+#include "motion/pose_rows.h"
+#include "session/workers.h"
 #include "tools/gaitpad/options.h"
 
 namespace gaitpad {
@@ -122,37 +124,39 @@ void set_vector(const vec3& from, int lane, Vec3Of<V>& to) {
   to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
 }
 
-// Both legs of one tick, as the walk solves them: side by side.
+// Both legs of one tick, as the walk solves them: side by side. They start where the walk's solver
+// did and go where it came to.
 struct RobustLegs {
-  LegGoals<Lanes<2>> goals;
-  std::array<Lanes<2>, kLegDofs> start;
+  LegLanes<2> lanes;
+  std::array<Row<2>, kLegDofs> start_rad;
 };
 void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<RobustLegs>& legs) {
-  RobustLegs& tick = legs.emplace_back();
+  RobustLegs& both = legs.emplace_back();
+  LegGoals<Row<2>>& goals = both.lanes.goals;
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = now.model->leg[side];
     const LegState &last = before.state.legs, &solved = now.state.legs;
     double largest = 0.0;
     for (const Damped<double>& w : now.state.gait.weight[side]) largest = std::max(largest, w.x);
     for (int j = 0; j < kLegDofs; ++j) {
-      tick.start[j][side] =
+      both.start_rad[j][side] =
           solved.data_rad[side][j] +
           (1.0 - kLeak_per_s * dt_s) * (last.angles_rad[side][j] - last.data_rad[side][j]);
-      tick.goals.weight[j][side] =
+      goals.weight[j][side] =
           std::clamp(now.state.gait.weight[side][j].x / largest, kLeastWeight, 1.0);
-      tick.goals.min_rad[j][side] = leg.chain.dof[j].min_rad;
-      tick.goals.max_rad[j][side] = leg.chain.dof[j].max_rad;
+      goals.min_rad[j][side] = leg.chain.dof[j].min_rad;
+      goals.max_rad[j][side] = leg.chain.dof[j].max_rad;
     }
-    tick.goals.min_rad[kAnkleX][side] = -kPi;
-    tick.goals.thigh_m[side] = leg.model.thigh_m;
-    tick.goals.shank_m[side] = leg.model.shank_m;
+    goals.min_rad[kAnkleX][side] = -kPi;
+    goals.thigh_m[side] = leg.model.thigh_m;
+    goals.shank_m[side] = leg.model.shank_m;
     const auto rows = foot_rows(leg, end_frame(leg.chain, padded(solved.angles_rad[side])), false);
     for (const auto& [row, point] : {std::pair(0, 0), {3, 1}, {5, 2}})
-      set_vector(rows[row].point_m, side, tick.goals.point_m[point]);
-    set_vector(rows[0].direction, side, tick.goals.side);
-    set_vector(rows[1].direction, side, tick.goals.across);
-    set_vector(rows[2].direction, side, tick.goals.along);
-    for (int r = 0; r < 6; ++r) tick.goals.goal_m[r][side] = rows[r].goal_m;
+      set_vector(rows[row].point_m, side, goals.point_m[point]);
+    set_vector(rows[0].direction, side, goals.side);
+    set_vector(rows[1].direction, side, goals.across);
+    set_vector(rows[2].direction, side, goals.along);
+    for (int r = 0; r < 6; ++r) goals.goal_m[r][side] = rows[r].goal_m;
   }
 }
 
@@ -192,13 +196,14 @@ std::vector<Legs> solves_of(const Session& session, Simulation simulation,
   return legs;
 }
 
-int solve(const RobustLegs& legs) {
-  std::array<Lanes<2>, kLegDofs> angles = legs.start;
-  const auto solution = solve_legs(legs.goals, kRobust, angles);
-  benchmark::DoNotOptimize(angles);
-  return static_cast<int>(solution.iterations[0] + solution.iterations[1]);
+int solve(RobustLegs& legs) {
+  legs.lanes.angles_rad = legs.start_rad;
+  solve_legs(kRobust, legs.lanes);
+  benchmark::DoNotOptimize(legs.lanes);
+  const Row<2>& iterations = legs.lanes.solution.iterations;
+  return static_cast<int>(iterations[0] + iterations[1]);
 }
-int solve(const PaperLeg& leg) {
+int solve(PaperLeg& leg) {
   IkAngles angles = leg.start;
   const IkResult result = solve_paper(leg.chain, {leg.rows.data(), leg.row_count}, kPaper, angles);
   benchmark::DoNotOptimize(angles);
@@ -213,10 +218,10 @@ Work leg_work(const char* name, const char* label, std::vector<Legs> legs) {
   work.label = label;
   work.units = static_cast<double>(legs.size() * (std::is_same_v<Legs, RobustLegs> ? 2 : 1));
   int iterations = 0;
-  for (const Legs& one : legs) iterations += solve(one);
+  for (Legs& one : legs) iterations += solve(one);
   work.notes["iterations_per_leg"] = iterations / work.units;
-  work.pass = [legs = std::move(legs)] {
-    for (const Legs& one : legs) solve(one);
+  work.pass = [legs = std::move(legs)]() mutable {
+    for (Legs& one : legs) solve(one);
   };
   return work;
 }
@@ -350,14 +355,15 @@ Work stage_work(const Session& session, const Simulation& simulation,
     }
     at[1] = Clock::now();
     for (LiveWalkers::One& one : all) {
-      StridePlan plan = stride_now(*one.model, one.state);
+      StridePlan plan;
+      plan_stride(*one.model, one.state, plan);
       benchmark::DoNotOptimize(plan);
     }
     at[2] = Clock::now();
-    for (PlannedTick& one : *planned) pose_legs({&one, 1}, IkMode::robust, 2);
+    for (PlannedTick& one : *planned) pose_legs({&one, 1}, IkMode::robust);
     at[3] = Clock::now();
     for (LiveWalkers::One& one : all)
-      sample_local(one.model->cycle, data_phase(*one.model, one.state), one.pose);
+      sample_rows(one.model->above, data_phase(*one.model, one.state), one.pose);
     at[4] = Clock::now();
     for (std::size_t i = 0; i < kTogether; ++i) finish_tick((*planned)[i], all[i].pose);
     at[5] = Clock::now();
@@ -454,8 +460,7 @@ Result<CrowdCast> crowd_cast(const Session& session, const std::vector<Stick>& s
 // A crowd of mixed builds and styles, each led by another part of the trace, in different stages.
 class LedCrowd {
  public:
-  LedCrowd(std::shared_ptr<const CrowdCast> cast, int size, const CrowdOptions& options)
-      : cast_(std::move(cast)) {
+  LedCrowd(std::shared_ptr<const CrowdCast> cast, int size) : cast_(std::move(cast)) {
     std::mt19937 random(kSeed);
     std::vector<CrowdMember> members;
     const int row = static_cast<int>(std::ceil(std::sqrt(size)));
@@ -467,12 +472,13 @@ class LedCrowd {
       members.push_back({cast_->models[part.model], vec3(1.5 * (i % row), 0.0, 1.5 * (i / row))});
     }
     const double before = heap_bytes();
-    crowd_ = Crowd(members, options);
+    crowd_ = Crowd(members);
     bytes_each_ = (heap_bytes() - before) / size;
   }
   double bytes_each() const { return bytes_each_; }
 
-  void advance() {
+  // With workers: by all of them.
+  void advance(Workers* workers) {
     for (int i = tick_ % kStickTicks; i < crowd_.size(); i += kStickTicks) {
       const Part& part = parts_[i];
       if (tick_ < part.start) continue;
@@ -481,7 +487,11 @@ class LedCrowd {
       crowd_.params()[i] =
           gait_params(cast_->sticks[at], cast_->styles[part.style], cast_->limits[part.model]);
     }
-    crowd_.advance(kCrowdDt_s);
+    if (workers) {
+      workers->for_each(crowd_.blocks(), [this](int b) { crowd_.advance_block(b, kCrowdDt_s); });
+    } else {
+      crowd_.advance(kCrowdDt_s);
+    }
     ++tick_;
   }
 
@@ -496,30 +506,33 @@ class LedCrowd {
   int tick_ = 0;
 };
 
-Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, int threads) {
-  CrowdOptions options;
-  options.lanes = lanes;
-  options.threads = threads;
-  const auto crowd = std::make_shared<LedCrowd>(std::move(cast), size, options);
-  for (int tick = 0; tick < kWarmTicks; ++tick) crowd->advance();
+enum class CrowdCores { one, all };
+Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, CrowdCores cores,
+                const std::shared_ptr<Workers>& workers) {
+  use_lanes(lanes);
+  const auto crowd = std::make_shared<LedCrowd>(std::move(cast), size);
+  for (int tick = 0; tick < kWarmTicks; ++tick) crowd->advance(workers.get());
   Work work;
-  work.is_on_all_cores = threads > 1;
-  work.name = threads > 1 ? "crowd_all_cores" : "crowd";
+  work.name = "crowd";
   work.label = fmt::format("{:6}   {} lanes", size, lanes);
   work.characters = size;
   work.units = size;
   work.width = lanes;
   work.over = "playback";
   work.notes["bytes"] = crowd->bytes_each();
-  if (threads > 1) {
-    work.label += fmt::format(", {} threads", threads);
-    work.notes["threads"] = threads;
+  if (cores == CrowdCores::all) {
+    work.name = "crowd_all_cores";
+    work.is_on_all_cores = true;
+    work.label += fmt::format(", {} threads", workers->threads());
+    work.notes["threads"] = workers->threads();
+    work.pass = [crowd, workers] { crowd->advance(workers.get()); };
+    return work;
   }
-  if (size == 1000 && threads == 1) {
-    work.most_ratio = lanes >= 8 ? 0.6 : lanes >= 4 ? 0.9 : lanes >= 2 ? 1.5 : 0.0;
+  if (size == 1000) {
+    work.most_ratio = lanes >= 8 ? 0.6 : lanes >= 4 ? 0.9 : 1.5;
     work.most_ns = lanes >= 8 ? 600.0 : 0.0;
   }
-  work.pass = [crowd] { crowd->advance(); };
+  work.pass = [crowd] { crowd->advance(nullptr); };
   return work;
 }
 
@@ -641,13 +654,15 @@ Result<std::vector<Work>> bench_work(int most_characters) {
     if (size < most_characters) sizes.push_back(size);
   sizes.push_back(most_characters);
   const int widest = widest_lanes();
-  const int threads = static_cast<int>(std::thread::hardware_concurrency());
-  for (const int size : {1000, 10000})
-    if (threads > 1 && size <= most_characters)
-      list.push_back(crowd_work(cast, size, widest, threads));
-  for (int lanes = widest; lanes >= 1; lanes /= 2)
+  const auto workers = std::make_shared<Workers>(machine_threads());
+  for (int lanes = widest; lanes >= 2; lanes /= 2)
     for (const int size : sizes)
-      if (size <= 1000 || lanes == widest) list.push_back(crowd_work(cast, size, lanes, 1));
+      if (size <= 1000 || lanes == widest)
+        list.push_back(crowd_work(cast, size, lanes, CrowdCores::one, workers));
+  for (const int size : {1000, 10000})
+    if (workers->threads() > 1 && size <= most_characters)
+      list.push_back(crowd_work(cast, size, widest, CrowdCores::all, workers));
+  use_lanes(widest);
 
   auto loads = load_work();
   if (!loads) return loads.error();

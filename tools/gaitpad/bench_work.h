@@ -28,7 +28,7 @@ struct Work {
   int every = 1;  // it takes part in each so many-th round
   std::function<void()> pass;
   std::shared_ptr<StageTimes> stages;  // of the work that splits its time
-  nlohmann::ordered_json notes;        // further keys of its row
+  nlohmann::ordered_json notes = nlohmann::ordered_json::object();  // further keys of its row
 };
 
 // A leg's inverse kinematics, one character and four, bare playback, crowds of 1 to

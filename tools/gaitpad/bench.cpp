@@ -281,7 +281,7 @@ void print_table(const std::vector<Row>& rows, const ordered_json& list, const C
   const ordered_json& first = list.front();
   fmt::print("{}, {}", first["processor"].get<std::string>(), lanes_text(first["lanes"]));
   if (cores.core() >= 0) fmt::print(", core {}", cores.core());
-  fmt::print("; median of {} rounds, quartiles, times the peer, bound\n", rounds);
+  fmt::print("; medians over {} rounds, quartiles, times the peer, bound\n", rounds);
   std::string heading;
   for (const Row& row : rows) {
     const ordered_json json = json_of(row, rows);
@@ -376,18 +376,13 @@ std::optional<Error> write_plot(const std::string& path, const std::vector<Row>&
   const Page page = blank_page(kWidth, kHeight, "A crowd's time, a character and tick",
                                processor + ", one core, medians");
   cairo_t* cr = page.cr.get();
-  draw_plot(cr,
-            {kPageMargin + 62.0, kPageTop + 54.0, kWidth - 2.0 * kPageMargin - 82.0,
-             kHeight - kPageTop - 54.0 - 70.0},
-            plot);
+  const Box box = {kPageMargin + 62.0, kPageTop + 54.0, kWidth - 2.0 * kPageMargin - 82.0,
+                   kHeight - kPageTop - 124.0};
+  draw_plot(cr, box, plot);
   for (const PlotSeries& series : plot.series) {
     if (series.is_dashed) continue;
     for (const PlotPoint& p : series.points)
-      draw_dot(cr,
-               pixel_in({kPageMargin + 62.0, kPageTop + 54.0, kWidth - 2.0 * kPageMargin - 82.0,
-                         kHeight - kPageTop - 54.0 - 70.0},
-                        plot, p),
-               3.0, series.colour);
+      draw_dot(cr, pixel_in(box, plot, p), 3.0, series.colour);
   }
   draw_legend(cr, {kPageMargin, kPageTop, kWidth - 2.0 * kPageMargin, 40.0}, legend);
   return write_png(path, page.surface.get());

@@ -411,7 +411,7 @@ Work step_work(const Session& session, const Simulation& simulation, const char*
 constexpr double kCrowdDt_s = 1.0 / 60.0;
 constexpr int kWarmTicks = 60, kFewWarmTicks = 24;  // before a crowd is measured
 constexpr int kLastStart = 20;  // somebody who stands begins to walk within so many of them
-constexpr int kLarge = 10000;   // such crowds take part in fewer rounds
+constexpr int kLarge = 10000;   // such crowds warm up shorter and take part in fewer rounds
 constexpr int kBuilds = 16;
 constexpr unsigned kSeed = 14;
 const std::vector<std::string> kCrowdStyles = {"even",      "stiff_hip",     "stiff_knee",
@@ -512,7 +512,7 @@ Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, Crow
                 const std::shared_ptr<Workers>& workers) {
   use_lanes(lanes);
   const auto crowd = std::make_shared<LedCrowd>(std::move(cast), size);
-  const int warm = size > kLarge ? kFewWarmTicks : kWarmTicks;
+  const int warm = size >= kLarge ? kFewWarmTicks : kWarmTicks;
   for (int tick = 0; tick < warm; ++tick) crowd->advance(workers.get());
   Work work;
   work.name = "crowd";

@@ -374,7 +374,7 @@ std::optional<Error> write_plot(const std::string& path, const std::vector<Row>&
   plot.y.max = std::log10(most * 1.5);
 
   const Page page = blank_page(kWidth, kHeight, "A crowd's time, a character and tick",
-                               processor + ", one core, medians");
+                               processor + ", one core where nothing else is said, medians");
   cairo_t* cr = page.cr.get();
   const Box box = {kPageMargin + 62.0, kPageTop + 54.0, kWidth - 2.0 * kPageMargin - 82.0,
                    kHeight - kPageTop - 124.0};

@@ -185,21 +185,48 @@ def place(walk):
 
 def measure_bench(options, text=None):
     text = text or output_of(needed(options.build / "gaitpad"), "bench", "--json")
-    found = {(b["name"], b.get("characters")): b for b in json.loads(text)}
-    one, four = found[("step", 1)], found[("step", 4)]
-    return {"rows": [
-        row("one character", one["time_us"], "", "us"),
-        row("four characters, three of them with styles", four["time_us"],
-            f"aim {four['limit_us']:g}", "us"),
-        row("bare playback of the same motion on four", found[("playback", 4)]["time_us"], "",
-            "us"),
-        row("inverse kinematics of one leg", found[("leg_ik", 1)]["time_us"], "", "us"),
-        row("iterations of a leg, one character", one["iterations_per_leg"]),
-        *(row(name, found[(key, 1)]["time_us"] / 1000.0, bound, "ms") for key, name, bound in (
-            ("load_built_in", "loading the built-in motion the first time", "<= 150"),
-            ("load_clip", "loading a clip the first time", "<= 800"),
-            ("load_cached", "loading it again", ""))),
-    ]}
+    found = json.loads(text)
+    rows = []
+
+    def add(name, label, key="ns", characters=None, **others):
+        """The row of that name, in its own unit; `others` are keys that it has to have."""
+        for b in found:
+            if b["name"] != name or characters not in (None, b["characters"]):
+                continue
+            if any(b.get(k) != v for k, v in others.items()):
+                continue
+            bound = b.get({"ns": "bound_ns", "ratio": "bound_ratio", "growth": "bound_growth"}[key])
+            if b["name"].startswith("load"):
+                rows.append(row(label, b["ns"] / 1e6, f"<= {bound / 1e6:g}" if bound else "", "ms"))
+            else:
+                rows.append(row(label, b[key], f"<= {bound:g}" if bound else "",
+                                "ns" if key == "ns" else "x"))
+
+    widest = found[0]["lanes"]
+    add("leg_paper", "one leg, paper mode, the solve alone")
+    add("leg_robust_even", "one leg, robust, even weights")
+    add("leg_robust_weighted", "one leg, robust, stiff hip or knee")
+    add("playback", "bare playback of the skeleton, scalar: local rotations")
+    add("playback_world", "the same and the world frames of all joints")
+    for stage in ("clock and plan", "sampling", "ik", "pose"):
+        add("stage", f"stage of the tick: {stage}", stage=stage)
+    add("character_even", "one character, even")
+    add("character_even", "the same over bare playback", "ratio")
+    add("characters_styled", "four characters with styles, each")
+    add("characters_styled", "the same over four even ones", "ratio")
+    add("step", "four characters with the session around them, each", characters=4)
+    for width in (8, 4, 2):
+        add("crowd", f"crowd of 1,000 in {width} lanes, each", characters=1000, width=width)
+        add("crowd", "the same over bare playback", "ratio", characters=1000, width=width)
+    for size in (10000, 100000):
+        add("crowd", f"crowd of {size:,}, each", characters=size, width=widest)
+        if any(b["characters"] == size and "growth" in b for b in found):
+            add("crowd", "the same over the crowd of 1,000", "growth", characters=size, width=widest)
+    add("crowd_all_cores", "crowd of 10,000 on all cores, each", characters=10000)
+    add("load_built_in", "loading the built-in motion the first time")
+    add("load_clip", "loading a clip the first time")
+    add("load_cached", "loading it again")
+    return {"rows": rows, "note": f"{found[0]['processor']}, {widest} lanes."}
 
 
 def measure_window(options, text=None):
@@ -434,7 +461,8 @@ each sole: the built-in motion and those three, all styles, legs of 0.6, 1 and 1
 [walk.md](walk.md) says which walks miss a bound, and why."""),
     "bench": (measure_bench, bounds_table, "Time of a tick, and of loading", True, """\
 `build/gaitpad bench`, one core of the machine that wrote this page; yours prints its own. A tick
-comes every 4167 us. A motion that was loaded before has its strides in the cache.""",
+comes every 4167 us. [crowd.md](crowd.md) says what each row holds. A motion that was loaded before
+has its strides in the cache.""",
               ""),
     "window": (measure_window, bounds_table, "The window", True, """\
 `bash tools/realtime.sh` lets four characters walk for five minutes in the window, drawn by

@@ -32,6 +32,25 @@ void add_gap(std::vector<PlotPoint>& out) {
 }
 
 constexpr int kMostXSteps = 8, kMostYSteps = 7;  // of a plot on cairo
+// Powers of ten within the range of logarithms, and 2 and 5 times those if they are not too many.
+std::vector<PlotTick> log_ticks(const PlotRange& range, int max_steps) {
+  std::vector<PlotTick> ticks;
+  if (!(range.max - range.min <= kMostTicks)) return ticks;
+  for (const auto& factors : {std::vector{1.0, 2.0, 5.0}, std::vector{1.0}}) {
+    ticks.clear();
+    for (double power = std::floor(range.min); power <= range.max; power += 1.0) {
+      for (const double factor : factors) {
+        const double at = power + std::log10(factor);
+        if (at < range.min - kRounding || at > range.max + kRounding) continue;
+        const double value = factor * std::pow(10.0, power);
+        ticks.push_back({at, tick_text(value, std::min(1.0, value))});
+      }
+    }
+    if (ticks.size() <= static_cast<std::size_t>(max_steps) + 1) break;
+  }
+  return ticks;
+}
+
 constexpr unsigned kFrameColour = 0xaab2bd;
 
 void draw_bands(cairo_t* cr, const Box& box, const Plot& plot) {
@@ -151,6 +170,7 @@ std::string tick_text(double value, double step) {
 }
 
 std::vector<PlotTick> plot_ticks(const PlotRange& range, int max_steps) {
+  if (range.is_log10) return log_ticks(range, max_steps);
   const double step = nice_step(range.max - range.min, max_steps);
   std::vector<PlotTick> ticks;
   for (const double value : nice_ticks(range.min, range.max, max_steps)) {

@@ -12,6 +12,7 @@ namespace gaitpad {
 
 struct PlotRange {
   double min = 0.0, max = 1.0;
+  bool is_log10 = false;  // values are decimal logarithms, ticks show what they are of
 };
 
 // The round step (1, 2 or 5 times a power of ten) that cuts `span` into at most `max_steps` parts;
@@ -25,6 +26,7 @@ struct PlotTick {
   double value = 0.0;
   std::string text;
 };
+// Of logarithms: the powers of ten, and 2 and 5 times those where there is room.
 std::vector<PlotTick> plot_ticks(const PlotRange& range, int max_steps);
 // The range widened to round numbers, at least `least` wide.
 PlotRange nice_range(double min, double max, double least) noexcept;

@@ -54,6 +54,20 @@ TEST(PlotScale, TickTextHasTheDecimalsOfItsStep) {
   EXPECT_EQ(tick_text(kNone, 0.1), "-");
 }
 
+TEST(PlotScale, LogarithmsAreMarkedAtPowersOfTenAndBetweenThemIfThereIsRoom) {
+  const auto texts = [](double min, double max, int steps) {
+    std::vector<std::string> all;
+    for (const PlotTick& tick : plot_ticks({min, max, true}, steps)) all.push_back(tick.text);
+    return all;
+  };
+  EXPECT_EQ(texts(0.0, 5.0, 8),
+            (std::vector<std::string>{"1", "10", "100", "1000", "10000", "100000"}));
+  EXPECT_EQ(texts(2.5, 3.8, 8), (std::vector<std::string>{"500", "1000", "2000", "5000"}));
+  EXPECT_EQ(texts(-1.0, 0.0, 8), (std::vector<std::string>{"0.1", "0.2", "0.5", "1"}));
+  EXPECT_TRUE(plot_ticks({0.0, kEndless, true}, 8).empty());
+  EXPECT_DOUBLE_EQ(plot_ticks({2.5, 3.8, true}, 8)[1].value, 3.0);
+}
+
 TEST(PlotScale, ARangeHoldsItsEndsAndIsNeverEmpty) {
   const PlotRange r = nice_range(-21.0, 33.0, 10.0);
   EXPECT_EQ(r.min, -40.0);

@@ -38,15 +38,69 @@ def test_the_bundled_traces_are_what_their_scripts_write():
     assert (ROOT / "config/traces/worn.hid").read_text() == worn_trace()
 
 
-def test_bench_lists_times_beside_limit_and_peer(run):
-    rows = {(r["name"], r["characters"]): r for r in json.loads(run("bench", "--json").stdout)}
-    assert set(rows) == {("step", 1), ("step", 4), ("leg_ik", 1), ("playback", 4), ("load_built_in", 1), ("load_clip", 1),
-                         ("load_cached", 1)}
-    assert all(r["time_us"] > 0 for r in rows.values())
-    four = rows["step", 4]
-    assert four["limit_us"] == 20
-    assert four["ratio_to_limit"] == pytest.approx(four["time_us"] / 20, abs=1e-7)
-    assert four["ratio_to_peer"] == pytest.approx(four["time_us"] / rows["playback", 4]["time_us"], abs=1e-7)
-    assert four["iterations_per_leg"] > 0
-    assert rows["load_built_in", 1]["limit_us"] == 150000 and rows["load_clip", 1]["limit_us"] == 800000
-    assert rows["load_cached", 1]["time_us"] < rows["load_clip", 1]["time_us"]
+@pytest.fixture(scope="module")
+def benched(run, tmp_path_factory):
+    """A short run: its rows and its picture."""
+    picture = tmp_path_factory.mktemp("bench") / "cost.png"
+    return json.loads(run("bench", "--json", "--rounds", "1", "--crowd", "64", "--plot", picture).stdout), picture
+
+
+def test_bench_lists_each_measurement(benched):
+    rows, _ = benched
+    names = [r["name"] for r in rows]
+    assert set(names) == {"leg_paper", "leg_robust_even", "leg_robust_weighted", "leg_ik", "playback", "playback_world", "stage",
+                          "character_even", "characters_even", "characters_styled", "step", "crowd", "load_built_in",
+                          "load_clip", "load_cached", "load"}
+    assert all(0 < r["ns_low"] <= r["ns"] <= r["ns_high"] for r in rows if r["name"] != "stage")
+    assert all(r["processor"] and r["lanes"] in (2, 4, 8) for r in rows)
+    assert {r["stage"] for r in rows if r["name"] == "stage"} == {"clock and plan", "sampling", "ik", "pose"}
+    widest = rows[0]["lanes"]
+    assert {(r["characters"], r["width"]) for r in rows if r["name"] == "crowd"} == {
+        (n, width) for n in (1, 8, 64) for width in (2, 4, 8) if width <= widest}
+    assert [r["characters"] for r in rows if r["name"] == "step"] == [1, 4]
+
+
+def test_bench_counts_in_its_peers(benched):
+    rows, _ = benched
+    ns = {r["name"]: r["ns"] for r in rows if r["characters"] <= 4 and r["name"] != "crowd"}
+    for row in rows:
+        assert row["time_us"] == pytest.approx(row["ns"] * row["characters"] / 1000)
+        if "ratio" in row:
+            assert row["over"] == ("characters_even" if row["name"] == "characters_styled" else "playback")
+            assert row["ratio"] == pytest.approx(row["ns"] / ns[row["over"]])
+        if "at_60_hz" in row:
+            assert row["at_60_hz"] == pytest.approx(1e9 / 60 / row["ns"], abs=1)
+        assert row.get("bytes", 1000) >= 1000
+    assert {r["name"] for r in rows if "ratio" in r} == {"character_even", "characters_even", "characters_styled", "step",
+                                                         "crowd"}
+    assert ns["load"] == ns["load_clip"] > ns["load_cached"]
+
+
+def test_bench_says_which_bounds_are_met(benched):
+    rows, _ = benched
+    bounds = {(r["name"], key): r[key] for r in rows for key in ("bound_ns", "bound_ratio", "limit_us") if key in r}
+    assert bounds == {("leg_robust_even", "bound_ns"): 250, ("leg_robust_even", "limit_us"): 0.25,
+                      ("character_even", "bound_ratio"): 2.5, ("characters_styled", "bound_ratio"): 1.15,
+                      ("step", "bound_ns"): 5000, ("step", "limit_us"): 20, ("load_built_in", "bound_ns"): 150e6,
+                      ("load_built_in", "limit_us"): 150000, ("load_clip", "bound_ns"): 800e6,
+                      ("load_clip", "limit_us"): 800000, ("load", "bound_ns"): 800e6, ("load", "limit_us"): 800000}
+    for row in rows:
+        met = [row[value] <= row[bound] for value, bound in (("ns", "bound_ns"), ("ratio", "bound_ratio")) if bound in row]
+        assert row.get("met", True) == all(met)
+
+
+def test_bench_draws_its_picture(benched):
+    assert benched[1].read_bytes().startswith(b"\x89PNG")
+
+
+def test_bench_prints_a_table_and_refuses_a_picture_it_cannot_write(program):
+    done = subprocess.run([program, "bench", "--rounds", "1", "--crowd", "1", "--plot", "/proc/mine.png"],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and done.stderr.startswith("gaitpad bench: /proc/mine.png")
+    assert len(done.stderr.splitlines()) == 1
+    assert "bound 2048" in done.stdout and "local rotations (the peer)" in done.stdout
+
+
+@pytest.mark.parametrize("arguments", [["--crowd", "0"], ["--rounds", "0"], ["--plot", "cost.jpg"]])
+def test_bench_refuses_wrong_usage(program, arguments):
+    assert subprocess.run([program, "bench", *arguments], capture_output=True, check=False).returncode == 2

@@ -1,5 +1,5 @@
-// gaitpad bench: how long a tick takes, and its inverse kinematics, beside bare playback; and how
-// long a motion takes to load.
+// gaitpad bench: how long a tick takes, of one character and of crowds, and its parts, beside bare
+// playback of the same skeleton; and how long a motion takes to load.
 #include <CLI/CLI.hpp>
 
 #include "tools/gaitpad/commands.h"
@@ -9,259 +9,426 @@
 #ifdef GAITPAD_HAS_BENCH
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <unistd.h>
+#include <sched.h>
 
-#include <cstdio>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "animation/walk_parts.h"
-#include "files/stride_cache.h"
-#include "gaitpad/config_files.h"
-#include "gaitpad/session_spec.h"
-#include "gaitpad/trace.h"
+#include "base/lanes.h"
+#include "tools/gaitpad/bench_work.h"
+#ifdef GAITPAD_HAS_WINDOW
+#include "draw/plot.h"
+#include "paper/page.h"
+#endif
 
 namespace gaitpad {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kLimit_us = 20.0;  // for one tick of four characters on one core
-constexpr int kLimitWalkers = 4;
-constexpr double kBuiltInLimit_us = 0.15e6, kClipLimit_us = 0.8e6;  // to load a motion
-constexpr std::int64_t kFirstTick = 480,
-                       kLastTick = 2880;  // of the bundled trace: walking, turning
+constexpr double kBlock_s = 0.02;    // of one work in one round; at least one pass
+constexpr double kMostGrowth = 1.5;  // of a character's time from a crowd of 1,000 on
+constexpr int kGrowsFrom = 1000;
+constexpr double kFrame_ns = 1e9 / 60.0;
 
-struct Session {
-  SimulationConfig config;
-  std::vector<std::vector<Report>> ticks;
+struct BenchArguments {
+  int most_characters = 100000, rounds = 15;
+  bool as_json = false;
+  std::string plot;
 };
 
-std::string bundled_trace(const std::vector<std::string>& config_folders) {
-  const std::string name = "traces/round.hid";
-  for (const std::string& folder : config_folders) {
-    const std::filesystem::path path = std::filesystem::path(folder) / name;
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) return path.string();
+// --- How it is measured --------------------------------------------------------------------------
+
+// Keeps this thread on one core, so that moves between cores do not count, and gives it all of
+// them for work that has several threads.
+class Cores {
+ public:
+  Cores() {
+    CPU_ZERO(&all_);
+    CPU_ZERO(&one_);
+    if (::sched_getaffinity(0, sizeof all_, &all_) != 0) return;
+    for (int core = 0; core < CPU_SETSIZE; ++core)
+      if (CPU_ISSET(core, &all_)) core_ = core;  // the last: the first serves most interrupts
+    if (core_ >= 0) CPU_SET(core_, &one_);
   }
-  return name;
+  ~Cores() { use_all(); }
+  Cores(const Cores&) = delete;
+  Cores& operator=(const Cores&) = delete;
+  void use_one() const { use(one_); }
+  void use_all() const { use(all_); }
+  int core() const { return core_; }  // -1: not known, then nothing is pinned
+
+ private:
+  void use(const cpu_set_t& cores) const {
+    if (core_ >= 0) ::sched_setaffinity(0, sizeof cores, &cores);
+  }
+  cpu_set_t all_, one_;
+  int core_ = -1;
+};
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown processor";
 }
 
-Result<Session> bench_session(const std::vector<std::string>& styles) {
-  SessionSpec spec;
-  spec.config_folders = config_folders();
-  spec.walk.styles = styles;
-  auto trace = read_trace(bundled_trace(spec.config_folders));
-  if (!trace) return trace.error();
-  const int rate_hz = replay_rate_hz(*trace, std::nullopt);
-  const auto count = assign_ticks(*trace, rate_hz);
-  if (!count) return count.error();
-  const auto files = load_pad_files(spec);
-  if (!files) return files.error();
-  auto pads = pad_configs(*files, trace->devices, trace->path);
-  if (!pads) return pads.error();
-  auto config = simulation_config(spec, rate_hz);
-  if (!config) return config.error();
-  config->pads = std::move(*pads);
-  Session session{std::move(*config), {}};
-  session.ticks.resize(static_cast<std::size_t>(kLastTick));
-  for (const TraceEvent& event : trace->events) {
-    if (event.tick < kLastTick) session.ticks[event.tick].push_back(report_of(*trace, event));
-  }
-  return session;
+std::string lanes_text(int lanes) {
+  const char* set = lanes >= 8 ? "AVX-512" : lanes >= 4 ? "AVX2" : "128 bits";
+  return fmt::format("{} lanes ({})", lanes, set);
 }
 
-// Keeps what Google Benchmark measures: the time of one pass of the function.
-class Collected : public benchmark::BenchmarkReporter {
+// What a unit of a work, or one of its stages, took.
+struct Row {
+  const Work* work = nullptr;
+  int stage = -1;          // in kStages; -1: the whole
+  std::vector<double> ns;  // in each round
+  // The value that this share of the rounds does not exceed.
+  double quantile(double share) const {
+    std::vector<double> sorted = ns;
+    std::sort(sorted.begin(), sorted.end());
+    const double place = share * static_cast<double>(sorted.size() - 1);
+    const auto i = static_cast<std::size_t>(place);
+    const double next = sorted[std::min(i + 1, sorted.size() - 1)];
+    return sorted[i] + (next - sorted[i]) * (place - static_cast<double>(i));
+  }
+  double median() const { return quantile(0.5); }
+};
+
+// Keeps what Google Benchmark measures.
+class Block : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
-      if (run.run_type == Run::RT_Iteration) time_us = run.GetAdjustedRealTime() / 1e3;
+      if (run.run_type != Run::RT_Iteration) continue;
+      pass_ns = run.GetAdjustedRealTime();
+      passes = run.iterations;
     }
   }
-  double time_us = 0.0;
+  double pass_ns = 0.0;
+  std::int64_t passes = 0;
 };
 
-template <class F>
-double measured_us(const std::string& name, F pass) {
+// So many passes of one work, or, with 0, as many as take kBlock_s.
+Block measured_block(const Work& work, std::int64_t passes) {
   benchmark::ClearRegisteredBenchmarks();
-  benchmark::RegisterBenchmark(name.c_str(), [&pass](benchmark::State& state) {
-    for (auto _ : state) pass();
-  })->MinTime(0.5);
-  Collected collected;
-  benchmark::RunSpecifiedBenchmarks(&collected);
-  return collected.time_us;
+  auto* registered = benchmark::RegisterBenchmark("block", [&work](benchmark::State& state) {
+    if (work.stages) work.stages->fill(0.0);
+    for (auto _ : state) work.pass();
+  });
+  passes > 0 ? registered->Iterations(passes) : registered->MinTime(kBlock_s);
+  Block block;
+  benchmark::RunSpecifiedBenchmarks(&block);
+  return block;
 }
 
-struct StepCost {
-  double time_us = 0.0;
-  double iterations_a_leg = 0.0;
-};
-
-StepCost step_cost(const Session& session, Simulation simulation) {
-  std::int64_t tick = 0;
-  for (; tick < kFirstTick; ++tick) simulation.step(session.ticks[tick]);
-  std::int64_t iterations = 0, legs = 0;
-  StepCost cost;
-  cost.time_us = measured_us("step", [&] {
-    simulation.step(session.ticks[tick]);
-    if (++tick == kLastTick) tick = kFirstTick;
-    for (const Walker& w : simulation.walkers()) {
-      for (const int n : w.state.frame.ik_iterations) iterations += n;
-      legs += 2;
+// All works take turns, block by block, so that what the machine does besides falls on all of them.
+// Before the first round each finds its number of passes.
+std::vector<Row> measured(const std::vector<Work>& works, int rounds, const Cores& cores) {
+  std::vector<Row> rows;
+  std::vector<std::size_t> first_row;
+  std::vector<std::int64_t> passes;
+  const auto block_of = [&](const Work& work, std::int64_t count) {
+    work.is_on_all_cores ? cores.use_all() : cores.use_one();
+    use_lanes(work.width > 0 ? work.width : widest_lanes());
+    return measured_block(work, count);
+  };
+  for (const Work& work : works) {
+    first_row.push_back(rows.size());
+    if (!work.stages) rows.push_back({&work, -1, {}});
+    for (std::size_t k = 0; work.stages && k < kStages.size(); ++k)
+      rows.push_back({&work, static_cast<int>(k), {}});
+    passes.push_back(block_of(work, 0).passes);
+  }
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < works.size(); ++i) {
+      const Work& work = works[i];
+      if (round % work.every != 0) continue;
+      const Block block = block_of(work, passes[i]);
+      if (!work.stages) rows[first_row[i]].ns.push_back(block.pass_ns / work.units);
+      for (std::size_t k = 0; work.stages && k < kStages.size(); ++k) {
+        const double pass_ns = 1e9 * (*work.stages)[k] / static_cast<double>(passes[i]);
+        rows[first_row[i] + k].ns.push_back(pass_ns / work.units);
+      }
     }
-  });
-  cost.iterations_a_leg = static_cast<double>(iterations) / static_cast<double>(legs);
-  return cost;
-}
-
-// One leg's inverse kinematics alone, over the states of a walk.
-double leg_ik_us(const Session& session, Simulation simulation) {
-  const Walker& w = simulation.walkers().front();
-  std::vector<WalkState> states;
-  std::vector<StridePlan> plans;
-  std::vector<Pelvis> pelvises;
-  for (std::int64_t tick = 0; tick < kLastTick; ++tick) {
-    simulation.step(session.ticks[tick]);
-    if (tick < kFirstTick || tick % 8 != 0) continue;
-    states.push_back(w.state);
-    plans.push_back(stride_now(*w.model, w.state));
-    Pelvis& pelvis = pelvises.emplace_back(pelvis_over_ground(*w.model, w.state, plans.back()));
-    pelvis.position_m.y = w.state.frame.pelvis_m.y;
   }
-  const GaitParams params = gait_params(simulation.stick(), simulation.styles()[w.style], w.limits);
-  const Tick tick{*w.model, params, 1.0 / session.config.rate_hz, is_flat(*w.model->terrain)};
-  std::size_t i = 0;
-  return measured_us("legs",
-                     [&] {
-                       pose_legs(tick, session.config.ik, plans[i], pelvises[i], states[i]);
-                       i = (i + 1) % states.size();
-                     }) /
-         2.0;
+  cores.use_all();
+  return rows;
 }
 
-// The peer: the same motion played back without feet that hold the ground.
-double playback_us(const Session& session) {
-  Pose pose;
-  double phase = 0.0;
-  return measured_us("playback", [&] {
-    for (int n = 0; n < kLimitWalkers; ++n) sample_local(session.config.cycle, phase, pose);
-    phase += 1.0 / session.config.rate_hz;
-    benchmark::DoNotOptimize(pose);
-  });
-}
+// --- The list ------------------------------------------------------------------------------------
 
-// Times to make a character of a motion in memory: of the built-in one, of the same as a captured
-// clip, whose halves are not known to be alike, and of that with a cache that knows its strides.
-struct LoadCost {
-  double built_in_us = 0.0, clip_us = 0.0, cached_us = 0.0;
-};
-
-Result<LoadCost> load_cost() {
-  namespace fs = std::filesystem;
-  std::optional<Error> problem;
-  const auto load = [&problem](Result<GaitCycle> cycle, const std::string& cache) {
-    if (cycle) cycle = cached_clean_strides(std::move(*cycle), cache);
-    if (!cycle) return void(problem = cycle.error());
-    const auto model = walk_model(*cycle, Character{});
-    if (!model) problem = model.error();
-  };
-  const Motion clip = procedural_motion();
-  std::error_code ignored;
-  const fs::path cache =
-      fs::temp_directory_path(ignored) / fmt::format("gaitpad_bench_{}", ::getpid());
-  LoadCost cost;
-  cost.built_in_us = measured_us("built-in", [&] { load(procedural_gait(), ""); });
-  cost.clip_us = measured_us("clip", [&] { load(gait_cycle(clip), ""); });
-  load(gait_cycle(clip), cache.string());
-  cost.cached_us = measured_us("cached", [&] { load(gait_cycle(clip), cache.string()); });
-  fs::remove_all(cache, ignored);
-  if (problem) return *problem;
-  return cost;
-}
-
-Result<ordered_json> measured() {
-  auto one = bench_session({"even"});
-  if (!one) return one.error();
-  auto four = bench_session({"even", "stiff_hip", "stiff_knee", "limp_left"});
-  if (!four) return four.error();
-  auto one_walker = Simulation::create(one->config);
-  if (!one_walker) return one_walker.error();
-  auto four_walkers = Simulation::create(four->config);
-  if (!four_walkers) return four_walkers.error();
-
-  const StepCost single = step_cost(*one, *one_walker);
-  const StepCost many = step_cost(*four, *four_walkers);
-  const double leg_us = leg_ik_us(*one, *one_walker);
-  const double peer_us = playback_us(*four);
-  const auto load = load_cost();
-  if (!load) return load.error();
-  const auto row = [](const char* name, int characters, double time_us) {
-    return ordered_json{{"name", name}, {"characters", characters}, {"time_us", time_us}};
-  };
-  ordered_json list = {row("step", 1, single.time_us),
-                       row("step", kLimitWalkers, many.time_us),
-                       row("leg_ik", 1, leg_us),
-                       row("playback", kLimitWalkers, peer_us),
-                       row("load_built_in", 1, load->built_in_us),
-                       row("load_clip", 1, load->clip_us),
-                       row("load_cached", 1, load->cached_us)};
-  list[0]["iterations_per_leg"] = single.iterations_a_leg;
-  list[1]["iterations_per_leg"] = many.iterations_a_leg;
-  list[1]["limit_us"] = kLimit_us;
-  list[1]["ratio_to_limit"] = many.time_us / kLimit_us;
-  for (const auto& [at, limit_us] : {std::pair(4, kBuiltInLimit_us), {5, kClipLimit_us}}) {
-    list[at]["limit_us"] = limit_us;
-    list[at]["ratio_to_limit"] = list[at]["time_us"].get<double>() / limit_us;
+// The median of the first row with this name, and this many characters and lanes; 0 stands for any.
+// Nothing if there is none.
+double median_of(const std::vector<Row>& rows, std::string_view name, int characters, int width) {
+  for (const Row& row : rows) {
+    const Work& work = *row.work;
+    if (work.name == name && (characters == 0 || work.characters == characters) &&
+        (width == 0 || work.width == width))
+      return row.median();
   }
-  list[1]["peer"] = "playback";
-  list[1]["ratio_to_peer"] = many.time_us / peer_us;
+  return std::nan("");
+}
+
+ordered_json json_of(const Row& row, const std::vector<Row>& rows) {
+  const Work& work = *row.work;
+  const double ns = row.median();
+  ordered_json json = {{"name", work.name}, {"characters", work.characters}};
+  if (work.width > 0) json["width"] = work.width;
+  if (row.stage >= 0) json["stage"] = kStages[row.stage];
+  json["ns"] = ns;
+  json["ns_low"] = row.quantile(0.25);
+  json["ns_high"] = row.quantile(0.75);
+  json["time_us"] = ns * work.characters / 1e3;
+  bool is_met = true;
+  const auto add_bound = [&](const char* key, double value, double most) {
+    json[key] = most;
+    is_met = is_met && value <= most;
+  };
+  if (!work.over.empty()) {
+    const double ratio = ns / median_of(rows, work.over, 0, 0);
+    json["over"] = work.over;
+    json["ratio"] = ratio;
+    if (work.most_ratio > 0.0) add_bound("bound_ratio", ratio, work.most_ratio);
+  }
+  if (work.most_ns > 0.0) {
+    add_bound("bound_ns", ns, work.most_ns);
+    json["limit_us"] = work.most_ns * work.characters / 1e3;
+    json["ratio_to_limit"] = ns / work.most_ns;
+  }
+  if (work.name == "crowd" && work.characters > kGrowsFrom &&
+      !std::isnan(median_of(rows, "crowd", kGrowsFrom, work.width))) {
+    const double growth = ns / median_of(rows, "crowd", kGrowsFrom, work.width);
+    json["growth"] = growth;
+    add_bound("bound_growth", growth, kMostGrowth);
+  }
+  if (work.width > 0 || work.name == "character_even")
+    json["at_60_hz"] = std::floor(kFrame_ns / ns);
+  json.update(work.notes);
+  if (json.contains("bound_ns") || json.contains("bound_ratio") || json.contains("bound_growth"))
+    json["met"] = is_met;
+  return json;
+}
+
+// The rows as a list, and two under names of their own: a leg's share of the tick's inverse
+// kinematics, and loading a clip.
+ordered_json list_of(const std::vector<Row>& rows, const std::string& processor) {
+  ordered_json list = ordered_json::array();
+  for (const Row& row : rows) {
+    list.push_back(json_of(row, rows));
+    ordered_json again = list.back();
+    if (row.work->name == "load_clip") {
+      again["name"] = "load";
+      list.push_back(again);
+    }
+    if (again.value("stage", "") == "ik") {
+      again.erase("stage");
+      again["name"] = "leg_ik";
+      for (const char* key : {"ns", "ns_low", "ns_high", "time_us"})
+        again[key] = 0.5 * again[key].get<double>();
+      list.push_back(again);
+    }
+  }
+  for (ordered_json& row : list) {
+    row["processor"] = processor;
+    row["lanes"] = widest_lanes();
+  }
   return list;
 }
 
-void print_text(const ordered_json& list) {
-  const auto time = [&list](int i) { return list[i]["time_us"].get<double>(); };
-  fmt::print("step, 1 character (even)            {:8.2f} us   {:.1f} IK iterations a leg\n",
-             time(0), list[0]["iterations_per_leg"].get<double>());
-  fmt::print("step, 4 characters (even, 3 styles) {:8.2f} us   {:.1f} IK iterations a leg\n",
-             time(1), list[1]["iterations_per_leg"].get<double>());
-  fmt::print("  of the limit of {:.0f} us            {:8.2f} x\n", kLimit_us,
-             list[1]["ratio_to_limit"].get<double>());
-  fmt::print("  of playback alone (the peer)      {:8.2f} x   (4 characters {:.2f} us)\n",
-             list[1]["ratio_to_peer"].get<double>(), time(3));
-  fmt::print("inverse kinematics of one leg       {:8.2f} us   {:.0f} % of a step with two legs\n",
-             time(2), 200.0 * time(2) / time(0));
-  const auto load = [&](const char* what, int at) {
-    fmt::print("load of {:27} {:8.2f} ms   {:.2f} x of the limit of {:.0f} ms\n", what,
-               time(at) / 1e3, list[at]["ratio_to_limit"].get<double>(),
-               list[at]["limit_us"].get<double>() / 1e3);
-  };
-  load("the built-in motion", 4);
-  load("a clip", 5);
-  fmt::print("  with its strides in the cache     {:8.2f} ms\n", time(6) / 1e3);
+// --- The table -----------------------------------------------------------------------------------
+
+std::string time_text(double ns) {
+  if (ns < 1e4) return fmt::format("{:.0f} ns", ns);
+  return ns < 1e6 ? fmt::format("{:.1f} us", ns / 1e3) : fmt::format("{:.1f} ms", ns / 1e6);
 }
 
-int run(bool as_json) {
-  const auto list = measured();
-  if (!list) return fail("bench", list.error().message);
-  if (as_json) {
-    print_json(*list);
-  } else {
-    print_text(*list);
+const char* heading_of(const std::string& name) {
+  if (name.starts_with("leg")) return "one leg, the solve alone";
+  if (name.starts_with("playback")) return "bare playback of the skeleton";
+  if (name == "stage") return "one character's tick, by stage";
+  if (name.starts_with("char") || name == "step") return "a character, at the trace's 240 Hz";
+  if (name == "crowd") return "a character in a crowd, ticks of 1/60 s";
+  if (name == "crowd_all_cores") return "the same on all cores";
+  return "loading";
+}
+
+std::string bounds_text(const ordered_json& row) {
+  std::string text;
+  const auto add = [&](const char* bound, const char* value, const std::string& limit) {
+    if (!row.contains(bound)) return;
+    const bool is_met = row[value].get<double>() <= row[bound].get<double>();
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", limit, is_met ? "met" : "MISSED");
+  };
+  if (row.contains("bound_ns")) add("bound_ns", "ns", time_text(row["bound_ns"]));
+  if (row.contains("bound_ratio"))
+    add("bound_ratio", "ratio", fmt::format("{} x", row["bound_ratio"].get<double>()));
+  if (row.contains("bound_growth"))
+    add("bound_growth", "growth",
+        fmt::format("{:.2f} of 1,000's, {} x", row["growth"].get<double>(),
+                    row["bound_growth"].get<double>()));
+  return text;
+}
+
+void print_table(const std::vector<Row>& rows, const ordered_json& list, const Cores& cores,
+                 int rounds) {
+  const ordered_json& first = list.front();
+  fmt::print("{}, {}", first["processor"].get<std::string>(), lanes_text(first["lanes"]));
+  if (cores.core() >= 0) fmt::print(", core {}", cores.core());
+  fmt::print("; medians over {} rounds, quartiles, times the peer, bound\n", rounds);
+  std::string heading;
+  for (const Row& row : rows) {
+    const ordered_json json = json_of(row, rows);
+    const std::string next = heading_of(row.work->name);
+    if (next != heading) fmt::print("{}\n", next);
+    heading = next;
+    const std::string label = row.stage >= 0 ? kStages[row.stage] : row.work->label;
+    const std::string spread =
+        fmt::format("{} - {}", time_text(json["ns_low"]), time_text(json["ns_high"]));
+    std::string line = fmt::format("  {:34} {:>9}  {:>19}", label, time_text(json["ns"]), spread);
+    line += json.contains("ratio") ? fmt::format("  {:6.2f} x", json["ratio"].get<double>())
+                                   : std::string(10, ' ');
+    if (json.contains("at_60_hz"))
+      line += fmt::format("  {:6.0f} at 60 Hz", json["at_60_hz"].get<double>());
+    const std::string bounds = bounds_text(json);
+    if (!bounds.empty()) line += "  " + bounds;
+    if (json.contains("iterations_per_leg"))
+      line += fmt::format("  {:.2f} iterations a leg", json["iterations_per_leg"].get<double>());
+    if (json.contains("bytes")) line += fmt::format("  {:.0f} bytes", json["bytes"].get<double>());
+    line.erase(line.find_last_not_of(' ') + 1);
+    fmt::print("{}\n", line);
   }
-  return 0;
+  for (const ordered_json& row : list) {
+    if (row["name"] != "character_even") continue;
+    const double state = row["state_bytes"];
+    fmt::print(
+        "a character's state {:.0f} bytes (bound 2048, {}), parameters {}, pose {}; "
+        "a build's model {:.0f} KB, shared\n",
+        state, state <= 2048 ? "met" : "MISSED", row["params_bytes"].get<int>(),
+        row["pose_bytes"].get<int>(), row["model_bytes"].get<double>() / 1e3);
+  }
+}
+
+// --- The picture ---------------------------------------------------------------------------------
+
+#ifdef GAITPAD_HAS_WINDOW
+std::string plot_problem(const std::string& path) {
+  return path.ends_with(".png") ? "" : "the picture is a PNG: its name ends with .png";
+}
+
+// A character's time over the size of its crowd, both axes logarithmic, for each width, with bare
+// playback as lines across.
+std::optional<Error> write_plot(const std::string& path, const std::vector<Row>& rows,
+                                const std::string& processor) {
+  constexpr std::array kColours = {colour::kBlue, colour::kGreen, colour::kOrange, colour::kPurple};
+  constexpr int kWidth = 900, kHeight = 620;
+  Plot plot;
+  plot.x_label = "characters in the crowd";
+  plot.y_label = "ns a character and tick";
+  plot.x.is_log10 = plot.y.is_log10 = true;
+  std::vector<LegendEntry> legend;
+  double least = 1e12, most = 0.0, largest = 1.0;
+  const auto add = [&](const std::string& text, unsigned colour, bool is_dashed,
+                       std::vector<PlotPoint> points) {
+    for (PlotPoint& p : points) {
+      least = std::min(least, p.y);
+      most = std::max(most, p.y);
+      p = PlotPoint(std::log10(p.x), std::log10(p.y));
+    }
+    PlotSeries& series = plot.series.emplace_back();
+    series.colour = rgb(colour);
+    series.is_dashed = is_dashed;
+    series.points = std::move(points);
+    legend.push_back(
+        {is_dashed ? LegendEntry::Mark::dashed : LegendEntry::Mark::line, colour, text});
+  };
+  for (const Row& row : rows)
+    if (row.work->name == "crowd") largest = std::max(largest, double(row.work->characters));
+  std::size_t next_colour = 0;
+  for (int lanes = widest_lanes(); lanes >= 2; lanes /= 2) {
+    std::vector<PlotPoint> points;
+    for (const Row& row : rows)
+      if (row.work->name == "crowd" && row.work->width == lanes)
+        points.emplace_back(row.work->characters, row.median());
+    add(lanes_text(lanes), kColours[next_colour++ % kColours.size()], false, std::move(points));
+  }
+  std::vector<PlotPoint> all_cores;
+  for (const Row& row : rows)
+    if (row.work->name == "crowd_all_cores")
+      all_cores.emplace_back(row.work->characters, row.median());
+  if (!all_cores.empty()) add("all cores", colour::kVermilion, false, std::move(all_cores));
+  for (const auto& [name, text] : {std::pair("playback", "bare playback, scalar"),
+                                   {"playback_world", "the same with world frames"}}) {
+    const double ns = median_of(rows, name, 0, 0);
+    add(text, name == std::string("playback") ? colour::kInk : colour::kFaint, true,
+        {{1.0, ns}, {largest, ns}});
+  }
+  plot.x.max = std::max(1.0, std::log10(largest));
+  plot.y.min = std::log10(least / 1.5);
+  plot.y.max = std::log10(most * 1.5);
+
+  const Page page = blank_page(kWidth, kHeight, "A crowd's time, a character and tick",
+                               processor + ", one core where nothing else is said, medians");
+  cairo_t* cr = page.cr.get();
+  const Box box = {kPageMargin + 62.0, kPageTop + 54.0, kWidth - 2.0 * kPageMargin - 82.0,
+                   kHeight - kPageTop - 124.0};
+  draw_plot(cr, box, plot);
+  for (const PlotSeries& series : plot.series) {
+    if (series.is_dashed) continue;
+    for (const PlotPoint& p : series.points)
+      draw_dot(cr, pixel_in(box, plot, p), 3.0, series.colour);
+  }
+  draw_legend(cr, {kPageMargin, kPageTop, kWidth - 2.0 * kPageMargin, 40.0}, legend);
+  return write_png(path, page.surface.get());
+}
+#else
+std::string plot_problem(const std::string&) { return missing_window(); }
+std::optional<Error> write_plot(const std::string&, const std::vector<Row>&, const std::string&) {
+  return Error{missing_window()};
+}
+#endif
+
+int run(const BenchArguments& arguments) {
+  const auto works = bench_work(arguments.most_characters);
+  if (!works) return fail("bench", works.error().message);
+  const Cores cores;
+  const std::vector<Row> rows = measured(*works, arguments.rounds, cores);
+  const std::string processor = processor_name();
+  const ordered_json list = list_of(rows, processor);
+  if (arguments.as_json) {
+    print_json(list);
+  } else {
+    print_table(rows, list, cores, arguments.rounds);
+  }
+  std::fflush(stdout);
+  if (arguments.plot.empty()) return 0;
+  const auto problem = write_plot(arguments.plot, rows, processor);
+  return problem ? fail("bench", problem->message) : 0;
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "bench", "the times that a tick and loading a motion take, beside their limits");
-  const auto as_json = std::make_shared<bool>(false);
-  command->add_flag("--json", *as_json, "a list of measurements, for machines");
-  command->callback([as_json, &status] { status = run(*as_json); });
+      "bench",
+      "the times of a tick, of crowds and of loading, beside bare playback and their bounds");
+  const auto arguments = std::make_shared<BenchArguments>();
+  command->add_option("--crowd", arguments->most_characters, "the largest crowd")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--rounds", arguments->rounds, "how often each measurement is repeated")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->as_json, "a list of measurements, for machines");
+  command->add_option("--plot", arguments->plot, "draws a crowd's time over its size (.png)")
+      ->check(plot_problem);
+  command->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace gaitpad

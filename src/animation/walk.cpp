@@ -77,13 +77,15 @@ void plan_stride(const WalkModel& model, const WalkState& state, double phase, d
   plan.shown = std::clamp(state.gait.amplitude.x, 0.0, 1.0);
   plan.heel_m = {};
   plan.injury = {};
-  const auto& tables = state.clock.backward ? model.strides.back : model.strides.table;
-  plan.at[0] = stride_at(tables, plan.phase, state.gait.ratio_behind);
+  const auto stride = [&](double ratio) {
+    return stride_of(model, state.clock.backward, plan.phase, ratio);
+  };
+  plan.at[0] = stride(state.gait.ratio_behind);
   const double ahead = ratio_ahead(model, state);
-  plan.at[1] = ahead == state.gait.ratio_behind ? plan.at[0] : stride_at(tables, plan.phase, ahead);
+  plan.at[1] = ahead == state.gait.ratio_behind ? plan.at[0] : stride(ahead);
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
-  change_stride(model.strides, state, mix(state.gait.ratio_behind, ahead, plan.change), plan);
+  change_stride(model, state, mix(state.gait.ratio_behind, ahead, plan.change), plan);
 }
 
 void plan_stride(const WalkModel& model, const WalkState& state, StridePlan& plan) noexcept {
@@ -139,8 +141,7 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
   const double yaw = state.gait.sway.x * cell.pelvis_yaw_rad;
   const quat upright = rotation_y(state.path.heading_rad) * rotation_z(-state.path.lean_rad.x),
              turned = rotation_y(yaw) *
-                      from_rotation_vector(cell.pelvis_tilt +
-                                           vec3(0.0, 0.0, model.strides.stand_roll_rad));
+                      from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.stand_roll_rad));
   pelvis.rotation = upright * turned;
   if (state.path.slope_lean_rad.x == 0.0) return pelvis;
   // Into a slope the trunk leans about the hip joints.
@@ -547,8 +548,7 @@ void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) no
              state.path.landing_heading_rad != state.path.last_heading_rad) {
     // The path has moved, and the hips have not.
     StridePlan old = plan;
-    old.at[1] = stride_at(state.clock.backward ? tick.model.strides.back : tick.model.strides.table,
-                          plan.phase, state.path.last_ratio);
+    old.at[1] = stride_of(tick.model, state.clock.backward, plan.phase, state.path.last_ratio);
     state.path.off_m.x +=
         path_to_landing(state, old, state.path.last_landing_m, state.path.last_heading_rad) - path;
   }
@@ -577,7 +577,7 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
     // The sound leg goes nearly as if the other were sound, too: then the hips are as high.
-    const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX] -
+    const double knee = model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX] -
                         kUnseenInjury * plan.injury.leg_rad[side][kKneeX];
     const double known = span_m(leg.model, knee);
     const FootState& foot = state.foot[side];

@@ -26,7 +26,7 @@ constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
 
 // The angles that the data show at this phase, fading to a stand.
 LegAngles reference(const WalkModel& model, const StridePlan& plan, Side side) noexcept {
-  LegAngles angles = model.strides.stand_rad[side];
+  LegAngles angles = model.stand_rad[side];
   for (int j = 0; j < kLegDofs; ++j) angles[j] += plan.cell.leg_rad[side][j];
   angles[kKneeX] = std::max(angles[kKneeX], kLeastKnee);
   return angles;

@@ -325,39 +325,22 @@ bool has_overlong_leg(const GaitCycle& cycle) {
   return false;
 }
 
-// All lengths grow by `ratio`, but those of the pelvis by `scale`. So that the legs keep their
-// angles, it turns and rolls by as much less as it is wider, and is where the hips' middle has to
-// be.
-StrideTable scaled(const StrideTable& data, double ratio, double scale,
-                   const std::array<LegModel, 2>& legs, double stand_roll_rad) {
-  const vec3 middle = 0.5 * (legs[0].hip_m + legs[1].hip_m);
+vec3 pelvis_turned(const vec3& place_m, double yaw_rad, const vec3& tilt) noexcept {
+  return rotation_y(yaw_rad) * (from_rotation_vector(tilt) * place_m);
+}
+
+StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noexcept {
+  StrideScale to;
+  to.length = ratio;
+  to.pelvis = scale;
+  to.hips_m = 0.5 * (cycle.leg[0].hip_m + cycle.leg[1].hip_m);
+  to.stand_roll_rad = cycle.strides->stand_roll_rad;
   const double turns = ratio / scale;
-  const auto hips_m = [&](const StrideCell& cell, double share) {
-    const auto at = [&](double yaw, const vec3& tilt) {
-      return rotation_y(yaw) * (from_rotation_vector(tilt) * middle);
-    };
-    vec3 tilt = cell.pelvis_tilt, stand(0.0, 0.0, share * stand_roll_rad);
-    tilt.z *= share;
-    return at(share * cell.pelvis_yaw_rad, tilt + stand) - at(0.0, stand);
-  };
-  StrideTable table = data;
-  table.stride_m *= ratio;
-  std::array<StrideCell, kCycleSamples> cells;
-  for (int i = 0; i < kCycleSamples; ++i) {
-    const auto knot = [&](int k) { return data.knot[(k + kCycleSamples) % kCycleSamples]; };
-    StrideCell& cell = cells[i];
-    cell = mixed(mixed(knot(i - 1), knot(i + 1), 1.0 / 6.0, 1.0 / 6.0), knot(i), 1.0, 4.0 / 6.0);
-    cell.pelvis_m = ratio * (cell.pelvis_m + hips_m(cell, 1.0)) - scale * hips_m(cell, turns);
-    cell.pelvis_yaw_rad *= turns;
-    cell.pelvis_tilt.z *= turns;
-  }
-  for (int side : {0, 1}) {
-    const vec3 apart = vec3(legs[side].hip_m.x, 0.0, middle.z) * (scale - ratio);
-    table.footprint_m[side] = table.footprint_m[side] * ratio + apart;
-    for (StrideCell& cell : cells) cell.foot[side].heel_m = cell.foot[side].heel_m * ratio + apart;
-  }
-  table.knot = knots_through(cells);
-  return table;
+  to.standing_m = {pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, to.stand_roll_rad)),
+                   pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, turns * to.stand_roll_rad))};
+  for (int side : {0, 1})
+    to.apart_m[side] = vec3(cycle.leg[side].hip_m.x, 0.0, to.hips_m.z) * (scale - ratio);
+  return to;
 }
 
 // What a tick samples: neither the legs' joints, which the inverse kinematics sets, nor kept ones.
@@ -422,30 +405,48 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   for (const LegBuild& leg : model.leg) {
     model.rest_lead_m += 0.5 * (-leg.model.heel_m.z - leg.model.hip_m.z);
   }
-  model.strides = strides;
-  model.strides.lead_m *= ratio;
-  for (std::vector<StrideTable>* tables : {&model.strides.table, &model.strides.back}) {
-    for (StrideTable& table : *tables)
-      table = scaled(table, ratio, character.scale, cycle.leg, strides.stand_roll_rad);
-  }
-  for (StrideResponse& response : model.strides.response) {
-    for (StrideChange& knot : response.knot) {
-      knot.pelvis_m *= ratio;
-      for (vec3& heel : knot.heel_m) heel *= ratio;
-    }
-  }
+  model.stride_scale = stride_scale(cycle, character.scale, ratio);
   const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
   const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);
-  model.strides.stand_m = stand.pelvis_m;
-  model.strides.stand_roll_rad = stand.roll_rad;
-  model.strides.stand_rad = stand.angles;
+  model.stand_m = stand.pelvis_m;
+  model.stand_roll_rad = stand.roll_rad;
+  model.stand_rad = stand.angles;
   for (Side side : {kLeftSide, kRightSide}) model.own_step_m[side] = cycle.step_m[side] * ratio;
   keep_trunk_upright(stand.roll_rad, model.cycle);
-  model.stand_m = model.strides.stand_m;
   collect_kept_joints(model);
   lay_out_rows(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
   return model;
+}
+
+StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept {
+  const StrideFamily& family = *model.cycle.strides;
+  StridePlace place = stride_at(backward ? family.back : family.table, phase, ratio);
+  const StrideScale& to = model.stride_scale;
+  if (to.length == 1.0 && to.pelvis == 1.0) return place;
+  place.stride_m *= to.length;
+  StrideCell& cell = place.cell;
+  for (int side : {0, 1}) {
+    place.footprint_m[side] = place.footprint_m[side] * to.length + to.apart_m[side];
+    cell.foot[side].heel_m = cell.foot[side].heel_m * to.length + to.apart_m[side];
+  }
+  if (to.length == to.pelvis) {
+    cell.pelvis_m *= to.length;
+    return place;
+  }
+  // So that the legs keep their angles, the pelvis turns and rolls by as much less as it is wider,
+  // and is where the hips' middle has to be.
+  const double turns = to.length / to.pelvis;
+  const auto hips_m = [&](double share, const vec3& standing_m) {
+    vec3 tilt = cell.pelvis_tilt;
+    tilt.z = share * (tilt.z + to.stand_roll_rad);
+    return pelvis_turned(to.hips_m, share * cell.pelvis_yaw_rad, tilt) - standing_m;
+  };
+  cell.pelvis_m = to.length * (cell.pelvis_m + hips_m(1.0, to.standing_m[0])) -
+                  to.pelvis * hips_m(turns, to.standing_m[1]);
+  cell.pelvis_yaw_rad *= turns;
+  cell.pelvis_tilt.z *= turns;
+  return place;
 }
 
 GaitLimits gait_limits(const WalkModel& model) noexcept {

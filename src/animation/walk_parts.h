@@ -78,7 +78,7 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
 // weights act on the inverse kinematics alone.
 void grant_wishes(IkMode mode, WalkState& state) noexcept;
 // Changes the tables' cell by what is granted in a stride of this ratio.
-void change_stride(const StrideFamily& strides, const WalkState& state, double ratio,
+void change_stride(const WalkModel& model, const WalkState& state, double ratio,
                    StridePlan& plan) noexcept;
 
 // --- walk_terrain.cpp: footholds, and flights over what lies between them ------------------------

@@ -59,9 +59,10 @@ void grant_wishes(IkMode mode, WalkState& state) noexcept {
   }
 }
 
-void change_stride(const StrideFamily& strides, const WalkState& state, double ratio,
+void change_stride(const WalkModel& model, const WalkState& state, double ratio,
                    StridePlan& plan) noexcept {
-  if (state.clock.backward || strides.response.empty()) return;
+  const std::vector<StrideResponse>& response = model.cycle.strides->response;
+  if (state.clock.backward || response.empty()) return;
   StrideWishes wishes = state.gait.granted;
   const double share = plan.shown * soft_min(ratio, kMostShown, kSoftShown) *
                        smoothstep(kStairs, kLevel, state.gait.ground_share.x);
@@ -77,26 +78,27 @@ void change_stride(const StrideFamily& strides, const WalkState& state, double r
     return std::span(w).subspan(static_cast<std::size_t>(StrideWish::stiff_left_hip), kAlone);
   };
   std::ranges::fill(alone(of_pelvis), 0.0);
-  StrideChange change = change_at(strides.response, of_pelvis, plan.phase);
+  StrideChange change = change_at(response, of_pelvis, plan.phase);
   const auto asked = alone(wishes);
   if (std::ranges::any_of(asked, [](double wish) { return wish != 0.0; })) {
     StrideWishes of_leg{};
     std::ranges::copy(asked, alone(of_leg).begin());
-    plan.injury = change_at(strides.response, of_leg, plan.phase);
+    plan.injury = change_at(response, of_leg, plan.phase);
     for (int side : {0, 1}) {
       change.heel_m[side] += plan.injury.heel_m[side];
       change.pitch_rad[side] += plan.injury.pitch_rad[side];
       for (int j = 0; j < kLegDofs; ++j) change.leg_rad[side][j] += plan.injury.leg_rad[side][j];
     }
   }
-  plan.cell.pelvis_m += change.pelvis_m;
+  const double length = model.stride_scale.length;
+  plan.cell.pelvis_m += length * change.pelvis_m;
   for (int side : {0, 1}) {
-    plan.heel_m[side] = change.heel_m[side];
+    plan.heel_m[side] = length * change.heel_m[side];
     plan.cell.foot[side].pitch_rad += change.pitch_rad[side];
     LegAngles& angles = plan.cell.leg_rad[side];
     const double knee = angles[kKneeX];
     for (int j = 0; j < kLegDofs; ++j) angles[j] += change.leg_rad[side][j];
-    const double room = knee + strides.stand_rad[side][kKneeX] - kStraightKnee;
+    const double room = knee + model.stand_rad[side][kKneeX] - kStraightKnee;
     if (angles[kKneeX] < knee)
       angles[kKneeX] = knee - bounded(knee - angles[kKneeX], std::max(room, 0.0));
   }

@@ -427,7 +427,7 @@ double rise_with_hips(const WalkModel& model, const WalkState& state, const Stri
   if (state.foot[side].mode == FootMode::flight)
     hover = 0.5 * state.path.base.early_m * smoothstep(0.0, 0.5, flight_progress(state));
   if (higher <= -2.0 * hover) return 0.0;
-  const double knee = model.strides.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
+  const double knee = model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
   const double known = span_m(leg.model, knee);
   const double room = std::max(0.0, kStretch * leg.model.length_m() - known),
                soft = kSoftStretch_m * model.size;

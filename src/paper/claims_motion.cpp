@@ -198,7 +198,7 @@ std::vector<double> flight_heights_m(const WalkModel& model, Side side) {
   std::vector<double> heights_m;
   for (int i = 0; i < kSamples; ++i) {
     const double phase = mix(lift, strike + 1.0, static_cast<double>(i) / (kSamples - 1));
-    heights_m.push_back(stride_at(model.strides.table, phase, 1.0).cell.foot[side].heel_m.y);
+    heights_m.push_back(stride_of(model, false, phase, 1.0).cell.foot[side].heel_m.y);
   }
   return heights_m;
 }

@@ -45,8 +45,8 @@ TEST(WalkModel, StepsAndFlightsScaleWithTheLeg) {
   EXPECT_GT(tall.time_scale, plain.time_scale);
   EXPECT_NEAR(plain.size, plain.leg_length_m / kReferenceLeg_m, 1e-12);
   for (const double phase : {0.1, 0.4, 0.8}) {
-    const StrideCell high = stride_at(tall.strides.table, phase, 1.0).cell,
-                     low = stride_at(plain.strides.table, phase, 1.0).cell;
+    const StrideCell high = stride_of(tall, false, phase, 1.0).cell,
+                     low = stride_of(plain, false, phase, 1.0).cell;
     EXPECT_NEAR(high.foot[0].heel_m.y, 1.44 * low.foot[0].heel_m.y, 1e-12);
     EXPECT_NEAR(high.foot[0].pitch_rad, low.foot[0].pitch_rad, 1e-12);
   }
@@ -106,10 +106,10 @@ TEST(WalkModel, StandsFlatWithItsHeelsOnTheFloorAtEveryLegRatio) {
 TEST(WalkModel, LegsOfAnyLengthSpanAsMuchOfTheirLength) {
   const WalkModel plain = model_of(1.0);
   const auto span = [](const WalkModel& model, double phase, Side side) {
-    const StrideCell cell = stride_at(model.strides.table, phase, 1.0).cell;
+    const StrideCell cell = stride_of(model, false, phase, 1.0).cell;
     const quat pelvis =
         rotation_y(cell.pelvis_yaw_rad) *
-        from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.strides.stand_roll_rad));
+        from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.stand_roll_rad));
     const LegBuild& leg = model.leg[side];
     const StrideFoot& foot = cell.foot[side];
     const quat turned = rotation_about(leg.side, foot.pitch_rad) *
@@ -152,7 +152,7 @@ TEST(WalkModel, TheDefaultsSidesMirrorEachOther) {
   for (double phase = 0.0; phase < 1.0; phase += 0.02) {
     for (int j : {kHipX, kKneeX, kAnkleX}) {
       const auto angle_at = [&](Side side, double at) {
-        return stride_at(model.strides.table, at, 1.0).cell.leg_rad[side][j];
+        return stride_of(model, false, at, 1.0).cell.leg_rad[side][j];
       };
       EXPECT_NEAR(angle_at(kLeftSide, phase + 0.5), angle_at(kRightSide, phase), 1e-6);
     }

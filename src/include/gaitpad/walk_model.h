@@ -92,18 +92,32 @@ struct LegBuild {
   double track_m = 0;    // sideways place of the heel from the pelvis' path, + left
 };
 
+// What turns strides of the motion into the character's: all lengths grow by `length`, but those of
+// the pelvis by `pelvis`.
+struct StrideScale {
+  double length = 1.0, pelvis = 1.0;
+  vec3 hips_m{0.0};                  // the middle of the hips, from the pelvis, in the motion
+  double stand_roll_rad = 0.0;       // of the motion's standing pelvis
+  std::array<vec3, 2> standing_m{};  // that middle when standing: in the motion, on the character
+  std::array<vec3, 2> apart_m{};     // by Side: what a wider or narrower pelvis moves the feet by
+};
+
 struct WalkModel {
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
-  GaitCycle cycle;       // the data; its skeleton and legs have the character's lengths
-  StrideFamily strides;  // in the character's lengths
+  // The data; its skeleton and legs have the character's lengths, its strides the motion's, so that
+  // characters of all builds share them.
+  GaitCycle cycle;
+  StrideScale stride_scale;
   std::array<double, 2> own_step_m{};  // by Side: the data's steps on this character
   std::array<LegBuild, 2> leg;
   double size = 1.0;        // leg length over kReferenceLeg_m
   double time_scale = 1.0;  // factor on the adult's times
   double leg_length_m = 0, source_leg_length_m = 0;
-  double source_step_m = 0;  // retargeted: mean step of the data on this character
-  double rest_lead_m = 0;    // hips before the heels when standing
-  double stand_m = 0;        // pelvis height when standing
+  double source_step_m = 0;              // retargeted: mean step of the data on this character
+  double rest_lead_m = 0;                // hips before the heels when standing
+  double stand_m = 0;                    // pelvis height when standing,
+  double stand_roll_rad = 0;             // its roll, left side up positive,
+  std::array<LegAngles, 2> stand_rad{};  // and the legs' angles
   // Shares of the cycle in walking order: roll right, flight left, roll left, flight right.
   std::array<double, 4> share{};
   std::vector<int> kept;  // twist joints in the legs: fixed at their standing rotation
@@ -116,6 +130,9 @@ struct WalkModel {
 // character that brings a skeleton of its own and for a leg with more than kMaxBetween twist joints
 // between two of its joints.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
+
+// One of its strides at one phase and ratio, in its lengths. No heap.
+StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept;
 
 // What the stick asks of this character at full deflection, by the pace of its motion: the adult's
 // for its legs, or the motion's own gait at kOwnStick.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "files/stride_cache.h"
@@ -67,6 +68,15 @@ Result<std::shared_ptr<const Terrain>> terrain_of(const SessionSpec& spec) {
   return std::shared_ptr<const Terrain>(std::make_shared<Terrain>(std::move(*terrain)));
 }
 
+// Ticks of a live session have a deadline. They wait for no other thread, unless one is too slow
+// for so many.
+int crowd_threads(const SessionSpec& spec) {
+  constexpr int kAlone = 64, kAloneLive = 1000;
+  const bool is_live = spec.replay.trace.empty();
+  if (spec.walk.crowd <= (is_live ? kAloneLive : kAlone)) return 1;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 bool is_built_in(const SessionSpec& spec) {
   return spec.walk.motion.empty() || spec.walk.motion == "procedural";
 }
@@ -105,6 +115,8 @@ Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz)
   SimulationConfig config;
   config.rate_hz = rate_hz;
   config.ik = spec.walk.ik;
+  config.crowd = spec.walk.crowd;
+  config.crowd_threads = crowd_threads(spec);
   auto terrain = terrain_of(spec);
   if (!terrain) return terrain.error();
   config.terrain = std::move(*terrain);

@@ -325,6 +325,7 @@ nlohmann::ordered_json summary_json(const RunSummary& run, const WalkerSummary& 
   s["bad_reports"] = run.bad_reports;
   s["bad_commands"] = run.bad_commands;
   s["damaged_lines"] = run.damaged_lines;
+  if (run.crowd > 0) s["crowd"] = run.crowd;
   if (run.recording_lost > 0) s["recording_lost"] = run.recording_lost;
   return s;
 }

@@ -178,7 +178,9 @@ void Builder::add_foot(const LegModel& leg) {
   const Held ball{j.ankle, on_floor(toe, ball_m)};
   add(back, ball, heel_m, ball_m, side, 1.0).width_to = 1.55;
   const Held instep{j.ankle, at(j.ankle) + vec3(0.0, -0.012 * leg_, 0.0) + ahead * (0.012 * leg_)};
-  add(instep, ball, 0.036 * leg_, 0.026 * leg_, side, 1.0).width_to = 1.45;
+  MannequinBone& top = add(instep, ball, 0.036 * leg_, 0.026 * leg_, side, 1.0);
+  top.width_to = 1.45;
+  top.is_small = true;
   add(instep, back, 0.034 * leg_, heel_m);
   make_pale(3);
   const vec3 tip = on_floor(end - ahead * tip_m, tip_m);
@@ -243,7 +245,7 @@ void Builder::add_head() {
   const Held jaw = place(0.050, 0.034), skull = place(0.130, 0.010);
   add(held(joints_.head), place(0.045, 0.004), 0.047 * size_, 0.045 * size_);
   add(jaw, skull, 0.054 * part, 0.094 * part, kLeft, 0.92).width_to = 0.86;
-  add(place(0.095, 0.088), place(0.080, 0.102), 0.008 * part, 0.011 * part);
+  add(place(0.095, 0.088), place(0.080, 0.102), 0.008 * part, 0.011 * part).is_small = true;
   make_pale(3);
   mannequin_.top = joints_.head;
   const vec3 top = base + vec3(0.0, kHeight_m * part, 0.0);
@@ -292,7 +294,7 @@ void Builder::add_hand(const ArmChain& arm) {
   };
   add(spot(0.08, 0.0), spot(0.50, 0.0), 0.020 * size_, 0.021 * size_, wide, 1.5).width_to = 1.95;
   add(spot(0.50, 0.0), spot(0.93, -0.004), 0.020 * size_, 0.012 * size_, wide, 1.95).width_to = 2.1;
-  add(spot(0.18, 0.014), spot(0.55, 0.048), 0.015 * size_, 0.0105 * size_);
+  add(spot(0.18, 0.014), spot(0.55, 0.048), 0.015 * size_, 0.0105 * size_).is_small = true;
   make_pale(3);
 }
 

@@ -19,7 +19,8 @@ struct MannequinBone {
   double radius_from_m = 0.05, radius_to_m = 0.05;
   vec3 wide{0.0};  // in the frame of `from`
   double width_from = 1.0, width_to = 1.0;
-  bool is_pale = false;  // forearm, hand, head, foot: mixed with grey, so that they stand out
+  bool is_small = false;  // thumb, nose, instep: not seen from afar
+  bool is_pale = false;   // forearm, hand, head, foot: mixed with grey, so that they stand out
 };
 struct Mannequin {
   std::shared_ptr<const WalkModel> model;

@@ -99,10 +99,12 @@ void CrowdBodies::add(const Member& member, const Colour& colour, const Terrain*
     const quat& turn = frames_.rotation[bone.from];
     const vec3 a = frames_.position_m[bone.from] + turn * bone.from_m - origin_m;
     const vec3 b = frames_.position_m[bone.to] + frames_.rotation[bone.to] * bone.to_m - origin_m;
+    // Trunk and upper limbs end in one another.
+    const double width = bone.is_pale ? bone.width_to : -bone.width_to;
     const Colour& paint = bone.is_pale ? pale : colour;
     content.crowd.push_back({row(a, bone.radius_from_m), row(b, bone.radius_to_m),
                              row(turn * bone.wide, bone.width_from),
-                             row(vec3(paint.red, paint.green, paint.blue), bone.width_to)});
+                             row(vec3(paint.red, paint.green, paint.blue), width)});
   }
   const auto on_floor = [&](vec3 place_m) {
     place_m.y = floor_m(terrain, place_m) + kShadeUp_m;

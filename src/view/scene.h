@@ -38,7 +38,8 @@ struct Trail {  // oldest first; fades towards the old end
 // SceneContent::crowd_origin_m.
 struct FlatCapsule {
   glm::vec4 a_radius{0.0f}, b_radius{0.0f};
-  glm::vec4 wide_width_a{0.0f}, colour_width_b{0.0f};  // as in Capsule
+  // As in Capsule. A negative width at b: both ends lie in other capsules and show no caps.
+  glm::vec4 wide_width_a{0.0f}, colour_width_b{0.0f};
 };
 // A soft dark strip on the floor between two places, its radius at each end; relative likewise.
 struct FloorShade {

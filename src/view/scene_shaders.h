@@ -88,6 +88,7 @@ flat out vec3 aside;
 flat out vec3 upwards;
 flat out vec3 radii;  // at a, at b; and the seen length
 flat out vec3 colour;
+flat out float cap;  // how much of a cap's curve shows
 void main() {
   vec3 a = a_radius.xyz + moved, b = b_radius.xyz + moved, along = b - a;
   float span = length(along);
@@ -98,7 +99,8 @@ void main() {
   aside = normalize(aside);
   upwards = cross(to_eye, aside);
   vec3 side = wide_width_a.xyz - axis * dot(axis, wide_width_a.xyz);
-  vec2 widths = vec2(wide_width_a.w, colour_width_b.w);
+  vec2 widths = vec2(wide_width_a.w, abs(colour_width_b.w));
+  cap = colour_width_b.w < 0.0 ? 0.15 : 1.0;
   float seen = 0.0;  // the share of the wide side that is seen, squared
   if (dot(side, side) > 1e-6) seen = pow(dot(aside, normalize(side)), 2.0);
   vec2 wide = sqrt(mix(vec2(1.0), widths * widths, seen));
@@ -120,6 +122,7 @@ flat in vec3 aside;
 flat in vec3 upwards;
 flat in vec3 radii;
 flat in vec3 colour;
+flat in float cap;
 uniform float samples;  // more than 1: the cover becomes samples
 void main() {
   float along = clamp(spot.y, 0.0, radii.z);
@@ -135,7 +138,9 @@ void main() {
     discard;
   }
   vec3 to_eye = cross(aside, upwards);
-  vec3 n = aside * off.x + upwards * off.y + to_eye * sqrt(max(1.0 - far, 0.0));
+  float bent = off.y * cap;
+  vec3 n = aside * off.x + upwards * bent +
+           to_eye * sqrt(max(1.0 - off.x * off.x - bent * bent, 0.0));
   show(place, n, colour, cover);
 }
 )";

@@ -12,9 +12,10 @@ constexpr double kWidth_m = 1.5;   // of the formation, times the root of the nu
 constexpr double kAstray_m = 0.1;  // nobody stands exactly in line
 
 // How a member comes back to its place in the formation when its own steps lead it off: for each
-// metre that it is behind it walks faster by this share, and for each metre beside it heads that
+// metre that it is behind it walks faster by this share (or slower if it is ahead: stairs slow the
+// first one down before they slow it down), and for each metre beside it heads that
 // much towards it, both within bounds that do not show.
-constexpr double kCatchUp_1_m = 0.2, kMostCatchUp = 0.1;
+constexpr double kCatchUp_1_m = 0.4, kMostCatchUp = 0.15, kMostWait = 0.7;
 constexpr double kAim_rad_m = 0.2, kMostAim_rad = 0.12;
 constexpr double kTurn_1_s = 0.8, kMostTurn_rad_s = 0.15;  // towards the heading that it aims at
 
@@ -139,7 +140,7 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
   double turn_rate_rad_s = first.turn_rate_rad_s;
   if (speed > 0.0) {
     const double way = first.backward ? -1.0 : 1.0;
-    const double more = std::clamp(way * behind_m * kCatchUp_1_m, -kMostCatchUp, kMostCatchUp);
+    const double more = std::clamp(way * behind_m * kCatchUp_1_m, -kMostWait, kMostCatchUp);
     const double wanted_m_s = speed * (1.0 + more);
     // Short legs keep up by quicker steps.
     limits.max_speed_m_s =

@@ -122,8 +122,7 @@ double floor_below(const SceneContent& content, const vec3& place_m) {
 
 Result<CapsuleScene> CapsuleScene::create(const MeshDetail& detail) {
   CapsuleScene capsules;
-  auto body = GlProgram::link("bodies", shader::kBodyVertex,
-                              std::string(shader::kBodyLight) + shader::kBodyFragment);
+  auto body = GlProgram::link("bodies", shader::kBodyVertex, shader::kBodyFragment);
   if (!body) return body.error();
   auto shadow = GlProgram::link("shadows", shader::kShadowVertex, shader::kShadowFragment);
   if (!shadow) return shadow.error();
@@ -325,8 +324,7 @@ class CrowdScene {
 
 Result<CrowdScene> CrowdScene::create() {
   CrowdScene crowd;
-  auto body = GlProgram::link("crowd", shader::kFlatVertex,
-                              std::string(shader::kBodyLight) + shader::kFlatFragment);
+  auto body = GlProgram::link("crowd", shader::kFlatVertex, shader::kFlatFragment);
   if (!body) return body.error();
   auto shade = GlProgram::link("crowd's shades", shader::kShadeVertex, shader::kShadeFragment);
   if (!shade) return shade.error();

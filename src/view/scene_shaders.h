@@ -39,8 +39,11 @@ void main() {
 }
 )";
 
-// Before one of the two fragment shaders that use it.
-inline constexpr const char* kBodyLight = R"(#version 330 core
+inline constexpr const char* kBodyFragment = R"(#version 330 core
+in vec3 place;
+in vec3 normal;
+in float above;
+flat in vec3 colour;
 uniform vec3 eye;
 uniform vec3 light;
 uniform vec3 sky_light;
@@ -48,7 +51,8 @@ uniform vec3 ground_light;
 uniform float key_strength;
 uniform float rim_strength;
 out vec4 shown;
-void show(vec3 place, vec3 n, vec3 colour, float cover) {
+void main() {
+  vec3 n = normalize(normal);
   vec3 to_eye = normalize(eye - place);
   float near_floor = mix(0.55, 1.0, smoothstep(0.0, 0.35, place.y));
   vec3 ambient = mix(ground_light, sky_light, 0.5 + 0.5 * n.y) * near_floor;
@@ -59,16 +63,8 @@ void show(vec3 place, vec3 n, vec3 colour, float cover) {
   vec3 base = colour * colour * (0.25 + 0.75 * colour);  // nearly the power 2.2
   vec3 lit = base * (ambient + key * vec3(1.0, 0.975, 0.93)) +
              rim * vec3(0.55, 0.68, 0.85) + gloss * key;
-  shown = vec4(pow(lit, vec3(1.0 / 2.2)), cover);
+  shown = vec4(pow(lit, vec3(1.0 / 2.2)), 1.0);
 }
-)";
-
-inline constexpr const char* kBodyFragment = R"(
-in vec3 place;
-in vec3 normal;
-in float above;
-flat in vec3 colour;
-void main() { show(place, normalize(normal), colour, 1.0); }
 )";
 
 // --- the crowd -----------------------------------------------------------------------------------
@@ -81,13 +77,15 @@ layout(location = 3) in vec4 wide_width_a;
 layout(location = 4) in vec4 colour_width_b;
 uniform mat4 to_clip;
 uniform vec3 eye;
+uniform vec3 light;
 uniform vec3 moved;
-out vec3 place;
+out float height;
 out vec2 spot;  // metres aside of the axis, and along it from a as it is seen
 flat out vec3 aside;
 flat out vec3 upwards;
 flat out vec3 radii;  // at a, at b; and the seen length
-flat out vec3 colour;
+flat out vec3 base;
+flat out vec3 half_way;
 flat out float cap;  // how much of a cap's curve shows
 void main() {
   vec3 a = a_radius.xyz + moved, b = b_radius.xyz + moved, along = b - a;
@@ -109,20 +107,31 @@ void main() {
   bool at_b = gl_VertexID > 1;
   float aside_m = (gl_VertexID & 1) == 1 ? reach : -reach;
   spot = vec2(aside_m, at_b ? radii.z + radii.y * 1.05 : -radii.x * 1.05);
-  place = (at_b ? b + upwards * radii.y * 1.05 : a - upwards * radii.x * 1.05) + aside * aside_m;
-  colour = colour_width_b.rgb;
+  vec3 place = (at_b ? b + upwards * radii.y * 1.05 : a - upwards * radii.x * 1.05) + aside * aside_m;
+  height = place.y;
+  half_way = normalize(light + to_eye);
+  vec3 c = colour_width_b.rgb;
+  base = c * c * (0.25 + 0.75 * c);
   gl_Position = to_clip * vec4(place, 1.0);
 }
 )";
 
-inline constexpr const char* kFlatFragment = R"(
-in vec3 place;
+// The light of the bodies, with cheap powers.
+inline constexpr const char* kFlatFragment = R"(#version 330 core
+in float height;
 in vec2 spot;
 flat in vec3 aside;
 flat in vec3 upwards;
 flat in vec3 radii;
-flat in vec3 colour;
+flat in vec3 base;
+flat in vec3 half_way;
 flat in float cap;
+uniform vec3 light;
+uniform vec3 sky_light;
+uniform vec3 ground_light;
+uniform float key_strength;
+uniform float rim_strength;
+out vec4 shown;
 uniform float samples;  // more than 1: the cover becomes samples
 void main() {
   float along = clamp(spot.y, 0.0, radii.z);
@@ -139,9 +148,23 @@ void main() {
   }
   vec3 to_eye = cross(aside, upwards);
   float bent = off.y * cap;
-  vec3 n = aside * off.x + upwards * bent +
-           to_eye * sqrt(max(1.0 - off.x * off.x - bent * bent, 0.0));
-  show(place, n, colour, cover);
+  float facing = sqrt(max(1.0 - off.x * off.x - bent * bent, 0.0));
+  vec3 n = aside * off.x + upwards * bent + to_eye * facing;
+  float near_floor = mix(0.55, 1.0, clamp(height * 3.0, 0.0, 1.0));
+  vec3 ambient = mix(ground_light, sky_light, 0.5 + 0.5 * n.y) * near_floor;
+  float key = smoothstep(-0.25, 1.0, dot(n, light)) * key_strength;
+  float edge = 1.0 - facing;
+  float rim = edge * edge * edge * rim_strength * near_floor;
+  float gloss = max(dot(n, half_way), 0.0);
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;  // the power 32
+  vec3 lit = base * (ambient + key * vec3(1.0, 0.975, 0.93)) + rim * vec3(0.55, 0.68, 0.85) +
+             0.12 * gloss * key;
+  vec3 root = sqrt(lit);
+  shown = vec4(mix(root, sqrt(root), 0.15), cover);  // nearly the power 1 / 2.2
 }
 )";
 

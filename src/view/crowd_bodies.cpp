@@ -6,9 +6,7 @@
 namespace gaitpad {
 namespace {
 
-// The first members stand nearest to the first character. They are drawn with all bones, the others
-// without those that do not show from afar.
-constexpr std::size_t kFine = 60;
+constexpr double kFull_m = 11.0;  // members nearer to the eye are drawn with all bones
 constexpr Colour kPlain = {0.60, 0.61, 0.64};
 constexpr double kPlainShare = 0.45;  // of it in the colour of a member: the walkers stand out
 constexpr double kPaleShare = 0.30;
@@ -22,7 +20,7 @@ Colour mixed(const Colour& a, const Colour& b, double share) {
   return {mix(a.red, b.red, share), mix(a.green, b.green, share), mix(a.blue, b.blue, share), 1.0};
 }
 
-// Half the step is a colour by style, the rest a brightness by member, so that neighbours differ.
+// By style, and brighter or darker by member, so that neighbours differ.
 Colour colour_of(const Theme& theme, int style, std::size_t member) {
   const Colour tone =
       mixed(series_colour(theme, static_cast<std::size_t>(style)), kPlain, kPlainShare);
@@ -49,13 +47,14 @@ double floor_m(const Terrain* terrain, const vec3& place_m) {
 
 CrowdBodies::CrowdBodies(const Cast& cast) {
   for (const CrowdCastMember& member : cast.crowd) {
-    auto known = std::ranges::find(mannequins_, member.model, &Mannequin::model);
-    if (known == mannequins_.end()) {
-      mannequins_.push_back(mannequin_of(member.model));
-      known = mannequins_.end() - 1;
+    auto known = std::ranges::find(full_, member.model, &Mannequin::model);
+    if (known == full_.end()) {
+      full_.push_back(mannequin_of(member.model));
+      coarse_.push_back(mannequin_of(member.model, MannequinDetail::coarse));
+      known = full_.end() - 1;
     }
     const int joints = static_cast<int>(member.model->cycle.skeleton.joints.size());
-    members_.push_back({static_cast<int>(known - mannequins_.begin()), member.style, joints});
+    members_.push_back({static_cast<int>(known - full_.begin()), member.style, joints});
     joints_ += static_cast<std::size_t>(joints);
   }
 }
@@ -80,22 +79,23 @@ void CrowdBodies::fill(const FollowerPoses& poses, double share, const Theme& th
           between(poses.before[joint], poses.local[joint], t);
     }
     first_joint += static_cast<std::size_t>(member.joints);
-    add(member, colour_of(theme, member.style, i), terrain, i < kFine, content);
+    const bool is_near = glm::distance(pose_.root_m, eye_m_) < kFull_m;
+    const std::vector<Mannequin>& mannequins = is_near ? full_ : coarse_;
+    add(mannequins[static_cast<std::size_t>(member.mannequin)], colour_of(theme, member.style, i),
+        terrain, content);
     content.reach_m = std::max(content.reach_m,
                                std::hypot(pose_.root_m.x - focus_m.x, pose_.root_m.z - focus_m.z));
   }
   content.reach_m += kAroundFocus_m;
 }
 
-void CrowdBodies::add(const Member& member, const Colour& colour, const Terrain* terrain,
-                      bool is_fine, SceneContent& content) {
-  const Mannequin& mannequin = mannequins_[static_cast<std::size_t>(member.mannequin)];
+void CrowdBodies::add(const Mannequin& mannequin, const Colour& colour, const Terrain* terrain,
+                      SceneContent& content) {
   const WalkModel& model = *mannequin.model;
   forward_kinematics(model.cycle.skeleton, pose_, frames_);
   const Colour pale = mixed(colour, {0.83, 0.84, 0.86, 1.0}, kPaleShare);
   const vec3& origin_m = content.crowd_origin_m;
   for (const MannequinBone& bone : mannequin.bones) {
-    if (bone.is_small && !is_fine) continue;
     const quat& turn = frames_.rotation[bone.from];
     const vec3 a = frames_.position_m[bone.from] + turn * bone.from_m - origin_m;
     const vec3 b = frames_.position_m[bone.to] + frames_.rotation[bone.to] * bone.to_m - origin_m;

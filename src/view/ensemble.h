@@ -22,6 +22,8 @@ class Ensemble {
             const UiState& state, const Theme& theme, SceneContent& content);
   // The place that a camera follows, of one character or of all (-1), as filled last.
   vec3 focus_m(int walker) const noexcept;
+  // Where the camera was last: what is near it is drawn finely.
+  void look_from(const vec3& eye_m) noexcept { crowd_.look_from(eye_m); }
   bool has_crowd() const noexcept { return has_crowd_; }
   bool is_on_uneven_ground() const noexcept { return terrain_ != nullptr; }
   // Tells the camera the ground's height; call it when the camera has moved.

@@ -19,8 +19,7 @@ struct MannequinBone {
   double radius_from_m = 0.05, radius_to_m = 0.05;
   vec3 wide{0.0};  // in the frame of `from`
   double width_from = 1.0, width_to = 1.0;
-  bool is_small = false;  // thumb, nose, instep: not seen from afar
-  bool is_pale = false;   // forearm, hand, head, foot: mixed with grey, so that they stand out
+  bool is_pale = false;  // forearm, hand, head, foot: mixed with grey, so that they stand out
 };
 struct Mannequin {
   std::shared_ptr<const WalkModel> model;
@@ -29,8 +28,11 @@ struct Mannequin {
   vec3 top_m{0.0};        // that place, in its frame
   double height_m = 0.0;  // of that place when standing
 };
+// coarse: half as many bones, for characters that are seen from afar.
+enum class MannequinDetail { full, coarse };
 // Allocates; call it once for each character. Limbs that were not found are left out.
-Mannequin mannequin_of(std::shared_ptr<const WalkModel> model);
+Mannequin mannequin_of(std::shared_ptr<const WalkModel> model,
+                       MannequinDetail detail = MannequinDetail::full);
 
 // Between the two latest poses; share 0 gives the earlier one.
 void interpolate(const Pose& before, const Pose& pose, double share, Pose& shown) noexcept;

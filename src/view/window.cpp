@@ -474,6 +474,7 @@ void WindowLoop::draw_window(bool is_last) {
 
   const Viewport viewport =
       scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
+  ensemble_->look_from(camera_.eye_m());
   ensemble_->fill(show_->frame(), show_->history(), show_->share(now_ns()), show_->cast(), state_,
                   theme, content_);
   if (std::exchange(is_camera_new_, false)) reset_camera();

@@ -16,6 +16,7 @@ constexpr double kAstray_m = 0.1;  // nobody stands exactly in line
 // first one down before they slow it down), and for each metre beside it heads that
 // much towards it, both within bounds that do not show.
 constexpr double kCatchUp_1_m = 0.4, kMostCatchUp = 0.15, kMostWait = 0.7;
+constexpr double kLeastSpeed = 0.1;  // of the first one's
 constexpr double kAim_rad_m = 0.2, kMostAim_rad = 0.12;
 constexpr double kTurn_1_s = 0.8, kMostTurn_rad_s = 0.15;  // towards the heading that it aims at
 
@@ -84,7 +85,7 @@ Character follower_build(const Character& first, int number) {
 Followers::Followers(const Options& options,
                      const std::vector<std::shared_ptr<const WalkModel>>& builds,
                      const std::vector<Style>& styles)
-    : builds_(builds), first_m_(options.first_m) {
+    : builds_(builds), first_m_(options.first_m), is_flat_(is_flat(*builds.front()->terrain)) {
   const std::vector<int> chosen = different(styles);
   for (int build = 0; build < static_cast<int>(builds.size()); ++build) {
     for (const int style : chosen) {
@@ -141,7 +142,9 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
   if (speed > 0.0) {
     const double way = first.backward ? -1.0 : 1.0;
     const double more = std::clamp(way * behind_m * kCatchUp_1_m, -kMostWait, kMostCatchUp);
-    const double wanted_m_s = speed * (1.0 + more);
+    // Stairs make the first one slower than the stick asks; its running cycle shows by how much.
+    const double real_m_s = is_flat_ ? speed : std::min(speed, first_state.frame.speed_m_s);
+    const double wanted_m_s = std::max(real_m_s + speed * more, kLeastSpeed * speed);
     // Short legs keep up by quicker steps.
     limits.max_speed_m_s =
         std::max(limits.max_speed_m_s, first.backward ? wanted_m_s / kBackwardShare : wanted_m_s);

@@ -83,6 +83,7 @@ class Followers {
   std::vector<std::uint16_t> kind_;  // by member
   std::vector<vec3> start_m_;        // by member
   vec3 first_m_{0.0};
+  bool is_flat_ = true;
   FollowerPoses shown_;
 };
 

@@ -27,7 +27,7 @@ ROOMS = {
     "drivers": (["hid", "drivers/pads"], ["fmt/"]),
     "drivers/pads": (["hid"], ["fmt/"]),
     "src/pads": (["hid", "stick", "drivers"], ["fmt/"]),
-    "src/session": ([], ["fmt/", "nlohmann/"]),
+    "src/session": ([], ["fmt/", "nlohmann/", "tbb/"]),
     # Drawing needs cairo alone; the paper's figures are drawn without a window.
     "src/draw": ([], ["fmt/", "cairo/"]),
     "src/view": (["draw"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
@@ -38,7 +38,7 @@ PUBLIC = {
     "src/base": ["curve", "hash", "limbs", "math", "result"],
     "src/motion": ["anatomy", "flight", "gait_cycle", "motion", "skeleton", "stride_family"],
     "src/control": ["control", "gait_params", "stick", "style"],
-    "src/animation": ["ik", "terrain", "walk", "walk_model"],
+    "src/animation": ["crowd", "ik", "terrain", "walk", "walk_model"],
     "src/files": ["bvh", "config_files", "gltf", "motion_file"],
     "src/strides": ["clean_strides"],
     "src/hid": ["decode", "descriptor", "driver", "pad_map", "report", "trace"],

@@ -3,7 +3,7 @@
 # all is there, apt else (sudo if not root).
 set -euo pipefail
 
-packages=(g++ clang cmake ninja-build libglm-dev libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev
+packages=(g++ clang cmake ninja-build libglm-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev pkg-config libudev-dev libhidapi-dev libusb-1.0-0-dev libevdev-dev libsdl2-dev
   libcairo2-dev libimgui-dev libepoxy-dev libfreetype-dev libpng-dev libgl1 libegl1 libgl1-mesa-dri fonts-dejavu-core
   libgtest-dev libbenchmark-dev python3-numpy python3-matplotlib python3-pytest "$@")

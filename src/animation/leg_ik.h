@@ -28,9 +28,24 @@ struct LegSolution {
   Vec3Of<V> ankle_m, foot_x, foot_y, foot_z;  // the foot's frame in the pelvis', from the hip joint
 };
 
+// One number of each of several legs, in memory.
+template <int kWidth>
+struct alignas(8 * kWidth) Row {
+  std::array<double, kWidth> lane;
+  double& operator[](std::size_t i) noexcept { return lane[i]; }
+  double operator[](std::size_t i) const noexcept { return lane[i]; }
+};
+
+template <int kWidth>
+struct LegLanes {
+  LegGoals<Row<kWidth>> goals;
+  std::array<Row<kWidth>, kLegDofs> angles_rad;
+  LegSolution<Row<kWidth>> solution;
+};
+
 // Starts at `angles_rad` and leaves the best pose there. Angles and weights have to be finite.
-template <class V>
-LegSolution<V> solve_legs(const LegGoals<V>& goals, const RobustOptions& options,
-                          std::array<V, kLegDofs>& angles_rad) noexcept;
+// kWidth: 2, 4 or 8.
+template <int kWidth>
+void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept;
 
 }  // namespace gaitpad

@@ -171,11 +171,9 @@ constexpr double kLegFarthest = 0.5;
 constexpr int kLegPatience = 6;
 constexpr double kLegLeastGain = 0.001, kLegGainFrom = 0.1;
 
-}  // namespace
-
 template <class V>
-LegSolution<V> solve_legs(const LegGoals<V>& goals, const RobustOptions& options,
-                          LegValues<V>& angles_rad) noexcept {
+inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions& options,
+                                  LegValues<V>& angles_rad) noexcept {
   for (int j = 0; j < kLegDofs; ++j)
     angles_rad[j] = min_of(max_of(angles_rad[j], goals.min_rad[j]), goals.max_rad[j]);
   LegValues<V> next = angles_rad;
@@ -238,6 +236,21 @@ LegSolution<V> solve_legs(const LegGoals<V>& goals, const RobustOptions& options
     }
   }
   return {best.squares, iterations, best.ankle_m, best.x, best.y, best.z};
+}
+
+}  // namespace
+
+template <int kWidth>
+void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept {
+  using V = Lanes<kWidth>;
+  LegGoals<V> goals;
+  LegValues<V> angles_rad;
+  static_assert(sizeof goals == sizeof legs.goals && sizeof angles_rad == sizeof legs.angles_rad);
+  std::memcpy(&goals, &legs.goals, sizeof goals);
+  std::memcpy(&angles_rad, &legs.angles_rad, sizeof angles_rad);
+  const LegSolution<V> solution = solve_lanes(goals, options, angles_rad);
+  std::memcpy(&legs.angles_rad, &angles_rad, sizeof angles_rad);
+  std::memcpy(&legs.solution, &solution, sizeof solution);
 }
 
 }  // namespace gaitpad

@@ -15,8 +15,8 @@
 #include "gaitpad/walk.h"
 
 #include "animation/walk_parts.h"
-#include "base/lanes.h"
 #include "motion/leg_pose.h"
+#include "motion/pose_rows.h"
 
 namespace gaitpad {
 
@@ -70,12 +70,13 @@ double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
   return std::max(0.0, ratio_of_step(model, state) + state.gait.off_ratio.x);
 }
 
-StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
-                       double step_share) noexcept {
-  StridePlan plan;
+void plan_stride(const WalkModel& model, const WalkState& state, double phase, double step_share,
+                 StridePlan& plan) noexcept {
   plan.phase = phase;
   plan.change = smootherstep(step_share);
   plan.shown = std::clamp(state.gait.amplitude.x, 0.0, 1.0);
+  plan.heel_m = {};
+  plan.injury = {};
   const auto& tables = state.clock.backward ? model.strides.back : model.strides.table;
   plan.at[0] = stride_at(tables, plan.phase, state.gait.ratio_behind);
   const double ahead = ratio_ahead(model, state);
@@ -83,17 +84,16 @@ StridePlan stride_plan(const WalkModel& model, const WalkState& state, double ph
   plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
                     plan.shown * plan.change);
   change_stride(model.strides, state, mix(state.gait.ratio_behind, ahead, plan.change), plan);
-  return plan;
 }
 
-StridePlan stride_now(const WalkModel& model, const WalkState& state) noexcept {
+void plan_stride(const WalkModel& model, const WalkState& state, StridePlan& plan) noexcept {
   const double begun =
       state.clock.tick + (state.clock.stage == Stage::flight ? state.clock.roll_ticks : 0);
   // A walk that has closed fades from the stride of its last step.
   const double share = state.clock.started
                            ? begun / std::max(1, state.clock.roll_ticks + state.clock.flight_ticks)
                            : 0.0;
-  return stride_plan(model, state, state.clock.phase, share);
+  plan_stride(model, state, state.clock.phase, share, plan);
 }
 
 vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
@@ -177,6 +177,7 @@ constexpr double kSlowerBack = 2.05;
 constexpr double kBraking = 2.4;  // way over speed and time of a stop with little jerk
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
+constexpr double kAllShown = 1.0 - 1e-9;   // from here on nothing is mixed with the stand
 constexpr double kStillTurn = 1e-5;        // rad/s: slower than this is straight ahead
 
 // Share of the cycle's time.
@@ -361,6 +362,7 @@ void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept
   state.gait.amplitude.advance(
       state.clock.started ? 1.0 : 0.0,
       (state.clock.started ? kAmplitudeSmoothing : kAmplitudeFading) * scale, dt);
+  if (state.clock.started && state.gait.amplitude.x > kAllShown) state.gait.amplitude = {1.0, 0.0};
   state.gait.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
   state.gait.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
   const double mean = 0.5 * (state.gait.length_m[0].x + state.gait.length_m[1].x);
@@ -515,7 +517,8 @@ void begin_path(const Tick& tick, WalkState& state) noexcept {
   double phase = state.clock.stage_phase, rate = state.clock.phase_rate;
   std::array<vec3, 3> off;
   for (int k : {0, 1, 2}) {
-    const StridePlan plan = stride_plan(tick.model, state, phase, 0.0);
+    StridePlan plan;
+    plan_stride(tick.model, state, phase, 0.0, plan);
     vec3 from = path_from_standing(state, plan);
     if (state.clock.last_step_ticks == 0)
       from = vec3(state.path.hips_m.x, from.y, state.path.hips_m.z);  // at rest
@@ -605,7 +608,7 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
   const LegAngles& q = state.legs.angles_rad[side];
   const Skeleton& skeleton = model.cycle.skeleton;
   const quat pelvis =
-      frames.rotation[model.cycle.pelvis] * glm::inverse(model.cycle.pelvis_standing);
+      frames.rotation[model.cycle.pelvis] * glm::conjugate(model.cycle.pelvis_standing);
   const quat thigh = pelvis * rotation_xzy({q[kHipX], q[kHipZ], q[kHipY]});
   const quat shank = thigh * rotation_x(q[kKneeX]);
   const quat foot = shank * rotation_xzy({q[kAnkleX], q[kAnkleZ], q[kAnkleY]});
@@ -626,7 +629,7 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
     }
     while (n > 0) parent = parent * pose.local[between[--n]];
     frames.rotation[j] = segment[i] * leg.model.standing[i];
-    pose.local[j] = glm::inverse(parent) * frames.rotation[j];
+    pose.local[j] = glm::conjugate(parent) * frames.rotation[j];
     last = j;
   }
 }
@@ -634,18 +637,11 @@ void write_leg(const WalkModel& model, const WalkState& state, Side side, JointF
 void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
                 Pose& pose) noexcept {
   const GaitCycle& cycle = model.cycle;
-  pose.joint_count = static_cast<int>(cycle.skeleton.joints.size());
-  sample_local(cycle, data_phase(model, state), pose);
+  sample_rows(model.above, data_phase(model, state), pose);
   swing_arms(model, state, pose);
   const double a = presence(state);
   if (a < 1.0) {
-    int j = 0;
-    for (; j + 1 < pose.joint_count; j += 2) {
-      store_pair(nlerp_of(load_pair(&cycle.standing_local[j]), load_pair(&pose.local[j]),
-                          all_of<Lanes<2>>(a)),
-                 &pose.local[j]);
-    }
-    for (; j < pose.joint_count; ++j)
+    for (const int j : model.above.joint)
       pose.local[j] = nlerp(cycle.standing_local[j], pose.local[j], a);
   }
   for (int j : model.kept) pose.local[j] = cycle.standing_local[j];
@@ -659,7 +655,7 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
     above = pose.local[j] * above;
   }
   frames.rotation[cycle.pelvis] = pelvis.rotation * cycle.pelvis_standing;
-  pose.local[cycle.pelvis] = glm::inverse(above) * frames.rotation[cycle.pelvis];
+  pose.local[cycle.pelvis] = glm::conjugate(above) * frames.rotation[cycle.pelvis];
   for (Side side : {kLeftSide, kRightSide}) write_leg(model, state, side, frames, pose);
   pose_upper_body(model, state, pose);
 }
@@ -736,28 +732,41 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   return state;
 }
 
-void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
-             WalkState& state, Pose& pose) noexcept {
-  const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
+void plan_tick(const Tick& tick, IkMode mode, WalkState& state, PlannedTick& planned) noexcept {
+  const WalkModel& model = tick.model;
+  planned.tick = &tick;
+  planned.state = &state;
   smooth_parameters(tick, mode, state);
   grant_wishes(mode, state);
   smooth_upper_body(tick, mode, state);
   advance_clock(tick, state);
   plan_landing(tick, state);
-  const StridePlan plan = stride_now(model, state);
-  advance_hips(tick, state, plan);
-  for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, plan, side);
-  Pelvis pelvis = pelvis_over_ground(model, state, plan);
-  pelvis.position_m.y = pelvis_height(model, state, plan, pelvis);
-  for (Side side : {kLeftSide, kRightSide}) {
-    reach_with_toe(model, state, side, pelvis.hip(model.leg[side]));
-  }
-  pose_legs(tick, mode, plan, pelvis, state);
-  write_pose(model, state, pelvis, pose);
-  fill_report(pelvis, dt_s, state);
+  plan_stride(model, state, planned.plan);
+  advance_hips(tick, state, planned.plan);
+  for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, planned.plan, side);
+  planned.pelvis = pelvis_over_ground(model, state, planned.plan);
+  planned.pelvis.position_m.y = pelvis_height(model, state, planned.plan, planned.pelvis);
+  for (Side side : {kLeftSide, kRightSide})
+    reach_with_toe(model, state, side, planned.pelvis.hip(model.leg[side]));
+}
+
+void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {
+  const Tick& tick = *planned.tick;
+  WalkState& state = *planned.state;
+  write_pose(tick.model, state, planned.pelvis, pose);
+  fill_report(planned.pelvis, tick.dt_s, state);
   report_ground(tick, state.frame);
   finish_stage(tick, state);
   for (FootState& foot : state.foot) remember_foot(foot);
+}
+
+void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
+             WalkState& state, Pose& pose) noexcept {
+  const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
+  PlannedTick planned;
+  plan_tick(tick, mode, state, planned);
+  pose_legs({&planned, 1}, mode);
+  finish_tick(planned, pose);
 }
 
 }  // namespace gaitpad

@@ -135,7 +135,7 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
 // reaches: P cos + Q sin = K in the foot's own vertical plane.
 double pitch_in_reach(const LegBuild& leg, const FootPose& pose, const vec3& hip_m,
                       double reach) noexcept {
-  const vec3 d = glm::conjugate(pose.yaw) * (glm::inverse(pose.tilt) * (hip_m - pose.toe_m)),
+  const vec3 d = glm::conjugate(pose.yaw) * (glm::conjugate(pose.tilt) * (hip_m - pose.toe_m)),
              c = -leg.model.toe_m;
   const double df = glm::dot(d, leg.forward), cf = glm::dot(c, leg.forward);
   const double ds = glm::dot(d, leg.side), cs = glm::dot(c, leg.side);
@@ -316,9 +316,9 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.pitch_fade = {};
   const double step = 1.0 / (state.clock.roll_ticks + state.clock.flight_ticks);
   const double share = state.clock.roll_ticks * step;
-  const StridePlan now = stride_plan(model, state, state.clock.phase, share),
-                   next = stride_plan(model, state, state.clock.phase + state.clock.phase_rate,
-                                      share + step);
+  StridePlan now, next;
+  plan_stride(model, state, state.clock.phase, share, now);
+  plan_stride(model, state, state.clock.phase + state.clock.phase_rate, share + step, next);
   double base_m = 0.0;
   const vec3 from = flight_heel(model, state, now, side, 0.0, base_m);
   const vec3 to = flight_heel(model, state, next, side, 1.0 / ticks, base_m);
@@ -339,8 +339,9 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.heel_anchor_m = state.path.landing_m;
   foot.lift_yaw_rad = state.path.landing_heading_rad;
   foot.plane = state.path.landing_plane;
-  const double pitch =
-      foot.pose.pitch_rad - table_pitch(state, stride_now(tick.model, state), side);
+  StridePlan plan;
+  plan_stride(tick.model, state, plan);
+  const double pitch = foot.pose.pitch_rad - table_pitch(state, plan, side);
   foot.pitch_fade = {pitch, 0.0, kRollEnd * state.clock.stage_ticks};
   FootPose flat = foot.pose;
   flat.heel_m = foot.heel_anchor_m;

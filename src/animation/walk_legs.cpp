@@ -61,7 +61,7 @@ FootEnd end_effector(const FootState& foot) noexcept {  // Table I
 FootGoal foot_goal(const LegBuild& leg, const FootState& foot, const Pelvis& pelvis,
                    FootEnd end) noexcept {
   const bool on_toe = end == FootEnd::toe;
-  const quat to_pelvis = glm::inverse(pelvis.rotation);
+  const quat to_pelvis = glm::conjugate(pelvis.rotation);
   const quat rotation = to_pelvis * foot_rotation(leg, foot.pose);
   const vec3 hip = pelvis.hip(leg);
   const vec3 effector = to_pelvis * ((on_toe ? foot.pose.toe_m : foot.pose.heel_m) - hip);
@@ -88,8 +88,8 @@ FootGoal whole_foot(const LegBuild& leg, const FootState& foot, const Pelvis& pe
 
 double foot_pitch(const LegBuild& leg, const Pelvis& pelvis, const FootPose& pose,
                   const IkFrame& end) noexcept {
-  const vec3 line = glm::inverse(pose.yaw) *
-                    (glm::inverse(pose.tilt) *
+  const vec3 line = glm::conjugate(pose.yaw) *
+                    (glm::conjugate(pose.tilt) *
                      (pelvis.rotation * (end.rotation * (leg.model.toe_m - leg.model.heel_m))));
   return leg.elevation_rad - atan2(line.y, glm::dot(line, leg.forward));
 }
@@ -180,112 +180,143 @@ bool ease_ankle(const Tick& tick, WalkState& state, Side side, const Pelvis& pel
   return true;
 }
 
-void set_vector(const vec3& from, Side side, Vec3Of<Lanes<2>>& to) noexcept {
-  to.x[side] = from.x, to.y[side] = from.y, to.z[side] = from.z;
+// --- Robust mode: several legs side by side, each in a lane
+// ----------------------------------------
+
+template <class V>
+void set_vector(const vec3& from, int lane, Vec3Of<V>& to) noexcept {
+  to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
 }
-vec3 vector_of(const Vec3Of<Lanes<2>>& from, Side side) noexcept {
-  return {from.x[side], from.y[side], from.z[side]};
+template <class V>
+vec3 vector_of(const Vec3Of<V>& from, int lane) noexcept {
+  return {from.x[lane], from.y[lane], from.z[lane]};
 }
 
 // Where one leg's solver starts, and what is to be reached.
-void set_lane(const WalkModel& model, const WalkState& state, Side side, const Pelvis& pelvis,
-              const LegAngles& start, LegGoals<Lanes<2>>& goals,
-              std::array<Lanes<2>, kLegDofs>& angles) noexcept {
-  const LegBuild& leg = model.leg[side];
-  const FootGoal goal = whole_foot(leg, state.foot[side], pelvis);
-  goals.thigh_m[side] = leg.model.thigh_m;
-  goals.shank_m[side] = leg.model.shank_m;
+template <int kWidth>
+void set_lane(const PlannedTick& planned, Side side, int lane, LegLanes<kWidth>& lanes) noexcept {
+  const Tick& tick = *planned.tick;
+  WalkState& state = *planned.state;
+  const LegBuild& leg = tick.model.leg[side];
+  LegGoals<Row<kWidth>>& goals = lanes.goals;
+  // Start from the data's angles plus what the solver had to add a tick ago. That correction
+  // leaks away, so the swivel, which no row holds, is pulled to the data's and cannot drift.
+  const LegAngles data = reference(tick.model, planned.plan, side);
+  const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
   const LegAngles weight = relative_weights(state, side);
   for (int j = 0; j < kLegDofs; ++j) {
-    goals.weight[j][side] = weight[j];
-    goals.min_rad[j][side] = leg.chain.dof[j].min_rad;
-    goals.max_rad[j][side] = leg.chain.dof[j].max_rad;
-    angles[j][side] = start[j];
+    lanes.angles_rad[j][lane] =
+        data[j] + keep * (state.legs.angles_rad[side][j] - state.legs.data_rad[side][j]);
+    goals.weight[j][lane] = weight[j];
+    goals.min_rad[j][lane] = leg.chain.dof[j].min_rad;
+    goals.max_rad[j][lane] = leg.chain.dof[j].max_rad;
   }
+  state.legs.data_rad[side] = data;
   // Without the ankle's limit first, so that the knee does not twist.
-  goals.min_rad[kAnkleX][side] = -kPi;
-  const auto& rows = goal.rows;
-  set_vector(rows[0].point_m, side, goals.point_m[0]);
-  set_vector(rows[3].point_m, side, goals.point_m[1]);
-  set_vector(rows[5].point_m, side, goals.point_m[2]);
-  set_vector(rows[0].direction, side, goals.side);
-  set_vector(rows[1].direction, side, goals.across);
-  set_vector(rows[2].direction, side, goals.along);
-  for (int r = 0; r < 6; ++r) goals.goal_m[r][side] = rows[r].goal_m;
+  goals.min_rad[kAnkleX][lane] = -kPi;
+  goals.thigh_m[lane] = leg.model.thigh_m;
+  goals.shank_m[lane] = leg.model.shank_m;
+  const std::array<IkRow, 6> rows = whole_foot(leg, state.foot[side], planned.pelvis).rows;
+  set_vector(rows[0].point_m, lane, goals.point_m[0]);
+  set_vector(rows[3].point_m, lane, goals.point_m[1]);
+  set_vector(rows[5].point_m, lane, goals.point_m[2]);
+  set_vector(rows[0].direction, lane, goals.side);
+  set_vector(rows[1].direction, lane, goals.across);
+  set_vector(rows[2].direction, lane, goals.along);
+  for (int r = 0; r < 6; ++r) goals.goal_m[r][lane] = rows[r].goal_m;
 }
 
-void pose_robust(const Tick& tick, const StridePlan& plan, const Pelvis& pelvis, WalkState& state,
-                 std::array<PosedLeg, 2>& posed) noexcept {
-  LegGoals<Lanes<2>> goals;
-  std::array<Lanes<2>, kLegDofs> lanes;
-  for (Side side : {kLeftSide, kRightSide}) {
-    // Start from the data's angles plus what the solver had to add a tick ago. That correction
-    // leaks away, so the swivel, which no row holds, is pulled to the data's and cannot drift.
-    const LegAngles data = reference(tick.model, plan, side);
-    const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
-    LegAngles start;
-    for (int j = 0; j < kLegDofs; ++j)
-      start[j] = data[j] + keep * (state.legs.angles_rad[side][j] - state.legs.data_rad[side][j]);
-    state.legs.data_rad[side] = data;
-    set_lane(tick.model, state, side, pelvis, start, goals, lanes);
-  }
-  const LegSolution<Lanes<2>> solution = solve_legs(goals, kRobust, lanes);
-  for (Side side : {kLeftSide, kRightSide}) {
-    IkAngles angles{};
-    for (int j = 0; j < kLegDofs; ++j) angles[j] = lanes[j][side];
-    PosedLeg& leg = posed[side];
-    leg.solve.iterations = static_cast<int>(solution.iterations[side]);
-    leg.solve.error_m = std::sqrt(solution.squares[side]);
-    leg.solve.failed = !(solution.squares[side] <= kRobust.tolerance_m * kRobust.tolerance_m);
-    leg.end = {vector_of(solution.ankle_m, side),
-               from_axes(vector_of(solution.foot_x, side), vector_of(solution.foot_y, side),
-                         vector_of(solution.foot_z, side))};
-    if (ease_ankle(tick, state, side, pelvis, angles, leg.solve))
-      leg.end = end_frame(tick.model.leg[side].chain, angles);
-    state.legs.angles_rad[side] = leg_angles(angles);
-  }
+template <int kWidth>
+PosedLeg take_lane(const PlannedTick& planned, Side side, int lane,
+                   const LegLanes<kWidth>& lanes) noexcept {
+  WalkState& state = *planned.state;
+  const LegSolution<Row<kWidth>>& solution = lanes.solution;
+  IkAngles angles{};
+  for (int j = 0; j < kLegDofs; ++j) angles[j] = lanes.angles_rad[j][lane];
+  PosedLeg leg;
+  leg.solve.iterations = static_cast<int>(solution.iterations[lane]);
+  leg.solve.error_m = std::sqrt(solution.squares[lane]);
+  leg.solve.failed = !(solution.squares[lane] <= kRobust.tolerance_m * kRobust.tolerance_m);
+  leg.end = {vector_of(solution.ankle_m, lane),
+             from_axes(vector_of(solution.foot_x, lane), vector_of(solution.foot_y, lane),
+                       vector_of(solution.foot_z, lane))};
+  if (ease_ankle(*planned.tick, state, side, planned.pelvis, angles, leg.solve))
+    leg.end = end_frame(planned.tick->model.leg[side].chain, angles);
+  state.legs.angles_rad[side] = leg_angles(angles);
+  return leg;
 }
 
 // Steps 1-7 to the letter for the stage's end-effector alone. While heel and toe both stand or
 // land, the other end is a second position goal.
-void pose_paper(const Tick& tick, Side side, const Pelvis& pelvis, WalkState& state,
-                PosedLeg& posed) noexcept {
+PosedLeg pose_paper(const PlannedTick& planned, Side side) noexcept {
+  const Tick& tick = *planned.tick;
+  WalkState& state = *planned.state;
   const LegBuild& leg = tick.model.leg[side];
   IkChain chain = leg.chain;
   for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = state.gait.weight[side][j].x;
   IkAngles angles = padded(state.legs.angles_rad[side]);
-  const FootGoal goal = foot_goal(leg, state.foot[side], pelvis, end_effector(state.foot[side]));
+  const FootGoal goal =
+      foot_goal(leg, state.foot[side], planned.pelvis, end_effector(state.foot[side]));
   const FootMode foot = state.foot[side].mode;
   const bool both = foot == FootMode::roll ||
                     (foot == FootMode::support && heel_rise(tick.model, state, side) == 0.0);
+  PosedLeg posed;
   posed.solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
   posed.end = end_frame(leg.chain, angles);
   state.legs.angles_rad[side] = leg_angles(angles);
+  return posed;
+}
+
+// What the legs of one tick came to: the toes, and what the tick reports.
+void report_leg(const PlannedTick& planned, Side side, const PosedLeg& posed) noexcept {
+  WalkState& state = *planned.state;
+  const Pelvis& pelvis = planned.pelvis;
+  const LegBuild& leg = planned.tick->model.leg[side];
+  const auto& [solve, end] = posed;
+  FootState& foot = state.foot[side];
+  foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose, end),
+                                foot.mode == FootMode::flight ? flight_progress(state) : 0.0);
+  const vec3 hip = pelvis.hip(leg);
+  WalkFrame& frame = state.frame;
+  frame.heel_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.heel_m);
+  frame.toe_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.toe_m);
+  frame.ik_iterations[side] = solve.iterations;
+  frame.ik_error_m[side] = solve.error_m;
+  frame.ik_failed[side] = solve.failed;
+}
+
+template <int kWidth>
+void pose_robust(std::span<const PlannedTick> planned) noexcept {
+  constexpr std::size_t kTogether = kWidth / 2;
+  LegLanes<kWidth> lanes;
+  for (; planned.size() >= kTogether; planned = planned.subspan(kTogether)) {
+    for (std::size_t lane = 0; lane < 2 * kTogether; ++lane)
+      set_lane(planned[lane / 2], Side(lane % 2), static_cast<int>(lane), lanes);
+    solve_legs(kRobust, lanes);
+    for (std::size_t lane = 0; lane < 2 * kTogether; ++lane) {
+      const Side side = Side(lane % 2);
+      report_leg(planned[lane / 2], side,
+                 take_lane(planned[lane / 2], side, static_cast<int>(lane), lanes));
+    }
+  }
+  if constexpr (kTogether > 1) pose_robust<2>(planned);
 }
 
 }  // namespace
 
-void pose_legs(const Tick& tick, IkMode mode, const StridePlan& plan, const Pelvis& pelvis,
-               WalkState& state) noexcept {
-  std::array<PosedLeg, 2> posed;
-  if (mode == IkMode::robust) {
-    pose_robust(tick, plan, pelvis, state, posed);
+void pose_legs(std::span<const PlannedTick> planned, IkMode mode) noexcept {
+  if (mode == IkMode::paper) {
+    for (const PlannedTick& one : planned) {
+      for (Side side : {kLeftSide, kRightSide}) {
+        report_leg(one, side, pose_paper(one, side));
+      }
+    }
+  } else if (lanes_in_use() >= 8 && planned.size() > 1) {
+    pose_robust<8>(planned);
+  } else if (lanes_in_use() >= 4 && planned.size() > 1) {
+    pose_robust<4>(planned);
   } else {
-    for (Side side : {kLeftSide, kRightSide}) pose_paper(tick, side, pelvis, state, posed[side]);
-  }
-  WalkFrame& frame = state.frame;
-  for (Side side : {kLeftSide, kRightSide}) {
-    const LegBuild& leg = tick.model.leg[side];
-    const auto& [solve, end] = posed[side];
-    FootState& foot = state.foot[side];
-    foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose, end),
-                                  foot.mode == FootMode::flight ? flight_progress(state) : 0.0);
-    const vec3 hip = pelvis.hip(leg);
-    frame.heel_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.heel_m);
-    frame.toe_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.toe_m);
-    frame.ik_iterations[side] = solve.iterations;
-    frame.ik_error_m[side] = solve.error_m;
-    frame.ik_failed[side] = solve.failed;
+    pose_robust<2>(planned);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "gaitpad/walk_model.h"
 
 #include "motion/leg_pose.h"
+#include "motion/pose_rows.h"
 
 namespace gaitpad {
 namespace {
@@ -359,6 +360,21 @@ StrideTable scaled(const StrideTable& data, double ratio, double scale,
   return table;
 }
 
+// What a tick samples: neither the legs' joints, which the inverse kinematics sets, nor kept ones.
+void lay_out_rows(WalkModel& model) {
+  const Skeleton& skeleton = model.cycle.skeleton;
+  std::array<bool, kMaxJoints> is_set{};
+  for (const int j : model.kept) is_set[j] = true;
+  for (const LegModel& leg : model.cycle.leg) {
+    const LegJoints& joints = leg.joints;
+    for (const int j : {joints.hip, joints.knee, joints.ankle, joints.toe}) {
+      if (skeleton.joints[j].is_end_site) break;
+      is_set[j] = true;
+    }
+  }
+  model.above = pose_rows(model.cycle, {is_set.data(), skeleton.joints.size()});
+}
+
 // What hangs on the pelvis, but for the legs, stands as if it did not roll.
 void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
   const quat& pelvis = cycle.pelvis_standing;
@@ -427,6 +443,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   keep_trunk_upright(stand.roll_rad, model.cycle);
   model.stand_m = model.strides.stand_m;
   collect_kept_joints(model);
+  lay_out_rows(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
   return model;
 }

@@ -1,5 +1,7 @@
 // What the files of the walk call of each other. walk.cpp holds the tick that calls all of it.
 #pragma once
+#include <span>
+
 #include "gaitpad/walk.h"
 
 namespace gaitpad {
@@ -51,9 +53,10 @@ struct StridePlan {
 // The running step's length over the data's.
 double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept;
 // At a phase of the walk and a share of the running step's time.
-StridePlan stride_plan(const WalkModel& model, const WalkState& state, double phase,
-                       double step_share) noexcept;
-StridePlan stride_now(const WalkModel& model, const WalkState& state) noexcept;
+void plan_stride(const WalkModel& model, const WalkState& state, double phase, double step_share,
+                 StridePlan& plan) noexcept;
+// Now.
+void plan_stride(const WalkModel& model, const WalkState& state, StridePlan& plan) noexcept;
 // Where a point of the travel frame of stride `which` is, seen from the footprint of `side` in the
 // running step: of the flying foot the one that it left (which 0) or will land on (1).
 vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
@@ -148,8 +151,21 @@ void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noex
 void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept;
 
 // --- walk_legs.cpp: inverse kinematics -----------------------------------------------------------
-// Solves both legs: their angles go to `state`, what the solver took to state.frame.
-void pose_legs(const Tick& tick, IkMode mode, const StridePlan& plan, const Pelvis& pelvis,
-               WalkState& state) noexcept;
+// One character's tick between its plan and its pose.
+struct PlannedTick {
+  const Tick* tick = nullptr;
+  WalkState* state = nullptr;
+  StridePlan plan;
+  Pelvis pelvis;
+};
+// Solves both legs of each of them, as many legs side by side as lanes are in use: their angles go
+// to the states, what the solver took to state.frame.
+void pose_legs(std::span<const PlannedTick> planned, IkMode mode) noexcept;
+
+// --- walk.cpp: the tick in parts, for crowds
+// ------------------------------------------------------- Everything before the legs, and
+// everything after them.
+void plan_tick(const Tick& tick, IkMode mode, WalkState& state, PlannedTick& planned) noexcept;
+void finish_tick(const PlannedTick& planned, Pose& pose) noexcept;
 
 }  // namespace gaitpad

@@ -611,7 +611,8 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
     const double phase = phase_ahead(model, state, u * state.clock.flight_ticks - state.clock.tick);
     const double share = (state.clock.roll_ticks + u * state.clock.flight_ticks) /
                          (state.clock.roll_ticks + state.clock.flight_ticks);
-    const StridePlan plan = stride_plan(model, state, phase, share);
+    StridePlan plan;
+    plan_stride(model, state, phase, share, plan);
     flight.point[i] = flight_point(model, state, plan, side, u);
     pitch_in_flight(model, state, plan, side, u, flight.point[i]);
     flight.sole[i] = sole_of(model.leg[side], flight.point[i].pose);

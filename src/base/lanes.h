@@ -3,6 +3,7 @@
 // chosen by masks.
 #pragma once
 #include <cmath>
+#include <cstring>
 
 #include "base/trigonometry.h"
 #include "gaitpad/math.h"
@@ -20,6 +21,14 @@ template <class V>
 using MaskOf = decltype(V{} < V{});
 template <class V>
 inline constexpr int kWidthOf = sizeof(V) / sizeof(double);
+
+// How many numbers this processor's registers hold: 8 with AVX-512, 4 with AVX2, else 2. What is
+// compiled for wider ones may not be called.
+int widest_lanes() noexcept;
+// How many are used: as many as there are, or as use_lanes() says (2, 4, 8), for tests and
+// measurements. The results are the same.
+int lanes_in_use() noexcept;
+void use_lanes(int lanes) noexcept;
 
 template <class V>
 inline V all_of(double x) noexcept {
@@ -45,9 +54,14 @@ inline V sqrt_of(const V& a) noexcept {
 }
 template <class M>
 inline bool any(const M& mask) noexcept {
-  long long some = 0;
-  for (int i = 0; i < kWidthOf<M>; ++i) some |= mask[i];
-  return some != 0;
+  if constexpr (kWidthOf < M >> 2) {  // half of it and half of it
+    typename LanesOf<kWidthOf<M> / 2>::Mask low, high;
+    std::memcpy(&low, &mask, sizeof low);
+    std::memcpy(&high, reinterpret_cast<const char*>(&mask) + sizeof low, sizeof high);
+    return any(low | high);
+  } else {
+    return (mask[0] | mask[1]) != 0;
+  }
 }
 
 // sin_cos() of gaitpad/math.h in each lane, for angles below 2^20.
@@ -76,18 +90,11 @@ inline void sin_cos_of(const V& angle_rad, V& sine, V& cosine) noexcept {
   cosine = cos_kernel(x);
 }
 
-// A rotation in each lane, from neighbours in memory and back.
+// A rotation in each lane.
 template <class V>
 struct QuatOf {
   V w, x, y, z;
 };
-inline QuatOf<Lanes<2>> load_pair(const quat* from) noexcept {
-  const quat &a = from[0], &b = from[1];
-  return {Lanes<2>{a.w, b.w}, Lanes<2>{a.x, b.x}, Lanes<2>{a.y, b.y}, Lanes<2>{a.z, b.z}};
-}
-inline void store_pair(const QuatOf<Lanes<2>>& q, quat* to) noexcept {
-  for (int i : {0, 1}) to[i] = quat(q.w[i], q.x[i], q.y[i], q.z[i]);
-}
 template <class V>
 inline QuatOf<V> operator*(const QuatOf<V>& q, const V& k) noexcept {
   return {q.w * k, q.x * k, q.y * k, q.z * k};
@@ -103,11 +110,6 @@ inline V dot_of(const QuatOf<V>& a, const QuatOf<V>& b) noexcept {
 template <class V>
 inline QuatOf<V> normalized(const QuatOf<V>& q) noexcept {
   return q * (1.0 / sqrt_of(dot_of(q, q)));
-}
-
-template <class V>
-inline QuatOf<V> nlerp_of(const QuatOf<V>& from, const QuatOf<V>& to, const V& share) noexcept {
-  return normalized(from * (1.0 - share) + to * (dot_of(from, to) < V{} ? -share : share));
 }
 
 // A vector in space in each lane. The operations are those of glm, in its order.

@@ -3,36 +3,16 @@
 #include <algorithm>
 #include <cassert>
 
-#include "base/lanes.h"
 #include "base/text.h"
 #include "motion/captured_cycle.h"
 #include "motion/gait_events.h"
 #include "motion/leg_pose.h"
+#include "motion/stencil.h"
 
 namespace gaitpad {
 namespace {
 
 // --- Reading a cycle at any phase ----------------------------------------------------------------
-
-// The four samples around a phase and their Catmull-Rom weights.
-struct Stencil {
-  std::array<int, 4> index;
-  std::array<double, 4> weight;
-};
-
-Stencil stencil_at(double phase) noexcept {
-  const double turns = phase - std::floor(phase);
-  const double place = turns * kCycleSamples;
-  const int i = std::min(static_cast<int>(place), kCycleSamples - 1);
-  const double t = place - i;
-  Stencil s;
-  for (int k = 0; k < 4; ++k) s.index[k] = (i + k - 1 + kCycleSamples) % kCycleSamples;
-  s.weight[0] = 0.5 * t * (-1.0 + t * (2.0 - t));
-  s.weight[1] = 1.0 + 0.5 * t * t * (3.0 * t - 5.0);
-  s.weight[2] = 0.5 * t * (1.0 + t * (4.0 - 3.0 * t));
-  s.weight[3] = 0.5 * t * t * (t - 1.0);
-  return s;
-}
 
 // Neighbouring samples differ by a few degrees, so it is enough to blend the components and to
 // normalize. Each is brought into the second one's hemisphere first.
@@ -75,18 +55,7 @@ void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept {
   pose.joint_count = joints;
   std::array<const quat*, 4> row;
   for (int k = 0; k < 4; ++k) row[k] = cycle.local.data() + std::size_t(s.index[k]) * joints;
-  int j = 0;
-  for (; j + 1 < joints; j += 2) {
-    const QuatOf<Lanes<2>> nearest = load_pair(row[1] + j);
-    QuatOf<Lanes<2>> sum = nearest * all_of<Lanes<2>>(s.weight[1]);
-    for (const int k : {0, 2, 3}) {
-      const QuatOf<Lanes<2>> q = load_pair(row[k] + j);
-      const Lanes<2> weight = all_of<Lanes<2>>(s.weight[k]);
-      sum = sum + q * (dot_of(q, nearest) < Lanes<2>{} ? -weight : weight);
-    }
-    store_pair(normalized(sum), &pose.local[j]);
-  }
-  for (; j < joints; ++j)
+  for (int j = 0; j < joints; ++j)
     pose.local[j] = blended({row[0] + j, row[1] + j, row[2] + j, row[3] + j}, s.weight);
 }
 

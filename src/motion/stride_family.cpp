@@ -1,9 +1,7 @@
 #include "gaitpad/stride_family.h"
 
-#include <cstring>
-
-#include "base/lanes.h"
 #include "gaitpad/curve.h"
+#include "motion/rows.h"
 
 namespace gaitpad {
 namespace {
@@ -45,32 +43,9 @@ class Sum {
   void add(const Cell& cell, double weight) noexcept {
     from_[count_] = &cell.pelvis_m.x, weight_[count_] = weight, ++count_;
   }
-  // All numbers of a cell, eight at a time in registers.
-  Cell total() const noexcept {
-    constexpr std::size_t kNumbers = sizeof(Cell) / sizeof(double), kTogether = 8;
-    Cell cell;
-    double* to = &cell.pelvis_m.x;
-    std::size_t k = 0;
-    for (; k + kTogether <= kNumbers; k += kTogether) {
-      Lanes<2> a{}, b{}, c{}, d{};
-      for (int i = 0; i < count_; ++i) {
-        const double weight = weight_[i];
-        const double* from = from_[i] + k;
-        a += weight * Lanes<2>{from[0], from[1]};
-        b += weight * Lanes<2>{from[2], from[3]};
-        c += weight * Lanes<2>{from[4], from[5]};
-        d += weight * Lanes<2>{from[6], from[7]};
-      }
-      std::memcpy(to + k, &a, sizeof a);
-      std::memcpy(to + k + 2, &b, sizeof b);
-      std::memcpy(to + k + 4, &c, sizeof c);
-      std::memcpy(to + k + 6, &d, sizeof d);
-    }
-    for (; k < kNumbers; ++k) {
-      to[k] = 0.0;
-      for (int i = 0; i < count_; ++i) to[k] += weight_[i] * from_[i][k];
-    }
-    return cell;
+  void total(Cell& cell) const noexcept {
+    sum_rows({from_.data(), weight_.data(), count_, static_cast<int>(sizeof(Cell) / sizeof(double)),
+              &cell.pelvis_m.x});
   }
 
  private:
@@ -110,10 +85,12 @@ std::array<Cell, kCycleSamples> knots_of(const std::array<Cell, kCycleSamples>& 
 
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
                  double share_b) noexcept {
-  StrideCell sum;
-  add(sum, a, share_a);
-  add(sum, b, share_b);
-  return sum;
+  Sum<StrideCell, 2> sum;
+  sum.add(a, share_a);
+  sum.add(b, share_b);
+  StrideCell cell;
+  sum.total(cell);
+  return cell;
 }
 
 std::array<StrideCell, kCycleSamples> knots_through(
@@ -138,7 +115,9 @@ StrideChange change_at(const std::vector<StrideResponse>& response, const Stride
       change.add(response[wish].knot[k], granted[wish] * by_phase[m]);
     }
   }
-  return change.total();
+  StrideChange sum;
+  change.total(sum);
+  return sum;
 }
 
 StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {
@@ -166,7 +145,7 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, doub
       cell.add(table.knot[k], by_ratio[n] * by_phase[m]);
     }
   }
-  place.cell = cell.total();
+  cell.total(place.cell);
   return place;
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
-#include <string>
+#include <vector>
 
 namespace gaitpad::test {
 namespace {
@@ -73,97 +73,110 @@ Leg random_leg(Random& random, double from_goal_rad, double off_m, double least_
   return leg;
 }
 
-void set_vector(const vec3& from, int lane, Vec3Of<Lanes<2>>& to) {
-  to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
-}
+template <class Width>
+class LegIk : public testing::Test {
+ protected:
+  static constexpr int kWidth = Width::value;
+  using Legs = LegLanes<kWidth>;
 
-void set_lane(const Leg& leg, int lane, LegGoals<Lanes<2>>& goals,
-              std::array<Lanes<2>, kLegDofs>& angles) {
-  goals.thigh_m[lane] = -leg.chain.dof[kHipY].link_m.y;
-  goals.shank_m[lane] = -leg.chain.dof[kKneeX].link_m.y;
-  for (int j = 0; j < kLegDofs; ++j) {
-    goals.weight[j][lane] = leg.chain.dof[j].weight;
-    goals.min_rad[j][lane] = leg.chain.dof[j].min_rad;
-    goals.max_rad[j][lane] = leg.chain.dof[j].max_rad;
-    angles[j][lane] = leg.start[j];
+  void SetUp() override {
+    if (widest_lanes() < kWidth) GTEST_SKIP() << "this processor has no " << kWidth << " lanes";
   }
-  for (int p = 0; p < 3; ++p)
-    set_vector(leg.rows[p == 0 ? 0 : 2 * p + 1].point_m, lane, goals.point_m[p]);
-  set_vector(leg.rows[0].direction, lane, goals.side);
-  set_vector(leg.rows[1].direction, lane, goals.across);
-  set_vector(leg.rows[2].direction, lane, goals.along);
-  for (int r = 0; r < 6; ++r) goals.goal_m[r][lane] = leg.rows[r].goal_m;
-}
-
-// Both of two legs as solve_robust() solves them alone: angles, error, iterations.
-void expect_same(const std::array<Leg, 2>& legs, const std::string& what) {
-  LegGoals<Lanes<2>> goals;
-  std::array<Lanes<2>, kLegDofs> angles;
-  for (int lane : {0, 1}) set_lane(legs[lane], lane, goals, angles);
-  const LegSolution<Lanes<2>> solution = solve_legs(goals, kOptions, angles);
-  for (int lane : {0, 1}) {
-    IkAngles alone = legs[lane].start;
-    const IkResult result = solve_robust(legs[lane].chain, legs[lane].rows, kOptions, alone);
+  static void set_vector(const vec3& from, int lane, Vec3Of<Row<kWidth>>& to) {
+    to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
+  }
+  static void set_lane(const Leg& leg, int lane, Legs& legs) {
+    LegGoals<Row<kWidth>>& goals = legs.goals;
+    goals.thigh_m[lane] = -leg.chain.dof[kHipY].link_m.y;
+    goals.shank_m[lane] = -leg.chain.dof[kKneeX].link_m.y;
     for (int j = 0; j < kLegDofs; ++j) {
-      EXPECT_EQ(std::bit_cast<std::uint64_t>(double(angles[j][lane])),
-                std::bit_cast<std::uint64_t>(alone[j]))
-          << what << ", lane " << lane << ", angle " << j;
+      goals.weight[j][lane] = leg.chain.dof[j].weight;
+      goals.min_rad[j][lane] = leg.chain.dof[j].min_rad;
+      goals.max_rad[j][lane] = leg.chain.dof[j].max_rad;
+      legs.angles_rad[j][lane] = leg.start[j];
     }
-    EXPECT_EQ(static_cast<int>(solution.iterations[lane]), result.iterations) << what;
-    EXPECT_EQ(std::sqrt(solution.squares[lane]), result.error_m) << what;
-    const IkFrame end = end_frame(legs[lane].chain, alone);
-    const vec3 ankle(solution.ankle_m.x[lane], solution.ankle_m.y[lane], solution.ankle_m.z[lane]);
-    EXPECT_EQ(ankle, end.position_m) << what;
+    for (int p = 0; p < 3; ++p)
+      set_vector(leg.rows[p == 0 ? 0 : 2 * p + 1].point_m, lane, goals.point_m[p]);
+    set_vector(leg.rows[0].direction, lane, goals.side);
+    set_vector(leg.rows[1].direction, lane, goals.across);
+    set_vector(leg.rows[2].direction, lane, goals.along);
+    for (int r = 0; r < 6; ++r) goals.goal_m[r][lane] = leg.rows[r].goal_m;
   }
-}
+  static Legs solved(const std::vector<Leg>& legs) {
+    Legs lanes;
+    for (int lane = 0; lane < kWidth; ++lane) set_lane(legs[lane], lane, lanes);
+    solve_legs(kOptions, lanes);
+    return lanes;
+  }
+  // As many legs as lanes, each with a difficulty of its own.
+  static std::vector<Leg> random_legs(Random& random, double off_m, double limit_rad) {
+    std::vector<Leg> legs;
+    for (int lane = 0; lane < kWidth; ++lane)
+      legs.push_back(lane % 2 == 0 ? random_leg(random, off_m, 0.0, limit_rad == 0.0 ? 1.0 : 0.05)
+                                   : random_leg(random, off_m, limit_rad, 0.05));
+    return legs;
+  }
+  // Every leg as solve_robust() solves it alone: angles, error, iterations.
+  static void expect_same(const std::vector<Leg>& legs, int number) {
+    const Legs lanes = solved(legs);
+    for (int lane = 0; lane < kWidth; ++lane) {
+      IkAngles alone = legs[lane].start;
+      const IkResult result = solve_robust(legs[lane].chain, legs[lane].rows, kOptions, alone);
+      for (int j = 0; j < kLegDofs; ++j) {
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(lanes.angles_rad[j][lane]),
+                  std::bit_cast<std::uint64_t>(alone[j]))
+            << "legs " << number << ", lane " << lane << ", angle " << j;
+      }
+      const auto& solution = lanes.solution;
+      EXPECT_EQ(static_cast<int>(solution.iterations[lane]), result.iterations) << number;
+      EXPECT_EQ(std::sqrt(solution.squares[lane]), result.error_m) << number;
+      const vec3 ankle(solution.ankle_m.x[lane], solution.ankle_m.y[lane],
+                       solution.ankle_m.z[lane]);
+      EXPECT_EQ(ankle, end_frame(legs[lane].chain, alone).position_m) << number;
+    }
+  }
+};
+using Widths = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 4>,
+                              std::integral_constant<int, 8>>;
+TYPED_TEST_SUITE(LegIk, Widths);
 
-TEST(LegIk, GivesTheBitsOfTheGeneralSolverNearTheGoal) {
+TYPED_TEST(LegIk, GivesTheBitsOfTheGeneralSolverNearTheGoal) {
   Random random(1);
-  for (int k = 0; k < 2000; ++k) {
-    expect_same({random_leg(random, 0.02, 0.0, 1.0), random_leg(random, 0.02, 0.0, 0.05)},
-                "pair " + std::to_string(k));
-  }
+  for (int k = 0; k < 2000; ++k) this->expect_same(this->random_legs(random, 0.02, 0.0), k);
 }
 
-TEST(LegIk, GivesTheBitsOfTheGeneralSolverAtLimitsAndOutOfReach) {
+TYPED_TEST(LegIk, GivesTheBitsOfTheGeneralSolverAtLimitsAndOutOfReach) {
   Random random(2);
-  for (int k = 0; k < 500; ++k) {
-    expect_same({random_leg(random, 1.0, 0.0, 0.05), random_leg(random, 0.5, 0.4, 0.05)},
-                "pair " + std::to_string(k));
-  }
+  for (int k = 0; k < 500; ++k) this->expect_same(this->random_legs(random, 0.8, 0.4), k);
 }
 
-TEST(LegIk, ALaneDoesNotDependOnItsNeighbour) {
+TYPED_TEST(LegIk, ALaneDoesNotDependOnItsNeighbours) {
   Random random(3);
   for (int k = 0; k < 500; ++k) {
-    const Leg leg = random_leg(random, 0.05, 0.0, 0.2);
-    const auto beside = [&](const Leg& neighbour) {
-      LegGoals<Lanes<2>> goals;
-      std::array<Lanes<2>, kLegDofs> angles;
-      set_lane(leg, 0, goals, angles);
-      set_lane(neighbour, 1, goals, angles);
-      solve_legs(goals, kOptions, angles);
+    std::vector<Leg> legs = this->random_legs(random, 0.05, 0.0);
+    const auto first = [&] {
+      const auto lanes = this->solved(legs);
       LegAngles own;
-      for (int j = 0; j < kLegDofs; ++j) own[j] = angles[j][0];
+      for (int j = 0; j < kLegDofs; ++j) own[j] = lanes.angles_rad[j][0];
       return own;
     };
-    EXPECT_EQ(beside(leg), beside(random_leg(random, 1.0, 0.4, 0.05))) << "leg " << k;
+    const LegAngles before = first();
+    for (std::size_t lane = 1; lane < legs.size(); ++lane)
+      legs[lane] = random_leg(random, 1.0, 0.4, 0.05);
+    EXPECT_EQ(before, first()) << "leg " << k;
   }
 }
 
-TEST(LegIk, AnInputThatIsNotFiniteFailsAloneAndEnds) {
+TYPED_TEST(LegIk, AnInputThatIsNotFiniteFailsAloneAndEnds) {
   Random random(4);
-  Leg bad = random_leg(random, 0.02, 0.0, 1.0);
-  bad.rows[2].goal_m = std::nan("");
-  const Leg good = random_leg(random, 0.02, 0.0, 1.0);
-  LegGoals<Lanes<2>> goals;
-  std::array<Lanes<2>, kLegDofs> angles;
-  set_lane(bad, 0, goals, angles);
-  set_lane(good, 1, goals, angles);
-  const LegSolution<Lanes<2>> solution = solve_legs(goals, kOptions, angles);
-  EXPECT_FALSE(solution.squares[0] <= 1e-12);
-  EXPECT_LE(solution.squares[1], 1e-12);
-  for (int j = 0; j < kLegDofs; ++j) EXPECT_TRUE(std::isfinite(angles[j][0]));
+  std::vector<Leg> legs = this->random_legs(random, 0.02, 0.0);
+  legs[0].rows[2].goal_m = std::nan("");
+  const auto lanes = this->solved(legs);
+  EXPECT_FALSE(lanes.solution.squares[0] <= 1e-12);
+  for (std::size_t lane = 1; lane < legs.size(); ++lane) {
+    EXPECT_LE(lanes.solution.squares[lane], 1e-12);
+    for (int j = 0; j < kLegDofs; ++j) EXPECT_TRUE(std::isfinite(lanes.angles_rad[j][lane]));
+  }
 }
 
 TEST(Lanes, SineAndCosineAreThoseOfOneNumber) {

@@ -26,7 +26,7 @@ rule header
   command = $cxx $flags $level -x c++-header $in -MD -MF $out.d -o $out
   depfile = $out.d
 rule compile
-  command = $cxx $flags $level -include $variant/system.h -MD -MF $out.d -c $in -o $out
+  command = $cxx $flags $level $own -MD -MF $out.d -c $in -o $out
   depfile = $out.d
 rule link
   command = $cxx $in $libraries -o $out
@@ -79,6 +79,8 @@ def system_headers(build, rows):
 def write_build_file(folder, build):
     rows, flags, libraries = parts_of_ordinary(build)
     sources = [row["file"] for row in rows]
+    # Sources for wider registers keep their own sets of instructions, which precompiled headers do not have.
+    own = {row["file"]: " ".join(re.findall(r"-m\S+|-DGAITPAD_WIDE_LANES", row["command"])) for row in rows}
     headers = system_headers(build, rows)
     lines = [f"flags = {flags}", f"libraries = {libraries}", RULES]
     for variant, (compiler, level) in OTHERS.items():
@@ -91,7 +93,8 @@ def write_build_file(folder, build):
         precompiled = f"{variant}/system.h.{PRECOMPILED[compiler]}"
         lines.append(f"build {precompiled}: header {variant}/system.h\n{with_compiler}")
         objects = [f"{variant}/{number}_{pathlib.Path(source).stem}.o" for number, source in enumerate(sources)]
-        lines += [f"build {target}: compile {source} | {precompiled}\n{with_compiler}"
+        lines += [f"build {target}: compile {source} | {precompiled}\n{with_compiler}\n"
+                  f"  own = {own[source] or f'-include {variant}/system.h'}"
                   for source, target in zip(sources, objects)]
         lines.append(f"build {variant}/walk: link {' '.join(objects)}\n{with_compiler}")
     (folder / "build.ninja").write_text("\n".join(lines) + "\n")

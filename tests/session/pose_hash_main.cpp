@@ -6,11 +6,13 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "base/lanes.h"
 #include "gaitpad/bvh.h"
 #include "gaitpad/clean_strides.h"
 #include "gaitpad/hash.h"
 #include "gaitpad/motion_file.h"
 #include "strides/solver_input.h"
+#include "tests/animation/made_crowd.h"
 #include "tests/session/made_session.h"
 
 using namespace gaitpad;
@@ -56,6 +58,22 @@ Result<GaitCycle> cycle_through_file(const std::string& path) {
   return with_clean_strides(std::move(*cycle));
 }
 
+// 64 characters for a minute, as wide as this build and processor allow and narrower.
+void walk_crowd() {
+  for (const int lanes : {2, 4, 8}) {
+    use_lanes(lanes);
+    MadeCrowd made(64);
+    WordHash hash;
+    for (int tick = 0; tick < 60 * kCrowdRate; ++tick) {
+      made.step(tick);
+      made.add_to(hash);
+      if (tick % kCrowdRate == 0)
+        fmt::print("crowd, {} lanes, tick {} {:016x}\n", lanes, tick, hash.value());
+    }
+  }
+  use_lanes(widest_lanes());
+}
+
 void print_family(const char* name, const StrideFamily& family) {
   WordHash hash;
   for_each_number(family, [&hash](double number) { hash.add(number); });
@@ -78,5 +96,7 @@ int main(int argc, char** argv) {
   print_family("captured", *cycle->strides);
   config = made_config(2);
   config.cycle = std::move(*cycle);
-  return walk("captured robust", config);
+  if (walk("captured robust", config) != 0) return 1;
+  walk_crowd();
+  return 0;
 }

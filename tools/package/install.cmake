@@ -30,6 +30,9 @@ install(FILES ${PROJECT_BINARY_DIR}/gaitpad-config.cmake ${PROJECT_BINARY_DIR}/g
 # From the folder of the pkg-config files up to the prefix: `cmake --install --prefix` may name another one than the
 # configuration did.
 file(RELATIVE_PATH PREFIX_ABOVE_PKGCONFIG ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+if(GAITPAD_TBB)
+  set(TBB_LIBRARY "-ltbb ")
+endif()
 set(modules gaitpad-core)
 if(TARGET gaitpad_session)
   list(APPEND modules gaitpad)

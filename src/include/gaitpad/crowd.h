@@ -21,27 +21,21 @@ struct CrowdMember {
   vec3 place_m{0.0};                       // where it stands at first, facing +z
 };
 
-// How many legs this processor solves side by side at most: 8 (AVX-512), 4 (AVX2) or 2.
-int widest_lanes() noexcept;
-
-struct CrowdOptions {
-  IkMode ik = IkMode::robust;
-  int lanes = widest_lanes();  // 1, 2, 4 or 8; more than this processor has: as many as it has
-  int threads = 1;             // at most; more than one need a library built with oneTBB
-};
-
 class Crowd {
  public:
   Crowd() = default;  // nobody
   // Everybody stands.
-  explicit Crowd(std::span<const CrowdMember> members, const CrowdOptions& options = {});
+  explicit Crowd(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
 
   int size() const noexcept { return static_cast<int>(states_.size()); }
   // What each of them is to do in the next ticks, by member; at first to stand.
   std::span<GaitParams> params() noexcept { return params_; }
-  // Moves everybody on by one tick of `dt_s` seconds, a constant of the run. On one thread it uses
-  // no heap, lock or clock.
+  // Moves everybody on by one tick of `dt_s` seconds, a constant of the run. No heap, lock or
+  // clock.
   void advance(double dt_s) noexcept;
+  // The same in blocks, each once a tick, in any order and on any threads.
+  int blocks() const noexcept;
+  void advance_block(int number, double dt_s) noexcept;
 
   const WalkModel& model(int member) const noexcept { return *models_[member]; }
   const WalkState& state(int member) const noexcept { return states_[member]; }
@@ -55,10 +49,10 @@ class Crowd {
   void restart(int member, const vec3& place_m) noexcept;
 
  private:
-  void advance_block(int first, int last, double dt_s) noexcept;
   void store_pose(int member, const Pose& pose) noexcept;
 
-  CrowdOptions options_;
+  IkMode mode_ = IkMode::robust;
+  std::vector<int> order_;  // in which members are advanced: those of a model together
   std::vector<std::shared_ptr<const WalkModel>> models_;
   std::vector<GaitParams> params_;
   std::vector<WalkState> states_;

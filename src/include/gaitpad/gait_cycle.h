@@ -91,6 +91,16 @@ struct GaitCycle {
   std::shared_ptr<const StrideFamily> strides;
 };
 
+// The local rotations of some of a cycle's joints as rows of numbers: for each sample w, x, y and z
+// of one joint after the other.
+struct PoseRows {
+  int joint_count = 0;     // of the skeleton
+  std::vector<int> joint;  // what the columns are of
+  std::vector<int> still;  // further joints, whose rotation is always the identity
+  int stride = 0;          // columns, a multiple of eight: what is left over turns nothing
+  std::vector<double> value;
+};
+
 // The cycle at any phase, whole turns included: Catmull-Rom between samples. No allocation.
 CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept;
 // The same for the local rotations of all joints. Sets pose.local and pose.joint_count, not

@@ -107,6 +107,7 @@ struct WalkModel {
   // Shares of the cycle in walking order: roll right, flight left, roll left, flight right.
   std::array<double, 4> share{};
   std::vector<int> kept;  // twist joints in the legs: fixed at their standing rotation
+  PoseRows above;         // the data's rotations of all joints that the legs do not set
   UpperBodyModel body;
 };
 

@@ -1,0 +1,8 @@
+// Compiled for processors with AVX2 alone (base/lanes.h asks for them).
+#include "animation/leg_ik_lanes.h"
+
+namespace gaitpad {
+
+template void solve_legs(const RobustOptions&, LegLanes<4>&) noexcept;
+
+}  // namespace gaitpad

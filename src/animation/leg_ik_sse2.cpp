@@ -1,0 +1,8 @@
+// Compiled for every processor.
+#include "animation/leg_ik_lanes.h"
+
+namespace gaitpad {
+
+template void solve_legs(const RobustOptions&, LegLanes<2>&) noexcept;
+
+}  // namespace gaitpad

@@ -1,0 +1,9 @@
+// Compiled for processors with AVX2 alone (base/lanes.h asks for them).
+#include "motion/rows_lanes.h"
+
+namespace gaitpad {
+
+template void blend_rows<4>(const BlendedRows&) noexcept;
+template void sum_rows<4>(const SummedRows&) noexcept;
+
+}  // namespace gaitpad

@@ -1,0 +1,28 @@
+// Threads that share out the blocks of a crowd.
+#pragma once
+#include <functional>
+#include <memory>
+
+namespace gaitpad {
+
+class Workers {
+ public:
+  // At most so many threads, the caller's among them. Built without oneTBB: the caller's alone.
+  explicit Workers(int threads);
+  ~Workers();
+  Workers(Workers&&) noexcept;
+  Workers& operator=(Workers&&) noexcept;
+  int threads() const noexcept { return threads_; }
+  // Calls work(0) .. work(count - 1), each once, in any order, several at once, and waits for all.
+  void for_each(int count, const std::function<void(int)>& work);
+
+ private:
+  struct Arena;
+  int threads_ = 1;
+  std::unique_ptr<Arena> arena_;  // null: one thread
+};
+
+// How many threads this machine runs at once.
+int machine_threads() noexcept;
+
+}  // namespace gaitpad

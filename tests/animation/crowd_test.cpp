@@ -1,0 +1,119 @@
+#include "gaitpad/crowd.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "base/lanes.h"
+#include "gaitpad/hash.h"
+#include "tests/animation/made_crowd.h"
+
+namespace gaitpad::test {
+namespace {
+
+constexpr int kMembers = 64;
+constexpr int kTicks = 60 * kCrowdRate;
+
+void expect_same_pose(const Pose& a, std::span<const quat> local, const vec3& root_m, int member,
+                      int tick) {
+  ASSERT_EQ(a.joint_count, static_cast<int>(local.size()));
+  EXPECT_EQ(a.root_m, root_m) << "member " << member << ", tick " << tick;
+  EXPECT_TRUE(std::equal(local.begin(), local.end(), a.local.begin()))
+      << "member " << member << ", tick " << tick;
+}
+
+// The hash of a minute with as many lanes.
+std::uint64_t hash_with(int lanes) {
+  use_lanes(lanes);
+  MadeCrowd made(kMembers);
+  WordHash hash;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    made.step(tick);
+    made.add_to(hash);
+  }
+  use_lanes(widest_lanes());
+  return hash.value();
+}
+
+TEST(Crowd, WalksAsItsMembersWouldAlone) {
+  MadeCrowd made(kMembers);
+  Crowd& crowd = made.crowd();
+  std::vector<WalkState> states(kMembers);
+  std::vector<Pose> poses(kMembers);
+  for (int i = 0; i < kMembers; ++i)
+    states[i] = standing(crowd.model(i), made.members()[i].place_m, poses[i]);
+  for (int tick = 0; tick < kTicks; ++tick) {
+    made.step(tick);
+    for (int i = 0; i < kMembers; ++i) {
+      advance(crowd.model(i), crowd.params()[i], IkMode::robust, kCrowdDt, states[i], poses[i]);
+      if (tick % 7 == 0) expect_same_pose(poses[i], crowd.local(i), crowd.root_m(i), i, tick);
+    }
+    if (HasFailure()) break;
+  }
+}
+
+// The members are in all stages at once: some stand, others walk, turn, limp, climb.
+TEST(Crowd, ItsMembersDoDifferentThings) {
+  MadeCrowd made(kMembers);
+  std::array<int, 3> stages{};
+  int climbed = 0, turned = 0;
+  for (int tick = 0; tick < 20 * kCrowdRate; ++tick) made.step(tick);
+  for (int i = 0; i < kMembers; ++i) {
+    const WalkFrame& frame = made.crowd().state(i).frame;
+    ++stages[static_cast<std::size_t>(frame.stage)];
+    climbed += std::abs(frame.heel_ground_m[0]) > 0.1;
+    turned += std::abs(frame.heading_rad) > 1.0;
+  }
+  for (const int count : stages) EXPECT_GT(count, 0);
+  EXPECT_GT(climbed, 4);
+  EXPECT_GT(turned, 8);
+}
+
+TEST(Crowd, HasTheSameBitsForEveryWidth) {
+  const std::uint64_t narrow = hash_with(2);
+  if (widest_lanes() == 2) GTEST_SKIP() << "this processor has two lanes alone";
+  for (const int lanes : {4, 8}) {
+    if (lanes <= widest_lanes()) EXPECT_EQ(hash_with(lanes), narrow) << lanes << " lanes";
+  }
+}
+
+TEST(Crowd, HasTheSameBitsForBlocksOnSeveralThreads) {
+  MadeCrowd one(kMembers), shared(kMembers);
+  for (int tick = 0; tick < 5 * kCrowdRate; ++tick) {
+    one.step(tick);
+    shared.command(tick);
+    std::atomic<int> next = 0;
+    const auto work = [&] {
+      for (int block = next++; block < shared.crowd().blocks(); block = next++)
+        shared.crowd().advance_block(block, kCrowdDt);
+    };
+    std::jthread a(work), b(work);
+  }
+  WordHash hash_one, hash_shared;
+  one.add_to(hash_one);
+  shared.add_to(hash_shared);
+  EXPECT_EQ(hash_one.value(), hash_shared.value());
+}
+
+TEST(Crowd, PutsAMemberBack) {
+  MadeCrowd made(3);
+  Pose at_first;
+  made.crowd().copy_pose(1, at_first);
+  for (int tick = 0; tick < 5 * kCrowdRate; ++tick) made.step(tick);
+  const vec3 other_m = made.crowd().root_m(2);
+  made.crowd().restart(1, made.members()[1].place_m);
+  expect_same_pose(at_first, made.crowd().local(1), made.crowd().root_m(1), 1, 0);
+  EXPECT_EQ(made.crowd().root_m(2), other_m);
+}
+
+TEST(Crowd, OfNobodyDoesNothing) {
+  Crowd crowd;
+  crowd.advance(kCrowdDt);
+  EXPECT_EQ(crowd.size(), 0);
+  EXPECT_EQ(crowd.blocks(), 0);
+}
+
+}  // namespace
+}  // namespace gaitpad::test

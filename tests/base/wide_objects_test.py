@@ -1,0 +1,25 @@
+"""What is compiled for wider registers must not be taken for everybody: of a function that several objects
+hold, the linker keeps any one, and an old processor would stop at its first wide instruction.
+"""
+import shutil
+import subprocess
+
+import pytest
+
+from support.program import ROOT
+
+BODIES = ("gaitpad::solve_legs<", "gaitpad::blend_rows<", "gaitpad::sum_rows<")
+
+
+def test_wide_objects_hold_their_own_functions_alone(program):
+    if not shutil.which("nm"):
+        pytest.skip("nm is not installed")
+    sources = sorted((ROOT / "src").rglob("*_avx*.cpp"))
+    assert sources
+    for source in sources:
+        path = program.parent / f"CMakeFiles/gaitpad_core.dir/{source.relative_to(ROOT)}.o"
+        lines = subprocess.run(["nm", "-C", "--defined-only", path], capture_output=True, text=True, check=True).stdout
+        functions = [line.split(" ", 2)[2] for line in lines.splitlines() if line[17] in "TWV"]
+        own = [name for name in functions if any(body in name for body in BODIES)]
+        assert own, f"{path.name} holds none of {BODIES}"
+        assert functions == own, f"{path.name} holds {set(functions) - set(own)}"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "session/workers.h"
+
 namespace gaitpad {
 namespace {
 
@@ -13,8 +15,8 @@ constexpr double kAstray_m = 0.1;  // nobody stands exactly in line
 
 // How a member comes back to its place in the formation when its own steps lead it off: for each
 // metre that it is behind it walks faster by this share (or slower if it is ahead: stairs slow the
-// first one down before they slow it down), and for each metre beside it heads that
-// much towards it, both within bounds that do not show.
+// first one down before they slow it down), and for each metre beside it heads that much towards
+// it, both within bounds that do not show.
 constexpr double kCatchUp_1_m = 0.4, kMostCatchUp = 0.15, kMostWait = 0.7;
 constexpr double kLeastSpeed = 0.1;  // of the first one's
 constexpr double kAim_rad_m = 0.2, kMostAim_rad = 0.12;
@@ -106,10 +108,8 @@ Followers::Followers(const Options& options,
     start_m_.push_back(place_of(i, options.count, options.middle_m));
     members.push_back({builds[static_cast<std::size_t>(build)], start_m_.back()});
   }
-  CrowdOptions crowd;
-  crowd.ik = options.ik;
-  crowd.threads = options.threads;
-  crowd_ = Crowd(members, crowd);
+  crowd_ = Crowd(members, options.ik);
+  if (options.threads > 1) workers_ = std::make_shared<Workers>(options.threads);
 
   const int shown = std::min(options.count, kMaxShownFollowers);
   std::size_t joints = 0;
@@ -165,7 +165,12 @@ void Followers::advance(const GaitParams& first, const WalkState& first_state,
   const std::span<GaitParams> params = crowd_.params();
   for (int i = 0; i < size(); ++i)
     params[static_cast<std::size_t>(i)] = params_of(i, first, first_state, ahead);
-  crowd_.advance(dt_s);
+  if (workers_ == nullptr) {
+    crowd_.advance(dt_s);
+  } else {
+    workers_->for_each(crowd_.blocks(),
+                       [this, dt_s](int block) { crowd_.advance_block(block, dt_s); });
+  }
   keep_shown();
 }
 

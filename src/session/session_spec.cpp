@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
+#include "session/workers.h"
 
 namespace gaitpad {
 namespace {
@@ -74,7 +74,7 @@ int crowd_threads(const SessionSpec& spec) {
   constexpr int kAlone = 64, kAloneLive = 1000;
   const bool is_live = spec.replay.trace.empty();
   if (spec.walk.crowd <= (is_live ? kAloneLive : kAlone)) return 1;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return machine_threads();
 }
 
 bool is_built_in(const SessionSpec& spec) {

@@ -19,6 +19,8 @@
 
 namespace gaitpad {
 
+class Workers;
+
 // A member takes 6 to 9 KB: so many take less than 1 GB.
 inline constexpr int kMaxFollowers = 100'000;
 // Viewers get the poses of so many, those nearest to the first character. A picture of more would
@@ -78,6 +80,7 @@ class Followers {
   void keep_shown() noexcept;
 
   Crowd crowd_;
+  std::shared_ptr<Workers> workers_;  // null: one thread; copies share them
   std::vector<std::shared_ptr<const WalkModel>> builds_;
   std::vector<Kind> kinds_;
   std::vector<std::uint16_t> kind_;  // by member

@@ -21,7 +21,8 @@ namespace gaitpad {
 
 class Workers;
 
-// A member takes 6 to 9 KB: so many take less than 1 GB.
+// A member takes about 6 KB, and a replay keeps the beginning beside the present: so many take 1.2
+// GB.
 inline constexpr int kMaxFollowers = 100'000;
 // Viewers get the poses of so many, those nearest to the first character. A picture of more would
 // take longer than a fifth of a second without a graphics card.

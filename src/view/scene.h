@@ -2,7 +2,6 @@
 // and soft shadows, stick figures, trails. Needs OpenGL 3.3 core; the context that was current at
 // create() has to be current in every call.
 #pragma once
-#include <glm/vec4.hpp>
 #include <memory>
 #include <string>
 #include <vector>

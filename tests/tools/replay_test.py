@@ -357,5 +357,5 @@ def test_a_crowd_has_files_of_its_first_members_and_one_hash(made):
     (["--crowd", "many"], ["--crowd"]),
     (["--crowd", "3", "--crowd-files", "257"], ["--crowd-files", "256"]),
 ])
-def test_a_crowd_that_cannot_be_is_refused(made, options, says):
-    made.refuse(WALK, *options, says=says)
+def test_a_crowd_that_cannot_be_is_refused(made, refuse, options, says):
+    refuse("replay", made.write("made.hid", WALK), "--out", made.out, *options, says=says, status=2)

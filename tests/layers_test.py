@@ -45,7 +45,7 @@ PUBLIC = {
     "src/stick": ["calibration"],
     "drivers": ["drivers", "keyboard"],
     "src/pads": ["pad_setup", "pad_stream", "pads"],
-    "src/session": ["live", "replay", "session_frame", "session_spec", "simulation", "summary"],
+    "src/session": ["followers", "live", "replay", "session_frame", "session_spec", "simulation", "summary"],
 }
 # What further headers of a vendor single files may include, and nobody else.
 DRIVER_VENDORS = {

@@ -1,18 +1,21 @@
 // Passes the latest value from one writing to one reading thread: three buffers, wait-free on both
-// sides. The reader never sees a half-written value, nor one older than it has seen.
+// sides. The reader never sees a half-written value, nor one older than it has seen. Values that
+// use the heap are written without it once each of the three has its size: see each().
 #pragma once
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <type_traits>
 
 namespace gaitpad {
 
 template <class T>
 class Latest {
-  static_assert(std::is_trivially_copyable_v<T>);
-
  public:
+  // Before either thread begins: calls `set` with each of the three values.
+  template <class Set>
+  void each(const Set& set) {
+    for (T& value : values_) set(value);
+  }
   // Writer: fill this, then publish().
   T& writable() noexcept { return values_[writing_]; }
   void publish() noexcept {

@@ -236,7 +236,9 @@ LiveLoop::LiveLoop(const Options& options, const Script& script, Simulation& sim
       recording_(recording),
       clock_(options.rate_hz, 0),
       reports_(pads, simulation),
-      samples_(kSamples) {}
+      samples_(kSamples) {
+  frames_.each([&](SessionFrame& frame) { frame.crowd = simulation.followers().shown(); });
+}
 
 void LiveLoop::begin() noexcept {
   const std::int64_t start_ns = now_ns();

@@ -70,7 +70,14 @@ void TraceRun::step(const Trace& trace) noexcept {
 
 namespace {
 
-constexpr std::size_t kMaxSnapshots = 1024;
+constexpr std::size_t kMaxSnapshots = 1024, kLeastSnapshots = 4;
+constexpr std::size_t kMostCrowdBytes = std::size_t{256} << 20;  // of all snapshots
+
+// Fewer of a large crowd.
+std::size_t most_snapshots(const Simulation& simulation) {
+  const std::size_t bytes = std::max<std::size_t>(simulation.followers().bytes(), 1);
+  return std::clamp(kMostCrowdBytes / bytes, kLeastSnapshots, kMaxSnapshots);
+}
 
 std::optional<std::string> mark_of(const Trace& trace, const TraceEvent& event) {
   switch (event.kind) {
@@ -108,13 +115,14 @@ std::int64_t history_of(std::int64_t ticks) {
 // other one is dropped.
 class Snapshots {
  public:
-  Snapshots(TraceRun start, int spacing_ticks) : spacing_ticks_(spacing_ticks) {
+  Snapshots(TraceRun start, int spacing_ticks)
+      : most_(most_snapshots(start.simulation())), spacing_ticks_(spacing_ticks) {
     runs_.push_back(std::move(start));
   }
   // Keeps the state if one is due.
   void keep_if_due(const TraceRun& run) {
     if (run.ticks() < runs_.back().ticks() + spacing_ticks_) return;
-    if (runs_.size() == kMaxSnapshots) thin_out();
+    if (runs_.size() == most_) thin_out();
     if (run.ticks() % spacing_ticks_ == 0) runs_.push_back(run);
   }
   // The latest snapshot after at most so many ticks.
@@ -128,6 +136,7 @@ class Snapshots {
     spacing_ticks_ *= 2;
     std::erase_if(runs_, [this](const TraceRun& r) { return r.ticks() % spacing_ticks_ != 0; });
   }
+  std::size_t most_;
   std::vector<TraceRun> runs_;
   std::int64_t spacing_ticks_;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "session/playback.h"
@@ -20,20 +21,36 @@ Result<int> written_fps(const SessionSpec& spec, int rate_hz) {
 
 Result<std::vector<WalkExport>> opened_exports(std::optional<OutputFiles>& files,
                                                const Simulation& simulation,
+                                               const std::vector<ExportedFollower>& followers,
                                                const ExportFormat& format) {
   std::vector<WalkExport> exports;
   if (!files) return exports;
-  for (std::size_t i = 0; i < simulation.walkers().size(); ++i) {
-    auto opened = WalkExport::open(*files, simulation.walkers()[i], i, format);
+  std::vector<const Walker*> walkers;
+  for (const Walker& walker : simulation.walkers()) walkers.push_back(&walker);
+  for (const ExportedFollower& follower : followers) walkers.push_back(&follower.walker());
+  for (std::size_t i = 0; i < walkers.size(); ++i) {
+    auto opened = WalkExport::open(*files, *walkers[i], i, format);
     if (!opened) return opened.error();
     exports.push_back(std::move(*opened));
   }
   return exports;
 }
 
-void run_to_end(const PreparedTrace& prepared, TraceRun& run, std::vector<WalkExport>& exports) {
+// The members of the crowd that get files.
+std::vector<ExportedFollower> exported_followers(const SessionSpec& spec,
+                                                 const Simulation& simulation) {
+  std::vector<ExportedFollower> followers;
+  if (spec.replay.out.empty()) return followers;
+  const int count = std::min(spec.replay.crowd_files, simulation.followers().size());
+  for (int i = 0; i < count; ++i) followers.emplace_back(simulation, i);
+  return followers;
+}
+
+void run_to_end(const PreparedTrace& prepared, TraceRun& run,
+                std::vector<ExportedFollower>& followers, std::vector<WalkExport>& exports) {
   for (std::int64_t tick = 0; tick < prepared.ticks; ++tick) {
     run.step(prepared.trace);
+    for (ExportedFollower& follower : followers) follower.follow(run.simulation());
     for (WalkExport& e : exports) e.write(tick, run.simulation().stick());
   }
 }
@@ -68,14 +85,18 @@ Result<ReplayResult> replay(const SessionSpec& spec) {
     if (!opened) return opened.error();
     files.emplace(std::move(*opened));
   }
-  auto exports = opened_exports(files, simulation, {rate_hz, *fps, spec.replay.gltf});
+  std::vector<ExportedFollower> followers = exported_followers(spec, simulation);
+  auto exports = opened_exports(files, simulation, followers, {rate_hz, *fps, spec.replay.gltf});
   if (!exports) return exports.error();
 
-  run_to_end(*prepared, run, *exports);
+  run_to_end(*prepared, run, followers, *exports);
   ReplayResult result{run_summary(simulation, cast_of(simulation, prepared->config)), {}};
   result.summary.damaged_lines = prepared->trace.skipped_lines;
+  std::vector<WalkerSummary> walked = result.summary.walkers;
+  for (const ExportedFollower& follower : followers) walked.push_back(follower.summary(simulation));
   for (std::size_t i = 0; i < exports->size(); ++i) {
-    if (auto problem = (*exports)[i].finish(summary_json(result.summary, i))) return *problem;
+    if (auto problem = (*exports)[i].finish(summary_json(result.summary, walked[i])))
+      return *problem;
   }
   if (files) {
     if (auto problem = files->publish()) return *problem;

@@ -49,6 +49,11 @@ Cast cast_of(const Simulation& simulation, const SimulationConfig& config) {
     cast.members.push_back({config.walkers[i].character.name, cast.styles[config.walkers[i].style],
                             w.model, w.limits});
   }
+  const Followers& followers = simulation.followers();
+  for (std::size_t i = 0; i < followers.shown().root_m.size(); ++i) {
+    const int member = static_cast<int>(i);
+    cast.crowd.push_back({followers.model(member), followers.style(member)});
+  }
   return cast;
 }
 
@@ -60,6 +65,7 @@ void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept {
   const std::vector<Walker>& walkers = simulation.walkers();
   frame.walker_count = static_cast<int>(walkers.size());
   for (std::size_t i = 0; i < walkers.size(); ++i) copy_walker(walkers[i], frame.walkers[i]);
+  frame.crowd = simulation.followers().shown();
 }
 
 void copy_sample(const Simulation& simulation, TickSample& sample) noexcept {

@@ -10,6 +10,7 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
+#include "session/workers.h"
 
 namespace gaitpad {
 namespace {
@@ -67,6 +68,15 @@ Result<std::shared_ptr<const Terrain>> terrain_of(const SessionSpec& spec) {
   return std::shared_ptr<const Terrain>(std::make_shared<Terrain>(std::move(*terrain)));
 }
 
+// Ticks of a live session have a deadline. They wait for no other thread, unless one is too slow
+// for so many.
+int crowd_threads(const SessionSpec& spec) {
+  constexpr int kAlone = 64, kAloneLive = 1000;
+  const bool is_live = spec.replay.trace.empty();
+  if (spec.walk.crowd <= (is_live ? kAloneLive : kAlone)) return 1;
+  return machine_threads();
+}
+
 bool is_built_in(const SessionSpec& spec) {
   return spec.walk.motion.empty() || spec.walk.motion == "procedural";
 }
@@ -105,6 +115,8 @@ Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz)
   SimulationConfig config;
   config.rate_hz = rate_hz;
   config.ik = spec.walk.ik;
+  config.crowd = spec.walk.crowd;
+  config.crowd_threads = crowd_threads(spec);
   auto terrain = terrain_of(spec);
   if (!terrain) return terrain.error();
   config.terrain = std::move(*terrain);

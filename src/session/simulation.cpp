@@ -154,6 +154,10 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
     return Error{
         fmt::format("{} characters: 1 to {} can walk", config.walkers.size(), kMaxWalkers)};
   }
+  if (config.crowd < 0 || config.crowd > kMaxFollowers) {
+    return Error{
+        fmt::format("a crowd of {}: 0 to {} can walk behind", config.crowd, kMaxFollowers)};
+  }
   Simulation s;
   s.dt_s_ = 1.0 / config.rate_hz;
   s.ik_ = config.ik;
@@ -163,7 +167,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   auto models = s.models_of(config);
   if (!models) return models.error();
   if (auto problem = s.find_zone_styles()) return *problem;
-  for (std::size_t i = 0; i < models->size(); ++i) {
+  for (std::size_t i = 0; i < config.walkers.size(); ++i) {
     const WalkerConfig& walker = config.walkers[i];
     Walker& w = s.walkers_.emplace_back();
     w.model = (*models)[i];
@@ -176,18 +180,35 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
     w.state = standing(*w.model, w.start_m, w.pose);
     w.before = w.pose;
   }
+  if (config.crowd > 0) {
+    Followers::Options crowd{
+        .count = config.crowd, .ik = config.ik, .threads = config.crowd_threads};
+    crowd.first_m = s.walkers_.front().start_m;
+    crowd.middle_m = 0.5 * (s.walkers_.front().start_m + s.walkers_.back().start_m);
+    models->erase(models->begin(),
+                  models->begin() + static_cast<std::ptrdiff_t>(s.walkers_.size()));
+    s.followers_ = Followers(crowd, *models, s.styles());
+  }
   return s;
 }
 
-// All walkers share one ground, large enough for the largest foot.
+// Those of the walkers, then the builds of the crowd. All share one ground, large enough for the
+// largest foot.
 Result<std::vector<std::shared_ptr<const WalkModel>>> Simulation::models_of(
     const SimulationConfig& config) {
   std::vector<std::shared_ptr<WalkModel>> models;
-  for (const WalkerConfig& walker : config.walkers) {
-    auto model = model_of(config, walker);
+  const auto add = [&](Result<WalkModel> model) -> std::optional<Error> {
     if (!model) return model.error();
     terrain_scale_ = std::max(terrain_scale_, gaitpad::terrain_scale(*config.terrain, *model));
     models.push_back(std::make_shared<WalkModel>(std::move(*model)));
+    return std::nullopt;
+  };
+  for (const WalkerConfig& walker : config.walkers) {
+    if (auto problem = add(model_of(config, walker))) return *problem;
+  }
+  for (int i = 0; i < std::min(config.crowd, kFollowerBuilds); ++i) {
+    const Character build = follower_build(config.walkers.front().character, i);
+    if (auto problem = add(walk_model(config.cycle, build))) return *problem;
   }
   const bool grows = terrain_scale_ > 1.0;
   terrain_ = grows ? std::make_shared<const Terrain>(scaled(*config.terrain, terrain_scale_))
@@ -222,8 +243,11 @@ void Simulation::step(std::span<const Report> reports) noexcept {
     w.walked_m += walked_m;
     w.tired = tired(w.tired, w.values, walked_m, w.state.frame.stage == Stage::idle, dt_s_);
     for (const bool failed : w.state.frame.ik_failed) w.ik_failures += failed;
-    add_to_hash(w.pose);
+    add_to_hash(w.pose.root_m, {w.pose.local.data(), static_cast<std::size_t>(w.pose.joint_count)});
   }
+  followers_.advance(walkers_.front().params, walkers_.front().state, dt_s_);
+  const Crowd& crowd = followers_.crowd();
+  for (int i = 0; i < crowd.size(); ++i) add_to_hash(crowd.root_m(i), crowd.local(i));
   heel_struck_ = landings(walkers_.front()) != landings_before;
   ++counts_.ticks;
 }
@@ -269,6 +293,7 @@ bool Simulation::obey(std::string_view text) noexcept {
       return true;
     case Verb::restart:
       for (Walker& w : walkers) restart(styles(), w);
+      if (command->walker <= 1) followers_.restart();  // the first one leads them
       return true;
   }
   return false;
@@ -288,10 +313,9 @@ bool Simulation::choose_style(std::span<Walker> walkers, std::string_view name) 
   return true;
 }
 
-void Simulation::add_to_hash(const Pose& pose) noexcept {
-  for (const double x : {pose.root_m.x, pose.root_m.y, pose.root_m.z}) hash_.add(x);
-  for (int j = 0; j < pose.joint_count; ++j) {
-    const quat& q = pose.local[j];
+void Simulation::add_to_hash(const vec3& root_m, std::span<const quat> local) noexcept {
+  for (const double x : {root_m.x, root_m.y, root_m.z}) hash_.add(x);
+  for (const quat& q : local) {
     for (const double x : {q.w, q.x, q.y, q.z}) hash_.add(x);
   }
 }

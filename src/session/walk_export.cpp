@@ -255,6 +255,7 @@ RunSummary run_summary(const Simulation& simulation, const Cast& cast) {
   run.terrain_scale = simulation.terrain_scale();
   const SimulationCounts& counts = simulation.counts();
   run.ticks = counts.ticks;
+  run.crowd = simulation.followers().size();
   run.reports = counts.reports;
   run.bad_reports = counts.bad_reports;
   run.bad_commands = counts.bad_commands;
@@ -265,8 +266,36 @@ RunSummary run_summary(const Simulation& simulation, const Cast& cast) {
   return run;
 }
 
+ExportedFollower::ExportedFollower(const Simulation& simulation, int member)
+    : member_(member), walker_(std::make_unique<Walker>()) {
+  const Followers& followers = simulation.followers();
+  walker_->model = followers.model(member);
+  walker_->style = followers.style(member);
+  walker_->state = followers.crowd().state(member);
+  followers.crowd().copy_pose(member, walker_->pose);
+}
+
+void ExportedFollower::follow(const Simulation& simulation) noexcept {
+  const Crowd& crowd = simulation.followers().crowd();
+  const vec3 before_m = walker_->state.path.hips_m;
+  walker_->state = crowd.state(member_);
+  crowd.copy_pose(member_, walker_->pose);
+  const vec3 way_m = walker_->state.path.hips_m - before_m;
+  walker_->walked_m += glm::length(vec2(way_m.x, way_m.z));
+  for (const bool failed : walker_->state.frame.ik_failed) walker_->ik_failures += failed;
+}
+
+WalkerSummary ExportedFollower::summary(const Simulation& simulation) const {
+  WalkerSummary summary = walker_summary(simulation, *walker_);
+  summary.character = fmt::format("crowd {}", member_ + 1);
+  return summary;
+}
+
 nlohmann::ordered_json summary_json(const RunSummary& run, std::size_t walker) {
-  const WalkerSummary& w = run.walkers[walker];
+  return summary_json(run, run.walkers[walker]);
+}
+
+nlohmann::ordered_json summary_json(const RunSummary& run, const WalkerSummary& w) {
   const auto list = [](const vec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
   nlohmann::ordered_json s;
   s["ticks"] = run.ticks;
@@ -296,6 +325,7 @@ nlohmann::ordered_json summary_json(const RunSummary& run, std::size_t walker) {
   s["bad_reports"] = run.bad_reports;
   s["bad_commands"] = run.bad_commands;
   s["damaged_lines"] = run.damaged_lines;
+  if (run.crowd > 0) s["crowd"] = run.crowd;
   if (run.recording_lost > 0) s["recording_lost"] = run.recording_lost;
   return s;
 }

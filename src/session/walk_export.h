@@ -94,5 +94,20 @@ class WalkExport {
 // summary.json of one character: the numbers of the run and its own. The keys are in interface.md's
 // order; units stand in the keys.
 nlohmann::ordered_json summary_json(const RunSummary& run, std::size_t walker);
+nlohmann::ordered_json summary_json(const RunSummary& run, const WalkerSummary& walker);
+
+// A member of the crowd in the shape of a walker, so that it has the same files.
+class ExportedFollower {
+ public:
+  ExportedFollower(const Simulation& simulation, int member);
+  // Takes over the state after a tick.
+  void follow(const Simulation& simulation) noexcept;
+  const Walker& walker() const noexcept { return *walker_; }
+  WalkerSummary summary(const Simulation& simulation) const;
+
+ private:
+  int member_;
+  std::unique_ptr<Walker> walker_;  // stays in place while an export writes it
+};
 
 }  // namespace gaitpad

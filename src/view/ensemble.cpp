@@ -19,6 +19,7 @@ constexpr double kAdult_m = 1.8;
 constexpr double kHeightOverLeg = 2.1;  // a person's height over thigh + shank
 constexpr double kAside_m = 0.9;        // room beside the outermost character
 constexpr double kOnePerson_m = 4.2;    // distance from which one person is seen
+constexpr double kWithCrowd_m = 9.0;    // and a crowd behind it
 constexpr double kLabelAbove_m = 0.14;  // of a name above the head
 
 std::string with_blanks(std::string name) {
@@ -45,7 +46,9 @@ std::string label_text(const WalkerFrame& walker, const Cast& cast, std::size_t 
 Ensemble::Ensemble(const Cast& cast)
     : trail_ticks_(std::llround(kTrail_s * cast.rate_hz)),
       point_ticks_(std::max<std::int64_t>(std::llround(kTrailPoint_s * cast.rate_hz), 1)),
-      shown_(cast.members.size()) {
+      crowd_(cast),
+      shown_(cast.members.size()),
+      has_crowd_(!cast.crowd.empty()) {
   if (!is_flat(*cast.terrain)) terrain_ = cast.terrain;
   for (const CastMember& member : cast.members) mannequins_.push_back(mannequin_of(member.model));
   if (cast.source != nullptr)
@@ -76,6 +79,7 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
   content.has_shadows = state.has_shadows;
   content.terrain = terrain_;
   content.focus_m = focus_m(-1);
+  crowd_.fill(frame.crowd, share, theme, terrain_.get(), content.focus_m, content);
 }
 
 void Ensemble::add_trails(const History& history, int walker, const Colour& colour,
@@ -155,8 +159,9 @@ double Ensemble::distance_m(int walker, const Camera& camera,
       static_cast<double>(std::max(viewport.width, 1)) / std::max(viewport.height, 1);
   const double half_view = std::tan(camera.field_of_view_rad / 2.0) * std::min(aspect, 2.0);
   // The nearest character has to be visible from head to foot.
-  return std::clamp(std::max((reach_m + kAside_m) / half_view, nearest_m + kOnePerson_m),
-                    kOnePerson_m, 14.0);
+  const double least_m = has_crowd_ ? kWithCrowd_m : kOnePerson_m;
+  return std::clamp(std::max((reach_m + kAside_m) / half_view, nearest_m + kOnePerson_m), least_m,
+                    14.0);
 }
 
 std::vector<UiLabel> Ensemble::labels(const SessionFrame& frame, const Cast& cast,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "view/camera.h"
+#include "view/crowd_bodies.h"
 #include "view/history.h"
 #include "view/mannequin.h"
 #include "view/ui.h"
@@ -21,6 +22,9 @@ class Ensemble {
             const UiState& state, const Theme& theme, SceneContent& content);
   // The place that a camera follows, of one character or of all (-1), as filled last.
   vec3 focus_m(int walker) const noexcept;
+  // Where the camera was last: what is near it is drawn finely.
+  void look_from(const vec3& eye_m) noexcept { crowd_.look_from(eye_m); }
+  bool has_crowd() const noexcept { return has_crowd_; }
   bool is_on_uneven_ground() const noexcept { return terrain_ != nullptr; }
   // Tells the camera the ground's height; call it when the camera has moved.
   void stand_on_ground(Camera& camera) const noexcept;
@@ -41,10 +45,11 @@ class Ensemble {
 
   std::shared_ptr<const Terrain> terrain_;  // null: level at height 0
   std::vector<Mannequin> mannequins_;
+  CrowdBodies crowd_;
   std::vector<Pose> shown_;  // one for each mannequin
   double source_height_m_ = 0.0;
   vec3 source_place_m_{0.0};  // on the floor below the source
-  bool has_source_ = false;
+  bool has_source_ = false, has_crowd_ = false;
 };
 
 }  // namespace gaitpad

@@ -1,6 +1,9 @@
 #include "view/mannequin.h"
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "gaitpad/anatomy.h"
 
@@ -52,6 +55,7 @@ class Builder {
     along_ = glm::length(trunk) > 1e-3 ? trunk / glm::dot(trunk, trunk) : kUp / kAdultTrunk_m;
   }
   void build();
+  void build_coarsely();
 
  private:
   void stand();
@@ -306,6 +310,56 @@ void Builder::build() {
   add_head();
 }
 
+// A bone for each limb, three for the trunk.
+void Builder::build_coarsely() {
+  add_pelvis();
+  for (const LegBuild& leg : model_.leg) {
+    const LegJoints& j = leg.model.joints;
+    add(held(j.hip), held(j.knee), 0.082 * leg_, 0.051 * leg_);
+    add(held(j.knee), held(j.ankle), 0.053 * leg_, 0.034 * leg_);
+    const double sole_m = 0.03 * leg_;
+    const vec3 heel = at(j.ankle) + leg.model.heel_m, toe = at(j.toe);
+    add({j.ankle, vec3(heel.x, sole_m, heel.z)}, {j.ankle, vec3(toe.x, sole_m, toe.z)}, sole_m,
+        sole_m, kLeft, 1.4);
+    make_pale(1);
+  }
+  if (!trunk_.empty()) {
+    const auto nearest = [this](double height) {
+      return *std::ranges::min_element(trunk_, {},
+                                       [&](int j) { return std::fabs(height_of(at(j)) - height); });
+    };
+    const int middle = nearest(0.5), top = nearest(0.95);
+    for (const auto& [from, to] : {std::pair(trunk_.front(), middle), {middle, top}}) {
+      if (from == to) continue;
+      const Girth a = girth_at(height_of(at(from)));
+      const Girth b = girth_at(std::min(height_of(at(to)), 0.85));
+      add(held(from), held(to), a.radius_m * size_, b.radius_m * size_, kLeft, a.width).width_to =
+          b.width;
+    }
+  }
+  for (const ArmChain& arm : joints_.arm) {
+    if (!arm.is_found()) continue;
+    add(held(arm.shoulder), held(arm.elbow), 0.052 * size_, 0.036 * size_);
+    const vec3 forearm = at(arm.wrist) - at(arm.elbow);
+    add(held(arm.elbow), held(arm.wrist, 0.5 * forearm), 0.038 * size_, 0.024 * size_);
+    make_pale(1);
+  }
+  const ArmChain &left = joints_.arm[kLeftSide], &right = joints_.arm[kRightSide];
+  if (left.is_found() && right.is_found()) {
+    const int chest = model_.cycle.skeleton.joints[left.shoulder].parent;
+    const vec3 inwards = 0.1 * (at(right.shoulder) - at(left.shoulder));
+    add({chest, at(left.shoulder) + inwards}, {chest, at(right.shoulder) - inwards}, 0.058 * size_,
+        0.058 * size_);
+  }
+  if (joints_.head < 0) return;
+  const Held skull = held(joints_.head, vec3(0.0, 0.125 * size_, 0.014 * size_));
+  add(held(joints_.head), held(joints_.head, vec3(0.0, 0.05 * size_, 0.0)), 0.047 * size_,
+      0.045 * size_);
+  add(held(joints_.head, vec3(0.0, 0.06 * size_, 0.03 * size_)), skull, 0.070 * size_,
+      0.088 * size_);
+  make_pale(2);
+}
+
 constexpr Colour kPale = {0.83, 0.84, 0.86};
 constexpr double kPaleShare = 0.48;
 constexpr double kStickLine_px = 3.2;
@@ -335,10 +389,15 @@ void put_on_floor(vec3& end_m, double radius_m, const vec3& wide, double width) 
 
 }  // namespace
 
-Mannequin mannequin_of(std::shared_ptr<const WalkModel> model) {
+Mannequin mannequin_of(std::shared_ptr<const WalkModel> model, MannequinDetail detail) {
   Mannequin mannequin;
   mannequin.model = std::move(model);
-  Builder(mannequin).build();
+  Builder builder(mannequin);
+  if (detail == MannequinDetail::full) {
+    builder.build();
+  } else {
+    builder.build_coarsely();
+  }
   return mannequin;
 }
 

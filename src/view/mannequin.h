@@ -28,8 +28,11 @@ struct Mannequin {
   vec3 top_m{0.0};        // that place, in its frame
   double height_m = 0.0;  // of that place when standing
 };
+// coarse: half as many bones, for characters that are seen from afar.
+enum class MannequinDetail { full, coarse };
 // Allocates; call it once for each character. Limbs that were not found are left out.
-Mannequin mannequin_of(std::shared_ptr<const WalkModel> model);
+Mannequin mannequin_of(std::shared_ptr<const WalkModel> model,
+                       MannequinDetail detail = MannequinDetail::full);
 
 // Between the two latest poses; share 0 gives the earlier one.
 void interpolate(const Pose& before, const Pose& pose, double share, Pose& shown) noexcept;

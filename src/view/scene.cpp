@@ -284,15 +284,20 @@ ShadowPlace CapsuleScene::draw_shadows() {
   return place;
 }
 
+// Sets the uniforms of a program that lights bodies and takes it into use.
+void light_bodies(const GlProgram& program, const SceneView& view) {
+  program.use();
+  program.set("to_clip", view.to_clip);
+  program.set("eye", view.eye_m());
+  program.set("light", kLightDirection);
+  program.set("sky_light", view.is_light() ? vec3(0.50, 0.54, 0.60) : vec3(0.36, 0.41, 0.50));
+  program.set("ground_light", view.is_light() ? vec3(0.30, 0.29, 0.28) : vec3(0.15, 0.13, 0.135));
+  program.set("key_strength", view.is_light() ? 0.80 : 0.86);
+  program.set("rim_strength", view.is_light() ? 0.10 : 0.34);
+}
+
 void CapsuleScene::draw(const SceneView& view) const {
-  program_.use();
-  program_.set("to_clip", view.to_clip);
-  program_.set("eye", view.eye_m());
-  program_.set("light", kLightDirection);
-  program_.set("sky_light", view.is_light() ? vec3(0.50, 0.54, 0.60) : vec3(0.36, 0.41, 0.50));
-  program_.set("ground_light", view.is_light() ? vec3(0.30, 0.29, 0.28) : vec3(0.15, 0.13, 0.135));
-  program_.set("key_strength", view.is_light() ? 0.80 : 0.86);
-  program_.set("rim_strength", view.is_light() ? 0.10 : 0.34);
+  light_bodies(program_, view);
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   glFrontFace(GL_CCW);
@@ -300,6 +305,73 @@ void CapsuleScene::draw(const SceneView& view) const {
   glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_SHORT, nullptr,
                           static_cast<GLsizei>(capsules_));
   glDisable(GL_CULL_FACE);
+}
+
+// Draws the bodies of a crowd, instanced, each capsule as one rectangle, and their shades.
+class CrowdScene {
+ public:
+  static Result<CrowdScene> create();
+  void draw(const SceneContent& content, const SceneView& view, int samples) const;
+  // Call it when the floor is drawn.
+  void draw_shades(const SceneContent& content, const SceneView& view) const;
+
+ private:
+  CrowdScene() = default;
+  GlProgram body_, shade_;
+  GlVertexArray body_vertices_, shade_vertices_;
+  GlBuffer body_rows_, shade_rows_;
+};
+
+Result<CrowdScene> CrowdScene::create() {
+  CrowdScene crowd;
+  auto body = GlProgram::link("crowd", shader::kFlatVertex, shader::kFlatFragment);
+  if (!body) return body.error();
+  auto shade = GlProgram::link("crowd's shades", shader::kShadeVertex, shader::kShadeFragment);
+  if (!shade) return shade.error();
+  crowd.body_ = std::move(*body);
+  crowd.shade_ = std::move(*shade);
+  crowd.body_vertices_ = new_vertex_array();
+  crowd.body_rows_ = new_buffer();
+  glBindVertexArray(crowd.body_vertices_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, crowd.body_rows_.get());
+  constexpr VertexPart kBody[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}};
+  set_vertex_parts(kBody, 4, 1);
+  crowd.shade_vertices_ = new_vertex_array();
+  crowd.shade_rows_ = new_buffer();
+  glBindVertexArray(crowd.shade_vertices_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, crowd.shade_rows_.get());
+  constexpr VertexPart kShade[] = {{1, 4}, {2, 4}, {3, 1}};
+  set_vertex_parts(kShade, 3, 1);
+  glBindVertexArray(0);
+  return crowd;
+}
+
+void CrowdScene::draw(const SceneContent& content, const SceneView& view, int samples) const {
+  if (content.crowd.empty()) return;
+  upload(body_rows_, content.crowd.data(), content.crowd.size() * sizeof(FlatCapsule));
+  light_bodies(body_, view);
+  body_.set("moved", content.crowd_origin_m - view.origin_m);
+  body_.set("samples", static_cast<double>(samples));
+  if (samples > 1) glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+  glBindVertexArray(body_vertices_.get());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(content.crowd.size()));
+  if (samples > 1) glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+}
+
+void CrowdScene::draw_shades(const SceneContent& content, const SceneView& view) const {
+  if (content.crowd_shades.empty() || !content.has_shadows) return;
+  upload(shade_rows_, content.crowd_shades.data(),
+         content.crowd_shades.size() * sizeof(FloorShade));
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  shade_.use();
+  shade_.set("to_clip", view.to_clip);
+  shade_.set("moved", content.crowd_origin_m - view.origin_m);
+  glBindVertexArray(shade_vertices_.get());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(content.crowd_shades.size()));
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
 }
 
 // Draws the floor with its grid and shadows, and the background that it fades into.
@@ -343,8 +415,9 @@ void set_background(const GlProgram& program, const SceneView& view) {
   program.set("size_px", view.size_px);
 }
 
-double size_of(const SceneView& view) {
-  return std::max(1.0, view.camera.distance_m / kUsualDistance_m);
+double size_of(const SceneContent& content, const SceneView& view) {
+  return std::max(
+      {1.0, view.camera.distance_m / kUsualDistance_m, 1.3 * content.reach_m / kFadesTo_m});
 }
 
 // Sets the uniforms that floor and ground share; the program has to be in use.
@@ -355,8 +428,8 @@ void set_floor(const GlProgram& program, const SceneContent& content, const Scen
   program.set("to_clip", view.to_clip);
   program.set("focus",
               vec2(content.focus_m.x - view.origin_m.x, content.focus_m.z - view.origin_m.z));
-  program.set("half_size", kFadesTo_m * size_of(view));
-  program.set("fade_from", kFadesFrom_m * size_of(view));
+  program.set("half_size", kFadesTo_m * size_of(content, view));
+  program.set("fade_from", kFadesFrom_m * size_of(content, view));
   program.set("floor_near", view.theme->floor);
   program.set("floor_far", view.theme->floor_far);
   program.set("grid", view.theme->grid);
@@ -424,9 +497,9 @@ void FloorScene::draw_ground(const SceneContent& content, const SceneView& view,
                              const ShadowPlace& place) {
   if (!is_finite(content.focus_m)) return;
   const vec2 focus_m(content.focus_m.x, content.focus_m.z);
-  const double moves_m = kMeshMoves_m * size_of(view);
+  const double moves_m = kMeshMoves_m * size_of(content, view);
   make_ground(content.terrain, glm::round(focus_m / moves_m) * moves_m,
-              kFadesTo_m * size_of(view) + moves_m);
+              kFadesTo_m * size_of(content, view) + moves_m);
   ground_.use();
   set_floor(ground_, content, view, place);
   ground_.set("moved", mesh_origin_m_ - view.origin_m);
@@ -698,10 +771,11 @@ SceneView view_of(const Camera& camera, const SceneContent& content, const Theme
 }  // namespace
 
 struct Scene::Impl {
-  Impl(CapsuleScene&& b, FloorScene&& f, StrokeScene&& s)
-      : capsules(std::move(b)), floor(std::move(f)), strokes(std::move(s)) {}
+  Impl(CapsuleScene&& b, CrowdScene&& c, FloorScene&& f, StrokeScene&& s)
+      : capsules(std::move(b)), crowd(std::move(c)), floor(std::move(f)), strokes(std::move(s)) {}
 
   CapsuleScene capsules;
+  CrowdScene crowd;
   FloorScene floor;
   StrokeScene strokes;
   Target target, resolved;
@@ -724,13 +798,15 @@ Result<std::unique_ptr<Scene>> Scene::create(Quality quality) {
   glGetIntegerv(GL_MAX_SAMPLES, &most);
   auto capsules = CapsuleScene::create(is_fine ? MeshDetail{36, 8, 1024} : MeshDetail{16, 4, 384});
   if (!capsules) return capsules.error();
+  auto crowd = CrowdScene::create();
+  if (!crowd) return crowd.error();
   auto strokes = StrokeScene::create();
   if (!strokes) return strokes.error();
   auto floor = FloorScene::create();
   if (!floor) return floor.error();
   std::unique_ptr<Scene> scene(new Scene);
-  scene->impl_ =
-      std::make_unique<Impl>(std::move(*capsules), std::move(*floor), std::move(*strokes));
+  scene->impl_ = std::make_unique<Impl>(std::move(*capsules), std::move(*crowd), std::move(*floor),
+                                        std::move(*strokes));
   scene->impl_->samples = is_fine ? std::clamp(most, 1, kSamples) : 1;
   scene->impl_->is_software = is_software;
   const int version = epoxy_gl_version();
@@ -764,7 +840,9 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
     glDepthMask(GL_TRUE);
     glClear(GL_DEPTH_BUFFER_BIT);
     s.capsules.draw(view);
+    s.crowd.draw(content, view, s.samples);
     s.floor.draw(content, view, shadow, s.capsules.shadow_texture());
+    s.crowd.draw_shades(content, view);
     s.strokes.draw(content, view);
     glDisable(GL_DEPTH_TEST);
     GLuint ready = s.target.name();

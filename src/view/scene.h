@@ -32,11 +32,28 @@ struct Trail {  // oldest first; fades towards the old end
   std::vector<vec3> points_m;
   Colour colour;
 };
+// A capsule of a body that is one of many: drawn as a rectangle that faces the eye, shaded as if it
+// were round, for a fraction of the cost. It casts no shadow. Places are relative to
+// SceneContent::crowd_origin_m.
+struct FlatCapsule {
+  glm::vec4 a_radius{0.0f}, b_radius{0.0f};
+  // As in Capsule. A negative width at b: both ends lie in other capsules and show no caps.
+  glm::vec4 wide_width_a{0.0f}, colour_width_b{0.0f};
+};
+// A soft dark strip on the floor between two places, its radius at each end; relative likewise.
+struct FloorShade {
+  glm::vec4 a_radius{0.0f}, b_radius{0.0f};
+  float dark = 0.0f;  // 0 .. 1
+};
 struct SceneContent {
   std::vector<Capsule> capsules;  // these cast shadows
   std::vector<SceneLine> lines;
   std::vector<vec3> joints_m;  // dots of the stick figures
   Colour joint_colour;
+  std::vector<FlatCapsule> crowd;
+  std::vector<FloorShade> crowd_shades;
+  vec3 crowd_origin_m{0.0};
+  double reach_m = 0.0;  // the floor is seen at least so far around the focus
   std::vector<Trail> trails;
   std::shared_ptr<const Terrain> terrain;  // the floor; null: level at height 0
   vec3 focus_m{0.0};  // the floor is drawn around it; the grid is fixed to the world

@@ -67,6 +67,146 @@ void main() {
 }
 )";
 
+// --- the crowd -----------------------------------------------------------------------------------
+// A rectangle from one ball's far end to the other's, turned around the capsule's axis to the eye.
+// How wide it is follows from the side that is seen.
+inline constexpr const char* kFlatVertex = R"(#version 330 core
+layout(location = 1) in vec4 a_radius;
+layout(location = 2) in vec4 b_radius;
+layout(location = 3) in vec4 wide_width_a;
+layout(location = 4) in vec4 colour_width_b;
+uniform mat4 to_clip;
+uniform vec3 eye;
+uniform vec3 light;
+uniform vec3 moved;
+out float height;
+out vec2 spot;  // metres aside of the axis, and along it from a as it is seen
+flat out vec3 aside;
+flat out vec3 upwards;
+flat out vec3 radii;  // at a, at b; and the seen length
+flat out vec3 base;
+flat out vec3 half_way;
+flat out float cap;  // how much of a cap's curve shows
+void main() {
+  vec3 a = a_radius.xyz + moved, b = b_radius.xyz + moved, along = b - a;
+  float span = length(along);
+  vec3 axis = span > 1e-6 ? along / span : vec3(0.0, 1.0, 0.0);
+  vec3 to_eye = normalize(eye - 0.5 * (a + b));
+  aside = cross(axis, to_eye);
+  if (dot(aside, aside) < 1e-4) aside = cross(axis.zxy, to_eye);
+  aside = normalize(aside);
+  upwards = cross(to_eye, aside);
+  vec3 side = wide_width_a.xyz - axis * dot(axis, wide_width_a.xyz);
+  vec2 widths = vec2(wide_width_a.w, abs(colour_width_b.w));
+  cap = colour_width_b.w < 0.0 ? 0.15 : 1.0;
+  float seen = 0.0;  // the share of the wide side that is seen, squared
+  if (dot(side, side) > 1e-6) seen = pow(dot(aside, normalize(side)), 2.0);
+  vec2 wide = sqrt(mix(vec2(1.0), widths * widths, seen));
+  radii = vec3(a_radius.w * wide.x, b_radius.w * wide.y, max(dot(along, upwards), 0.0));
+  float reach = max(radii.x, radii.y) * 1.05;
+  bool at_b = gl_VertexID > 1;
+  float aside_m = (gl_VertexID & 1) == 1 ? reach : -reach;
+  spot = vec2(aside_m, at_b ? radii.z + radii.y * 1.05 : -radii.x * 1.05);
+  vec3 place = (at_b ? b + upwards * radii.y * 1.05 : a - upwards * radii.x * 1.05) + aside * aside_m;
+  height = place.y;
+  half_way = normalize(light + to_eye);
+  vec3 c = colour_width_b.rgb;
+  base = c * c * (0.25 + 0.75 * c);
+  gl_Position = to_clip * vec4(place, 1.0);
+}
+)";
+
+// The light of the bodies, with cheap powers.
+inline constexpr const char* kFlatFragment = R"(#version 330 core
+in float height;
+in vec2 spot;
+flat in vec3 aside;
+flat in vec3 upwards;
+flat in vec3 radii;
+flat in vec3 base;
+flat in vec3 half_way;
+flat in float cap;
+uniform vec3 light;
+uniform vec3 sky_light;
+uniform vec3 ground_light;
+uniform float key_strength;
+uniform float rim_strength;
+out vec4 shown;
+uniform float samples;  // more than 1: the cover becomes samples
+void main() {
+  float along = clamp(spot.y, 0.0, radii.z);
+  float radius = mix(radii.x, radii.y, radii.z > 1e-5 ? along / radii.z : 0.5);
+  vec2 off = vec2(spot.x, spot.y - along) / radius;
+  float far = dot(off, off);
+  float cover = 1.0;
+  if (samples > 1.0) {
+    float edge = length(off);
+    cover = clamp((1.0 - edge) / max(fwidth(edge), 1e-4) + 0.5, 0.0, 1.0);
+    if (cover <= 0.0) discard;
+  } else if (far > 1.0) {
+    discard;
+  }
+  vec3 to_eye = cross(aside, upwards);
+  float bent = off.y * cap;
+  float facing = sqrt(max(1.0 - off.x * off.x - bent * bent, 0.0));
+  vec3 n = aside * off.x + upwards * bent + to_eye * facing;
+  float near_floor = mix(0.55, 1.0, clamp(height * 3.0, 0.0, 1.0));
+  vec3 ambient = mix(ground_light, sky_light, 0.5 + 0.5 * n.y) * near_floor;
+  float key = smoothstep(-0.25, 1.0, dot(n, light)) * key_strength;
+  float edge = 1.0 - facing;
+  float rim = edge * edge * edge * rim_strength * near_floor;
+  float gloss = max(dot(n, half_way), 0.0);
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;  // the power 32
+  vec3 lit = base * (ambient + key * vec3(1.0, 0.975, 0.93)) + rim * vec3(0.55, 0.68, 0.85) +
+             0.12 * gloss * key;
+  vec3 root = sqrt(lit);
+  shown = vec4(mix(root, sqrt(root), 0.15), cover);  // nearly the power 1 / 2.2
+}
+)";
+
+inline constexpr const char* kShadeVertex = R"(#version 330 core
+layout(location = 1) in vec4 a_radius;
+layout(location = 2) in vec4 b_radius;
+layout(location = 3) in float dark_in;
+uniform mat4 to_clip;
+uniform vec3 moved;
+out vec2 spot;  // from a
+flat out vec2 along;
+flat out vec2 radii;
+flat out float dark;
+void main() {
+  along = b_radius.xz - a_radius.xz;
+  float span = length(along), reach = max(a_radius.w, b_radius.w);
+  vec2 u = span > 1e-5 ? along / span : vec2(1.0, 0.0);
+  bool at_b = gl_VertexID > 1;
+  vec2 corner = u * (at_b ? reach : -reach) +
+                vec2(-u.y, u.x) * ((gl_VertexID & 1) == 1 ? reach : -reach);
+  spot = (at_b ? along : vec2(0.0)) + corner;
+  radii = vec2(a_radius.w, b_radius.w);
+  dark = dark_in;
+  vec3 place = (at_b ? b_radius.xyz : a_radius.xyz) + vec3(corner.x, 0.0, corner.y) + moved;
+  gl_Position = to_clip * vec4(place, 1.0);
+}
+)";
+
+inline constexpr const char* kShadeFragment = R"(#version 330 core
+in vec2 spot;
+flat in vec2 along;
+flat in vec2 radii;
+flat in float dark;
+out vec4 shown;
+void main() {
+  float part = clamp(dot(spot, along) / max(dot(along, along), 1e-8), 0.0, 1.0);
+  float off = length(spot - along * part) / mix(radii.x, radii.y, part);
+  float fading = max(1.0 - off * off, 0.0);
+  shown = vec4(0.0, 0.0, 0.0, dark * fading * fading * (1.0 - 0.5 * part));
+}
+)";
+
 // --- shadows -------------------------------------------------------------------------------------
 // One square for each bone, drawn into a texture of the floor. Each end is projected along `slide`
 // to a disc, whose edge is softer the higher the end is.

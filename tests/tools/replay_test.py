@@ -324,3 +324,38 @@ def test_wrong_options_are_wrong_usage(made, options):
 @pytest.mark.parametrize("arguments", [[], ["dance"], ["replay"]], ids=" ".join)
 def test_no_command_and_no_trace_are_wrong_usage(run, arguments):
     run(*arguments, status=2)
+
+
+def test_a_crowd_has_files_of_its_first_members_and_one_hash(made):
+    trace = HEADER + report(0) + report(0.5, y=0x10) + report(2, x=0x40, y=0x10) + end(3)
+    rows, summary = made.replay(trace, "--crowd", "5", "--crowd-files", "3")
+    numbers = ["", "-2", "-3", "-4"]
+    assert sorted(made.files()) == sorted(
+        name for n in numbers for name in (f"frames{n}.csv", f"pose{n}.bvh", f"summary{n}.json"))
+    assert summary["crowd"] == 5
+    before = made.files()
+    made.replay(trace, "--crowd", "5", "--crowd-files", "3")
+    assert made.files() == before
+    members = [json.loads(before[f"summary{n}.json"]) for n in numbers]
+    assert {m["pose_hash"] for m in members} == {summary["pose_hash"]}
+    assert len({m["leg_length_m"] for m in members}) > 1
+    for number in numbers[1:]:
+        text = before[f"frames{number}.csv"].decode().splitlines()
+        member = list(csv.DictReader(text))
+        assert len(member) == len(rows)
+        assert float(member[0]["root_z_m"]) < -0.9
+        assert float(member[-1]["root_z_m"]) - float(member[0]["root_z_m"]) > 1
+    alone, without = made.replay(trace)
+    assert alone == rows, "a crowd behind does not change the first character's walk"
+    assert without["pose_hash"] != summary["pose_hash"]
+    assert "crowd" not in without
+
+
+@pytest.mark.parametrize("options, says", [
+    (["--crowd", "-1"], ["--crowd", "100000"]),
+    (["--crowd", "100001"], ["--crowd", "100000"]),
+    (["--crowd", "many"], ["--crowd"]),
+    (["--crowd", "3", "--crowd-files", "257"], ["--crowd-files", "256"]),
+])
+def test_a_crowd_that_cannot_be_is_refused(made, refuse, options, says):
+    refuse("replay", made.write("made.hid", WALK), "--out", made.out, *options, says=says, status=2)

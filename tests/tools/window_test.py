@@ -121,6 +121,18 @@ def test_from_the_side_they_walk_one_behind_the_other(window):
     assert width(aside) < 0.5 * width(ahead)
 
 
+def test_a_crowd_is_seen_behind_them(window):
+    """The camera stands farther off, so the first is a quarter as large; with twenty behind there is more to see."""
+    options = (*BARE, "--style", "even", "--camera", "0,20")
+    empty, full = window.picture("alone", *options), window.picture("crowd", *options, "--crowd", "20")
+
+    def bodies(picture):
+        """Bright or coloured pixels: the floor and the sky are neither."""
+        scene = colors.rgb_to_hsv(picture[SCENE_ROWS] / 255.0)
+        return ((scene[:, :, 1] > 0.35) & (scene[:, :, 2] > 0.25)).sum()
+    assert bodies(full) > 1.5 * bodies(empty) > 1000
+
+
 def test_trails_grow(window):
     grown = []
     for name, frames in (("early", EARLY), ("late", LATE)):
@@ -262,7 +274,8 @@ def test_replay_view_writes_its_files_too(window, tmp_path):
 
 @pytest.mark.parametrize("arguments", [
     "play --no-window --frames 3", "play --frames 0", "play --screenshot x.jpg", "play --video x.avi", "play --theme grey",
-    "play --panels pad,kitchen", "play --scale 9", "play --hide feet", "play --camera 90", f"replay {ROUND} --frames 3",
+    "play --panels pad,kitchen", "play --scale 9", "play --hide feet", "play --camera 90",
+    "play --crowd -1", "play --crowd 100001", "play --crowd x", f"replay {ROUND} --frames 3",
     f"play {ROUND} --screenshot x.png --record x.hid"])
 def test_wrong_usage_is_2(refuse, arguments):
     refuse(*arguments.split(), status=2, env=environment())

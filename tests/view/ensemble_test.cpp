@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -16,10 +17,11 @@ namespace {
 class Walking : public testing::Test {
  protected:
   void SetUp() override { begin({"even", "limp_left"}); }
-  void begin(const std::vector<std::string>& styles) {
+  void begin(const std::vector<std::string>& styles, int crowd = 0) {
     SessionSpec spec;
     spec.config_folders = {kSourceFolder + "/config"};
     spec.walk.styles = styles;
+    spec.walk.crowd = crowd;
     auto config = simulation_config(spec, 240);
     ASSERT_TRUE(config) << config.error().message;
     simulation_ = std::make_unique<Simulation>(value_of(Simulation::create(*config)));
@@ -137,6 +139,57 @@ TEST_F(Walking, FromItsDistanceTheCameraSeesEverybodyWithTheirNames) {
       }
     }
   }
+}
+
+// The crowd is the members behind the walkers, on the floor and as wide and high as persons.
+TEST_F(Walking, ACrowdStandsBehindTheWalkers) {
+  begin({"even"}, 30);
+  run(300);
+  fill();
+  ASSERT_EQ(cast_.crowd.size(), 30u);
+  ASSERT_EQ(content_.crowd_shades.size(), 90u);  // two feet and a body each
+  EXPECT_GT(content_.crowd.size(), 30u * 14);
+  const vec3 first = simulation_->walkers().front().pose.root_m;
+  double lowest_m = 1.0, highest_m = 0.0;
+  for (const FlatCapsule& c : content_.crowd) {
+    const vec3 a = vec3(c.a_radius) + content_.crowd_origin_m;
+    EXPECT_LT(a.z, first.z + 0.1);
+    EXPECT_LT(glm::distance(a, first), content_.reach_m);
+    lowest_m = std::min(lowest_m, a.y - c.a_radius.w);
+    highest_m = std::max(highest_m, a.y + c.a_radius.w);
+  }
+  EXPECT_NEAR(lowest_m, 0.0, 0.03);
+  EXPECT_GT(highest_m, 1.5);
+  EXPECT_LT(highest_m, 2.2);
+}
+
+TEST_F(Walking, AMemberNearTheEyeHasMoreBones) {
+  begin({"even"}, 30);
+  ensemble_->look_from(vec3(0.0, 1.6, 50.0));
+  fill();
+  const std::size_t from_afar = content_.crowd.size();
+  ensemble_->look_from(vec3(0.0, 1.6, -4.0));
+  fill();
+  EXPECT_GT(content_.crowd.size(), from_afar * 3 / 2);
+}
+
+TEST_F(Walking, ACrowdMovesBetweenTwoTicksByTheirShare) {
+  begin({"even"}, 10);
+  run(500);
+  std::array<double, 3> z{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    fill(0.5 * static_cast<double>(i));
+    z[i] = content_.crowd.front().a_radius.z;
+  }
+  EXPECT_GT(z[2], z[0] + 0.001);
+  EXPECT_NEAR(z[1], 0.5 * (z[0] + z[2]), 1e-4);
+}
+
+TEST_F(Walking, WithoutACrowdThereIsNone) {
+  fill();
+  EXPECT_TRUE(content_.crowd.empty());
+  EXPECT_TRUE(content_.crowd_shades.empty());
+  EXPECT_EQ(content_.reach_m, 0.0);
 }
 
 }  // namespace

@@ -448,6 +448,59 @@ TEST_F(SceneTest, BodiesHideLinesBehindThem) {
   EXPECT_TRUE(differs(with, without, static_cast<int>(beside.x), static_cast<int>(beside.y)));
 }
 
+FlatCapsule flat(const vec3& a, const vec3& b, double radius_a_m, double radius_b_m) {
+  return {glm::vec4(a, radius_a_m), glm::vec4(b, radius_b_m), glm::vec4(0.0f, 0.0f, 0.0f, 1.0f),
+          glm::vec4(kRed.red, kRed.green, kRed.blue, 1.0f)};
+}
+
+TEST_F(SceneTest, AFlatCapsulesPixelsAreThoseOfARoundOne) {
+  camera_.target_m = {20.0, 0.8, -7.0};
+  content_.focus_m = camera_.target_m;
+  const Pixels empty = drawn(content_);
+  const vec3 a = camera_.target_m + vec3(-0.4, 0.2, 0.0),
+             b = camera_.target_m + vec3(0.5, 0.7, 0.2);
+  content_.capsules = {bone(a, b, 0.10, 0.09)};
+  const Extent round = difference(empty, drawn(content_));
+  content_.capsules.clear();
+  content_.crowd_origin_m = {18.0, 0.0, -7.0};
+  content_.crowd = {flat(a - content_.crowd_origin_m, b - content_.crowd_origin_m, 0.10, 0.09)};
+  const Extent seen = difference(empty, drawn(content_));
+  EXPECT_NEAR(seen.left, round.left, 2.0);
+  EXPECT_NEAR(seen.right, round.right, 2.0);
+  EXPECT_NEAR(seen.top, round.top, 2.0);
+  EXPECT_NEAR(seen.bottom, round.bottom, 2.0);
+  EXPECT_NEAR(seen.pixels, round.pixels, 0.06 * round.pixels);
+}
+
+TEST_F(SceneTest, BodiesHideFlatCapsulesBehindThemAndAreHiddenByThoseInFront) {
+  camera_.yaw_rad = 0.0;
+  const vec3 at = camera_.target_m, behind(0.0, 0.0, -1.0);
+  content_.capsules = {bone(at, at, 0.1)};
+  const Pixels alone = drawn(content_);
+  content_.crowd = {flat(at + behind, at + behind, 0.3, 0.3)};
+  const Pixels with = drawn(content_);
+  EXPECT_FALSE(differs(with, alone, kWidth / 2, kHeight / 2));
+  const vec3 beside = place(at + behind + vec3(0.2, 0.0, 0.0));
+  EXPECT_TRUE(differs(with, alone, static_cast<int>(beside.x), static_cast<int>(beside.y)));
+  content_.crowd = {flat(at - behind, at - behind, 0.3, 0.3)};
+  content_.crowd.front().colour_width_b = {0.0f, 0.0f, 1.0f, 1.0f};
+  EXPECT_TRUE(differs(drawn(content_), alone, kWidth / 2, kHeight / 2));
+}
+
+TEST_F(SceneTest, AFloorShadeDarkensTheFloorWhereItLies) {
+  look_down();
+  content_.has_shadows = true;
+  const Pixels without = drawn(content_);
+  content_.crowd_shades = {
+      {glm::vec4(0.0f, 0.006f, 0.0f, 0.3f), glm::vec4(0.8f, 0.006f, 0.0f, 0.3f), 0.5f}};
+  const Pixels with = drawn(content_);
+  EXPECT_LT(brighter(with, without, vec3(0.0)), -5.0);
+  EXPECT_LT(brighter(with, without, vec3(0.5, 0.0, 0.0)), -2.0);
+  EXPECT_NEAR(brighter(with, without, vec3(0.0, 0.0, 0.5)), 0.0, 0.5);
+  content_.has_shadows = false;
+  EXPECT_NEAR(brighter(drawn(content_), without, vec3(0.0)), 0.0, 0.5);
+}
+
 }  // namespace
 
 }  // namespace gaitpad

@@ -105,6 +105,10 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
                   "a way to walk, FILE|NAME; the n-th for the n-th character")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option("--crowd", walk.crowd,
+                  "so many more walk behind the first, each with its own build and style")
+      ->check(CLI::Range(0, kMaxFollowers));
   command.add_option("--terrain", walk.terrain, "the ground, FILE|NAME; without it flat");
   command.add_option("--script", walk.script, "commands at given times, FILE");
   command

@@ -54,6 +54,7 @@ void print_session(const std::string& source, const RunSummary& run) {
   fmt::print("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {:016x}\n", source,
              run.reports, run.ticks, run.rate_hz, static_cast<double>(run.ticks) / run.rate_hz,
              run.pose_hash);
+  if (run.crowd > 0) fmt::print("a crowd of {} behind character 1\n", run.crowd);
 }
 
 void print_character(const RunSummary& run, std::size_t walker, Way way) {

@@ -18,6 +18,7 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kCommand = "replay";
+constexpr int kMaxCrowdFiles = 256;  // each takes three open files
 
 struct ReplayArguments {
   SessionSpec spec;
@@ -94,6 +95,11 @@ void add_replay(CLI::App& app, int& status) {
       ->add_option("--fps", wanted.fps,
                    "poses a second in pose.bvh and pose.glb (default: every tick)")
       ->check(CLI::Range(1, kMaxRateHz));
+  command
+      ->add_option("--crowd-files", wanted.crowd_files,
+                   "of the crowd the first so many get files in --out, too (default: 32)")
+      ->check(CLI::Range(0, kMaxCrowdFiles))
+      ->needs(out);
   command->add_flag("--lenient", arguments->is_lenient, "skip damaged lines and count them");
   auto* in_window = command->add_flag("--view", arguments->view,
                                       "open the window: a time line to scrub, any speed");

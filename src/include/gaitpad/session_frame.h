@@ -18,10 +18,15 @@ struct CastMember {
   std::shared_ptr<const WalkModel> model;
   GaitLimits limits;
 };
+struct CrowdCastMember {
+  std::shared_ptr<const WalkModel> model;
+  int style = 0;  // in Cast::styles
+};
 struct Cast {
   std::string motion;  // its name
   std::shared_ptr<const GaitCycle> source;
   std::vector<CastMember> members;
+  std::vector<CrowdCastMember> crowd;                       // those that viewers get poses of
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
   std::vector<std::string> styles;                          // that a `style` command may name
   std::vector<StyleValues> style_values;                    // of these, as in their files
@@ -63,8 +68,10 @@ struct SessionFrame {
   SimulationCounts counts;
   int walker_count = 0;
   std::array<WalkerFrame, kMaxWalkers> walkers;
+  FollowerPoses crowd;  // by Cast::crowd
 };
-// Copies only the joints that there are: use a frame for one session only.
+// Copies only the joints that there are: use a frame for one session only. The first copy of a
+// session with a crowd into a frame takes room on the heap; later ones do not.
 void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept;
 
 // One tick of one character, small enough to keep many of them.

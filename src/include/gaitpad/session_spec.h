@@ -22,6 +22,7 @@ struct SessionSpec {
     std::string terrain;              // FILE|NAME; empty: flat
     std::string script;               // FILE with commands at given times
     IkMode ik = IkMode::robust;
+    int crowd = 0;  // so many more walk behind the first character
     // None: in a replay the trace's, else what the motion's description says, else its own. The
     // built-in motion has the adult's whatever stands here.
     std::optional<Pace> pace;
@@ -47,6 +48,7 @@ struct SessionSpec {
     std::string out;                 // folder for the files that replay() writes; empty: none
     std::optional<int> fps;          // of the poses written; none: one pose a tick
     bool gltf = false;               // write pose.glb beside pose.bvh
+    int crowd_files = 32;            // of the crowd the first so many get files, too
   };
 
   Walk walk;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "gaitpad/control.h"
+#include "gaitpad/followers.h"
 #include "gaitpad/hash.h"
 #include "gaitpad/pads.h"
 #include "gaitpad/report.h"
@@ -39,7 +40,9 @@ struct SimulationConfig {
   GaitCycle cycle;              // its pace is the one in force
   Pace pace = Pace::own;        // that was chosen; with the built-in motion it changes nothing
   std::vector<WalkerConfig>
-      walkers;  // at least one; they stand side by side, the first at the origin
+      walkers;            // at least one; they stand side by side, the first at the origin
+  int crowd = 0;          // so many more walk behind the first, at most kMaxFollowers
+  int crowd_threads = 1;  // that move the crowd on, at most; the poses are the same for any number
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
 };
 
@@ -84,24 +87,26 @@ struct Walker {
 // Copies only the joints that there are: a whole Pose has 10 KB.
 void copy_pose(const Pose& from, Pose& to) noexcept;
 
-// Copies are cheap, a few kilobytes a walker: they share what does not change.
+// Copies are cheap, a few kilobytes a character: they share what does not change.
 class Simulation {
  public:
-  // Error: no walker or more than kMaxWalkers, a motion that does not fit a character, a zone whose
-  // style does not exist.
+  // Error: no walker or more than kMaxWalkers, a crowd of more than kMaxFollowers, a motion that
+  // does not fit a character, a zone whose style does not exist.
   static Result<Simulation> create(const SimulationConfig& config);
 
   // Sets what is known of a device that was found while the simulation runs, before its first
   // report. Its entry in SimulationConfig::pads must be one of unknown_pads(). No heap: they are
   // swapped.
   void set_pad(std::uint16_t device, PadConfig&& config) noexcept { pads_.set_pad(device, config); }
-  // Runs one tick with the reports that belong to it, in order of arrival. No heap, lock or clock.
+  // Runs one tick with the reports that belong to it, in order of arrival. No heap, lock or clock,
+  // unless several threads move a crowd on.
   void step(std::span<const Report> reports) noexcept;
   // Takes in one report of the tick that the next step() runs. For recordings: a tick of one may
   // have millions of reports.
   void take_report(const Report& report) noexcept;
 
   const std::vector<Walker>& walkers() const { return walkers_; }
+  const Followers& followers() const { return followers_; }  // the crowd
   const std::vector<Style>& styles() const { return *styles_; }
   // The ground: the configuration's terrain, enlarged if a foot would not fit its treads.
   const std::shared_ptr<const Terrain>& terrain() const { return terrain_; }
@@ -111,7 +116,8 @@ class Simulation {
   // Whether a heel of the first character struck the ground in the last tick.
   bool heel_struck() const { return heel_struck_; }
   const SimulationCounts& counts() const { return counts_; }
-  // Over the bits of every pose of every character in every tick so far.
+  // Over the bits of every pose of every character in every tick so far, those of the crowd after
+  // the walkers'.
   std::uint64_t pose_hash() const { return hash_.value(); }
 
  private:
@@ -121,7 +127,7 @@ class Simulation {
   bool obey(std::string_view text) noexcept;
   int style_index(std::string_view name) const noexcept;  // -1: there is none
   bool choose_style(std::span<Walker> walkers, std::string_view name) noexcept;
-  void add_to_hash(const Pose& pose) noexcept;
+  void add_to_hash(const vec3& root_m, std::span<const quat> local) noexcept;
 
   double dt_s_ = 0.0;
   IkMode ik_ = IkMode::robust;
@@ -129,6 +135,7 @@ class Simulation {
   std::shared_ptr<const std::vector<Style>> styles_;
   std::shared_ptr<const std::vector<int>> zone_styles_;  // of each of the terrain's zones
   std::vector<Walker> walkers_;
+  Followers followers_;
   std::shared_ptr<const Terrain> terrain_;
   double terrain_scale_ = 1.0;
   Stick stick_;

@@ -42,6 +42,7 @@ struct RunSummary {
   std::int64_t bad_commands = 0;    // that could not be obeyed
   std::int64_t damaged_lines = 0;   // of the trace, skipped
   std::int64_t recording_lost = 0;  // reports missing in the session's recording: it is inexact
+  int crowd = 0;                    // so many more walked behind the first
   std::vector<WalkerSummary> walkers;
   bool operator==(const RunSummary&) const = default;
 };

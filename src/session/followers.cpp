@@ -1,0 +1,203 @@
+#include "gaitpad/followers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "session/workers.h"
+
+namespace gaitpad {
+namespace {
+
+// The formation: rows behind the first character, every other one moved by half a place.
+constexpr double kRow_m = 1.2, kPlace_m = 1.2;
+constexpr double kWidth_m = 1.5;   // of the formation, times the root of the number of members
+constexpr double kAstray_m = 0.1;  // nobody stands exactly in line
+
+// How a member comes back to its place in the formation when its own steps lead it off: for each
+// metre that it is behind it walks faster by this share (or slower if it is ahead: stairs slow the
+// first one down before they slow it down), and for each metre beside it heads that much towards
+// it, both within bounds that do not show.
+constexpr double kCatchUp_1_m = 0.4, kMostCatchUp = 0.15, kMostWait = 0.7;
+constexpr double kLeastSpeed = 0.1;  // of the first one's
+constexpr double kAim_rad_m = 0.2, kMostAim_rad = 0.12;
+constexpr double kTurn_1_s = 0.8, kMostTurn_rad_s = 0.15;  // towards the heading that it aims at
+
+// Numbers that look random and are the same on every machine (splitmix64).
+std::uint64_t mixed_bits(std::uint64_t number) noexcept {
+  std::uint64_t x = (number + 1) * 0x9e3779b97f4a7c15ull;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+  return x ^ (x >> 31);
+}
+// The n-th number in [0, 1) of a member.
+double share_of(std::uint64_t member, std::uint64_t n) noexcept {
+  return static_cast<double>(mixed_bits(member * 8 + n) >> 11) * 0x1p-53;
+}
+int pick(std::uint64_t member, std::uint64_t n, std::size_t count) noexcept {
+  return static_cast<int>(share_of(member, n) * static_cast<double>(count));
+}
+
+vec3 place_of(int member, int count, const vec3& middle_m) noexcept {
+  const int columns = std::max(
+      1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count)) * kWidth_m / kPlace_m)));
+  const int row = member / columns, column = member % columns;
+  const int in_row = std::min(columns, count - row * columns);
+  const auto astray_m = [member](std::uint64_t n) {
+    return (2.0 * share_of(static_cast<std::uint64_t>(member), n) - 1.0) * kAstray_m;
+  };
+  const double from_middle = column - 0.5 * (in_row - 1) + (row % 2 == 0 ? 0.25 : -0.25);
+  return middle_m + kLeft * (from_middle * kPlace_m + astray_m(4)) -
+         kForward * ((row + 1) * kRow_m + astray_m(5));
+}
+
+// Styles of different names; of equal names the first one counts.
+std::vector<int> different(const std::vector<Style>& styles) {
+  std::vector<int> all;
+  for (int i = 0; i < static_cast<int>(styles.size()); ++i) {
+    const bool is_known = std::ranges::any_of(all, [&](int other) {
+      return styles[static_cast<std::size_t>(other)].name ==
+             styles[static_cast<std::size_t>(i)].name;
+    });
+    if (!is_known) all.push_back(i);
+  }
+  return all;
+}
+
+double speed_m_s(const GaitParams& params) noexcept {
+  const auto& [left, right] = params.stride;
+  return (left.length_m + right.length_m) / (left.time_s + right.time_s);
+}
+
+void set(GaitOverrides& overrides, GaitKey key, double value) noexcept {
+  overrides.value[static_cast<std::size_t>(key)] = value;
+  overrides.is_set[static_cast<std::size_t>(key)] = true;
+}
+
+}  // namespace
+
+Character follower_build(const Character& first, int number) {
+  const auto n = static_cast<std::uint64_t>(number) + 0x10000;
+  Character build = first;
+  build.skeleton.clear();
+  build.scale *= 0.88 + 0.24 * share_of(n, 0);
+  build.leg_ratio *= 0.95 + 0.1 * share_of(n, 1);
+  return build;
+}
+
+Followers::Followers(const Options& options,
+                     const std::vector<std::shared_ptr<const WalkModel>>& builds,
+                     const std::vector<Style>& styles)
+    : builds_(builds), first_m_(options.first_m), is_flat_(is_flat(*builds.front()->terrain)) {
+  const std::vector<int> chosen = different(styles);
+  for (int build = 0; build < static_cast<int>(builds.size()); ++build) {
+    for (const int style : chosen) {
+      Kind& kind = kinds_.emplace_back();
+      kind.build = build;
+      kind.style = style;
+      kind.values = styles[static_cast<std::size_t>(style)];
+      kind.values.fatigue = 0.0;  // who is tired does not keep up
+      kind.limits = gait_limits(*builds[static_cast<std::size_t>(build)]);
+    }
+  }
+  std::vector<CrowdMember> members;
+  for (int i = 0; i < options.count; ++i) {
+    const auto member = static_cast<std::uint64_t>(i);
+    const int build = pick(member, 0, builds.size()), style = pick(member, 1, chosen.size());
+    kind_.push_back(static_cast<std::uint16_t>(static_cast<std::size_t>(build) * chosen.size() +
+                                               static_cast<std::size_t>(style)));
+    start_m_.push_back(place_of(i, options.count, options.middle_m));
+    members.push_back({builds[static_cast<std::size_t>(build)], start_m_.back()});
+  }
+  crowd_ = Crowd(members, options.ik);
+  if (options.threads > 1) workers_ = std::make_shared<Workers>(options.threads);
+
+  const int shown = std::min(options.count, kMaxShownFollowers);
+  std::size_t joints = 0;
+  for (int i = 0; i < shown; ++i) joints += crowd_.local(i).size();
+  shown_.root_m.resize(static_cast<std::size_t>(shown));
+  shown_.root_before_m.resize(static_cast<std::size_t>(shown));
+  shown_.local.resize(joints);
+  shown_.before.resize(joints);
+  keep_shown();
+  keep_shown();
+}
+
+// The speed and turn rate of the first character as overrides of a stick at rest: gait_params()
+// finds the member's own steps at that speed. `ahead`: the first one's heading as a direction.
+GaitParams Followers::params_of(int member, const GaitParams& first, const WalkState& first_state,
+                                const vec3& ahead) const noexcept {
+  const Kind& kind = kinds_[kind_[static_cast<std::size_t>(member)]];
+  if (!first.walking) return gait_params(Stick{}, kind.values, kind.limits);
+  const PathState& path = crowd_.state(member).path;
+  // From where the member is to its place in the formation.
+  const vec3 off_m = (first_state.path.hips_m - first_m_) -
+                     (path.hips_m - start_m_[static_cast<std::size_t>(member)]);
+  const double behind_m = glm::dot(vec3(off_m.x, 0.0, off_m.z), ahead);
+  const double beside_m = off_m.x * ahead.z - off_m.z * ahead.x;  // + to the left
+  const double speed = speed_m_s(first);                          // at least 0
+
+  GaitOverrides overrides;
+  GaitLimits limits = kind.limits;
+  double turn_rate_rad_s = first.turn_rate_rad_s;
+  if (speed > 0.0) {
+    const double way = first.backward ? -1.0 : 1.0;
+    const double more = std::clamp(way * behind_m * kCatchUp_1_m, -kMostWait, kMostCatchUp);
+    // Stairs make the first one slower than the stick asks; its running cycle shows by how much.
+    const double real_m_s = is_flat_ ? speed : std::min(speed, first_state.frame.speed_m_s);
+    const double wanted_m_s = std::max(real_m_s + speed * more, kLeastSpeed * speed);
+    // Short legs keep up by quicker steps.
+    limits.max_speed_m_s =
+        std::max(limits.max_speed_m_s, first.backward ? wanted_m_s / kBackwardShare : wanted_m_s);
+    set(overrides, GaitKey::speed_m_s, way * wanted_m_s);
+    const double aim_rad = first_state.path.heading_rad +
+                           std::clamp(way * beside_m * kAim_rad_m, -kMostAim_rad, kMostAim_rad);
+    turn_rate_rad_s +=
+        std::clamp((aim_rad - path.heading_rad) * kTurn_1_s, -kMostTurn_rad_s, kMostTurn_rad_s);
+  }
+  set(overrides, GaitKey::turn_rate_rad_s, turn_rate_rad_s);
+  return gait_params(Stick{}, kind.values, overrides, limits);
+}
+
+void Followers::advance(const GaitParams& first, const WalkState& first_state,
+                        double dt_s) noexcept {
+  if (size() == 0) return;
+  const vec3 ahead = heading_direction(first_state.path.heading_rad);
+  const std::span<GaitParams> params = crowd_.params();
+  for (int i = 0; i < size(); ++i)
+    params[static_cast<std::size_t>(i)] = params_of(i, first, first_state, ahead);
+  if (workers_ == nullptr) {
+    crowd_.advance(dt_s);
+  } else {
+    workers_->for_each(crowd_.blocks(),
+                       [this, dt_s](int block) { crowd_.advance_block(block, dt_s); });
+  }
+  keep_shown();
+}
+
+void Followers::restart() noexcept {
+  for (int i = 0; i < size(); ++i) crowd_.restart(i, start_m_[static_cast<std::size_t>(i)]);
+}
+
+void Followers::keep_shown() noexcept {
+  shown_.root_before_m.swap(shown_.root_m);
+  shown_.before.swap(shown_.local);
+  std::size_t joint = 0;
+  for (std::size_t i = 0; i < shown_.root_m.size(); ++i) {
+    const int member = static_cast<int>(i);
+    shown_.root_m[i] = crowd_.root_m(member);
+    for (const quat& q : crowd_.local(member)) {
+      shown_.local[joint++] = {static_cast<float>(q.x), static_cast<float>(q.y),
+                               static_cast<float>(q.z), static_cast<float>(q.w)};
+    }
+  }
+}
+
+std::size_t Followers::bytes() const noexcept {
+  if (size() == 0) return 0;
+  const std::size_t member = sizeof(GaitParams) + sizeof(WalkState) + 2 * sizeof(vec3) +
+                             crowd_.local(0).size() * sizeof(quat);
+  return static_cast<std::size_t>(size()) * member +
+         shown_.local.size() * 2 * sizeof(shown_.local[0]);
+}
+
+}  // namespace gaitpad

@@ -314,13 +314,21 @@ struct Above {
   double apart_deg = 0.0;
   int back = 0;  // ticks at which the data's time runs backwards
 };
-Above above_the_hips(const WalkModel& model) {
-  const std::vector<int> upper = upper_joints(model.cycle);
+// In robust mode without shoulders and elbows: arms swing as far as the pace asks.
+Above above_the_hips(const WalkModel& model, IkMode mode) {
+  std::vector<int> upper = upper_joints(model.cycle);
+  if (mode == IkMode::robust) {
+    std::erase_if(upper, [&](int joint) {
+      return std::ranges::any_of(model.body.joints.arm, [&](const ArmChain& arm) {
+        return joint == arm.shoulder || joint == arm.elbow;
+      });
+    });
+  }
   Above found;
   Pose source;
   double before = 0.0;
   bool was_whole = false;
-  straight(model, {}, IkMode::robust, kPaperStick, 7.0, [&](const WalkState& s, const Pose& pose) {
+  straight(model, {}, mode, kPaperStick, 7.0, [&](const WalkState& s, const Pose& pose) {
     const bool is_whole = presence(s) >= 1.0 && s.clock.stage != Stage::idle;
     if (is_whole) {
       sample_local(model.cycle, s.clock.phase, source);
@@ -558,9 +566,11 @@ std::vector<Claim> hip_claims(const Study& study, IkMode mode) {
 
 std::vector<Claim> body_claims(const Study& study) {
   ClaimList list("3.2", IkMode::robust);
-  const Above above = above_the_hips(study.model());
-  list.add("28 joints above the hips off the data at the warped time, deg", above.apart_deg,
-           at_most(1e-6));
+  const Above above = above_the_hips(study.model(), IkMode::robust),
+              all = above_the_hips(study.model(), IkMode::paper);
+  list.add("28 joints above the hips off the data at the warped time, deg",
+           std::max(above.apart_deg, all.apart_deg), at_most(1e-6),
+           "in robust mode shoulders and elbows apart, which swing as far as the pace asks");
   list.add("28 ticks at which the warped time does not advance", above.back, equal_to(0));
   const std::string name = "28 hand against the opposite hip, correlation";
   const auto& arms = study.model().body.joints.arm;

@@ -80,7 +80,7 @@ def write_build_file(folder, build):
     rows, flags, libraries = parts_of_ordinary(build)
     sources = [row["file"] for row in rows]
     # Sources for wider registers keep their own sets of instructions, which precompiled headers do not have.
-    own = {row["file"]: " ".join(re.findall(r"-m\S+|-DGAITPAD_WIDE_LANES", row["command"])) for row in rows}
+    own = {row["file"]: " ".join(re.findall(r"(?<= )(?:-m\S+|-DGAITPAD_WIDE_LANES)", row["command"])) for row in rows}
     headers = system_headers(build, rows)
     lines = [f"flags = {flags}", f"libraries = {libraries}", RULES]
     for variant, (compiler, level) in OTHERS.items():

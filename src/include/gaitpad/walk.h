@@ -71,6 +71,7 @@ struct FootPose {
   quat yaw = kIdentity;          // about the vertical; none as in the standing pose at heading 0
   double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
   quat edge = kIdentity;         // twist and roll of StrideFoot
+  quat rotation = kIdentity;     // of all these: the foot segment's, world
   double toe_rad = 0.0;          // of the toe joint, toe end down positive
 };
 

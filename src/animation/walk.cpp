@@ -182,7 +182,9 @@ constexpr double kBraking = 2.4;  // way over speed and time of a stop with litt
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
 constexpr double kAllShown = 1.0 - 1e-9;   // from here on nothing is mixed with the stand
-constexpr double kStillTurn = 1e-5;        // rad/s: slower than this is straight ahead
+constexpr double kHesitation = 0.2;        // for next to nothing; less for more, none from
+constexpr double kSureRatio = 0.3, kSureTurn = 0.15;  // this stride ratio or turn (rad/s) on
+constexpr double kStillTurn = 1e-5;                   // rad/s: slower than this is straight ahead
 
 // Share of the cycle's time.
 double time_share(const WalkModel& model, const WalkState& state, Stage stage,
@@ -331,16 +333,29 @@ void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
   state.path.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
 }
 
+// A stand that is asked for very little waits whether it is meant: a stick that is touched in
+// passing would else cost two slow steps before a full push in another direction is followed.
+bool is_meant(const Tick& tick, WalkState& state) noexcept {
+  const double sure = std::max(state.gait.asked_ratio / kSureRatio,
+                               std::abs(tick.params.turn_rate_rad_s) / kSureTurn);
+  return ++state.clock.asked_ticks * tick.dt_s >=
+         kHesitation * tick.model.time_scale * (1.0 - std::min(sure, 1.0));
+}
+
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.
 void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
-  const bool walking = walks_on(params, state) && !state.clock.closing;
   const bool stood = state.clock.stage == Stage::idle && state.frame.stage == Stage::idle;
+  bool hesitates = false;
   if (stood && params.walking && state.gait.amplitude.x < kStillAmplitude) {
     ask_for(params, tick.model, state);
-    begin_walk(tick, state);
+    hesitates = !is_meant(tick, state);
+    if (!hesitates) begin_walk(tick, state);
+  } else {
+    state.clock.asked_ticks = 0;
   }
+  const bool walking = walks_on(params, state) && !state.clock.closing && !hesitates;
   if (walks_on(params, state)) ask_for(params, tick.model, state);
   // A walk that is to end takes the running step as it was begun, and one that closes it.
   const Damping step(kStepSmoothing * scale, dt), weights(kWeightSmoothing * scale, dt),

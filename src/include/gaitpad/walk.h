@@ -149,6 +149,7 @@ struct StepClock {
   int last_step_ticks = 0;               // of the step before
   bool closing = false;                  // the running step brings the feet together
   bool started = false;                  // between the first lean and the last landing
+  int asked_ticks = 0;                   // how long a stand has been asked to walk
   bool backward = false;                 // the running walk's steps lead backwards
   double slowness = 1.0;                 // factor on the running step's times on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick

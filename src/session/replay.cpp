@@ -72,7 +72,9 @@ std::vector<std::string> remarks_on(const Trace& trace, const SimulationCounts& 
 }  // namespace
 
 Result<ReplayResult> replay(const SessionSpec& spec) {
-  auto prepared = prepared_trace(spec);
+  SessionSpec unseen = spec;
+  unseen.walk.shows_crowd = false;
+  auto prepared = prepared_trace(unseen);
   if (!prepared) return prepared.error();
   const int rate_hz = prepared->config.rate_hz;
   auto fps = written_fps(spec, rate_hz);

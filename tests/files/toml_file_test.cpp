@@ -179,10 +179,10 @@ TEST(TomlFile, FilesThatCannotBeReadAreNamed) {
   const OwnFolder own;
   const std::string folder = own.path.string();
   EXPECT_EQ(TomlFile::load(folder + "/no").error().message, folder + "/no: no such file");
-  EXPECT_EQ(TomlFile::load(folder).error().message, folder + ": not a regular file");
+  EXPECT_EQ(TomlFile::load(folder).error().message, folder + ": not a regular file (a folder)");
   const std::string fifo = folder + "/fifo";
   mkfifo(fifo.c_str(), 0600);
-  EXPECT_EQ(TomlFile::load(fifo).error().message, fifo + ": not a regular file");
+  EXPECT_EQ(TomlFile::load(fifo).error().message, fifo + ": not a regular file (a FIFO)");
   const std::string big = own.write("big", std::string(kMaxTomlBytes + 1, '#'));
   EXPECT_EQ(TomlFile::load(big).error().message, big + ": larger than 1048576 bytes");
 }

@@ -28,7 +28,7 @@ using std::chrono::milliseconds;
 
 constexpr unsigned int kControlTimeoutMs = 500;
 constexpr std::uint8_t kFromInterface = 0xa1, kStandardFromInterface = 0x81, kToInterface = 0x21;
-constexpr std::uint8_t kGetReport = 0x01, kSetIdle = 0x0a, kGetDescriptor = 0x06;
+constexpr std::uint8_t kGetReport = 0x01, kSetReport = 0x09, kSetIdle = 0x0a, kGetDescriptor = 0x06;
 constexpr std::uint16_t kReportDescriptor = 0x2200, kFeatureReport = 0x0300;
 
 struct FreeConfig {
@@ -250,6 +250,17 @@ class StartPort final : public PadPort {
     return count <= 0 ? 0 : static_cast<std::size_t>(count) + skip;
   }
 
+  bool send_feature(std::span<const std::uint8_t> packet) noexcept override {
+    if (packet.empty() || packet.size() > kMaxReportBytes) return false;
+    const std::size_t skip = packet[0] == 0 ? 1 : 0;
+    std::vector<std::uint8_t> data(packet.begin() + static_cast<std::ptrdiff_t>(skip),
+                                   packet.end());
+    return libusb_control_transfer(handle_, kToInterface, kSetReport,
+                                   static_cast<std::uint16_t>(kFeatureReport | packet[0]),
+                                   interface_, data.data(), static_cast<std::uint16_t>(data.size()),
+                                   kControlTimeoutMs) >= 0;
+  }
+
  private:
   UsbTransfers& transfers_;
   libusb_device_handle* handle_;
@@ -268,11 +279,16 @@ class UsbDevice final : public Device {
 
   ~UsbDevice() override {
     if (is_rumbling_ && rumble(Rumble{})) transfers_->flush(milliseconds(100));
+    if (transfers_->is_gone()) return;
+    StartPort port(*transfers_, interface_->handle(), interface_number_);
+    model_->stop(port);
   }
 
   void start(std::uint8_t interface_number) {
+    interface_number_ = interface_number;
     StartPort port(*transfers_, interface_->handle(), interface_number);
     model_->start(port, StartedBy::us);
+    model_->amend(info_);
   }
 
   const DeviceInfo& info() const noexcept override { return info_; }
@@ -314,6 +330,7 @@ class UsbDevice final : public Device {
   std::unique_ptr<ClaimedInterface> interface_;
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
   OutPacket reply_;
+  std::uint8_t interface_number_ = 0;
   bool is_rumbling_ = false;
 };
 

@@ -27,6 +27,8 @@ class PadPort {
   // Reads a feature report (HID pads only) and returns its size with the id in packet[0]; 0:
   // refused.
   virtual std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept = 0;
+  // Sends a feature report (HID pads only), which begins with its id; 0: the pad has no ids.
+  virtual bool send_feature(std::span<const std::uint8_t>) noexcept { return false; }
 };
 
 struct OutPacket {
@@ -45,11 +47,18 @@ class PadModel {
   // Talks to the pad right after it was opened, for at most two seconds. A pad that does not answer
   // still works; take_remarks() tells what is missing.
   virtual void start(PadPort&, StartedBy) {}
+  // At the end, if the pad is still there: gives back what start() took.
+  virtual void stop(PadPort&) noexcept {}
+  // After start(): corrects what the pad has said about itself. A collection that is added at the
+  // end of the descriptor marks a kind of pad that its ids do not tell.
+  virtual void amend(DeviceInfo&) const {}
   // Whether the packet is an input report. `reply` gets an answer to send, or size 0.
   virtual bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept {
     reply.size = 0;
     return !packet.empty();
   }
+  // False while an adapter says that nothing is in this plug.
+  virtual bool is_plugged() const noexcept { return true; }
   // The packet that sets the motors; size 0: the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
@@ -64,6 +73,9 @@ std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device);
 // One file for each family; null: the device is of another family.
 std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device);
 std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device);
+std::unique_ptr<PadModel> make_steam_model(const DeviceInfo& device);
+std::unique_ptr<PadModel> make_motor_model(const DeviceInfo& device);
+std::unique_ptr<PadModel> make_one_of_several_model(const DeviceInfo& device);
 
 // Vendor-class USB pads (no HID): by the interface's class, subclass and protocol.
 struct UsbInterfaceClass {

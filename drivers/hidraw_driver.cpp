@@ -296,9 +296,10 @@ bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) no
   }
   if (!is_input) return false;
   present_.heard(packet);
+  const std::span<const std::uint8_t> input = model_->report_of(packet);
   report.kind = ReportKind::input;
-  report.size = static_cast<std::uint16_t>(packet.size());
-  std::copy(packet.begin(), packet.end(), report.bytes.begin());
+  report.size = static_cast<std::uint16_t>(input.size());
+  std::copy(input.begin(), input.end(), report.bytes.begin());
   return true;
 }
 

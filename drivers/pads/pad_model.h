@@ -57,6 +57,11 @@ class PadModel {
     reply.size = 0;
     return !packet.empty();
   }
+  // What is handed on of a packet that was accepted: itself, or a state made of several packets.
+  virtual std::span<const std::uint8_t> report_of(
+      std::span<const std::uint8_t> packet) const noexcept {
+    return packet;
+  }
   // False while an adapter says that nothing is in this plug.
   virtual bool is_plugged() const noexcept { return true; }
   // The packet that sets the motors; size 0: the pad has none.

@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -20,7 +25,10 @@ constexpr std::uint16_t kNintendo = 0x057e, kAdapter = 0x0337;
 constexpr std::uint16_t kPlugPage = 0xff37;  // ff37:0001 .. 0004 mark the plug that a listing is
 constexpr int kPlugs = 4;
 // Report 21: for each plug a type byte, two of buttons, two sticks, two triggers.
-constexpr std::uint8_t kPlugReport = 0x21, kStart = 0x13, kHasController = 0x30;
+constexpr std::uint8_t kPlugReport = 0x21, kStart = 0x13, kSetMotors = 0x11;
+// Bits of the type: has a controller, it is a wireless one (without a motor), the second USB cable
+// that feeds the motors is plugged in.
+constexpr std::uint8_t kHasController = 0x30, kIsWireless = 0x20, kHasPower = 0x04;
 constexpr std::size_t kPlugBytes = 9, kReportBytes = 1 + kPlugs * kPlugBytes;
 // The sticks of these controllers move by 88 counts, not to the ends of their bytes.
 constexpr double kMiddle = 127.5, kCentre = 128.0, kReach = 88.0;
@@ -42,19 +50,43 @@ std::vector<std::uint8_t> plug_descriptor(int plug) {
   return d;
 }
 
+// Which motors run. One packet sets them all, so the plugs of an adapter share this.
+using AdapterMotors = std::array<std::atomic<bool>, kPlugs>;
+
+std::shared_ptr<AdapterMotors> motors_of(const std::string& adapter) {
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<AdapterMotors>> adapters;
+  const std::lock_guard lock(mutex);
+  std::erase_if(adapters, [](const auto& entry) { return entry.second.expired(); });
+  std::weak_ptr<AdapterMotors>& known = adapters[adapter];
+  auto motors = known.lock();
+  if (!motors) known = motors = std::make_shared<AdapterMotors>();
+  return motors;
+}
+
 class GameCubePlug final : public PadModel {
  public:
-  explicit GameCubePlug(int plug)
-      : type_at_(1 + kPlugBytes * (static_cast<std::size_t>(plug) - 1)) {}
+  GameCubePlug(int plug, const std::string& adapter)
+      : plug_(static_cast<std::size_t>(plug) - 1), motors_(motors_of(adapter)) {}
 
   void start(PadPort& port, StartedBy) override { port.write({&kStart, 1}); }
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
     if (packet.empty() || packet[0] != kPlugReport || packet.size() != kReportBytes) return false;
-    is_plugged_ = (packet[type_at_] & kHasController) != 0;
+    const std::uint8_t type = packet[1 + kPlugBytes * plug_];
+    is_plugged_ = (type & kHasController) != 0;
+    has_motor_ = (type & kHasPower) != 0 && (type & kIsWireless) == 0;
     return is_plugged_;
   }
   bool is_plugged() const noexcept override { return is_plugged_; }
+  // The motors only know on and off.
+  void rumble(const Rumble& rumble, OutPacket& packet) noexcept override {
+    (*motors_)[plug_] = has_motor_ && (rumble.strong != 0 || rumble.weak != 0);
+    packet = {};
+    packet.bytes[0] = kSetMotors;
+    for (std::size_t i = 0; i < motors_->size(); ++i) packet.bytes[1 + i] = (*motors_)[i] ? 1 : 0;
+    packet.size = 1 + motors_->size();
+  }
   std::optional<FactorySticks> factory_sticks() const override {
     constexpr FactoryAxis kAxis{(kCentre - kReach - kMiddle) / kMiddle,
                                 (kCentre - kMiddle) / kMiddle,
@@ -63,8 +95,9 @@ class GameCubePlug final : public PadModel {
   }
 
  private:
-  std::size_t type_at_;
-  bool is_plugged_ = true;
+  std::size_t plug_;  // from 0
+  std::shared_ptr<AdapterMotors> motors_;
+  bool is_plugged_ = true, has_motor_ = false;
 };
 
 // ---- Several pad collections in one descriptor
@@ -219,7 +252,8 @@ std::unique_ptr<PadModel> make_one_of_several_model(const DeviceInfo& device) {
   for (const std::uint32_t application : parsed->applications) {
     if (page_of(application) == kPlugPage && id_of(application) >= 1 &&
         id_of(application) <= kPlugs)
-      return std::make_unique<GameCubePlug>(static_cast<int>(id_of(application)));
+      return std::make_unique<GameCubePlug>(static_cast<int>(id_of(application)),
+                                            without_number(device.physical_path));
   }
   return nullptr;
 }

@@ -123,5 +123,26 @@ TEST(SeveralPads, AnEmptyPlugIsAPadThatIsUnplugged) {
   EXPECT_NEAR(model->factory_sticks()->left_x.max, 0.694, 0.001);
 }
 
+TEST(SeveralPads, OnePacketSetsTheMotorsOfAllPlugs) {
+  const auto pads = split_pads(listed(0x057e, 0x0337, {}));
+  const auto first = make_pad_model(pads[0].info), third = make_pad_model(pads[2].info);
+  OutPacket reply;
+  EXPECT_EQ(rumble_of(*first, {0xffff, 0}), (Packet{0x11, 0, 0, 0, 0})) << "power is not known";
+  for (const std::uint8_t type : {0x10, 0x26}) {  // no second cable, wireless
+    first->accept(adapter_report(1, type, {}), reply);
+    EXPECT_EQ(rumble_of(*first, {0xffff, 0}), (Packet{0x11, 0, 0, 0, 0}));
+  }
+  first->accept(adapter_report(1, 0x14, {}), reply);
+  third->accept(adapter_report(3, 0x14, {}), reply);
+  EXPECT_EQ(rumble_of(*first, {0xffff, 0}), (Packet{0x11, 1, 0, 0, 0}));
+  EXPECT_EQ(rumble_of(*third, {0, 1}), (Packet{0x11, 1, 0, 1, 0}));
+  EXPECT_EQ(rumble_of(*first, {}), (Packet{0x11, 0, 0, 1, 0}));
+  DeviceListing other = listed(0x057e, 0x0337, {});
+  other.info.physical_path = "usb-2/input0";
+  const auto another = make_pad_model(split_pads(other)[1].info);
+  another->accept(adapter_report(2, 0x14, {}), reply);
+  EXPECT_EQ(rumble_of(*another, {1, 1}), (Packet{0x11, 0, 1, 0, 0})) << "another adapter";
+}
+
 }  // namespace
 }  // namespace gaitpad

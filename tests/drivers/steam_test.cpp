@@ -1,4 +1,5 @@
-// Numbers: Linux's hid-steam.c, SDL's steam/controller_constants.h, SDL_hidapi_stadia.c and others.
+// Numbers: Linux's hid-steam.c, SDL's steam/controller_constants.h, SDL_hidapi_steam.c,
+// SDL_hidapi_stadia.c and others.
 #include <gtest/gtest.h>
 
 #include "drivers/scripted_port.h"
@@ -84,6 +85,71 @@ TEST(Steam, ItsMouseAndKeyboardAreLeftAlone) {
   DeviceInfo mouse = steam(0x1205, 0xff);
   mouse.descriptor = {0x05, 0x01, 0x09, 0x02, 0xa1, 0x01, 0xc0};
   EXPECT_EQ(make_steam_model(mouse), nullptr);
+}
+
+// A report of 20 bytes over Bluetooth: the id, this header, these bytes of a message.
+Packet segment(std::uint8_t header, Packet message) {
+  message.insert(message.begin(), {3, header});
+  message.resize(20);
+  return message;
+}
+Packet handed_on(PadModel& pad, const Packet& packet) {
+  OutPacket reply;
+  if (!pad.accept(packet, reply)) return {};
+  const auto report = pad.report_of(packet);
+  return {report.begin(), report.end()};
+}
+
+TEST(SteamBluetooth, AStateIsPutTogetherFromWhatChanged) {
+  for (const std::uint16_t product : {0x1105, 0x1106}) {
+    const auto pad = make_steam_model(steam(product, 0x00));
+    ASSERT_NE(pad, nullptr);
+    // Buttons, triggers and stick: bits 10, 20 and 80 of the first byte, whose lower half is 4.
+    EXPECT_EQ(handed_on(*pad, segment(0xc0, {0xb4, 0, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80})),
+              (Packet{3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0}));
+    // The right pad alone, bit 200: the rest stays.
+    EXPECT_EQ(handed_on(*pad, segment(0xc0, {0x04, 2, 1, 2, 3, 4})),
+              (Packet{3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 1, 2, 3, 4, 0, 0, 0, 0}));
+    EXPECT_TRUE(handed_on(*pad, segment(0xc0, {0x05, 0, 90})).empty()) << "battery";
+    EXPECT_TRUE(handed_on(*pad, segment(0x00, {0xb4})).empty()) << "an empty segment";
+    EXPECT_TRUE(handed_on(*pad, Packet{3, 0xc0, 0x14, 0, 0xff}).empty()) << "too short";
+    EXPECT_TRUE(handed_on(*pad, Packet{2, 0, 0, 0}).empty()) << "the mouse";
+  }
+}
+
+TEST(SteamBluetooth, AMessageOfSeveralReportsIsReadOnlyWhole) {
+  const auto pad = make_steam_model(steam(0x1106, 0x00));
+  // All parts: two bytes, then 3 + 2 + 3 + 4 + 4 = 16, and the right pad in the second report.
+  const Packet first = {0xf4, 3, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
+  EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
+  EXPECT_EQ(handed_on(*pad, segment(0xc1, {17, 18, 19, 20})),
+            (Packet{3, 1, 2, 3, 4, 5, 9, 10, 11, 12, 17, 18, 19, 20, 13, 14, 15, 16}));
+  // A lost report makes the message void, and the next one begins anew.
+  EXPECT_TRUE(handed_on(*pad, segment(0xc1, {1, 1, 1, 1})).empty());
+  EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
+  EXPECT_TRUE(handed_on(*pad, segment(0xc2, {1, 1, 1, 1})).empty());
+  EXPECT_EQ(handed_on(*pad, segment(0xc0, {0x24, 0, 0, 0})).size(), 18u);
+  // A message that goes on for ever, and one that ends within a part.
+  for (int i = 0; i < 20; ++i)
+    EXPECT_TRUE(handed_on(*pad, segment(static_cast<std::uint8_t>(0x80 | (i & 7)), {})).empty());
+  EXPECT_TRUE(handed_on(*pad, segment(0xc0, {0xf4, 3})).empty());
+}
+
+TEST(SteamBluetooth, LeavesLizardModeInReportsOf20Bytes) {
+  FeaturePort port;
+  const auto pad = make_steam_model(steam(0x1106, 0x00));
+  pad->start(port, StartedBy::us);
+  ASSERT_EQ(port.sent.size(), 3u);
+  EXPECT_EQ(port.sent[0], segment(0xc0, {0x81, 0}));
+  EXPECT_EQ(port.sent[2], segment(0xc0, {0x87, 12, 49, 2, 0, 7, 7, 0, 8, 7, 0, 24, 0, 0}));
+  pad->stop(port);
+  ASSERT_EQ(port.sent.size(), 6u);
+  EXPECT_EQ(port.sent[3], segment(0xc0, {0x85, 0}));
+  EXPECT_EQ(port.sent[5], segment(0xc0, {0x87, 3, 8, 0, 0}));
+  EXPECT_TRUE(pad->take_remarks().empty());
+  port.is_there = false;
+  pad->start(port, StartedBy::us);
+  EXPECT_EQ(pad->take_remarks().size(), 1u);
 }
 
 TEST(MotorPads, GetTheirOwnPackets) {

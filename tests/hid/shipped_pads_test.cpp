@@ -10,7 +10,7 @@
 namespace gaitpad {
 namespace {
 
-// A joystick of these axes and no buttons, in one report without an id, filled up to bytes.
+// A joystick of these axes, then buttons, in one report without an id, filled up to bytes.
 struct MadeStick {
   struct Axis {
     std::uint32_t usage;
@@ -18,6 +18,7 @@ struct MadeStick {
     std::uint8_t bits;
   };
   std::vector<Axis> axes;
+  std::uint8_t buttons = 0;
   std::vector<std::uint8_t> descriptor() const {
     std::vector<std::uint8_t> d = {0x05, 0x01, 0x09, 0x04, 0xa1, 0x01, 0x15, 0x00, 0x95, 0x01};
     int bits = 0;
@@ -27,6 +28,10 @@ struct MadeStick {
                 static_cast<std::uint8_t>(a.max >> 8), 0, 0, 0x75, a.bits, 0x81, 0x02});
       bits += a.bits;
     }
+    if (buttons > 0)
+      d.insert(d.end(), {0x05, 0x09, 0x19, 0x01, 0x29, buttons, 0x25, 0x01, 0x75, 0x01, 0x95,
+                         buttons, 0x81, 0x02, 0x95, 0x01});
+    bits += buttons;
     if (bits % 8 != 0)
       d.insert(d.end(), {0x75, static_cast<std::uint8_t>(8 - bits % 8), 0x81, 0x03});
     d.push_back(0xc0);
@@ -36,7 +41,9 @@ struct MadeStick {
 
 // X and Y alone.
 std::vector<std::uint8_t> made_pad_descriptor() {
-  return MadeStick{{{usage::kX, 255, 8}, {usage::kY, 255, 8}}}.descriptor();
+  MadeStick stick;
+  stick.axes = {{usage::kX, 255, 8}, {usage::kY, 255, 8}};
+  return stick.descriptor();
 }
 
 class ShippedPads : public testing::Test {
@@ -253,6 +260,51 @@ TEST_F(ShippedPads, TheSteamControllerWalksWithItsStick) {
   EXPECT_GT(widest, 0.5f);
 }
 
+// What drivers/pads/steam.cpp hands on.
+TEST_F(ShippedPads, TheSteamControllerOverBluetooth) {
+  take(pad(0x28de, 0x1106, "hidraw", made_pad_descriptor()));
+  EXPECT_TRUE(layout_.is_pad);
+  decode_bytes(
+      {3, 0x81, 0x80, 0x01, 0, 255, 0xff, 0x7f, 0x00, 0x80, 0x01, 0x80, 0xff, 0x7f, 0, 0, 0, 0});
+  expect_left(1, -1);
+  EXPECT_EQ(state_.axis[kRightX], -1.0f);
+  EXPECT_EQ(state_.axis[kRightY], 1.0f);
+  EXPECT_EQ(state_.axis[kLeftTrigger], 0.0f);
+  EXPECT_EQ(state_.axis[kRightTrigger], 1.0f);
+  EXPECT_EQ(names_of(state_.buttons), "a paddle1 paddle2");
+}
+
+// Lines of the community's data base that SDL's own list does not have.
+TEST_F(ShippedPads, DragonRisePadsOfEachKind) {
+  MadeStick stick;
+  stick.buttons = 16;
+  stick.axes = {{usage::kX, 255, 8},
+                {usage::kY, 255, 8},
+                {usage::kZ, 255, 8},
+                {usage::kRz, 255, 8},
+                {usage_of(0x01, 0x33), 255, 8},
+                {usage_of(0x01, 0x34), 255, 8}};
+  const auto buttons = [&](std::uint16_t product, std::uint16_t pressed) {
+    take(pad(0x0079, product, "hidraw", stick.descriptor()));
+    decode_bytes({128, 128, 128, 128, 0, 0, static_cast<std::uint8_t>(pressed),
+                  static_cast<std::uint8_t>(pressed >> 8)});
+    return names_of(state_.buttons);
+  };
+  EXPECT_EQ(buttons(0x0006, 0x0102), "b back");
+  EXPECT_EQ(buttons(0x0126, 0x0304), "a back start");
+  EXPECT_EQ(buttons(0x1830, 0x0302), "a back start");
+  EXPECT_EQ(buttons(0x181c, 0x0411), "a y back");
+  EXPECT_EQ(buttons(0x0122, 0x0301), "a back start");
+  // GameCube adapters in their mode for PCs.
+  EXPECT_EQ(buttons(0x1844, 0x1282), "a start rightshoulder dpup");
+  decode_bytes({255, 0, 0, 255, 255, 0, 0, 0});
+  expect_left(1, 1);
+  EXPECT_EQ(state_.axis[kRightX], 1.0f);
+  EXPECT_EQ(state_.axis[kRightY], 1.0f);
+  EXPECT_EQ(state_.axis[kLeftTrigger], 1.0f);
+  EXPECT_EQ(state_.axis[kRightTrigger], 0.0f);
+}
+
 TEST_F(ShippedPads, AnUltimate2InItsOwnMode) {
   take(pad(0x2dc8, 0x6012, "hidraw", made_pad_descriptor()));
   std::vector<std::uint8_t> report = {4, 2, 255, 0, 127, 127, 255, 0, 0x21, 0, 0x02};
@@ -268,8 +320,10 @@ TEST_F(ShippedPads, AnUltimate2InItsOwnMode) {
 // and 8.
 TEST_F(ShippedPads, TwistAndThrottleOfAFlightStickAreNoRightStick) {
   MadeStick stick;
-  stick.axes = {
-      {usage::kX, 1023, 10}, {usage::kY, 1023, 10}, {usage::kRz, 255, 8}, {usage_of(0x01, 0x36), 255, 8}};
+  stick.axes = {{usage::kX, 1023, 10},
+                {usage::kY, 1023, 10},
+                {usage::kRz, 255, 8},
+                {usage_of(0x01, 0x36), 255, 8}};
   take(pad(0x046d, 0xc215, "hidraw", stick.descriptor()));
   EXPECT_TRUE(layout_.is_pad);
   decode_bytes({0xff, 0x03, 0xf0, 0xff, 0xff, 0, 0});

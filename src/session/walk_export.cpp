@@ -241,7 +241,9 @@ std::optional<Error> WalkExport::finish(const nlohmann::ordered_json& summary) {
   frames_->write(row_.data(), static_cast<std::streamsize>(row_.size()));
   row_.clear();
   poses_->finish();
-  *summary_ << summary.dump(2) << '\n';
+  // The motion's file name comes from outside.
+  *summary_ << summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << '\n';
   if (!gltf_) return std::nullopt;
   const auto problem = gltf_->finish();
   return problem ? std::optional(Error{"pose.glb: " + *problem}) : std::nullopt;

@@ -1,12 +1,14 @@
 """No text of a device, a file or a user commands the terminal: what a program prints is escaped."""
+import json
 import os
 import random
 import re
+import shutil
 import subprocess
 
 import pytest
 
-from support.program import ROUND
+from support.program import ROOT, ROUND
 
 HOSTILE = "\x1b]0;owned\x07 \x9b2J\u202eevil\u2066 \u009b5m\u2028\ufeff"
 # Control characters but the line feed, C1, what changes the direction of text, and broken UTF-8.
@@ -57,6 +59,22 @@ def test_names_of_files_and_unknown_options_are_escaped(said, tmp_path):
                     ["pads", "--driver", name]):
         status, _ = said(*command)
         assert status != 0, command
+
+
+@pytest.mark.parametrize("name", [HOSTILE, "broken \udcff"])
+def test_a_motion_of_any_name_walks_and_is_exported(said, tmp_path, name):
+    shutil.copy(ROOT / "config/motions/keyframe_walk.toml", tmp_path / f"{name}.toml")
+    for command in (["motion", f"{name}.toml"], ["replay", ROUND, "--motion", f"{name}.toml", "--out", name]):
+        status, text = said(*command)
+        assert status == 0, text
+    json.loads((tmp_path / name / "summary.json").read_text())
+
+
+def test_a_calibration_on_standard_output_is_escaped(said, tmp_path):
+    (tmp_path / "pad.hid").write_text(hostile_trace(PAD), encoding="utf-8", errors="surrogateescape")
+    (tmp_path / "line.txt").write_text("03000000091200000100000000000000,Pad,leftx:a0,lefty:a1,platform:Linux,\n")
+    status, text = said("calibrate", "--trace", "pad.hid", "--import", "line.txt", "--out", "-")
+    assert status == 0 and "owned" in text, text
 
 
 @pytest.mark.parametrize("command", ["motion", "ik"])

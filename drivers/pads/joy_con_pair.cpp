@@ -28,16 +28,20 @@ FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
   return {-axis.max, -axis.centre, -axis.min};
 }
 
+DeviceInfo pair_info(const DeviceInfo& left, const DeviceInfo& right) {
+  DeviceInfo pair = left;
+  pair.product = kPair;
+  pair.name = "Joy-Con pair";
+  pair.unique_id += "+" + right.unique_id;
+  pair.physical_path += "+" + right.physical_path;
+  return pair;
+}
+
 class JoyConPair final : public Device {
  public:
   JoyConPair(std::unique_ptr<Device> left, std::unique_ptr<Device> right)
-      : sides_{std::move(left), std::move(right)} {
-    const DeviceInfo &l = sides_[0]->info(), &r = sides_[1]->info();
-    info_ = l;
-    info_.product = kPair;
-    info_.name = "Joy-Con pair";
-    info_.unique_id = l.unique_id + "+" + r.unique_id;
-    info_.physical_path = l.physical_path + "+" + r.physical_path;
+      : sides_{std::move(left), std::move(right)},
+        info_(pair_info(sides_[0]->info(), sides_[1]->info())) {
     std::copy(kCentred.begin(), kCentred.end(), state_.begin() + kLeftStick);
     std::copy(kCentred.begin(), kCentred.end(), state_.begin() + kRightStick);
     collect_fds();
@@ -130,10 +134,7 @@ bool is_joy_con(const DeviceListing& single, std::uint16_t product) {
 
 DeviceListing joined(const DeviceListing& left, const DeviceListing& right) {
   DeviceListing pair = left;
-  pair.info.product = kPair;
-  pair.info.name = "Joy-Con pair";
-  pair.info.unique_id = left.info.unique_id + "+" + right.info.unique_id;
-  pair.info.physical_path = left.info.physical_path + "+" + right.info.physical_path;
+  pair.info = pair_info(left.info, right.info);
   pair.node = left.node + "+" + right.node;
   pair.pad_path = left.pad_path + "+" + right.pad_path;
   pair.parts = {left.pad_path, right.pad_path};

@@ -334,15 +334,13 @@ nlohmann::ordered_json analysis_json(const DeviceInfo& device, const PadAnalysis
 
 // --- the files around a calibration
 
-constexpr std::size_t kMaxImportBytes = std::size_t{1} << 20;
-
 Result<std::string> import_text(const std::string& source) {
-  if (source != "-") return file_text(source, kMaxImportBytes);
+  if (source != "-") return file_text(source, kMaxMappingFileBytes);
   std::string text;
   char bytes[4096];
   while (const std::size_t count = std::fread(bytes, 1, sizeof bytes, stdin)) {
     text.append(bytes, count);
-    if (text.size() > kMaxImportBytes) return Error{"standard input: more than 1 MiB"};
+    if (text.size() > kMaxMappingFileBytes) return Error{"standard input: more than 8 MiB"};
   }
   return text;
 }

@@ -242,7 +242,7 @@ class HidrawDevice final : public Device {
   bool is_numbered_;
   PresentState present_;
   bool is_rumbling_ = false;
-  bool was_plugged_ = true;    // into an adapter
+  PlugWatch plug_;
   bool is_unplugged_ = false;  // reports from before are still to be read
   int errors_in_row_ = 0;
   int waiting_ = 0;         // reports read in a row
@@ -288,12 +288,7 @@ bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) no
   OutPacket reply;
   const bool is_input = model_->accept(packet, reply);
   if (reply.size > 0 && sender_) sender_->send(reply);
-  if (const bool is_plugged = model_->is_plugged(); is_plugged != was_plugged_) {
-    was_plugged_ = is_plugged;
-    report.kind = is_plugged ? ReportKind::added : ReportKind::removed;
-    report.size = 0;
-    return true;
-  }
+  if (plug_.has_changed(*model_, report)) return true;
   if (!is_input) return false;
   present_.heard(packet);
   const std::span<const std::uint8_t> input = model_->report_of(packet);
@@ -364,14 +359,7 @@ std::vector<DeviceListing> find_hidraw_devices() {
   for (const SystemNode& node : system_nodes("hidraw"))
     listings.push_back(listing_of(node, "hidraw"));
   for (DeviceListing& listing : listings) listing.problem = access_problem(listing.node);
-  for (std::size_t i = 0; i < listings.size(); ++i) {
-    const std::vector<DeviceListing> pads = split_pads(listings[i]);
-    if (pads.empty()) continue;
-    listings[i] = pads.front();
-    listings.insert(listings.begin() + static_cast<std::ptrdiff_t>(i) + 1, pads.begin() + 1,
-                    pads.end());
-    i += pads.size() - 1;
-  }
+  listings = with_split_pads(listings);
   std::vector<DeviceListing> pairs = joy_con_pairs(listings);
   listings.insert(listings.begin(), pairs.begin(), pairs.end());
   return listings;

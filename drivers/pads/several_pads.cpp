@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -221,6 +222,16 @@ std::vector<DeviceListing> split_pads(const DeviceListing& device) {
   for (std::size_t i = 0; i < pads.size(); ++i)
     listings.push_back(
         listing_of(device, static_cast<int>(i) + 1, without_other_pads(info.descriptor, pads, i)));
+  return listings;
+}
+
+std::vector<DeviceListing> with_split_pads(const std::vector<DeviceListing>& devices) {
+  std::vector<DeviceListing> listings;
+  for (const DeviceListing& device : devices) {
+    std::vector<DeviceListing> pads = split_pads(device);
+    if (pads.empty()) pads.push_back(device);
+    std::move(pads.begin(), pads.end(), std::back_inserter(listings));
+  }
   return listings;
 }
 

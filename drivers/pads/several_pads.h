@@ -14,6 +14,8 @@ namespace gaitpad {
 // the others are `NODE:2` and so on, with ids and ports of their own. Each states a descriptor in
 // which the other pads are none.
 std::vector<DeviceListing> split_pads(const DeviceListing& device);
+// The same listings, the split ones in place of the whole.
+std::vector<DeviceListing> with_split_pads(const std::vector<DeviceListing>& devices);
 // The node or port of the whole device.
 std::string without_number(const std::string& part);
 // Whether the descriptor is one that split_pads() states.

@@ -265,7 +265,7 @@ TEST_F(ShippedPads, TheSteamControllerOverBluetooth) {
   take(pad(0x28de, 0x1106, "hidraw", made_pad_descriptor()));
   EXPECT_TRUE(layout_.is_pad);
   decode_bytes(
-      {3, 0x81, 0x80, 0x01, 0, 255, 0xff, 0x7f, 0x00, 0x80, 0x01, 0x80, 0xff, 0x7f, 0, 0, 0, 0});
+      {3, 0x81, 0x80, 0x01, 0, 255, 0xff, 0x7f, 0x00, 0x80, 0x00, 0x80, 0xff, 0x7f, 0, 0, 0, 0});
   expect_left(1, -1);
   EXPECT_EQ(state_.axis[kRightX], -1.0f);
   EXPECT_EQ(state_.axis[kRightY], 1.0f);

@@ -99,3 +99,11 @@ def test_what_is_no_file_is_refused_at_once_as_a_recording(said, tmp_path):
                        (".", "a folder")):
         status, text = said("replay", name)
         assert status == 1 and what in text, text
+    for command in (["decode", "fifo.hid"], ["calibrate", "--trace", "fifo.hid"], ["calibrate", "--import", "fifo.hid"],
+                    ["motion", "fifo.bvh"], ["motion", "fifo.toml"], ["ik", "fifo.toml"], ["replay", ROUND, "--map", "fifo.toml"],
+                    ["replay", ROUND, "--terrain", "fifo.toml"], ["replay", ROUND, "--calibration", "fifo.toml"]):
+        name = command[-1]
+        if not (tmp_path / name).exists():
+            os.mkfifo(tmp_path / name)
+        status, text = said(*command)
+        assert status == 1 and "a FIFO" in text, (command, text)

@@ -22,8 +22,10 @@
 
 #include "drivers/driver_entries.h"
 #include "drivers/open_descriptors.h"
+#include "drivers/pads/joy_con_pair.h"
 #include "drivers/pads/packet_sender.h"
 #include "drivers/pads/pad_model.h"
+#include "drivers/pads/several_pads.h"
 #include "drivers/posix.h"
 #include "drivers/present_state.h"
 #include "drivers/system_nodes.h"
@@ -124,6 +126,10 @@ class HidrawPort final : public PadPort {
     return std::min(static_cast<std::size_t>(size), packet.size());
   }
 
+  bool send_feature(std::span<const std::uint8_t> packet) noexcept override {
+    return hid_send_feature_report(handle_, packet.data(), packet.size()) >= 0;
+  }
+
  private:
   hid_device* handle_;
   bool is_numbered_;
@@ -179,12 +185,16 @@ class HidrawDevice final : public Device {
     wait_on_[0] = {.fd = fd_ >= 0 ? fd_ : timer_.get(), .events = POLLIN, .revents = 0};
   }
   ~HidrawDevice() override {
-    if (is_rumbling_ && !is_unplugged_) rumble({});
+    if (is_unplugged_ || ::access(node_.c_str(), F_OK) != 0) return;
+    if (is_rumbling_) rumble({});
+    HidrawPort port(handle_.get(), is_numbered_);
+    model_->stop(port);
   }
 
   void start(StartedBy started) {
     HidrawPort port(handle_.get(), is_numbered_);
     model_->start(port, started);
+    model_->amend(info_);
     OutPacket still;
     model_->rumble({}, still);
     if (still.size == 0) return;
@@ -232,6 +242,7 @@ class HidrawDevice final : public Device {
   bool is_numbered_;
   PresentState present_;
   bool is_rumbling_ = false;
+  PlugWatch plug_;
   bool is_unplugged_ = false;  // reports from before are still to be read
   int errors_in_row_ = 0;
   int waiting_ = 0;         // reports read in a row
@@ -277,11 +288,13 @@ bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) no
   OutPacket reply;
   const bool is_input = model_->accept(packet, reply);
   if (reply.size > 0 && sender_) sender_->send(reply);
+  if (plug_.has_changed(*model_, report)) return true;
   if (!is_input) return false;
   present_.heard(packet);
+  const std::span<const std::uint8_t> input = model_->report_of(packet);
   report.kind = ReportKind::input;
-  report.size = static_cast<std::uint16_t>(packet.size());
-  std::copy(packet.begin(), packet.end(), report.bytes.begin());
+  report.size = static_cast<std::uint16_t>(input.size());
+  std::copy(input.begin(), input.end(), report.bytes.begin());
   return true;
 }
 
@@ -346,23 +359,48 @@ std::vector<DeviceListing> find_hidraw_devices() {
   for (const SystemNode& node : system_nodes("hidraw"))
     listings.push_back(listing_of(node, "hidraw"));
   for (DeviceListing& listing : listings) listing.problem = access_problem(listing.node);
+  listings = with_split_pads(listings);
+  std::vector<DeviceListing> pairs = joy_con_pairs(listings);
+  listings.insert(listings.begin(), pairs.begin(), pairs.end());
   return listings;
 }
 
+namespace {
+
+Result<std::unique_ptr<Device>> open_joy_cons(const DeviceListing& pair) {
+  std::vector<std::unique_ptr<Device>> opened;
+  for (const SystemNode& node : system_nodes("hidraw")) {
+    if (std::ranges::count(pair.parts, node.pad_path) == 0) continue;
+    auto device = open_hidraw_device(listing_of(node, "hidraw"), Detach::never);
+    if (!device) return device.error();
+    opened.push_back(std::move(*device));
+  }
+  if (opened.size() != 2) return Error{pair.node + ": one of the Joy-Cons has gone"};
+  auto joined = join_joy_cons(std::move(opened[0]), std::move(opened[1]));
+  if (!joined) return Error{pair.node + ": " + joined.error().message};
+  return joined;
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Device>> open_hidraw_device(const DeviceListing& listing, Detach) {
+  if (!listing.parts.empty()) return open_joy_cons(listing);
   const StartedBy started = started_by(listing.kernel_driver);
   if (listing.kernel_driver == "nintendo") wait_for_kernel(listing.node);
-  auto opened = open_hidraw_node(listing.node);
+  const bool is_one = is_one_of_several(listing.info.descriptor);
+  const std::string node = is_one ? without_number(listing.node) : listing.node;
+  auto opened = open_hidraw_node(node);
   if (!opened) return opened.error();
-  if (is_another_hidraw(opened->fd, listing.info))
-    return Error{listing.node + ": has become another device"};
   DeviceInfo info = listing.info;
+  if (is_one) info.physical_path = without_number(info.physical_path);
+  if (is_another_hidraw(opened->fd, info)) return Error{node + ": has become another device"};
+  info.physical_path = listing.info.physical_path;
   info.driver = "hidraw";
-  if (auto descriptor = hidraw_descriptor(opened->fd); !descriptor.empty())
-    info.descriptor = std::move(descriptor);
+  auto descriptor = hidraw_descriptor(opened->fd);
+  if (!is_one && !descriptor.empty()) info.descriptor = std::move(descriptor);
   if (info.descriptor.empty())
     return Error{listing.node + ": its report descriptor cannot be read"};
-  auto device = std::make_unique<HidrawDevice>(std::move(info), listing.node, std::move(*opened));
+  auto device = std::make_unique<HidrawDevice>(std::move(info), node, std::move(*opened));
   if (device->poll_fds().front().fd < 0)
     return Error{listing.node + ": cannot be waited for: too many open files"};
   device->start(started);

@@ -19,6 +19,7 @@
 #include "drivers/system_nodes.h"
 #include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
+#include "hid/sdl_mapping.h"
 
 namespace gaitpad {
 namespace {
@@ -363,33 +364,15 @@ Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, De
   return Error{listing.node + ": SDL has no such joystick"};
 }
 
-// Like SDL this takes the line of another version if there is none of this one. But a line with the
-// kernel's mark counts codes that the kernel's driver for the pad chose, one without it the pad's
-// own controls: these are not mixed.
 std::string sdl_library_mapping(const DeviceInfo& device) {
-  constexpr unsigned kCodesByKernel = 0x8000;
-  constexpr std::size_t kGuidDigits = 32;
   const Sdl& sdl = Sdl::started();
-  if (!sdl.problem().empty() || device.vendor == 0) return {};
-  const auto part = [](unsigned id) {  // least significant byte first, then 16 bits of 0
-    return fmt::format("{:02x}{:02x}0000", id & 0xff, id >> 8);
-  };
-  const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
-  const unsigned version = is_node ? device.version : device.version & ~kCodesByKernel;
-  const std::string model =
-      part(static_cast<std::uint16_t>(device.bus)) + part(device.vendor) + part(device.product);
-  std::string best;
+  if (!sdl.problem().empty()) return {};
+  std::vector<std::string> lines;
   for (int i = 0; i < SDL_GameControllerNumMappings(); ++i) {
     std::string line = take_text(SDL_GameControllerMappingForIndex(i));
-    if (line.size() < kGuidDigits || !line.starts_with(model) || is_guess(line)) continue;
-    const SDL_JoystickGUID guid =
-        SDL_JoystickGetGUIDFromString(line.substr(0, kGuidDigits).c_str());
-    const unsigned of_line = guid.data[12] | guid.data[13] * 256u;
-    if (guid.data[14] != 0 || ((of_line ^ version) & kCodesByKernel) != 0) continue;
-    if (of_line == version) return line;
-    if (best.empty()) best = std::move(line);
+    if (!is_guess(line)) lines.push_back(std::move(line));
   }
-  return best;
+  return fitting_mapping(lines, device);
 }
 
 }  // namespace gaitpad

@@ -8,11 +8,15 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string_view>
 
 #include "drivers/driver_entries.h"
 #include "drivers/pads/pad_model.h"
+#include "drivers/pads/several_pads.h"
+#include "drivers/pads/shared_pads.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "drivers/usb_interfaces.h"
@@ -28,7 +32,7 @@ using std::chrono::milliseconds;
 
 constexpr unsigned int kControlTimeoutMs = 500;
 constexpr std::uint8_t kFromInterface = 0xa1, kStandardFromInterface = 0x81, kToInterface = 0x21;
-constexpr std::uint8_t kGetReport = 0x01, kSetIdle = 0x0a, kGetDescriptor = 0x06;
+constexpr std::uint8_t kGetReport = 0x01, kSetReport = 0x09, kSetIdle = 0x0a, kGetDescriptor = 0x06;
 constexpr std::uint16_t kReportDescriptor = 0x2200, kFeatureReport = 0x0300;
 
 struct FreeConfig {
@@ -250,6 +254,17 @@ class StartPort final : public PadPort {
     return count <= 0 ? 0 : static_cast<std::size_t>(count) + skip;
   }
 
+  bool send_feature(std::span<const std::uint8_t> packet) noexcept override {
+    if (packet.empty() || packet.size() > kMaxReportBytes) return false;
+    const std::size_t skip = packet[0] == 0 ? 1 : 0;
+    std::vector<std::uint8_t> data(packet.begin() + static_cast<std::ptrdiff_t>(skip),
+                                   packet.end());
+    return libusb_control_transfer(handle_, kToInterface, kSetReport,
+                                   static_cast<std::uint16_t>(kFeatureReport | packet[0]),
+                                   interface_, data.data(), static_cast<std::uint16_t>(data.size()),
+                                   kControlTimeoutMs) >= 0;
+  }
+
  private:
   UsbTransfers& transfers_;
   libusb_device_handle* handle_;
@@ -268,11 +283,16 @@ class UsbDevice final : public Device {
 
   ~UsbDevice() override {
     if (is_rumbling_ && rumble(Rumble{})) transfers_->flush(milliseconds(100));
+    if (transfers_->is_gone()) return;
+    StartPort port(*transfers_, interface_->handle(), interface_number_);
+    model_->stop(port);
   }
 
   void start(std::uint8_t interface_number) {
+    interface_number_ = interface_number;
     StartPort port(*transfers_, interface_->handle(), interface_number);
     model_->start(port, StartedBy::us);
+    model_->amend(info_);
   }
 
   const DeviceInfo& info() const noexcept override { return info_; }
@@ -314,6 +334,7 @@ class UsbDevice final : public Device {
   std::unique_ptr<ClaimedInterface> interface_;
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
   OutPacket reply_;
+  std::uint8_t interface_number_ = 0;
   bool is_rumbling_ = false;
 };
 
@@ -352,6 +373,77 @@ Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInter
                                             std::move(*claimed), std::move(*transfers));
   device->start(interface.number);
   return std::unique_ptr<Device>(std::move(device));
+}
+
+// ---- One of several pads of an interface
+
+class UsbPackets final : public PacketSource {
+ public:
+  UsbPackets(std::unique_ptr<ClaimedInterface> interface, std::unique_ptr<UsbTransfers> transfers)
+      : interface_(std::move(interface)), transfers_(std::move(transfers)) {}
+  ~UsbPackets() override { transfers_->flush(milliseconds(100)); }
+  std::span<const pollfd> poll_fds() const noexcept override { return transfers_->poll_fds(); }
+  Device::Status read(Report& packet) noexcept override {
+    if (transfers_->take_packet(packet)) return Device::Status::report;
+    transfers_->handle_events(milliseconds(0));
+    if (transfers_->take_packet(packet)) return Device::Status::report;
+    return transfers_->is_gone() ? Device::Status::gone : Device::Status::nothing;
+  }
+  bool send(const OutPacket& packet) noexcept override { return transfers_->send(packet); }
+  std::int64_t lost() const noexcept override { return transfers_->lost(); }
+
+ private:
+  std::unique_ptr<ClaimedInterface> interface_;
+  std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
+};
+
+Result<std::shared_ptr<SharedDevice>> claim_shared(const std::string& node,
+                                                   const UsbInterface& interface,
+                                                   const std::vector<std::uint8_t>& descriptor) {
+  auto claimed = ClaimedInterface::claim(node, interface);
+  if (!claimed) return claimed.error();
+  libusb_device_handle* const handle = (*claimed)->handle();
+  auto pad = describe_pad(node, handle, interface.number);
+  if (!pad) return pad.error();
+  libusb_control_transfer(handle, kToInterface, kSetIdle, 0, interface.number, nullptr, 0,
+                          kControlTimeoutMs);
+  fit_transfers(descriptor, pad->endpoints);
+  auto transfers = UsbTransfers::start((*claimed)->context(), handle, pad->endpoints);
+  if (!transfers) return Error{node + ": " + transfers.error().message};
+  return std::make_shared<SharedDevice>(
+      std::make_unique<UsbPackets>(std::move(*claimed), std::move(*transfers)));
+}
+
+// What is open, by the interface's sysfs folder.
+struct SharedInterfaces {
+  static SharedInterfaces& all() {
+    static SharedInterfaces interfaces;
+    return interfaces;
+  }
+  std::mutex mutex;  // also while one is claimed, so that nobody claims it again
+  std::map<std::string, std::weak_ptr<SharedDevice>> open;
+};
+
+Result<std::unique_ptr<Device>> open_one_of_several(const DeviceListing& listing,
+                                                    const std::string& node,
+                                                    const UsbInterface& interface) {
+  SharedInterfaces& shared = SharedInterfaces::all();
+  const std::lock_guard lock(shared.mutex);
+  std::weak_ptr<SharedDevice>& known = shared.open[interface.path];
+  std::shared_ptr<SharedDevice> device = known.lock();
+  if (!device) {
+    auto claimed = claim_shared(node, interface, listing.info.descriptor);
+    if (!claimed) return claimed.error();
+    known = device = std::move(*claimed);
+  }
+  return open_shared_pad(std::move(device), listing.info);
+}
+
+bool is_shared(const std::string& interface_path) {
+  SharedInterfaces& shared = SharedInterfaces::all();
+  const std::lock_guard lock(shared.mutex);
+  const auto known = shared.open.find(interface_path);
+  return known != shared.open.end() && !known->second.expired();
 }
 
 // ---- Finding
@@ -397,7 +489,7 @@ std::vector<DeviceListing> find_usb_devices() {
       listings.push_back(std::move(listing));
     }
   }
-  return listings;
+  return with_split_pads(listings);
 }
 
 Result<std::unique_ptr<Device>> open_usb_device(const DeviceListing& listing, Detach detach) {
@@ -408,13 +500,17 @@ Result<std::unique_ptr<Device>> open_usb_device(const DeviceListing& listing, De
     return Error{fmt::format("{}: no pad: {}", name, other)};
   }
   const std::string& holder = interface->kernel_driver;
-  if (holder == "usbfs") return Error{name + ": another program has the pad"};
+  const bool is_one = is_one_of_several(listing.info.descriptor);
+  if (holder == "usbfs" && !(is_one && is_shared(interface->path)))
+    return Error{name + ": another program has the pad"};
   if (!holder.empty() && detach == Detach::never) {
     return Error{fmt::format(
         "{}: the kernel's driver {} has the pad; --driver usb takes the pad over while it runs",
         name, listing.kernel_driver.empty() ? holder : listing.kernel_driver)};
   }
-  return open_pad(name.substr(0, name.find(':')), *interface, listing.info);
+  const std::string node = name.substr(0, name.find(':'));
+  return is_one ? open_one_of_several(listing, node, *interface)
+                : open_pad(node, *interface, listing.info);
 }
 
 }  // namespace gaitpad

@@ -27,6 +27,8 @@ class PadPort {
   // Reads a feature report (HID pads only) and returns its size with the id in packet[0]; 0:
   // refused.
   virtual std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept = 0;
+  // Sends a feature report (HID pads only), which begins with its id; 0: the pad has no ids.
+  virtual bool send_feature(std::span<const std::uint8_t>) noexcept { return false; }
 };
 
 struct OutPacket {
@@ -45,11 +47,23 @@ class PadModel {
   // Talks to the pad right after it was opened, for at most two seconds. A pad that does not answer
   // still works; take_remarks() tells what is missing.
   virtual void start(PadPort&, StartedBy) {}
+  // At the end, if the pad is still there: gives back what start() took.
+  virtual void stop(PadPort&) noexcept {}
+  // After start(): corrects what the pad has said about itself. A collection that is added at the
+  // end of the descriptor marks a kind of pad that its ids do not tell.
+  virtual void amend(DeviceInfo&) const {}
   // Whether the packet is an input report. `reply` gets an answer to send, or size 0.
   virtual bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept {
     reply.size = 0;
     return !packet.empty();
   }
+  // What is handed on of a packet that was accepted: itself, or a state made of several packets.
+  virtual std::span<const std::uint8_t> report_of(
+      std::span<const std::uint8_t> packet) const noexcept {
+    return packet;
+  }
+  // False while an adapter says that nothing is in this plug.
+  virtual bool is_plugged() const noexcept { return true; }
   // The packet that sets the motors; size 0: the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
@@ -61,9 +75,28 @@ class PadModel {
 // The model by ids and bus; a plain one for pads that need nothing.
 std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device);
 
+// Whether something was put into the plug of an adapter, or taken out, since the last packet.
+class PlugWatch {
+ public:
+  // Then `report` says so.
+  bool has_changed(const PadModel& model, Report& report) noexcept {
+    if (model.is_plugged() == was_plugged_) return false;
+    was_plugged_ = !was_plugged_;
+    report.kind = was_plugged_ ? ReportKind::added : ReportKind::removed;
+    report.size = 0;
+    return true;
+  }
+
+ private:
+  bool was_plugged_ = true;
+};
+
 // One file for each family; null: the device is of another family.
 std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device);
 std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device);
+std::unique_ptr<PadModel> make_steam_model(const DeviceInfo& device);
+std::unique_ptr<PadModel> make_motor_model(const DeviceInfo& device);
+std::unique_ptr<PadModel> make_one_of_several_model(const DeviceInfo& device);
 
 // Vendor-class USB pads (no HID): by the interface's class, subclass and protocol.
 struct UsbInterfaceClass {

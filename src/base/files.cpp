@@ -1,6 +1,8 @@
 #include "base/files.h"
 
 #include <fcntl.h>
+#include <signal.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -38,6 +40,22 @@ std::optional<Error> make_folder(const fs::path& folder) {
   if (!folder.empty()) fs::create_directories(folder, error);
   if (!error) return std::nullopt;
   return Error{folder.string() + ": cannot be created: " + error.message()};
+}
+
+const char* kind_of(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::directory:
+      return "a folder";
+    case fs::file_type::fifo:
+      return "a FIFO";
+    case fs::file_type::socket:
+      return "a socket";
+    case fs::file_type::block:
+    case fs::file_type::character:
+      return "a device";
+    default:
+      return "something else";
+  }
 }
 
 // Hidden, in the same folder, and different for every process.
@@ -103,12 +121,26 @@ void sync_folder(const fs::path& folder) {
 
 }  // namespace
 
+std::optional<Error> no_file_problem(const std::string& path) {
+  std::error_code code;
+  const auto status = fs::status(path, code);
+  if (!fs::exists(status)) return Error{printable(path) + ": no such file"};
+  if (!fs::is_regular_file(status))
+    return Error{printable(path) + ": not a regular file (" + kind_of(status.type()) + ")"};
+  constexpr long kProc = 0x9fa0, kSys = 0x62656572, kDebug = 0x64626720, kTrace = 0x74726163;
+  struct statfs system {};
+  if (::statfs(path.c_str(), &system) != 0) return std::nullopt;
+  for (const long kernel : {kProc, kSys, kDebug, kTrace}) {
+    if (static_cast<long>(system.f_type) == kernel)
+      return Error{printable(path) + ": not a regular file (the kernel makes it up)"};
+  }
+  return std::nullopt;
+}
+
 Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   const auto failure = [&](const std::string& cause) { return Error{printable(path) + cause}; };
   std::error_code code;
-  const auto status = fs::status(path, code);
-  if (!fs::exists(status)) return failure(": no such file");
-  if (!fs::is_regular_file(status)) return failure(": not a regular file");
+  if (auto problem = no_file_problem(path)) return *problem;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return failure(": cannot be opened for reading");
   std::string text;
@@ -125,6 +157,22 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   return text;
 }
 
+void remove_leftovers(const std::string& path) {
+  const fs::path place(path);
+  const std::string begin = "." + place.filename().string() + ".";
+  std::error_code error;
+  const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with(begin)) continue;
+    std::string_view number = std::string_view(name).substr(begin.size());
+    if (number.ends_with(".old")) number.remove_suffix(4);  // of save_text()
+    const auto process = parse_number<pid_t>(number);
+    if (!process || *process <= 0 || ::kill(*process, 0) == 0 || errno != ESRCH) continue;
+    ::unlink(it->path().c_str());
+  }
+}
+
 Error write_error(const std::string& path, int number) {
   return Error{path + ": cannot be written: " + std::strerror(number)};
 }
@@ -135,6 +183,7 @@ std::optional<Error> write_file(const std::string& path, std::string_view bytes)
   if (auto problem = make_folder(place.parent_path())) return problem;
   std::error_code ignored;
   if (fs::is_directory(place, ignored)) return write_error(path, EISDIR);
+  remove_leftovers(path);
   const std::string temporary = temporary_beside(place);
   int problem = write_new(temporary, bytes, Write::cached);
   if (problem == 0) problem = rename_file(temporary, path);
@@ -163,6 +212,7 @@ std::optional<Error> save_text(const std::string& path, std::string_view text) {
   if (auto problem = make_folder(fs::path(path).parent_path())) return problem;
   const auto place = target_of_links(path);
   if (!place) return place.error();
+  remove_leftovers(*place);
   const std::string temporary = temporary_beside(*place);
   std::string blamed = *place;
   int problem = write_new(temporary, text, Write::to_disk);

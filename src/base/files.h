@@ -9,12 +9,20 @@
 
 namespace gaitpad {
 
+// Why `path` is no file to be read, at once and without opening it: it does not exist, or it is a
+// folder, a FIFO, a device, a socket, or a file of a kernel file system such as /proc/kmsg, which
+// may never end. None: it is one.
+std::optional<Error> no_file_problem(const std::string& path);
+
 // The whole of a regular file of at most `max_bytes`. A FIFO or a device is an error: opening one
 // could hang, reading it never end. Error: `PATH: cause`.
 Result<std::string> file_text(const std::string& path, std::size_t max_bytes);
 
 // `PATH: cannot be written: ` and the cause that `number`, an errno, stands for.
 Error write_error(const std::string& path, int number);
+
+// Removes temporary files for `path` (`.NAME.PID` beside it) whose process was killed.
+void remove_leftovers(const std::string& path);
 
 // Makes the folder of `path`, writes a temporary file in it and renames that to `path`. On error
 // what stood there before is unchanged.

@@ -78,17 +78,71 @@ std::size_t utf8_bytes(std::string_view text) noexcept {
   return place;
 }
 
+namespace {
+
+// Of a whole UTF-8 character.
+std::uint32_t code_point(std::string_view character) noexcept {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+  if (character.size() == 1) return byte(0);
+  std::uint32_t code = byte(0) & (0x7fu >> character.size());
+  for (std::size_t i = 1; i < character.size(); ++i) code = code << 6 | (byte(i) & 0x3fu);
+  return code;
+}
+
+// Characters that command a terminal, or that change the order in which text is shown.
+bool is_shown(std::uint32_t code) noexcept {
+  const auto is_within = [code](std::uint32_t first, std::uint32_t last) {
+    return code >= first && code <= last;
+  };
+  return !is_within(0, 0x1f) && !is_within(0x7f, 0x9f) && code != 0x61c &&
+         !is_within(0x200e, 0x200f) && !is_within(0x2028, 0x202e) && !is_within(0x2066, 0x2069) &&
+         code != 0xfeff;
+}
+
+}  // namespace
+
 std::string printable(std::string_view text) {
-  std::string line(text);
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  static constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string line;
+  const auto escape = [&line](char letter, std::uint32_t number, int digits) {
+    line += '\\';
+    line += letter;
+    while (digits-- > 0) line += kDigits[number >> (4 * digits) & 0xf];
+  };
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(bytes, 1));
+    const std::uint32_t code =
+        bytes == 0 ? static_cast<unsigned char>(text[0]) : code_point(character);
+    if (bytes == 0 || (bytes == 1 && !is_shown(code)))
+      escape('x', code, 2);
+    else if (!is_shown(code))
+      escape('u', code, 4);
+    else
+      line += character;
+    text.remove_prefix(character.size());
   }
   return line;
 }
 
+std::string printable_lines(std::string_view text) {
+  std::string lines;
+  while (!text.empty()) {
+    const bool has_end = text.find('\n') != std::string_view::npos;
+    lines += printable(take_line(text));
+    if (has_end) lines += '\n';
+  }
+  return lines;
+}
+
 std::string in_quotes(std::string_view text) {
   const bool is_cut = text.size() > kMaxQuotedBytes;
-  return "\"" + printable(text.substr(0, kMaxQuotedBytes)) + (is_cut ? "...\"" : "\"");
+  std::size_t size = std::min(text.size(), kMaxQuotedBytes);
+  // Not within a character.
+  while (is_cut && size > kMaxQuotedBytes - 3 &&
+         (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)
+    --size;
+  return "\"" + printable(text.substr(0, size)) + (is_cut ? "...\"" : "\"");
 }
 
 std::string fixed(double value, int decimals) {

@@ -62,8 +62,12 @@ std::size_t character_bytes(std::string_view text) noexcept;
 std::size_t utf8_bytes(std::string_view text) noexcept;
 inline bool is_utf8(std::string_view text) noexcept { return utf8_bytes(text) == text.size(); }
 
-// The text for one line of output: ASCII control characters become '?'.
+// The text for one line of output. Foreign text (names of devices and files, what files and users
+// say) reaches a terminal through this alone: control characters, C1 ones included, characters that
+// change the direction of text, and bytes that are no UTF-8 are written as \x1b or \u202e.
 std::string printable(std::string_view text);
+// The same for several lines: '\n' stays.
+std::string printable_lines(std::string_view text);
 // The text in double quotes for an error sentence: printable, of at most 60 bytes, then "...".
 inline constexpr std::size_t kMaxQuotedBytes = 60;
 std::string in_quotes(std::string_view text);

@@ -175,18 +175,21 @@ struct TomlDocument {
 };
 
 std::string toml_string(std::string_view text) {
-  const bool is_text = is_utf8(text);
   std::string quoted = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(bytes, 1));
+    const auto byte = static_cast<unsigned char>(text[0]);
+    if (bytes == 0) {
+      quoted += '?';  // TOML holds no broken UTF-8
+    } else if (byte == '"' || byte == '\\') {
+      quoted += fmt::format("\\{}", character);
     } else if (byte < 0x20 || byte == 0x7f) {
       quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
     } else {
-      quoted += byte < 0x80 || is_text ? c : '?';
+      quoted += printable(character);  // its \u202e is TOML's escape too
     }
+    text.remove_prefix(character.size());
   }
   return quoted + "\"";
 }

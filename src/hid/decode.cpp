@@ -48,7 +48,16 @@ constexpr PadButton kAndroid[] = {kButtonA,
                                   kButtonStart,
                                   kButtonGuide,
                                   kButtonLeftStick,
-                                  kButtonRightStick};
+                                  kButtonRightStick,
+                                  kEmpty,
+                                  kEmpty,
+                                  kEmpty,
+                                  kEmpty,
+                                  kEmpty,
+                                  kButtonPaddle1,  // Linux's BTN_TRIGGER_HAPPY5 .. 8: upper and
+                                  kButtonPaddle3,  // lower right, upper and lower left paddle
+                                  kButtonPaddle2,
+                                  kButtonPaddle4};
 constexpr PadButton kXinput[] = {kButtonA,
                                  kButtonB,
                                  kButtonX,
@@ -100,6 +109,14 @@ class ReportFields {
   std::size_t index(std::uint32_t u) const { return first_.at(u); }
   const Field& field(std::uint32_t u) const { return descriptor_.fields[index(u)]; }
 
+  bool is_game_pad() const {
+    const auto x = first_.find(usage::kX);
+    if (x == first_.end()) return false;
+    const std::uint32_t application = descriptor_.fields[x->second].application;
+    return application < descriptor_.applications.size() &&
+           descriptor_.applications[application] == usage::kGamePad;
+  }
+
   // DragonRise and Mega Drive pads state X (or Z) several times; the one beside Y (or Rz) is real.
   std::size_t index_beside(std::uint32_t u, std::uint32_t next) const {
     const Field& y = field(next);
@@ -149,12 +166,19 @@ AxisPair right_stick_of_two(const ReportFields& r) {
                                                                             : kRotationPair;
 }
 
+// Many game pads call themselves joysticks. Of a flight stick, a yoke or a wheel these axes are the
+// twist, the throttle and the pedals, which are not as wide as the stick.
+bool may_be_stick(const ReportFields& r, AxisPair pair) {
+  return r.has(pair.x, pair.y) && (r.is_game_pad() || like_left_stick(r, pair));
+}
+
 std::optional<AxisPair> right_stick(const ReportFields& r) {
-  const bool z = r.has(kZPair.x, kZPair.y), rotation = r.has(kRotationPair.x, kRotationPair.y);
+  constexpr AxisPair kSimulation{usage::kRudder, usage::kThrottle};
+  const bool z = may_be_stick(r, kZPair), rotation = may_be_stick(r, kRotationPair);
   if (z && rotation) return right_stick_of_two(r);
   if (z) return kZPair;
   if (rotation) return kRotationPair;
-  if (r.has(usage::kRudder, usage::kThrottle)) return AxisPair{usage::kRudder, usage::kThrottle};
+  if (may_be_stick(r, kSimulation)) return kSimulation;
   return std::nullopt;
 }
 
@@ -162,6 +186,7 @@ std::optional<AxisPair> triggers(const ReportFields& r) {
   if (r.has(usage::kBrake, usage::kAccelerator)) {
     return AxisPair{usage::kBrake, usage::kAccelerator};
   }
+  if (!may_be_stick(r, kZPair) && !may_be_stick(r, kRotationPair)) return std::nullopt;
   if (!r.has(kZPair.x, kZPair.y) || !r.has(kRotationPair.x, kRotationPair.y)) return std::nullopt;
   return right_stick_of_two(r).x == kZPair.x ? kRotationPair : kZPair;
 }
@@ -177,8 +202,6 @@ void bind_axes(const ReportFields& r, std::vector<Binding>& out) {
   if (const auto stick = right_stick(r)) {
     bind(kRightX, r.index_beside(stick->x, stick->y));
     bind(kRightY, r.index(stick->y));
-  } else if (r.has(usage::kRz)) {
-    bind(kRightX, r.index(usage::kRz));  // a flight stick's twist
   }
   if (const auto pair = triggers(r)) {
     bind(kLeftTrigger, r.index(pair->x));
@@ -624,9 +647,15 @@ bool reads(const ReportLayout& layout, const Field& f) {
 std::vector<UnnamedButton> unnamed_buttons(const PadLayout& layout) {
   std::vector<UnnamedButton> unnamed;
   const ReportDescriptor& d = layout.descriptor;
+  // Of a report that is replaced the pad's own descriptor says nothing that is true.
+  const auto is_replaced = [&layout](std::uint8_t id) {
+    return std::any_of(layout.reports.begin(), layout.reports.end(), [id](const ReportLayout& r) {
+      return r.report_id == id && !r.exact_sizes.empty();
+    });
+  };
   for (const std::size_t i : pad_fields(d)) {
     const Field& f = d.fields[i];
-    if (page_of(f.usage) != usage::kButtonPage || f.is_array) continue;
+    if (page_of(f.usage) != usage::kButtonPage || f.is_array || is_replaced(f.report_id)) continue;
     const bool bound = std::any_of(
         layout.reports.begin(), layout.reports.end(),
         [&](const ReportLayout& r) { return r.report_id == f.report_id && reads(r, f); });
@@ -794,6 +823,14 @@ void apply(const ReportLayout& layout, std::span<const std::uint8_t> data,
 }
 
 }  // namespace
+
+bool tells_stick(const ReportLayout& layout) noexcept {
+  const auto is_left = [](PadAxis axis) { return axis == kLeftX || axis == kLeftY; };
+  return std::any_of(layout.axes.begin(), layout.axes.end(),
+                     [&](const AxisOp& op) { return is_left(op.axis); }) ||
+         std::any_of(layout.hats.begin(), layout.hats.end(),
+                     [&](const HatOp& op) { return op.value != 0.0f && is_left(op.axis); });
+}
 
 const ReportLayout* layout_of(const PadLayout& layout, const Report& report) noexcept {
   if (report.kind != ReportKind::input || report.size > report.bytes.size()) return nullptr;

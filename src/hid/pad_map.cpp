@@ -36,9 +36,24 @@ std::optional<ControlSource> source_of(std::string_view text) {
   if (has_occurrence && (!occurrence || *occurrence == 0)) return std::nullopt;
   source.mask = mask.value_or(0);
   source.occurrence = static_cast<std::uint32_t>(occurrence.value_or(1));
+  for (const auto& [word, side] :
+       {std::pair<std::string_view, StickSide>("negative ", StickSide::negative),
+        {"positive ", StickSide::positive}}) {
+    if (!text.starts_with(word)) continue;
+    source.side = side;
+    text = trimmed(text.substr(word.size()));
+  }
   if (text.starts_with('-')) {
     source.reversed = true;
     text = trimmed(text.substr(1));
+  }
+  constexpr std::pair<std::string_view, std::uint8_t> kHats[] = {
+      {"hat up", 1}, {"hat right", 2}, {"hat down", 4}, {"hat left", 8}};
+  for (const auto& [name, directions] : kHats) {
+    if (text != name) continue;
+    source.usage = usage::kHatSwitch;
+    source.directions = directions;
+    return source;
   }
   constexpr std::string_view kButton = "button ";
   if (text.starts_with(kButton)) {

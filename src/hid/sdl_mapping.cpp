@@ -282,11 +282,121 @@ Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor
   return map;
 }
 
-// ---- Writing a line
+// ---- Choosing a line
 
 namespace {
 
 constexpr unsigned kCodesByKernel = 0x8000;
+constexpr std::size_t kGuidDigits = 32, kMaxLines = 20'000;
+
+// The 16-bit words of a GUID (SDL 2.26, SDL_CreateJoystickGUID): bus, checksum of the name, vendor,
+// 0, product, 0, version, the driver's mark (`h` for SDL's own HID drivers, which number
+// otherwise).
+enum GuidWord : std::size_t { kBus, kNameSum, kVendor, kProduct = 4, kVersion = 6, kDriverMark };
+using Guid = std::array<unsigned, 8>;
+
+std::optional<Guid> guid_of(std::string_view line) {
+  const std::string_view digits = line.substr(0, kGuidDigits);
+  if (!is_guid(digits)) return std::nullopt;
+  Guid guid{};
+  for (std::size_t i = 0; i < guid.size(); ++i) {
+    const auto low = hexadecimal(digits.substr(4 * i, 2), 0xff),
+               high = hexadecimal(digits.substr(4 * i + 2, 2), 0xff);
+    guid[i] = static_cast<unsigned>(low.value_or(0) | high.value_or(0) << 8);
+  }
+  return guid;
+}
+
+// What stands behind `key:` in the line; empty: nothing.
+std::string_view pair_of(std::string_view line, std::string_view key) {
+  while (!line.empty()) {
+    std::string_view pair = take_part(line, ',');
+    if (pair.starts_with(key) && pair.substr(key.size()).starts_with(':'))
+      return trimmed(pair.substr(key.size() + 1));
+  }
+  return {};
+}
+
+// SDL_crc16: CRC-16 with the reflected polynomial a001, from 0.
+unsigned name_sum(std::string_view name) {
+  unsigned sum = 0;
+  for (const char c : name) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int i = 0; i < 8; ++i) sum = (sum & 1u) != 0 ? sum >> 1 ^ 0xa001u : sum >> 1;
+  }
+  return sum;
+}
+
+bool is_for_name(std::string_view line, const Guid& guid, std::string_view name) {
+  const auto stated = hexadecimal(pair_of(line, "crc"), 0xffff);
+  const unsigned wanted = stated ? static_cast<unsigned>(*stated) : guid[kNameSum];
+  return wanted == 0 || wanted == name_sum(name);
+}
+
+// Names of buttons are by position here: a line for printed names counts only if there is no other.
+constexpr std::string_view kLabelHint = "SDL_GAMECONTROLLER_USE_BUTTON_LABELS";
+bool is_for_labels(std::string_view line) { return pair_of(line, "hint").starts_with(kLabelHint); }
+
+// `hint:NAME:=1` counts where SDL's hint is on by default, `hint:!NAME:=1` where it is off.
+bool is_hint_met(std::string_view line) {
+  std::string_view hint = pair_of(line, "hint");
+  const bool is_negated = take(hint, '!');
+  if (hint.empty() || hint.starts_with(kLabelHint)) return true;
+  return hint.ends_with(":=1") != is_negated;
+}
+
+}  // namespace
+
+std::vector<std::string> mapping_lines(std::string_view text) {
+  std::vector<std::string> lines;
+  text = without_byte_order_mark(text);
+  while (!text.empty() && lines.size() < kMaxLines) {
+    const std::string_view line = trimmed(take_line(text));
+    const std::string_view platform = pair_of(line, "platform");
+    if (!is_guid(line.substr(0, line.find(','))) || line.size() > kMaxTraceTextBytes) continue;
+    if (!is_one_line(line) || (!platform.empty() && platform != "Linux")) continue;
+    lines.emplace_back(line);
+  }
+  return lines;
+}
+
+std::string fitting_mapping(std::span<const std::string> lines, const DeviceInfo& device) {
+  if (device.vendor == 0) return {};
+  const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
+  const unsigned version = is_node ? device.version : device.version & ~kCodesByKernel;
+  const std::string* best = nullptr;
+  int best_fit = 0;  // 1, and 1 for buttons by position, 2 for the same version
+  for (const std::string& line : lines) {
+    const auto guid = guid_of(line);
+    if (!guid || (*guid)[kBus] != static_cast<unsigned>(device.bus) ||
+        (*guid)[kVendor] != device.vendor || (*guid)[kProduct] != device.product)
+      continue;
+    const unsigned of_line = (*guid)[kVersion];
+    if ((*guid)[kDriverMark] != 0 || ((of_line ^ version) & kCodesByKernel) != 0) continue;
+    if (!is_for_name(line, *guid, device.name) || !is_hint_met(line)) continue;
+    const int fit = 1 + (is_for_labels(line) ? 0 : 1) + (of_line == version ? 2 : 0);
+    if (fit <= best_fit) continue;
+    best = &line;
+    best_fit = fit;
+  }
+  return best == nullptr ? std::string() : *best;
+}
+
+std::vector<std::string> merged_mappings(const std::vector<std::string>& lines,
+                                         const std::vector<std::string>& own) {
+  std::set<std::string_view> guids;
+  for (const std::string& line : lines) guids.insert(std::string_view(line).substr(0, kGuidDigits));
+  std::vector<std::string> merged = lines;
+  for (const std::string& line : own) {
+    if (guids.count(std::string_view(line).substr(0, kGuidDigits)) == 0) merged.push_back(line);
+  }
+  return merged;
+}
+
+// ---- Writing a line
+
+namespace {
+
 bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
 
 // Finds the number that SDL gives to a field.

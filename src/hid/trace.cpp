@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/descriptor.h"
 #include "hid/trace_lines.h"
@@ -564,13 +565,9 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name, Damage
 }
 
 Result<Trace> read_trace(const std::string& path, Damage damage) {
-  namespace fs = std::filesystem;
   std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  if (!fs::exists(status)) return Error{path + ": there is no such file"};
-  if (!fs::is_regular_file(status) && !fs::is_fifo(status)) {
-    return Error{path + ": this is no file, a trace was expected"};
-  }
+  if (!std::filesystem::exists(path, ignored)) return Error{path + ": there is no such file"};
+  if (auto problem = no_file_problem(path)) return *problem;
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{path + ": cannot be opened for reading"};
   LineFeed feed(path, damage);

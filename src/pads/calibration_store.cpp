@@ -47,15 +47,8 @@ std::string file_key(std::string_view text) {
 
 std::string commented(const std::vector<std::string>& comments) {
   std::string text;
-  for (const std::string& comment : comments) {
-    std::string line = comment;
-    const bool is_text = is_utf8(line);
-    for (char& c : line) {
-      const auto byte = static_cast<unsigned char>(c);
-      if (byte < 0x20 || byte == 0x7f || (byte >= 0x80 && !is_text)) c = '?';
-    }
-    text += line.empty() ? "#\n" : "# " + line + "\n";
-  }
+  for (const std::string& comment : comments)
+    text += comment.empty() ? "#\n" : "# " + printable(comment) + "\n";
   return text;
 }
 

@@ -131,8 +131,13 @@ Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
   return name.find(wanted.lower_text) == std::string::npos ? Fit::none : Fit::part_of_name;
 }
 
+// Whether `whole` joins this device with another one (a pair of Joy-Cons).
+bool is_part(const PadSighting& whole, const PadSighting& s) {
+  return std::ranges::count(whole.listing.parts, pad_key(s)) > 0;
+}
+
 bool is_one_pad(const PadSighting& a, const PadSighting& b) {
-  if (pad_key(a) == pad_key(b)) return true;
+  if (pad_key(a) == pad_key(b) || is_part(a, b) || is_part(b, a)) return true;
   const std::string& id = a.listing.info.unique_id;
   return !id.empty() && lower_case(id) == lower_case(b.listing.info.unique_id);
 }
@@ -195,7 +200,11 @@ Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sig
                                              const PadWish& wish) {
   std::vector<PadSighting> pads;
   std::ranges::copy_if(sightings, std::back_inserter(pads), &PadSighting::is_pad);
-  std::ranges::stable_sort(pads, std::less<>(), &PadSighting::driver);
+  // By driver; a pair before its parts.
+  std::ranges::stable_sort(pads, [](const PadSighting& one, const PadSighting& other) {
+    if (one.driver != other.driver) return std::less<>()(one.driver, other.driver);
+    return !one.listing.parts.empty() && other.listing.parts.empty();
+  });
   if (wish.pad.empty()) return pads;
 
   const Wanted wanted = wanted_of(wish.pad);
@@ -231,7 +240,7 @@ Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sig
     const bool is_taken = s.driver->name == kUsb && !s.listing.kernel_driver.empty();
     if (!s.problem.empty() || (is_taken && !is_wished)) continue;
     const auto is_served = [&s](const PadSighting& c) {
-      return c.driver != s.driver && pad_key(c) == pad_key(s);
+      return (c.driver != s.driver && pad_key(c) == pad_key(s)) || is_part(c, s);
     };
     if (std::ranges::none_of(chosen, is_served)) chosen.push_back(std::move(s));
   }
@@ -291,9 +300,10 @@ int milliseconds_until(std::chrono::steady_clock::time_point time) {
 
 }  // namespace
 
-PadFinder::PadFinder(Options options, HandOver hand_over, Remarks& remarks)
+PadFinder::PadFinder(Options options, HandOver hand_over, Release release, Remarks& remarks)
     : options_(std::move(options)),
       hand_over_(std::move(hand_over)),
+      release_(std::move(release)),
       remarks_(remarks),
       is_recording_(is_recording(options_.wish.pad)) {
   if (options_.first) indices_.push_back({*options_.first, true});
@@ -318,6 +328,14 @@ void PadFinder::take_back(std::uint64_t id, std::unique_ptr<Device> device) {
   {
     const std::lock_guard lock(mutex_);
     gone_.push_back({id, std::move(device)});
+  }
+  bell_.ring();
+}
+
+void PadFinder::tell_stickless(std::uint64_t id, const std::string& sentence) {
+  {
+    const std::lock_guard lock(mutex_);
+    stickless_.push_back({id, sentence});
   }
   bell_.ring();
 }
@@ -407,6 +425,7 @@ void PadFinder::remember(std::vector<PadSighting>& sightings) {
       candidate.is_from_start = is_first_look_;
     }
     candidate.is_seen = true;
+    if (candidate.is_stickless) s.problem = candidate.problem;
     const bool is_exhausted = candidate.failures > static_cast<int>(std::size(kRetries));
     if (!is_exhausted || is_open(s) || now_ >= candidate.next_try) continue;
     look_no_later_than(candidate.next_try);
@@ -423,9 +442,21 @@ void PadFinder::remember(std::vector<PadSighting>& sightings) {
 
 void PadFinder::close_gone() {
   std::vector<Gone> gone;
+  std::vector<Stickless> stickless;
   {
     const std::lock_guard lock(mutex_);
     gone.swap(gone_);
+    stickless.swap(stickless_);
+  }
+  for (const Stickless& one : stickless) {
+    const auto open = std::ranges::find(open_, one.id, &Open::id);
+    if (open == open_.end()) continue;
+    remarks_.add_once(one.sentence);
+    open->is_stickless = true;
+    if (const auto entry = candidates_.find(open->key); entry != candidates_.end()) {
+      entry->second.is_stickless = true;
+      entry->second.problem = one.sentence;
+    }
   }
   for (const Gone& one : gone) forget(one.id);
 }
@@ -455,6 +486,23 @@ bool PadFinder::is_open(const PadSighting& sighting) const {
   });
 }
 
+// Whether nothing must be closed before this pad is opened. Asks for the end of a single Joy-Con
+// whose pair is there now, and of a driver's device that does not tell the stick. A pair ends by
+// itself when one of its parts is gone.
+bool PadFinder::clear_the_way(const PadSighting& sighting) {
+  bool is_clear = true;
+  const std::string pad = pad_key(sighting);
+  for (Open& open : open_) {
+    const bool is_part = std::ranges::count(sighting.listing.parts, open.pad_key) > 0,
+               is_whole = std::ranges::count(open.parts, pad) > 0,
+               is_dead = open.is_stickless && open.driver != sighting.driver && open.pad_key == pad;
+    if (!is_part && !is_whole && !is_dead) continue;
+    is_clear = false;
+    if (!is_whole && !std::exchange(open.is_released, true)) release_(open.id);
+  }
+  return is_clear;
+}
+
 // Plugged in again before the I/O thread noticed the removal: wait, then reuse its index.
 bool PadFinder::is_awaiting_gone(const PadSighting& sighting) const {
   return std::ranges::any_of(open_, [this, &info = sighting.listing.info](const Open& open) {
@@ -482,7 +530,7 @@ std::chrono::milliseconds PadFinder::patience(const PadSighting& sighting,
 
 void PadFinder::consider(const PadSighting& sighting) {
   Candidate& candidate = candidates_.at(key_of(sighting));
-  if (candidate.is_refused || is_open(sighting)) return;
+  if (candidate.is_refused || !clear_the_way(sighting) || is_open(sighting)) return;
   if (is_awaiting_gone(sighting)) {
     look_no_later_than(now_ + kQuiet);
     return;
@@ -575,7 +623,7 @@ std::optional<std::uint16_t> PadFinder::index_of(const DeviceInfo& info) const {
 void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> device,
                           std::unique_ptr<KnownPad> known, std::uint16_t index) {
   OpenedPad opened;
-  opened.has_report_ids = known->layout->descriptor.numbered;
+  opened.layout = known->layout;
   opened.is_recording = is_recording_;
   opened.index = index;
   opened.id = ++openings_;
@@ -589,7 +637,7 @@ void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> d
   }
   opened.device = std::move(device);
   open_.push_back({opened.id, key_of(sighting), pad_key(sighting), sighting.listing.node,
-                   sighting.driver, index, Clock::now(), std::nullopt});
+                   sighting.driver, index, Clock::now(), sighting.listing.parts, std::nullopt});
   hand_over_(std::move(opened));
 }
 
@@ -599,7 +647,11 @@ void PadFinder::tell_problems(const std::vector<PadSighting>& sightings,
   const auto wished = wished_pads(sightings, options_.wish);
   if (!wished) return;
   std::vector<std::string> settled;
-  for (const PadSighting& s : chosen) settled.push_back(pad_key(s));
+  for (const PadSighting& s : chosen) {
+    settled.push_back(pad_key(s));
+    const auto& parts = s.listing.parts;
+    settled.insert(settled.end(), parts.begin(), parts.end());
+  }
   for (const PadSighting& s : *wished) {
     const std::string pad = pad_key(s);
     if (s.problem.empty() || is_open(s) || std::ranges::count(settled, pad) > 0) continue;

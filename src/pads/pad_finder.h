@@ -89,10 +89,10 @@ struct OpenedPad {
   std::uint16_t index = 0;          // of its reports, < kMaxPads
   std::uint64_t id = 0;             // of this opening
   std::unique_ptr<KnownPad> known;  // null: the index was used before, the reader knows the pad
-  bool has_report_ids = false;      // the first byte of a report is its id
-  bool is_recording = false;        // its end is not an unplugging that users should be told of
-  bool is_keyboard = false;         // it does not count as a pad that was plugged in
-  std::string name;                 // for sentences
+  std::shared_ptr<const PadLayout> layout;
+  bool is_recording = false;  // its end is not an unplugging that users should be told of
+  bool is_keyboard = false;   // it does not count as a pad that was plugged in
+  std::string name;           // for sentences
 };
 
 class PadFinder {
@@ -104,8 +104,9 @@ class PadFinder {
     int changes_fd = -1;              // for tests, in place of udev; one read() makes it silent
     std::optional<DeviceInfo> first;  // of a device that has index 0 and was opened elsewhere
   };
-  using HandOver = std::function<void(OpenedPad)>;  // called on the finder thread
-  PadFinder(Options options, HandOver hand_over, Remarks& remarks);
+  using HandOver = std::function<void(OpenedPad)>;        // these are called on the finder thread
+  using Release = std::function<void(std::uint64_t id)>;  // asks for the end of an opening
+  PadFinder(Options options, HandOver hand_over, Release release, Remarks& remarks);
   ~PadFinder() { stop(); }
 
   // Returns after the first look, before anything is opened. Error: the wish is wrong.
@@ -113,6 +114,9 @@ class PadFinder {
   void stop();  // waits for an opening that is on its way
   // Any thread: this opening has come to its end. The finder thread closes the device.
   void take_back(std::uint64_t id, std::unique_ptr<Device> device);
+  // Any thread: the reports of this opening do not tell the stick. Another driver that sees the pad
+  // gets its turn.
+  void tell_stickless(std::uint64_t id, const std::string& sentence);
   bool has_ended() const noexcept { return awaited_ends_.load() == 0; }
 
  private:
@@ -125,6 +129,7 @@ class PadFinder {
     bool is_from_start = false;  // it was there at the first look
     bool is_seen = true;         // at the last look
     std::string problem;
+    bool is_stickless = false;  // `problem` says so; the open device stays if no other can serve
   };
   struct Open {
     std::uint64_t id = 0;
@@ -132,11 +137,17 @@ class PadFinder {
     const DriverEntry* driver = nullptr;
     std::uint16_t index = 0;
     Clock::time_point since;
+    std::vector<std::string> parts;                  // as in DeviceListing
     std::optional<Clock::time_point> missing_since;  // not seen any more, but not yet given back
+    bool is_stickless = false, is_released = false;
   };
   struct Gone {
     std::uint64_t id;
     std::unique_ptr<Device> device;
+  };
+  struct Stickless {
+    std::uint64_t id;
+    std::string sentence;
   };
   struct Index {  // what an index of the stream stands for
     DeviceInfo info;
@@ -152,6 +163,7 @@ class PadFinder {
   void forget(std::uint64_t id);
   void look_no_later_than(Clock::time_point time);
   bool is_open(const PadSighting& sighting) const;
+  bool clear_the_way(const PadSighting& sighting);
   bool is_awaiting_gone(const PadSighting& sighting) const;
   std::chrono::milliseconds patience(const PadSighting& sighting, const Candidate& candidate) const;
   void consider(const PadSighting& sighting);
@@ -165,6 +177,7 @@ class PadFinder {
 
   const Options options_;
   const HandOver hand_over_;
+  const Release release_;
   Remarks& remarks_;
   const bool is_recording_;
 
@@ -172,7 +185,8 @@ class PadFinder {
   std::atomic<bool> is_ending_{false};
   std::atomic<int> awaited_ends_{-1};  // of a recording's devices; -1: it is no recording
   std::mutex mutex_;
-  std::vector<Gone> gone_;  // under the mutex
+  std::vector<Gone> gone_;            // under the mutex
+  std::vector<Stickless> stickless_;  // likewise
 
   // The finder thread's own.
   std::optional<HotplugMonitor> monitor_;

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
+#include "base/files.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/drivers.h"
+#include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
 
 namespace gaitpad {
@@ -89,14 +93,16 @@ CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& in
   return std::move(found.file);
 }
 
-// SDL's line, if config/pads has no entry for the pad. Empty also if a recording cannot hold the
-// line or if it does not fit the descriptor.
+// The user's or SDL's line, if config/pads has no entry for the pad. Empty also if a recording
+// cannot hold the line or if it does not fit the descriptor.
 std::string sdl_line_of(const PadFiles& files, const DeviceInfo& info) {
   DeviceInfo mapped = info;
-  if (info.mapping.empty() && info.driver != "sdl") {
-    if (find_override(files.overrides, info) != nullptr) return {};
+  const bool is_asked = info.mapping.empty() && info.driver != "sdl";
+  if (is_asked && find_override(files.overrides, info) != nullptr) return {};
+  if (std::string own = fitting_mapping(files.mappings, info); !own.empty())
+    mapped.mapping = std::move(own);
+  else if (is_asked)
     mapped.mapping = sdl_mapping_of(info);
-  }
   if (mapped.mapping.size() > kMaxTraceTextBytes) return {};
   return pad_layout(mapped, files.overrides) ? mapped.mapping : std::string();
 }
@@ -106,6 +112,35 @@ std::string sdl_line_of(const PadFiles& files, const DeviceInfo& info) {
 DeviceIdentity identity_of(const DeviceInfo& info) {
   return {info.vendor, info.product, info.unique_id, info.physical_path, info.driver};
 }
+
+std::string user_mapping_file() {
+  const std::string folder = user_config_folder();
+  return folder.empty() ? "" : folder + "/gamecontrollerdb.txt";
+}
+
+namespace {
+
+void add_mappings(const std::string& path, PadFiles& files) {
+  std::error_code ignored;
+  if (path.empty() || !std::filesystem::exists(path, ignored)) return;
+  const auto text = file_text(path, kMaxMappingFileBytes);
+  if (!text) {
+    files.mapping_problem = text.error().message + "; its mappings are not used";
+    return;
+  }
+  std::vector<std::string> lines = mapping_lines(*text);
+  std::move(lines.begin(), lines.end(), std::back_inserter(files.mappings));
+}
+
+// The names are SDL's, so that a line works in every program.
+void load_mappings(PadFiles& files) {
+  if (const char* lines = std::getenv("SDL_GAMECONTROLLERCONFIG"))
+    files.mappings = mapping_lines(lines);
+  if (const char* path = std::getenv("SDL_GAMECONTROLLERCONFIG_FILE")) add_mappings(path, files);
+  add_mappings(user_mapping_file(), files);
+}
+
+}  // namespace
 
 Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
                                 const std::string& map, const std::string& calibration) {
@@ -132,6 +167,7 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
   for (const std::string& folder : folders)
     files.calibration_folders.push_back(folder + "/calibration");
   files.user_calibrations = user_calibration_folder();
+  load_mappings(files);
   return files;
 }
 
@@ -171,6 +207,7 @@ RecordedDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
                                const std::optional<FactorySticks>& factory,
                                std::vector<std::string>& remarks) {
   RecordedDevice recorded;
+  if (!files.mapping_problem.empty()) remarks.push_back(files.mapping_problem);
   recorded.calibration = recorded_calibration(calibration_in_force(files, info, factory, remarks));
   const std::string& mapping = recorded.calibration.mapping;
   DeviceInfo& kept = recorded.device.info;

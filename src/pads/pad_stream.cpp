@@ -153,6 +153,10 @@ constexpr auto kWatch = 500ms;
 constexpr double kMaxBusy = 0.8;  // of a processor, with real-time priority
 constexpr std::size_t kMaxCommands = 1024;
 constexpr std::int64_t kClockSlack_ns = 1'000'000'000;
+// Reports without a stick for so long, and so many: a pad that reports changes only may send a few
+// of another kind before its stick is touched.
+constexpr std::int64_t kStickWait_ns = 1'000'000'000;
+constexpr int kMinStickless = 20;
 
 std::int64_t nanoseconds(std::chrono::steady_clock::time_point time) {
   return std::chrono::nanoseconds(time.time_since_epoch()).count();
@@ -179,19 +183,22 @@ class PadIo {
   // Called on the I/O thread; closes the device on another one: giving a pad back to the kernel
   // takes up to half a second, in which the other pads must be read.
   using GiveBack = std::function<void(std::uint64_t id, std::unique_ptr<Device> device)>;
+  using TellStickless = std::function<void(std::uint64_t id, const std::string& sentence)>;
   PadIo(PadQueue& queue, Introductions& introductions, PadCounters& counters, Remarks& remarks,
-        GiveBack give_back)
+        GiveBack give_back, TellStickless tell_stickless)
       : queue_(queue),
         introductions_(introductions),
         counters_(counters),
         remarks_(remarks),
-        give_back_(std::move(give_back)) {}
+        give_back_(std::move(give_back)),
+        tell_stickless_(std::move(tell_stickless)) {}
   ~PadIo() { stop(); }
   bool is_open() const noexcept { return bell_.fd() >= 0; }
   void start();
   void stop();  // ends the thread and closes what is still open
 
   void take_over(OpenedPad pad);        // any thread
+  void release(std::uint64_t id);       // any thread: gives this opening back, if it is still open
   void command(std::string_view text);  // any thread
   void rumble(std::uint16_t device, const Rumble& rumble,
               std::chrono::milliseconds duration) noexcept;  // one thread, wait-free
@@ -211,18 +218,23 @@ class PadIo {
     int idle_wakes = 0, error_wakes = 0;
     bool has_error = false;  // as the last poll() says
     Clock::time_point window_end;
+    // Reports before the first that tells the stick.
+    bool is_stick_awaited = true;
+    int stickless = 0;
+    std::int64_t stickless_since_ns = 0;
   };
   struct MotorWish {
     std::uint16_t device;
     Rumble rumble;
     std::int32_t duration_ms;
   };
-  enum class Reading { goes_on, unplugged, failed };
+  enum class Reading { goes_on, unplugged, failed, released };
 
   void run();
   int timeout_ms(Clock::time_point now) const;
   void wait_for_fds();
   void take_pads();
+  void take_releases();
   void take_commands();
   void take_motor_wishes();
   void stop_motors(Clock::time_point now);
@@ -230,6 +242,7 @@ class PadIo {
   Reading read(Pad& pad);
   Reading count_idle_wake(Pad& pad);
   void deliver(Pad& pad, Report& report);
+  void await_stick(Pad& pad, const Report& report);
   void introduce(Pad& pad);
   void announce(Pad& pad, ReportKind kind, std::int64_t time_ns);
   void count_lost(Pad& pad);
@@ -242,11 +255,13 @@ class PadIo {
   PadCounters& counters_;
   Remarks& remarks_;
   const GiveBack give_back_;
+  const TellStickless tell_stickless_;
 
   WakeFd bell_;
   std::atomic<bool> is_ending_{false};
-  std::mutex mutex_;  // of the two below
+  std::mutex mutex_;  // of the three below
   std::vector<OpenedPad> handed_;
+  std::vector<std::uint64_t> released_;
   std::deque<std::string> commands_;
   SpscRing<MotorWish> motor_wishes_{64};
 
@@ -274,6 +289,14 @@ void PadIo::take_over(OpenedPad pad) {
   {
     const std::lock_guard lock(mutex_);
     handed_.push_back(std::move(pad));
+  }
+  bell_.ring();
+}
+
+void PadIo::release(std::uint64_t id) {
+  {
+    const std::lock_guard lock(mutex_);
+    released_.push_back(id);
   }
   bell_.ring();
 }
@@ -310,6 +333,7 @@ void PadIo::run() {
     if ((fds_[0].revents & POLLIN) != 0) {
       bell_.clear();
       take_pads();
+      take_releases();
       take_commands();
       take_motor_wishes();
     }
@@ -380,6 +404,21 @@ void PadIo::take_pads() {
     pad.opened = std::move(opened);
     introduce(pad);
     announce(pad, ReportKind::added, now_ns_);
+  }
+}
+
+void PadIo::take_releases() {
+  std::vector<std::uint64_t> released;
+  {
+    const std::lock_guard lock(mutex_);
+    released.swap(released_);
+  }
+  for (const std::uint64_t id : released) {
+    const auto at = std::ranges::find_if(pads_, [id](const auto& p) { return p->opened.id == id; });
+    if (at == pads_.end()) continue;
+    const std::unique_ptr<Pad> pad = std::move(*at);
+    pads_.erase(at);
+    end(*pad, Reading::released);
   }
 }
 
@@ -489,8 +528,26 @@ void PadIo::deliver(Pad& pad, Report& report) {
   if (report.time_ns > now_ns_ + kClockSlack_ns) report.time_ns = now_ns_;
   report.time_ns = pad.last_ns = std::max(report.time_ns, pad.last_ns);
   report.device = pad.opened.index;
-  const bool has_id = pad.opened.has_report_ids && report.size > 0;
-  queue_.push(report, has_id ? report.bytes[0] : 0);
+  if (pad.is_stick_awaited) await_stick(pad, report);
+  queue_.push(report, report_id_of(*pad.opened.layout, report));
+}
+
+// A pad that sends and sends but never where its stick is would be a dead one without a word.
+void PadIo::await_stick(Pad& pad, const Report& report) {
+  const ReportLayout* layout = layout_of(*pad.opened.layout, report);
+  if (layout != nullptr && tells_stick(*layout)) {
+    pad.is_stick_awaited = false;
+    return;
+  }
+  if (pad.stickless++ == 0) pad.stickless_since_ns = report.time_ns;
+  if (pad.stickless < kMinStickless || report.time_ns - pad.stickless_since_ns < kStickWait_ns)
+    return;
+  pad.is_stick_awaited = false;
+  const std::uint8_t id = report_id_of(*pad.opened.layout, report);
+  tell_stickless_(
+      pad.opened.id,
+      id == 0 ? pad.opened.name + ": sends reports without a stick"
+              : fmt::format("{}: sends reports without a stick (id {:#04x})", pad.opened.name, id));
 }
 
 // Each change once: a recording contains its own `added` and `removed`.
@@ -518,7 +575,7 @@ void PadIo::end(Pad& pad, Reading how) {
   take_remarks(pad);
   if (how == Reading::failed)
     remarks_.add(pad.opened.name + ": closed, it only reports errors");
-  else if (!pad.opened.is_recording)
+  else if (how == Reading::unplugged && !pad.opened.is_recording)
     remarks_.add(pad.opened.name + ": unplugged");
   give_back_(pad.opened.id, std::move(pad.opened.device));
 }
@@ -581,14 +638,19 @@ Result<std::optional<Keyboard>> opened_keyboard(const PadStreamOptions& options)
 struct PadStream::Impl {
   Impl(PadStreamOptions options, const std::optional<Keyboard>& keyboard)
       : queue(options.ring_reports),
-        io(queue, introductions, counters, remarks,
-           [this](std::uint64_t id, std::unique_ptr<Device> device) {
-             finder.take_back(id, std::move(device));
-           }),
+        io(
+            queue, introductions, counters, remarks,
+            [this](std::uint64_t id, std::unique_ptr<Device> device) {
+              finder.take_back(id, std::move(device));
+            },
+            [this](std::uint64_t id, const std::string& sentence) {
+              finder.tell_stickless(id, sentence);
+            }),
         finder(
             {std::move(options.files), std::move(options.wish), options.drivers, options.changes_fd,
              keyboard ? std::optional(keyboard->known->device.info) : std::nullopt},
-            [this](OpenedPad pad) { io.take_over(std::move(pad)); }, remarks) {}
+            [this](OpenedPad pad) { io.take_over(std::move(pad)); },
+            [this](std::uint64_t id) { io.release(id); }, remarks) {}
   ~Impl();
   void take_over(Keyboard keyboard);
   void take_introduction(std::uint16_t device) noexcept;
@@ -612,6 +674,7 @@ PadStream::Impl::~Impl() {
 void PadStream::Impl::take_over(Keyboard keyboard) {
   OpenedPad opened;
   opened.device = std::move(keyboard.device);
+  opened.layout = keyboard.known->layout;
   opened.known = std::move(keyboard.known);
   opened.is_keyboard = true;
   opened.name = "keyboard";

@@ -172,8 +172,8 @@ std::string claims_json(const std::string& motion, const std::vector<Claim>& cla
     list.push_back(std::move(row));
   }
   const nlohmann::ordered_json all = {{"motion", motion}, {"claims", std::move(list)}};
-  // The motion's file name comes from outside, so invalid UTF-8 is replaced.
-  return all.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  // The motion's file name comes from outside: invalid UTF-8 is replaced, the rest escaped.
+  return all.dump(1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string claims_table(const std::vector<Claim>& claims) {

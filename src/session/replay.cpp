@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/text.h"
+#include "gaitpad/decode.h"
+#include "pads/newest_reports.h"
 #include "session/playback.h"
 #include "session/walk_export.h"
 
@@ -47,16 +50,45 @@ std::vector<ExportedFollower> exported_followers(const SessionSpec& spec,
 }
 
 void run_to_end(const PreparedTrace& prepared, TraceRun& run,
-                std::vector<ExportedFollower>& followers, std::vector<WalkExport>& exports) {
+                std::vector<ExportedFollower>& followers, std::vector<WalkExport>& exports,
+                const ReplayProgress& progress) {
+  constexpr std::int64_t kTicksBetween = 512;
   for (std::int64_t tick = 0; tick < prepared.ticks; ++tick) {
+    if (progress && tick % kTicksBetween == 0) progress(tick, prepared.ticks);
     run.step(prepared.trace);
     for (ExportedFollower& follower : followers) follower.follow(run.simulation());
     for (WalkExport& e : exports) e.write(tick, run.simulation().stick());
   }
 }
 
-std::vector<std::string> remarks_on(const Trace& trace, const SimulationCounts& counts) {
+// Pads of the recording that send reports but never where their stick is.
+void add_stickless(const PreparedTrace& prepared, std::vector<std::string>& remarks) {
+  const std::vector<PadConfig>& pads = prepared.config.pads;
+  std::vector<const TraceEvent*> stickless(pads.size());
+  std::vector<bool> is_told(pads.size());
+  Report report;
+  for (const TraceEvent& event : prepared.trace.events) {
+    if (event.kind != ReportKind::input || event.device >= pads.size()) continue;
+    const PadConfig& pad = pads[event.device];
+    if (is_told[event.device] || !pad.is_usable || !pad.layout) continue;
+    copy_report(prepared.trace, event, report);
+    const ReportLayout* layout = layout_of(*pad.layout, report);
+    is_told[event.device] = layout != nullptr && tells_stick(*layout);
+    stickless[event.device] = &event;
+  }
+  for (std::size_t i = 0; i < pads.size(); ++i) {
+    if (is_told[i] || stickless[i] == nullptr) continue;
+    copy_report(prepared.trace, *stickless[i], report);
+    const DeviceInfo& info = prepared.trace.devices[i].info;
+    remarks.push_back(fmt::format("{}: sends reports without a stick (id {:#04x})",
+                                  in_quotes(info.name), report_id_of(*pads[i].layout, report)));
+  }
+}
+
+std::vector<std::string> remarks_on(const PreparedTrace& prepared, const SimulationCounts& counts) {
+  const Trace& trace = prepared.trace;
   std::vector<std::string> remarks;
+  add_stickless(prepared, remarks);
   if (const auto remark = damage_remark(trace)) remarks.push_back(*remark);
   if (counts.bad_reports > 0) {
     remarks.push_back(fmt::format("{} of {} reports were not what the device's descriptor promises",
@@ -71,7 +103,7 @@ std::vector<std::string> remarks_on(const Trace& trace, const SimulationCounts& 
 
 }  // namespace
 
-Result<ReplayResult> replay(const SessionSpec& spec) {
+Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progress) {
   SessionSpec unseen = spec;
   unseen.walk.shows_crowd = false;
   auto prepared = prepared_trace(unseen);
@@ -91,7 +123,7 @@ Result<ReplayResult> replay(const SessionSpec& spec) {
   auto exports = opened_exports(files, simulation, followers, {rate_hz, *fps, spec.replay.gltf});
   if (!exports) return exports.error();
 
-  run_to_end(*prepared, run, followers, *exports);
+  run_to_end(*prepared, run, followers, *exports, progress);
   ReplayResult result{run_summary(simulation, cast_of(simulation, prepared->config)), {}};
   result.summary.damaged_lines = prepared->trace.skipped_lines;
   std::vector<WalkerSummary> walked = result.summary.walkers;
@@ -103,7 +135,7 @@ Result<ReplayResult> replay(const SessionSpec& spec) {
   if (files) {
     if (auto problem = files->publish()) return *problem;
   }
-  result.remarks = remarks_on(prepared->trace, simulation.counts());
+  result.remarks = remarks_on(*prepared, simulation.counts());
   return result;
 }
 

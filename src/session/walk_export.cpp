@@ -27,6 +27,7 @@ Result<OutputFiles> OutputFiles::open(const std::string& folder) {
 Result<std::ostream*> OutputFiles::add(const std::string& name) {
   File file;
   file.path = (fs::path(folder_) / name).string();
+  remove_leftovers(file.path);
   file.temporary = (fs::path(folder_) / fmt::format(".{}.{}", name, ::getpid())).string();
   std::error_code ignored;
   if (fs::is_directory(file.path, ignored)) return write_error(file.path, EISDIR);
@@ -38,6 +39,7 @@ Result<std::ostream*> OutputFiles::add(const std::string& name) {
 }
 
 Result<std::fstream> OutputFiles::scratch() const {
+  remove_leftovers((fs::path(folder_) / "scratch").string());
   const std::string path = (fs::path(folder_) / fmt::format(".scratch.{}", ::getpid())).string();
   errno = 0;
   std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
@@ -239,7 +241,9 @@ std::optional<Error> WalkExport::finish(const nlohmann::ordered_json& summary) {
   frames_->write(row_.data(), static_cast<std::streamsize>(row_.size()));
   row_.clear();
   poses_->finish();
-  *summary_ << summary.dump(2) << '\n';
+  // The motion's file name comes from outside.
+  *summary_ << summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << '\n';
   if (!gltf_) return std::nullopt;
   const auto problem = gltf_->finish();
   return problem ? std::optional(Error{"pose.glb: " + *problem}) : std::nullopt;

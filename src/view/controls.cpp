@@ -125,7 +125,8 @@ constexpr std::string_view kPrinted = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.,-=+
 constexpr std::array<std::string_view, kButtonCount> kButtonLabels = {
     "A",           "B",       "X",          "Y",          "Back",     "Guide",      "Start",
     "L stick",     "R stick", "L shoulder", "R shoulder", "D-pad up", "D-pad down", "D-pad left",
-    "D-pad right", "Misc",    "Paddle 1",   "Paddle 2",   "Paddle 3", "Paddle 4",   "Touchpad"};
+    "D-pad right", "Misc",    "Paddle 1",   "Paddle 2",   "Paddle 3", "Paddle 4",   "Touchpad",
+    "Misc 2",      "Misc 3",  "Misc 4",     "Misc 5",     "Misc 6"};
 
 constexpr HelpLine kWalkingHelp[] = {
     {"W A S D, arrows", "walk and turn, like a stick"}, {"left stick", "walk and turn"},

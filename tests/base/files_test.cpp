@@ -29,7 +29,27 @@ TEST_F(Files, ReadingIsBounded) {
   EXPECT_EQ(file_text(own_.at("no"), 1).error().message, own_.at("no") + ": no such file");
   const std::string fifo = own_.at("fifo");
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
-  EXPECT_EQ(file_text(fifo, 1).error().message, fifo + ": not a regular file");
+  EXPECT_EQ(file_text(fifo, 1).error().message, fifo + ": not a regular file (a FIFO)");
+}
+
+TEST_F(Files, WhatTheKernelMakesUpAndDevicesAreNotRead) {
+  EXPECT_EQ(file_text("/dev/null", 1).error().message, "/dev/null: not a regular file (a device)");
+  EXPECT_EQ(file_text("/proc/self/maps", 1).error().message,
+            "/proc/self/maps: not a regular file (the kernel makes it up)");
+}
+
+// 4194304 is beyond the largest process number that Linux gives.
+TEST_F(Files, WhatAKilledProcessLeftIsRemovedByTheNextOne) {
+  const std::string own = std::to_string(::getpid());
+  own_.write(".a.toml.4194305", "half");
+  own_.write(".a.toml.4194305.old", "half");
+  own_.write(".a.toml." + own + "0000000", "no process number");
+  own_.write(".b.toml.4194305", "of another file");
+  own_.write(".a.toml.1", "of a process that runs");
+  EXPECT_FALSE(save_text(own_.at("a.toml"), "whole"));
+  EXPECT_EQ(own_.entries(), 4);
+  EXPECT_FALSE(write_file(own_.at("b.toml"), "whole"));
+  EXPECT_EQ(own_.entries(), 4) << "b.toml came, its temporary file went";
 }
 
 TEST_F(Files, WritingReplacesTheFileAndLeavesNothingBeside) {

@@ -55,9 +55,48 @@ TEST(Text, Utf8IsWholeCharacters) {
 }
 
 TEST(Text, AQuoteIsPrintableAndShort) {
-  EXPECT_EQ(in_quotes("a\tb"), "\"a?b\"");
+  EXPECT_EQ(in_quotes("a\tb"), "\"a\\x09b\"");
   EXPECT_EQ(in_quotes(std::string(61, 'x')), "\"" + std::string(60, 'x') + "...\"");
   EXPECT_EQ(lower_case("Left\xc3\x84"), "left\xc3\x84");
+}
+
+TEST(Text, NothingThatCommandsATerminalIsPrintable) {
+  EXPECT_EQ(printable("\x1b[31m\x7f"), "\\x1b[31m\\x7f");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "2J \xc2\xa0"),
+            "\\u009b2J \xc2\xa0")
+      << "C1";
+  EXPECT_EQ(printable("\xe2\x80\xae"
+                      "a\xe2\x81\xa6\xd8\x9c\xef\xbb\xbf"),
+            "\\u202ea\\u2066\\u061c\\ufeff")
+      << "directions";
+  EXPECT_EQ(printable("\xe2\x80\xa8"), "\\u2028") << "line separator";
+  EXPECT_EQ(printable("\x9b\xff\xc3"), "\\x9b\\xff\\xc3") << "no UTF-8";
+  EXPECT_EQ(printable("\xc3\xa4\xe2\x82\xac\xf0\x9f\x8e\xae\\"),
+            "\xc3\xa4\xe2\x82\xac\xf0\x9f\x8e\xae\\");
+  EXPECT_EQ(printable(printable("\x1b")), printable("\x1b"));
+  EXPECT_EQ(printable_lines("a\x07\n\nb"), "a\\x07\n\nb");
+  std::string quoted;
+  for (int i = 0; i < 21; ++i) quoted += "\xe2\x82\xac";
+  EXPECT_EQ(in_quotes("x" + quoted), "\"x" + quoted.substr(0, 57) + "...\"");
+}
+
+// Of random bytes nothing is left that is no character, a control character, C1 or a direction.
+TEST(Text, RandomBytesArePrintable) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 2000; ++i) {
+    std::string text;
+    for (int k = 0; k < 40; ++k) text += static_cast<char>(random() % 3 == 0 ? 0xe2 : random());
+    const std::string shown = printable(text);
+    EXPECT_TRUE(is_utf8(shown));
+    for (std::size_t at = 0; at < shown.size(); ++at) {
+      const auto byte = static_cast<unsigned char>(shown[at]);
+      EXPECT_FALSE(byte < 0x20 || byte == 0x7f);
+      if (byte == 0xc2 && at + 1 < shown.size())
+        EXPECT_GE(static_cast<unsigned char>(shown[at + 1]), 0xa0);
+    }
+    EXPECT_EQ(shown.find("\xe2\x80\xae"), std::string::npos);
+  }
 }
 
 TEST(Text, FixedDigitsAreThoseOfPrintf) {

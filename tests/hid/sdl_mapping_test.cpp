@@ -423,7 +423,8 @@ std::vector<KnownPad> known_pads() {
       const auto trace = read_trace(path);
       if (!trace || trace->devices.size() != 1) continue;
       auto layout = pad_layout(trace->devices[0].info, overrides);
-      if (!layout || !layout->is_pad) continue;
+      // A pad that is vendor data to its own descriptor has no numbers.
+      if (!layout || !layout->is_pad || !pad_application(layout->descriptor)) continue;
       pads.push_back({path, trace->devices[0].info, std::move(*layout)});
     }
   }
@@ -663,6 +664,68 @@ TEST(SdlMappingWrite, WhatTheKernelsOwnDriverNumbersIsNotGuessed) {
             "(/dev/input/event...)");
   pad.device.version = 0x0111;
   EXPECT_TRUE(sdl_mapping_text(pad.device, pad.layout));
+}
+
+// ---- Choosing a line
+
+constexpr const char* kDataBase =
+    "# Game Controller DB\r\n"
+    "03000000091200000100000010010000,By position,a:b0,b:b1,hint:!SDL_GAMECONTROLLER_USE_BUTTON_"
+    "LABELS:=1,platform:Linux,\r\n"
+    "03000000091200000100000010010000,By "
+    "label,a:b1,b:b0,hint:SDL_GAMECONTROLLER_USE_BUTTON_LABELS:="
+    "1,platform:Linux,\r\n"
+    "03000000091200000100000011810000,The kernel's,a:b4,platform:Linux,\n"
+    "03000000091200000200000010010000,Of one name,a:b5,crc:9f49,platform:Linux,\n"
+    "03000000091200000200000000000000,Other version,a:b6,platform:Linux,\n"
+    "03000000091200000300000000006800,SDL's own driver,a:b7,platform:Linux,\n"
+    "03000000091200000400000010010000,Windows,a:b8,platform:Windows,\n"
+    "05000000091200000400000010010000,Bluetooth,a:b9,platform:Linux,\n"
+    "no line at all\n";
+
+DeviceInfo pad_of(std::uint16_t product, std::uint16_t version, BusType bus = BusType::usb) {
+  DeviceInfo info;
+  info.bus = bus;
+  info.vendor = 0x1209;
+  info.product = product;
+  info.version = version;
+  info.name = "Example Walk Pad";
+  info.driver = "evdev";
+  return info;
+}
+
+std::string name_in(const std::string& line) {
+  const std::size_t comma = line.find(',');
+  return comma == std::string::npos ? line
+                                    : line.substr(comma + 1, line.find(',', comma + 1) - comma - 1);
+}
+
+TEST(SdlDataBase, ALineIsChosenAsSdlChoosesIt) {
+  const auto lines = mapping_lines(kDataBase);
+  EXPECT_EQ(lines.size(), 7u) << "comments, Windows and junk are left out";
+  const auto chosen = [&lines](const DeviceInfo& info) {
+    return name_in(fitting_mapping(lines, info));
+  };
+  EXPECT_EQ(chosen(pad_of(1, 0x0110)), "By position");
+  EXPECT_EQ(chosen(pad_of(1, 0x0200)), "By position") << "of another version";
+  EXPECT_EQ(chosen(pad_of(1, 0x8111)), "The kernel's");
+  EXPECT_EQ(chosen(pad_of(2, 0x0110)), "Of one name");
+  DeviceInfo other = pad_of(2, 0x0110);
+  other.name = "Another";
+  EXPECT_EQ(chosen(other), "Other version");
+  EXPECT_EQ(chosen(pad_of(3, 0)), "");
+  EXPECT_EQ(chosen(pad_of(4, 0x0110)), "");
+  EXPECT_EQ(chosen(pad_of(4, 0x0110, BusType::bluetooth)), "Bluetooth");
+  DeviceInfo raw = pad_of(1, 0x8111);
+  raw.driver = "hidraw";
+  EXPECT_EQ(chosen(raw), "By position") << "the pad's own controls, not the kernel's";
+}
+
+TEST(SdlDataBase, AnImportReplacesLinesOfTheSamePadAlone) {
+  const std::vector<std::string> own = {std::string(31, '0') + "1,mine",
+                                        std::string(31, '0') + "2,mine"};
+  const std::vector<std::string> given = {std::string(31, '0') + "2,given"};
+  EXPECT_EQ(merged_mappings(given, own), (std::vector<std::string>{given[0], own[0]}));
 }
 
 }  // namespace

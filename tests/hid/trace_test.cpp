@@ -134,7 +134,7 @@ TEST(Trace, DamageIsRefusedWithFileAndLine) {
   EXPECT_EQ(cause("# only a comment\n"), "t.hid: no device: there is no R: line");
   EXPECT_EQ(cause("\x7f"
                   "ELF\x02"),
-            "t.hid:1: \"?ELF?\" is no line of a trace");
+            "t.hid:1: \"\\x7fELF\\x02\" is no line of a trace");
   EXPECT_EQ(cause("R: 2 c0\n"), "t.hid:1: report descriptor: the length says 2 but 1 bytes follow");
   EXPECT_EQ(cause("R: 1 cg\n"),
             "t.hid:1: report descriptor: \"cg\" is no byte of two hexadecimal digits");
@@ -266,7 +266,7 @@ TEST(Trace, ForeignToolsCanReplayWhatWeWrite) {
 TEST(Trace, FilesThatAreNoneAreNamed) {
   EXPECT_EQ(read_trace("/nonexistent/x.hid").error().message,
             "/nonexistent/x.hid: there is no such file");
-  EXPECT_EQ(read_trace("/").error().message, "/: this is no file, a trace was expected");
+  EXPECT_EQ(read_trace("/").error().message, "/: not a regular file (a folder)");
   EXPECT_EQ(write_trace(parsed(kHeader), "/nonexistent/x.hid").error().message,
             "/nonexistent/x.hid: cannot be opened for writing");
 }

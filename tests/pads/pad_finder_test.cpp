@@ -506,5 +506,99 @@ TEST_F(RecordingAsPad, WithoutAnyStickIsAnError) {
             options.wish.pad + ": none of its devices is a pad with a stick");
 }
 
+// --- pads that are joined, and pads that do not tell their stick
+
+// Two pads and a device that joins them, as hidraw lists a pair of Joy-Cons.
+struct JoinedPads {
+  explicit JoinedPads(FakeBus& bus)
+      : left(bus.make(kHidraw, "L", "pL")),
+        right(bus.make(kHidraw, "R", "pR")),
+        pair(bus.make(kHidraw, "L+R", "pair")) {
+    pair->listing.parts = {"/sys/pL", "/sys/pR"};
+  }
+  FakeBus::Pad left, right, pair;
+};
+
+TEST_F(PadChoice, APairIsChosenForBothItsPartsUnlessOneIsWished) {
+  const JoinedPads pads(bus_);
+  bus_.show(kHidraw, pads.pair);
+  bus_.show(kHidraw, pads.left);
+  bus_.show(kHidraw, pads.right);
+  see(kEvdev, "R", "pR");
+  EXPECT_EQ(chosen(), "/dev/hidraw-pair ");
+  EXPECT_EQ(chosen({"/dev/hidraw-pL", ""}), "/dev/hidraw-pL ");
+  EXPECT_EQ(chosen({"walk", ""}), "/dev/hidraw-pair ") << "one pad, not three";
+}
+
+TEST_F(PadStreamTest, ASinglePadMakesWayForThePairAndComesBackWithoutIt) {
+  const JoinedPads pads(bus_);
+  bus_.show(kHidraw, pads.left);
+  start();
+  expect(ReportKind::added, 0);
+  bus_.show(kHidraw, pads.pair);
+  bus_.show(kHidraw, pads.right);
+  expect(ReportKind::removed, 0);
+  expect(ReportKind::added, 1);
+  EXPECT_EQ(stream_->device(1).info.unique_id, "L+R");
+  pads.pair->send_axes(9, 0);
+  expect_x(1, 9);
+  // The right one goes, and with it the pair.
+  bus_.unplug(pads.right);
+  bus_.unplug(pads.pair);
+  expect(ReportKind::removed, 1);
+  EXPECT_TRUE(is_told("unplugged"));
+  expect(ReportKind::added, 0);
+}
+
+// Report 1 has the stick; what comes is vendor data with the id 30.
+FakeBus::Pad stickless(FakeBus& bus, int driver) {
+  auto pad = bus.make(driver, "A", "port1");
+  pad->listing.info.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0x01, 0x15,
+                                  0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x09,
+                                  0x30, 0x09, 0x31, 0x81, 0x02, 0x85, 0x30, 0x06, 0x00,
+                                  0xff, 0x09, 0x01, 0x95, 0x04, 0x81, 0x02, 0xc0};
+  return pad;
+}
+void send_vendor_data(const FakeBus::Pad& pad) {
+  for (int i = 0; i < 30; ++i) {
+    pad->send({0x30, static_cast<std::uint8_t>(i), 0, 0, 0});
+    std::this_thread::sleep_for(std::chrono::milliseconds(40));
+  }
+}
+
+TEST_F(PadStreamTest, APadThatNeverTellsItsStickIsNamedAndTheNextDriverServesIt) {
+  auto raw = stickless(bus_, kHidraw);
+  bus_.show(kHidraw, raw);
+  auto cooked = bus_.plug(kEvdev, "A", "port1");
+  start();
+  expect(ReportKind::added, 0);
+  send_vendor_data(raw);
+  EXPECT_TRUE(
+      is_told("\"Example Walk Pad\" (hidraw, /dev/hidraw-port1): sends reports without a "
+              "stick (id 0x30)"));
+  Report report = next();
+  while (report.kind == ReportKind::input) report = next();
+  EXPECT_EQ(report.kind, ReportKind::removed);
+  expect(ReportKind::added, 1);
+  EXPECT_EQ(stream_->device(1).info.driver, "evdev");
+  cooked->send_axes(7, 0);
+  expect_x(1, 7);
+}
+
+TEST_F(PadStreamTest, AStickThatIsToldLateOrASilentPadIsNoCauseForARemark) {
+  auto pad = stickless(bus_, kHidraw);
+  bus_.show(kHidraw, pad);
+  start();
+  expect(ReportKind::added, 0);
+  for (int i = 0; i < 3; ++i) {
+    pad->send({0x30, 0, 0, 0, 0});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
+  pad->send({0x01, 0x80, 0x80});
+  send_vendor_data(pad);
+  for (int i = 0; i < 34; ++i) next();
+  for (const std::string& remark : stream_->take_remarks()) ADD_FAILURE() << remark;
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cstdlib>
 #include <filesystem>
 
 #include "tests/own_folder.h"
@@ -309,6 +310,40 @@ TEST_F(PadSetup, DamagedFilesAreErrorsThatNameThem) {
   EXPECT_EQ(by_hand.error().message, damaged + ":1: unknown key \"unknown\"");
   EXPECT_FALSE(load_pad_files({folder_}, damaged, ""));
   EXPECT_FALSE(load_pad_files({folder_}, "/nonexistent.toml", ""));
+}
+
+// What the environment says, for as long as this lives.
+struct Variable {
+  Variable(const char* name, const std::string& value) : name(name) {
+    ::setenv(name, value.c_str(), 1);
+  }
+  ~Variable() { ::unsetenv(name); }
+  const char* name;
+};
+
+TEST_F(PadSetup, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
+  const std::string guid = "03000000091200000100000000000000,Mine,";
+  const std::string in_file = guid + "leftx:a2,lefty:a3,platform:Linux,",
+                    in_line = guid + "leftx:a1,lefty:a0,platform:Linux,";
+  const Variable file("SDL_GAMECONTROLLERCONFIG_FILE", write("db.txt", "# x\n" + in_file + "\n"));
+  for (const char* driver : {"hidraw", "evdev", "usb", "sdl"}) {
+    DeviceInfo info = made_pad();
+    info.driver = driver;
+    EXPECT_EQ(recorded(files(), info).info.mapping, in_file) << driver;
+    const Variable line("SDL_GAMECONTROLLERCONFIG", in_line);
+    EXPECT_EQ(recorded(files(), info).info.mapping, in_line) << driver;
+  }
+  EXPECT_TRUE(remarks_.empty());
+  // config/pads knows more than a line can say.
+  const PadFiles mapped = files(write("map.toml", "[[pad]]\nvendor = 0x1209\n"));
+  EXPECT_TRUE(recorded(mapped, made_pad()).info.mapping.empty());
+}
+
+TEST_F(PadSetup, ADataBaseThatCannotBeReadIsToldOf) {
+  const Variable file("SDL_GAMECONTROLLERCONFIG_FILE", folder_);
+  recorded(files(), made_pad());
+  ASSERT_EQ(remarks_.size(), 1u);
+  EXPECT_NE(remarks_[0].find("not a regular file (a folder)"), std::string::npos);
 }
 
 }  // namespace

@@ -225,6 +225,20 @@ def test_imports_and_exports_other_tools_words(user):
     user.refused("--trace", trace, "--import", user.folder / "junk", says="junk")
 
 
+def test_imports_a_whole_data_base_without_a_pad(user):
+    guid = "0300000009120000{:02x}00000010010000,Pad {},a:b0,platform:{},\n"
+    lines = [guid.format(n, n, "Linux" if n % 2 else "Windows") for n in range(10)]
+    (user.folder / "gamecontrollerdb.txt").write_text("# SDL\n" + "".join(lines))
+    done = user.run("calibrate", "--import", user.folder / "gamecontrollerdb.txt")
+    assert "5 Linux mappings taken over; 5 are in" in done.stderr
+    own = next(user.folder.rglob("gaitpad/gamecontrollerdb.txt"))
+    assert own.read_text().count("platform:Linux") == 5
+    (user.folder / "more.txt").write_text(guid.format(1, "new", "Linux") + guid.format(20, "more", "Linux"))
+    user.run("calibrate", "--import", user.folder / "more.txt")
+    assert own.read_text().count("platform:Linux") == 6
+    assert "Pad new" in own.read_text() and "Pad 1," not in own.read_text()
+
+
 def test_refusals_are_one_sentence_and_lose_nothing(user):
     good = user.trace(serial=SERIAL)
     user.calibrated("--trace", good)

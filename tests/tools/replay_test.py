@@ -7,6 +7,7 @@ import resource
 import pytest
 
 from support import traces
+from support.terminal import Terminal
 from support.traces import RATE_HZ, end
 from support.walk import COLUMNS
 
@@ -359,3 +360,12 @@ def test_a_crowd_has_files_of_its_first_members_and_one_hash(made):
 ])
 def test_a_crowd_that_cannot_be_is_refused(made, refuse, options, says):
     refuse("replay", made.write("made.hid", WALK), "--out", made.out, *options, says=says, status=2)
+
+
+def test_a_long_gap_takes_the_time_of_its_ticks_and_shows_progress(program, made):
+    minutes = 5
+    path = made.write("gap.hid", HEADER + report(0) + report(60 * minutes) + end(60 * minutes))
+    with Terminal(program, "replay", path) as terminal:
+        terminal.wait_for(rf"replay: \d+ % of {60 * minutes * RATE_HZ}\d* ticks, \d+ ticks a second", 60)
+        assert terminal.wait_end(120) == 0
+    assert f"{60 * minutes * RATE_HZ}" in terminal.text

@@ -334,15 +334,13 @@ nlohmann::ordered_json analysis_json(const DeviceInfo& device, const PadAnalysis
 
 // --- the files around a calibration
 
-constexpr std::size_t kMaxImportBytes = std::size_t{1} << 20;
-
 Result<std::string> import_text(const std::string& source) {
-  if (source != "-") return file_text(source, kMaxImportBytes);
+  if (source != "-") return file_text(source, kMaxMappingFileBytes);
   std::string text;
   char bytes[4096];
   while (const std::size_t count = std::fread(bytes, 1, sizeof bytes, stdin)) {
     text.append(bytes, count);
-    if (text.size() > kMaxImportBytes) return Error{"standard input: more than 1 MiB"};
+    if (text.size() > kMaxMappingFileBytes) return Error{"standard input: more than 8 MiB"};
   }
   return text;
 }
@@ -386,18 +384,49 @@ int print_or_save(const std::string& target, const CalibrationFile& file,
   }
   if (const auto problem = save_calibration(target, file, comments))
     return fail(kCommand, problem->message);
-  fmt::print(stderr, "gaitpad calibrate: written to {}\n", target);
+  print_remarks(kCommand, {"written to " + target});
+  return 0;
+}
+
+// Whether the text is a data base: it has Linux lines for different pads.
+bool is_data_base(const std::vector<std::string>& lines) {
+  return std::ranges::any_of(lines, [&lines](const std::string& line) {
+    return line.substr(0, line.find(',')) != lines.front().substr(0, lines.front().find(','));
+  });
+}
+
+// --import of a gamecontrollerdb.txt without a pad: every Linux line goes to the user's own file.
+int import_data_base(const std::string& source, const std::vector<std::string>& lines) {
+  const std::string target = user_mapping_file();
+  if (target.empty()) return fail(kCommand, "neither XDG_CONFIG_HOME nor HOME is a folder");
+  std::vector<std::string> own;
+  std::error_code ignored;
+  if (std::filesystem::exists(target, ignored)) {
+    const auto text = file_text(target, kMaxMappingFileBytes);
+    if (!text) return fail(kCommand, text.error().message);
+    own = mapping_lines(*text);
+  }
+  std::string text = "# Mappings of SDL's controller data base, by gaitpad calibrate --import\n";
+  const std::vector<std::string> all = merged_mappings(lines, own);
+  for (const std::string& line : all) text += line + "\n";
+  if (const auto problem = write_file(target, text)) return fail(kCommand, problem->message);
+  print_remarks(kCommand, {fmt::format("{}: {} Linux mappings taken over; {} are in {} now", source,
+                                       lines.size(), all.size(), target)});
   return 0;
 }
 
 // --import, for the pad of the recordings, else for the wished one. Returns the exit status.
 int import_calibration(const CalibrateArguments& arguments, const PadFiles& files) {
+  const std::string origin = arguments.import == "-" ? "standard input" : arguments.import;
+  auto given = import_text(arguments.import);
+  if (!given) return fail(kCommand, given.error().message);
+  const bool is_for_a_pad =
+      !arguments.wish.pad.empty() || !arguments.traces.empty() || !arguments.out.empty();
+  if (const auto lines = mapping_lines(*given); !is_for_a_pad && is_data_base(lines))
+    return import_data_base(origin, lines);
   auto pad = named_pad(arguments, files);
   if (!pad) return fail(kCommand, pad.error().message);
-  auto text = import_text(arguments.import);
-  if (!text) return fail(kCommand, text.error().message);
-  const std::string source = arguments.import == "-" ? "standard input" : arguments.import;
-  auto imported = calibration_import(*text, source, pad->info, pad->layout);
+  auto imported = calibration_import(*given, origin, pad->info, pad->layout);
   if (!imported) return fail(kCommand, imported.error().message);
   CalibrationFile file = calibration_for(pad->info, pad->has_factory_sticks);
   auto target = calibration_target(arguments.out, file);
@@ -412,7 +441,7 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   } else {
     file.mapping = imported->mapping;
   }
-  return print_or_save(*target, file, {"Imported from " + printable(source)});
+  return print_or_save(*target, file, {"Imported from " + printable(origin)});
 }
 
 // --export-sdl, the same way.
@@ -424,7 +453,7 @@ int export_sdl(const CalibrateArguments& arguments, const PadFiles& files) {
   const FoundCalibration found = find_calibration(own, identity_of(pad->info));
   auto line = sdl_mapping_text(pad->info, pad->layout, stick_axes(found.file.calibration));
   if (!line) return fail(kCommand, line.error().message);
-  fmt::print("{}\n", *line);
+  fmt::print("{}\n", printable(*line));
   return 0;
 }
 
@@ -452,8 +481,8 @@ std::optional<Error> draw(const CalibrateArguments&, const GuidedPad&, const Pad
 
 void print_changes(const std::vector<std::string>& changes, const std::string& since) {
   fmt::print("\n");
-  if (changes.empty()) fmt::print("nothing that was seen has changed since {}\n", since);
-  for (const std::string& change : changes) fmt::print("{}\n", change);
+  if (changes.empty()) fmt::print("nothing that was seen has changed since {}\n", printable(since));
+  for (const std::string& change : changes) fmt::print("{}\n", printable(change));
 }
 
 // A problem that a person should know before the guided steps, not after them.
@@ -597,6 +626,7 @@ void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
 void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
   auto* import = command.add_option("--import", arguments.import,
                                     "takes over a jscal line, evdev's absinfo or an SDL mapping; "
+                                    "without PAD all Linux lines of a gamecontrollerdb.txt; "
                                     "- for standard input");
   auto* export_sdl = command.add_flag("--export-sdl", arguments.exports_sdl,
                                       "prints the pad as SDL's mapping line");

@@ -131,7 +131,7 @@ void print_descriptor_text(const DecodedDevice& device) {
              info.vendor, info.product, device.layout.is_pad ? "a pad" : "no pad",
              info.descriptor.size());
   if (!device.layout.override_origin.empty()) {
-    fmt::print("controls by {}\n", device.layout.override_origin);
+    fmt::print("controls by {}\n", printable(device.layout.override_origin));
   }
   fmt::print("{:<8} {:>2} {:>7} {:>5} {:>5}  {:<9} {:>12} {:>12}\n", "kind", "id", "bit", "size",
              "count", "usage", "min", "max");

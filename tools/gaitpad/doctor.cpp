@@ -369,7 +369,7 @@ void print_text(const std::vector<Finding>& list) {
   for (const Finding& f : list) {
     fmt::print("{:<8} {}{}{}{}\n", state_name(f.state),
                f.device.empty() ? "" : printable(f.device) + ": ", printable(f.cause),
-               f.fix.empty() ? "" : "; fix: ", f.fix);
+               f.fix.empty() ? "" : "; fix: ", printable(f.fix));
   }
 }
 

@@ -35,7 +35,8 @@ void print_summary(const std::vector<Claim>& claims, const std::string& folder) 
     fmt::print("{:<6} mode: {} pass, {} fail, {} cannot be tested with this motion\n",
                name_of(mode), passed, broken, untested);
   }
-  fmt::print("figures 2, 3, 4, 5a and 5b and claims.json (with the reasons) are in {}\n", folder);
+  fmt::print("figures 2, 3, 4, 5a and 5b and claims.json (with the reasons) are in {}\n",
+             printable(folder));
 }
 
 int run(const FiguresArguments& arguments) {

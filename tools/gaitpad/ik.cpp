@@ -10,6 +10,7 @@
 
 #include "files/toml_file.h"
 #include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/print.h"
 
 namespace gaitpad {
 namespace {
@@ -97,10 +98,7 @@ void print_csv(const Task& task, const IkTrace& trace) {
 
 int run(const std::string& path, const std::string& mode) {
   const auto task = load_task(path);
-  if (!task) {
-    fmt::print(stderr, "{}\n", task.error().message);
-    return 1;
-  }
+  if (!task) return fail("ik", task.error().message);
   const auto rows = static_cast<std::size_t>(task->max_iterations) + 1;
   std::vector<IkAngles> angles_rad(rows);
   std::vector<double> error_m(rows);
@@ -111,8 +109,8 @@ int run(const std::string& path, const std::string& mode) {
                           : result.status == IkStatus::not_finite ? "a number is not finite"
                                                                   : "the goal is not reached";
   if (result.status != IkStatus::converged) {
-    fmt::print(stderr, "{}: {}: {:.9g} m off after {} iterations\n", path, why, result.error_m,
-               result.iterations);
+    print_remarks("ik", {fmt::format("{}: {}: {:.9g} m off after {} iterations", path, why,
+                                     result.error_m, result.iterations)});
   }
   return result.status == IkStatus::not_finite ? 1 : 0;
 }

@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
+#include <sstream>
 #include <system_error>
 
+#include "base/text.h"
 #include "tools/gaitpad/commands.h"
 
 namespace {
@@ -20,6 +22,16 @@ void hold_standard_descriptors() {
     if (::fcntl(fd, F_GETFD) < 0)
       static_cast<void>(::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY));
   }
+}
+
+// Help and version on standard output, a wrong usage on standard error. It may quote any argument.
+int tell(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream help, usage;
+  const bool is_done = app.exit(error, help, usage) == 0;
+  std::fputs(gaitpad::printable_lines(help.str()).c_str(), stdout);
+  std::fputs(gaitpad::printable_lines(usage.str()).c_str(), stderr);
+  if (!is_done) return kWrongUsage;
+  return std::fflush(stdout) == 0 ? 0 : kFailed;
 }
 
 bool is_flushed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
@@ -51,7 +63,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kWrongUsage;
+    return tell(app, error);
   } catch (const std::system_error&) {  // fmt::print on a full disk
     is_written = false;
   }

@@ -120,15 +120,15 @@ std::string gait_text(const Result<GaitCycle>& cycle) {
 void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {
   const double rate_hz = 1.0 / motion.frame_time_s;
   const std::size_t frames = motion.frames.size();
-  fmt::print("motion        {}\n", motion.name);
+  fmt::print("motion        {}\n", printable(motion.name));
   fmt::print("units         1 unit = {:.6g} m\n", motion.metres_per_unit);
   fmt::print("rate          {:.6g} Hz, {} frames, {:.2f} s\n", rate_hz, frames,
              static_cast<double>(frames) * motion.frame_time_s);
   fmt::print("joints        {} (pelvis {})\n", joint_names(motion).size(),
-             motion.skeleton.joints[motion.pelvis].name);
+             printable(motion.skeleton.joints[motion.pelvis].name));
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegJoints& leg = motion.legs[side];
-    const auto name = [&](int joint) { return motion.skeleton.joints[joint].name; };
+    const auto name = [&](int joint) { return printable(motion.skeleton.joints[joint].name); };
     fmt::print("{:<5} leg     {} - {} - {} - {}, thigh + shank {:.3f} m\n", kSideNames[side],
                name(leg.hip), name(leg.knee), name(leg.ankle), name(leg.toe),
                leg_length_m(motion, leg));
@@ -139,7 +139,7 @@ void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {
     fmt::print("{:<5} flight  {}{}; by the paper's rule {}\n", kSideNames[side], heel_off,
                flight_text(flight), flight_text(paper_flight(motion, side)));
   }
-  fmt::print("gait          {}\n", gait_text(cycle));
+  fmt::print("gait          {}\n", printable(gait_text(cycle)));
 }
 
 Result<Motion> chosen_motion(const MotionArguments& arguments) {
@@ -151,10 +151,7 @@ Result<Motion> chosen_motion(const MotionArguments& arguments) {
 
 int run_motion(const MotionArguments& arguments) {
   const auto motion = chosen_motion(arguments);
-  if (!motion) {
-    fmt::print(stderr, "gaitpad: {}\n", motion.error().message);
-    return 1;
-  }
+  if (!motion) return fail("motion", motion.error().message);
   const Result<GaitCycle> cycle =
       arguments.file == "procedural" ? procedural_gait() : gait_cycle(*motion);
   if (!arguments.as_json) {

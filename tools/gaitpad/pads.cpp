@@ -132,7 +132,7 @@ void print_table(const std::vector<std::vector<std::string>>& table) {
     std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
     line.erase(line.find_last_not_of(' ') + 1);
-    fmt::print("{}\n", line);
+    fmt::print("{}\n", printable(line));
   }
 }
 
@@ -157,7 +157,7 @@ void print_text(const std::vector<Row>& rows, const PadWish& wish) {
     print_table(table);
   }
   for (const auto& [driver, problem] : missing_drivers(wish))
-    fmt::print("{}: {}\n", driver, problem);
+    fmt::print("{}: {}\n", driver, printable(problem));
   if (std::ranges::any_of(rows, &Row::is_chosen)) fmt::print("* is the one that play takes\n");
 }
 

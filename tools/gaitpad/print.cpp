@@ -12,7 +12,7 @@ void print_remarks(std::string_view command, const std::vector<std::string>& rem
                    StatusLine* line) {
   if (line && !remarks.empty()) line->clear();
   for (const std::string& remark : remarks)  // a remark that nobody can read is no failure
-    std::fputs(fmt::format("gaitpad {}: {}\n", command, remark).c_str(), stderr);
+    std::fputs(fmt::format("gaitpad {}: {}\n", command, printable(remark)).c_str(), stderr);
 }
 
 int fail(std::string_view command, const std::string& sentence) {
@@ -21,11 +21,11 @@ int fail(std::string_view command, const std::string& sentence) {
 }
 
 void print_json_line(const ordered_json& object) {
-  fmt::print("{}\n", object.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+  fmt::print("{}\n", object.dump(-1, ' ', true, ordered_json::error_handler_t::replace));
 }
 
 void print_json(const ordered_json& value) {
-  fmt::print("{}\n", value.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+  fmt::print("{}\n", value.dump(2, ' ', true, ordered_json::error_handler_t::replace));
 }
 
 void print_summaries_json(const std::vector<ordered_json>& summaries) {
@@ -51,7 +51,7 @@ ordered_json axes_json(const PadState& state) {
 }
 
 void print_session(const std::string& source, const RunSummary& run) {
-  fmt::print("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {:016x}\n", source,
+  fmt::print("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {:016x}\n", printable(source),
              run.reports, run.ticks, run.rate_hz, static_cast<double>(run.ticks) / run.rate_hz,
              run.pose_hash);
   if (run.crowd > 0) fmt::print("a crowd of {} behind character 1\n", run.crowd);
@@ -60,7 +60,7 @@ void print_session(const std::string& source, const RunSummary& run) {
 void print_character(const RunSummary& run, std::size_t walker, Way way) {
   const WalkerSummary& w = run.walkers[walker];
   fmt::print("character {}: {}, style {} at the end, leg {:.3f} m: {}{} steps, {} IK failures\n",
-             walker + 1, w.motion, w.style, w.leg_length_m,
+             walker + 1, printable(w.motion), printable(w.style), w.leg_length_m,
              way == Way::shown ? fmt::format("{:.1f} m in ", w.distance_m) : "",
              w.steps[0] + w.steps[1], w.ik_failures);
 }

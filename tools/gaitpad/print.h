@@ -16,12 +16,13 @@ namespace gaitpad {
 
 // Prints `gaitpad COMMAND: SENTENCE` on standard error and returns the exit status 1.
 int fail(std::string_view command, const std::string& sentence);
-// The same for each remark, and no exit status. A status line that is being shown is cleared first.
+// The same for each remark, and no exit status. Each sentence is made printable(): it may quote names
+// of devices and files. A status line that is being shown is cleared first.
 void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
                    StatusLine* line = nullptr);
 
 // JSON on one line, and indented. Texts of devices may hold any bytes: what is not UTF-8 is
-// replaced.
+// replaced, and what is not ASCII is escaped, so that no text commands a terminal.
 void print_json_line(const nlohmann::ordered_json& object);
 void print_json(const nlohmann::ordered_json& value);
 // One object for one character, else a list.

@@ -3,8 +3,11 @@
 #include "gaitpad/replay.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 
@@ -31,15 +34,49 @@ void print_text(const SessionSpec::Replay& wanted, const RunSummary& run) {
   for (std::size_t i = 0; i < run.walkers.size(); ++i) {
     print_character(run, i, Way::shown);
     if (wanted.out.empty()) continue;
-    if (wanted.gltf) fmt::print("  {}/{}\n", wanted.out, numbered_name("pose", ".glb", i));
-    fmt::print("  {0}/{1}  {0}/{2}  {0}/{3}\n", wanted.out, numbered_name("pose", ".bvh", i),
-               numbered_name("frames", ".csv", i), numbered_name("summary", ".json", i));
+    if (wanted.gltf)
+      fmt::print("  {}/{}\n", printable(wanted.out), numbered_name("pose", ".glb", i));
+    fmt::print("  {0}/{1}  {0}/{2}  {0}/{3}\n", printable(wanted.out),
+               numbered_name("pose", ".bvh", i), numbered_name("frames", ".csv", i),
+               numbered_name("summary", ".json", i));
   }
 }
 
+// How far a long replay is: a line on the terminal, and its speed at the end.
+class Progress {
+ public:
+  void show(std::int64_t done, std::int64_t ticks) {
+    ticks_ = ticks;
+    const Clock::time_point now = Clock::now();
+    if (now < next_) return;
+    next_ = now + std::chrono::milliseconds(200);
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    line_.show(fmt::format("replay: {:.0f} % of {} ticks, {:.0f} ticks a second",
+                           100.0 * static_cast<double>(done) / static_cast<double>(ticks), ticks,
+                           static_cast<double>(done) / seconds));
+  }
+  void finish() {
+    line_.clear();
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (seconds < 5.0) return;
+    print_remarks(kCommand, {fmt::format("{} ticks in {:.1f} s, {:.0f} ticks a second", ticks_,
+                                         seconds, static_cast<double>(ticks_) / seconds)});
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  StatusLine line_{STDERR_FILENO};
+  std::int64_t ticks_ = 0;
+  Clock::time_point start_ = Clock::now(), next_ = start_ + std::chrono::seconds(1);
+};
+
 // The files and the summary.
 int run_through(const ReplayArguments& arguments) {
-  const auto result = replay(arguments.spec);
+  Progress progress;
+  const auto result = replay(arguments.spec, [&progress](std::int64_t done, std::int64_t ticks) {
+    progress.show(done, ticks);
+  });
+  progress.finish();
   if (!result) return fail(kCommand, result.error().message);
   print_remarks(kCommand, result->remarks);
   if (arguments.json) {

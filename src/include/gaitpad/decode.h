@@ -101,6 +101,8 @@ std::vector<std::size_t> pad_fields(const ReportDescriptor& descriptor);
 
 // ---- Decoding
 
+// Whether a report of this layout tells where the left stick is.
+bool tells_stick(const ReportLayout& layout) noexcept;
 // How this report is read. Null if it is too short, has an unknown id or is no input report.
 const ReportLayout* layout_of(const PadLayout& layout, const Report& report) noexcept;
 // Updates the controls that the report carries; the others keep their state. False, and `state` is

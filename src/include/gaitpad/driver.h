@@ -90,6 +90,7 @@ struct DeviceListing {
   // Equal for one pad on all drivers: the sysfs folder of its USB interface, else of its HID
   // device, else of its input device.
   std::string pad_path;
+  std::vector<std::string> parts;  // pad paths of the devices that this one joins; empty: none
   std::string kernel_driver;  // bound to it: hid-generic, xpad, playstation; empty: none or unknown
   double poll_rate_hz = 0.0;  // by the endpoint's descriptor; 0: unknown
   bool is_other = false;      // known to be no pad: a keyboard, the motion sensor of a pad

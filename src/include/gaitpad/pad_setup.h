@@ -22,7 +22,16 @@ struct PadFiles {
   std::optional<CalibrationFile> calibration;    // --calibration: for every pad but the keyboard
   std::string user_calibrations;                 // the user's folder, for live pads alone
   std::vector<std::string> calibration_folders;  // searched for the best fitting file otherwise
+  // Lines of SDL's data base that the user has, the most important first, for live pads alone:
+  // $SDL_GAMECONTROLLERCONFIG, $SDL_GAMECONTROLLERCONFIG_FILE, user_mapping_file(). And why one of
+  // the files cannot be read; empty: none, or they can.
+  std::vector<std::string> mappings;
+  std::string mapping_problem;
 };
+// gamecontrollerdb.txt in the user's folder, whether it exists or not; empty: there is no folder.
+std::string user_mapping_file();
+inline constexpr std::size_t kMaxMappingFileBytes = std::size_t{8} << 20;
+
 // `map` and `calibration` are paths; empty: none. Error: a file that cannot be read.
 Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
                                 const std::string& map, const std::string& calibration);
@@ -50,9 +59,9 @@ struct RecordedDevice {
 };
 // A calibration file for this one device (by unique id or port) counts more than the pad's factory
 // sticks, and these count more than a file for its model (whose dead zones stay). Of files that fit
-// equally well the user's counts. Without a mapping in the calibration the device gets SDL's line,
-// if config/pads has no entry for it. `remarks` receives a sentence for each damaged file that was
-// left out.
+// equally well the user's counts. Without a mapping in the calibration the device gets a line of
+// the user's data base, else SDL's, if config/pads has no entry for it. `remarks` receives a
+// sentence for each damaged file that was left out.
 RecordedDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
                                const std::optional<FactorySticks>& factory,
                                std::vector<std::string>& remarks);

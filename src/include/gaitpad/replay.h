@@ -1,5 +1,7 @@
 // A recording through the whole system, without a window: files and a summary come out.
 #pragma once
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,9 +16,13 @@ struct ReplayResult {
   std::vector<std::string> remarks;  // what a user should know though it is no failure
 };
 
+// Called now and then while a replay runs, with how many of its ticks are done. The time of a
+// replay is proportional to these, however long the gaps between its reports are.
+using ReplayProgress = std::function<void(std::int64_t done, std::int64_t ticks)>;
+
 // Replays `spec.replay.trace` from its first tick to its last and writes the files that
 // `spec.replay` asks for. They appear in the folder together and complete: an error leaves the
 // folder as it was.
-Result<ReplayResult> replay(const SessionSpec& spec);
+Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progress = {});
 
 }  // namespace gaitpad

@@ -93,6 +93,11 @@ enum PadButton : int {
   kButtonPaddle3,
   kButtonPaddle4,
   kButtonTouchpad,
+  kButtonMisc2,
+  kButtonMisc3,
+  kButtonMisc4,
+  kButtonMisc5,
+  kButtonMisc6,
   kButtonCount,
 };
 
@@ -118,7 +123,12 @@ inline constexpr std::array<std::string_view, kButtonCount> kButtonNames = {"a",
                                                                             "paddle2",
                                                                             "paddle3",
                                                                             "paddle4",
-                                                                            "touchpad"};
+                                                                            "touchpad",
+                                                                            "misc2",
+                                                                            "misc3",
+                                                                            "misc4",
+                                                                            "misc5",
+                                                                            "misc6"};
 
 // Clockwise from up in steps of 45 degrees.
 enum class Hat : std::uint8_t {

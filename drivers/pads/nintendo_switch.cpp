@@ -1,6 +1,8 @@
-// Switch Pro Controller: its start over USB, the stick calibration in its flash memory, its motors.
+// Pads of the Switch (Pro Controller, Joy-Cons, NES, SNES, N64 and Mega Drive controllers): their
+// start, the stick calibration in their flash memory, their motors. All send the same report 0x30.
 // Packets, memory map and vibration codes are from dekuNukem's Nintendo_Switch_Reverse_Engineering
-// (bluetooth_hid_notes.md, USB-HID-Notes.md, spi_flash_notes.md, rumble_data_table.md).
+// (bluetooth_hid_notes.md, USB-HID-Notes.md, spi_flash_notes.md, rumble_data_table.md), ids and
+// kinds from Linux's hid-nintendo.c.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,7 +18,16 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr std::uint16_t kNintendo = 0x057e;
-constexpr std::uint16_t kProController = 0x2009;
+enum : std::uint16_t {  // products
+  kJoyConLeft = 0x2006,
+  kJoyConRight = 0x2007,
+  kProController = 0x2009,
+  kChargingGrip = 0x200e,  // one interface for each Joy-Con in it
+  kSnes = 0x2017,
+  kN64 = 0x2019,
+  kMegaDrive = 0x201e,
+};
+enum : std::uint8_t { kLeftKind = 1, kRightKind = 2, kNesLeftKind = 9, kNesRightKind = 10 };
 
 enum : std::uint8_t {  // first byte of a packet
   kOutSubcommand = 0x01,
@@ -33,6 +44,7 @@ enum : std::uint8_t {  // behind kOutUsb
   kUsbStayHid = 0x04,  // do not fall back to Bluetooth; has no answer
 };
 enum : std::uint8_t {  // subcommands
+  kDeviceInfo = 0x02,
   kSetReportMode = 0x03,
   kReadFlash = 0x10,
   kEnableVibration = 0x48,
@@ -50,7 +62,7 @@ constexpr milliseconds kRumbleRepeat = 50ms;
 
 constexpr std::size_t kPacketBytes = 64;
 constexpr std::size_t kAckAt = 13, kSubcommandAt = 14, kAddressAt = 15, kLengthAt = 19,
-                      kFlashAt = 20;
+                      kFlashAt = 20, kKindAt = 17;
 
 // Where the flash memory has the calibration of the sticks, 9 bytes each.
 constexpr std::uint32_t kFactoryAddress = 0x603d;  // left, right
@@ -106,6 +118,15 @@ FactoryAxis factory_axis(const StickRange& range, std::size_t axis) noexcept {
   return {fraction(range.min[axis]), fraction(range.centre[axis]), fraction(range.max[axis])};
 }
 
+// The same axis for a stick that is turned by half a turn.
+FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
+  return {-axis.max, -axis.centre, -axis.min};
+}
+
+// NES controllers have the ids of a Joy-Con and other buttons. This collection marks them, and
+// config/pads/nintendo.toml has an entry for it: ff57:0009.
+constexpr std::uint8_t kNesMark[] = {0x06, 0x57, 0xff, 0x09, 0x09, 0xa1, 0x01, 0xc0};
+
 // Index (0..100) in the published table of amplitudes of a strength 0..1, by the table's formulas
 // for each octave; below 0.12 a fit to it. Beyond its end the motors may be damaged.
 int amplitude_index(double strength) noexcept {
@@ -126,15 +147,19 @@ std::array<std::uint8_t, 4> vibration(const Rumble& rumble) noexcept {
           static_cast<std::uint8_t>(0x40 + low / 2)};
 }
 
-class SwitchPro final : public PadModel {
+class SwitchPad final : public PadModel {
  public:
-  explicit SwitchPro(const DeviceInfo& device)
+  explicit SwitchPad(const DeviceInfo& device)
       : name_(device.name.empty() ? "this pad" : device.name),
+        product_(device.product),
         is_usb_(device.bus == BusType::usb) {}
 
   void start(PadPort& port, StartedBy started) override {
     end_ = Clock::now() + kStart;
     if (started == StartedBy::us) start_reports(port);
+    if (product_ == kJoyConLeft || product_ == kJoyConRight || product_ == kChargingGrip)
+      ask_kind(port);
+    if (!has_stick(Side::left) && !has_stick(Side::right)) return;
     // Linux's driver listens too, and while it waits for a reply it takes any reply for its own. So
     // the memory is read with as few packets as possible.
     std::array<std::uint8_t, kFactoryBytes> factory{};
@@ -143,6 +168,16 @@ class SwitchPro final : public PadModel {
     const bool has_user = has_factory && read_flash(port, kUserAddress, user);
     choose_sticks(has_factory ? std::span<const std::uint8_t>(factory) : std::span<std::uint8_t>(),
                   has_user ? std::span<const std::uint8_t>(user) : std::span<std::uint8_t>());
+  }
+
+  void amend(DeviceInfo& device) const override {
+    if (kind_ == kNesLeftKind || kind_ == kNesRightKind) {
+      device.name = kind_ == kNesLeftKind ? "NES Controller (L)" : "NES Controller (R)";
+      device.descriptor.insert(device.descriptor.end(), std::begin(kNesMark), std::end(kNesMark));
+    }
+    if (product_ != kChargingGrip) return;
+    if (kind_ == kLeftKind) device.product = kJoyConLeft;
+    if (kind_ == kRightKind) device.product = kJoyConRight;
   }
 
   // Replies also contain the sticks, but in a layout that no descriptor states.
@@ -186,6 +221,21 @@ class SwitchPro final : public PadModel {
     ask(port, kEnableVibration, std::to_array<std::uint8_t>({0x01}));
   }
 
+  // Only these have sticks: a Joy-Con one, held sideways, the Pro Controller two, the N64's the
+  // left.
+  bool has_stick(Side side) const noexcept {
+    if (kind_ == kNesLeftKind || kind_ == kNesRightKind) return false;
+    if (product_ == kProController) return true;
+    const bool is_left = product_ == kJoyConLeft || product_ == kN64 || kind_ == kLeftKind;
+    const bool is_right = product_ == kJoyConRight || kind_ == kRightKind;
+    return side == Side::left ? is_left : is_right;
+  }
+
+  void ask_kind(PadPort& port) {
+    std::array<std::uint8_t, kPacketBytes> answer{};
+    if (ask(port, kDeviceInfo, {}, answer) > kKindAt) kind_ = answer[kKindAt];
+  }
+
   // Sends `packet`, several times if need be, until an input packet satisfies `is_answer`. Returns
   // the size of the answer; 0: none came.
   template <class IsAnswer>
@@ -226,15 +276,19 @@ class SwitchPro final : public PadModel {
     return packet;
   }
 
-  bool ask(PadPort& port, std::uint8_t id, std::span<const std::uint8_t> data) {
+  void ask(PadPort& port, std::uint8_t id, std::span<const std::uint8_t> data) {
     std::array<std::uint8_t, kPacketBytes> answer{};
+    ask(port, id, data, answer);
+  }
+  std::size_t ask(PadPort& port, std::uint8_t id, std::span<const std::uint8_t> data,
+                  std::span<std::uint8_t> answer) {
     const auto is_answer = [id](std::span<const std::uint8_t> p) {
       return p.size() > kSubcommandAt && p[0] == kInReply && (p[kAckAt] & 0x80) != 0 &&
              p[kSubcommandAt] == id;
     };
     const OutPacket packet = subcommand(id, data);
     return exchange_packets(port, std::span(packet.bytes).first(packet.size), kAnswer, answer,
-                            is_answer) > 0;
+                            is_answer);
   }
 
   // An answer must name the request, because another program may be asking the pad as well.
@@ -273,24 +327,36 @@ class SwitchPro final : public PadModel {
   }
 
   void choose_sticks(std::span<const std::uint8_t> factory, std::span<const std::uint8_t> user) {
-    const auto left = chosen_range(factory, user, Side::left);
-    const auto right = chosen_range(factory, user, Side::right);
+    const bool has_left = has_stick(Side::left), has_right = has_stick(Side::right);
+    const auto left = has_left ? chosen_range(factory, user, Side::left) : std::nullopt;
+    const auto right = has_right ? chosen_range(factory, user, Side::right) : std::nullopt;
     if (!left && !right) {
       remarks_.push_back(name_ + (factory.empty()
                                       ? ": does not tell its stick calibration; none is used"
                                       : ": holds no usable stick calibration; none is used"));
       return;
     }
-    if (!left || !right)
+    if ((has_left && !left) || (has_right && !right))
       remarks_.push_back(name_ + ": holds no usable calibration of its " +
                          (left ? "right" : "left") + " stick; the usual one is taken");
     const StickRange l = left.value_or(kUsualRange), r = right.value_or(kUsualRange);
-    sticks_ = FactorySticks{factory_axis(l, 0), factory_axis(l, 1), factory_axis(r, 0),
-                            factory_axis(r, 1)};
+    const FactoryAxis left_x = factory_axis(l, 0), left_y = factory_axis(l, 1),
+                      right_x = factory_axis(r, 0), right_y = factory_axis(r, 1);
+    // A Joy-Con held sideways: the left one is turned to the left, the right one to the right.
+    if (has_left && has_right)
+      sticks_ = FactorySticks{left_x, left_y, right_x, right_y};
+    else if (product_ == kN64)
+      sticks_ = FactorySticks{left_x, left_y, {}, {}};
+    else if (has_left)
+      sticks_ = FactorySticks{mirrored(left_y), left_x, {}, {}};
+    else
+      sticks_ = FactorySticks{right_y, mirrored(right_x), {}, {}};
   }
 
   std::string name_;
+  std::uint16_t product_;
   bool is_usb_;
+  std::uint8_t kind_ = 0;  // as the pad says; 0: unknown
   Clock::time_point end_;
   std::uint8_t count_ = 0;
   std::optional<FactorySticks> sticks_;
@@ -300,8 +366,12 @@ class SwitchPro final : public PadModel {
 }  // namespace
 
 std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device) {
-  if (device.vendor != kNintendo || device.product != kProController) return nullptr;
-  return std::make_unique<SwitchPro>(device);
+  constexpr std::uint16_t kProducts[] = {kJoyConLeft, kJoyConRight, kProController, kChargingGrip,
+                                         kSnes,       kN64,         kMegaDrive};
+  const bool is_known =
+      std::find(std::begin(kProducts), std::end(kProducts), device.product) != std::end(kProducts);
+  if (device.vendor != kNintendo || !is_known) return nullptr;
+  return std::make_unique<SwitchPad>(device);
 }
 
 }  // namespace gaitpad

@@ -14,13 +14,16 @@ const Packet kLeft = {0x00, 0x06, 0x60, 0x00, 0x08, 0x80, 0x00, 0x06, 0x60};
 const Packet kRight = {0x00, 0x08, 0x80, 0x00, 0x06, 0x60, 0x00, 0x06, 0x60};
 constexpr std::size_t kUserBytes = 22;
 
-std::unique_ptr<PadModel> model(BusType bus = BusType::usb) {
+DeviceInfo switch_pad(std::uint16_t product, BusType bus) {
   DeviceInfo device;
   device.bus = bus;
   device.vendor = 0x057e;
-  device.product = 0x2009;
-  device.name = "Pro Controller";
-  return make_switch_model(device);
+  device.product = product;
+  device.name = product == 0x2009 ? "Pro Controller" : "A pad";
+  return device;
+}
+std::unique_ptr<PadModel> model(BusType bus = BusType::usb) {
+  return make_switch_model(switch_pad(0x2009, bus));
 }
 
 double fraction(int count) { return (count - 2047.5) / 2047.5; }
@@ -44,9 +47,10 @@ Packet packed(const std::array<int, 6>& n) {
 
 // A pad with this flash memory that answers as the real one: 81 to 80, 21 to 01, full reports in
 // between.
-ScriptedPort pad_with(std::map<std::uint32_t, Packet> flash) {
+// `kind` is what it says of itself: 1 left Joy-Con, 2 right, 3 Pro, 9 NES.
+ScriptedPort pad_with(std::map<std::uint32_t, Packet> flash, std::uint8_t kind = 3) {
   ScriptedPort port;
-  port.answer = [flash](const Packet& packet, std::deque<Packet>& waiting) {
+  port.answer = [flash, kind](const Packet& packet, std::deque<Packet>& waiting) {
     waiting.push_back(Packet(64, 0x30));
     Packet reply(64, 0);
     if (packet[0] == 0x80) {
@@ -59,6 +63,7 @@ ScriptedPort pad_with(std::map<std::uint32_t, Packet> flash) {
     reply[0] = 0x21;
     reply[13] = packet[10] == 0x10 ? 0x90 : 0x80;
     reply[14] = packet[10];
+    if (packet[10] == 0x02) reply[17] = kind;
     if (packet[10] == 0x10) {
       std::copy_n(packet.begin() + 11, 5, reply.begin() + 15);
       const std::uint32_t address = packet[11] | (packet[12] << 8);
@@ -78,12 +83,79 @@ void expect_axis(const FactoryAxis& axis, int min, int centre, int max) {
   EXPECT_DOUBLE_EQ(axis.max, fraction(max));
 }
 
-TEST(SwitchPro, KnowsThisPadAlone) {
+TEST(SwitchPro, KnowsThePadsOfTheSwitchAlone) {
   EXPECT_NE(model(), nullptr);
-  DeviceInfo other;
-  other.vendor = 0x057e;
-  other.product = 0x2006;
-  EXPECT_EQ(make_switch_model(other), nullptr);
+  for (const std::uint16_t product : {0x2006, 0x2007, 0x200e, 0x2017, 0x2019, 0x201e})
+    EXPECT_NE(make_switch_model(switch_pad(product, BusType::bluetooth)), nullptr);
+  EXPECT_EQ(make_switch_model(switch_pad(0x0306, BusType::bluetooth)), nullptr) << "Wii";
+}
+
+// A left stick of 0x200 .. 0x800 .. 0xd00 in x and 0x100 .. 0x7f0 .. 0xe00 in y.
+const Packet kUneven = packed({0x500, 0x610, 0x800, 0x7f0, 0x600, 0x6f0});
+
+TEST(SwitchPro, TheSticksOfASingleJoyConAreTurnedAsItIsHeld) {
+  const Packet uneven_right = packed({0x800, 0x7f0, 0x600, 0x6f0, 0x500, 0x610});
+  ScriptedPort port = pad_with({{0x603d, joined(kUneven, uneven_right)}}, 1);
+  const auto left = make_switch_model(switch_pad(0x2006, BusType::bluetooth));
+  left->start(port, StartedBy::us);
+  ASSERT_TRUE(left->factory_sticks());
+  // Turned to the left: what was up is left, what was right is up.
+  FactoryAxis x = left->factory_sticks()->left_x;
+  expect_axis({-x.max, -x.centre, -x.min}, 0x100, 0x7f0, 0xe00);
+  expect_axis(left->factory_sticks()->left_y, 0x200, 0x800, 0xd00);
+
+  port = pad_with({{0x603d, joined(kLeft, uneven_right)}}, 2);
+  const auto right = make_switch_model(switch_pad(0x2007, BusType::bluetooth));
+  right->start(port, StartedBy::us);
+  ASSERT_TRUE(right->factory_sticks());
+  expect_axis(right->factory_sticks()->left_x, 0x100, 0x7f0, 0xe00);
+  const FactoryAxis y = right->factory_sticks()->left_y;
+  expect_axis({-y.max, -y.centre, -y.min}, 0x200, 0x800, 0xd00);
+  EXPECT_TRUE(right->take_remarks().empty());
+}
+
+TEST(SwitchPro, AJoyConNeedsTheCalibrationOfItsOwnStickAlone) {
+  const Packet blank(9, 0xff);
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, blank)}}, 1);
+  const auto left = make_switch_model(switch_pad(0x2006, BusType::bluetooth));
+  left->start(port, StartedBy::us);
+  EXPECT_TRUE(left->factory_sticks());
+  EXPECT_TRUE(left->take_remarks().empty());
+}
+
+TEST(SwitchPro, ANesControllerIsToldFromAJoyConByWhatItSays) {
+  ScriptedPort port = pad_with({}, 9);
+  DeviceInfo device = switch_pad(0x2006, BusType::bluetooth);
+  device.descriptor = {0xc0};
+  const auto pad = make_switch_model(device);
+  pad->start(port, StartedBy::us);
+  pad->amend(device);
+  EXPECT_EQ(device.name, "NES Controller (L)");
+  EXPECT_EQ(device.descriptor, (Packet{0xc0, 0x06, 0x57, 0xff, 0x09, 0x09, 0xa1, 0x01, 0xc0}));
+  EXPECT_FALSE(pad->factory_sticks());
+  EXPECT_TRUE(pad->take_remarks().empty()) << "it has no stick to be calibrated";
+}
+
+TEST(SwitchPro, TheChargingGripTellsWhichJoyConIsInIt) {
+  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}}, 2);
+  DeviceInfo device = switch_pad(0x200e, BusType::usb);
+  const auto pad = make_switch_model(device);
+  pad->start(port, StartedBy::us);
+  pad->amend(device);
+  EXPECT_EQ(device.product, 0x2007);
+  EXPECT_TRUE(pad->factory_sticks());
+}
+
+TEST(SwitchPro, OnlyTheSticksOfAModelAreRead) {
+  ScriptedPort port = pad_with({{0x603d, joined(kUneven, kRight)}});
+  const auto snes = make_switch_model(switch_pad(0x2017, BusType::bluetooth));
+  snes->start(port, StartedBy::us);
+  EXPECT_FALSE(snes->factory_sticks());
+  EXPECT_EQ(port.written.size(), 2u) << "it is started, and its memory is left alone";
+  const auto n64 = make_switch_model(switch_pad(0x2019, BusType::bluetooth));
+  n64->start(port, StartedBy::us);
+  ASSERT_TRUE(n64->factory_sticks());
+  expect_axis(n64->factory_sticks()->left_y, 0x100, 0x7f0, 0xe00);
 }
 
 TEST(SwitchPro, StartsOverUsbAsTheConsoleDoes) {

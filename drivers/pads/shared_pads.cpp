@@ -1,0 +1,140 @@
+#include "drivers/pads/shared_pads.h"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "drivers/posix.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr int kMaxPackets = 64;  // read in a row, before other pads get their turn
+constexpr std::size_t kInbox = 64;
+
+// The model's way to the device: it writes and does not ask.
+class WritingPort final : public PadPort {
+ public:
+  explicit WritingPort(PacketSource& source) : source_(source) {}
+  bool write(std::span<const std::uint8_t> packet) noexcept override {
+    OutPacket out;
+    if (packet.size() > out.bytes.size()) return false;
+    std::copy(packet.begin(), packet.end(), out.bytes.begin());
+    out.size = packet.size();
+    return source_.send(out);
+  }
+  std::size_t read(std::span<std::uint8_t>, std::chrono::milliseconds) noexcept override {
+    return 0;
+  }
+  std::size_t feature(std::uint8_t, std::span<std::uint8_t>) noexcept override { return 0; }
+
+ private:
+  PacketSource& source_;
+};
+
+}  // namespace
+
+class SharedPad final : public Device {
+ public:
+  SharedPad(std::shared_ptr<SharedDevice> device, DeviceInfo info)
+      : device_(std::move(device)),
+        info_(std::move(info)),
+        model_(make_pad_model(info_)),
+        bell_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    const std::lock_guard lock(device_->mutex);
+    const auto fds = device_->source->poll_fds();
+    fds_.assign(fds.begin(), fds.end());
+    if (bell_.get() >= 0) fds_.push_back({.fd = bell_.get(), .events = POLLIN, .revents = 0});
+    WritingPort port(*device_->source);
+    model_->start(port, StartedBy::us);
+    device_->pads.push_back(this);
+  }
+  ~SharedPad() override {
+    if (is_rumbling_) rumble({});
+    const std::lock_guard lock(device_->mutex);
+    std::erase(device_->pads, this);
+  }
+
+  const DeviceInfo& info() const noexcept override { return info_; }
+  std::span<const pollfd> poll_fds() const noexcept override { return fds_; }
+
+  Status read(Report& report) noexcept override {
+    const std::lock_guard lock(device_->mutex);
+    if (take_own(report)) return Status::report;
+    Status status = Status::report;
+    for (int i = 0; i < kMaxPackets && status == Status::report && count_ < kInbox; ++i) {
+      status = device_->source->read(report);
+      if (status != Status::report) break;
+      for (SharedPad* pad : device_->pads) pad->put(report, pad == this ? Ring::no : Ring::yes);
+    }
+    if (take_own(report)) return Status::report;
+    std::uint64_t rung = 0;
+    while (::read(bell_.get(), &rung, sizeof rung) > 0) {
+    }
+    return status == Status::gone ? Status::gone : Status::nothing;
+  }
+
+  bool rumble(const Rumble& strengths) noexcept override {
+    const std::lock_guard lock(device_->mutex);
+    OutPacket packet;
+    model_->rumble(strengths, packet);
+    if (packet.size == 0 || !device_->source->send(packet)) return false;
+    is_rumbling_ = strengths.strong != 0 || strengths.weak != 0;
+    return true;
+  }
+
+  std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
+  std::int64_t lost() const noexcept override {
+    const std::lock_guard lock(device_->mutex);
+    return lost_ + device_->source->lost();
+  }
+  std::vector<std::string> take_remarks() override { return model_->take_remarks(); }
+
+ private:
+  enum class Ring { no, yes };
+
+  // Of a pad that nobody reads the oldest packet is dropped.
+  void put(const Report& packet, Ring ring) noexcept {
+    if (count_ == kInbox) {
+      ++lost_;
+      first_ = (first_ + 1) % kInbox;
+      --count_;
+    }
+    inbox_[(first_ + count_++) % kInbox] = packet;
+    const std::uint64_t one = 1;
+    if (ring == Ring::yes) static_cast<void>(!::write(bell_.get(), &one, sizeof one));
+  }
+
+  bool take_own(Report& report) noexcept {
+    while (count_ > 0) {
+      report = inbox_[first_];
+      first_ = (first_ + 1) % kInbox;
+      --count_;
+      OutPacket reply;
+      const bool is_input = model_->accept({report.bytes.data(), report.size}, reply);
+      if (plug_.has_changed(*model_, report) || is_input) return true;
+    }
+    return false;
+  }
+
+  std::shared_ptr<SharedDevice> device_;
+  DeviceInfo info_;
+  std::unique_ptr<PadModel> model_;
+  OwnedFd bell_;  // rings for packets that another pad's read has put into the inbox
+  std::vector<pollfd> fds_;
+  std::array<Report, kInbox> inbox_;
+  std::size_t first_ = 0, count_ = 0;
+  PlugWatch plug_;
+  std::int64_t lost_ = 0;
+  bool is_rumbling_ = false;
+};
+
+std::unique_ptr<Device> open_shared_pad(std::shared_ptr<SharedDevice> device, DeviceInfo info) {
+  return std::make_unique<SharedPad>(std::move(device), std::move(info));
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,67 @@
+// Pads that describe themselves and only need a packet for their motors: Stadia, Luna on Bluetooth,
+// 8BitDo. Packets are from SDL's SDL_hidapi_stadia.c, SDL_hidapi_luna.c and SDL_hidapi_8bitdo.c.
+#include "drivers/pads/pad_model.h"
+
+namespace gaitpad {
+
+namespace {
+
+struct MotorPad {
+  std::uint16_t vendor = 0, product = 0;
+  void (*set)(const Rumble&, OutPacket&) noexcept = nullptr;
+};
+
+void set_stadia(const Rumble& rumble, OutPacket& packet) noexcept {
+  packet.bytes = {
+      0x05, static_cast<std::uint8_t>(rumble.strong), static_cast<std::uint8_t>(rumble.strong >> 8),
+      static_cast<std::uint8_t>(rumble.weak), static_cast<std::uint8_t>(rumble.weak >> 8)};
+  packet.size = 5;
+}
+
+// Strengths 0..100; both motors, the triggers' ones off, until the next packet.
+void set_luna(const Rumble& rumble, OutPacket& packet) noexcept {
+  packet.bytes = {0x03,
+                  0x0f,
+                  0x00,
+                  0x00,
+                  static_cast<std::uint8_t>(rumble.strong / 656),
+                  static_cast<std::uint8_t>(rumble.weak / 656),
+                  0xff,
+                  0x00,
+                  0xeb};
+  packet.size = 9;
+}
+
+void set_8bitdo(const Rumble& rumble, OutPacket& packet) noexcept {
+  packet.bytes = {0x05, static_cast<std::uint8_t>(rumble.strong >> 8),
+                  static_cast<std::uint8_t>(rumble.weak >> 8)};
+  packet.size = 5;
+}
+
+constexpr MotorPad kPads[] = {{0x18d1, 0x9400, &set_stadia},   // Stadia
+                              {0x0171, 0x0419, &set_luna},     // Luna, Bluetooth
+                              {0x2dc8, 0x6012, &set_8bitdo}};  // 8BitDo Ultimate 2 Wireless
+
+class MotorModel final : public PadModel {
+ public:
+  explicit MotorModel(const MotorPad& pad) : pad_(pad) {}
+  void rumble(const Rumble& rumble, OutPacket& packet) noexcept override {
+    packet = {};
+    pad_.set(rumble, packet);
+  }
+
+ private:
+  const MotorPad& pad_;
+};
+
+}  // namespace
+
+std::unique_ptr<PadModel> make_motor_model(const DeviceInfo& device) {
+  for (const MotorPad& pad : kPads) {
+    if (pad.vendor == device.vendor && pad.product == device.product)
+      return std::make_unique<MotorModel>(pad);
+  }
+  return nullptr;
+}
+
+}  // namespace gaitpad

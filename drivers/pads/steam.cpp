@@ -1,0 +1,241 @@
+// Steam Controller and Steam Deck: vendor reports, and "lizard mode", in which they are a mouse and
+// a keyboard. It is left at the start and restored at the end. Commands, settings and messages are
+// from Linux's hid-steam.c and SDL's steam/controller_constants.h, those of Bluetooth from SDL's
+// SDL_hidapi_steam.c and steam/controller_structs.h.
+#include <algorithm>
+#include <initializer_list>
+#include <utility>
+
+#include "drivers/pads/pad_model.h"
+#include "gaitpad/descriptor.h"
+
+namespace gaitpad {
+
+namespace {
+
+constexpr std::uint16_t kValve = 0x28de;
+enum : std::uint16_t {  // products
+  kWired = 0x1102,
+  kBluetooth = 0x1105,  // also 0x1106
+  kWireless = 0x1142,
+  kDeck = 0x1205,
+};
+
+// A message to the pad is a feature report without id: command, length, data.
+constexpr std::size_t kMessageBytes = 64;
+enum : std::uint8_t {  // commands
+  kClearMappings = 0x81,
+  kDefaultMappings = 0x85,
+  kWriteSettings = 0x87,
+  kDefaultSettings = 0x8e,
+};
+struct Setting {
+  std::uint8_t number = 0;
+  std::uint16_t value = 0;
+};
+enum : std::uint8_t {  // settings
+  kLeftPadMode = 7,
+  kRightPadMode = 8,
+  kRightPadMargin = 24,  // over Bluetooth: how smoothly it is a mouse
+  kPacketVersion = 49,
+  kLeftPadClick = 52,
+  kRightPadClick = 53,
+  kWatchdog = 71,  // restores lizard mode when nothing is sent for a while
+};
+constexpr std::uint16_t kMouse = 0, kNoMouse = 7, kNeverClicks = 0xffff;
+
+// A message from the pad: version 1, 0, its type, its length.
+constexpr std::size_t kTypeAt = 2;
+enum : std::uint8_t { kControllerState = 1, kDeckState = 9 };
+
+constexpr const char* kStaysMouse = ": stays a mouse and keyboard as well";
+std::string name_of(const DeviceInfo& device) {
+  return device.name.empty() ? "this pad" : device.name;
+}
+
+// A command with its settings.
+struct Message {
+  explicit Message(std::uint8_t command, std::initializer_list<Setting> settings = {}) {
+    bytes[0] = command;
+    bytes[1] = static_cast<std::uint8_t>(3 * settings.size());
+    for (const Setting& setting : settings) {
+      bytes[size++] = setting.number;
+      bytes[size++] = static_cast<std::uint8_t>(setting.value);
+      bytes[size++] = static_cast<std::uint8_t>(setting.value >> 8);
+    }
+  }
+  std::array<std::uint8_t, kMessageBytes> bytes{};
+  std::size_t size = 2;
+};
+
+class SteamModel final : public PadModel {
+ public:
+  explicit SteamModel(const DeviceInfo& device)
+      : name_(name_of(device)), is_deck_(device.product == kDeck) {}
+
+  void start(PadPort& port, StartedBy) override {
+    const bool has_left =
+        send(port, Message(kClearMappings)) &&
+        (is_deck_ ? send(port, Message(kWriteSettings, {{kLeftPadMode, kNoMouse},
+                                                        {kRightPadMode, kNoMouse},
+                                                        {kLeftPadClick, kNeverClicks},
+                                                        {kRightPadClick, kNeverClicks},
+                                                        {kWatchdog, 0}}))
+                  : send(port, Message(kWriteSettings,
+                                       {{kRightPadMode, kNoMouse}, {kRightPadMargin, 0}})));
+    if (!has_left) remark_ = name_ + kStaysMouse;
+  }
+
+  void stop(PadPort& port) noexcept override {
+    send(port, Message(kDefaultMappings));
+    send(port, Message(kDefaultSettings));
+    if (!is_deck_) send(port, Message(kWriteSettings, {{kRightPadMargin, 1}}));
+  }
+
+  // Other messages tell the battery, and that a wireless pad came or went.
+  bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
+    reply.size = 0;
+    return packet.size() > kTypeAt && packet[kTypeAt] == (is_deck_ ? kDeckState : kControllerState);
+  }
+
+  std::vector<std::string> take_remarks() override {
+    if (remark_.empty()) return {};
+    return {std::exchange(remark_, {})};
+  }
+
+ private:
+  static bool send(PadPort& port, const Message& message) {
+    std::array<std::uint8_t, 1 + kMessageBytes> report{};  // begins with the id 0
+    std::copy(message.bytes.begin(), message.bytes.end(), report.begin() + 1);
+    return port.send_feature(report);
+  }
+
+  std::string name_;
+  bool is_deck_;
+  std::string remark_;
+};
+
+// The Steam Controller over Bluetooth LE. Messages in both directions are cut into reports of 20
+// bytes: the id 3, a header, 18 bytes. A state tells only what changed, so it is put together here
+// and handed on as one report (config/pads/valve.toml).
+constexpr std::uint8_t kSegmentId = 3;
+constexpr std::size_t kHeaderBytes = 2, kSegmentBytes = 18, kMaxSegments = 8;
+enum : std::uint8_t { kIsSegment = 0x80, kIsLast = 0x40, kSegmentNumber = 0x07 };  // header
+constexpr std::uint8_t kBluetoothState = 4;  // low half of a message's first byte
+
+// Which parts a state has, by the other bits of its first two bytes, in the order of the parts.
+struct StatePart {
+  unsigned bit = 0;
+  std::size_t bytes = 0;
+  std::size_t place = 0;  // in the report that is handed on; 0: nowhere
+};
+constexpr StatePart kStateParts[] = {{0x10, 3, 1},     // buttons
+                                     {0x20, 2, 4},     // triggers
+                                     {0x40, 3, 0},     // more buttons, of no pad
+                                     {0x80, 4, 6},     // stick
+                                     {0x100, 4, 14},   // left pad
+                                     {0x200, 4, 10}};  // right pad; motion follows
+
+class SteamBluetooth final : public PadModel {
+ public:
+  explicit SteamBluetooth(const DeviceInfo& device) : name_(name_of(device)) {
+    state_[0] = kSegmentId;
+  }
+
+  void start(PadPort& port, StartedBy) override {
+    if (!send(port, Message(kClearMappings)) || !send(port, Message(kDefaultSettings)) ||
+        !send(port, Message(kWriteSettings, {{kPacketVersion, 2},
+                                             {kLeftPadMode, kNoMouse},
+                                             {kRightPadMode, kNoMouse},
+                                             {kRightPadMargin, 0}})))
+      remark_ = name_ + kStaysMouse;
+  }
+
+  void stop(PadPort& port) noexcept override {
+    send(port, Message(kDefaultMappings));
+    send(port, Message(kDefaultSettings));
+    send(port, Message(kWriteSettings, {{kRightPadMode, kMouse}}));
+  }
+
+  bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
+    reply.size = 0;
+    if (packet.size() != kHeaderBytes + kSegmentBytes || packet[0] != kSegmentId ||
+        (packet[1] & kIsSegment) == 0)
+      return false;
+    const std::size_t number = packet[1] & kSegmentNumber;
+    const bool is_next = number == next_ || number == 0;
+    next_ = 0;
+    if (!is_next) return false;  // one was lost: wait for the next message
+    std::copy(packet.begin() + kHeaderBytes, packet.end(),
+              message_.begin() + static_cast<std::ptrdiff_t>(number * kSegmentBytes));
+    const std::size_t size = (number + 1) * kSegmentBytes;
+    if ((packet[1] & kIsLast) != 0) return take_state(std::span(message_).first(size));
+    next_ = number + 1;
+    return false;
+  }
+  std::span<const std::uint8_t> report_of(std::span<const std::uint8_t>) const noexcept override {
+    return state_;
+  }
+
+  std::vector<std::string> take_remarks() override {
+    if (remark_.empty()) return {};
+    return {std::exchange(remark_, {})};
+  }
+
+ private:
+  bool take_state(std::span<const std::uint8_t> message) noexcept {
+    if ((message[0] & 0x0f) != kBluetoothState) return false;
+    const unsigned parts = (message[0] & 0xf0u) | unsigned{message[1]} << 8;
+    std::size_t at = 2;
+    for (const StatePart& part : kStateParts) {
+      if ((parts & part.bit) == 0) continue;
+      if (at + part.bytes > message.size()) return false;
+      if (part.place > 0)
+        std::copy_n(message.begin() + static_cast<std::ptrdiff_t>(at), part.bytes,
+                    state_.begin() + static_cast<std::ptrdiff_t>(part.place));
+      at += part.bytes;
+    }
+    return true;
+  }
+
+  static bool send(PadPort& port, const Message& message) noexcept {
+    for (std::size_t at = 0; at < message.size; at += kSegmentBytes) {
+      std::array<std::uint8_t, kHeaderBytes + kSegmentBytes> report{};
+      const std::size_t count = std::min(kSegmentBytes, message.size - at);
+      const bool is_last = at + count == message.size;
+      report[0] = kSegmentId;
+      report[1] =
+          static_cast<std::uint8_t>(kIsSegment | (is_last ? kIsLast : 0) | (at / kSegmentBytes));
+      std::copy_n(message.bytes.begin() + static_cast<std::ptrdiff_t>(at), count,
+                  report.begin() + kHeaderBytes);
+      if (!port.send_feature(report)) return false;
+    }
+    return true;
+  }
+
+  std::string name_;
+  std::array<std::uint8_t, kSegmentBytes * kMaxSegments> message_{};
+  std::size_t next_ = 0;  // number of the segment that is expected
+  std::array<std::uint8_t, 18> state_{};
+  std::string remark_;
+};
+
+}  // namespace
+
+// The interfaces of the mouse and the keyboard have the same ids.
+std::unique_ptr<PadModel> make_steam_model(const DeviceInfo& device) {
+  constexpr std::uint32_t kPads[] = {usage_of(0xff00, 1), usage_of(0xffff, 1)};
+  const std::uint16_t product = device.product;
+  if (device.vendor == kValve && (product == kBluetooth || product == kBluetooth + 1))
+    return std::make_unique<SteamBluetooth>(device);
+  if (device.vendor != kValve || (product != kWired && product != kWireless && product != kDeck))
+    return nullptr;
+  const auto parsed = parse_descriptor(device.descriptor);
+  if (!parsed ||
+      std::find_first_of(parsed->applications.begin(), parsed->applications.end(),
+                         std::begin(kPads), std::end(kPads)) == parsed->applications.end())
+    return nullptr;
+  return std::make_unique<SteamModel>(device);
+}
+
+}  // namespace gaitpad

@@ -9,11 +9,11 @@
 
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/simulation.h"
+#include "stick/made_hand.h"
 #include "stick/made_stick.h"
 #include "stick/pad_analysis.h"
 #include "tests/clean_cycle.h"
 #include "tests/hid/made_pads.h"
-#include "stick/made_hand.h"
 
 namespace gaitpad {
 namespace {
@@ -133,7 +133,9 @@ Report word_report(const vec2& raw) {
     bytes.push_back(static_cast<std::uint8_t>(word & 0xff));
     bytes.push_back(static_cast<std::uint8_t>(word >> 8));
   }
-  return report_of(bytes, 0);
+  Report report = report_of(bytes);
+  report.device = 0;
+  return report;
 }
 
 struct Untouched {
@@ -163,6 +165,9 @@ Untouched untouched(MadeStick stick, const StickCalibration& calibration) {
   if (found.walking == 0.0) return found;
   found.walking /= static_cast<double>(track.size());
   Simulation simulation = simulation_with(calibration);
+  // A pad counts from when its stick was at rest.
+  simulation.step(
+      std::vector<Report>{word_report(vec2(calibration.x.centre, calibration.y.centre))});
   std::size_t next = 0;
   for (int tick = 0; tick < 240 * 62; ++tick) {
     vec2 raw(2.0);
@@ -227,7 +232,9 @@ int run(int sticks, const std::string& only) {
       if (kind.name[0] == 'h' && advice.verdict != Verdict::unknown) add_errors(stick, s, errors);
       int own_steps = 0;
       if (advice.verdict == Verdict::good || advice.verdict == Verdict::worn) {
-        own_steps = untouched(stick, advice.calibration).steps;
+        const Untouched alone = untouched(stick, advice.calibration);
+        own_steps = alone.steps;
+        if (!only.empty()) std::printf("walking %.4f ", alone.walking);
         full = std::min(full, full_deflection(stick, advice.calibration));
       }
       steps += own_steps;

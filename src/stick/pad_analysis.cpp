@@ -36,6 +36,7 @@ constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel of the sh
 constexpr double kUselessDrift = 0.002;  // raw a second: leaves a zone of 0.1 within a minute
 constexpr double kUselessWander = 0.02;  // raw, within seconds; within a minute it leaves any zone
 constexpr double kDriftSure_s = 5.0;     // at rest, if the stick was let go only once
+constexpr double kLeastRate_hz = 22.5;   // slower reports show no movement by itself
 constexpr int kUselessStuck = 2;         // a single one may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
@@ -101,9 +102,11 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   StickCalibration& c = advice.calibration;
   const double half = least_half(c), sigma = greatest_sigma(s);
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
-  // With little hysteresis that formula covers too little of the noise, and it ignores wander.
-  const double rest = std::max(advice.inner_zone, 0.5 * hysteresis_of(s) + kSigmasOfRest * sigma +
-                                                      kSigmasOfWander * s.wander);
+  // With little hysteresis that formula covers too little of the noise, and it ignores wander and
+  // single rests far from the others. One of those may have been a thumb.
+  const double away = std::max(0.5 * hysteresis_of(s), s.displaced > 1 ? s.displaced_by : 0.0);
+  const double rest =
+      std::max(advice.inner_zone, away + kSigmasOfRest * sigma + kSigmasOfWander * s.wander);
   c.inner = std::min(rest / half, kGreatestInner);
   const double margin = (kSigmasOfRim * sigma + step_of(s)) / half;
   // If noise leaves hardly any rim beyond the inner zone, the verdict says so.
@@ -117,6 +120,12 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
 
 using Reasons = std::vector<std::string>;
 
+std::string displaced(const StickStatistics& s) {
+  return fmt::format("after {} release{} it stayed {} {:.2f} off its centre", s.displaced,
+                     s.displaced == 1 ? "" : "s", s.displaced == 1 ? "about" : "up to",
+                     s.displaced_by);
+}
+
 Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   Reasons reasons;
   const double drift = s.drift_per_s.value_or(0.0);
@@ -128,7 +137,8 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   }
   if (s.wander > kUselessWander) {
     reasons.push_back(fmt::format(
-        "it wanders by {:.3f} while nobody touches it, which no dead zone cures", s.wander));
+        "it wanders by {:.3f} a second while nobody touches it, which no dead zone cures",
+        s.wander));
   }
   if (advice.inner_zone > kUselessZone) {
     reasons.push_back(
@@ -142,6 +152,9 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
       reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
     }
   }
+  if (s.displaced > 1 && s.displaced_by > kUselessZone) {
+    reasons.push_back(displaced(s));
+  }
   if (s.stuck >= kUselessStuck) {
     reasons.push_back(fmt::format("its value stuck {} times while it moved", s.stuck));
   }
@@ -149,6 +162,10 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
 }
 
 Reasons missing(const StickStatistics& s) {
+  if (s.rate_hz && *s.rate_hz < kLeastRate_hz) {
+    return {fmt::format(
+        "it reports only {:.0f} times a second, which shows neither noise nor faults", *s.rate_hz)};
+  }
   if (!s.centre) return {"it was never seen at rest, so its centre is not known"};
   std::string unseen;
   for (const Side& side : sides_of(s)) {
@@ -165,6 +182,7 @@ Reasons worn(const StickStatistics& s) {
     reasons.push_back(
         fmt::format("let go from different sides it rests up to {:.3f} apart", *s.hysteresis));
   }
+  if (s.displaced > 1) reasons.push_back(displaced(s));
   const double sigma = greatest_sigma(s);
   if (sigma > std::max(kWornSigma, kWornSteps * step_of(s))) {
     reasons.push_back(fmt::format("its noise at rest is {:.3f}", sigma));
@@ -220,7 +238,8 @@ std::string sentence(std::string_view opening, const Reasons& reasons) {
 
 void judge(const StickStatistics& s, StickAdvice& advice) {
   const Reasons useless_for = useless(s, advice), missing_are = missing(s), worn_by = worn(s);
-  if (s.centre && !useless_for.empty()) {
+  const bool is_slow = s.rate_hz && *s.rate_hz < kLeastRate_hz;
+  if (s.centre && !is_slow && !useless_for.empty()) {
     advice.verdict = Verdict::replace;
     advice.reason = sentence("", useless_for);
   } else if (!missing_are.empty()) {
@@ -233,6 +252,7 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
     advice.verdict = Verdict::good;
     advice.reason = sentence("", {good(s)});
   }
+  if (s.displaced == 1) advice.reason += "; " + displaced(s) + ", unless a thumb lay on it";
   if (s.centre && !s.hysteresis) {
     advice.reason += fmt::format(
         "; it was not seen let go between two rests, so a spread of {:.2f} is assumed for the "

@@ -767,31 +767,92 @@ void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
       vec2(is_x_hidden ? std::sqrt(shown.x) : own.x, is_y_hidden ? std::sqrt(shown.y) : own.y);
 }
 
-double wander_of(const Evidence& evidence, const vec2& drift) {
-  double squares = 0.0, freedom = 0.0;
-  for (const std::vector<RestPoint>& still : evidence.blocks) {
-    const RestPoint mean = rest_trend(still).mean;
-    for (const RestPoint& block : still) {
-      const vec2 off = block.place - mean.place - drift * (block.time_s - mean.time_s);
-      squares += 0.5 * glm::dot(off, off);
+// ---- Moving by itself
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// From the changes over 0.2 s, of which noise and flipping codes explain a part. The median over
+// the hands-off times, because a thumb may lie on the stick in some of them.
+double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2& step) {
+  constexpr std::size_t kLag = 2;                    // blocks of 0.1 s
+  constexpr double kShare = kLag * 0.1 - 0.1 / 3.0;  // s; a block is a mean over 0.1 s
+  constexpr double kFewest = 8.0;                    // changes, both axes
+  std::vector<double> squares, noises;
+  double changes = 0.0;
+  for (const HandsOff& time : times) {
+    double square = 0.0, noise = 0.0, count = 0.0;
+    for (std::size_t k = kLag; k < time.places.size(); ++k) {
+      const vec2 moved = time.places[k] - time.places[k - kLag] - drift * (0.1 * kLag);
+      square += glm::dot(moved, moved);
+      noise += time.variances[k] + time.variances[k - kLag];
+      count += 1.0;
     }
-    freedom += static_cast<double>(still.size()) - 1.0;
+    changes += 2.0 * count;
+    // A long time has many votes.
+    for (double vote = 0.0; count > 0.0 && vote < count; vote += 4.0) {
+      squares.push_back(square / count);
+      noises.push_back(noise / count);
+    }
   }
-  if (freedom < 6.0) return 0.0;
-  const double white =
-      std::max(evidence.white_noise * evidence.white_noise, evidence.step * evidence.step / 12.0);
-  const double beyond = squares / freedom - white;
-  const bool is_sure = beyond > white * 6.0 * std::sqrt(1.0 / freedom);
-  const double least = std::max(0.002, 0.5 * evidence.step);
-  return is_sure && beyond > least * least ? std::sqrt(beyond) : 0.0;
+  if (changes < kFewest) return 0.0;
+  const double square = median_of(std::move(squares));
+  const double noise = median_of(std::move(noises)) + 0.5 * glm::dot(step, step);
+  if (square < noise * (1.0 + 6.0 / std::sqrt(changes))) return 0.0;
+  const double wander = std::sqrt((square - noise) / (2.0 * kShare));
+  return wander > 0.004 ? wander : 0.0;
+}
+
+// Releases after which it stood still far from its centre: farther than most, and than a good stick
+// ever rests.
+void add_displaced(std::span<const HandsOff> times, RestStatistics& to) {
+  constexpr double kFarOff = 0.07, kOfUsual = 1.5, kQuiet = 0.02;
+  std::vector<double> away;
+  for (const HandsOff& time : times) {
+    if (!time.is_released) continue;
+    vec2 least(4.0), most(-4.0), mean(0.0);
+    double noise = 0.0;
+    for (std::size_t k = 0; k < time.places.size(); ++k) {
+      least = glm::min(least, time.places[k]);
+      most = glm::max(most, time.places[k]);
+      mean += time.places[k] / static_cast<double>(time.places.size());
+      noise = std::max(noise, time.variances[k]);
+    }
+    if (glm::length(most - least) > kQuiet + 5.0 * std::sqrt(noise)) continue;  // it was moved
+    away.push_back(glm::length(mean - *to.centre));
+  }
+  if (away.size() < 3) return;
+  const double usual = median_of(away);
+  for (const double far : away) {
+    if (far < std::max(kFarOff, kOfUsual * usual)) continue;
+    ++to.displaced;
+    to.displaced_by = std::max(to.displaced_by, far);
+  }
 }
 
 }  // namespace
 
-RestStatistics rest_statistics(std::span<const StickTrack> tracks, std::span<const Still> rests,
+RestStatistics rest_statistics(std::span<const StickTrack> tracks, const Stills& found,
                                const vec2& step, double interval_s) {
+  const std::span<const Still> rests = found.rests;
   RestStatistics result;
-  if (rests.empty()) return result;
+  std::vector<double> x, y;
+  for (const HandsOff& time : found.hands_off) {
+    for (const vec2& place : time.places) {
+      x.push_back(place.x);
+      y.push_back(place.y);
+    }
+  }
+  result.hands_off_s = 0.1 * static_cast<double>(x.size());
+  if (rests.empty()) {
+    // It never stood still: its centre is the middle of where it was by itself.
+    result.wander = wander_of(found.hands_off, vec2(0.0), step);
+    if (result.wander > 0.0) result.centre = vec2(median_of(std::move(x)), median_of(std::move(y)));
+    return result;
+  }
   const Evidence evidence = evidence_of(tracks, rests, step, interval_s);
   for (const Release& release : evidence.releases) {
     for (const Still& still : release.stills) {
@@ -811,7 +872,8 @@ RestStatistics rest_statistics(std::span<const StickTrack> tracks, std::span<con
     result.hysteresis = hysteresis_of(result.rests, evidence.mean_noise);
   }
   set_sigma(result, evidence, step);
-  result.wander = wander_of(evidence, result.drift);
+  result.wander = wander_of(found.hands_off, result.drift, step);
+  add_displaced(found.hands_off, result);
   return result;
 }
 

@@ -63,9 +63,9 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   result.step_x = quantisation_step(clean.tracks, 0, declared_step.x);
   result.step_y = quantisation_step(clean.tracks, 1, declared_step.y);
   const double interval_s = typical_interval_s(clean.tracks);
-  const std::vector<Still> rests = stills(clean.tracks, declared_step).rests;
   static_cast<RestStatistics&>(result) =
-      rest_statistics(clean.tracks, rests, {result.step_x, result.step_y}, interval_s);
+      rest_statistics(clean.tracks, stills(clean.tracks, declared_step),
+                      {result.step_x, result.step_y}, interval_s);
   const Extent extent = extent_of(clean.tracks);
   add_rim(result, clean.tracks, extent);
   result.turns = turns_of(result, clean.tracks, extent);

@@ -11,6 +11,20 @@ namespace gaitpad {
 
 namespace {
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+vec2 median_of(std::span<const vec2> places) {
+  std::vector<double> x, y;
+  for (const vec2& place : places) {
+    x.push_back(place.x);
+    y.push_back(place.y);
+  }
+  return {median_of(x), median_of(y)};
+}
+
 // ---- Finding the stills
 
 constexpr double kCell_s = 0.02;
@@ -395,6 +409,66 @@ double farthest_from(const vec2& home, std::span<const StickTrack> tracks) noexc
   return farthest;
 }
 
+// ---- Hands-off time
+
+// Shares of the reach. A spring brings the stick from the farther place to the nearer one within
+// kSpringCells; a hand that leads it back is slower.
+constexpr double kPushed = 0.5, kFar = 0.7, kBack = 0.45;
+constexpr std::size_t kSpringCells = 7, kSettlingCells = 15;
+constexpr std::size_t kBlockCells = 5, kFewestBlocks = 2;
+constexpr double kOutwards = 0.012;       // raw in 60 ms: a push may have begun
+constexpr std::size_t kLongestPush = 25;  // cells
+
+// Where the stick was while it was slow and not held at its rim: of a stick that never stands
+// still, the middle of its wanderings. None if it was always moved.
+std::optional<vec2> usual_place(std::span<const Cell> cells) {
+  constexpr double kFast = 0.05;  // raw from cell to cell
+  std::vector<double> x, y;
+  for (std::size_t k = 1; k < cells.size(); ++k) {
+    const vec2 at = cells[k].mean();
+    if (!Places::is_inside(at) || glm::length(at - cells[k - 1].mean()) > kFast) continue;
+    x.push_back(at.x);
+    y.push_back(at.y);
+  }
+  if (x.size() < 5 * kBlockCells) return {};
+  return vec2(median_of(x), median_of(y));
+}
+
+// The hands-off times of one track. `home`: where the stick rests; `reach`: from there.
+void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& home, double reach,
+                   std::size_t late, std::vector<HandsOff>& found) {
+  const auto away = [&](std::size_t k) { return glm::length(cells[k].mean() - home) / reach; };
+  for (std::size_t begin = 0, end; begin < cells.size(); begin = end) {
+    end = begin + 1;
+    if (away(begin) > kPushed) continue;
+    while (end < cells.size() && away(end) <= kPushed) ++end;
+    const bool is_released = begin > 0;
+    if (is_released) {
+      const std::size_t spring = kSpringCells + late, nearer = begin + spring / 2;
+      if (nearer >= end || begin < spring || away(nearer) > kBack) continue;
+      if (away(nearer - spring) < kFar && away(nearer - spring + 1) < kFar) continue;
+    }
+    std::size_t first = begin + (is_released ? kSettlingCells : 0), last = end;
+    if (end < cells.size()) {
+      // The push that ends this time began before it was seen.
+      last -= std::min(last - begin, kBlockCells + late);
+      for (std::size_t k = 0; k < kLongestPush && last > first + 3; ++k, --last) {
+        if ((away(last - 1) - away(last - 4)) * reach < kOutwards) break;
+      }
+    }
+    if (last < first + kFewestBlocks * kBlockCells) continue;
+    HandsOff& time = found.emplace_back();
+    time.track = track;
+    time.is_released = is_released;
+    for (std::size_t k = first; k + kBlockCells <= last; k += kBlockCells) {
+      Cell block;
+      for (std::size_t n = k; n < k + kBlockCells; ++n) add(block, cells[n]);
+      time.places.push_back(block.mean());
+      time.variances.push_back(block.variance() / std::max(block.weight, 1.0));
+    }
+  }
+}
+
 // Tells rests from pushes.
 Stills sorted_stills(std::span<const StickTrack> tracks, std::span<const Still> found) {
   const std::optional<Box> turned = turned_box(tracks);
@@ -426,7 +500,33 @@ Stills sorted_stills(std::span<const StickTrack> tracks, std::span<const Still> 
 
 Stills stills(std::span<const StickTrack> raw_tracks, const vec2& declared_step) {
   const std::vector<StickTrack> tracks = clean_tracks(raw_tracks).tracks;
-  return sorted_stills(tracks, all_stills(tracks, declared_step));
+  Stills found = sorted_stills(tracks, all_stills(tracks, declared_step));
+  const double interval_s = typical_interval_s(tracks);
+  const auto late = static_cast<std::size_t>(std::clamp(interval_s / kCell_s, 0.0, 10.0));
+  std::vector<std::vector<Cell>> cells;
+  std::vector<vec2> places;
+  for (const Still& rest : found.rests) places.push_back(rest.mean);
+  std::size_t left = kMostCells;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    cells.push_back(cells_of(tracks[t], interval_s, left));
+    left -= cells.back().size();
+    if (!found.rests.empty()) continue;
+    if (const auto place = usual_place(cells.back())) places.push_back(*place);
+  }
+  if (places.empty()) return found;
+  const vec2 home = median_of(places);
+  double reach = farthest_from(home, tracks);
+  std::vector<double> pushed;  // a square gate's corners are far beyond what it usually reaches
+  for (const std::vector<Cell>& track : cells) {
+    for (const Cell& cell : track) {
+      const double away = glm::length(cell.mean() - home);
+      if (away > kPushed * reach) pushed.push_back(away);
+    }
+  }
+  if (!pushed.empty()) reach = median_of(std::move(pushed));
+  for (std::size_t t = 0; t < tracks.size(); ++t)
+    add_hands_off(t, cells[t], home, reach, late, found.hands_off);
+  return found;
 }
 
 }  // namespace gaitpad

@@ -37,7 +37,8 @@ constexpr double kUselessDrift = 0.002;  // raw a second: leaves a zone of 0.1 w
 constexpr double kUselessWander = 0.02;  // raw, within seconds; within a minute it leaves any zone
 constexpr double kDriftSure_s = 5.0;     // at rest, if the stick was let go only once
 constexpr double kLeastRate_hz = 22.5;   // slower reports show no movement by itself
-constexpr int kUselessStuck = 2;         // a single one may be a lost report
+constexpr int kUselessDropOuts = 2;
+constexpr int kUselessStuck = 2;  // a single one may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
@@ -154,6 +155,10 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   }
   if (s.displaced > 1 && s.displaced_by > kUselessZone) {
     reasons.push_back(displaced(s));
+  }
+  if (s.drop_outs >= kUselessDropOuts) {
+    reasons.push_back(fmt::format("it lost contact {} times, for {:.0f} ms in all", s.drop_outs,
+                                  1e3 * s.drop_out_s));
   }
   if (s.stuck >= kUselessStuck) {
     reasons.push_back(fmt::format("its value stuck {} times while it moved", s.stuck));

@@ -60,6 +60,8 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   for (const StickTrack& track : tracks) result.samples += static_cast<std::int64_t>(track.size());
   const CleanTracks clean = clean_tracks(tracks);
   result.jumps = clean.jumps;
+  result.drop_outs = clean.drop_outs;
+  result.drop_out_s = clean.drop_out_s;
   result.step_x = quantisation_step(clean.tracks, 0, declared_step.x);
   result.step_y = quantisation_step(clean.tracks, 1, declared_step.y);
   const double interval_s = typical_interval_s(clean.tracks);

@@ -86,6 +86,9 @@ struct CleanTracks {
   // repeats the position before it; times never go back.
   std::vector<StickTrack> tracks;
   std::int64_t jumps = 0;  // spikes: to another place and back within three reports
+  // An axis jumped to another value, stayed there for two reports to 0.12 s, and jumped back.
+  std::int64_t drop_outs = 0;
+  double drop_out_s = 0.0;  // of all together
 };
 CleanTracks clean_tracks(std::span<const StickTrack> tracks);
 
@@ -107,7 +110,7 @@ ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_ex
 // `declared`. Axis 0 is x, 1 is y.
 double quantisation_step(std::span<const StickTrack> tracks, int axis, double declared);
 
-// How often the value froze for 60 ms or more and then jumped on in the same direction.
+// How often an axis, or both, froze for 70 ms or more while the other one, or a turn, moved on.
 std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s);
 
 }  // namespace gaitpad

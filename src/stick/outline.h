@@ -25,6 +25,9 @@ Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, doubl
 // The raw point of the outline in direction k (modulo the number of directions).
 vec2 point_of(const Outline& outline, int k) noexcept;
 
+// The direction in which it reaches least far; none if no direction was seen.
+std::optional<int> worst_direction(const Outline& outline) noexcept;
+
 // How many of the 48 bins about the middle the outline covers.
 int filled_bins(const Outline& outline) noexcept;
 // The raw ends of the outline to the left, right, back and front; none if it was not seen there.

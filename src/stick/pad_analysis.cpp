@@ -37,6 +37,7 @@ constexpr double kUselessDrift = 0.002;  // raw a second: leaves a zone of 0.1 w
 constexpr double kUselessWander = 0.02;  // raw, within seconds; within a minute it leaves any zone
 constexpr double kDriftSure_s = 5.0;     // at rest, if the stick was let go only once
 constexpr double kLeastRate_hz = 22.5;   // slower reports show no movement by itself
+constexpr int kFewestDirections = 44;    // of 48; the unseen ones may be weak
 constexpr int kUselessDropOuts = 2;
 constexpr int kUselessStuck = 2;  // a single one may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
@@ -44,6 +45,14 @@ constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, 
 constexpr double kWornWander = 0.01;
 constexpr double kWornSteps = 1.5;  // smaller noise comes from the steps
 constexpr int kWornJumps = 3;
+
+std::string name_of_direction(int k, double reach) {
+  constexpr const char* kNames[] = {"right", "front right", "front", "front left",
+                                    "left",  "back left",   "back",  "back right"};
+  const int eighth = (k * 8 + kOutlineDirections / 2) / kOutlineDirections % 8;
+  return fmt::format("to the {} ({} degrees from the right) it reaches only {:.2f}", kNames[eighth],
+                     k * 360 / kOutlineDirections, reach);
+}
 
 struct Side {
   const char* name;
@@ -56,6 +65,22 @@ std::array<Side, 4> sides_of(const StickStatistics& s) {
   };
   return {Side{"left", from(s.min_x, centre.x)}, Side{"right", from(s.max_x, centre.x)},
           Side{"back", from(s.min_y, centre.y)}, Side{"front", from(s.max_y, centre.y)}};
+}
+
+// Reasons for which a side, or the worst of all directions, reaches less far than `least`.
+std::vector<std::string> short_sides(const StickStatistics& s, double least) {
+  std::vector<std::string> reasons;
+  double shortest = least;
+  for (const Side& side : sides_of(s)) {
+    if (!side.reach || *side.reach >= least) continue;
+    shortest = std::min(shortest, *side.reach);
+    reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
+  }
+  const std::optional<int> worst = worst_direction(s.outline);
+  if (!worst) return reasons;
+  const double reach = s.outline.radius[static_cast<std::size_t>(*worst)];
+  if (reach < shortest - 0.03) reasons.push_back(name_of_direction(*worst, reach));
+  return reasons;
 }
 
 double greatest_sigma(const StickStatistics& s) noexcept {
@@ -148,11 +173,7 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   if (greatest_sigma(s) > kUselessSigma) {
     reasons.push_back(fmt::format("its noise is {:.3f}", greatest_sigma(s)));
   }
-  for (const Side& side : sides_of(s)) {
-    if (side.reach && *side.reach < kUselessReach) {
-      reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
-    }
-  }
+  for (std::string& reason : short_sides(s, kUselessReach)) reasons.push_back(std::move(reason));
   if (s.displaced > 1 && s.displaced_by > kUselessZone) {
     reasons.push_back(displaced(s));
   }
@@ -176,8 +197,12 @@ Reasons missing(const StickStatistics& s) {
   for (const Side& side : sides_of(s)) {
     if (!side.reach) unseen += fmt::format("{}{}", unseen.empty() ? "" : ", ", side.name);
   }
+  const int seen = filled_bins(s.outline);
+  if (unseen.empty() && seen < kFewestDirections) {
+    return {fmt::format("its rim was seen in only {} of {} directions", seen, kCircularityBins)};
+  }
   if (unseen.empty()) return {};
-  if (filled_bins(s.outline) == 0) return {"it was never turned to the rim"};
+  if (seen == 0) return {"it was never turned to the rim"};
   return {fmt::format("its rim was not seen to the {}", unseen)};
 }
 
@@ -196,11 +221,7 @@ Reasons worn(const StickStatistics& s) {
   if (off > kWornCentre) {
     reasons.push_back(fmt::format("it rests {:.2f} off the middle of its range", off));
   }
-  for (const Side& side : sides_of(s)) {
-    if (side.reach && *side.reach < kWornReach) {
-      reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
-    }
-  }
+  for (std::string& reason : short_sides(s, kWornReach)) reasons.push_back(std::move(reason));
   if (s.jumps >= kWornJumps) {
     reasons.push_back(fmt::format("it jumped to another place and back {} times", s.jumps));
   }

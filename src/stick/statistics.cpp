@@ -8,13 +8,14 @@ namespace gaitpad {
 
 namespace {
 
-// The chance that a report at rest repeats the one before it, by noise and steps alone.
-double repeats_expected(const StickStatistics& s) noexcept {
-  if (!s.sigma) return 0.0;
+// For each axis, the chance that a report at rest repeats the one before it, by noise and steps
+// alone; 1 if the noise is not known.
+vec2 repeats_expected(const StickStatistics& s) noexcept {
+  if (!s.sigma) return vec2(1.0);
   const auto chance = [](double sigma, double step) {
     return sigma > 0.0 ? std::min(step / (2.0 * std::sqrt(kPi) * sigma), 1.0) : 1.0;
   };
-  return chance(s.sigma->x, s.step_x) * chance(s.sigma->y, s.step_y);
+  return {chance(s.sigma->x, s.step_x), chance(s.sigma->y, s.step_y)};
 }
 
 struct Extent {
@@ -71,12 +72,13 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   const Extent extent = extent_of(clean.tracks);
   add_rim(result, clean.tracks, extent);
   result.turns = turns_of(result, clean.tracks, extent);
+  const vec2 repeats = repeats_expected(result);
   // From the tracks as they came: a removed spike would be a repeated value.
-  const ReportTiming timing = report_timing(tracks, repeats_expected(result));
+  const ReportTiming timing = report_timing(tracks, result.sigma ? repeats.x * repeats.y : 0.0);
   result.rate_hz = timing.rate_hz;
   result.jitter_ms = timing.jitter_ms;
   result.gaps = timing.gaps;
-  result.stuck = stuck_values(clean.tracks, interval_s);
+  result.stuck = stuck_values(clean.tracks, interval_s, repeats);
   return result;
 }
 

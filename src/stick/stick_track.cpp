@@ -206,6 +206,14 @@ bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
          height > 7.0 * all.length[all.count / 2] && height > 4.5 * all.length[third];
 }
 
+// Nearer to the middle in the same direction: a sector of the gate that reaches less far, which the
+// stick is turned through.
+bool is_weak_sector(const vec2& before, const vec2& place) noexcept {
+  constexpr double kOut = 0.5, kSameDirection = 0.95;  // raw, cosine
+  const double far = glm::length(before), near = glm::length(place);
+  return far > kOut && near < far && glm::dot(before, place) > kSameDirection * far * near;
+}
+
 // A spike has sharp edges on both sides and returns to about where it began.
 bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const Scale& scale) {
   const vec2& before = track[i - 1].raw;
@@ -217,6 +225,7 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const 
         {least, glm::length(track[edge].raw - before), glm::length(track[edge].raw - after)});
   }
   if (least < scale.smallest || least < 2.0 * glm::length(after - before)) return false;
+  if (is_weak_sector(before, track[i].raw)) return false;
   const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
   if (lasted_s > std::clamp(3.7 * scale.interval_s, kShortMovement_s, 2.0 * kShortMovement_s))
     return false;
@@ -252,6 +261,7 @@ std::size_t drop_out_length(const StickTrack& track, std::size_t i, int axis,
   const auto at = [&](std::size_t k) { return track[std::min(k, track.size() - 1)].raw[axis]; };
   const double before = at(i - 1), height = std::fabs(at(i) - before);
   const double steady = kOfHeight * height;
+  if (is_weak_sector(track[i - 1].raw, track[i].raw)) return 0;
   if (height < kSmallest || std::fabs(before - at(i - std::min<std::size_t>(i, 3))) > steady)
     return 0;
   std::size_t end = i + 1;
@@ -451,11 +461,22 @@ vec2 place_at(const StickTrack& track, std::size_t i, double seconds) noexcept {
 
 // Whether the values of these axes (one or both), the same from `first` to `last`, were frozen:
 // they jump on afterwards, by far more than they move then, and something moved meanwhile.
-bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, const vec2& axes) {
+// `quiet`: the chance that noise shows the same value so often.
+bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, const vec2& axes,
+               double quiet) {
   constexpr double kMoved = 0.1, kRun_s = 0.03, kRunning = 0.02, kOut = 0.4;  // raw, s, raw, raw
+  constexpr double kUnlikely = 1e-6, kInside = 0.7;  // noise may end where the range does
   if (last + 1 >= track.size()) return false;
   const vec2 place = track[last].raw, next = track[last + 1].raw;
   const double jump = glm::length((next - place) * axes);
+  const vec2 other = vec2(1.0) - axes;
+  double least = 4.0, most = -4.0;
+  for (std::size_t k = first; k <= last; ++k) {
+    least = std::min(least, glm::dot(track[k].raw, other));
+    most = std::max(most, glm::dot(track[k].raw, other));
+  }
+  const bool is_beside = most - least > kMoved;
+  if (is_beside && quiet < kUnlikely && std::fabs(glm::dot(place, axes)) < kInside) return true;
   double usual = 0.0;
   for (std::size_t k = last + 2; k < std::min(last + 6, track.size()); ++k)
     usual = std::max(usual, glm::length((track[k].raw - track[k - 1].raw) * axes));
@@ -465,14 +486,8 @@ bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, con
            glm::length(track[first].raw - place_at(track, first, -kRun_s)) > kRunning &&
            glm::length(place_at(track, last + 1, kRun_s) - next) > kRunning;
   }
-  const vec2 other = vec2(1.0) - axes;
-  double least = 4.0, most = -4.0;
-  for (std::size_t k = first; k <= last; ++k) {
-    least = std::min(least, glm::dot(track[k].raw, other));
-    most = std::max(most, glm::dot(track[k].raw, other));
-  }
   // Along a straight side of the gate one axis stands still, until the stick is let go.
-  return most - least > kMoved && glm::length(next) > kOut;
+  return is_beside && glm::length(next) > kOut;
 }
 
 }  // namespace
@@ -512,7 +527,8 @@ double quantisation_step(std::span<const StickTrack> tracks, int axis, double de
   return is_step ? least : declared;
 }
 
-std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s) {
+std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s,
+                          const vec2& repeats) {
   const double least_s = std::max(kFrozen_s, 5.0 * interval_s);
   std::int64_t stuck = 0;
   for (const StickTrack& track : tracks) {
@@ -524,7 +540,9 @@ std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s)
           ++last;
         if (last + 1 >= track.size()) break;
         const double frozen_s = seconds_between(track[first].time_ns, track[last + 1].time_ns);
-        if (frozen_s >= least_s && is_frozen(track, first, last, axes)) ++stuck;
+        const double quiet =
+            std::pow(std::max(glm::dot(repeats, axes), 0.1), static_cast<double>(last - first));
+        if (frozen_s >= least_s && is_frozen(track, first, last, axes, quiet)) ++stuck;
       }
     }
   }

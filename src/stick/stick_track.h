@@ -111,6 +111,8 @@ ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_ex
 double quantisation_step(std::span<const StickTrack> tracks, int axis, double declared);
 
 // How often an axis, or both, froze for 70 ms or more while the other one, or a turn, moved on.
-std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s);
+// `repeats`: for each axis, the chance that noise repeats a value at rest.
+std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s,
+                          const vec2& repeats);
 
 }  // namespace gaitpad

@@ -27,14 +27,14 @@ constexpr double kSigmasOfRim = 4.5;  // at the rim one report in 300,000 is not
 // From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
 constexpr double kLeastSideways = 0.08, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
-constexpr double kSigmasOfWander = 3.0;  // a rest shows only part of a random walk
+constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured
 
 // Beyond these no calibration helps.
 constexpr double kUselessZone = 0.3;     // raw; the stick would do nothing for a third of its way
 constexpr double kUselessReach = 0.5;    // raw, from the centre
 constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel of the shortest usable reach
 constexpr double kUselessDrift = 0.002;  // raw a second: leaves a zone of 0.1 within a minute
-constexpr double kUselessWander = 0.02;  // raw, within seconds; within a minute it leaves any zone
+constexpr double kUselessWander = 0.02;  // raw, in a second; within a minute it leaves any zone
 constexpr double kDriftSure_s = 5.0;     // at rest, if the stick was let go only once
 constexpr double kLeastRate_hz = 22.5;   // slower reports show no movement by itself
 constexpr int kFewestDirections = 44;    // of 48; the unseen ones may be weak
@@ -130,7 +130,7 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
   // With little hysteresis that formula covers too little of the noise, and it ignores wander and
   // single rests far from the others. One of those may have been a thumb.
-  const double away = std::max(0.5 * hysteresis_of(s), s.displaced > 1 ? s.displaced_by : 0.0);
+  const double away = 0.5 * hysteresis_of(s) + (s.displaced > 1 ? s.displaced_by : 0.0);
   const double rest =
       std::max(advice.inner_zone, away + kSigmasOfRest * sigma + kSigmasOfWander * s.wander);
   c.inner = std::min(rest / half, kGreatestInner);
@@ -222,9 +222,6 @@ Reasons worn(const StickStatistics& s) {
     reasons.push_back(fmt::format("it rests {:.2f} off the middle of its range", off));
   }
   for (std::string& reason : short_sides(s, kWornReach)) reasons.push_back(std::move(reason));
-  if (s.jumps >= kWornJumps) {
-    reasons.push_back(fmt::format("it jumped to another place and back {} times", s.jumps));
-  }
   if (s.drift_per_s.value_or(0.0) > 0.0) {
     reasons.push_back(
         fmt::format("it drifts by {:.4f} a second at rest, so calibrate it again now and then",
@@ -247,6 +244,8 @@ std::string good(const StickStatistics& s) {
   } else if (s.hysteresis) {
     text += fmt::format(", it comes back within {:.3f}", *s.hysteresis);
   }
+  if (const auto worst = worst_direction(s.outline))
+    least = std::min(least, s.outline.radius[static_cast<std::size_t>(*worst)]);
   return text + fmt::format(" and it reaches {:.2f} or more to every side", least);
 }
 
@@ -264,6 +263,7 @@ std::string sentence(std::string_view opening, const Reasons& reasons) {
 
 void judge(const StickStatistics& s, StickAdvice& advice) {
   const Reasons useless_for = useless(s, advice), missing_are = missing(s), worn_by = worn(s);
+  const bool is_jumping = s.jumps >= kWornJumps;
   const bool is_slow = s.rate_hz && *s.rate_hz < kLeastRate_hz;
   if (s.centre && !is_slow && !useless_for.empty()) {
     advice.verdict = Verdict::replace;
@@ -271,9 +271,14 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
   } else if (!missing_are.empty()) {
     advice.verdict = Verdict::unknown;
     advice.reason = sentence("too little was seen: ", missing_are);
-  } else if (!worn_by.empty()) {
+  } else if (!worn_by.empty() || is_jumping) {
     advice.verdict = Verdict::worn;
-    advice.reason = sentence("", worn_by) + "; calibration makes up for it";
+    if (!worn_by.empty()) advice.reason = sentence("", worn_by) + "; calibration makes up for it";
+    if (is_jumping) {
+      advice.reason += worn_by.empty() ? "It" : ", but it";
+      advice.reason += fmt::format(
+          " jumped to another place and back {} times, which no calibration takes out", s.jumps);
+    }
   } else {
     advice.verdict = Verdict::good;
     advice.reason = sentence("", {good(s)});

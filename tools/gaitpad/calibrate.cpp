@@ -200,8 +200,18 @@ void print_rest(const StickStatistics& s) {
   const std::string trend = s.drift_per_s ? fmt::format("{:>9.4f} a second", *s.drift_per_s) : "";
   print_row("drift", trend.empty() ? kUnknown : *s.drift_per_s > 0.0 ? trend : "     none", from);
   if (s.wander > 0.0)
-    print_row("wander", fmt::format("{:>9.4f}", s.wander), "slow excursions at rest, sigma");
+    print_row("wander", fmt::format("{:>9.4f} a second", s.wander),
+              fmt::format("{:.1f} s in which nobody held it", s.hands_off_s));
+  if (s.displaced > 0) {
+    print_row("displaced rests", fmt::format("{:>9}", s.displaced),
+              fmt::format("up to {:.3f} off the centre", s.displaced_by));
+  }
 }
+
+double reach_in(const Outline& outline, int direction) {
+  return outline.radius[static_cast<std::size_t>(direction)];
+}
+double degrees_of(int direction) { return 360.0 * direction / kOutlineDirections; }
 
 void print_rim(const StickStatistics& s) {
   const std::string from =
@@ -209,6 +219,10 @@ void print_rim(const StickStatistics& s) {
                   filled_bins(s.outline), kCircularityBins, s.turns, s.turns == 1 ? "" : "s");
   print_row("reach right, front", pair_text(s.max_x, s.max_y), from);
   print_row("reach left, back", pair_text(s.min_x, s.min_y), from);
+  if (const auto worst = worst_direction(s.outline)) {
+    print_row("least reach", fmt::format("{:>9.4f}", reach_in(s.outline, *worst)),
+              fmt::format("{:.0f} degrees from the right", degrees_of(*worst)));
+  }
   print_row("circularity error",
             s.circularity_error ? fmt::format("{:>9.1f} %", *s.circularity_error) : kUnknown,
             s.circularity_error ? "0 is a circle of radius 1 about the raw middle"
@@ -226,6 +240,10 @@ void print_reports(const StickStatistics& s) {
             s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms", from, *s.jitter_ms) : from);
   const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
   print_row("gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
+  if (s.drop_outs > 0) {
+    print_row("drop-outs", fmt::format("{:>9}", s.drop_outs),
+              fmt::format("{:.0f} ms in all", 1e3 * s.drop_out_s));
+  }
 }
 
 void print_advice(const StickAdvice& a) {
@@ -253,6 +271,7 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
     return v ? nlohmann::ordered_json((*v)[i]) : nlohmann::ordered_json(nullptr);
   };
   const bool is_known = s.centre.has_value();
+  const std::optional<int> worst = worst_direction(s.outline);
   return {{"centre_x", part(s.centre, 0)},
           {"centre_y", part(s.centre, 1)},
           {"sigma_x", part(s.sigma, 0)},
@@ -281,7 +300,14 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"jitter_ms", value_or_null(s.jitter_ms)},
           {"gaps", value_or_null(s.gaps)},
           {"jumps", s.jumps},
-          {"stuck", s.stuck}};
+          {"stuck", s.stuck},
+          {"drop_outs", s.drop_outs},
+          {"drop_out_s", s.drop_out_s},
+          {"displaced_rests", s.displaced},
+          {"displaced_by", s.displaced_by},
+          {"hands_off_s", s.hands_off_s},
+          {"least_reach", worst ? nlohmann::ordered_json(reach_in(s.outline, *worst)) : nullptr},
+          {"least_reach_deg", worst ? nlohmann::ordered_json(degrees_of(*worst)) : nullptr}};
 }
 
 void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {

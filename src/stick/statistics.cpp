@@ -13,7 +13,7 @@ namespace {
 vec2 repeats_expected(const StickStatistics& s) noexcept {
   if (!s.sigma) return vec2(1.0);
   const auto chance = [](double sigma, double step) {
-    return sigma > 0.0 ? std::min(step / (2.0 * std::sqrt(kPi) * sigma), 1.0) : 1.0;
+    return sigma > 1e-6 ? std::min(step / (2.0 * std::sqrt(kPi) * sigma), 1.0) : 1.0;
   };
   return {chance(s.sigma->x, s.step_x), chance(s.sigma->y, s.step_y)};
 }
@@ -78,7 +78,8 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   result.rate_hz = timing.rate_hz;
   result.jitter_ms = timing.jitter_ms;
   result.gaps = timing.gaps;
-  result.stuck = stuck_values(clean.tracks, interval_s, repeats);
+  result.stuck =
+      stuck_values(clean.tracks, interval_s, result.is_sigma_hidden ? vec2(1.0) : repeats);
   return result;
 }
 

@@ -115,9 +115,10 @@ double reports_stood(double hold_s, double interval_s) noexcept {
 
 namespace {
 
-constexpr double kSmallestSpike = 0.03;          // raw; less is noise
-constexpr double kShortMovement_s = 0.04;        // no hand moves there and back faster
-constexpr double kLongestDropOut_s = 0.12;       // with edges of one report that no hand can make
+constexpr double kSmallestSpike = 0.03;     // raw; less is noise
+constexpr double kShortMovement_s = 0.04;   // no hand moves there and back faster
+constexpr double kLongestDropOut_s = 0.12;  // with edges of one report that no hand can make
+constexpr double kShortestDropOut_s = 0.0035;
 constexpr double kSlowestForDropOuts_s = 0.025;  // a spring takes two reports or more
 constexpr double kFarthest = 4.0;                // raw; positions beyond are damaged
 constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;  // so that sums of times fit
@@ -286,7 +287,7 @@ void remove_drop_outs(StickTrack& track, double interval_s, CleanTracks& counts)
       const std::size_t length = drop_out_length(track, i, axis, interval_s);
       if (length == 0) continue;
       const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
-      if (lasted_s < 1.5 * interval_s) continue;
+      if (lasted_s < std::max(1.5 * interval_s, kShortestDropOut_s)) continue;
       for (std::size_t k = i; k < i + length; ++k) track[k].raw[axis] = track[i - 1].raw[axis];
       ++counts.drop_outs;
       counts.drop_out_s += lasted_s;

@@ -92,7 +92,7 @@ TEST(Outline, HoldsAtAnyReportRateAndNumberOfTurnsAndWithLostReports) {
   for (const Shape& shape : kShapes) {
     for (const double rate_hz : {125.0, 500.0, 1000.0}) {
       for (const double turns : {2.0, 5.0}) {
-        MadeStick stick = made(shape, vec2(0.03, -0.05), 0.01, 8, 5);
+        MadeStick stick = made(shape, vec2(0.03, -0.05), 0.01, 8, 6);
         stick.rate_hz = rate_hz;
         stick.drop_chance = 0.1;
         stick.reports_changes_only = turns > 2.0;

@@ -52,8 +52,8 @@ def test_heel_strikes_are_felt(case):
     assert abs(len(runs) - strikes) <= 1, f"{len(runs)} beats for {strikes} heel strikes"
     assert all(end is not None for _, _, end in runs), runs
     lengths_s = sorted((end - start) / 1e9 for start, _, end in runs)
-    # A guest that its host holds back may end a single beat late.
-    assert 0.02 < lengths_s[0] and lengths_s[len(lengths_s) // 2] < 0.18 and lengths_s[-1] < 1.0, runs
+    # A guest that its host holds back may begin or end a single beat late.
+    assert 0.02 < lengths_s[1] and lengths_s[len(lengths_s) // 2] < 0.18 and lengths_s[-1] < 1.0, runs
     slow = [level for start, level, _ in runs if walked_ns + 1.5e9 < start < middle_ns]
     fast = [level for start, level, _ in runs if middle_ns + 1.5e9 < start < middle_ns + 3e9]
     assert slow and fast and max(slow) < min(fast), (slow, fast)

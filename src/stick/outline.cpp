@@ -1,5 +1,7 @@
 #include "stick/outline.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -510,6 +512,14 @@ std::optional<int> worst_direction(const Outline& outline) noexcept {
       worst = k;
   }
   return worst;
+}
+
+std::string direction_text(int k) {
+  constexpr const char* kNames[] = {"right", "front right", "front", "front left",
+                                    "left",  "back left",   "back",  "back right"};
+  const int eighth = (k * 8 + kOutlineDirections / 2) / kOutlineDirections % 8;
+  return fmt::format("{} ({} degrees from the right)", kNames[eighth],
+                     k * 360 / kOutlineDirections);
 }
 
 int filled_bins(const Outline& outline) noexcept {

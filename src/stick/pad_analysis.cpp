@@ -39,20 +39,13 @@ constexpr double kDriftSure_s = 5.0;     // at rest, if the stick was let go onl
 constexpr double kLeastRate_hz = 22.5;   // slower reports show no movement by itself
 constexpr int kFewestDirections = 44;    // of 48; the unseen ones may be weak
 constexpr int kUselessDropOuts = 2;
-constexpr int kUselessStuck = 2;  // a single one may be a lost report
+constexpr double kUselessPassing = 0.2;  // a minute
+constexpr int kUselessStuck = 2;         // a single one may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
 constexpr double kWornSteps = 1.5;  // smaller noise comes from the steps
 constexpr int kWornJumps = 3;
-
-std::string name_of_direction(int k, double reach) {
-  constexpr const char* kNames[] = {"right", "front right", "front", "front left",
-                                    "left",  "back left",   "back",  "back right"};
-  const int eighth = (k * 8 + kOutlineDirections / 2) / kOutlineDirections % 8;
-  return fmt::format("to the {} ({} degrees from the right) it reaches only {:.2f}", kNames[eighth],
-                     k * 360 / kOutlineDirections, reach);
-}
 
 struct Side {
   const char* name;
@@ -79,8 +72,22 @@ std::vector<std::string> short_sides(const StickStatistics& s, double least) {
   const std::optional<int> worst = worst_direction(s.outline);
   if (!worst) return reasons;
   const double reach = s.outline.radius[static_cast<std::size_t>(*worst)];
-  if (reach < shortest - 0.03) reasons.push_back(name_of_direction(*worst, reach));
+  if (reach < shortest - 0.03)
+    reasons.push_back(
+        fmt::format("to the {} it reaches only {:.2f}", direction_text(*worst), reach));
   return reasons;
+}
+
+// Those that the median of three takes out.
+std::int64_t single_jumps(const StickStatistics& s) noexcept { return s.jumps - s.long_jumps; }
+
+double share_of_jumps(const StickStatistics& s) noexcept {
+  return static_cast<double>(s.jumps) / static_cast<double>(std::max<std::int64_t>(s.samples, 1));
+}
+// How many moments a minute have two jumps in three reports, which pass the median.
+double passing_jumps(const StickStatistics& s) noexcept {
+  const double share = share_of_jumps(s);
+  return 2.0 * share * share * 60.0 * s.rate_hz.value_or(250.0);
 }
 
 double greatest_sigma(const StickStatistics& s) noexcept {
@@ -142,6 +149,7 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   const double sigma_x = s.sigma ? s.sigma->x : 0.0;
   const double astray = 0.5 * hysteresis_of(s) + kSigmasOfForward * sigma_x;
   c.sideways = std::clamp(astray / (least_half(c.x) * c.outer), kLeastSideways, kGreatestSideways);
+  c.filters_jumps = single_jumps(s) >= kWornJumps;
 }
 
 using Reasons = std::vector<std::string>;
@@ -180,6 +188,17 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   if (s.drop_outs >= kUselessDropOuts) {
     reasons.push_back(fmt::format("it lost contact {} times, for {:.0f} ms in all", s.drop_outs,
                                   1e3 * s.drop_out_s));
+  }
+  if (s.long_jumps >= kWornJumps) {
+    reasons.push_back(
+        fmt::format("it jumped away for two or three reports {} times, which no filter takes out",
+                    s.long_jumps));
+  }
+  if (passing_jumps(s) > kUselessPassing) {
+    reasons.push_back(
+        fmt::format("it jumped {} times, in {:.1f} % of its reports, too often to "
+                    "filter: two jumps together pass",
+                    s.jumps, 100.0 * share_of_jumps(s)));
   }
   if (s.stuck >= kUselessStuck) {
     reasons.push_back(fmt::format("its value stuck {} times while it moved", s.stuck));
@@ -231,6 +250,10 @@ Reasons worn(const StickStatistics& s) {
     reasons.push_back(
         fmt::format("it wanders by {:.3f} at rest, so its dead zone is wider", s.wander));
   }
+  if (single_jumps(s) >= kWornJumps) {
+    reasons.push_back(fmt::format(
+        "it jumped for a single report {} times, so its reports are filtered", single_jumps(s)));
+  }
   return reasons;
 }
 
@@ -263,7 +286,6 @@ std::string sentence(std::string_view opening, const Reasons& reasons) {
 
 void judge(const StickStatistics& s, StickAdvice& advice) {
   const Reasons useless_for = useless(s, advice), missing_are = missing(s), worn_by = worn(s);
-  const bool is_jumping = s.jumps >= kWornJumps;
   const bool is_slow = s.rate_hz && *s.rate_hz < kLeastRate_hz;
   if (s.centre && !is_slow && !useless_for.empty()) {
     advice.verdict = Verdict::replace;
@@ -271,14 +293,9 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
   } else if (!missing_are.empty()) {
     advice.verdict = Verdict::unknown;
     advice.reason = sentence("too little was seen: ", missing_are);
-  } else if (!worn_by.empty() || is_jumping) {
+  } else if (!worn_by.empty()) {
     advice.verdict = Verdict::worn;
-    if (!worn_by.empty()) advice.reason = sentence("", worn_by) + "; calibration makes up for it";
-    if (is_jumping) {
-      advice.reason += worn_by.empty() ? "It" : ", but it";
-      advice.reason += fmt::format(
-          " jumped to another place and back {} times, which no calibration takes out", s.jumps);
-    }
+    advice.reason = sentence("", worn_by) + "; calibration makes up for it";
   } else {
     advice.verdict = Verdict::good;
     advice.reason = sentence("", {good(s)});
@@ -373,6 +390,7 @@ void update_centre(const StickCalibration& advice, StickCalibration& calibration
   take(advice.y.centre, calibration.y);
   calibration.inner = advice.inner;
   calibration.sideways = advice.sideways;
+  calibration.filters_jumps = advice.filters_jumps;
   calibration.outer = std::max(calibration.outer, calibration.inner + 0.05);
 }
 

@@ -24,13 +24,14 @@ struct RestStatistics {
   // How far it moves by itself within a second, beyond noise: standard deviation of each axis, over
   // all the time in which nobody held it.
   double wander = 0.0;
-  double hands_off_s = 0.0;   // that time
-  int displaced = 0;          // releases after which it rested far from where it mostly rests
-  double displaced_by = 0.0;  // the farthest of them
+  std::vector<HandsOff> hands_off;  // that time
+  int displaced = 0;                // releases after which it rested far from where it mostly rests
+  double displaced_by = 0.0;        // the farthest of them
 };
 // `tracks`: clean ones (clean_tracks). `found`: in them. `step`: of x and y, 0 if not known.
 // `interval_s`: typical_interval_s of the tracks.
-RestStatistics rest_statistics(std::span<const StickTrack> tracks, const Stills& found,
-                               const vec2& step, double interval_s);
+RestStatistics rest_statistics(std::span<const StickTrack> tracks, Stills found, const vec2& step,
+                               double interval_s);
+double seconds_of(std::span<const HandsOff> times) noexcept;
 
 }  // namespace gaitpad

@@ -61,6 +61,7 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   for (const StickTrack& track : tracks) result.samples += static_cast<std::int64_t>(track.size());
   const CleanTracks clean = clean_tracks(tracks);
   result.jumps = clean.jumps;
+  result.long_jumps = clean.long_jumps;
   result.drop_outs = clean.drop_outs;
   result.drop_out_s = clean.drop_out_s;
   result.step_x = quantisation_step(clean.tracks, 0, declared_step.x);

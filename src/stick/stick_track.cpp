@@ -98,6 +98,22 @@ std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack
   return tracks;
 }
 
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+vec2 median_of(std::span<const vec2> places) {
+  std::vector<double> x, y;
+  for (const vec2& place : places) {
+    x.push_back(place.x);
+    y.push_back(place.y);
+  }
+  return {median_of(std::move(x)), median_of(std::move(y))};
+}
+
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   if (to_ns < from_ns) return -seconds_between(to_ns, from_ns);
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to_ns) -
@@ -242,16 +258,19 @@ std::size_t spike_length(const StickTrack& track, std::size_t i, const Scale& sc
   return 0;
 }
 
-std::int64_t remove_spikes(StickTrack& track, const Scale& scale) {
-  std::int64_t spikes = 0;
+// Returns whether there were any.
+bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
+  bool is_any = false;
   for (std::size_t i = 1; i + 1 < track.size(); ++i) {
     const std::size_t length = spike_length(track, i, scale);
     if (length == 0) continue;
     for (std::size_t k = i; k < i + length; ++k) track[k].raw = track[i - 1].raw;
-    ++spikes;
+    is_any = true;
+    ++counts.jumps;
+    counts.long_jumps += length > 1;
     i += length - 1;
   }
-  return spikes;
+  return is_any;
 }
 
 // How many reports from i on show a drop-out of this axis; 0: none begins there. The axis jumps to
@@ -322,10 +341,7 @@ CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
     const Scale scale{interval_s, smallest_spike(track)};
     remove_drop_outs(track, interval_s, clean);
     // A spike beside another one is found only after that one was removed.
-    for (int pass = 0; pass < 3; ++pass) {
-      const std::int64_t spikes = remove_spikes(track, scale);
-      clean.jumps += spikes;
-      if (spikes == 0) break;
+    for (int pass = 0; pass < 3 && remove_spikes(track, scale, clean); ++pass) {
     }
     remove_odd_ends(track, scale);
   }
@@ -381,11 +397,9 @@ Spacing spacing_within(std::span<const double> intervals, double least_s, double
 }
 
 std::optional<Spacing> spacing(std::span<const StickTrack> tracks) {
-  std::vector<double> found = intervals(tracks);
+  const std::vector<double> found = intervals(tracks);
   if (found.size() < kFewestIntervals) return {};
-  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
-  std::nth_element(found.begin(), middle, found.end());
-  const double median = *middle;
+  const double median = median_of(found);
   const Spacing all = spacing_within(found, 0.0, kSilence_s);
   // If most reports come in bursts, the pauses between bursts belong to the rate.
   if (median < kBurst_s && all.mean_s > 2.0 * median) return all;

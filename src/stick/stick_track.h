@@ -64,6 +64,11 @@ class PadTracker {
 // Turns every sample into the frame.
 std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack> tracks);
 
+// ---- Medians: of an even number the upper one; 0 of nothing
+
+double median_of(std::vector<double> values);
+vec2 median_of(std::span<const vec2> places);  // of each axis
+
 // ---- How long a position stood
 
 // Seconds from one time to a later one; any two 64-bit times are allowed.
@@ -85,7 +90,8 @@ struct CleanTracks {
   // As many samples as before. A sample that does not count (no number, out of range, a spike)
   // repeats the position before it; times never go back.
   std::vector<StickTrack> tracks;
-  std::int64_t jumps = 0;  // spikes: to another place and back within three reports
+  std::int64_t jumps = 0;       // spikes: to another place and back within three reports
+  std::int64_t long_jumps = 0;  // those of them that a median of three reports lets through
   // An axis jumped to another value, stayed there for two reports to 0.12 s, and jumped back.
   std::int64_t drop_outs = 0;
   double drop_out_s = 0.0;  // of all together

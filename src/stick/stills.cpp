@@ -11,20 +11,6 @@ namespace gaitpad {
 
 namespace {
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-vec2 median_of(std::span<const vec2> places) {
-  std::vector<double> x, y;
-  for (const vec2& place : places) {
-    x.push_back(place.x);
-    y.push_back(place.y);
-  }
-  return {median_of(x), median_of(y)};
-}
-
 // ---- Finding the stills
 
 constexpr double kCell_s = 0.02;
@@ -276,16 +262,23 @@ Limits limits_of(std::span<const StickTrack> tracks, const vec2& declared_step, 
           .margin = static_cast<std::size_t>(std::clamp(margin, 1.0, 5.0))};
 }
 
-std::vector<Still> all_stills(std::span<const StickTrack> tracks, const vec2& declared_step) {
-  const double interval_s = typical_interval_s(tracks);
-  const Limits limits = limits_of(tracks, declared_step, interval_s);
-  std::vector<Still> found;
+// By track.
+std::vector<std::vector<Cell>> cells_of(std::span<const StickTrack> tracks, double interval_s) {
+  std::vector<std::vector<Cell>> cells;
   std::size_t left = kMostCells;
+  for (const StickTrack& track : tracks) {
+    cells.push_back(cells_of(track, interval_s, left));
+    left -= cells.back().size();
+  }
+  return cells;
+}
+
+std::vector<Still> all_stills(std::span<const StickTrack> tracks,
+                              std::span<const std::vector<Cell>> cells, const Limits& limits) {
+  std::vector<Still> found;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
-    const std::vector<Cell> cells = cells_of(tracks[t], interval_s, left);
-    left -= cells.size();
-    for (const Run& run : still_runs(cells, limits)) {
-      found.push_back(still_of(tracks[t], t, cells, run));
+    for (const Run& run : still_runs(cells[t], limits)) {
+      found.push_back(still_of(tracks[t], t, cells[t], run));
     }
   }
   return found;
@@ -423,15 +416,13 @@ constexpr std::size_t kLongestPush = 25;  // cells
 // still, the middle of its wanderings. None if it was always moved.
 std::optional<vec2> usual_place(std::span<const Cell> cells) {
   constexpr double kFast = 0.05;  // raw from cell to cell
-  std::vector<double> x, y;
+  std::vector<vec2> places;
   for (std::size_t k = 1; k < cells.size(); ++k) {
     const vec2 at = cells[k].mean();
     if (!Places::is_inside(at) || glm::length(at - cells[k - 1].mean()) > kFast) continue;
-    x.push_back(at.x);
-    y.push_back(at.y);
+    places.push_back(at);
   }
-  if (x.size() < 5 * kBlockCells) return {};
-  return vec2(median_of(x), median_of(y));
+  return places.size() < 5 * kBlockCells ? std::nullopt : std::optional(median_of(places));
 }
 
 // The hands-off times of one track. `home`: where the stick rests; `reach`: from there.
@@ -500,18 +491,15 @@ Stills sorted_stills(std::span<const StickTrack> tracks, std::span<const Still> 
 
 Stills stills(std::span<const StickTrack> raw_tracks, const vec2& declared_step) {
   const std::vector<StickTrack> tracks = clean_tracks(raw_tracks).tracks;
-  Stills found = sorted_stills(tracks, all_stills(tracks, declared_step));
   const double interval_s = typical_interval_s(tracks);
+  const std::vector<std::vector<Cell>> cells = cells_of(tracks, interval_s);
+  const Limits limits = limits_of(tracks, declared_step, interval_s);
+  Stills found = sorted_stills(tracks, all_stills(tracks, cells, limits));
   const auto late = static_cast<std::size_t>(std::clamp(interval_s / kCell_s, 0.0, 10.0));
-  std::vector<std::vector<Cell>> cells;
   std::vector<vec2> places;
   for (const Still& rest : found.rests) places.push_back(rest.mean);
-  std::size_t left = kMostCells;
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    cells.push_back(cells_of(tracks[t], interval_s, left));
-    left -= cells.back().size();
-    if (!found.rests.empty()) continue;
-    if (const auto place = usual_place(cells.back())) places.push_back(*place);
+  for (std::size_t t = 0; t < tracks.size() && found.rests.empty(); ++t) {
+    if (const auto place = usual_place(cells[t])) places.push_back(*place);
   }
   if (places.empty()) return found;
   const vec2 home = median_of(places);

@@ -21,7 +21,8 @@ struct Still {
 // beginning of a track, to the next push. It may move by itself, so it need not be still.
 struct HandsOff {
   std::size_t track = 0;
-  bool is_released = false;  // a spring brought it back; false: from the beginning of the track
+  bool is_released = false;   // a spring brought it back; false: from the beginning of the track
+  bool is_displaced = false;  // RestStatistics: it rested far from where it mostly rests
   // Means over 0.1 s, without gaps, and the variances of these means (both axes) by noise alone.
   std::vector<vec2> places;
   std::vector<double> variances;

@@ -42,7 +42,7 @@ PUBLIC = {
     "src/files": ["bvh", "config_files", "gltf", "motion_file"],
     "src/strides": ["clean_strides"],
     "src/hid": ["decode", "descriptor", "driver", "pad_map", "report", "trace"],
-    "src/stick": ["calibration"],
+    "src/stick": ["calibration", "untouched"],
     "drivers": ["drivers", "keyboard"],
     "src/pads": ["pad_setup", "pad_stream", "pads"],
     "src/session": ["followers", "live", "replay", "session_frame", "session_spec", "simulation", "summary"],

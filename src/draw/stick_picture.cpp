@@ -436,12 +436,33 @@ Reaches reaches_of(const Outline& outline) noexcept {
   return reaches;
 }
 
+// A pointer at the direction that reaches least far, from the stick's centre, and its name.
+void draw_worst(cairo_t* cr, const Box& plot, const Outline& outline) {
+  const std::optional<int> worst = worst_direction(outline);
+  if (!worst) return;
+  const double share = static_cast<double>(*worst) / kOutlineDirections;
+  const double x = plot.x + plot.width * share, y = plot.y + plot.height;
+  set_colour(cr, rgb(colour::kVermilion));
+  cairo_move_to(cr, x, y - 9.0);
+  cairo_line_to(cr, x - 5.0, y);
+  cairo_line_to(cr, x + 5.0, y);
+  cairo_close_path(cr);
+  cairo_fill(cr);
+  const double reach = outline.radius[static_cast<std::size_t>(*worst)];
+  const std::string text = fmt::format("worst: {:.2f} to the {}", reach, direction_text(*worst));
+  const TextStyle style{11.5, colour::kVermilion, Align::left, true};
+  const double most = plot.x + plot.width - text_width(cr, style, text) - 8.0;
+  draw_text(cr, style, {std::clamp(x - 40.0, plot.x + 8.0, std::max(most, plot.x + 8.0)), y - 13.0},
+            text, plot.width - 16.0);
+}
+
 void draw_reach(cairo_t* cr, const Box& plot, const StickPicture& stick) {
   const Reaches reaches = stick.statistics ? reaches_of(stick.statistics->outline) : Reaches{};
   const PlotRange range = range_of(reaches);
   draw_reach_grid(cr, plot, range);
   if (is_seen(reaches)) {
     draw_bars(cr, plot, range, reaches);
+    draw_worst(cr, plot, stick.statistics->outline);
   } else {
     draw_text(cr, {14.0, colour::kFaint, Align::centre},
               {plot.x + plot.width / 2, plot.y + plot.height * 0.5 - 10.0}, "not turned");
@@ -492,17 +513,74 @@ std::vector<LegendEntry> reach_legend(const StickPicture& stick) {
   return entries;
 }
 
+// --- hands-off time: position over time, one time after the other
+
+double inner_zone_of(const StickPicture& stick) {
+  return stick.advice && stick.advice->inner_zone > 0.0 ? stick.advice->inner_zone : 0.05;
+}
+
+// What was found of the stick while nobody held it.
+std::string strip_caption(const StickStatistics& s) {
+  std::string text =
+      fmt::format("Hands off for {:.1f} s: distance from the centre, raw", seconds_of(s.hands_off));
+  if (s.displaced > 0)
+    text += fmt::format("; {} displaced rest{}, by up to {:.2f}", s.displaced,
+                        s.displaced == 1 ? "" : "s", s.displaced_by);
+  if (s.wander > 0.0) text += fmt::format("; wanders by {:.3f} a second", s.wander);
+  if (s.drift_per_s.value_or(0.0) > 0.0)
+    text += fmt::format("; drifts by {:.4f} a second", *s.drift_per_s);
+  return text;
+}
+
+void draw_strip(cairo_t* cr, const Box& box, const StickPicture& stick) {
+  Plot plot;
+  plot.nothing = "it was never seen let go";
+  PlotSeries inside{"", rgb(colour::kBlue), 1.6, {}}, zone{"", rgb(colour::kGreen), 1.4, {}, true};
+  if (stick.statistics && stick.statistics->centre) {
+    const double radius = inner_zone_of(stick);
+    double time_s = 0.0, highest = 1.5 * radius;
+    for (const HandsOff& hands_off : stick.statistics->hands_off) {
+      const double begin_s = time_s;
+      for (const vec2& place : hands_off.places) {
+        const double away = glm::length(place - *stick.statistics->centre);
+        inside.points.emplace_back(time_s += 0.1, away);
+        highest = std::max(highest, 1.1 * away);
+        if (away > radius)
+          plot.marks.push_back({PlotMark::Shape::dot, {time_s, away}, rgb(colour::kVermilion)});
+      }
+      inside.points.emplace_back(time_s, std::nan(""));
+      if (hands_off.is_displaced)
+        plot.bands.push_back({begin_s, time_s, rgb(colour::kOrange, 0.3), "displaced"});
+    }
+    if (time_s > 0.0) zone.points = {{0.0, radius}, {time_s, radius}};
+    plot.x = {0.0, std::max(time_s, 1.0)};
+    plot.y = {0.0, std::min(highest, 2.0)};
+  }
+  plot.series = {std::move(zone), std::move(inside)};
+  draw_plot(cr, box, plot);
+}
+
+std::vector<LegendEntry> strip_legend(const StickPicture& stick) {
+  using Mark = LegendEntry::Mark;
+  if (!stick.statistics || stick.statistics->hands_off.empty()) return {};
+  return {{Mark::line, colour::kBlue, "mean of 0.1 s, seconds from left to right"},
+          {Mark::dashed, colour::kGreen, "inner zone"},
+          {Mark::dot, colour::kVermilion, "beyond it: it would walk"},
+          {Mark::area, colour::kOrange, "displaced rest"}};
+}
+
 // Pixels. Each stick has a card: title, plots with their legends, numbers, verdict.
 constexpr double kPageWidth = 1500.0, kMargin = 40.0, kHeadingHeight = 76.0, kBetweenCards = 24.0;
 constexpr double kPadding = 24.0, kTitleHeight = 44.0, kCaptionHeight = 22.0, kPlot = 396.0,
                  kGutter = 38.0, kTicksHeight = 26.0, kLegendHeight = 48.0, kLegendRow = 20.0,
-                 kNumberRow = 46.0, kVerdictHeight = 60.0;
+                 kNumberRow = 46.0, kVerdictHeight = 60.0, kStrip = 96.0;
 constexpr double kCardWidth = kPageWidth - 2.0 * kMargin;
 constexpr double kInnerWidth = kCardWidth - 2.0 * kPadding;
 constexpr int kNumberColumns = 6, kNumberRows = 2;
+constexpr double kStripHeight = kCaptionHeight + kStrip + kTicksHeight + kLegendHeight;
 constexpr double kCardHeight = 2.0 * kPadding + kTitleHeight + kCaptionHeight + kPlot +
-                               kTicksHeight + kLegendHeight + kNumberRows * kNumberRow +
-                               kVerdictHeight;
+                               kTicksHeight + kLegendHeight + kStripHeight +
+                               kNumberRows * kNumberRow + kVerdictHeight;
 constexpr std::size_t kMaxSticks = 8;
 
 constexpr const char* kUnknown = "not known";
@@ -648,14 +726,16 @@ void draw_panels(cairo_t* cr, const Box& box, const StickPicture& stick) {
 }
 
 void draw_card(cairo_t* cr, const Box& card, const StickPicture& stick) {
-  fill_box(cr, card, rgb(colour::kCard));
-  stroke_box(cr, card, rgb(colour::kBorder), 1.0);
   Box box{card.x + kPadding, card.y + kPadding, kInnerWidth, kTitleHeight};
   draw_text(cr, {19.0, colour::kInk, Align::left, true}, {box.x, box.y + 18.0}, stick.title,
             box.width);
   box.y += kTitleHeight;
   draw_panels(cr, box, stick);
   box.y += kCaptionHeight + kPlot + kTicksHeight + kLegendHeight;
+  const std::string strip = stick.statistics ? strip_caption(*stick.statistics) : "Hands off";
+  draw_panel(cr, {box.x + kGutter, box.y + kCaptionHeight, box.width - kGutter, kStrip},
+             {strip.c_str(), &draw_strip, &strip_legend}, stick);
+  box.y += kStripHeight;
   set_colour(cr, rgb(colour::kBorder));
   cairo_set_line_width(cr, 1.0);
   line(cr, {box.x, std::round(box.y) + 0.5}, {box.x + box.width, std::round(box.y) + 0.5});
@@ -675,10 +755,15 @@ vec2 raw_of(const StickCalibration& c, const vec2& p) noexcept {
   return {raw(c.x, p.x), raw(c.y, p.y)};
 }
 
-Surface stick_picture(const std::string& heading, std::span<const StickPicture> sticks) {
+namespace {
+
+// A heading above one card for each stick.
+template <typename Stick>
+Surface page_of(const std::string& heading, std::span<const Stick> sticks, double card_height,
+                void (*draw)(cairo_t*, const Box&, const Stick&)) {
   sticks = sticks.first(std::min(sticks.size(), kMaxSticks));
   const double height = kHeadingHeight +
-                        static_cast<double>(sticks.size()) * (kCardHeight + kBetweenCards) +
+                        static_cast<double>(sticks.size()) * (card_height + kBetweenCards) +
                         kMargin - kBetweenCards;
   Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kPageWidth),
                                              static_cast<int>(std::ceil(height))));
@@ -686,12 +771,59 @@ Surface stick_picture(const std::string& heading, std::span<const StickPicture> 
   fill_box(cr.get(), {0.0, 0.0, kPageWidth, height}, rgb(colour::kPaper));
   draw_text(cr.get(), {24.0, colour::kInk, Align::left, true}, {kMargin, 50.0}, heading,
             kCardWidth);
-  Box card{kMargin, kHeadingHeight, kCardWidth, kCardHeight};
-  for (const StickPicture& stick : sticks) {
-    draw_card(cr.get(), card, stick);
-    card.y += kCardHeight + kBetweenCards;
+  Box card{kMargin, kHeadingHeight, kCardWidth, card_height};
+  for (const Stick& stick : sticks) {
+    fill_box(cr.get(), card, rgb(colour::kCard));
+    stroke_box(cr.get(), card, rgb(colour::kBorder), 1.0);
+    draw(cr.get(), card, stick);
+    card.y += card_height + kBetweenCards;
   }
   return surface;
+}
+
+constexpr double kComparisonHeight =
+    2.0 * kPadding + kTitleHeight + kCaptionHeight + kPlot + kTicksHeight + kLegendRow;
+
+// The zones of both, side by side, and the numbers; those that differ are bold.
+void draw_comparison(cairo_t* cr, const Box& card, const ComparedStick& stick) {
+  const Box box{card.x + kPadding, card.y + kPadding, kInnerWidth, kTitleHeight};
+  draw_text(cr, {19.0, colour::kInk, Align::left, true}, {box.x, box.y + 18.0}, stick.title,
+            box.width);
+  const double stride = (box.width - kGutter - kPlot) / 2.0;
+  const double top = box.y + kTitleHeight + kCaptionHeight;
+  const double numbers = box.x + kGutter + 2.0 * stride, half = kPlot / 2.0;
+  const TextStyle name{13.0, colour::kInk, Align::left, true};
+  for (int i = 0; i < 2; ++i) {
+    StickAdvice advice;
+    advice.calibration = *stick.calibrations[i];
+    const StickPicture zones{"", {}, nullptr, &advice};
+    const double x = std::round(box.x + kGutter + i * stride);
+    draw_panel(cr, {x, top, kPlot, kPlot}, {stick.names[i].c_str(), &draw_raw_plane, &raw_legend},
+               zones);
+    draw_text(cr, name, {numbers + half + i * half / 2.0, top - 9.0}, stick.names[i],
+              half / 2.0 - 6.0);
+  }
+  double y = top + 12.0;
+  for (const ComparedNumber& number : stick.numbers) {
+    const bool is_other = number.values[0] != number.values[1];
+    draw_text(cr, {13.0, colour::kFaint}, {numbers, y}, number.label, half - 6.0);
+    for (int i = 0; i < 2; ++i) {
+      draw_text(cr, {13.0, colour::kInk, Align::left, is_other},
+                {numbers + half + i * half / 2.0, y}, number.values[i], half / 2.0 - 6.0);
+    }
+    y += 24.0;
+  }
+}
+
+}  // namespace
+
+Surface stick_picture(const std::string& heading, std::span<const StickPicture> sticks) {
+  return page_of(heading, sticks, kCardHeight, &draw_card);
+}
+
+std::optional<Error> write_comparison(const std::string& path, const std::string& heading,
+                                      std::span<const ComparedStick> sticks) {
+  return write_png(path, page_of(heading, sticks, kComparisonHeight, &draw_comparison).get());
 }
 
 std::optional<Error> write_stick_picture(const std::string& path, const std::string& heading,

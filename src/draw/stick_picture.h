@@ -7,6 +7,7 @@
 
 #include "draw/picture.h"
 #include "gaitpad/result.h"
+#include "pads/calibration_store.h"
 #include "stick/pad_analysis.h"
 #include "stick/statistics.h"
 
@@ -28,5 +29,15 @@ Surface stick_picture(const std::string& heading, std::span<const StickPicture> 
 // The same as a PNG, written beside `path` first: on error an old file is unchanged.
 std::optional<Error> write_stick_picture(const std::string& path, const std::string& heading,
                                          std::span<const StickPicture> sticks);
+
+// Two calibrations of one stick, for instance before and after a repair.
+struct ComparedStick {
+  std::string title;
+  std::string names[2];
+  const StickCalibration* calibrations[2] = {};
+  std::span<const ComparedNumber> numbers;
+};
+std::optional<Error> write_comparison(const std::string& path, const std::string& heading,
+                                      std::span<const ComparedStick> sticks);
 
 }  // namespace gaitpad

@@ -232,4 +232,37 @@ std::vector<std::string> changes_since(const CalibrationFile& then, const Calibr
   return told;
 }
 
+std::vector<ComparedNumber> compared_numbers(const CalibrationFile& a, const CalibrationFile& b,
+                                             std::size_t side) {
+  const CalibrationFile* files[] = {&a, &b};
+  std::vector<ComparedNumber> numbers;
+  const auto add = [&](const char* label, auto value) {
+    ComparedNumber& number = numbers.emplace_back(label);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Calibration& c = files[i]->calibration;
+      const std::optional<double> found =
+          value(side == 0 ? c.left : c.right, files[i]->measured[side].value_or(StickMeasured()));
+      number.values[i] = found ? fmt::format("{:.4f}", *found) : "-";
+    }
+  };
+  using Stick = const StickCalibration&;
+  using Measured = const StickMeasured&;
+  using Value = std::optional<double>;
+  add("centre x", [](Stick c, Measured) -> Value { return c.x.centre; });
+  add("centre y", [](Stick c, Measured) -> Value { return c.y.centre; });
+  add("reach left", [](Stick c, Measured) -> Value { return c.x.centre - c.x.min; });
+  add("reach right", [](Stick c, Measured) -> Value { return c.x.max - c.x.centre; });
+  add("reach back", [](Stick c, Measured) -> Value { return c.y.centre - c.y.min; });
+  add("reach forward", [](Stick c, Measured) -> Value { return c.y.max - c.y.centre; });
+  add("inner zone", [](Stick c, Measured) -> Value { return inner_zone_raw(c); });
+  add("outer zone (share)", [](Stick c, Measured) -> Value { return c.outer; });
+  add("sideways zone (share)", [](Stick c, Measured) -> Value { return c.sideways; });
+  add("noise (sigma)", [](Stick, Measured m) -> Value { return m.sigma; });
+  add("hysteresis", [](Stick, Measured m) -> Value { return m.hysteresis; });
+  add("drift a second", [](Stick, Measured m) -> Value { return m.drift_per_s; });
+  add("circularity error (%)", [](Stick, Measured m) -> Value { return m.circularity_error; });
+  add("jumps filtered (0, 1)", [](Stick c, Measured) -> Value { return c.filters_jumps; });
+  return numbers;
+}
+
 }  // namespace gaitpad

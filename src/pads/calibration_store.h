@@ -1,5 +1,6 @@
 // A user's own calibrations: one file for each device, and what has changed since it was written.
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,5 +32,15 @@ std::optional<Error> save_calibration(const std::string& path, const Calibration
 // `now` only measured values are compared; of `then` also the values that were not measured, since
 // they are in use.
 std::vector<std::string> changes_since(const CalibrationFile& then, const CalibrationFile& now);
+
+// One number of a stick in two files, as text; "-": the file does not have it.
+struct ComparedNumber {
+  std::string label;
+  std::array<std::string, 2> values;
+};
+// What a repairer compares, raw: centre, reach, zones, and what was measured. `side`: 0 left, 1
+// right.
+std::vector<ComparedNumber> compared_numbers(const CalibrationFile& a, const CalibrationFile& b,
+                                             std::size_t side);
 
 }  // namespace gaitpad

@@ -1,6 +1,7 @@
 #include "gaitpad/pads.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace gaitpad {
@@ -17,7 +18,9 @@ void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses
 }
 
 Pads::Pads(std::vector<PadConfig> configs, int rate_hz)
-    : silence_ticks_((rate_hz + kSilencesInSecond - 1) / kSilencesInSecond) {
+    : rate_hz_(rate_hz),
+      silence_ticks_((rate_hz + kSilencesInSecond - 1) / kSilencesInSecond),
+      settled_ticks_(static_cast<int>(std::ceil(JumpFilter::kSettled_s * rate_hz))) {
   pads_.resize(configs.size());
   for (std::size_t i = 0; i < configs.size(); ++i) {
     pads_[i].config = std::move(configs[i]);
@@ -38,6 +41,7 @@ bool Pads::take_report(const Report& report) noexcept {
   const std::uint32_t buttons_before = pad.state.buttons;
   if (!pad.config.layout || !decode(*pad.config.layout, report, pad.state)) return false;
   pad.silent_ticks = 0;
+  pad.filter.take(pad.state);
   pad.is_seen = true;
   if (pad.is_awaited) pad.is_awaited = !is_near_centre(pad);
   if (has_lost_its_driver() && can_take_over(pad)) driving_ = report.device;
@@ -62,6 +66,8 @@ void Pads::remove_pad(std::uint16_t device) noexcept {
   lost.is_awaited = true;
   lost.is_seen = false;
   lost.state = PadState{};
+  lost.filter = JumpFilter();
+  if (device == driving_) watch_ = UntouchedWatch();
   if (has_lost_its_driver()) replace_driver();
 }
 
@@ -80,8 +86,13 @@ bool Pads::is_silent(const Pad& pad) const noexcept {
   return pad.config.streams && pad.silent_ticks >= silence_ticks_;
 }
 
+Stick Pads::calibrated(const Pad& pad) noexcept {
+  const Calibration& calibration = pad.config.calibration;
+  return stick_position(calibration, pad.filter.filtered(calibration, pad.state));
+}
+
 bool Pads::is_near_centre(const Pad& pad) const noexcept {
-  return glm::length(stick_position(pad.config.calibration, pad.state).left) <= kNearCentre;
+  return glm::length(calibrated(pad).left) <= kNearCentre;
 }
 
 bool Pads::can_take_over(const Pad& pad) const noexcept {
@@ -108,7 +119,7 @@ bool Pads::is_other_plugged_in() const noexcept {
 
 Stick Pads::stick_of(const Pad& pad) const noexcept {
   if (!pad.config.is_present || pad.is_awaited || is_silent(pad)) return {};
-  return stick_position(pad.config.calibration, pad.state);
+  return calibrated(pad);
 }
 
 // If several are deflected, the one that was plugged in first counts.
@@ -126,12 +137,25 @@ Stick Pads::fallback_stick() const noexcept {
   return stick;
 }
 
+void Pads::watch(const Pad& pad, const vec2& left) noexcept {
+  const std::int64_t time_ns = ++ticks_ * 1'000'000'000 / rate_hz_;
+  const vec2 raw(pad.state.axis[kLeftX], pad.state.axis[kLeftY]);
+  untouched_ += watch_.take(time_ns, pad.config.calibration.left, raw, left);
+}
+
 Stick Pads::finish_tick() noexcept {
   Stick stick;
-  if (driving_ != kNoDevice) stick = stick_of(pads_[driving_]);
+  if (driving_ != kNoDevice) {
+    const Pad& pad = pads_[driving_];
+    stick = stick_of(pad);
+    if (!pad.config.is_fallback) watch(pad, stick.left);
+  }
   if (const Stick other = fallback_stick(); stick.left == vec2(0.0) && other.left != vec2(0.0))
     stick = other;
-  for (Pad& pad : pads_) pad.silent_ticks = std::min(pad.silent_ticks + 1, silence_ticks_);
+  for (Pad& pad : pads_) {
+    pad.silent_ticks = std::min(pad.silent_ticks + 1, silence_ticks_);
+    if (pad.silent_ticks == settled_ticks_) pad.filter.settle();
+  }
   return stick;
 }
 

@@ -26,6 +26,7 @@ void copy_pad(const Pads& pads, SessionFrame& frame) noexcept {
   frame.pad.device = pads.driving();
   frame.pad.state = pads.driving_state();
   frame.pad.reports = pads.driving_reports();
+  frame.pad.untouched = pads.untouched();
   frame.presses = pads.presses();
   const PadConfig* config = pads.driving_pad();
   frame.pad.is_present = config != nullptr && config->is_present;

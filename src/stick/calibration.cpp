@@ -7,6 +7,8 @@ namespace gaitpad {
 
 namespace {
 
+constexpr PadAxis kStickAxes[] = {kLeftX, kLeftY, kRightX, kRightY};
+
 double centred(const AxisCalibration& axis, double raw) noexcept {
   if (!std::isfinite(raw)) return 0.0;
   const double offset = std::clamp(raw, -1.0, 1.0) - axis.centre;
@@ -73,6 +75,25 @@ vec2 stick_position(const StickCalibration& c, const vec2& raw) noexcept {
 Stick stick_position(const Calibration& calibration, const PadState& pad) noexcept {
   return {stick_position(calibration.left, vec2(pad.axis[kLeftX], pad.axis[kLeftY])),
           stick_position(calibration.right, vec2(pad.axis[kRightX], pad.axis[kRightY]))};
+}
+
+void JumpFilter::take(const PadState& state) noexcept {
+  last_[0] = last_[1];
+  last_[1] = last_[2];
+  for (std::size_t i = 0; i < 4; ++i) last_[2][i] = state.axis[kStickAxes[i]];
+  if (!is_begun_) settle();
+  is_begun_ = true;
+}
+
+PadState JumpFilter::filtered(const Calibration& calibration,
+                              const PadState& state) const noexcept {
+  PadState filtered = state;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!(i < 2 ? calibration.left : calibration.right).filters_jumps) continue;
+    const double a = last_[0][i], b = last_[1][i], c = last_[2][i];
+    filtered.axis[kStickAxes[i]] = std::max(std::min(a, b), std::min(std::max(a, b), c));
+  }
+  return filtered;
 }
 
 double trigger_position(const TriggerCalibration& c, double raw) noexcept {

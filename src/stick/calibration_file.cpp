@@ -85,6 +85,7 @@ void read_stick(TomlTable stick, StickCalibration& c, std::optional<StickMeasure
   c.outer = stick.number("outer", 0.1, 1.0).value_or(c.outer);
   c.sideways = stick.number("sideways", 0.0, 0.5).value_or(c.sideways);
   c.curve = stick.number("curve", 0.0, 1.0).value_or(c.curve);
+  c.filters_jumps = stick.boolean("filters_jumps").value_or(c.filters_jumps);
   if (c.outer - c.inner < kLeastZoneSpan) {
     stick.reject(stick.has("outer") ? "outer" : "inner",
                  fmt::format("the outer zone {} is not {} above the inner zone {}", c.outer,
@@ -207,7 +208,7 @@ std::string measured_text(std::string_view stick, const StickMeasured& m) {
 }
 
 // Everything that changes the output is written, even a default: the file keeps its meaning if a
-// default changes.
+// default changes. The filter is off unless it is named.
 std::string stick_text(std::string_view name, const StickCalibration& c) {
   const auto axis = [](const AxisCalibration& a) {
     return fmt::format("{{ min = {}, centre = {}, max = {} }}", a.min, a.centre, a.max);
@@ -220,9 +221,9 @@ std::string stick_text(std::string_view name, const StickCalibration& c) {
   }
   return fmt::format(
       "\n[{}]\n{}x = {}\ny = {}\nshape = \"{}\"\ninner = {}\nouter = {}\nsideways = {}\n"
-      "curve = {}\n",
+      "curve = {}\n{}",
       name, frame, axis(c.x), axis(c.y), kShapeNames[static_cast<int>(c.shape)], c.inner, c.outer,
-      c.sideways, c.curve);
+      c.sideways, c.curve, c.filters_jumps ? "filters_jumps = true\n" : "");
 }
 
 std::string trigger_text(std::string_view name, const TriggerCalibration& c) {

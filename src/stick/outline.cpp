@@ -1,5 +1,7 @@
 #include "stick/outline.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -426,6 +428,63 @@ void keep_in_range(Outline& outline) noexcept {
   }
 }
 
+// Samples of whole turns, without their beginnings and ends, where the stick moves outwards and
+// back: a sector that reaches less far shows in them alone, because one may also push less far.
+std::vector<Polar> turned_samples(std::span<const StickTrack> tracks, const vec2& middle) {
+  constexpr double kOfTurn = 10.0 * kDegree;
+  std::vector<Polar> turned;
+  for (const StickTrack& track : tracks) {
+    std::vector<std::pair<Polar, double>> run;  // and how far it was turned by then
+    const auto end_run = [&] {
+      const double whole = run.empty() ? 0.0 : run.back().second;
+      for (const auto& [polar, way] : run) {
+        const double from = std::copysign(way, way * whole), to = std::fabs(whole) - from;
+        if (std::fabs(whole) > 1.9 * kPi && from > kOfTurn && to > kOfTurn) turned.push_back(polar);
+      }
+      run.clear();
+    };
+    for (const StickSample& sample : track) {
+      const vec2 p = sample.raw - middle;
+      const double radius = glm::length(p);
+      if (!(radius > kLeastRadius) || radius > kGreatestRadius) {
+        end_run();
+        continue;
+      }
+      const Polar polar{gaitpad::atan2(p.y, p.x), radius};
+      const double way =
+          run.empty() ? 0.0 : run.back().second + wrapped(polar.angle - run.back().first.angle);
+      run.push_back({polar, way});
+    }
+    end_run();
+  }
+  return turned;
+}
+
+// Sets the directions in which whole turns stay well inside the line round all samples, a sector of
+// the gate that reaches less far: rim_samples() leaves these out.
+void take_weak_sectors(std::span<const StickTrack> tracks, double sigma, Outline& outline) {
+  constexpr double kWeak = 0.88, kSlack = 0.02;
+  constexpr std::size_t kFewest = 3;
+  std::array<std::vector<double>, kOutlineDirections> radii;
+  for (const Polar& p : turned_samples(tracks, outline.middle))
+    radii[direction_of(p.angle)].push_back(p.radius);
+  const Radii greatest = greatest_of(polar_samples(tracks, outline.middle, sigma));
+  const Radii hull = hull_of(greatest);
+  for (int k = 0; k < kOutlineDirections; ++k) {
+    std::vector<double> near;
+    double most = 0.0;
+    for (const int n : {around(k - 1), k, around(k + 1)}) {
+      near.insert(near.end(), radii[n].begin(), radii[n].end());
+      most = std::max(most, greatest[n]);
+    }
+    if (near.size() < kFewest || most > kWeak * hull[k]) continue;
+    std::erase_if(near, [&](double radius) { return radius < most - kSlack - 3.0 * sigma; });
+    double sum = 0.0;
+    for (const double radius : near) sum += radius;
+    if (!near.empty()) outline.radius[k] = sum / static_cast<double>(near.size());
+  }
+}
+
 }  // namespace
 
 Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, double sigma) {
@@ -439,10 +498,28 @@ Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, doubl
     if (between(rim, angle - 0.5 * kSpacing, angle + 0.5 * kSpacing).empty()) continue;
     outline.radius[k] = radius_at(rim, angle, sigma);
   }
+  take_weak_sectors(tracks, sigma, outline);
   fill_gaps(outline.radius);
   if (sigma > 0.0) sharpen(outline);
   keep_in_range(outline);
   return outline;
+}
+
+std::optional<int> worst_direction(const Outline& outline) noexcept {
+  std::optional<int> worst;
+  for (int k = 0; k < kOutlineDirections; ++k) {
+    if (outline.radius[k] > 0.0 && !(worst && outline.radius[*worst] <= outline.radius[k]))
+      worst = k;
+  }
+  return worst;
+}
+
+std::string direction_text(int k) {
+  constexpr const char* kNames[] = {"right", "front right", "front", "front left",
+                                    "left",  "back left",   "back",  "back right"};
+  const int eighth = (k * 8 + kOutlineDirections / 2) / kOutlineDirections % 8;
+  return fmt::format("{} ({} degrees from the right)", kNames[eighth],
+                     k * 360 / kOutlineDirections);
 }
 
 int filled_bins(const Outline& outline) noexcept {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "stick/stick_track.h"
 
@@ -24,6 +25,12 @@ struct Outline {
 Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, double sigma);
 // The raw point of the outline in direction k (modulo the number of directions).
 vec2 point_of(const Outline& outline, int k) noexcept;
+
+// The direction in which it reaches least far; none if no direction was seen.
+std::optional<int> worst_direction(const Outline& outline) noexcept;
+
+// "front left (135 degrees from the right)"
+std::string direction_text(int k);
 
 // How many of the 48 bins about the middle the outline covers.
 int filled_bins(const Outline& outline) noexcept;

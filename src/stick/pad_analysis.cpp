@@ -27,15 +27,19 @@ constexpr double kSigmasOfRim = 4.5;  // at the rim one report in 300,000 is not
 // From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
 constexpr double kLeastSideways = 0.08, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
-constexpr double kSigmasOfWander = 3.0;  // a rest shows only part of a random walk
+constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured
 
 // Beyond these no calibration helps.
 constexpr double kUselessZone = 0.3;     // raw; the stick would do nothing for a third of its way
 constexpr double kUselessReach = 0.5;    // raw, from the centre
 constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel of the shortest usable reach
 constexpr double kUselessDrift = 0.002;  // raw a second: leaves a zone of 0.1 within a minute
-constexpr double kUselessWander = 0.02;  // raw, within seconds; within a minute it leaves any zone
+constexpr double kUselessWander = 0.02;  // raw, in a second; within a minute it leaves any zone
 constexpr double kDriftSure_s = 5.0;     // at rest, if the stick was let go only once
+constexpr double kLeastRate_hz = 22.5;   // slower reports show no movement by itself
+constexpr int kFewestDirections = 44;    // of 48; the unseen ones may be weak
+constexpr int kUselessDropOuts = 2;
+constexpr double kUselessPassing = 0.2;  // a minute
 constexpr int kUselessStuck = 2;         // a single one may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
@@ -54,6 +58,36 @@ std::array<Side, 4> sides_of(const StickStatistics& s) {
   };
   return {Side{"left", from(s.min_x, centre.x)}, Side{"right", from(s.max_x, centre.x)},
           Side{"back", from(s.min_y, centre.y)}, Side{"front", from(s.max_y, centre.y)}};
+}
+
+// Reasons for which a side, or the worst of all directions, reaches less far than `least`.
+std::vector<std::string> short_sides(const StickStatistics& s, double least) {
+  std::vector<std::string> reasons;
+  double shortest = least;
+  for (const Side& side : sides_of(s)) {
+    if (!side.reach || *side.reach >= least) continue;
+    shortest = std::min(shortest, *side.reach);
+    reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
+  }
+  const std::optional<int> worst = worst_direction(s.outline);
+  if (!worst) return reasons;
+  const double reach = s.outline.radius[static_cast<std::size_t>(*worst)];
+  if (reach < shortest - 0.03)
+    reasons.push_back(
+        fmt::format("to the {} it reaches only {:.2f}", direction_text(*worst), reach));
+  return reasons;
+}
+
+// Those that the median of three takes out.
+std::int64_t single_jumps(const StickStatistics& s) noexcept { return s.jumps - s.long_jumps; }
+
+double share_of_jumps(const StickStatistics& s) noexcept {
+  return static_cast<double>(s.jumps) / static_cast<double>(std::max<std::int64_t>(s.samples, 1));
+}
+// How many moments a minute have two jumps in three reports, which pass the median.
+double passing_jumps(const StickStatistics& s) noexcept {
+  const double share = share_of_jumps(s);
+  return 2.0 * share * share * 60.0 * s.rate_hz.value_or(250.0);
 }
 
 double greatest_sigma(const StickStatistics& s) noexcept {
@@ -101,9 +135,11 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   StickCalibration& c = advice.calibration;
   const double half = least_half(c), sigma = greatest_sigma(s);
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
-  // With little hysteresis that formula covers too little of the noise, and it ignores wander.
-  const double rest = std::max(advice.inner_zone, 0.5 * hysteresis_of(s) + kSigmasOfRest * sigma +
-                                                      kSigmasOfWander * s.wander);
+  // With little hysteresis that formula covers too little of the noise, and it ignores wander and
+  // single rests far from the others. One of those may have been a thumb.
+  const double away = 0.5 * hysteresis_of(s) + (s.displaced > 1 ? s.displaced_by : 0.0);
+  const double rest =
+      std::max(advice.inner_zone, away + kSigmasOfRest * sigma + kSigmasOfWander * s.wander);
   c.inner = std::min(rest / half, kGreatestInner);
   const double margin = (kSigmasOfRim * sigma + step_of(s)) / half;
   // If noise leaves hardly any rim beyond the inner zone, the verdict says so.
@@ -113,9 +149,16 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   const double sigma_x = s.sigma ? s.sigma->x : 0.0;
   const double astray = 0.5 * hysteresis_of(s) + kSigmasOfForward * sigma_x;
   c.sideways = std::clamp(astray / (least_half(c.x) * c.outer), kLeastSideways, kGreatestSideways);
+  c.filters_jumps = single_jumps(s) >= kWornJumps;
 }
 
 using Reasons = std::vector<std::string>;
+
+std::string displaced(const StickStatistics& s) {
+  return fmt::format("after {} release{} it stayed {} {:.2f} off its centre", s.displaced,
+                     s.displaced == 1 ? "" : "s", s.displaced == 1 ? "about" : "up to",
+                     s.displaced_by);
+}
 
 Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   Reasons reasons;
@@ -128,7 +171,8 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   }
   if (s.wander > kUselessWander) {
     reasons.push_back(fmt::format(
-        "it wanders by {:.3f} while nobody touches it, which no dead zone cures", s.wander));
+        "it wanders by {:.3f} a second while nobody touches it, which no dead zone cures",
+        s.wander));
   }
   if (advice.inner_zone > kUselessZone) {
     reasons.push_back(
@@ -137,10 +181,24 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   if (greatest_sigma(s) > kUselessSigma) {
     reasons.push_back(fmt::format("its noise is {:.3f}", greatest_sigma(s)));
   }
-  for (const Side& side : sides_of(s)) {
-    if (side.reach && *side.reach < kUselessReach) {
-      reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
-    }
+  for (std::string& reason : short_sides(s, kUselessReach)) reasons.push_back(std::move(reason));
+  if (s.displaced > 1 && s.displaced_by > kUselessZone) {
+    reasons.push_back(displaced(s));
+  }
+  if (s.drop_outs >= kUselessDropOuts) {
+    reasons.push_back(fmt::format("it lost contact {} times, for {:.0f} ms in all", s.drop_outs,
+                                  1e3 * s.drop_out_s));
+  }
+  if (s.long_jumps >= kWornJumps) {
+    reasons.push_back(
+        fmt::format("it jumped away for two or three reports {} times, which no filter takes out",
+                    s.long_jumps));
+  }
+  if (passing_jumps(s) > kUselessPassing) {
+    reasons.push_back(
+        fmt::format("it jumped {} times, in {:.1f} % of its reports, too often to "
+                    "filter: two jumps together pass",
+                    s.jumps, 100.0 * share_of_jumps(s)));
   }
   if (s.stuck >= kUselessStuck) {
     reasons.push_back(fmt::format("its value stuck {} times while it moved", s.stuck));
@@ -149,13 +207,21 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
 }
 
 Reasons missing(const StickStatistics& s) {
+  if (s.rate_hz && *s.rate_hz < kLeastRate_hz) {
+    return {fmt::format(
+        "it reports only {:.0f} times a second, which shows neither noise nor faults", *s.rate_hz)};
+  }
   if (!s.centre) return {"it was never seen at rest, so its centre is not known"};
   std::string unseen;
   for (const Side& side : sides_of(s)) {
     if (!side.reach) unseen += fmt::format("{}{}", unseen.empty() ? "" : ", ", side.name);
   }
+  const int seen = filled_bins(s.outline);
+  if (unseen.empty() && seen < kFewestDirections) {
+    return {fmt::format("its rim was seen in only {} of {} directions", seen, kCircularityBins)};
+  }
   if (unseen.empty()) return {};
-  if (filled_bins(s.outline) == 0) return {"it was never turned to the rim"};
+  if (seen == 0) return {"it was never turned to the rim"};
   return {fmt::format("its rim was not seen to the {}", unseen)};
 }
 
@@ -165,6 +231,7 @@ Reasons worn(const StickStatistics& s) {
     reasons.push_back(
         fmt::format("let go from different sides it rests up to {:.3f} apart", *s.hysteresis));
   }
+  if (s.displaced > 1) reasons.push_back(displaced(s));
   const double sigma = greatest_sigma(s);
   if (sigma > std::max(kWornSigma, kWornSteps * step_of(s))) {
     reasons.push_back(fmt::format("its noise at rest is {:.3f}", sigma));
@@ -173,14 +240,7 @@ Reasons worn(const StickStatistics& s) {
   if (off > kWornCentre) {
     reasons.push_back(fmt::format("it rests {:.2f} off the middle of its range", off));
   }
-  for (const Side& side : sides_of(s)) {
-    if (side.reach && *side.reach < kWornReach) {
-      reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
-    }
-  }
-  if (s.jumps >= kWornJumps) {
-    reasons.push_back(fmt::format("it jumped to another place and back {} times", s.jumps));
-  }
+  for (std::string& reason : short_sides(s, kWornReach)) reasons.push_back(std::move(reason));
   if (s.drift_per_s.value_or(0.0) > 0.0) {
     reasons.push_back(
         fmt::format("it drifts by {:.4f} a second at rest, so calibrate it again now and then",
@@ -189,6 +249,10 @@ Reasons worn(const StickStatistics& s) {
   if (s.wander > kWornWander) {
     reasons.push_back(
         fmt::format("it wanders by {:.3f} at rest, so its dead zone is wider", s.wander));
+  }
+  if (single_jumps(s) >= kWornJumps) {
+    reasons.push_back(fmt::format(
+        "it jumped for a single report {} times, so its reports are filtered", single_jumps(s)));
   }
   return reasons;
 }
@@ -203,6 +267,8 @@ std::string good(const StickStatistics& s) {
   } else if (s.hysteresis) {
     text += fmt::format(", it comes back within {:.3f}", *s.hysteresis);
   }
+  if (const auto worst = worst_direction(s.outline))
+    least = std::min(least, s.outline.radius[static_cast<std::size_t>(*worst)]);
   return text + fmt::format(" and it reaches {:.2f} or more to every side", least);
 }
 
@@ -220,7 +286,8 @@ std::string sentence(std::string_view opening, const Reasons& reasons) {
 
 void judge(const StickStatistics& s, StickAdvice& advice) {
   const Reasons useless_for = useless(s, advice), missing_are = missing(s), worn_by = worn(s);
-  if (s.centre && !useless_for.empty()) {
+  const bool is_slow = s.rate_hz && *s.rate_hz < kLeastRate_hz;
+  if (s.centre && !is_slow && !useless_for.empty()) {
     advice.verdict = Verdict::replace;
     advice.reason = sentence("", useless_for);
   } else if (!missing_are.empty()) {
@@ -233,6 +300,7 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
     advice.verdict = Verdict::good;
     advice.reason = sentence("", {good(s)});
   }
+  if (s.displaced == 1) advice.reason += "; " + displaced(s) + ", unless a thumb lay on it";
   if (s.centre && !s.hysteresis) {
     advice.reason += fmt::format(
         "; it was not seen let go between two rests, so a spread of {:.2f} is assumed for the "
@@ -322,6 +390,7 @@ void update_centre(const StickCalibration& advice, StickCalibration& calibration
   take(advice.y.centre, calibration.y);
   calibration.inner = advice.inner;
   calibration.sideways = advice.sideways;
+  calibration.filters_jumps = advice.filters_jumps;
   calibration.outer = std::max(calibration.outer, calibration.inner + 0.05);
 }
 

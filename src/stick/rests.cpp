@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace gaitpad {
 
@@ -17,6 +18,17 @@ struct RestPoint {
   vec2 place{0.0};
   double weight = 0.0;
 };
+
+// A mean is a sum until it is divided.
+void add(RestPoint& sum, const RestPoint& point) noexcept {
+  sum.weight += point.weight;
+  sum.time_s += point.weight * point.time_s;
+  sum.place += point.weight * point.place;
+}
+void divide(RestPoint& sum) noexcept {
+  sum.time_s /= sum.weight;
+  sum.place /= sum.weight;
+}
 
 // Straight line through points by least squares; slope 0 if they have no extent in time.
 struct RestTrend {
@@ -45,14 +57,9 @@ double time_s(const StickTrack& track, std::int64_t time_ns) noexcept {
 
 RestTrend rest_trend(std::span<const RestPoint> points) noexcept {
   RestTrend line;
-  for (const RestPoint& point : points) {
-    line.mean.weight += point.weight;
-    line.mean.time_s += point.weight * point.time_s;
-    line.mean.place += point.weight * point.place;
-  }
+  for (const RestPoint& point : points) add(line.mean, point);
   if (!(line.mean.weight > 0.0)) return line;
-  line.mean.time_s /= line.mean.weight;
-  line.mean.place /= line.mean.weight;
+  divide(line.mean);
   vec2 product(0.0);
   for (const RestPoint& point : points) {
     const double t = point.time_s - line.mean.time_s;
@@ -142,16 +149,10 @@ std::vector<RestPoint> rest_blocks(std::span<const RestPoint> points, int count)
   const double whole_s = std::max(points.back().time_s - begin_s, 1e-9);
   for (const RestPoint& point : points) {
     const double part = (point.time_s - begin_s) / whole_s * static_cast<double>(blocks.size());
-    RestPoint& block = blocks[std::min(static_cast<std::size_t>(part), blocks.size() - 1)];
-    block.weight += point.weight;
-    block.time_s += point.weight * point.time_s;
-    block.place += point.weight * point.place;
+    add(blocks[std::min(static_cast<std::size_t>(part), blocks.size() - 1)], point);
   }
   std::erase_if(blocks, [](const RestPoint& block) { return !(block.weight > 0.0); });
-  for (RestPoint& block : blocks) {
-    block.time_s /= block.weight;
-    block.place /= block.weight;
-  }
+  for (RestPoint& block : blocks) divide(block);
   return blocks;
 }
 
@@ -211,14 +212,9 @@ Release release_of(std::span<const StickTrack> tracks, std::span<const Still> st
   for (const Still& still : stills) {
     if (glm::length(still.mean - longest.mean) > kSamePlace) continue;
     release.stills.push_back(still);
-    for (const RestPoint& point : rest_points(tracks, still, interval_s)) {
-      release.rest.weight += point.weight;
-      release.rest.time_s += point.weight * point.time_s;
-      release.rest.place += point.weight * point.place;
-    }
+    for (const RestPoint& point : rest_points(tracks, still, interval_s)) add(release.rest, point);
   }
-  release.rest.time_s /= release.rest.weight;
-  release.rest.place /= release.rest.weight;
+  divide(release.rest);
   return release;
 }
 
@@ -631,25 +627,14 @@ struct Home {
   std::vector<bool> counts;
 };
 
-// Of each axis.
-vec2 median_of(std::span<const Release> releases) {
-  std::vector<double> x, y;
-  for (const Release& release : releases) {
-    x.push_back(release.rest.place.x);
-    y.push_back(release.rest.place.y);
-  }
-  const auto middle = static_cast<std::ptrdiff_t>(x.size() / 2);
-  std::nth_element(x.begin(), x.begin() + middle, x.end());
-  std::nth_element(y.begin(), y.begin() + middle, y.end());
-  return {x[x.size() / 2], y[y.size() / 2]};
-}
-
 // Which releases count. Leaves out a thumb that lay on the stick: a minority, several times farther
 // off than the others.
 std::vector<bool> usual_releases(std::span<const Release> releases, double noise) {
   std::vector<bool> counts(releases.size(), true);
   if (releases.size() < 4) return counts;
-  const vec2 middle = median_of(releases);
+  std::vector<vec2> places;
+  for (const Release& release : releases) places.push_back(release.rest.place);
+  const vec2 middle = median_of(places);
   std::vector<double> away;
   for (const Release& release : releases) away.push_back(glm::length(release.rest.place - middle));
   std::vector<double> sorted = away;
@@ -661,14 +646,11 @@ std::vector<bool> usual_releases(std::span<const Release> releases, double noise
 }
 
 vec2 mean_of(std::span<const Release> releases, const std::vector<bool>& counts) {
-  vec2 sum(0.0);
-  double weight = 0.0;
+  RestPoint mean;
   for (std::size_t i = 0; i < releases.size(); ++i) {
-    if (!counts[i]) continue;
-    sum += releases[i].rest.weight * releases[i].rest.place;
-    weight += releases[i].rest.weight;
+    if (counts[i]) add(mean, releases[i].rest);
   }
-  return weight > 0.0 ? sum / weight : vec2(0.0);
+  return mean.weight > 0.0 ? mean.place / mean.weight : vec2(0.0);
 }
 
 // Whether noise alone explains the differences between the rests.
@@ -767,31 +749,91 @@ void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
       vec2(is_x_hidden ? std::sqrt(shown.x) : own.x, is_y_hidden ? std::sqrt(shown.y) : own.y);
 }
 
-double wander_of(const Evidence& evidence, const vec2& drift) {
-  double squares = 0.0, freedom = 0.0;
-  for (const std::vector<RestPoint>& still : evidence.blocks) {
-    const RestPoint mean = rest_trend(still).mean;
-    for (const RestPoint& block : still) {
-      const vec2 off = block.place - mean.place - drift * (block.time_s - mean.time_s);
-      squares += 0.5 * glm::dot(off, off);
+// ---- Moving by itself
+
+// From the changes over 0.2 s, of which noise and flipping codes explain a part. The median over
+// the hands-off times, because a thumb may lie on the stick in some of them.
+double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2& step) {
+  constexpr std::size_t kLag = 2;                    // blocks of 0.1 s
+  constexpr double kShare = kLag * 0.1 - 0.1 / 3.0;  // s; a block is a mean over 0.1 s
+  constexpr double kFewest = 8.0;                    // changes, both axes
+  std::vector<double> squares, noises;
+  double changes = 0.0;
+  for (const HandsOff& time : times) {
+    double square = 0.0, noise = 0.0, count = 0.0;
+    for (std::size_t k = kLag; k < time.places.size(); ++k) {
+      const vec2 moved = time.places[k] - time.places[k - kLag] - drift * (0.1 * kLag);
+      square += glm::dot(moved, moved);
+      noise += time.variances[k] + time.variances[k - kLag];
+      count += 1.0;
     }
-    freedom += static_cast<double>(still.size()) - 1.0;
+    changes += 2.0 * count;
+    // A long time has many votes.
+    for (double vote = 0.0; count > 0.0 && vote < count; vote += 4.0) {
+      squares.push_back(square / count);
+      noises.push_back(noise / count);
+    }
   }
-  if (freedom < 6.0) return 0.0;
-  const double white =
-      std::max(evidence.white_noise * evidence.white_noise, evidence.step * evidence.step / 12.0);
-  const double beyond = squares / freedom - white;
-  const bool is_sure = beyond > white * 6.0 * std::sqrt(1.0 / freedom);
-  const double least = std::max(0.002, 0.5 * evidence.step);
-  return is_sure && beyond > least * least ? std::sqrt(beyond) : 0.0;
+  if (changes < kFewest) return 0.0;
+  const double square = median_of(std::move(squares));
+  const double noise = median_of(std::move(noises)) + 0.5 * glm::dot(step, step);
+  if (square < noise * (1.0 + 6.0 / std::sqrt(changes))) return 0.0;
+  const double wander = std::sqrt((square - noise) / (2.0 * kShare));
+  return wander > 0.004 ? wander : 0.0;
+}
+
+// Releases after which it stood still far from its centre: farther than most, and than a good stick
+// ever rests.
+void add_displaced(RestStatistics& to) {
+  constexpr double kFarOff = 0.07, kOfUsual = 1.5, kQuiet = 0.02;
+  std::vector<double> away;
+  std::vector<HandsOff*> quiet;
+  for (HandsOff& time : to.hands_off) {
+    if (!time.is_released) continue;
+    vec2 least(4.0), most(-4.0), mean(0.0);
+    double noise = 0.0;
+    for (std::size_t k = 0; k < time.places.size(); ++k) {
+      least = glm::min(least, time.places[k]);
+      most = glm::max(most, time.places[k]);
+      mean += time.places[k] / static_cast<double>(time.places.size());
+      noise = std::max(noise, time.variances[k]);
+    }
+    if (glm::length(most - least) > kQuiet + 5.0 * std::sqrt(noise)) continue;  // it was moved
+    away.push_back(glm::length(mean - *to.centre));
+    quiet.push_back(&time);
+  }
+  if (away.size() < 3) return;
+  const double usual = median_of(away);
+  for (std::size_t k = 0; k < away.size(); ++k) {
+    if (away[k] < std::max(kFarOff, kOfUsual * usual)) continue;
+    quiet[k]->is_displaced = true;
+    ++to.displaced;
+    to.displaced_by = std::max(to.displaced_by, away[k]);
+  }
 }
 
 }  // namespace
 
-RestStatistics rest_statistics(std::span<const StickTrack> tracks, std::span<const Still> rests,
-                               const vec2& step, double interval_s) {
+double seconds_of(std::span<const HandsOff> times) noexcept {
+  double blocks = 0.0;
+  for (const HandsOff& time : times) blocks += static_cast<double>(time.places.size());
+  return 0.1 * blocks;
+}
+
+RestStatistics rest_statistics(std::span<const StickTrack> tracks, Stills found, const vec2& step,
+                               double interval_s) {
+  const std::span<const Still> rests = found.rests;
   RestStatistics result;
-  if (rests.empty()) return result;
+  result.hands_off = std::move(found.hands_off);
+  if (rests.empty()) {
+    // It never stood still: its centre is the middle of where it was by itself.
+    std::vector<vec2> places;
+    for (const HandsOff& time : result.hands_off)
+      places.insert(places.end(), time.places.begin(), time.places.end());
+    result.wander = wander_of(result.hands_off, vec2(0.0), step);
+    if (result.wander > 0.0) result.centre = median_of(places);
+    return result;
+  }
   const Evidence evidence = evidence_of(tracks, rests, step, interval_s);
   for (const Release& release : evidence.releases) {
     for (const Still& still : release.stills) {
@@ -811,7 +853,8 @@ RestStatistics rest_statistics(std::span<const StickTrack> tracks, std::span<con
     result.hysteresis = hysteresis_of(result.rests, evidence.mean_noise);
   }
   set_sigma(result, evidence, step);
-  result.wander = wander_of(evidence, result.drift);
+  result.wander = wander_of(result.hands_off, result.drift, step);
+  add_displaced(result);
   return result;
 }
 

@@ -21,11 +21,17 @@ struct RestStatistics {
   std::optional<double> hysteresis;  // greatest distance between rests; none: never let go between
   std::optional<double> drift_per_s;  // speed at rest; exactly 0 unless it is significant
   vec2 drift{0.0};                    // the same as a vector, per second
-  double wander = 0.0;  // slow movement at rest beyond noise and drift, one standard deviation
+  // How far it moves by itself within a second, beyond noise: standard deviation of each axis, over
+  // all the time in which nobody held it.
+  double wander = 0.0;
+  std::vector<HandsOff> hands_off;  // that time
+  int displaced = 0;                // releases after which it rested far from where it mostly rests
+  double displaced_by = 0.0;        // the farthest of them
 };
-// `tracks`: clean ones (clean_tracks). `rests`: found in them (stills). `step`: of x and y, 0 if
-// not known. `interval_s`: typical_interval_s of the tracks.
-RestStatistics rest_statistics(std::span<const StickTrack> tracks, std::span<const Still> rests,
-                               const vec2& step, double interval_s);
+// `tracks`: clean ones (clean_tracks). `found`: in them. `step`: of x and y, 0 if not known.
+// `interval_s`: typical_interval_s of the tracks.
+RestStatistics rest_statistics(std::span<const StickTrack> tracks, Stills found, const vec2& step,
+                               double interval_s);
+double seconds_of(std::span<const HandsOff> times) noexcept;
 
 }  // namespace gaitpad

@@ -8,13 +8,14 @@ namespace gaitpad {
 
 namespace {
 
-// The chance that a report at rest repeats the one before it, by noise and steps alone.
-double repeats_expected(const StickStatistics& s) noexcept {
-  if (!s.sigma) return 0.0;
+// For each axis, the chance that a report at rest repeats the one before it, by noise and steps
+// alone; 1 if the noise is not known.
+vec2 repeats_expected(const StickStatistics& s) noexcept {
+  if (!s.sigma) return vec2(1.0);
   const auto chance = [](double sigma, double step) {
-    return sigma > 0.0 ? std::min(step / (2.0 * std::sqrt(kPi) * sigma), 1.0) : 1.0;
+    return sigma > 1e-6 ? std::min(step / (2.0 * std::sqrt(kPi) * sigma), 1.0) : 1.0;
   };
-  return chance(s.sigma->x, s.step_x) * chance(s.sigma->y, s.step_y);
+  return {chance(s.sigma->x, s.step_x), chance(s.sigma->y, s.step_y)};
 }
 
 struct Extent {
@@ -60,21 +61,26 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   for (const StickTrack& track : tracks) result.samples += static_cast<std::int64_t>(track.size());
   const CleanTracks clean = clean_tracks(tracks);
   result.jumps = clean.jumps;
+  result.long_jumps = clean.long_jumps;
+  result.drop_outs = clean.drop_outs;
+  result.drop_out_s = clean.drop_out_s;
   result.step_x = quantisation_step(clean.tracks, 0, declared_step.x);
   result.step_y = quantisation_step(clean.tracks, 1, declared_step.y);
   const double interval_s = typical_interval_s(clean.tracks);
-  const std::vector<Still> rests = stills(clean.tracks, declared_step).rests;
   static_cast<RestStatistics&>(result) =
-      rest_statistics(clean.tracks, rests, {result.step_x, result.step_y}, interval_s);
+      rest_statistics(clean.tracks, stills(clean.tracks, declared_step),
+                      {result.step_x, result.step_y}, interval_s);
   const Extent extent = extent_of(clean.tracks);
   add_rim(result, clean.tracks, extent);
   result.turns = turns_of(result, clean.tracks, extent);
+  const vec2 repeats = repeats_expected(result);
   // From the tracks as they came: a removed spike would be a repeated value.
-  const ReportTiming timing = report_timing(tracks, repeats_expected(result));
+  const ReportTiming timing = report_timing(tracks, result.sigma ? repeats.x * repeats.y : 0.0);
   result.rate_hz = timing.rate_hz;
   result.jitter_ms = timing.jitter_ms;
   result.gaps = timing.gaps;
-  result.stuck = stuck_values(clean.tracks, interval_s);
+  result.stuck =
+      stuck_values(clean.tracks, interval_s, result.is_sigma_hidden ? vec2(1.0) : repeats);
   return result;
 }
 

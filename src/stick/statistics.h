@@ -29,6 +29,9 @@ struct StickStatistics : RestStatistics {
   std::optional<double> jitter_ms;    // standard deviation of the intervals, without gaps
   std::optional<std::int64_t> gaps;   // where reports were lost; none: the pad is silent at rest
   std::int64_t jumps = 0;             // spikes: to another place and back within three reports
+  std::int64_t long_jumps = 0;        // those of them that last for more than one report
+  std::int64_t drop_outs = 0;         // an axis lost contact for longer
+  double drop_out_s = 0.0;
   std::int64_t stuck = 0;  // the value froze while the stick moved; seen if the pad repeats values
 };
 // `declared_step` (x, y): of the layout, 0 if not known.

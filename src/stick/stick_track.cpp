@@ -98,6 +98,22 @@ std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack
   return tracks;
 }
 
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+vec2 median_of(std::span<const vec2> places) {
+  std::vector<double> x, y;
+  for (const vec2& place : places) {
+    x.push_back(place.x);
+    y.push_back(place.y);
+  }
+  return {median_of(std::move(x)), median_of(std::move(y))};
+}
+
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   if (to_ns < from_ns) return -seconds_between(to_ns, from_ns);
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to_ns) -
@@ -115,9 +131,12 @@ double reports_stood(double hold_s, double interval_s) noexcept {
 
 namespace {
 
-constexpr double kSmallestSpike = 0.03;    // raw; less is noise
-constexpr double kShortMovement_s = 0.04;  // no hand moves there and back faster
-constexpr double kFarthest = 4.0;          // raw; positions beyond are damaged
+constexpr double kSmallestSpike = 0.03;     // raw; less is noise
+constexpr double kShortMovement_s = 0.04;   // no hand moves there and back faster
+constexpr double kLongestDropOut_s = 0.12;  // with edges of one report that no hand can make
+constexpr double kShortestDropOut_s = 0.0035;
+constexpr double kSlowestForDropOuts_s = 0.025;  // a spring takes two reports or more
+constexpr double kFarthest = 4.0;                // raw; positions beyond are damaged
 constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;  // so that sums of times fit
 
 bool is_place(const vec2& p) noexcept {
@@ -204,6 +223,14 @@ bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
          height > 7.0 * all.length[all.count / 2] && height > 4.5 * all.length[third];
 }
 
+// Nearer to the middle in the same direction: a sector of the gate that reaches less far, which the
+// stick is turned through.
+bool is_weak_sector(const vec2& before, const vec2& place) noexcept {
+  constexpr double kOut = 0.5, kSameDirection = 0.95;  // raw, cosine
+  const double far = glm::length(before), near = glm::length(place);
+  return far > kOut && near < far && glm::dot(before, place) > kSameDirection * far * near;
+}
+
 // A spike has sharp edges on both sides and returns to about where it began.
 bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const Scale& scale) {
   const vec2& before = track[i - 1].raw;
@@ -215,6 +242,7 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const 
         {least, glm::length(track[edge].raw - before), glm::length(track[edge].raw - after)});
   }
   if (least < scale.smallest || least < 2.0 * glm::length(after - before)) return false;
+  if (is_weak_sector(before, track[i].raw)) return false;
   const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
   if (lasted_s > std::clamp(3.7 * scale.interval_s, kShortMovement_s, 2.0 * kShortMovement_s))
     return false;
@@ -230,16 +258,61 @@ std::size_t spike_length(const StickTrack& track, std::size_t i, const Scale& sc
   return 0;
 }
 
-std::int64_t remove_spikes(StickTrack& track, const Scale& scale) {
-  std::int64_t spikes = 0;
+// Returns whether there were any.
+bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
+  bool is_any = false;
   for (std::size_t i = 1; i + 1 < track.size(); ++i) {
     const std::size_t length = spike_length(track, i, scale);
     if (length == 0) continue;
     for (std::size_t k = i; k < i + length; ++k) track[k].raw = track[i - 1].raw;
-    ++spikes;
+    is_any = true;
+    ++counts.jumps;
+    counts.long_jumps += length > 1;
     i += length - 1;
   }
-  return spikes;
+  return is_any;
+}
+
+// How many reports from i on show a drop-out of this axis; 0: none begins there. The axis jumps to
+// another value, stays there and jumps back, each within one report. A hand needs several.
+std::size_t drop_out_length(const StickTrack& track, std::size_t i, int axis,
+                            double interval_s) noexcept {
+  constexpr double kSmallest = 0.2, kPlateau = 0.04, kOfHeight = 0.2;  // raw, raw, share
+  const auto at = [&](std::size_t k) { return track[std::min(k, track.size() - 1)].raw[axis]; };
+  const double before = at(i - 1), height = std::fabs(at(i) - before);
+  const double steady = kOfHeight * height;
+  if (is_weak_sector(track[i - 1].raw, track[i].raw)) return 0;
+  if (height < kSmallest || std::fabs(before - at(i - std::min<std::size_t>(i, 3))) > steady)
+    return 0;
+  std::size_t end = i + 1;
+  while (end < track.size() && std::fabs(at(end) - at(i)) < kPlateau &&
+         seconds_between(track[i].time_ns, track[end].time_ns) < kLongestDropOut_s) {
+    ++end;
+  }
+  if (end >= track.size() || interval_s > kSlowestForDropOuts_s ||
+      seconds_between(track[i].time_ns, track[end].time_ns) > kLongestDropOut_s) {
+    return 0;
+  }
+  const bool is_back = std::fabs(at(end) - at(i)) > (1.0 - 2.0 * kOfHeight) * height &&
+                       std::fabs(at(end) - before) < 2.0 * steady &&
+                       std::fabs(at(end + 2) - at(end)) < steady;
+  return is_back ? end - i : 0;
+}
+
+// Single reports, which a filter takes out, are left to remove_spikes().
+void remove_drop_outs(StickTrack& track, double interval_s, CleanTracks& counts) {
+  for (int axis = 0; axis < 2; ++axis) {
+    for (std::size_t i = 1; i + 1 < track.size(); ++i) {
+      const std::size_t length = drop_out_length(track, i, axis, interval_s);
+      if (length == 0) continue;
+      const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
+      if (lasted_s < std::max(1.5 * interval_s, kShortestDropOut_s)) continue;
+      for (std::size_t k = i; k < i + length; ++k) track[k].raw[axis] = track[i - 1].raw[axis];
+      ++counts.drop_outs;
+      counts.drop_out_s += lasted_s;
+      i += length - 1;
+    }
+  }
 }
 
 // The first and the last report have only one neighbour each, so a movement that has just begun
@@ -266,11 +339,9 @@ CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
   const double interval_s = typical_interval_s(clean.tracks);
   for (StickTrack& track : clean.tracks) {
     const Scale scale{interval_s, smallest_spike(track)};
+    remove_drop_outs(track, interval_s, clean);
     // A spike beside another one is found only after that one was removed.
-    for (int pass = 0; pass < 3; ++pass) {
-      const std::int64_t spikes = remove_spikes(track, scale);
-      clean.jumps += spikes;
-      if (spikes == 0) break;
+    for (int pass = 0; pass < 3 && remove_spikes(track, scale, clean); ++pass) {
     }
     remove_odd_ends(track, scale);
   }
@@ -281,25 +352,30 @@ namespace {
 
 constexpr std::size_t kMostIntervals = std::size_t{1} << 20;  // enough for a median
 constexpr std::size_t kFewestIntervals = 20;
-constexpr double kSilence_s = 0.1;
+constexpr double kSilence_s = 0.1, kSlowest_s = 0.5;
 constexpr double kBurst_s = 0.0007;  // nearly all pads send at most 1000 reports a second
 constexpr double kUnknownInterval_s = 0.004;
-constexpr double kFrozen_s = 0.06;
+constexpr double kFrozen_s = 0.07;
 
 // Seconds between successive reports; those during movements if there are enough, because every pad
 // reports while it moves.
 std::vector<double> intervals(std::span<const StickTrack> tracks) {
-  std::vector<double> all, moving;
+  std::vector<double> all, moving, slow;
   for (const StickTrack& track : tracks) {
     std::size_t back = 0;  // the sample 50 ms ago
     for (std::size_t i = 1; i < track.size() && all.size() < kMostIntervals; ++i) {
       const double interval_s = seconds_between(track[i - 1].time_ns, track[i].time_ns);
       while (seconds_between(track[back].time_ns, track[i - 1].time_ns) > 0.05) ++back;
+      if (interval_s > kSilence_s && interval_s < kSlowest_s &&
+          glm::length(track[i].raw - track[i - 1].raw) > 0.05) {
+        slow.push_back(interval_s);
+      }
       if (interval_s < 0.0 || interval_s > kSilence_s) continue;
       all.push_back(interval_s);
       if (glm::length(track[i - 1].raw - track[back].raw) > 0.05) moving.push_back(interval_s);
     }
   }
+  if (slow.size() > all.size()) return slow;
   return moving.size() >= 2 * kFewestIntervals ? moving : all;
 }
 
@@ -321,11 +397,9 @@ Spacing spacing_within(std::span<const double> intervals, double least_s, double
 }
 
 std::optional<Spacing> spacing(std::span<const StickTrack> tracks) {
-  std::vector<double> found = intervals(tracks);
+  const std::vector<double> found = intervals(tracks);
   if (found.size() < kFewestIntervals) return {};
-  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
-  std::nth_element(found.begin(), middle, found.end());
-  const double median = *middle;
+  const double median = median_of(found);
   const Spacing all = spacing_within(found, 0.0, kSilence_s);
   // If most reports come in bursts, the pauses between bursts belong to the rate.
   if (median < kBurst_s && all.mean_s > 2.0 * median) return all;
@@ -385,14 +459,50 @@ std::vector<double> distinct_values(std::span<const StickTrack> tracks, int axis
   return values;
 }
 
-// Frozen from `first` to `last`, then a jump on in the same direction.
-bool jumps_on(const StickTrack& track, std::size_t first, std::size_t last) noexcept {
-  if (first == 0 || last + 1 >= track.size()) return false;
-  const vec2 before = track[first].raw - track[first - 1].raw;
-  const vec2 after = track[last + 1].raw - track[last].raw;
-  const double b = glm::length(before), a = glm::length(after);
-  // A thumb that pauses slows down before and starts slowly again.
-  return b > 0.01 && a > std::max(0.1, 3.0 * b) && glm::dot(before, after) > 0.7 * a * b;
+// Where the stick was this long before or after a sample.
+vec2 place_at(const StickTrack& track, std::size_t i, double seconds) noexcept {
+  while (seconds < 0.0 && i > 0 &&
+         seconds_between(track[i - 1].time_ns, track[i].time_ns) <= -seconds) {
+    seconds += seconds_between(track[i - 1].time_ns, track[i].time_ns);
+    --i;
+  }
+  while (seconds > 0.0 && i + 1 < track.size() &&
+         seconds_between(track[i].time_ns, track[i + 1].time_ns) <= seconds) {
+    seconds -= seconds_between(track[i].time_ns, track[i + 1].time_ns);
+    ++i;
+  }
+  return track[i].raw;
+}
+
+// Whether the values of these axes (one or both), the same from `first` to `last`, were frozen:
+// they jump on afterwards, by far more than they move then, and something moved meanwhile.
+// `quiet`: the chance that noise shows the same value so often.
+bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, const vec2& axes,
+               double quiet) {
+  constexpr double kMoved = 0.1, kRun_s = 0.03, kRunning = 0.02, kOut = 0.4;  // raw, s, raw, raw
+  constexpr double kUnlikely = 1e-6, kInside = 0.7;  // noise may end where the range does
+  if (last + 1 >= track.size()) return false;
+  const vec2 place = track[last].raw, next = track[last + 1].raw;
+  const double jump = glm::length((next - place) * axes);
+  const vec2 other = vec2(1.0) - axes;
+  double least = 4.0, most = -4.0;
+  for (std::size_t k = first; k <= last; ++k) {
+    least = std::min(least, glm::dot(track[k].raw, other));
+    most = std::max(most, glm::dot(track[k].raw, other));
+  }
+  const bool is_beside = most - least > kMoved;
+  if (is_beside && quiet < kUnlikely && std::fabs(glm::dot(place, axes)) < kInside) return true;
+  double usual = 0.0;
+  for (std::size_t k = last + 2; k < std::min(last + 6, track.size()); ++k)
+    usual = std::max(usual, glm::length((track[k].raw - track[k - 1].raw) * axes));
+  if (jump < kMoved || jump < 2.0 * usual + 0.5 * kMoved) return false;
+  if (axes == vec2(1.0)) {  // it was turned: a thumb that pauses slows down first
+    return glm::length(next) > kOut &&
+           glm::length(track[first].raw - place_at(track, first, -kRun_s)) > kRunning &&
+           glm::length(place_at(track, last + 1, kRun_s) - next) > kRunning;
+  }
+  // Along a straight side of the gate one axis stands still, until the stick is let go.
+  return is_beside && glm::length(next) > kOut;
 }
 
 }  // namespace
@@ -432,15 +542,23 @@ double quantisation_step(std::span<const StickTrack> tracks, int axis, double de
   return is_step ? least : declared;
 }
 
-std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s) {
+std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s,
+                          const vec2& repeats) {
+  const double least_s = std::max(kFrozen_s, 5.0 * interval_s);
   std::int64_t stuck = 0;
   for (const StickTrack& track : tracks) {
-    for (std::size_t first = 0, last; first < track.size(); first = last + 1) {
-      last = first;
-      while (last + 1 < track.size() && track[last + 1].raw == track[first].raw) ++last;
-      const double frozen_s =
-          seconds_between(track[first].time_ns, track[last].time_ns) + interval_s;
-      if (last > first && frozen_s >= kFrozen_s && jumps_on(track, first, last)) ++stuck;
+    for (const vec2& axes : {vec2(1.0), vec2(1.0, 0.0), vec2(0.0, 1.0)}) {
+      for (std::size_t first = 0, last; first < track.size(); first = last + 1) {
+        last = first;
+        while (last + 1 < track.size() &&
+               (track[last + 1].raw - track[first].raw) * axes == vec2(0.0))
+          ++last;
+        if (last + 1 >= track.size()) break;
+        const double frozen_s = seconds_between(track[first].time_ns, track[last + 1].time_ns);
+        const double quiet =
+            std::pow(std::max(glm::dot(repeats, axes), 0.1), static_cast<double>(last - first));
+        if (frozen_s >= least_s && is_frozen(track, first, last, axes, quiet)) ++stuck;
+      }
     }
   }
   return stuck;

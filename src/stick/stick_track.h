@@ -64,6 +64,11 @@ class PadTracker {
 // Turns every sample into the frame.
 std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack> tracks);
 
+// ---- Medians: of an even number the upper one; 0 of nothing
+
+double median_of(std::vector<double> values);
+vec2 median_of(std::span<const vec2> places);  // of each axis
+
 // ---- How long a position stood
 
 // Seconds from one time to a later one; any two 64-bit times are allowed.
@@ -85,7 +90,11 @@ struct CleanTracks {
   // As many samples as before. A sample that does not count (no number, out of range, a spike)
   // repeats the position before it; times never go back.
   std::vector<StickTrack> tracks;
-  std::int64_t jumps = 0;  // spikes: to another place and back within three reports
+  std::int64_t jumps = 0;       // spikes: to another place and back within three reports
+  std::int64_t long_jumps = 0;  // those of them that a median of three reports lets through
+  // An axis jumped to another value, stayed there for two reports to 0.12 s, and jumped back.
+  std::int64_t drop_outs = 0;
+  double drop_out_s = 0.0;  // of all together
 };
 CleanTracks clean_tracks(std::span<const StickTrack> tracks);
 
@@ -107,7 +116,9 @@ ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_ex
 // `declared`. Axis 0 is x, 1 is y.
 double quantisation_step(std::span<const StickTrack> tracks, int axis, double declared);
 
-// How often the value froze for 60 ms or more and then jumped on in the same direction.
-std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s);
+// How often an axis, or both, froze for 70 ms or more while the other one, or a turn, moved on.
+// `repeats`: for each axis, the chance that noise repeats a value at rest.
+std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s,
+                          const vec2& repeats);
 
 }  // namespace gaitpad

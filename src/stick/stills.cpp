@@ -262,16 +262,23 @@ Limits limits_of(std::span<const StickTrack> tracks, const vec2& declared_step, 
           .margin = static_cast<std::size_t>(std::clamp(margin, 1.0, 5.0))};
 }
 
-std::vector<Still> all_stills(std::span<const StickTrack> tracks, const vec2& declared_step) {
-  const double interval_s = typical_interval_s(tracks);
-  const Limits limits = limits_of(tracks, declared_step, interval_s);
-  std::vector<Still> found;
+// By track.
+std::vector<std::vector<Cell>> cells_of(std::span<const StickTrack> tracks, double interval_s) {
+  std::vector<std::vector<Cell>> cells;
   std::size_t left = kMostCells;
+  for (const StickTrack& track : tracks) {
+    cells.push_back(cells_of(track, interval_s, left));
+    left -= cells.back().size();
+  }
+  return cells;
+}
+
+std::vector<Still> all_stills(std::span<const StickTrack> tracks,
+                              std::span<const std::vector<Cell>> cells, const Limits& limits) {
+  std::vector<Still> found;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
-    const std::vector<Cell> cells = cells_of(tracks[t], interval_s, left);
-    left -= cells.size();
-    for (const Run& run : still_runs(cells, limits)) {
-      found.push_back(still_of(tracks[t], t, cells, run));
+    for (const Run& run : still_runs(cells[t], limits)) {
+      found.push_back(still_of(tracks[t], t, cells[t], run));
     }
   }
   return found;
@@ -395,6 +402,64 @@ double farthest_from(const vec2& home, std::span<const StickTrack> tracks) noexc
   return farthest;
 }
 
+// ---- Hands-off time
+
+// Shares of the reach. A spring brings the stick from the farther place to the nearer one within
+// kSpringCells; a hand that leads it back is slower.
+constexpr double kPushed = 0.5, kFar = 0.7, kBack = 0.45;
+constexpr std::size_t kSpringCells = 7, kSettlingCells = 15;
+constexpr std::size_t kBlockCells = 5, kFewestBlocks = 2;
+constexpr double kOutwards = 0.012;       // raw in 60 ms: a push may have begun
+constexpr std::size_t kLongestPush = 25;  // cells
+
+// Where the stick was while it was slow and not held at its rim: of a stick that never stands
+// still, the middle of its wanderings. None if it was always moved.
+std::optional<vec2> usual_place(std::span<const Cell> cells) {
+  constexpr double kFast = 0.05;  // raw from cell to cell
+  std::vector<vec2> places;
+  for (std::size_t k = 1; k < cells.size(); ++k) {
+    const vec2 at = cells[k].mean();
+    if (!Places::is_inside(at) || glm::length(at - cells[k - 1].mean()) > kFast) continue;
+    places.push_back(at);
+  }
+  return places.size() < 5 * kBlockCells ? std::nullopt : std::optional(median_of(places));
+}
+
+// The hands-off times of one track. `home`: where the stick rests; `reach`: from there.
+void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& home, double reach,
+                   std::size_t late, std::vector<HandsOff>& found) {
+  const auto away = [&](std::size_t k) { return glm::length(cells[k].mean() - home) / reach; };
+  for (std::size_t begin = 0, end; begin < cells.size(); begin = end) {
+    end = begin + 1;
+    if (away(begin) > kPushed) continue;
+    while (end < cells.size() && away(end) <= kPushed) ++end;
+    const bool is_released = begin > 0;
+    if (is_released) {
+      const std::size_t spring = kSpringCells + late, nearer = begin + spring / 2;
+      if (nearer >= end || begin < spring || away(nearer) > kBack) continue;
+      if (away(nearer - spring) < kFar && away(nearer - spring + 1) < kFar) continue;
+    }
+    std::size_t first = begin + (is_released ? kSettlingCells : 0), last = end;
+    if (end < cells.size()) {
+      // The push that ends this time began before it was seen.
+      last -= std::min(last - begin, kBlockCells + late);
+      for (std::size_t k = 0; k < kLongestPush && last > first + 3; ++k, --last) {
+        if ((away(last - 1) - away(last - 4)) * reach < kOutwards) break;
+      }
+    }
+    if (last < first + kFewestBlocks * kBlockCells) continue;
+    HandsOff& time = found.emplace_back();
+    time.track = track;
+    time.is_released = is_released;
+    for (std::size_t k = first; k + kBlockCells <= last; k += kBlockCells) {
+      Cell block;
+      for (std::size_t n = k; n < k + kBlockCells; ++n) add(block, cells[n]);
+      time.places.push_back(block.mean());
+      time.variances.push_back(block.variance() / std::max(block.weight, 1.0));
+    }
+  }
+}
+
 // Tells rests from pushes.
 Stills sorted_stills(std::span<const StickTrack> tracks, std::span<const Still> found) {
   const std::optional<Box> turned = turned_box(tracks);
@@ -426,7 +491,30 @@ Stills sorted_stills(std::span<const StickTrack> tracks, std::span<const Still> 
 
 Stills stills(std::span<const StickTrack> raw_tracks, const vec2& declared_step) {
   const std::vector<StickTrack> tracks = clean_tracks(raw_tracks).tracks;
-  return sorted_stills(tracks, all_stills(tracks, declared_step));
+  const double interval_s = typical_interval_s(tracks);
+  const std::vector<std::vector<Cell>> cells = cells_of(tracks, interval_s);
+  const Limits limits = limits_of(tracks, declared_step, interval_s);
+  Stills found = sorted_stills(tracks, all_stills(tracks, cells, limits));
+  const auto late = static_cast<std::size_t>(std::clamp(interval_s / kCell_s, 0.0, 10.0));
+  std::vector<vec2> places;
+  for (const Still& rest : found.rests) places.push_back(rest.mean);
+  for (std::size_t t = 0; t < tracks.size() && found.rests.empty(); ++t) {
+    if (const auto place = usual_place(cells[t])) places.push_back(*place);
+  }
+  if (places.empty()) return found;
+  const vec2 home = median_of(places);
+  double reach = farthest_from(home, tracks);
+  std::vector<double> pushed;  // a square gate's corners are far beyond what it usually reaches
+  for (const std::vector<Cell>& track : cells) {
+    for (const Cell& cell : track) {
+      const double away = glm::length(cell.mean() - home);
+      if (away > kPushed * reach) pushed.push_back(away);
+    }
+  }
+  if (!pushed.empty()) reach = median_of(std::move(pushed));
+  for (std::size_t t = 0; t < tracks.size(); ++t)
+    add_hands_off(t, cells[t], home, reach, late, found.hands_off);
+  return found;
 }
 
 }  // namespace gaitpad

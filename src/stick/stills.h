@@ -17,9 +17,20 @@ struct Still {
       0.0;         // includes the hold of the last position; silence counts for 2 s at most
   vec2 mean{0.0};  // raw, weighted as if the pad streamed
 };
+// A time in which nobody held the stick: from when it has settled after a release, or from the
+// beginning of a track, to the next push. It may move by itself, so it need not be still.
+struct HandsOff {
+  std::size_t track = 0;
+  bool is_released = false;   // a spring brought it back; false: from the beginning of the track
+  bool is_displaced = false;  // RestStatistics: it rested far from where it mostly rests
+  // Means over 0.1 s, without gaps, and the variances of these means (both axes) by noise alone.
+  std::vector<vec2> places;
+  std::vector<double> variances;
+};
 struct Stills {
   std::vector<Still> rests;   // let go: near the place to which the stick returns
   std::vector<Still> pushes;  // held at half of the reach or farther
+  std::vector<HandsOff> hands_off;
 };
 // Finds the stills in the order of time, track by track; the first day of all tracks counts.
 // The limit on speed follows the noise that is present, so a noisy or slowly drifting stick has

@@ -246,7 +246,8 @@ class WindowLoop {
   double pace_before_pause_ = 1.0;
   std::optional<std::string> chosen_file_;  // in the browser, in this frame
   CalibrationView::State calibration_state_ = CalibrationView::State::goes_on;
-  bool wants_screenshot_ = false, is_quitting_ = false, is_end_told_ = false;
+  bool wants_screenshot_ = false, is_quitting_ = false;
+  bool is_end_told_ = false, is_untouched_told_ = false;  // to the person
 };
 
 WindowLoop::WindowLoop(const WindowOptions& options)
@@ -799,6 +800,10 @@ void WindowLoop::show_message(std::string sentence) {
 
 void WindowLoop::show_remarks() {
   for (std::string& remark : show_->take_remarks()) show_message(std::move(remark));
+  const PadFrame& pad = show_->frame().pad;
+  if (pad.untouched == 0 || std::exchange(is_untouched_told_, true)) return;
+  const std::string name = show_->pad_name();
+  show_message(untouched_warning(name.empty() ? "a pad" : name));
 }
 
 void WindowLoop::install_show(std::unique_ptr<Show> show) {
@@ -808,6 +813,7 @@ void WindowLoop::install_show(std::unique_ptr<Show> show) {
   pace_before_pause_ = 1.0;
   is_camera_new_ = true;
   is_end_told_ = false;
+  is_untouched_told_ = false;
   if (state_.walker >= static_cast<int>(show_->cast().members.size())) state_.walker = -1;
 }
 

@@ -349,5 +349,37 @@ TEST(Pads, NoneIsNeutral) {
   EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
 }
 
+TEST(Pads, AFilteredStickIgnoresASingleReportAndIsNotBehindInSilence) {
+  PadConfig config = made_pad_config();
+  config.calibration.left.filters_jumps = true;
+  Pads pads({config}, kRateHz);
+  const auto tick = [&pads](int y) {
+    pads.take_report(made_report(kMiddle, y));
+    return pads.finish_tick().left;
+  };
+  EXPECT_EQ(tick(kMiddle), vec2(0.0));
+  EXPECT_EQ(tick(kForward), vec2(0.0));
+  EXPECT_EQ(tick(kMiddle), vec2(0.0));
+  EXPECT_EQ(tick(kMiddle), vec2(0.0));
+  // A pad that reports changes only: the push holds, and no report follows it.
+  EXPECT_EQ(tick(kForward), vec2(0.0));
+  EXPECT_EQ(after_silence(pads, 4).left, vec2(0.0));
+  EXPECT_GT(after_silence(pads, 1).left.y, 0.9);  // 20 ms
+}
+
+TEST(Pads, AWalkThatBeginsUntouchedIsCounted) {
+  Pads pads = one_pad();
+  pads.take_report(made_report(kMiddle, kMiddle));
+  after_silence(pads, 3 * kRateHz);
+  pads.take_report(made_report(kMiddle, kForward));
+  pads.finish_tick();
+  pads.take_report(made_report(kMiddle, kMiddle));  // one report, 4 ms
+  after_silence(pads, kRateHz);
+  EXPECT_EQ(pads.untouched(), 1);
+  pads.take_report(made_report(kMiddle, kForward));
+  after_silence(pads, kRateHz);  // a push that is held
+  EXPECT_EQ(pads.untouched(), 1);
+}
+
 }  // namespace
 }  // namespace gaitpad

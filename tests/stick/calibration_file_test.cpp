@@ -31,7 +31,7 @@ TEST(CalibrationFile, EveryKeyIsRead) {
       "[left.measured]\nsigma = 0.003\ndrift_per_s = 0\n"
       "[right]\nright = '-y'\nforward = 'x'\nx = {min = -0.9, centre = 0.05, max = 0.95}\ny.centre "
       "= -0.1\nshape = 'axial'\n"
-      "inner = 0.07\nouter = 0.9\nsideways = 0.1\ncurve = 0.4\n");
+      "inner = 0.07\nouter = 0.9\nsideways = 0.1\ncurve = 0.4\nfilters_jumps = true\n");
   EXPECT_EQ(file.name, "mine");
   EXPECT_EQ(file.unique_id, "aa:bb");
   EXPECT_EQ(file.port, "1-2");
@@ -49,6 +49,7 @@ TEST(CalibrationFile, EveryKeyIsRead) {
   EXPECT_EQ(right.outer, 0.9);
   EXPECT_EQ(right.sideways, 0.1);
   EXPECT_EQ(right.curve, 0.4);
+  EXPECT_TRUE(right.filters_jumps);
   EXPECT_EQ(file.calibration.left.inner, kInnerZoneUnknown);
   EXPECT_EQ(file.drivers, (std::vector<std::string>{"evdev", "sdl"}));
   EXPECT_EQ(file.measured_on, "2026-11-21");
@@ -82,6 +83,7 @@ CalibrationFile full_file() {
   c.left.inner = 1e-5;
   c.right.shape = ZoneShape::radial;
   c.right.curve = 2.0 / 7.0;
+  c.right.filters_jumps = true;
   c.left_trigger = {0.1 / 3.0, 1.0};
   c.right_trigger = {0.0, 0.1 + 1e-16};
   file.measured[0] = StickMeasured{0.0021, 1e-7, 0.0, 11.0 / 3.0};
@@ -95,6 +97,13 @@ TEST(CalibrationFile, WrittenTextReadsBackToTheSameBits) {
     EXPECT_EQ(parsed(text), file) << text;
     EXPECT_EQ(calibration_text(parsed(text)), text);
   }
+}
+
+TEST(CalibrationFile, TheFilterIsWrittenOnlyWhereItIsOn) {
+  CalibrationFile file;
+  EXPECT_EQ(calibration_text(file).find("filters_jumps"), std::string::npos);
+  file.calibration.left.filters_jumps = true;
+  EXPECT_NE(calibration_text(file).find("filters_jumps = true\n"), std::string::npos);
 }
 
 TEST(CalibrationFile, WrittenNumbersUseTheFewestDigits) {

@@ -278,5 +278,49 @@ TEST(StickPosition, RestOfAWornSonyStickIsNeutral) {
   }
 }
 
+PadState pad_at(double left_x, double left_y, double right_x) {
+  PadState pad;
+  pad.axis[kLeftX] = static_cast<float>(left_x);
+  pad.axis[kLeftY] = static_cast<float>(left_y);
+  pad.axis[kRightX] = static_cast<float>(right_x);
+  return pad;
+}
+
+TEST(JumpFilter, TakesOutASingleReportOfTheSticksThatAskForIt) {
+  Calibration c;
+  c.left.filters_jumps = true;
+  JumpFilter filter;
+  for (const double x : {0.1, 0.9, 0.1, -0.8, 0.1}) {
+    const PadState state = pad_at(x, -x, x);
+    filter.take(state);
+    const PadState filtered = filter.filtered(c, state);
+    EXPECT_EQ(filtered.axis[kLeftX], 0.1f);
+    EXPECT_EQ(filtered.axis[kLeftY], -0.1f);
+    EXPECT_EQ(filtered.axis[kRightX], state.axis[kRightX]);
+  }
+}
+
+TEST(JumpFilter, AMovementIsOneReportLateAndCatchesUpInSilence) {
+  Calibration c;
+  c.left.filters_jumps = true;
+  JumpFilter filter;
+  double before = 0.0;
+  for (const double x : {0.0, 0.1, 0.2, 0.4, 0.7}) {
+    filter.take(pad_at(x, 0.0, 0.0));
+    EXPECT_EQ(filter.filtered(c, pad_at(x, 0.0, 0.0)).axis[kLeftX], static_cast<float>(before));
+    before = x;
+  }
+  filter.settle();
+  EXPECT_EQ(filter.filtered(c, pad_at(0.7, 0.0, 0.0)).axis[kLeftX], 0.7f);
+}
+
+TEST(JumpFilter, TheFirstReportCountsAtOnce) {
+  Calibration c;
+  c.left.filters_jumps = true;
+  JumpFilter filter;
+  filter.take(pad_at(0.6, 0.0, 0.0));
+  EXPECT_EQ(filter.filtered(c, pad_at(0.6, 0.0, 0.0)).axis[kLeftX], 0.6f);
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +13,25 @@
 #include "stick/statistics.h"
 
 namespace gaitpad {
+
+// Random numbers that are the same with every library: the standard fixes its generators, but not
+// its distributions.
+class Chance {
+ public:
+  explicit Chance(std::uint32_t seed) : random_(seed) {}
+  double within(double least, double most) {
+    return least + (most - least) * static_cast<double>(random_()) / 4294967296.0;
+  }
+  double uniform() { return within(0.0, 1.0); }
+  double normal() {  // Box and Muller
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(2.0 * kPi * uniform());
+  }
+  std::size_t below(std::size_t count) { return random_() % count; }
+
+ private:
+  std::mt19937 random_;
+};
 
 enum class Gate { circle, square, ellipse };  // square: of half side `reach_x`, corners and all
 
@@ -29,7 +49,18 @@ struct MadeStick {
   int bits = 0;                             // of the logical range -1..1; 0: not quantised
   double rate_hz = 250.0, jitter_ms = 0.0;  // standard deviation of the intervals
   double drop_chance = 0.0;                 // a report is lost
-  double spike_chance = 0.0;                // one to three reports show another place
+  double spike_chance = 0.0;                // one to `spike_reports` reports show another place
+  int spike_reports = 3;
+  // Faults. Times are drawn from the seed.
+  double roam = 0.0, roam_s = 1.0;  // moves untouched: standard deviation and time constant
+  double displaced = 0.0;           // rests this far off its home ...
+  int displaced_times = 0;          // ... after so many of the first 12 releases
+  int drop_outs = 0;                // the contact is lost: an axis shows its end
+  double drop_out_s = 0.04;         // each lasts 0.5 to 1.5 times this long
+  int freezes = 0;                  // an axis, or both, keep a value while the stick moves
+  double freeze_s = 0.2;
+  int frozen_axes = 1;                                          // bits: 1 x, 2 y
+  double weak_rad = 0.0, weak_width_rad = 0.0, weak_reach = 0;  // a sector that reaches less far
   StickFrame frame;  // raw axes swapped and inverted: in_frame(frame, raw) is the truth
   bool reports_changes_only = false;
   std::uint32_t seed = 1;
@@ -42,6 +73,8 @@ inline double gate_radius(const MadeStick& stick, double angle_rad) {
   double radius = stick.reach_x;
   if (stick.gate == Gate::square) radius /= std::max(std::fabs(c), std::fabs(s));
   if (stick.gate == Gate::ellipse) radius = 1.0 / std::hypot(c / stick.reach_x, s / stick.reach_y);
+  if (std::fabs(wrapped(angle_rad - stick.weak_rad)) < 0.5 * stick.weak_width_rad)
+    radius = std::min(radius, stick.weak_reach);
   if (c != 0.0) radius = std::min(radius, ((c > 0.0 ? 1.0 : -1.0) - stick.centre.x) / c);
   if (s != 0.0) radius = std::min(radius, ((s > 0.0 ? 1.0 : -1.0) - stick.centre.y) / s);
   return radius;
@@ -72,7 +105,7 @@ class MadeMoves {
  public:
   explicit MadeMoves(const MadeStick& stick) : stick_(stick), random_(stick.seed * 7919u + 1u) {
     // From which side the stick was released before the recording began is random.
-    home_ = home_after(std::uniform_real_distribution<double>(-kPi, kPi)(random_));
+    home_ = home_after(random_.within(-kPi, kPi));
     at_ = home_;
   }
   const std::vector<vec2>& path() const { return path_; }
@@ -94,6 +127,13 @@ class MadeMoves {
   }
   void release() {
     home_ = home_after(angle_);
+    constexpr int kReleases = 12;
+    const int left = kReleases - releases_++;
+    if (left > 0 && random_.uniform() * left < stick_.displaced_times - displaced_) {
+      ++displaced_;
+      const double side = random_.within(-kPi, kPi);
+      home_ += stick_.displaced * vec2(std::cos(side), std::sin(side));
+    }
     creep_ = stick_.creep;
     move(home_ + vec2(creep_ * std::cos(angle_), creep_ * std::sin(angle_)), 0.05);
   }
@@ -131,7 +171,8 @@ class MadeMoves {
   }
 
   MadeStick stick_;
-  std::mt19937 random_;
+  Chance random_;
+  int releases_ = 0, displaced_ = 0;
   std::vector<vec2> path_;
   vec2 home_{0.0}, at_{0.0};
   double angle_ = 0.0, creep_ = 0.0;  // of the last push, after the last release
@@ -152,37 +193,96 @@ inline double quantised(double position, int bits) {
   return (std::round((clamped + 1.0) * half) - half) / half;
 }
 
+// From one report to a later one, of a path.
+struct Stretch {
+  std::size_t first = 0, last = 0;
+};
+
+// Stretches at random places that `fits` accepts, apart from each other; fewer if there is no room.
+template <typename Fits>
+std::vector<Stretch> stretches(Chance& random, std::size_t size, double rate_hz, int count,
+                               double least_s, double most_s, const Fits& fits) {
+  std::vector<Stretch> found;
+  for (int tries = 0; tries < 10000 && static_cast<int>(found.size()) < count; ++tries) {
+    const auto reports = static_cast<std::size_t>(
+        std::max(std::lround(random.within(least_s, most_s) * rate_hz), 1L));
+    if (size < reports + 2) break;
+    const std::size_t first = 1 + random.below(size - reports - 1);
+    const Stretch stretch{first, first + reports - 1};
+    const std::size_t apart = reports + static_cast<std::size_t>(0.1 * rate_hz);
+    const bool is_free = std::none_of(found.begin(), found.end(), [&](const Stretch& other) {
+      return stretch.first < other.last + apart && other.first < stretch.last + apart;
+    });
+    if (is_free && fits(stretch)) found.push_back(stretch);
+  }
+  return found;
+}
+
+// How far an axis is from where it froze, when it is free again.
+inline vec2 behind(const std::vector<vec2>& path, const Stretch& s) {
+  return glm::abs(path[std::min(s.last + 1, path.size() - 1)] - path[s.first - 1]);
+}
+
 }  // namespace made
 
 // The path as the stick reports it.
-inline StickTrack reported(const MadeStick& stick, const std::vector<vec2>& path) {
-  std::mt19937 random(stick.seed);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> chance;
-  StickTrack track;
-  vec2 walk(0.0), spike(0.0);
-  int spike_left = 0;
+inline StickTrack reported(const MadeStick& stick, std::vector<vec2> path) {
+  Chance random(stick.seed), faults(stick.seed * 31u + 5u);
   const double interval_ns = 1e9 / stick.rate_hz;
+  // A freeze shows if the axis moved on meanwhile, and something else moved, too.
+  const auto freezes = made::stretches(
+      faults, path.size(), stick.rate_hz, stick.freezes, stick.freeze_s, 1.3 * stick.freeze_s,
+      [&](const made::Stretch& s) {
+        const vec2 far = made::behind(path, s);
+        if (stick.frozen_axes == 3)
+          return std::min(glm::length(path[s.first - 1]), glm::length(path[s.last])) > 0.5 &&
+                 glm::length(far) > 0.2;
+        return (stick.frozen_axes == 1 ? far.x : far.y) > 0.15 &&
+               (stick.frozen_axes == 1 ? far.y : far.x) > 0.15;
+      });
+  const auto drop_outs =
+      made::stretches(faults, path.size(), stick.rate_hz, stick.drop_outs, 0.5 * stick.drop_out_s,
+                      1.5 * stick.drop_out_s, [&](const made::Stretch& s) {
+                        return glm::length(path[s.first]) < 0.6 && glm::length(path[s.last]) < 0.6;
+                      });
+  StickTrack track;
+  vec2 walk(0.0), spike(0.0), frozen(0.0);
+  vec2 roam(stick.roam * faults.normal(), stick.roam * faults.normal());
+  int spike_left = 0;
   for (std::size_t k = 0; k < path.size(); ++k) {
     const double n = static_cast<double>(k), middle = 0.5 * static_cast<double>(path.size() - 1);
     const double time_s = (n - middle) / stick.rate_hz;
     const double stride = stick.wander / std::sqrt(stick.rate_hz);
-    walk += vec2(stride * normal(random), stride * normal(random));
-    vec2 at = path[k] + stick.drift_per_s * time_s + walk +
-              vec2(stick.sigma.x * normal(random), stick.sigma.y * normal(random));
+    walk += vec2(stride * random.normal(), stride * random.normal());
+    if (stick.roam > 0.0) {
+      const double kept = std::exp(-1.0 / (stick.rate_hz * stick.roam_s));
+      const double fresh = stick.roam * std::sqrt(1.0 - kept * kept);
+      roam = kept * roam + fresh * vec2(faults.normal(), faults.normal());
+    }
+    vec2 at = path[k] + stick.drift_per_s * time_s + walk + roam +
+              vec2(stick.sigma.x * random.normal(), stick.sigma.y * random.normal());
     // An interval is the difference of two time stamps, so each gets 1/sqrt(2) of the jitter.
-    const double late_ns = stick.jitter_ms * 1e6 / std::sqrt(2.0) * normal(random);
-    if (spike_left == 0 && chance(random) < stick.spike_chance) {
-      spike_left = 1 + static_cast<int>(3.0 * chance(random));
+    const double late_ns = stick.jitter_ms * 1e6 / std::sqrt(2.0) * random.normal();
+    if (spike_left == 0 && random.uniform() < stick.spike_chance) {
+      spike_left = 1 + static_cast<int>(stick.spike_reports * random.uniform());
       do {
-        spike = vec2(2.0 * chance(random) - 1.0, 2.0 * chance(random) - 1.0);
+        spike = vec2(random.within(-1.0, 1.0), random.within(-1.0, 1.0));
       } while (glm::length(spike - at) < 0.3);
     }
     if (spike_left > 0) {
       --spike_left;
       at = spike;
     }
-    if (chance(random) < stick.drop_chance) continue;
+    for (const made::Stretch& s : drop_outs) {
+      if (k >= s.first && k <= s.last) at[s.first % 2] = s.first % 4 < 2 ? 1.0 : -1.0;
+    }
+    bool is_frozen = false;
+    for (const made::Stretch& s : freezes) is_frozen |= k >= s.first && k <= s.last;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (is_frozen && (stick.frozen_axes >> axis & 1) != 0) at[axis] = frozen[axis];
+    }
+    frozen = at;
+    if (random.uniform() < stick.drop_chance) continue;
     const vec2 raw = made::raw_of(stick.frame, at);
     StickSample sample{
         static_cast<std::int64_t>(n * interval_ns + late_ns),
@@ -224,6 +324,30 @@ inline StickTrack made_track(const MadeStick& stick, int releases = 8, double re
   return reported(stick, moves.path());
 }
 
+// A guided session: 12 releases from random sides, the last rest longer; turns; the four pushes.
+inline StickTrack made_session(const MadeStick& stick) {
+  MadeMoves moves(stick);
+  Chance hand(stick.seed * 17u + 3u);
+  moves.rest(1.0);
+  for (int k = 0; k < 12; ++k) {
+    moves.push(2.0 * kPi * k / 12 + hand.within(-0.3, 0.3), hand.within(0.08, 0.2));
+    moves.hold(hand.within(0.05, 0.3));
+    moves.release();
+    moves.rest(k == 11 ? 2.6 : hand.within(0.6, 1.0));
+  }
+  moves.push(hand.within(-kPi, kPi));
+  moves.turn(3.0, hand.within(1.2, 2.0));
+  moves.release();
+  moves.rest(0.6);
+  for (const double degrees : {90.0, 0.0, -90.0, 180.0}) {
+    moves.push(degrees * kDegree, 0.15);
+    moves.hold(0.5);
+    moves.release();
+    moves.rest(0.5);
+  }
+  return reported(stick, moves.path());
+}
+
 inline double step_of(const MadeStick& stick) {
   return stick.bits == 0 ? 0.0 : 2.0 / (std::exp2(stick.bits) - 1.0);
 }
@@ -246,13 +370,11 @@ inline std::string name_of(const MadeStick& s) {
 class Draw {
  public:
   explicit Draw(std::uint32_t seed) : random_(seed) { stick_.seed = seed; }
-  double within(double least, double most) {
-    return least + (most - least) * static_cast<double>(random_()) / 4294967296.0;
-  }
+  double within(double least, double most) { return random_.within(least, most); }
   bool chance(double share) { return within(0.0, 1.0) < share; }
   template <std::size_t kCount>
   double one_of(const std::array<double, kCount>& values) {
-    return values[random_() % kCount];
+    return values[random_.below(kCount)];
   }
   MadeStick stick() {
     MadeStick& s = stick_;
@@ -261,7 +383,7 @@ class Draw {
     const double sigma = chance(0.2) ? 0.0 : std::exp(within(std::log(5e-4), std::log(0.03)));
     s.sigma = vec2(sigma, sigma * within(0.5, 1.0));
     s.hysteresis = chance(0.5) ? 0.0 : within(0.01, 0.15);
-    s.gate = std::array{Gate::circle, Gate::square, Gate::ellipse}[random_() % 3];
+    s.gate = std::array{Gate::circle, Gate::square, Gate::ellipse}[random_.below(3)];
     s.reach_x = within(0.85, 1.0);
     s.reach_y = within(0.85, 1.0);
     s.rate_hz = one_of(std::array{66.0, 125.0, 250.0, 1000.0});
@@ -277,7 +399,7 @@ class Draw {
   }
 
  private:
-  std::mt19937 random_;
+  Chance random_;
   MadeStick stick_;
 };
 

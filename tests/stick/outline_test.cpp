@@ -92,7 +92,7 @@ TEST(Outline, HoldsAtAnyReportRateAndNumberOfTurnsAndWithLostReports) {
   for (const Shape& shape : kShapes) {
     for (const double rate_hz : {125.0, 500.0, 1000.0}) {
       for (const double turns : {2.0, 5.0}) {
-        MadeStick stick = made(shape, vec2(0.03, -0.05), 0.01, 8, 5);
+        MadeStick stick = made(shape, vec2(0.03, -0.05), 0.01, 8, 6);
         stick.rate_hz = rate_hz;
         stick.drop_chance = 0.1;
         stick.reports_changes_only = turns > 2.0;
@@ -242,6 +242,29 @@ TEST(Outline, NeverLeavesTheRange) {
     }
   }
 }
+
+TEST(Outline, AWeakSectorIsItsWorstDirection) {
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    Draw draw(seed);
+    MadeStick stick;
+    stick.seed = seed;
+    stick.sigma = vec2(0.003);
+    stick.reach_x = 0.94;
+    stick.bits = 12;
+    stick.weak_rad = draw.within(-kPi, kPi);
+    stick.weak_width_rad = draw.within(10.0, 57.0) * kDegree;
+    stick.weak_reach = draw.within(0.5, 0.8);
+    const Outline outline = outline_of(made_track(stick, 0, 0.6, 3.0), stick);
+    const auto worst = worst_direction(outline);
+    ASSERT_TRUE(worst) << seed;
+    const double angle = 2.0 * kPi * *worst / kOutlineDirections;
+    EXPECT_LT(std::fabs(wrapped(angle - stick.weak_rad)), 0.5 * stick.weak_width_rad + 0.05)
+        << seed;
+    EXPECT_NEAR(outline.radius[static_cast<std::size_t>(*worst)], stick.weak_reach, 0.03) << seed;
+  }
+}
+
+TEST(Outline, WithoutADirectionThereIsNoWorstOne) { EXPECT_FALSE(worst_direction(Outline())); }
 
 }  // namespace
 }  // namespace gaitpad

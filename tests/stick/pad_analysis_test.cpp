@@ -207,6 +207,26 @@ constexpr Fault kFaults[] = {
     {"noise", Verdict::replace, [](StickStatistics& s) { s.sigma = vec2(0.0, 0.06); }},
     {"back", Verdict::replace, [](StickStatistics& s) { s.min_y = -0.4; }},
     {"stuck", Verdict::replace, [](StickStatistics& s) { s.stuck = 4; }},
+    {"are filtered; calibration makes up for it", Verdict::worn,
+     [](StickStatistics& s) { s.jumps = 5; }},
+    {"in 4.0 % of its reports, too often to filter", Verdict::replace,
+     [](StickStatistics& s) { s.jumps = 200; }},
+    {"no filter takes out", Verdict::replace,
+     [](StickStatistics& s) { s.jumps = s.long_jumps = 5; }},
+    {"lost contact 3 times, for 90 ms", Verdict::replace,
+     [](StickStatistics& s) { s.drop_outs = 3, s.drop_out_s = 0.09; }},
+    {"after 3 releases it stayed up to 0.15 off", Verdict::worn,
+     [](StickStatistics& s) { s.displaced = 3, s.displaced_by = 0.15; }},
+    {"after 1 release it stayed about 0.15 off", Verdict::good,
+     [](StickStatistics& s) { s.displaced = 1, s.displaced_by = 0.15; }},
+    {"front left (135 degrees from the right) it reaches only 0.60", Verdict::worn,
+     [](StickStatistics& s) { s.outline.radius[72] = 0.6; }},
+    {"front left (135 degrees from the right) it reaches only 0.40", Verdict::replace,
+     [](StickStatistics& s) { s.outline.radius[72] = 0.4; }},
+    {"in only 42 of 48 directions", Verdict::unknown,
+     [](StickStatistics& s) { std::fill_n(s.outline.radius.begin() + 10, 26, 0.0); }},
+    {"reports only 15 times a second", Verdict::unknown,
+     [](StickStatistics& s) { s.rate_hz = 15.0, s.wander = 0.5, s.stuck = 9; }},
 };
 
 TEST(StickAdvice, EachFaultHasItsVerdictAndIsNamed) {
@@ -391,6 +411,24 @@ TEST_F(RecordedSticks, ATurnedStickReachesTheRimAllRoundAndTheOtherRests) {
     l = std::max(l, glm::length(s.left));
   }
   for (const double l : longest) EXPECT_GE(l, 0.978);
+}
+
+TEST(StickAdvice, TheFilterIsOnOnlyForJumpsOfSingleReports) {
+  StickStatistics s = measured();
+  EXPECT_FALSE(advice_for(s).calibration.filters_jumps);
+  s.jumps = s.long_jumps = 5;
+  EXPECT_FALSE(advice_for(s).calibration.filters_jumps);
+  s.jumps = 10;
+  EXPECT_TRUE(advice_for(s).calibration.filters_jumps);
+}
+
+TEST(StickAdvice, TheInnerZoneCoversDisplacedRestsFromTheSecondOn) {
+  StickStatistics s = measured();
+  s.displaced_by = 0.15;
+  s.displaced = 1;
+  EXPECT_LT(advice_for(s).inner_zone, 0.1);
+  s.displaced = 2;
+  EXPECT_GE(advice_for(s).inner_zone, 0.15);
 }
 
 }  // namespace

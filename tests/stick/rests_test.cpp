@@ -264,5 +264,44 @@ TEST(RestStatistics, WanderIsReportedAndNoiseIsNot) {
   }
 }
 
+MadeStick usual_stick(std::uint32_t seed) {
+  MadeStick stick;
+  stick.seed = seed;
+  stick.sigma = vec2(0.003);
+  stick.hysteresis = 0.02;
+  stick.bits = 12;
+  return stick;
+}
+
+TEST(RestStatistics, WanderHidesInNoReleaseHoweverSlowItIs) {
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    MadeStick stick = usual_stick(seed);
+    EXPECT_EQ(statistics_of(stick, made_session(stick)).wander, 0.0) << seed;
+    for (const double roam_s : {1.0, 3.0, 5.0}) {
+      stick.roam_s = roam_s;
+      stick.roam = 0.06;
+      // In a second a stick with this spread and time constant moves by 0.06 sqrt(2 / tau) at most.
+      const double wander = statistics_of(stick, made_session(stick)).wander;
+      EXPECT_GT(wander, 0.4 * 0.06 * std::sqrt(2.0 / roam_s)) << seed << " " << roam_s;
+      EXPECT_LT(wander, 2.5 * 0.06 * std::sqrt(2.0 / roam_s)) << seed << " " << roam_s;
+    }
+  }
+}
+
+TEST(RestStatistics, DisplacedRestsAreCounted) {
+  int found = 0;
+  for (std::uint32_t seed = 1; seed <= 30; ++seed) {
+    MadeStick stick = usual_stick(seed);
+    EXPECT_EQ(statistics_of(stick, made_session(stick)).displaced, 0) << seed;
+    stick.displaced = 0.15;
+    stick.displaced_times = 1 + static_cast<int>(seed % 5);
+    const StickStatistics s = statistics_of(stick, made_session(stick));
+    found += s.displaced == stick.displaced_times;
+    EXPECT_GE(s.displaced, std::min(stick.displaced_times, 2)) << seed;
+    EXPECT_NEAR(s.displaced_by, 0.15, 0.05) << seed;
+  }
+  EXPECT_GE(found, 24);
+}
+
 }  // namespace
 }  // namespace gaitpad

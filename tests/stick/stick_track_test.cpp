@@ -200,5 +200,59 @@ TEST(ReportStatistics, AValueThatFreezesWhileTheStickMovesOnIsStuck) {
   EXPECT_EQ(statistics_of(stick, track).stuck, 1);
 }
 
+MadeStick faulty_stick(std::uint32_t seed, double rate_hz) {
+  MadeStick stick;
+  stick.seed = seed;
+  stick.sigma = vec2(0.003);
+  stick.bits = 12;
+  stick.rate_hz = rate_hz;
+  return stick;
+}
+
+TEST(ReportStatistics, DropOutsAreCountedInTimeAtEveryRate) {
+  for (const double rate_hz : {125.0, 250.0, 1000.0}) {
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+      MadeStick stick = faulty_stick(seed, rate_hz);
+      EXPECT_EQ(statistics_of(stick, made_session(stick)).drop_outs, 0) << name_of(stick);
+      stick.drop_outs = 6;
+      stick.drop_out_s = 0.04;
+      const StickStatistics s = statistics_of(stick, made_session(stick));
+      EXPECT_NEAR(static_cast<double>(s.drop_outs), 6.0, 2.0) << name_of(stick);
+      EXPECT_NEAR(s.drop_out_s / static_cast<double>(std::max<std::int64_t>(s.drop_outs, 1)), 0.04,
+                  0.015)
+          << name_of(stick);
+    }
+  }
+}
+
+TEST(ReportStatistics, FreezesOfOneAxisOrBothAreCounted) {
+  for (const int axes : {1, 2, 3}) {
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+      MadeStick stick = faulty_stick(seed, 250.0);
+      EXPECT_EQ(statistics_of(stick, made_session(stick)).stuck, 0) << name_of(stick);
+      stick.freezes = 4;
+      stick.freeze_s = 0.15;
+      stick.frozen_axes = axes;
+      EXPECT_GE(statistics_of(stick, made_session(stick)).stuck, 2) << name_of(stick);
+    }
+  }
+}
+
+TEST(ReportStatistics, JumpsOfSingleReportsAreToldFromLongerOnes) {
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    MadeStick stick = faulty_stick(seed, 250.0);
+    stick.spike_chance = 0.004;
+    for (const int reports : {1, 3}) {
+      stick.spike_reports = reports;
+      const StickStatistics s = statistics_of(stick, made_session(stick));
+      EXPECT_GT(s.jumps, 8) << name_of(stick);
+      if (reports == 1)
+        EXPECT_LE(s.long_jumps, 2) << name_of(stick);
+      else
+        EXPECT_GE(s.long_jumps, s.jumps / 3) << name_of(stick);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -181,5 +181,66 @@ TEST(Stills, InvalidSamplesDoNotCrash) {
   stills(std::vector<StickTrack>{StickTrack(1000, {7, {0.1, 0.1}})});
 }
 
+double seconds_of(const std::vector<HandsOff>& times) {
+  double sum = 0.0;
+  for (const HandsOff& time : times) sum += 0.1 * static_cast<double>(time.places.size());
+  return sum;
+}
+
+TEST(HandsOffTime, BeginsAfterTheReleaseHasSettledAndEndsWithTheNextPush) {
+  for (const MadeStick& stick : every_kind()) {
+    MadeMoves moves(stick);
+    moves.rest(1.0);
+    for (int k = 0; k < 4; ++k) {
+      moves.push(1.6 * k);
+      moves.hold(0.2);
+      moves.release();
+      moves.rest(2.0);
+    }
+    moves.push(0.0);
+    const Stills found = stills_of(stick, moves);
+    // Of 9 s: 0.3 s of settling after each release, 0.25 s or less before a push, blocks of 0.1 s.
+    ASSERT_EQ(found.hands_off.size(), 5u) << name_of(stick);
+    EXPECT_LT(seconds_of(found.hands_off), 9.0 - 4 * 0.25) << name_of(stick);
+    EXPECT_GT(seconds_of(found.hands_off), 9.0 - 4 * 0.3 - 5 * 0.35) << name_of(stick);
+    for (const HandsOff& time : found.hands_off) {
+      EXPECT_EQ(time.is_released, &time != &found.hands_off.front());
+      for (const vec2& place : time.places)
+        EXPECT_LT(glm::length(place - stick.centre), 0.5 * stick.hysteresis + 0.06)
+            << name_of(stick);
+    }
+  }
+}
+
+TEST(HandsOffTime, AStickThatWandersIsHandsOffAllTheTime) {
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    MadeStick stick;
+    stick.sigma = vec2(0.003);
+    stick.roam = 0.1;
+    stick.seed = seed;
+    MadeMoves moves(stick);
+    for (int k = 0; k < 4; ++k) {
+      moves.push(1.6 * k);
+      moves.hold(0.2);
+      moves.release();
+      moves.rest(3.0);
+    }
+    const Stills found = stills_of(stick, moves);
+    EXPECT_GT(seconds_of(found.hands_off), 9.0) << seed;
+    EXPECT_LT(seconds_of(found.hands_off), 12.0) << seed;
+  }
+}
+
+TEST(HandsOffTime, AStickThatAHandLeadsBackIsNotLetGo) {
+  MadeStick stick;
+  stick.sigma = vec2(0.003);
+  MadeMoves moves(stick);
+  moves.push(0.0);
+  moves.hold(0.2);
+  moves.move({0.05, 0.0}, 1.0);
+  moves.hold(2.0);
+  EXPECT_EQ(seconds_of(stills_of(stick, moves).hands_off), 0.0);
+}
+
 }  // namespace
 }  // namespace gaitpad

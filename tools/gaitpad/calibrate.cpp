@@ -38,7 +38,7 @@ constexpr const char* kCommand = "calibrate";
 
 struct CalibrateArguments {
   PadWish wish;
-  std::vector<std::string> traces, pushes;
+  std::vector<std::string> traces, pushes, compare;
   std::string out, plot, check, import, map;
   bool as_json = false, exports_sdl = false, is_lenient = false;
 };
@@ -200,8 +200,18 @@ void print_rest(const StickStatistics& s) {
   const std::string trend = s.drift_per_s ? fmt::format("{:>9.4f} a second", *s.drift_per_s) : "";
   print_row("drift", trend.empty() ? kUnknown : *s.drift_per_s > 0.0 ? trend : "     none", from);
   if (s.wander > 0.0)
-    print_row("wander", fmt::format("{:>9.4f}", s.wander), "slow excursions at rest, sigma");
+    print_row("wander", fmt::format("{:>9.4f} a second", s.wander),
+              fmt::format("{:.1f} s in which nobody held it", seconds_of(s.hands_off)));
+  if (s.displaced > 0) {
+    print_row("displaced rests", fmt::format("{:>9}", s.displaced),
+              fmt::format("up to {:.3f} off the centre", s.displaced_by));
+  }
 }
+
+double reach_in(const Outline& outline, int direction) {
+  return outline.radius[static_cast<std::size_t>(direction)];
+}
+double degrees_of(int direction) { return 360.0 * direction / kOutlineDirections; }
 
 void print_rim(const StickStatistics& s) {
   const std::string from =
@@ -209,6 +219,10 @@ void print_rim(const StickStatistics& s) {
                   filled_bins(s.outline), kCircularityBins, s.turns, s.turns == 1 ? "" : "s");
   print_row("reach right, front", pair_text(s.max_x, s.max_y), from);
   print_row("reach left, back", pair_text(s.min_x, s.min_y), from);
+  if (const auto worst = worst_direction(s.outline)) {
+    print_row("least reach", fmt::format("{:>9.4f}", reach_in(s.outline, *worst)),
+              fmt::format("{:.0f} degrees from the right", degrees_of(*worst)));
+  }
   print_row("circularity error",
             s.circularity_error ? fmt::format("{:>9.1f} %", *s.circularity_error) : kUnknown,
             s.circularity_error ? "0 is a circle of radius 1 about the raw middle"
@@ -226,6 +240,10 @@ void print_reports(const StickStatistics& s) {
             s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms", from, *s.jitter_ms) : from);
   const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
   print_row("gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
+  if (s.drop_outs > 0) {
+    print_row("drop-outs", fmt::format("{:>9}", s.drop_outs),
+              fmt::format("{:.0f} ms in all", 1e3 * s.drop_out_s));
+  }
 }
 
 void print_advice(const StickAdvice& a) {
@@ -253,6 +271,7 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
     return v ? nlohmann::ordered_json((*v)[i]) : nlohmann::ordered_json(nullptr);
   };
   const bool is_known = s.centre.has_value();
+  const std::optional<int> worst = worst_direction(s.outline);
   return {{"centre_x", part(s.centre, 0)},
           {"centre_y", part(s.centre, 1)},
           {"sigma_x", part(s.sigma, 0)},
@@ -281,7 +300,14 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"jitter_ms", value_or_null(s.jitter_ms)},
           {"gaps", value_or_null(s.gaps)},
           {"jumps", s.jumps},
-          {"stuck", s.stuck}};
+          {"stuck", s.stuck},
+          {"drop_outs", s.drop_outs},
+          {"drop_out_s", s.drop_out_s},
+          {"displaced_rests", s.displaced},
+          {"displaced_by", s.displaced_by},
+          {"hands_off_s", seconds_of(s.hands_off)},
+          {"least_reach", worst ? nlohmann::ordered_json(reach_in(s.outline, *worst)) : nullptr},
+          {"least_reach_deg", worst ? nlohmann::ordered_json(degrees_of(*worst)) : nullptr}};
 }
 
 void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
@@ -459,6 +485,12 @@ int export_sdl(const CalibrateArguments& arguments, const PadFiles& files) {
 
 // --- the command
 
+struct ComparedFiles {
+  std::array<CalibrationFile, 2> file;
+  std::array<std::string, 2> names;                    // of the files, without folders
+  std::array<std::vector<ComparedNumber>, 2> numbers;  // left, right
+};
+
 #ifdef GAITPAD_HAS_WINDOW
 std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& pad,
                           const PadAnalysis& analysis) {
@@ -473,8 +505,26 @@ std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& 
   }
   return write_stick_picture(arguments.plot, printable(pad.info.name) + date, pictures);
 }
+
+std::optional<Error> draw_comparison(const std::string& path, const ComparedFiles& files) {
+  std::vector<ComparedStick> sticks;
+  for (std::size_t side = 0; side < 2; ++side) {
+    ComparedStick& stick = sticks.emplace_back();
+    stick.title = side == 0 ? "Left stick" : "Right stick";
+    stick.numbers = files.numbers[side];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Calibration& c = files.file[i].calibration;
+      stick.names[i] = files.names[i];
+      stick.calibrations[i] = side == 0 ? &c.left : &c.right;
+    }
+  }
+  return write_comparison(path, files.names[0] + " and " + files.names[1], sticks);
+}
 #else
 std::optional<Error> draw(const CalibrateArguments&, const GuidedPad&, const PadAnalysis&) {
+  return Error{missing_window()};
+}
+std::optional<Error> draw_comparison(const std::string&, const ComparedFiles&) {
   return Error{missing_window()};
 }
 #endif
@@ -483,6 +533,33 @@ void print_changes(const std::vector<std::string>& changes, const std::string& s
   fmt::print("\n");
   if (changes.empty()) fmt::print("nothing that was seen has changed since {}\n", printable(since));
   for (const std::string& change : changes) fmt::print("{}\n", printable(change));
+}
+
+// --compare: two files of one pad. Returns the exit status.
+int compare(const CalibrateArguments& arguments) {
+  ComparedFiles files;
+  for (std::size_t i = 0; i < 2; ++i) {
+    auto file = load_calibration_file(arguments.compare[i]);
+    if (!file) return fail(kCommand, file.error().message);
+    files.file[i] = std::move(*file);
+    files.names[i] = printable(std::filesystem::path(arguments.compare[i]).filename().string());
+  }
+  const auto& [a, b] = files.file;
+  if (a.unique_id != b.unique_id || a.devices != b.devices)
+    print_remarks(kCommand, {"the files are of different devices; compared all the same"});
+  for (std::size_t side = 0; side < 2; ++side) {
+    files.numbers[side] = compared_numbers(a, b, side);
+    fmt::print("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
+               files.names[0], files.names[1]);
+    for (const ComparedNumber& number : files.numbers[side]) {
+      fmt::print("  {:<24}{:>16}  {:>16}{}\n", number.label, number.values[0], number.values[1],
+                 number.values[0] == number.values[1] ? "" : "  *");
+    }
+  }
+  print_changes(changes_since(a, b), files.names[0]);
+  if (arguments.plot.empty()) return 0;
+  const auto problem = draw_comparison(arguments.plot, files);
+  return problem ? fail(kCommand, problem->message) : 0;
 }
 
 // A problem that a person should know before the guided steps, not after them.
@@ -564,6 +641,7 @@ int finish(const CalibrateArguments& arguments, const PadFiles& files, const Gui
 }
 
 int run(const CalibrateArguments& arguments) {
+  if (!arguments.compare.empty()) return compare(arguments);
   RunEnd end;
   const auto files = pad_files(arguments.map, "");
   if (!files) return fail(kCommand, files.error().message);
@@ -631,6 +709,13 @@ void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
   auto* export_sdl = command.add_flag("--export-sdl", arguments.exports_sdl,
                                       "prints the pad as SDL's mapping line");
   export_sdl->excludes(import)->excludes(command.get_option("--out"));
+  auto* compare = command.add_option("--compare", arguments.compare,
+                                     "compares two calibration files, before and after a repair; "
+                                     "--plot draws them");
+  compare->expected(2)->type_name("A B");
+  for (const char* other :
+       {"PAD", "--trace", "--out", "--check", "--pushes", "--json", "--import", "--export-sdl"})
+    compare->excludes(command.get_option(other));
   for (const char* measuring : {"--plot", "--check", "--pushes", "--json"}) {
     import->excludes(command.get_option(measuring));
     export_sdl->excludes(command.get_option(measuring));

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -35,6 +36,10 @@ struct Window {
 struct MonitoredPad {
   PadConfig config;
   PadState state;
+  JumpFilter filter;
+  std::array<UntouchedWatch, 2> watch;  // left, right
+  int untouched = 0;                    // how often a stick moved by itself
+  bool is_warned = false;               // of that
   bool is_plugged = true;
   std::int64_t last_ns = 0;  // stamp of the last report; 0: none since plugging in
   Window running, shown;     // the present second, and the last full one
@@ -70,7 +75,8 @@ double rate_hz(const Window& window) {
 }
 
 Stick stick_of(const MonitoredPad& pad) {
-  return stick_position(pad.config.calibration, pad.state);
+  const Calibration& calibration = pad.config.calibration;
+  return stick_position(calibration, pad.filter.filtered(calibration, pad.state));
 }
 
 struct Triggers {
@@ -95,6 +101,23 @@ std::string calibration_remark(const TraceDevice& device) {
                      name.empty() ? "without a name" : name);
 }
 
+void watch_sticks(MonitoredPad& pad, std::int64_t time_ns) {
+  const Calibration& c = pad.config.calibration;
+  const Stick stick = stick_of(pad);
+  const auto& axis = pad.state.axis;
+  pad.untouched += pad.watch[0].take(time_ns, c.left, {axis[kLeftX], axis[kLeftY]}, stick.left);
+  pad.untouched += pad.watch[1].take(time_ns, c.right, {axis[kRightX], axis[kRightY]}, stick.right);
+}
+
+// A pad that reports changes only is silent while its sticks stand still.
+void take_silence(MonitoredPad& pad) {
+  const std::int64_t time_ns = now_ns();
+  const double silent_s = 1e-9 * static_cast<double>(time_ns - pad.last_ns);
+  if (pad.last_ns == 0 || silent_s < JumpFilter::kSettled_s) return;
+  pad.filter.settle();
+  watch_sticks(pad, time_ns);
+}
+
 // Takes one report of the stream in. True if it announces a pad for the first time.
 bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
   if (report.device == kNoDevice) return false;
@@ -110,6 +133,8 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
   if (report.kind == ReportKind::removed) {
     pad.is_plugged = false;
     pad.state = {};
+    pad.filter = {};
+    pad.watch = {};
     pad.last_ns = 0;
     return false;
   }
@@ -118,7 +143,12 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
     keep(pad.running.interval_us, static_cast<double>(report.time_ns - pad.last_ns) / 1e3);
   pad.last_ns = report.time_ns;
   ++pad.running.reports;
-  if (!decode(*pad.config.layout, report, pad.state)) ++pad.running.bad_reports;
+  if (!decode(*pad.config.layout, report, pad.state)) {
+    ++pad.running.bad_reports;
+  } else {
+    pad.filter.take(pad.state);
+    watch_sticks(pad, report.time_ns);
+  }
   return false;
 }
 
@@ -144,6 +174,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"axes", axes_json(pad.state)},
           {"sticks",
            {{"left", {stick.left.x, stick.left.y}}, {"right", {stick.right.x, stick.right.y}}}},
+          {"untouched", pad.untouched},
           {"triggers", {{"left", triggers.left}, {"right", triggers.right}}},
           {"buttons", button_names(pad.state)}};
 }
@@ -257,6 +288,12 @@ int run(const MonitorArguments& arguments) {
     }
     print_remarks("monitor", (*stream)->take_remarks(), &display.line());
     missing.look((*stream)->counts().plugged, display.line());
+    for (auto& [index, pad] : pads) {
+      take_silence(pad);
+      if (pad.untouched == 0 || std::exchange(pad.is_warned, true)) continue;
+      print_remarks("monitor", {untouched_warning(pad_name((*stream)->device(index).info))},
+                    &display.line());
+    }
     display.show(pads, **stream);
     if (std::fflush(stdout) != 0) break;  // main says so
   }

@@ -59,6 +59,7 @@ struct StickCalibration {
   double outer = 0.95;     // inner + 0.05 .. 1
   double sideways = 0.08;  // ZoneShape::both only: fraction of the calibrated deflection, 0 .. 0.5
   double curve = 0.0;      // 0 linear .. 1 cubic: (1 - curve) t + curve t^3
+  bool filters_jumps = false;  // each axis is the median of its last three reports: JumpFilter
   bool operator==(const StickCalibration&) const = default;
 };
 struct TriggerCalibration {
@@ -83,6 +84,28 @@ vec2 stick_position(const StickCalibration& calibration, const vec2& raw) noexce
 Stick stick_position(const Calibration& calibration, const PadState& pad) noexcept;
 // 0 released .. 1 pressed; not-a-number counts as released.
 double trigger_position(const TriggerCalibration& calibration, double raw) noexcept;
+
+// For sticks that jump for single reports: the last three positions of a pad's sticks. A stick that
+// moves is delayed by one report; settle() ends the delay when no report follows.
+//
+//   decode(layout, report, state);
+//   filter.take(state);
+//   const Stick stick = stick_position(calibration, filter.filtered(calibration, state));
+class JumpFilter {
+ public:
+  void take(const PadState& state) noexcept;  // as the newest report has it
+  // No report came for kSettled_s: the newest position holds. A pad that reports changes only would
+  // be behind for as long as nothing changes.
+  void settle() noexcept { last_[0] = last_[1] = last_[2]; }
+  // The state with the medians in place of the sticks that the calibration filters; the others stay
+  // bit by bit.
+  PadState filtered(const Calibration& calibration, const PadState& state) const noexcept;
+  static constexpr double kSettled_s = 0.02;
+
+ private:
+  std::array<std::array<double, 4>, 3> last_{};  // left x, y, right x, y; the newest last
+  bool is_begun_ = false;
+};
 
 // The same calibration without negative zeros: the only numbers that calibration_text() does not
 // keep bit by bit. A canonical calibration is what a recording of it reads back.

@@ -13,6 +13,7 @@
 #include "gaitpad/calibration.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/report.h"
+#include "gaitpad/untouched.h"
 
 namespace gaitpad {
 
@@ -74,11 +75,14 @@ class Pads {
   // counts, so that a press between two ticks is not missed. A button that is held while the pad is
   // plugged in counts with the first report.
   const PressCounts& presses() const noexcept { return presses_; }
+  // How often the driving pad's left stick began to move the character untouched.
+  std::int64_t untouched() const noexcept { return untouched_; }
 
  private:
   struct Pad {
     PadConfig config;
-    PadState state;
+    PadState state;           // as reported
+    JumpFilter filter;        // of its sticks
     bool is_awaited = false;  // plugged in again and not yet seen near its centre
     bool is_seen = false;     // it has reported since it was plugged in
     std::uint64_t reports = 0;
@@ -86,6 +90,7 @@ class Pads {
     int turn = 0;  // the lowest goes first among pads that can take over; 0: never plugged in
   };
   bool is_silent(const Pad& pad) const noexcept;
+  static Stick calibrated(const Pad& pad) noexcept;
   bool is_near_centre(const Pad& pad) const noexcept;
   bool can_take_over(const Pad& pad) const noexcept;
   bool has_lost_its_driver() const noexcept;
@@ -94,12 +99,16 @@ class Pads {
   void replace_driver() noexcept;
   Stick stick_of(const Pad& pad) const noexcept;
   Stick fallback_stick() const noexcept;
+  void watch(const Pad& pad, const vec2& left) noexcept;
 
   std::vector<Pad> pads_;
   std::uint16_t driving_ = kNoDevice;
   int turns_ = 0;
   PressCounts presses_{};
-  int silence_ticks_ = 0;
+  UntouchedWatch watch_;  // of the driving pad
+  std::int64_t untouched_ = 0, ticks_ = 0;
+  int rate_hz_ = 1;
+  int silence_ticks_ = 0, settled_ticks_ = 0;
 };
 
 }  // namespace gaitpad

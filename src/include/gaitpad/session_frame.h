@@ -53,9 +53,10 @@ struct WalkerFrame {
 struct PadFrame {
   std::uint16_t device = kNoDevice;  // kNoDevice: none has driven so far
   bool is_present = false;
-  PadState state;             // uncalibrated
-  Calibration calibration;    // that makes the stick of it
-  std::uint64_t reports = 0;  // since the beginning
+  PadState state;              // uncalibrated
+  Calibration calibration;     // that makes the stick of it
+  std::uint64_t reports = 0;   // since the beginning
+  std::int64_t untouched = 0;  // how often its left stick began to walk untouched
 };
 
 struct SessionFrame {

@@ -1,0 +1,44 @@
+// Notices a calibrated stick that moves untouched: its output begins although the stick hardly
+// moved in the second before, and no push follows.
+//
+//   gaitpad::UntouchedWatch watch;
+//   if (watch.take(time_ns, calibration, raw, stick_position(calibration, raw))) ...  // each tick
+//
+// For the loop: noexcept, no heap.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "gaitpad/calibration.h"
+
+namespace gaitpad {
+
+class UntouchedWatch {
+ public:
+  // In the order of time, each tick or report: the raw position and what the calibration made of
+  // it. True a quarter of a second after the output has begun untouched.
+  bool take(std::int64_t time_ns, const StickCalibration& calibration, const vec2& raw,
+            const vec2& position) noexcept;
+
+ private:
+  struct Part {  // an eighth of a second
+    vec2 sum{0.0};
+    double count = 0.0;
+  };
+  static constexpr std::int64_t kParts = 8;
+  void move_on(std::int64_t part) noexcept;
+  bool was_moved(double zone) const noexcept;
+
+  std::array<Part, kParts> parts_{};
+  std::int64_t first_part_ = -1, part_ = -1;  // -1: none yet
+  std::int64_t began_ns_ = 0, last_ns_ = 0;   // of the output that is being judged
+  std::int64_t pushed_ns_ = 0;                // how long it has been far out since
+  vec2 raw_{0.0};                             // the last one
+  bool is_out_ = false, is_judging_ = false;
+};
+
+// `PAD: a stick began to move untouched; this measures it: gaitpad calibrate`
+std::string untouched_warning(const std::string& pad);
+
+}  // namespace gaitpad

@@ -1,5 +1,5 @@
 // The GameCube adapter (SDL's SDL_hidapi_gamecube.c) behind a driver that opens it once.
-#include "drivers/pads/shared_pads.h"
+#include "drivers/shared_pads.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

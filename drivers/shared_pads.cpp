@@ -1,4 +1,4 @@
-#include "drivers/pads/shared_pads.h"
+#include "drivers/shared_pads.h"
 
 #include <sys/eventfd.h>
 #include <unistd.h>

@@ -149,7 +149,7 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   const double sigma_x = s.sigma ? s.sigma->x : 0.0;
   const double astray = 0.5 * hysteresis_of(s) + kSigmasOfForward * sigma_x;
   c.sideways = std::clamp(astray / (least_half(c.x) * c.outer), kLeastSideways, kGreatestSideways);
-  c.filters_jumps = single_jumps(s) >= kWornJumps;
+  c.filters_jumps = single_jumps(s) > 0;
 }
 
 using Reasons = std::vector<std::string>;
@@ -300,6 +300,8 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
     advice.verdict = Verdict::good;
     advice.reason = sentence("", {good(s)});
   }
+  if (advice.verdict == Verdict::good && single_jumps(s) > 0)
+    advice.reason += "; it jumped for a single report, so its reports are filtered";
   if (s.displaced == 1) advice.reason += "; " + displaced(s) + ", unless a thumb lay on it";
   if (s.centre && !s.hysteresis) {
     advice.reason += fmt::format(

@@ -10,7 +10,7 @@ constexpr std::int64_t kPart_ns = 125'000'000, kJudged_ns = 250'000'000, kPush_n
 constexpr double kPushed = 0.5;  // of full deflection; a jump goes that far, too, but not for long
 // Of the inner zone, which covers 5.5 sigma: noise moves a single report by less than kNoise and
 // the mean over an eighth of a second by far less than kMoved.
-constexpr double kNoise = 0.7, kMoved = 0.35;
+constexpr double kNoise = 0.4, kMoved = 0.35;
 
 // The inner zone in raw units, along the shorter half of the shorter axis.
 double zone_of(const StickCalibration& c) noexcept {

@@ -261,7 +261,7 @@ def test_refusals_are_one_sentence_and_lose_nothing(user):
 @pytest.mark.parametrize("options", [
     "--trace a PAD", "--trace a --driver evdev", "--check a --out b", "--import a --check b", "--import a --json",
     "--export-sdl --import a", "--export-sdl --plot a.png", "--pushes forward,right", "--trace made.hid --pushes up",
-    "--trace made.hid --plot a.jpg", "--trace made.hid --json --out -"])
+    "--trace made.hid --plot a.jpg", "--trace made.hid --json --out -", "--compare a b --out c", "--compare a"])
 def test_options_that_contradict_each_other_are_wrong_usage(user, options):
     user.trace()
     user.run("calibrate", *options.split(), status=2)
@@ -288,3 +288,35 @@ def test_a_real_stick_at_rest_never_walks(user):
         rows = (user.folder / "walk/frames.csv").read_text().splitlines()
         if not any(name in path.name for name in ("_l1", "_l3")):
             assert {tuple(row.split(",")[2:4]) for row in rows[1:]} == {("0.000000000", "0.000000000")}, path.name
+
+
+def test_compares_two_files_in_text_and_in_a_picture(user):
+    before, after, picture = (user.folder / name for name in ("before.toml", "after.toml", "repair.png"))
+    user.calibrated("--trace", user.trace(Stick(centre=(0.08, 0), sigma=0.012), serial=SERIAL), "--out", before)
+    user.calibrated("--trace", user.trace(Stick(sigma=0.003), serial=SERIAL), "--out", after)
+    told = user.run("calibrate", "--compare", before, after, "--plot", picture).stdout
+    left, right = told.split("\nright stick\n")
+    centre = next(line.split() for line in left.splitlines() if "centre x" in line)
+    assert float(centre[2]) == pytest.approx(0.08, abs=0.003)
+    assert float(centre[3]) == pytest.approx(0.0, abs=0.003)
+    assert centre[4] == "*"
+    assert "left stick: the centre has moved" in right
+    assert pixels(picture).std() > 0.02 * 255
+    same = user.run("calibrate", "--compare", after, after).stdout
+    assert "*" not in same and "nothing that was seen has changed since after.toml" in same
+    user.refused("--compare", after, user.folder / "none.toml", says="none.toml")
+
+
+def test_a_stick_that_jumps_for_single_reports_gets_the_filter(user):
+    class Jumping(Stick):
+        count = 0
+
+        def position(self, time_s, place, side):
+            self.count += 1
+            return [0.7, -0.8] if self.count % 1200 == 600 else super().position(time_s, place, side)
+
+    told = user.calibrated("--trace", user.trace(Jumping(sigma=0.003)))["sticks"]
+    assert (told["left"]["verdict"], told["right"]["verdict"]) == ("worn", "good")
+    assert "filtered" in told["left"]["reason"]
+    assert user.table()["left"]["filters_jumps"] is True
+    assert "filters_jumps" not in user.table()["right"]

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from support.program import ROOT, ROUND, end_by
-from support.traces import beginning, lines, reports
+from support.traces import beginning, lines, ramp, reports, write_trace
 
 DUALSHOCK = ROOT / "tests/data/pads/054c_09cc.hid"
 
@@ -125,3 +125,27 @@ def test_a_given_calibration_is_used_and_the_recording_holds_it(run, tmp_path, o
     held = [rest for _, rest in lines(out, "K")]
     for line in ('name = "turned"', 'forward = "-y"', "released = 0.25"):
         assert line in held
+
+
+def test_a_filter_of_the_calibration_is_in_the_recording(run, tmp_path, trace, out):
+    path, plain = tmp_path / "filtered.toml", tmp_path / "plain.toml"
+    path.write_text("[left]\nfilters_jumps = true\n")
+    plain.write_text("")
+    run("record", trace, "--out", out, "--calibration", path)
+    assert "filters_jumps = true" in [rest for _, rest in lines(out, "K")]
+
+    def hash_of(*options):
+        return json.loads(run("replay", out, "--json", *options).stdout)["pose_hash"]
+
+    assert hash_of() == hash_of("--calibration", path) != hash_of("--calibration", plain)
+
+
+def test_monitor_warns_of_a_stick_that_moves_untouched(run, tmp_path):
+    creeping = ramp(1.5, 3.0, (0.0, 0.15), (0.0, 0.21))  # 0.04 a second
+    untouched = write_trace(tmp_path / "untouched.hid", creeping)
+    pushed = write_trace(tmp_path / "pushed.hid", ramp(1.5, 2.0, (0.0, 0.0), (0.0, 1.0)) + [(3.0, 0.0, 1.0)])
+    done = run("monitor", untouched, "--seconds", "3.2", "--json")
+    assert done.stderr.splitlines()[-1] == ("gaitpad monitor: gaitpad test pad (recording): a stick began to "
+                                            "move untouched; this measures it: gaitpad calibrate")
+    assert json.loads(done.stdout.splitlines()[-1])["untouched"] == 1
+    assert "untouched" not in run("monitor", pushed, "--seconds", "3.2").stderr

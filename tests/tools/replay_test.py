@@ -365,7 +365,7 @@ def test_a_crowd_that_cannot_be_is_refused(made, refuse, options, says):
 def test_a_long_gap_takes_the_time_of_its_ticks_and_shows_progress(program, made):
     minutes = 5
     path = made.write("gap.hid", HEADER + report(0) + report(60 * minutes) + end(60 * minutes))
-    with Terminal(program, "replay", path) as terminal:
+    with Terminal(program, "replay", path, "--crowd", "50") as terminal:  # some seconds of work
         terminal.wait_for(rf"replay: \d+ % of {60 * minutes * RATE_HZ}\d* ticks, \d+ ticks a second", 60)
         assert terminal.wait_end(120) == 0
     assert f"{60 * minutes * RATE_HZ}" in terminal.text

@@ -452,8 +452,9 @@ void draw_worst(cairo_t* cr, const Box& plot, const Outline& outline) {
   const std::string text = fmt::format("worst: {:.2f} to the {}", reach, direction_text(*worst));
   const TextStyle style{11.5, colour::kVermilion, Align::left, true};
   const double most = plot.x + plot.width - text_width(cr, style, text) - 8.0;
-  draw_text(cr, style, {std::clamp(x - 40.0, plot.x + 8.0, std::max(most, plot.x + 8.0)), y - 13.0},
-            text, plot.width - 16.0);
+  draw_text(cr, style,
+            {std::clamp(x - 40.0, plot.x + 8.0, std::max(most, plot.x + 8.0)), plot.y + 15.0}, text,
+            plot.width - 16.0);
 }
 
 void draw_reach(cairo_t* cr, const Box& plot, const StickPicture& stick) {
@@ -472,7 +473,8 @@ void draw_reach(cairo_t* cr, const Box& plot, const StickPicture& stick) {
 
 std::vector<LegendEntry> raw_legend(const StickPicture& stick) {
   using Mark = LegendEntry::Mark;
-  std::vector<LegendEntry> entries = {{Mark::line, colour::kBlue, "track"}};
+  std::vector<LegendEntry> entries;
+  if (!stick.tracks.empty()) entries.push_back({Mark::line, colour::kBlue, "track"});
   if (stick.statistics && is_seen(reaches_of(stick.statistics->outline))) {
     entries.push_back({Mark::line, colour::kVermilion, "outline"});
   }
@@ -515,8 +517,12 @@ std::vector<LegendEntry> reach_legend(const StickPicture& stick) {
 
 // --- hands-off time: position over time, one time after the other
 
+// Raw, along the axis that reaches least far.
 double inner_zone_of(const StickPicture& stick) {
-  return stick.advice && stick.advice->inner_zone > 0.0 ? stick.advice->inner_zone : 0.05;
+  if (!stick.advice) return 0.05;
+  const StickCalibration& c = stick.advice->calibration;
+  return c.inner * std::min({c.x.centre - c.x.min, c.x.max - c.x.centre, c.y.centre - c.y.min,
+                             c.y.max - c.y.centre});
 }
 
 // What was found of the stick while nobody held it.
@@ -544,7 +550,7 @@ void draw_strip(cairo_t* cr, const Box& box, const StickPicture& stick) {
       for (const vec2& place : hands_off.places) {
         const double away = glm::length(place - *stick.statistics->centre);
         inside.points.emplace_back(time_s += 0.1, away);
-        highest = std::max(highest, 1.1 * away);
+        highest = std::max(highest, 1.4 * away);  // room for a word above
         if (away > radius)
           plot.marks.push_back({PlotMark::Shape::dot, {time_s, away}, rgb(colour::kVermilion)});
       }
@@ -558,6 +564,9 @@ void draw_strip(cairo_t* cr, const Box& box, const StickPicture& stick) {
   }
   plot.series = {std::move(zone), std::move(inside)};
   draw_plot(cr, box, plot);
+  const Clipped clipped(cr, box);
+  for (const PlotMark& mark : plot.marks)
+    draw_dot(cr, pixel_in(box, plot, mark.place), 2.2, mark.colour);
 }
 
 std::vector<LegendEntry> strip_legend(const StickPicture& stick) {

@@ -242,7 +242,7 @@ std::vector<ComparedNumber> compared_numbers(const CalibrationFile& a, const Cal
       const Calibration& c = files[i]->calibration;
       const std::optional<double> found =
           value(side == 0 ? c.left : c.right, files[i]->measured[side].value_or(StickMeasured()));
-      number.values[i] = found ? fmt::format("{:.4f}", *found) : "-";
+      number.values[i] = found ? fmt::format("{:.4f}", std::round(*found * 1e4) / 1e4 + 0.0) : "-";
     }
   };
   using Stick = const StickCalibration&;

@@ -175,7 +175,8 @@ TEST_F(SaveCalibration, ReadsBackAsItWasAndMakesItsFolder) {
   auto file = load_calibration_file(path);
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(*file, made_file(0.1));
-  EXPECT_EQ(text_in(path).find("# Made by a test\n#\n# two\\x0alines \\xff\n\nname = \"Pad\"\n"), 0u)
+  EXPECT_EQ(text_in(path).find("# Made by a test\n#\n# two\\x0alines \\xff\n\nname = \"Pad\"\n"),
+            0u)
       << text_in(path);
   EXPECT_EQ(entries_in(top_ + "/a/b"), 1);
 }

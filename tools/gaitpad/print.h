@@ -16,8 +16,8 @@ namespace gaitpad {
 
 // Prints `gaitpad COMMAND: SENTENCE` on standard error and returns the exit status 1.
 int fail(std::string_view command, const std::string& sentence);
-// The same for each remark, and no exit status. Each sentence is made printable(): it may quote names
-// of devices and files. A status line that is being shown is cleared first.
+// The same for each remark, and no exit status. Each sentence is made printable(): it may quote
+// names of devices and files. A status line that is being shown is cleared first.
 void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
                    StatusLine* line = nullptr);
 

@@ -54,7 +54,8 @@ void Crowd::copy_pose(int member, Pose& pose) const noexcept {
 int Crowd::blocks() const noexcept { return (size() + kTogether - 1) / kTogether; }
 
 void Crowd::advance_block(int number, double dt_s) noexcept {
-  std::array<PlannedTick, kTogether> planned;
+  // Kept from call to call, for clearing it costs more than a leg.
+  static thread_local std::array<PlannedTick, kTogether> planned;
   std::array<std::optional<Tick>, kTogether> ticks;
   const int first = number * kTogether, last = std::min(first + kTogether, size());
   const std::span<const int> block(order_.data() + first, order_.data() + last);

@@ -23,9 +23,9 @@ struct LegGoals {
 
 template <class V>
 struct LegSolution {
-  V squares;                                  // of the error, square metres, summed over the rows
-  V iterations;                               // a whole number
-  Vec3Of<V> ankle_m, foot_x, foot_y, foot_z;  // the foot's frame in the pelvis', from the hip joint
+  V squares;                // of the error, square metres, summed over the rows
+  V iterations;             // a whole number
+  Vec3Of<V> heel_m, toe_m;  // the first two points, in the pelvis' frame from the hip joint
 };
 
 // One number of each of several legs, in memory.

@@ -29,7 +29,6 @@ template <class V>
 struct LegPlace {
   std::array<Vec3Of<V>, kLegDofs> axis;  // in the pelvis' frame; the first is its x axis
   Vec3Of<V> knee_m, ankle_m;             // the rotations of the hip turn about the origin
-  Vec3Of<V> x, y, z;                     // the foot's axes
   std::array<Vec3Of<V>, 3> point_m;
   LegRows<V> dx;
   V squares;
@@ -67,7 +66,6 @@ inline void place_legs(const LegGoals<V>& goals, const LegValues<V>& angles_rad,
   turn_lanes(x, y, s[5], c[5]);
   place.axis[6] = y;
   turn_lanes(z, x, s[6], c[6]);
-  place.x = x, place.y = y, place.z = z;
   for (int p = 0; p < 3; ++p) {
     const Vec3Of<V>& in_foot = goals.point_m[p];
     place.point_m[p] = place.ankle_m + in_foot.x * x + in_foot.y * y + in_foot.z * z;
@@ -197,8 +195,7 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
       } else if (any(better)) {
         for (int j = 1; j < kLegDofs; ++j)
           best.axis[j] = chosen(better, place.axis[j], best.axis[j]);
-        for (const auto member : {&LegPlace<V>::knee_m, &LegPlace<V>::ankle_m, &LegPlace<V>::x,
-                                  &LegPlace<V>::y, &LegPlace<V>::z})
+        for (const auto member : {&LegPlace<V>::knee_m, &LegPlace<V>::ankle_m})
           best.*member = chosen(better, place.*member, best.*member);
         for (int p = 0; p < 3; ++p)
           best.point_m[p] = chosen(better, place.point_m[p], best.point_m[p]);
@@ -237,7 +234,7 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
       next[j] = lanes ? next[j] : angles_rad[j];
     }
   }
-  return {best.squares, iterations, best.ankle_m, best.x, best.y, best.z};
+  return {best.squares, iterations, best.point_m[0], best.point_m[1]};
 }
 
 }  // namespace

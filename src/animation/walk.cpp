@@ -15,6 +15,7 @@
 #include "gaitpad/walk.h"
 
 #include "animation/walk_parts.h"
+#include "base/lanes.h"
 #include "motion/leg_pose.h"
 #include "motion/pose_rows.h"
 
@@ -98,15 +99,14 @@ void plan_stride(const WalkModel& model, const WalkState& state, StridePlan& pla
   plan_stride(model, state, state.clock.phase, share, plan);
 }
 
-vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
-                    const vec3& travel_m) noexcept {
+vec3 from_footprint(const WalkState& state, const StrideTrack& track, double phase, Side side,
+                    int which, const vec3& travel_m) noexcept {
   // The right foot goes from its footprint of this stride to the next one's, the left foot from the
   // last one's to this one's.
   double turns = 0.0;
   if (side == step_foot(state)) turns = side == kRightSide ? which : which - 1;
-  const StridePlace& at = plan.at[which];
-  vec3 p = travel_m - at.footprint_m[side];
-  p.z += at.stride_m * (plan.phase - turns);
+  vec3 p = travel_m - track.footprint_m[side];
+  p.z += track.stride_m * (phase - turns);
   return p;
 }
 
@@ -130,8 +130,11 @@ double phase_ahead(const WalkModel& model, const WalkState& state, double ticks)
 Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
                           const StridePlan& plan) noexcept {
   const StrideCell& cell = plan.cell;
-  const vec3 forward = heading_direction(state.path.heading_rad), left = glm::cross(kUp, forward);
   Pelvis pelvis;
+  const quat& heading = pelvis.heading = rotation_y(state.path.heading_rad);
+  const vec3 forward(2.0 * heading.w * heading.y, 0.0,
+                     heading.w * heading.w - heading.y * heading.y),
+      left = glm::cross(kUp, forward);
   pelvis.position_m = state.path.hips_m + left * cell.pelvis_m.x + forward * cell.pelvis_m.z;
   // In a turn the body leans as a whole, about the ground below the hips.
   const double height_m = model.stand_m + cell.pelvis_m.y;
@@ -139,7 +142,7 @@ Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
   pelvis.position_m += left * (height_m * lean.sin);
   pelvis.position_m.y = state.path.base.height_m + height_m * lean.cos;
   const double yaw = state.gait.sway.x * cell.pelvis_yaw_rad;
-  const quat upright = rotation_y(state.path.heading_rad) * rotation_z(-state.path.lean_rad.x),
+  const quat upright = heading * rotation_z(-state.path.lean_rad.x),
              turned = rotation_y(yaw) *
                       from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.stand_roll_rad));
   pelvis.rotation = upright * turned;
@@ -179,7 +182,9 @@ constexpr double kBraking = 2.4;  // way over speed and time of a stop with litt
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
 constexpr double kAllShown = 1.0 - 1e-9;   // from here on nothing is mixed with the stand
-constexpr double kStillTurn = 1e-5;        // rad/s: slower than this is straight ahead
+constexpr double kHesitation = 0.2;        // for next to nothing; less for more, none from
+constexpr double kSureRatio = 0.3, kSureTurn = 0.15;  // this stride ratio or turn (rad/s) on
+constexpr double kStillTurn = 1e-5;                   // rad/s: slower than this is straight ahead
 
 // Share of the cycle's time.
 double time_share(const WalkModel& model, const WalkState& state, Stage stage,
@@ -328,54 +333,67 @@ void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
   state.path.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
 }
 
+// A stand that is asked for very little waits whether it is meant: a stick that is touched in
+// passing would else cost two slow steps before a full push in another direction is followed.
+bool is_meant(const Tick& tick, WalkState& state) noexcept {
+  const double sure = std::max(state.gait.asked_ratio / kSureRatio,
+                               std::abs(tick.params.turn_rate_rad_s) / kSureTurn);
+  return ++state.clock.asked_ticks * tick.dt_s >=
+         kHesitation * tick.model.time_scale * (1.0 - std::min(sure, 1.0));
+}
+
 // Smooths the parameters and starts a walk from standing when the parameters ask for one.
 void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept {
   const GaitParams& params = tick.params;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
-  const bool walking = walks_on(params, state) && !state.clock.closing;
   const bool stood = state.clock.stage == Stage::idle && state.frame.stage == Stage::idle;
+  bool hesitates = false;
   if (stood && params.walking && state.gait.amplitude.x < kStillAmplitude) {
     ask_for(params, tick.model, state);
-    begin_walk(tick, state);
+    hesitates = !is_meant(tick, state);
+    if (!hesitates) begin_walk(tick, state);
+  } else {
+    state.clock.asked_ticks = 0;
   }
+  const bool walking = walks_on(params, state) && !state.clock.closing && !hesitates;
   if (walks_on(params, state)) ask_for(params, tick.model, state);
   // A walk that is to end takes the running step as it was begun, and one that closes it.
+  const Damping step(kStepSmoothing * scale, dt), weights(kWeightSmoothing * scale, dt),
+      hips(kBounceSmoothing * scale, dt);
   const bool finishes = state.clock.started && !state.clock.closing && !walking;
   for (int side : {0, 1}) {
     const StrideParams& stride = params.stride[side];
     const double length_m = walking    ? stride.length_m
                             : finishes ? state.gait.length_m[side].x
                                        : 0.0;
-    state.gait.length_m[side].advance(length_m, kStepSmoothing * scale, dt);
-    state.gait.flight_height[side].advance(stride.flight_height, kStepSmoothing * scale, dt);
+    state.gait.length_m[side].advance(length_m, step);
+    state.gait.flight_height[side].advance(stride.flight_height, step);
     for (int j = 0; j < kLegDofs; ++j) {
-      state.gait.weight[side][j].advance(params.weight[side][j], kWeightSmoothing * scale, dt);
+      state.gait.weight[side][j].advance(params.weight[side][j], weights);
     }
   }
-  state.gait.step_time_s.advance(0.5 * (state.gait.time_s[0] + state.gait.time_s[1]),
-                                 kStepSmoothing * scale, dt);
+  state.gait.step_time_s.advance(0.5 * (state.gait.time_s[0] + state.gait.time_s[1]), step);
   const double goal = walking ? params.turn_rate_rad_s : 0.0;
-  state.gait.turn_goal.advance(goal, kTurnGoalSmoothing * scale, dt);
+  state.gait.turn_goal.advance(goal, Damping(kTurnGoalSmoothing * scale, dt));
   if (goal == 0.0 && std::abs(state.gait.turn_goal.x) < kStillTurn) state.gait.turn_goal = {};
-  state.gait.turn_rate.advance(state.gait.turn_goal.x, kTurnSmoothing * scale, dt);
+  state.gait.turn_rate.advance(state.gait.turn_goal.x, Damping(kTurnSmoothing * scale, dt));
   if (state.gait.turn_goal.x == 0.0 && std::abs(state.gait.turn_rate.x) < kStillTurn)
     state.gait.turn_rate = {};
   state.gait.amplitude.advance(
       state.clock.started ? 1.0 : 0.0,
-      (state.clock.started ? kAmplitudeSmoothing : kAmplitudeFading) * scale, dt);
+      Damping((state.clock.started ? kAmplitudeSmoothing : kAmplitudeFading) * scale, dt));
   if (state.clock.started && state.gait.amplitude.x > kAllShown) state.gait.amplitude = {1.0, 0.0};
-  state.gait.bounce.advance(params.hip_bounce, kBounceSmoothing * scale, dt);
-  state.gait.sway.advance(params.hip_sway, kBounceSmoothing * scale, dt);
+  state.gait.bounce.advance(params.hip_bounce, hips);
+  state.gait.sway.advance(params.hip_sway, hips);
   const double mean = 0.5 * (state.gait.length_m[0].x + state.gait.length_m[1].x);
-  state.gait.pace.advance(mean * state.gait.ground_share.x / tick.model.source_step_m,
-                          kStepSmoothing * scale, dt);
-  state.gait.settled_pace.advance(state.gait.pace.x, kSettling * scale, dt);
+  state.gait.pace.advance(mean * state.gait.ground_share.x / tick.model.source_step_m, step);
+  state.gait.settled_pace.advance(state.gait.pace.x, Damping(kSettling * scale, dt));
   // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
   const double speed_m_s = (state.gait.length_m[0].x + state.gait.length_m[1].x) /
                            std::max(kLeastCycle_s, state.gait.time_s[0] + state.gait.time_s[1]);
   const double lean =
       mode == IkMode::paper ? 0.0 : speed_m_s * state.gait.turn_rate.x / kGravity_m_s2;
-  state.path.lean_rad.advance(lean, kLeanSmoothing * scale, dt);
+  state.path.lean_rad.advance(lean, Damping(kLeanSmoothing * scale, dt));
   if (!tick.flat && mode != IkMode::paper) lean_into_slope(tick, state);
 }
 
@@ -498,32 +516,31 @@ void plan_landing(const Tick& tick, WalkState& state) noexcept {
 
 // The hips' place on the tables' path, without their oscillation: of the stride before, from the
 // footprint of the foot that stands; of this one, to the next landing.
-vec3 path_from_standing(const WalkState& state, const StridePlan& plan) noexcept {
+vec3 path_from_standing(const WalkState& state, const StrideTrack& track, double phase) noexcept {
   const Side stand = other(step_foot(state));
   const FootState& foot = state.foot[stand];
   return foot.heel_anchor_m +
-         rotation_y(foot.lift_yaw_rad) * from_footprint(state, plan, stand, 0, vec3(0.0));
+         rotation_y(foot.lift_yaw_rad) * from_footprint(state, track, phase, stand, 0, vec3(0.0));
 }
-vec3 path_to_landing(const WalkState& state, const StridePlan& plan, const vec3& landing_m,
-                     double heading_rad) noexcept {
-  return landing_m +
-         rotation_y(heading_rad) * from_footprint(state, plan, step_foot(state), 1, vec3(0.0));
-}
-vec3 path_to_landing(const WalkState& state, const StridePlan& plan) noexcept {
-  return path_to_landing(state, plan, state.path.landing_m, state.path.landing_heading_rad);
+vec3 path_to_landing(const WalkState& state, const StrideTrack& track, double phase,
+                     const vec3& landing_m, double heading_rad) noexcept {
+  return landing_m + rotation_y(heading_rad) *
+                         from_footprint(state, track, phase, step_foot(state), 1, vec3(0.0));
 }
 
 // A step takes the hips from the path of the stride before it over to its own.
 void begin_path(const Tick& tick, WalkState& state) noexcept {
+  const StrideTrack behind = track_of(tick.model, state.clock.backward, state.gait.ratio_behind),
+                    ahead =
+                        track_of(tick.model, state.clock.backward, ratio_ahead(tick.model, state));
   double phase = state.clock.stage_phase, rate = state.clock.phase_rate;
   std::array<vec3, 3> off;
   for (int k : {0, 1, 2}) {
-    StridePlan plan;
-    plan_stride(tick.model, state, phase, 0.0, plan);
-    vec3 from = path_from_standing(state, plan);
+    vec3 from = path_from_standing(state, behind, phase);
     if (state.clock.last_step_ticks == 0)
       from = vec3(state.path.hips_m.x, from.y, state.path.hips_m.z);  // at rest
-    off[k] = from - path_to_landing(state, plan);
+    off[k] = from - path_to_landing(state, ahead, phase, state.path.landing_m,
+                                    state.path.landing_heading_rad);
     approach(phase, rate, stage_end_phase(tick.model, state), state.clock.end_rate,
              state.clock.stage_ticks - k, 1.0);
   }
@@ -540,17 +557,18 @@ void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) no
     return;
   }
   const vec3 before = state.path.hips_m;
-  const vec3 path = path_to_landing(state, plan);
+  const vec3 path = path_to_landing(state, plan.at[1].track, plan.phase, state.path.landing_m,
+                                    state.path.landing_heading_rad);
   const double ratio = ratio_ahead(tick.model, state);
   if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
     begin_path(tick, state);
   } else if (state.path.landing_m != state.path.last_landing_m || ratio != state.path.last_ratio ||
              state.path.landing_heading_rad != state.path.last_heading_rad) {
     // The path has moved, and the hips have not.
-    StridePlan old = plan;
-    old.at[1] = stride_of(tick.model, state.clock.backward, plan.phase, state.path.last_ratio);
-    state.path.off_m.x +=
-        path_to_landing(state, old, state.path.last_landing_m, state.path.last_heading_rad) - path;
+    const StrideTrack last = track_of(tick.model, state.clock.backward, state.path.last_ratio);
+    state.path.off_m.x += path_to_landing(state, last, plan.phase, state.path.last_landing_m,
+                                          state.path.last_heading_rad) -
+                          path;
   }
   state.path.last_landing_m = state.path.landing_m;
   state.path.last_heading_rad = state.path.landing_heading_rad;
@@ -562,7 +580,7 @@ void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) no
 }
 
 vec3 ankle_of(const LegBuild& leg, const FootPose& foot) noexcept {
-  return foot.heel_m - foot_rotation(leg, foot) * leg.model.heel_m;
+  return foot.heel_m - foot.rotation * leg.model.heel_m;
 }
 
 // The pelvis' height: the tables', lowered where ground or turn ask more of a leg than they know.
@@ -601,36 +619,33 @@ double pelvis_height(const WalkModel& model, const WalkState& state, const Strid
 
 // --- Pose and report -----------------------------------------------------------------------------
 
-void write_leg(const WalkModel& model, const WalkState& state, Side side, JointFrames& frames,
-               Pose& pose) noexcept {
-  const LegBuild& leg = model.leg[side];
-  const LegJoints& joints = leg.model.joints;
-  const LegAngles& q = state.legs.angles_rad[side];
-  const Skeleton& skeleton = model.cycle.skeleton;
-  const quat pelvis =
-      frames.rotation[model.cycle.pelvis] * glm::conjugate(model.cycle.pelvis_standing);
-  const quat thigh = pelvis * rotation_xzy({q[kHipX], q[kHipZ], q[kHipY]});
-  const quat shank = thigh * rotation_x(q[kKneeX]);
-  const quat foot = shank * rotation_xzy({q[kAnkleX], q[kAnkleZ], q[kAnkleY]});
-  const quat toes = foot * toes_turn(leg, state.foot[side].pose, state.foot[side].pose.toe_rad);
-  const std::array<int, 4> chain = {joints.hip, joints.knee, joints.ankle, joints.toe};
-  const std::array<quat, 4> segment = {thigh, shank, foot, toes};
-  int last = model.cycle.pelvis;
-  for (std::size_t i = 0; i < chain.size(); ++i) {
-    const int j = chain[i];
-    if (skeleton.joints[j].is_end_site) break;
-    // Joints between two of the chain keep their standing rotation.
-    quat parent = frames.rotation[last];
-    std::array<int, kMaxBetween> between{};
-    int n = 0;
-    for (int p = skeleton.joints[j].parent; p != last && n < kMaxBetween;
-         p = skeleton.joints[p].parent) {
-      between[n++] = p;
+// Rx(x) Rz(z) Ry(y) of half the angles.
+quat turn_xzy(const SinCos& x, const SinCos& z, const SinCos& y) noexcept {
+  const double w = x.cos * z.cos, i = x.sin * z.cos, j = -x.sin * z.sin, k = x.cos * z.sin;
+  return quat(w * y.cos - j * y.sin, i * y.cos - k * y.sin, w * y.sin + j * y.cos,
+              k * y.cos + i * y.sin);
+}
+
+void write_legs(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+  // Both legs side by side.
+  const auto& q = state.legs.angles_rad;
+  std::array<std::array<SinCos, kLegDofs>, 2> half;
+  for (int j = 0; j < kLegDofs; ++j) {
+    Lanes<2> sine, cosine;
+    sin_cos_of(Lanes<2>{0.5 * q[kLeftSide][j], 0.5 * q[kRightSide][j]}, sine, cosine);
+    for (int side : {0, 1}) half[side][j] = {sine[side], cosine[side]};
+  }
+  for (Side side : {kLeftSide, kRightSide}) {
+    const LegBuild& leg = model.leg[side];
+    const auto& h = half[side];
+    const FootPose& foot = state.foot[side].pose;
+    const std::array<quat, 4> turn = {
+        turn_xzy(h[kHipX], h[kHipZ], h[kHipY]), quat(h[kKneeX].cos, h[kKneeX].sin, 0.0, 0.0),
+        turn_xzy(h[kAnkleX], h[kAnkleZ], h[kAnkleY]), toes_turn(leg, foot, foot.toe_rad)};
+    for (int i = 0; i < 4; ++i) {
+      const LegJointFrame& frame = leg.joint[i];
+      if (frame.joint >= 0) pose.local[frame.joint] = frame.before * turn[i] * frame.after;
     }
-    while (n > 0) parent = parent * pose.local[between[--n]];
-    frames.rotation[j] = segment[i] * leg.model.standing[i];
-    pose.local[j] = glm::conjugate(parent) * frames.rotation[j];
-    last = j;
   }
 }
 
@@ -646,17 +661,15 @@ void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pe
   }
   for (int j : model.kept) pose.local[j] = cycle.standing_local[j];
   // Joints between root and pelvis turn with the heading and else move as in the data.
-  JointFrames frames;
   pose.root_m = pelvis.position_m;
-  pose.local[0] = rotation_y(state.path.heading_rad) * pose.local[0];
+  pose.local[0] = pelvis.heading * pose.local[0];
   quat above = kIdentity;
   for (int j = cycle.skeleton.joints[cycle.pelvis].parent; j >= 0;
        j = cycle.skeleton.joints[j].parent) {
     above = pose.local[j] * above;
   }
-  frames.rotation[cycle.pelvis] = pelvis.rotation * cycle.pelvis_standing;
-  pose.local[cycle.pelvis] = glm::conjugate(above) * frames.rotation[cycle.pelvis];
-  for (Side side : {kLeftSide, kRightSide}) write_leg(model, state, side, frames, pose);
+  pose.local[cycle.pelvis] = glm::conjugate(above) * (pelvis.rotation * cycle.pelvis_standing);
+  write_legs(model, state, pose);
   pose_upper_body(model, state, pose);
 }
 
@@ -763,7 +776,7 @@ void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept {
   const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
-  PlannedTick planned;
+  static thread_local PlannedTick planned;  // as in Crowd::advance_block()
   plan_tick(tick, mode, state, planned);
   pose_legs({&planned, 1}, mode);
   finish_tick(planned, pose);

@@ -36,10 +36,6 @@ constexpr double kLiftGrown = 0.4, kLiftFalls = 0.5, kLiftEnds = 0.85;
 
 double asin(double x) noexcept { return kPi / 2.0 - acos(x); }
 
-vec3 heel_to_toe(const LegBuild& leg, const FootPose& pose) noexcept {
-  return foot_rotation(leg, pose) * (leg.model.toe_m - leg.model.heel_m);
-}
-
 quat edge_of(const LegBuild& leg, double twist_rad, double roll_rad) noexcept {
   return from_rotation_vector(kUp * twist_rad + leg.forward * roll_rad);
 }
@@ -99,17 +95,21 @@ vec3 flight_heel(const WalkModel& model, const WalkState& state, const StridePla
                  double u, double& base_m) noexcept {
   const FootState& foot = state.foot[side];
   const StrideFoot& cell = plan.cell.foot[side];
-  const quat old = rotation_y(foot.lift_yaw_rad), next = rotation_y(state.path.landing_heading_rad);
+  const quat old = rotation_y(foot.lift_yaw_rad);
+  const bool turns = state.path.landing_heading_rad != foot.lift_yaw_rad;
+  const quat next = turns ? rotation_y(state.path.landing_heading_rad) : old;
   const double gone = smootherstep(u);
-  vec3 p = (foot.heel_anchor_m +
-            old * from_footprint(state, plan, side, 0, plan.at[0].cell.foot[side].heel_m)) *
+  vec3 p = (foot.heel_anchor_m + old * from_footprint(state, plan.at[0].track, plan.phase, side, 0,
+                                                      plan.at[0].cell.foot[side].heel_m)) *
                (1.0 - gone) +
-           (state.path.landing_m +
-            next * from_footprint(state, plan, side, 1, plan.at[1].cell.foot[side].heel_m)) *
+           (state.path.landing_m + next * from_footprint(state, plan.at[1].track, plan.phase, side,
+                                                         1, plan.at[1].cell.foot[side].heel_m)) *
                gone;
   const vec3 styled = plan.heel_m[side] * (1.0 - smoothstep(kHeelStays, 1.0, u));
-  p += rotation_y(mix(foot.lift_yaw_rad, state.path.landing_heading_rad, gone)) *
-       vec3(styled.x, 0.0, styled.z);
+  if (styled.x != 0.0 || styled.z != 0.0) {
+    p += rotation_y(mix(foot.lift_yaw_rad, state.path.landing_heading_rad, gone)) *
+         vec3(styled.x, 0.0, styled.z);
+  }
   const vec3 way = state.path.landing_m - foot.heel_anchor_m;
   const double begin_m = height_on(foot.plane, foot.heel_anchor_m),
                rise = state.path.landing_m.y - begin_m;
@@ -187,7 +187,8 @@ double highest_pitch(const LegBuild& leg, double heel_m, double clearance_m) noe
 
 void set_pitch(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode mode) noexcept {
   pose.pitch_rad = pitch_rad;
-  const vec3 line = heel_to_toe(leg, pose);
+  pose.rotation = foot_rotation(leg, pose);
+  const vec3 line = pose.rotation * (leg.model.toe_m - leg.model.heel_m);
   if (mode == FootMode::support) {
     pose.heel_m = pose.toe_m - line;
   } else {
@@ -244,7 +245,6 @@ void plan_foot(const Tick& tick, WalkState& state, const StridePlan& plan, Side 
   FootState& foot = state.foot[side];
   const double pitch = table_pitch(state, plan, side) + foot.pitch_fade.at(foot.mode_ticks);
   const StrideFoot& cell = plan.cell.foot[side];
-  foot.pose.yaw = rotation_y(foot.lift_yaw_rad);
   const double shows = on_its_edges(state);
   foot.pose.edge = edge_of(leg, shows * cell.twist_rad, shows * cell.roll_rad);
   foot.pose.tilt = foot.plane.tilt;
@@ -278,7 +278,7 @@ void reach_with_toe(const WalkModel& model, WalkState& state, Side side,
   FootState& foot = state.foot[side];
   if (foot.mode != FootMode::support) return;
   const LegBuild& leg = model.leg[side];
-  const vec3 ankle = foot.pose.heel_m - foot_rotation(leg, foot.pose) * leg.model.heel_m;
+  const vec3 ankle = foot.pose.heel_m - foot.pose.rotation * leg.model.heel_m;
   const double reach = kReachOnToe * leg.model.length_m();
   if (glm::distance(hip_m, ankle) <= reach) return;
   const double pitch = std::max(foot.pose.pitch_rad, pitch_in_reach(leg, foot.pose, hip_m, reach));
@@ -345,7 +345,7 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.pitch_fade = {pitch, 0.0, kRollEnd * state.clock.stage_ticks};
   FootPose flat = foot.pose;
   flat.heel_m = foot.heel_anchor_m;
-  flat.yaw = rotation_y(foot.lift_yaw_rad);
+  flat.yaw = foot.pose.yaw = rotation_y(foot.lift_yaw_rad);
   flat.edge = kIdentity;
   set_pitch(tick.model.leg[side], 0.0, flat, FootMode::roll);
   foot.toe_anchor_m = flat.toe_m;

@@ -62,13 +62,13 @@ FootGoal foot_goal(const LegBuild& leg, const FootState& foot, const Pelvis& pel
                    FootEnd end) noexcept {
   const bool on_toe = end == FootEnd::toe;
   const quat to_pelvis = glm::conjugate(pelvis.rotation);
-  const quat rotation = to_pelvis * foot_rotation(leg, foot.pose);
+  const quat rotation = to_pelvis * foot.pose.rotation;
   const vec3 hip = pelvis.hip(leg);
   const vec3 effector = to_pelvis * ((on_toe ? foot.pose.toe_m : foot.pose.heel_m) - hip);
   const vec3 effector_point = on_toe ? leg.model.toe_m : leg.model.heel_m;
   const vec3 other_point = on_toe ? leg.model.heel_m : leg.model.toe_m;
-  const vec3 line = glm::normalize(leg.model.toe_m - leg.model.heel_m);
-  const vec3 side = rotation * leg.side, along = rotation * line, across = glm::cross(along, side);
+  const vec3 side = rotation * leg.side, along = rotation * leg.line,
+             across = glm::cross(along, side);
   const vec3 other = effector + rotation * (other_point - effector_point);
   const vec3 beside_point = effector_point + leg.side * kSideLever_m;
   const vec3 beside = effector + side * kSideLever_m;
@@ -115,8 +115,15 @@ struct Solve {
 
 struct PosedLeg {
   Solve solve;
-  IkFrame end;  // the foot's frame in the pelvis', from the hip joint
+  vec3 heel_m{0.0}, toe_m{0.0};  // in the pelvis' frame, from the hip joint
+  double pitch_rad = 0.0;        // of the foot
 };
+// With the foot's frame in the pelvis', from the hip joint.
+PosedLeg posed_leg(const Solve& solve, const IkFrame& end, const LegBuild& leg,
+                   const Pelvis& pelvis, const FootPose& foot) noexcept {
+  return {solve, end.position_m + end.rotation * leg.model.heel_m,
+          end.position_m + end.rotation * leg.model.toe_m, foot_pitch(leg, pelvis, foot, end)};
+}
 
 // Weights count relative to the leg's largest. The foot's place goes before a locked joint.
 LegAngles relative_weights(const WalkState& state, Side side) noexcept {
@@ -216,14 +223,27 @@ void set_lane(const PlannedTick& planned, Side side, int lane, LegLanes<kWidth>&
   goals.min_rad[kAnkleX][lane] = -kPi;
   goals.thigh_m[lane] = leg.model.thigh_m;
   goals.shank_m[lane] = leg.model.shank_m;
-  const std::array<IkRow, 6> rows = whole_foot(leg, state.foot[side], planned.pelvis).rows;
-  set_vector(rows[0].point_m, lane, goals.point_m[0]);
-  set_vector(rows[3].point_m, lane, goals.point_m[1]);
-  set_vector(rows[5].point_m, lane, goals.point_m[2]);
-  set_vector(rows[0].direction, lane, goals.side);
-  set_vector(rows[1].direction, lane, goals.across);
-  set_vector(rows[2].direction, lane, goals.along);
-  for (int r = 0; r < 6; ++r) goals.goal_m[r][lane] = rows[r].goal_m;
+  // The rows of whole_foot(): what lies between the foot's points does not turn in its own axes.
+  const FootPose& foot = state.foot[side].pose;
+  const quat to_pelvis = glm::conjugate(planned.pelvis.rotation),
+             rotation = to_pelvis * foot.rotation;
+  const vec3 across = glm::cross(leg.line, leg.side), to_toe = leg.model.toe_m - leg.model.heel_m;
+  const vec3 heel = to_pelvis * (foot.heel_m - planned.pelvis.hip(leg));
+  const vec3 side_axis = rotation * leg.side, along_axis = rotation * leg.line,
+             across_axis = glm::cross(along_axis, side_axis);
+  set_vector(leg.model.heel_m, lane, goals.point_m[0]);
+  set_vector(leg.model.toe_m, lane, goals.point_m[1]);
+  set_vector(leg.model.heel_m + leg.side * kSideLever_m, lane, goals.point_m[2]);
+  set_vector(side_axis, lane, goals.side);
+  set_vector(across_axis, lane, goals.across);
+  set_vector(along_axis, lane, goals.along);
+  const double sideways = glm::dot(side_axis, heel), up = glm::dot(across_axis, heel);
+  goals.goal_m[0][lane] = sideways;
+  goals.goal_m[1][lane] = up;
+  goals.goal_m[2][lane] = glm::dot(along_axis, heel);
+  goals.goal_m[3][lane] = sideways + glm::dot(leg.side, to_toe);
+  goals.goal_m[4][lane] = up + glm::dot(across, to_toe);
+  goals.goal_m[5][lane] = up;
 }
 
 template <int kWidth>
@@ -231,19 +251,20 @@ PosedLeg take_lane(const PlannedTick& planned, Side side, int lane,
                    const LegLanes<kWidth>& lanes) noexcept {
   WalkState& state = *planned.state;
   const LegSolution<Row<kWidth>>& solution = lanes.solution;
+  const LegBuild& leg = planned.tick->model.leg[side];
   IkAngles angles{};
   for (int j = 0; j < kLegDofs; ++j) angles[j] = lanes.angles_rad[j][lane];
-  PosedLeg leg;
-  leg.solve.iterations = static_cast<int>(solution.iterations[lane]);
-  leg.solve.error_m = std::sqrt(solution.squares[lane]);
-  leg.solve.failed = !(solution.squares[lane] <= kRobust.tolerance_m * kRobust.tolerance_m);
-  leg.end = {vector_of(solution.ankle_m, lane),
-             from_axes(vector_of(solution.foot_x, lane), vector_of(solution.foot_y, lane),
-                       vector_of(solution.foot_z, lane))};
-  if (ease_ankle(*planned.tick, state, side, planned.pelvis, angles, leg.solve))
-    leg.end = end_frame(planned.tick->model.leg[side].chain, angles);
+  Solve solve;
+  solve.iterations = static_cast<int>(solution.iterations[lane]);
+  solve.error_m = std::sqrt(solution.squares[lane]);
+  solve.failed = !(solution.squares[lane] <= kRobust.tolerance_m * kRobust.tolerance_m);
+  const bool eased = ease_ankle(*planned.tick, state, side, planned.pelvis, angles, solve);
   state.legs.angles_rad[side] = leg_angles(angles);
-  return leg;
+  const FootPose& foot = state.foot[side].pose;
+  if (eased || solve.failed)
+    return posed_leg(solve, end_frame(leg.chain, angles), leg, planned.pelvis, foot);
+  // The foot is where it was to be.
+  return {solve, vector_of(solution.heel_m, lane), vector_of(solution.toe_m, lane), foot.pitch_rad};
 }
 
 // Steps 1-7 to the letter for the stage's end-effector alone. While heel and toe both stand or
@@ -260,11 +281,10 @@ PosedLeg pose_paper(const PlannedTick& planned, Side side) noexcept {
   const FootMode foot = state.foot[side].mode;
   const bool both = foot == FootMode::roll ||
                     (foot == FootMode::support && heel_rise(tick.model, state, side) == 0.0);
-  PosedLeg posed;
-  posed.solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
-  posed.end = end_frame(leg.chain, angles);
+  Solve solve;
+  solve.add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles));
   state.legs.angles_rad[side] = leg_angles(angles);
-  return posed;
+  return posed_leg(solve, end_frame(leg.chain, angles), leg, planned.pelvis, state.foot[side].pose);
 }
 
 // What the legs of one tick came to: the toes, and what the tick reports.
@@ -272,17 +292,16 @@ void report_leg(const PlannedTick& planned, Side side, const PosedLeg& posed) no
   WalkState& state = *planned.state;
   const Pelvis& pelvis = planned.pelvis;
   const LegBuild& leg = planned.tick->model.leg[side];
-  const auto& [solve, end] = posed;
   FootState& foot = state.foot[side];
-  foot.pose.toe_rad = level_toe(foot_pitch(leg, pelvis, foot.pose, end),
-                                foot.mode == FootMode::flight ? flight_progress(state) : 0.0);
+  foot.pose.toe_rad =
+      level_toe(posed.pitch_rad, foot.mode == FootMode::flight ? flight_progress(state) : 0.0);
   const vec3 hip = pelvis.hip(leg);
   WalkFrame& frame = state.frame;
-  frame.heel_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.heel_m);
-  frame.toe_m[side] = hip + pelvis.rotation * (end.position_m + end.rotation * leg.model.toe_m);
-  frame.ik_iterations[side] = solve.iterations;
-  frame.ik_error_m[side] = solve.error_m;
-  frame.ik_failed[side] = solve.failed;
+  frame.heel_m[side] = hip + pelvis.rotation * posed.heel_m;
+  frame.toe_m[side] = hip + pelvis.rotation * posed.toe_m;
+  frame.ik_iterations[side] = posed.solve.iterations;
+  frame.ik_error_m[side] = posed.solve.error_m;
+  frame.ik_failed[side] = posed.solve.failed;
 }
 
 template <int kWidth>

@@ -262,6 +262,7 @@ LegBuild leg_build(const LegModel& model) {
   leg.chain = leg_chain(model);
   const vec3 line = model.toe_m - model.heel_m;
   leg.foot_m = glm::length(line);
+  leg.line = line / leg.foot_m;
   leg.elevation_rad = elevation(line);
   leg.forward = foot_forward(model);
   leg.side = glm::cross(kUp, leg.forward);
@@ -343,19 +344,36 @@ StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noe
   return to;
 }
 
-// What a tick samples: neither the legs' joints, which the inverse kinematics sets, nor kept ones.
-void lay_out_rows(WalkModel& model) {
+// Joints between two of a leg, and between the pelvis and the hip, keep their standing rotation.
+void lay_out_legs(WalkModel& model) {
   const Skeleton& skeleton = model.cycle.skeleton;
-  std::array<bool, kMaxJoints> is_set{};
-  for (const int j : model.kept) is_set[j] = true;
-  for (const LegModel& leg : model.cycle.leg) {
-    const LegJoints& joints = leg.joints;
-    for (const int j : {joints.hip, joints.knee, joints.ankle, joints.toe}) {
-      if (skeleton.joints[j].is_end_site) break;
-      is_set[j] = true;
+  for (LegBuild& leg : model.leg) {
+    const LegJoints& joints = leg.model.joints;
+    int last = model.cycle.pelvis;
+    quat standing = model.cycle.pelvis_standing;
+    for (int i = 0; const int joint : {joints.hip, joints.knee, joints.ankle, joints.toe}) {
+      if (skeleton.joints[joint].is_end_site) break;
+      quat between = kIdentity;
+      for (int j = skeleton.joints[joint].parent; j != last; j = skeleton.joints[j].parent)
+        between = model.cycle.standing_local[j] * between;
+      leg.joint[i] = {joint, glm::conjugate(standing * between), leg.model.standing[i]};
+      standing = leg.model.standing[i];
+      last = joint;
+      ++i;
     }
   }
-  model.above = pose_rows(model.cycle, {is_set.data(), skeleton.joints.size()});
+}
+
+// What a tick samples: neither the legs' joints, which the inverse kinematics sets, nor kept ones.
+void lay_out_rows(WalkModel& model) {
+  std::array<bool, kMaxJoints> is_set{};
+  for (const int j : model.kept) is_set[j] = true;
+  for (const LegBuild& leg : model.leg) {
+    for (const LegJointFrame& frame : leg.joint) {
+      if (frame.joint >= 0) is_set[frame.joint] = true;
+    }
+  }
+  model.above = pose_rows(model.cycle, {is_set.data(), model.cycle.skeleton.joints.size()});
 }
 
 // What hangs on the pelvis, but for the legs, stands as if it did not roll.
@@ -414,9 +432,26 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   for (Side side : {kLeftSide, kRightSide}) model.own_step_m[side] = cycle.step_m[side] * ratio;
   keep_trunk_upright(stand.roll_rad, model.cycle);
   collect_kept_joints(model);
+  lay_out_legs(model);
   lay_out_rows(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
   return model;
+}
+
+namespace {
+
+StrideTrack scaled(StrideTrack track, const StrideScale& to) noexcept {
+  track.stride_m *= to.length;
+  for (int side : {0, 1})
+    track.footprint_m[side] = track.footprint_m[side] * to.length + to.apart_m[side];
+  return track;
+}
+
+}  // namespace
+
+StrideTrack track_of(const WalkModel& model, bool backward, double ratio) noexcept {
+  const StrideFamily& family = *model.cycle.strides;
+  return scaled(track_at(backward ? family.back : family.table, ratio), model.stride_scale);
 }
 
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept {
@@ -424,12 +459,10 @@ StridePlace stride_of(const WalkModel& model, bool backward, double phase, doubl
   StridePlace place = stride_at(backward ? family.back : family.table, phase, ratio);
   const StrideScale& to = model.stride_scale;
   if (to.length == 1.0 && to.pelvis == 1.0) return place;
-  place.stride_m *= to.length;
+  place.track = scaled(place.track, to);
   StrideCell& cell = place.cell;
-  for (int side : {0, 1}) {
-    place.footprint_m[side] = place.footprint_m[side] * to.length + to.apart_m[side];
+  for (int side : {0, 1})
     cell.foot[side].heel_m = cell.foot[side].heel_m * to.length + to.apart_m[side];
-  }
   if (to.length == to.pelvis) {
     cell.pelvis_m *= to.length;
     return place;

@@ -57,15 +57,16 @@ void plan_stride(const WalkModel& model, const WalkState& state, double phase, d
                  StridePlan& plan) noexcept;
 // Now.
 void plan_stride(const WalkModel& model, const WalkState& state, StridePlan& plan) noexcept;
-// Where a point of the travel frame of stride `which` is, seen from the footprint of `side` in the
+// Where a point of the travel frame of a stride is, seen from the footprint of `side` in the
 // running step: of the flying foot the one that it left (which 0) or will land on (1).
-vec3 from_footprint(const WalkState& state, const StridePlan& plan, Side side, int which,
-                    const vec3& travel_m) noexcept;
+vec3 from_footprint(const WalkState& state, const StrideTrack& track, double phase, Side side,
+                    int which, const vec3& travel_m) noexcept;
 
 // Signed length of that foot's step on level ground: negative backwards, 0 when closing a walk.
 double step_length(const WalkState& state, Side side) noexcept;
 struct Pelvis {
   vec3 position_m{0.0};                      // world
+  quat heading = quat(1.0, 0.0, 0.0, 0.0);   // of the walk: about the vertical
   quat rotation = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation, world
   vec3 hip(const LegBuild& leg) const noexcept { return position_m + rotation * leg.model.hip_m; }
 };

@@ -21,11 +21,13 @@ constexpr double kStairs = 0.5, kLevel = 0.95;
 // What several wishes ask for together does not bend a knee less than this.
 constexpr double kStraightKnee = 1.5 * kDegree;
 
-// How stiff a joint is beside the leg's freest: 0 free .. held_back(0) locked.
-double stiffness(const WalkState& state, int side, int dof) noexcept {
+// How stiff hip, knee and ankle are beside the leg's freest joint: 0 free .. held_back(0) locked.
+std::array<double, 3> stiffness(const WalkState& state, int side) noexcept {
+  const auto& weight = state.gait.weight[side];
   double largest = 1e-6;
-  for (const Damped<double>& w : state.gait.weight[side]) largest = std::max(largest, w.x);
-  return held_back(std::clamp(state.gait.weight[side][dof].x / largest, 0.0, 1.0));
+  for (const Damped<double>& w : weight) largest = std::max(largest, w.x);
+  const auto of = [&](int dof) { return held_back(std::clamp(weight[dof].x / largest, 0.0, 1.0)); };
+  return {of(kHipX), of(kKneeX), of(kAnkleX)};
 }
 
 // x, but never beyond `most`: the closer, the less of it. Both at least 0.
@@ -48,14 +50,13 @@ void grant_wishes(IkMode mode, WalkState& state) noexcept {
     granted(state, StrideWish::low_left, side) =
         std::max(0.0, 1.0 - state.gait.flight_height[side].x) / (1.0 - kLowLift);
   if (mode == IkMode::paper) return;
-  constexpr std::array<int, 3> kJoint = {kHipX, kKneeX, kAnkleX};
+  const std::array<double, 3> left = stiffness(state, kLeftSide),
+                              right = stiffness(state, kRightSide);
   for (int k = 0; k < 3; ++k) {
-    const double left = stiffness(state, kLeftSide, kJoint[k]),
-                 right = stiffness(state, kRightSide, kJoint[k]);
-    const double both = std::min(left, right);
+    const double both = std::min(left[k], right[k]);
     granted(state, StrideWish::stiff_hips, k) = both;
-    granted(state, StrideWish::stiff_left_hip, k) = left - both;
-    granted(state, StrideWish::stiff_right_hip, k) = right - both;
+    granted(state, StrideWish::stiff_left_hip, k) = left[k] - both;
+    granted(state, StrideWish::stiff_right_hip, k) = right[k] - both;
   }
 }
 

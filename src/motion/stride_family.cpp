@@ -120,31 +120,63 @@ StrideChange change_at(const std::vector<StrideResponse>& response, const Stride
   return sum;
 }
 
-StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {
-  const double x = (phase - std::floor(phase)) * kCycleSamples;
-  const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
+namespace {
+
+// Four neighbouring tables and their weights, those without one left out.
+struct Ratios {
+  std::array<const StrideTable*, 4> table;
+  std::array<double, 4> weight;
+  int count = 0;
+};
+Ratios ratios_at(const std::vector<StrideTable>& tables, double ratio) noexcept {
   const int last = static_cast<int>(tables.size()) - 1;
   const double y = std::clamp(ratio / kRatioStep, 0.0, double(last));
   const int r = std::min(static_cast<int>(y), last - 1);
-  const std::array<double, 4> by_phase = spline(x - i);
   std::array<double, 4> by_ratio = cubic(y - r);
   // Beyond the ends the tables go on straight.
   if (r == 0) by_ratio[1] += 2.0 * by_ratio[0], by_ratio[2] -= by_ratio[0], by_ratio[0] = 0.0;
   if (r == last - 1) {
     by_ratio[2] += 2.0 * by_ratio[3], by_ratio[1] -= by_ratio[3], by_ratio[3] = 0.0;
   }
-  StridePlace place;
-  Sum<StrideCell, 16> cell;
+  Ratios at;
   for (int n = 0; n < 4; ++n) {
     if (by_ratio[n] == 0.0) continue;
-    const StrideTable& table = tables[r + n - 1];
-    place.stride_m += by_ratio[n] * table.stride_m;
-    for (int side : {0, 1}) place.footprint_m[side] += table.footprint_m[side] * by_ratio[n];
+    at.table[at.count] = &tables[r + n - 1];
+    at.weight[at.count++] = by_ratio[n];
+  }
+  return at;
+}
+
+StrideTrack track_at(const Ratios& at) noexcept {
+  StrideTrack track;
+  for (int n = 0; n < at.count; ++n) {
+    track.stride_m += at.weight[n] * at.table[n]->stride_m;
+    for (int side : {0, 1})
+      track.footprint_m[side] += at.table[n]->footprint_m[side] * at.weight[n];
+  }
+  return track;
+}
+
+}  // namespace
+
+StrideTrack track_at(const std::vector<StrideTable>& tables, double ratio) noexcept {
+  return track_at(ratios_at(tables, ratio));
+}
+
+StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {
+  const double x = (phase - std::floor(phase)) * kCycleSamples;
+  const int i = std::min(static_cast<int>(x), kCycleSamples - 1);
+  const std::array<double, 4> by_phase = spline(x - i);
+  const Ratios at = ratios_at(tables, ratio);
+  Sum<StrideCell, 16> cell;
+  for (int n = 0; n < at.count; ++n) {
     for (int m = 0; m < 4; ++m) {
       const int k = (i + m - 1 + kCycleSamples) % kCycleSamples;
-      cell.add(table.knot[k], by_ratio[n] * by_phase[m]);
+      cell.add(at.table[n]->knot[k], at.weight[n] * by_phase[m]);
     }
   }
+  StridePlace place;
+  place.track = track_at(at);
   cell.total(place.cell);
   return place;
 }

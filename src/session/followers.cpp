@@ -111,7 +111,7 @@ Followers::Followers(const Options& options,
   crowd_ = Crowd(members, options.ik);
   if (options.threads > 1) workers_ = std::make_shared<Workers>(options.threads);
 
-  const int shown = std::min(options.count, kMaxShownFollowers);
+  const int shown = std::min(options.count, options.shown);
   std::size_t joints = 0;
   for (int i = 0; i < shown; ++i) joints += crowd_.local(i).size();
   shown_.root_m.resize(static_cast<std::size_t>(shown));

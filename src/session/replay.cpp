@@ -104,7 +104,9 @@ std::vector<std::string> remarks_on(const PreparedTrace& prepared, const Simulat
 }  // namespace
 
 Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progress) {
-  auto prepared = prepared_trace(spec);
+  SessionSpec unseen = spec;
+  unseen.walk.shows_crowd = false;
+  auto prepared = prepared_trace(unseen);
   if (!prepared) return prepared.error();
   const int rate_hz = prepared->config.rate_hz;
   auto fps = written_fps(spec, rate_hz);

@@ -117,6 +117,7 @@ Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz)
   config.ik = spec.walk.ik;
   config.crowd = spec.walk.crowd;
   config.crowd_threads = crowd_threads(spec);
+  config.shows_crowd = spec.walk.shows_crowd;
   auto terrain = terrain_of(spec);
   if (!terrain) return terrain.error();
   config.terrain = std::move(*terrain);

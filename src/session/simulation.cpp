@@ -183,6 +183,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   if (config.crowd > 0) {
     Followers::Options crowd{
         .count = config.crowd, .ik = config.ik, .threads = config.crowd_threads};
+    crowd.shown = config.shows_crowd ? kMaxShownFollowers : 0;
     crowd.first_m = s.walkers_.front().start_m;
     crowd.middle_m = 0.5 * (s.walkers_.front().start_m + s.walkers_.back().start_m);
     models->erase(models->begin(),

@@ -119,6 +119,30 @@ TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
   }
 }
 
+// A thumb that slips over the stick for a moment, and then pushes it.
+TEST(Walk, ATouchOfTheStickDoesNotDelayTheWalkThatFollows) {
+  const auto first_lift = [](double touched_y) {
+    MadeWalker walker;
+    walker.walk(0.0, 0.0, kRate / 4);
+    walker.walk(0.0, touched_y, kRate * 6 / 100);
+    walker.walk(0.0, 0.0, kRate / 10);
+    int ticks = 0;
+    for (; walker.last().stage != Stage::flight && ticks < 4 * kRate; ++ticks)
+      walker.walk(0.0, 1.0, 1);
+    return ticks;
+  };
+  const int untouched = first_lift(0.0);
+  for (const double touched_y : {-0.04, 0.03}) EXPECT_EQ(first_lift(touched_y), untouched);
+}
+
+TEST(Walk, ALittleStickThatIsHeldBeginsAWalk) {
+  for (const double y : {-0.05, 0.03, 0.05}) {
+    MadeWalker walker;
+    walker.walk(0.0, y, kRate);
+    EXPECT_NE(walker.last().stage, Stage::idle) << y;
+  }
+}
+
 TEST(Walk, StandingStillChangesNothing) {
   MadeWalker walker;
   walker.walk(0, 0, 2);

@@ -180,9 +180,10 @@ TEST(StrideFamily, ItsSplinesGoThroughTheSamplesThatTheyAreMadeFor) {
 TEST_P(StrideFamilyOf, IsReadAtItsOwnRatiosAsItStands) {
   for (int k = 0; k < kStrideRatios; ++k) {
     const StridePlace place = stride_at(family.table, 0.3, k * kRatioStep);
-    EXPECT_NEAR(place.stride_m, family.table[k].stride_m, 1e-12);
+    EXPECT_NEAR(place.track.stride_m, family.table[k].stride_m, 1e-12);
     for (const int side : kSides)
-      EXPECT_LT(glm::distance(place.footprint_m[side], family.table[k].footprint_m[side]), 1e-12);
+      EXPECT_LT(glm::distance(place.track.footprint_m[side], family.table[k].footprint_m[side]),
+                1e-12);
   }
 }
 

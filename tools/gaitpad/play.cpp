@@ -95,7 +95,9 @@ void add_status(const LiveStatus& status, ordered_json& summary) {
 
 int run_without_window(const PlayArguments& arguments) {
   RunEnd end;
-  auto session = LiveSession::start(arguments.spec);
+  SessionSpec unseen = arguments.spec;
+  unseen.walk.shows_crowd = false;
+  auto session = LiveSession::start(unseen);
   if (!session) return fail(kCommand, session.error().message);
   end.end_after(arguments.seconds);
   walk_without_window(arguments, end, **session);

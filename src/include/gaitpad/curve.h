@@ -94,16 +94,31 @@ struct SmoothFade {
   }
 };
 
+// How a Damped value follows its goal: the same for all values of one time constant and tick.
+struct Damping {
+  double pull, keep, dt_s;
+  Damping(double time_constant_s, double tick_s) noexcept : dt_s(tick_s) {
+    const double w = tick_s / time_constant_s;
+    pull = w / time_constant_s;
+    keep = 1.0 / ((1.0 + w) * (1.0 + w));
+  }
+};
+
 // Critically damped second-order filter of a value x and its rate v. Implicit Euler: stable for
 // every dt.
 template <class T>
 struct Damped {
   T x{};
   T v{};
+  void advance(const T& goal, const Damping& damping) noexcept {
+    if (x == goal && v == T{}) return;
+    v = (v + (goal - x) * damping.pull) * damping.keep;
+    // Numbers that are almost 0 are slow to compute with.
+    if (std::abs(v) < 1e-100) v = T{};
+    x = x + v * damping.dt_s;
+  }
   void advance(const T& goal, double time_constant_s, double dt_s) noexcept {
-    const double w = dt_s / time_constant_s;
-    v = (v + (goal - x) * (w / time_constant_s)) * (1.0 / ((1.0 + w) * (1.0 + w)));
-    x = x + v * dt_s;
+    advance(goal, Damping(time_constant_s, dt_s));
   }
 };
 

@@ -47,8 +47,9 @@ class Followers {
     int count = 0;
     IkMode ik = IkMode::robust;
     int threads = 1;
-    vec3 first_m{0.0};   // where the first character stands at first, facing +z
-    vec3 middle_m{0.0};  // the middle of the characters that they stand behind
+    int shown = kMaxShownFollowers;  // so many have poses in shown()
+    vec3 first_m{0.0};               // where the first character stands at first, facing +z
+    vec3 middle_m{0.0};              // the middle of the characters that they stand behind
   };
   // `builds`: at least one.
   Followers(const Options& options, const std::vector<std::shared_ptr<const WalkModel>>& builds,
@@ -66,7 +67,7 @@ class Followers {
   void advance(const GaitParams& first, const WalkState& first_state, double dt_s) noexcept;
   // Everybody back to where it stands at first.
   void restart() noexcept;
-  // Of the first kMaxShownFollowers.
+  // Of the first Options::shown.
   const FollowerPoses& shown() const noexcept { return shown_; }
   std::size_t bytes() const noexcept;  // what a copy takes, about
 

@@ -43,6 +43,7 @@ struct SimulationConfig {
       walkers;            // at least one; they stand side by side, the first at the origin
   int crowd = 0;          // so many more walk behind the first, at most kMaxFollowers
   int crowd_threads = 1;  // that move the crowd on, at most; the poses are the same for any number
+  bool shows_crowd = true;  // keeps the crowd's poses of two ticks for viewers
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
 };
 

@@ -103,10 +103,14 @@ struct StrideFamily {
   std::vector<StrideResponse> response;  // kStrideWishes; for walking forwards
 };
 
-// A stride at one phase and ratio.
-struct StridePlace {
+// Where a stride of one ratio goes: as in StrideTable.
+struct StrideTrack {
   double stride_m = 0.0;
   std::array<vec3, 2> footprint_m{};
+};
+// A stride at one phase and ratio.
+struct StridePlace {
+  StrideTrack track;
   StrideCell cell;
 };
 // Knots of the spline that goes through these samples of a cycle.
@@ -118,6 +122,7 @@ std::array<StrideChange, kCycleSamples> knots_through(
 StrideChange change_at(const std::vector<StrideResponse>& response, const StrideWishes& granted,
                        double phase) noexcept;
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
+StrideTrack track_at(const std::vector<StrideTable>& table, double ratio) noexcept;
 // A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is
 // clamped to the family's. No heap.
 StridePlace stride_at(const std::vector<StrideTable>& table, double phase, double ratio) noexcept;

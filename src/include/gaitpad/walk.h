@@ -71,6 +71,7 @@ struct FootPose {
   quat yaw = kIdentity;          // about the vertical; none as in the standing pose at heading 0
   double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
   quat edge = kIdentity;         // twist and roll of StrideFoot
+  quat rotation = kIdentity;     // of all these: the foot segment's, world
   double toe_rad = 0.0;          // of the toe joint, toe end down positive
 };
 
@@ -148,6 +149,7 @@ struct StepClock {
   int last_step_ticks = 0;               // of the step before
   bool closing = false;                  // the running step brings the feet together
   bool started = false;                  // between the first lean and the last landing
+  int asked_ticks = 0;                   // how long a stand has been asked to walk
   bool backward = false;                 // the running walk's steps lead backwards
   double slowness = 1.0;                 // factor on the running step's times on steep ground
   double phase = 0.0, phase_rate = 0.0;  // per tick

@@ -78,12 +78,21 @@ struct UpperBodyModel {
 
 inline constexpr int kMaxBetween = 8;  // twist joints between two joints of a leg
 
+// A joint of a leg as a pose has it: its local rotation is before * turn * after, where `turn` is
+// how far the leg's angles turn it.
+struct LegJointFrame {
+  int joint = -1;  // -1: the skeleton has none
+  quat before = kIdentity, after = kIdentity;
+};
+
 struct LegBuild {
   LegModel model;            // in the character's metres
   IkChain chain;             // from the hip joint to the foot frame: even weights, joint limits
   double foot_m = 0;         // heel to toe
   double elevation_rad = 0;  // of the heel-toe line above the floor when standing
   vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};  // foot frame, level: along the foot, across it
+  vec3 line{0.0, 0.0, 1.0};                          // unit, from heel to toe
+  std::array<LegJointFrame, 4> joint;                // hip, knee, ankle, toe
   // The sole in the foot frame: from the heel under the ball to the tip, on the floor when
   // standing.
   vec3 ball_m{0.0}, tip_m{0.0};
@@ -131,7 +140,8 @@ struct WalkModel {
 // between two of its joints.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
 
-// One of its strides at one phase and ratio, in its lengths. No heap.
+// Its strides in its lengths: where one of a ratio goes, and all of it at one phase. No heap.
+StrideTrack track_of(const WalkModel& model, bool backward, double ratio) noexcept;
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept;
 
 // What the stick asks of this character at full deflection, by the pace of its motion: the adult's

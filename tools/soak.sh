@@ -5,7 +5,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:-600}
-bash "$root/tools/install.sh" libclang-rt-14-dev
+bash "$root/tools/install.sh"
 export SDL_VIDEODRIVER=${SDL_VIDEODRIVER:-offscreen} XDG_CONFIG_HOME
 XDG_CONFIG_HOME=$(mktemp -d)
 trap 'rm -rf "$XDG_CONFIG_HOME"' EXIT
@@ -21,7 +21,7 @@ done
 "$root/build/tools/soak/soak" "$seconds" "${motions[@]}"
 
 short=$((seconds / 10 > 30 ? seconds / 10 : 30))
-bash "$root/tools/build.sh" "$root/build-asan" soak -DGAITPAD_SANITIZE=ON -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Debug \
+bash "$root/tools/build.sh" "$root/build-asan" soak -DGAITPAD_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 echo "under AddressSanitizer and UndefinedBehaviorSanitizer:"
 "$root/build-asan/tools/soak/soak" $short "${motions[@]}"

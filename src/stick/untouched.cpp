@@ -7,10 +7,11 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kPart_ns = 125'000'000, kJudged_ns = 250'000'000, kPush_ns = 40'000'000;
-constexpr double kPushed = 0.5;  // of full deflection; a jump goes that far, too, but not for long
 // Of the inner zone, which covers 5.5 sigma: noise moves a single report by less than kNoise and
 // the mean over an eighth of a second by far less than kMoved.
 constexpr double kNoise = 0.4, kMoved = 0.35;
+// A push goes that far from where it began, and so does a jump, but not for long.
+constexpr double kPushed = 1.0;
 
 // The inner zone in raw units, along the shorter half of the shorter axis.
 double zone_of(const StickCalibration& c) noexcept {
@@ -53,8 +54,9 @@ bool UntouchedWatch::take(std::int64_t time_ns, const StickCalibration& calibrat
     is_judging_ = true;
     began_ns_ = time_ns;
     pushed_ns_ = 0;
+    from_ = raw_;
   }
-  if (is_judging_ && glm::length(position) > kPushed)
+  if (is_judging_ && glm::length(raw - from_) > kPushed * zone_of(calibration))
     pushed_ns_ += std::clamp<std::int64_t>(time_ns - last_ns_, 0, kPush_ns);
   Part& now = parts_[static_cast<std::size_t>(part_ % kParts)];
   now.sum += raw;

@@ -34,7 +34,7 @@ class UntouchedWatch {
   std::int64_t first_part_ = -1, part_ = -1;  // -1: none yet
   std::int64_t began_ns_ = 0, last_ns_ = 0;   // of the output that is being judged
   std::int64_t pushed_ns_ = 0;                // how long it has been far out since
-  vec2 raw_{0.0};                             // the last one
+  vec2 raw_{0.0}, from_{0.0};  // the last one, and the one before the output that is judged
   bool is_out_ = false, is_judging_ = false;
 };
 

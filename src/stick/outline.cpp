@@ -453,7 +453,7 @@ std::vector<Polar> turned_samples(std::span<const StickTrack> tracks, const vec2
       const Polar polar{gaitpad::atan2(p.y, p.x), radius};
       const double way =
           run.empty() ? 0.0 : run.back().second + wrapped(polar.angle - run.back().first.angle);
-      run.push_back({polar, way});
+      run.emplace_back(polar, way);
     }
     end_run();
   }

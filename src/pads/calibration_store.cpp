@@ -237,7 +237,8 @@ std::vector<ComparedNumber> compared_numbers(const CalibrationFile& a, const Cal
   const CalibrationFile* files[] = {&a, &b};
   std::vector<ComparedNumber> numbers;
   const auto add = [&](const char* label, auto value) {
-    ComparedNumber& number = numbers.emplace_back(ComparedNumber{label, {}});
+    numbers.push_back({label, {}});
+    ComparedNumber& number = numbers.back();
     for (std::size_t i = 0; i < 2; ++i) {
       const Calibration& c = files[i]->calibration;
       const std::optional<double> found =

@@ -303,7 +303,7 @@ def test_compares_two_files_in_text_and_in_a_picture(user):
     assert "left stick: the centre has moved" in right
     assert pixels(picture).std() > 0.02 * 255
     same = user.run("calibrate", "--compare", after, after).stdout
-    assert "*" not in same and "nothing that was seen has changed since after.toml" in same
+    assert "*" not in same and "what was measured for both files has not changed" in same
     user.refused("--compare", after, user.folder / "none.toml", says="none.toml")
 
 

@@ -529,9 +529,9 @@ std::optional<Error> draw_comparison(const std::string&, const ComparedFiles&) {
 }
 #endif
 
-void print_changes(const std::vector<std::string>& changes, const std::string& since) {
+void print_changes(const std::vector<std::string>& changes, const std::string& if_none) {
   fmt::print("\n");
-  if (changes.empty()) fmt::print("nothing that was seen has changed since {}\n", printable(since));
+  if (changes.empty()) fmt::print("{}\n", if_none);
   for (const std::string& change : changes) fmt::print("{}\n", printable(change));
 }
 
@@ -556,7 +556,7 @@ int compare(const CalibrateArguments& arguments) {
                  number.values[0] == number.values[1] ? "" : "  *");
     }
   }
-  print_changes(changes_since(a, b), files.names[0]);
+  print_changes(changes_since(a, b), "what was measured for both files has not changed");
   if (arguments.plot.empty()) return 0;
   const auto problem = draw_comparison(arguments.plot, files);
   return problem ? fail(kCommand, problem->message) : 0;
@@ -585,7 +585,9 @@ std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& 
     print_json_line(json);
   } else if (arguments.out != "-") {
     print_analysis(pad.info, analysis);
-    if (changes && is_useful(analysis)) print_changes(*changes, arguments.check);
+    if (changes && is_useful(analysis))
+      print_changes(*changes,
+                    "nothing that was seen has changed since " + printable(arguments.check));
   }
   std::fflush(stdout);
   if (!arguments.plot.empty()) {

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import subprocess
+import time
 
 from pads import ROOT, wait_for
 
@@ -80,6 +81,15 @@ class Session:
 
     def unplugged(self):
         return sum(line.endswith(" remove") for line in self.lines("H:"))
+
+    def show(self, driver, pad, seconds, **state):
+        """Sets the pad's state, for so long at least. SDL keeps the newest state alone, and a busy host may keep the
+        program from looking for longer: for its driver the next state waits until this one is in the recording."""
+        before = len(self.lines("E:"))
+        pad.set(**state)
+        time.sleep(seconds)
+        if driver == "sdl":
+            wait_for(lambda: len(self.lines("E:")) > before, 10, f"a report of {state}")
 
     def wait_plugged(self, count, seconds=30):
         wait_for(lambda: self.plugged() >= count, seconds, f"pad number {count} in the recording")

@@ -40,8 +40,7 @@ def test_decoded_and_replayed(case):
         with Session(ids, "--driver", driver, name=case) as session:
             sent = list(states(half))
             for state in sent:
-                pad.set(**{**dict.fromkeys(("a", "b", "x", "y"), 0), **state})
-                time.sleep(0.03)
+                session.show(driver, pad, 0.03, **{**dict.fromkeys(("a", "b", "x", "y"), 0), **state})
             pad.set(ly=0)
             time.sleep(1.5)
             pad.set(ly=round(half + 0.5))

@@ -92,8 +92,7 @@ def test_found_decoded_recorded_and_replayed(case):
         with Session(IDS[kind], "--driver", driver, name=case) as session:
             sent = list(states(kind))
             for state in sent:
-                pad.set(**state)
-                time.sleep(0.02)
+                session.show(driver, pad, 0.02, **state)
             pad.set(ly=VALUES[kind]["forward"])
             time.sleep(1.5)
             pad.set(ly=VALUES[kind]["rest"])

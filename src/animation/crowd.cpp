@@ -2,16 +2,23 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 
 #include "animation/walk_parts.h"
 
 namespace gaitpad {
 namespace {
 
-// Characters whose ticks run side by side: enough to fill the widest registers with their legs, and
-// few enough for their plans to stay in the cache.
-constexpr int kTogether = 8;
+// Characters of a block: as many as the widest registers have lanes.
+constexpr std::size_t kTogether = 8;
+
+template <int kWidth>
+void advance_all(const WalkModel& model, double dt_s, std::span<const Walking> walks) noexcept {
+  while (!walks.empty()) {
+    const std::size_t count = std::min<std::size_t>(kWidth, walks.size());
+    advance_lanes<kWidth>(model, dt_s, walks.first(count));
+    walks = walks.subspan(count);
+  }
+}
 
 }  // namespace
 
@@ -24,11 +31,17 @@ Crowd::Crowd(std::span<const CrowdMember> members, IkMode mode)
     first_joint_.push_back(first_joint_.back() + member.model->cycle.skeleton.joints.size());
   }
   local_.resize(first_joint_.back());
+  block_begin_.clear();
   std::map<const WalkModel*, std::vector<int>> by_model;
   for (std::size_t i = 0; i < members.size(); ++i)
     by_model[members[i].model.get()].push_back(static_cast<int>(i));
-  for (const auto& [model, numbers] : by_model)
-    order_.insert(order_.end(), numbers.begin(), numbers.end());
+  for (const auto& [model, numbers] : by_model) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (i % kTogether == 0) block_begin_.push_back(static_cast<int>(order_.size()));
+      order_.push_back(numbers[i]);
+    }
+  }
+  block_begin_.push_back(size());
   for (std::size_t i = 0; i < members.size(); ++i) restart(static_cast<int>(i), members[i].place_m);
 }
 
@@ -51,24 +64,35 @@ void Crowd::copy_pose(int member, Pose& pose) const noexcept {
   std::copy(from.begin(), from.end(), pose.local.begin());
 }
 
-int Crowd::blocks() const noexcept { return (size() + kTogether - 1) / kTogether; }
+int Crowd::blocks() const noexcept { return static_cast<int>(block_begin_.size()) - 1; }
 
 void Crowd::advance_block(int number, double dt_s) noexcept {
-  // Kept from call to call, for clearing it costs more than a leg.
-  static thread_local std::array<PlannedTick, kTogether> planned;
-  std::array<std::optional<Tick>, kTogether> ticks;
-  const int first = number * kTogether, last = std::min(first + kTogether, size());
-  const std::span<const int> block(order_.data() + first, order_.data() + last);
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    const WalkModel& model = *models_[block[i]];
-    ticks[i].emplace(Tick{model, params_[block[i]], dt_s, is_flat(*model.terrain)});
-    plan_tick(*ticks[i], mode_, states_[block[i]], planned[i]);
+  const std::span<const int> block(order_.data() + block_begin_[number],
+                                   order_.data() + block_begin_[number + 1]);
+  const WalkModel& model = *models_[block[0]];
+  if (!is_flat(*model.terrain) || mode_ != IkMode::robust || block.size() == 1 ||
+      lanes_in_use() == 1) {
+    Pose pose;
+    for (const int member : block) {
+      gaitpad::advance(model, params_[member], mode_, dt_s, states_[member], pose);
+      store_pose(member, pose);
+    }
+    return;
   }
-  pose_legs({planned.data(), block.size()}, mode_);
-  Pose pose;
+  std::array<Walking, kTogether> walks;
   for (std::size_t i = 0; i < block.size(); ++i) {
-    finish_tick(planned[i], pose);
-    store_pose(block[i], pose);
+    const int member = block[i];
+    const std::size_t first = first_joint_[member];
+    walks[i] = {&params_[member], &states_[member], &roots_m_[member], local_.data() + first,
+                first_joint_[member + 1] - first};
+  }
+  const std::span<const Walking> all(walks.data(), block.size());
+  if (lanes_in_use() >= 8) {
+    advance_all<8>(model, dt_s, all);
+  } else if (lanes_in_use() >= 4) {
+    advance_all<4>(model, dt_s, all);
+  } else {
+    advance_all<2>(model, dt_s, all);
   }
 }
 

@@ -2,39 +2,37 @@
 // a head that are to be somewhere, and joints that follow by their weights (equation 5). Meredith &
 // Maddock 2005, section 5 (future work). Nothing in here moves pelvis or legs.
 //
-// In a tick: smooth_upper_body() brings the style's values into force, swing_arms() scales the
-// data's swing, and pose_upper_body() leans the trunk and spreads the arms, poses the spine, then
-// the arms that hang on it, then the head. What is as the data have it is not touched, so it costs
-// nothing and keeps its bits.
+// In a tick: smooth_upper_body() brings the style's values into force, and pose_upper_body() leans
+// the trunk and spreads the arms, poses the spine, then the arms that hang on it, then the head.
+// What is as the data have it is not touched, so it costs nothing and keeps its bits.
 #include <bit>
+#include <cstdint>
 
-#include "animation/walk_parts.h"
+#include "animation/walk_figure.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
-
 // --- Smoothing, once a tick ----------------------------------------------------------------------
 
-constexpr double kSmoothing = 0.22;  // s at the reference leg
-constexpr double kSettled = 40.0;    // time constants after which a value is at its goal
-constexpr double kMostExtra = 0.4;   // swing beyond the data's that pace alone can give
-constexpr double kLeastPace = 0.5;   // below it the data's posture fades, and the swing with it
-constexpr double kSoftElbow = 0.1;
+constexpr RobustOptions kRobustBody = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
+constexpr double kSmoothing = 0.22;     // s at the reference leg
+constexpr double kSettled = 40.0;       // time constants after which a value is at its goal
 constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail
 constexpr int kRailProbes = 15;  // to either side, 0.56 m: a mean over two treads rises evenly
 constexpr double kRailSmoothing = 0.06;
 
 // The parameters are numbers alone, so all of them are smoothed as one row.
 using BodyValues = std::array<double, sizeof(UpperBodyParams) / sizeof(double)>;
+using BodyBits = std::array<std::uint64_t, std::tuple_size_v<BodyValues>>;
 
 // Brings the values in force nearer to their goals. At the goals this costs one comparison.
 void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
   const UpperBodyParams& goal = tick.params.body;
   const double tau = kSmoothing * tick.model.time_scale;
-  if (!(goal == body.goal)) {
+  // Most often not a bit has changed, and that is seen faster.
+  if (std::bit_cast<BodyBits>(goal) != std::bit_cast<BodyBits>(body.goal) && !(goal == body.goal)) {
     body.goal = goal;
     body.unsettled_ticks = static_cast<int>(std::min(kSettled * tau / tick.dt_s, 1e6));
   }
@@ -50,15 +48,6 @@ void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
     body.per_s[i] = is_there ? 0.0 : value.v;
   }
   body.now = std::bit_cast<UpperBodyParams>(now);
-}
-
-// Factor on the data's arm swing: proportional to speed (Boulic et al. 1990), bounded, and 1 at the
-// data's own pace.
-double pace_swing(const Tick& tick, const WalkState& state) noexcept {
-  const double own_s = tick.model.body.own_step_s;
-  const double quicker = own_s / std::max(state.gait.step_time_s.x, 0.25 * own_s);
-  const double extra = std::max(state.gait.pace.x, kLeastPace) * quicker - 1.0;
-  return 1.0 + (extra > 0.0 ? extra / (1.0 + extra / kMostExtra) : extra);
 }
 
 // A rail rises evenly over stairs, so it stands on the mean of the ground along the way under the
@@ -93,16 +82,18 @@ double stands_alone(const WalkModel& model, const WalkState& state, Side side) n
   const std::array<double, 4>& share = model.share;
   const double middle = side == kRightSide ? share[0] + 0.5 * share[1]
                                            : share[0] + share[1] + share[2] + 0.5 * share[3];
-  const double half = 0.5 + 0.5 * sin_cos(2.0 * kPi * (data_phase(model, state) - middle)).cos;
+  const double half =
+      0.5 +
+      0.5 * sin_cos(2.0 * kPi * (data_phase<double>(model, moment_of(model, state)) - middle)).cos;
   return half * half;
 }
 
-void hold_posture(const Tick& tick, IkMode mode, WalkState& state) noexcept {
+void hold_posture(const Tick& tick, WalkState& state) noexcept {
   UpperBodyState& body = state.body;
   const TrunkParams& trunk = body.now.trunk;
   body.forward_rad = body.left_rad = 0.0;
   body.out_rad = {};
-  if (mode == IkMode::paper) return;
+  if (tick.mode == IkMode::paper) return;
   for (int side : {0, 1}) body.out_rad[side] = body.now.arm_out_deg[side] * kDegree;
   body.forward_rad = trunk.lean_deg * kDegree;
   if (trunk.over_left_deg == 0.0 && trunk.over_right_deg == 0.0) return;
@@ -111,7 +102,7 @@ void hold_posture(const Tick& tick, IkMode mode, WalkState& state) noexcept {
                    trunk.over_right_deg * stands_alone(tick.model, state, kRightSide));
 }
 
-quat rotation_above(const Skeleton& skeleton, const Pose& pose, int joint) noexcept {
+quat rotation_above(const Skeleton& skeleton, const PosePart& pose, int joint) noexcept {
   quat rotation = kIdentity;
   for (int j = skeleton.joints[joint].parent; j >= 0; j = skeleton.joints[j].parent)
     rotation = pose.local[j] * rotation;
@@ -120,14 +111,14 @@ quat rotation_above(const Skeleton& skeleton, const Pose& pose, int joint) noexc
 
 // Turns a joint and all above it by `turn`, which is in the walker's axes at its heading.
 void turn_joint(const Skeleton& skeleton, double heading_rad, const quat& turn, int joint,
-                Pose& pose) noexcept {
+                const PosePart& pose) noexcept {
   const quat above = rotation_above(skeleton, pose, joint), to = rotation_y(heading_rad);
   const quat world = to * turn * glm::conjugate(to);
   pose.local[joint] = glm::normalize(glm::conjugate(above) * world * above * pose.local[joint]);
 }
 
 // The spine's joints share the lean; arms keep hanging as they did.
-void lean_trunk(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+void lean_trunk(const WalkModel& model, const WalkState& state, const PosePart& pose) noexcept {
   const UpperBodyState& body = state.body;
   const std::vector<int>& spine = model.body.joints.spine;
   if (spine.empty() || (body.forward_rad == 0.0 && body.left_rad == 0.0)) return;
@@ -142,7 +133,7 @@ void lean_trunk(const WalkModel& model, const WalkState& state, Pose& pose) noex
   }
 }
 
-void spread_arms(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+void spread_arms(const WalkModel& model, const WalkState& state, const PosePart& pose) noexcept {
   for (const Side side : {kLeftSide, kRightSide}) {
     const ArmBuild& arm = model.body.arm[side];
     const double out = state.body.out_rad[side];
@@ -158,7 +149,7 @@ void spread_arms(const WalkModel& model, const WalkState& state, Pose& pose) noe
 // and turn the shoulders. Three rows, all of positions: the neck's sideways and fore-aft place, and
 // how far ahead a point beside it is.
 
-constexpr double kSideLever_m = 0.2;          // of the point beside the neck
+constexpr double kNeckLever_m = 0.2;          // of the point beside the neck
 constexpr double kMostBend = 60.0 * kDegree;  // of one joint
 constexpr int kAxes = 3;                      // a joint
 static_assert(kAxes * kMaxSpineIk <= kMaxIkDofs);
@@ -216,7 +207,7 @@ void stiffen_spine(const UpperBodyModel& body, const SpineWeights& weight, Spine
 }
 
 void write_spine(const UpperBodyModel& body, const Skeleton& skeleton, const Spine& spine,
-                 Pose& pose, JointFrames& world) noexcept {
+                 const PosePart& pose, JointFrames& world) noexcept {
   quat segment = kIdentity;
   std::size_t i = 0;
   for (const int j : body.spine_path) {
@@ -237,17 +228,17 @@ bool is_spine_even(const UpperBodyParams& now) noexcept {
 }
 
 void pose_spine(const UpperBodyModel& body, const Skeleton& skeleton, const SpineWeights& weight,
-                Pose& pose, JointFrames& world) noexcept {
-  forward_kinematics(skeleton, pose, body.spine_path, world);
+                const PosePart& pose, JointFrames& world) noexcept {
+  forward_kinematics(skeleton, pose.root_m, pose.local, body.spine_path, world);
   Spine spine = spine_of(body, skeleton, world);
   stiffen_spine(body, weight, spine);
-  const vec3 side_point = body.neck_m + vec3(kSideLever_m, 0.0, 0.0);
+  const vec3 side_point = body.neck_m + vec3(kNeckLever_m, 0.0, 0.0);
   const vec3 neck = spine.last_m + spine.last * body.neck_m;
   const vec3 beside = spine.last_m + spine.last * side_point;
   const std::array<IkRow, 3> rows = {IkRow{body.neck_m, kLeft, neck.x},
                                      IkRow{body.neck_m, kForward, neck.z},
                                      IkRow{side_point, kForward, beside.z}};
-  solve_robust(spine.chain, rows, kRobust, spine.angles);
+  solve_robust(spine.chain, rows, kRobustBody, spine.angles);
   write_spine(body, skeleton, spine, pose, world);
 }
 
@@ -456,10 +447,11 @@ void hold_hand(const WalkModel& model, const WalkState& state, Side side,
   }
   const vec3 goal = glm::conjugate(arm.base) * (place - arm.shoulder_m);
   aim_arm(goal, arm);
-  solve_robust(arm.chain, point_goal(arm.grip_m, goal), kRobust, arm.angles);
+  solve_robust(arm.chain, point_goal(arm.grip_m, goal), kRobustBody, arm.angles);
 }
 
-void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames& world) noexcept {
+void write_arm(const Skeleton& skeleton, const Arm& arm, const PosePart& pose,
+               JointFrames& world) noexcept {
   const ArmChain& j = arm.build.joints;
   const quat upper = arm.base * upper_turn(arm);
   const quat fore = upper * rotation_x(arm.angles[kElbowX]);
@@ -481,7 +473,7 @@ void write_arm(const Skeleton& skeleton, const Arm& arm, Pose& pose, JointFrames
 
 // `own_m`: where the hand is in the data.
 void pose_arm(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
-              const vec3& own_m, Pose& pose, JointFrames& world) noexcept {
+              const vec3& own_m, const PosePart& pose, JointFrames& world) noexcept {
   const ArmBuild& build = model.body.arm[side];
   const UpperBodyParams& now = state.body.now;
   Arm arm = arm_of(build, model.cycle.skeleton, world);
@@ -490,7 +482,7 @@ void pose_arm(const WalkModel& model, const WalkState& state, Side side, const S
     const vec3 own = glm::conjugate(arm.base) * (own_m - arm.shoulder_m);
     const std::array<IkRow, 2> path = {IkRow{arm.grip_m, kLeft, own.x},
                                        IkRow{arm.grip_m, kForward, own.z}};
-    solve_robust(arm.chain, path, kRobust, arm.angles);
+    solve_robust(arm.chain, path, kRobustBody, arm.angles);
   }
   hold_hand(model, state, side, shoulders, arm);
   write_arm(model.cycle.skeleton, arm, pose, world);
@@ -499,7 +491,7 @@ void pose_arm(const WalkModel& model, const WalkState& state, Side side, const S
 // --- Head: it turns to where it is to look, and the neck takes its share -------------------------
 
 constexpr double kMostYaw = 70.0 * kDegree, kMostPitch = 40.0 * kDegree;  // from the trunk
-constexpr double kSoftYaw = 6.0 * kDegree, kSoftPitch = 4.0 * kDegree;
+constexpr double kSoftYaw = 6.0 * kDegree, kSoftHeadPitch = 4.0 * kDegree;
 // The head does not follow a goal behind it: turning left and turning right would be equally far.
 constexpr double kBesideYaw = 105.0 * kDegree, kBehindYaw = 150.0 * kDegree;
 constexpr double kLevelFrom = 0.15, kLevelTo = 0.4;  // nor a goal straight above or below
@@ -524,7 +516,7 @@ Gaze gaze(const UpperBodyModel& body, const quat& trunk, const vec3& direction) 
   to.share = (1.0 - smoothstep(kBesideYaw, kBehindYaw, std::abs(yaw))) *
              smoothstep(kLevelFrom, kLevelTo, level);
   const SinCos y = sin_cos(within(yaw, kMostYaw, kSoftYaw));
-  const SinCos p = sin_cos(within(pitch, kMostPitch, kSoftPitch));
+  const SinCos p = sin_cos(within(pitch, kMostPitch, kSoftHeadPitch));
   const vec3 ahead = trunk * vec3(p.cos * y.sin, p.sin, p.cos * y.cos);
   const vec3 left = glm::normalize(glm::cross(kUp, ahead));
   to.head = from_axes(left, glm::cross(ahead, left), ahead) * body.head_standing;
@@ -532,8 +524,8 @@ Gaze gaze(const UpperBodyModel& body, const quat& trunk, const vec3& direction) 
 }
 
 // Turns neck and head by `turn` (world): the neck by its share, the head by all of it.
-void turn_head(const UpperBodyModel& body, const Skeleton& skeleton, const quat& turn, Pose& pose,
-               JointFrames& world) noexcept {
+void turn_head(const UpperBodyModel& body, const Skeleton& skeleton, const quat& turn,
+               const PosePart& pose, JointFrames& world) noexcept {
   const int last = static_cast<int>(body.head_path.size()) - 1;
   std::array<quat, kMaxBodyPath> own;
   for (int i = body.neck_at; i <= last; ++i) own[i] = world.rotation[body.head_path[i]];
@@ -553,12 +545,12 @@ bool is_head_free(const HeadParams& head) noexcept {
   return head.look <= 0.0 && head.look_at <= 0.0 && head.lead <= 0.0;
 }
 
-void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
+void pose_head(const WalkModel& model, const WalkState& state, const PosePart& pose,
                JointFrames& world) noexcept {
   const UpperBodyModel& body = model.body;
   const Skeleton& skeleton = model.cycle.skeleton;
   const HeadParams& now = state.body.now.head;
-  forward_kinematics(skeleton, pose, body.head_path, world);
+  forward_kinematics(skeleton, pose.root_m, pose.local, body.head_path, world);
   const int head = body.head_path.back();
   const int chest = skeleton.joints[body.head_path[body.neck_at]].parent;
   const quat trunk = world.rotation[chest] * glm::conjugate(body.chest_standing);
@@ -587,31 +579,18 @@ void pose_head(const WalkModel& model, const WalkState& state, Pose& pose,
 
 }  // namespace
 
-void smooth_upper_body(const Tick& tick, IkMode mode, WalkState& state) noexcept {
+void smooth_upper_body(const Tick& tick, WalkState& state) noexcept {
   UpperBodyState& body = state.body;
   settle_values(tick, body);
-  hold_posture(tick, mode, state);
-  const double pace = mode == IkMode::paper ? 1.0 : pace_swing(tick, state);
   for (const Side side : {kLeftSide, kRightSide}) {
-    body.swing[side] = pace * body.now.arm_swing[side];
     if (body.now.hand[side].rail > 0.0 || body.goal.hand[side].rail > 0.0)
       follow_rail(tick, side, state);
   }
 }
 
-void swing_arms(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
-  for (const Side side : {kLeftSide, kRightSide}) {
-    const ArmBuild& arm = model.body.arm[side];
-    const double swing = state.body.swing[side];
-    if (!arm.is_there || swing == 1.0) continue;
-    quat& shoulder = pose.local[arm.joints.shoulder];
-    quat& elbow = pose.local[arm.joints.elbow];
-    shoulder = nlerp(arm.swing_shoulder, shoulder, swing);
-    elbow = nlerp(arm.swing_elbow, elbow, soft_min(swing, arm.most_elbow_swing, kSoftElbow));
-  }
-}
-
-void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
+void pose_upper_body(const Tick& tick, WalkState& state, const PosePart& pose) noexcept {
+  hold_posture(tick, state);
+  const WalkModel& model = tick.model;
   const UpperBodyParams& now = state.body.now;
   const Skeleton& skeleton = model.cycle.skeleton;
   lean_trunk(model, state, pose);
@@ -627,13 +606,14 @@ void pose_upper_body(const WalkModel& model, const WalkState& state, Pose& pose)
   HandPlaces own_m{};
   for (const Side side : {kLeftSide, kRightSide}) {
     if (!model.body.arm[side].is_there || !(moves_arm[0] || moves_arm[1])) continue;
-    forward_kinematics(skeleton, pose, model.body.arm[side].path, world);
+    forward_kinematics(skeleton, pose.root_m, pose.local, model.body.arm[side].path, world);
     own_m[side] = hand_place(model.body.arm[side], world);
   }
   if (moves_spine) {
     pose_spine(model.body, skeleton, now.spine_weight, pose, world);
     for (const Side side : {kLeftSide, kRightSide}) {
-      if (moves_arm[side]) forward_kinematics(skeleton, pose, model.body.arm[side].path, world);
+      if (moves_arm[side])
+        forward_kinematics(skeleton, pose.root_m, pose.local, model.body.arm[side].path, world);
     }
   }
   Shoulders shoulders;

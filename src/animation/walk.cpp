@@ -14,10 +14,7 @@
 // 3.3.2), and everything else comes from the data at this phase.
 #include "gaitpad/walk.h"
 
-#include "animation/walk_parts.h"
-#include "base/lanes.h"
-#include "motion/leg_pose.h"
-#include "motion/pose_rows.h"
+#include "animation/walk_figure.h"
 
 namespace gaitpad {
 
@@ -27,25 +24,7 @@ Side step_foot(const WalkState& state) noexcept {
   return state.clock.stage == Stage::flight ? state.clock.swing : other(state.clock.swing);
 }
 
-double flight_progress(const WalkState& state) noexcept {
-  if (state.clock.stage != Stage::flight) return 0.0;
-  return static_cast<double>(state.clock.tick) / state.clock.stage_ticks;
-}
-
-double presence(const WalkState& state) noexcept {
-  return std::clamp(state.gait.amplitude.x, 0.0, 1.0) *
-         std::clamp(2.0 * state.gait.pace.x, 0.0, 1.0);
-}
-
-double own_phase(const WalkModel& model, const WalkState& state, Side side) noexcept {
-  const double p = state.clock.phase - (side == kRightSide ? 0.0 : model.share[0] + model.share[1]);
-  return p - std::floor(p);
-}
-
-double data_phase(const WalkModel& model, const WalkState& state) noexcept {
-  if (!state.clock.backward) return state.clock.phase;
-  return model.share[0] + model.share[1] + model.share[2] - state.clock.phase;
-}
+double presence(const WalkState& state) noexcept { return presence_of(state.gait); }
 
 bool walks_on(const GaitParams& params, const WalkState& state) noexcept {
   const bool on_the_spot = params.stride[0].length_m == 0.0 && params.stride[1].length_m == 0.0;
@@ -56,58 +35,6 @@ bool walks_on(const GaitParams& params, const WalkState& state) noexcept {
 double step_length(const WalkState& state, Side side) noexcept {
   if (state.clock.closing) return 0.0;
   return state.clock.backward ? 0.0 - state.gait.length_m[side].x : state.gait.length_m[side].x;
-}
-
-namespace {
-double ratio_of_step(const WalkModel& model, const WalkState& state) noexcept {
-  const Side swing = step_foot(state);
-  // Run back, a foot makes the step that the other one makes forwards.
-  const double own_m = model.own_step_m[state.clock.backward ? other(swing) : swing];
-  return state.clock.started ? std::abs(state.frame.stride_m[swing]) / own_m : 0.0;
-}
-}  // namespace
-
-double ratio_ahead(const WalkModel& model, const WalkState& state) noexcept {
-  return std::max(0.0, ratio_of_step(model, state) + state.gait.off_ratio.x);
-}
-
-void plan_stride(const WalkModel& model, const WalkState& state, double phase, double step_share,
-                 StridePlan& plan) noexcept {
-  plan.phase = phase;
-  plan.change = smootherstep(step_share);
-  plan.shown = std::clamp(state.gait.amplitude.x, 0.0, 1.0);
-  plan.heel_m = {};
-  plan.injury = {};
-  const auto stride = [&](double ratio) {
-    return stride_of(model, state.clock.backward, plan.phase, ratio);
-  };
-  plan.at[0] = stride(state.gait.ratio_behind);
-  const double ahead = ratio_ahead(model, state);
-  plan.at[1] = ahead == state.gait.ratio_behind ? plan.at[0] : stride(ahead);
-  plan.cell = mixed(plan.at[0].cell, plan.at[1].cell, plan.shown * (1.0 - plan.change),
-                    plan.shown * plan.change);
-  change_stride(model, state, mix(state.gait.ratio_behind, ahead, plan.change), plan);
-}
-
-void plan_stride(const WalkModel& model, const WalkState& state, StridePlan& plan) noexcept {
-  const double begun =
-      state.clock.tick + (state.clock.stage == Stage::flight ? state.clock.roll_ticks : 0);
-  // A walk that has closed fades from the stride of its last step.
-  const double share = state.clock.started
-                           ? begun / std::max(1, state.clock.roll_ticks + state.clock.flight_ticks)
-                           : 0.0;
-  plan_stride(model, state, state.clock.phase, share, plan);
-}
-
-vec3 from_footprint(const WalkState& state, const StrideTrack& track, double phase, Side side,
-                    int which, const vec3& travel_m) noexcept {
-  // The right foot goes from its footprint of this stride to the next one's, the left foot from the
-  // last one's to this one's.
-  double turns = 0.0;
-  if (side == step_foot(state)) turns = side == kRightSide ? which : which - 1;
-  vec3 p = travel_m - track.footprint_m[side];
-  p.z += track.stride_m * (phase - turns);
-  return p;
 }
 
 double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
@@ -127,53 +54,38 @@ double phase_ahead(const WalkModel& model, const WalkState& state, double ticks)
   return phase;
 }
 
-Pelvis pelvis_over_ground(const WalkModel& model, const WalkState& state,
-                          const StridePlan& plan) noexcept {
-  const StrideCell& cell = plan.cell;
-  Pelvis pelvis;
-  const quat& heading = pelvis.heading = rotation_y(state.path.heading_rad);
-  const vec3 forward(2.0 * heading.w * heading.y, 0.0,
-                     heading.w * heading.w - heading.y * heading.y),
-      left = glm::cross(kUp, forward);
-  pelvis.position_m = state.path.hips_m + left * cell.pelvis_m.x + forward * cell.pelvis_m.z;
-  // In a turn the body leans as a whole, about the ground below the hips.
-  const double height_m = model.stand_m + cell.pelvis_m.y;
-  const SinCos lean = sin_cos(state.path.lean_rad.x);
-  pelvis.position_m += left * (height_m * lean.sin);
-  pelvis.position_m.y = state.path.base.height_m + height_m * lean.cos;
-  const double yaw = state.gait.sway.x * cell.pelvis_yaw_rad;
-  const quat upright = heading * rotation_z(-state.path.lean_rad.x),
-             turned = rotation_y(yaw) *
-                      from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.stand_roll_rad));
-  pelvis.rotation = upright * turned;
-  if (state.path.slope_lean_rad.x == 0.0) return pelvis;
-  // Into a slope the trunk leans about the hip joints.
-  const vec3 hips = 0.5 * (model.leg[kLeftSide].model.hip_m + model.leg[kRightSide].model.hip_m);
-  pelvis.position_m += pelvis.rotation * hips;
-  pelvis.rotation = upright * rotation_x(state.path.slope_lean_rad.x) * turned;
-  pelvis.position_m -= pelvis.rotation * hips;
-  return pelvis;
+Moment moment_of(const WalkModel& model, const WalkState& state) noexcept {
+  const StepClock& clock = state.clock;
+  Moment at{};
+  at.idle = clock.stage == Stage::idle;
+  at.flies = clock.stage == Stage::flight;
+  at.rolls = clock.stage == Stage::roll;
+  at.started = clock.started;
+  at.closing = clock.closing;
+  at.backward = clock.backward;
+  at.right_steps = step_foot(state) == kRightSide;
+  for (int side : {0, 1}) {
+    at.in_flight[side] = state.foot[side].mode == FootMode::flight;
+    at.in_roll[side] = state.foot[side].mode == FootMode::roll;
+    at.mode_ticks[side] = state.foot[side].mode_ticks;
+  }
+  at.tick = clock.tick;
+  at.stage_ticks = clock.stage_ticks;
+  at.roll_ticks = clock.roll_ticks;
+  at.flight_ticks = clock.flight_ticks;
+  at.last_step_ticks = clock.last_step_ticks;
+  at.phase = clock.phase;
+  at.phase_rate = clock.phase_rate;
+  at.stage_phase = clock.stage_phase;
+  at.stage_end = stage_end_phase(model, state);
+  at.end_rate = clock.end_rate;
+  return at;
 }
 
 namespace {
 
 // --- Clock: stages, steps, phases ----------------------------------------------------------------
 
-// Time constants in seconds at the reference leg; they scale with pendulum time.
-constexpr double kStepSmoothing = 0.12;
-constexpr double kTurnGoalSmoothing = 0.08;
-constexpr double kTurnSmoothing = 0.25;
-constexpr double kBounceSmoothing = 0.30;
-constexpr double kAmplitudeSmoothing = 0.18, kAmplitudeFading = 0.07;
-constexpr double kWeightSmoothing = 0.15;
-constexpr double kSettling = 0.35;
-constexpr double kLeanSmoothing = 0.12;
-// Trunks lean by 5 to 6 degrees up a grade of 15 %, by 7 to 8 up stairs, and back by 2 downhill
-// (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
-constexpr double kUphillLean = 8.5 * kDegree, kDownhillLean = 3.0 * kDegree, kHalfLeanGrade = 0.09;
-constexpr double kShortestRun = 0.2;  // in legs: a step over less ground has no grade of its own
-constexpr double kSlopeLeanSmoothing = 0.3;
-constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s.
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
@@ -181,10 +93,8 @@ constexpr double kSlowerBack = 2.05;
 constexpr double kBraking = 2.4;  // way over speed and time of a stop with little jerk
 constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
 constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
-constexpr double kAllShown = 1.0 - 1e-9;   // from here on nothing is mixed with the stand
 constexpr double kHesitation = 0.2;        // for next to nothing; less for more, none from
 constexpr double kSureRatio = 0.3, kSureTurn = 0.15;  // this stride ratio or turn (rad/s) on
-constexpr double kStillTurn = 1e-5;                   // rad/s: slower than this is straight ahead
 
 // Share of the cycle's time.
 double time_share(const WalkModel& model, const WalkState& state, Stage stage,
@@ -291,7 +201,7 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
   const Side landed = state.clock.swing;
   const bool closed = state.clock.closing;
   state.clock.closing = !walks_on(tick.params, state);
-  state.gait.ratio_behind = ratio_ahead(tick.model, state);
+  state.gait.ratio_behind = ratio_ahead<double>(tick.model, moment_of(tick.model, state), state);
   if (closed && state.clock.closing) {  // feet together: the toe comes down, then rest
     const int ticks = state.clock.roll_ticks;
     begin_stage(Stage::roll, landed, std::max(ticks, 12), state);
@@ -319,20 +229,6 @@ void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state)
   }
 }
 
-// Smooths how far the trunk leans into the slope or stair that the running step leads over.
-void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
-  double lean = 0.0;
-  if (state.clock.started) {
-    const Side swing = step_foot(state);
-    const double rise = state.path.landing_m.y - state.foot[other(swing)].plane.place_m.y,
-                 run = std::max(std::abs(state.frame.stride_m[swing]),
-                                kShortestRun * tick.model.leg_length_m);
-    const double grade = (state.clock.backward ? -rise : rise) / run;
-    lean = (grade > 0.0 ? kUphillLean : kDownhillLean) * grade / (std::abs(grade) + kHalfLeanGrade);
-  }
-  state.path.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
-}
-
 // A stand that is asked for very little waits whether it is meant: a stick that is touched in
 // passing would else cost two slow steps before a full push in another direction is followed.
 bool is_meant(const Tick& tick, WalkState& state) noexcept {
@@ -342,63 +238,8 @@ bool is_meant(const Tick& tick, WalkState& state) noexcept {
          kHesitation * tick.model.time_scale * (1.0 - std::min(sure, 1.0));
 }
 
-// Smooths the parameters and starts a walk from standing when the parameters ask for one.
-void smooth_parameters(const Tick& tick, IkMode mode, WalkState& state) noexcept {
-  const GaitParams& params = tick.params;
-  const double scale = tick.model.time_scale, dt = tick.dt_s;
-  const bool stood = state.clock.stage == Stage::idle && state.frame.stage == Stage::idle;
-  bool hesitates = false;
-  if (stood && params.walking && state.gait.amplitude.x < kStillAmplitude) {
-    ask_for(params, tick.model, state);
-    hesitates = !is_meant(tick, state);
-    if (!hesitates) begin_walk(tick, state);
-  } else {
-    state.clock.asked_ticks = 0;
-  }
-  const bool walking = walks_on(params, state) && !state.clock.closing && !hesitates;
-  if (walks_on(params, state)) ask_for(params, tick.model, state);
-  // A walk that is to end takes the running step as it was begun, and one that closes it.
-  const Damping step(kStepSmoothing * scale, dt), weights(kWeightSmoothing * scale, dt),
-      hips(kBounceSmoothing * scale, dt);
-  const bool finishes = state.clock.started && !state.clock.closing && !walking;
-  for (int side : {0, 1}) {
-    const StrideParams& stride = params.stride[side];
-    const double length_m = walking    ? stride.length_m
-                            : finishes ? state.gait.length_m[side].x
-                                       : 0.0;
-    state.gait.length_m[side].advance(length_m, step);
-    state.gait.flight_height[side].advance(stride.flight_height, step);
-    for (int j = 0; j < kLegDofs; ++j) {
-      state.gait.weight[side][j].advance(params.weight[side][j], weights);
-    }
-  }
-  state.gait.step_time_s.advance(0.5 * (state.gait.time_s[0] + state.gait.time_s[1]), step);
-  const double goal = walking ? params.turn_rate_rad_s : 0.0;
-  state.gait.turn_goal.advance(goal, Damping(kTurnGoalSmoothing * scale, dt));
-  if (goal == 0.0 && std::abs(state.gait.turn_goal.x) < kStillTurn) state.gait.turn_goal = {};
-  state.gait.turn_rate.advance(state.gait.turn_goal.x, Damping(kTurnSmoothing * scale, dt));
-  if (state.gait.turn_goal.x == 0.0 && std::abs(state.gait.turn_rate.x) < kStillTurn)
-    state.gait.turn_rate = {};
-  state.gait.amplitude.advance(
-      state.clock.started ? 1.0 : 0.0,
-      Damping((state.clock.started ? kAmplitudeSmoothing : kAmplitudeFading) * scale, dt));
-  if (state.clock.started && state.gait.amplitude.x > kAllShown) state.gait.amplitude = {1.0, 0.0};
-  state.gait.bounce.advance(params.hip_bounce, hips);
-  state.gait.sway.advance(params.hip_sway, hips);
-  const double mean = 0.5 * (state.gait.length_m[0].x + state.gait.length_m[1].x);
-  state.gait.pace.advance(mean * state.gait.ground_share.x / tick.model.source_step_m, step);
-  state.gait.settled_pace.advance(state.gait.pace.x, Damping(kSettling * scale, dt));
-  // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
-  const double speed_m_s = (state.gait.length_m[0].x + state.gait.length_m[1].x) /
-                           std::max(kLeastCycle_s, state.gait.time_s[0] + state.gait.time_s[1]);
-  const double lean =
-      mode == IkMode::paper ? 0.0 : speed_m_s * state.gait.turn_rate.x / kGravity_m_s2;
-  state.path.lean_rad.advance(lean, Damping(kLeanSmoothing * scale, dt));
-  if (!tick.flat && mode != IkMode::paper) lean_into_slope(tick, state);
-}
-
+// Moves the clocks on by one tick.
 void advance_clock(const Tick& tick, WalkState& state) noexcept {
-  state.path.heading_rad += state.gait.turn_rate.x * tick.dt_s;
   for (FootState& foot : state.foot) ++foot.mode_ticks;
   if (state.clock.stage == Stage::idle) return;
   const bool resting = !state.clock.started;  // in the last roll the data's clock stands still
@@ -427,251 +268,7 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
   }
 }
 
-// --- Hips and landing place ----------------------------------------------------------------------
-
-// Lengths in metres at the reference leg.
-constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
-constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
-constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6, kWidest_m = 0.06;
-// Of what an injury changes of its leg's reach, so much does not lower or raise the hips: the sound
-// leg then changes by less than a degree.
-constexpr double kUnseenInjury = 0.85;
-constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
-constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
-constexpr double kGroundSmoothing_s = 0.3;
-constexpr double kRatioJump = 0.01;  // a tick: sticks are slower
-constexpr double kFreeze = 0.55;     // of the flight: after it the landing place is settled
-
-double power(double base, int exponent) noexcept {
-  double result = 1.0;
-  for (int e = exponent; e > 0; e >>= 1, base *= base) {
-    if (e & 1) result *= base;
-  }
-  return result;
-}
-
-int ticks_to_strike(const WalkState& state) noexcept {
-  if (state.clock.stage == Stage::flight) return state.clock.stage_ticks - state.clock.tick;
-  return state.clock.stage_ticks - state.clock.tick + state.clock.flight_ticks;
-}
-
-// The heading n ticks ahead if the turn rate's goal stays. The filter is a linear recurrence with
-// the double eigenvalue q, so its error is e_k = (e_0 + c k) q^k, and the sum has a closed form.
-double heading_ahead(const Tick& tick, const WalkState& state, int n) noexcept {
-  const double goal = state.gait.turn_goal.x;
-  const double w = tick.dt_s / (kTurnSmoothing * tick.model.time_scale), q = 1.0 / (1.0 + w);
-  const double e0 = state.gait.turn_rate.x - goal;
-  if (e0 == 0.0 && state.gait.turn_rate.v == 0.0)
-    return state.path.heading_rad + goal * n * tick.dt_s;
-  const double e1 = e0 * (1.0 - w * w * q * q) + q * q * state.gait.turn_rate.v * tick.dt_s;
-  const double c = e1 / q - e0, qn = power(q, n);
-  const double s0 = q * (1.0 - qn) / (1.0 - q);
-  const double s1 = q * (1.0 - (n + 1) * qn + n * qn * q) / ((1.0 - q) * (1.0 - q));
-  return state.path.heading_rad + (goal * n + e0 * s0 + c * s1) * tick.dt_s;
-}
-
-// Smooths how much of a step's length the ground leaves: such steps roll and rise like short ones.
-void follow_ground(const Tick& tick, WalkState& state, Side swing) noexcept {
-  const double wanted = std::abs(step_length(state, swing));
-  const double share =
-      wanted < kShortStep * tick.model.source_step_m
-          ? 1.0
-          : std::clamp(std::abs(state.frame.stride_m[swing]) / wanted, kLeastShare, 1.0);
-  state.gait.ground_share.advance(share, kGroundSmoothing_s * tick.model.time_scale, tick.dt_s);
-}
-
-// A step that is to end on another tread than it was has another ratio at once. The tables are read
-// for one that goes there until the flight begins.
-void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
-  const double ratio = ratio_of_step(tick.model, state);
-  const double change = ratio - state.gait.step_ratio;
-  state.gait.step_ratio = ratio;
-  if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
-    state.gait.off_ratio = {};
-  } else if (std::abs(change) > kRatioJump) {
-    state.gait.off_ratio.x -= change;
-  }
-  state.gait.off_ratio.advance(
-      state.clock.stage == Stage::roll ? state.clock.stage_ticks - state.clock.tick + 1 : 1);
-}
-
-void plan_landing(const Tick& tick, WalkState& state) noexcept {
-  if (state.clock.stage == Stage::idle || !state.clock.started) return;
-  const Side swing = step_foot(state), stand = other(swing);
-  const double heading = heading_ahead(tick, state, ticks_to_strike(state) + 1);
-  const vec3 forward = heading_direction(heading), left = glm::cross(kUp, forward);
-  const vec3 standing = state.foot[stand].heel_anchor_m;
-  if (flight_progress(state) <= kFreeze) {
-    const double width = tick.model.leg[swing].track_m - tick.model.leg[stand].track_m;
-    state.path.landing_heading_rad = heading;
-    state.path.landing_m = standing + forward * step_length(state, swing) + left * width;
-    if (!tick.flat) choose_foothold(tick, state, forward, left * width);
-  }
-  // Along the heading at the landing, which may still turn after the place is settled.
-  state.frame.stride_m[swing] = glm::dot(state.path.landing_m - standing, forward);
-  if (tick.flat) return;
-  follow_ground(tick, state, swing);
-  keep_ratio_smooth(tick, state);
-}
-
-// The hips' place on the tables' path, without their oscillation: of the stride before, from the
-// footprint of the foot that stands; of this one, to the next landing.
-vec3 path_from_standing(const WalkState& state, const StrideTrack& track, double phase) noexcept {
-  const Side stand = other(step_foot(state));
-  const FootState& foot = state.foot[stand];
-  return foot.heel_anchor_m +
-         rotation_y(foot.lift_yaw_rad) * from_footprint(state, track, phase, stand, 0, vec3(0.0));
-}
-vec3 path_to_landing(const WalkState& state, const StrideTrack& track, double phase,
-                     const vec3& landing_m, double heading_rad) noexcept {
-  return landing_m + rotation_y(heading_rad) *
-                         from_footprint(state, track, phase, step_foot(state), 1, vec3(0.0));
-}
-
-// A step takes the hips from the path of the stride before it over to its own.
-void begin_path(const Tick& tick, WalkState& state) noexcept {
-  const StrideTrack behind = track_of(tick.model, state.clock.backward, state.gait.ratio_behind),
-                    ahead =
-                        track_of(tick.model, state.clock.backward, ratio_ahead(tick.model, state));
-  double phase = state.clock.stage_phase, rate = state.clock.phase_rate;
-  std::array<vec3, 3> off;
-  for (int k : {0, 1, 2}) {
-    vec3 from = path_from_standing(state, behind, phase);
-    if (state.clock.last_step_ticks == 0)
-      from = vec3(state.path.hips_m.x, from.y, state.path.hips_m.z);  // at rest
-    off[k] = from - path_to_landing(state, ahead, phase, state.path.landing_m,
-                                    state.path.landing_heading_rad);
-    approach(phase, rate, stage_end_phase(tick.model, state), state.clock.end_rate,
-             state.clock.stage_ticks - k, 1.0);
-  }
-  state.path.off_m = {off[0], 0.5 * (4.0 * off[1] - 3.0 * off[0] - off[2]),
-                      off[0] - 2.0 * off[1] + off[2]};
-}
-
-// The hips follow the tables' path to the next landing. What they differ by from it, from the step
-// before or because the landing has moved, fades until the strike.
-void advance_hips(const Tick& tick, WalkState& state, const StridePlan& plan) noexcept {
-  if (!tick.flat) advance_base(tick, state);
-  if (state.clock.stage == Stage::idle || !state.clock.started) {
-    state.path.hips_velocity_m_s = vec3(0.0);
-    return;
-  }
-  const vec3 before = state.path.hips_m;
-  const vec3 path = path_to_landing(state, plan.at[1].track, plan.phase, state.path.landing_m,
-                                    state.path.landing_heading_rad);
-  const double ratio = ratio_ahead(tick.model, state);
-  if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
-    begin_path(tick, state);
-  } else if (state.path.landing_m != state.path.last_landing_m || ratio != state.path.last_ratio ||
-             state.path.landing_heading_rad != state.path.last_heading_rad) {
-    // The path has moved, and the hips have not.
-    const StrideTrack last = track_of(tick.model, state.clock.backward, state.path.last_ratio);
-    state.path.off_m.x += path_to_landing(state, last, plan.phase, state.path.last_landing_m,
-                                          state.path.last_heading_rad) -
-                          path;
-  }
-  state.path.last_landing_m = state.path.landing_m;
-  state.path.last_heading_rad = state.path.landing_heading_rad;
-  state.path.last_ratio = ratio;
-  state.path.off_m.advance(ticks_to_strike(state) + 1);
-  state.path.hips_m = path + state.path.off_m.x;
-  state.path.hips_m.y = 0.0;
-  state.path.hips_velocity_m_s = (state.path.hips_m - before) / tick.dt_s;
-}
-
-vec3 ankle_of(const LegBuild& leg, const FootPose& foot) noexcept {
-  return foot.heel_m - foot.rotation * leg.model.heel_m;
-}
-
-// The pelvis' height: the tables', lowered where ground or turn ask more of a leg than they know.
-double pelvis_height(const WalkModel& model, const WalkState& state, const StridePlan& plan,
-                     const Pelvis& pelvis) noexcept {
-  double y = pelvis.position_m.y;
-  // Legs that are about to change their pace are bent a little, so that they have room.
-  const double change = state.gait.pace.x - state.gait.settled_pace.x;
-  y -= kChangeDrop_m * model.size * std::min(1.0, 2.0 * state.gait.pace.x) * change * change /
-       (change * change + kChange * kChange);
-  double squares = 0.0;
-  for (Side side : {kLeftSide, kRightSide}) {
-    const LegBuild& leg = model.leg[side];
-    // The sound leg goes nearly as if the other were sound, too: then the hips are as high.
-    const double knee = model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX] -
-                        kUnseenInjury * plan.injury.leg_rad[side][kKneeX];
-    const double known = span_m(leg.model, knee);
-    const FootState& foot = state.foot[side];
-    FootPose pose = foot.pose;
-    if (plan.injury.pitch_rad[side] != 0.0)
-      set_pitch(leg, pose.pitch_rad - kUnseenInjury * plan.injury.pitch_rad[side], pose, foot.mode);
-    const vec3 ankle = ankle_of(leg, pose), hip = pelvis.hip(leg);
-    const double span = glm::distance(hip, ankle);
-    // What the tables ask for is let through.
-    const double beyond = (span - known) / model.size;
-    if (beyond <= 0.0) continue;
-    const double soft = model.size * (kSoftReach_m + kWiderReach * std::min(beyond, kWidest_m));
-    const double longest = kReach * leg.model.length_m(), times = beyond / kKnown_m;
-    const double excess =
-        soft_positive(span - longest, soft) * times * times / (1.0 + times * times);
-    const double upright = std::max(0.3 * span, hip.y - ankle.y) / span;
-    squares += excess * excess / (upright * upright);
-  }
-  return y - std::sqrt(squares);
-}
-
-// --- Pose and report -----------------------------------------------------------------------------
-
-// Rx(x) Rz(z) Ry(y) of half the angles.
-quat turn_xzy(const SinCos& x, const SinCos& z, const SinCos& y) noexcept {
-  const double w = x.cos * z.cos, i = x.sin * z.cos, j = -x.sin * z.sin, k = x.cos * z.sin;
-  return quat(w * y.cos - j * y.sin, i * y.cos - k * y.sin, w * y.sin + j * y.cos,
-              k * y.cos + i * y.sin);
-}
-
-void write_legs(const WalkModel& model, const WalkState& state, Pose& pose) noexcept {
-  // Both legs side by side.
-  const auto& q = state.legs.angles_rad;
-  std::array<std::array<SinCos, kLegDofs>, 2> half;
-  for (int j = 0; j < kLegDofs; ++j) {
-    Lanes<2> sine, cosine;
-    sin_cos_of(Lanes<2>{0.5 * q[kLeftSide][j], 0.5 * q[kRightSide][j]}, sine, cosine);
-    for (int side : {0, 1}) half[side][j] = {sine[side], cosine[side]};
-  }
-  for (Side side : {kLeftSide, kRightSide}) {
-    const LegBuild& leg = model.leg[side];
-    const auto& h = half[side];
-    const FootPose& foot = state.foot[side].pose;
-    const std::array<quat, 4> turn = {
-        turn_xzy(h[kHipX], h[kHipZ], h[kHipY]), quat(h[kKneeX].cos, h[kKneeX].sin, 0.0, 0.0),
-        turn_xzy(h[kAnkleX], h[kAnkleZ], h[kAnkleY]), toes_turn(leg, foot, foot.toe_rad)};
-    for (int i = 0; i < 4; ++i) {
-      const LegJointFrame& frame = leg.joint[i];
-      if (frame.joint >= 0) pose.local[frame.joint] = frame.before * turn[i] * frame.after;
-    }
-  }
-}
-
-void write_pose(const WalkModel& model, const WalkState& state, const Pelvis& pelvis,
-                Pose& pose) noexcept {
-  const GaitCycle& cycle = model.cycle;
-  sample_rows(model.above, data_phase(model, state), pose);
-  swing_arms(model, state, pose);
-  const double a = presence(state);
-  if (a < 1.0) {
-    for (const int j : model.above.joint)
-      pose.local[j] = nlerp(cycle.standing_local[j], pose.local[j], a);
-  }
-  for (int j : model.kept) pose.local[j] = cycle.standing_local[j];
-  // Joints between root and pelvis turn with the heading and else move as in the data.
-  pose.root_m = pelvis.position_m;
-  pose.local[0] = pelvis.heading * pose.local[0];
-  quat above = kIdentity;
-  for (int j = cycle.skeleton.joints[cycle.pelvis].parent; j >= 0;
-       j = cycle.skeleton.joints[j].parent) {
-    above = pose.local[j] * above;
-  }
-  pose.local[cycle.pelvis] = glm::conjugate(above) * (pelvis.rotation * cycle.pelvis_standing);
-  write_legs(model, state, pose);
-  pose_upper_body(model, state, pose);
-}
+// --- Report --------------------------------------------------------------------------------------
 
 void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
   if (tick.flat) return;
@@ -683,15 +280,16 @@ void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
   }
 }
 
-void fill_report(const Pelvis& pelvis, double dt_s, WalkState& state) noexcept {
+void fill_report(const vec3& pelvis_m, double dt_s, WalkState& state) noexcept {
   WalkFrame& frame = state.frame;
   frame.stage = state.clock.stage;
   frame.swing = state.clock.swing;
   frame.heading_rad = state.path.heading_rad;
   frame.turn_rate_rad_s = state.gait.turn_rate.x;
-  frame.pelvis_m = pelvis.position_m;
+  frame.pelvis_m = pelvis_m;
   const bool idle = frame.stage == Stage::idle;
-  if (idle) frame.stride_m = {};
+  if (idle) state.path.stride_m = {};
+  frame.stride_m = state.path.stride_m;
   for (Side side : {kLeftSide, kRightSide}) {
     const bool swings = frame.swing == side;
     frame.heel_planted[side] = idle || (frame.stage == Stage::roll && swings);
@@ -717,7 +315,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   WalkState state;
   state.path.hips_m = vec3(place_m.x, 0.0, place_m.z);
   state.gait.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
-  state.gait.bounce.x = state.gait.sway.x = 1.0;
+  state.gait.bounce.x = state.gait.sway.x = state.gait.ground_share.x = 1.0;
   state.gait.step_time_s.x = 0.5;
   for (Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
@@ -731,7 +329,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
       foot.pose.tilt = foot.plane.tilt;
     }
     foot.pose.heel_m = foot.heel_anchor_m;
-    set_pitch(leg, 0.0, foot.pose, FootMode::roll);
+    pitch_foot(leg, 0.0, foot.pose, FootMode::roll);
     foot.toe_anchor_m = foot.pose.toe_m;
     foot.lift_m = foot.heel_anchor_m;
     remember_foot(foot);
@@ -745,40 +343,95 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   return state;
 }
 
-void plan_tick(const Tick& tick, IkMode mode, WalkState& state, PlannedTick& planned) noexcept {
-  const WalkModel& model = tick.model;
-  planned.tick = &tick;
-  planned.state = &state;
-  smooth_parameters(tick, mode, state);
-  grant_wishes(mode, state);
-  smooth_upper_body(tick, mode, state);
+// Starts a walk from standing when the parameters ask for one.
+void begin_tick(const Tick& tick, WalkState& state, Moment& at) noexcept {
+  const GaitParams& params = tick.params;
+  const bool stood = state.clock.stage == Stage::idle && state.frame.stage == Stage::idle;
+  bool hesitates = false;
+  if (stood && params.walking && state.gait.amplitude.x < kStillAmplitude) {
+    ask_for(params, tick.model, state);
+    hesitates = !is_meant(tick, state);
+    if (!hesitates) begin_walk(tick, state);
+  } else {
+    state.clock.asked_ticks = 0;
+  }
+  const bool walks = walks_on(params, state);
+  if (walks) ask_for(params, tick.model, state);
+  smooth_upper_body(tick, state);
+  if (!tick.flat && tick.mode != IkMode::paper) lean_into_slope(tick, state);
   advance_clock(tick, state);
-  plan_landing(tick, state);
-  plan_stride(model, state, planned.plan);
-  advance_hips(tick, state, planned.plan);
-  for (Side side : {kLeftSide, kRightSide}) plan_foot(tick, state, planned.plan, side);
-  planned.pelvis = pelvis_over_ground(model, state, planned.plan);
-  planned.pelvis.position_m.y = pelvis_height(model, state, planned.plan, planned.pelvis);
-  for (Side side : {kLeftSide, kRightSide})
-    reach_with_toe(model, state, side, planned.pelvis.hip(model.leg[side]));
+  at = moment_of(tick.model, state);
+  at.walking = walks && !state.clock.closing && !hesitates;
+  at.finishes = state.clock.started && !state.clock.closing && !at.walking;
 }
 
-void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {
-  const Tick& tick = *planned.tick;
-  WalkState& state = *planned.state;
-  write_pose(tick.model, state, planned.pelvis, pose);
-  fill_report(planned.pelvis, tick.dt_s, state);
+void end_tick(const Tick& tick, const vec3& pelvis_m, WalkState& state) noexcept {
+  fill_report(pelvis_m, tick.dt_s, state);
   report_ground(tick, state.frame);
   finish_stage(tick, state);
   for (FootState& foot : state.foot) remember_foot(foot);
 }
 
+void plan_tick(const Tick& tick, WalkState& state, PlannedTick& planned) noexcept {
+  planned.tick = &tick;
+  planned.state = &state;
+  begin_tick(tick, state, planned.at);
+  plan_walks<double>(tick, planned.at, params_of(tick.params, state.body.now.arm_swing), state,
+                     planned.plan, planned.pelvis);
+}
+
+// Both legs side by side.
+void pose_legs(const PlannedTick& planned) noexcept {
+  const Tick& tick = *planned.tick;
+  WalkState& state = *planned.state;
+  const Pelvis& pelvis = planned.pelvis;
+  std::array<PosedLeg, 2> posed;
+  if (tick.mode == IkMode::paper) {
+    for (const Side side : {kLeftSide, kRightSide})
+      posed[side] = pose_paper(tick, state, pelvis, side);
+  } else {
+    LegLanes<2> lanes;
+    for (const Side side : {kLeftSide, kRightSide}) {
+      LegGoals<double> goals;
+      LegAngles angles;
+      set_leg_goals<double>(tick, planned.plan, pelvis, side, state, goals, angles);
+      set_lanes(goals, side, lanes.goals);
+      set_lanes(angles, side, lanes.angles_rad);
+    }
+    solve_legs(kRobust, lanes);
+    for (const Side side : {kLeftSide, kRightSide}) {
+      LegSolution<double> solution;
+      get_lane(lanes.angles_rad, side, state.legs.angles_rad[side]);
+      get_lane(lanes.solution, side, solution);
+      posed[side] = posed_leg<double>(solution, state.foot[side].pose.pitch_rad);
+      const double ankle = state.legs.angles_rad[side][kAnkleX];
+      if (needs_mending<double>(tick.model, planned.at, side, ankle, posed[side].failed))
+        posed[side] = mended_leg(tick, state, pelvis, side, posed[side]);
+    }
+  }
+  WalkFrame* const frame = &state.frame;
+  for (const Side side : {kLeftSide, kRightSide})
+    report_leg<double>(tick.model, planned.at, pelvis, side, posed[side], state, {&frame, 1});
+}
+
+void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {
+  const Tick& tick = *planned.tick;
+  WalkState& state = *planned.state;
+  const int joints = static_cast<int>(tick.model.cycle.skeleton.joints.size());
+  pose.joint_count = joints;
+  pose.root_m = planned.pelvis.position_m;
+  write_pose<double>(tick.model, planned.at, state, planned.pelvis, {pose.local.data()});
+  pose_upper_body(tick, state,
+                  {pose.root_m, {pose.local.data(), static_cast<std::size_t>(joints)}});
+  end_tick(tick, planned.pelvis.position_m, state);
+}
+
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept {
-  const Tick tick = {model, params, dt_s, is_flat(*model.terrain)};
-  static thread_local PlannedTick planned;  // as in Crowd::advance_block()
-  plan_tick(tick, mode, state, planned);
-  pose_legs({&planned, 1}, mode);
+  const Tick tick = {model, params, mode, dt_s, is_flat(*model.terrain)};
+  static thread_local PlannedTick planned;  // kept, for clearing it costs more than a leg
+  plan_tick(tick, state, planned);
+  pose_legs(planned);
   finish_tick(planned, pose);
 }
 

@@ -2,6 +2,7 @@
 
 #include "motion/leg_pose.h"
 #include "motion/pose_rows.h"
+#include "motion/stride_lanes.h"
 
 namespace gaitpad {
 namespace {
@@ -326,10 +327,6 @@ bool has_overlong_leg(const GaitCycle& cycle) {
   return false;
 }
 
-vec3 pelvis_turned(const vec3& place_m, double yaw_rad, const vec3& tilt) noexcept {
-  return rotation_y(yaw_rad) * (from_rotation_vector(tilt) * place_m);
-}
-
 StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noexcept {
   StrideScale to;
   to.length = ratio;
@@ -337,8 +334,9 @@ StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noe
   to.hips_m = 0.5 * (cycle.leg[0].hip_m + cycle.leg[1].hip_m);
   to.stand_roll_rad = cycle.strides->stand_roll_rad;
   const double turns = ratio / scale;
-  to.standing_m = {pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, to.stand_roll_rad)),
-                   pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, turns * to.stand_roll_rad))};
+  to.standing_m = {
+      pelvis_turned<double>(to.hips_m, 0.0, vec3(0.0, 0.0, to.stand_roll_rad)),
+      pelvis_turned<double>(to.hips_m, 0.0, vec3(0.0, 0.0, turns * to.stand_roll_rad))};
   for (int side : {0, 1})
     to.apart_m[side] = vec3(cycle.leg[side].hip_m.x, 0.0, to.hips_m.z) * (scale - ratio);
   return to;
@@ -435,50 +433,23 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   lay_out_legs(model);
   lay_out_rows(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
+  for (ArmBuild& arm : model.body.arm) {
+    const auto column = [&model](int joint) {
+      const auto& joints = model.above.joint;
+      const auto at = std::find(joints.begin(), joints.end(), joint);
+      return at == joints.end() ? -1 : static_cast<int>(at - joints.begin());
+    };
+    arm.shoulder_column = column(arm.joints.shoulder);
+    arm.elbow_column = column(arm.joints.elbow);
+  }
   return model;
-}
-
-namespace {
-
-StrideTrack scaled(StrideTrack track, const StrideScale& to) noexcept {
-  track.stride_m *= to.length;
-  for (int side : {0, 1})
-    track.footprint_m[side] = track.footprint_m[side] * to.length + to.apart_m[side];
-  return track;
-}
-
-}  // namespace
-
-StrideTrack track_of(const WalkModel& model, bool backward, double ratio) noexcept {
-  const StrideFamily& family = *model.cycle.strides;
-  return scaled(track_at(backward ? family.back : family.table, ratio), model.stride_scale);
 }
 
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept {
   const StrideFamily& family = *model.cycle.strides;
   StridePlace place = stride_at(backward ? family.back : family.table, phase, ratio);
-  const StrideScale& to = model.stride_scale;
-  if (to.length == 1.0 && to.pelvis == 1.0) return place;
-  place.track = scaled(place.track, to);
-  StrideCell& cell = place.cell;
-  for (int side : {0, 1})
-    cell.foot[side].heel_m = cell.foot[side].heel_m * to.length + to.apart_m[side];
-  if (to.length == to.pelvis) {
-    cell.pelvis_m *= to.length;
-    return place;
-  }
-  // So that the legs keep their angles, the pelvis turns and rolls by as much less as it is wider,
-  // and is where the hips' middle has to be.
-  const double turns = to.length / to.pelvis;
-  const auto hips_m = [&](double share, const vec3& standing_m) {
-    vec3 tilt = cell.pelvis_tilt;
-    tilt.z = share * (tilt.z + to.stand_roll_rad);
-    return pelvis_turned(to.hips_m, share * cell.pelvis_yaw_rad, tilt) - standing_m;
-  };
-  cell.pelvis_m = to.length * (cell.pelvis_m + hips_m(1.0, to.standing_m[0])) -
-                  to.pelvis * hips_m(turns, to.standing_m[1]);
-  cell.pelvis_yaw_rad *= turns;
-  cell.pelvis_tilt.z *= turns;
+  scale_track<double>(model.stride_scale, place.track);
+  scale_stride<double>(model.stride_scale, place.cell);
   return place;
 }
 

@@ -21,8 +21,7 @@
 // second spline moves the foot along z, away from the riser. Down stairs that second spline moves
 // the foot ahead instead, and the first one is drawn taut over the edges, so that the foot sinks
 // early.
-#include "animation/walk_parts.h"
-#include "motion/leg_pose.h"
+#include "animation/walk_flow.h"
 
 namespace gaitpad {
 namespace {
@@ -183,7 +182,10 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   step.from_m = state.path.landing_m;
   step.stands = state.path.foothold.piece;
   const double wanted =
-      walks_on(tick.params, state) ? step_length(state, next) * state.path.foothold.share : 0.0;
+      walks_on(tick.params, state)
+          ? step_length<double>(moment_of(tick.model, state), state.gait.length_m[next].x) *
+                state.path.foothold.share
+          : 0.0;
   step.wanted_m = step.from_m + step.forward * wanted - across_m;
   const Terrain& terrain = *tick.model.terrain;
   bool fits = false;
@@ -284,7 +286,8 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   step.leg_m = tick.model.leg_length_m;
   const double yaw = state.path.landing_heading_rad;
   step.sole = sole_extent(tick.model.leg[swing], yaw);
-  const double length = step_length(state, swing);
+  const double length =
+      step_length<double>(moment_of(tick.model, state), state.gait.length_m[swing].x);
   const auto wanted = [&] { return step.from_m + forward * (length * landing.share) + across_m; };
   if (!flies) {
     landing.share = 1.0;
@@ -306,6 +309,63 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   }
   state.path.landing_m = state.path.landing_plane.place_m;
   if (moved) look_ahead(tick, step, across_m, state);
+}
+
+namespace {
+
+// --- Slopes --------------------------------------------------------------------------------------
+
+// Trunks lean by 5 to 6 degrees up a grade of 15 %, by 7 to 8 up stairs, and back by 2 downhill
+// (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
+constexpr double kUphillLean = 8.5 * kDegree, kDownhillLean = 3.0 * kDegree, kHalfLeanGrade = 0.09;
+constexpr double kShortestRun = 0.2;  // in legs: a step over less ground has no grade of its own
+constexpr double kSlopeLeanSmoothing = 0.3;
+constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
+constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
+constexpr double kGroundSmoothing_s = 0.3;
+constexpr double kRatioJump = 0.01;  // a tick: sticks are slower
+
+// A step that is to end on another tread than it was has another ratio at once. The tables are read
+// for one that goes there until the flight begins.
+void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
+  const double ratio = ratio_of_step<double>(tick.model, moment_of(tick.model, state), state);
+  const double change = ratio - state.gait.step_ratio;
+  state.gait.step_ratio = ratio;
+  if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
+    state.gait.off_ratio = {};
+  } else if (std::abs(change) > kRatioJump) {
+    state.gait.off_ratio.x -= change;
+  }
+  state.gait.off_ratio.advance(
+      state.clock.stage == Stage::roll ? state.clock.stage_ticks - state.clock.tick + 1 : 1);
+}
+
+}  // namespace
+
+void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
+  double lean = 0.0;
+  if (state.clock.started) {
+    const Side swing = step_foot(state);
+    const double rise = state.path.landing_m.y - state.foot[other(swing)].plane.place_m.y,
+                 run = std::max(std::abs(state.path.stride_m[swing]),
+                                kShortestRun * tick.model.leg_length_m);
+    const double grade = (state.clock.backward ? -rise : rise) / run;
+    lean = (grade > 0.0 ? kUphillLean : kDownhillLean) * grade / (std::abs(grade) + kHalfLeanGrade);
+  }
+  state.path.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
+}
+
+// Such steps roll and rise like short ones.
+void follow_ground(const Tick& tick, WalkState& state) noexcept {
+  const Side swing = step_foot(state);
+  const double wanted =
+      std::abs(step_length<double>(moment_of(tick.model, state), state.gait.length_m[swing].x));
+  const double share =
+      wanted < kShortStep * tick.model.source_step_m
+          ? 1.0
+          : std::clamp(std::abs(state.path.stride_m[swing]) / wanted, kLeastShare, 1.0);
+  state.gait.ground_share.advance(share, kGroundSmoothing_s * tick.model.time_scale, tick.dt_s);
+  keep_ratio_smooth(tick, state);
 }
 
 namespace {
@@ -417,6 +477,9 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
       base.off_m.a - base.drop_m * per_tick * per_tick * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s);
 }
 
+namespace {
+
+// How far a foot over ground of height `base_m` rises because the hips are over higher ground.
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                       Side side, double base_m) noexcept {
   const LegBuild& leg = model.leg[side];
@@ -425,10 +488,11 @@ double rise_with_hips(const WalkModel& model, const WalkState& state, const Stri
   // `early` then.
   double hover = 0.0;
   if (state.foot[side].mode == FootMode::flight)
-    hover = 0.5 * state.path.base.early_m * smoothstep(0.0, 0.5, flight_progress(state));
+    hover = 0.5 * state.path.base.early_m *
+            smoothstep(0.0, 0.5, moment_of(model, state).flight_progress());
   if (higher <= -2.0 * hover) return 0.0;
   const double knee = model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
-  const double known = span_m(leg.model, knee);
+  const double known = span_of<double>(leg.model, knee);
   const double room = std::max(0.0, kStretch * leg.model.length_m() - known),
                soft = kSoftStretch_m * model.size;
   const double up = std::max(0.0, higher);
@@ -436,6 +500,25 @@ double rise_with_hips(const WalkModel& model, const WalkState& state, const Stri
   // No further than a foot on its toe lifts its ankle.
   const double most = glm::length(leg.model.toe_m) + leg.model.toe_m.y;
   return soft_min(rise, kMostOnToe * most, kSoftOnToe * most);
+}
+
+// Pitches a foot on its toe so that its ankle is higher by `rise_m`.
+void pitch_to_rise(const LegBuild& leg, double rise_m, FootState& foot) noexcept {
+  if (rise_m == 0.0) return;
+  const double length = glm::length(leg.model.toe_m);
+  const double flat = asin_of(-leg.model.toe_m.y / length);
+  const double sine = sin_cos(std::min(flat + foot.pose.pitch_rad, kPi / 2.0)).sin;
+  const double higher = soft_min(sine + rise_m / length, kMostUpright, kSoftUpright);
+  const double pitch = std::max(foot.pose.pitch_rad, asin_of(higher) - flat);
+  pitch_foot(leg, pitch, foot.pose, foot.mode);
+}
+
+}  // namespace
+
+void rise_on_toe(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept {
+  FootState& foot = state.foot[side];
+  foot.rise_m = rise_with_hips(tick.model, state, plan, side, foot.base_m);
+  pitch_to_rise(tick.model.leg[side], foot.rise_m, foot);
 }
 
 namespace {
@@ -456,7 +539,28 @@ constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
 constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;
+constexpr double kInPlace_m = 0.1;   // a flight shorter than this climbs by time, not by place
 constexpr double kReplan_m = 0.005;  // a landing moved by more is planned for anew
+
+// The share of the climb, from one plane's height to the other's, that a flying foot has behind it:
+// the same as the share of its way over the ground, or of its time where it flies in place. It is 0
+// where a riser is crossed: then FlightRoom raises the foot.
+struct Ascent {
+  vec3 along_1_m{0.0};
+  double by_time = 0.0;
+  double at(const vec3& gone_m, double u) const noexcept {
+    return glm::dot(gone_m, along_1_m) + by_time * (1.0 - h00(u));
+  }
+};
+Ascent ascent(const WalkModel& model, const FootState& foot, const vec3& way_m) noexcept {
+  Ascent a;
+  if (foot.crosses_riser) return a;
+  const double square = way_m.x * way_m.x + way_m.z * way_m.z;
+  const double in_place = kInPlace_m * kInPlace_m * model.size * model.size;
+  a.along_1_m = vec3(way_m.x, 0.0, way_m.z) / (square + in_place);
+  a.by_time = in_place / (square + in_place);
+  return a;
+}
 
 // The spline from 0 at u = 0 to `end` at u = 1, with slope 0 at both.
 template <class Knots, class Value>
@@ -554,8 +658,8 @@ bool sharpen(const Wanted& beside, const FlightSpline& shift, double size, Ends&
 
 using Sole = std::array<vec3, 5>;  // heel and tip on both sides, ball
 Sole sole_of(const LegBuild& leg, const FootPose& pose) noexcept {
-  const quat foot = foot_rotation(leg, pose);
-  const quat toes = foot * toes_turn(leg, pose, -std::max(0.0, pose.pitch_rad));
+  const quat foot = foot_rotation<double>(leg, pose);
+  const quat toes = foot * toes_turn<double>(leg, pose, -std::max(0.0, pose.pitch_rad));
   const vec3 ball = pose.heel_m + foot * (leg.ball_m - leg.model.heel_m);
   const vec3 toe = pose.heel_m + foot * (leg.model.toe_m - leg.model.heel_m);
   const vec3 tip = toe + toes * (leg.tip_m - leg.model.toe_m);
@@ -605,6 +709,7 @@ struct Flight {
 Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
   const FootState& foot = state.foot[side];
+  const Moment at = moment_of(model, state);
   Flight flight;
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
@@ -612,9 +717,9 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
     const double share = (state.clock.roll_ticks + u * state.clock.flight_ticks) /
                          (state.clock.roll_ticks + state.clock.flight_ticks);
     StridePlan plan;
-    plan_stride(model, state, phase, share, plan);
-    flight.point[i] = flight_point(model, state, plan, side, u);
-    pitch_in_flight(model, state, plan, side, u, flight.point[i]);
+    plan_stride<double>(tick, at, state, phase, share, plan);
+    flight.point[i] = flight_point<double>(tick, at, state, plan, side, u);
+    pitch_in_flight<double>(model, at, state, plan, side, u, flight.point[i]);
     flight.sole[i] = sole_of(model.leg[side], flight.point[i].pose);
     flight.left[i] = state.path.landing_m.z - flight.point[i].pose.heel_m.z;
   }
@@ -804,8 +909,28 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   }
 }
 
-void keep_room(const Tick& tick, WalkState& state, Side side, double u,
-               FlightPoint& point) noexcept {
+Climb climb_of(const WalkModel& model, const WalkState& state, Side side, const vec3& place_m,
+               double u) noexcept {
+  const FootState& foot = state.foot[side];
+  const vec3 way = state.path.landing_m - foot.heel_anchor_m;
+  const double begin_m = height_on(foot.plane, foot.heel_anchor_m),
+               rise = state.path.landing_m.y - begin_m;
+  const Ascent risen = ascent(model, foot, way);
+  return {begin_m + rise * risen.at(place_m - foot.heel_anchor_m, u), rise / model.leg_length_m};
+}
+
+void tilt_in_flight(const WalkState& state, Side side, double gone, FlightPoint& point) noexcept {
+  const FootPlane& plane = state.foot[side].plane;
+  FootPose& pose = point.pose;
+  point.lifted_m = height_on(plane, pose.heel_m) - point.base_m;
+  pose.tilt = plane.tilt;
+  if (pose.tilt != state.path.landing_plane.tilt) {
+    pose.tilt = glm::normalize(pose.tilt * (1.0 - gone) + state.path.landing_plane.tilt * gone);
+  }
+}
+
+void clear_ground(const Tick& tick, WalkState& state, const StridePlan& plan, Side side, double u,
+                  FlightPoint& point) noexcept {
   FootState& foot = state.foot[side];
   FlightRoom& room = foot.room;
   if (glm::distance(room.planned_for_m, state.path.landing_m) > kReplan_m * tick.model.size)
@@ -819,6 +944,8 @@ void keep_room(const Tick& tick, WalkState& state, Side side, double u,
   const double raise = spline_at(room.raise, climb(state, foot), u, in_force);
   point.base_m += raise;
   point.pose.heel_m += vec3(0.0, raise, spline_at(room.shift, 0.0, u, in_force));
+  foot.rise_m = rise_with_hips(tick.model, state, plan, side, point.base_m);
+  point.pose.heel_m.y += foot.rise_m;
 }
 
 }  // namespace gaitpad

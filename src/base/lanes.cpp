@@ -28,7 +28,7 @@ int lanes_in_use() noexcept {
 }
 
 void use_lanes(int lanes) noexcept {
-  g_lanes.store(std::clamp(lanes, 2, widest_lanes()), std::memory_order_relaxed);
+  g_lanes.store(std::clamp(lanes, 1, widest_lanes()), std::memory_order_relaxed);
 }
 
 }  // namespace gaitpad

@@ -2,8 +2,11 @@
 // is computed as a double alone is: the same bits for any width. What happens in some lanes only is
 // chosen by masks.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "base/trigonometry.h"
 #include "gaitpad/math.h"
@@ -17,6 +20,7 @@ struct LanesOf {
 };
 template <int kWidth>
 using Lanes = typename LanesOf<kWidth>::Type;
+// What a comparison gives: of doubles a bool.
 template <class V>
 using MaskOf = decltype(V{} < V{});
 template <class V>
@@ -25,8 +29,8 @@ inline constexpr int kWidthOf = sizeof(V) / sizeof(double);
 // How many numbers this processor's registers hold: 8 with AVX-512, 4 with AVX2, else 2. What is
 // compiled for wider ones may not be called.
 int widest_lanes() noexcept;
-// How many are used: as many as there are, or as use_lanes() says (2, 4, 8), for tests and
-// measurements. The results are the same.
+// How many are used: as many as there are, or as use_lanes() says (1, 2, 4, 8), for tests and
+// measurements. The results are the same. With 1 the walks of a crowd are computed one by one.
 int lanes_in_use() noexcept;
 void use_lanes(int lanes) noexcept;
 
@@ -48,10 +52,43 @@ inline V abs_of(const V& a) noexcept {
 }
 template <class V>
 inline V sqrt_of(const V& a) noexcept {
-  V root;
-  for (int i = 0; i < kWidthOf<V>; ++i) root[i] = std::sqrt(a[i]);
-  return root;
+  if constexpr (kWidthOf<V> == 1) {
+    return std::sqrt(a);
+  } else {
+    V root;
+    for (int i = 0; i < kWidthOf<V>; ++i) root[i] = std::sqrt(a[i]);
+    return root;
+  }
 }
+inline double lane_of(double a, int) noexcept { return a; }
+template <class V>
+inline double lane_of(const V& a, int lane) noexcept {
+  return a[lane];
+}
+inline void set_lane(double to, int, double& a) noexcept { a = to; }
+template <class V>
+inline void set_lane(double to, int lane, V& a) noexcept {
+  a[lane] = to;
+}
+inline void set_lane(bool to, int, bool& mask) noexcept { mask = to; }
+template <class M>
+inline void set_lane(bool to, int lane, M& mask) noexcept {
+  mask[lane] = to ? -1 : 0;
+}
+inline bool is_set(bool mask, int) noexcept { return mask; }
+template <class M>
+inline bool is_set(const M& mask, int lane) noexcept {
+  return mask[lane] != 0;
+}
+// The operators & and | make ints of bools.
+inline bool not_of(bool mask) noexcept { return !mask; }
+inline bool not_of(int mask) noexcept { return mask == 0; }
+template <class M>
+inline M not_of(const M& mask) noexcept {
+  return ~mask;
+}
+inline bool any(bool mask) noexcept { return mask; }
+inline bool any(int mask) noexcept { return mask != 0; }
 template <class M>
 inline bool any(const M& mask) noexcept {
   if constexpr (kWidthOf < M >> 2) {  // half of it and half of it
@@ -64,7 +101,84 @@ inline bool any(const M& mask) noexcept {
   }
 }
 
+// --- Numbers of several walks from memory, and back ----------------------------------------------
+
+// Swaps rows and lanes of a square: number j of v[i] becomes number i of v[j].
+template <int kStep, bool kSecond, class V, std::size_t... kLane>
+inline V swapped_half(const V& a, const V& b, std::index_sequence<kLane...>) noexcept {
+  constexpr int n = kWidthOf<V>;
+  if constexpr (kSecond) {
+    return __builtin_shufflevector(a, b,
+                                   static_cast<int>(kLane & kStep ? kLane + n : kLane + kStep)...);
+  } else {
+    return __builtin_shufflevector(a, b,
+                                   static_cast<int>(kLane & kStep ? kLane - kStep + n : kLane)...);
+  }
+}
+// Of eight lanes and four rows, both halves are squares of their own.
+template <int kStep = 1, class V, std::size_t kRows>
+inline void transpose(std::array<V, kRows>& v) noexcept {
+  if constexpr (kStep < kRows) {
+    for (std::size_t i = 0; i < kRows; ++i) {
+      if (i & kStep) continue;
+      const V a = v[i], b = v[i + kStep];
+      v[i] = swapped_half<kStep, false>(a, b, std::make_index_sequence<kWidthOf<V>>());
+      v[i + kStep] = swapped_half<kStep, true>(a, b, std::make_index_sequence<kWidthOf<V>>());
+    }
+    transpose<2 * kStep>(v);
+  }
+}
+
+// `count` numbers of each lane, from where each lane has its own to one register for each number.
+template <class V>
+inline void load_lanes(const std::array<const double*, kWidthOf<V>>& from, int count,
+                       V* to) noexcept {
+  constexpr int n = kWidthOf<V>;
+  if constexpr (n == 1) {
+    std::copy_n(from[0], count, to);
+    return;
+  } else {
+    for (int k = 0; k < count; k += n) {
+      if (count < n) {
+        for (int j = 0; j < count; ++j)
+          for (int lane = 0; lane < n; ++lane) to[j][lane] = from[lane][j];
+        return;
+      }
+      // The last square begins earlier.
+      const int at = k + n <= count ? k : count - n;
+      std::array<V, n> square;
+      for (int lane = 0; lane < n; ++lane) std::memcpy(&square[lane], from[lane] + at, sizeof(V));
+      transpose(square);
+      for (int j = 0; j < n; ++j) to[at + j] = square[j];
+    }
+  }
+}
+// Back, for the first `lanes` of them.
+template <class V>
+inline void store_lanes(const V* from, int count, int lanes,
+                        const std::array<double*, kWidthOf<V>>& to) noexcept {
+  constexpr int n = kWidthOf<V>;
+  for (int k = 0; k < count; k += n) {
+    if (count < n) {
+      for (int j = 0; j < count; ++j)
+        for (int lane = 0; lane < lanes; ++lane) to[lane][j] = from[j][lane];
+      return;
+    }
+    const int at = k + n <= count ? k : count - n;
+    std::array<V, n> square;
+    for (int j = 0; j < n; ++j) square[j] = from[at + j];
+    transpose(square);
+    for (int lane = 0; lane < lanes; ++lane) std::memcpy(to[lane] + at, &square[lane], sizeof(V));
+  }
+}
+
+// --- Mathematics ---------------------------------------------------------------------------------
+
 // sin_cos() of gaitpad/math.h in each lane, for angles below 2^20.
+inline void sin_cos_of(double angle_rad, double& sine, double& cosine) noexcept {
+  const SinCos both = sin_cos(angle_rad);
+  sine = both.sin, cosine = both.cos;
+}
 template <class V>
 inline void sin_cos_of(const V& angle_rad, V& sine, V& cosine) noexcept {
   V x = angle_rad;
@@ -90,33 +204,50 @@ inline void sin_cos_of(const V& angle_rad, V& sine, V& cosine) noexcept {
   cosine = cos_kernel(x);
 }
 
-// A rotation in each lane.
+// The greatest whole number that is not greater, of numbers below 2^51.
+inline double floor_of(double x) noexcept { return std::floor(x); }
 template <class V>
-struct QuatOf {
-  V w, x, y, z;
-};
-template <class V>
-inline QuatOf<V> operator*(const QuatOf<V>& q, const V& k) noexcept {
-  return {q.w * k, q.x * k, q.y * k, q.z * k};
-}
-template <class V>
-inline QuatOf<V> operator+(const QuatOf<V>& a, const QuatOf<V>& b) noexcept {
-  return {a.w + b.w, a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class V>
-inline V dot_of(const QuatOf<V>& a, const QuatOf<V>& b) noexcept {
-  return (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z);
-}
-template <class V>
-inline QuatOf<V> normalized(const QuatOf<V>& q) noexcept {
-  return q * (1.0 / sqrt_of(dot_of(q, q)));
+inline V floor_of(const V& x) noexcept {
+  constexpr double kRound = 6755399441055744.0;  // as in sin_cos_of()
+  const V near = (x + kRound) - kRound;
+  return near > x ? near - 1.0 : near;
 }
 
-// A vector in space in each lane. The operations are those of glm, in its order.
+// atan2() and acos() of gaitpad/math.h.
 template <class V>
-struct Vec3Of {
-  V x, y, z;
-};
+inline V atan2_of(const V& y, const V& x) noexcept {
+  const V ax = abs_of(x), ay = abs_of(y);
+  // atan of r = |y / x|, reduced by atan r = atan c + atan((r - c) / (1 + c r)).
+  const V r = ay / ax, one = all_of<V>(1.0);
+  V whole{}, above = r, below = one;
+  const auto from = [&](double least, double atan_c, const V& over, const V& under) {
+    const auto here = not_of(r < all_of<V>(least));
+    whole = here ? all_of<V>(atan_c) : whole;
+    above = here ? over : above;
+    below = here ? under : below;
+  };
+  from(0.4375, 4.63647609000806093515e-01, 2.0 * r - 1.0, 2.0 + r);
+  from(0.6875, 7.85398163397448278999e-01, r - 1.0, r + 1.0);
+  from(1.1875, 9.82793723247329054082e-01, r - 1.5, 1.0 + 1.5 * r);
+  from(2.4375, 1.57079632679489655800e+00, -one, r);
+  V a = whole + atan_kernel(above / below);
+  a = ax > V{} ? a : all_of<V>(kPi / 2.0);
+  a = x < V{} ? kPi - a : a;
+  a = y < V{} ? -a : a;
+  return ((ax == V{}) & (ay == V{})) ? V{} : a;
+}
+template <class V>
+inline V acos_of(const V& x) noexcept {
+  const V c = within(x, -1.0, 1.0);
+  return atan2_of(sqrt_of((1.0 - c) * (1.0 + c)), c);
+}
+template <class V>
+inline V asin_of(const V& x) noexcept {
+  return kPi / 2.0 - acos_of(x);
+}
+
+// Vectors in space and rotations, one in each lane. The operations are those of glm, in its order;
+// of one lane they are glm's own.
 template <class V>
 inline Vec3Of<V> operator+(const Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -126,20 +257,166 @@ inline Vec3Of<V> operator-(const Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class V>
-inline Vec3Of<V> operator*(const V& k, const Vec3Of<V>& a) noexcept {
+inline Vec3Of<V>& operator+=(Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
+  return a = a + b;
+}
+template <class V>
+inline Vec3Of<V>& operator-=(Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
+  return a = a - b;
+}
+template <class V, class K>
+inline Vec3Of<V> operator*(const K& k, const Vec3Of<V>& a) noexcept {
   return {k * a.x, k * a.y, k * a.z};
+}
+template <class V, class K>
+inline Vec3Of<V> operator*(const Vec3Of<V>& a, const K& k) noexcept {
+  return {a.x * k, a.y * k, a.z * k};
+}
+template <class V, class K>
+inline Vec3Of<V> operator/(const Vec3Of<V>& a, const K& k) noexcept {
+  return {a.x / k, a.y / k, a.z / k};
 }
 template <class V>
 inline V dot_of(const Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+inline double dot_of(const vec3& a, const vec3& b) noexcept { return glm::dot(a, b); }
 template <class V>
 inline Vec3Of<V> cross_of(const Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
   return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
 }
+inline vec3 cross_of(const vec3& a, const vec3& b) noexcept { return glm::cross(a, b); }
+template <class V>
+inline auto length_of(const V& a) noexcept {
+  return sqrt_of(dot_of(a, a));
+}
 template <class V, class M>
 inline Vec3Of<V> chosen(const M& mask, const Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+// The same vector or rotation in each lane.
+template <class V>
+inline Vec<V> all_of(const vec3& a) noexcept {
+  if constexpr (kWidthOf<V> == 1) {
+    return a;
+  } else {
+    return {all_of<V>(a.x), all_of<V>(a.y), all_of<V>(a.z)};
+  }
+}
+template <class V>
+inline Quat<V> all_of(const quat& q) noexcept {
+  if constexpr (kWidthOf<V> == 1) {
+    return q;
+  } else {
+    return {all_of<V>(q.w), all_of<V>(q.x), all_of<V>(q.y), all_of<V>(q.z)};
+  }
+}
+
+template <class V>
+inline QuatOf<V> operator*(const QuatOf<V>& q, const V& k) noexcept {
+  return {q.w * k, q.x * k, q.y * k, q.z * k};
+}
+template <class V>
+inline QuatOf<V> operator+(const QuatOf<V>& a, const QuatOf<V>& b) noexcept {
+  return {a.w + b.w, a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class V>
+inline QuatOf<V> operator*(const QuatOf<V>& p, const QuatOf<V>& q) noexcept {
+  return {
+      p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
+      p.w * q.y + p.y * q.w + p.z * q.x - p.x * q.z, p.w * q.z + p.z * q.w + p.x * q.y - p.y * q.x};
+}
+template <class V>
+inline Vec3Of<V> operator*(const QuatOf<V>& q, const Vec3Of<V>& v) noexcept {
+  const Vec3Of<V> axis{q.x, q.y, q.z}, uv = cross_of(axis, v), uuv = cross_of(axis, uv);
+  return v + ((uv * q.w) + uuv) * 2.0;
+}
+template <class V>
+inline QuatOf<V> conjugate_of(const QuatOf<V>& q) noexcept {
+  return {q.w, -q.x, -q.y, -q.z};
+}
+inline quat conjugate_of(const quat& q) noexcept { return glm::conjugate(q); }
+template <class V>
+inline V dot_of(const QuatOf<V>& a, const QuatOf<V>& b) noexcept {
+  return (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z);
+}
+inline double dot_of(const quat& a, const quat& b) noexcept { return glm::dot(a, b); }
+template <class V>
+inline QuatOf<V> normalized(const QuatOf<V>& q) noexcept {
+  return q * (1.0 / sqrt_of(dot_of(q, q)));
+}
+inline quat normalized(const quat& q) noexcept { return glm::normalize(q); }
+template <class V, class M>
+inline QuatOf<V> chosen(const M& mask, const QuatOf<V>& a, const QuatOf<V>& b) noexcept {
+  return {mask ? a.w : b.w, mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+template <class V>
+inline V chosen(const MaskOf<V>& mask, const V& a, const V& b) noexcept {
+  return mask ? a : b;
+}
+inline vec3 chosen(bool mask, const vec3& a, const vec3& b) noexcept { return mask ? a : b; }
+inline quat chosen(bool mask, const quat& a, const quat& b) noexcept { return mask ? a : b; }
+
+// A rotation of each lane to where its walk has it.
+template <class V>
+inline void store_quats(const QuatOf<V>& q, const std::array<quat*, kWidthOf<V>>& to) noexcept {
+  constexpr int n = kWidthOf<V>;
+  if constexpr (n == 2) {
+    std::array<V, 2> xy = {q.x, q.y}, zw = {q.z, q.w};
+    transpose(xy);
+    transpose(zw);
+    for (int lane = 0; lane < 2; ++lane) {
+      std::memcpy(to[lane], &xy[lane], sizeof(V));
+      std::memcpy(reinterpret_cast<double*>(to[lane]) + 2, &zw[lane], sizeof(V));
+    }
+  } else {
+    // Rows of four numbers: lanes 0 .. 3, and of eight lanes 4 .. 7, too.
+    std::array<V, 4> square = {q.x, q.y, q.z, q.w};
+    transpose(square);
+    for (int lane = 0; lane < n; ++lane) {
+      std::memcpy(to[lane], reinterpret_cast<const double*>(&square[lane % 4]) + lane / 4 * 4,
+                  sizeof(quat));
+    }
+  }
+}
+
+// The rotations of gaitpad/math.h.
+template <class V>
+inline Quat<V> rotation_about_x(const V& angle_rad) noexcept {
+  V sine, cosine;
+  sin_cos_of(V(0.5 * angle_rad), sine, cosine);
+  return Quat<V>(cosine, sine, V{}, V{});
+}
+template <class V>
+inline Quat<V> rotation_about_y(const V& angle_rad) noexcept {
+  V sine, cosine;
+  sin_cos_of(V(0.5 * angle_rad), sine, cosine);
+  return Quat<V>(cosine, V{}, sine, V{});
+}
+template <class V>
+inline Quat<V> rotation_about_z(const V& angle_rad) noexcept {
+  V sine, cosine;
+  sin_cos_of(V(0.5 * angle_rad), sine, cosine);
+  return Quat<V>(cosine, V{}, V{}, sine);
+}
+template <class V>
+inline Quat<V> rotation_about_axis(const Vec<V>& unit_axis, const V& angle_rad) noexcept {
+  V sine, cosine;
+  sin_cos_of(V(0.5 * angle_rad), sine, cosine);
+  return Quat<V>(cosine, unit_axis.x * sine, unit_axis.y * sine, unit_axis.z * sine);
+}
+template <class V>
+inline Quat<V> rotation_by_vector(const Vec<V>& v) noexcept {
+  const V angle = length_of(v);
+  const auto is_small = angle < all_of<V>(1e-12);
+  const V one = all_of<V>(1.0);
+  return chosen(is_small, normalized(Quat<V>(one, 0.5 * v.x, 0.5 * v.y, 0.5 * v.z)),
+                rotation_about_axis<V>(v / (is_small ? one : angle), angle));
+}
+template <class V>
+inline Quat<V> nlerp_of(const Quat<V>& from, const Quat<V>& to, const V& share) noexcept {
+  const V one = all_of<V>(1.0), sign = dot_of(from, to) < V{} ? -one : one;
+  return normalized(from * (1.0 - share) + to * (sign * share));
 }
 
 }  // namespace gaitpad

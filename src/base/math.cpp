@@ -3,39 +3,9 @@
 #include <cassert>
 #include <cstdint>
 
-#include "base/trigonometry.h"
+#include "base/lanes.h"
 
 namespace gaitpad {
-namespace {
-
-// atan on [0, 7/16] (fdlibm s_atan.c).
-double atan_kernel(double x) noexcept {
-  const double z = x * x, w = z * z;
-  const double s1 =
-      z * (3.33333333333329318027e-01 +
-           w * (1.42857142725034663711e-01 +
-                w * (9.09088713343650656196e-02 +
-                     w * (6.66107313738753120669e-02 +
-                          w * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02)))));
-  const double s2 =
-      w * (-1.99999999998764832476e-01 +
-           w * (-1.11111104054623557880e-01 +
-                w * (-7.69187620504482999495e-02 +
-                     w * (-5.83357013379057348645e-02 + w * -3.65315727442169155270e-02))));
-  return x - x * (s1 + s2);
-}
-
-// atan for x >= 0: reduced by atan x = atan c + atan((x - c) / (1 + c x)).
-double atan_positive(double x) noexcept {
-  if (x < 0.4375) return atan_kernel(x);
-  if (x < 0.6875) return 4.63647609000806093515e-01 + atan_kernel((2.0 * x - 1.0) / (2.0 + x));
-  if (x < 1.1875) return 7.85398163397448278999e-01 + atan_kernel((x - 1.0) / (x + 1.0));
-  if (x < 2.4375) return 9.82793723247329054082e-01 + atan_kernel((x - 1.5) / (1.0 + 1.5 * x));
-  return 1.57079632679489655800e+00 - atan_kernel(1.0 / x);
-}
-
-}  // namespace
-
 SinCos sin_cos(double angle_rad) noexcept {
   // Below pi/4 nothing is to be reduced: the result has the same bits without the work.
   if (std::abs(angle_rad) < 0.785) return {sin_kernel(angle_rad), cos_kernel(angle_rad)};
@@ -57,13 +27,7 @@ SinCos sin_cos(double angle_rad) noexcept {
   }
 }
 
-double atan2(double y, double x) noexcept {
-  const double ax = std::abs(x), ay = std::abs(y);
-  if (ax == 0.0 && ay == 0.0) return 0.0;
-  double a = ax > 0.0 ? atan_positive(ay / ax) : kPi / 2.0;
-  if (x < 0.0) a = kPi - a;
-  return y < 0.0 ? -a : a;
-}
+double atan2(double y, double x) noexcept { return atan2_of(y, x); }
 
 double acos(double x) noexcept {
   const double c = std::clamp(x, -1.0, 1.0);

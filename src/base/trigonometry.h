@@ -1,4 +1,4 @@
-// Sine and cosine near 0, for a double and for lanes of doubles.
+// Sine, cosine and arc tangent near 0, for a double and for lanes of doubles.
 #pragma once
 
 namespace gaitpad {
@@ -29,6 +29,24 @@ inline X cos_kernel(const X& x) noexcept {
                         z * (-2.75573143513906633035e-07 +
                              z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11))));
   return 1.0 - 0.5 * z + z * z * p;
+}
+
+// atan on [-7/16, 7/16] (fdlibm s_atan.c).
+template <class X>
+inline X atan_kernel(const X& x) noexcept {
+  const X z = x * x, w = z * z;
+  const X s1 =
+      z * (3.33333333333329318027e-01 +
+           w * (1.42857142725034663711e-01 +
+                w * (9.09088713343650656196e-02 +
+                     w * (6.66107313738753120669e-02 +
+                          w * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02)))));
+  const X s2 =
+      w * (-1.99999999998764832476e-01 +
+           w * (-1.11111104054623557880e-01 +
+                w * (-7.69187620504482999495e-02 +
+                     w * (-5.83357013379057348645e-02 + w * -3.65315727442169155270e-02))));
+  return x - x * (s1 + s2);
 }
 
 }  // namespace gaitpad

@@ -12,7 +12,4 @@ namespace gaitpad {
 // move is the identity.
 PoseRows pose_rows(const GaitCycle& cycle, std::span<const bool> is_left_out);
 
-// Sets the local rotations of the table's joints, and of those that do not move.
-void sample_rows(const PoseRows& rows, double phase, Pose& pose) noexcept;
-
 }  // namespace gaitpad

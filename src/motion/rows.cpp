@@ -15,9 +15,20 @@ void blend_rows(const BlendedRows& rows) noexcept {
   }
 }
 
-void sum_rows(const SummedRows& rows) noexcept {
+void fade_rows(const BlendedRows& rows) noexcept {
   const int lanes = lanes_in_use();
   if (lanes >= 8) {
+    fade_rows<8>(rows);
+  } else if (lanes >= 4) {
+    fade_rows<4>(rows);
+  } else {
+    fade_rows<2>(rows);
+  }
+}
+
+void sum_rows(const SummedRows& rows) noexcept {
+  const int lanes = lanes_in_use();
+  if (lanes >= 8 && rows.numbers >= 8) {
     sum_rows<8>(rows);
   } else if (lanes >= 4) {
     sum_rows<4>(rows);

@@ -4,6 +4,7 @@
 namespace gaitpad {
 
 template void blend_rows<4>(const BlendedRows&) noexcept;
+template void fade_rows<4>(const BlendedRows&) noexcept;
 template void sum_rows<4>(const SummedRows&) noexcept;
 
 }  // namespace gaitpad

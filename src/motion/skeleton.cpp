@@ -37,14 +37,14 @@ void forward_kinematics(const Skeleton& skeleton, const Pose& pose, JointFrames&
   }
 }
 
-void forward_kinematics(const Skeleton& skeleton, const Pose& pose, std::span<const int> joints,
-                        JointFrames& frames) noexcept {
+void forward_kinematics(const Skeleton& skeleton, const vec3& root_m, std::span<const quat> local,
+                        std::span<const int> joints, JointFrames& frames) noexcept {
   for (const int j : joints) {
     const Joint& joint = skeleton.joints[j];
     if (joint.parent < 0) {
-      carry_root(pose.root_m, pose.local[j], frames);
+      carry_root(root_m, local[j], frames);
     } else {
-      carry_joint(j, joint.parent, joint.offset_m, pose.local[j], frames);
+      carry_joint(j, joint.parent, joint.offset_m, local[j], frames);
     }
   }
 }

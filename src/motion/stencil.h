@@ -8,6 +8,20 @@
 
 namespace gaitpad {
 
+// Catmull-Rom weights of four neighbours, between the second and the third.
+template <class V>
+std::array<V, 4> cubic_weights(const V& t) noexcept {
+  return {0.5 * t * (-1.0 + t * (2.0 - t)), 1.0 + 0.5 * t * t * (3.0 * t - 5.0),
+          0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
+}
+// Weights of four neighbouring knots of a uniform cubic B-spline.
+template <class V>
+std::array<V, 4> spline_weights(const V& t) noexcept {
+  const V s = 1.0 - t;
+  return {s * s * s / 6.0, (4.0 + t * t * (3.0 * t - 6.0)) / 6.0,
+          (4.0 + s * s * (3.0 * s - 6.0)) / 6.0, t * t * t / 6.0};
+}
+
 // The four samples around a phase and their Catmull-Rom weights.
 struct Stencil {
   std::array<int, 4> index;
@@ -21,10 +35,7 @@ inline Stencil stencil_at(double phase) noexcept {
   const double t = place - i;
   Stencil s;
   for (int k = 0; k < 4; ++k) s.index[k] = (i + k - 1 + kCycleSamples) % kCycleSamples;
-  s.weight[0] = 0.5 * t * (-1.0 + t * (2.0 - t));
-  s.weight[1] = 1.0 + 0.5 * t * t * (3.0 * t - 5.0);
-  s.weight[2] = 0.5 * t * (1.0 + t * (4.0 - 3.0 * t));
-  s.weight[3] = 0.5 * t * t * (t - 1.0);
+  s.weight = cubic_weights(t);
   return s;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 namespace gaitpad {
@@ -189,10 +190,12 @@ std::string claims_table(const std::vector<Claim>& claims) {
   return text;
 }
 
-std::vector<Claim> all_claims(Study& study) {
+std::vector<Claim> all_claims(Study& study, const std::function<void(double share)>& progress) {
   Claims all;
+  double done = 0.0;
   for (const Group group : kGroups) {
     for (const IkMode mode : {IkMode::paper, IkMode::robust}) {
+      if (progress) progress(done++ / (2.0 * std::size(kGroups)));
       for (Claim& claim : group(study, mode)) all.push_back(std::move(claim));
     }
   }

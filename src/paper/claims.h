@@ -3,6 +3,7 @@
 // method; where the walk itself has a stricter bound, that one counts. A claim that does not hold
 // as the paper words it is reported as failed.
 #pragma once
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -60,8 +61,9 @@ std::string claims_json(const std::string& motion, const std::vector<Claim>& cla
 // One line for each claim, for people.
 std::string claims_table(const std::vector<Claim>& claims);
 
-// All groups, ordered by number; those that depend on the solver in both modes.
-std::vector<Claim> all_claims(Study& study);
+// All groups, ordered by number; those that depend on the solver in both modes. `progress`, if
+// there is one, is told now and then which share of them is measured.
+std::vector<Claim> all_claims(Study& study, const std::function<void(double share)>& progress = {});
 
 // Each of the following measures one group of assertions from what it is given, so that a test can
 // hand it a broken walk.

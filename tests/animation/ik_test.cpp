@@ -13,14 +13,8 @@
 namespace gaitpad::test {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef GAITPAD_SANITIZED
 constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 #else
 constexpr bool kSanitized = false;
 #endif

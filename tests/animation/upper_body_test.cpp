@@ -388,7 +388,7 @@ TEST(WalkBody, ArmsSwingFartherWithLongerAndWithQuickerSteps) {
 TEST(WalkBody, AtTheDatasPaceArmsSwingAsInTheData) {
   MadeBody walker;
   walker.pace(2400, adult().source_step_m, adult().body.own_step_s);
-  EXPECT_NEAR(walker.state().body.swing[0], 1.0, 1e-6);
+  EXPECT_NEAR(walker.state().gait.arm_swing[0], 1.0, 1e-6);
   const double arc = arm_arc(adult().source_step_m, adult().body.own_step_s).width();
   EXPECT_GT(arc, 24.6);  // normative arc at free speed
   EXPECT_LT(arc, 32.0);

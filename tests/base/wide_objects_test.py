@@ -8,7 +8,8 @@ import pytest
 
 from support.program import ROOT
 
-BODIES = ("gaitpad::solve_legs<", "gaitpad::blend_rows<", "gaitpad::sum_rows<")
+BODIES = ("gaitpad::solve_legs<", "gaitpad::advance_lanes<", "gaitpad::blend_rows<", "gaitpad::fade_rows<",
+          "gaitpad::sum_rows<", "gaitpad::sum_group<")
 
 
 def test_wide_objects_hold_their_own_functions_alone(program):
@@ -20,6 +21,7 @@ def test_wide_objects_hold_their_own_functions_alone(program):
         path = program.parent / f"CMakeFiles/gaitpad_core.dir/{source.relative_to(ROOT)}.o"
         lines = subprocess.run(["nm", "-C", "--defined-only", path], capture_output=True, text=True, check=True).stdout
         functions = [line.split(" ", 2)[2] for line in lines.splitlines() if line[17] in "TWV"]
-        own = [name for name in functions if any(body in name for body in BODIES)]
+        # What is computed with such a register carries it in its name.
+        own = [name for name in functions if "double __vector(" in name or any(body in name for body in BODIES)]
         assert own, f"{path.name} holds none of {BODIES}"
         assert functions == own, f"{path.name} holds {set(functions) - set(own)}"

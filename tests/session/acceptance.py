@@ -44,6 +44,7 @@ NOT_MET = {
                                       "has the height that it left the ground with"),
     "weights, left: hip RMS": ("", 0.9, 1.5, "one leg's hip alone can change little while its foot stands"),
     "ik_failures": ("cmu_m21_walk leg 0.6 start and stop", 0, 8, "a knee that the capture bends back"),
+    "toe joint d2, changing": ("cmu_m21_walk leg 0.6 back", 1.0, 1.02, "the first backward flight of the shortest legs"),
     "smallest knee angle": ("cmu_m21_walk leg 0.6 start and stop", 0.9, 1.1, "a knee that the capture bends back"),
 }
 
@@ -324,12 +325,16 @@ def arguments(words=None):
 
 
 def motions_to_run(options):
-    """The built-in motion and the captured motions that are available."""
+    """The built-in motion and the captured motions that are available, then those that are not."""
     captured = [m for m in options.motions.split(",") if m][:1 if options.quick else None]
     there = [m for m in captured if os.path.exists(os.path.join(options.data, m + ".bvh"))]
-    for name in (m for m in captured if m not in there):
-        print(f"skipped: {name}.bvh is not in {options.data}", file=sys.stderr)
-    return ["default"] + there
+    return ["default"] + there, [m for m in captured if m not in there]
+
+
+def coverage_text(motions, missing, results):
+    """How many cases ran, with which motions, and which data were missing."""
+    text = f"{len(results)} cases ran, with the motions {', '.join(motions)}"
+    return text + "".join(f"\nmissing data: {name}.bvh is not in {folder}; its cases did not run" for name, folder in missing)
 
 
 def run_motions(motions, options, processes=2):
@@ -357,17 +362,21 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         options.out = os.path.abspath(options.out or scratch)
         os.makedirs(options.out, exist_ok=True)
-        results = run_motions(motions_to_run(options), options)
+        motions, missing = motions_to_run(options)
+        results = run_motions(motions, options)
+    coverage = coverage_text(motions, [(name, options.data) for name in missing], results)
     lines, count = failures_text(results)
     figures = json.dumps({label: [c.as_dict() for c in checks] for label, checks in results}, indent=1)
     if options.json_file:
         pathlib.Path(options.json_file).write_text(figures + "\n")
     if options.json:
         print(figures)
+        print(coverage, file=sys.stderr)
     else:
         print(summary_table(results))
         print("\n".join(lines))
-        print(f"{len(results)} runs and comparisons, {count} bounds broken, {time.time() - started:.0f} s")
+        print(coverage)
+        print(f"{count} bounds broken, {time.time() - started:.0f} s")
     return 1 if count else 0
 
 

@@ -133,8 +133,8 @@ TEST(Followers, StandOnTheTerrain) {
     for (int i = 0; i < 12; ++i) {
       const WalkFrame& frame = simulation.followers().crowd().state(i).frame;
       for (const Side side : {kLeftSide, kRightSide}) {
-        if (frame.toe_planted[side])
-          ASSERT_NEAR(frame.toe_m[side].y, frame.toe_ground_m[side], 0.05) << tick << " " << i;
+        if (!frame.toe_planted[side]) continue;
+        ASSERT_NEAR(frame.toe_m[side].y, frame.toe_ground_m[side], 0.05) << tick << " " << i;
       }
     }
   }

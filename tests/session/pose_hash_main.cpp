@@ -42,7 +42,9 @@ int walk(const char* name, const SimulationConfig& config) {
 Result<GaitCycle> cycle_through_file(const std::string& path) {
   const Motion motion = procedural_motion();
   std::ofstream out(path);
-  BvhWriter writer(out, motion.skeleton, {.frame_time_s = motion.frame_time_s});
+  BvhLayout layout;
+  layout.frame_time_s = motion.frame_time_s;
+  BvhWriter writer(out, motion.skeleton, layout);
   for (const MotionFrame& frame : motion.frames) {
     Pose pose;
     pose.root_m = frame.root_m;

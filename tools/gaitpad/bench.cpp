@@ -19,6 +19,7 @@
 
 #include "base/lanes.h"
 #include "tools/gaitpad/bench_work.h"
+#include "tools/gaitpad/run_end.h"
 #ifdef GAITPAD_HAS_WINDOW
 #include "draw/plot.h"
 #include "paper/page.h"
@@ -146,7 +147,9 @@ std::vector<Row> measured(const std::vector<Work>& works, int rounds, const Core
       rows.push_back({&work, static_cast<int>(k), {}});
     passes.push_back(block_of(work, 0).passes);
   }
+  Progress progress("gaitpad bench");
   for (int round = 0; round < rounds; ++round) {
+    progress.show(static_cast<double>(round) / rounds);
     for (std::size_t i = 0; i < works.size(); ++i) {
       const Work& work = works[i];
       if (round % work.every != 0) continue;
@@ -158,6 +161,7 @@ std::vector<Row> measured(const std::vector<Work>& works, int rounds, const Core
       }
     }
   }
+  progress.clear();
   cores.use_all();
   return rows;
 }
@@ -256,6 +260,7 @@ const char* heading_of(const std::string& name) {
   if (name.starts_with("char") || name == "step") return "a character, at the trace's 240 Hz";
   if (name == "crowd") return "a character in a crowd, ticks of 1/60 s";
   if (name == "crowd_all_cores") return "the same on all cores";
+  if (name == "crowd_memory") return "a character's state and pose, moved and not computed";
   return "loading";
 }
 
@@ -351,7 +356,7 @@ std::optional<Error> write_plot(const std::string& path, const std::vector<Row>&
   for (const Row& row : rows)
     if (row.work->name == "crowd") largest = std::max(largest, double(row.work->characters));
   std::size_t next_colour = 0;
-  for (int lanes = widest_lanes(); lanes >= 2; lanes /= 2) {
+  for (int lanes = widest_lanes(); lanes >= 1; lanes /= 2) {
     std::vector<PlotPoint> points;
     for (const Row& row : rows)
       if (row.work->name == "crowd" && row.work->width == lanes)

@@ -12,14 +12,13 @@
 #include <random>
 
 #include "animation/leg_ik.h"
-#include "animation/walk_parts.h"
+#include "animation/walk_figure.h"
 #include "base/lanes.h"
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/crowd.h"
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
-#include "motion/pose_rows.h"
 #include "session/workers.h"
 #include "tools/gaitpad/options.h"
 
@@ -94,11 +93,9 @@ std::vector<Stick> sticks_of(const Session& session, Simulation simulation) {
 // --- One leg: the solver alone, warm -------------------------------------------------------------
 
 constexpr int kSnapshotTicks = 40;
-constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};  // those of the walk
 constexpr PaperOptions kPaper = {.tolerance_m = 1e-5};
-constexpr double kLeak_per_s = 4.0, kLeastWeight = 0.05, kSideLever_m = 0.1;
 
-IkAngles padded(const LegAngles& angles) {
+IkAngles all_angles(const LegAngles& angles) {
   IkAngles all{};
   std::copy(angles.begin(), angles.end(), all.begin());
   return all;
@@ -117,11 +114,6 @@ std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool i
   return {row(effector, side),  row(effector, across),
           row(effector, along), row(other, side),
           row(other, across),   row(effector + kSideLever_m * leg.side, across)};
-}
-
-template <class V>
-void set_vector(const vec3& from, int lane, Vec3Of<V>& to) {
-  to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
 }
 
 // Both legs of one tick, as the walk solves them: side by side. They start where the walk's solver
@@ -150,12 +142,13 @@ void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<
     goals.min_rad[kAnkleX][side] = -kPi;
     goals.thigh_m[side] = leg.model.thigh_m;
     goals.shank_m[side] = leg.model.shank_m;
-    const auto rows = foot_rows(leg, end_frame(leg.chain, padded(solved.angles_rad[side])), false);
+    const auto rows =
+        foot_rows(leg, end_frame(leg.chain, all_angles(solved.angles_rad[side])), false);
     for (const auto& [row, point] : {std::pair(0, 0), {3, 1}, {5, 2}})
-      set_vector(rows[row].point_m, side, goals.point_m[point]);
-    set_vector(rows[0].direction, side, goals.side);
-    set_vector(rows[1].direction, side, goals.across);
-    set_vector(rows[2].direction, side, goals.along);
+      set_lanes(rows[row].point_m, side, goals.point_m[point]);
+    set_lanes(rows[0].direction, side, goals.side);
+    set_lanes(rows[1].direction, side, goals.across);
+    set_lanes(rows[2].direction, side, goals.along);
     for (int r = 0; r < 6; ++r) goals.goal_m[r][side] = rows[r].goal_m;
   }
 }
@@ -173,12 +166,14 @@ void add_legs(const Walker& before, const Walker& now, double, std::vector<Paper
     PaperLeg& solve = legs.emplace_back();
     solve.chain = leg.chain;
     for (int j = 0; j < kLegDofs; ++j) solve.chain.dof[j].weight = now.state.gait.weight[side][j].x;
-    solve.rows = foot_rows(leg, end_frame(leg.chain, padded(now.state.legs.angles_rad[side])),
+    solve.rows = foot_rows(leg, end_frame(leg.chain, all_angles(now.state.legs.angles_rad[side])),
                            mode == FootMode::support);
-    const bool both = mode == FootMode::roll ||
-                      (mode == FootMode::support && heel_rise(*now.model, now.state, side) == 0.0);
+    const bool both =
+        mode == FootMode::roll ||
+        (mode == FootMode::support &&
+         heel_rise<double>(*now.model, moment_of(*now.model, now.state), side) == 0.0);
     solve.row_count = both ? 5 : 3;
-    solve.start = padded(before.state.legs.angles_rad[side]);
+    solve.start = all_angles(before.state.legs.angles_rad[side]);
   }
 }
 
@@ -318,7 +313,8 @@ struct LiveWalkers {
   }
 };
 
-Work character_work(const char* name, const char* label, std::shared_ptr<LiveWalkers> walkers) {
+Work character_work(const char* name, const char* label,
+                    const std::shared_ptr<LiveWalkers>& walkers) {
   Work work;
   work.name = name;
   work.label = label;
@@ -350,20 +346,22 @@ Work stage_work(const Session& session, const Simulation& simulation,
     std::array<std::optional<Tick>, kTogether> ticks;
     at[0] = Clock::now();
     for (std::size_t i = 0; i < kTogether; ++i) {
-      ticks[i].emplace(Tick{*all[i].model, all[i].params, walkers->dt_s, true});
-      plan_tick(*ticks[i], IkMode::robust, all[i].state, (*planned)[i]);
+      ticks[i].emplace(Tick{*all[i].model, all[i].params, IkMode::robust, walkers->dt_s, true});
+      plan_tick(*ticks[i], all[i].state, (*planned)[i]);
     }
     at[1] = Clock::now();
-    for (LiveWalkers::One& one : all) {
+    for (const PlannedTick& one : *planned) {
       StridePlan plan;
-      plan_stride(*one.model, one.state, plan);
+      plan_stride<double>(*one.tick, one.at, *one.state, plan);
       benchmark::DoNotOptimize(plan);
     }
     at[2] = Clock::now();
-    for (PlannedTick& one : *planned) pose_legs({&one, 1}, IkMode::robust);
+    for (const PlannedTick& one : *planned) pose_legs(one);
     at[3] = Clock::now();
-    for (LiveWalkers::One& one : all)
-      sample_rows(one.model->above, data_phase(*one.model, one.state), one.pose);
+    for (std::size_t i = 0; i < kTogether; ++i) {
+      const PlannedTick& one = (*planned)[i];
+      write_data<double>(one.tick->model, one.at, one.state->gait, {all[i].pose.local.data()});
+    }
     at[4] = Clock::now();
     for (std::size_t i = 0; i < kTogether; ++i) finish_tick((*planned)[i], all[i].pose);
     at[5] = Clock::now();
@@ -516,7 +514,8 @@ Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, Crow
   for (int tick = 0; tick < warm; ++tick) crowd->advance(workers.get());
   Work work;
   work.name = "crowd";
-  work.label = fmt::format("{:6}   {} lanes", size, lanes);
+  work.label = lanes == 1 ? fmt::format("{:6}   one after another", size)
+                          : fmt::format("{:6}   {} lanes", size, lanes);
   work.characters = size;
   work.units = size;
   work.width = lanes;
@@ -533,10 +532,44 @@ Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, Crow
     return work;
   }
   if (size == 1000) {
-    work.most_ratio = lanes >= 8 ? 0.6 : lanes >= 4 ? 0.9 : 1.5;
+    work.most_ratio = lanes >= 8 ? 0.6 : lanes >= 4 ? 0.9 : lanes >= 2 ? 1.5 : 0.0;
     work.most_ns = lanes >= 8 ? 600.0 : 0.0;
   }
   work.pass = [crowd] { crowd->advance(nullptr); };
+  return work;
+}
+
+// The limit by memory: a crowd's states and poses are read and written once, its parameters are
+// read, and nothing is computed.
+Work memory_work(const CrowdCast& cast, int size) {
+  struct Memory {
+    std::vector<std::array<double, sizeof(WalkState) / sizeof(double)>> states;
+    std::vector<quat> poses;
+    std::vector<GaitParams> params;
+  };
+  const std::size_t count = static_cast<std::size_t>(size),
+                    joints = cast.models.front()->cycle.standing_local.size();
+  const auto memory = std::make_shared<Memory>();
+  memory->states.resize(count);
+  memory->poses.resize(count * joints, kIdentity);
+  memory->params.resize(count);
+  Work work;
+  work.name = "crowd_memory";
+  work.label = fmt::format("{:6}   its memory alone", size);
+  work.characters = size;
+  work.units = size;
+  work.over = "playback";
+  work.every = size >= kLarge ? 3 : 1;
+  work.notes["bytes"] = sizeof(WalkState) + joints * sizeof(quat) + sizeof(GaitParams);
+  work.pass = [memory, joints] {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < memory->states.size(); ++i) {
+      for (double& number : memory->states[i]) number += 1.0;
+      for (quat& q : std::span(memory->poses).subspan(i * joints, joints)) q = -q;
+      for (const LegWeights& weights : memory->params[i].weight) sum += weights[0];
+    }
+    benchmark::DoNotOptimize(sum);
+  };
   return work;
 }
 
@@ -659,7 +692,7 @@ Result<std::vector<Work>> bench_work(int most_characters) {
   sizes.push_back(most_characters);
   const int widest = widest_lanes();
   const auto workers = std::make_shared<Workers>(machine_threads());
-  for (int lanes = widest; lanes >= 2; lanes /= 2)
+  for (int lanes = widest; lanes >= 1; lanes /= 2)
     for (const int size : sizes)
       if (size <= 1000 || lanes == widest)
         list.push_back(crowd_work(cast, size, lanes, CrowdCores::one, workers));
@@ -667,6 +700,8 @@ Result<std::vector<Work>> bench_work(int most_characters) {
     if (workers->threads() > 1 && size <= most_characters)
       list.push_back(crowd_work(cast, size, widest, CrowdCores::all, workers));
   use_lanes(widest);
+  for (const int size : sizes)
+    if (size >= 64) list.push_back(memory_work(*cast, size));
 
   auto loads = load_work();
   if (!loads) return loads.error();

@@ -19,7 +19,7 @@ using StageTimes = std::array<double, kStages.size()>;
 struct Work {
   std::string name, label;  // in the list and in the table
   int characters = 1;
-  int width = 0;            // of a crowd: how many legs are solved side by side
+  int width = 0;            // of a crowd: how many walks are side by side
   double units = 1.0;       // what one pass does: characters or legs
   std::string over;         // the name of its peer; empty: none
   double most_ns = 0.0;     // bounds on a unit's time, 0: none

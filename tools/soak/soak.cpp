@@ -28,7 +28,7 @@ constexpr double kLook_s = 5.0, kPlug_s = 8.0, kStyle_s = 1.7, kKey_s = 0.9, kLo
 constexpr double kGrowth_mb = 4.0;
 
 // Sanitizers keep freed memory.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef GAITPAD_SANITIZED
 constexpr bool kIsJudged = false;
 #else
 constexpr bool kIsJudged = true;

@@ -53,6 +53,8 @@ class Crowd {
 
   IkMode mode_ = IkMode::robust;
   std::vector<int> order_;  // in which members are advanced: those of a model together
+  std::vector<int> block_begin_{
+      0};  // in `order_`, and its end: the members of a block share a model
   std::vector<std::shared_ptr<const WalkModel>> models_;
   std::vector<GaitParams> params_;
   std::vector<WalkState> states_;

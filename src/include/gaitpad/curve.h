@@ -45,17 +45,26 @@ struct Curve {
 
 // Cubic Hermite basis on [0, 1]: h00 carries the start value, h10 the start slope, h11 the end
 // slope.
-inline double h00(double s) noexcept { return 1.0 + s * s * (2.0 * s - 3.0); }
-inline double h10(double s) noexcept { return s * (1.0 - s) * (1.0 - s); }
-inline double h11(double s) noexcept { return s * s * (s - 1.0); }
+template <class V>
+V h00(const V& s) noexcept {
+  return 1.0 + s * s * (2.0 * s - 3.0);
+}
+template <class V>
+V h10(const V& s) noexcept {
+  return s * (1.0 - s) * (1.0 - s);
+}
+template <class V>
+V h11(const V& s) noexcept {
+  return s * s * (s - 1.0);
+}
 
 // Moves a point for one tick along the cubic from its position x and velocity v to the goal's,
 // which it reaches after `remaining_s`. A goal that stays gives one cubic; a goal that moves bends
 // it.
-template <class T>
-void approach(T& x, T& v, const T& goal_x, const T& goal_v, double remaining_s,
+template <class T, class R>
+void approach(T& x, T& v, const T& goal_x, const T& goal_v, const R& remaining_s,
               double dt_s) noexcept {
-  const double s = dt_s / remaining_s;
+  const auto s = dt_s / remaining_s;
   const T d = goal_x - x;
   const T v0 = v * remaining_s, v1 = goal_v * remaining_s;
   const T c2 = 3.0 * d - 2.0 * v0 - v1, c3 = v0 + v1 - 2.0 * d;
@@ -64,15 +73,17 @@ void approach(T& x, T& v, const T& goal_x, const T& goal_v, double remaining_s,
 }
 
 // A difference that fades away along a cubic: `value` and `slope` at 0, both 0 from `duration` on.
-struct Fade {
-  double value = 0.0, slope = 0.0;  // slope per unit of the argument
-  double duration = 1.0;
-  double at(double x) const noexcept {
-    if (x >= duration) return 0.0;
-    const double s = x / duration;
-    return value * h00(s) + slope * duration * h10(s);
+// Like what follows it may stand for several walkers side by side (V as in gaitpad/math.h).
+template <class V>
+struct FadeOf {
+  V value{}, slope{};  // slope per unit of the argument
+  V duration = V{} + 1.0;
+  V at(const V& x) const noexcept {
+    const V s = x / duration;
+    return x >= duration ? V{} : value * h00(s) + slope * duration * h10(s);
   }
 };
+using Fade = FadeOf<double>;
 
 // A difference that fades away smoothly: its value, rate and acceleration, per tick. advance()
 // moves it on by one tick along the quintic that ends in 0, at rest, after `remaining` ticks.
@@ -80,11 +91,16 @@ template <class T>
 struct SmoothFade {
   T x{}, v{}, a{};
   void advance(double remaining) noexcept {
-    if (remaining <= 1.0) {
+    if (remaining > 1.0) {
+      move(remaining);
+    } else {
       *this = {};
-      return;
     }
-    const double n = remaining, s = 1.0 / n;
+  }
+  // For more than one remaining tick.
+  template <class V>
+  void move(const V& n) noexcept {
+    const V s = 1.0 / n;
     const T p = v * n, q = a * (0.5 * n * n);  // slope and half the curvature over the whole way
     const T c3 = -10.0 * x - 6.0 * p - 3.0 * q, c4 = 15.0 * x + 8.0 * p + 3.0 * q,
             c5 = -6.0 * x - 3.0 * p - q;
@@ -106,32 +122,35 @@ struct Damping {
 
 // Critically damped second-order filter of a value x and its rate v. Implicit Euler: stable for
 // every dt.
-template <class T>
+template <class V>
 struct Damped {
-  T x{};
-  T v{};
-  void advance(const T& goal, const Damping& damping) noexcept {
-    if (x == goal && v == T{}) return;
+  V x{};
+  V v{};
+  void advance(const V& goal, const Damping& damping) noexcept {
     v = (v + (goal - x) * damping.pull) * damping.keep;
     // Numbers that are almost 0 are slow to compute with.
-    if (std::abs(v) < 1e-100) v = T{};
+    v = ((v < 1e-100) & (v > -1e-100)) ? V{} : v;
     x = x + v * damping.dt_s;
   }
-  void advance(const T& goal, double time_constant_s, double dt_s) noexcept {
+  void advance(const V& goal, double time_constant_s, double dt_s) noexcept {
     advance(goal, Damping(time_constant_s, dt_s));
   }
 };
 
-// max(x, 0), min(a, b) and max(a, b) with their corner rounded by a parabola over |x| < width.
-inline double soft_positive(double x, double width) noexcept {
-  if (x <= -width) return 0.0;
-  if (x >= width) return x;
-  return (x + width) * (x + width) / (4.0 * width);
+// max(x, 0), min(a, b) and max(a, b) with their corner rounded by a parabola over |x| < width. What
+// does not change from walker to walker may be a double.
+template <class V, class W>
+V soft_positive(const V& x, const W& width) noexcept {
+  const V rounded = (x + width) * (x + width) / (4.0 * width);
+  const V above = x >= width ? x : rounded;
+  return x <= -width ? V{} : above;
 }
-inline double soft_min(double a, double b, double width) noexcept {
+template <class V, class B, class W>
+V soft_min(const V& a, const B& b, const W& width) noexcept {
   return a - soft_positive(a - b, width);
 }
-inline double soft_max(double a, double b, double width) noexcept {
+template <class V, class B, class W>
+V soft_max(const V& a, const B& b, const W& width) noexcept {
   return a + soft_positive(b - a, width);
 }
 

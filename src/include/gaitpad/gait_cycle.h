@@ -99,6 +99,7 @@ struct PoseRows {
   std::vector<int> still;  // further joints, whose rotation is always the identity
   int stride = 0;          // columns, a multiple of eight: what is left over turns nothing
   std::vector<double> value;
+  std::vector<double> standing;  // one more row: the standing pose
 };
 
 // The cycle at any phase, whole turns included: Catmull-Rom between samples. No allocation.

@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
+#include <type_traits>
 
 namespace gaitpad {
 
@@ -24,6 +25,24 @@ inline const quat kIdentity = quat(1.0, 0.0, 0.0, 0.0);  // w, x, y, z
 inline const vec3 kLeft = vec3(1.0, 0.0, 0.0);           // world axes: x to the walker's left at
 inline const vec3 kUp = vec3(0.0, 1.0, 0.0);             // heading 0, y up,
 inline const vec3 kForward = vec3(0.0, 0.0, 1.0);        // z forward
+
+// The same of numbers V that stand for several walkers side by side, one in each lane of a register
+// (base/lanes.h); of doubles they are those above. In memory their parts stand in the same order.
+template <class V>
+struct Vec3Of {
+  V x, y, z;
+};
+template <class V>
+struct QuatOf {
+  V x, y, z, w;
+  QuatOf() noexcept = default;
+  QuatOf(const V& qw, const V& qx, const V& qy, const V& qz) noexcept
+      : x(qx), y(qy), z(qz), w(qw) {}
+};
+template <class V>
+using Vec = std::conditional_t<std::is_same_v<V, double>, vec3, Vec3Of<V>>;
+template <class V>
+using Quat = std::conditional_t<std::is_same_v<V, double>, quat, QuatOf<V>>;
 
 struct SinCos {
   double sin, cos;
@@ -61,17 +80,28 @@ inline double horizontal_length(const vec3& v) noexcept { return std::sqrt(v.x *
 // Heading of a direction's horizontal part.
 inline double heading_of(const vec3& direction) noexcept { return atan2(direction.x, direction.z); }
 
+// The functions below are of a number or of several side by side.
+template <class V>
+V within(const V& x, double low, double high) noexcept {
+  const V above = x < low ? V{} + low : x;
+  return high < above ? V{} + high : above;
+}
 // 0 at x <= a, 1 at x >= b, with zero slope at both ends (cubic).
-inline double smoothstep(double a, double b, double x) noexcept {
-  const double u = std::clamp((x - a) / (b - a), 0.0, 1.0);
+template <class V>
+auto smoothstep(double a, double b, const V& x) noexcept {
+  const auto u = within((x - a) / (b - a), 0.0, 1.0);
   return u * u * (3.0 - 2.0 * u);
 }
 // The same with zero curvature at both ends, too (quintic), from 0 to 1.
-inline double smootherstep(double x) noexcept {
-  const double u = std::clamp(x, 0.0, 1.0);
+template <class V>
+auto smootherstep(const V& x) noexcept {
+  const auto u = within(1.0 * x, 0.0, 1.0);
   return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }
-inline double mix(double a, double b, double t) noexcept { return a + (b - a) * t; }
+template <class A, class B, class V>
+auto mix(const A& a, const B& b, const V& t) noexcept {
+  return a + (b - a) * t;
+}
 // What is left of whole turns, 0 .. 1.
 inline double fraction(double turns) noexcept { return turns - std::floor(turns); }
 

@@ -57,8 +57,8 @@ void forward_kinematics(const Skeleton& skeleton, const Pose& pose, JointFrames&
 
 // The same for some joints only, parents before children. Frames of parents that are not among them
 // are read from `frames`.
-void forward_kinematics(const Skeleton& skeleton, const Pose& pose, std::span<const int> joints,
-                        JointFrames& frames) noexcept;
+void forward_kinematics(const Skeleton& skeleton, const vec3& root_m, std::span<const quat> local,
+                        std::span<const int> joints, JointFrames& frames) noexcept;
 
 // The same for local rotations of all joints, with the root at the origin.
 void forward_kinematics(const Skeleton& skeleton, std::span<const quat> local,

@@ -21,30 +21,51 @@ inline constexpr double kRatioStep = 0.2;  // ratios 0, 0.2 .. 1.4; 1 is the dat
 inline constexpr double kMostRatio = kRatioStep * (kStrideRatios - 1);
 inline constexpr int kBackRatios = 5;  // backwards 0 .. 0.8: steps are shorter
 
-struct StrideFoot {
-  vec3 heel_m{0.0};
+// Structs of numbers alone may be those of several walks side by side (V as in gaitpad/math.h).
+template <class V>
+struct StrideFootOf {
+  Vec<V> heel_m{};
   // The foot's rotation from flat and straight ahead: about its transverse axis, toe down positive;
   // then, in the turned foot, by the rotation vector whose parts are about its upward axis and
   // about its length.
-  double pitch_rad = 0.0, twist_rad = 0.0, roll_rad = 0.0;
+  V pitch_rad{}, twist_rad{}, roll_rad{};
 };
 
 // A stride at one phase. What is 0 when standing is 0 here, too: the pelvis' place counts from the
 // standing pelvis over the path, and angles from the standing pose's.
-struct StrideCell {
-  vec3 pelvis_m{0.0};
-  double pelvis_yaw_rad = 0.0;
-  vec3 pelvis_tilt{0.0};  // the rest of its rotation, as a rotation vector, from the standing roll
-  std::array<StrideFoot, 2> foot;
-  std::array<LegAngles, 2> leg_rad{};
+template <class V>
+struct StrideCellOf {
+  Vec<V> pelvis_m{};
+  V pelvis_yaw_rad{};
+  Vec<V> pelvis_tilt{};  // the rest of its rotation, as a rotation vector, from the standing roll
+  std::array<StrideFootOf<V>, 2> foot{};
+  std::array<std::array<V, kLegDofs>, 2> leg_rad{};
+};
+using StrideFoot = StrideFootOf<double>;
+using StrideCell = StrideCellOf<double>;
+
+// Where a stride goes.
+template <class V>
+struct StrideTrackOf {
+  V stride_m{};
+  // Where the heels stand along the path: the left foot's after its strike near phase 0.5, the
+  // right foot's after phase 0.
+  std::array<Vec<V>, 2> footprint_m{};
+};
+using StrideTrack = StrideTrackOf<double>;
+
+// What turns strides of the motion into the character's: all lengths grow by `length`, but those of
+// the pelvis by `pelvis`.
+struct StrideScale {
+  double length = 1.0, pelvis = 1.0;
+  vec3 hips_m{0.0};                  // the middle of the hips, from the pelvis, in the motion
+  double stand_roll_rad = 0.0;       // of the motion's standing pelvis
+  std::array<vec3, 2> standing_m{};  // that middle when standing: in the motion, on the character
+  std::array<vec3, 2> apart_m{};     // by Side: what a wider or narrower pelvis moves the feet by
 };
 
 // One stride length. All of it may be added and scaled, number by number.
-struct StrideTable {
-  double stride_m = 0.0;
-  // Where the heels stand along the path: the left foot's after its strike near phase 0.5, the
-  // right foot's after phase 0.
-  std::array<vec3, 2> footprint_m{};
+struct StrideTable : StrideTrack {
   // Control points of the periodic uniform cubic B-spline in phase.
   std::array<StrideCell, kCycleSamples> knot{};
 };
@@ -73,16 +94,23 @@ inline constexpr double kLowLift = 0.5;  // how high a heel is lifted then
 // The factor on the heel's height at a share of the flight, for a foot whose lift has the factor
 // `lift`, at most 1. At the lift-off it acts in part, since the leg has to reach the floor, and
 // near its strike the foot comes down as ever.
-double low_lift(double u, double lift) noexcept;
+template <class V>
+V low_lift(const V& u, const V& lift) noexcept {
+  constexpr double kAll = 0.5, kUntil = 0.6;  // shares of the flight
+  return mix(1.0, lift,
+             smootherstep(u / kAll) * (1.0 - smootherstep((u - kUntil) / (1.0 - kUntil))));
+}
 
 // What a stride changes by at one phase when a wish is granted. The feet stand where they did. A
 // low lift's heels are not in here (low_lift).
-struct StrideChange {
-  vec3 pelvis_m{0.0};
-  std::array<vec3, 2> heel_m{};       // in flight
-  std::array<double, 2> pitch_rad{};  // of the feet
-  std::array<LegAngles, 2> leg_rad{};
+template <class V>
+struct StrideChangeOf {
+  Vec<V> pelvis_m{};
+  std::array<Vec<V>, 2> heel_m{};  // in flight
+  std::array<V, 2> pitch_rad{};    // of the feet
+  std::array<std::array<V, kLegDofs>, 2> leg_rad{};
 };
+using StrideChange = StrideChangeOf<double>;
 // Of a stride of ratio 1. In other strides it is smaller or larger with the ratio. Knots as in
 // StrideTable.
 struct StrideResponse {
@@ -103,16 +131,13 @@ struct StrideFamily {
   std::vector<StrideResponse> response;  // kStrideWishes; for walking forwards
 };
 
-// Where a stride of one ratio goes: as in StrideTable.
-struct StrideTrack {
-  double stride_m = 0.0;
-  std::array<vec3, 2> footprint_m{};
-};
 // A stride at one phase and ratio.
-struct StridePlace {
-  StrideTrack track;
-  StrideCell cell;
+template <class V>
+struct StridePlaceOf {
+  StrideTrackOf<V> track;
+  StrideCellOf<V> cell;
 };
+using StridePlace = StridePlaceOf<double>;
 // Knots of the spline that goes through these samples of a cycle.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept;
@@ -122,7 +147,6 @@ std::array<StrideChange, kCycleSamples> knots_through(
 StrideChange change_at(const std::vector<StrideResponse>& response, const StrideWishes& granted,
                        double phase) noexcept;
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
-StrideTrack track_at(const std::vector<StrideTable>& table, double ratio) noexcept;
 // A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is
 // clamped to the family's. No heap.
 StridePlace stride_at(const std::vector<StrideTable>& table, double phase, double ratio) noexcept;

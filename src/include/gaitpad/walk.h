@@ -57,6 +57,12 @@ struct WalkFrame {
 // support: on its toe; flight: in the air; roll: landed on its heel, the toe comes down.
 enum class FootMode : std::uint8_t { support, flight, roll };
 
+// --- What a walk remembers
+// ----------------------------------------------------------------------
+// A tick computes several walks side by side, one in each lane of the processor's registers
+// (gaitpad/math.h). What all of them compute alike is a template of the number V: a double, or a
+// register of as many as it holds. The structs of V hold numbers alone.
+
 // The plane that a foot stands on or flies to: the best fit to the ground under its sole.
 struct FootPlane {
   vec3 place_m{0.0};      // of the heel, world
@@ -64,15 +70,20 @@ struct FootPlane {
   quat tilt = kIdentity;  // from level ground
 };
 
-// Where a foot is to be.
-struct FootPose {
-  vec3 heel_m{0.0}, toe_m{0.0};  // world
-  quat tilt = kIdentity;         // from level ground to the foot's own
-  quat yaw = kIdentity;          // about the vertical; none as in the standing pose at heading 0
-  double pitch_rad = 0.0;        // of the heel-toe line: 0 flat on its ground, toe down positive
-  quat edge = kIdentity;         // twist and roll of StrideFoot
-  quat rotation = kIdentity;     // of all these: the foot segment's, world
-  double toe_rad = 0.0;          // of the toe joint, toe end down positive
+// Where a foot is to be, on level ground.
+template <class V>
+struct FootPoseOf {
+  Vec<V> heel_m{}, toe_m{};  // world
+  Quat<V> yaw{};             // about the vertical; none as in the standing pose at heading 0
+  V pitch_rad{};             // of the heel-toe line: 0 flat on its ground, toe down positive
+  Quat<V> edge{};            // twist and roll of StrideFoot
+  Quat<V> rotation{};        // of all these: the foot segment's, world
+  V toe_rad{};               // of the toe joint, toe end down positive
+};
+// And on any.
+struct FootPose : FootPoseOf<double> {
+  quat tilt = kIdentity;  // from level ground to the foot's own
+  FootPose() noexcept : FootPoseOf{.yaw = kIdentity, .edge = kIdentity, .rotation = kIdentity} {}
 };
 
 // What keeps a flying foot off the ground between its two footholds: two uniform cubic B-splines
@@ -85,19 +96,23 @@ struct FlightRoom {
   vec3 planned_for_m{0.0};                                    // the landing that it is planned for
 };
 
-struct FootState {
-  FootMode mode = FootMode::support;
-  FootPose pose;
-  vec3 heel_anchor_m{0.0}, toe_anchor_m{0.0};  // where they were planted last
-  std::array<vec3, 2> last_heel_m{};           // one and two ticks ago
-  std::array<double, 2> last_pitch_rad{};
-  Fade pitch_fade;     // over the running mode, argument in ticks
-  int mode_ticks = 0;  // since the mode began
-  vec3 lift_m{0.0};    // heel at lift-off
+template <class V>
+struct FootFlow {
+  Vec<V> heel_anchor_m{}, toe_anchor_m{};  // where they were planted last
+  std::array<Vec<V>, 2> last_heel_m{};     // one and two ticks ago
+  std::array<V, 2> last_pitch_rad{};
+  FadeOf<V> pitch_fade;  // over the running mode, argument in ticks
+  Vec<V> lift_m{};       // heel at lift-off
   // What the heel's place at lift-off differs by from the tables', and its slope per flight.
-  vec3 gap_m{0.0}, gap_slope_m{0.0};
-  double lift_yaw_rad = 0.0, lift_turn_rad = 0.0;  // yaw at lift-off and its slope per flight
-  FootPlane plane;                                 // that it stands on or stood on last
+  Vec<V> gap_m{}, gap_slope_m{};
+  V lift_yaw_rad{}, lift_turn_rad{};  // yaw at lift-off and its slope per flight
+};
+struct FootState : FootFlow<double> {
+  FootPose pose;
+  FootMode mode = FootMode::support;
+  int mode_ticks = 0;  // since the mode began
+  // On flat ground the rest keeps these values.
+  FootPlane plane;                      // that it stands on or stood on last
   double base_m = 0.0;                  // height of the ground that the pose is planned over
   double rise_m = 0.0;                  // how far the foot rises with the hips
   std::array<double, 2> last_rise_m{};  // one and two ticks ago
@@ -134,7 +149,6 @@ struct UpperBodyState {
   // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
   double forward_rad = 0.0, left_rad = 0.0;
   std::array<double, 2> out_rad{};
-  std::array<double, 2> swing{1.0, 1.0};  // factor on the data's arm swing in this tick, by Side
   // Height of the ground under a rail, smoothed, and its rate.
   std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};
 };
@@ -158,44 +172,52 @@ struct StepClock {
 };
 
 // How it walks: the parameters, smoothed, and the stride ratios that follow from them.
-struct GaitState {
-  std::array<Damped<double>, 2> length_m, flight_height;
-  std::array<double, 2> time_s{};
-  double asked_ratio = 0.0;    // of the strides, by the parameters
-  Damped<double> step_time_s;  // mean of both feet
-  Damped<double> turn_goal,    // what turn_rate follows: a landing is planned with it
+template <class V>
+struct GaitFlow {
+  std::array<Damped<V>, 2> length_m, flight_height;
+  std::array<V, 2> time_s{};
+  V asked_ratio{};        // of the strides, by the parameters
+  Damped<V> step_time_s;  // mean of both feet
+  Damped<V> turn_goal,    // what turn_rate follows: a landing is planned with it
       turn_rate, amplitude, bounce, sway;
-  Damped<double> pace, settled_pace;      // step length over the data's; the same, slower
-  Damped<double> ground_share{1.0, 0.0};  // of the wanted lengths that the ground leaves
-  std::array<std::array<Damped<double>, kLegDofs>, 2> weight;
-  StrideWishes granted{};        // what the style asks of the stride
-  double ratio_behind = 0.0;     // of the step before: the stride ratio at the last strike
-  double step_ratio = 0.0;       // of the running step,
-  SmoothFade<double> off_ratio;  // and how far the tables' is off it
+  Damped<V> pace, settled_pace;  // step length over the data's; the same, slower
+  Damped<V> ground_share;        // of the wanted lengths that the ground leaves
+  std::array<std::array<Damped<V>, kLegDofs>, 2> weight;
+  V ratio_behind{};              // of the step before: the stride ratio at the last strike
+  V step_ratio{};                // of the running step,
+  SmoothFade<V> off_ratio;       // and how far the tables' is off it
+  std::array<V, 2> arm_swing{};  // factor on the data's in this tick, by Side
 };
+using GaitState = GaitFlow<double>;
 
 // Where it goes: landing places, and the hips on their way there.
-struct PathState {
-  double heading_rad = 0.0;
-  vec3 hips_m{0.0}, hips_velocity_m_s{0.0};  // on the ground, without the data's oscillations
+template <class V>
+struct PathFlow {
+  V heading_rad{};
+  Vec<V> hips_m{}, hips_velocity_m_s{};  // on the ground, without the data's oscillations
   // What the hips' place differs by from the tables' path to the landing; it fades in the step.
-  SmoothFade<vec3> off_m{vec3(0.0), vec3(0.0), vec3(0.0)};
+  SmoothFade<Vec<V>> off_m;
   // What that path led to a tick ago.
-  vec3 last_landing_m{0.0};
-  double last_heading_rad = 0.0, last_ratio = 0.0;
-  vec3 landing_m{0.0};
-  double landing_heading_rad = 0.0;
+  Vec<V> last_landing_m{};
+  V last_heading_rad{}, last_ratio{};
+  Vec<V> landing_m{};
+  V landing_heading_rad{};
+  std::array<V, 2> stride_m{};  // as in WalkFrame
+  Damped<V> lean_rad;           // of the whole body into a turn, to the left positive
+};
+struct PathState : PathFlow<double> {
   FootPlane landing_plane;
   Foothold foothold;
   HipsGround base;
-  Damped<double> lean_rad;        // of the whole body into a turn, to the left positive
   Damped<double> slope_lean_rad;  // of the trunk into a slope or stair, forwards positive
 };
 
 // The legs' angles: the tables', with what the style changes, and the pose's.
-struct LegState {
-  std::array<LegAngles, 2> data_rad{}, angles_rad{};
+template <class V>
+struct LegFlow {
+  std::array<std::array<V, kLegDofs>, 2> data_rad{}, angles_rad{};
 };
+using LegState = LegFlow<double>;
 
 // All that a walk remembers. Plain, trivially copyable.
 struct WalkState {

@@ -39,7 +39,8 @@ inline constexpr int kMaxSpineIk = 5;  // joints of the spine that share the wor
 struct ArmBuild {
   bool is_there = false;  // else nothing of it is set
   ArmChain joints;
-  std::vector<int> path;  // joints from the root to the wrist
+  std::vector<int> path;                        // joints from the root to the wrist
+  int shoulder_column = -1, elbow_column = -1;  // in WalkModel::above; -1: they never move
   // Local rotations in the middle of the data's swing.
   quat swing_shoulder = kIdentity, swing_elbow = kIdentity;
   double most_elbow_swing = 1.0;   // factor on the data's swing that would stretch the elbow
@@ -101,16 +102,6 @@ struct LegBuild {
   double track_m = 0;    // sideways place of the heel from the pelvis' path, + left
 };
 
-// What turns strides of the motion into the character's: all lengths grow by `length`, but those of
-// the pelvis by `pelvis`.
-struct StrideScale {
-  double length = 1.0, pelvis = 1.0;
-  vec3 hips_m{0.0};                  // the middle of the hips, from the pelvis, in the motion
-  double stand_roll_rad = 0.0;       // of the motion's standing pelvis
-  std::array<vec3, 2> standing_m{};  // that middle when standing: in the motion, on the character
-  std::array<vec3, 2> apart_m{};     // by Side: what a wider or narrower pelvis moves the feet by
-};
-
 struct WalkModel {
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
   // The data; its skeleton and legs have the character's lengths, its strides the motion's, so that
@@ -140,8 +131,7 @@ struct WalkModel {
 // between two of its joints.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
 
-// Its strides in its lengths: where one of a ratio goes, and all of it at one phase. No heap.
-StrideTrack track_of(const WalkModel& model, bool backward, double ratio) noexcept;
+// Its stride of one ratio in its lengths, at one phase. No heap.
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept;
 
 // What the stick asks of this character at full deflection, by the pace of its motion: the adult's

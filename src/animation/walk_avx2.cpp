@@ -1,0 +1,8 @@
+// Compiled for processors with AVX2 alone (base/lanes.h asks for them).
+#include "animation/walk_lanes.h"
+
+namespace gaitpad {
+
+template void advance_lanes<4>(const WalkModel&, double, std::span<const Walking>) noexcept;
+
+}  // namespace gaitpad

@@ -1,0 +1,326 @@
+// From the plan of a tick to its pose, of one walk or of several side by side (walk_flow.h): the
+// legs' angles by inverse kinematics (section 3.3.2), and the local rotations of all joints.
+//
+// Robust mode starts from the tables' angles, which know of stiff joints already. Six rows hold the
+// whole foot; the knee's swivel, which they leave free, is pulled to the data's. What is left to
+// solve for is little, and the weights of equation (5) share it out.
+#pragma once
+#include "animation/leg_ik.h"
+#include "animation/walk_flow.h"
+
+namespace gaitpad {
+namespace {
+
+// --- Legs ----------------------------------------------------------------------------------------
+
+inline constexpr double kLeastKnee =
+    1.0 * kDegree;  // where the solver starts: a knee that bends forward
+inline constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree,
+                        kSoftFlying = 12.0 * kDegree;
+// Near its limit an ankle is held more and more, and the leg turns outwards instead: with one step
+// it would do so in a jerk.
+inline constexpr double kHeldDorsiflexion = -57.0 * kDegree, kSoftHeld = 4.0 * kDegree;
+inline constexpr double kSoftToe = 15.0 * kDegree;
+inline constexpr double kLeastWeight = 0.05;
+inline constexpr double kLeak_per_s = 4.0;  // of the correction on the data's angles
+inline constexpr double kSoftElbow = 0.1;
+inline constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
+inline constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
+
+// Weights count relative to the leg's largest. The foot's place goes before a locked joint.
+template <class V>
+std::array<V, kLegDofs> relative_weights(const GaitFlow<V>& gait, Side side) noexcept {
+  std::array<V, kLegDofs> weight;
+  weight.fill(all_of<V>(1.0));
+  if (!any(has_weights(gait, side))) return weight;
+  V largest{};
+  for (const Damped<V>& w : gait.weight[side]) largest = max_of(largest, w.x);
+  const auto none = largest <= all_of<V>(1e-6 * kLeastWeight);
+  for (int j = 0; j < kLegDofs; ++j) {
+    weight[j] = none ? weight[j] : within(V(gait.weight[side][j].x / largest), kLeastWeight, 1.0);
+  }
+  return weight;
+}
+
+// Where one leg's solver starts, and what is to be reached: from the data's angles plus what the
+// solver had to add a tick ago. That correction leaks away, so the swivel, which no row holds, is
+// pulled to the data's and cannot drift.
+template <class V>
+void set_leg_goals(const Tick& tick, const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
+                   StateOf<V>& state, LegGoals<V>& goals,
+                   std::array<V, kLegDofs>& angles_rad) noexcept {
+  const LegBuild& leg = tick.model.leg[side];
+  const double keep = 1.0 - std::min(1.0, kLeak_per_s * tick.dt_s);
+  goals.weight = relative_weights<V>(state.gait, side);
+  for (int j = 0; j < kLegDofs; ++j) {
+    V data = tick.model.stand_rad[side][j] + plan.cell.leg_rad[side][j];
+    if (j == kKneeX) data = max_of(data, all_of<V>(kLeastKnee));
+    angles_rad[j] = data + keep * (state.legs.angles_rad[side][j] - state.legs.data_rad[side][j]);
+    state.legs.data_rad[side][j] = data;
+    goals.min_rad[j] = all_of<V>(leg.chain.dof[j].min_rad);
+    goals.max_rad[j] = all_of<V>(leg.chain.dof[j].max_rad);
+  }
+  // Without the ankle's limit first, so that the knee does not twist.
+  goals.min_rad[kAnkleX] = all_of<V>(-kPi);
+  goals.thigh_m = all_of<V>(leg.model.thigh_m);
+  goals.shank_m = all_of<V>(leg.model.shank_m);
+  // What lies between the foot's points does not turn in its own axes.
+  const auto& foot = state.foot[side].pose;
+  const Quat<V> to_pelvis = conjugate_of(pelvis.rotation), rotation = to_pelvis * foot.rotation;
+  const vec3 across_foot = glm::cross(leg.line, leg.side),
+             to_toe = leg.model.toe_m - leg.model.heel_m;
+  const Vec<V> heel = to_pelvis * (foot.heel_m - pelvis.hip(leg));
+  const Vec<V> side_axis = rotation * all_of<V>(leg.side),
+               along_axis = rotation * all_of<V>(leg.line),
+               across_axis = cross_of(along_axis, side_axis);
+  const auto set = [](const Vec<V>& from, Vec3Of<V>& to) { to = {from.x, from.y, from.z}; };
+  set(all_of<V>(leg.model.heel_m), goals.point_m[0]);
+  set(all_of<V>(leg.model.toe_m), goals.point_m[1]);
+  set(all_of<V>(leg.model.heel_m + leg.side * kSideLever_m), goals.point_m[2]);
+  set(side_axis, goals.side);
+  set(across_axis, goals.across);
+  set(along_axis, goals.along);
+  const V sideways = dot_of(side_axis, heel), up = dot_of(across_axis, heel);
+  goals.goal_m = {sideways,
+                  up,
+                  dot_of(along_axis, heel),
+                  sideways + glm::dot(leg.side, to_toe),
+                  up + glm::dot(across_foot, to_toe),
+                  up};
+}
+
+// True where the ankle bends up too far, or the foot was not reached: such a leg is looked at again
+// for one walk at a time (mended_leg).
+template <class V>
+MaskOf<V> needs_mending(const WalkModel& model, const MomentOf<V>& at, Side side,
+                        const V& ankle_rad, const V& failed) noexcept {
+  const MaskOf<V> flies = at.in_flight[side], missed = failed != V{};
+  const MaskOf<V> bends = kMostDorsiflexion - ankle_rad > -value<V>(flies, kSoftFlying, kSoftAnkle);
+  if (!any(bends)) return missed;
+  const MaskOf<V> may_rise =
+      not_of(flies) & not_of(at.in_roll[side]) & (heel_rise<V>(model, at, side) != V{});
+  const MaskOf<V> held = kHeldDorsiflexion - ankle_rad > all_of<V>(-kSoftHeld);
+  return missed | (bends & (flies | may_rise)) | held;
+}
+
+// Toes stay level while the heel is the higher end, on the floor and in the air, so they never dig
+// in. In the air the change is rounded, on the floor it is exact.
+template <class V>
+V level_toe(const V& pitch_rad, const V& flight_progress) noexcept {
+  const V air =
+      smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.8, 1.0, flight_progress));
+  return -soft_positive(pitch_rad, max_of(all_of<V>(1e-9), V(kSoftToe * air)));
+}
+
+// What the solver came to: the foot is where it was to be.
+template <class V>
+PosedLegOf<V> posed_leg(const LegSolution<V>& solution, const V& pitch_rad) noexcept {
+  const auto& heel = solution.heel_m;
+  const auto& toe = solution.toe_m;
+  const MaskOf<V> reached =
+      solution.squares <= all_of<V>(kRobust.tolerance_m * kRobust.tolerance_m);
+  return {solution.iterations,      solution.squares,      value<V>(reached, 0.0, 1.0),
+          {heel.x, heel.y, heel.z}, {toe.x, toe.y, toe.z}, pitch_rad};
+}
+
+// What the legs of one tick came to: the toes, and what the tick reports of them.
+template <class V>
+void report_leg(const WalkModel& model, const MomentOf<V>& at, const PelvisOf<V>& pelvis, Side side,
+                const PosedLegOf<V>& posed, StateOf<V>& state,
+                std::span<WalkFrame* const> frames) noexcept {
+  state.foot[side].pose.toe_rad =
+      level_toe<V>(posed.pitch_rad, at.in_flight[side] ? at.flight_progress() : V{});
+  const Vec<V> hip = pelvis.hip(model.leg[side]), heel = hip + pelvis.rotation * posed.heel_m,
+               toe = hip + pelvis.rotation * posed.toe_m;
+  const V error_m = sqrt_of(posed.squares);
+  for (std::size_t lane = 0; lane < frames.size(); ++lane) {
+    const auto of = [lane](const V& v) { return lane_of(v, static_cast<int>(lane)); };
+    WalkFrame& frame = *frames[lane];
+    frame.heel_m[side] = vec3(of(heel.x), of(heel.y), of(heel.z));
+    frame.toe_m[side] = vec3(of(toe.x), of(toe.y), of(toe.z));
+    frame.ik_iterations[side] = static_cast<int>(of(posed.iterations));
+    frame.ik_error_m[side] = of(error_m);
+    frame.ik_failed[side] = of(posed.failed) != 0.0;
+  }
+}
+
+// --- The pose ------------------------------------------------------------------------------------
+
+// Rx(x) Rz(z) Ry(y) of half the angles.
+template <class V>
+Quat<V> turn_xzy(const V& x_rad, const V& z_rad, const V& y_rad) noexcept {
+  V xs, xc, zs, zc, ys, yc;
+  sin_cos_of(V(0.5 * x_rad), xs, xc);
+  sin_cos_of(V(0.5 * z_rad), zs, zc);
+  sin_cos_of(V(0.5 * y_rad), ys, yc);
+  const V w = xc * zc, i = xs * zc, j = -xs * zs, k = xc * zs;
+  return Quat<V>(w * yc - j * ys, i * yc - k * ys, w * ys + j * yc, k * yc + i * ys);
+}
+
+// Where the poses of the walks go: local rotations by joint.
+template <int kWidth>
+using Locals = std::array<quat*, kWidth>;
+
+template <class V>
+Quat<V> joint_of(const Locals<kWidthOf<V>>& local, int joint) noexcept {
+  if constexpr (kAlone<V>) {
+    return local[0][joint];
+  } else {
+    Quat<V> q;
+    for (int lane = 0; lane < kWidthOf<V>; ++lane) {
+      const quat& from = local[lane][joint];
+      q.w[lane] = from.w, q.x[lane] = from.x, q.y[lane] = from.y, q.z[lane] = from.z;
+    }
+    return q;
+  }
+}
+template <class V>
+void set_joint(const Quat<V>& q, int joint, const Locals<kWidthOf<V>>& local) noexcept {
+  if constexpr (kAlone<V>) {
+    local[0][joint] = q;
+  } else {
+    Locals<kWidthOf<V>> to;
+    for (int lane = 0; lane < kWidthOf<V>; ++lane) to[lane] = local[lane] + joint;
+    store_quats(q, to);
+  }
+}
+
+template <class V>
+void write_legs(const WalkModel& model, const StateOf<V>& state,
+                const Locals<kWidthOf<V>>& local) noexcept {
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const LegBuild& leg = model.leg[side];
+    const auto& q = state.legs.angles_rad[side];
+    const auto& foot = state.foot[side].pose;
+    const std::array<Quat<V>, 4> turn = {
+        turn_xzy(q[kHipX], q[kHipZ], q[kHipY]), rotation_about_x(q[kKneeX]),
+        turn_xzy(q[kAnkleX], q[kAnkleZ], q[kAnkleY]), toes_turn<V>(leg, foot, foot.toe_rad)};
+    for (int i = 0; i < 4; ++i) {
+      const LegJointFrame& frame = leg.joint[i];
+      if (frame.joint >= 0)
+        set_joint<V>(all_of<V>(frame.before) * turn[i] * all_of<V>(frame.after), frame.joint,
+                     local);
+    }
+  }
+}
+
+// The phase at which the data are read. Walking backwards is walking forwards run back
+// (Thorstensson 1986), so a foot lands where the data lift it.
+template <class V>
+V data_phase(const WalkModel& model, const MomentOf<V>& at) noexcept {
+  return at.backward ? model.share[0] + model.share[1] + model.share[2] - at.phase : at.phase;
+}
+
+// Rows of w, x, y and z to the rotations of the table's joints.
+template <class V>
+void write_quats(const double* blend, const PoseRows& rows, quat* to) noexcept {
+  constexpr std::size_t kTogether = kAlone<V> ? 2 : kWidthOf<V>;
+  const std::size_t count = rows.joint.size(), stride = rows.stride;
+  std::size_t i = 0;
+  for (; i + kTogether <= count; i += kTogether) {
+    using Q = Lanes<static_cast<int>(kTogether)>;
+    QuatOf<Q> q;
+    std::memcpy(&q.w, blend + i, sizeof q.w);
+    std::memcpy(&q.x, blend + stride + i, sizeof q.x);
+    std::memcpy(&q.y, blend + 2 * stride + i, sizeof q.y);
+    std::memcpy(&q.z, blend + 3 * stride + i, sizeof q.z);
+    std::array<quat*, kTogether> joints;
+    for (std::size_t k = 0; k < kTogether; ++k) joints[k] = to + rows.joint[i + k];
+    store_quats(q, joints);
+  }
+  for (; i < count; ++i) {
+    const double* q = blend + i;
+    to[rows.joint[i]] = quat(q[0], q[stride], q[2 * stride], q[3 * stride]);
+  }
+}
+
+// The data's rotations of the joints that the legs do not set, fading to the stand, with arms that
+// swing as far as the pace asks.
+template <class V>
+void write_data(const WalkModel& model, const MomentOf<V>& at, const GaitFlow<V>& gait,
+                const Locals<kWidthOf<V>>& local) noexcept {
+  constexpr int kLanes = kWidthOf<V>;
+  const PoseRows& rows = model.above;
+  const std::size_t stride = rows.stride;
+  const V phase = data_phase<V>(model, at), shown = presence_of<V>(gait);
+  // Shoulder and elbow of both arms, from the data.
+  std::array<Quat<V>, 4> arms;
+  std::array<int, 4> column;
+  for (int k = 0; k < 4; ++k) {
+    const ArmBuild& arm = model.body.arm[k / 2];
+    column[k] = !arm.is_there ? -1 : k % 2 == 0 ? arm.shoulder_column : arm.elbow_column;
+  }
+  alignas(64) std::array<double, 4 * (kMaxJoints + 8)> blend;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Stencil s = stencil_at(lane_of(phase, lane));
+    BlendedRows blended{{},           {},         rows.standing.data(), lane_of(shown, lane),
+                        blend.data(), rows.stride};
+    for (int k = 0; k < 4; ++k) {
+      blended.sample[k] = rows.value.data() + static_cast<std::size_t>(s.index[k]) * 4 * stride;
+      blended.weight[k] = s.weight[k];
+    }
+    if constexpr (kLanes == 1) {
+      blend_rows(blended);
+    } else {
+      blend_rows<kLanes>(blended);
+    }
+    for (int k = 0; k < 4; ++k) {
+      if (column[k] < 0) continue;
+      const double* q = blend.data() + column[k];
+      if constexpr (kAlone<V>) {
+        arms[k] = quat(q[0], q[stride], q[2 * stride], q[3 * stride]);
+      } else {
+        arms[k].w[lane] = q[0], arms[k].x[lane] = q[stride];
+        arms[k].y[lane] = q[2 * stride], arms[k].z[lane] = q[3 * stride];
+      }
+    }
+    if (blended.shown < 1.0) {
+      if constexpr (kLanes == 1) {
+        fade_rows(blended);
+      } else {
+        fade_rows<kLanes>(blended);
+      }
+    }
+    quat* to = local[lane];
+    write_quats<V>(blend.data(), rows, to);
+    for (const int j : rows.still) to[j] = kIdentity;
+    for (const int j : model.kept) to[j] = model.cycle.standing_local[j];
+  }
+  for (int k = 0; k < 4; ++k) {
+    const ArmBuild& arm = model.body.arm[k / 2];
+    const V swing = gait.arm_swing[k / 2];
+    const auto swings = swing != all_of<V>(1.0);
+    if (column[k] < 0 || !any(swings)) continue;
+    const int joint = k % 2 == 0 ? arm.joints.shoulder : arm.joints.elbow;
+    const quat& middle = k % 2 == 0 ? arm.swing_shoulder : arm.swing_elbow;
+    const V share = k % 2 == 0 ? swing : soft_min(swing, arm.most_elbow_swing, kSoftElbow);
+    Quat<V> q = chosen(swings, nlerp_of<V>(all_of<V>(middle), arms[k], share), arms[k]);
+    const auto fades = shown < all_of<V>(1.0);
+    if (any(fades)) {
+      const Quat<V> stand = all_of<V>(model.cycle.standing_local[joint]);
+      q = chosen(fades, nlerp_of<V>(stand, q, shown), q);
+    }
+    set_joint<V>(q, joint, local);
+  }
+}
+
+// All joints but what a style asks of the upper body.
+template <class V>
+void write_pose(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
+                const PelvisOf<V>& pelvis, const Locals<kWidthOf<V>>& local) noexcept {
+  const GaitCycle& cycle = model.cycle;
+  write_data<V>(model, at, state.gait, local);
+  // Joints between root and pelvis turn with the heading and else move as in the data.
+  set_joint<V>(pelvis.heading * joint_of<V>(local, 0), 0, local);
+  Quat<V> above = all_of<V>(kIdentity);
+  for (int j = cycle.skeleton.joints[cycle.pelvis].parent; j >= 0;
+       j = cycle.skeleton.joints[j].parent) {
+    above = joint_of<V>(local, j) * above;
+  }
+  set_joint<V>(conjugate_of(above) * (pelvis.rotation * all_of<V>(cycle.pelvis_standing)),
+               cycle.pelvis, local);
+  write_legs<V>(model, state, local);
+}
+
+}  // namespace
+}  // namespace gaitpad

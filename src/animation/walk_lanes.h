@@ -1,0 +1,160 @@
+// The body of advance_lanes(), for one width and one set of instructions at a time.
+#pragma once
+#include "animation/leg_ik_lanes.h"
+#include "animation/walk_figure.h"
+
+namespace gaitpad {
+namespace {
+
+template <class V>
+void set_lanes(const Moment& one, int lane, MomentOf<V>& at) noexcept {
+  const auto mask = [&](bool Moment::*of, MaskOf<V> MomentOf<V>::*to) {
+    set_lane(one.*of, lane, at.*to);
+  };
+  using One = Moment;
+  using All = MomentOf<V>;
+  mask(&One::idle, &All::idle);
+  mask(&One::flies, &All::flies);
+  mask(&One::rolls, &All::rolls);
+  mask(&One::started, &All::started);
+  mask(&One::closing, &All::closing);
+  mask(&One::backward, &All::backward);
+  mask(&One::right_steps, &All::right_steps);
+  mask(&One::walking, &All::walking);
+  mask(&One::finishes, &All::finishes);
+  for (int side : {0, 1}) {
+    set_lane(one.in_flight[side], lane, at.in_flight[side]);
+    set_lane(one.in_roll[side], lane, at.in_roll[side]);
+  }
+  set_lanes(static_cast<const CountsOf<double>&>(one), lane, static_cast<CountsOf<V>&>(at));
+}
+
+// The numbers of all walks into their lanes, and back. `of` says which of a walk's numbers.
+template <class V>
+using Walks = std::array<WalkState*, kWidthOf<V>>;
+template <class V, class Of, class Numbers>
+void load(const Walks<V>& walks, const Of& of, Numbers& numbers) noexcept {
+  std::array<const double*, kWidthOf<V>> from;
+  for (int lane = 0; lane < kWidthOf<V>; ++lane)
+    from[lane] = reinterpret_cast<const double*>(&of(*walks[lane]));
+  load_lanes<V>(from, sizeof(Numbers) / sizeof(V), reinterpret_cast<V*>(&numbers));
+}
+template <class V, class Of, class Numbers>
+void store(const Numbers& numbers, int lanes, const Walks<V>& walks, const Of& of) noexcept {
+  std::array<double*, kWidthOf<V>> to;
+  for (int lane = 0; lane < kWidthOf<V>; ++lane)
+    to[lane] = reinterpret_cast<double*>(&of(*walks[lane]));
+  store_lanes<V>(reinterpret_cast<const V*>(&numbers), sizeof(Numbers) / sizeof(V), lanes, to);
+}
+inline GaitFlow<double>& gait_of(WalkState& walk) noexcept { return walk.gait; }
+inline PathFlow<double>& path_of(WalkState& walk) noexcept { return walk.path; }
+inline LegFlow<double>& legs_of(WalkState& walk) noexcept { return walk.legs; }
+template <int kSide>
+FootFlow<double>& foot_of(WalkState& walk) noexcept {
+  return walk.foot[kSide];
+}
+template <int kSide>
+FootPoseOf<double>& pose_of(WalkState& walk) noexcept {
+  return walk.foot[kSide].pose;
+}
+
+template <class V>
+void load_walks(const Walks<V>& walks, StateLanes<V>& state) noexcept {
+  load<V>(walks, gait_of, state.gait);
+  load<V>(walks, path_of, state.path);
+  load<V>(walks, foot_of<0>, static_cast<FootFlow<V>&>(state.foot[0]));
+  load<V>(walks, foot_of<1>, static_cast<FootFlow<V>&>(state.foot[1]));
+  load<V>(walks, pose_of<0>, state.foot[0].pose);
+  load<V>(walks, pose_of<1>, state.foot[1].pose);
+  load<V>(walks, legs_of, state.legs);
+}
+
+template <class V>
+Pelvis pelvis_of(const PelvisOf<V>& pelvis, int lane) noexcept {
+  Pelvis one;
+  get_lane(pelvis, lane, one);
+  return one;
+}
+
+// Solves the legs of one side. Those that need mending are mended one by one.
+template <class V>
+PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const MomentOf<V>& at,
+                        const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
+                        StateLanes<V>& state) noexcept {
+  LegGoals<V> goals;
+  std::array<V, kLegDofs>& angles = state.legs.angles_rad[side];
+  set_leg_goals<V>(tick, plan, pelvis, side, state, goals, angles);
+  const LegSolution<V> solution = solve_lanes(goals, kRobust, angles);
+  PosedLegOf<V> posed = posed_leg<V>(solution, state.foot[side].pose.pitch_rad);
+  const MaskOf<V> mends = needs_mending<V>(tick.model, at, side, angles[kAnkleX], posed.failed);
+  if (!any(mends)) return posed;
+  for (std::size_t i = 0; i < walks.size(); ++i) {
+    const int lane = static_cast<int>(i);
+    if (!is_set(mends, lane)) continue;
+    WalkState& walk = *walks[i].state;
+    PosedLeg one;
+    get_lane(angles, lane, walk.legs.angles_rad[side]);
+    get_lane(posed, lane, one);
+    set_lanes(mended_leg(tick, walk, pelvis_of(pelvis, lane), side, one), lane, posed);
+    set_lanes(walk.legs.angles_rad[side], lane, angles);
+    set_lanes(static_cast<const FootPoseOf<double>&>(walk.foot[side].pose), lane,
+              state.foot[side].pose);
+  }
+  return posed;
+}
+
+}  // namespace
+
+template <int kWidth>
+void advance_lanes(const WalkModel& model, double dt_s, std::span<const Walking> walks) noexcept {
+  using V = Lanes<kWidth>;
+  // Its parameters are the first walk's: those of all of them are in `params`.
+  const Tick tick = {model, *walks[0].params, IkMode::robust, dt_s, true};
+  const int count = static_cast<int>(walks.size());
+  MomentOf<V> at;
+  ParamsOf<V> params;
+  StateLanes<V> state;
+  Locals<kWidth> local;
+  std::array<WalkFrame*, kWidth> frames;
+  Walks<V> states;
+  Moment one;
+  for (int lane = 0; lane < kWidth; ++lane) {
+    // Lanes that are left over compute the last walk again.
+    const Walking& walk = walks[std::min(lane, count - 1)];
+    if (lane < count)
+      begin_tick({model, *walk.params, IkMode::robust, dt_s, true}, *walk.state, one);
+    set_lanes(one, lane, at);
+    set_lanes(params_of(*walk.params, walk.state->body.now.arm_swing), lane, params);
+    states[lane] = walk.state;
+    local[lane] = walk.local;
+    frames[lane] = &walk.state->frame;
+  }
+  load_walks<V>(states, state);
+  PlanOf<V> plan;
+  PelvisOf<V> pelvis;
+  plan_walks<V>(tick, at, params, state, plan, pelvis);
+  store<V>(state.gait, count, states, gait_of);
+  store<V>(state.path, count, states, path_of);
+  store<V>(state.foot[0].pose, count, states, pose_of<0>);
+  store<V>(state.foot[1].pose, count, states, pose_of<1>);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const PosedLegOf<V> posed = pose_side<V>(tick, walks, at, plan, pelvis, side, state);
+    report_leg<V>(tick.model, at, pelvis, side, posed, state,
+                  {frames.data(), static_cast<std::size_t>(count)});
+  }
+  store<V>(state.legs, count, states, legs_of);
+  write_pose<V>(tick.model, at, state, pelvis, local);
+  for (int lane = 0; lane < count; ++lane) {
+    const Walking& walk = walks[lane];
+    WalkState& to = *walk.state;
+    for (int side : {0, 1})
+      to.foot[side].pose.toe_rad = lane_of(state.foot[side].pose.toe_rad, lane);
+    *walk.root_m = vec3(lane_of(pelvis.position_m.x, lane), lane_of(pelvis.position_m.y, lane),
+                        lane_of(pelvis.position_m.z, lane));
+    const Tick own = {model, *walk.params, IkMode::robust, dt_s, true};
+    pose_upper_body(own, to, {*walk.root_m, {walk.local, walk.joints}});
+    end_tick(own, *walk.root_m, to);
+  }
+}
+
+}  // namespace gaitpad

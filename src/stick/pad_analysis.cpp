@@ -27,17 +27,18 @@ constexpr double kSigmasOfRim = 4.5;  // at the rim one report in 300,000 is not
 // From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
 constexpr double kLeastSideways = 0.08, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
+constexpr double kSpreadOfDisplaced = 1.1;
 constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured
 
 // Beyond these no calibration helps.
-constexpr double kUselessZone = 0.3;     // raw; the stick would do nothing for a third of its way
-constexpr double kUselessReach = 0.5;    // raw, from the centre
-constexpr double kUselessSigma = 0.05;   // raw; a tenth of the travel of the shortest usable reach
-constexpr double kUselessDrift = 0.002;  // raw a second: leaves a zone of 0.1 within a minute
-constexpr double kUselessWander = 0.02;  // raw, in a second; within a minute it leaves any zone
-constexpr double kDriftSure_s = 5.0;     // at rest, if the stick was let go only once
-constexpr double kLeastRate_hz = 22.5;   // slower reports show no movement by itself
-constexpr int kFewestDirections = 44;    // of 48; the unseen ones may be weak
+constexpr double kUselessZone = 0.3;      // raw; the stick would do nothing for a third of its way
+constexpr double kUselessReach = 0.5;     // raw, from the centre
+constexpr double kUselessSigma = 0.05;    // raw; a tenth of the travel of the shortest usable reach
+constexpr double kUselessDrift = 0.002;   // raw a second: leaves a zone of 0.1 within a minute
+constexpr double kUselessWander = 0.029;  // raw, in a second; within a minute it leaves any zone
+constexpr double kDriftSure_s = 5.0;      // at rest, if the stick was let go only once
+constexpr double kLeastRate_hz = 22.5;    // slower reports show no movement by itself
+constexpr int kFewestDirections = 44;     // of 48; the unseen ones may be weak
 constexpr int kUselessDropOuts = 2;
 constexpr double kUselessPassing = 0.2;  // a minute
 constexpr int kUselessStuck = 2;         // a single one may be a lost report
@@ -136,8 +137,9 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   const double half = least_half(c), sigma = greatest_sigma(s);
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
   // With little hysteresis that formula covers too little of the noise, and it ignores wander and
-  // single rests far from the others. One of those may have been a thumb.
-  const double away = 0.5 * hysteresis_of(s) + (s.displaced > 1 ? s.displaced_by : 0.0);
+  // single rests far from the others: to other sides they may lie a little farther off. A single
+  // one may have been a thumb, but a zone that is too wide is better than a walk by itself.
+  const double away = 0.5 * hysteresis_of(s) + kSpreadOfDisplaced * s.displaced_by;
   const double rest =
       std::max(advice.inner_zone, away + kSigmasOfRest * sigma + kSigmasOfWander * s.wander);
   c.inner = std::min(rest / half, kGreatestInner);
@@ -218,7 +220,8 @@ Reasons missing(const StickStatistics& s) {
   }
   const int seen = filled_bins(s.outline);
   if (unseen.empty() && seen < kFewestDirections) {
-    return {fmt::format("its rim was seen in only {} of {} directions", seen, kCircularityBins)};
+    return {fmt::format("its rim was seen in only {} of {} directions: turn it more slowly", seen,
+                        kCircularityBins)};
   }
   if (unseen.empty()) return {};
   if (seen == 0) return {"it was never turned to the rim"};
@@ -302,7 +305,10 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
   }
   if (advice.verdict == Verdict::good && single_jumps(s) > 0)
     advice.reason += "; it jumped for a single report, so its reports are filtered";
-  if (s.displaced == 1) advice.reason += "; " + displaced(s) + ", unless a thumb lay on it";
+  if (s.displaced == 1) {
+    advice.reason += "; " + displaced(s) +
+                     ", which the inner zone covers: measure again if a thumb may have lain on it";
+  }
   if (s.centre && !s.hysteresis) {
     advice.reason += fmt::format(
         "; it was not seen let go between two rests, so a spread of {:.2f} is assumed for the "

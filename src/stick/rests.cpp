@@ -99,8 +99,7 @@ RestNoise piece_noise(std::vector<RestPoint> points) {
   return noise.freedom < kFewestReports ? RestNoise{} : noise;
 }
 
-// The still's samples in the order of time, long holds in parts of 20 ms, without spikes. Tracks
-// are clean ones.
+// The still's samples in the order of time, long holds in parts of 20 ms.
 std::vector<RestPoint> rest_points(std::span<const StickTrack> tracks, const Still& still,
                                    double interval_s) {
   const StickTrack& track = tracks[still.track];
@@ -117,7 +116,6 @@ std::vector<RestPoint> rest_points(std::span<const StickTrack> tracks, const Sti
       points.push_back({at_s, track[i].raw, weight / parts});
     }
   }
-  remove_spikes(points);
   return points;
 }
 
@@ -158,8 +156,6 @@ std::vector<RestPoint> rest_blocks(std::span<const RestPoint> points, int count)
 
 // ---- Releases
 
-constexpr double kReleaseMovement = 0.2;  // raw; less movement between two rests is no release
-
 // A rest between two movements. Rests that noise or a touch cut in two belong to one release.
 struct Release {
   std::vector<Still> stills;  // at one place, in the order of time
@@ -171,36 +167,6 @@ struct Release {
 constexpr double kSamePlace = 0.02;
 constexpr double kOdd = 0.005;          // raw; less does no harm
 constexpr std::size_t kMostTried = 64;  // releases that are left out one by one
-
-// The way from one rest to the next: how far it went and from which side it returned (unit). Both
-// are 0 if the stick hardly moved, or only for a report or two.
-struct Excursion {
-  double farthest = 0.0;
-  vec2 from{0.0};
-};
-
-Excursion excursion(const StickTrack& track, std::size_t first, const Still& to,
-                    double interval_s) noexcept {
-  constexpr double kFewestReports = 4.0;
-  Excursion way;
-  double away = 0.0;  // reports
-  for (std::size_t i = first; i < to.first; ++i) {
-    const double distance = glm::length(track[i].raw - to.mean);
-    if (distance < kReleaseMovement) continue;
-    away += reports_stood(hold_s(track, i, interval_s), interval_s);
-    way.farthest = std::max(way.farthest, distance);
-  }
-  if (away < kFewestReports) return {};
-  // The spring brings it back in a straight line but may overshoot: the side is that on which the
-  // stick was last half way out.
-  for (std::size_t i = to.first; i > first; --i) {
-    const vec2 off = track[i - 1].raw - to.mean;
-    if (glm::length(off) < 0.5 * way.farthest) continue;
-    way.from = glm::normalize(off);
-    break;
-  }
-  return way;
-}
 
 // One release from the longest of the stills and those at its place.
 Release release_of(std::span<const StickTrack> tracks, std::span<const Still> stills,
@@ -220,20 +186,15 @@ Release release_of(std::span<const StickTrack> tracks, std::span<const Still> st
 
 std::vector<Release> releases_of(std::span<const StickTrack> tracks, std::span<const Still> rests,
                                  double interval_s) {
-  const auto way_to = [&](std::size_t k) {
-    const bool is_first = k == 0 || rests[k - 1].track != rests[k].track;
-    return excursion(tracks[rests[k].track], is_first ? 0 : rests[k - 1].last + 1, rests[k],
-                     interval_s);
-  };
   std::vector<Release> releases;
   for (std::size_t first = 0, end; first < rests.size(); first = end) {
     end = first + 1;
     while (end < rests.size() && rests[end].track == rests[first].track &&
-           way_to(end).from == vec2(0.0)) {
+           rests[end].from == vec2(0.0)) {
       ++end;
     }
     releases.push_back(release_of(tracks, rests.subspan(first, end - first), interval_s));
-    releases.back().from = way_to(first).from;
+    releases.back().from = rests[first].from;
   }
   return releases;
 }
@@ -528,26 +489,6 @@ bool is_worth_reporting(const Evidence& evidence, const vec2& drift, double seco
          speed * seconds >= std::max(steps * evidence.step, 2.0 * noise);
 }
 
-struct Within {
-  vec2 drift{0.0};
-  double error = 0.0;  // one standard deviation, one axis; huge if the rests are too short
-};
-
-// The trend within single rests, wherever they are.
-Within within_rests(const Evidence& evidence) {
-  Within within;
-  double spread = 0.0;
-  for (const std::vector<RestPoint>& still : evidence.blocks) {
-    const RestTrend line = rest_trend(still);
-    within.drift += line.spread * line.slope;
-    spread += line.spread;
-  }
-  if (spread > 0.0) within.drift /= spread;
-  const double noise = std::hypot(evidence.block_noise, evidence.step_noise);
-  within.error = noise / std::sqrt(std::max(spread, 1e-12));
-  return within;
-}
-
 double time_range_s(std::span<const Release> releases) noexcept {
   double longest = 0.0;
   for (std::size_t first = 0, end; first < releases.size(); first = end) {
@@ -578,26 +519,18 @@ vec2 drift_across_rests(const Evidence& evidence) {
   const double odds = log_odds(without.residual, with.residual, freedom, evidence.mean_noise);
   const double error = evidence.mean_noise / std::sqrt(std::max(with.spread_s2, 1e-12));
   if (odds < kSure || glm::length(with.drift) < 6.0 * error) return vec2(0.0);
-  // Real drift also shows within a single rest.
-  const Within within = within_rests(evidence);
-  const double apart = glm::length(with.drift - within.drift);
-  if (apart > 6.0 * within.error && apart > 0.7 * glm::length(with.drift)) return vec2(0.0);
-  if (!is_worth_reporting(evidence, with.drift, time_range_s(releases), 1.0)) return vec2(0.0);
-  return with.drift;
+  const bool is_worth = is_worth_reporting(evidence, with.drift, time_range_s(releases), 1.0);
+  return is_worth ? with.drift : vec2(0.0);
 }
 
-// Drift within the longest rest, for few releases: a line over eight parts, with the same slope in
-// the second half, because settling ends.
+// Drift within the longest rest, for few releases: a line over eight parts.
 vec2 drift_within_rest(const Evidence& evidence) {
   const std::span<const RestPoint> blocks = evidence.settled;
   const std::vector<RestPoint> parts = rest_blocks(blocks, 8);
   if (parts.size() < 5) return vec2(0.0);
   const RestTrend line = rest_trend(blocks);
-  const RestTrend late = rest_trend(blocks.subspan(blocks.size() / 2));
   const double noise = std::hypot(evidence.block_noise, evidence.step_noise);
-  const double speed = glm::length(line.slope);
-  if (speed * std::sqrt(line.spread) < 5.0 * noise) return vec2(0.0);
-  if (glm::dot(late.slope, line.slope) < 0.6 * speed * speed) return vec2(0.0);
+  if (glm::length(line.slope) * std::sqrt(line.spread) < 5.0 * noise) return vec2(0.0);
   double without = 0.0, with = 0.0;
   for (const RestPoint& part : parts) {
     const vec2 off = part.place - line.mean.place, left = part.place - line.at(part.time_s);
@@ -719,11 +652,12 @@ Home home_of(std::span<const Release> releases, const Evidence& evidence) {
 // first one ends away from it. A stick that rests while the pad is unplugged, or from one recording
 // to the next, shows no return.
 bool was_let_go(std::span<const StickTrack> tracks, std::span<const Release> releases) noexcept {
+  constexpr double kSeenMovement = 0.2;  // raw
   for (std::size_t i = 1; i < releases.size(); ++i) {
     const Release& before = releases[i - 1];
     if (releases[i].from != vec2(0.0)) return true;
     const vec2 off = tracks[before.track].back().raw - before.rest.place;
-    if (before.track != releases[i].track && glm::length(off) >= kReleaseMovement) return true;
+    if (before.track != releases[i].track && glm::length(off) >= kSeenMovement) return true;
   }
   return false;
 }
@@ -820,8 +754,9 @@ double seconds_of(std::span<const HandsOff> times) noexcept {
   return 0.1 * blocks;
 }
 
-RestStatistics rest_statistics(std::span<const StickTrack> tracks, Stills found, const vec2& step,
+RestStatistics rest_statistics(std::span<const StickTrack> tracks, const vec2& step,
                                double interval_s) {
+  Stills found = stills(tracks, step, interval_s);
   const std::span<const Still> rests = found.rests;
   RestStatistics result;
   result.hands_off = std::move(found.hands_off);

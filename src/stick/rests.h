@@ -28,9 +28,9 @@ struct RestStatistics {
   int displaced = 0;                // releases after which it rested far from where it mostly rests
   double displaced_by = 0.0;        // the farthest of them
 };
-// `tracks`: clean ones (clean_tracks). `found`: in them. `step`: of x and y, 0 if not known.
-// `interval_s`: typical_interval_s of the tracks.
-RestStatistics rest_statistics(std::span<const StickTrack> tracks, Stills found, const vec2& step,
+// `tracks`: clean ones (clean_tracks). `step`: of x and y, 0 if not known. `interval_s`:
+// typical_interval_s of the tracks.
+RestStatistics rest_statistics(std::span<const StickTrack> tracks, const vec2& step,
                                double interval_s);
 double seconds_of(std::span<const HandsOff> times) noexcept;
 

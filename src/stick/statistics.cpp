@@ -18,20 +18,6 @@ vec2 repeats_expected(const StickStatistics& s) noexcept {
   return {chance(s.sigma->x, s.step_x), chance(s.sigma->y, s.step_y)};
 }
 
-struct Extent {
-  vec2 least{4.0}, most{-4.0};
-};
-Extent extent_of(std::span<const StickTrack> tracks) {
-  Extent extent;
-  for (const StickTrack& track : tracks) {
-    for (const StickSample& sample : track) {
-      extent.least = glm::min(extent.least, sample.raw);
-      extent.most = glm::max(extent.most, sample.raw);
-    }
-  }
-  return extent;
-}
-
 void add_rim(StickStatistics& to, std::span<const StickTrack> tracks, const Extent& extent) {
   const vec2 middle = to.centre.value_or(vec2(0.0));
   const vec2 sigma = to.sigma.value_or(vec2(0.0));
@@ -48,7 +34,7 @@ void add_rim(StickStatistics& to, std::span<const StickTrack> tracks, const Exte
 
 int turns_of(const StickStatistics& s, std::span<const StickTrack> tracks, const Extent& extent) {
   const auto& [least, most] = extent;
-  const vec2 middle = s.centre.value_or(0.5 * (least + most));
+  const vec2 middle = s.centre.value_or(extent.middle());
   const vec2 reach = glm::min(most - middle, middle - least);
   const double radius = 0.5 * std::min(reach.x, reach.y);
   return radius > 0.1 ? whole_turns(tracks, middle, radius) : 0;
@@ -68,8 +54,7 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   result.step_y = quantisation_step(clean.tracks, 1, declared_step.y);
   const double interval_s = typical_interval_s(clean.tracks);
   static_cast<RestStatistics&>(result) =
-      rest_statistics(clean.tracks, stills(clean.tracks, declared_step),
-                      {result.step_x, result.step_y}, interval_s);
+      rest_statistics(clean.tracks, {result.step_x, result.step_y}, interval_s);
   const Extent extent = extent_of(clean.tracks);
   add_rim(result, clean.tracks, extent);
   result.turns = turns_of(result, clean.tracks, extent);

@@ -114,6 +114,17 @@ vec2 median_of(std::span<const vec2> places) {
   return {median_of(std::move(x)), median_of(std::move(y))};
 }
 
+Extent extent_of(std::span<const StickTrack> tracks) noexcept {
+  Extent extent;
+  for (const StickTrack& track : tracks) {
+    for (const StickSample& sample : track) {
+      extent.least = glm::min(extent.least, sample.raw);
+      extent.most = glm::max(extent.most, sample.raw);
+    }
+  }
+  return extent;
+}
+
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   if (to_ns < from_ns) return -seconds_between(to_ns, from_ns);
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to_ns) -
@@ -480,7 +491,8 @@ vec2 place_at(const StickTrack& track, std::size_t i, double seconds) noexcept {
 bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, const vec2& axes,
                double quiet) {
   constexpr double kMoved = 0.1, kRun_s = 0.03, kRunning = 0.02, kOut = 0.4;  // raw, s, raw, raw
-  constexpr double kUnlikely = 1e-6, kInside = 0.7;  // noise may end where the range does
+  constexpr double kUnlikely = 1e-6, kInside = 0.7;     // noise may end where the range does
+  constexpr double kSpring_per_s = 60.0, kSlack = 0.2;  // raw; no stick snaps back faster
   if (last + 1 >= track.size()) return false;
   const vec2 place = track[last].raw, next = track[last + 1].raw;
   const double jump = glm::length((next - place) * axes);
@@ -496,13 +508,17 @@ bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, con
   for (std::size_t k = last + 2; k < std::min(last + 6, track.size()); ++k)
     usual = std::max(usual, glm::length((track[k].raw - track[k - 1].raw) * axes));
   if (jump < kMoved || jump < 2.0 * usual + 0.5 * kMoved) return false;
-  if (axes == vec2(1.0)) {  // it was turned: a thumb that pauses slows down first
-    return glm::length(next) > kOut &&
-           glm::length(track[first].raw - place_at(track, first, -kRun_s)) > kRunning &&
-           glm::length(place_at(track, last + 1, kRun_s) - next) > kRunning;
+  const bool is_out = glm::length(next) > kOut;
+  if (axes != vec2(1.0)) {
+    // Along a straight side of the gate one axis stands still, until the stick is let go.
+    const double pause_s = seconds_between(track[last].time_ns, track[last + 1].time_ns);
+    return is_beside && (is_out || jump > kSpring_per_s * pause_s + kSlack);
   }
-  // Along a straight side of the gate one axis stands still, until the stick is let go.
-  return is_beside && glm::length(next) > kOut;
+  // It was turned, or its noise was gone. A thumb that pauses slows down first, and has noise.
+  const bool has_room = std::min(std::fabs(place.x), std::fabs(place.y)) < kInside;
+  if (is_out && has_room && quiet < kUnlikely) return true;
+  return is_out && glm::length(track[first].raw - place_at(track, first, -kRun_s)) > kRunning &&
+         glm::length(place_at(track, last + 1, kRun_s) - next) > kRunning;
 }
 
 }  // namespace

@@ -69,6 +69,15 @@ std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack
 double median_of(std::vector<double> values);
 vec2 median_of(std::span<const vec2> places);  // of each axis
 
+// ---- Where the stick went
+
+struct Extent {
+  vec2 least{4.0}, most{-4.0};  // of each axis
+  vec2 middle() const noexcept { return 0.5 * (least + most); }
+  vec2 half() const noexcept { return 0.5 * (most - least); }
+};
+Extent extent_of(std::span<const StickTrack> tracks) noexcept;
+
 // ---- How long a position stood
 
 // Seconds from one time to a later one; any two 64-bit times are allowed.

@@ -12,10 +12,14 @@ namespace gaitpad {
 // A time in which the stick stood still: samples `first` to `last` (inclusive) of one track.
 struct Still {
   std::size_t track = 0, first = 0, last = 0;
-  std::int64_t begin_ns = 0, end_ns = 0;  // `first` may be earlier, `last` may hold for longer
-  double duration_s =
-      0.0;         // includes the hold of the last position; silence counts for 2 s at most
+  std::size_t begin_cell = 0, end_cell = 0;  // 20 ms each, from the beginning of the track
+  std::int64_t begin_ns = 0, end_ns = 0;     // `first` may be earlier, `last` may hold for longer
+  // Includes the hold of the last position; silence counts for 2 s at most.
+  double duration_s = 0.0;
   vec2 mean{0.0};  // raw, weighted as if the pad streamed
+  // Unit: the side from which it came back since the rest before, or since the track began; 0: it
+  // was hardly moved.
+  vec2 from{0.0};
 };
 // A time in which nobody held the stick: from when it has settled after a release, or from the
 // beginning of a track, to the next push. It may move by itself, so it need not be still.
@@ -34,9 +38,11 @@ struct Stills {
 };
 // Finds the stills in the order of time, track by track; the first day of all tracks counts.
 // The limit on speed follows the noise that is present, so a noisy or slowly drifting stick has
-// stills too. Spikes and the settling after a release are left out. There are no rests if the stick
-// only moved or was only held aside. `declared_step` (x, y) is used if a track has too few values
-// to measure the step; 0: not known.
-Stills stills(std::span<const StickTrack> tracks, const vec2& declared_step = vec2(0.0));
+// stills too. The settling after a release is left out. There are no rests if the stick only moved
+// or was only held aside. `tracks`: clean ones (clean_tracks). `step`: of x and y, 0 if not known.
+// `interval_s`: typical_interval_s of the tracks.
+Stills stills(std::span<const StickTrack> tracks, const vec2& step, double interval_s);
+// The same in tracks as they were recorded.
+Stills stills(std::span<const StickTrack> raw_tracks);
 
 }  // namespace gaitpad

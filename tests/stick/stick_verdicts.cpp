@@ -2,7 +2,8 @@
 // verdicts of each kind, what the calibrated stick then does untouched and at full deflection, and
 // the errors of the numbers.
 //   stick_verdicts [STICKS OF EACH KIND] [KIND]    default: 40, all; with KIND a line a stick
-// Every fourth stick is on any pad: 8 to 16 bits, 125 to 1,000 Hz, jitter, losses, changes only.
+// Every fourth stick is on any pad: 8 to 16 bits, 25 to 8,000 Hz as far as the fault can be seen
+// there, jitter, losses, changes only.
 // Exit status 1: a stick was not judged as it must be.
 #include <cstdio>
 #include <cstdlib>
@@ -43,6 +44,7 @@ struct Kind {
   const char* name;
   Must must;
   void (*make)(Draw&, MadeStick&);
+  double least_hz = 25.0;  // of any pad: slower ones do not show the fault, or not the whole rim
 };
 
 // The stick of the tables: 12 bits, 250 reports a second.
@@ -77,9 +79,10 @@ const Kind kKinds[] = {
        s.centre = draw.within(0.0, 0.2) * draw.direction();
        s.sigma = vec2(draw.within(0.003, 0.03));
        s.hysteresis = draw.within(0.02, 0.15);
-     }},
+     },
+     66.0},
     {"creeps home by up to 0.03 in 0.3 s", Must::pass,
-     [](Draw& draw, MadeStick& s) { s.creep = draw.within(0.005, 0.03); }},
+     [](Draw& draw, MadeStick& s) { s.creep = draw.within(0.005, 0.03); }, 66.0},
     {"drifts by 0.003 to 0.02 a second", Must::be_replace,
      [](Draw& draw, MadeStick& s) { s.drift_per_s = draw.within(0.003, 0.02) * draw.direction(); }},
     {"wanders by 0.1, time constant 1 to 3 s", Must::stand_still,
@@ -91,7 +94,8 @@ const Kind kKinds[] = {
     {"wanders by 0.01 to 0.03, time constant 1 to 5 s", Must::stand_still,
      [](Draw& draw, MadeStick& s) {
        s.roam = draw.within(0.01, 0.03), s.roam_s = draw.within(1.0, 5.0);
-     }},
+     },
+     66.0},
     {"rests displaced by 0.1 to 0.3 in 2 to 6 of 12 releases", Must::not_good,
      [](Draw& draw, MadeStick& s) {
        s.displaced = draw.within(0.1, 0.3),
@@ -108,26 +112,31 @@ const Kind kKinds[] = {
     {"10 to 30 drop-outs of 16 to 80 ms", Must::not_good,
      [](Draw& draw, MadeStick& s) {
        s.drop_outs = static_cast<int>(draw.within(10, 30.99)), s.drop_out_s = 0.048;
-     }},
+     },
+     66.0},
     {"one axis freezes 3 to 8 times, 0.15 to 1 s", Must::not_good,
      [](Draw& draw, MadeStick& s) {
        s.freezes = static_cast<int>(draw.within(3, 8.99)), s.freeze_s = draw.within(0.15, 0.75);
        s.frozen_axes = draw.chance(0.5) ? 1 : 2;
-     }},
+     },
+     66.0},
     {"both axes freeze 3 to 8 times, 0.15 to 1 s", Must::not_good,
      [](Draw& draw, MadeStick& s) {
        s.freezes = static_cast<int>(draw.within(3, 8.99)), s.freeze_s = draw.within(0.15, 0.75);
        s.frozen_axes = 3;
-     }},
+     },
+     66.0},
     {"a sector of 10 to 57 degrees reaches 0.5 to 0.8", Must::be_full,
      [](Draw& draw, MadeStick& s) {
        s.weak_rad = draw.within(-kPi, kPi), s.weak_width_rad = draw.within(10.0, 57.0) * kDegree;
        s.weak_reach = draw.within(0.5, 0.8);
-     }},
+     },
+     125.0},
     {"jumps of single reports, 0.06 to 0.15 % of them", Must::stand_still,
      [](Draw& draw, MadeStick& s) {
        s.spike_chance = draw.within(0.0006, 0.0015), s.spike_reports = 1;
-     }},
+     },
+     125.0},
     {"jumps of single reports, 2 % of them", Must::stand_still,
      [](Draw&, MadeStick& s) { s.spike_chance = 0.02, s.spike_reports = 1; }},
 };
@@ -304,9 +313,11 @@ struct Row {
   }
 };
 
-void put_on_any_pad(Draw& draw, MadeStick& stick) {
+void put_on_any_pad(Draw& draw, double least_hz, MadeStick& stick) {
   stick.bits = static_cast<int>(draw.one_of(std::array{8.0, 10.0, 12.0, 16.0}));
-  stick.rate_hz = draw.one_of(std::array{125.0, 250.0, 500.0, 1000.0});
+  do {
+    stick.rate_hz = draw.one_of(std::array{25.0, 30.0, 66.0, 125.0, 250.0, 500.0, 1000.0, 8000.0});
+  } while (stick.rate_hz < least_hz);
   stick.jitter_ms = draw.within(0.0, 0.2) * 1000.0 / stick.rate_hz;
   stick.drop_chance = draw.chance(0.5) ? 0.0 : draw.within(0.0, 0.02);
   stick.reports_changes_only = draw.chance(0.3);
@@ -317,7 +328,8 @@ MadeStick stick_of(const Kind& kind, int k) {
   MadeStick stick = usual_stick(draw);
   stick.seed = static_cast<std::uint32_t>(k);
   kind.make(draw, stick);
-  if (k % 4 == 0 && stick.rate_hz == 250.0 && &kind != kKinds) put_on_any_pad(draw, stick);
+  if (k % 4 == 0 && stick.rate_hz == 250.0 && &kind != kKinds)
+    put_on_any_pad(draw, kind.least_hz, stick);
   return stick;
 }
 

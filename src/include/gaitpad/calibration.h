@@ -94,8 +94,8 @@ double trigger_position(const TriggerCalibration& calibration, double raw) noexc
 class JumpFilter {
  public:
   void take(const PadState& state) noexcept;  // as the newest report has it
-  // No report came for kSettled_s: the newest position holds. A pad that reports changes only would
-  // be behind for as long as nothing changes.
+  // No report came for kSettled_s, or twice as long as between the last two: the newest position
+  // holds. A pad that reports changes only would be behind for as long as nothing changes.
   void settle() noexcept { last_[0] = last_[1] = last_[2]; }
   // The state with the medians in place of the sticks that the calibration filters; the others stay
   // bit by bit.

@@ -9,11 +9,14 @@
 
 namespace gaitpad {
 
+class VirtualPad;
+
 std::vector<DeviceListing> find_hidraw_devices();
 Result<std::unique_ptr<Device>> open_hidraw_device(const DeviceListing& listing, Detach detach);
 
 std::vector<DeviceListing> find_evdev_devices();
 Result<std::unique_ptr<Device>> open_evdev_device(const DeviceListing& listing, Detach detach);
+Result<std::unique_ptr<VirtualPad>> make_evdev_virtual_pad();
 
 std::vector<DeviceListing> find_usb_devices();
 Result<std::unique_ptr<Device>> open_usb_device(const DeviceListing& listing, Detach detach);

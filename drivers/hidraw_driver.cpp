@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "drivers/driver_entries.h"
+#include "drivers/missed_reports.h"
 #include "drivers/open_descriptors.h"
 #include "drivers/pads/joy_con_pair.h"
 #include "drivers/pads/packet_sender.h"
@@ -38,9 +39,9 @@ namespace {
 using namespace std::chrono_literals;
 using Status = Device::Status;
 
-constexpr int kMaxRefusedInARow = 64;  // packets to look at before other pads get their turn
-constexpr int kMaxErrorsInARow = 64;   // then the pad counts as gone
-constexpr int kKernelRing = 63;        // reports that hidraw keeps for a slow reader
+constexpr int kMaxRefusedInARow = 64;     // packets to look at before other pads get their turn
+constexpr int kMaxErrorsInARow = 64;      // then the pad counts as gone
+constexpr std::int64_t kKernelRing = 63;  // reports that hidraw keeps for a slow reader
 constexpr auto kKernelStart = 3s;
 constexpr long kBlindPeriod_ns = 1'000'000;
 
@@ -195,6 +196,9 @@ class HidrawDevice final : public Device {
     HidrawPort port(handle_.get(), is_numbered_);
     model_->start(port, started);
     model_->amend(info_);
+    // Only on a cable: over Bluetooth a pad reports when it connects, and some block on requests.
+    if (info_.bus == BusType::usb) present_.opened(reports_with_stick(info_.descriptor));
+    std::ranges::copy(present_.poll_fds(), wait_on_.begin() + 1);
     OutPacket still;
     model_->rumble({}, still);
     if (still.size == 0) return;
@@ -216,7 +220,7 @@ class HidrawDevice final : public Device {
     return sender_->send(packet);
   }
   std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
-  std::int64_t lost() const noexcept override { return lost_ + model_->lost(); }
+  std::int64_t lost() const noexcept override { return lost_ + missed_.missed() + model_->lost(); }
   std::vector<std::string> take_remarks() override {
     std::vector<std::string> remarks = model_->take_remarks();
     std::move(remarks_.begin(), remarks_.end(), std::back_inserter(remarks));
@@ -245,8 +249,7 @@ class HidrawDevice final : public Device {
   PlugWatch plug_;
   bool is_unplugged_ = false;  // reports from before are still to be read
   int errors_in_row_ = 0;
-  int waiting_ = 0;         // reports read in a row
-  bool was_empty_ = false;  // once; reports before that waited for the opening
+  MissedReports missed_{kKernelRing};
   bool was_late_ = false;
   std::int64_t lost_ = 0;
   std::vector<std::string> remarks_;
@@ -317,16 +320,14 @@ Status HidrawDevice::after_error(int error) noexcept {
 
 // When its ring is full the kernel drops new reports without notice.
 void HidrawDevice::count_waiting() noexcept {
-  if (++waiting_ != kKernelRing || !was_empty_) return;
-  ++lost_;
-  if (!std::exchange(was_late_, true))
+  missed_.note_report(now_ns());
+  if (missed_.is_full() && !std::exchange(was_late_, true))
     remarks_.push_back(node_ + ": was read too late; the kernel may have dropped reports");
 }
 
 // Only now, with no report left, is an answer of the pad newer than all of its reports.
 Status HidrawDevice::when_empty(Report& report) noexcept {
-  was_empty_ = true;
-  if (std::exchange(waiting_, 0) >= kKernelRing) present_.missed();
+  if (missed_.note_empty(now_ns())) present_.missed();
   const std::span<const std::uint8_t> answer = present_.take_answer();
   std::ranges::copy(present_.poll_fds(), wait_on_.begin() + 1);
   return !answer.empty() && fill(answer, report) ? Status::report : Status::nothing;

@@ -10,6 +10,9 @@
 #include <thread>
 #include <utility>
 
+#include "gaitpad/descriptor.h"
+#include "gaitpad/report.h"
+
 namespace gaitpad {
 
 using namespace std::chrono_literals;
@@ -45,6 +48,22 @@ struct PresentState::Round {
   bool has_ended = false, was_slow = false;
 };
 
+std::vector<ReportSize> reports_with_stick(std::span<const std::uint8_t> descriptor) {
+  std::vector<ReportSize> reports;
+  const auto parsed = parse_descriptor(descriptor);
+  const auto pad = parsed ? pad_application(*parsed) : std::nullopt;
+  if (!pad) return reports;
+  for (const Field& field : parsed->fields) {
+    if (field.kind != FieldKind::input || field.usage != usage::kX || field.application != *pad)
+      continue;
+    const std::size_t bytes = report_bytes(*parsed, field.kind, field.report_id);
+    if (bytes <= kMaxReportBytes &&
+        std::ranges::count(reports, field.report_id, &ReportSize::id) == 0)
+      reports.push_back({field.report_id, static_cast<std::uint16_t>(bytes)});
+  }
+  return reports;
+}
+
 void PresentState::settle(Known& known) noexcept {
   if (std::exchange(known.is_missed, false)) --missed_count_;
 }
@@ -76,6 +95,11 @@ void PresentState::missed() noexcept {
     known.is_missed = known.size > 0;
     missed_count_ += known.is_missed;
   }
+}
+
+void PresentState::opened(std::span<const ReportSize> reports) noexcept {
+  for (const ReportSize& report : reports) known_[report.id].size = report.bytes;
+  if (!reports.empty()) missed();
 }
 
 std::array<pollfd, 2> PresentState::poll_fds() const noexcept {

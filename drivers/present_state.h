@@ -1,5 +1,6 @@
-// Asks a pad for its present state when its newest reports may have been dropped: a pad that
-// reports changes only would not repeat them, and the stick would stay where it was last seen.
+// Asks a pad for its present state when its newest reports may have been dropped, and when it was
+// just opened: a pad that reports changes only would not repeat them. The stick would stay where it
+// was last seen, and a push after plugging in would not count, because its rest was never seen.
 // Everything except `Ask` is for one thread and never waits.
 #pragma once
 #include <poll.h>
@@ -16,6 +17,13 @@
 
 namespace gaitpad {
 
+struct ReportSize {
+  std::uint8_t id = 0;      // 0: reports have no ids
+  std::uint16_t bytes = 0;  // with the id
+};
+// The input reports that tell where the stick of a pad is, by its report descriptor.
+std::vector<ReportSize> reports_with_stick(std::span<const std::uint8_t> descriptor);
+
 class PresentState {
  public:
   // Gets the pad's answer to GET_REPORT of an input report, beginning with the id (0 if there are
@@ -29,6 +37,8 @@ class PresentState {
 
   // To be called with every input report.
   void heard(std::span<const std::uint8_t> report) noexcept;
+  // The pad was opened: asks for these reports, unless they come by themselves.
+  void opened(std::span<const ReportSize> reports) noexcept;
   // Reports may have been dropped; all others were given to heard(). Asks once for each id that is
   // then silent for 30 ms.
   void missed() noexcept;

@@ -1,4 +1,5 @@
 #include "drivers/driver_entries.h"
+#include "drivers/virtual_pad.h"
 #include "gaitpad/drivers.h"
 
 namespace gaitpad {
@@ -58,6 +59,14 @@ const DriverEntry* find_driver(std::string_view name) noexcept {
     if (name == entry.name) return &entry;
   }
   return nullptr;
+}
+
+Result<std::unique_ptr<VirtualPad>> VirtualPad::create() {
+#ifdef GAITPAD_HAS_EVDEV
+  return make_evdev_virtual_pad();
+#else
+  return Error{"no pad can be made: the program was built without libevdev"};
+#endif
 }
 
 std::string sdl_mapping_of(const DeviceInfo& device) {

@@ -17,6 +17,7 @@
 #include "drivers/pads/pad_model.h"
 #include "drivers/pads/several_pads.h"
 #include "drivers/posix.h"
+#include "drivers/present_state.h"
 #include "drivers/shared_pads.h"
 #include "drivers/system_nodes.h"
 #include "drivers/usb_interfaces.h"
@@ -33,7 +34,7 @@ using std::chrono::milliseconds;
 constexpr unsigned int kControlTimeoutMs = 500;
 constexpr std::uint8_t kFromInterface = 0xa1, kStandardFromInterface = 0x81, kToInterface = 0x21;
 constexpr std::uint8_t kGetReport = 0x01, kSetReport = 0x09, kSetIdle = 0x0a, kGetDescriptor = 0x06;
-constexpr std::uint16_t kReportDescriptor = 0x2200, kFeatureReport = 0x0300;
+constexpr std::uint16_t kReportDescriptor = 0x2200, kInputReport = 0x0100, kFeatureReport = 0x0300;
 
 struct FreeConfig {
   void operator()(libusb_config_descriptor* config) const { libusb_free_config_descriptor(config); }
@@ -73,7 +74,7 @@ class ClaimedInterface {
   std::uint8_t number_;
   std::unique_ptr<libusb_context, ExitContext> context_;
   std::unique_ptr<libusb_device_handle, CloseHandle> handle_;
-  std::unique_ptr<ReattachWatcher> watcher_;  // if there was a kernel driver
+  std::unique_ptr<ReattachWatcher> watcher_;  // null: nothing was detached yet
   bool is_claimed_ = false;
 };
 
@@ -109,10 +110,12 @@ Result<bool> ClaimedInterface::open(const std::string& node) {
 
 Result<bool> ClaimedInterface::detach_and_claim(const std::string& node,
                                                 const std::string& kernel_driver) {
+  // Also where no driver is bound now: one may have been until a program that had taken the pad,
+  // and the watcher of that program, were killed.
+  auto watcher = ReattachWatcher::start(node, number_);
+  if (!watcher) return watcher.error();
+  watcher_ = std::make_unique<ReattachWatcher>(std::move(*watcher));
   if (!kernel_driver.empty()) {
-    auto watcher = ReattachWatcher::start(node, number_);
-    if (!watcher) return watcher.error();
-    watcher_ = std::make_unique<ReattachWatcher>(std::move(*watcher));
     const int error = libusb_detach_kernel_driver(handle(), number_);
     if (error != LIBUSB_SUCCESS && error != LIBUSB_ERROR_NOT_FOUND) {
       return usb_error(node, fmt::format("the kernel's driver {} stays", kernel_driver), error);
@@ -295,11 +298,38 @@ class UsbDevice final : public Device {
     model_->amend(info_);
   }
 
+  // What the pad is at, unless it says so by itself at once (PresentState says why). Of a pad that
+  // always answers zeros, which would be a corner of the stick, nothing is kept.
+  void ask_present_state() {
+    constexpr milliseconds kSilence(30);
+    transfers_->handle_events(kSilence);
+    for (const ReportSize& wanted : reports_with_stick(info_.descriptor)) {
+      if (transfers_->has_packet()) return;
+      const int count = libusb_control_transfer(
+          interface_->handle(), kFromInterface, kGetReport,
+          static_cast<std::uint16_t>(kInputReport | wanted.id), interface_number_,
+          present_.bytes.data(), wanted.bytes, kControlTimeoutMs);
+      const auto answer = std::span(present_.bytes).first(wanted.bytes);
+      if (count != wanted.bytes || (wanted.id != 0 && answer[0] != wanted.id)) continue;
+      const auto is_zero = [](std::uint8_t byte) { return byte == 0; };
+      if (std::ranges::all_of(answer.subspan(wanted.id != 0 ? 1 : 0), is_zero)) continue;
+      present_.size = wanted.bytes;
+      return;
+    }
+  }
+
   const DeviceInfo& info() const noexcept override { return info_; }
   std::span<const pollfd> poll_fds() const noexcept override { return transfers_->poll_fds(); }
 
   Status read(Report& report) noexcept override {
     if (take_input(report)) return Status::report;
+    if (present_.size > 0) {
+      report.time_ns = now_ns();
+      report.kind = ReportKind::input;
+      report.size = std::exchange(present_.size, std::uint16_t{0});
+      std::copy_n(present_.bytes.begin(), report.size, report.bytes.begin());
+      return Status::report;
+    }
     transfers_->handle_events(milliseconds(0));
     if (take_input(report)) return Status::report;
     return transfers_->is_gone() ? Status::gone : Status::nothing;
@@ -330,6 +360,7 @@ class UsbDevice final : public Device {
   }
 
   DeviceInfo info_;
+  Report present_;  // size 0: none
   std::unique_ptr<PadModel> model_;
   std::unique_ptr<ClaimedInterface> interface_;
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
@@ -372,6 +403,7 @@ Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInter
   auto device = std::make_unique<UsbDevice>(std::move(info), std::move(vendor.model),
                                             std::move(*claimed), std::move(*transfers));
   device->start(interface.number);
+  if (interface.ids.interface_class == kHidClass) device->ask_present_state();
   return std::unique_ptr<Device>(std::move(device));
 }
 

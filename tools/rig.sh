@@ -34,8 +34,8 @@ bash "$root/tools/install.sh"
 bash "$root/tools/build.sh" "$build" all -DCMAKE_BUILD_TYPE=Release
 bash "$root/tools/rig/install.sh" || skip "QEMU or what it needs cannot be installed here"
 
-seconds=2400
-[ $long -eq 0 ] || seconds=5400
+seconds=3000
+[ $long -eq 0 ] || seconds=14400
 status=0
 for kernel in "${kernels[@]}"; do
   fetched=0

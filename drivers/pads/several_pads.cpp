@@ -26,7 +26,9 @@ constexpr std::uint16_t kNintendo = 0x057e, kAdapter = 0x0337;
 constexpr std::uint16_t kPlugPage = 0xff37;  // ff37:0001 .. 0004 mark the plug that a listing is
 constexpr int kPlugs = 4;
 // Report 21: for each plug a type byte, two of buttons, two sticks, two triggers.
-constexpr std::uint8_t kPlugReport = 0x21, kStart = 0x13, kSetMotors = 0x11;
+constexpr std::uint8_t kPlugReport = 0x21, kSetMotors = 0x11;
+// SDL sends the id alone, by libusb; hidraw refuses a report without data (Linux hidraw.c).
+constexpr std::array<std::uint8_t, 2> kStart = {0x13, 0x00};
 // Bits of the type: has a controller, it is a wireless one (without a motor), the second USB cable
 // that feeds the motors is plugged in.
 constexpr std::uint8_t kHasController = 0x30, kIsWireless = 0x20, kHasPower = 0x04;
@@ -70,7 +72,7 @@ class GameCubePlug final : public PadModel {
   GameCubePlug(int plug, const std::string& adapter)
       : plug_(static_cast<std::size_t>(plug) - 1), motors_(motors_of(adapter)) {}
 
-  void start(PadPort& port, StartedBy) override { port.write({&kStart, 1}); }
+  void start(PadPort& port, StartedBy) override { port.write(kStart); }
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
     if (packet.empty() || packet[0] != kPlugReport || packet.size() != kReportBytes) return false;

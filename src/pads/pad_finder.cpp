@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 
 #include "base/text.h"
 #include "drivers/driver_entries.h"
+#include "drivers/virtual_pad.h"
 #include "gaitpad/drivers.h"
 #include "gaitpad/pad_stream.h"
 
@@ -48,11 +50,21 @@ bool is_asked(const DriverEntry& entry, Drivers which, std::span<const DriverEnt
   return !is_built(table, "hidraw") && !is_built(table, "evdev");
 }
 
+std::uint64_t file_number(const std::string& node) {
+  struct stat status = {};
+  return ::stat(node.c_str(), &status) == 0 ? status.st_ino : 0;
+}
+
 PadSighting judged(const PadFiles& files, DeviceListing listing, const DriverEntry& driver) {
   PadSighting sighting{std::move(listing), &driver, true, {}};
+  sighting.node_file = file_number(sighting.listing.node);
   const DeviceListing& seen = sighting.listing;
   sighting.problem = seen.problem;
-  sighting.is_pad = !seen.is_other;
+  sighting.is_pad = !seen.is_other && !is_virtual_pad(seen.info);
+  if (is_virtual_pad(seen.info)) {
+    sighting.problem = seen.node + ": gaitpad itself makes this pad from another one";
+    return sighting;
+  }
   if (seen.is_other || seen.info.descriptor.empty()) return sighting;
   const auto layout = pad_layout(seen.info, files.overrides);
   sighting.is_pad = layout && layout->is_pad;
@@ -273,10 +285,10 @@ constexpr auto kGonePatience = 3000ms;
 constexpr auto kProblemPatience = 1500ms;  // permissions come a moment after the node
 constexpr auto kIdleLook = 30'000ms, kLookWithoutPads = 5000ms, kLookWithoutUdev = 1000ms;
 
-// Equal for what one driver sees of one device.
+// Equal for what one driver sees of one device while it is plugged in.
 std::string key_of(const PadSighting& s) {
   const DeviceInfo& info = s.listing.info;
-  return fmt::format("{} {} {} {:04x}:{:04x} {}", s.driver->name, s.listing.node,
+  return fmt::format("{} {} {} {} {:04x}:{:04x} {}", s.driver->name, s.listing.node, s.node_file,
                      s.listing.pad_path, info.vendor, info.product, info.unique_id);
 }
 

@@ -118,6 +118,22 @@ std::string user_mapping_file() {
   return folder.empty() ? "" : folder + "/gamecontrollerdb.txt";
 }
 
+Result<std::size_t> save_mappings(const std::string& path, const std::vector<std::string>& lines) {
+  if (path.empty()) return Error{"neither XDG_CONFIG_HOME nor HOME is a folder"};
+  std::vector<std::string> own;
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) {
+    const auto text = file_text(path, kMaxMappingFileBytes);
+    if (!text) return text.error();
+    own = mapping_lines(*text);
+  }
+  std::string text = "# Lines of SDL's controller data base, kept by gaitpad\n";
+  const std::vector<std::string> all = merged_mappings(lines, own);
+  for (const std::string& line : all) text += line + "\n";
+  if (auto problem = write_file(path, text)) return *problem;
+  return all.size();
+}
+
 namespace {
 
 void add_mappings(const std::string& path, PadFiles& files) {

@@ -40,6 +40,9 @@ bool Pads::take_report(const Report& report) noexcept {
   ++pad.reports;
   const std::uint32_t buttons_before = pad.state.buttons;
   if (!pad.config.layout || !decode(*pad.config.layout, report, pad.state)) return false;
+  // A pad that reports more slowly is silent for longer between two reports.
+  const bool is_steady = pad.silent_ticks < silence_ticks_;
+  pad.settled_ticks = std::max(settled_ticks_, is_steady ? 2 * pad.silent_ticks : 0);
   pad.silent_ticks = 0;
   pad.filter.take(pad.state);
   pad.is_seen = true;
@@ -154,7 +157,7 @@ Stick Pads::finish_tick() noexcept {
     stick = other;
   for (Pad& pad : pads_) {
     pad.silent_ticks = std::min(pad.silent_ticks + 1, silence_ticks_);
-    if (pad.silent_ticks == settled_ticks_) pad.filter.settle();
+    if (pad.silent_ticks >= std::min(pad.settled_ticks, silence_ticks_)) pad.filter.settle();
   }
   return stick;
 }

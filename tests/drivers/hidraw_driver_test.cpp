@@ -194,6 +194,14 @@ class HidrawDriver : public testing::Test {
     return status;
   }
   std::unique_ptr<Device> opened() { return value_of(open_hidraw_device(listing_, Detach::never)); }
+  // It was asked for its state at the opening and has refused.
+  std::unique_ptr<Device> settled() {
+    set_present(std::nullopt);
+    auto device = opened();
+    for (int i = 0; i < 500 && device->poll_fds().size() > 1; ++i) wait_and_read(*device, 10);
+    set_present(std::nullopt);
+    return device;
+  }
   // A model whose motors and firmware are known.
   void use(std::uint16_t vendor, std::uint16_t product) {
     listing_.info.vendor = vendor;
@@ -233,7 +241,7 @@ TEST_F(HidrawDriver, HandsOnTheBytesAsTheyCame) {
 }
 
 TEST_F(HidrawDriver, WaitsOnTheLibrarysOwnDescriptor) {
-  const auto device = opened();
+  const auto device = settled();
   ASSERT_EQ(device->poll_fds().size(), 1u);
   struct stat mine {
   }, node{};
@@ -416,7 +424,7 @@ TEST_F(HidrawDriver, AReaderThatComesTooLateIsToldOnce) {
 }
 
 TEST_F(HidrawDriver, APadThatIsSilentAfterAFullRingIsAskedForItsState) {
-  const auto device = opened();
+  const auto device = settled();
   EXPECT_EQ(device->read(report_), Status::nothing);
   set_present(Packet{0, 0x70, 0x80});
   EXPECT_EQ(device->poll_fds().size(), 1u);
@@ -443,7 +451,7 @@ TEST_F(HidrawDriver, ThePresentStateOfANumberedReportIsAskedForByItsId) {
 }
 
 TEST_F(HidrawDriver, APadThatGoesOnAfterAFullRingIsNotAsked) {
-  const auto device = opened();
+  const auto device = settled();
   set_present(Packet{0, 0x70, 0x80});
   read_in_a_row(*device, 63);
   send({5, 6});
@@ -454,7 +462,7 @@ TEST_F(HidrawDriver, APadThatGoesOnAfterAFullRingIsNotAsked) {
 
 TEST_F(HidrawDriver, ARefusedOrShortAnswerIsNoReport) {
   for (const std::optional<Packet>& answer : {std::optional<Packet>(), {Packet{0, 9}}}) {
-    const auto device = opened();
+    const auto device = settled();
     set_present(answer);
     read_in_a_row(*device, 63);
     EXPECT_EQ(wait_and_read(*device, 100), Status::nothing);
@@ -466,11 +474,46 @@ TEST_F(HidrawDriver, ARefusedOrShortAnswerIsNoReport) {
 }
 
 TEST_F(HidrawDriver, APadThatIsUnpluggedBeforeItsAnswerIsGone) {
-  const auto device = opened();
+  const auto device = settled();
   set_present(Packet{0, 0x70, 0x80});
   read_in_a_row(*device, 63);
   unplug();
   EXPECT_EQ(wait_and_read(*device, 1000), Status::gone);
+}
+
+// ---- At the opening
+
+TEST_F(HidrawDriver, APadThatRestsWhenItIsOpenedIsAskedForItsState) {
+  set_present(Packet{0, 0x70, 0x80});
+  const auto device = opened();
+  ASSERT_EQ(wait_and_read(*device, 5000), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{0x70, 0x80}));
+  EXPECT_EQ(asked(), std::vector<int>{0});
+  EXPECT_EQ(device->poll_fds().size(), 1u);
+}
+
+TEST_F(HidrawDriver, APadThatReportsWhenItIsOpenedIsNotAsked) {
+  set_present(Packet{0, 0x70, 0x80});
+  const auto device = opened();
+  send({5, 6});
+  ASSERT_EQ(wait_and_read(*device, 1000), Status::report);
+  EXPECT_EQ(wait_and_read(*device, 60), Status::nothing);
+  EXPECT_TRUE(asked().empty());
+}
+
+TEST_F(HidrawDriver, ZerosAreNoStateOfAPadThatNeverSentZeros) {
+  set_present(Packet{0, 0, 0});
+  const auto device = opened();
+  EXPECT_EQ(wait_and_read(*device, 100), Status::nothing);
+  EXPECT_EQ(asked().size(), 1u);
+}
+
+TEST_F(HidrawDriver, OverBluetoothNothingIsAskedAtTheOpening) {
+  listing_.info.bus = BusType::bluetooth;
+  set_present(Packet{0, 0x70, 0x80});
+  const auto device = opened();
+  EXPECT_EQ(wait_and_read(*device, 60), Status::nothing);
+  EXPECT_TRUE(asked().empty());
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST(SeveralPads, AnEmptyPlugIsAPadThatIsUnplugged) {
   ScriptedPort port;
   model->start(port, StartedBy::us);
   ASSERT_EQ(port.written.size(), 1u);
-  EXPECT_EQ(port.written[0], Packet{0x13});
+  EXPECT_EQ(port.written[0], (Packet{0x13, 0x00}));
   OutPacket reply;
   EXPECT_TRUE(model->is_plugged());
   EXPECT_FALSE(model->accept(adapter_report(1, 0x10, {}), reply)) << "another plug";

@@ -77,7 +77,7 @@ class SharedPads : public testing::Test {
 };
 
 TEST_F(SharedPads, EachTakesEveryPacket) {
-  EXPECT_EQ(adapter_.sent.front(), Packet{0x13});
+  EXPECT_EQ(adapter_.sent.front(), (Packet{0x13, 0x00})) << "hidraw refuses an id alone";
   for (const std::uint8_t x : {10, 20, 30}) arrive(0x14, 0x14, x);
   for (const int x : {10, 20, 30}) {
     ASSERT_EQ(one_->read(report_), Status::report);

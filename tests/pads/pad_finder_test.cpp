@@ -117,6 +117,15 @@ TEST_F(PadChoice, ALinkToANodeIsTheNode) {
   EXPECT_EQ(chosen({link, ""}), node + " ");
 }
 
+TEST_F(PadChoice, ThePadThatGaitpadItselfForwardsIsNone) {
+  auto forwarded = see(kEvdev, "", "p1");
+  forwarded->listing.info.vendor = 0x6761;
+  forwarded->listing.info.product = 0x7470;
+  EXPECT_EQ(chosen(), "");
+  see(kHidraw, "A", "p2");
+  EXPECT_EQ(chosen(), "/dev/hidraw-p2 ");
+}
+
 TEST_F(PadChoice, SightingsTellWhatIsNoPadAndWhy) {
   auto keyboard = see(kHidraw, "K", "p1", "A Keyboard");
   keyboard->listing.info.descriptor = {0x05, 0x01, 0x09, 0x06, 0xa1, 0x01, 0xc0};

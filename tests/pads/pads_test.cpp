@@ -367,6 +367,22 @@ TEST(Pads, AFilteredStickIgnoresASingleReportAndIsNotBehindInSilence) {
   EXPECT_GT(after_silence(pads, 1).left.y, 0.9);  // 20 ms
 }
 
+TEST(Pads, AFilteredStickIgnoresASingleReportOfASlowPadToo) {
+  PadConfig config = made_pad_config();
+  config.calibration.left.filters_jumps = true;
+  Pads pads({config}, kRateHz);
+  for (const int report_hz : {20, 25, 30, 60, 125}) {
+    const int apart = kRateHz / report_hz;
+    for (int n = 0; n < 20; ++n) {
+      pads.take_report(made_report(kMiddle, n == 15 ? kForward : kMiddle));
+      for (int i = 0; i < apart; ++i) {
+        const vec2 left = pads.finish_tick().left;
+        EXPECT_EQ(left, vec2(0.0)) << report_hz << " Hz, report " << n;
+      }
+    }
+  }
+}
+
 TEST(Pads, AWalkThatBeginsUntouchedIsCounted) {
   Pads pads = one_pad();
   pads.take_report(made_report(kMiddle, kMiddle));

@@ -34,10 +34,8 @@ long status_kib(const std::string& key) {
 }
 
 // Sanitizers make mlockall() do nothing: their shadow memory is larger than any machine's.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef GAITPAD_SANITIZED
 constexpr bool kIsSanitized = true;
-#elif defined(__has_feature)
-constexpr bool kIsSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
 #else
 constexpr bool kIsSanitized = false;
 #endif

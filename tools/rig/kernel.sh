@@ -70,8 +70,9 @@ closure() {  # builtin ones have no path
   for name in "$@"; do modprobe -d deb -S "$version" --show-depends "$name"; done |
     awk '$1 == "insmod" && !seen[$2]++ {print $2}'
 }
+bluetooth=(hci_vhci hidp af_alg algif_skcipher algif_hash cmac ecb)  # and what btvirt needs
 closure "${boot[@]}" configfs libcomposite usb_f_fs dummy_hcd usbmon evdev uhid uinput joydev \
-  "${drivers[@]}" | while read -r module; do
+  "${bluetooth[@]}" "${drivers[@]}" | while read -r module; do
   install -D -m 644 "$module" "modules/lib/${module#"$work/deb/lib/"}"
 done
 cp "deb/lib/modules/$version/"modules.{builtin,builtin.modinfo,order} "modules/lib/modules/$version/"

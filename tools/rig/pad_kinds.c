@@ -58,7 +58,8 @@ static const uint8_t generic_descriptor[] = {
 static const struct field generic_fields[] = {
     {"lx", 0, 8}, {"ly", 8, 8}, {"rx", 16, 8}, {"ry", 24, 8}, {"lt", 32, 8}, {"rt", 40, 8},
     {"hat", 48, 4}, {"buttons", 52, 12}, {"a", 52, 1}, {"b", 53, 1}, {"x", 54, 1}, {"y", 55, 1},
-    {0}};
+    {"button5", 56, 1}, {"button6", 57, 1}, {"button7", 58, 1}, {"button8", 59, 1},
+    {"button9", 60, 1}, {"button10", 61, 1}, {"button11", 62, 1}, {"button12", 63, 1}, {0}};
 // clang-format on
 
 // --- DualShock 4
@@ -73,7 +74,8 @@ static const uint8_t ds4_descriptor[] = {
 static const struct field ds4_fields[] = {
     {"lx", 8, 8}, {"ly", 16, 8}, {"rx", 24, 8}, {"ry", 32, 8}, {"lt", 64, 8}, {"rt", 72, 8},
     {"hat", 40, 4}, {"x", 44, 1}, {"a", 45, 1}, {"b", 46, 1}, {"y", 47, 1}, {"buttons", 44, 14},
-    {0}};
+    {"leftshoulder", 48, 1}, {"rightshoulder", 49, 1}, {"back", 52, 1}, {"start", 53, 1},
+    {"leftstick", 54, 1}, {"rightstick", 55, 1}, {"guide", 56, 1}, {"touchpad", 57, 1}, {0}};
 // clang-format on
 
 static size_t ds4_feature(const struct pad* pad, uint8_t id, uint8_t* reply) {
@@ -108,7 +110,9 @@ static const uint8_t dualsense_descriptor[] = {
 static const struct field dualsense_fields[] = {
     {"lx", 8, 8}, {"ly", 16, 8}, {"rx", 24, 8}, {"ry", 32, 8}, {"lt", 40, 8}, {"rt", 48, 8},
     {"hat", 64, 4}, {"x", 68, 1}, {"a", 69, 1}, {"b", 70, 1}, {"y", 71, 1}, {"buttons", 68, 15},
-    {0}};
+    {"leftshoulder", 72, 1}, {"rightshoulder", 73, 1}, {"back", 76, 1}, {"start", 77, 1},
+    {"leftstick", 78, 1}, {"rightstick", 79, 1}, {"guide", 80, 1}, {"touchpad", 81, 1},
+    {"misc1", 82, 1}, {0}};
 // clang-format on
 
 static size_t dualsense_feature(const struct pad* pad, uint8_t id, uint8_t* reply) {
@@ -140,7 +144,9 @@ static const uint8_t switch_descriptor[] = {
 static const struct field switch_fields[] = {
     {"lx", 48, 12}, {"ly", 60, 12}, {"rx", 72, 12}, {"ry", 84, 12}, {"lt", 47, 1},
     {"rt", 31, 1}, {"y", 24, 1}, {"x", 25, 1}, {"b", 26, 1}, {"a", 27, 1}, {"buttons", 24, 24},
-    {0}};
+    {"rightshoulder", 30, 1}, {"back", 32, 1}, {"start", 33, 1}, {"rightstick", 34, 1},
+    {"leftstick", 35, 1}, {"guide", 36, 1}, {"misc1", 37, 1}, {"dpdown", 40, 1}, {"dpup", 41, 1},
+    {"dpright", 42, 1}, {"dpleft", 43, 1}, {"leftshoulder", 46, 1}, {0}};
 // clang-format on
 
 // The flash memory that hosts read: stick calibration of the factory, of the user (none: ff), dead
@@ -208,7 +214,9 @@ static bool switch_answer(struct pad* pad, const struct packet* out, struct pack
 static const struct field xbox360_fields[] = {
     {"lx", 48, 16}, {"ly", 64, 16}, {"rx", 80, 16}, {"ry", 96, 16}, {"lt", 32, 8},
     {"rt", 40, 8}, {"a", 28, 1}, {"b", 29, 1}, {"x", 30, 1}, {"y", 31, 1}, {"buttons", 16, 16},
-    {0}};
+    {"dpup", 16, 1}, {"dpdown", 17, 1}, {"dpleft", 18, 1}, {"dpright", 19, 1}, {"start", 20, 1},
+    {"back", 21, 1}, {"leftstick", 22, 1}, {"rightstick", 23, 1}, {"leftshoulder", 24, 1},
+    {"rightshoulder", 25, 1}, {"guide", 26, 1}, {0}};
 // clang-format on
 
 // --- Xbox One S, wired: silent until it is powered on
@@ -216,7 +224,9 @@ static const struct field xbox360_fields[] = {
 static const struct field xboxone_fields[] = {
     {"lx", 80, 16}, {"ly", 96, 16}, {"rx", 112, 16}, {"ry", 128, 16}, {"lt", 48, 16},
     {"rt", 64, 16}, {"a", 36, 1}, {"b", 37, 1}, {"x", 38, 1}, {"y", 39, 1}, {"buttons", 32, 16},
-    {0}};
+    {"start", 34, 1}, {"back", 35, 1}, {"dpup", 40, 1}, {"dpdown", 41, 1}, {"dpleft", 42, 1},
+    {"dpright", 43, 1}, {"leftshoulder", 44, 1}, {"rightshoulder", 45, 1}, {"leftstick", 46, 1},
+    {"rightstick", 47, 1}, {0}};
 // clang-format on
 
 static size_t xboxone_announce(const struct pad* pad, uint8_t* packet) {
@@ -231,6 +241,63 @@ static bool xboxone_answer(struct pad* pad, const struct packet* out, struct pac
   (void)reply;
   if (out->size >= 5 && out->bytes[0] == 0x05 && out->bytes[1] == 0x20 && out->bytes[4] == 0x00)
     pad->awake = true;
+  return false;
+}
+
+// --- Xbox Series, wired: packets of 48 bytes, the share button in byte 22 (Linux' xpad.c)
+// clang-format off
+static const struct field xboxseries_fields[] = {
+    {"lx", 80, 16}, {"ly", 96, 16}, {"rx", 112, 16}, {"ry", 128, 16}, {"lt", 48, 16},
+    {"rt", 64, 16}, {"a", 36, 1}, {"b", 37, 1}, {"x", 38, 1}, {"y", 39, 1},
+    {"start", 34, 1}, {"back", 35, 1}, {"dpup", 40, 1}, {"dpdown", 41, 1}, {"dpleft", 42, 1},
+    {"dpright", 43, 1}, {"leftshoulder", 44, 1}, {"rightshoulder", 45, 1}, {"leftstick", 46, 1},
+    {"rightstick", 47, 1}, {"misc1", 176, 1}, {0}};
+// clang-format on
+
+// --- DualShock 3 on USB: buttons by bits, their pressure by bytes (Linux' hid-sony.c)
+// clang-format off
+static const uint8_t ds3_descriptor[] = {
+    PAGE(0x01), USAGE(0x04), 0xa1, 0x01, REPORT_ID(1), FIELDS(8, 1, INPUT, 3),
+    PAGE(0x09), 0x19, 1, 0x29, 0x13, 0x15, 0, 0x25, 1, FIELDS(1, 19, INPUT, 2),
+    FIELDS(1, 13, INPUT, 3), PAGE(0x01), STICKS, ZERO_TO_255, BYTES(4, INPUT),
+    USAGE(0x01), ZERO_TO_255, BYTES(39, INPUT), VENDOR_PAGE,
+    REPORT_ID(1), USAGE(0x30), BYTES(48, OUTPUT), REPORT(0xf2, 0x31, 16, FEATURE),
+    REPORT(0xf5, 0x32, 7, FEATURE), 0xc0};
+static const struct field ds3_fields[] = {
+    {"lx", 48, 8}, {"ly", 56, 8}, {"rx", 64, 8}, {"ry", 72, 8}, {"lt", 144, 8}, {"rt", 152, 8},
+    {"back", 16, 1}, {"leftstick", 17, 1}, {"rightstick", 18, 1}, {"start", 19, 1},
+    {"dpup", 20, 1}, {"dpright", 21, 1}, {"dpdown", 22, 1}, {"dpleft", 23, 1},
+    {"leftshoulder", 26, 1}, {"rightshoulder", 27, 1}, {"y", 28, 1}, {"b", 29, 1}, {"a", 30, 1},
+    {"x", 31, 1}, {"guide", 32, 1}, {0}};
+// clang-format on
+
+// f2: the pad's address from byte 4 on; f5: that of the host it is paired with.
+static size_t ds3_feature(const struct pad* pad, uint8_t id, uint8_t* reply) {
+  if (id != 0xf2 && id != 0xf5) return 0;
+  memset(reply, 0, 17);
+  reply[0] = id;
+  if (id == 0xf2) memcpy(reply + 4, pad->mac, 6);
+  return id == 0xf2 ? 17 : 8;
+}
+
+// --- Nintendo's adapter for GameCube controllers, one in the first plug (SDL's
+// SDL_hidapi_gamecube.c): silent until it is asked
+// clang-format off
+static const uint8_t gamecube_descriptor[] = {
+    PAGE(0x05), USAGE(0x00), 0xa1, 0x01, ZERO_TO_255,
+    REPORT(0x11, 0x00, 5, OUTPUT), REPORT(0x21, 0x00, 36, INPUT), REPORT(0x12, 0x00, 1, INPUT),
+    REPORT(0x22, 0x00, 25, INPUT), REPORT(0x13, 0x00, 1, OUTPUT), REPORT(0x23, 0x00, 2, INPUT),
+    0xc0};
+static const struct field gamecube_fields[] = {
+    {"a", 16, 1}, {"b", 17, 1}, {"x", 18, 1}, {"y", 19, 1}, {"dpleft", 20, 1}, {"dpright", 21, 1},
+    {"dpdown", 22, 1}, {"dpup", 23, 1}, {"start", 24, 1}, {"rightshoulder", 25, 1},
+    {"lx", 32, 8}, {"ly", 40, 8}, {"rx", 48, 8}, {"ry", 56, 8}, {"lt", 64, 8}, {"rt", 72, 8},
+    {0}};
+// clang-format on
+
+static bool gamecube_answer(struct pad* pad, const struct packet* out, struct packet* reply) {
+  (void)reply;
+  if (out->size >= 1 && out->bytes[0] == 0x13) pad->awake = true;
   return false;
 }
 
@@ -319,6 +386,92 @@ static const struct pad_kind kinds[] = {
      .answer = xboxone_answer,
      .announce = xboxone_announce,
      .neutral = {0x20, 0x00, 0x00, 0x0e}},
+    {.name = "xboxseries",
+     .manufacturer = "Microsoft",
+     .product = "Xbox Wireless Controller",
+     .vendor = 0x045e,
+     .product_id = 0x0b12,
+     .version = 0x0507,
+     .interface_class = {0xff, 0x47, 0xd0},
+     .interval_ms = 4,
+     .fields = xboxseries_fields,
+     .counter = {"", 16, 8},
+     .starts_asleep = true,
+     .report_size = 48,
+     .answer = xboxone_answer,
+     .announce = xboxone_announce,
+     .neutral = {0x20, 0x00, 0x00, 0x2c}},
+    {.name = "powera",  // 20d6:2001 is in xpad's table
+     .manufacturer = "PowerA",
+     .product = "Xbox Series X EnWired",
+     .vendor = 0x20d6,
+     .product_id = 0x2001,
+     .version = 0x0101,
+     .interface_class = {0xff, 0x47, 0xd0},
+     .interval_ms = 4,
+     .fields = xboxone_fields,
+     .counter = {"", 16, 8},
+     .starts_asleep = true,
+     .report_size = 18,
+     .answer = xboxone_answer,
+     .announce = xboxone_announce,
+     .neutral = {0x20, 0x00, 0x00, 0x0e}},
+    {.name = "f310x",  // Logitech F310 with its switch at X
+     .manufacturer = "Logitech",
+     .product = "Gamepad F310",
+     .vendor = 0x046d,
+     .product_id = 0xc21d,
+     .version = 0x4014,
+     .interface_class = {0xff, 0x5d, 1},
+     .interval_ms = 4,
+     .fields = xbox360_fields,
+     .report_size = 20,
+     .neutral = {0x00, 0x14}},
+    {.name = "edge",
+     .manufacturer = "Sony Interactive Entertainment",
+     .product = "DualSense Edge Wireless Controller",
+     .vendor = 0x054c,
+     .product_id = 0x0df2,
+     .version = 0x0100,
+     .interface_class = {3, 0, 0},
+     .interval_ms = 4,
+     .stream_rate_hz = 250,
+     .fields = dualsense_fields,
+     .counter = {"", 56, 8},
+     DESCRIPTOR(dualsense_descriptor),
+     .report_size = 64,
+     .feature = dualsense_feature,
+     .neutral = {1, 0x80, 0x80, 0x80, 0x80, [8] = 0x08, [33] = 0x80, [37] = 0x80, [53] = 0x18}},
+    {.name = "ds3",
+     .manufacturer = "Sony",
+     .product = "PLAYSTATION(R)3 Controller",
+     .vendor = 0x054c,
+     .product_id = 0x0268,
+     .version = 0x0100,
+     .interface_class = {3, 0, 0},
+     .interval_ms = 10,
+     .stream_rate_hz = 100,
+     .fields = ds3_fields,
+     DESCRIPTOR(ds3_descriptor),
+     .report_size = 49,
+     .feature = ds3_feature,
+     .neutral = {1, [6] = 0x80, 0x80, 0x80, 0x80, [30] = 0xee}},
+    {.name = "gamecube",
+     .manufacturer = "Nintendo",
+     .product = "WUP-028",
+     .vendor = 0x057e,
+     .product_id = 0x0337,
+     .version = 0x0100,
+     .interface_class = {3, 0, 0},
+     .interval_ms = 8,
+     .stream_rate_hz = 125,
+     .fields = gamecube_fields,
+     .starts_asleep = true,
+     DESCRIPTOR(gamecube_descriptor),
+     .report_size = 37,
+     .answer = gamecube_answer,
+     .neutral = {0x21, 0x14, 0x00, 0x00, 0x80, 0x80, 0x80, 0x80, 0, 0,
+                 0x04, [19] = 0x04, [28] = 0x04}},
 };
 
 const struct pad_kind* find_kind(const char* name) {

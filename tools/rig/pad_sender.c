@@ -49,7 +49,10 @@ static bool due(int64_t at_ns, int64_t now, int64_t* next_ns) {
 
 static bool burst_packet(int64_t now, struct packet* packet, int64_t* next_ns) {
   if (burst.left == 0 || !due(burst.next_ns, now, next_ns)) return false;
-  if (burst.period_ns != 0 && now - burst.next_ns > burst.period_ns) ++burst.late;
+  if (now - burst.next_ns > burst.period_ns) {
+    ++burst.late;
+    burst.next_ns = now;  // no catching up: a pad's clock does not run faster than its rate
+  }
   burst.next_ns += burst.period_ns;
   write_bits(&pad->state, (struct field){"", (uint16_t)(8 * burst.at), 32},
              (uint32_t)burst.number++);

@@ -127,6 +127,7 @@ void plug_gadget(int index, bool on) {
   if (on) snprintf(udc, sizeof udc, "dummy_udc.%d", index);
   snprintf(path, sizeof path, "%s/UDC", gadget);
   const int file = open(path, O_WRONLY);
+  if (!on) note("unplugging", "");
   const bool done = file >= 0 && write(file, udc, strlen(udc)) > 0;
   note(on ? "plug" : "unplug", done ? "" : strerror(errno));
   if (file >= 0) close(file);

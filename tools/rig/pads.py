@@ -15,7 +15,7 @@ KERNEL = tuple(int(part) for part in os.uname().release.split(".")[:2])
 KINDS = ("generic", "ds4", "dualsense", "switch", "xbox360", "xboxone")
 # How many hidraw and event nodes a bound driver makes.
 NODES = {"generic": (1, 1), "ds4": (1, 3), "dualsense": (1, 3), "switch": (1, 2), "xbox360": (0, 1),
-         "xboxone": (0, 1)}
+         "xboxone": (0, 1), "gamecube": (1, 0)}  # no usage of the adapter's is the kernel's idea of a pad
 
 Sent = collections.namedtuple("Sent", "ns number data")  # ns: CLOCK_MONOTONIC before the write
 Packet = collections.namedtuple("Packet", "ns data")
@@ -34,7 +34,7 @@ def wait_for(condition, seconds=10.0, what="a condition"):
 
 
 def settle():
-    subprocess.run(["udevadm", "settle", "--timeout=20"], check=True)
+    subprocess.run(["udevadm", "settle", "--timeout=90"], check=True)
 
 
 def udev_properties(node):

@@ -1,9 +1,11 @@
 """The program in a test: run("gaitpad", "pads"), and a `gaitpad play` beside the test with what its recording says,
 `with Session(...) as session: ...`. What a test measured for the reader: remark("median 0.3 ms") comes to the
 screen and into build/rig/results."""
+import contextlib
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -44,9 +46,12 @@ class Session:
 
     def __enter__(self):
         print("$", *self._command, flush=True)
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(self.path)  # of an earlier session: lines() would take it for this one
         self.process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
         try:
-            wait_for(lambda: self.plugged() >= self.awaited or self.process.poll() is not None, 30, "the session's pad")
+            wait_for(lambda: self.lines("V:") and self.plugged() >= self.awaited or self.process.poll() is not None, 60,
+                     "the session and its pad")
         except BaseException:
             self.process.kill()
             self.process.wait()
@@ -111,6 +116,21 @@ class Session:
         run("gaitpad", "replay", self.path, "--out", "/tmp/frames", seconds=300)
         with open("/tmp/frames/frames.csv", newline="") as file:
             return list(csv.DictReader(file))
+
+
+def tick_times_ns(lines):
+    """When each tick of a recording was due, by CLOCK_MONOTONIC: a function of its number."""
+    rate_hz, starts = 240, []
+    for line in lines:
+        if found := re.match(r"V: 1 rate_hz=(\d+)", line):
+            rate_hz = int(found[1])
+        if found := re.match(r"# tick (\d+) began at CLOCK_MONOTONIC (\d+)\.(\d{9})", line):
+            starts.append((int(found[1]), int(found[2]) * 10**9 + int(found[3])))
+
+    def time_ns(tick):
+        first, start_ns = [start for start in starts if start[0] <= tick][-1]
+        return start_ns + (tick - first) * 10**9 // rate_hz
+    return time_ns
 
 
 def ticks_of(lines, wanted):

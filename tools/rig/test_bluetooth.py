@@ -31,7 +31,9 @@ def states(half):
 
 
 @pytest.mark.timeout(90)
-@pytest.mark.parametrize("case", [f"{kind}-{driver}" for kind in HALF for driver in ("hidraw", "evdev", "sdl")])
+@pytest.mark.parametrize("case", [f"{kind}-{driver}" if kind == "dualsense_bt" or driver == "hidraw" else
+                                  pytest.param(f"{kind}-{driver}", marks=pytest.mark.long)
+                                  for kind in HALF for driver in ("hidraw", "evdev", "sdl")])
 def test_decoded_and_replayed(case):
     kind, driver = case.split("-")
     half = HALF[kind]

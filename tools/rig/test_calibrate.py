@@ -35,8 +35,7 @@ class PadHand(Hand):
         super().__init__()
         self.pad, self.mounted = pad, mounted
         self.random = random.Random(1)
-        pad.set(a=1)
-        pad.set(a=0)
+        pad.set(a=0)  # a report of a pad at rest
         self.base = bytearray(wait_for(pad.sent, 5, "the pad's report")[-1].data)
 
     def counts(self, stick):

@@ -1,4 +1,5 @@
-"""From the gadget's write to user space, and to the tick that uses it, by every driver.
+"""From the gadget's write to `gaitpad play`, by every driver: to its own thread, and to the begin of the tick that
+uses the report.
 
 Reports of the generic pad, 250 a second, each numbered in its left stick. A driver's blocks alternate
 with those of a bare poll() and read() of the node, since the same read differs by a tenth from one run to
@@ -6,7 +7,6 @@ the next. Writes latency.md and latency.csv to the results.
 """
 import csv
 import pathlib
-import re
 import statistics
 import subprocess
 import time
@@ -47,10 +47,9 @@ def written(pad, before):
     return [(s.ns, s.data[0] + 256 * s.data[1]) for s in pad.sent()[before:]][WARM_UP:]
 
 
-def block(pad, way):
-    """(latencies in us, reports lost) of one block."""
+def bare_block(pad, way):
+    """[(ns of the arrival, number)] of one block by a reader that does nothing else."""
     program = [f"{BUILD}/tools/rig/rig_plain_sdl"] if way == "plain_sdl" else [f"{BUILD}/tools/rig/rig_latency", way]
-    before = len(pad.sent())
     with subprocess.Popen([*program, GENERIC, "1000"], stdout=subprocess.PIPE, text=True) as reader:
         if reader.stdout.readline() != "ready\n":
             raise RuntimeError(f"{way} did not open the pad")
@@ -58,40 +57,36 @@ def block(pad, way):
         received = [tuple(map(int, line.split())) for line in reader.stdout]
     if reader.returncode != 0:
         raise RuntimeError(f"{way} failed")
+    return received, []
+
+
+def play_block(pad, driver):
+    """The same of `play`, on its own threads, and [(ns of the tick's begin, number)]."""
+    times = RESULTS / f"latency_{driver}.csv"
+    with Session(GENERIC, "--driver", driver, "--no-rumble", "--report-times", times, name=f"latency_{driver}") as session:
+        time.sleep(0.5)
+        pad.set(lx=127, ly=129)  # SDL swallows small first movements
+        pad.set(lx=128, ly=128)
+        time.sleep(0.2)
+        pad.burst(RATE_HZ, SECONDS, at=0)
+        pad.wait_burst()
+        time.sleep(0.3)
+    numbers = [round((row["axes"]["left_x"] + 1) * 127.5) + 256 * round((1 - row["axes"]["left_y"]) * 127.5)
+               for row in session.decoded()]
+    with open(times, newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(numbers), f"{len(rows)} times of {len(numbers)} reports"
+    return [[(int(row[key]), number) for row, number in zip(rows, numbers)] for key in ("arrival_ns", "begin_ns")]
+
+
+def block(pad, way):
+    """(latencies in us, those to the tick's begin, reports lost) of one block."""
+    before = len(pad.sent())
+    received, begins = play_block(pad, way) if way in LIMITS_US else bare_block(pad, way)
     pad.wait_burst()
     sent = written(pad, before)
     found = latencies_us(sent, received)
-    return found, len(sent) - len(found)
-
-
-def tick_times_ns(text):
-    """When the tick began that used it, of each report of a recording."""
-    rate_hz = int(re.search(r"rate_hz=(\d+)", text)[1])
-    times, tick, first_tick, start_ns = [], 0, 0, 0
-    for line in text.splitlines():
-        if clock := re.match(r"# tick (\d+) began at CLOCK_MONOTONIC (\d+)\.(\d{9})", line):
-            first_tick, start_ns = int(clock[1]), int(clock[2]) * 10**9 + int(clock[3])
-        elif line.startswith("T: "):
-            tick = int(line[3:])
-        elif line.startswith("E: "):
-            times.append(start_ns + (tick - first_tick) * 10**9 // rate_hz)
-    return times
-
-
-def tick_latencies_us(pad, driver):
-    """From the write to the beginning of the tick that used it, out of a session's own recording."""
-    with Session(GENERIC, "--driver", driver, "--no-rumble", name=f"latency_{driver}") as session:
-        time.sleep(0.5)
-        pad.set(lx=128, ly=128)  # SDL swallows small first movements
-        time.sleep(0.1)
-        before = len(pad.sent())
-        pad.burst(RATE_HZ, 2 * SECONDS, at=0)
-        pad.wait_burst()
-        time.sleep(0.5)
-    ticks = tick_times_ns(pathlib.Path(session.path).read_text())
-    numbers = [round((row["axes"]["left_x"] + 1) * 127.5) + 256 * round((1 - row["axes"]["left_y"]) * 127.5)
-               for row in session.decoded()]
-    return latencies_us(written(pad, before), zip(ticks, numbers))
+    return found, latencies_us(sent, begins), len(sent) - len(found)
 
 
 def over_bare_us(medians, driver):
@@ -99,16 +94,23 @@ def over_bare_us(medians, driver):
     return statistics.median(a - b for a, b in zip(medians[driver], medians[LIMITS_US[driver][0]]))
 
 
+def quartiles(values):
+    ordered = sorted(values)
+    return [percentile(ordered, share) for share in (0.25, 0.5, 0.75, 0.99)]
+
+
 def write(found, medians, ticks):
-    rows = [["way", "reports", "median_us", "p99_us", "over_bare_us", "to_tick_median_us", "to_tick_p99_us"]]
-    text = ["| way | median | 99th percentile | over the bare read | to the tick: median | 99th percentile |",
+    """To one decimal, the median with the quartiles: blocks of the same read differ by more than a hundredth of a
+    millisecond."""
+    rows = [["way", "reports", "q1_us", "median_us", "q3_us", "p99_us", "over_bare_us", "to_tick_q1_us", "to_tick_median_us",
+             "to_tick_q3_us", "to_tick_p99_us"]]
+    text = ["| way | to the program | 99th percentile | over the bare read | to the tick's begin | 99th percentile |",
             "|---|---|---|---|---|---|"]
     for way, values in found.items():
-        median, p99 = statistics.median(values), percentile(values, 0.99)
         over = over_bare_us(medians, way) if way in LIMITS_US else None
-        tick = [statistics.median(ticks[way]), percentile(ticks[way], 0.99)] if ticks.get(way) else [None, None]
-        rows.append([way, len(values), median, p99, over, *tick])
-        cells = [f"{v / 1000:.2f} ms" if v is not None else "-" for v in (median, p99, over, *tick)]
+        there, tick = quartiles(values), quartiles(ticks[way]) if ticks.get(way) else 4 * [None]
+        rows.append([way, len(values), *there, over, *tick])
+        cells = [spread_text(there), ms_text(there[3]), ms_text(over), spread_text(tick), ms_text(tick[3])]
         text.append(f"| {LABELS.get(way, f'`{way}` driver')} | " + " | ".join(cells) + " |")
     with open(RESULTS / "latency.csv", "w", newline="") as file:
         csv.writer(file).writerows(rows)
@@ -117,14 +119,23 @@ def write(found, medians, ticks):
         remark(line)
 
 
-def measure(pad, ways, found, lost):
+def ms_text(us):
+    return "-" if us is None else f"{us / 1000:.1f} ms"
+
+
+def spread_text(quarters):
+    return "-" if quarters[1] is None else f"{ms_text(quarters[1])} ({quarters[0] / 1000:.1f} to {quarters[2] / 1000:.1f})"
+
+
+def measure(pad, ways, found, ticks, lost):
     """BLOCKS blocks of each way, in turns; the median of each block."""
     medians = {way: [] for way in ways}
     for _ in range(BLOCKS):
         for way in ways:
-            values, missing = block(pad, way)
+            values, to_ticks, missing = block(pad, way)
             print(way, len(values), "lost", missing, "median", statistics.median(values), flush=True)
             found[way] += values
+            ticks[way] += to_ticks
             medians[way].append(statistics.median(values))
             lost[way] += missing
             pad.wait_ready()
@@ -141,15 +152,15 @@ def test_drivers_are_as_fast_as_the_bare_read():
         pytest.skip("a program with sanitizers is slower by design")
     ways = ["bare_hidraw", "hidraw", "bare_evdev", "evdev", "sdl", "plain_sdl", "usb"]
     found = {way: [] for way in ways}
+    ticks = {way: [] for way in ways}
     lost = dict.fromkeys(ways, 0)
     with Pad("generic") as pad:
-        medians = measure(pad, ways, found, lost)
+        medians = measure(pad, ways, found, ticks, lost)
         slow = too_slow(medians)
         # The host of an emulator may be busy for a while: what was too slow is measured anew, beside its bare read.
         for _ in range(ATTEMPTS):
             if slow:
-                slow = too_slow(measure(pad, [*{LIMITS_US[way][0]: None for way in slow}, *slow], found, lost))
-        ticks = {driver: tick_latencies_us(pad, driver) for driver in LIMITS_US}
+                slow = too_slow(measure(pad, [*{LIMITS_US[way][0]: None for way in slow}, *slow], found, ticks, lost))
     write(found, medians, ticks)
     for driver, (_, limit_us) in LIMITS_US.items():
         assert lost[driver] == 0, f"{driver} lost {lost[driver]}"

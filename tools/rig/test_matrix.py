@@ -21,17 +21,42 @@ VALUES = {"generic": BYTES, "ds4": BYTES, "dualsense": BYTES,
           "xbox360": {**WORDS, "trigger": 255}, "xboxone": {**WORDS, "trigger": 1023}}
 STICKS = ("lx", "ly", "rx", "ry")
 BUTTONS = ("a", "b", "x", "y")
-# What a pad's own buttons are by position, as SDL names them. Nintendo prints b on the bottom one; the generic pad's
-# four are its first ones, which count a b - x on a pad with accelerator and brake.
-POSITIONS = {"switch": {"a": "b", "b": "a", "x": "y", "y": "x"}, "generic": {"a": "a", "b": "b", "x": None, "y": "x"}}
+MIDDLE = ("leftshoulder", "rightshoulder", "back", "start", "leftstick", "rightstick")
+DPAD = ("dpup", "dpright", "dpdown", "dpleft")
+# Every button of a kind, as its field of the report is called and as SDL names it by position. Nintendo prints b on the
+# bottom one; the generic pad's first ones count a b - x y - on a pad with accelerator and brake.
+NAMES_OF = {
+    "generic": {"a": "a", "b": "b", "x": "button_3", "y": "x", "button5": "y", "button6": "button_6",
+                "button7": "leftshoulder", "button8": "rightshoulder", "button11": "back", "button12": "start"},
+    "ds4": {name: name for name in BUTTONS + MIDDLE + ("guide", "touchpad")},
+    "dualsense": {name: name for name in BUTTONS + MIDDLE + ("guide", "touchpad", "misc1")},
+    "switch": {"a": "b", "b": "a", "x": "y", "y": "x", **{name: name for name in MIDDLE + ("guide", "misc1")}},
+    "xbox360": {name: name for name in BUTTONS + MIDDLE + ("guide",)},
+    "xboxone": {name: name for name in BUTTONS + MIDDLE}}
+# What the kernel's driver keeps from its event node of the pad: a click of the touchpad is its touchpad's, Mute is the
+# driver's own switch, and SDL has no name for the generic pad's spare buttons.
+KEPT = {("ds4", "evdev"): {"touchpad"}, ("ds4", "sdl"): {"touchpad"}, ("dualsense", "evdev"): {"touchpad", "misc1"},
+        ("dualsense", "sdl"): {"touchpad", "misc1"}}
+HAS_HAT = ("generic", "ds4", "dualsense")  # 0 up, clockwise; 8 released. The others have four bits.
 NAMES = {"lx": "left_x", "ly": "left_y", "rx": "right_x", "ry": "right_y", "lt": "left_trigger",
          "rt": "right_trigger"}
 
 
-def states(kind):
-    """What is sent, one after the other: sticks in both extremes and between, triggers, each button."""
-    v = VALUES[kind]
-    rest = {**dict.fromkeys(STICKS, v["rest"]), "lt": 0, "rt": 0, **dict.fromkeys(BUTTONS, 0)}
+def directions(eighth):
+    """Of the D-pad at that eighth of a turn, clockwise from up."""
+    names = {DPAD[eighth // 2]}
+    return names | {DPAD[(eighth // 2 + 1) % 4]} if eighth % 2 else names
+
+
+def at_rest(kind):
+    rest = {**dict.fromkeys(STICKS, VALUES[kind]["rest"]), "lt": 0, "rt": 0, **dict.fromkeys(NAMES_OF[kind], 0)}
+    return {**rest, "hat": 8} if kind in HAS_HAT else {**rest, **dict.fromkeys(DPAD, 0)}
+
+
+def states(kind, driver):
+    """What is sent, one after the other: sticks in both extremes and between, triggers, each button, the D-pad in eight
+    directions."""
+    v, rest = VALUES[kind], at_rest(kind)
     yield {**rest, **dict(zip(STICKS, v["some"]))}
     for stick in STICKS:
         yield {**rest, stick: v["low"]}
@@ -40,8 +65,11 @@ def states(kind):
         yield {**rest, "lt": v["trigger"] // 2, "rt": v["trigger"]}
     yield {**rest, "lt": v["trigger"]}
     yield {**rest, "rt": v["trigger"]}
-    for button in BUTTONS:
-        yield {**rest, button: 1}
+    for button in NAMES_OF[kind]:
+        if button not in KEPT.get((kind, driver), ()):
+            yield {**rest, button: 1}
+    for eighth in range(8):
+        yield {**rest, **({"hat": eighth} if kind in HAS_HAT else dict.fromkeys(directions(eighth), 1))}
     yield rest
 
 
@@ -57,16 +85,19 @@ def expected_stick(kind, driver, name, value):
 
 
 def expected(kind, driver, state):
+    """(axes, every button that is pressed)"""
     axes = {NAMES[name]: expected_stick(kind, driver, name, state[name]) for name in STICKS}
     for name in ("lt", "rt"):
         axes[NAMES[name]] = state[name] / VALUES[kind]["trigger"]
-    positions = POSITIONS.get(kind, {})
-    return axes, {positions.get(button, button) for button in BUTTONS if state[button]} - {None}
+    pressed = {name for button, name in NAMES_OF[kind].items() if state[button]}
+    if kind in HAS_HAT:
+        return axes, pressed | (directions(state["hat"]) if state["hat"] < 8 else set())
+    return axes, pressed | {name for name in DPAD if state[name]}
 
 
 def is_as_sent(row, axes, buttons):
-    return all(abs(row["axes"][name] - value) < 0.002 for name, value in axes.items()) and \
-        {button for button in row["buttons"] if button in BUTTONS} == buttons
+    """Every axis is where it was sent, and these buttons alone are pressed."""
+    return all(abs(row["axes"][name] - value) < 0.002 for name, value in axes.items()) and set(row["buttons"]) == buttons
 
 
 def check_sequence(rows, wanted):
@@ -90,7 +121,7 @@ def test_found_decoded_recorded_and_replayed(case):
         mine = [row for row in rows if row.get("vendor") == int(ids[0], 16) and row["product"] == int(ids[1], 16)]
         assert [row["usable"] for row in mine].count(True) == 1, mine
         with Session(IDS[kind], "--driver", driver, name=case) as session:
-            sent = list(states(kind))
+            sent = list(states(kind, driver))
             for state in sent:
                 session.show(driver, pad, 0.02, **state)
             pad.set(ly=VALUES[kind]["forward"])

@@ -99,11 +99,13 @@ def _neutral(size, start, **values):
 
 
 class Kind:
-    """fields: name -> (first bit, width) of the little-endian report."""
+    """fields: name -> (first bit, width) of the little-endian report.
+    feature(report, mac) -> bytes or None; answer(pad, output report) -> an input report to send, or None."""
 
-    def __init__(self, name, ids, descriptor, neutral, fields, rate_hz=0, seed=None, feature=None, bus=BUS_BLUETOOTH):
+    def __init__(self, name, ids, descriptor, neutral, fields, rate_hz=0, seed=None, feature=None, answer=None,
+                 bus=BUS_BLUETOOTH):
         self.name, self.ids, self.descriptor, self.neutral, self.fields = name, ids, descriptor, neutral, fields
-        self.rate_hz, self.seed, self.feature, self.bus = rate_hz, seed, feature, bus
+        self.rate_hz, self.seed, self.feature, self.answer, self.bus = rate_hz, seed, feature, answer, bus
 
 
 def _sony_fields(start, triggers, buttons):
@@ -151,35 +153,32 @@ def read_trace(path):
     return Kind(name, ids, descriptor, neutral, {}, feature=feature, bus=bus), reports
 
 
-class UhidPad(Nodes):
-    """One HID pad of a kind above, or "trace" with trace=FILE.hid; plugged in by entering the `with` block."""
+class HidPad(Nodes):
+    """A HID pad whose reports Python makes; its transport is a subclass. Plugged in by entering the `with` block.
 
-    def __init__(self, kind, index=0, trace=None):
-        self.kind, self._trace = read_trace(trace) if kind == "trace" else (KINDS[kind], [])
-        self.mac = bytes([0x02, 0x55, 0x48, 0x49, self.kind.ids[1] & 0xff, index + 1])
-        self.uniq = ":".join(f"{byte:02x}" for byte in self.mac)
-        self.state = bytearray(self.kind.neutral)
-        self.rate_hz = self.kind.rate_hz
+    A subclass has _open() and _close(), the file descriptor _inbox with what comes from the host, _take(inbox) that
+    reads and answers it, and _deliver(report)."""
+
+    def __init__(self, kind):
+        super().__init__("/nowhere")
+        self.kind = kind
+        self.state = bytearray(kind.neutral)
+        self.rate_hz = kind.rate_hz
         self.good_checksum = True  # False: every report's is wrong
-        self._fd = self._thread = None
+        self._thread = None
         self._outs, self._sents = [], []
         self._lock = threading.Lock()
-        super().__init__("/nowhere")
 
     def __enter__(self):
         self.plug()
         return self
 
     def __exit__(self, *_):
-        if self._fd is not None:
+        if self._thread is not None:
             self.unplug()
 
     def plug(self, wait=True):
-        self._fd = os.open("/dev/uhid", os.O_RDWR | os.O_CLOEXEC)
-        text = [self.kind.name.encode(), b"rig/uhid", self.uniq.encode()]
-        descriptor = self.kind.descriptor
-        self._write(CREATE2, struct.pack("=128s64s64sHHIIII4096s", *text, len(descriptor), self.kind.bus, *self.kind.ids,
-                                         0x0100, 0, descriptor))
+        self._open()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._serve, daemon=True)
         self._thread.start()
@@ -190,26 +189,23 @@ class UhidPad(Nodes):
             if self.kind.fields:
                 wait_for(lambda: self.joystick, 20, "the joystick node")
 
-    def unplug(self):
+    def unplug(self, wait=True):
         self._stop.set()
         self._thread.join()
-        os.close(self._fd)  # destroys the device
-        self._fd = None
-        wait_for(lambda: not os.path.isdir(self.sysfs), 10, "the unplugging")
+        self._thread = None
+        self._close()
+        if wait:
+            wait_for(lambda: not os.path.isdir(self.sysfs), 10, "the unplugging")
 
     def _find_sysfs(self):
-        pattern = "/sys/devices/virtual/misc/uhid/%04X:%04X:%04X.*" % (self.kind.bus, *self.kind.ids)
-        for folder in glob.glob(pattern):
+        for folder in glob.glob("/sys/bus/hid/devices/%04X:%04X:%04X.*" % (self.kind.bus, *self.kind.ids)):
             try:
                 with open(folder + "/uevent") as file:
                     if f"HID_UNIQ={self.uniq}" in file.read():
-                        return folder
+                        return os.path.realpath(folder)
             except FileNotFoundError:
                 pass
         return None
-
-    def _write(self, kind, data):
-        os.write(self._fd, struct.pack("=I", kind) + data)
 
     # --- what happens by itself: replies, the stream
 
@@ -223,22 +219,14 @@ class UhidPad(Nodes):
                     self.send()
                     next_s = max(next_s + 1 / self.rate_hz, now)
                 wait_s = min(wait_s, max(0.0, next_s - time.monotonic()))
-            if select.select([self._fd], [], [], wait_s)[0]:
-                self._answer(os.read(self._fd, 4380))
+            if select.select([self._inbox], [], [], wait_s)[0]:
+                self._take()
 
-    def _answer(self, event):
-        kind, data = struct.unpack_from("=I", event)[0], event[4:]
-        if kind == OUTPUT:
-            size, = struct.unpack_from("=H", data, 4096)
-            self._outs.append(Packet(time.monotonic_ns(), data[:size]))
-        elif kind == GET_REPORT:
-            number, report, _ = struct.unpack_from("=IBB", data)
-            reply = self.kind.feature and self.kind.feature(report, self.mac)
-            self._write(GET_REPORT_REPLY, struct.pack("=IHH4096s", number, 0 if reply else 5, len(reply or b""), reply or b""))
-        elif kind == SET_REPORT:
-            number, _, _, size = struct.unpack_from("=IBBH", data)
-            self._outs.append(Packet(time.monotonic_ns(), data[8:8 + size]))
-            self._write(SET_REPORT_REPLY, struct.pack("=IH", number, 0))
+    def _take_output(self, data):
+        self._outs.append(Packet(time.monotonic_ns(), data))
+        reply = self.kind.answer and self.kind.answer(self, data)
+        if reply:
+            self.send(reply)
 
     # --- what a test sends
 
@@ -250,7 +238,7 @@ class UhidPad(Nodes):
                 if self.kind.seed is not None:
                     report = with_checksum(self.kind.seed if self.good_checksum else 0, report)
             self._sents.append(Sent(time.monotonic_ns(), len(self._sents) + 1, bytes(report)))
-            self._write(INPUT2, struct.pack("=H", len(report)) + bytes(report))
+            self._deliver(bytes(report))
 
     def set(self, **fields):
         with self._lock:
@@ -262,16 +250,57 @@ class UhidPad(Nodes):
         if not self.rate_hz:
             self.send()
 
-    def play(self):
-        """The trace at its own times; returns at its end."""
-        start = time.monotonic() - (self._trace[0][0] if self._trace else 0)
-        for at_s, report in self._trace:
-            time.sleep(max(0.0, start + at_s - time.monotonic()))
-            self.send(report)
-
     def sent(self):
         return list(self._sents)
 
     def out_packets(self, since_ns=0):
         """Output and feature reports that the host has written."""
         return [packet for packet in self._outs if packet.ns >= since_ns]
+
+
+class UhidPad(HidPad):
+    """One HID pad of a kind above, or "trace" with trace=FILE.hid."""
+
+    def __init__(self, kind, index=0, trace=None):
+        kind, self._trace = read_trace(trace) if kind == "trace" else (KINDS[kind], [])
+        super().__init__(kind)
+        self.mac = bytes([0x02, 0x55, 0x48, 0x49, kind.ids[1] & 0xff, index + 1])
+        self.uniq = ":".join(f"{byte:02x}" for byte in self.mac)
+
+    def _open(self):
+        self._inbox = os.open("/dev/uhid", os.O_RDWR | os.O_CLOEXEC)
+        text = [self.kind.name.encode(), b"rig/uhid", self.uniq.encode()]
+        descriptor = self.kind.descriptor
+        self._write(CREATE2, struct.pack("=128s64s64sHHIIII4096s", *text, len(descriptor), self.kind.bus, *self.kind.ids,
+                                         0x0100, 0, descriptor))
+
+    def _close(self):
+        os.close(self._inbox)  # destroys the device
+
+    def _write(self, kind, data):
+        os.write(self._inbox, struct.pack("=I", kind) + data)
+
+    def _deliver(self, report):
+        self._write(INPUT2, struct.pack("=H", len(report)) + report)
+
+    def _take(self):
+        event = os.read(self._inbox, 4380)
+        kind, data = struct.unpack_from("=I", event)[0], event[4:]
+        if kind == OUTPUT:
+            size, = struct.unpack_from("=H", data, 4096)
+            self._take_output(data[:size])
+        elif kind == GET_REPORT:
+            number, report, _ = struct.unpack_from("=IBB", data)
+            reply = self.kind.feature and self.kind.feature(report, self.mac)
+            self._write(GET_REPORT_REPLY, struct.pack("=IHH4096s", number, 0 if reply else 5, len(reply or b""), reply or b""))
+        elif kind == SET_REPORT:
+            number, _, _, size = struct.unpack_from("=IBBH", data)
+            self._outs.append(Packet(time.monotonic_ns(), data[8:8 + size]))
+            self._write(SET_REPORT_REPLY, struct.pack("=IH", number, 0))
+
+    def play(self):
+        """The trace at its own times; returns at its end."""
+        start = time.monotonic() - (self._trace[0][0] if self._trace else 0)
+        for at_s, report in self._trace:
+            time.sleep(max(0.0, start + at_s - time.monotonic()))
+            self.send(report)

@@ -30,6 +30,9 @@ struct PadFiles {
 };
 // gamecontrollerdb.txt in the user's folder, whether it exists or not; empty: there is no folder.
 std::string user_mapping_file();
+// Writes these lines into such a file, over those of the same pads; the others stay. Returns how
+// many there are now.
+Result<std::size_t> save_mappings(const std::string& path, const std::vector<std::string>& lines);
 inline constexpr std::size_t kMaxMappingFileBytes = std::size_t{8} << 20;
 
 // `map` and `calibration` are paths; empty: none. Error: a file that cannot be read.

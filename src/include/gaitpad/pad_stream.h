@@ -31,6 +31,9 @@ struct PadSighting {
   const DriverEntry* driver = nullptr;
   bool is_pad = false;  // it has a stick, or its driver knows only after opening it
   std::string problem;  // one sentence that says why it is not usable; empty: it is usable
+  // Number of the node's file (inode): another one after the device was plugged in again, although
+  // the node's name may be the same. 0: not known.
+  std::uint64_t node_file = 0;
 };
 
 // Equal for all sightings of the same pad by different drivers.

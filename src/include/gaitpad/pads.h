@@ -87,6 +87,7 @@ class Pads {
     bool is_seen = false;     // it has reported since it was plugged in
     std::uint64_t reports = 0;
     int silent_ticks = 0;
+    int settled_ticks = 0;  // of silence: the filter then ends its delay
     int turn = 0;  // the lowest goes first among pads that can take over; 0: never plugged in
   };
   bool is_silent(const Pad& pad) const noexcept;

@@ -1,0 +1,146 @@
+#include "view/self_test_view.h"
+
+#include <SDL2/SDL_scancode.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace gaitpad {
+namespace {
+
+constexpr double kWidth = 760.0, kHeight = 320.0;  // at scale 1
+
+std::string outcome(const Result<std::optional<SelfTestResult>>& result) {
+  if (!result) return result.error().message;
+  if (!*result) return "the self-test was given up; nothing was kept";
+  const SelfTestResult& done = **result;
+  const std::string found =
+      done.failures.empty()
+          ? "everything that was asked for was seen"
+          : fmt::format("{} failed, the first: {}", done.failures.size(), done.failures.front());
+  return fmt::format("{}: {}", done.folder, found);
+}
+
+}  // namespace
+
+// Between the two threads.
+class SelfTestView::Person final : public SelfTestPerson {
+ public:
+  explicit Person(const SelfTestOptions& options) : options_(options) {
+    thread_ = std::thread([this] {
+      const std::string said = outcome(run_self_test(options_, *this));
+      const std::lock_guard lock(mutex_);
+      remarks_.push_back(said);
+      has_ended_ = true;
+    });
+  }
+  ~Person() override {
+    is_leaving_ = true;
+    answer(Answer::quit);
+    thread_.join();
+  }
+
+  void show(const SelfTestPrompt& prompt) override {
+    const std::lock_guard lock(mutex_);
+    prompt_ = prompt;
+  }
+  Answer take_answer() override {
+    const std::lock_guard lock(mutex_);
+    return is_leaving_ ? Answer::quit : std::exchange(answer_, Answer::none);
+  }
+  void tell(const std::string& sentence) override {
+    const std::lock_guard lock(mutex_);
+    remarks_.push_back(sentence);
+  }
+
+  void answer(Answer answer) {
+    const std::lock_guard lock(mutex_);
+    answer_ = answer;
+  }
+  SelfTestPrompt prompt() {
+    const std::lock_guard lock(mutex_);
+    return prompt_;
+  }
+  // False once the test has ended and everything was told.
+  bool take_remarks(std::vector<std::string>& messages) {
+    const std::lock_guard lock(mutex_);
+    std::ranges::move(remarks_, std::back_inserter(messages));
+    remarks_.clear();
+    return !has_ended_;
+  }
+
+ private:
+  const SelfTestOptions options_;
+  std::mutex mutex_;  // of what follows
+  SelfTestPrompt prompt_;
+  Answer answer_ = Answer::none;
+  std::vector<std::string> remarks_;
+  bool has_ended_ = false;
+  std::atomic<bool> is_leaving_ = false;
+  std::thread thread_;
+};
+
+std::unique_ptr<SelfTestView> SelfTestView::start(const SelfTestOptions& options) {
+  std::unique_ptr<SelfTestView> view(new SelfTestView());
+  view->person_ = std::make_unique<Person>(options);
+  return view;
+}
+
+SelfTestView::~SelfTestView() = default;
+
+bool SelfTestView::draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages) {
+  if (!person_->take_remarks(messages)) return false;
+  const SelfTestPrompt prompt = person_->prompt();
+  const ImVec2 size = begin_modal(ui, "self test", kWidth, kHeight, window_px);
+  text_line(ui, ui.fonts.title, ui.theme.text,
+            prompt.parts > 0
+                ? fmt::format("Part {} of {}: {}", prompt.part, prompt.parts, prompt.title)
+                : "Test this pad");
+  ImGui::Dummy(ImVec2(0.0f, ui.px(6)));
+  ImGui::PushFont(ui.fonts.body);
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::TextUnformatted(prompt.parts > 0 ? prompt.request.c_str() : "Looking for the pad.");
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+  ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
+  const float width = ImGui::GetContentRegionAvail().x;
+  const ImVec2 bar = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float done = static_cast<float>(std::clamp(prompt.done, 0.0, 1.0));
+  list.AddRectFilled(bar, ImVec2(bar.x + width, bar.y + ui.px(10)), packed(ui.theme.frame),
+                     ui.px(5));
+  if (done > 0.0f)
+    list.AddRectFilled(bar, ImVec2(bar.x + std::max(width * done, ui.px(10)), bar.y + ui.px(10)),
+                       packed(ui.theme.accent), ui.px(5));
+  ImGui::Dummy(ImVec2(width, ui.px(16)));
+  note(ui, drawable(prompt.seen), 4);
+
+  ImGui::SetCursorPosY(size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y);
+  const auto is_key = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  const bool is_entered = is_key(ImGui::GetKeyIndex(ImGuiKey_Enter));
+  if (prompt.is_question) {
+    if (button(ui, "self test yes", "Yes  (Y)") || is_key(SDL_SCANCODE_Y))
+      person_->answer(SelfTestPerson::Answer::yes);
+    ImGui::SameLine();
+  }
+  if (button(ui, "self test no", prompt.is_question ? "No  (N)" : "It shows something else  (N)") ||
+      is_key(SDL_SCANCODE_N))
+    person_->answer(SelfTestPerson::Answer::no);
+  ImGui::SameLine();
+  if (button(ui, "self test next", "The pad cannot do it  (Enter)") || is_entered)
+    person_->answer(SelfTestPerson::Answer::next);
+  ImGui::SameLine();
+  if (button(ui, "self test give up", "Give up  (Esc)"))
+    person_->answer(SelfTestPerson::Answer::quit);
+  end_modal();
+  return true;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,136 @@
+// What a recording is expected to come to: NAME.expect.toml beside NAME.hid (config/README.md,
+// Expectations). Options of the replay, the hash of the poses, counts, and numbers with tolerances.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gaitpad/result.h"
+#include "gaitpad/session_spec.h"
+#include "gaitpad/summary.h"
+
+namespace gaitpad {
+
+// Something that is measured of a run or of one of its characters.
+struct Measure {
+  std::string_view name;
+  // What a written expectation allows: this, or a hundredth of the value if that is more. 0: a
+  // count, which must be met exactly.
+  double within = 0.0;
+};
+enum RunMeasure { kTicks, kReports, kBadReports, kBadCommands, kDamagedLines, kRunMeasures };
+inline constexpr std::array<Measure, kRunMeasures> kOfRun = {
+    {{"ticks"}, {"reports"}, {"bad_reports"}, {"bad_commands"}, {"damaged_lines"}}};
+enum CharacterMeasure {
+  kStepsLeft,
+  kStepsRight,
+  kIkFailures,
+  kDistance,  // on the ground, along the path of the hips
+  kSpeed,     // distance over the time in which it was not idle
+  kHeading,   // at the end, positive to the left
+  kEndX,      // of the pelvis at the end
+  kEndZ,
+  kStepLeft,  // mean of its steps
+  kStepRight,
+  kHipLeft,  // from the least to the greatest flexion
+  kHipRight,
+  kKneeLeft,
+  kKneeRight,
+  kAnkleLeft,
+  kAnkleRight,
+  kSlip,  // the farthest that a planted heel or toe was from where it was planted
+  kCharacterMeasures
+};
+inline constexpr std::array<Measure, kCharacterMeasures> kOfCharacter = {{{"steps_left"},
+                                                                          {"steps_right"},
+                                                                          {"ik_failures"},
+                                                                          {"distance_m", 0.05},
+                                                                          {"speed_m_s", 0.02},
+                                                                          {"heading_rad", 0.02},
+                                                                          {"end_x_m", 0.05},
+                                                                          {"end_z_m", 0.05},
+                                                                          {"step_left_m", 0.01},
+                                                                          {"step_right_m", 0.01},
+                                                                          {"hip_left_deg", 1.0},
+                                                                          {"hip_right_deg", 1.0},
+                                                                          {"knee_left_deg", 1.0},
+                                                                          {"knee_right_deg", 1.0},
+                                                                          {"ankle_left_deg", 1.0},
+                                                                          {"ankle_right_deg", 1.0},
+                                                                          {"slip_m", 0.0005}}};
+
+// A run in these measures.
+struct Measured {
+  std::uint64_t pose_hash = 0;
+  std::array<double, kRunMeasures> run{};
+  std::vector<std::array<double, kCharacterMeasures>> characters;
+};
+
+// Watches a run tick by tick.
+class RunMeter {
+ public:
+  void look(const Simulation& simulation);  // after each tick
+  Measured finish(const Simulation& simulation, const RunSummary& summary) const;
+
+ private:
+  struct Foot {
+    std::array<bool, 2> is_planted{};  // heel, toe
+    std::array<vec3, 2> planted_m{};
+    int steps = 0;
+    double sum_m = 0.0;
+    std::array<double, 3> least_rad{}, most_rad{};  // hip, knee, ankle
+  };
+  struct Character {
+    std::array<Foot, 2> feet;
+    std::int64_t walking_ticks = 0;
+    double slip_m = 0.0;
+  };
+  void look(const WalkerSample& sample, const Walker& walker, Character& character) const;
+
+  std::int64_t ticks_ = 0;
+  TickSample sample_;
+  std::vector<Character> characters_;
+};
+
+struct Expected {
+  int measure = 0;  // index in kOfRun or kOfCharacter
+  double value = 0.0, within = 0.0;
+};
+struct Expectation {
+  std::string heading;  // the comment that the file begins with, kept when it is written again
+  // Texts as in the file: a path is relative to it.
+  SessionSpec::Walk walk;
+  SessionSpec::Pad pad;
+  std::optional<int> rate_hz;
+  bool is_lenient = false;
+  bool keeps_poses = true;  // written beside it, so that a difference can be found
+
+  std::optional<std::uint64_t> pose_hash;
+  std::vector<Expected> run;
+  std::vector<std::vector<Expected>> characters;  // the n-th for the n-th character
+  bool is_empty() const { return !pose_hash && run.empty() && characters.empty(); }
+};
+
+// Errors: `round.expect.toml:3: unknown key "pose_hsh"; ...`. `name` stands in them.
+Result<Expectation> parsed_expectation(std::string_view text, const std::string& name);
+std::string expectation_text(const Expectation& expectation);
+
+// The session that replays `trace` as the expectation in `folder` says.
+SessionSpec session_of(const Expectation& expectation, const std::string& folder,
+                       const std::string& trace);
+
+// The same options and tolerances with the values of a run: of what was expected before, or of
+// everything where nothing was.
+Expectation renewed(const Expectation& expectation, const Measured& measured);
+
+// What is not met, a sentence each: `speed_m_s is 1.31, expected 1.2 within 0.02`.
+std::vector<std::string> unmet_numbers(const Expectation& expectation, const Measured& measured);
+// What renewing changed, a sentence each.
+std::vector<std::string> changes(const Expectation& before, const Expectation& after);
+
+std::string hash_text(std::uint64_t hash);
+
+}  // namespace gaitpad

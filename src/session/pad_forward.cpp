@@ -1,0 +1,63 @@
+#include "session/pad_forward.h"
+
+#include <pthread.h>
+
+#include <chrono>
+
+namespace gaitpad {
+
+ForwardedTick forwarded_tick(const Pads& pads, const Stick& stick) noexcept {
+  ForwardedTick tick;
+  tick.state.stick = stick;
+  tick.presses = pads.presses();
+  const PadConfig* pad = pads.driving_pad();
+  if (pad == nullptr || !pad->is_present) return tick;
+  const PadState& state = pads.driving_state();
+  const Calibration& calibration = pad->calibration;
+  tick.state.trigger = {trigger_position(calibration.left_trigger, state.axis[kLeftTrigger]),
+                        trigger_position(calibration.right_trigger, state.axis[kRightTrigger])};
+  tick.state.buttons = state.buttons;
+  return tick;
+}
+
+VirtualPadState between(const ForwardedTick& before, const ForwardedTick& after) noexcept {
+  VirtualPadState state = after.state;
+  for (int b = 0; b < kButtonCount; ++b) {
+    const std::uint32_t bit = std::uint32_t{1} << b;
+    const bool is_as_it_was = ((before.state.buttons ^ after.state.buttons) & bit) == 0;
+    if (is_as_it_was && after.presses[b] != before.presses[b]) state.buttons ^= bit;
+  }
+  return state;
+}
+
+Result<std::unique_ptr<PadForward>> PadForward::open() {
+  auto pad = VirtualPad::create();
+  if (!pad) return pad.error();
+  return std::unique_ptr<PadForward>(new PadForward(std::move(*pad)));
+}
+
+void PadForward::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void PadForward::stop() {
+  is_ending_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void PadForward::run() {
+  ::pthread_setname_np(::pthread_self(), "gaitpad-forward");
+  ForwardedTick sent;
+  while (!is_ending_) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    bool is_new = false;
+    const ForwardedTick& tick = newest_.read(is_new);
+    if (!is_new) continue;
+    // An event that the kernel refuses is lost; the next one comes with the next change.
+    static_cast<void>(pad_->set(between(sent, tick)));
+    static_cast<void>(pad_->set(tick.state));
+    sent = tick;
+  }
+}
+
+}  // namespace gaitpad

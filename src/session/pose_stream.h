@@ -1,0 +1,100 @@
+// The poses of a live session for other programs, as datagrams: VMC messages over OSC, which avatar
+// programs and add-ons of game engines receive, or the same bones as JSON. docs/embed.md describes
+// both.
+//
+// The stream has a thread of its own, which wakes so many times a second and sends the newest pose
+// that the loop has published. The loop copies its poses out once a tick and waits for nothing.
+#pragma once
+#include <array>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "base/latest.h"
+#include "drivers/posix.h"
+#include "gaitpad/result.h"
+#include "gaitpad/session_frame.h"
+#include "session/humanoid.h"
+
+namespace gaitpad {
+
+// `osc://HOST:PORT` or `json://HOST:PORT`. Without a host the address is the loopback's, without a
+// port it is 39539 (VMC's) or 39540; `osc` and `json` alone mean both.
+struct StreamAddress {
+  enum class Format { osc, json } format = Format::osc;
+  std::string host = "127.0.0.1";
+  int port = 39539;
+  static Result<StreamAddress> parse(const std::string& text);
+};
+
+// What the loop publishes for the stream.
+struct StreamedTick {
+  struct Walker {
+    Pose pose;
+    double heading_rad = 0.0;
+  };
+  std::int64_t tick = -1;  // -1: none yet
+  int walker_count = 0;
+  std::array<Walker, kMaxWalkers> walkers;
+};
+void copy_tick(const Simulation& simulation, StreamedTick& streamed) noexcept;
+
+class PoseStream {
+ public:
+  // The n-th character of the cast goes to the n-th port from the address' on. Nothing is sent
+  // before start(). Error: `address` is none or has no host, too many ports, OSC was not built.
+  static Result<std::unique_ptr<PoseStream>> open(const std::string& address, int fps,
+                                                  const Cast& cast);
+  ~PoseStream() { stop(); }
+
+  void start();
+  void stop();
+  // Where the loop writes.
+  Latest<StreamedTick>& newest() noexcept { return newest_; }
+  std::int64_t frames() const noexcept { return frames_.load(std::memory_order_relaxed); }
+
+ private:
+  struct Source {  // a character
+    std::string name;
+    std::shared_ptr<const WalkModel> model;
+    Humanoid humanoid;
+    OwnedFd socket;
+  };
+  PoseStream(StreamAddress::Format format, int fps, int rate_hz)
+      : format_(format), fps_(fps), rate_hz_(rate_hz) {}
+  void run();
+  void send(const StreamedTick& tick);
+
+  const StreamAddress::Format format_;
+  const int fps_, rate_hz_;
+  std::vector<Source> sources_;
+  Latest<StreamedTick> newest_;
+  std::vector<BonePose> bones_;  // of the source that is being sent
+  std::atomic<std::int64_t> frames_{0};
+  std::mutex mutex_;
+  std::condition_variable ending_;
+  bool is_ending_ = false;
+  std::thread thread_;
+};
+
+// One frame of one character, as datagrams.
+struct StreamedFrame {
+  int source = 1;  // 1: the first character
+  std::string_view character;
+  std::int64_t tick = 0;
+  double time_s = 0.0;
+  BonePose root;
+  const Humanoid* humanoid = nullptr;
+  const std::vector<BonePose>* bones = nullptr;
+};
+std::string json_datagram(const StreamedFrame& frame);
+// Each is an OSC bundle that fits into an Ethernet packet. Empty if gaitpad was built without
+// liblo.
+std::vector<std::string> osc_datagrams(const StreamedFrame& frame);
+
+}  // namespace gaitpad

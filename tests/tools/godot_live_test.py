@@ -1,0 +1,70 @@
+"""tools/examples/godot: the example's skeleton stands as the stream says, in Debian's Godot."""
+import json
+import math
+import shutil
+import socket
+import subprocess
+import time
+
+import numpy as np
+import pytest
+
+from support.bvh import angle_between, matrices_of
+from support.program import ROOT
+from support.streams import PARENTS, world_rotations
+
+GODOT = shutil.which("godot3-server") or shutil.which("godot3")
+PORT = 39540
+
+
+def made_frames():
+    """A stream without gaitpad: every bone turns about an axis of its own while the figure walks in a circle."""
+    rng = np.random.default_rng(18)
+    axes = {bone: v / np.linalg.norm(v) for bone, v in zip(PARENTS, rng.normal(size=(len(PARENTS), 3)))}
+
+    def place(m, axis, angle_rad):
+        return [*m, *(math.sin(angle_rad / 2) * np.asarray(axis)), math.cos(angle_rad / 2)]
+
+    for tick in range(40):
+        angle = 0.05 * tick
+        bones = {bone: place([0, 0.92 + 0.01 * math.sin(angle), 0] if bone == "Hips" else [0, 0, 0], axes[bone], angle)
+                 for bone in PARENTS}
+        yield {"source": 1, "character": "made", "tick": tick, "time_s": tick / 60, "hips_m": 0.92,
+               "root": place([math.cos(angle), 0, math.sin(angle)], [0, 1, 0], -angle), "bones": bones}
+
+
+@pytest.mark.skipif(not GODOT, reason="there is no Godot 3 (package godot3-server)")
+def test_the_skeleton_stands_as_the_stream_says(tmp_path):
+    project = shutil.copytree(ROOT / "tools/examples/godot", tmp_path / "godot")
+    # Godot keeps what it prints into a pipe, so stdbuf.
+    godot = subprocess.Popen(["stdbuf", "-oL", "timeout", "120", GODOT, "--path", project, "-s", ROOT / "tests/tools/godot_live.gd"], text=True,
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env={"HOME": str(tmp_path), "PATH": "/usr/bin"})
+    frames = list(made_frames())
+    try:
+        said = []
+        for line in godot.stdout:
+            said.append(line)
+            if line.strip() == "ready" or "SCRIPT ERROR" in line:
+                break
+        assert said[-1:] == ["ready\n"], "".join(said)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            for frame in [*frames, *[{**frames[0], "tick": -1}] * 3]:
+                sender.sendto(json.dumps(frame).encode(), ("127.0.0.1", PORT))
+                time.sleep(0.05)
+        rest = godot.communicate(timeout=30)[0]
+    finally:
+        godot.terminate()  # timeout ends Godot, too
+    assert "ERROR" not in rest, rest
+    rows = {row["tick"]: row["bones"] for row in (json.loads(line) for line in rest.splitlines() if line[:1] == "{")}
+    assert len(rows) > 0.8 * len(frames), rest
+    for frame in (f for f in frames if f["tick"] in rows):
+        bones = rows[frame["tick"]]
+        expected = world_rotations(frame["bones"], frame["root"])
+        for bone, turn in expected.items():
+            if bone in bones:  # a figure without collar bones
+                seen = matrices_of(np.roll(np.array(bones[bone][3:]), 1))
+                assert float(angle_between(seen, turn)) < 0.05, (bone, frame["tick"])
+        hips_m = np.array(frame["root"][:3]) + [0, frame["bones"]["Hips"][1], 0]
+        assert np.abs(bones["Hips"][:3] - hips_m).max() < 1e-4
+        thigh = np.array(bones["LeftLowerLeg"][:3]) - bones["LeftUpperLeg"][:3]
+        assert np.abs(thigh - expected["LeftUpperLeg"] @ [0, -0.41, 0]).max() < 1e-4

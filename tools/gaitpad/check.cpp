@@ -1,0 +1,321 @@
+// gaitpad check PATH...: recordings with an expectation beside them are replayed and judged. TAP on
+// standard output, JUnit's XML and pictures in files.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/files.h"
+#include "check/trace_check.h"
+#include "session/workers.h"
+#include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
+#include "tools/gaitpad/run_end.h"
+
+#ifdef GAITPAD_HAS_WINDOW
+#include "paper/page.h"
+#endif
+
+namespace gaitpad {
+namespace {
+
+constexpr const char* kCommand = "check";
+constexpr int kMaxShards = 100'000, kMaxJobs = 1024;
+
+// The part of the recordings that is this run's: every `total`-th, counted from 1.
+struct Shard {
+  int index = 1, total = 1;
+};
+
+struct CheckArguments {
+  std::vector<std::string> paths;
+  bool updates = false;
+  int jobs = machine_threads();
+  std::string shard, junit, plot;
+};
+
+// `2/8`.
+std::optional<Shard> shard_of(std::string_view text) {
+  Shard shard;
+  shard.index = parse_number<int>(take_part(text, '/')).value_or(0);
+  shard.total = parse_number<int>(text).value_or(0);
+  const bool is_sound = shard.index >= 1 && shard.index <= shard.total && shard.total <= kMaxShards;
+  return is_sound ? std::optional(shard) : std::nullopt;
+}
+
+std::string shard_problem(const std::string& text) {
+  return shard_of(text) ? "" : in_quotes(text) + " is not I/N with 1 <= I <= N, such as 2/8";
+}
+
+// --shard, else GAITPAD_SHARD_INDEX and GAITPAD_SHARD_TOTAL, else all.
+Result<Shard> wished_shard(const std::string& option) {
+  if (!option.empty()) return *shard_of(option);
+  const char *index = std::getenv("GAITPAD_SHARD_INDEX"),
+             *total = std::getenv("GAITPAD_SHARD_TOTAL");
+  if (index == nullptr && total == nullptr) return Shard{};
+  const std::string text = fmt::format("{}/{}", index ? index : "", total ? total : "");
+  if (const auto shard = shard_of(text)) return *shard;
+  return Error{"GAITPAD_SHARD_INDEX/GAITPAD_SHARD_TOTAL: " + shard_problem(text)};
+}
+
+// --- TAP (testanything.org, version 14)
+
+std::string tap_description(const std::string& path) {
+  std::string text;
+  for (const char c : printable(path)) {
+    if (c == '#' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text;
+}
+
+std::string yaml_string(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+void print_tap(std::size_t number, const CheckedTrace& trace, const CheckResult& result,
+               bool updates) {
+  fmt::print("{}ok {} - {}\n", result.is_met ? "" : "not ", number,
+             tap_description(trace.recording()));
+  if (updates && result.is_met) {
+    fmt::print("# {}\n", result.verdict);
+    for (const std::string& line : result.details) fmt::print("# {}\n", printable(line));
+  } else if (!result.is_met) {
+    fmt::print("  ---\n  message: {}\n", yaml_string(result.verdict));
+    if (!result.details.empty()) fmt::print("  details:\n");
+    for (const std::string& line : result.details) fmt::print("    - {}\n", yaml_string(line));
+    fmt::print("  ...\n");
+  }
+  std::fflush(stdout);
+}
+
+// --- JUnit
+
+// XML 1.0 allows no control character and nothing that is not UTF-8.
+std::string xml_text(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text);
+    const std::string_view c = text.substr(0, std::max<std::size_t>(bytes, 1));
+    text.remove_prefix(c.size());
+    const auto code = static_cast<unsigned char>(c.front());
+    if (c == "&") {
+      out += "&amp;";
+    } else if (c == "<") {
+      out += "&lt;";
+    } else if (c == ">") {
+      out += "&gt;";
+    } else if (c == "\"") {
+      out += "&quot;";
+    } else if (c == "\n") {
+      out += "&#10;";
+    } else if (bytes == 0 || code < 0x20 || code == 0x7f || c == "\xef\xbf\xbe" ||
+               c == "\xef\xbf\xbf") {
+      out += '?';
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+class JunitReport {
+ public:
+  void add(const CheckedTrace& trace, const CheckResult& result) {
+    ++tests_;
+    seconds_ += result.seconds;
+    cases_ += fmt::format("    <testcase classname=\"gaitpad.check\" name=\"{}\" time=\"{:.3f}\"",
+                          xml_text(trace.recording()), result.seconds);
+    if (result.is_met) {
+      cases_ += "/>\n";
+      return;
+    }
+    ++failures_;
+    std::string details;
+    for (const std::string& line : result.details) details += line + "\n";
+    cases_ += fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
+                          xml_text(result.verdict), xml_text(details));
+  }
+  std::string text() const {
+    const std::string counts = fmt::format(
+        "tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\"", tests_, failures_, seconds_);
+    return fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n"
+        "  <testsuite name=\"gaitpad check\" {0} skipped=\"0\">\n{1}  "
+        "</testsuite>\n</testsuites>\n",
+        counts, cases_);
+  }
+
+ private:
+  std::string cases_;
+  int tests_ = 0, failures_ = 0;
+  double seconds_ = 0.0;
+};
+
+// --- the picture of two courses
+
+#ifdef GAITPAD_HAS_WINDOW
+std::optional<Error> draw_curves(const JointCurves& curves, const std::string& title,
+                                 const std::string& path) {
+  constexpr int kWidth = 1000, kHeight = 640, kColumns = 900;
+  constexpr std::array kColours = {colour::kVermilion, colour::kGreen, colour::kBlue};
+  constexpr std::array kNames = {"x", "y", "z"};
+  const double tick_s = 1.0 / curves.rate_hz;
+  const double end_s = std::max(tick_s, tick_s * static_cast<double>(curves.distance.size() - 1));
+  const auto unit = curves.is_angle ? "degrees" : "m";
+  std::vector<LegendEntry> legend = {{LegendEntry::Mark::line, colour::kInk, "this run"},
+                                     {LegendEntry::Mark::dashed, colour::kInk, "expected"}};
+  const auto series_of = [&](const std::vector<double>& values, const PlotRange& x) {
+    std::vector<PlotPoint> points;
+    for (std::size_t tick = 0; tick < values.size(); ++tick)
+      points.emplace_back(tick_s * static_cast<double>(tick), values[tick]);
+    PlotSeries series;
+    decimate(points, x, kColumns, series.points);
+    return series;
+  };
+  Plot both, apart;
+  both.x = apart.x = {0.0, end_s, false};
+  both.has_x_ticks = false;
+  both.y_label = unit;
+  both.title = curves.is_angle ? "rotation vector in the parent's frame" : "place";
+  apart.x_label = "s";
+  apart.y_label = unit;
+  apart.title = "distance between the two";
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    for (const bool is_before : {false, true}) {
+      PlotSeries series = series_of(is_before ? curves.before[k] : curves.after[k], both.x);
+      series.colour = rgb(kColours[k]);
+      series.is_dashed = is_before;
+      both.series.push_back(std::move(series));
+    }
+    legend.push_back({LegendEntry::Mark::area, kColours[k], kNames[k]});
+  }
+  apart.series.push_back(series_of(curves.distance, apart.x));
+  apart.series.back().colour = rgb(colour::kInk);
+  const double first_s = tick_s * static_cast<double>(curves.first_tick);
+  for (Plot* plot : {&both, &apart}) {
+    plot->bands.push_back({first_s, end_s, rgb(colour::kOrange, 0.12), ""});
+    fit_y(*plot, curves.is_angle ? 0.1 : 0.001);
+  }
+  apart.y.min = 0.0;
+  const Page page = blank_page(kWidth, kHeight, curves.joint,
+                               fmt::format("{}: the first different tick is {} ({:.3f} s)", title,
+                                           curves.first_tick, first_s));
+  cairo_t* cr = page.cr.get();
+  const double left = kPageMargin + 62.0, width = kWidth - 2.0 * kPageMargin - 82.0;
+  draw_legend(cr, {kPageMargin, kPageTop, kWidth - 2.0 * kPageMargin, 40.0}, legend);
+  draw_plot(cr, {left, kPageTop + 52.0, width, 270.0}, both);
+  draw_plot(cr, {left, kPageTop + 372.0, width, 130.0}, apart);
+  return write_png(path, page.surface.get());
+}
+std::string plot_problem(const std::string&) { return ""; }
+#else
+std::optional<Error> draw_curves(const JointCurves&, const std::string&, const std::string&) {
+  return Error{missing_window()};
+}
+std::string plot_problem(const std::string&) { return missing_window(); }
+#endif
+
+// One in the folder for each recording: `walks/round` becomes `walks_round.png`.
+std::string picture_path(const std::string& folder, const CheckedTrace& trace) {
+  std::string name = trace.path;
+  while (name.starts_with("./") || name.starts_with("../") || name.starts_with("/"))
+    name.erase(0, name.find('/') + 1);
+  std::ranges::replace(name, '/', '_');
+  return fmt::format("{}/{}.png", folder, name);
+}
+
+// --- the command
+
+int run(const CheckArguments& arguments) {
+  const auto shard = wished_shard(arguments.shard);
+  if (!shard) return fail(kCommand, shard.error().message);
+  auto found = found_traces(arguments.paths, arguments.updates);
+  if (!found) return fail(kCommand, found.error().message);
+  if (found->traces.empty()) {
+    return fail(kCommand, found->without == 0
+                              ? "no recording is there"
+                              : "no recording has an expectation beside it; --update writes them");
+  }
+  if (found->without > 0 && !arguments.updates) {
+    print_remarks(kCommand,
+                  {fmt::format("recordings without an expectation, left out: {}", found->without)});
+  }
+  std::vector<CheckedTrace> traces;
+  for (std::size_t i = shard->index - 1; i < found->traces.size(); i += shard->total)
+    traces.push_back(found->traces[i]);
+
+  const CheckOptions options = {config_folders(), arguments.updates, !arguments.plot.empty()};
+  const int jobs = std::min(arguments.jobs, std::max(1, static_cast<int>(traces.size())));
+  JunitReport junit;
+  int failures = 0;
+  std::vector<std::string> problems;
+  Progress progress(kCommand);
+  double done = 0.0;
+  fmt::print("TAP version 14\n1..{}\n", traces.size());
+  check_all(traces, options, jobs, [&](std::size_t i, CheckResult&& result) {
+    const CheckedTrace& trace = traces[i];
+    failures += !result.is_met;
+    progress.clear();
+    print_tap(i + 1, trace, result, arguments.updates);
+    progress.show(++done / static_cast<double>(traces.size()));
+    junit.add(trace, result);
+    if (!result.curves) return;
+    const std::string path = picture_path(arguments.plot, trace);
+    const auto problem = draw_curves(*result.curves, printable(trace.recording()), path);
+    problems.push_back(problem ? problem->message : "drawn: " + path);
+    failures += problem.has_value();
+  });
+  progress.clear();
+  print_remarks(kCommand, problems);
+  if (!arguments.junit.empty()) {
+    if (auto problem = write_file(arguments.junit, junit.text()))
+      return fail(kCommand, problem->message);
+  }
+  if (failures == 0) return 0;
+  return fail(kCommand,
+              fmt::format("{} of {} recordings are not as expected", failures, traces.size()));
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "check", "replays recordings that have an expectation beside them, and judges them");
+  const auto arguments = std::make_shared<CheckArguments>();
+  command
+      ->add_option("PATH", arguments->paths,
+                   "recordings (NAME.hid, with NAME.expect.toml beside it), and folders to search")
+      ->required();
+  command->add_flag("--update", arguments->updates,
+                    "writes the expectations that are missing or not met, and says what changed");
+  command->add_option("-j,--jobs", arguments->jobs, "so many at once (default: a core each)")
+      ->check(CLI::Range(1, kMaxJobs));
+  command
+      ->add_option("--shard", arguments->shard,
+                   "I/N: the I-th of N equal parts, from 1 on (default: $GAITPAD_SHARD_INDEX of "
+                   "$GAITPAD_SHARD_TOTAL, else all)")
+      ->check(shard_problem);
+  command->add_option("--junit", arguments->junit, "writes the results as JUnit's XML, too, FILE");
+  command
+      ->add_option("--plot", arguments->plot,
+                   "folder for a picture of each pose that differs: both courses of the joint")
+      ->check(plot_problem);
+  command->footer(
+      "Results are TAP on standard output. Exit status: 0 all are met, 1 one is not, 2 wrong "
+      "usage.\n"
+      "Examples:\n"
+      "  gaitpad check --update walks\n"
+      "  gaitpad check walks --junit results.xml --plot out\n"
+      "  gaitpad check walks --shard 2/8 -j 2");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,18 @@
+// gaitpad replay TRACE --to uinput|uhid|FILE.evemu: a recording for other programs.
+#pragma once
+#include <string>
+
+#include "gaitpad/session_spec.h"
+
+namespace gaitpad {
+
+struct ReplayTo {
+  std::string target;    // `uinput`, `uhid`, or a path that ends with .evemu; empty: none
+  double delay_s = 1.0;  // from when the device is there to its first report
+};
+// Why `target` is none; empty: it is one.
+std::string target_problem(const std::string& target);
+// Plays spec.replay.trace in real time into the kernel, or writes it as a file. The exit status.
+int replay_to(const SessionSpec& spec, const ReplayTo& to);
+
+}  // namespace gaitpad

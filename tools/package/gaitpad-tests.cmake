@@ -1,0 +1,30 @@
+# gaitpad_add_trace_tests(FOLDER [PREFIX text] [OPTIONS option...]): a test for each recording in the folder, and in
+# those below it, that has an expectation beside it (NAME.hid, NAME.expect.toml): `gaitpad check` replays it. OPTIONS
+# are the program's, such as --plot. find_package(gaitpad) has this function; the program itself comes from the
+# installation, else from PATH or GAITPAD_PROGRAM_FILE.
+function(gaitpad_add_trace_tests folder)
+  cmake_parse_arguments(PARSE_ARGV 1 TRACE "" "PREFIX" "OPTIONS")
+  if(NOT DEFINED TRACE_PREFIX)
+    set(TRACE_PREFIX gaitpad.)
+  endif()
+  if(TARGET gaitpad)
+    set(program $<TARGET_FILE:gaitpad>)
+  else()
+    find_program(GAITPAD_PROGRAM_FILE gaitpad HINTS ${gaitpad_PROGRAM_FOLDER})
+    if(NOT GAITPAD_PROGRAM_FILE)
+      message(FATAL_ERROR "gaitpad_add_trace_tests: the program gaitpad is not installed; set GAITPAD_PROGRAM_FILE")
+    endif()
+    set(program ${GAITPAD_PROGRAM_FILE})
+  endif()
+  get_filename_component(folder ${folder} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_SOURCE_DIR})
+  file(GLOB_RECURSE expectations CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.expect.toml)
+  if(NOT expectations)
+    message(WARNING "gaitpad_add_trace_tests: no recording in ${folder} has an expectation; gaitpad check --update "
+                    "writes them")
+  endif()
+  foreach(expectation ${expectations})
+    string(REGEX REPLACE "\\.expect\\.toml$" "" name ${expectation})
+    string(REPLACE "/" "." test ${TRACE_PREFIX}${name})
+    add_test(NAME ${test} COMMAND ${program} check ${folder}/${name}.hid -j 1 ${TRACE_OPTIONS})
+  endforeach()
+endfunction()

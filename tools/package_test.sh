@@ -1,0 +1,121 @@
+#!/usr/bin/env bash
+# package_test.sh [FOLDER]: makes the Debian packages in FOLDER (default: build-package) and tries them: lintian,
+# desktop-file-validate and appstreamcli find no fault; in a clean Debian 12 (mmdebstrap) they install with what they
+# depend on, `gaitpad replay` walks as the build does, the manual and the completions are there, a project builds
+# against libgaitpad-dev, and removing them leaves nothing. Needs root and a Debian mirror; a few minutes.
+# The last lines are each part's seconds.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+folder=${1:-build-package}
+if [ "$(id -u)" -ne 0 ]; then
+  echo "package_test.sh: a chroot needs root: sudo bash tools/package_test.sh" >&2
+  exit 1
+fi
+
+work=$(mktemp -d)
+chroot=$work/debian
+finish() {
+  status=$?
+  umount "$chroot/proc" 2>/dev/null || true
+  rm -rf --one-file-system "$work"
+  exit $status
+}
+trap finish EXIT
+
+table=
+part() {
+  local name=$1 started=$SECONDS
+  shift
+  echo "== $name"
+  "$@"
+  table+=$(printf '%-44s %5d s' "$name" $((SECONDS - started)))$'\n'
+}
+
+install_tools() {
+  bash tools/install.sh dpkg-dev fakeroot lintian desktop-file-utils appstream mmdebstrap
+}
+make_packages() {
+  rm -f "$folder"/*.deb
+  bash tools/build.sh "$folder" gaitpad -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DGAITPAD_TESTS=OFF \
+    -DGAITPAD_CONFIG_DIR=
+  (cd "$folder" && cpack -G DEB)
+  ls -l "$folder"/*.deb
+}
+judge_packages() {
+  # A package that is not in Debian closes no bug there.
+  lintian --allow-root --fail-on error,warning --suppress-tags initial-upload-closes-no-bugs "$folder"/*.deb
+  dpkg-deb --extract "$folder"/gaitpad_*.deb "$work/program"
+  desktop-file-validate "$work"/program/usr/share/applications/*.desktop
+  appstreamcli validate --no-net "$work"/program/usr/share/metainfo/*.xml
+}
+
+inside() {
+  chroot "$chroot" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root XDG_CACHE_HOME=/tmp/cache LC_ALL=C.UTF-8 \
+    DEBIAN_FRONTEND=noninteractive "$@"
+}
+# What stands in the chroot, without what apt and dpkg note of any installation.
+files() {
+  (cd "$chroot" && find . -xdev \( -path ./proc -o -path ./packages -o -path ./tmp -o -path ./var/lib/dpkg \
+    -o -path ./var/lib/apt -o -path ./var/cache -o -path ./var/log \) -prune -o -print | sort)
+}
+make_chroot() {
+  mmdebstrap --quiet --variant=minbase --include=ca-certificates bookworm "$chroot"
+  mount -t proc proc "$chroot/proc"
+  # A minimal Debian may leave out manuals; this one is to have them.
+  rm -f "$chroot"/etc/dpkg/dpkg.cfg.d/*docker* "$chroot"/etc/dpkg/dpkg.cfg.d/*excludes*
+  mkdir -p "$chroot/packages"
+  cp "$folder"/*.deb "$chroot/packages"
+  inside apt-get -qq update
+  files >"$work/before"
+}
+install_program() {
+  inside sh -c 'apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends /packages/gaitpad_*.deb' >/dev/null
+  inside gaitpad --version
+}
+try_program() {
+  inside gaitpad replay /usr/share/gaitpad/traces/round.hid --style limp_left --out /tmp/out
+  inside gaitpad check --update /tmp/out/none 2>/dev/null && return 1
+  local there here
+  there=$(inside gaitpad replay /usr/share/gaitpad/traces/round.hid --style limp_left --json)
+  here=$("$folder/gaitpad" replay config/traces/round.hid --style limp_left --json)
+  [ "$there" = "$here" ] || { echo "the installed program walks another way: $there" >&2; return 1; }
+  for file in lib/udev/rules.d/60-gaitpad.rules share/man/man1/gaitpad.1.gz share/man/man1/gaitpad-check.1.gz \
+    share/bash-completion/completions/gaitpad share/zsh/vendor-completions/_gaitpad \
+    share/fish/vendor_completions.d/gaitpad.fish share/applications/io.github.gaitpad.gaitpad.desktop \
+    share/icons/hicolor/scalable/apps/io.github.gaitpad.gaitpad.svg \
+    share/metainfo/io.github.gaitpad.gaitpad.metainfo.xml share/doc/gaitpad/copyright; do
+    [ -f "$chroot/usr/$file" ] || { echo "/usr/$file is missing" >&2; return 1; }
+  done
+  inside gaitpad doctor || true  # a chroot has no pad; it is to end by itself
+}
+install_library() {
+  inside sh -c 'apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends /packages/libgaitpad-dev_*.deb cmake g++ make' >/dev/null
+}
+try_library() {
+  cp -r tools/examples "$chroot/tmp/examples"
+  mkdir -p "$chroot/tmp/examples/walks"
+  cp config/traces/round.hid "$chroot/tmp/examples/walks"
+  printf 'enable_testing()\ngaitpad_add_trace_tests(walks)\n' >>"$chroot/tmp/examples/CMakeLists.txt"
+  inside gaitpad check --update /tmp/examples/walks
+  inside cmake -S /tmp/examples -B /tmp/built >/dev/null
+  inside cmake --build /tmp/built
+  inside sh -c '/tmp/built/solve_leg && /tmp/built/minimal_walk /tmp/out/pose.bvh 0.8 | tail -n 1'
+  inside ctest --test-dir /tmp/built --output-on-failure
+}
+remove_all() {
+  inside sh -c 'apt-get -qq -o Dpkg::Use-Pty=0 purge -y gaitpad libgaitpad-dev cmake g++ make && apt-get -qq -o Dpkg::Use-Pty=0 autoremove --purge -y' >/dev/null
+  files >"$work/after"
+  diff "$work/before" "$work/after" && echo "nothing is left"
+}
+
+part "tools" install_tools
+part "packages (build and cpack)" make_packages
+part "lintian and validators" judge_packages
+part "a clean Debian 12" make_chroot
+part "gaitpad installed" install_program
+part "gaitpad walks" try_program
+part "libgaitpad-dev installed" install_library
+part "examples built and recordings as tests" try_library
+part "removed without a trace" remove_all
+printf '\n%s%-44s %5d s\n' "$table" "whole run" "$SECONDS"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# build.sh FOLDER TARGET [CMAKE OPTION...]: configures, builds into FOLDER; silent unless it fails.
+# build.sh FOLDER TARGET [CMAKE OPTION...]: configures, builds into FOLDER; silent unless it fails. On a
+# terminal a line says how far it is, from two seconds on.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 folder=$1 target=$2
@@ -20,7 +21,19 @@ if [ ! -f "$folder/build.ninja" ]; then
     exit 1
   fi
 fi
-if ! cmake --build "$folder" --target "$target" >"$log" 2>&1; then
+# ninja's "[12/171] Building ..." as percent and time left, on a line that is rewritten.
+show_progress() {
+  [ -t 2 ] || exec cat >/dev/null
+  local line start=$SECONDS
+  while IFS= read -r line; do
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+    local built=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} spent=$((SECONDS - start))
+    [ "$spent" -ge 2 ] || continue
+    printf '\rBuilding: %d %%, %d s left \033[K' $((100 * built / all)) $((spent * (all - built) / built)) >&2
+  done
+  printf '\r\033[K' >&2
+}
+if ! cmake --build "$folder" --target "$target" 2>&1 | tee "$log" | show_progress; then
   grep -v '^\[[0-9/]*\] Building\|^\[[0-9/]*\] Linking' "$log" >&2
   exit 1
 fi

@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
-# install.sh [PACKAGE...]: installs what gaitpad needs from Debian 12, and those packages: nothing where
-# all is there, apt else (sudo if not root).
+# install.sh [--program] [PACKAGE...]: installs what gaitpad needs from Debian 12, and those packages:
+# nothing where all is there, apt else (sudo if not root). --program: leaves out what only tests need.
 set -euo pipefail
 
-packages=(g++ clang cmake ninja-build libglm-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev libfmt-dev
+packages=(g++ cmake ninja-build libglm-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev pkg-config libudev-dev libhidapi-dev libusb-1.0-0-dev libevdev-dev libsdl2-dev
-  libcairo2-dev libimgui-dev libepoxy-dev libfreetype-dev libpng-dev libgl1 libegl1 libgl1-mesa-dri fonts-dejavu-core
-  libgtest-dev libbenchmark-dev python3-numpy python3-matplotlib python3-pytest "$@")
+  libcairo2-dev libimgui-dev libepoxy-dev libfreetype-dev libpng-dev zlib1g-dev liblo-dev libgl1 libegl1 libgl1-mesa-dri fonts-dejavu-core
+  libgtest-dev libbenchmark-dev)
+if [ "${1:-}" = --program ]; then
+  shift
+else
+  packages+=(clang python3-numpy python3-matplotlib python3-pytest)
+fi
+packages+=("$@")
 
 missing=()
 for package in "${packages[@]}"; do
@@ -23,12 +29,18 @@ if [ "$(id -u)" -ne 0 ]; then
   fi
   as_root=(sudo)
 fi
-echo "Installing ${missing[*]}" >&2
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-if ! { "${as_root[@]}" apt-get update &&
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
-    "${missing[@]}"; } >"$log" 2>&1; then
-  cat "$log" >&2
-  exit 1
-fi
+# apt WORDS...: apt-get with everything it says in the log, which is shown if it fails.
+apt() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@" >>"$log" 2>&1 || {
+    cat "$log" >&2
+    exit 1
+  }
+}
+echo "Installing ${missing[*]}" >&2
+apt update
+# How much it is, in apt's own words: "Need to get ...", "After this operation ...".
+LC_ALL=C apt-get install --no-install-recommends --assume-no "${missing[@]}" 2>/dev/null |
+  grep -E '^(Need to get|After this operation)' | sed 's/^/  /' >&2 || true
+apt install -y --no-install-recommends "${missing[@]}"

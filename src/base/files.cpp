@@ -58,12 +58,6 @@ const char* kind_of(fs::file_type type) {
   }
 }
 
-// Hidden, in the same folder, and different for every process.
-std::string temporary_beside(const fs::path& place) {
-  const std::string name = place.filename().string();
-  return (place.parent_path() / ("." + name + "." + std::to_string(::getpid()))).string();
-}
-
 int write_all(int file, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(file, bytes.data(), bytes.size());
@@ -157,6 +151,12 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   return text;
 }
 
+std::string temporary_beside(const std::string& path) {
+  const fs::path place(path);
+  const std::string name = place.filename().string();
+  return (place.parent_path() / ("." + name + "." + std::to_string(::getpid()))).string();
+}
+
 void remove_leftovers(const std::string& path) {
   const fs::path place(path);
   const std::string begin = "." + place.filename().string() + ".";
@@ -184,7 +184,7 @@ std::optional<Error> write_file(const std::string& path, std::string_view bytes)
   std::error_code ignored;
   if (fs::is_directory(place, ignored)) return write_error(path, EISDIR);
   remove_leftovers(path);
-  const std::string temporary = temporary_beside(place);
+  const std::string temporary = temporary_beside(path);
   int problem = write_new(temporary, bytes, Write::cached);
   if (problem == 0) problem = rename_file(temporary, path);
   if (problem == 0) return std::nullopt;

@@ -21,6 +21,10 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes);
 // `PATH: cannot be written: ` and the cause that `number`, an errno, stands for.
 Error write_error(const std::string& path, int number);
 
+// Where to write what becomes `path` when it is complete: hidden, in the same folder, and different
+// for every process.
+std::string temporary_beside(const std::string& path);
+
 // Removes temporary files for `path` (`.NAME.PID` beside it) whose process was killed.
 void remove_leftovers(const std::string& path);
 

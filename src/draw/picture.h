@@ -93,7 +93,7 @@ struct Pixels {
   std::vector<std::uint8_t> rgba;  // rows from the top, opaque
 };
 // Both write beside `path` first and rename: on error the old file is unchanged.
-std::optional<Error> write_png(const std::string& path, const Pixels& pixels);
+std::optional<Error> write_png(const std::string& path, Pixels pixels);
 std::optional<Error> write_png(const std::string& path, cairo_surface_t* surface);
 
 }  // namespace gaitpad

@@ -35,6 +35,8 @@ constexpr Theme dark_theme() {
   t.sky_bottom = {.205, .228, .268};
   t.floor = {.285, .308, .345};
   t.floor_far = {.205, .226, .262};
+  t.riser = {.62, .53, .43};
+  t.nose = {.72, .74, .76};
   t.grid = {.47, .51, .57};
   t.bone = rgb(0xd5dae2);
   t.series = kSeries;
@@ -67,6 +69,8 @@ constexpr Theme light_theme() {
   t.sky_bottom = {.95, .96, .97};
   t.floor = {.83, .85, .88};
   t.floor_far = {.92, .93, .95};
+  t.riser = {.60, .66, .75};
+  t.nose = {.36, .42, .52};
   t.grid = {.62, .66, .71};
   t.bone = rgb(0x4a5362);
   t.series = kSeriesOnLight;

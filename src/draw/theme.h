@@ -14,7 +14,7 @@ struct Theme {
   ThemeName name = ThemeName::dark;
   Colour window, bar, panel, card, plot, frame, border;
   Colour text, secondary, tick, accent, good, warning, bad;
-  Colour sky_top, sky_bottom, floor, floor_far, grid, bone;  // of the scene
+  Colour sky_top, sky_bottom, floor, floor_far, riser, nose, grid, bone;  // of the scene
   std::array<Colour, 8> series;  // of characters and curves, used in turn
   Colour left, right, axis_x, axis_y, axis_z;
 };

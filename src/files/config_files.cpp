@@ -16,19 +16,19 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxNameBytes = 48;
+constexpr std::size_t kMaxSummaryFileBytes = 64 << 20;  // a motion's description may hold poses
 
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '-';
+         c == '-' || c == ' ';
 }
 
 Result<std::string> style_file_name(const std::string& wish) {
   std::string name(trimmed(wish, " "));
-  std::ranges::replace(name, ' ', '_');
   if (name.empty()) return Error{"a style needs a name"};
   if (name.size() > kMaxNameBytes || !std::ranges::all_of(name, is_plain)) {
-    return Error{
-        fmt::format("a style's name is of at most {} letters, digits, _ and -", kMaxNameBytes)};
+    return Error{fmt::format("a style's name is of at most {} letters, digits, blanks, _ and -",
+                             kMaxNameBytes)};
   }
   return name;
 }
@@ -66,13 +66,13 @@ std::vector<std::string> config_folders(const std::string& built_in) {
 }
 
 std::vector<std::string> config_files(const std::vector<std::string>& folders,
-                                      const std::string& kind) {
+                                      const std::string& kind, std::string_view ending) {
   std::map<std::string, std::string> by_name;
   for (const std::string& folder : folders) {
     std::error_code error;
     for (fs::directory_iterator it(fs::path(folder) / kind, error), end; !error && it != end;
          it.increment(error)) {
-      if (it->path().extension() == ".toml") {
+      if (it->path().extension() == ending) {
         by_name.emplace(config_name(it->path().string()), it->path().string());
       }
     }
@@ -98,6 +98,28 @@ Result<std::string> config_file(const std::vector<std::string>& folders, const s
 }
 
 std::string config_name(const std::string& path) { return fs::path(path).stem().string(); }
+
+std::string config_summary(const std::string& path) {
+  const auto text = file_text(path, kMaxSummaryFileBytes);
+  if (!text) return {};
+  std::string comment;
+  std::string_view rest = *text;
+  if (rest.starts_with("V:")) take_line(rest);  // a recording's first line
+  for (; rest.starts_with('#');) {
+    const std::string_view line = trimmed(take_line(rest), "# \t\r");
+    if (line.empty()) break;
+    if (!comment.empty()) comment += ' ';
+    comment += line;
+  }
+  // References stand in brackets; a point in one ends no sentence.
+  for (auto open = comment.find(" ("); open != std::string::npos; open = comment.find(" (")) {
+    const auto close = comment.find(')', open);
+    comment.erase(open, close == std::string::npos ? close : close + 1 - open);
+  }
+  std::string sentence = comment.substr(0, comment.find(". "));
+  if (sentence.ends_with('.')) sentence.pop_back();
+  return printable(sentence);
+}
 
 Result<std::string> save_style(const std::vector<std::string>& config_folders,
                                const std::string& name, const StyleValues& values) {

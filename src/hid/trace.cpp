@@ -16,6 +16,7 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/descriptor.h"
+#include "hid/evemu.h"
 #include "hid/trace_lines.h"
 
 namespace gaitpad {
@@ -559,6 +560,7 @@ class LineFeed {
 }  // namespace
 
 Result<Trace> parse_trace(std::string_view text, const std::string& name, Damage damage) {
+  if (is_evemu(text)) return parse_evemu(text, name, damage);
   LineFeed feed(name, damage);
   if (auto error = feed.add(text)) return *error;
   return feed.finish();
@@ -571,6 +573,7 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{path + ": cannot be opened for reading"};
   LineFeed feed(path, damage);
+  std::string evemu;  // the whole of such a file
   std::vector<char> buffer(1 << 16);
   std::size_t total = 0;
   while (in.good()) {
@@ -580,9 +583,15 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
     if (total > kMaxTraceBytes) {
       return Error{fmt::format("{}: larger than {} MiB", path, kMaxTraceBytes >> 20)};
     }
-    if (auto error = feed.add({buffer.data(), got})) return *error;
+    const std::string_view piece(buffer.data(), got);
+    if (!evemu.empty() || (total == got && is_evemu(piece))) {
+      evemu += piece;
+    } else if (auto error = feed.add(piece)) {
+      return *error;
+    }
   }
   if (in.bad()) return Error{path + ": reading failed"};
+  if (!evemu.empty()) return parse_evemu(evemu, path, damage);
   return feed.finish();
 }
 

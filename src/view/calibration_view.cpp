@@ -251,6 +251,10 @@ CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
   if (analysis_) draw_result_buttons(ui, messages);
   if (guide != nullptr || analysis_) ImGui::SameLine();
   if (button(ui, "calibration give up", "Give up  (Esc)")) state_ = State::given_up;
+  if (guide != nullptr) {
+    ImGui::SameLine();
+    if (button(ui, "calibration test", "Test this pad")) state_ = State::wants_test;
+  }
   if (!problem_.empty()) {
     ImGui::SameLine();
     text_line(ui, ui.fonts.small, ui.theme.warning, problem_);

@@ -24,7 +24,8 @@ class CalibrationView {
   static Result<std::unique_ptr<CalibrationView>> start(const Options& options);
   ~CalibrationView();
 
-  enum class State { goes_on, saved, given_up };
+  // wants_test: the person wants the whole pad tested (self_test_view.h).
+  enum class State { goes_on, saved, given_up, wants_test };
   // Reads the pad, then draws in the middle of a window of this size. Remarks and errors are added
   // to `messages`.
   State draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages);

@@ -39,6 +39,8 @@ constexpr ActionInfo kActions[] = {
      "next style of the list"},
     {Action::previous_style, SDLK_b, SDLK_LEFTBRACKET, kButtonLeftShoulder, "previous style",
      kStyles, "previous style of the list"},
+    {Action::undo, kNoKey, kNoKey, kNoButton, "undo", kStyles, "undo a slider, style or override"},
+    {Action::redo, kNoKey, kNoKey, kNoButton, "redo", kStyles, "do it again"},
     {Action::next_terrain, SDLK_m, kNoKey, kNoButton, "next terrain", kStyles,
      "next ground of the list, from the start"},
     {Action::next_walker, SDLK_TAB, kNoKey, kButtonY, "next walker", kStyles,
@@ -71,6 +73,13 @@ constexpr ActionInfo kActions[] = {
      "full screen, on and off"},
     {Action::quit, SDLK_F10, kNoKey, kNoButton, "quit", kWindow, "end the program"},
     {Action::back, SDLK_ESCAPE, kNoKey, kButtonB, "back", kWindow, "close what is open"},
+};
+
+constexpr Chord kChords[] = {
+    {SDLK_z, false, Action::undo, "Ctrl+Z"},
+    {SDLK_y, false, Action::redo, "Ctrl+Y"},
+    {SDLK_z, true, Action::redo, "Ctrl+Shift+Z"},
+    {SDLK_q, false, Action::quit, "Ctrl+Q"},
 };
 
 struct KeyName {
@@ -165,6 +174,8 @@ const ActionInfo& info_of(Action action) noexcept {
   return kActions[0];
 }
 
+std::span<const Chord> chords() noexcept { return kChords; }
+
 std::string_view key_name(SDL_Keycode key) noexcept {
   for (const KeyName& entry : kKeyNames) {
     if (entry.key == key) return entry.name;
@@ -220,6 +231,13 @@ void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken)
   const bool is_down = key.type == SDL_KEYDOWN;
   if (code == SDLK_LSHIFT || code == SDLK_RSHIFT) is_shifted_ = is_down;
   const bool is_chord = (key.keysym.mod & (KMOD_CTRL | KMOD_ALT | KMOD_GUI)) != 0;
+  if (is_down && !taken.keys && (key.keysym.mod & KMOD_CTRL) != 0 && key.repeat == 0) {
+    for (const Chord& chord : kChords) {
+      const bool has_shift = (key.keysym.mod & KMOD_SHIFT) != 0;
+      if (chord.key == code && chord.has_shift == has_shift)
+        wishes_.actions.push_back(chord.action);
+    }
+  }
   const auto walking = std::ranges::find(kWalkingKeys, code);
   if (walking != std::end(kWalkingKeys)) {
     const auto index = static_cast<std::size_t>(walking - std::begin(kWalkingKeys));

@@ -33,6 +33,8 @@ enum class Action : std::uint8_t {
   style_9,
   next_style,
   previous_style,
+  undo,  // of sliders, styles and overrides
+  redo,
   next_terrain,  // another ground; the session starts again on it
   next_walker,   // chosen for camera and panels; after the last one: all
   record,
@@ -68,6 +70,14 @@ struct ActionInfo {
 // Every action once, in the order of the help page. Walking keys (WASD, arrows) are not among them.
 std::span<const ActionInfo> actions() noexcept;
 const ActionInfo& info_of(Action action) noexcept;
+// Keys pressed together with Ctrl. They are not in the table's columns.
+struct Chord {
+  SDL_Keycode key;
+  bool has_shift;
+  Action action;
+  std::string_view name;  // "Ctrl+Z"
+};
+std::span<const Chord> chords() noexcept;
 std::string_view key_name(SDL_Keycode key) noexcept;  // "Space", "F1", "W"; "?" for an unknown key
 std::string_view button_label(PadButton button) noexcept;  // "A", "left shoulder"
 

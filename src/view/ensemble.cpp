@@ -110,8 +110,33 @@ void Ensemble::add_source(const SessionFrame& frame, double share, const Cast& c
   source_place_m_ = first.before.root_m + share * (first.pose.root_m - first.before.root_m) +
                     kSourceAside_m * kLeft;
   source_place_m_.y = ground_m(source_place_m_);
+  const std::size_t lines = content.lines.size(), joints = content.joints_m.size();
   add_stick_figure(*cast.source, first.phase, first.presence, source_place_m_,
                    first.walk.heading_rad, theme.bone, content);
+  lift_source(lines, joints, content);
+}
+
+// The figure walks as on a floor. On steps it is lifted, so that no part of it is in the ground.
+void Ensemble::lift_source(std::size_t first_line, std::size_t first_joint, SceneContent& content) {
+  if (terrain_ == nullptr) return;
+  double lift_m = 0.0;
+  for (std::size_t i = first_line; i < content.lines.size(); ++i) {
+    for (const vec3& end : {content.lines[i].a_m, content.lines[i].b_m})
+      lift_m = std::max(lift_m, ground_at(*terrain_, end.x, end.z).height_m - end.y);
+  }
+  for (std::size_t i = first_line; i < content.lines.size(); ++i) {
+    content.lines[i].a_m.y += lift_m;
+    content.lines[i].b_m.y += lift_m;
+  }
+  for (std::size_t i = first_joint; i < content.joints_m.size(); ++i)
+    content.joints_m[i].y += lift_m;
+  source_place_m_.y += lift_m;
+}
+
+double Ensemble::rise_ahead_m(int walker) const noexcept {
+  constexpr double kAhead_m = 3.0, kBehind_m = 1.0;
+  const vec3 at = focus_m(walker);
+  return ground_m(at + vec3(0.0, 0.0, kAhead_m)) - ground_m(at - vec3(0.0, 0.0, kBehind_m));
 }
 
 vec3 Ensemble::focus_m(int walker) const noexcept {

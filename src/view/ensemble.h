@@ -26,6 +26,9 @@ class Ensemble {
   void look_from(const vec3& eye_m) noexcept { crowd_.look_from(eye_m); }
   bool has_crowd() const noexcept { return has_crowd_; }
   bool is_on_uneven_ground() const noexcept { return terrain_ != nullptr; }
+  // How much higher the ground is ahead (+z) than behind the place that a camera follows, in
+  // metres.
+  double rise_ahead_m(int walker) const noexcept;
   // Tells the camera the ground's height; call it when the camera has moved.
   void stand_on_ground(Camera& camera) const noexcept;
   // The distance from which a camera sees that character or all.
@@ -42,6 +45,7 @@ class Ensemble {
 
   std::int64_t trail_ticks_, point_ticks_;  // length of a trail, and between two of its points
   double ground_m(const vec3& place_m) const noexcept;
+  void lift_source(std::size_t first_line, std::size_t first_joint, SceneContent& content);
 
   std::shared_ptr<const Terrain> terrain_;  // null: level at height 0
   std::vector<Mannequin> mannequins_;

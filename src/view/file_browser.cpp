@@ -1,7 +1,9 @@
 #include "view/file_browser.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -101,7 +103,13 @@ void sort(std::vector<FolderEntry>& entries) {
   });
 }
 
-constexpr double kWidth = 720.0, kHeight = 500.0;  // at scale 1
+std::string date_of(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return {};
+  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(status.st_mtime));
+}
+
+constexpr double kWidth = 780.0, kHeight = 520.0;  // at scale 1
 constexpr std::pair<FileFilter, const char*> kFilters[] = {{FileFilter::all, "All"},
                                                            {FileFilter::motions, "Motions"},
                                                            {FileFilter::recordings, "Recordings"},
@@ -171,7 +179,8 @@ FolderList list_folder(const std::string& folder, FileFilter filter) {
     const bool is_folder = it->is_directory(ignored);
     if (!is_folder && (!is_wanted(name, filter) || !it->is_regular_file(ignored))) continue;
     if (list.entries.size() == FolderList::kMostEntries) break;
-    list.entries.push_back({std::move(name), is_folder});
+    std::string date = is_folder ? "" : date_of(it->path());
+    list.entries.push_back({std::move(name), is_folder, std::move(date)});
   }
   if (error) {
     list.problem = fmt::format("{}: cannot be read: {}", folder, error.message());
@@ -211,8 +220,11 @@ void RecentFiles::add(const std::string& path) {
   static_cast<void>(save_text(file_, text));
 }
 
-void FileBrowser::open() {
+void FileBrowser::open(const std::vector<std::string>& config_folders) {
   is_open_ = true;
+  bundled_ = config_files(config_folders, "traces", ".hid");
+  for (std::string& path : config_files(config_folders, "motions"))
+    bundled_.push_back(std::move(path));
   problem_.clear();
   std::error_code error;
   if (folder_.empty()) folder_ = fs::current_path(error).string();
@@ -257,21 +269,36 @@ void FileBrowser::draw_path(Ui& ui) {
   if (button(ui, "browser up", "Up")) go_to(fs::path(folder_).parent_path().string());
 }
 
+// A file that one click opens.
+void FileBrowser::draw_place(Ui& ui, const std::string& id, const std::string& path,
+                             const std::string& tip) {
+  ImGui::PushID(id.c_str());
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const bool is_clicked = ImGui::Selectable("##place");
+  keep_item(id);
+  put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.text, at,
+           fs::path(path).filename().string(), ImGui::GetItemRectSize().x);
+  show_tip(ui, tip);
+  ImGui::PopID();
+  if (is_clicked) enter(path);
+}
+
 void FileBrowser::draw_places(Ui& ui) {
   text_line(ui, ui.fonts.small, ui.theme.secondary, "Opened last");
   int number = 0;
   for (const std::string& path : std::vector<std::string>(recent_.paths())) {
-    ImGui::PushID(number);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const bool is_clicked = ImGui::Selectable("##recent");
-    keep_item(fmt::format("browser recent {}", number++));
-    put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.text, at,
-             fs::path(path).filename().string(), ImGui::GetItemRectSize().x);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", drawable(path).c_str());
-    ImGui::PopID();
-    if (is_clicked) enter(path);
+    draw_place(ui, fmt::format("browser recent {}", number++), path,
+               fmt::format("{}  {}", drawable(path), date_of(path)));
   }
   if (number == 0) text_line(ui, ui.fonts.small, ui.theme.tick, "nothing yet");
+  ImGui::Dummy({1.0f, ui.px(6)});
+  text_line(ui, ui.fonts.small, ui.theme.secondary, "Bundled");
+  number = 0;
+  for (const std::string& path : std::vector<std::string>(bundled_)) {
+    const std::string summary = config_summary(path);
+    draw_place(ui, fmt::format("browser bundled {}", number++), path,
+               summary.empty() ? drawable(path) : summary + ".");
+  }
 }
 
 void FileBrowser::draw_filters(Ui& ui) {
@@ -309,8 +336,12 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
       }
       keep_item("browser entry " + drawable(entry.name));
       const Colour& colour = entry.is_folder ? ui.theme.secondary : ui.theme.text;
+      const float width = ImGui::GetItemRectSize().x;
+      const float date = text_width(ui.fonts.small, entry.date);
       put_text(*ImGui::GetWindowDrawList(), ui.fonts.body, colour, at,
-               entry.is_folder ? entry.name + "/" : entry.name, ImGui::GetItemRectSize().x);
+               entry.is_folder ? entry.name + "/" : entry.name, width - date - ui.px(12));
+      put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.tick,
+               {at.x + width - date - ui.px(4), at.y + ui.px(2)}, entry.date, date + 1.0f);
       ImGui::PopID();
     }
   }

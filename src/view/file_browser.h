@@ -30,6 +30,7 @@ enum class FileFilter : std::uint8_t { all, motions, recordings, settings };
 struct FolderEntry {
   std::string name;  // the file system's bytes, perhaps not UTF-8
   bool is_folder = false;
+  std::string date;  // of a file: when it was written last, "2024-02-29 23:59"; empty: unknown
 };
 struct FolderList {
   static constexpr std::size_t kMostEntries = 4000;
@@ -60,7 +61,9 @@ class FileBrowser {
   // `recent_file`: where the last files are kept; empty: nowhere.
   explicit FileBrowser(std::string recent_file) : recent_(std::move(recent_file)) {}
 
-  void open();  // in the folder shown last, at first the working directory
+  // In the folder shown last, at first the working directory. `config_folders`: whose recordings
+  // and motions are offered as bundled.
+  void open(const std::vector<std::string>& config_folders);
   void close() noexcept { is_open_ = false; }
   bool is_open() const noexcept { return is_open_; }
   void remember(const std::string& path) { recent_.add(path); }
@@ -74,6 +77,7 @@ class FileBrowser {
   void enter(const std::string& path);
   void draw_path(Ui& ui);
   void draw_places(Ui& ui);
+  void draw_place(Ui& ui, const std::string& id, const std::string& path, const std::string& tip);
   void draw_filters(Ui& ui);
   void draw_entries(Ui& ui, float height_px);
   void draw_buttons(Ui& ui);
@@ -87,6 +91,7 @@ class FileBrowser {
   std::string problem_;            // of the path that was typed
   std::optional<std::string> result_;
   RecentFiles recent_;
+  std::vector<std::string> bundled_;
 };
 
 }  // namespace gaitpad

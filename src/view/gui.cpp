@@ -188,6 +188,13 @@ Gui::~Gui() {
 
 void Gui::apply(const Theme& theme) { apply_style(theme, scale_); }
 
+void Gui::set_scale(double scale) {
+  scale_ = scale;
+  fonts_ = load_fonts(scale_);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 void Gui::handle_event(const SDL_Event& event) { ImGui_ImplSDL2_ProcessEvent(&event); }
 
 TakenInput Gui::taken_input() const noexcept {
@@ -197,6 +204,7 @@ TakenInput Gui::taken_input() const noexcept {
 
 void Gui::begin(const Mouse& mouse, double passed_s) {
   ImGui_ImplOpenGL3_NewFrame();
+  ImGui::GetIO().Fonts->ClearTexData();  // the texture has it now
   ImGui_ImplSDL2_NewFrame();
   // The back end asks SDL for the pointer, which does not exist offscreen, so the events' place is
   // set.
@@ -213,6 +221,8 @@ void Gui::end() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
+
+void Gui::end_undrawn() { ImGui::EndFrame(); }
 
 ImVec4 imgui_colour(const Colour& c) noexcept {
   return {static_cast<float>(c.red), static_cast<float>(c.green), static_cast<float>(c.blue),

@@ -39,11 +39,14 @@ class Gui {
 
   const Fonts& fonts() const noexcept { return fonts_; }
   void apply(const Theme& theme);
+  // Other sizes of type and of everything around it; between frames.
+  void set_scale(double scale);
   void handle_event(const SDL_Event& event);
   TakenInput taken_input() const noexcept;
   // `passed_s` > 0 replaces the time that ImGui measures, for pictures.
   void begin(const Mouse& mouse, double passed_s);
   void end();  // draws into the bound frame buffer
+  void end_undrawn();
 
  private:
   double scale_ = 1.0;

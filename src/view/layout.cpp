@@ -57,6 +57,8 @@ Result<UiState> read_state(const std::string& path) {
   if (const auto leg = read_word(root, "graph_leg", kLegNames)) {
     state.graph_leg = static_cast<Side>(*leg);
   }
+  state.type_size =
+      root.number("type_size", kLeastTypeSize, kMostTypeSize).value_or(state.type_size);
   for (const ScenePart& part : kSceneParts) {
     state.*part.is_shown = root.boolean(part.name).value_or(state.*part.is_shown);
   }
@@ -74,6 +76,7 @@ std::string text_of(const UiState& state) {
       "panels = [{}]\ntheme = \"{}\"\ngraph_leg = \"{}\"\n",
       fmt::join(panels, ", "), kThemeNames[static_cast<std::size_t>(state.theme)],
       kLegNames[static_cast<std::size_t>(state.graph_leg)]);
+  text += fmt::format("type_size = {:g}\n", state.type_size);
   for (const ScenePart& part : kSceneParts) {
     text += fmt::format("{} = {}\n", part.name, state.*part.is_shown);
   }

@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::array<std::string_view, kShownJointCount> kJointNames = {
     "Hip flexion", "Knee flexion", "Ankle dorsiflexion"};
+constexpr std::array<std::string_view, kShownJointCount> kGraphs = {"graph hip", "graph knee",
+                                                                    "graph ankle"};
 constexpr std::array<double, kShownJointCount> kLeastSpan_deg = {20.0, 30.0, 10.0};
 
 // A plot's title, and at the right the latest values of its curves.
@@ -35,27 +37,29 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
   }
 }
 
-// Reserves a box over the column's width and draws into it if it is in sight.
+// Reserves a box over the column's width and draws into it if it is in sight. `name`: in
+// ui_items().
 template <class Draw>
-void draw_box(Ui& ui, double height_px, Draw draw) {
+void draw_box(Ui& ui, std::string_view name, double height_px, Draw draw) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 max{at.x + ImGui::GetContentRegionAvail().x, at.y + std::round(ui.px(height_px))};
   if (ImGui::IsRectVisible(at, max)) draw(*ImGui::GetWindowDrawList(), at, max);
   ImGui::Dummy({max.x - at.x, max.y - at.y});
+  keep_picture(ui, name, at, max);
 }
 
-void draw_plot_box(Ui& ui, const Plot& plot, double height_px) {
-  draw_box(ui, height_px, [&](ImDrawList& list, const ImVec2& min, const ImVec2& max) {
+void draw_plot_box(Ui& ui, std::string_view name, const Plot& plot, double height_px) {
+  draw_box(ui, name, height_px, [&](ImDrawList& list, const ImVec2& min, const ImVec2& max) {
     draw_plot(list, min, max, plot, ui.plot_style());
   });
 }
 
 // A plot below its title and the latest values.
-void draw_graph(Ui& ui, std::string_view title, std::string_view unit, const Plot& plot,
-                int decimals, double height_px) {
+void draw_graph(Ui& ui, std::string_view name, std::string_view title, std::string_view unit,
+                const Plot& plot, int decimals, double height_px) {
   draw_title(ui, title, unit, plot, decimals);
   ImGui::Dummy({1.0f, ui.fonts.small->FontSize});
-  draw_plot_box(ui, plot, height_px);
+  draw_plot_box(ui, name, plot, height_px);
 }
 
 void draw_leg_choice(Ui& ui) {
@@ -87,7 +91,10 @@ void draw_names(Ui& ui) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const int columns = std::max(1, std::min(count, static_cast<int>(width / ui.px(70))));
+  float widest = 0.0f;
+  for (int i = 0; i < count; ++i)
+    widest = std::max(widest, text_width(ui.fonts.tick, walker_name(ui, i)) + ui.px(20));
+  const int columns = std::max(1, std::min(count, static_cast<int>(width / widest)));
   const float cell = width / static_cast<float>(columns), row = ui.px(15);
   for (int i = 0; i < count; ++i) {
     const ImVec2 place{at.x + cell * static_cast<float>(i % columns),
@@ -124,11 +131,12 @@ void draw_mark_words(Ui& ui) {
 }
 
 void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
-  draw_graph(ui, "Heel height", "cm", heel_plot(ui.in.history, span, walker, ui.theme), 1, 84.0);
+  draw_graph(ui, "graph heel", "Heel height", "cm",
+             heel_plot(ui.in.history, span, walker, ui.theme), 1, 84.0);
   draw_mark_words(ui);
   text_line(ui, ui.fonts.small, ui.theme.text, "Stage and planted points");
   const SpanPlot plot = stage_plot(ui.in.history, span, walker, ui.theme);
-  draw_box(ui, 100.0, [&](ImDrawList& list, const ImVec2& min, const ImVec2& max) {
+  draw_box(ui, "graph stages", 100.0, [&](ImDrawList& list, const ImVec2& min, const ImVec2& max) {
     draw_spans(list, min, max, plot, ui.plot_style());
   });
   note(ui, "F flight, R roll, each of the left or right foot", 1);
@@ -193,7 +201,8 @@ void draw_tick_times(Ui& ui) {
   text_line(
       ui, ui.fonts.small, ui.theme.text,
       fmt::format("Time of a tick (ms), of {:.2f} ms", 1000.0 / std::max(ui.in.cast.rate_hz, 1)));
-  draw_plot_box(ui, tick_time_plot(ui.in.history, ui.in.cast.rate_hz, ui.theme), 84.0);
+  draw_plot_box(ui, "graph ticks", tick_time_plot(ui.in.history, ui.in.cast.rate_hz, ui.theme),
+                84.0);
 }
 
 // A count that should be 0; otherwise it is marked with '!' and a note.
@@ -212,6 +221,11 @@ void draw_live(Ui& ui, const LiveStatus& status) {
   count_row(ui, "more than a tick late", status.overruns, fmt::format("{:.2f} in 1000", share));
   value_row(ui, "tick, median and most",
             fmt::format("{:.0f}, {:.0f} us", status.tick_us_median, status.tick_us_max));
+  if (status.frame_us_p99 > 0.0) {
+    value_row(ui, "stick to frame, p50 and p99",
+              fmt::format("{:.1f}, {:.1f} ms", status.frame_us_p50 / 1000.0,
+                          status.frame_us_p99 / 1000.0));
+  }
   count_row(ui, "standstills", status.standstills);
   count_row(ui, "too slow for the time", status.overloads);
   value_row(ui, "skipped by these", fmt::format("{:.1f} s", status.skipped_s));
@@ -235,7 +249,8 @@ void draw_graphs_panel(Ui& ui) {
     Plot plot = joint_plot(ui.in.history, span, ui.state.graph_leg, joint, ui.theme,
                            ui.state.walker, kLeastSpan_deg[joint]);
     plot.has_x_ticks = joint + 1 == kShownJointCount;
-    draw_graph(ui, kJointNames[joint], "\u00b0", plot, 0, plot.has_x_ticks ? 92.0 : 78.0);
+    draw_graph(ui, kGraphs[joint], kJointNames[joint], "\u00b0", plot, 0,
+               plot.has_x_ticks ? 92.0 : 78.0);
   }
   draw_feet(ui, span, walker);
   ImGui::PopStyleVar();
@@ -248,9 +263,10 @@ void draw_solver_panel(Ui& ui) {
   draw_table(ui);
   const GraphSpan span = graph_span(ui.in.history, walker, ui.in.cast.rate_hz);
   text_line(ui, ui.fonts.small, ui.theme.text, "Iterations of a tick");
-  draw_plot_box(ui, iteration_plot(ui.in.history, span, walker, ui.theme), 70.0);
+  draw_plot_box(ui, "graph iterations", iteration_plot(ui.in.history, span, walker, ui.theme),
+                70.0);
   text_line(ui, ui.fonts.small, ui.theme.text, "Error left (mm)");
-  draw_plot_box(ui, error_plot(ui.in.history, span, walker, ui.theme), 70.0);
+  draw_plot_box(ui, "graph error", error_plot(ui.in.history, span, walker, ui.theme), 70.0);
   if (ui.in.status != nullptr) {
     const double legs = 2.0 * std::max(ui.in.frame.walker_count, 1);
     value_row(ui, "a tick takes",

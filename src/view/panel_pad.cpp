@@ -112,13 +112,6 @@ void draw_stick_plane(Ui& ui, const ImVec2& min, float side_px, Side side,
   list.PopClipRect();
 }
 
-constexpr std::size_t kTrailPlaces = 40;
-constexpr double kWaitStep_ms = 0.25;  // of LiveStatus::wait_counts
-constexpr std::array<std::string_view, 9> kHatNames = {
-    "D-pad up",         "D-pad up right", "D-pad right",
-    "D-pad down right", "D-pad down",     "D-pad down left",
-    "D-pad left",       "D-pad up left",  ""};
-
 UiMemory::StickPlace place_of(const SessionFrame& frame) {
   const PadState& pad = frame.pad.state;
   const Calibration& c = frame.pad.calibration;
@@ -128,6 +121,129 @@ UiMemory::StickPlace place_of(const SessionFrame& frame) {
   place.calibrated = {frame.stick.left, frame.stick.right};
   return place;
 }
+
+// --- a picture of the pad: what is pressed is lit, sticks lean, triggers fill. Places are shares
+// of the picture's width, from its upper left corner.
+
+struct PadSpot {
+  PadButton button;
+  float x, y, radius;
+  std::string_view letter;
+};
+constexpr PadSpot kSpots[] = {
+    {kButtonA, 0.735f, 0.250f, 0.026f, "A"},        {kButtonB, 0.790f, 0.195f, 0.026f, "B"},
+    {kButtonX, 0.680f, 0.195f, 0.026f, "X"},        {kButtonY, 0.735f, 0.140f, 0.026f, "Y"},
+    {kButtonBack, 0.425f, 0.165f, 0.018f, ""},      {kButtonGuide, 0.500f, 0.120f, 0.024f, ""},
+    {kButtonStart, 0.575f, 0.165f, 0.018f, ""},     {kButtonDpadUp, 0.385f, 0.265f, 0.021f, ""},
+    {kButtonDpadDown, 0.385f, 0.353f, 0.021f, ""},  {kButtonDpadLeft, 0.341f, 0.309f, 0.021f, ""},
+    {kButtonDpadRight, 0.429f, 0.309f, 0.021f, ""}, {kButtonMisc1, 0.500f, 0.215f, 0.014f, ""},
+    {kButtonTouchpad, 0.500f, 0.165f, 0.018f, ""},  {kButtonPaddle1, 0.640f, 0.425f, 0.016f, ""},
+    {kButtonPaddle2, 0.360f, 0.425f, 0.016f, ""},   {kButtonPaddle3, 0.690f, 0.425f, 0.016f, ""},
+    {kButtonPaddle4, 0.310f, 0.425f, 0.016f, ""},
+};
+constexpr float kPictureHeight = 0.47f;  // of its width
+constexpr float kStickRadius = 0.062f;
+
+// Those that few pads have show while they are pressed alone.
+bool is_rare(PadButton button) noexcept { return button > kButtonDpadRight; }
+
+bool is_lit(const PadState& pad, PadButton button) noexcept {
+  if (pressed(pad, button)) return true;
+  const auto hat = static_cast<int>(pad.hat);  // clockwise from up; 8: none
+  switch (button) {
+    case kButtonDpadUp:
+      return hat == 7 || hat == 0 || hat == 1;
+    case kButtonDpadRight:
+      return hat >= 1 && hat <= 3;
+    case kButtonDpadDown:
+      return hat >= 3 && hat <= 5;
+    case kButtonDpadLeft:
+      return hat >= 5 && hat <= 7;
+    default:
+      return false;
+  }
+}
+
+void draw_body(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
+  const ImU32 body = packed(ui.theme.frame), edge = packed(ui.theme.border);
+  for (const float x : {0.24f, 0.76f})
+    list.AddCircleFilled({at.x + x * w, at.y + 0.31f * w}, 0.145f * w, body, 32);
+  list.AddRectFilled({at.x + 0.20f * w, at.y + 0.07f * w}, {at.x + 0.80f * w, at.y + 0.37f * w},
+                     body, 0.10f * w);
+  list.AddRectFilled({at.x + 0.30f * w, at.y + 0.30f * w}, {at.x + 0.70f * w, at.y + 0.40f * w},
+                     body, 0.04f * w);
+  list.AddLine({at.x + 0.30f * w, at.y + 0.07f * w}, {at.x + 0.70f * w, at.y + 0.07f * w}, edge);
+}
+
+// Shoulder buttons, and above them the triggers, filled as far as they are pulled.
+void draw_shoulders(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
+  const PadFrame& pad = ui.in.frame.pad;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const bool is_left_one = side == kLeftSide;
+    const float x = at.x + (is_left_one ? 0.21f : 0.65f) * w, width = 0.14f * w;
+    const bool is_on = pressed(pad.state, is_left_one ? kButtonLeftShoulder : kButtonRightShoulder);
+    list.AddRectFilled({x, at.y + 0.045f * w}, {x + width, at.y + 0.068f * w},
+                       packed(is_on ? ui.theme.left : ui.theme.frame), 0.01f * w);
+    const double pull =
+        is_left_one
+            ? trigger_position(pad.calibration.left_trigger, pad.state.axis[kLeftTrigger])
+            : trigger_position(pad.calibration.right_trigger, pad.state.axis[kRightTrigger]);
+    const float share = std::isfinite(pull) ? static_cast<float>(std::clamp(pull, 0.0, 1.0)) : 0.0f;
+    list.AddRectFilled({x, at.y}, {x + width, at.y + 0.036f * w}, packed(ui.theme.frame),
+                       0.01f * w);
+    if (share > 0.0f)
+      list.AddRectFilled({x, at.y}, {x + width * share, at.y + 0.036f * w}, packed(ui.theme.left),
+                         0.01f * w);
+  }
+}
+
+void draw_leaning_stick(Ui& ui, ImDrawList& list, const ImVec2& middle, float w, const vec2& raw,
+                        bool is_pressed) {
+  const float r = kStickRadius * w;
+  list.AddCircleFilled(middle, r, packed(ui.theme.plot), 28);
+  const auto lean = [](double v) {
+    return std::isfinite(v) ? static_cast<float>(std::clamp(v, -1.0, 1.0)) : 0.0f;
+  };
+  const ImVec2 cap{middle.x + 0.45f * r * lean(raw.x), middle.y - 0.45f * r * lean(raw.y)};
+  const bool is_pushed = std::hypot(raw.x, raw.y) > 0.15;
+  list.AddCircleFilled(cap, 0.62f * r, packed(is_pressed ? ui.theme.left : ui.theme.secondary), 24);
+  if (is_pushed) list.AddCircle(cap, 0.62f * r, packed(ui.theme.left), 24, ui.px(1.8));
+}
+
+void draw_pad_picture(Ui& ui) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, w = std::min(width, ui.px(250));
+  const ImVec2 corner{at.x + (width - w) / 2.0f, at.y};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const PadState& pad = ui.in.frame.pad.state;
+  draw_body(ui, list, corner, w);
+  draw_shoulders(ui, list, corner, w);
+  const UiMemory::StickPlace place = place_of(ui.in.frame);
+  draw_leaning_stick(ui, list, {corner.x + 0.265f * w, corner.y + 0.195f * w}, w,
+                     place.raw[kLeftSide], pressed(pad, kButtonLeftStick));
+  draw_leaning_stick(ui, list, {corner.x + 0.615f * w, corner.y + 0.309f * w}, w,
+                     place.raw[kRightSide], pressed(pad, kButtonRightStick));
+  for (const PadSpot& spot : kSpots) {
+    const bool is_on = is_lit(pad, spot.button);
+    if (!is_on && is_rare(spot.button)) continue;
+    const ImVec2 middle{corner.x + spot.x * w, corner.y + spot.y * w};
+    list.AddCircleFilled(middle, spot.radius * w, packed(is_on ? ui.theme.left : ui.theme.plot),
+                         20);
+    const float text = text_width(ui.fonts.tick, spot.letter);
+    put_text(list, ui.fonts.tick, is_on ? ui.theme.plot : ui.theme.secondary,
+             {middle.x - text / 2.0f, middle.y - ui.fonts.tick->FontSize / 2.0f}, spot.letter,
+             text + 1.0f);
+  }
+  ImGui::Dummy({width, w * kPictureHeight});
+  keep_picture(ui, "pad picture", corner, {corner.x + w, corner.y + w * kPictureHeight});
+}
+
+constexpr std::size_t kTrailPlaces = 40;
+constexpr double kWaitStep_ms = 0.25;  // of LiveStatus::wait_counts
+constexpr std::array<std::string_view, 9> kHatNames = {
+    "D-pad up",         "D-pad up right", "D-pad right",
+    "D-pad down right", "D-pad down",     "D-pad down left",
+    "D-pad left",       "D-pad up left",  ""};
 
 void keep_trail(Ui& ui) {
   UiMemory& memory = ui.state.memory;
@@ -150,7 +266,7 @@ void draw_name(Ui& ui) {
   const std::string rate =
       ui.in.pad_rate_hz > 0.0 ? fmt::format("{:.0f} reports/s", ui.in.pad_rate_hz) : "";
   const float rate_width = text_width(ui.fonts.small, rate);
-  std::string name = is_there ? ui.in.pad_name : "no pad: the keyboard walks";
+  std::string name = is_there ? ui.in.pad_name : "no pad; W A S D walk";
   if (!is_there && !ui.in.pad_name.empty()) name = "unplugged: " + ui.in.pad_name;
   list.AddCircleFilled({at.x + ui.px(4), at.y + ui.px(8)}, ui.px(4),
                        packed(is_there ? ui.theme.good : ui.theme.secondary), 16);
@@ -179,6 +295,8 @@ void draw_sticks(Ui& ui) {
   for (const Side s : {kLeftSide, kRightSide}) {
     const ImVec2 min{at.x + static_cast<float>(s) * (side + gap), at.y};
     draw_stick_plane(ui, min, side, s, s == kLeftSide ? c.left : c.right);
+    keep_picture(ui, s == kLeftSide ? "pad stick left" : "pad stick right", min,
+                 {min.x + side, min.y + side});
     const float y = min.y + side + ui.px(3), line = ui.fonts.tick->FontSize + ui.px(2);
     const float label = ui.px(34);
     put_text(list, ui.fonts.tick, ui.theme.tick, {min.x, y}, "raw", label);
@@ -243,8 +361,8 @@ void draw_waits(Ui& ui) {
   const auto& counts = status.wait_counts;
   const std::int64_t most =
       std::max<std::int64_t>(*std::max_element(counts.begin(), counts.end()), 1);
-  value_row(ui, "from report to tick",
-            fmt::format("median {:.1f}, most {:.1f} ms", status.wait_us_median / 1000.0,
+  value_row(ui, "report to tick, ms",
+            fmt::format("median {:.1f}, most {:.1f}", status.wait_us_median / 1000.0,
                         status.wait_us_max / 1000.0));
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = std::round(ui.px(28));
@@ -265,6 +383,7 @@ void draw_waits(Ui& ui) {
   put_text(list, ui.fonts.tick, ui.theme.tick, {at.x, y}, "0 ms", width);
   put_text(list, ui.fonts.tick, ui.theme.tick, {at.x + width - last_width, y}, last, width);
   ImGui::Dummy({width, height + ui.px(13)});
+  keep_picture(ui, "graph waits", at, {at.x + width, at.y + height});
 }
 
 }  // namespace
@@ -273,10 +392,17 @@ void draw_pad_panel(Ui& ui) {
   keep_trail(ui);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(4)});
   draw_name(ui);
+  draw_pad_picture(ui);
   draw_sticks(ui);
   draw_triggers(ui);
   const std::string names = pressed_names(ui.in.frame.pad.state);
   value_row(ui, "pressed", names.empty() ? "nothing" : names);
+  if (ui.in.can_rumble) {
+    ButtonLook look;
+    look.height = std::round(ui.px(22));
+    look.width = ImGui::GetContentRegionAvail().x;
+    if (button(ui, "rumble", "Test the rumble", look)) ui.out.rumbles = true;
+  }
   if (ui.in.status != nullptr) draw_waits(ui);
   ImGui::PopStyleVar();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "view/panels.h"
+#include "view/tooltips.h"
 
 namespace gaitpad {
 namespace {
@@ -133,15 +134,6 @@ bool begins_with_one(const std::string_view (&parts)[n], std::string_view name) 
   return std::any_of(parts, parts + n, [name](std::string_view p) { return name.starts_with(p); });
 }
 
-// "weight.hip_x" -> "hip x weight", "stride_length" -> "stride length"
-std::string label_of(std::string_view key) {
-  constexpr std::string_view kWeight = "weight.";
-  const bool is_weight = key.starts_with(kWeight);
-  std::string label(is_weight ? key.substr(kWeight.size()) : key);
-  std::replace(label.begin(), label.end(), '_', ' ');
-  return is_weight ? label + " weight" : label;
-}
-
 bool is_axis_weight(std::string_view key) {
   return key.find("weight.") != std::string_view::npos &&
          (key.ends_with("_x") || key.ends_with("_y") || key.ends_with("_z"));
@@ -149,10 +141,10 @@ bool is_axis_weight(std::string_view key) {
 
 // Rows of legs and arms need no prefix; others name their table.
 std::string row_label(std::string_view name) {
-  const std::string_view table = name.substr(0, name.find('.'));
-  const bool is_plain = table.size() == name.size() || table == "leg" || table == "arm";
-  if (is_plain) return label_of(table.size() == name.size() ? name : name.substr(table.size() + 1));
-  return fmt::format("{} {}", table, label_of(name.substr(table.size() + 1)));
+  for (const std::string_view plain : {"leg.", "arm."}) {
+    if (name.starts_with(plain)) return words_of_key(name.substr(plain.size()));
+  }
+  return words_of_key(name);
 }
 
 std::vector<StyleRow> rows_of(const UiMemory& memory) {
@@ -244,32 +236,63 @@ void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
   }
 }
 
+constexpr double kStyleListPixels = 236.0;
+constexpr int kSummaryLines = 4;
+
+// The list of styles: number, name and what each does. A click lets the selected characters walk
+// so.
 void draw_choice(Ui& ui, const WalkerFrame& walker) {
   const std::vector<int> choices = style_choices(ui.in.cast);
   const std::string now = style_name(ui, walker.style_index);
-  const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
+  const float number = ui.px(18), line = ui.fonts.tick->FontSize + ui.px(1);
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, imgui_colour(ui.theme.plot));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{0.0f, 0.0f});
+  ImGui::BeginChild("styles", {0.0f, std::round(ui.px(kStyleListPixels))});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
   for (std::size_t i = 0; i < choices.size(); ++i) {
-    if (i % 2 == 1) ImGui::SameLine(0.0f, gap);
-    const std::string name = style_name(ui, choices[i]);
-    ButtonLook look;
-    look.width = std::floor((width - gap) / 2.0f);
-    look.height = std::round(ui.px(22));
-    look.is_on = name == now;
-    look.is_enabled = ui.is_live();
-    const std::string label = i < 9 ? fmt::format("{}  {}", i + 1, name) : name;
-    if (button(ui, fmt::format("style {}", i + 1), label, look)) {
+    const std::string name = style_name(ui, choices[i]), id = fmt::format("style {}", i + 1);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    const float x = at.x + ui.px(4) + number, room = width - number - ui.px(10);
+    std::vector<std::string> lines;
+    if (const auto s = static_cast<std::size_t>(choices[i]); s < ui.in.style_summaries.size())
+      lines = text_lines(ui.fonts.tick, ui.in.style_summaries[s], room, kSummaryLines);
+    const float row = std::round(ui.px(19) + line * static_cast<float>(lines.size()) + ui.px(4));
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::BeginDisabled(!ui.is_live());
+    const bool is_pressed = ImGui::InvisibleButton("style", {width, row});
+    ImGui::EndDisabled();
+    ImGui::PopID();
+    if (ui.is_live()) keep_item(id);
+    explain(ui, id);
+    const bool is_on = name == now;
+    if (is_on || (ImGui::IsItemHovered() && ui.is_live())) {
+      list.AddRectFilled(at, {at.x + width, at.y + row - 1.0f},
+                         packed(with_alpha(ui.theme.accent, is_on ? 0.45 : 0.2)), ui.px(4));
+    }
+    if (i < 9)
+      put_text(list, ui.fonts.tick, ui.theme.tick, {at.x + ui.px(6), at.y + ui.px(4)},
+               fmt::format("{}", i + 1), number);
+    put_text(list, ui.fonts.small, ui.theme.text, {x, at.y + ui.px(2)}, name, room);
+    for (std::size_t l = 0; l < lines.size(); ++l)
+      put_text(list, ui.fonts.tick, ui.theme.secondary,
+               {x, at.y + ui.px(18) + line * static_cast<float>(l)}, lines[l], room);
+    if (is_pressed) {
       send(ui, "style", name);
       forget_wish(ui, "");
     }
   }
+  ImGui::EndChild();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
   ImGui::Dummy({1.0f, ui.px(2)});
 }
 
-// Accepts only characters that a file's name may hold on every system.
+// Accepts only characters that a style's name may hold.
 int accept(ImGuiInputTextCallbackData* data) {
   const ImWchar c = data->EventChar;
   const bool is_fit = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '_' || c == '-';
+                      c == '_' || c == '-' || c == ' ';
   return is_fit ? 0 : 1;
 }
 
@@ -336,7 +359,7 @@ void draw_control_panel(Ui& ui) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   for (const ControlRow& row : kRows) draw_row(ui, row, controlled);
   if (!ui.is_live()) {
-    note(ui, "a playback is only looked at", 1);
+    note(ui, "Playback is read-only; Esc returns to live.", 2);
   } else if (is_any_set(ui)) {
     ButtonLook look;
     look.width = ImGui::GetContentRegionAvail().x;

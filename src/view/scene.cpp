@@ -432,6 +432,8 @@ void set_floor(const GlProgram& program, const SceneContent& content, const Scen
   program.set("fade_from", kFadesFrom_m * size_of(content, view));
   program.set("floor_near", view.theme->floor);
   program.set("floor_far", view.theme->floor_far);
+  program.set("riser", view.theme->riser);
+  program.set("nose", view.theme->nose);
   program.set("grid", view.theme->grid);
   program.set("grid_depth", content.has_grid ? vec2(0.75, 0.36) : vec2(0.0));
   program.set("pixel", view.scale);
@@ -504,6 +506,7 @@ void FloorScene::draw_ground(const SceneContent& content, const SceneView& view,
   set_floor(ground_, content, view, place);
   ground_.set("moved", mesh_origin_m_ - view.origin_m);
   ground_.set("light", kLightDirection);
+  ground_.set("level", mesh_origin_m_.y - view.origin_m.y);
   ground_.set("behind_m", kBehind_m);
   glBindVertexArray(mesh_.get());
   glDrawElements(GL_TRIANGLES, mesh_count_, GL_UNSIGNED_INT, nullptr);
@@ -699,7 +702,7 @@ void StrokeScene::draw_lines(const SceneContent& content, const SceneView& view)
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(strokes_.size()));
 }
 
-constexpr int kSamples = 4;
+constexpr int kSamples = 4, kSamplesInDoubleSize = 2;
 constexpr int kLargest_px = 16384;
 
 // Software rasterizers of Mesa, Google and Windows.
@@ -827,9 +830,10 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &window);
   glGetIntegerv(GL_VIEWPORT, before.data());
   glDisable(GL_SCISSOR_TEST);
+  int samples = scale < 2.0 ? s.samples : std::min(s.samples, kSamplesInDoubleSize);
   // If memory does not suffice for several samples per pixel, one is tried.
-  if (!s.target.resize(width, height, s.samples)) s.samples = 1;
-  if (s.target.resize(width, height, s.samples)) {
+  if (!s.target.resize(width, height, samples)) s.samples = samples = 1;
+  if (s.target.resize(width, height, samples)) {
     const SceneView view = view_of(camera, content, theme, viewport, scale);
     s.capsules.load(content, view);
     const ShadowPlace shadow = content.has_shadows ? s.capsules.draw_shadows() : ShadowPlace{};
@@ -840,13 +844,13 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
     glDepthMask(GL_TRUE);
     glClear(GL_DEPTH_BUFFER_BIT);
     s.capsules.draw(view);
-    s.crowd.draw(content, view, s.samples);
+    s.crowd.draw(content, view, samples);
     s.floor.draw(content, view, shadow, s.capsules.shadow_texture());
     s.crowd.draw_shades(content, view);
     s.strokes.draw(content, view);
     glDisable(GL_DEPTH_TEST);
     GLuint ready = s.target.name();
-    if (s.samples > 1 && s.resolved.resize(width, height, 1)) {
+    if (samples > 1 && s.resolved.resize(width, height, 1)) {
       blit(ready, s.resolved.name(), width, height, 0, 0);
       ready = s.resolved.name();
     }

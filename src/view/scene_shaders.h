@@ -316,12 +316,14 @@ void main() {
 )";
 
 // Appended to the background's text and followed by one of the two fragment shaders that use it.
-// `light`: 1 on level ground; `mark`: strength of an edge.
+// `light`: 1 on level ground; `mark`: strength of an edge; `rise`: 1 on a riser's face.
 inline constexpr const char* kFloorColour = R"(
 in vec2 from_focus;
 in vec2 in_shadow;
 uniform vec3 floor_near;
 uniform vec3 floor_far;
+uniform vec3 riser;
+uniform vec3 nose;
 uniform vec3 grid;
 uniform float fade_from;
 uniform float half_size;
@@ -337,13 +339,13 @@ float lines(vec2 place, vec2 cell_px, float width_px) {
                clamp((cell_px - 2.5) * 0.15, 0.0, 1.0);
   return max(cover.x, cover.y);
 }
-void show_floor(vec2 world, float light, float mark) {
+void show_floor(vec2 world, float light, float mark, float rise) {
   vec2 metre_px = 1.0 / max(fwidth(world), vec2(1e-5));
   float distance_m = length(from_focus);
-  vec3 ground = mix(floor_near, floor_far, min(distance_m / half_size, 1.0));
+  vec3 ground = mix(mix(floor_near, riser, rise), floor_far, min(distance_m / half_size, 1.0));
   float fine = lines(world * 5.0, metre_px * 0.2, pixel) * grid_depth.y;
   float coarse = lines(world, metre_px, 1.9 * pixel) * grid_depth.x;
-  ground = mix(mix(ground, grid, max(fine, coarse)) * light, grid, mark);
+  ground = mix(mix(ground, grid, max(fine, coarse) * (1.0 - 0.7 * rise)) * light, nose, mark);
   vec2 dark = textureLod(shadow, in_shadow, 0.0).rg * shadow_depth;
   ground *= (1.0 - dark.r) * (1.0 - dark.g);
   show(mix(ground, background(), smoothstep(fade_from, half_size, distance_m)));
@@ -352,7 +354,7 @@ void show_floor(vec2 world, float light, float mark) {
 
 inline constexpr const char* kFloorFragment = R"(
 in vec2 world;
-void main() { show_floor(world, 1.0, 0.0); }
+void main() { show_floor(world, 1.0, 0.0, 0.0); }
 )";
 
 inline constexpr const char* kGroundVertex = R"(#version 330 core
@@ -381,20 +383,24 @@ void main() {
 }
 )";
 
-// A riser shows only the grid's lines across it; lines along it would lie at arbitrary heights.
+// Treads and risers have two tones, and what lies higher is lighter, so that steps read at a
+// glance. A riser shows only the grid's lines across it; lines along it would lie at arbitrary
+// heights.
 inline constexpr const char* kGroundFragment = R"(
 in vec3 place;
 in vec3 normal;
 in vec2 edges;
 uniform vec3 light;
+uniform float level;  // height of the ground below the focus
 void main() {
   vec3 n = normalize(normal);
   bool is_riser = abs(n.z) > 0.8;
-  float lit = mix(0.38, 1.0, max(dot(n, light) / light.y, 0.0));
-  lit *= 1.0 - 0.45 * exp(-edges.y * 14.0);  // what a riser keeps of the sky's light
+  float lit = mix(is_riser ? 0.8 : 0.38, 1.0, clamp(dot(n, light) / light.y, 0.0, 1.0));
+  lit *= 1.0 + 0.14 * clamp(place.y - level, -1.2, 1.2);
+  lit *= 1.0 - 0.4 * exp(-edges.y * 14.0);  // what a riser keeps of the sky's light
   float edge_px = edges.x / max(fwidth(edges.x), 1e-6);
-  float nose = 0.65 * clamp(1.6 * pixel + 0.5 - edge_px, 0.0, 1.0);
-  show_floor(is_riser ? vec2(place.x, 0.5) : place.xz, lit, nose);
+  float mark = 0.8 * clamp(1.6 * pixel + 0.5 - edge_px, 0.0, 1.0);
+  show_floor(is_riser ? vec2(place.x, 0.5) : place.xz, lit, mark, is_riser ? 1.0 : 0.0);
 }
 )";
 

@@ -22,8 +22,7 @@ class LiveShow final : public Show {
   const SessionFrame& frame() const noexcept override { return *frame_; }
 
   void update(double) override {
-    bool is_new = false;
-    frame_ = &session_->latest(is_new);
+    frame_ = &session_->latest_due();
     for (TickSample sample; session_->take_sample(sample);) {
       if (is_by_hand()) sample.step_us = 0.0f;  // a picture must not depend on the machine's speed
       history_.add(sample);
@@ -43,6 +42,8 @@ class LiveShow final : public Show {
     return std::clamp(passed_s * cast().rate_hz * pace_, 0.0, 1.0);
   }
 
+  void end_frame(FrameEnd end) override { session_->end_frame(end); }
+
   void set_pace(double pace) override {
     pace_ = pace;
     session_->set_pace(pace);
@@ -56,6 +57,8 @@ class LiveShow final : public Show {
   }
   void steer(const vec2& wanted) override { session_->steer(wanted); }
   void command(std::string_view text) override { session_->command(text); }
+  void add_style(const Style& style) override { session_->add_style(style); }
+  void rumble() override { session_->rumble(); }
   bool has_ended() const noexcept override { return session_->has_ended(); }
   const LiveStatus* status() override {
     status_ = session_->status();

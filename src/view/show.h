@@ -42,6 +42,8 @@ class Show {
   virtual void update(double passed_s) = 0;
   // The same for pictures: computes 1 / kPictureRateHz seconds of the session now.
   virtual void update_for_picture() = 0;
+  // What update() took over has gone to the display, or will not go there.
+  virtual void end_frame(FrameEnd) {}
   // Where the moment to draw, one tick ago, lies between WalkerFrame::before (0) and pose (1).
   virtual double share(std::int64_t now_ns) const noexcept = 0;
 
@@ -52,6 +54,8 @@ class Show {
   // Live only; otherwise without effect.
   virtual void steer(const vec2&) {}
   virtual void command(std::string_view) {}
+  virtual void add_style(const Style&) {}
+  virtual void rumble() {}
   virtual bool has_ended() const noexcept { return false; }  // of a recording that plays as the pad
   virtual const LiveStatus* status() { return nullptr; }
   // Playback only.

@@ -21,7 +21,8 @@ constexpr int kSmallest_px = 64, kLargest_px = 16384;
 constexpr int kSmallestWindowWidth = 640, kSmallestWindowHeight = 400;  // at scale 1
 constexpr int kNeededGl = 33;                                           // 3.3
 constexpr const char* kWithoutDisplay =
-    "--screenshot FILE.png and --video FILE.mp4 draw without a display";
+    "play --no-window walks without one, --screenshot FILE.png and --video FILE.mp4 draw without "
+    "one";
 
 std::atomic<bool> is_display_lost = false;  // Xlib's connection outlives every surface
 
@@ -198,19 +199,24 @@ void WindowSurface::begin() {
   height_px_ = height_px;
 }
 
-void WindowSurface::show() { SDL_GL_SwapWindow(window_); }
+void WindowSurface::show() {
+  SDL_GL_SwapWindow(window_);
+  // Without a display nothing waits for a frame, and the driver would queue them without end.
+  if (is_offscreen(SDL_GetCurrentVideoDriver())) glFinish();
+}
 
 Pixels read_pixels(int width, int height) {
   constexpr std::size_t kChannels = 4;
   Pixels pixels{std::max(width, 0), std::max(height, 0), {}};
-  const std::size_t row = static_cast<std::size_t>(pixels.width) * kChannels,
-                    rows = static_cast<std::size_t>(pixels.height);
-  std::vector<std::uint8_t> upwards(row * rows);
+  const std::size_t row = static_cast<std::size_t>(pixels.width) * kChannels;
+  pixels.rgba.resize(row * static_cast<std::size_t>(pixels.height));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, pixels.width, pixels.height, GL_RGBA, GL_UNSIGNED_BYTE, upwards.data());
-  pixels.rgba.resize(upwards.size());
-  for (std::size_t y = 0; y < rows; ++y) {
-    std::memcpy(pixels.rgba.data() + y * row, upwards.data() + (rows - 1 - y) * row, row);
+  glReadPixels(0, 0, pixels.width, pixels.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.rgba.data());
+  // OpenGL's rows begin at the bottom.
+  std::uint8_t *upper = pixels.rgba.data(), *lower = upper + pixels.rgba.size();
+  for (int y = 0; y < pixels.height / 2; ++y, upper += row) {
+    lower -= row;
+    std::swap_ranges(upper, upper + row, lower);
   }
   for (std::size_t i = 3; i < pixels.rgba.size(); i += kChannels) pixels.rgba[i] = 0xff;
   return pixels;
@@ -220,6 +226,6 @@ Pixels read_pixels(int width, int height) {
 
 // Renderers keep some allocations until the process ends. SDL unloads them with the display, and
 // the leak checker then no longer finds the pointers.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef GAITPAD_SANITIZED
 extern "C" int dlclose(void*) { return 0; }
 #endif

@@ -142,7 +142,10 @@ void draw_status(Ui& ui, const UiRect& rect) {
   const float y = rect.y + (rect.height - ui.fonts.small->FontSize) / 2.0f;
   const float room = rect.width - ui.px(28);
   const float right = std::min(text_width(ui.fonts.small, drawable(ui.in.renderer)), room * 0.4f);
-  put_text(list, ui.fonts.small, ui.theme.secondary, {rect.x + ui.px(14), y}, session_text(ui),
+  // What was changed last, and of whom, stands there for a moment.
+  const bool is_news = !ui.in.change.empty();
+  put_text(list, ui.fonts.small, is_news ? ui.theme.left : ui.theme.secondary,
+           {rect.x + ui.px(14), y}, is_news ? ui.in.change : session_text(ui),
            room - right - ui.px(16));
   put_text(list, ui.fonts.small, ui.theme.tick, {rect.x + rect.width - ui.px(14) - right, y},
            ui.in.renderer, right + 1.0f);
@@ -203,6 +206,36 @@ void draw_labels(Ui& ui, const UiRect& scene) {
   list.PopClipRect();
 }
 
+// What to do first, in the lower middle of the scene: "W A S D or plug a pad in; F1: keys".
+void draw_hint(Ui& ui, const UiRect& scene) {
+  if (ui.in.hint.empty() || scene.is_empty() || ui.in.is_modal) return;
+  const float pad = ui.px(16), room = std::min(scene.width - 4.0f * pad, ui.px(560));
+  if (room < ui.px(120)) return;
+  std::vector<std::string> lines = text_lines(ui.fonts.heading, ui.in.hint, room, 2);
+  const std::size_t large = lines.size();
+  for (std::string& line : text_lines(ui.fonts.small, ui.in.pad_hint, room, 3))
+    lines.push_back(std::move(line));
+  float width = 0.0f, height = 0.0f;
+  const auto font_of = [&](std::size_t i) { return i < large ? ui.fonts.heading : ui.fonts.small; };
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    width = std::max(width, text_width(font_of(i), lines[i]));
+    height += font_of(i)->FontSize + ui.px(4);
+  }
+  const ImVec2 min{std::round(scene.x + (scene.width - width) / 2.0f - pad),
+                   std::round(scene.y + scene.height - height - 2.0f * pad - ui.px(18))};
+  const ImVec2 max{min.x + width + 2.0f * pad, min.y + height + 1.5f * pad};
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRectFilled(min, max, packed(with_alpha(ui.theme.card, 0.93)), ui.px(8));
+  list.AddRect(min, max, packed(with_alpha(ui.theme.left, 0.7)), ui.px(8), 0, ui.px(1));
+  float y = min.y + pad * 0.85f;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const float x = (min.x + max.x - text_width(font_of(i), lines[i])) / 2.0f;
+    put_text(list, font_of(i), i < large ? ui.theme.text : ui.theme.secondary, {x, y}, lines[i],
+             width + 1.0f);
+    y += font_of(i)->FontSize + ui.px(4);
+  }
+}
+
 struct PanelPart {
   Panel panel;
   std::string_view title;
@@ -227,10 +260,14 @@ void draw_heading(Ui& ui, const PanelPart& part) {
   put_text(list, ui.fonts.heading, ui.theme.text, at, part.title, width - close);
   if (has_walker(part.panel)) {
     const float x = text_width(ui.fonts.heading, part.title) + ui.px(10);
-    const bool is_for_all = ui.state.walker < 0 && part.panel != Panel::graphs;
-    const std::string who = walker_name(ui, ui.walker());
-    put_text(list, ui.fonts.small, ui.theme.secondary, {at.x + x, at.y + ui.px(2)},
-             is_for_all ? "all, numbers of " + who : who, width - close - x - ui.px(4));
+    const bool changes = part.panel == Panel::control || part.panel == Panel::style;
+    const bool is_for_all =
+        ui.state.walker < 0 && ui.in.frame.walker_count > 1 && changes && ui.is_live();
+    put_text(list, ui.fonts.small, is_for_all ? ui.theme.left : ui.theme.secondary,
+             {at.x + x, at.y + ui.px(2)},
+             is_for_all ? fmt::format("changes all {}", ui.in.frame.walker_count)
+                        : walker_name(ui, ui.walker()),
+             width - close - x - ui.px(4));
   }
   ImGui::SetCursorScreenPos({at.x + width - close, at.y - ui.px(2)});
   ButtonLook look;
@@ -252,33 +289,38 @@ void draw_separator(Ui& ui) {
   ImGui::Dummy({1.0f, ui.px(4)});
 }
 
-// A button for each character, to choose it for the panels, and one for all.
-void draw_cast(Ui& ui) {
+constexpr float kChip = 22.0f, kChipGap = 4.0f, kCastPadding = 8.0f;
+constexpr int kNamedCast = 4;  // so many have room for their styles' names
+
+int chips_a_row(int characters) noexcept { return characters <= kNamedCast ? 2 : 7; }
+
+// A chip for each character and one for all: the selection, which styles and sliders change. They
+// stay in sight above the panels.
+void draw_cast(Ui& ui, const UiRect& rect) {
   const int count = ui.in.frame.walker_count;
-  if (count <= 1) return;
-  const float gap = std::round(ui.px(6)), width = ImGui::GetContentRegionAvail().x;
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  put_text(*ImGui::GetWindowDrawList(), ui.fonts.heading, ui.theme.text, {at.x, at.y + ui.px(1)},
-           "Characters", width - ui.px(48));
-  ButtonLook all;
-  all.is_on = ui.state.walker < 0;
-  all.height = std::round(ui.px(22));
-  all.width = std::round(ui.px(44));
-  ImGui::SetCursorScreenPos({at.x + width - all.width, at.y - ui.px(2)});
-  if (button(ui, "walker all", "all", all)) ui.state.walker = -1;
-  const float cell = std::floor((width - gap) / 2.0f);
+  if (rect.is_empty()) return;
+  begin_area(ui, "cast", rect, ui.theme.panel, {14.0f, kCastPadding},
+             ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  const float gap = std::round(ui.px(kChipGap)), width = ImGui::GetContentRegionAvail().x;
+  ButtonLook look;
+  look.height = std::round(ui.px(kChip));
+  look.width = width;
+  look.is_on = ui.state.walker < 0;
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{gap, gap});
+  const std::string all = count == 2 ? "Both characters" : fmt::format("All {} characters", count);
+  if (button(ui, "walker all", all, look)) ui.state.walker = -1;
+  const int in_row = chips_a_row(count);
+  look.width =
+      std::floor((width - gap * static_cast<float>(in_row - 1)) / static_cast<float>(in_row));
   for (int i = 0; i < count; ++i) {
-    if (i % 2 == 1) ImGui::SameLine(0.0f, gap);
-    ButtonLook look;
+    if (i % in_row != 0) ImGui::SameLine(0.0f, gap);
     look.is_on = ui.state.walker == i;
     look.dot = walker_colour(ui, i);
-    look.width = cell;
-    look.height = std::round(ui.px(22));
-    if (button(ui, fmt::format("walker {}", i + 1), walker_name(ui, i), look)) {
-      ui.state.walker = i;
-    }
+    const std::string name = count <= kNamedCast ? walker_name(ui, i) : fmt::format("{}", i + 1);
+    if (button(ui, fmt::format("walker {}", i + 1), name, look)) ui.state.walker = i;
   }
-  draw_separator(ui);
+  ImGui::PopStyleVar();
+  end_area();
 }
 
 void draw_panel(Ui& ui, const PanelPart& part, bool has_just_opened) {
@@ -302,13 +344,19 @@ enum class Column { left, right };
 
 void draw_column(Ui& ui, const UiLayout& layout, Column column) {
   const bool is_left_one = column == Column::left;
-  const UiRect& rect = is_left_one ? layout.left : layout.right;
+  UiRect rect = is_left_one ? layout.left : layout.right;
   if (rect.is_empty()) return;
   const bool has_both = !layout.left.is_empty() && !layout.right.is_empty();
+  if (is_left_one || !has_both) {
+    const float height =
+        std::min(cast_height(ui.in.frame.walker_count, ui.scale), rect.height / 2.0f);
+    draw_cast(ui, {rect.x, rect.y, rect.width, height});
+    rect.y += height;
+    rect.height -= height;
+  }
   const char* id = is_left_one ? "left column" : "right column";
   begin_area(ui, id, rect, ui.theme.panel, {14.0f, 10.0f});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), std::round(ui.px(5))});
-  if (is_left_one || !has_both) draw_cast(ui);
   bool is_first = true;
   for (const PanelPart& part : kParts) {
     const auto index = static_cast<std::size_t>(part.panel);
@@ -395,6 +443,22 @@ constexpr Switch kSwitches[] = {
     {"names", "Names", &UiState::has_names, std::nullopt},
 };
 
+void draw_type_size(Ui& ui, float width) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ButtonLook look;
+  look.width = std::round(ui.px(30));
+  const double now = ui.state.type_size;
+  look.is_enabled = now > kLeastTypeSize + 0.01;
+  if (button(ui, "type smaller", "-", look)) ui.out.type_size = now - kTypeSizeStep;
+  const std::string text = fmt::format("Type: {:.0f} %", now * 100.0);
+  const float room = width - 2.0f * look.width, text_px = text_width(ui.fonts.body, text);
+  put_text(*ImGui::GetWindowDrawList(), ui.fonts.body, ui.theme.text,
+           {at.x + look.width + (room - text_px) / 2.0f, at.y + ui.px(5)}, text, room);
+  ImGui::SetCursorScreenPos({at.x + width - look.width, at.y});
+  look.is_enabled = now < kMostTypeSize - 0.01;
+  if (button(ui, "type larger", "+", look)) ui.out.type_size = now + kTypeSizeStep;
+}
+
 void draw_view_menu(Ui& ui) {
   if (!ImGui::BeginPopup("view menu")) return;
   ButtonLook look;
@@ -417,6 +481,7 @@ void draw_view_menu(Ui& ui) {
   if (button(ui, "theme", is_dark ? "Theme: dark" : "Theme: light", look)) {
     ui.out.actions.push_back(Action::theme);
   }
+  draw_type_size(ui, look.width);
   look.is_enabled = ui.is_live();
   if (button(ui, "next terrain", "Ground: " + ui.in.cast.terrain->name, look)) {
     ui.out.actions.push_back(Action::next_terrain);
@@ -505,6 +570,7 @@ float draw_facts(Ui& ui, const UiRect& rect, float left) {
 }
 
 void draw_top_bar(Ui& ui, const UiRect& rect) {
+  if (rect.is_empty()) return;
   begin_area(ui, "top bar", rect, ui.theme.bar, {14.0f, 9.0f},
              ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const float gap = std::round(ui.px(6)), y = std::round(ui.px(9));
@@ -653,7 +719,7 @@ void icon_button(Ui& ui, std::string_view id, Icon icon, const ImVec2& at,
 }
 
 // Draws the buttons and the time; returns the x behind them.
-float draw_transport(Ui& ui, float x, float y) {
+float draw_transport(Ui& ui, float x, float y, bool is_full) {
   const UiTimeline& timeline = *ui.in.timeline;
   ButtonLook primary;
   primary.is_primary = true;
@@ -667,7 +733,13 @@ float draw_transport(Ui& ui, float x, float y) {
            clock_text(seconds_of(ui, timeline.tick)), ui.px(96));
   const std::string place = fmt::format("tick {} / {}{}", timeline.tick, last_tick(timeline),
                                         timeline.is_computing ? " ..." : "");
+  // A recording may change styles that the person chose: the time line says so.
+  const bool changes_styles = std::ranges::any_of(
+      timeline.marks, [](const PlaybackMark& mark) { return mark.text.starts_with("style "); });
   put_text(list, ui.fonts.small, ui.theme.secondary, {text_x, y + ui.px(14)}, place, ui.px(128));
+  if (changes_styles && is_full)
+    put_text(list, ui.fonts.tick, ui.theme.warning, {text_x, y + ui.px(29)}, "changes styles",
+             ui.px(128));
   return text_x + ui.px(136);
 }
 
@@ -696,11 +768,19 @@ void draw_timeline(Ui& ui, const UiRect& rect) {
              ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const bool is_full = rect.width >= ui.px(kFullWidth);
   const float y = rect.y + std::round(ui.px(is_full ? 19 : 7));
-  const float left = draw_transport(ui, rect.x + ui.px(14), y);
+  const float left = draw_transport(ui, rect.x + ui.px(14), y, is_full);
   const float loop = std::round(ui.px(30));
   ButtonLook looping;
   looping.is_on = ui.in.timeline->is_looping;
-  const float right = rect.x + rect.width - ui.px(14);
+  float right = rect.x + rect.width - ui.px(14);
+  if (ui.in.can_leave) {
+    ButtonLook leave;
+    leave.is_primary = true;
+    right -= button_width(ui, "Leave", leave);
+    ImGui::SetCursorScreenPos({right, y});
+    if (button(ui, "leave playback", "Leave", leave)) ui.out.actions.push_back(Action::back);
+    right -= std::round(ui.px(10));
+  }
   if (is_full) {
     const float paces = ui.px(48) * static_cast<float>(kPaces.size());
     draw_paces(ui, right - paces, y);
@@ -762,6 +842,9 @@ std::vector<Row> rows() {
     for (const SDL_Keycode key : {info.key, info.second_key}) {
       if (key != SDLK_UNKNOWN) row.keys.emplace_back(key_name(key));
     }
+    for (const Chord& chord : chords()) {
+      if (chord.action == info.action && !chord.has_shift) row.keys.emplace_back(chord.name);
+    }
     if (info.button >= 0) row.button = button_label(static_cast<PadButton>(info.button));
     all.push_back(std::move(row));
   }
@@ -816,8 +899,14 @@ std::vector<std::size_t> column_ends(const Ui& ui, const std::vector<Row>& all, 
   std::vector<std::size_t> ends;
   float height = 0.0f;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool is_full = height >= wanted - ui.px(kRowPixels);
-    if (is_full && !all[i].heading.empty() && static_cast<int>(ends.size()) + 1 < columns) {
+    // Whether more of the group that begins here would stand beyond the wanted height than above
+    // it.
+    float group = height_of(ui, all[i]);
+    for (std::size_t k = i + 1; k < all.size() && all[k].heading.empty(); ++k)
+      group += height_of(ui, all[k]);
+    const bool is_full = height + group / 2.0f > wanted;
+    if (is_full && i > 0 && !all[i].heading.empty() &&
+        static_cast<int>(ends.size()) + 1 < columns) {
       ends.push_back(i);
       height = 0.0f;
     }
@@ -896,6 +985,10 @@ UiLayout ui_layout(const UiState& state, bool has_timeline, int width_px, int he
   const float width = static_cast<float>(std::max(width_px, 0));
   const float height = static_cast<float>(std::max(height_px, 0));
   UiLayout l;
+  if (state.is_clean) {
+    l.scene = {0.0f, 0.0f, width, height};
+    return l;
+  }
   l.top = {0.0f, 0.0f, width, std::min(px(kTopBar), height)};
   float bottom = height;
   if (has_timeline && bottom - px(kTimeline) > l.top.height) {
@@ -919,6 +1012,12 @@ UiLayout ui_layout(const UiState& state, bool has_timeline, int width_px, int he
   if (has_right) l.right = {width - right, top, right, middle};
   l.scene = {l.left.width, top, width - l.left.width - l.right.width, middle};
   return l;
+}
+
+float cast_height(int characters, float scale) noexcept {
+  if (characters <= 1) return 0.0f;
+  const int in_row = chips_a_row(characters), rows = 1 + (characters + in_row - 1) / in_row;
+  return std::round((static_cast<float>(rows) * (kChip + kChipGap) + 2.0f * kCastPadding) * scale);
 }
 
 Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, int height_px,
@@ -953,7 +1052,10 @@ UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, d
   draw_top_bar(ui, layout.top);
   draw_timeline(ui, layout.timeline);
   draw_status(ui, layout.status);
-  draw_messages(ui, layout.scene);
+  if (!state.is_clean) {
+    draw_messages(ui, layout.scene);
+    draw_hint(ui, layout.scene);
+  }
   if (state.is_help_open) {
     draw_help(ui, {0.0f, layout.top.height, size.x, size.y - layout.top.height});
   }

@@ -57,8 +57,10 @@ struct UiState {
   ThemeName theme = ThemeName::dark;
   bool has_trails = true, has_grid = true, has_shadows = true, has_source = true, has_names = true;
   Side graph_leg = kLeftSide;
-  int walker = -1;  // chosen for panels and camera; -1: all, with the numbers of the first
+  int walker = -1;         // chosen for panels and camera; -1: all, with the numbers of the first
+  double type_size = 1.0;  // factor on the display's scale: of type, buttons and columns
   bool is_help_open = false;
+  bool is_clean = false;  // the scene alone, without bars
   UiMemory memory;
 };
 
@@ -100,8 +102,14 @@ struct UiInput {
   std::string source{};            // the trace, for the bar
   std::string renderer{};
   std::vector<UiLabel> labels{};
-  std::vector<std::string> messages{};  // errors and remarks, newest last
-  bool is_modal = false;                // calibration or browser is open, so panels take no input
+  std::vector<std::string> messages{};         // errors and remarks, newest last
+  std::vector<std::string> style_summaries{};  // of Cast::styles: what each does
+  std::string change{};     // what was changed last, and of whom; empty: nothing lately
+  std::string hint{};       // over the scene until somebody walks
+  std::string pad_hint{};   // why a pad may not be seen, and what to do
+  bool can_leave = false;   // the playback, for the live session before it
+  bool can_rumble = false;  // the pad that steers
+  bool is_modal = false;    // calibration or browser is open, so panels take no input
 };
 struct UiOutput {
   std::vector<Action> actions;
@@ -111,7 +119,11 @@ struct UiOutput {
   std::optional<bool> is_looping;
   std::optional<std::string> save_style;  // saves the chosen character's style by this name
   bool dismisses_messages = false;
+  std::optional<double> type_size;
+  bool rumbles = false;  // asks for one beat of the pad's motors
 };
+
+inline constexpr double kLeastTypeSize = 0.8, kMostTypeSize = 1.6, kTypeSizeStep = 0.1;
 
 // Indices in Cast::styles of the styles that a `style` command can name: the first of equal names.
 // Action::style_1 + n - 1 chooses the n-th of them.
@@ -134,6 +146,8 @@ struct UiItem {
   ImVec2 min, max;
 };
 const std::vector<UiItem>& ui_items() noexcept;
+// The texts of that frame for which there was no room, whole.
+const std::vector<std::string>& cut_texts() noexcept;
 
 // The layout of the window: bars at top and bottom and a column of panels on either side of the
 // scene; one column in a narrow window, none in a very narrow one.
@@ -149,6 +163,8 @@ struct UiLayout {
 };
 UiLayout ui_layout(const UiState& state, bool has_timeline, int width_px, int height_px,
                    double scale) noexcept;
+// How high the chips of so many characters are, above the panels; 0: there is but one.
+float cast_height(int characters, float scale) noexcept;
 // Whether the panel is in the left column when both are shown.
 bool is_left(Panel panel) noexcept;
 

@@ -9,13 +9,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/files.h"
 #include "draw/picture.h"
 
 namespace gaitpad {
@@ -86,7 +93,51 @@ std::string last_words(int log) {
   return drawable(text);
 }
 
+// Whether an MP4 is whole: its boxes fill it to the last byte, and the index of its frames, `moov`,
+// is among them. On a full disk ffmpeg may leave less and yet end with status 0.
+bool is_whole(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::error_code error;
+  const std::uintmax_t end = std::filesystem::file_size(path, error);
+  bool has_index = false;
+  for (std::uintmax_t at = 0; !error && file && at <= end;) {
+    if (at == end) return has_index;
+    std::array<unsigned char, 16> head{};  // size, name, a 64-bit size where the first is 1
+    file.seekg(static_cast<std::streamoff>(at));
+    file.read(reinterpret_cast<char*>(head.data()), head.size());
+    file.clear();  // the last box may be shorter
+    const auto number = [&head](std::size_t first, std::size_t bytes) {
+      std::uint64_t n = 0;
+      for (std::size_t i = first; i < first + bytes; ++i) n = n << 8 | head[i];
+      return n;
+    };
+    const std::uint64_t size = number(0, 4) == 1 ? number(8, 8) : number(0, 4);
+    if (size < 8 || size > end - at) return false;
+    has_index = has_index || std::memcmp(&head[4], "moov", 4) == 0;
+    at += size;
+  }
+  return false;
+}
+
+bool is_in_path(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::string_view folders = path != nullptr ? path : "";
+  while (!folders.empty()) {
+    const std::string_view folder = folders.substr(0, folders.find(':'));
+    const std::string file = fmt::format("{}/{}", folder.empty() ? "." : folder, program);
+    if (::access(file.c_str(), X_OK) == 0) return true;
+    folders.remove_prefix(std::min(folder.size() + 1, folders.size()));
+  }
+  return false;
+}
+
 }  // namespace
+
+std::optional<Error> VideoWriter::problem_of(const std::string& path) {
+  if (!is_in_path("ffmpeg"))
+    return problem(path, "ffmpeg is not installed; run: sudo apt-get install ffmpeg");
+  return saving_problem(path);
+}
 
 Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const std::string& path, int width,
                                                        int height, int frames_per_second) {
@@ -95,8 +146,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const std::string& path, 
     return problem(path, fmt::format("a video of {} x {} pixels, {} a second", width, height,
                                      frames_per_second));
   }
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return problem(path, std::strerror(EISDIR));
+  if (auto error = problem_of(path)) return std::move(*error);
   std::unique_ptr<VideoWriter> writer(new VideoWriter);
   writer->path_ = path;
   writer->width_ = width;
@@ -107,7 +157,8 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const std::string& path, 
 
 std::optional<Error> VideoWriter::start(int frames_per_second) {
   // Created here first, so that a missing folder is reported at once and not by ffmpeg.
-  const std::string part = fmt::format("{}.{}.part", path_, ::getpid());
+  remove_leftovers(path_);
+  const std::string part = temporary_beside(path_);
   int file = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (file < 0) return problem(path_, std::strerror(errno));
   close_fd(file);
@@ -125,7 +176,6 @@ std::optional<Error> VideoWriter::start(int frames_per_second) {
   close_fd(ends[1]);
   if (cause == 0) return std::nullopt;
   process_ = -1;
-  if (cause == ENOENT) return problem(path_, "ffmpeg is not installed");
   return problem(path_, fmt::format("ffmpeg does not start: {}", std::strerror(cause)));
 }
 
@@ -144,7 +194,7 @@ bool VideoWriter::has_ended_well() {
   close_fd(link_);
   while (process_ > 0 && ::waitpid(process_, &exit_status_, 0) < 0 && errno == EINTR) continue;
   process_ = -1;
-  return WIFEXITED(exit_status_) && WEXITSTATUS(exit_status_) == 0;
+  return WIFEXITED(exit_status_) && WEXITSTATUS(exit_status_) == 0 && is_whole(part_);
 }
 
 // After ffmpeg has stopped reading, or ended badly.
@@ -155,6 +205,7 @@ Error VideoWriter::failure() {
   if (WIFSIGNALED(exit_status_)) {
     return problem(path_, fmt::format("ffmpeg was ended by signal {}", WTERMSIG(exit_status_)));
   }
+  if (WEXITSTATUS(exit_status_) == 0) return problem(path_, "the disk took only a part of it");
   return problem(path_, fmt::format("ffmpeg ended with status {}", WEXITSTATUS(exit_status_)));
 }
 

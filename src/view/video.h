@@ -15,6 +15,8 @@ namespace gaitpad {
 // The error of a failure ends with ffmpeg's own message.
 class VideoWriter {
  public:
+  // Why no video can be written to `path`, as far as that shows before it is begun.
+  static std::optional<Error> problem_of(const std::string& path);
   static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
                                                    int frames_per_second);
   ~VideoWriter();                                  // without finish() no file is left

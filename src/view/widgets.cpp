@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "view/tooltips.h"
+
 namespace gaitpad {
 namespace {
 
@@ -26,7 +28,9 @@ std::string_view fitting(const ImFont* font, std::string_view text, float width)
   return text.substr(0, static_cast<std::size_t>(rest - text.data()));
 }
 
-std::vector<UiItem> items;  // of the frame drawn last; only one window draws, from one thread
+// Of the frame drawn last; only one window draws, from one thread.
+std::vector<UiItem> items;
+std::vector<std::string> cut;
 
 void keep(std::string_view name, const ImVec2& min, const ImVec2& max, const ImRect& clip) {
   ImRect rect(min, max);
@@ -55,7 +59,8 @@ void draw_button_back(Ui& ui, const ImVec2& min, const ImVec2& max, const Button
 void draw_button_face(Ui& ui, const ImVec2& min, const ImVec2& max, std::string_view label,
                       const ButtonLook& look) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImFont* font = ui.fonts.body;
+  const bool is_low = look.height > 0.0f && look.height < ui.px(20);
+  const ImFont* font = is_low ? ui.fonts.small : ui.fonts.body;
   const Colour text =
       with_alpha(look.is_primary ? rgb(0xffffff) : ui.theme.text, look.is_enabled ? 1.0 : 0.45);
   const float front = (look.icon != Icon::none && !label.empty() ? ui.px(16) : 0.0f) +
@@ -138,6 +143,9 @@ void draw_slider(Ui& ui, const ImVec2& min, const ImVec2& max, double value,
   draw_number(ui, min, max, grab, value, look);
 }
 
+constexpr float kRest_s = 0.45;       // of the pointer, before it is explained
+constexpr double kTipPixels = 300.0;  // at most as wide
+
 constexpr double kVeil = 0.55;
 constexpr double kRoom = 24.0;       // to the window's edges, at scale 1
 constexpr double kMessages = 104.0;  // left free above for messages if both fit
@@ -151,6 +159,7 @@ void put_text(ImDrawList& list, const ImFont* font, const Colour& colour, const 
   std::string shown = fit(text);
   if (shown.empty() || !(max_width > 0.0f)) return;
   if (text_width(font, shown) > max_width) {
+    cut.push_back(shown);
     const float room = max_width - text_width(font, "...");
     shown = std::string(fitting(font, shown, room));
     if (room >= 0.0f) shown += "...";
@@ -173,11 +182,13 @@ void value_row(Ui& ui, std::string_view label, std::string_view value) {
   const ImFont* font = ui.fonts.small;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::string shown = fit(value);
-  const float value_width = std::min(text_width(font, shown), width * 0.7f);
-  put_text(list, font, ui.theme.secondary, at, label, width - value_width - ui.px(8));
-  put_text(list, font, ui.theme.text, {at.x + width - value_width, at.y}, shown,
-           value_width + 1.0f);
-  ImGui::Dummy({width, font->FontSize});
+  const float label_width = text_width(font, label), value_width = text_width(font, shown);
+  const bool has_two = label_width + value_width + ui.px(8) > width;
+  const float y = has_two ? at.y + font->FontSize + ui.px(2) : at.y;
+  put_text(list, font, ui.theme.secondary, at, label, has_two ? width : label_width + 1.0f);
+  put_text(list, font, ui.theme.text, {at.x + std::max(width - value_width, 0.0f), y}, shown,
+           std::min(value_width, width) + 1.0f);
+  ImGui::Dummy({width, y + font->FontSize - at.y});
 }
 
 std::vector<std::string> text_lines(const ImFont* font, std::string_view text, float width,
@@ -211,7 +222,10 @@ int Ui::walker() const noexcept {
   return state.walker >= 0 && state.walker < in.frame.walker_count ? state.walker : 0;
 }
 
-void clear_items() { items.clear(); }
+void clear_items() {
+  items.clear();
+  cut.clear();
+}
 
 void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max) {
   ImRect clip = ImGui::GetCurrentWindow()->Rect();
@@ -228,6 +242,42 @@ void keep_item(std::string_view name) {
 }
 
 const std::vector<UiItem>& ui_items() noexcept { return items; }
+const std::vector<std::string>& cut_texts() noexcept { return cut; }
+
+namespace {
+
+// A card with the text at the pointer.
+void draw_tip(Ui& ui, std::string_view text) {
+  if (text.empty()) return;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{ui.px(10), ui.px(7)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{0.0f, ui.px(2)});
+  ImGui::BeginTooltip();
+  for (const std::string& line : text_lines(ui.fonts.small, text, ui.px(kTipPixels), 4)) {
+    const float width = std::min(text_width(ui.fonts.small, line) + 1.0f, ui.px(kTipPixels));
+    text_line(ui, ui.fonts.small, ui.theme.text, line, width);
+  }
+  ImGui::EndTooltip();
+  ImGui::PopStyleVar(2);
+}
+
+}  // namespace
+
+void show_tip(Ui& ui, std::string_view text) {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsItemActive()) return;
+  if (context.HoveredIdTimer >= kRest_s) draw_tip(ui, text);
+}
+
+void explain(Ui& ui, std::string_view item) { show_tip(ui, tooltip_of(item)); }
+
+void keep_picture(Ui& ui, std::string_view name, const ImVec2& min, const ImVec2& max) {
+  keep_item(name, min, max);
+  const ImGuiIO& io = ImGui::GetIO();
+  // It has no identity whose time could be counted, so it is explained while the mouse is still.
+  const bool is_still = io.MouseDelta.x == 0.0f && io.MouseDelta.y == 0.0f && !io.MouseDown[0];
+  if (is_still && ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(min, max))
+    draw_tip(ui, tooltip_of(name));
+}
 
 void draw_icon(ImDrawList& list, Icon icon, const ImVec2& m, float r, ImU32 colour) {
   switch (icon) {
@@ -288,6 +338,7 @@ bool button(Ui& ui, std::string_view id, std::string_view label, const ButtonLoo
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
   draw_button_back(ui, min, max, look);
   draw_button_face(ui, min, max, label, look);
+  explain(ui, id);
   return is_pressed;
 }
 
@@ -340,6 +391,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
     held = value = wanted;
   }
   draw_slider(ui, min, max, value, look);
+  explain(ui, id);
   return is_moved;
 }
 

@@ -41,7 +41,7 @@ void put_text(ImDrawList& list, const ImFont* font, const Colour& colour, const 
 // The same at the cursor, at most as wide as the rest of the row or `max_width`.
 void text_line(Ui& ui, const ImFont* font, const Colour& colour, std::string_view text,
                float max_width = 0.0f);
-// A label at the left and a value at the right end of a row; the label is cut if both do not fit.
+// A label at the left and a value at the right end of a row, or of two rows if one is too narrow.
 void value_row(Ui& ui, std::string_view label, std::string_view value);
 // Small grey text over at most `max_lines` lines.
 void note(Ui& ui, std::string_view text, int max_lines = 3);
@@ -55,6 +55,11 @@ void clear_items();
 void keep_item(std::string_view name);
 void keep_item(std::string_view name, const ImVec2& min, const ImVec2& max);
 void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max);  // not a widget
+// Explains the last widget while the pointer rests on it (view/tooltips.h).
+void explain(Ui& ui, std::string_view item);
+void show_tip(Ui& ui, std::string_view text);  // the same with another text
+// Keeps and explains a rectangle that is no widget: a graph, a picture.
+void keep_picture(Ui& ui, std::string_view name, const ImVec2& min, const ImVec2& max);
 
 enum class Icon { none, play, pause, record, stop, close, to_begin, step, loop };
 void draw_icon(ImDrawList& list, Icon icon, const ImVec2& middle, float radius, ImU32 colour);

@@ -4,11 +4,10 @@
 #include <epoxy/gl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <time.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
@@ -21,101 +20,29 @@
 #include <utility>
 #include <vector>
 
+#include "base/files.h"
 #include "draw/picture.h"
 #include "drivers/posix.h"
+#include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
+#include "session/script.h"
 #include "view/calibration_view.h"
 #include "view/controls.h"
 #include "view/ensemble.h"
 #include "view/file_browser.h"
+#include "view/frame_clock.h"
 #include "view/gui.h"
 #include "view/layout.h"
 #include "view/scene.h"
+#include "view/self_test_view.h"
 #include "view/show.h"
 #include "view/surface.h"
+#include "view/tooltips.h"
+#include "view/undo.h"
 #include "view/video.h"
 
 namespace gaitpad {
 namespace {
-
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kWarmFrames = 5;
-constexpr double kLongest_s = 0.25;  // after a suspended machine wakes up
-
-// When frames begin, how many there are in a second, and how many reports a pad sends meanwhile.
-class FrameClock {
- public:
-  // Least time between two frames; 0: no limit.
-  void set_least(double seconds) noexcept { least_s_ = seconds; }
-  // Returns the seconds since the last frame began, at most a quarter.
-  double begin_frame(std::int64_t now_ns) noexcept;
-  // Sleeps until the next frame may begin.
-  void wait_for_next() noexcept;
-  std::int64_t now_ns() const noexcept { return now_ns_; }  // when this frame began
-  double passed_s() const noexcept { return passed_s_; }
-
-  double frames_per_second() const noexcept { return shown_; }  // over the last half second
-  // Over all frames except the first few, in which shaders are compiled.
-  double mean_frames_per_second() const noexcept;
-
-  // How fast a growing count grows, over the last second.
-  double rate_hz(std::uint64_t count) noexcept;
-
- private:
-  double least_s_ = 0.0, passed_s_ = 0.0, shown_ = 0.0;
-  std::int64_t now_ns_ = 0, due_ns_ = 0, shown_since_ns_ = 0, warm_ns_ = 0;
-  std::int64_t frames_ = 0, shown_frames_ = 0;
-  std::int64_t counted_ns_ = 0;
-  std::uint64_t counted_ = 0;
-  double rate_hz_ = 0.0;
-};
-
-double FrameClock::begin_frame(std::int64_t time_ns) noexcept {
-  passed_s_ = now_ns_ == 0 ? 0.0 : static_cast<double>(time_ns - now_ns_) / 1e9;
-  passed_s_ = std::clamp(passed_s_, 0.0, kLongest_s);
-  now_ns_ = time_ns;
-  if (frames_++ == kWarmFrames) warm_ns_ = time_ns;
-  ++shown_frames_;
-  if (shown_since_ns_ == 0) shown_since_ns_ = time_ns;
-  if (const std::int64_t shown_ns = time_ns - shown_since_ns_; shown_ns > kSecond_ns / 2) {
-    shown_ = static_cast<double>(shown_frames_) * 1e9 / static_cast<double>(shown_ns);
-    shown_since_ns_ = time_ns;
-    shown_frames_ = 0;
-  }
-  return passed_s_;
-}
-
-void FrameClock::wait_for_next() noexcept {
-  if (least_s_ <= 0.0) return;
-  const auto least_ns = static_cast<std::int64_t>(least_s_ * 1e9);
-  // Counted from the planned time, so that the frame after a late one can catch up.
-  due_ns_ = std::max(due_ns_ + least_ns, now_ns_);
-  if (due_ns_ <= gaitpad::now_ns()) return;
-  const timespec due = {static_cast<time_t>(due_ns_ / kSecond_ns),
-                        static_cast<long>(due_ns_ % kSecond_ns)};
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
-  }
-}
-
-double FrameClock::mean_frames_per_second() const noexcept {
-  if (warm_ns_ == 0 || now_ns_ <= warm_ns_) return 0.0;
-  return static_cast<double>(frames_ - 1 - kWarmFrames) * 1e9 /
-         static_cast<double>(now_ns_ - warm_ns_);
-}
-
-double FrameClock::rate_hz(std::uint64_t count) noexcept {
-  if (counted_ns_ == 0 || count < counted_) {  // a new session counts from 0
-    counted_ns_ = now_ns_;
-    counted_ = count;
-    rate_hz_ = 0.0;
-  }
-  if (const std::int64_t span_ns = now_ns_ - counted_ns_; span_ns >= kSecond_ns) {
-    rate_hz_ = static_cast<double>(count - counted_) * 1e9 / static_cast<double>(span_ns);
-    counted_ns_ = now_ns_;
-    counted_ = count;
-  }
-  return rate_hz_;
-}
 
 // Errors and remarks for the person, each shown for a while, newest last.
 class Messages {
@@ -145,6 +72,57 @@ class Messages {
   std::deque<Message> shown_;
 };
 
+constexpr int kIcon_px = 64;
+constexpr std::int64_t kChange_ns = 5'000'000'000;   // how long the last change stays in sight
+constexpr std::int64_t kPadHint_ns = 3'000'000'000;  // between looks at the system's pads
+
+double distance_to(const vec2& place, const vec2& a, const vec2& b) {
+  const vec2 along = b - a;
+  const double share = std::clamp(glm::dot(place - a, along) / glm::dot(along, along), 0.0, 1.0);
+  return glm::distance(place, a + share * along);
+}
+
+// A walking figure on a dark disc, drawn by its distance to six bones.
+void set_window_icon(SDL_Window* window) {
+  constexpr std::pair<vec2, vec2> kBones[] = {{{33, 21}, {30, 37}}, {{30, 37}, {40, 45}},
+                                              {{40, 45}, {41, 55}}, {{30, 37}, {24, 46}},
+                                              {{24, 46}, {16, 52}}, {{33, 23}, {43, 33}}};
+  SDL_Surface* icon =
+      SDL_CreateRGBSurfaceWithFormat(0, kIcon_px, kIcon_px, 32, SDL_PIXELFORMAT_RGBA32);
+  if (icon == nullptr) return;
+  for (int y = 0; y < kIcon_px; ++y) {
+    auto* row =
+        static_cast<std::uint8_t*>(icon->pixels) + static_cast<std::ptrdiff_t>(y) * icon->pitch;
+    for (int x = 0; x < kIcon_px; ++x) {
+      const vec2 at(x + 0.5, y + 0.5);
+      double away = glm::distance(at, vec2(35, 13)) - 3.0;  // the head
+      for (const auto& [a, b] : kBones) away = std::min(away, distance_to(at, a, b));
+      const double figure = std::clamp(3.4 - away, 0.0, 1.0);
+      const double disc = std::clamp(31.5 - glm::distance(at, vec2(32, 32)), 0.0, 1.0);
+      const auto byte = [](double v) { return static_cast<std::uint8_t>(v * 255.0 + 0.5); };
+      row[4 * x] = byte(0.12 + figure * 0.22);
+      row[4 * x + 1] = byte(0.15 + figure * 0.56);
+      row[4 * x + 2] = byte(0.19 + figure * 0.72);
+      row[4 * x + 3] = byte(disc);
+    }
+  }
+  SDL_SetWindowIcon(window, icon);
+  SDL_FreeSurface(icon);
+}
+
+// What keeps a pad from being seen, and the fix; empty if nothing is known to.
+std::string pad_problem() {
+  if (::access("/run/udev", F_OK) != 0)
+    return "udev is not running, so device permissions and types are unknown: gaitpad doctor";
+  for (const SystemNode& node : system_nodes("input")) {
+    if (!node.is_joystick || node.is_motion_sensor || access_problem(node.node).empty()) continue;
+    return fmt::format(
+        "{} is plugged in, but you may not read it: sudo gaitpad doctor --install-rules",
+        node.name);
+  }
+  return {};
+}
+
 constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves processor time to the session
 constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limit the rate
 constexpr double kUnseenFrame_s = 0.1;           // minimized
@@ -166,7 +144,13 @@ class WindowLoop {
   bool makes_pictures() const noexcept;
   bool makes_still() const noexcept;  // only the last frame is kept
   bool draw_frame();                  // false after the last frame
+  void wait_for_display();
   bool is_ended();
+  std::optional<Error> picture_problem() const;
+  void show_progress() const;
+  bool is_modal() const noexcept {
+    return browser_.is_open() || calibration_ != nullptr || self_test_ != nullptr;
+  }
   void handle_events();
   void follow_wishes(Wishes wishes);
   void add_button_actions(std::vector<Action>& wanted);
@@ -180,12 +164,17 @@ class WindowLoop {
   // What a frame shows.
   void update_show();
   void draw_window(bool is_last);
-  UiOutput draw_panels(int width_px, int height_px);
+  UiOutput draw_panels(int width_px, int height_px, bool is_drawn);
   UiInput ui_input();
   const LiveStatus* shown_status();
   void draw_browser(Ui& ui, const ImVec2& window_px);
   void draw_calibration(Ui& ui, const ImVec2& window_px);
+  void draw_self_test(Ui& ui, const ImVec2& window_px);
   void reset_camera();
+  void turn_to_risers(double passed_s);
+  void set_type_size(double size);
+  double scale() const { return surface_->scale() * state_.type_size; }
+  bool has_walked() const;
   void keep_pictures(int width_px, int height_px, bool is_last);
 
   // What the person asked for. The functions that return bool return false for an action of another
@@ -204,6 +193,9 @@ class WindowLoop {
   void save_walkers_style(const std::string& name);
 
   // Ends one show and begins another.
+  void send_command(const std::string& command);  // of the person, who may undo it
+  void send_again(const std::vector<std::string>& commands, const char* what);
+  void say_change(std::string what);
   void show_message(std::string sentence);
   void show_remarks();
   void install_show(std::unique_ptr<Show> show);
@@ -215,6 +207,8 @@ class WindowLoop {
   void toggle_recording();
   void begin_calibration();
   void end_calibration(CalibrationView::State state);
+  void begin_self_test();
+  void end_self_test();
   void take_screenshot(int width_px, int height_px);
 
   WindowOptions options_;
@@ -227,6 +221,7 @@ class WindowLoop {
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<VideoWriter> video_;
   std::unique_ptr<CalibrationView> calibration_;
+  std::unique_ptr<SelfTestView> self_test_;
   std::unique_ptr<Show> show_;
   std::unique_ptr<Ensemble> ensemble_;
   std::optional<SessionSpec> live_before_;  // during a playback: the live session before it
@@ -241,13 +236,24 @@ class WindowLoop {
   ButtonPresses presses_;
   FileBrowser browser_;
   Messages messages_;
+  UndoList undo_;
+  std::string change_;  // what was changed last, and of whom
+  std::int64_t change_ns_ = 0;
+  std::vector<std::string> style_summaries_;  // of the show's styles
+  std::string pad_hint_;
+  std::int64_t pad_hint_ns_ = 0;
   FrameClock clock_;
+  FramePacer pacer_;
+  bool is_paced_ = false;  // the display limits the frames
   LiveStatus picture_status_;
   double pace_before_pause_ = 1.0;
   std::optional<std::string> chosen_file_;  // in the browser, in this frame
   CalibrationView::State calibration_state_ = CalibrationView::State::goes_on;
+  bool is_self_test_over_ = false;
   bool wants_screenshot_ = false, is_quitting_ = false;
   bool is_end_told_ = false, is_untouched_told_ = false;  // to the person
+  bool is_camera_moved_ = false;  // by the person: it turns by itself no more
+  bool has_walked_ = false;       // somebody, since the show began
 };
 
 WindowLoop::WindowLoop(const WindowOptions& options)
@@ -279,6 +285,8 @@ bool WindowLoop::makes_still() const noexcept {
 void WindowLoop::apply_layout(const UiState& layout) {
   state_ = remembered_ = layout;
   if (options_.theme) state_.theme = *options_.theme;
+  state_.is_clean = options_.is_clean;
+  if (makes_pictures()) state_.type_size = 1.0;  // --scale says how large
   if (options_.are_panels_given) {
     state_.is_open.fill(false);
     for (const Panel panel : options_.panels)
@@ -293,16 +301,19 @@ std::optional<Error> WindowLoop::open() {
   Layout layout = load_layout(options_.layout_file);
   apply_layout(layout.state);
   // Files are checked before anything is opened.
+  if (auto problem = picture_problem()) return problem;
   auto start = Show::prepare(options_.session);
   if (!start) return start.error();
   auto surface = WindowSurface::open(
       {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
   if (!surface) return surface.error();
   surface_ = std::move(*surface);
+  set_window_icon(surface_->window());
   auto scene = Scene::create(makes_still() ? Scene::Quality::high : Scene::Quality::automatic);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
   gui_ = std::make_unique<Gui>(*surface_);
+  if (state_.type_size != 1.0) gui_->set_scale(scale());
   auto show = (*start)();
   if (!show) return show.error();
   install_show(std::move(*show));
@@ -310,17 +321,38 @@ std::optional<Error> WindowLoop::open() {
   if (makes_pictures()) return std::nullopt;
   const bool keeps_time = SDL_GL_GetSwapInterval() != 0 && !scene_->is_software();
   clock_.set_least(scene_->is_software() ? kSoftwareFrame_s : keeps_time ? 0.0 : kFrame_s);
+  is_paced_ = keeps_time;
   return std::nullopt;
 }
 
 Result<WindowResult> WindowLoop::run() {
   while (!failure_ && draw_frame()) {
   }
-  if (video_ && !failure_) failure_ = video_->finish();
+  if (video_ && !failure_ && !result_.is_cut_off) failure_ = video_->finish();
+  video_.reset();
   return result();
 }
 
+// Pictures that could not be written are not begun.
+std::optional<Error> WindowLoop::picture_problem() const {
+  if (!options_.screenshot.empty()) {
+    if (auto problem = saving_problem(options_.screenshot)) return problem;
+  }
+  return options_.video.empty() ? std::nullopt : VideoWriter::problem_of(options_.video);
+}
+
+// A driver may return from the swap of buffers at once and make the next drawing wait instead. So
+// that this wait ends before the newest reports are taken, something is drawn.
+void WindowLoop::wait_for_display() {
+  if (!is_paced_ || result_.frames == 0 || surface_->is_lost()) return;
+  surface_->begin();
+  glClear(GL_COLOR_BUFFER_BIT);
+  glFinish();
+  sleep_until(pacer_.begin_ns(now_ns()));
+}
+
 bool WindowLoop::draw_frame() {
+  wait_for_display();
   clock_.begin_frame(now_ns());
   call_script();
   handle_events();
@@ -329,21 +361,42 @@ bool WindowLoop::draw_frame() {
     for (const std::string& command : options_.take_commands()) show_->command(command);
   update_show();
   const bool is_last = is_ended();
+  if (result_.is_cut_off) return false;
+  show_progress();
   const bool is_seen = (SDL_GetWindowFlags(surface_->window()) & SDL_WINDOW_MINIMIZED) == 0;
-  if (!surface_->is_lost() && (is_seen || makes_pictures())) draw_window(is_last);
+  const bool is_drawn = !surface_->is_lost() && (is_seen || makes_pictures());
+  if (is_drawn) draw_window(is_last);
+  show_->end_frame(is_drawn ? FrameEnd::handed_over : FrameEnd::not_shown);
   if (surface_->is_lost()) fail_without_display();
   ++result_.frames;
-  if (!is_seen) SDL_Delay(static_cast<Uint32>(kUnseenFrame_s * 1e3));
+  if (!is_seen) {
+    SDL_Delay(static_cast<Uint32>(kUnseenFrame_s * 1e3));
+    pacer_.start_again();
+  }
   clock_.wait_for_next();
   return !is_last;
 }
 
 bool WindowLoop::is_ended() {
   if (is_quitting_) return true;
-  if (options_.is_ended_from_outside && options_.is_ended_from_outside()) return true;
+  if (options_.is_ended_from_outside && options_.is_ended_from_outside()) {
+    result_.is_cut_off = makes_pictures();
+    return true;
+  }
   if (options_.frames > 0) return result_.frames + 1 >= options_.frames;
   const UiTimeline* timeline = show_->timeline();
   return makes_pictures() && timeline != nullptr && timeline->tick + 1 >= timeline->ticks;
+}
+
+void WindowLoop::show_progress() const {
+  if (!options_.show_progress || !makes_pictures()) return;
+  const UiTimeline* timeline = show_->timeline();
+  if (options_.frames > 0) {
+    options_.show_progress(static_cast<double>(result_.frames) / options_.frames);
+  } else if (timeline != nullptr) {
+    options_.show_progress(static_cast<double>(timeline->tick) /
+                           static_cast<double>(timeline->ticks));
+  }
 }
 
 void WindowLoop::fail_without_display() {
@@ -366,15 +419,14 @@ void WindowLoop::handle_events() {
 }
 
 void WindowLoop::follow_wishes(Wishes wishes) {
-  const bool is_modal = browser_.is_open() || calibration_ != nullptr;
   if (show_->is_live() && !makes_pictures()) add_button_actions(wishes.actions);
   for (const Action action : wishes.actions) {
     const bool is_always = action == Action::back || action == Action::quit ||
                            action == Action::screenshot || action == Action::fullscreen;
-    if (is_always || !is_modal) run_action(action);
+    if (is_always || !is_modal()) run_action(action);
   }
   for (const std::string& file : wishes.files) open_file(file);
-  if (is_modal) controls_.release_all();
+  if (is_modal()) controls_.release_all();
   show_->steer(controls_.walk());
   move_camera(wishes);
 }
@@ -394,7 +446,8 @@ void WindowLoop::add_button_actions(std::vector<Action>& wanted) {
 }
 
 void WindowLoop::move_camera(const Wishes& wishes) {
-  const double rad = kOrbitMouse_rad / surface_->scale();
+  const double rad = kOrbitMouse_rad / scale();
+  is_camera_moved_ = is_camera_moved_ || wishes.orbit_px != vec2(0.0);
   orbit(camera_, -wishes.orbit_px.x * rad, wishes.orbit_px.y * rad);
   if (wishes.pan_px != vec2(0.0)) {
     int width_px = 0, height_px = 0;
@@ -406,6 +459,7 @@ void WindowLoop::move_camera(const Wishes& wishes) {
   const vec2& stick = show_->frame().stick.right;
   if (glm::length(stick) < kStickRest) return;
   const double angle_rad = kOrbitStick_rad_s * clock_.passed_s();
+  is_camera_moved_ = true;
   orbit(camera_, -stick.x * angle_rad, stick.y * angle_rad);
 }
 
@@ -418,7 +472,7 @@ void WindowLoop::update_show() {
   }
   show_remarks();
   if (!show_->has_ended() || std::exchange(is_end_told_, true) || makes_pictures()) return;
-  show_message("the recording is over; the keyboard steers now");
+  show_message("Recording finished. Keep walking with W A S D.");
 }
 
 void WindowLoop::remember_layout() {
@@ -442,6 +496,13 @@ Result<WindowResult> WindowLoop::result() {
   show_remarks();
   if (failure_) return *failure_;
   if (!summary) return summary.error();
+  if (result_.is_cut_off) {
+    result_.remarks.emplace_back("it was ended before its last frame; no picture was written");
+  } else {
+    for (const std::string& path : {options_.screenshot, options_.video}) {
+      if (!path.empty()) result_.remarks.push_back("written to " + path);
+    }
+  }
   if (const LiveStatus* status = show_->status()) result_.status = *status;
   result_.summary = std::move(*summary);
   result_.frames_per_second = clock_.mean_frames_per_second();
@@ -449,6 +510,9 @@ Result<WindowResult> WindowLoop::result() {
 }
 
 constexpr double kAside_rad = 1.1, kAbove_rad = 0.3, kAboveCrowd_rad = 0.36;
+// On uneven ground the camera stands where it sees the risers: behind the walkers on the way up,
+// before them on the way down. It goes from one place to the other in about two seconds.
+constexpr double kBehind_rad = 2.05, kLeastRise_m = 0.1, kTurn_per_s = 1.1;
 
 // Resident memory of the whole program; 0 if not known.
 double memory_mib() {
@@ -464,29 +528,38 @@ double memory_mib() {
 void WindowLoop::draw_window(bool is_last) {
   int width_px = 0, height_px = 0;
   surface_->size(width_px, height_px);
-  surface_->begin();
   const Theme& theme = theme_of(state_.theme);
   if (applied_theme_ != state_.theme) gui_->apply(theme);
   applied_theme_ = state_.theme;
-  glViewport(0, 0, width_px, height_px);
-  glClearColor(static_cast<float>(theme.window.red), static_cast<float>(theme.window.green),
-               static_cast<float>(theme.window.blue), 1.0f);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  // Of a still only the frames that are kept reach the driver.
+  const bool is_drawn = !makes_still() || is_last || wants_screenshot_;
+  if (is_drawn) {
+    surface_->begin();
+    glViewport(0, 0, width_px, height_px);
+    glClearColor(static_cast<float>(theme.window.red), static_cast<float>(theme.window.green),
+                 static_cast<float>(theme.window.blue), 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  }
 
   const Viewport viewport =
-      scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
+      scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, scale());
   ensemble_->look_from(camera_.eye_m());
   ensemble_->fill(show_->frame(), show_->history(), show_->share(now_ns()), show_->cast(), state_,
                   theme, content_);
   if (std::exchange(is_camera_new_, false)) reset_camera();
   const double passed_s = makes_pictures() ? 1.0 / kPictureRateHz : clock_.passed_s();
   follow(camera_, ensemble_->focus_m(state_.walker), passed_s);
+  turn_to_risers(passed_s);
   ensemble_->stand_on_ground(camera_);
-  const bool is_kept = !makes_still() || is_last || wants_screenshot_;
-  if (is_kept && viewport.width > 0 && viewport.height > 0)
-    scene_->draw(content_, camera_, theme, viewport, height_px, surface_->scale());
-  run_actions(draw_panels(width_px, height_px));
+  if (is_drawn && viewport.width > 0 && viewport.height > 0)
+    scene_->draw(content_, camera_, theme, viewport, height_px, scale());
+  run_actions(draw_panels(width_px, height_px, is_drawn));
+  if (!is_drawn) return;
   keep_pictures(width_px, height_px, is_last);
+  if (is_paced_) {
+    glFinish();
+    pacer_.note_work(now_ns() - clock_.now_ns());
+  }
   surface_->show();
 }
 
@@ -494,10 +567,12 @@ void WindowLoop::reset_camera() {
   int width_px = 0, height_px = 0;
   surface_->size(width_px, height_px);
   const Viewport viewport =
-      scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, surface_->scale());
+      scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, scale());
   camera_ = Camera();
+  is_camera_moved_ = false;
   if (ensemble_->is_on_uneven_ground()) {  // from the side, so that steps ahead hide no feet
-    camera_.yaw_rad = kAside_rad;
+    const bool is_upward = ensemble_->rise_ahead_m(state_.walker) > kLeastRise_m;
+    camera_.yaw_rad = is_upward ? kBehind_rad : kAside_rad;
     camera_.pitch_rad = kAbove_rad;
   }
   if (ensemble_->has_crowd()) camera_.pitch_rad = kAboveCrowd_rad;
@@ -507,6 +582,31 @@ void WindowLoop::reset_camera() {
   }
   camera_.target_m = camera_.followed_m = ensemble_->focus_m(state_.walker);
   camera_.distance_m = ensemble_->distance_m(state_.walker, camera_, viewport);
+}
+
+void WindowLoop::turn_to_risers(double passed_s) {
+  const bool is_free = !is_camera_moved_ && camera_.is_following && options_.camera_deg.empty();
+  if (!is_free || !ensemble_->is_on_uneven_ground()) return;
+  const double rise_m = ensemble_->rise_ahead_m(state_.walker);
+  if (std::abs(rise_m) < kLeastRise_m) return;
+  const double wanted_rad = rise_m > 0.0 ? kBehind_rad : kAside_rad;
+  const double share = std::min(kTurn_per_s * passed_s, 1.0);
+  orbit(camera_, (wanted_rad - camera_.yaw_rad) * share, 0.0);
+}
+
+void WindowLoop::set_type_size(double size) {
+  state_.type_size = std::clamp(size, kLeastTypeSize, kMostTypeSize);
+  gui_->set_scale(scale());
+  applied_theme_.reset();
+}
+
+// Whether somebody has begun to walk: then nobody needs to be told how.
+bool WindowLoop::has_walked() const {
+  const SessionFrame& frame = show_->frame();
+  for (int w = 0; w < frame.walker_count; ++w) {
+    if (frame.walkers[static_cast<std::size_t>(w)].walk.stage != Stage::idle) return true;
+  }
+  return false;
 }
 
 // For pictures without the values that depend on the machine's speed.
@@ -535,27 +635,47 @@ UiInput WindowLoop::ui_input() {
              .renderer = scene_->renderer(),
              .labels = {},
              .messages = messages_.sentences(),
-             .is_modal = browser_.is_open() || calibration_ != nullptr};
+             .style_summaries = style_summaries_,
+             .can_leave = live_before_.has_value(),
+             .is_modal = is_modal()};
+  has_walked_ = has_walked_ || has_walked();
+  const LiveStatus* status = show_->is_live() ? show_->status() : nullptr;
+  const bool has_pad = status != nullptr && status->pads.plugged > status->pads.unplugged;
+  if (show_->is_live() && !has_walked_) {
+    in.hint = has_pad ? "Push the left stick, or W A S D; F1: keys"
+                      : "W A S D or plug a pad in; F1: keys";
+    if (!has_pad && !makes_pictures()) {
+      if (pad_hint_ns_ + kPadHint_ns < clock_.now_ns()) {
+        pad_hint_ns_ = clock_.now_ns();
+        pad_hint_ = pad_problem();
+      }
+      in.pad_hint = pad_hint_;
+    }
+  }
   if (makes_pictures()) return in;
+  if (clock_.now_ns() < change_ns_ + kChange_ns) in.change = change_;
+  in.can_rumble = has_pad && !is_recording(show_->options().pad.wish.pad);
   in.pad_rate_hz = clock_.rate_hz(frame.pad.reports);
   in.frames_per_second = clock_.frames_per_second();
   in.memory_mib = memory_mib();
   return in;
 }
 
-UiOutput WindowLoop::draw_panels(int width_px, int height_px) {
+UiOutput WindowLoop::draw_panels(int width_px, int height_px, bool is_drawn) {
   const Theme& theme = theme_of(state_.theme);
   const ImVec2 window_px(static_cast<float>(width_px), static_cast<float>(height_px));
   UiInput in = ui_input();
   const Viewport viewport =
-      scene_viewport(state_, in.timeline != nullptr, width_px, height_px, surface_->scale());
+      scene_viewport(state_, in.timeline != nullptr, width_px, height_px, scale());
   in.labels = ensemble_->labels(show_->frame(), show_->cast(), camera_, viewport, state_, theme);
   gui_->begin(controls_.mouse(), makes_pictures() ? 1.0 / kPictureRateHz : 0.0);
-  UiOutput out = draw_ui(in, theme, gui_->fonts(), surface_->scale(), state_);
-  Ui ui{in, theme, gui_->fonts(), static_cast<float>(surface_->scale()), state_, out};
+  UiOutput out = draw_ui(in, theme, gui_->fonts(), scale(), state_);
+  Ui ui{in, theme, gui_->fonts(), static_cast<float>(scale()), state_, out};
   draw_browser(ui, window_px);
   draw_calibration(ui, window_px);
-  gui_->end();
+  draw_self_test(ui, window_px);
+  if (is_drawn) gui_->end();
+  if (!is_drawn) gui_->end_undrawn();
   return out;
 }
 
@@ -571,6 +691,14 @@ void WindowLoop::draw_calibration(Ui& ui, const ImVec2& window_px) {
   for (std::string& message : messages) show_message(std::move(message));
 }
 
+// At its end the session goes on.
+void WindowLoop::draw_self_test(Ui& ui, const ImVec2& window_px) {
+  if (!self_test_) return;
+  std::vector<std::string> messages;
+  is_self_test_over_ = !self_test_->draw(ui, window_px, messages);
+  for (std::string& message : messages) show_message(std::move(message));
+}
+
 void WindowLoop::keep_pictures(int width_px, int height_px, bool is_last) {
   const bool keeps_still = is_last && !options_.screenshot.empty();
   if (std::exchange(wants_screenshot_, false)) take_screenshot(width_px, height_px);
@@ -581,16 +709,18 @@ void WindowLoop::keep_pictures(int width_px, int height_px, bool is_last) {
     if (video) video_ = std::move(*video);
   }
   if (failure_) return;
-  const Pixels pixels = read_pixels(width_px, height_px);
+  Pixels pixels = read_pixels(width_px, height_px);
   if (video_) failure_ = video_->add(pixels);
-  if (keeps_still && !failure_) failure_ = write_png(options_.screenshot, pixels);
+  if (keeps_still && !failure_) failure_ = write_png(options_.screenshot, std::move(pixels));
 }
 
 constexpr double kSlowMotion = 0.25;
 
 void WindowLoop::run_actions(const UiOutput& out) {
   for (const Action action : out.actions) run_action(action);
-  for (const std::string& command : out.commands) show_->command(command);
+  for (const std::string& command : out.commands) send_command(command);
+  if (out.type_size) set_type_size(*out.type_size);
+  if (out.rumbles) show_->rumble();
   if (out.seek_tick) show_->seek(*out.seek_tick);
   if (out.pace) show_->set_pace(*out.pace);
   if (out.is_looping) show_->set_looping(*out.is_looping);
@@ -599,6 +729,7 @@ void WindowLoop::run_actions(const UiOutput& out) {
   if (const auto file = std::exchange(chosen_file_, std::nullopt)) open_file(*file);
   if (calibration_ && calibration_state_ != CalibrationView::State::goes_on)
     end_calibration(calibration_state_);
+  if (self_test_ && is_self_test_over_) end_self_test();
 }
 
 void WindowLoop::run_action(Action action) {
@@ -630,6 +761,12 @@ bool WindowLoop::run_session_action(Action action) {
       return true;
     case Action::previous_style:
       choose_style_after(-1);
+      return true;
+    case Action::undo:
+      send_again(undo_.undo(), "undone");
+      return true;
+    case Action::redo:
+      send_again(undo_.redo(), "done again");
       return true;
     default:
       break;
@@ -687,7 +824,7 @@ void WindowLoop::run_other_action(Action action) {
       wants_screenshot_ = true;
       break;
     case Action::open_file:
-      browser_.open();
+      browser_.open(show_->options().config_folders);
       break;
     case Action::next_terrain:
       choose_next_terrain();
@@ -729,11 +866,11 @@ void WindowLoop::reset_session() {
 
 void WindowLoop::choose_style(const std::string& name) {
   if (!show_->is_live()) {
-    show_message("a playback keeps its own styles; Escape goes back to the live session");
+    show_message("Playback is read-only; Esc returns to live.");
   } else if (state_.walker >= 0) {
-    show_->command(fmt::format("style {} {}", state_.walker + 1, name));
+    send_command(fmt::format("style {} {}", state_.walker + 1, name));
   } else {
-    show_->command("style " + name);
+    send_command("style " + name);
   }
 }
 
@@ -754,6 +891,44 @@ void WindowLoop::choose_style_after(int steps) {
       name_of(choices[static_cast<std::size_t>((static_cast<int>(now) + steps + count) % count)]));
 }
 
+void WindowLoop::send_command(const std::string& command) {
+  undo_.add(command, show_->frame(), show_->cast());
+  show_->command(command);
+  const auto parsed = parsed_command(command);
+  if (!parsed) return;
+  const std::size_t count = show_->cast().members.size();
+  std::string whom = fmt::format("character {}", parsed->walker);
+  if (parsed->walker == 0)
+    whom = count == 1 ? "the character" : fmt::format("all {} characters", count);
+  switch (parsed->verb) {
+    case Command::Verb::style:
+      return say_change(fmt::format("style {} for {}", parsed->name, whom));
+    case Command::Verb::set:
+    case Command::Verb::gait:
+      return say_change(
+          fmt::format("{} {:g} for {}", words_of_key(parsed->name), parsed->value, whom));
+    case Command::Verb::release:
+      return say_change(fmt::format("{} by the stick for {}", words_of_key(parsed->name), whom));
+    case Command::Verb::stick:
+      return say_change(fmt::format("everything by the stick for {}", whom));
+    default:
+      return;
+  }
+}
+
+void WindowLoop::send_again(const std::vector<std::string>& commands, const char* what) {
+  if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
+  if (commands.empty()) return say_change(fmt::format("nothing can be {}", what));
+  for (const std::string& command : commands) show_->command(command);
+  state_.memory.wishes.clear();
+  say_change(fmt::format("{}: {}", what, fmt::join(commands, ", ")));
+}
+
+void WindowLoop::say_change(std::string what) {
+  change_ = std::move(what);
+  change_ns_ = clock_.now_ns();
+}
+
 void WindowLoop::go_back() {
   if (state_.is_help_open) {
     state_.is_help_open = false;
@@ -761,6 +936,8 @@ void WindowLoop::go_back() {
     browser_.close();
   } else if (calibration_) {
     end_calibration(CalibrationView::State::given_up);
+  } else if (self_test_) {
+    end_self_test();
   } else if (live_before_) {
     const SessionSpec live = *std::exchange(live_before_, std::nullopt);
     switch_to(live);
@@ -770,10 +947,19 @@ void WindowLoop::go_back() {
 void WindowLoop::save_walkers_style(const std::string& name) {
   const auto walker = static_cast<std::size_t>(std::max(state_.walker, 0));
   const auto& folders = show_->options().config_folders;
-  const auto path = save_style(folders, name, show_->frame().walkers[walker].style);
-  if (path) show_->add_config_folder(user_config_folder());  // the folder may be new
-  show_message(path ? fmt::format("saved as {}; the next session can use it", *path)
-                    : path.error().message);
+  const StyleValues& values = show_->frame().walkers[walker].style;
+  const auto path = save_style(folders, name, values);
+  if (!path) return show_message(path.error().message);
+  show_->add_config_folder(user_config_folder());  // the folder may be new
+  show_message("saved as " + *path);
+  if (!show_->is_live()) return;
+  Style style;
+  static_cast<StyleValues&>(style) = values;
+  style.name = config_name(*path);
+  show_->add_style(style);
+  style_summaries_.resize(show_->cast().styles.size());
+  choose_style(style.name);
+  state_.memory.style_name.fill('\0');
 }
 
 constexpr std::size_t kMostRemarks = 200;
@@ -814,6 +1000,13 @@ void WindowLoop::install_show(std::unique_ptr<Show> show) {
   is_camera_new_ = true;
   is_end_told_ = false;
   is_untouched_told_ = false;
+  has_walked_ = false;
+  undo_.clear();
+  style_summaries_.clear();
+  for (const std::string& style : show_->cast().styles) {
+    const auto path = config_file(show_->options().config_folders, "styles", style);
+    style_summaries_.push_back(path ? config_summary(*path) : "");
+  }
   if (state_.walker >= static_cast<int>(show_->cast().members.size())) state_.walker = -1;
 }
 
@@ -870,7 +1063,8 @@ bool WindowLoop::restart(Result<std::unique_ptr<Show>> show, const SessionSpec& 
 }
 
 void WindowLoop::open_file(const std::string& path) {
-  if (calibration_) return show_message("finish the calibration before opening a file");
+  if (calibration_ || self_test_)
+    return show_message("finish the calibration or test before opening a file");
   const auto kind = kind_of_file(path);
   if (!kind) return show_message(kind.error().message);
   const int count = static_cast<int>(show_->cast().members.size());
@@ -878,7 +1072,7 @@ void WindowLoop::open_file(const std::string& path) {
   if (makes_pictures()) return show_message("no file can be opened while pictures are made");
   if (!switch_to(next)) return;
   browser_.remember(path);
-  const char* back = live_before_ && *kind == FileKind::recording ? "; Escape goes back" : "";
+  const char* back = live_before_ && *kind == FileKind::recording ? "; Esc returns to live" : "";
   show_message(fmt::format("opened {}{}", path, back));
 }
 
@@ -886,7 +1080,7 @@ void WindowLoop::open_file(const std::string& path) {
 // elsewhere.
 void WindowLoop::choose_next_terrain() {
   if (calibration_) return;
-  if (!show_->is_live()) return show_message("a playback keeps its own ground");
+  if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
   if (makes_pictures())
     return show_message(
         "the ground cannot change while pictures are made; choose it with --terrain");
@@ -903,7 +1097,7 @@ void WindowLoop::choose_next_terrain() {
 }
 
 void WindowLoop::toggle_recording() {
-  if (!show_->is_live()) return show_message("a playback runs: there is nothing to record");
+  if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
   if (makes_pictures()) return show_message("no recording can be started while pictures are made");
   SessionSpec next = show_->options();
   const bool is_recorded = !next.live.record.empty();
@@ -932,10 +1126,26 @@ void WindowLoop::begin_calibration() {
 
 void WindowLoop::end_calibration(CalibrationView::State state) {
   calibration_.reset();  // frees the pad
+  if (state == CalibrationView::State::wants_test) return begin_self_test();
   SessionSpec next = show_->options();
   // A calibration that was asked for would override the new one.
   if (state == CalibrationView::State::saved) next.pad.calibration.clear();
   restart(Show::open(next), show_->options());
+}
+
+void WindowLoop::begin_self_test() {
+  const SessionSpec& spec = show_->options();
+  SelfTestOptions options{{}, spec.pad.wish,   spec.config_folders, spec.pad.map,
+                          "", options_.program};
+  auto files = load_pad_files(spec.config_folders, spec.pad.map, "");
+  if (files) options.files = std::move(*files);
+  is_self_test_over_ = false;
+  self_test_ = SelfTestView::start(options);
+}
+
+void WindowLoop::end_self_test() {
+  self_test_.reset();  // frees the pad
+  restart(Show::open(show_->options()), show_->options());
 }
 
 void WindowLoop::take_screenshot(int width_px, int height_px) {

@@ -29,8 +29,9 @@ struct WindowGlance {
 };
 
 struct WindowOptions {
-  SessionSpec session;             // live, or a playback if session.replay.trace is not empty
-  std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
+  SessionSpec session;              // live, or a playback if session.replay.trace is not empty
+  std::string program = "gaitpad";  // its name and version, for the report of a self-test
+  std::string calibration_folder;   // where calibrations are kept (calibration_store.h)
   std::string layout_file;  // remembers the window from one start to the next; empty: nothing does
   std::string recent_file;  // remembers the files that were opened; empty: nothing does
   // Ends after so many; 0: when closed, or with the trace if pictures are made of one.
@@ -40,6 +41,7 @@ struct WindowOptions {
   std::vector<Panel> panels;       // open panels, if are_panels_given
   bool are_panels_given = false;
   std::vector<std::string> hidden;  // names of kSceneParts
+  bool is_clean = false;            // the scene alone: no bars, panels, messages
   // Where the camera stands, degrees: yaw from ahead of the walkers (90: from their left), pitch
   // above the horizon. Empty: as it starts.
   std::vector<double> camera_deg;
@@ -48,7 +50,8 @@ struct WindowOptions {
   bool is_hidden = false;          // draws without a display (SDL's offscreen driver)
   // For tests: called before each frame; may push SDL events.
   std::function<void(const WindowGlance& glance)> script;
-  std::function<bool()> is_ended_from_outside;  // Ctrl-C
+  std::function<bool()> is_ended_from_outside;      // Ctrl-C; pictures are given up then
+  std::function<void(double share)> show_progress;  // of pictures: 0 .. 1 of the frames are done
   // Commands for the session, for instance from standard input.
   std::function<std::vector<std::string>()> take_commands;
 };
@@ -57,6 +60,7 @@ struct WindowResult {
   std::optional<LiveStatus> status;  // of the last session; none if it was a playback
   std::int64_t frames = 0;
   double frames_per_second = 0.0;
+  bool is_cut_off = false;  // before its pictures were complete: none was written
   std::vector<std::string> remarks;
 };
 // Call it from the main thread. Fails if the session or the window cannot be opened, before

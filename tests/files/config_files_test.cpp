@@ -78,7 +78,7 @@ TEST_F(StyleStore, ASavedStyleIsFoundByItsNameAndReadBackTheSame) {
   const auto path = save_style({shipped()}, "my limp", values_);
   ASSERT_TRUE(path) << path.error().message;
   const auto folders = config_folders(shipped());
-  const auto found = config_file(folders, "styles", "my_limp");
+  const auto found = config_file(folders, "styles", "my limp");
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(*found, *path);
   const auto style = load_style(*found);

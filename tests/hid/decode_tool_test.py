@@ -1,10 +1,11 @@
 """gaitpad decode: its JSON against a second report-descriptor parser, written from HID 1.11 and hid-core.c."""
 import json
+import re
 
 import pytest
 
 from support import traces
-from support.program import DATA, ROOT
+from support.program import DATA, ROOT, ROUND
 
 PADS = sorted((ROOT / "tests/data/pads").glob("*.hid"))
 SHARED = sorted((DATA / "hid").glob("*.hid"))
@@ -130,3 +131,9 @@ def test_what_is_not_there_cannot_be_decoded(run, tmp_path):
     run("decode", tmp_path / "none.hid", status=1)
     assert "no driver sees" in run("decode", "/dev/hidraw99", status=1).stderr
     run("decode", status=2)
+
+
+def test_usages_have_their_names(run):
+    rows = run("decode", ROUND, "--descriptor").stdout
+    for name in ("X", "Rz", "Hat switch", "Button 12"):
+        assert re.search(rf"[0-9a-f]{{4}}:[0-9a-f]{{4}} +{name} ", rows), rows

@@ -67,3 +67,15 @@ def test_refuses_with_one_sentence_that_names_the_line(refuse, chain, text, says
 def test_no_file_is_a_failure_and_no_mode_a_usage_error(run, chain):
     run("ik", "/none.toml", status=1)
     run("ik", chain(), "--mode", "fast", status=2)
+
+
+def test_the_papers_mode_says_which_step_sent_an_angle_out_of_the_circle(run, chain):
+    wild = chain(CHAIN.replace("weight = 0.5", "weight = 0.2").replace("tolerance_m = 1e-6\n", ""))
+    done = run("ik", wild, "--mode", "paper")
+    rows = [[float(x) for x in line] for line in list(csv.reader(done.stdout.splitlines()))[1:]]
+    steps = [(abs(b[j] - a[j]), int(b[0]), j - 1, b[j] - a[j]) for a, b in zip(rows, rows[1:]) for j in (1, 2, 3)]
+    size, iteration, joint, turn = max(steps)
+    assert size > 1000, "the chain is tame"
+    assert f"iteration {iteration} turns angle_{joint} by {turn:.4g} rad" in done.stderr
+    assert "singular" in done.stderr and "--mode robust" in done.stderr
+    assert run("ik", wild, "--mode", "robust").stderr == ""

@@ -25,6 +25,50 @@ def test_help_names_every_command(run, command):
     assert f"  {command} " in run("--help").stdout
 
 
+COMMANDS = ["play", "replay", "record", "pads", "doctor", "decode", "monitor", "calibrate", "motion", "ik", "figures", "bench",
+            "list", "map"]
+
+
+@pytest.mark.parametrize("words", [[], ["help"], ["--help"]], ids="-".join)
+def test_help_without_a_command(run, words):
+    text = run(*words).stdout
+    assert "Examples:" in text and all(f"  {command} " in text for command in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_of_a_command_has_examples_that_begin_with_it(run, command):
+    text = run("help", command).stdout
+    assert text == run(command, "--help").stdout
+    examples = text.split("Examples:\n")[1].splitlines()
+    assert examples and all(f"gaitpad {command}" in line for line in examples)
+
+
+@pytest.mark.parametrize("words, says", [
+    (["repaly", ROUND], ['unknown command "repaly"', 'did you mean "replay"?']),
+    (["dance"], ['unknown command "dance"', "known: play, replay"]),
+    (["replay", ROUND, "--styel", "even"], ['gaitpad replay: unknown option "--styel"', 'did you mean "--style"?']),
+    (["replay", ROUND, "--quite-unlike-any"], ['unknown option "--quite-unlike-any"']),
+    (["replay", ROUND, "again"], ['unexpected argument "again"']),
+    (["help", "repaly"], ['did you mean "replay"?']),
+    (["play", "--seconds", "-1"], ["--seconds", "0.001", "1000000"]),
+    (["replay", ROUND, "--rate", "0"], ["--rate", "1", "10000"])], ids=lambda value: str(value[0])[:20])
+def test_wrong_words_get_a_suggestion_or_a_range(run, words, says):
+    done = run(*words, status=2)
+    assert len(done.stderr) < 400 and done.stdout == ""
+    for part in says:
+        assert part in done.stderr, done.stderr
+
+
+def test_list_names_what_the_options_take(run):
+    everything = json.loads(run("list", "--json").stdout)
+    assert set(everything) == {"styles", "characters", "terrains", "motions", "pads", "traces"}
+    for kind, folder in (("styles", "styles"), ("terrains", "terrain"), ("characters", "characters")):
+        assert {e["name"] for e in everything[kind]} == {p.stem for p in (ROOT / "config" / folder).glob("*.toml")}
+    assert all(e["summary"] for e in everything["styles"] + everything["terrains"])
+    assert "limp_left" in run("list", "styles").stdout and "stairs" not in run("list", "styles").stdout
+    assert run("list", "walks", status=2).stdout == ""
+
+
 @pytest.mark.parametrize("arguments", [["decode", ROUND], ["motion", "procedural", "--json"]], ids=["decode", "motion"])
 def test_a_full_disk_is_one_sentence(program, arguments):
     with open("/dev/full", "w") as full:
@@ -35,6 +79,9 @@ def test_a_full_disk_is_one_sentence(program, arguments):
 def test_the_bundled_traces_are_what_their_scripts_write():
     script = subprocess.run([sys.executable, ROOT / "tools/make_round_trace.py"], capture_output=True, text=True, check=True)
     assert ROUND.read_text() == script.stdout
+    plain = subprocess.run([sys.executable, ROOT / "tools/make_round_trace.py", "--plain"], capture_output=True, text=True,
+                           check=True)
+    assert (ROOT / "config/traces/walk.hid").read_text() == plain.stdout
     assert (ROOT / "config/traces/worn.hid").read_text() == worn_trace()
 
 
@@ -49,14 +96,14 @@ def test_bench_lists_each_measurement(benched):
     rows, _ = benched
     names = [r["name"] for r in rows]
     assert set(names) == {"leg_paper", "leg_robust_even", "leg_robust_weighted", "leg_ik", "playback", "playback_world", "stage",
-                          "character_even", "characters_even", "characters_styled", "step", "crowd", "load_built_in",
+                          "character_even", "characters_even", "characters_styled", "step", "crowd", "crowd_memory", "load_built_in",
                           "load_clip", "load_cached", "load"}
     assert all(0 < r["ns_low"] <= r["ns"] <= r["ns_high"] for r in rows if r["name"] != "stage")
     assert all(r["processor"] and r["lanes"] in (2, 4, 8) for r in rows)
     assert {r["stage"] for r in rows if r["name"] == "stage"} == {"clock and plan", "sampling", "ik", "pose"}
     widest = rows[0]["lanes"]
     assert {(r["characters"], r["width"]) for r in rows if r["name"] == "crowd"} == {
-        (n, width) for n in (1, 8, 64) for width in (2, 4, 8) if width <= widest}
+        (n, width) for n in (1, 8, 64) for width in (1, 2, 4, 8) if width <= widest}
     assert [r["characters"] for r in rows if r["name"] == "step"] == [1, 4]
 
 
@@ -72,7 +119,7 @@ def test_bench_counts_in_its_peers(benched):
             assert row["at_60_hz"] == pytest.approx(1e9 / 60 / row["ns"], abs=1)
         assert row.get("bytes", 1000) >= 1000
     assert {r["name"] for r in rows if "ratio" in r} == {"character_even", "characters_even", "characters_styled", "step",
-                                                         "crowd"}
+                                                         "crowd", "crowd_memory"}
     assert ns["load"] == ns["load_clip"] > ns["load_cached"]
 
 

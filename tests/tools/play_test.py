@@ -60,11 +60,27 @@ def test_ends_one_second_behind_the_end_of_a_recording(run, tmp_path):
 
 def test_lines_of_standard_input_are_commands(run, record, replay):
     done = run("play", ROUND, "--no-window", "--record", record, "--seconds", "2", "--json", "--commands",
-               input="style limp_left\nstyle moonwalk\n")
+               input="style limp_left\nstyle moonwalk\n", status=1)
     summary = json.loads(done.stdout)
     assert (summary["style"], summary["bad_commands"]) == ("limp_left", 1)
     assert "style limp_left" in record.read_text()
     assert replay()["pose_hash"] == summary["pose_hash"]
+
+
+@pytest.mark.parametrize("line, says", [
+    ("foo", ["unknown command \"foo\"", "style, set, gait"]),
+    ("style limp", ["unknown style \"limp\"", "known: even, ", "limp_left"]),
+    ("style 7 even", ["no character 7", "1 to 1"]),
+    ("set left_leg.stride_lenght 0.5", ["left_leg.stride_lenght", "did you mean \"left_leg.stride_length\"?"]),
+    ("set left_leg.stride_length 9", ["9", "0 .. 1.5"]),
+    ("gait speed 1", ["unknown gait parameter \"speed\"", "speed_m_s"]),
+    ("gait speed_m_s 99", ["99", "0 .. 20"]),
+    ("set", ["no command", "set [CHARACTER] KEY VALUE"])])
+def test_what_is_wrong_with_a_command_is_said_and_fails(run, line, says):
+    done = run("play", ROUND, "--no-window", "--seconds", "1", "--commands", input=line + "\n", status=1)
+    sentence = done.stderr.splitlines()[0]
+    for part in says:
+        assert part in sentence, done.stderr
 
 
 def test_text_for_people(run):
@@ -91,7 +107,7 @@ def test_closed_standard_descriptors_get_nothing_into_the_recording(program, rec
 def test_without_a_display_it_says_what_works(refuse, monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "x11")
     monkeypatch.setenv("DISPLAY", "")
-    refuse("play", says="no display")
+    refuse("play", says=["no display", "play --no-window"])
 
 
 def test_what_cannot_be_is_one_sentence(refuse, tmp_path):
@@ -107,7 +123,18 @@ def test_wrong_usage_is_2(refuse, options):
     refuse("play", "--no-window", *options, status=2)
 
 
-def test_without_a_pad_it_says_so_once_and_waits(run):
-    done = run("play", "no such pad", "--no-window", "--seconds", "1")
+def test_without_the_pad_that_was_asked_for_it_says_so_once_and_fails(run):
+    done = run("play", "no such pad", "--no-window", "--seconds", "1", status=1)
     assert done.stderr.count("no such pad") == 1, done.stderr
     assert "gaitpad doctor" in done.stderr
+
+
+def test_without_any_pad_nothing_is_recorded_and_that_is_a_failure(run, record):
+    done = run("play", "no such pad", "--no-window", "--seconds", "1", "--record", record, status=1)
+    assert "nothing was recorded" in done.stderr and done.stdout == ""
+    assert os.listdir(record.parent) == []
+
+
+def test_a_folder_of_configuration_that_is_none_is_an_error(refuse):
+    environment = {**os.environ, "GAITPAD_CONFIG": "/nonexistent"}
+    refuse("replay", ROUND, says=["GAITPAD_CONFIG", "/nonexistent"], env=environment)

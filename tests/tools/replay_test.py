@@ -3,12 +3,15 @@ import csv
 import json
 import re
 import resource
+import signal
+import time
 
 import pytest
 
 from support import traces
+from support.program import ROUND, end_by
 from support.terminal import Terminal
-from support.traces import RATE_HZ, end
+from support.traces import RATE_HZ, end, raw_stick, write_trace
 from support.walk import COLUMNS
 
 # Four axes of 8 bits, eight buttons.
@@ -322,8 +325,8 @@ def test_wrong_options_are_wrong_usage(made, options):
     made.run(WALK, *options, status=2)
 
 
-@pytest.mark.parametrize("arguments", [[], ["dance"], ["replay"]], ids=" ".join)
-def test_no_command_and_no_trace_are_wrong_usage(run, arguments):
+@pytest.mark.parametrize("arguments", [["dance"], ["replay"]], ids=" ".join)
+def test_an_unknown_command_and_no_trace_are_wrong_usage(run, arguments):
     run(*arguments, status=2)
 
 
@@ -362,11 +365,38 @@ def test_a_crowd_that_cannot_be_is_refused(made, refuse, options, says):
     refuse("replay", made.write("made.hid", WALK), "--out", made.out, *options, says=says, status=2)
 
 
+def test_control_c_ends_it_at_once_and_leaves_nothing(started, tmp_path):
+    trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
+    out = tmp_path / "out"
+    with started("replay", trace, "--out", out) as process:
+        deadline = time.monotonic() + 60
+        while not (out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())):
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
+        _, errors = end_by(process, signal.SIGINT, status=130)
+    assert "nothing was written" in errors and list(out.iterdir()) == []
+
+
+def test_what_a_killed_replay_left_is_removed_by_the_next(started, run, tmp_path):
+    trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
+    out = tmp_path / "out"
+    with started("replay", trace, "--out", out) as process:
+        deadline = time.monotonic() + 60
+        while not (out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())):
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
+        process.kill()
+        process.wait()
+    assert any(p.name.startswith(".pose.bvh.") for p in out.iterdir())
+    run("replay", ROUND, "--out", out, "--fps", 60)
+    assert sorted(p.name for p in out.iterdir()) == ["frames.csv", "pose.bvh", "summary.json"]
+
+
 def test_long_gaps_take_the_time_of_their_ticks_and_show_progress(program, made):
     gap_s = 540
-    reports = [report(gap_s * i, y=0x10) for i in range(6)]
-    path = made.write("gaps.hid", HEADER + "".join(reports) + end(5 * gap_s))
+    reports = [report(gap_s * i, y=0x10) for i in range(21)]
+    path = made.write("gaps.hid", HEADER + "".join(reports) + end(20 * gap_s))
     with Terminal(program, "replay", path) as terminal:
-        terminal.wait_for(rf"replay: \d+ % of {5 * gap_s * RATE_HZ} ticks, \d+ ticks a second", 60)
+        terminal.wait_for(r"replay: \d+ %, (\d+ min )?\d+ s left", 60)
         assert terminal.wait_end(300) == 0
-    assert f"{5 * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text
+    assert f"{20 * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text

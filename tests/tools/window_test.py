@@ -8,6 +8,7 @@ import pathlib
 import shutil
 import signal
 import subprocess
+import sys
 import time
 
 import pytest
@@ -279,3 +280,78 @@ def test_replay_view_writes_its_files_too(window, tmp_path):
     f"play {ROUND} --screenshot x.png --record x.hid"])
 def test_wrong_usage_is_2(refuse, arguments):
     refuse(*arguments.split(), status=2, env=environment())
+
+
+MOST_MIB = 250  # of a program that makes pictures, however many frames are behind them
+
+
+def peak_mib(program, *arguments):
+    """The kernel's own count of the program's greatest resident memory."""
+    code = ("import resource, subprocess, sys\n"
+            "subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)\n"
+            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)\n")
+    done = subprocess.run([sys.executable, "-c", code, str(program), *map(str, arguments)], env=environment(),
+                          capture_output=True, text=True, check=True, timeout=300)
+    return float(done.stdout)
+
+
+def test_a_still_needs_no_more_memory_for_more_frames(program, tmp_path):
+    def peak(frames):
+        return peak_mib(program, "play", ROUND, "--frames", frames, "--screenshot", tmp_path / "still.png", "--scale", "2")
+    few, many = peak(20), peak(1200)
+    print(f"{few:.0f} MiB after 20 frames, {many:.0f} MiB after 1200")
+    assert many < MOST_MIB and many < few + 20
+
+
+def test_control_c_gives_a_still_up_at_once(started, tmp_path):
+    picture = tmp_path / "still.png"
+    picture.write_bytes(b"an earlier one")
+    with started("play", ROUND, "--frames", "1000000", "--screenshot", picture, env=environment()) as process:
+        time.sleep(2.0)
+        begin = time.monotonic()
+        _, errors = end_by(process, signal.SIGINT, status=130)
+        assert time.monotonic() - begin < 3.0  # a busy machine
+    assert "no picture was written" in errors
+    assert [p.name for p in tmp_path.iterdir()] == ["still.png"] and picture.read_bytes() == b"an earlier one"
+
+
+needs_ffmpeg = pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="there is no ffmpeg")
+
+
+@needs_ffmpeg
+def test_control_c_gives_a_video_up(started, tmp_path):
+    with started("play", ROUND, "--frames", "100000", "--video", tmp_path / "walk.mp4", env=environment()) as process:
+        deadline = time.monotonic() + 60
+        while not any(p.name.startswith(".walk.mp4.") for p in tmp_path.iterdir()):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        end_by(process, signal.SIGTERM, status=143)
+    assert list(tmp_path.iterdir()) == []
+
+
+@needs_ffmpeg
+def test_a_video_that_the_disk_does_not_take_is_an_error(program, tmp_path):
+    command = f'ulimit -f 40; exec "{program}" play "{ROUND}" --frames 60 --video "{tmp_path}/walk.mp4"'
+    done = subprocess.run(["bash", "-c", command], env=environment(), capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 1 and done.stdout == "", done.stderr
+    assert "walk.mp4: cannot be written" in done.stderr.splitlines()[-1]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_ffmpeg_is_named_before_the_work_begins(refuse, tmp_path):
+    bare = {**environment(), "PATH": str(tmp_path)}
+    refuse("play", tmp_path / "none.hid", "--frames", "5", "--video", tmp_path / "walk.mp4", env=bare,
+           says=["ffmpeg is not installed", "sudo apt-get install ffmpeg"])
+
+
+def test_written_pictures_are_named(window, tmp_path):
+    done = window.run("play", window.trace, "--frames", "3", "--screenshot", tmp_path / "still.png")
+    assert f"written to {tmp_path}/still.png" in done.stderr
+
+
+def test_clean_pictures_have_no_bars(window):
+    bars, clean = window.picture("bare_early", *BARE), window.picture("clean", *BARE, "--clean")
+    dark = np.abs(bars[:40].astype(int) - np.array([0x16, 0x19, 0x1F])).max(axis=2) < 6  # the tool bar's own colour
+    assert dark.mean() > 0.5
+    assert (np.abs(clean[:40].astype(int) - np.array([0x16, 0x19, 0x1F])).max(axis=2) < 6).mean() < 0.1
+    assert np.ptp(clean[-40:].astype(int), axis=(0, 1)).max() < 120  # no time line either

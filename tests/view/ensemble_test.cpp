@@ -17,8 +17,10 @@ namespace {
 class Walking : public testing::Test {
  protected:
   void SetUp() override { begin({"even", "limp_left"}); }
-  void begin(const std::vector<std::string>& styles, int crowd = 0) {
+  void begin(const std::vector<std::string>& styles, int crowd = 0,
+             const std::string& terrain = "") {
     SessionSpec spec;
+    spec.walk.terrain = terrain;
     spec.config_folders = {kSourceFolder + "/config"};
     spec.walk.styles = styles;
     spec.walk.crowd = crowd;
@@ -183,6 +185,42 @@ TEST_F(Walking, ACrowdMovesBetweenTwoTicksByTheirShare) {
   }
   EXPECT_GT(z[2], z[0] + 0.001);
   EXPECT_NEAR(z[1], 0.5 * (z[0] + z[2]), 1e-4);
+}
+
+// The source walks as on a floor; its stick figure is the only one made of lines.
+TEST_F(Walking, OnStairsTheSourceIsNeverInTheGround) {
+  begin({"even"}, 0, "stairs");
+  double highest_m = 0.0, most_above_m = 0.0;
+  for (int i = 0; i < 120; ++i) {
+    run(12);
+    fill();
+    double lowest_m = 1.0;
+    for (const SceneLine& line : content_.lines) {
+      for (const vec3& end : {line.a_m, line.b_m}) {
+        const double ground_m = ground_at(*cast_.terrain, end.x, end.z).height_m;
+        lowest_m = std::min(lowest_m, end.y - ground_m);
+        highest_m = std::max(highest_m, ground_m);
+      }
+    }
+    EXPECT_GE(lowest_m, -1e-9) << "tick " << frame_->tick;
+    most_above_m = std::max(most_above_m, lowest_m);
+  }
+  EXPECT_GT(highest_m, 0.9) << "it was on the stairs";
+  EXPECT_LT(most_above_m, 0.25) << "nor does it fly";
+}
+
+TEST_F(Walking, TheGroundAheadIsHigherOnTheWayUpAndLowerOnTheWayDown) {
+  EXPECT_EQ(ensemble_->rise_ahead_m(-1), 0.0);
+  begin({"even"}, 0, "stairs");
+  fill();
+  bool was_up = false, was_down = false;
+  for (int i = 0; i < 80; ++i) {
+    run(24);
+    fill();
+    was_up = was_up || ensemble_->rise_ahead_m(-1) > 0.3;
+    was_down = was_down || (was_up && ensemble_->rise_ahead_m(-1) < -0.3);
+  }
+  EXPECT_TRUE(was_up && was_down);
 }
 
 TEST_F(Walking, WithoutACrowdThereIsNone) {

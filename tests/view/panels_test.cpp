@@ -178,7 +178,7 @@ TEST_F(PanelTest, AStyleIsSavedUnderANameThatFitsAFile) {
   draw();
   const UiOutput out = click("save style");
   ASSERT_TRUE(out.save_style);
-  EXPECT_EQ(*out.save_style, "mywalk_2");
+  EXPECT_EQ(*out.save_style, "my walk_2");
 }
 
 TEST_F(PanelTest, APlaybackTakesNoCommands) {

@@ -149,6 +149,31 @@ TEST_F(SceneTest, UnevenGroundIsSeenAndHides) {
   EXPECT_GT(difference(level, drawn(content_)).pixels, 100);
 }
 
+// From behind somebody who climbs, without the grid: the middle of the second riser, and of the
+// treads before and behind it.
+TEST_F(SceneTest, RisersAndTreadsHaveTwoTonesAndHigherGroundIsLighter) {
+  auto terrain = std::make_shared<Terrain>();
+  ASSERT_FALSE(add_section(*terrain, StairsSection{0.3, 0.4, 4}));
+  content_.terrain = terrain;
+  content_.has_grid = false;
+  camera_.yaw_rad = kPi;
+  camera_.pitch_rad = 0.45;
+  camera_.target_m = content_.focus_m = {0.0, 0.45, 0.4};
+  for (const ThemeName theme : {ThemeName::dark, ThemeName::light}) {
+    theme_ = theme;
+    const Pixels steps = drawn(content_);
+    const auto at = [&](double height_m, double z_m) {
+      const vec3 p = place({0.3, height_m, z_m});
+      return brightness(steps, p.x, p.y);
+    };
+    const double lower = at(0.3, 0.2), riser = at(0.45, 0.4), upper = at(0.6, 0.6);
+    EXPECT_GT(std::abs(riser - lower), 12.0);
+    EXPECT_GT(std::abs(riser - upper), 12.0);
+    EXPECT_GT(upper, lower + 2.0);
+    EXPECT_GT(riser, 40.0) << "a riser can be seen in the dark";
+  }
+}
+
 TEST_F(SceneTest, AShadowFallsOnTheGroundThatIsThere) {
   camera_.pitch_rad = 1.2;
   content_.has_shadows = true;

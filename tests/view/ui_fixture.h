@@ -96,6 +96,9 @@ class UiTest : public ::testing::Test {
     input.labels = labels;
     input.messages = messages;
     input.is_modal = is_modal;
+    input.hint = hint;
+    input.can_leave = can_leave;
+    input.can_rumble = can_rumble;
     ImGui::NewFrame();
     UiOutput out = draw_ui(input, theme_of(state.theme), fonts, scale_, state);
     ImGui::Render();
@@ -137,6 +140,8 @@ class UiTest : public ::testing::Test {
     if (out.pace) all.pace = out.pace;
     if (out.is_looping) all.is_looping = out.is_looping;
     if (out.save_style) all.save_style = out.save_style;
+    all.rumbles = all.rumbles || out.rumbles;
+    if (out.type_size) all.type_size = out.type_size;
     all.dismisses_messages = all.dismisses_messages || out.dismisses_messages;
   }
 
@@ -150,7 +155,8 @@ class UiTest : public ::testing::Test {
   std::string pad_name = "Wireless Controller", renderer = "llvmpipe", source, recording;
   std::vector<UiLabel> labels;
   std::vector<std::string> messages;
-  bool is_modal = false;
+  std::string hint;
+  bool is_modal = false, can_leave = false, can_rumble = false;
 
  private:
   ImGuiContext* context_ = nullptr;

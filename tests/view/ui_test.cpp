@@ -3,7 +3,9 @@
 #include <cmath>
 #include <set>
 
+#include "gaitpad/style.h"
 #include "ui_fixture.h"
+#include "view/tooltips.h"
 
 namespace gaitpad {
 namespace {
@@ -160,6 +162,145 @@ TEST_F(UiTest, ItemsHaveDifferentNamesAndLieInTheWindow) {
       EXPECT_LE(item.max.x, size.x) << item.name;
       EXPECT_LE(item.max.y, size.y) << item.name;
     }
+  }
+}
+
+TEST_F(UiTest, EveryItemIsExplainedUnderThePointer) {
+  walk();
+  state.is_open.fill(true);
+  state.walker = 1;
+  open(2560, 2800, 1.0);
+  walk();
+  state.is_open.fill(true);
+  step(2, {"set 1 fatigue 0.5"});
+  for (const bool is_playback : {false, true}) {
+    if (is_playback) timeline = UiTimeline{};
+    draw();
+    draw();
+    int explained = 0;
+    for (const UiItem& item : ui_items()) {
+      if (item.name.starts_with("area ") || item.name.ends_with(" bar") ||
+          item.name.ends_with(" column") || item.name == "cast" || item.name == "status line" ||
+          item.name == "messages")
+        continue;
+      EXPECT_FALSE(tooltip_of(item.name).empty()) << item.name;
+      ++explained;
+    }
+    EXPECT_GT(explained, 30);
+  }
+  for (const StyleKey& key : style_keys()) {
+    EXPECT_FALSE(tooltip_of("style slider " + key.name).empty()) << key.name;
+    EXPECT_EQ(words_of_key(key.name).find('_'), std::string::npos) << key.name;
+  }
+  EXPECT_EQ(words_of_key("fatigue_model.per_100_m"), "tiring per 100 m");
+}
+
+TEST_F(UiTest, ATooltipComesWhileThePointerRests) {
+  walk();
+  draw();
+  draw();
+  ImGui::GetIO().MousePos = middle(*find("calibrate"));
+  for (int i = 0; i < 10; ++i) draw();
+  const int before = ImGui::GetDrawData()->CmdListsCount;
+  for (int i = 0; i < 40; ++i) draw();
+  EXPECT_GT(ImGui::GetDrawData()->CmdListsCount, before);
+}
+
+// 800 x 500, 1280 x 720 and 1920 x 1080, in each size of type.
+TEST_F(UiTest, NoTextIsCutOff) {
+  for (const ImVec2& size : {ImVec2{800, 500}, ImVec2{1280, 720}, ImVec2{1920, 1080}}) {
+    for (const bool is_playback : {false, true}) {
+      open(static_cast<int>(size.x), static_cast<int>(size.y), 1.0);
+      walk();
+      step(2, {"gait speed_m_s 1", "set left_leg.stride_length 0.7"});
+      state.is_open.fill(true);
+      state.memory.has_body_keys = state.memory.has_axis_weights = true;
+      timeline.reset();
+      if (is_playback) timeline = UiTimeline{};
+      draw();
+      draw();
+      for (const std::string& text : cut_texts()) {
+        ADD_FAILURE() << text << " at " << size.x << " x " << size.y;
+      }
+    }
+  }
+}
+
+TEST_F(UiTest, AHintStandsOverTheSceneAlone) {
+  walk();
+  draw();
+  EXPECT_EQ(ImGui::GetBackgroundDrawList()->VtxBuffer.Size, 0);
+  hint = "W A S D or plug a pad in; F1: keys";
+  draw();
+  const ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  EXPECT_GT(list.VtxBuffer.Size, 100);
+  const Viewport v = scene_viewport(state, false, 1280, 720, 1.0);
+  for (const ImDrawVert& vertex : list.VtxBuffer) {
+    EXPECT_GE(vertex.pos.x, static_cast<float>(v.x));
+    EXPECT_LE(vertex.pos.x, static_cast<float>(v.x + v.width));
+    EXPECT_LE(vertex.pos.y, static_cast<float>(v.y + v.height));
+  }
+  is_modal = true;
+  draw();
+  EXPECT_EQ(ImGui::GetBackgroundDrawList()->VtxBuffer.Size, 0);
+}
+
+TEST_F(UiTest, AButtonLeavesAPlaybackThatALiveSessionWasBefore) {
+  walk();
+  timeline = UiTimeline{};
+  draw();
+  draw();
+  EXPECT_EQ(find("leave playback"), nullptr);
+  can_leave = true;
+  EXPECT_EQ(click("leave playback").actions, Actions{Action::back});
+}
+
+TEST_F(UiTest, TheSizeOfTypeIsInTheViewMenu) {
+  walk();
+  click("view");
+  const UiOutput larger = click("type larger");
+  ASSERT_TRUE(larger.type_size);
+  EXPECT_NEAR(*larger.type_size, 1.1, 1e-9);
+  state.type_size = kMostTypeSize;
+  draw();
+  draw();
+  EXPECT_EQ(find("type larger"), nullptr);
+}
+
+TEST_F(UiTest, APadWithMotorsHasATestOfThem) {
+  walk();
+  draw();
+  draw();
+  EXPECT_EQ(find("rumble"), nullptr);
+  can_rumble = true;
+  EXPECT_TRUE(click("rumble").rumbles);
+}
+
+TEST_F(UiTest, TheChipsStayWhileThePanelsScroll) {
+  walk();
+  state.is_open.fill(true);
+  draw();
+  draw();
+  const ImVec2 before = find("walker 4")->min;
+  ImGui::GetIO().MousePos = {100.0f, 500.0f};
+  draw();
+  for (int i = 0; i < 20; ++i) {
+    ImGui::GetIO().MouseWheel = -1.0f;
+    draw();
+  }
+  ASSERT_NE(find("walker 4"), nullptr);
+  EXPECT_EQ(find("walker 4")->min.y, before.y);
+  EXPECT_EQ(find("pad picture"), nullptr) << "the panels have scrolled";
+}
+
+TEST(UiLayout, ACleanWindowIsTheSceneAlone) {
+  UiState state;
+  state.is_clean = true;
+  const UiLayout l = ui_layout(state, true, 1280, 720, 1.0);
+  EXPECT_EQ(l.scene.width, 1280.0f);
+  EXPECT_EQ(l.scene.height, 720.0f);
+  for (const UiRect& rect : {l.top, l.left, l.right, l.timeline, l.status}) {
+    EXPECT_TRUE(rect.is_empty());
   }
 }
 

@@ -98,7 +98,10 @@ TEST_F(Video, WithoutFfmpegOneSentenceSaysSoAndNothingIsLeft) {
   ::setenv("PATH", folder_.c_str(), 1);
   const auto writer = VideoWriter::open(file("a.mp4"), 64, 64, 30);
   ASSERT_FALSE(writer);
-  EXPECT_EQ(writer.error().message, file("a.mp4") + ": cannot be written: ffmpeg is not installed");
+  EXPECT_EQ(writer.error().message,
+            file("a.mp4") +
+                ": cannot be written: ffmpeg is not installed; run: sudo apt-get install "
+                "ffmpeg");
   EXPECT_TRUE(files().empty());
 }
 

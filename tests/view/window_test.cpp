@@ -60,6 +60,13 @@ class Script {
     press(code);
     release(code);
   }
+  void tap_with_ctrl(SDL_Keycode code) {
+    SDL_Event event = key(code, SDL_KEYDOWN);
+    event.key.keysym.mod = KMOD_LCTRL;
+    push(event);
+    event.type = SDL_KEYUP;
+    push(event);
+  }
   void type(const std::string& text) {
     SDL_Event event = {};
     event.type = SDL_TEXTINPUT;
@@ -433,6 +440,19 @@ void ActionScript::add(const ActionInfo& info) {
       until("help is open", [](const Glance& g) { return g.ui.is_help_open; });
       tap(info.key);
       return until("help is closed", [](const Glance& g) { return !g.ui.is_help_open; });
+    case Action::undo:  // a style that another key has chosen
+      tap(SDLK_1);
+      wait(3);
+      tap(SDLK_2);
+      until("the second style",
+            [](const Glance& g) { return g.session.walkers[0].style_index == 1; });
+      tap_with_ctrl(SDLK_z);
+      return until("the first again",
+                   [](const Glance& g) { return g.session.walkers[0].style_index == 0; });
+    case Action::redo:
+      tap_with_ctrl(SDLK_y);
+      return until("the second again",
+                   [](const Glance& g) { return g.session.walkers[0].style_index == 1; });
     case Action::fullscreen:  // of a window in memory it changes nothing to be seen
       tap(info.key);
       return tap(info.key);
@@ -567,6 +587,19 @@ TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
   EXPECT_EQ(result.summary.ticks, again->summary.ticks);
   EXPECT_EQ(result.summary.pose_hash, again->summary.pose_hash);
   EXPECT_EQ(result.summary.bad_commands, 0);
+}
+
+TEST_F(Window, PicturesThatAreCutOffAreNotWritten) {
+  options_.is_hidden = true;
+  options_.frames = 100;
+  options_.screenshot = own_.at("still.png");
+  int asked = 0;
+  options_.is_ended_from_outside = [&] { return ++asked == 4; };
+  const auto result = run_window(options_);
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_TRUE(result->is_cut_off);
+  EXPECT_EQ(result->frames, 3);
+  EXPECT_FALSE(fs::exists(options_.screenshot));
 }
 
 TEST_F(Window, FramesAreCountedAndEndedFromOutside) {
@@ -712,11 +745,11 @@ TEST_F(WindowFiles, APlaybackIsPausedSteppedSoughtAndTakesNoStyles) {
     return std::abs(static_cast<double>(g.session.tick) - 2400.0) < 120.0;
   });
   script.tap(SDLK_3);
-  script.until("it says why not", [](const Glance& g) { return says(g, "own styles"); });
+  script.until("it says why not", [](const Glance& g) { return says(g, "read-only"); });
   script.tap(SDLK_BACKSPACE);
   script.until("it is at the beginning", [](const Glance& g) { return g.session.tick == 0; });
   script.tap(SDLK_F9);
-  script.until("it records nothing", [](const Glance& g) { return says(g, "nothing to record"); });
+  script.until("it records nothing", [](const Glance& g) { return says(g, "read-only"); });
   run(script);
   EXPECT_TRUE(files(".hid").empty());
 }
@@ -778,6 +811,20 @@ std::string thumb_trace() {
   return text;
 }
 
+TEST_F(WindowFiles, TheSelfTestNeedsThePadItselfAndTheSessionGoesOnWithoutIt) {
+  options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
+  Script script;
+  script.until("it runs", [](const Glance& g) { return g.session.tick > 0; });
+  script.tap(SDLK_F8);
+  script.until("it calibrates", [](const Glance& g) { return g.is_calibrating; });
+  script.click("calibration test");
+  script.until("it says why",
+               [](const Glance& g) { return says(g, "the test needs the pad itself"); });
+  script.until("it runs again",
+               [](const Glance& g) { return !g.is_calibrating && g.session.tick > 0; });
+  run(script);
+}
+
 TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
   options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
   options_.calibration_folder = (folder_ / "config/gaitpad/calibration").string();
@@ -816,7 +863,7 @@ TEST_F(WindowFiles, ACalibrationIsGivenUp) {
   run(script);
 }
 
-TEST_F(WindowFiles, ASavedStyleIsKnownToTheNextSession) {
+TEST_F(WindowFiles, ASavedStyleKeepsItsNameAndIsUsedAtOnceAndInTheNextSession) {
   options_.are_panels_given = true;
   options_.panels = {Panel::style};
   Script script;
@@ -827,13 +874,24 @@ TEST_F(WindowFiles, ASavedStyleIsKnownToTheNextSession) {
     return g.session.walkers[0].style.fatigue > 0.5 && g.session.walkers[1].style.fatigue == 0.0;
   });
   script.click("style name");
-  script.type("worn_out");
+  script.type("my walk");
   script.click("save style");
-  script.until("it is kept", [](const Glance& g) { return says(g, "worn_out.toml"); });
+  script.until("it is kept", [](const Glance& g) { return says(g, "my walk.toml"); });
+  script.until("its character walks in it",
+               [](const Glance& g) { return style_of(g, 0) == "my walk"; });
+  script.tap(SDLK_TAB);
+  script.until("the second one is chosen", [](const Glance& g) { return g.ui.walker == 1; });
+  script.tap(SDLK_b);  // before the first style the last one: the new
+  script.wait(2);
+  script.tap(SDLK_b);
+  script.until("so does another", [](const Glance& g) {
+    return style_of(g, 1) == "my walk" && g.session.walkers[1].style.fatigue > 0.5;
+  });
   script.drop(make("x.toml", "fatigue = 0\nhip_sway = 1\n"));  // another session
   script.until("it is known",
-               [](const Glance& g) { return std::ranges::count(g.cast.styles, "worn_out") == 1; });
-  run(script);
+               [](const Glance& g) { return std::ranges::count(g.cast.styles, "my walk") == 1; });
+  const WindowResult result = run(script);
+  EXPECT_EQ(result.summary.bad_commands, 0);
 }
 
 TEST_F(WindowFiles, PicturesOfATraceAreTheSameEveryTime) {

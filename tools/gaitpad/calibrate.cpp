@@ -424,20 +424,10 @@ bool is_data_base(const std::vector<std::string>& lines) {
 // --import of a gamecontrollerdb.txt without a pad: every Linux line goes to the user's own file.
 int import_data_base(const std::string& source, const std::vector<std::string>& lines) {
   const std::string target = user_mapping_file();
-  if (target.empty()) return fail(kCommand, "neither XDG_CONFIG_HOME nor HOME is a folder");
-  std::vector<std::string> own;
-  std::error_code ignored;
-  if (std::filesystem::exists(target, ignored)) {
-    const auto text = file_text(target, kMaxMappingFileBytes);
-    if (!text) return fail(kCommand, text.error().message);
-    own = mapping_lines(*text);
-  }
-  std::string text = "# Mappings of SDL's controller data base, by gaitpad calibrate --import\n";
-  const std::vector<std::string> all = merged_mappings(lines, own);
-  for (const std::string& line : all) text += line + "\n";
-  if (const auto problem = write_file(target, text)) return fail(kCommand, problem->message);
+  const auto count = save_mappings(target, lines);
+  if (!count) return fail(kCommand, count.error().message);
   print_remarks(kCommand, {fmt::format("{}: {} Linux mappings taken over; {} are in {} now", source,
-                                       lines.size(), all.size(), target)});
+                                       lines.size(), *count, target)});
   return 0;
 }
 

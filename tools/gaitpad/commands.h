@@ -3,6 +3,11 @@
 // 2, is main's.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 
@@ -14,9 +19,17 @@ void add_doctor(CLI::App& app, int& status);
 void add_decode(CLI::App& app, int& status);
 void add_monitor(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);
+void add_selftest(CLI::App& app, int& status);
 void add_motion(CLI::App& app, int& status);
 void add_ik(CLI::App& app, int& status);
 void add_figures(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
+void add_list(CLI::App& app, int& status);
+void add_map(CLI::App& app, int& status);
+void add_check(CLI::App& app, int& status);
+
+// What shells and packages ask for, from the commands that `app` has; no help lists them.
+void print_completions(const CLI::App& app, std::vector<std::string> words);
+std::optional<Error> write_manual(const CLI::App& app, const std::string& folder);
 
 }  // namespace gaitpad

@@ -14,6 +14,7 @@
 
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/trace.h"
+#include "hid/usage_names.h"
 #include "pads/newest_reports.h"
 #include "session/playback.h"
 #include "tools/gaitpad/commands.h"
@@ -133,16 +134,16 @@ void print_descriptor_text(const DecodedDevice& device) {
   if (!device.layout.override_origin.empty()) {
     fmt::print("controls by {}\n", printable(device.layout.override_origin));
   }
-  fmt::print("{:<8} {:>2} {:>7} {:>5} {:>5}  {:<9} {:>12} {:>12}\n", "kind", "id", "bit", "size",
-             "count", "usage", "min", "max");
+  fmt::print("{:<8} {:>2} {:>7} {:>5} {:>5}  {:<9}  {:<20} {:>12} {:>12}\n", "kind", "id", "bit",
+             "size", "count", "usage", "name", "min", "max");
   const std::vector<Field>& fields = device.layout.descriptor.fields;
   for (std::size_t i = 0; i < fields.size();) {
     const Field& f = fields[i];
     std::size_t end = i + 1;
     while (end < fields.size() && continues(f, fields[end])) ++end;
-    fmt::print("{:<8} {:>2x} {:>7} {:>5} {:>5}  {:<9} {:>12} {:>12}{}\n", kind_name(f.kind),
-               f.report_id, f.bit_offset, f.bit_size, end - i, usage_text(f.usage), f.logical_min,
-               f.logical_max, f.is_array ? "  array" : "");
+    fmt::print("{:<8} {:>2x} {:>7} {:>5} {:>5}  {:<9}  {:<20} {:>12} {:>12}{}\n", kind_name(f.kind),
+               f.report_id, f.bit_offset, f.bit_size, end - i, usage_text(f.usage),
+               usage_name(f.usage), f.logical_min, f.logical_max, f.is_array ? "  array" : "");
     i = end;
   }
 }

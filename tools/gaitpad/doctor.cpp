@@ -155,10 +155,17 @@ void check_binding(const UsbInterface& interface, const PadHardware& pad, Findin
   const std::string module = is_hid ? "usbhid" : "xpad";
   if (interface.kernel_driver.empty()) {
     const bool is_loaded = exists("/sys/bus/usb/drivers/" + module);
-    diagnosis.add(state, name, pad,
-                  fmt::format("USB interface {}: no kernel driver is bound", name),
-                  is_loaded ? fmt::format("echo {} | sudo tee /sys/bus/usb/drivers_probe", name)
-                            : module_fix(module));
+    diagnosis.add(
+        state, name, pad,
+        fmt::format("USB interface {}: no kernel driver is bound{}", name,
+                    is_loaded ? " until it is plugged in again: a program that had taken the pad "
+                                "from the kernel was killed"
+                              : ""),
+        is_loaded ? fmt::format("echo {} | sudo tee /sys/bus/usb/drivers_probe, or plug it in "
+                                "again, or use it once: gaitpad play --driver usb gives it back "
+                                "at its end",
+                                name)
+                  : module_fix(module));
   } else if (interface.kernel_driver == "usbfs") {
     const std::string users = users_of(pad.usb_node);
     diagnosis.add(state, pad.usb_node, pad,
@@ -271,12 +278,10 @@ void check_machine(Diagnosis& diagnosis) {
   const Machine& machine = diagnosis.machine;
   const PadHardware none;
   if (!machine.has_udev) {
-    diagnosis.add(
-        Finding::State::problem, "udev", none,
-        "udev does not run: nodes keep the kernel's permissions, and what a node is stands "
-        "nowhere",
-        machine.is_container ? "start the container with -v /run/udev:/run/udev:ro"
-                             : "sudo systemctl start systemd-udevd");
+    diagnosis.add(Finding::State::problem, "udev", none,
+                  "udev is not running, so device permissions and types are unknown",
+                  machine.is_container ? "start the container with -v /run/udev:/run/udev:ro"
+                                       : "sudo systemctl start systemd-udevd");
   }
   if (machine.is_container && !exists("/dev/input")) {
     diagnosis.add(

@@ -44,10 +44,14 @@ int run(const FiguresArguments& arguments) {
   if (!source) return fail("figures", source.error().message);
   auto study = Study::of(std::move(*source));
   if (!study) return fail("figures", study.error().message);
-  const std::vector<Claim> claims = all_claims(*study);
+  Progress progress("figures");
+  // The figures themselves are quick beside the claims.
+  const std::vector<Claim> claims =
+      all_claims(*study, [&progress](double share) { progress.show(0.95 * share); });
   const std::string json = claims_json(study->source().motion, claims);
-  if (auto problem = write_figures(arguments.folder, all_figures(*study), json))
-    return fail("figures", problem->message);
+  const auto problem = write_figures(arguments.folder, all_figures(*study), json);
+  progress.clear();
+  if (problem) return fail("figures", problem->message);
   if (arguments.as_json) {
     fmt::print("{}", json);
   } else {

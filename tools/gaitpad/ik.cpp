@@ -96,6 +96,29 @@ void print_csv(const Task& task, const IkTrace& trace) {
   std::fputs(text.c_str(), stdout);
 }
 
+// The paper's method bounds neither an angle nor a step: says where an angle left the circle.
+std::string wild_turn(const Task& task, const IkTrace& trace, const IkAngles& end_rad) {
+  constexpr double kTurn_rad = 6.283185307179586;
+  int joint = 0, iteration = 1;
+  double largest_rad = 0.0;
+  bool is_wild = false;
+  for (int j = 0; j < task.chain.dofs; ++j) {
+    is_wild = is_wild || std::abs(end_rad[j]) > kTurn_rad;
+    for (int row = 1; row < trace.rows; ++row) {
+      const double step_rad = trace.angles_rad[row][j] - trace.angles_rad[row - 1][j];
+      if (std::abs(step_rad) <= std::abs(largest_rad)) continue;
+      largest_rad = step_rad;
+      joint = j;
+      iteration = row;
+    }
+  }
+  if (!is_wild || std::abs(largest_rad) < kTurn_rad / 2.0) return {};
+  return fmt::format(
+      "iteration {} turns angle_{} by {:.4g} rad: J J^T is nearly singular there (the chain is "
+      "stretched or folded), and the paper's step has no bound; --mode robust damps it",
+      iteration, joint, largest_rad);
+}
+
 int run(const std::string& path, const std::string& mode) {
   const auto task = load_task(path);
   if (!task) return fail("ik", task.error().message);
@@ -111,6 +134,10 @@ int run(const std::string& path, const std::string& mode) {
   if (result.status != IkStatus::converged) {
     print_remarks("ik", {fmt::format("{}: {}: {:.9g} m off after {} iterations", path, why,
                                      result.error_m, result.iterations)});
+  }
+  if (mode == "paper" && trace.rows > 0) {
+    const std::string why_wild = wild_turn(*task, trace, trace.angles_rad[trace.rows - 1]);
+    if (!why_wild.empty()) print_remarks("ik", {path + ": " + why_wild});
   }
   return result.status == IkStatus::not_finite ? 1 : 0;
 }

@@ -1,14 +1,25 @@
 // gaitpad: one program with sub-commands. It parses; the commands do the rest.
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
+#include "base/suggestion.h"
 #include "base/text.h"
 #include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
 
 namespace {
 
@@ -24,8 +35,111 @@ void hold_standard_descriptors() {
   }
 }
 
+struct Example {
+  const char* command;
+  const char* lines;  // each begins with the command
+};
+constexpr Example kExamples[] = {
+    {"play",
+     "gaitpad play\n"
+     "gaitpad play --character child --style limp_left --record mine.hid\n"
+     "gaitpad play --terrain stairs\n"},
+    {"replay",
+     "gaitpad replay mine.hid --out out\n"
+     "gaitpad replay mine.hid --style tired --terrain stairs --out out --gltf\n"
+     "gaitpad replay mine.hid --view\n"},
+    {"record", "gaitpad record --out mine.hid --seconds 20\n"},
+    {"pads", "gaitpad pads\n"},
+    {"doctor", "gaitpad doctor\nsudo gaitpad doctor --install-rules\n"},
+    {"decode", "gaitpad decode mine.hid --descriptor\ngaitpad decode /dev/hidraw0\n"},
+    {"monitor", "gaitpad monitor\n"},
+    {"calibrate", "gaitpad calibrate\ngaitpad calibrate --trace mine.hid --out mine.toml\n"},
+    {"motion", "gaitpad motion keyframe_walk\ngaitpad motion walk.bvh --json\n"},
+    {"ik", "gaitpad ik chain.toml --mode paper\n"},
+    {"figures", "gaitpad figures --out figures\n"},
+    {"bench", "gaitpad bench\ngaitpad bench --plot cost.png\n"},
+    {"selftest", "gaitpad selftest\n"},
+    {"map", "gaitpad map\ngaitpad map 0810:0001\n"},
+    {"list", "gaitpad list\ngaitpad list styles\n"},
+};
+
+// Below each command's own words: examples.
+void add_examples(CLI::App& app) {
+  for (const Example& example : kExamples) {
+    CLI::App* command = app.get_subcommand(example.command);
+    std::string text = command->get_footer();
+    if (!text.empty()) text += "\n";
+    text += "Examples:\n";
+    for (std::string_view rest = example.lines; !rest.empty();)
+      text += fmt::format("  {}\n", gaitpad::take_line(rest));
+    text.pop_back();
+    command->footer(text);
+  }
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  return names;
+}
+
+// `gaitpad help [COMMAND]` as `gaitpad [COMMAND] --help`; `gaitpad` alone likewise. Help on an
+// unknown command is that unknown command.
+std::vector<std::string> arguments_of(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty()) return {"--help"};
+  if (words.front() != "help") return words;
+  words.erase(words.begin());
+  const std::vector<std::string> names = command_names(app);
+  if (words.empty() || std::ranges::count(names, words.front()) > 0) words.emplace_back("--help");
+  return words;
+}
+
+// What nothing expects: an unknown command, else the first unknown option, else the first word too
+// many. With what may have been meant.
+std::string unexpected(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  const std::vector<std::string> words = app.remaining(true);
+  const auto option = std::ranges::find_if(
+      words, [](const std::string& word) { return word.size() > 1 && word.starts_with('-'); });
+  if (chosen.empty() && !words.empty() && option != words.begin()) {
+    std::string meant = gaitpad::suggestion(words.front(), command_names(app));
+    if (meant.empty())
+      meant = fmt::format("; known: {}, help", fmt::join(command_names(app), ", "));
+    return fmt::format("gaitpad: unknown command {}{}", gaitpad::in_quotes(words.front()), meant);
+  }
+  const CLI::App& command = chosen.empty() ? app : *chosen.front();
+  const std::string name = chosen.empty() ? "gaitpad" : "gaitpad " + command.get_name();
+  if (option == words.end())
+    return fmt::format("{}: unexpected argument {}", name, gaitpad::in_quotes(words.front()));
+  std::vector<std::string> known;
+  for (const CLI::Option* o : command.get_options()) {
+    for (const std::string& long_name : o->get_lnames()) known.push_back("--" + long_name);
+  }
+  const std::string word = option->substr(0, option->find('='));
+  return fmt::format("{}: unknown option {}{}", name, gaitpad::in_quotes(word),
+                     gaitpad::suggestion(word, known));
+}
+
+// `gaitpad __complete WORD...` and `gaitpad __manual FOLDER`, for completions and packages. The
+// exit status; nothing where the arguments are others.
+std::optional<int> answer_shell(const CLI::App& app, int argc, char** argv) {
+  const std::string_view asked = argc > 1 ? argv[1] : "";
+  if (asked == "__complete") {
+    gaitpad::print_completions(app, {argv + 2, argv + argc});
+    return 0;
+  }
+  if (asked != "__manual" || argc != 3) return std::nullopt;
+  const auto problem = gaitpad::write_manual(app, argv[2]);
+  return problem ? gaitpad::fail("__manual", problem->message) : 0;
+}
+
 // Help and version on standard output, a wrong usage on standard error. It may quote any argument.
 int tell(const CLI::App& app, const CLI::ParseError& error) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    std::fputs((unexpected(app) + "\nRun with --help for more information.\n").c_str(), stderr);
+    return kWrongUsage;
+  }
   std::ostringstream help, usage;
   const bool is_done = app.exit(error, help, usage) == 0;
   std::fputs(gaitpad::printable_lines(help.str()).c_str(), stdout);
@@ -41,9 +155,6 @@ bool is_flushed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 int main(int argc, char** argv) {
   CLI::App app("A physical gamepad walks a motion-captured character.", "gaitpad");
   app.set_version_flag("--version", "gaitpad " GAITPAD_VERSION);
-  app.require_subcommand(1);
-  app.footer("gaitpad COMMAND --help says more. Exit status: 0 done, 1 failed, 2 wrong usage.");
-
   hold_standard_descriptors();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that is too large is a failed write like any other
   int status = 0;
@@ -56,12 +167,33 @@ int main(int argc, char** argv) {
   gaitpad::add_decode(app, status);
   gaitpad::add_monitor(app, status);
   gaitpad::add_calibrate(app, status);
+  gaitpad::add_selftest(app, status);
   gaitpad::add_motion(app, status);
   gaitpad::add_ik(app, status);
   gaitpad::add_figures(app, status);
   gaitpad::add_bench(app, status);
+  gaitpad::add_check(app, status);
+  gaitpad::add_list(app, status);
+  gaitpad::add_map(app, status);
+  add_examples(app);
+  // Last: commands would inherit it.
+  app.footer(
+      "gaitpad help COMMAND says more. Exit status: 0 done, 1 failed, 2 wrong usage, 128 and the\n"
+      "signal's number for work that Ctrl-C cut off.\n"
+      "Examples:\n"
+      "  gaitpad play                            walk with a pad, or with W A S D\n"
+      "  gaitpad replay mine.hid --out out       a recording becomes BVH, CSV and JSON\n"
+      "  gaitpad list styles                     the ways to walk\n"
+      "  gaitpad doctor                          why a pad does not work");
+  std::vector<std::string> words = arguments_of(app, argc, argv);
+  if (const std::string problem = gaitpad::config_problem(); !problem.empty()) {
+    std::fputs(fmt::format("gaitpad: {}\n", problem).c_str(), stderr);
+    return kFailed;
+  }
+  std::ranges::reverse(words);  // as CLI11 wants them
   try {
-    app.parse(argc, argv);
+    if (const auto answered = answer_shell(app, argc, argv)) return *answered;
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     return tell(app, error);
   } catch (const std::system_error&) {  // fmt::print on a full disk

@@ -31,6 +31,7 @@ struct Window {
   double duration_s = 1.0;
   std::int64_t reports = 0, bad_reports = 0;
   std::vector<double> interval_us, latency_us;
+  std::vector<double> frame_us;  // from the report to the line that shows it, on a terminal
 };
 
 struct MonitoredPad {
@@ -41,25 +42,29 @@ struct MonitoredPad {
   int untouched = 0;                    // how often a stick moved by itself
   bool is_warned = false;               // of that
   bool is_plugged = true;
-  std::int64_t last_ns = 0;  // stamp of the last report; 0: none since plugging in
-  Window running, shown;     // the present second, and the last full one
+  std::int64_t last_ns = 0;              // stamp of the last report; 0: none since plugging in
+  Window running, shown;                 // the present second, and the last full one
+  std::vector<std::int64_t> unshown_ns;  // stamps of the reports since the last line
 };
 using MonitoredPads = std::map<std::uint16_t, MonitoredPad>;
 
 constexpr std::size_t kMaxKept = 20000;  // times of one second that are looked at
 
-void keep(std::vector<double>& values, double value) {
+template <class T>
+void keep(std::vector<T>& values, T value) {
   if (values.size() < kMaxKept) values.push_back(value);
 }
 double greatest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::ranges::max_element(values);
 }
-double median(std::vector<double> values) {
+double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  const auto count = static_cast<double>(values.size());
+  const auto place = static_cast<std::ptrdiff_t>(std::min(share * count, count - 1.0));
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
 }
+double median(const std::vector<double>& values) { return percentile(values, 0.5); }
 // Standard deviation of the intervals.
 double jitter(const std::vector<double>& values) {
   if (values.size() < 2) return 0.0;
@@ -142,6 +147,7 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
   if (pad.last_ns != 0)
     keep(pad.running.interval_us, static_cast<double>(report.time_ns - pad.last_ns) / 1e3);
   pad.last_ns = report.time_ns;
+  keep(pad.unshown_ns, report.time_ns);
   ++pad.running.reports;
   if (!decode(*pad.config.layout, report, pad.state)) {
     ++pad.running.bad_reports;
@@ -168,6 +174,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"jitter_us", jitter(w.interval_us)},
           {"longest_gap_us", greatest(w.interval_us)},
           {"latency_us_median", median(w.latency_us)},
+          {"latency_us_p99", percentile(w.latency_us, 0.99)},
           {"latency_us_max", greatest(w.latency_us)},
           {"bad_reports", w.bad_reports},
           {"lost", stream.counts().lost},
@@ -180,8 +187,13 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
 }
 
 std::string pad_header() {
-  return "left         right        triggers     Hz jitter   gap ms latency max us lost buttons, "
-         "pad";
+  return "left         right        triggers     Hz jitter   gap ms latency max us frame p99 ms "
+         "lost buttons, pad";
+}
+
+std::string frame_text(const Window& window, double share) {
+  if (window.frame_us.empty()) return "-";
+  return fmt::format("{:.1f}", percentile(window.frame_us, share) / 1e3);
 }
 
 std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
@@ -194,16 +206,26 @@ std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStre
   for (const std::string& name : button_names(pad.state)) buttons += name + " ";
   return fmt::format(
       "{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f} {:>7.0f} "
-      "{:>6.0f} {:>4} {}{}",
+      "{:>6.0f} {:>5} {:>6} {:>4} {}{}",
       stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left, triggers.right,
       rate_hz(w), jitter(w.interval_us) / 1e3, greatest(w.interval_us) / 1e3, median(w.latency_us),
-      greatest(w.latency_us), stream.counts().lost, buttons, who);
+      greatest(w.latency_us), frame_text(w, 0.5), frame_text(w, 0.99), stream.counts().lost,
+      buttons, who);
+}
+
+// The line with these reports has just been written.
+void note_shown(MonitoredPads& pads) {
+  const std::int64_t time_ns = now_ns();
+  for (auto& [index, pad] : pads) {
+    for (const std::int64_t report_ns : std::exchange(pad.unshown_ns, {}))
+      keep(pad.running.frame_us, static_cast<double>(time_ns - report_ns) / 1e3);
+  }
 }
 
 // --- the command
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
-constexpr std::int64_t kRewriteNs = kSecondNs / 20;
+constexpr std::int64_t kRewriteNs = kSecondNs / 60;
 
 struct MonitorArguments {
   PadWish wish;
@@ -230,6 +252,7 @@ class Display {
     std::vector<std::string> lines = {pad_header()};
     for (const auto& [index, pad] : pads) lines.push_back(pad_text(index, pad, stream));
     line_.show(lines);
+    note_shown(pads);
   }
 
   // Prints the last second, which is shorter.

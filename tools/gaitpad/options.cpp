@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/drivers.h"
@@ -10,6 +14,7 @@
 namespace gaitpad {
 namespace {
 
+constexpr double kLeastSeconds = 0.001, kMostSeconds = 1e6;
 constexpr std::int64_t kPatienceNs = 2'500'000'000;  // opening a pad may take two seconds
 
 // Drivers without a library are left out: a recording is named by PAD.
@@ -38,6 +43,16 @@ std::vector<std::string> pads_of_system() {
 
 std::vector<std::string> config_folders() { return config_folders(GAITPAD_CONFIG_DIR); }
 
+std::string config_problem() {
+  const char* folder = std::getenv("GAITPAD_CONFIG");
+  std::error_code ignored;
+  if (folder == nullptr || *folder == '\0' || std::filesystem::is_directory(folder, ignored))
+    return {};
+  return fmt::format("GAITPAD_CONFIG is {}, which is no folder", in_quotes(folder));
+}
+
+bool is_choosy(const PadWish& wish) { return !wish.pad.empty() || !wish.driver.empty(); }
+
 void add_driver_option(CLI::App& command, PadWish& wish) {
   command
       .add_option("--driver", wish.driver,
@@ -55,7 +70,7 @@ void add_pad_options(CLI::App& command, PadWish& wish) {
 
 void add_seconds_option(CLI::App& command, double& seconds) {
   command.add_option("--seconds", seconds, "end after this time (default: at Ctrl-C)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(kLeastSeconds, kMostSeconds));
 }
 
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration) {
@@ -75,8 +90,7 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
   is_told_ = true;
   std::vector<std::string> remarks = {
       fmt::format("{}: {}", wish_.pad.empty() ? "a pad" : wish_.pad, what)};
-  const bool is_choosy = !wish_.pad.empty() || !wish_.driver.empty();
-  for (const std::string& other : is_choosy ? pads_of_system() : std::vector<std::string>())
+  for (const std::string& other : is_choosy(wish_) ? pads_of_system() : std::vector<std::string>())
     remarks.push_back(other);
   remarks.emplace_back("gaitpad doctor finds why a pad does not work");
   print_remarks(command_, remarks, &line);

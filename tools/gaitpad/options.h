@@ -18,11 +18,15 @@ namespace gaitpad {
 
 // The folders of configuration that there are, the one of this checkout last.
 std::vector<std::string> config_folders();
+// Why $GAITPAD_CONFIG names no folder of configuration; empty if it does, or is not set.
+std::string config_problem();
 
 // --- which pad, and for how long
 
 void add_driver_option(CLI::App& command, PadWish& wish);
 void add_pad_options(CLI::App& command, PadWish& wish);  // PAD and --driver
+// Whether a certain pad is asked for, not just any.
+bool is_choosy(const PadWish& wish);
 void add_seconds_option(CLI::App& command, double& seconds);
 
 // --map and --calibration (empty: none), and what config/ says about pads.

@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/files.h"
 #include "gaitpad/live.h"
 #include "session/walk_export.h"
 #include "tools/gaitpad/commands.h"
@@ -28,6 +31,7 @@ struct PlayArguments {
   SessionSpec spec;
   WindowArguments window;
   double seconds = 0.0;
+  std::string report_times;  // file; empty: none
   bool no_window = false, no_rumble = false, json = false, takes_commands = false;
 };
 
@@ -42,8 +46,30 @@ std::string status_text(const LiveStatus& status, const SessionFrame& frame, int
       status.wait_us_median, status.overruns);
 }
 
+// A row for each input report: when it came, and when the tick began that used it.
+class ReportTimes {
+ public:
+  explicit ReportTimes(const std::string& path)
+      : file_(path.empty() ? nullptr : std::fopen(path.c_str(), "we")) {
+    if (file_) fmt::print(file_.get(), "tick,device,arrival_ns,begin_ns\n");
+  }
+  bool is_open() const noexcept { return file_ != nullptr; }
+  void write(LiveSession& session) {
+    for (ReportTime time; file_ && session.take_report_time(time);)
+      fmt::print(file_.get(), "{},{},{},{}\n", time.tick, time.device, time.arrival_ns,
+                 time.begin_ns);
+  }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
 // Until the recording ends, or the user ends it.
-void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSession& session) {
+void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSession& session,
+                         ReportTimes& times) {
   StatusLine line(2);
   MissingPad missing(kCommand, arguments.spec.pad.wish);
   const int rate_hz = session.cast().rate_hz;
@@ -54,6 +80,7 @@ void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSessio
     if (arguments.takes_commands) {
       for (const std::string& command : input.take_lines()) session.command(command);
     }
+    times.write(session);
     bool is_new = false;
     if (line.is_terminal())
       line.show(status_text(session.status(), session.latest(is_new), rate_hz));
@@ -72,6 +99,10 @@ void print_text(const PlayArguments& arguments, const LiveStatus& status, const 
       "{} ticks were late, {} reports lost\n",
       status.tick_us_median, status.tick_us_max, status.wait_us_median, status.wait_us_max,
       status.overruns, status.pads.lost);
+  if (status.frame_us_p99 > 0.0) {
+    fmt::print("from the stick to the frame: {:.1f} ms (99 of 100 within {:.1f} ms)\n",
+               status.frame_us_p50 / 1000.0, status.frame_us_p99 / 1000.0);
+  }
 }
 
 void add_status(const LiveStatus& status, ordered_json& summary) {
@@ -87,33 +118,49 @@ void add_status(const LiveStatus& status, ordered_json& summary) {
   summary["tick_us_max"] = status.tick_us_max;
   summary["wait_us_median"] = status.wait_us_median;
   summary["wait_us_max"] = status.wait_us_max;
+  summary["frame_us_p50"] = status.frame_us_p50;
+  summary["frame_us_p99"] = status.frame_us_p99;
   summary["lost"] = status.pads.lost;
   summary["plugged"] = status.pads.plugged;
   summary["unplugged"] = status.pads.unplugged;
   summary["recording_lost"] = status.recording_lost;
+  summary["streamed"] = status.streamed;
+}
+
+// Failed if the pad that was asked for never came, or a command was none.
+int status_of(const PlayArguments& arguments, const LiveStatus& status, const RunSummary& run) {
+  const bool is_alone = is_choosy(arguments.spec.pad.wish) && status.pads.plugged == 0;
+  const bool is_wrong = arguments.takes_commands && run.bad_commands > 0;
+  if (is_wrong)
+    print_remarks(kCommand, {fmt::format("{} commands could not be obeyed", run.bad_commands)});
+  return is_alone || is_wrong ? 1 : 0;
 }
 
 int run_without_window(const PlayArguments& arguments) {
   RunEnd end;
+  ReportTimes times(arguments.report_times);
+  if (!arguments.report_times.empty() && !times.is_open())
+    return fail(kCommand, write_error(arguments.report_times, errno).message);
   SessionSpec unseen = arguments.spec;
   unseen.walk.shows_crowd = false;
   auto session = LiveSession::start(unseen);
   if (!session) return fail(kCommand, session.error().message);
   end.end_after(arguments.seconds);
-  walk_without_window(arguments, end, **session);
+  walk_without_window(arguments, end, **session, times);
   const auto run = (*session)->stop();
+  times.write(**session);
   print_remarks(kCommand, (*session)->take_remarks());
   if (!run) return fail(kCommand, run.error().message);
   const LiveStatus status = (*session)->status();
-  if (!arguments.json) {
+  if (arguments.json) {
+    std::vector<ordered_json> summaries;
+    for (std::size_t i = 0; i < run->walkers.size(); ++i)
+      add_status(status, summaries.emplace_back(summary_json(*run, i)));
+    print_summaries_json(summaries);
+  } else {
     print_text(arguments, status, *run);
-    return 0;
   }
-  std::vector<ordered_json> summaries;
-  for (std::size_t i = 0; i < run->walkers.size(); ++i)
-    add_status(status, summaries.emplace_back(summary_json(*run, i)));
-  print_summaries_json(summaries);
-  return 0;
+  return status_of(arguments, status, *run);
 }
 
 // Pictures of a recording show its exact course, not how it would be played by the clock.
@@ -129,7 +176,7 @@ void take_default_cast(SessionSpec::Walk& walk) {
     walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
 }
 
-WindowOptions options_of_window(const PlayArguments& arguments, RunEnd& end, InputLines& input) {
+WindowOptions options_of_window(const PlayArguments& arguments, InputLines& input) {
   const bool has_end =
       arguments.window.frames > 0 || arguments.seconds > 0.0 || is_playback(arguments);
   WindowOptions options = window_options(arguments.window, has_end);
@@ -138,7 +185,6 @@ WindowOptions options_of_window(const PlayArguments& arguments, RunEnd& end, Inp
   if (is_playback(arguments)) options.session.replay.trace = arguments.spec.pad.wish.pad;
   if (makes_pictures(arguments.window) && options.frames == 0 && arguments.seconds > 0.0)
     options.frames = static_cast<int>(std::clamp(arguments.seconds * kPictureRateHz, 1.0, 1e8));
-  options.is_ended_from_outside = [&end] { return end.is_reached(); };
   if (arguments.takes_commands) options.take_commands = [&input] { return input.take_lines(); };
   return options;
 }
@@ -168,21 +214,26 @@ int run_with_window(const PlayArguments& arguments) {
   RunEnd end;
   InputLines input;
   if (!makes_pictures(arguments.window)) end.end_after(arguments.seconds);
-  const auto result = run_window(options_of_window(arguments, end, input));
-  if (!result) return fail(kCommand, result.error().message);
-  print_remarks(kCommand, result->remarks);
+  WindowResult result;
+  if (const int status = show_window(kCommand, options_of_window(arguments, input), end, result))
+    return status;
   if (arguments.json) {
-    print_window_json(*result);
-  } else if (result->status && !result->summary.walkers.empty()) {
-    print_text(arguments, *result->status, result->summary);
+    print_window_json(result);
+  } else if (result.status && !result.summary.walkers.empty()) {
+    print_text(arguments, *result.status, result.summary);
   }
-  return 0;
+  if (!result.status) return 0;
+  StatusLine line(2);
+  if (const PadWish& wish = arguments.spec.pad.wish; is_choosy(wish))
+    MissingPad(kCommand, wish).finish(result.status->pads.plugged, line);
+  return status_of(arguments, *result.status, result.summary);
 }
 
 #endif
 
 int run(PlayArguments& arguments) {
   arguments.spec.live.rumble = !arguments.no_rumble;
+  arguments.spec.live.report_times = !arguments.report_times.empty();
 #ifdef GAITPAD_HAS_WINDOW
   if (!arguments.no_window) return run_with_window(arguments);
 #endif
@@ -202,9 +253,23 @@ void add_play(CLI::App& app, int& status) {
                       "write the session to this file (.hid)");
   add_seconds_option(*command, arguments->seconds);
   command->add_flag("--no-rumble", arguments->no_rumble, "no beat at each heel strike");
+  command->add_flag("--forward", arguments->spec.live.forward,
+                    "a virtual pad has the calibrated sticks, for other programs (/dev/uinput)");
   command->add_flag("--commands", arguments->takes_commands,
                     "lines of standard input are commands, such as `style limp_left`");
+  auto* stream = command->add_option(
+      "--stream", arguments->spec.live.stream,
+      "send the poses to other programs: osc://HOST:PORT (VMC) or json://HOST:PORT; the n-th "
+      "character to the n-th port from there on (default: 127.0.0.1, 39539 or 39540)");
+  command
+      ->add_option("--stream-fps", arguments->spec.live.stream_fps, "poses a second (default: 60)")
+      ->check(CLI::Range(1, 1000))
+      ->needs(stream);
   add_session_options(*command, arguments->spec, std::to_string(kDefaultRateHz));
+  command
+      ->add_option("--report-times", arguments->report_times,
+                   "write when each report came, and when its tick began, to this file (.csv)")
+      ->needs(no_window);
   command->add_flag("--json", arguments->json, "the summary, for machines");
   for (CLI::Option* option : add_window_options(*command, arguments->window))
     option->excludes(no_window);

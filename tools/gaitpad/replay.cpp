@@ -3,10 +3,8 @@
 #include "gaitpad/replay.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -15,6 +13,7 @@
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
+#include "tools/gaitpad/replay_to.h"
 #include "tools/gaitpad/window_options.h"
 
 namespace gaitpad {
@@ -22,10 +21,12 @@ namespace {
 
 constexpr const char* kCommand = "replay";
 constexpr int kMaxCrowdFiles = 256;  // each takes three open files
+constexpr double kLong_s = 5.0;      // a longer replay says how fast it was
 
 struct ReplayArguments {
   SessionSpec spec;
   WindowArguments window;
+  ReplayTo to;
   bool json = false, is_lenient = false, view = false;
 };
 
@@ -42,43 +43,25 @@ void print_text(const SessionSpec::Replay& wanted, const RunSummary& run) {
   }
 }
 
-// How far a long replay is: a line on the terminal, and its speed at the end.
-class Progress {
- public:
-  void show(std::int64_t done, std::int64_t ticks) {
-    ticks_ = ticks;
-    const Clock::time_point now = Clock::now();
-    if (now < next_) return;
-    next_ = now + std::chrono::milliseconds(200);
-    const double seconds = std::chrono::duration<double>(now - start_).count();
-    line_.show(fmt::format("replay: {:.0f} % of {} ticks, {:.0f} ticks a second",
-                           100.0 * static_cast<double>(done) / static_cast<double>(ticks), ticks,
-                           static_cast<double>(done) / seconds));
-  }
-  void finish() {
-    line_.clear();
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    if (seconds < 5.0) return;
-    print_remarks(kCommand, {fmt::format("{} ticks in {:.1f} s, {:.0f} ticks a second", ticks_,
-                                         seconds, static_cast<double>(ticks_) / seconds)});
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  StatusLine line_{STDERR_FILENO};
-  std::int64_t ticks_ = 0;
-  Clock::time_point start_ = Clock::now(), next_ = start_ + std::chrono::seconds(1);
-};
-
 // The files and the summary.
 int run_through(const ReplayArguments& arguments) {
-  Progress progress;
-  const auto result = replay(arguments.spec, [&progress](std::int64_t done, std::int64_t ticks) {
-    progress.show(done, ticks);
+  RunEnd end;
+  Progress progress(kCommand);
+  const auto result = replay(arguments.spec, [&](std::int64_t done, std::int64_t ticks) {
+    progress.show(static_cast<double>(done) / static_cast<double>(ticks));
+    return !end.is_reached();
   });
-  progress.finish();
-  if (!result) return fail(kCommand, result.error().message);
+  progress.clear();
+  if (!result) {
+    const int status = fail(kCommand, result.error().message);
+    return end.cut_off_status() != 0 ? end.cut_off_status() : status;
+  }
   print_remarks(kCommand, result->remarks);
+  if (const double seconds = progress.seconds(); seconds >= kLong_s) {
+    const auto ticks = static_cast<double>(result->summary.ticks);
+    print_remarks(kCommand, {fmt::format("{:.0f} ticks in {:.1f} s, {:.0f} ticks a second", ticks,
+                                         seconds, ticks / seconds)});
+  }
   if (arguments.json) {
     std::vector<nlohmann::ordered_json> summaries;
     for (std::size_t i = 0; i < result->summary.walkers.size(); ++i)
@@ -96,11 +79,8 @@ int view(const ReplayArguments& arguments) {
   RunEnd end;
   WindowOptions options = window_options(arguments.window, true);
   options.session = arguments.spec;
-  options.is_ended_from_outside = [&end] { return end.is_reached(); };
-  const auto result = run_window(options);
-  if (!result) return fail(kCommand, result.error().message);
-  print_remarks(kCommand, result->remarks);
-  return 0;
+  WindowResult result;
+  return show_window(kCommand, options, end, result);
 }
 #else
 int view(const ReplayArguments&) { return fail(kCommand, missing_window()); }
@@ -108,6 +88,7 @@ int view(const ReplayArguments&) { return fail(kCommand, missing_window()); }
 
 int run(ReplayArguments& arguments) {
   arguments.spec.replay.damage = arguments.is_lenient ? Damage::skip : Damage::refuse;
+  if (!arguments.to.target.empty()) return replay_to(arguments.spec, arguments.to);
   if (!arguments.view) return run_through(arguments);
   const int status = view(arguments);
   const bool wants_result = !arguments.spec.replay.out.empty() || arguments.json;
@@ -142,7 +123,20 @@ void add_replay(CLI::App& app, int& status) {
                                       "open the window: a time line to scrub, any speed");
   for (CLI::Option* option : add_window_options(*command, arguments->window))
     option->needs(in_window);
-  command->add_flag("--json", arguments->json, "the summary, for machines");
+  auto* json = command->add_flag("--json", arguments->json, "the summary, for machines");
+  auto* to = command
+                 ->add_option("--to", arguments->to.target,
+                              "for other programs instead: in real time a calibrated pad (uinput) "
+                              "or the recorded devices (uhid), or a file of evemu (FILE.evemu)")
+                 ->check(target_problem)
+                 ->excludes(out)
+                 ->excludes(in_window)
+                 ->excludes(json);
+  command
+      ->add_option("--delay", arguments->to.delay_s,
+                   "seconds before the first report and after the last (default: 1)")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->needs(to);
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

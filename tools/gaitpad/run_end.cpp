@@ -67,8 +67,9 @@ void RunEnd::end_after(double seconds) noexcept {
 bool RunEnd::is_reached() noexcept {
   if (is_reached_) return true;
   signalfd_siginfo info = {};
-  is_reached_ = ::read(signals_.get(), &info, sizeof info) == sizeof info ||
-                (end_ns_ != 0 && now_ns() >= end_ns_);
+  if (::read(signals_.get(), &info, sizeof info) == sizeof info)
+    signal_ = static_cast<int>(info.ssi_signo);
+  is_reached_ = signal_ != 0 || (end_ns_ != 0 && now_ns() >= end_ns_);
   if (is_reached_) allow_ending_at_once();
   return is_reached_;
 }
@@ -135,6 +136,23 @@ void StatusLine::clear() {
   if (shown_ == 0) return;
   write_all(shown_ > 1 ? fmt::format("\033[{}A\r\033[J", shown_ - 1) : "\r\033[J");
   shown_ = 0;
+}
+
+double Progress::seconds() const { return static_cast<double>(now_ns() - start_ns_) / 1e9; }
+
+void Progress::show(double share) {
+  constexpr std::int64_t kBetween_ns = 200'000'000;
+  const std::int64_t time_ns = now_ns();
+  if (time_ns < next_ns_) return;
+  next_ns_ = time_ns + kBetween_ns;
+  const double done = std::clamp(share, 0.0, 1.0);
+  std::string text = fmt::format("{}: {:.0f} %", work_, 100.0 * done);
+  if (done > 0.0) {
+    const auto left = static_cast<int>(std::min(seconds() * (1.0 / done - 1.0), 360'000.0) + 0.5);
+    text += left < 60 ? fmt::format(", {} s left", left)
+                      : fmt::format(", {} min {} s left", left / 60, left % 60);
+  }
+  line_.show(text);
 }
 
 }  // namespace gaitpad

@@ -23,12 +23,15 @@ class RunEnd {
   RunEnd();
   void end_after(double seconds) noexcept;  // from now on; 0: only signals end
   bool is_reached() noexcept;
+  // Of a command that was cut off: 128 and the signal that ended it, as shells count; 0: none has.
+  int cut_off_status() const noexcept { return signal_ == 0 ? 0 : 128 + signal_; }
   // Sleeps until the end, until one of `others` is ready, or for `time`.
   void wait(std::chrono::milliseconds time, std::span<const pollfd> others = {});
 
  private:
   OwnedFd signals_;
   bool is_reached_ = false;
+  int signal_ = 0;
   std::int64_t end_ns_ = 0;  // 0: none
 };
 
@@ -59,6 +62,20 @@ class StatusLine {
   int file_;
   bool is_terminal_;
   std::size_t shown_ = 0;  // lines
+};
+
+// How far long work is: percent and the time that is left, on a terminal, from two seconds on.
+class Progress {
+ public:
+  explicit Progress(std::string_view work) : work_(work) {}
+  void show(double share);  // 0 .. 1 of the work is done
+  void clear() { line_.clear(); }
+  double seconds() const;  // since the work began
+
+ private:
+  std::string work_;
+  StatusLine line_{2};
+  std::int64_t start_ns_ = now_ns(), next_ns_ = start_ns_ + 2'000'000'000;
 };
 
 }  // namespace gaitpad

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "gaitpad/config_files.h"
 #include "pads/calibration_store.h"
 #include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
 
 namespace gaitpad {
 
@@ -79,6 +81,8 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
           ->delimiter(',')
           ->expected(2)
           ->check(CLI::Range(-kMostTurn_deg, kMostTurn_deg)),
+      command.add_flag("--clean", arguments.is_clean,
+                       "the scene alone, without tool bar, time line, panels and status line"),
   };
 }
 
@@ -98,6 +102,8 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
   }
   options.hidden = arguments.hidden;
   options.camera_deg = arguments.camera_deg;
+  options.is_clean = arguments.is_clean;
+  options.program = "gaitpad " GAITPAD_VERSION;
   options.calibration_folder = user_calibration_folder();
   // Somebody who asks SDL for a video driver gets that one.
   const char* driver = std::getenv("SDL_VIDEODRIVER");
@@ -108,6 +114,19 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
   options.layout_file = folder + "/window.toml";
   options.recent_file = folder + "/recent";
   return options;
+}
+
+int show_window(std::string_view command, WindowOptions options, RunEnd& end,
+                WindowResult& result) {
+  Progress progress(command);
+  options.is_ended_from_outside = [&end] { return end.is_reached(); };
+  options.show_progress = [&progress](double share) { progress.show(share); };
+  auto shown = run_window(options);
+  progress.clear();
+  if (!shown) return fail(command, shown.error().message);
+  result = std::move(*shown);
+  print_remarks(command, result.remarks);
+  return result.is_cut_off ? end.cut_off_status() : 0;
 }
 
 #else
@@ -124,6 +143,7 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
       command.add_option("--panels", arguments.panels, help),
       command.add_option("--hide", arguments.hidden, help),
       command.add_option("--camera", arguments.camera_deg, help),
+      command.add_flag("--clean", arguments.is_clean, help),
   };
   for (CLI::Option* option : options) option->check(never);
   return options;

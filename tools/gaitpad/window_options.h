@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/gaitpad/run_end.h"
 #ifdef GAITPAD_HAS_WINDOW
 #include "view/window.h"
 #endif
@@ -17,6 +18,7 @@ struct WindowArguments {
   std::vector<std::string> panels, hidden;
   std::vector<double> camera_deg;
   double scale = 0.0;
+  bool is_clean = false;
 };
 // Returns the options that were added, for further rules.
 std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments& arguments);
@@ -24,6 +26,10 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
 bool makes_pictures(const WindowArguments& arguments);
 
 #ifdef GAITPAD_HAS_WINDOW
+// Runs the window until its own end or the user's, who sees on a terminal how far pictures are, and
+// prints what it remarks. Returns the exit status; `result` is the window's if there was one.
+int show_window(std::string_view command, WindowOptions options, RunEnd& end, WindowResult& result);
+
 // `has_end`: the window closes by itself, so nobody needs to see it while it makes pictures.
 // Pictures are the same for everybody: what the window remembers from its last start does not count
 // for them.

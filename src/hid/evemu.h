@@ -1,0 +1,25 @@
+// Recordings of evemu (`# EVEMU 1.x`, written by evemu-record and played by evemu-play): an evdev
+// node and its events. Reading one makes it a trace of the evdev driver; writing one gives the
+// events that the kernel makes of a pad's reports. The format: evemu's README and evemu-record(1).
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "gaitpad/result.h"
+#include "gaitpad/trace.h"
+
+namespace gaitpad {
+
+bool is_evemu(std::string_view text) noexcept;
+
+// evemu keeps no state from before the first event: an axis has the value of its first event until
+// then, or stands in its middle if it has none; no key is pressed. `name` stands for the path in
+// errors.
+Result<Trace> parse_evemu(std::string_view text, const std::string& name, Damage damage);
+
+// The first pad of the trace. Fields whose usages the kernel gives no code are left out, and so are
+// commands. An unplugged pad goes back to where its first report had it. Error: none of the devices
+// is a pad.
+Result<std::string> evemu_text(const Trace& trace);
+
+}  // namespace gaitpad

@@ -1,0 +1,183 @@
+#include "view/tooltips.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "base/text.h"
+#include "view/controls.h"
+
+namespace gaitpad {
+namespace {
+
+struct Tip {
+  std::string_view name;
+  std::string_view text;
+};
+
+// Items by their whole name.
+constexpr Tip kTips[] = {
+    {"play", "Pause or continue the session."},
+    {"timeline play", "Pause or continue."},
+    {"timeline step", "Go on by one tick."},
+    {"timeline", "Drag to go to any moment. The marks are commands and plugging."},
+    {"to begin", "Back to the first tick."},
+    {"loop", "Begin again at the end."},
+    {"pace", "How fast the recording plays."},
+    {"leave playback", "Leave the recording and walk with the pad or the keyboard again."},
+    {"record", "Start again and record everything that is done into a new .hid file; again: stop."},
+    {"open", "Open a motion, recording, style, character, terrain or calibration."},
+    {"calibrate", "Measure the sticks of the pad and keep the result for it."},
+    {"help", "All keys and pad buttons."},
+    {"view", "What is shown, the theme, the size of type, the ground."},
+    {"menu", "More buttons, for which the window is too narrow."},
+    {"trails", "The paths of the heels over the last steps."},
+    {"source", "The motion that the walk is made of, as a stick figure."},
+    {"grid", "Lines every metre and every 20 cm."},
+    {"shadows", "Shadows on the ground."},
+    {"names", "Names above heads."},
+    {"theme", "Dark or light."},
+    {"type smaller", "Smaller type."},
+    {"type larger", "Larger type."},
+    {"next terrain", "Another ground. The walk starts again on it."},
+    {"reset camera", "The camera as at the start."},
+    {"walker all", "Select all characters: styles and sliders then change every one."},
+    {"dismiss", "Close these messages."},
+    {"close help", "Close this page."},
+    {"leg left", "Show the left leg."},
+    {"leg right", "Show the right leg."},
+    {"rumble", "Let the motors of the pad beat once."},
+    {"give back all", "Let the stick and the style set all values again."},
+    {"save style", "Keep these values as a style of yours, to be used at once."},
+    {"style name", "Letters, digits, blanks, _ and -."},
+    {"own all", "Undo every change of this style."},
+    {"axis weights", "Show the weight of each axis of a joint."},
+    {"upper body", "Show the sliders of trunk, head, arms, hands, tiring and blending."},
+    {"browser path", "A file or a folder; Enter opens it."},
+    {"browser up", "The folder above."},
+    {"browser open", "Open the selected file."},
+    {"browser cancel", "Close without opening anything."},
+    {"browser home", "Your home folder."},
+    {"calibration skip", "Go on to the next step."},
+    {"calibration repeat", "Measure this step again."},
+    {"calibration back", "The step before."},
+    {"calibration save", "Keep the calibration for this pad."},
+    {"calibration test", "Test every control, driver and motor of this pad, step by step."},
+    {"self test yes", "It did what was asked."},
+    {"self test no", "It did something else."},
+    {"self test next", "Go on: this pad has no such control."},
+    {"self test give up", "Leave the test."},
+    {"calibration give up", "Leave without keeping anything."},
+    {"graph hip", "Flexion of the hip over the last two cycles, of each character."},
+    {"graph knee", "Flexion of the knee over the last two cycles, of each character."},
+    {"graph ankle", "Dorsiflexion of the ankle over the last two cycles, of each character."},
+    {"graph heel", "Height of both heels above the ground, with lift, peak and landing."},
+    {"graph stages", "When each foot flies and rolls, and which points stand on the ground."},
+    {"graph iterations", "How many steps the solver took in each tick."},
+    {"graph error", "How far the solved point is from its goal."},
+    {"graph ticks", "How long each tick took."},
+    {"graph waits", "How long reports waited for the tick that used them."},
+    {"pad picture", "The pad: what is pressed is lit, the sticks lean as they are pushed."},
+    {"pad stick left", "Orange: as the pad reports it. Blue: calibrated, as the walk uses it."},
+    {"pad stick right", "Orange: as the pad reports it. Blue: calibrated. It turns the camera."},
+};
+
+// Items whose name begins like this.
+constexpr Tip kBeginnings[] = {
+    {"close ", "Close this panel."},
+    {"walker ", "Select this character: styles and sliders then change it alone."},
+    {"give back ", "Let the stick and the style set this value again."},
+    {"own ", "The value of the style as it was loaded."},
+    {"style slider ", ""},  // by its key
+    {"slider ", ""},
+    {"style ", "Walk like this. The change blends in over the style's time."},
+    {"pace ", "How fast the recording plays."},
+    {"browser recent ", "Opened before."},
+    {"browser bundled ", "Comes with gaitpad."},
+    {"browser filter ", "Which files are listed."},
+    {"browser entry ", "Double click opens it."},
+    {"help ", "What this key does."},
+};
+
+// Keys that do not explain themselves, and what a slider of theirs does.
+struct KeyWords {
+  std::string_view key, words, text;
+};
+constexpr KeyWords kKeys[] = {
+    {"speed_m_s", "speed", "How fast it walks, in metres a second."},
+    {"stride_left_m", "stride", "Length of the left foot's step, in metres."},
+    {"stride_right_m", "stride", "Length of the right foot's step, in metres."},
+    {"flight_left", "flight height", "How high the left foot is lifted; 1 as in the motion."},
+    {"flight_right", "flight height", "How high the right foot is lifted; 1 as in the motion."},
+    {"turn_rate_rad_s", "turn rate", "How fast it turns, to the left above 0."},
+    {"hip_sway", "hip sway", "How far the hips move sideways; 1 as in the motion."},
+    {"hip_bounce", "hip bounce", "How far the hips move up and down; 1 as in the motion."},
+    {"fatigue", "fatigue", "0 fresh, 1 exhausted: shortens and slows each step."},
+    {"blend_s", "blending, s", "How long a change of style takes, in seconds."},
+    {"fatigue_model.per_100_m", "tiring per 100 m", "How much fatigue 100 metres add."},
+    {"fatigue_model.recovery_per_s", "recovery per s", "How much fatigue a second of rest takes."},
+    {"stride_length", "stride length", "Factor on the length of this foot's step."},
+    {"stride_speed", "stride speed", "Factor on the speed of this foot's step."},
+    {"flight_height", "flight height", "Factor on the height of this foot's step."},
+};
+
+const KeyWords* find_key(std::string_view key) {
+  const auto found = std::ranges::find(kKeys, key, &KeyWords::key);
+  return found == std::end(kKeys) ? nullptr : &*found;
+}
+
+std::string tip_of_key(std::string_view key) {
+  if (const KeyWords* known = find_key(key)) return std::string(known->text);
+  const std::string words = words_of_key(key);
+  const bool is_weight = key.find("weight.") != std::string_view::npos;
+  return words + (is_weight ? ": 1 moves freely, 0 is locked." : ".");
+}
+
+// The key of an action, for what a button and a key both do.
+std::string with_key(std::string text, const ActionInfo& info) {
+  for (const Chord& chord : chords()) {
+    if (chord.action == info.action) return fmt::format("{}  ({})", text, chord.name);
+  }
+  if (info.key == SDLK_UNKNOWN) return text;
+  return fmt::format("{}  ({})", text, key_name(info.key));
+}
+
+}  // namespace
+
+std::string words_of_key(std::string_view key) {
+  if (const KeyWords* known = find_key(key)) return std::string(known->words);
+  std::string_view rest = key;
+  std::string_view table = key.find('.') == std::string_view::npos ? "" : take_part(rest, '.');
+  constexpr std::string_view kWeight = "weight.";
+  const bool is_weight = rest.starts_with(kWeight);
+  if (is_weight) rest.remove_prefix(kWeight.size());
+  const KeyWords* part = find_key(rest);
+  std::string words = table.empty() ? "" : std::string(table) + " ";
+  words += part != nullptr ? std::string(part->words) : std::string(rest);
+  if (is_weight) words += " weight";
+  std::ranges::replace(words, '_', ' ');
+  std::ranges::replace(words, '.', ' ');
+  return words;
+}
+
+std::string tooltip_of(std::string_view item) {
+  for (const ActionInfo& info : actions()) {
+    // A panel's button, or one that is called like its action.
+    const bool is_panel = item.starts_with("panel ") && info.name.ends_with(" panel") &&
+                          item.substr(6) == info.name.substr(0, info.name.size() - 6);
+    if (is_panel) return with_key(fmt::format("Open or close the panel {}.", item.substr(6)), info);
+    if (item != info.name) continue;
+    const auto known = std::ranges::find(kTips, item, &Tip::name);
+    if (known != std::end(kTips)) return with_key(std::string(known->text), info);
+  }
+  if (const auto known = std::ranges::find(kTips, item, &Tip::name); known != std::end(kTips))
+    return std::string(known->text);
+  for (const Tip& tip : kBeginnings) {
+    if (!item.starts_with(tip.name)) continue;
+    return tip.text.empty() ? tip_of_key(item.substr(tip.name.size())) : std::string(tip.text);
+  }
+  return {};
+}
+
+}  // namespace gaitpad

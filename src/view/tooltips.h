@@ -1,0 +1,14 @@
+// What the window says about a button, a slider or a graph under the pointer.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace gaitpad {
+
+// For an item of ui_items(), by its name; empty if nothing is known of it.
+std::string tooltip_of(std::string_view item);
+
+// A style's key or a gait parameter in words: "fatigue_model.per_100_m" is "tiring per 100 m".
+std::string words_of_key(std::string_view key);
+
+}  // namespace gaitpad

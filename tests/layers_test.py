@@ -12,7 +12,7 @@ LIBRARIES = {
     "files": ["src/files"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
-    "program": ["src/draw", "src/view", "src/paper"],
+    "program": ["src/draw", "src/view", "src/paper", "src/check"],
 }
 # room: (rooms of its own library that it may include, vendor headers)
 ROOMS = {
@@ -32,6 +32,7 @@ ROOMS = {
     "src/draw": ([], ["fmt/", "cairo/"]),
     "src/view": (["draw"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
     "src/paper": (["draw"], ["fmt/", "cairo/", "nlohmann/"]),
+    "src/check": ([], ["fmt/"]),
 }
 # The public headers, src/include/gaitpad/NAME.h, by the room whose functions they declare.
 PUBLIC = {
@@ -50,7 +51,12 @@ PUBLIC = {
 # What further headers of a vendor single files may include, and nobody else.
 DRIVER_VENDORS = {
     "src/files/height_picture.cpp": ["png.h"],
+    "src/check/pose_track.cpp": ["zlib.h"],
     "src/strides/stride_solver.cpp": ["Eigen/"],
+    "src/session/pose_stream.cpp": ["lo/"],
+    "drivers/virtual_pad.cpp": ["linux/"],
+    "drivers/evdev_virtual_pad.cpp": ["libevdev"],
+    "drivers/uhid_device.cpp": ["linux/"],
     "drivers/hidraw_driver.cpp": ["hidapi", "linux/"],
     "drivers/usb_driver.cpp": ["libusb"],
     "drivers/usb_transfers.h": ["libusb"],
@@ -65,7 +71,7 @@ DRIVER_VENDORS = {
 }
 TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/", "benchmark/"]
 SYSTEM_HEADERS = ("sys/", "unistd.h", "fcntl.h", "dirent.h", "errno.h", "poll.h", "signal.h",
-                  "pthread.h", "sched.h", "spawn.h", "termios.h", "time.h", "pwd.h", "grp.h")
+                  "pthread.h", "sched.h", "spawn.h", "termios.h", "time.h", "pwd.h", "grp.h", "netdb.h")
 C_PROGRAM = "tools/rig/pad_"  # the virtual pads: a C program that includes nothing of ours
 EXAMPLES = "tools/examples/"  # programs of other people: they include what is installed
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')

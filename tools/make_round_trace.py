@@ -3,6 +3,7 @@
 
 Stand, walk on, a curve to the left and one to the right, limp for a while (a command), stop. The pad
 sends a report when something has changed, at most every 8 ms. Usage: make_round_trace.py > round.hid
+--plain writes config/traces/walk.hid: the same stick without commands.
 """
 import math
 import pathlib
@@ -64,8 +65,12 @@ def report_at(t):
 
 
 def main():
-    lines = [f"V: 1 rate_hz={RATE_HZ}\n", traces.device(DESCRIPTOR, "Example Walk Pad")]
-    commands = list(COMMANDS)
+    is_plain = "--plain" in sys.argv[1:]
+    lines = [f"V: 1 rate_hz={RATE_HZ}\n"]
+    if is_plain:
+        lines.append("# A walk of twenty seconds without commands: characters keep the styles that were chosen.\n")
+    lines.append(traces.device(DESCRIPTOR, "Example Walk Pad"))
+    commands = [] if is_plain else list(COMMANDS)
     last = None
     for us in range(0, END_S * 1_000_000, PERIOD_US):
         while commands and commands[0][0] * 1_000_000 <= us:

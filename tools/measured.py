@@ -26,6 +26,8 @@ import textwrap
 import paper_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tools" / "rig")]
+from more_kinds import MORE  # noqa: E402
 STORE, PAGE = ROOT / "docs" / "measured.json", ROOT / "docs" / "measured.md"
 MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_006_01_iclone")
 PYTHON = "/usr/bin/python3"
@@ -215,13 +217,14 @@ def measure_bench(options, text=None):
     add("characters_styled", "four characters with styles, each")
     add("characters_styled", "the same over four even ones", "ratio")
     add("step", "four characters with the session around them, each", characters=4)
-    for width in (8, 4, 2):
+    for width in (8, 4, 2, 1):
         add("crowd", f"crowd of 1,000 in {width} lanes, each", characters=1000, width=width)
         add("crowd", "the same over bare playback", "ratio", characters=1000, width=width)
     for size in (10000, 100000):
         add("crowd", f"crowd of {size:,}, each", characters=size, width=widest)
         if any(b["characters"] == size and "growth" in b for b in found):
             add("crowd", "the same over the crowd of 1,000", "growth", characters=size, width=widest)
+    add("crowd_memory", "limit by memory: state and pose of one of 100,000 moved, nothing computed", characters=100000)
     add("crowd_all_cores", "crowd of 10,000 on all cores, each", characters=10000)
     add("load_built_in", "loading the built-in motion the first time")
     add("load_clip", "loading a clip the first time")
@@ -241,6 +244,11 @@ def measure_window(options, text=None):
         row("lateness of a tick, median", s["late_us_median"], "", "us"),
         row("a tick, median", s["tick_us_median"], "", "us"),
     ]
+    if s.get("frame_us_p99"):
+        frame_us = 1e6 / s["frames_per_second"]
+        rows += [row("stick to frame, median", s["frame_us_p50"] / 1000.0,
+                     f"<= {frame_us / 1000.0 + 5:.1f}: a frame and 5 ms", "ms"),
+                 row("stick to frame, 99th percentile", s["frame_us_p99"] / 1000.0, "", "ms")]
     if "frames_per_second" in s:
         rows.append(row("frames drawn", s["frames_per_second"], ">= 20", "per second"))
     if (folder / "control.json").exists():
@@ -250,23 +258,55 @@ def measure_window(options, text=None):
     return {"rows": rows, "runs": s["ticks"], "time_policy": s["time_policy"]}
 
 
+RATES_HZ = (240, 250, 500, 1000)
+FRAMES_S = 20
+
+
+def measure_frames(options, text=None):
+    """Four characters in the window at each rate; `text`: the summaries of such runs, a list."""
+    if text is None:
+        program, runs = needed(options.build / "gaitpad"), []
+        display = () if os.environ.get("DISPLAY") else ("env", "SDL_VIDEODRIVER=offscreen")
+        with tempfile.TemporaryDirectory() as folder:
+            trace = pathlib.Path(folder) / "long.hid"
+            output_of(PYTHON, "tools/long_trace.py", "config/traces/round.hid", trace, FRAMES_S + 10)
+            for rate_hz in RATES_HZ:
+                runs.append(json.loads(output_of(*display, program, "play", trace, "--rate", rate_hz,
+                                                 "--seconds", FRAMES_S, "--json")))
+        text = json.dumps(runs)
+    keys = ("rate_hz", "frames_per_second", "wait_us_median", "frame_us_p50", "frame_us_p99")
+    return {"rates": [{key: (run[0] if isinstance(run, list) else run)[key] for key in keys}
+                      for run in json.loads(text)]}
+
+
 DRIVERS = ("hidraw", "evdev", "usb", "sdl")
 KINDS = {"generic": "generic HID pad, by its descriptor alone", "ds4": "DualShock 4",
          "dualsense": "DualSense", "switch": "Switch Pro Controller", "xbox360": "Xbox 360, wired",
-         "xboxone": "Xbox One S, wired"}
+         "xboxone": "Xbox One S, wired"} | {name: kind.name for name, kind in MORE.items()}
+BLUETOOTH = {"ds4_bt": "DualShock 4, Bluetooth", "dualsense_bt": "DualSense, Bluetooth",
+             "xbox_bt": "Xbox Wireless Controller, Bluetooth", "switch": "Switch Pro Controller, Bluetooth",
+             "joycons": "a pair of Joy-Cons as one pad, Bluetooth"}
 
 
 def measure_pads(options, text=None):
     text = text or needed(options.rig / "remarks").read_text()
     served = set(re.findall(r"^([a-z0-9]+)-([a-z]+): \d+ reports, pose hash", text, re.M))
     felt = set(re.findall(r"^rumble, ([a-z0-9]+)-([a-z]+):", text, re.M))
+    linked = set(re.findall(r"^bluetooth, ([a-z0-9_]+)-([a-z]+): \d+ reports", text, re.M))
+    found_again = set(re.findall(r"^bluetooth, ([a-z0-9_]+)-([a-z]+): a lost link", text, re.M))
     cells = {}
     for kind in KINDS:
         for driver in DRIVERS:
             cell = "yes" if (kind, driver) in served else "not measured"
-            if kind.startswith("xbox") and driver == "hidraw":
-                cell = "no such node"
+            if kind in MORE and driver not in MORE[kind].drivers:
+                cell = "-"
+            if kind in ("xbox360", "xboxone") and driver == "hidraw":
+                cell = "-"
             cells[f"{kind}-{driver}"] = cell + (", R" if (kind, driver) in felt else "")
+    for kind in BLUETOOTH:
+        for driver in DRIVERS:
+            cell = "yes" if (kind, driver) in linked else "-" if driver == "usb" else "not measured"
+            cells[f"bluetooth-{kind}-{driver}"] = cell + (", L" if (kind, driver) in found_again else "")
     return {"cells": cells}
 
 
@@ -389,8 +429,20 @@ def kept_table(section):
 
 def pads_table(section):
     return table(["", *(f"`{d}`" for d in DRIVERS)],
-                 [[label, *(section["cells"][f"{kind}-{d}"] for d in DRIVERS)]
-                  for kind, label in KINDS.items()])
+                 [[label, *(section["cells"].get(f"{kind}-{d}", "not measured") for d in DRIVERS)]
+                  for kind, label in (KINDS | {f"bluetooth-{kind}": label
+                                               for kind, label in BLUETOOTH.items()}).items()])
+
+
+def frames_table(section):
+    def ms(us):
+        return f"{us / 1000:.1f} ms"
+
+    return table(["ticks", "a frame", "report to tick, median", "stick to frame, median",
+                  "99th percentile", "a frame and 5 ms"],
+                 [[f"{r['rate_hz']} Hz", ms(1e6 / r["frames_per_second"]), ms(r["wait_us_median"]),
+                   ms(r["frame_us_p50"]), ms(r["frame_us_p99"]),
+                   ms(1e6 / r["frames_per_second"] + 5000)] for r in section["rates"]])
 
 
 WAYS = {"bare_hidraw": "bare `poll` + `read` of the hidraw node",
@@ -399,14 +451,22 @@ WAYS = {"bare_hidraw": "bare `poll` + `read` of the hidraw node",
 
 
 def latency_table(section):
-    columns = ("median_us", "p99_us", "over_bare_us", "to_tick_median_us", "to_tick_p99_us")
+    def ms(text, unit=" ms"):
+        return f"{float(text) / 1000:.1f}{unit}" if text not in ("", None) else "-"
 
-    def ms(text):
-        return f"{float(text) / 1000:.2f} ms" if text not in ("", None) else "-"
+    def spread(way, start):
+        median = way.get(f"{start}median_us")
+        if median in ("", None):
+            return "-"
+        if f"{start}q1_us" not in way:  # measured before the quartiles were kept
+            return ms(median)
+        low, high = (ms(way[f"{start}{q}_us"], "") for q in ("q1", "q3"))
+        return f"{ms(median)} ({low} to {high})"
 
-    return table(["way", "median", "99th percentile", "over the bare read", "to the tick: median",
-                  "99th percentile"],
-                 [[WAYS.get(w["way"], f"`{w['way']}` driver"), *(ms(w[c]) for c in columns)]
+    return table(["way", "to the program", "99th percentile", "over the bare read",
+                  "to the tick's begin", "99th percentile"],
+                 [[WAYS.get(w["way"], f"`{w['way']}` driver"), spread(w, ""), ms(w["p99_us"]),
+                   ms(w["over_bare_us"]), spread(w, "to_tick_"), ms(w["to_tick_p99_us"])]
                   for w in section["ways"]])
 
 
@@ -469,17 +529,23 @@ has its strides in the cache.""",
 software (llvmpipe, one drawing thread) on two cores, with the loop under `SCHED_FIFO`. The
 machine was a virtual one that others used at the same time. The bound on late ticks is not judged
 where the host takes processor time away (`steal`).""", ""),
+    "frames": (measure_frames, frames_table, "From the stick to the frame", True, """\
+`build/gaitpad play TRACE --rate HZ` with four characters in the window, drawn by software: from
+each report's stamp to the hand-over of the first frame that shows it.""", """\
+It is half a frame, the time of drawing, and the wait for the tick. With a graphics card drawing
+takes a few milliseconds, and the frame begins so late that it is ready just before the refresh."""),
     "pads": (measure_pads, pads_table, "Pads and drivers", True, """\
 `bash tools/rig.sh` boots a current Debian kernel in QEMU, plugs virtual USB pads into it and runs
 the program there ([rig.md](rig.md)). For each cell it lists the pad, decodes every stick, trigger
 and button as sent, records the session, and replays the recording to the session's `pose_hash`.
 **R**: the pad also received the rumble of the heel strikes, weak at slow and strong at fast
-walking, and each stop.""", """\
-The kernel is real, the pads are not: no physical pad has been through these tests. DualShock 4,
-DualSense and Xbox pad are also tested as they are over Bluetooth (through uhid, without a radio):
-`hidraw`, `evdev` and `sdl` decode them, and rumble leaves with its checksum."""),
+walking, and each stop. The last rows are pads behind the kernel's own Bluetooth stack, between
+virtual controllers without a radio; **L**: the link was also lost, noticed and found again. A dash:
+there is no such way to that pad.""", """\
+The kernel is real, the pads are not: no physical pad has been through these tests."""),
     "latency": (measure_latency, latency_table, "Latency", True, """\
-From the pad's write to the program, and to the tick that uses it, in that virtual machine. It
+From the pad's write to `gaitpad play`, on its own threads, and to the begin of the tick that uses
+the report, in that virtual machine: the median, and from the first to the third quartile. It
 compares the ways with each other and is no figure of your PC.""", """\
 A generic pad, 250 reports a second. The blocks of 200 reports of each driver alternate with those
 of the bare read, and `over` is the median of the differences block by block. A tick comes every

@@ -3,7 +3,7 @@
 # each time. FOLDER is docs by default. One of them needs captured motions, which are no part of this repository.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-bash "$root/tools/install.sh" fonts-inter
+bash "$root/tools/install.sh" fonts-inter ffmpeg
 bash "$root/tools/build.sh" "$root/build" gaitpad -DCMAKE_BUILD_TYPE=Release
 folder=${1:-$root/docs}
 gaitpad=$root/build/gaitpad
@@ -15,13 +15,22 @@ unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG
   --style even --style stiff_hip --style stiff_knee --style limp_left \
   --screenshot "$folder/window.png"
 
+# The window, moving: four seconds of it, in 96 colours.
+films=$(mktemp -d)
+trap 'rm -rf "$films"' EXIT
+"$gaitpad" replay "$root/config/traces/walk.hid" --view --frames 460 --theme dark \
+  --style even --style stiff_hip --style stiff_knee --style limp_left --video "$films/window.mp4"
+ffmpeg -loglevel error -y -ss 3.6 -t 4 -i "$films/window.mp4" -vf \
+  "fps=10,scale=880:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse=dither=none" \
+  "$folder/window.gif"
+
 # An injured left leg beside a sound walk, alone in the window.
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 330 --theme light --panels none \
   --style even --style limp_left --screenshot "$folder/limp.png"
 
-# Up the stairs, from the side.
-"$gaitpad" replay "$root/config/traces/round.hid" --view --frames 330 --theme light --panels none \
-  --terrain stairs --camera 82,5 --hide source,names --style even --screenshot "$folder/stairs.png"
+# Up the stairs, from where the camera sees the risers.
+"$gaitpad" replay "$root/config/traces/walk.hid" --view --frames 330 --theme light --clean \
+  --terrain stairs --style even --screenshot "$folder/stairs.png"
 
 # Why it limps: joint angles, heights, stages; what the solver needs.
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 420 --theme dark \
@@ -36,8 +45,7 @@ unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG
   --styles even,limp_left >/dev/null
 
 # Figure 5a of the paper, in 64 colours.
-figures=$(mktemp -d)
-trap 'rm -rf "$figures"' EXIT
+figures=$films/figures
 "$gaitpad" figures --out "$figures" >/dev/null
 /usr/bin/python3 -c 'import sys; from PIL import Image
 Image.open(sys.argv[1]).convert("RGB").quantize(64).save(sys.argv[2], optimize=True)' \

@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <deque>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -13,6 +14,8 @@
 #include "gaitpad/keyboard.h"
 #include "pads/realtime.h"
 #include "session/live_loop.h"
+#include "session/pad_forward.h"
+#include "session/pose_stream.h"
 #include "session/recording.h"
 
 namespace gaitpad {
@@ -26,6 +29,7 @@ struct LiveSession::Prepared {
   Cast cast;
   Script script;
   PadFiles pad_files;
+  std::unique_ptr<PoseStream> stream;  // may be null
 };
 
 struct LiveSession::Impl {
@@ -35,7 +39,9 @@ struct LiveSession::Impl {
         pace(prepared.pace),
         simulation(std::move(prepared.simulation)),
         cast(std::move(prepared.cast)),
-        script(std::move(prepared.script)) {}
+        script(std::move(prepared.script)),
+        styles(simulation.styles()),
+        stream(std::move(prepared.stream)) {}
 
   bool is_by_hand() const { return spec.live.clock == SessionSpec::Live::Clock::by_hand; }
   std::optional<Error> open_recording();
@@ -52,6 +58,11 @@ struct LiveSession::Impl {
   Simulation simulation;
   Cast cast;
   Script script;
+  std::vector<Style> styles;  // that commands may name; the viewing thread's
+  // Lists that the loop has taken over or has given back: never freed on its thread.
+  std::deque<std::shared_ptr<const std::vector<Style>>> style_lists;
+  std::unique_ptr<PoseStream> stream;       // may be null
+  std::unique_ptr<PadForward> forward;      // may be null
   std::shared_ptr<KeyboardStick> keyboard;  // may be null
   std::unique_ptr<PadStream> pads;
   std::unique_ptr<Recording> recording;
@@ -79,8 +90,12 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 }
 
 void LiveSession::Impl::start_loop() {
-  loop = std::make_unique<LiveLoop>(LiveLoop::Options{rate_hz, spec.live.rumble}, script,
-                                    simulation, *pads, recording.get());
+  const LiveLoop::Options options = {rate_hz, spec.live.rumble, spec.live.report_times,
+                                     stream ? &stream->newest() : nullptr,
+                                     forward ? &forward->newest() : nullptr};
+  loop = std::make_unique<LiveLoop>(options, script, simulation, *pads, recording.get());
+  if (stream) stream->start();
+  if (forward) forward->start();
   if (is_by_hand()) {
     time_policy = "by hand";
     loop->begin();
@@ -111,6 +126,8 @@ void LiveSession::Impl::stop_loop() {
     thread.join();
   }
   if (is_memory_locked) unlock_memory();
+  if (stream) stream->stop();
+  if (forward) forward->stop();
   const std::lock_guard lock(mutex);
   final = pads->counts();
 }
@@ -168,9 +185,15 @@ Result<std::shared_ptr<LiveSession::Prepared>> LiveSession::prepare(const Sessio
   auto script = script_for(*simulation, spec.walk.script);
   if (!script) return script.error();
   Cast cast = cast_of(*simulation, *config);
+  std::unique_ptr<PoseStream> stream;
+  if (!spec.live.stream.empty()) {
+    auto opened = PoseStream::open(spec.live.stream, spec.live.stream_fps, cast);
+    if (!opened) return opened.error();
+    stream = std::move(*opened);
+  }
   return std::make_shared<Prepared>(Prepared{spec, rate_hz, config->pace, std::move(*simulation),
-                                             std::move(cast), std::move(*script),
-                                             std::move(*files)});
+                                             std::move(cast), std::move(*script), std::move(*files),
+                                             std::move(stream)});
 }
 
 Result<std::unique_ptr<LiveSession>> LiveSession::start(const std::shared_ptr<Prepared>& prepared) {
@@ -181,6 +204,12 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const std::shared_ptr<Pr
   auto pads = PadStream::start({std::move(prepared->pad_files), impl.spec.pad.wish, impl.keyboard});
   if (!pads) return pads.error();
   impl.pads = std::move(*pads);
+  if (impl.spec.live.forward) {
+    auto forward = PadForward::open();
+    if (!forward) return forward.error();
+    impl.forward = std::move(*forward);
+    impl.remarks.push_back("other programs see the pad calibrated as " + impl.forward->node());
+  }
   if (auto problem = impl.open_recording()) return *problem;
   impl.start_loop();
   return live;
@@ -204,6 +233,13 @@ const SessionFrame& LiveSession::latest(bool& is_new) noexcept {
   return impl_->loop->latest(is_new);
 }
 
+bool LiveSession::take_report_time(ReportTime& time) noexcept {
+  return impl_->loop->take_report_time(time);
+}
+
+const SessionFrame& LiveSession::latest_due() noexcept { return impl_->loop->latest_due(); }
+void LiveSession::end_frame(FrameEnd end) noexcept { impl_->loop->end_frame(end); }
+
 bool LiveSession::take_sample(TickSample& sample) noexcept {
   return impl_->loop->take_sample(sample);
 }
@@ -217,13 +253,40 @@ void LiveSession::steer(const vec2& wanted) noexcept {
   if (impl_->keyboard) impl_->keyboard->steer(wanted);
 }
 
-void LiveSession::command(std::string_view text) { impl_->pads->command(text); }
+void LiveSession::command(std::string_view text) {
+  const Cast& cast = impl_->cast;
+  if (auto problem = command_problem(text, cast.styles, static_cast<int>(cast.members.size()))) {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->remarks.push_back(std::move(*problem));
+  }
+  impl_->pads->command(text);
+}
+
+void LiveSession::add_style(const Style& style) {
+  Cast& cast = impl_->cast;
+  std::vector<Style> styles = impl_->styles;
+  const auto same = std::ranges::find(styles, style.name, &Style::name);
+  const auto place = static_cast<std::size_t>(same - styles.begin());
+  if (same == styles.end()) {
+    styles.push_back(style);
+    cast.styles.push_back(style.name);
+    cast.style_values.emplace_back();
+  }
+  styles[place] = style;
+  cast.style_values[place] = style;
+  impl_->styles = styles;
+  impl_->style_lists.push_back(std::make_shared<const std::vector<Style>>(std::move(styles)));
+  impl_->loop->set_styles(impl_->style_lists.back());
+}
+
+void LiveSession::rumble() noexcept { impl_->loop->beat_once(); }
 
 bool LiveSession::has_ended() const noexcept { return impl_->loop->has_ended(); }
 
 LiveStatus LiveSession::status() const noexcept {
   LiveStatus status = impl_->loop->status();
   // After an overload the loop has given its priority up.
+  if (impl_->stream) status.streamed = impl_->stream->frames();
   status.time_policy = status.overloads > 0 ? "normal priority" : impl_->time_policy;
   const std::lock_guard lock(impl_->mutex);
   status.pads = impl_->final ? *impl_->final : impl_->pads->counts();

@@ -86,7 +86,7 @@ void TimeHistogram::add(std::int64_t time_ns) noexcept {
   if (time > max_ns_.load(kRelaxed)) max_ns_.store(time, kRelaxed);
 }
 
-double TimeHistogram::median_us() const noexcept {
+double TimeHistogram::percentile_us(double share) const noexcept {
   std::array<std::uint64_t, kClasses> counts;
   std::uint64_t all = 0;
   for (std::size_t i = 0; i < kClasses; ++i) {
@@ -95,7 +95,8 @@ double TimeHistogram::median_us() const noexcept {
   std::uint64_t below = 0;
   for (std::size_t i = 0; i < kClasses; ++i) {
     below += counts[i];
-    if (2 * below >= all && below > 0) return std::min(middle_ns(i) / 1000.0, max_us());
+    if (below > 0 && static_cast<double>(below) >= share * static_cast<double>(all))
+      return std::min(middle_ns(i) / 1000.0, max_us());
   }
   return 0.0;
 }
@@ -201,6 +202,8 @@ namespace {
 
 constexpr std::int64_t kNap_ns = 20'000'000;  // longest sleep; then the loop looks at its orders
 constexpr std::size_t kSamples = 1024;        // that wait to be taken, four seconds
+constexpr std::size_t kUnshown = 4096;        // reports that wait for a frame, of a second and more
+constexpr std::int64_t kDueWait_ns = 2'000'000, kDueNap_ns = 100'000;
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
 constexpr double kFeltBeat = 0.25;  // of full strength; less does not turn a motor within 80 ms
@@ -236,7 +239,9 @@ LiveLoop::LiveLoop(const Options& options, const Script& script, Simulation& sim
       recording_(recording),
       clock_(options.rate_hz, 0),
       reports_(pads, simulation),
-      samples_(kSamples) {
+      samples_(kSamples),
+      report_times_(options.report_times ? kUnshown : 1),
+      unshown_(kUnshown) {
   frames_.each([&](SessionFrame& frame) { frame.crowd = simulation.followers().shown(); });
 }
 
@@ -331,10 +336,13 @@ void LiveLoop::keep_time(std::int64_t now_ns) noexcept {
 void LiveLoop::run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept {
   follow_script(now_ns);
   const std::span<const Report> reports = reports_.take_reports(now_ns);
+  if (auto* styles = new_styles_.exchange(nullptr, std::memory_order_acquire))
+    simulation_.swap_styles(*styles);
   use(reports, now_ns);
   simulation_.step(reports);
   publish(shown_ns);
-  if (options_.rumble && simulation_.heel_struck()) beat();
+  const bool is_tried = wants_beat_.exchange(false, kRelaxed);
+  if (is_tried || (options_.rumble && simulation_.heel_struck())) beat();
   look_for_the_end(!reports.empty());
   last_begin_ns_ = now_ns;
   ++tick_;
@@ -360,11 +368,16 @@ void LiveLoop::use(std::span<const Report> reports, std::int64_t now_ns) noexcep
   for (const Report& report : reports) {
     if (recording_ != nullptr) recording_->add(tick_, report);
     if (report.kind != ReportKind::input) continue;
-    if (is_real_time && report.time_ns >= real_time_ns_) count_wait(now_ns - report.time_ns);
+    if (options_.report_times)
+      static_cast<void>(report_times_.push({tick_, report.time_ns, now_ns, report.device}));
+    if (is_real_time && report.time_ns >= real_time_ns_) count_wait(report.time_ns, now_ns);
   }
 }
 
-void LiveLoop::count_wait(std::int64_t wait_ns) noexcept {
+// A full ring drops the report from the measurement: nobody shows frames.
+void LiveLoop::count_wait(std::int64_t report_ns, std::int64_t now_ns) noexcept {
+  const std::int64_t wait_ns = now_ns - report_ns;
+  static_cast<void>(unshown_.push({tick_, report_ns}));
   wait_times_.add(wait_ns);
   const std::int64_t last = static_cast<std::int64_t>(wait_counts_.size()) - 1;
   const std::int64_t place = std::clamp<std::int64_t>(wait_ns / LiveStatus::kWaitClass_ns, 0, last);
@@ -378,6 +391,14 @@ void LiveLoop::publish(std::int64_t shown_ns) noexcept {
   frame.time_ns = shown_ns;
   reports_.show(frame);
   frames_.publish();
+  if (options_.stream != nullptr) {
+    copy_tick(simulation_, options_.stream->writable());
+    options_.stream->publish();
+  }
+  if (options_.forward != nullptr) {
+    options_.forward->writable() = forwarded_tick(simulation_.pads(), simulation_.stick());
+    options_.forward->publish();
+  }
 }
 
 // A full ring drops the sample: nobody takes samples, or not fast enough.
@@ -403,6 +424,39 @@ void LiveLoop::look_for_the_end(bool has_reports) noexcept {
   if (ticks_behind_end_ >= options_.rate_hz) has_ended_.store(true, kRelaxed);
 }
 
+const SessionFrame& LiveLoop::latest(bool& is_new) noexcept {
+  const SessionFrame& frame = frames_.read(is_new);
+  viewed_tick_ = frame.tick;
+  viewed_ns_ = frame.time_ns;
+  return frame;
+}
+
+// On a busy processor the viewing thread would else draw what the tick is about to change: its
+// sleep lets the loop's thread run.
+const SessionFrame& LiveLoop::latest_due() noexcept {
+  bool is_new = false;
+  latest(is_new);
+  const std::int64_t tick_ns = kSecond_ns / options_.rate_hz, start_ns = now_ns();
+  const bool is_real_time = wanted_pace_.load(kRelaxed) == 1.0 && !is_stopping_.load(kRelaxed);
+  for (std::int64_t time_ns = start_ns;
+       is_real_time && viewed_ns_ != 0 && viewed_ns_ + tick_ns <= time_ns &&
+       time_ns < start_ns + kDueWait_ns;
+       time_ns = now_ns()) {
+    sleep_until(time_ns + kDueNap_ns);
+    latest(is_new);
+  }
+  return latest(is_new);
+}
+
+void LiveLoop::end_frame(FrameEnd end) noexcept {
+  const std::int64_t time_ns = now_ns();
+  for (const UnshownReport* report = unshown_.front();
+       report != nullptr && report->tick <= viewed_tick_; report = unshown_.front()) {
+    if (end == FrameEnd::handed_over) frame_times_.add(time_ns - report->time_ns);
+    unshown_.pop();
+  }
+}
+
 LiveStatus LiveLoop::status() const noexcept {
   LiveStatus status;
   status.ticks = ticks_.load(kRelaxed);
@@ -419,6 +473,8 @@ LiveStatus LiveLoop::status() const noexcept {
   status.tick_us_max = tick_times_.max_us();
   status.wait_us_median = wait_times_.median_us();
   status.wait_us_max = wait_times_.max_us();
+  status.frame_us_p50 = frame_times_.median_us();
+  status.frame_us_p99 = frame_times_.percentile_us(0.99);
   for (std::size_t i = 0; i < wait_counts_.size(); ++i)
     status.wait_counts[i] = wait_counts_[i].load(kRelaxed);
   return status;

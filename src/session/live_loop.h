@@ -15,6 +15,8 @@
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/session_frame.h"
 #include "pads/newest_reports.h"
+#include "session/pad_forward.h"
+#include "session/pose_stream.h"
 #include "session/recording.h"
 #include "session/script.h"
 
@@ -65,12 +67,14 @@ class TickClock {
   std::int64_t skipped_ns_ = 0;
 };
 
-// Median and maximum of many durations in a fixed space: it counts them in classes no wider than
-// 1/64 of the value. One thread adds, any thread reads; both wait-free.
+// Percentiles and maximum of many durations in a fixed space: it counts them in classes no wider
+// than 1/64 of the value. One thread adds, any thread reads; both wait-free.
 class TimeHistogram {
  public:
   void add(std::int64_t time_ns) noexcept;  // negative counts as 0
-  double median_us() const noexcept;        // within 1 % of the true one; 0 if nothing was added
+  // The duration that this share of all does not exceed, within 1 %; 0 if nothing was added.
+  double percentile_us(double share) const noexcept;
+  double median_us() const noexcept { return percentile_us(0.5); }
   double max_us() const noexcept;
 
  private:
@@ -138,6 +142,10 @@ class LiveLoop {
   struct Options {
     int rate_hz = kDefaultRateHz;
     bool rumble = true;
+    bool report_times = false;
+    // What other programs get of each tick; may be null.
+    Latest<StreamedTick>* stream = nullptr;
+    Latest<ForwardedTick>* forward = nullptr;
   };
   // All must outlive the loop; `recording` may be null.
   LiveLoop(const Options& options, const Script& script, Simulation& simulation, PadStream& pads,
@@ -151,10 +159,18 @@ class LiveLoop {
   void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
 
   // From one thread, as LiveSession says.
-  const SessionFrame& latest(bool& is_new) noexcept { return frames_.read(is_new); }
+  const SessionFrame& latest(bool& is_new) noexcept;
+  const SessionFrame& latest_due() noexcept;
+  void end_frame(FrameEnd end) noexcept;
   bool take_sample(TickSample& sample) noexcept { return samples_.pop(sample); }
+  bool take_report_time(ReportTime& time) noexcept { return report_times_.pop(time); }
   void set_pace(double pace) noexcept;
   void step(int ticks) noexcept;
+  // From the next tick on, before its commands. `styles` is swapped and must outlive the loop.
+  void set_styles(std::shared_ptr<const std::vector<Style>>& styles) noexcept {
+    new_styles_.store(&styles, std::memory_order_release);
+  }
+  void beat_once() noexcept { wants_beat_.store(true, std::memory_order_relaxed); }
   // Any thread.
   bool has_ended() const noexcept { return has_ended_.load(std::memory_order_relaxed); }
   bool is_known(std::uint16_t device) const noexcept { return reports_.is_known(device); }
@@ -170,7 +186,7 @@ class LiveLoop {
   void run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept;
   void follow_script(std::int64_t now_ns) noexcept;
   void use(std::span<const Report> reports, std::int64_t now_ns) noexcept;
-  void count_wait(std::int64_t wait_ns) noexcept;
+  void count_wait(std::int64_t report_ns, std::int64_t now_ns) noexcept;
   void publish(std::int64_t shown_ns) noexcept;
   void sample(std::int64_t took_ns) noexcept;
   void beat() noexcept;
@@ -194,14 +210,24 @@ class LiveLoop {
   Latest<SessionFrame> frames_;
   TickSample sample_;
   SpscRing<TickSample> samples_;
+  SpscRing<ReportTime> report_times_;
+
+  // Reports on their way from a tick to the first frame that shows them.
+  struct UnshownReport {
+    std::int64_t tick, time_ns;
+  };
+  SpscRing<UnshownReport> unshown_;
+  std::int64_t viewed_tick_ = -1, viewed_ns_ = 0;  // of the frame read last; the viewing thread's
 
   std::atomic<bool> is_stopping_{false}, has_ended_{false};
   std::atomic<double> wanted_pace_{1.0};
   std::atomic<std::int64_t> wanted_steps_{0};
+  std::atomic<std::shared_ptr<const std::vector<Style>>*> new_styles_{nullptr};
+  std::atomic<bool> wants_beat_{false};
   std::atomic<std::int64_t> start_ns_{0}, end_ns_{0};  // of run(); 0: not yet
   std::atomic<std::int64_t> ticks_{0}, overruns_{0}, standstills_{0}, overloads_{0}, skipped_ns_{0};
   std::array<std::atomic<std::int64_t>, LiveStatus::kWaitClasses> wait_counts_{};
-  TimeHistogram tick_times_, wait_times_, late_times_;
+  TimeHistogram tick_times_, wait_times_, late_times_, frame_times_;
 };
 
 }  // namespace gaitpad

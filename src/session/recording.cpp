@@ -277,7 +277,7 @@ Result<std::vector<std::string>> Recording::finish(std::int64_t ticks, std::int6
   if (auto failed = problem()) return *failed;
   if (!lines_.has_devices()) {
     ::unlink(part_.c_str());
-    return std::vector<std::string>{path_ + ": was not written: there was no pad to record"};
+    return Error{path_ + ": nothing was recorded: there was no pad"};
   }
   if (std::rename(part_.c_str(), path_.c_str()) != 0) return write_error(path_, errno);
   return remarks();

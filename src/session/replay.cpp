@@ -49,16 +49,18 @@ std::vector<ExportedFollower> exported_followers(const SessionSpec& spec,
   return followers;
 }
 
-void run_to_end(const PreparedTrace& prepared, TraceRun& run,
+// False: `progress` has ended it.
+bool run_to_end(const PreparedTrace& prepared, TraceRun& run,
                 std::vector<ExportedFollower>& followers, std::vector<WalkExport>& exports,
                 const ReplayProgress& progress) {
-  constexpr std::int64_t kTicksBetween = 512;
+  constexpr std::int64_t kTicksBetween = 32;  // of a large crowd each takes milliseconds
   for (std::int64_t tick = 0; tick < prepared.ticks; ++tick) {
-    if (progress && tick % kTicksBetween == 0) progress(tick, prepared.ticks);
+    if (progress && tick % kTicksBetween == 0 && !progress(tick, prepared.ticks)) return false;
     run.step(prepared.trace);
     for (ExportedFollower& follower : followers) follower.follow(run.simulation());
     for (WalkExport& e : exports) e.write(tick, run.simulation().stick());
   }
+  return true;
 }
 
 // Pads of the recording that send reports but never where their stick is.
@@ -123,7 +125,8 @@ Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progr
   auto exports = opened_exports(files, simulation, followers, {rate_hz, *fps, spec.replay.gltf});
   if (!exports) return exports.error();
 
-  run_to_end(*prepared, run, followers, *exports, progress);
+  if (!run_to_end(*prepared, run, followers, *exports, progress))
+    return Error{"it was ended before its last tick; nothing was written"};
   ReplayResult result{run_summary(simulation, cast_of(simulation, prepared->config)), {}};
   result.summary.damaged_lines = prepared->trace.skipped_lines;
   std::vector<WalkerSummary> walked = result.summary.walkers;

@@ -1,13 +1,17 @@
 #include "session/script.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "base/suggestion.h"
 #include "base/text.h"
 #include "files/toml_file.h"
+#include "gaitpad/control.h"
+#include "gaitpad/style.h"
 
 namespace gaitpad {
 namespace {
@@ -52,6 +56,11 @@ std::optional<Command> parsed_command(std::string_view text) noexcept {
   Command command;
   if (verb == "mark") return command;
   if (verb != "reset") command.walker = next_walker(text);
+  if (verb == "style") {  // the rest is its name, which may have blanks
+    command.verb = Verb::style;
+    command.name = trimmed(text, kGaps);
+    return command.name.empty() ? std::nullopt : std::optional(command);
+  }
   command.name = next_word(text);
   const std::string_view second = next_word(text);
   if (!next_word(text).empty()) return std::nullopt;
@@ -60,13 +69,74 @@ std::optional<Command> parsed_command(std::string_view text) noexcept {
     return command.name.empty() ? std::optional(command) : std::nullopt;
   }
   if (command.name.empty()) return std::nullopt;
-  if (verb == "style") {
-    command.verb = Verb::style;
-    return second.empty() ? std::optional(command) : std::nullopt;
-  }
   command.verb = verb == "set" ? Verb::set : Verb::gait;
   if (verb == "set") return with_value(command, second);
   return verb == "gait" ? gait_command(command, second) : std::nullopt;
+}
+
+namespace {
+
+constexpr std::string_view kVerbs[] = {"style", "set", "gait", "reset", "mark"};
+constexpr std::string_view kForms =
+    "style [CHARACTER] NAME, set [CHARACTER] KEY VALUE, gait [CHARACTER] KEY VALUE|stick, gait "
+    "[CHARACTER] stick, reset [CHARACTER], mark";
+
+std::optional<std::string> range_problem(std::string_view key, double value, double min,
+                                         double max) {
+  if (value >= min && value <= max) return std::nullopt;
+  return fmt::format("{} of {:g} is not within {:g} .. {:g}", key, value, min, max);
+}
+
+std::optional<std::string> gait_problem(const Command& command) {
+  if (const auto key = gait_key(command.name)) {
+    if (command.verb == Verb::release) return std::nullopt;
+    return range_problem(command.name, command.value, info_of(*key).min, info_of(*key).max);
+  }
+  std::vector<std::string_view> known;
+  for (int k = 0; k < kGaitKeys; ++k) known.push_back(info_of(static_cast<GaitKey>(k)).name);
+  return fmt::format("unknown gait parameter {}; known: {}", in_quotes(command.name),
+                     fmt::join(known, ", "));
+}
+
+std::optional<std::string> set_problem(const Command& command) {
+  std::vector<std::string> known;
+  for (const StyleKey& key : style_keys()) {
+    if (key.name == command.name) return range_problem(key.name, command.value, key.min, key.max);
+    known.push_back(key.name);
+  }
+  const std::string nearest = suggestion(command.name, known);
+  return fmt::format("unknown style value {}{}", in_quotes(command.name),
+                     nearest.empty() ? "; config/README.md lists them" : nearest);
+}
+
+}  // namespace
+
+std::optional<std::string> command_problem(std::string_view text,
+                                           std::span<const std::string> styles, int characters) {
+  const auto command = parsed_command(text);
+  if (!command) {
+    std::string_view rest = text;
+    const std::string_view verb = next_word(rest);
+    if (std::ranges::count(kVerbs, verb) == 0)
+      return fmt::format("unknown command {}; known: {}", in_quotes(verb), fmt::join(kVerbs, ", "));
+    return fmt::format("{} is no command; known: {}", in_quotes(text), kForms);
+  }
+  if (command->walker > characters)
+    return fmt::format("there is no character {}; they are numbered 1 to {}", command->walker,
+                       characters);
+  switch (command->verb) {
+    case Verb::style:
+      if (std::ranges::count(styles, command->name) > 0) return std::nullopt;
+      return fmt::format("unknown style {}; known: {}", in_quotes(command->name),
+                         fmt::join(styles, ", "));
+    case Verb::set:
+      return set_problem(*command);
+    case Verb::gait:
+    case Verb::release:
+      return gait_problem(*command);
+    default:
+      return std::nullopt;
+  }
 }
 
 namespace {
@@ -126,13 +196,17 @@ Result<Script> script_for(const Simulation& simulation, const std::string& path)
   auto script = load_script(path);
   if (!script) return script;
   Simulation scratch = simulation;
+  std::vector<std::string> styles;
+  for (const Style& style : simulation.styles()) styles.push_back(style.name);
   for (const ScriptEvent& event : script->events) {
     const std::int64_t before = scratch.counts().bad_commands;
     scratch.take_report(report_of(event));
     if (scratch.counts().bad_commands == before) continue;
-    return Error{
-        fmt::format("{}: {} cannot be obeyed: a name, a value or a character that there is not",
-                    event.where, in_quotes(event.command))};
+    const auto problem =
+        command_problem(event.command, styles, static_cast<int>(simulation.walkers().size()));
+    return Error{fmt::format(
+        "{}: {}", event.where,
+        problem.value_or(in_quotes(event.command) + " would lock all joints of a limb"))};
   }
   return script;
 }

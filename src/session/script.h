@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,12 @@ struct Command {
 // Nothing if the text is malformed. Whether the names, the value and the walker exist is for the
 // simulation to decide. No heap.
 std::optional<Command> parsed_command(std::string_view text) noexcept;
+
+// Why the text is no command for a session with these styles and so many characters; names what is
+// known instead. None also where only the present style of a character makes it impossible (a limb
+// whose joints would all be locked).
+std::optional<std::string> command_problem(std::string_view text,
+                                           std::span<const std::string> styles, int characters);
 
 inline constexpr std::size_t kMaxScriptEvents = 4096;
 

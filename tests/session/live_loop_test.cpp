@@ -129,6 +129,9 @@ TEST(TimeHistogram, HalfOfTheValuesLieBelowTheMedian) {
   const auto times = std::make_unique<TimeHistogram>();
   for (int i = 1; i <= 1001; ++i) times->add((i * 7919 % 1001 + 1) * 1000);  // each once
   EXPECT_NEAR(times->median_us(), 501.0, 5.1);
+  EXPECT_NEAR(times->percentile_us(0.99), 991.0, 10.0);
+  EXPECT_NEAR(times->percentile_us(0.01), 11.0, 0.2);
+  EXPECT_EQ(times->percentile_us(1.0), 1001.0);
   EXPECT_EQ(times->max_us(), 1001.0);
 }
 
@@ -297,6 +300,9 @@ struct LoopParts {
   std::optional<Simulation> simulation;
   std::unique_ptr<Recording> recording;
   Script script;
+  // What other programs get.
+  std::unique_ptr<Latest<StreamedTick>> stream = std::make_unique<Latest<StreamedTick>>();
+  std::unique_ptr<Latest<ForwardedTick>> forward = std::make_unique<Latest<ForwardedTick>>();
   std::unique_ptr<LiveLoop> loop;
 };
 
@@ -316,8 +322,9 @@ LoopParts made_loop(PadStreamOptions options, const std::string& record) {
     parts.recording = std::move(*recording);
   }
   parts.script.events.push_back({200'000, "mark", ""});
-  parts.loop = std::make_unique<LiveLoop>(LiveLoop::Options{}, parts.script, *parts.simulation,
-                                          *parts.pads, parts.recording.get());
+  const LiveLoop::Options loop = {.stream = parts.stream.get(), .forward = parts.forward.get()};
+  parts.loop = std::make_unique<LiveLoop>(loop, parts.script, *parts.simulation, *parts.pads,
+                                          parts.recording.get());
   return parts;
 }
 
@@ -343,6 +350,12 @@ TEST_F(LiveLoopTest, TheLoopThreadUsesNoHeap) {
   parts.loop->stop();
   loop.join();
   EXPECT_EQ(uses, 0);
+  bool is_new = false;
+  const StreamedTick& streamed = parts.stream->read(is_new);
+  EXPECT_EQ(streamed.tick, parts.simulation->counts().ticks - 1);
+  EXPECT_EQ(streamed.walkers[1].pose.root_m, parts.simulation->walkers()[1].pose.root_m);
+  EXPECT_EQ(parts.forward->read(is_new).state.stick.left, parts.simulation->stick().left);
+  EXPECT_TRUE(is_new);
   EXPECT_GT(parts.simulation->counts().reports, 400);
   EXPECT_EQ(parts.simulation->counts().commands, 2);  // the script's and the one above
   EXPECT_GT(parts.simulation->walkers()[0].state.frame.steps[kRightSide], 0);

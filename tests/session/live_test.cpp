@@ -72,6 +72,44 @@ TEST_F(Live, ReportsTheNewestTickAndItsStatus) {
   EXPECT_FALSE(session->stop()) << "a session stops once";
 }
 
+TEST_F(Live, MeasuresFromTheReportToTheFrameThatShowsIt) {
+  options_.live.record.clear();
+  auto session = started();
+  ASSERT_TRUE(comes_true([&] { return session->status().pads.reports > 10; }));
+  session->latest_due();
+  session->end_frame(FrameEnd::not_shown);
+  EXPECT_EQ(session->status().frame_us_p99, 0.0) << "what no frame shows is not measured";
+  constexpr int kFrame_ms = 20, kDraw_ms = 5;
+  std::int64_t longest_ns = 0, before_ns = now_ns();
+  for (int i = 0; i < 40; ++i) {
+    session->latest_due();
+    sleep_for(kDraw_ms);
+    session->end_frame(FrameEnd::handed_over);
+    const std::int64_t time_ns = now_ns();
+    longest_ns = std::max(longest_ns, time_ns - std::exchange(before_ns, time_ns));
+    sleep_for(kFrame_ms - kDraw_ms);
+  }
+  const LiveStatus status = session->status();
+  EXPECT_GE(status.frame_us_p50, 1000.0 * kDraw_ms);
+  EXPECT_GE(status.frame_us_p99, status.frame_us_p50);
+  // A report waits for its tick, for the rest of a frame, and for a whole one to be drawn.
+  const double longest_us = static_cast<double>(longest_ns) / 1000.0;
+  EXPECT_LE(status.frame_us_p99, 1.01 * (status.wait_us_max + status.tick_us_max + 2 * longest_us));
+}
+
+TEST_F(Live, TheFrameBeforeDrawingHasEveryTickThatIsDue) {
+  options_.live.record.clear();
+  auto session = started();
+  ASSERT_TRUE(comes_true([&] { return session->status().ticks > 0; }));
+  int missing = 0;
+  for (int i = 0; i < 50; ++i) {
+    sleep_for(7);
+    const std::int64_t before_ns = now_ns(), tick_ns = 1'000'000'000 / 240;
+    missing += session->latest_due().time_ns + tick_ns <= before_ns;
+  }
+  EXPECT_LT(missing, 25) << "on a busy machine the wait may end without the tick";
+}
+
 TEST_F(Live, TickCountIsTimeTimesRate) {
   options_.live.record.clear();
   options_.rate_hz = 500;
@@ -111,13 +149,23 @@ TEST_F(Live, TicksMissedInAStandstillAreNotMadeUp) {
   stopped(*session);
 }
 
-TEST_F(Live, WithoutAPadItStandsAndRecordsNothing) {
+TEST_F(Live, WithoutAPadItStands) {
   options_.pad.wish.pad = "0001:fffe";
+  options_.live.record.clear();
   auto session = started();
   sleep_for(200);
   const auto run = session->stop();
   ASSERT_TRUE(run);
   EXPECT_EQ(run->walkers[0].steps[kLeftSide], 0);
+}
+
+TEST_F(Live, ARecordingOfNoPadIsAnError) {
+  options_.pad.wish.pad = "0001:fffe";
+  auto session = started();
+  sleep_for(200);
+  const auto run = session->stop();
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().message, options_.live.record + ": nothing was recorded: there was no pad");
   EXPECT_FALSE(fs::exists(options_.live.record));
 }
 

@@ -1,5 +1,6 @@
 #include "session/script.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -38,16 +39,38 @@ TEST(Commands, AreForAllOrForOne) {
   expect("mark  what ever 1 2 3", Verb::mark, 0, "", 0);
 }
 
+TEST(Commands, AStylesNameMayHaveBlanks) {
+  expect("style my walk", Verb::style, 0, "my walk", 0);
+  expect("style 2  my walk ", Verb::style, 2, "my walk", 0);
+  expect("style -1 even", Verb::style, 0, "-1 even", 0);
+}
+
+TEST(Commands, WhatIsWrongIsNamedWithWhatIsKnown) {
+  const std::vector<std::string> styles = {"even", "my walk"};
+  const auto problem = [&](const char* text) {
+    return command_problem(text, styles, 2).value_or("none");
+  };
+  for (const char* sound :
+       {"style my walk", "style 2 even", "set hip_sway 1.5", "gait 1 speed_m_s 1", "gait stick",
+        "gait speed_m_s stick", "reset", "mark x"}) {
+    EXPECT_EQ(problem(sound), "none") << sound;
+  }
+  EXPECT_EQ(problem("style limp"), "unknown style \"limp\"; known: even, my walk");
+  EXPECT_EQ(problem("foo 1"), "unknown command \"foo\"; known: style, set, gait, reset, mark");
+  EXPECT_EQ(problem("style 3 even"), "there is no character 3; they are numbered 1 to 2");
+  EXPECT_EQ(problem("set hip_sway 9"), "hip_sway of 9 is not within 0 .. 3");
+  EXPECT_EQ(problem("set hip_swya 1"),
+            "unknown style value \"hip_swya\"; did you mean \"hip_sway\"?");
+  EXPECT_NE(problem("gait speed 1").find("unknown gait parameter \"speed\"; known: "),
+            std::string::npos);
+}
+
 TEST(Commands, ASingleNumberIsAName) { expect("style 1", Verb::style, 0, "1", 0); }
 
 TEST(Commands, MalformedOnesAreRejected) {
   const char* const bad[] = {"",
                              " ",
                              "style",
-                             "style 0 even",
-                             "style -1 even",
-                             "style 1 even now",
-                             "style x even",
                              "Style even",
                              "styles even",
                              "set",
@@ -196,10 +219,14 @@ TEST_F(Scripted, ImpossibleCommandsAreRefusedBeforeTheSessionStarts) {
     options_.walk.script = write("walk.toml", event("0", "mark") + event("1", command));
     return cause_of(LiveSession::start(options_));
   };
-  for (const char* command : {"style no_such", "set hip_sway 9", "style 3 even", "gait speed 1"}) {
-    EXPECT_NE(
-        refusal(command).find("walk.toml:6: \"" + std::string(command) + "\" cannot be obeyed"),
-        std::string::npos)
+  using Case = std::pair<const char*, const char*>;
+  for (const auto& [command, says] :
+       {Case{"style no_such", "unknown style \"no_such\"; known: even"},
+        Case{"set hip_sway 9", "hip_sway of 9 is not within 0 .. 3"},
+        Case{"style 3 even", "there is no character 3"},
+        Case{"gait speed 1", "unknown gait parameter \"speed\""}}) {
+    EXPECT_EQ(refusal(command).find(fmt::format("walk.toml:6: {}", says)),
+              refusal(command).find("walk.toml"))
         << refusal(command);
   }
 }

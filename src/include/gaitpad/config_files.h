@@ -47,17 +47,22 @@ std::vector<std::string> config_folders(const std::string& built_in);
 Result<std::string> config_file(const std::vector<std::string>& folders, const std::string& kind,
                                 const std::string& file_or_name);
 
-// Every KIND/NAME.toml, ordered by name; of equal names the first folder's.
+// Every KIND/NAME.toml (or with another ending), ordered by name; of equal names the first
+// folder's.
 std::vector<std::string> config_files(const std::vector<std::string>& folders,
-                                      const std::string& kind);
+                                      const std::string& kind, std::string_view ending = ".toml");
 
 // The name by which a file is called: without its folder and without .toml.
 std::string config_name(const std::string& path);
 
+// What a file of configuration or a recording says that it is: the first sentence of the comment
+// that it begins with, without what stands in brackets; empty if there is none.
+std::string config_summary(const std::string& path);
+
 // Saves a style of the user's own as styles/NAME.toml in user_config_folder() and returns the path.
-// Blanks in `name` become `_`. Error if the name is not of 1 to 48 letters, digits, `_` and `-`, if
-// a style in `config_folders` that is not the user's own has it, or if the file cannot be written.
-// A style of the same name is replaced and kept as PATH.old.
+// Error if the name is not of 1 to 48 letters, digits, blanks, `_` and `-`, if a style in
+// `config_folders` that is not the user's own has it, or if the file cannot be written. A style of
+// the same name is replaced and kept as PATH.old.
 Result<std::string> save_style(const std::vector<std::string>& config_folders,
                                const std::string& name, const StyleValues& values);
 

@@ -38,12 +38,25 @@ struct LiveStatus {
   double tick_us_median = 0.0, tick_us_max = 0.0;  // duration of a tick, without the sleep
   // From the arrival of a report to the tick that uses it, at pace 1.
   double wait_us_median = 0.0, wait_us_max = 0.0;
+  // From the arrival of a report to the hand-over of the first frame that shows what it did, at
+  // pace 1: median and 99th percentile; 0 if nobody shows frames (LiveSession::end_frame()).
+  double frame_us_p50 = 0.0, frame_us_p99 = 0.0;
   std::array<std::int64_t, kWaitClasses> wait_counts{};  // by kWaitClass_ns; the last: longer
   // How the loop thread is scheduled: `SCHED_FIFO 20`, `normal priority`, `by hand`.
   std::string time_policy;
   PadStreamCounts pads;
+  std::int64_t streamed = 0;        // frames sent to other programs
   std::int64_t recording_lost = 0;  // reports that the recording missed: it is inexact then
 };
+
+// How an input report came to its tick.
+struct ReportTime {
+  std::int64_t tick = 0;
+  std::int64_t arrival_ns = 0, begin_ns = 0;  // CLOCK_MONOTONIC: its stamp, and the tick's begin
+  std::uint16_t device = kNoDevice;
+};
+
+enum class FrameEnd { handed_over, not_shown };
 
 class LiveSession {
  public:
@@ -64,9 +77,17 @@ class LiveSession {
 
   // From one viewing thread.
   const SessionFrame& latest(bool& is_new) noexcept;  // valid until the next call
+  // The same, just before drawing: if a tick is due and has not run, waits for it, at most 2 ms.
+  const SessionFrame& latest_due() noexcept;
+  // What was read last has gone to the display, or will never go there: measures how old the
+  // reports are that it shows for the first time.
+  void end_frame(FrameEnd end) noexcept;
   // The oldest sample that was not taken yet; false if there is none. When nobody takes samples the
   // newest are dropped.
   bool take_sample(TickSample& sample) noexcept;
+  // The oldest that was not taken yet, of a session with SessionSpec::Live::report_times. The
+  // newest are dropped when nobody takes them.
+  bool take_report_time(ReportTime& time) noexcept;
   // Ticks in a second of the clock over the rate: 0 stands still, 1 is real time, 0.25 slow motion,
   // at most 8; less than 1/1024 stands still. A tick computes the same at every pace. Takes effect
   // within 20 ms. While the session stands still latest() still shows the driving pad's state and
@@ -78,8 +99,14 @@ class LiveSession {
   // there smoothly.
   void steer(const vec2& wanted) noexcept;
   // From any thread.
-  void command(std::string_view text);  // `style limp_left`; the grammar: config/README.md, `C:`
-  bool has_ended() const noexcept;      // the pad is a recording that ended a second ago
+  // `style limp_left`; the grammar: config/README.md, `C:`. What is wrong with one is a remark, and
+  // it counts as a bad command.
+  void command(std::string_view text);
+  // A style that commands may name from now on, in cast() too; one of the same name is replaced.
+  // From the viewing thread.
+  void add_style(const Style& style);
+  void rumble() noexcept;           // one beat of the driving pad's motors
+  bool has_ended() const noexcept;  // the pad is a recording that ended a second ago
   LiveStatus status() const noexcept;
   // What users should know (pads that cannot be opened, real-time scheduling that was refused),
   // each once.

@@ -17,8 +17,9 @@ struct ReplayResult {
 };
 
 // Called now and then while a replay runs, with how many of its ticks are done. The time of a
-// replay is proportional to these, however long the gaps between its reports are.
-using ReplayProgress = std::function<void(std::int64_t done, std::int64_t ticks)>;
+// replay is proportional to these, however long the gaps between its reports are. False: it ends
+// here, and replay() returns an error.
+using ReplayProgress = std::function<bool(std::int64_t done, std::int64_t ticks)>;
 
 // Replays `spec.replay.trace` from its first tick to its last and writes the files that
 // `spec.replay` asks for. They appear in the folder together and complete: an error leaves the

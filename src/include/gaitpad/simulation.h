@@ -99,6 +99,11 @@ class Simulation {
   // report. Its entry in SimulationConfig::pads must be one of unknown_pads(). No heap: they are
   // swapped.
   void set_pad(std::uint16_t device, PadConfig&& config) noexcept { pads_.set_pad(device, config); }
+  // Takes over a list of styles in which those so far keep their places, and hands the old one
+  // back. No heap.
+  void swap_styles(std::shared_ptr<const std::vector<Style>>& styles) noexcept {
+    styles_.swap(styles);
+  }
   // Runs one tick with the reports that belong to it, in order of arrival. No heap, lock or clock,
   // unless several threads move a crowd on.
   void step(std::span<const Report> reports) noexcept;

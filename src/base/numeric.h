@@ -6,15 +6,17 @@
 
 namespace gaitpad {
 
-// The value that `percent` % of the values do not exceed. `values` is not empty.
+// The value that `percent` % of the values do not exceed; 0 of none.
 inline double percentile(std::vector<double> values, std::size_t percent) {
+  if (values.empty()) return 0.0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
-// The middle value; of an even count the upper one of the two. `values` is not empty.
+// The middle value; of an even count the upper one of the two; 0 of none.
 inline double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

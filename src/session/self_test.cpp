@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "base/files.h"
+#include "base/numeric.h"
 #include "base/text.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
@@ -82,14 +83,6 @@ void leave_identity_out(Trace& trace) {
 }
 
 // --- one pad, open through one driver
-
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto count = static_cast<double>(values.size());
-  const auto place = static_cast<std::ptrdiff_t>(std::min(share * count, count - 1.0));
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
-}
 
 class OpenPad {
  public:
@@ -182,8 +175,8 @@ ordered_json OpenPad::rate() const {
           {"bad_reports", bad_reports_},
           {"lost", stream_->counts().lost},
           {"rate_hz", sum > 0.0 ? count * 1e6 / sum : 0.0},
-          {"interval_us_median", percentile(running, 0.5)},
-          {"interval_us_p99", percentile(running, 0.99)},
+          {"interval_us_median", median(running)},
+          {"interval_us_p99", percentile(running, 99)},
           {"jitter_us", count > 1.0 ? std::sqrt(squares / (count - 1.0)) : 0.0}};
 }
 

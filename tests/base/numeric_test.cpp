@@ -19,5 +19,10 @@ TEST(Numeric, APercentileIsOneOfTheValues) {
   EXPECT_EQ(percentile({3.0, 1.0, 2.0}, 100), 3.0);
 }
 
+TEST(Numeric, OfNoValuesBothAreZero) {
+  EXPECT_EQ(median({}), 0.0);
+  EXPECT_EQ(percentile({}, 99), 0.0);
+}
+
 }  // namespace
 }  // namespace gaitpad

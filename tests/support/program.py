@@ -3,11 +3,17 @@ import contextlib
 import os
 import pathlib
 import subprocess
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Real recordings and motions: beside the repository, unless GAITPAD_DATA names another folder.
 DATA = pathlib.Path(os.environ.get("GAITPAD_DATA") or ROOT.parent / "shared/data")
 ROUND = ROOT / "config/traces/round.hid"
+
+
+def has_sanitizers(program):
+    """Such a program takes more time, and memory that AddressSanitizer keeps from being used again."""
+    return b"__asan_init" in program.read_bytes()
 
 
 def run(program, *arguments, status=0, **options):
@@ -18,6 +24,13 @@ def run(program, *arguments, status=0, **options):
     assert status is None or done.returncode == status, \
         f"{' '.join(map(str, arguments))} ended with {done.returncode}, not {status}: {done.stdout[-2000:]}{done.stderr}"
     return done
+
+
+def call(*command, **options):
+    """What another program prints; it must end well."""
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False, **options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
 
 
 def refuse(program, *arguments, says=(), status=1, **options):
@@ -41,6 +54,14 @@ def started(program, *arguments, **options):
         finally:
             if process.poll() is None:
                 process.kill()
+
+
+def wait_until(condition, most_s=60):
+    """Until condition() is true, which must be before that many seconds are over."""
+    deadline = time.monotonic() + most_s
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
 
 
 def end_by(process, *signals, status=0):

@@ -7,15 +7,9 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from support.program import ROOT
+from support.program import ROOT, call
 
 APP = "io.github.gaitpad.gaitpad"
-
-
-def call(*command, **options):
-    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False, **options)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
 
 
 @pytest.fixture(scope="module")

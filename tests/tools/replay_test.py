@@ -4,12 +4,11 @@ import json
 import re
 import resource
 import signal
-import time
 
 import pytest
 
 from support import traces
-from support.program import ROUND, end_by
+from support.program import ROUND, end_by, wait_until
 from support.terminal import Terminal
 from support.traces import RATE_HZ, end, raw_stick, write_trace
 from support.walk import COLUMNS
@@ -365,14 +364,15 @@ def test_a_crowd_that_cannot_be_is_refused(made, refuse, options, says):
     refuse("replay", made.write("made.hid", WALK), "--out", made.out, *options, says=says, status=2)
 
 
+def has_begun(out):
+    return out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())
+
+
 def test_control_c_ends_it_at_once_and_leaves_nothing(started, tmp_path):
     trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
     out = tmp_path / "out"
     with started("replay", trace, "--out", out) as process:
-        deadline = time.monotonic() + 60
-        while not (out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())):
-            assert time.monotonic() < deadline
-            time.sleep(0.02)
+        wait_until(lambda: has_begun(out))
         _, errors = end_by(process, signal.SIGINT, status=130)
     assert "nothing was written" in errors and list(out.iterdir()) == []
 
@@ -381,10 +381,7 @@ def test_what_a_killed_replay_left_is_removed_by_the_next(started, run, tmp_path
     trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
     out = tmp_path / "out"
     with started("replay", trace, "--out", out) as process:
-        deadline = time.monotonic() + 60
-        while not (out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())):
-            assert time.monotonic() < deadline
-            time.sleep(0.02)
+        wait_until(lambda: has_begun(out))
         process.kill()
         process.wait()
     assert any(p.name.startswith(".pose.bvh.") for p in out.iterdir())

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/numeric.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
 #include "tools/gaitpad/commands.h"
@@ -57,14 +58,6 @@ void keep(std::vector<T>& values, T value) {
 double greatest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::ranges::max_element(values);
 }
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto count = static_cast<double>(values.size());
-  const auto place = static_cast<std::ptrdiff_t>(std::min(share * count, count - 1.0));
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
-}
-double median(const std::vector<double>& values) { return percentile(values, 0.5); }
 // Standard deviation of the intervals.
 double jitter(const std::vector<double>& values) {
   if (values.size() < 2) return 0.0;
@@ -174,7 +167,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"jitter_us", jitter(w.interval_us)},
           {"longest_gap_us", greatest(w.interval_us)},
           {"latency_us_median", median(w.latency_us)},
-          {"latency_us_p99", percentile(w.latency_us, 0.99)},
+          {"latency_us_p99", percentile(w.latency_us, 99)},
           {"latency_us_max", greatest(w.latency_us)},
           {"bad_reports", w.bad_reports},
           {"lost", stream.counts().lost},
@@ -191,9 +184,9 @@ std::string pad_header() {
          "lost buttons, pad";
 }
 
-std::string frame_text(const Window& window, double share) {
+std::string frame_text(const Window& window, std::size_t percent) {
   if (window.frame_us.empty()) return "-";
-  return fmt::format("{:.1f}", percentile(window.frame_us, share) / 1e3);
+  return fmt::format("{:.1f}", percentile(window.frame_us, percent) / 1e3);
 }
 
 std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
@@ -209,8 +202,8 @@ std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStre
       "{:>6.0f} {:>5} {:>6} {:>4} {}{}",
       stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left, triggers.right,
       rate_hz(w), jitter(w.interval_us) / 1e3, greatest(w.interval_us) / 1e3, median(w.latency_us),
-      greatest(w.latency_us), frame_text(w, 0.5), frame_text(w, 0.99), stream.counts().lost,
-      buttons, who);
+      greatest(w.latency_us), frame_text(w, 50), frame_text(w, 99), stream.counts().lost, buttons,
+      who);
 }
 
 // The line with these reports has just been written.

@@ -1,5 +1,6 @@
-// Pads that describe themselves and only need a packet for their motors: Stadia, Luna on Bluetooth,
-// 8BitDo. Packets are from SDL's SDL_hidapi_stadia.c, SDL_hidapi_luna.c and SDL_hidapi_8bitdo.c.
+// Pads that describe themselves and only need a packet for their motors: Stadia, Xbox and Luna on
+// Bluetooth, 8BitDo. Packets are from SDL's SDL_hidapi_stadia.c, SDL_hidapi_xboxone.c,
+// SDL_hidapi_luna.c and SDL_hidapi_8bitdo.c; ids of Xbox pads from Linux's hid-ids.h.
 #include "drivers/pads/pad_model.h"
 
 namespace gaitpad {
@@ -19,7 +20,7 @@ void set_stadia(const Rumble& rumble, OutPacket& packet) noexcept {
 }
 
 // Strengths 0..100; both motors, the triggers' ones off, until the next packet.
-void set_luna(const Rumble& rumble, OutPacket& packet) noexcept {
+void set_xbox_bluetooth(const Rumble& rumble, OutPacket& packet) noexcept {
   packet.bytes = {0x03,
                   0x0f,
                   0x00,
@@ -38,9 +39,15 @@ void set_8bitdo(const Rumble& rumble, OutPacket& packet) noexcept {
   packet.size = 5;
 }
 
-constexpr MotorPad kPads[] = {{0x18d1, 0x9400, &set_stadia},   // Stadia
-                              {0x0171, 0x0419, &set_luna},     // Luna, Bluetooth
-                              {0x2dc8, 0x6012, &set_8bitdo}};  // 8BitDo Ultimate 2 Wireless
+constexpr MotorPad kPads[] = {{0x18d1, 0x9400, &set_stadia},          // Stadia
+                              {0x045e, 0x02e0, &set_xbox_bluetooth},  // Xbox One S
+                              {0x045e, 0x02fd, &set_xbox_bluetooth},  // Xbox One S, newer firmware
+                              {0x045e, 0x0b20, &set_xbox_bluetooth},  // Xbox One S, Low Energy
+                              {0x045e, 0x0b05, &set_xbox_bluetooth},  // Xbox Elite 2
+                              {0x045e, 0x0b22, &set_xbox_bluetooth},  // Xbox Elite 2, Low Energy
+                              {0x045e, 0x0b13, &set_xbox_bluetooth},  // Xbox Series
+                              {0x0171, 0x0419, &set_xbox_bluetooth},  // Luna
+                              {0x2dc8, 0x6012, &set_8bitdo}};         // 8BitDo Ultimate 2 Wireless
 
 class MotorModel final : public PadModel {
  public:

@@ -102,13 +102,16 @@ bool has_pad_name(std::string_view device_name) {
       [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-// Pads of a vendor class by that class; a HID device that no kernel driver serves by its name or
-// ids.
+// Pads of a vendor class by that class. A HID device that no HID driver serves by its name or ids,
+// and any that is not even bound to usbhid: the kernel binds all but what a program took away.
 bool looks_like_pad(const SystemNode& device, const UsbInterface& interface,
                     const std::string& rules) {
   if (interface.ids.interface_class != kHidClass) return may_be_pad(interface);
   if (!interface.hid_driver.empty() || !boot_device(interface).empty()) return false;
-  return has_pad_name(device.name) || opens_hidraw(rules, subject_of(device));
+  std::error_code ignored;
+  const bool was_taken =
+      interface.kernel_driver.empty() && fs::exists("/sys/bus/usb/drivers/usbhid", ignored);
+  return was_taken || has_pad_name(device.name) || opens_hidraw(rules, subject_of(device));
 }
 
 void add_usb(Machine& machine, const std::string& rules, PadsByPath& pads) {

@@ -366,10 +366,11 @@ def kill_all():
 
 
 @pytest.mark.timeout(120)
-def test_after_killall_doctor_says_so_and_the_next_session_mends_it():
-    """Nobody is left who could give the pad back to its kernel driver. Without one it is known by its ids or its name."""
-    with Pad("ds4") as pad:
-        with subprocess.Popen([PROGRAM, "play", IDS["ds4"], "--driver", "usb", "--no-window"],
+@pytest.mark.parametrize("kind", ["ds4", pytest.param("generic", marks=pytest.mark.long)])
+def test_after_killall_doctor_says_so_and_the_next_session_mends_it(kind):
+    """Nobody is left who could give the pad back to its kernel driver, and it can be told by its ids or its name at most."""
+    with Pad(kind) as pad:
+        with subprocess.Popen([PROGRAM, "play", IDS[kind], "--driver", "usb", "--no-window"],
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
             wait_for(lambda: not pad.hidraws and not pad.events, 20, "the pad's being taken")
             time.sleep(0.5)
@@ -378,7 +379,7 @@ def test_after_killall_doctor_says_so_and_the_next_session_mends_it():
         assert not pad.hidraws and not pad.events
         told = subprocess.run([PROGRAM, "doctor"], capture_output=True, text=True, check=False).stdout
         assert "no kernel driver is bound until it is plugged in again" in told and "drivers_probe" in told, told
-        with Session(IDS["ds4"], "--driver", "usb", name="after-killall"):
+        with Session(IDS[kind], "--driver", "usb", name=f"after-killall-{kind}"):
             pass
         wait_for(lambda: pad.hidraws and pad.events, 20, "the pad's coming back")
 

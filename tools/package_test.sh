@@ -8,29 +8,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 folder=${1:-build-package}
-if [ "$(id -u)" -ne 0 ]; then
-  echo "package_test.sh: a chroot needs root: sudo bash tools/package_test.sh" >&2
-  exit 1
-fi
-
-work=$(mktemp -d)
-chroot=$work/debian
-finish() {
-  status=$?
-  umount "$chroot/proc" 2>/dev/null || true
-  rm -rf --one-file-system "$work"
-  exit $status
-}
-trap finish EXIT
-
-table=
-part() {
-  local name=$1 started=$SECONDS
-  shift
-  echo "== $name"
-  "$@"
-  table+=$(printf '%-44s %5d s' "$name" $((SECONDS - started)))$'\n'
-}
+source tools/clean_debian.sh
 
 install_tools() {
   bash tools/install.sh dpkg-dev fakeroot lintian desktop-file-utils appstream mmdebstrap
@@ -50,23 +28,17 @@ judge_packages() {
   appstreamcli validate --no-net "$work"/program/usr/share/metainfo/*.xml
 }
 
-inside() {
-  chroot "$chroot" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root XDG_CACHE_HOME=/tmp/cache LC_ALL=C.UTF-8 \
-    DEBIAN_FRONTEND=noninteractive "$@"
-}
 # What stands in the chroot, without what apt and dpkg note of any installation.
 files() {
-  (cd "$chroot" && find . -xdev \( -path ./proc -o -path ./packages -o -path ./tmp -o -path ./var/lib/dpkg \
+  (cd "$debian" && find . -xdev \( -path ./proc -o -path ./packages -o -path ./tmp -o -path ./var/lib/dpkg \
     -o -path ./var/lib/apt -o -path ./var/cache -o -path ./var/log \) -prune -o -print | sort)
 }
 make_chroot() {
-  mmdebstrap --quiet --variant=minbase --include=ca-certificates bookworm "$chroot"
-  mount -t proc proc "$chroot/proc"
+  make_debian
   # A minimal Debian may leave out manuals; this one is to have them.
-  rm -f "$chroot"/etc/dpkg/dpkg.cfg.d/*docker* "$chroot"/etc/dpkg/dpkg.cfg.d/*excludes*
-  mkdir -p "$chroot/packages"
-  cp "$folder"/*.deb "$chroot/packages"
-  inside apt-get -qq update
+  rm -f "$debian"/etc/dpkg/dpkg.cfg.d/*docker* "$debian"/etc/dpkg/dpkg.cfg.d/*excludes*
+  mkdir -p "$debian/packages"
+  cp "$folder"/*.deb "$debian/packages"
   files >"$work/before"
 }
 install_program() {
@@ -85,7 +57,7 @@ try_program() {
     share/fish/vendor_completions.d/gaitpad.fish share/applications/io.github.gaitpad.gaitpad.desktop \
     share/icons/hicolor/scalable/apps/io.github.gaitpad.gaitpad.svg \
     share/metainfo/io.github.gaitpad.gaitpad.metainfo.xml share/doc/gaitpad/copyright; do
-    [ -f "$chroot/usr/$file" ] || { echo "/usr/$file is missing" >&2; return 1; }
+    [ -f "$debian/usr/$file" ] || { echo "/usr/$file is missing" >&2; return 1; }
   done
   inside gaitpad doctor || true  # a chroot has no pad; it is to end by itself
 }
@@ -93,10 +65,10 @@ install_library() {
   inside sh -c 'apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends /packages/libgaitpad-dev_*.deb cmake g++ make' >/dev/null
 }
 try_library() {
-  cp -r tools/examples "$chroot/tmp/examples"
-  mkdir -p "$chroot/tmp/examples/walks"
-  cp config/traces/round.hid "$chroot/tmp/examples/walks"
-  printf 'enable_testing()\ngaitpad_add_trace_tests(walks)\n' >>"$chroot/tmp/examples/CMakeLists.txt"
+  cp -r tools/examples "$debian/tmp/examples"
+  mkdir -p "$debian/tmp/examples/walks"
+  cp config/traces/round.hid "$debian/tmp/examples/walks"
+  printf 'enable_testing()\ngaitpad_add_trace_tests(walks)\n' >>"$debian/tmp/examples/CMakeLists.txt"
   inside gaitpad check --update /tmp/examples/walks
   inside cmake -S /tmp/examples -B /tmp/built >/dev/null
   inside cmake --build /tmp/built
@@ -118,4 +90,4 @@ part "gaitpad walks" try_program
 part "libgaitpad-dev installed" install_library
 part "examples built and recordings as tests" try_library
 part "removed without a trace" remove_all
-printf '\n%s%-44s %5d s\n' "$table" "whole run" "$SECONDS"
+print_parts

@@ -92,8 +92,9 @@ TEST(Text, RandomBytesArePrintable) {
     for (std::size_t at = 0; at < shown.size(); ++at) {
       const auto byte = static_cast<unsigned char>(shown[at]);
       EXPECT_FALSE(byte < 0x20 || byte == 0x7f);
-      if (byte == 0xc2 && at + 1 < shown.size())
+      if (byte == 0xc2 && at + 1 < shown.size()) {
         EXPECT_GE(static_cast<unsigned char>(shown[at + 1]), 0xa0);
+      }
     }
     EXPECT_EQ(shown.find("\xe2\x80\xae"), std::string::npos);
   }

@@ -358,10 +358,12 @@ TEST_P(StrideFamilyOf, KeepsHeelsAndToesNearlyWhereTheyAreWhenAWishIsGranted) {
       for (int side : kSides) {
         const LegPose a = pose_in(cycle, own, side), b = pose_in(cycle, stiff, side);
         const Stance at = stance_of(cycle, i, side);
-        if (at.own <= at.roll || at.own >= at.support)
+        if (at.own <= at.roll || at.own >= at.support) {
           EXPECT_LT(glm::distance(a.heel_m, b.heel_m), kNear_m) << int(wish) << " at " << i;
-        if (at.own >= at.roll && at.own <= at.support)
+        }
+        if (at.own >= at.roll && at.own <= at.support) {
           EXPECT_LT(glm::distance(a.toe_m, b.toe_m), kNear_m) << int(wish) << " at " << i;
+        }
       }
     }
   }

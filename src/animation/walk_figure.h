@@ -108,7 +108,7 @@ MaskOf<V> needs_mending(const WalkModel& model, const MomentOf<V>& at, Side side
 template <class V>
 V level_toe(const V& pitch_rad, const V& flight_progress) noexcept {
   const V air =
-      smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.8, 1.0, flight_progress));
+      smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.85, 1.0, flight_progress));
   return -soft_positive(pitch_rad, max_of(all_of<V>(1e-9), V(kSoftToe * air)));
 }
 

@@ -1,7 +1,8 @@
 """Pads behind the kernel's real Bluetooth stack: `with bluetooth(pads=1), HidpPad("dualsense_bt") as pad: ...`.
 
-btvirt makes virtual controllers: hci0 is the PC's, hci1, hci2 ... have a pad each. hidp_link connects a pad's two
-L2CAP channels to hci0 and hands them to the kernel's HIDP, as bluetoothd does after pairing. There is no radio.
+btvirt makes virtual controllers, two for each pad: the even ones are the PC's, the odd ones the pads'. A controller of
+btvirt 5.66 has one link only: it hands packets on with the sender's number of the link. hidp_link connects a pad's two
+L2CAP channels to the PC and hands them to the kernel's HIDP, as bluetoothd does after pairing. There is no radio.
 """
 import contextlib
 import os
@@ -19,9 +20,9 @@ GET_REPORT, SET_REPORT, DATA_FEATURE, DATA_INPUT, DATA_OUTPUT, DONE, REFUSED = 0
 def bluetooth(pads=1):
     """Virtual controllers for the PC and so many pads."""
     subprocess.run(["modprobe", "-a", *MODULES], check=True)
-    with subprocess.Popen(["btvirt", f"-l{pads + 1}"], stdout=subprocess.DEVNULL) as virtual:
+    with subprocess.Popen(["btvirt", f"-l{2 * pads}"], stdout=subprocess.DEVNULL) as virtual:
         try:
-            wait_for(lambda: all(os.path.isdir(f"/sys/class/bluetooth/hci{n}") for n in range(pads + 1)), 10,
+            wait_for(lambda: all(os.path.isdir(f"/sys/class/bluetooth/hci{n}") for n in range(2 * pads)), 10,
                      "the controllers")
             yield
         finally:
@@ -98,16 +99,16 @@ KINDS = UHID_KINDS | {
 
 
 class HidpPad(HidPad):
-    """A pad of KINDS behind the controller hciINDEX; `with` inside of bluetooth(INDEX)."""
+    """The pad of that index, from 0, of those that bluetooth() has controllers for."""
 
-    def __init__(self, kind, index=1):
+    def __init__(self, kind, index=0):
         super().__init__(KINDS[kind])
         self.index, self.mac, self.uniq, self._rest = index, bytes(6), "", b""
         assert self.kind.bus == BUS_BLUETOOTH
 
     def _open(self):
         ids = ["%04x" % number for number in (*self.kind.ids, 0x0100)]
-        self._link = subprocess.Popen([LINK, "0", str(self.index), *ids, self.kind.name, self.kind.descriptor.hex()],
+        self._link = subprocess.Popen([LINK, str(2 * self.index), str(2 * self.index + 1), *ids, self.kind.name, self.kind.descriptor.hex()],
                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
         word, _, self.uniq = self._link.stdout.readline().decode().strip().partition(" ")
         if word != "ready":

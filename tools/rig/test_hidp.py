@@ -125,7 +125,7 @@ def test_a_pair_of_joy_cons_is_one_pad():
     with contextlib.ExitStack() as stack:
         stack.enter_context(bluetooth(2))
         left, right = (stack.enter_context(HidpPad(kind, index))
-                       for index, kind in enumerate(("joycon_left", "joycon_right"), 1))
+                       for index, kind in enumerate(("joycon_left", "joycon_right")))
         with Session("057e:2008", "--driver", "hidraw", name="hidp-joycons") as session:
             left.set(lx=3200, ly=1500)
             right.set(rx=1000, ry=2500, a=1)

@@ -180,4 +180,12 @@ MORE = {
                    bits={"hat": (8, 4)} | _places(16, "capture", "assistant", None, None, "guide", "start", "back", "r3", "l3", "r1",
                                                   "l1", "y", "x", "b", "a")
                    | _places(32, "lx", "ly", "rx", "ry", "lt", "rt", width=8), has_hat=True),
+    "luna": Kind("Luna Controller", "1949:0419", "SDL's SDL_hidapi_luna.c (bytes)", HID, _STICKS8 | _TRIGGERS8,
+                 dict(a="a", b="b", x="x", y="y", l1="leftshoulder", r1="rightshoulder", back="back", start="start",
+                      guide="guide", microphone="misc1", l3="leftstick", r3="rightstick"),
+                 descriptor=_pad(5, _buttons(1, 12), _pad_bits(4), _HAT, _pad_bits(4), X_Y_Z_RZ,
+                                 _usages(1, 0x33, 0x34), _fields(2, 8, 255), report_id=1),
+                 neutral=bytes([1, 0, 0, 8, 0x80, 0x80, 0x80, 0x80, 0, 0]),
+                 bits=_places(8, "a", "b", "x", "y", "l1", "r1", "back", "start", "guide", "microphone", "l3", "r3")
+                 | {"hat": (24, 4)} | _places(32, "lx", "ly", "rx", "ry", "lt", "rt", width=8), has_hat=True),
 }

@@ -26,6 +26,7 @@ struct SceneView {
   vec3 origin_m{0.0};      // whole metres on the floor
   mat4 to_clip{1.0};       // from places relative to the origin
   vec2 size_px{1.0, 1.0};  // of the viewport
+  double band_px = 0.0;    // where the band that is drawn begins, from the viewport's lower edge
   double scale = 1.0;      // of the display
   const Theme* theme = nullptr;
 
@@ -413,6 +414,7 @@ void set_background(const GlProgram& program, const SceneView& view) {
   program.set("sky_bottom", view.theme->sky_bottom);
   program.set("vignette", view.is_light() ? 0.02 : 0.07);
   program.set("size_px", view.size_px);
+  program.set("band_px", view.band_px);
 }
 
 double size_of(const SceneContent& content, const SceneView& view) {
@@ -702,8 +704,11 @@ void StrokeScene::draw_lines(const SceneContent& content, const SceneView& view)
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(strokes_.size()));
 }
 
-constexpr int kSamples = 4, kSamplesInDoubleSize = 2;
+constexpr int kSamples = 4;
 constexpr int kLargest_px = 16384;
+// A fine picture is drawn in bands of so many pixels: all its samples at once would take 120 MB in
+// double size.
+constexpr int kBandArea_px = 1 << 19, kLowestBand_px = 16;
 
 // Software rasterizers of Mesa, Google and Windows.
 bool is_software_renderer(const std::string& name) {
@@ -784,7 +789,7 @@ struct Scene::Impl {
   Target target, resolved;
   std::string renderer;
   int samples = 1;
-  bool is_software = false;
+  bool is_software = false, has_bands = false;
 };
 
 Scene::Scene() = default;
@@ -812,6 +817,7 @@ Result<std::unique_ptr<Scene>> Scene::create(Quality quality) {
                                         std::move(*strokes));
   scene->impl_->samples = is_fine ? std::clamp(most, 1, kSamples) : 1;
   scene->impl_->is_software = is_software;
+  scene->impl_->has_bands = quality == Quality::high;
   const int version = epoxy_gl_version();
   const std::string smoothing =
       scene->impl_->samples > 1 ? fmt::format("{}x", scene->impl_->samples) : "no";
@@ -830,32 +836,37 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &window);
   glGetIntegerv(GL_VIEWPORT, before.data());
   glDisable(GL_SCISSOR_TEST);
-  int samples = scale < 2.0 ? s.samples : std::min(s.samples, kSamplesInDoubleSize);
+  const int band =
+      s.has_bands ? std::min(height, std::max(kBandArea_px / width, kLowestBand_px)) : height;
   // If memory does not suffice for several samples per pixel, one is tried.
-  if (!s.target.resize(width, height, samples)) s.samples = samples = 1;
-  if (s.target.resize(width, height, samples)) {
-    const SceneView view = view_of(camera, content, theme, viewport, scale);
+  if (!s.target.resize(width, band, s.samples)) s.samples = 1;
+  if (s.target.resize(width, band, s.samples)) {
+    SceneView view = view_of(camera, content, theme, viewport, scale);
     s.capsules.load(content, view);
     const ShadowPlace shadow = content.has_shadows ? s.capsules.draw_shadows() : ShadowPlace{};
-    glBindFramebuffer(GL_FRAMEBUFFER, s.target.name());
-    glViewport(0, 0, width, height);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LEQUAL);
-    glDepthMask(GL_TRUE);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    s.capsules.draw(view);
-    s.crowd.draw(content, view, samples);
-    s.floor.draw(content, view, shadow, s.capsules.shadow_texture());
-    s.crowd.draw_shades(content, view);
-    s.strokes.draw(content, view);
-    glDisable(GL_DEPTH_TEST);
-    GLuint ready = s.target.name();
-    if (samples > 1 && s.resolved.resize(width, height, 1)) {
-      blit(ready, s.resolved.name(), width, height, 0, 0);
-      ready = s.resolved.name();
+    for (int begin = 0; begin < height; begin += band) {
+      view.band_px = begin;
+      glBindFramebuffer(GL_FRAMEBUFFER, s.target.name());
+      glViewport(0, -begin, width, height);
+      glEnable(GL_DEPTH_TEST);
+      glDepthFunc(GL_LEQUAL);
+      glDepthMask(GL_TRUE);
+      glClear(GL_DEPTH_BUFFER_BIT);
+      s.capsules.draw(view);
+      s.crowd.draw(content, view, s.samples);
+      s.floor.draw(content, view, shadow, s.capsules.shadow_texture());
+      s.crowd.draw_shades(content, view);
+      s.strokes.draw(content, view);
+      glDisable(GL_DEPTH_TEST);
+      GLuint ready = s.target.name();
+      const int rows = std::min(band, height - begin);
+      if (s.samples > 1 && s.resolved.resize(width, band, 1)) {
+        blit(ready, s.resolved.name(), width, rows, 0, 0);
+        ready = s.resolved.name();
+      }
+      blit(ready, static_cast<GLuint>(window), width, rows, viewport.x,
+           window_height_px - viewport.y - height + begin);
     }
-    blit(ready, static_cast<GLuint>(window), width, height, viewport.x,
-         window_height_px - viewport.y - height);
   }
   glBindVertexArray(0);
   glUseProgram(0);

@@ -271,14 +271,16 @@ uniform vec3 sky_top;
 uniform vec3 sky_bottom;
 uniform float vignette;
 uniform vec2 size_px;
+uniform float band_px;
 out vec4 shown;
+vec2 picture_px() { return gl_FragCoord.xy + vec2(0.0, band_px); }
 vec3 background() {
-  vec2 spot = gl_FragCoord.xy / size_px * 2.0 - 1.0;
+  vec2 spot = picture_px() / size_px * 2.0 - 1.0;
   return mix(sky_bottom, sky_top, 0.5 + 0.5 * spot.y) * (1.0 - vignette * dot(spot, spot));
 }
 // Half a step of noise, against bands.
 void show(vec3 colour) {
-  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float noise = fract(52.9829189 * fract(dot(picture_px(), vec2(0.06711056, 0.00583715))));
   shown = vec4(colour + (noise - 0.5) / 255.0, 1.0);
 }
 )";

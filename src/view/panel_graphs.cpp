@@ -142,13 +142,18 @@ void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
   note(ui, "F flight, R roll, each of the left or right foot", 1);
 }
 
-// Columns of the table: name, iterations and error of each leg, failures since the start.
+// Columns of the table: name, iterations and error of each leg, failures since the start. The
+// numbers take what they need in this font, the name has the rest.
+constexpr std::string_view kIterations = "iterations", kFailed = "failed";
 struct Columns {
   float name, iterations, error, failures, width;
 };
 Columns columns_of(const Ui& ui, float width) {
-  return {0.0f, std::round(width * 0.36f), std::round(width * 0.55f), std::round(width * 0.84f),
-          width - ui.px(2)};
+  const float gap = ui.px(6), end = width - ui.px(2);
+  const float failures = end - text_width(ui.fonts.tick, kFailed);
+  const float error = failures - text_width(ui.fonts.small, "0.00 | 0.00") - gap;
+  const float iterations = error - text_width(ui.fonts.tick, kIterations) - gap;
+  return {0.0f, iterations, error, failures, end};
 }
 
 std::string pair_text(const std::array<std::string, 2>& legs) { return legs[0] + " | " + legs[1]; }
@@ -190,9 +195,9 @@ void draw_table(Ui& ui) {
     put_text(list, ui.fonts.tick, ui.theme.tick, {at.x + x, at.y}, text, end - x - ui.px(4));
   };
   head(c.name, c.iterations, "left | right leg");
-  head(c.iterations, c.error, "iterations");
+  head(c.iterations, c.error, kIterations);
   head(c.error, c.failures, "error, mm");
-  head(c.failures, c.width + ui.px(4), "failed");
+  head(c.failures, c.width + ui.px(6), kFailed);
   ImGui::Dummy({width, ui.fonts.tick->FontSize + ui.px(2)});
   for (int i = 0; i < ui.in.frame.walker_count; ++i) draw_walker(ui, i);
 }

@@ -270,11 +270,16 @@ void draw_name(Ui& ui) {
   if (!is_there && !ui.in.pad_name.empty()) name = "unplugged: " + ui.in.pad_name;
   list.AddCircleFilled({at.x + ui.px(4), at.y + ui.px(8)}, ui.px(4),
                        packed(is_there ? ui.theme.good : ui.theme.secondary), 16);
-  put_text(list, ui.fonts.small, ui.theme.text, {at.x + ui.px(14), at.y + ui.px(1)}, name,
-           width - rate_width - ui.px(20));
+  const float room = width - rate_width - ui.px(20);
+  const float height = ui.px(15);
+  float y = at.y;
+  for (const std::string& line : text_lines(ui.fonts.small, name, room, 2)) {
+    put_text(list, ui.fonts.small, ui.theme.text, {at.x + ui.px(14), y + ui.px(1)}, line, room);
+    y += height;
+  }
   put_text(list, ui.fonts.small, ui.theme.secondary, {at.x + width - rate_width, at.y + ui.px(1)},
            rate, rate_width + 1.0f);
-  ImGui::Dummy({width, ui.px(15)});
+  ImGui::Dummy({width, std::max(y - at.y, height)});
 }
 
 std::string signed_pair(const vec2& v) {

@@ -1,5 +1,7 @@
 #include "hid/usage_names.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -83,6 +85,10 @@ std::string usage_name(std::uint32_t usage) {
   if (page_of(usage) == kButtonPage) return "Button " + std::to_string(id_of(usage));
   const auto found = std::ranges::find(kNames, usage, &UsageName::usage);
   return found == std::end(kNames) ? "" : found->name;
+}
+
+std::string usage_text(std::uint32_t usage) {
+  return fmt::format("{:04x}:{:04x}", page_of(usage), id_of(usage));
 }
 
 }  // namespace gaitpad

@@ -1,5 +1,3 @@
-#include "view/calibration_view.h"
-
 #include <SDL2/SDL_scancode.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -8,10 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <optional>
 
 #include "draw/stick_picture.h"
 #include "pads/calibration_store.h"
-#include "view/widgets.h"
+#include "pads/guided_calibration.h"
+#include "view/pad_dialog.h"
 
 namespace gaitpad {
 namespace {
@@ -51,23 +51,39 @@ void draw_place(Ui& ui, const GuideProgress& control, bool is_stick, const ImVec
                      ui.px(4));
 }
 
-}  // namespace
+class CalibrationView final : public PadDialog {
+ public:
+  CalibrationView(const PadDialogOptions& options, PadFiles files,
+                  std::unique_ptr<GuidedCalibration> guided)
+      : options_(options), files_(std::move(files)), guided_(std::move(guided)) {}
+  ~CalibrationView() override {
+    if (texture_ != 0) glDeleteTextures(1, &texture_);
+  }
+  State draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages) override;
 
-Result<std::unique_ptr<CalibrationView>> CalibrationView::start(const Options& options) {
-  auto files = load_pad_files(options.config_folders, options.map, "");
-  if (!files) return files.error();
-  auto guided = GuidedCalibration::start(*files, options.wish);
-  if (!guided) return guided.error();
-  std::unique_ptr<CalibrationView> view(new CalibrationView());
-  view->options_ = options;
-  view->files_ = std::move(*files);
-  view->guided_ = std::move(*guided);
-  return view;
-}
+ private:
+  void read_pad(std::vector<std::string>& messages);
+  void finish(std::vector<std::string>& messages);
+  void draw_guide(Ui& ui, CalibrationGuide& guide);
+  void draw_control(Ui& ui, const GuideProgress& control, bool is_stick);
+  void draw_result(Ui& ui, float height_px);
+  void draw_guide_buttons(Ui& ui, CalibrationGuide& guide);
+  void draw_result_buttons(Ui& ui, std::vector<std::string>& messages);
+  void upload_picture();
 
-CalibrationView::~CalibrationView() {
-  if (texture_ != 0) glDeleteTextures(1, &texture_);
-}
+  const PadDialogOptions options_;
+  const PadFiles files_;
+  std::unique_ptr<GuidedCalibration> guided_;  // until the guide is done
+  bool is_pad_told_ = false;
+  State state_ = State::goes_on;
+  // Set once the guide is done.
+  GuidedPad pad_;
+  std::optional<PadAnalysis> analysis_;
+  CalibrationFile file_;
+  std::string target_, problem_;
+  unsigned texture_ = 0;
+  int picture_width_ = 0, picture_height_ = 0;
+};
 
 void CalibrationView::read_pad(std::vector<std::string>& messages) {
   if (!guided_) return;
@@ -77,7 +93,7 @@ void CalibrationView::read_pad(std::vector<std::string>& messages) {
   if (guide == nullptr) {
     if (!guided_->has_ended()) return;
     messages.emplace_back("no pad was found that can be calibrated");
-    state_ = State::given_up;
+    state_ = State::ended;
     return;
   }
   if (!is_pad_told_) {
@@ -86,7 +102,7 @@ void CalibrationView::read_pad(std::vector<std::string>& messages) {
     if (!remark.empty()) messages.push_back(shown_name(guided_->pad()) + ": " + remark);
     if (guide->steps().size() <= 1) {  // only the step `done`
       messages.push_back(shown_name(guided_->pad()) + ": has no stick to calibrate");
-      state_ = State::given_up;
+      state_ = State::ended;
       return;
     }
   }
@@ -148,16 +164,7 @@ void CalibrationView::draw_control(Ui& ui, const GuideProgress& control, bool is
   ImGui::SameLine(0.0f, ui.px(16));
   ImGui::BeginGroup();
   text_line(ui, ui.fonts.heading, ui.theme.text, control.control);
-  const float width = ImGui::GetContentRegionAvail().x;
-  const ImVec2 bar = ImGui::GetCursorScreenPos();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float done = static_cast<float>(std::clamp(control.done, 0.0, 1.0));
-  list.AddRectFilled(bar, bar + ImVec2(width, ui.px(10)), packed(ui.theme.frame), ui.px(5));
-  const bool is_done = control.done >= 1.0;
-  if (done > 0.0f)
-    list.AddRectFilled(bar, bar + ImVec2(std::max(width * done, ui.px(10)), ui.px(10)),
-                       packed(is_done ? ui.theme.good : ui.theme.accent), ui.px(5));
-  ImGui::Dummy(ImVec2(width, ui.px(16)));
+  progress_bar(ui, control.done);
   note(ui, control.text, 4);
   ImGui::EndGroup();
 }
@@ -225,13 +232,13 @@ void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& mess
       messages.push_back(wrong->message);
     } else {
       messages.push_back("the calibration is saved in " + target_);
-      state_ = State::saved;
+      state_ = State::calibrated;
     }
   }
 }
 
-CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
-                                             std::vector<std::string>& messages) {
+PadDialog::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
+                                       std::vector<std::string>& messages) {
   read_pad(messages);
   const ImVec2 size = begin_modal(ui, "calibration", kWidth, kHeight, window_px);
   CalibrationGuide* guide = guided_ ? guided_->guide() : nullptr;
@@ -250,8 +257,10 @@ CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
   if (guide != nullptr) draw_guide_buttons(ui, *guide);
   if (analysis_) draw_result_buttons(ui, messages);
   if (guide != nullptr || analysis_) ImGui::SameLine();
-  if (button(ui, "calibration give up", "Give up  (Esc)")) state_ = State::given_up;
+  if (button(ui, "calibration give up", "Give up  (Esc)")) state_ = State::ended;
   if (guide != nullptr) {
+    ImGui::SameLine();
+    if (button(ui, "calibration map", "Controls are wrong")) state_ = State::wants_map;
     ImGui::SameLine();
     if (button(ui, "calibration test", "Test this pad")) state_ = State::wants_test;
   }
@@ -261,6 +270,17 @@ CalibrationView::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
   }
   end_modal();
   return state_;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PadDialog>> start_calibration(const PadDialogOptions& options) {
+  auto files = load_pad_files(options.config_folders, options.map, "");
+  if (!files) return files.error();
+  auto guided = GuidedCalibration::start(*files, options.wish);
+  if (!guided) return guided.error();
+  return std::unique_ptr<PadDialog>(
+      new CalibrationView(options, std::move(*files), std::move(*guided)));
 }
 
 }  // namespace gaitpad

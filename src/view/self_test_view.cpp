@@ -1,5 +1,3 @@
-#include "view/self_test_view.h"
-
 #include <SDL2/SDL_scancode.h>
 #include <fmt/format.h>
 #include <imgui.h>
@@ -11,6 +9,9 @@
 #include <optional>
 #include <thread>
 #include <utility>
+
+#include "session/self_test.h"
+#include "view/pad_dialog.h"
 
 namespace gaitpad {
 namespace {
@@ -28,12 +29,11 @@ std::string outcome(const Result<std::optional<SelfTestResult>>& result) {
   return fmt::format("{}: {}", done.folder, found);
 }
 
-}  // namespace
-
-// Between the two threads.
-class SelfTestView::Person final : public SelfTestPerson {
+// Runs the test on a thread of its own, because it waits for the person, and stands between this
+// thread and the window's.
+class WindowPerson final : public SelfTestPerson {
  public:
-  explicit Person(const SelfTestOptions& options) : options_(options) {
+  explicit WindowPerson(const SelfTestOptions& options) : options_(options) {
     thread_ = std::thread([this] {
       const std::string said = outcome(run_self_test(options_, *this));
       const std::lock_guard lock(mutex_);
@@ -41,7 +41,7 @@ class SelfTestView::Person final : public SelfTestPerson {
       has_ended_ = true;
     });
   }
-  ~Person() override {
+  ~WindowPerson() override {  // gives the test up
     is_leaving_ = true;
     answer(Answer::quit);
     thread_.join();
@@ -87,17 +87,19 @@ class SelfTestView::Person final : public SelfTestPerson {
   std::thread thread_;
 };
 
-std::unique_ptr<SelfTestView> SelfTestView::start(const SelfTestOptions& options) {
-  std::unique_ptr<SelfTestView> view(new SelfTestView());
-  view->person_ = std::make_unique<Person>(options);
-  return view;
-}
+class SelfTestView final : public PadDialog {
+ public:
+  explicit SelfTestView(const SelfTestOptions& options) : person_(options) {}
+  State draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages) override;
 
-SelfTestView::~SelfTestView() = default;
+ private:
+  WindowPerson person_;
+};
 
-bool SelfTestView::draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages) {
-  if (!person_->take_remarks(messages)) return false;
-  const SelfTestPrompt prompt = person_->prompt();
+PadDialog::State SelfTestView::draw(Ui& ui, const ImVec2& window_px,
+                                    std::vector<std::string>& messages) {
+  if (!person_.take_remarks(messages)) return State::ended;
+  const SelfTestPrompt prompt = person_.prompt();
   const ImVec2 size = begin_modal(ui, "self test", kWidth, kHeight, window_px);
   text_line(ui, ui.fonts.title, ui.theme.text,
             prompt.parts > 0
@@ -110,16 +112,7 @@ bool SelfTestView::draw(Ui& ui, const ImVec2& window_px, std::vector<std::string
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
   ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
-  const float width = ImGui::GetContentRegionAvail().x;
-  const ImVec2 bar = ImGui::GetCursorScreenPos();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float done = static_cast<float>(std::clamp(prompt.done, 0.0, 1.0));
-  list.AddRectFilled(bar, ImVec2(bar.x + width, bar.y + ui.px(10)), packed(ui.theme.frame),
-                     ui.px(5));
-  if (done > 0.0f)
-    list.AddRectFilled(bar, ImVec2(bar.x + std::max(width * done, ui.px(10)), bar.y + ui.px(10)),
-                       packed(ui.theme.accent), ui.px(5));
-  ImGui::Dummy(ImVec2(width, ui.px(16)));
+  progress_bar(ui, prompt.done);
   note(ui, drawable(prompt.seen), 4);
 
   ImGui::SetCursorPosY(size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y);
@@ -127,20 +120,29 @@ bool SelfTestView::draw(Ui& ui, const ImVec2& window_px, std::vector<std::string
   const bool is_entered = is_key(ImGui::GetKeyIndex(ImGuiKey_Enter));
   if (prompt.is_question) {
     if (button(ui, "self test yes", "Yes  (Y)") || is_key(SDL_SCANCODE_Y))
-      person_->answer(SelfTestPerson::Answer::yes);
+      person_.answer(SelfTestPerson::Answer::yes);
     ImGui::SameLine();
   }
   if (button(ui, "self test no", prompt.is_question ? "No  (N)" : "It shows something else  (N)") ||
       is_key(SDL_SCANCODE_N))
-    person_->answer(SelfTestPerson::Answer::no);
+    person_.answer(SelfTestPerson::Answer::no);
   ImGui::SameLine();
   if (button(ui, "self test next", "The pad cannot do it  (Enter)") || is_entered)
-    person_->answer(SelfTestPerson::Answer::next);
+    person_.answer(SelfTestPerson::Answer::next);
   ImGui::SameLine();
   if (button(ui, "self test give up", "Give up  (Esc)"))
-    person_->answer(SelfTestPerson::Answer::quit);
+    person_.answer(SelfTestPerson::Answer::quit);
   end_modal();
-  return true;
+  return State::goes_on;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PadDialog>> start_self_test(const PadDialogOptions& options) {
+  auto files = load_pad_files(options.config_folders, options.map, "");
+  if (!files) return files.error();
+  return std::unique_ptr<PadDialog>(new SelfTestView(
+      {std::move(*files), options.wish, options.config_folders, options.map, "", options.program}));
 }
 
 }  // namespace gaitpad

@@ -217,6 +217,19 @@ void note(Ui& ui, std::string_view text, int max_lines) {
   }
 }
 
+void progress_bar(Ui& ui, double done) {
+  const float width = ImGui::GetContentRegionAvail().x, height = ui.px(10), round = ui.px(5);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, {at.x + width, at.y + height}, packed(ui.theme.frame), round);
+  if (done > 0.0) {
+    const float filled = std::max(width * static_cast<float>(std::min(done, 1.0)), height);
+    list.AddRectFilled(at, {at.x + filled, at.y + height},
+                       packed(done >= 1.0 ? ui.theme.good : ui.theme.accent), round);
+  }
+  ImGui::Dummy({width, ui.px(16)});
+}
+
 int Ui::walker() const noexcept {
   if (in.frame.walker_count <= 0) return -1;
   return state.walker >= 0 && state.walker < in.frame.walker_count ? state.walker : 0;

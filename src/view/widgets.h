@@ -45,6 +45,8 @@ void text_line(Ui& ui, const ImFont* font, const Colour& colour, std::string_vie
 void value_row(Ui& ui, std::string_view label, std::string_view value);
 // Small grey text over at most `max_lines` lines.
 void note(Ui& ui, std::string_view text, int max_lines = 3);
+// A bar over the rest of the row that is filled as far as `done`, 0 to 1; in another colour at 1.
+void progress_bar(Ui& ui, double done);
 // Breaks the text into at most `max_lines` lines of this width. The last line holds all the rest,
 // which put_text() then cuts.
 std::vector<std::string> text_lines(const ImFont* font, std::string_view text, float width,

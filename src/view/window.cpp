@@ -26,15 +26,14 @@
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
 #include "session/script.h"
-#include "view/calibration_view.h"
 #include "view/controls.h"
 #include "view/ensemble.h"
 #include "view/file_browser.h"
 #include "view/frame_clock.h"
 #include "view/gui.h"
 #include "view/layout.h"
+#include "view/pad_dialog.h"
 #include "view/scene.h"
-#include "view/self_test_view.h"
 #include "view/show.h"
 #include "view/surface.h"
 #include "view/tooltips.h"
@@ -148,9 +147,7 @@ class WindowLoop {
   bool is_ended();
   std::optional<Error> picture_problem() const;
   void show_progress() const;
-  bool is_modal() const noexcept {
-    return browser_.is_open() || calibration_ != nullptr || self_test_ != nullptr;
-  }
+  bool is_modal() const noexcept { return browser_.is_open() || pad_dialog_ != nullptr; }
   void handle_events();
   void follow_wishes(Wishes wishes);
   void add_button_actions(std::vector<Action>& wanted);
@@ -168,8 +165,7 @@ class WindowLoop {
   UiInput ui_input();
   const LiveStatus* shown_status();
   void draw_browser(Ui& ui, const ImVec2& window_px);
-  void draw_calibration(Ui& ui, const ImVec2& window_px);
-  void draw_self_test(Ui& ui, const ImVec2& window_px);
+  void draw_pad_dialog(Ui& ui, const ImVec2& window_px);
   void reset_camera();
   void turn_to_risers(double passed_s);
   void set_type_size(double size);
@@ -206,9 +202,9 @@ class WindowLoop {
   void choose_next_terrain();
   void toggle_recording();
   void begin_calibration();
-  void end_calibration(CalibrationView::State state);
-  void begin_self_test();
-  void end_self_test();
+  using PadDialogStart = Result<std::unique_ptr<PadDialog>>(const PadDialogOptions&);
+  void begin_pad_dialog(PadDialogStart& start);
+  void end_pad_dialog(PadDialog::State state);
   void take_screenshot(int width_px, int height_px);
 
   WindowOptions options_;
@@ -220,8 +216,7 @@ class WindowLoop {
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<VideoWriter> video_;
-  std::unique_ptr<CalibrationView> calibration_;
-  std::unique_ptr<SelfTestView> self_test_;
+  std::unique_ptr<PadDialog> pad_dialog_;  // the show has ended meanwhile
   std::unique_ptr<Show> show_;
   std::unique_ptr<Ensemble> ensemble_;
   std::optional<SessionSpec> live_before_;  // during a playback: the live session before it
@@ -248,8 +243,7 @@ class WindowLoop {
   LiveStatus picture_status_;
   double pace_before_pause_ = 1.0;
   std::optional<std::string> chosen_file_;  // in the browser, in this frame
-  CalibrationView::State calibration_state_ = CalibrationView::State::goes_on;
-  bool is_self_test_over_ = false;
+  PadDialog::State pad_dialog_state_ = PadDialog::State::goes_on;
   bool wants_screenshot_ = false, is_quitting_ = false;
   bool is_end_told_ = false, is_untouched_told_ = false;  // to the person
   bool is_camera_moved_ = false;  // by the person: it turns by itself no more
@@ -267,7 +261,7 @@ WindowLoop::~WindowLoop() {
   show_.reset();  // before SDL is stopped
   if (surface_ == nullptr || !surface_->is_lost()) return;
   // Closing anything on a lost display could wait for ever, so it is left to the program's end.
-  static_cast<void>(calibration_.release());
+  static_cast<void>(pad_dialog_.release());
   static_cast<void>(scene_.release());
   static_cast<void>(gui_.release());
   static_cast<void>(surface_.release());
@@ -406,7 +400,7 @@ void WindowLoop::fail_without_display() {
 void WindowLoop::call_script() {
   if (!options_.script) return;
   options_.script({result_.frames, show_->frame(), show_->cast(), state_, camera_, show_->pace(),
-                   !show_->is_live(), browser_.is_open(), calibration_ != nullptr,
+                   !show_->is_live(), browser_.is_open(), pad_dialog_ != nullptr,
                    show_->options().live.record, messages_.sentences()});
 }
 
@@ -672,8 +666,7 @@ UiOutput WindowLoop::draw_panels(int width_px, int height_px, bool is_drawn) {
   UiOutput out = draw_ui(in, theme, gui_->fonts(), scale(), state_);
   Ui ui{in, theme, gui_->fonts(), static_cast<float>(scale()), state_, out};
   draw_browser(ui, window_px);
-  draw_calibration(ui, window_px);
-  draw_self_test(ui, window_px);
+  draw_pad_dialog(ui, window_px);
   if (is_drawn) gui_->end();
   if (!is_drawn) gui_->end_undrawn();
   return out;
@@ -684,18 +677,10 @@ void WindowLoop::draw_browser(Ui& ui, const ImVec2& window_px) {
   if (const auto file = browser_.draw(ui, window_px)) chosen_file_ = *file;
 }
 
-void WindowLoop::draw_calibration(Ui& ui, const ImVec2& window_px) {
-  if (!calibration_) return;
+void WindowLoop::draw_pad_dialog(Ui& ui, const ImVec2& window_px) {
+  if (!pad_dialog_) return;
   std::vector<std::string> messages;
-  calibration_state_ = calibration_->draw(ui, window_px, messages);
-  for (std::string& message : messages) show_message(std::move(message));
-}
-
-// At its end the session goes on.
-void WindowLoop::draw_self_test(Ui& ui, const ImVec2& window_px) {
-  if (!self_test_) return;
-  std::vector<std::string> messages;
-  is_self_test_over_ = !self_test_->draw(ui, window_px, messages);
+  pad_dialog_state_ = pad_dialog_->draw(ui, window_px, messages);
   for (std::string& message : messages) show_message(std::move(message));
 }
 
@@ -727,9 +712,8 @@ void WindowLoop::run_actions(const UiOutput& out) {
   if (out.save_style) save_walkers_style(*out.save_style);
   if (out.dismisses_messages) messages_.clear();
   if (const auto file = std::exchange(chosen_file_, std::nullopt)) open_file(*file);
-  if (calibration_ && calibration_state_ != CalibrationView::State::goes_on)
-    end_calibration(calibration_state_);
-  if (self_test_ && is_self_test_over_) end_self_test();
+  if (pad_dialog_ && pad_dialog_state_ != PadDialog::State::goes_on)
+    end_pad_dialog(pad_dialog_state_);
 }
 
 void WindowLoop::run_action(Action action) {
@@ -934,10 +918,8 @@ void WindowLoop::go_back() {
     state_.is_help_open = false;
   } else if (browser_.is_open()) {
     browser_.close();
-  } else if (calibration_) {
-    end_calibration(CalibrationView::State::given_up);
-  } else if (self_test_) {
-    end_self_test();
+  } else if (pad_dialog_) {
+    end_pad_dialog(PadDialog::State::ended);
   } else if (live_before_) {
     const SessionSpec live = *std::exchange(live_before_, std::nullopt);
     switch_to(live);
@@ -1063,8 +1045,7 @@ bool WindowLoop::restart(Result<std::unique_ptr<Show>> show, const SessionSpec& 
 }
 
 void WindowLoop::open_file(const std::string& path) {
-  if (calibration_ || self_test_)
-    return show_message("finish the calibration or test before opening a file");
+  if (pad_dialog_) return show_message("finish what the pad is used for before opening a file");
   const auto kind = kind_of_file(path);
   if (!kind) return show_message(kind.error().message);
   const int count = static_cast<int>(show_->cast().members.size());
@@ -1079,7 +1060,7 @@ void WindowLoop::open_file(const std::string& path) {
 // The next terrain of the configuration folders; the first one if the present one is from
 // elsewhere.
 void WindowLoop::choose_next_terrain() {
-  if (calibration_) return;
+  if (pad_dialog_) return;
   if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
   if (makes_pictures())
     return show_message(
@@ -1108,44 +1089,35 @@ void WindowLoop::toggle_recording() {
 }
 
 void WindowLoop::begin_calibration() {
-  if (calibration_) return;
+  if (pad_dialog_) return;
   if (!show_->is_live() || makes_pictures())
     return show_message("sticks can be calibrated in a live session only");
-  const SessionSpec before = show_->options();
   end_show();
-  auto view = CalibrationView::start(
-      {before.pad.wish, before.pad.map, before.config_folders, options_.calibration_folder});
-  calibration_state_ = CalibrationView::State::goes_on;
-  if (view) {
-    calibration_ = std::move(*view);
+  begin_pad_dialog(start_calibration);
+}
+
+void WindowLoop::begin_pad_dialog(PadDialogStart& start) {
+  const SessionSpec& spec = show_->options();
+  auto dialog = start({spec.pad.wish, spec.pad.map, spec.config_folders,
+                       options_.calibration_folder, options_.program});
+  pad_dialog_state_ = PadDialog::State::goes_on;
+  if (dialog) {
+    pad_dialog_ = std::move(*dialog);
   } else {
-    show_message(view.error().message);
-    restart(Show::open(show_->options()), show_->options());
+    show_message(dialog.error().message);
+    restart(Show::open(spec), spec);
   }
 }
 
-void WindowLoop::end_calibration(CalibrationView::State state) {
-  calibration_.reset();  // frees the pad
-  if (state == CalibrationView::State::wants_test) return begin_self_test();
+// Another dialog follows, or the session goes on.
+void WindowLoop::end_pad_dialog(PadDialog::State state) {
+  pad_dialog_.reset();  // frees the pad
+  if (state == PadDialog::State::wants_map) return begin_pad_dialog(start_mapping);
+  if (state == PadDialog::State::wants_test) return begin_pad_dialog(start_self_test);
   SessionSpec next = show_->options();
   // A calibration that was asked for would override the new one.
-  if (state == CalibrationView::State::saved) next.pad.calibration.clear();
+  if (state == PadDialog::State::calibrated) next.pad.calibration.clear();
   restart(Show::open(next), show_->options());
-}
-
-void WindowLoop::begin_self_test() {
-  const SessionSpec& spec = show_->options();
-  SelfTestOptions options{{}, spec.pad.wish,   spec.config_folders, spec.pad.map,
-                          "", options_.program};
-  auto files = load_pad_files(spec.config_folders, spec.pad.map, "");
-  if (files) options.files = std::move(*files);
-  is_self_test_over_ = false;
-  self_test_ = SelfTestView::start(options);
-}
-
-void WindowLoop::end_self_test() {
-  self_test_.reset();  // frees the pad
-  restart(Show::open(show_->options()), show_->options());
 }
 
 void WindowLoop::take_screenshot(int width_px, int height_px) {

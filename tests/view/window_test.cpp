@@ -825,6 +825,53 @@ TEST_F(WindowFiles, TheSelfTestNeedsThePadItselfAndTheSessionGoesOnWithoutIt) {
   run(script);
 }
 
+// The bytes of one report of six: X, Y, Z, Rz, two spare ones; for so many reports of 50 ms.
+void add_reports(std::string& text, int& ms, const std::array<int, 6>& bytes, int count) {
+  for (int i = 0; i < count; ++i, ms += 50) {
+    char line[80];
+    std::snprintf(line, sizeof line, "E: %06d.%06d 6", ms / 1000, ms % 1000 * 1000);
+    text += line;
+    for (const int byte : bytes) {
+      std::snprintf(line, sizeof line, " %02x", byte);
+      text += line;
+    }
+    text += "\n";
+  }
+}
+
+// A person who pushes the left stick, which is Z and Rz on this pad, upside down.
+std::string odd_pad_trace() {
+  std::string text =
+      "D: 0\nN: Odd Pad\nP: made/0\nI: 3 1209 0077\nR: 30 05 01 09 05 a1 01 15 00 26 ff 00 75 08 "
+      "95 06 09 30 09 31 09 32 09 35 09 33 09 34 81 02 c0\n";
+  constexpr std::array<int, 6> kRest = {0x80, 0x80, 0x80, 0x80, 0, 0};
+  int ms = 0;
+  for (const int moved : {3, 2}) {
+    add_reports(text, ms, kRest, 30);
+    std::array<int, 6> pushed = kRest;
+    pushed[static_cast<std::size_t>(moved)] = 0xff;
+    add_reports(text, ms, pushed, 12);
+  }
+  add_reports(text, ms, kRest, 60);
+  return text;
+}
+
+TEST_F(WindowFiles, ControlsThatAreWrongAreAskedForAndKept) {
+  options_.session.pad.wish.pad = make("odd.hid", odd_pad_trace());
+  Script script;
+  script.until("it runs", [](const Glance& g) { return g.session.tick > 0; });
+  script.tap(SDLK_F8);
+  script.click("calibration map");
+  script.click("map keep");  // is there once the left stick is known
+  script.until("it is kept", [](const Glance& g) { return says(g, "2 controls are kept in"); });
+  script.until("it runs again",
+               [](const Glance& g) { return !g.is_calibrating && g.session.tick > 0; });
+  run(script);
+  const std::string kept = text_in(folder_ / "config/gaitpad/gamecontrollerdb.txt");
+  for (const char* part : {"Odd Pad", ",leftx:a2,", ",lefty:a5~,"})
+    EXPECT_NE(kept.find(part), std::string::npos) << kept;
+}
+
 TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
   options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
   options_.calibration_folder = (folder_ / "config/gaitpad/calibration").string();

@@ -7,6 +7,7 @@
 #include "gaitpad/descriptor.h"
 #include "gaitpad/drivers.h"
 #include "gaitpad/pad_stream.h"
+#include "hid/usage_names.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"

@@ -32,10 +32,6 @@ void print_summaries_json(const std::vector<ordered_json>& summaries) {
   print_json(summaries.size() == 1 ? summaries[0] : ordered_json(summaries));
 }
 
-std::string usage_text(std::uint32_t usage) {
-  return fmt::format("{:04x}:{:04x}", page_of(usage), id_of(usage));
-}
-
 std::vector<std::string> button_names(const PadState& state) {
   std::vector<std::string> names;
   for (int b = 0; b < kButtonCount; ++b) {

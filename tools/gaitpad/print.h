@@ -28,7 +28,6 @@ void print_json(const nlohmann::ordered_json& value);
 // One object for one character, else a list.
 void print_summaries_json(const std::vector<nlohmann::ordered_json>& summaries);
 
-std::string usage_text(std::uint32_t usage);  // 0001:0030
 std::vector<std::string> button_names(const PadState& state);
 nlohmann::ordered_json axes_json(const PadState& state);
 

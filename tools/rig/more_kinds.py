@@ -10,7 +10,7 @@ import dataclasses
 import os
 import tempfile
 
-from pads import Pad
+from pads import Pad, settle, wait_for
 from support import traces
 
 _STICKS8 = {"lx": ("left_x", 127.5, 127.5, 1), "ly": ("left_y", 127.5, 127.5, -1),
@@ -37,6 +37,8 @@ class Kind:
     bits: dict = dataclasses.field(default_factory=dict)  # field -> (first bit, width)
     has_hat: bool = False
     still: tuple = ()  # decoded axes that no control of this pad moves
+    stream_rate_hz: int = 0      # reports are sent all the time
+    has_event_node: bool = True  # False: all of its report is a vendor's
 
 
 class PlainPad(Pad):
@@ -50,9 +52,22 @@ class PlainPad(Pad):
         self.table, self.state = kind, bytearray(kind.neutral)
         super().__init__("trace", index, trace=file.name, plug=plug)
 
+    def __enter__(self):
+        super().__enter__()
+        if self.table.stream_rate_hz:
+            self.command(f"stream {self.table.stream_rate_hz}")
+        return self
+
     def __exit__(self, *arguments):
         super().__exit__(*arguments)
         os.unlink(self._command[-1])
+
+    def wait_ready(self, seconds=20.0):
+        if self.table.has_event_node:
+            super().wait_ready(seconds)
+        else:
+            wait_for(lambda: self.hidraws, seconds, "a hidraw node")
+            settle()
 
     def set(self, **fields):
         for name, value in fields.items():
@@ -188,4 +203,17 @@ MORE = {
                  neutral=bytes([1, 0, 0, 8, 0x80, 0x80, 0x80, 0x80, 0, 0]),
                  bits=_places(8, "a", "b", "x", "y", "l1", "r1", "back", "start", "guide", "microphone", "l3", "r3")
                  | {"hat": (24, 4)} | _places(32, "lx", "ly", "rx", "ry", "lt", "rt", width=8), has_hat=True),
+    # The numbers of its buttons are bits of a word of 64; 2 and 1 are the triggers' switches.
+    "deck": Kind("Steam Deck", "28de:1205", "SDL's steam/controller_structs.h, Linux hid-steam.c", ("hidraw", "usb"),
+                 _WORDS | {"lt": ("left_trigger", 0, 32767, 1), "rt": ("right_trigger", 0, 32767, 1)},
+                 _XBOX | _DPAD | {name: name for name in ("guide", "misc1", "paddle1", "paddle2", "paddle3", "paddle4")},
+                 descriptor=bytes([0x06, 0xff, 0xff, 0x09, 1, 0xa1, 1, 0x09, 2, 0x15, 0, 0x26, 0xff, 0, 0x75, 8, 0x95, 64, 0x81, 2,
+                                   0x09, 3, 0x95, 64, 0xb1, 2, 0xc0]),
+                 neutral=bytes([1, 0, 9, 60]) + bytes(60),
+                 bits={name: (64 + bit, 1) for name, bit in (
+                     ("rightshoulder", 2), ("leftshoulder", 3), ("y", 4), ("b", 5), ("x", 6), ("a", 7), ("dpup", 8), ("dpright", 9),
+                     ("dpleft", 10), ("dpdown", 11), ("back", 12), ("guide", 13), ("start", 14), ("paddle4", 15), ("paddle3", 16),
+                     ("leftstick", 22), ("rightstick", 26), ("paddle2", 41), ("paddle1", 42), ("misc1", 50))}
+                 | _places(352, "lt", "rt", "lx", "ly", "rx", "ry", width=16),
+                 stream_rate_hz=250, has_event_node=False),
 }

@@ -36,28 +36,31 @@ def test_a_repository_that_cannot_be_written_is_built_in_the_cache_which_is_said
     assert folders("/etc", as_nobody)[0] != folders("/usr", as_nobody)[0]
 
 
-def test_a_build_says_on_a_terminal_how_far_it_is(tmp_path):
-    """With a ninja and a cmake that pretend."""
-    tools = tmp_path / "bin"
-    tools.mkdir()
-    (tools / "cmake").write_text("#!/bin/sh\nfor i in 1 2 3 4 5 6 7 8; do echo \"[$i/8] Building x\"; sleep 0.6; done\n")
-    (tools / "cmake").chmod(0o755)
-    (tmp_path / "build").mkdir()
-    (tmp_path / "build/build.ninja").write_text("")
-    with Terminal("bash", ROOT / "tools/build.sh", tmp_path / "build", "all",
-                  env={"PATH": f"{tools}:{os.environ['PATH']}"}) as terminal:
+@pytest.fixture
+def pretended(tmp_path):
+    """A function that takes the lines of a cmake that only pretends, and gives the folder that it builds into and the
+    environment that finds it."""
+    def cmake(*lines):
+        tools, build = tmp_path / "bin", tmp_path / "build"
+        tools.mkdir()
+        build.mkdir()
+        (tools / "cmake").write_text("\n".join(("#!/bin/sh", *lines)) + "\n")
+        (tools / "cmake").chmod(0o755)
+        (build / "build.ninja").write_text("")
+        return build, {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
+    return cmake
+
+
+def test_a_build_says_on_a_terminal_how_far_it_is(pretended):
+    build, env = pretended('for i in 1 2 3 4 5 6 7 8; do echo "[$i/8] Building x"; sleep 0.6; done')
+    with Terminal("bash", ROOT / "tools/build.sh", build, "all", env=env) as terminal:
         terminal.wait_for(r"Building: \d+ %, \d+ s left", seconds=20)
         assert terminal.wait_end() == 0
-    assert "[8/8]" in (tmp_path / "build/build.log").read_text()
+    assert "[8/8]" in (build / "build.log").read_text()
 
 
-def test_a_failed_build_shows_its_errors(tmp_path):
-    tools = tmp_path / "bin"
-    tools.mkdir()
-    (tools / "cmake").write_text("#!/bin/sh\necho '[1/2] Building x'\necho 'x.cpp:1: error: no'\nexit 1\n")
-    (tools / "cmake").chmod(0o755)
-    (tmp_path / "build").mkdir()
-    (tmp_path / "build/build.ninja").write_text("")
-    done = subprocess.run(["bash", ROOT / "tools/build.sh", tmp_path / "build", "all"], capture_output=True, text=True,
-                          check=False, env={**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"})
+def test_a_failed_build_shows_its_errors(pretended):
+    build, env = pretended("echo '[1/2] Building x'", "echo 'x.cpp:1: error: no'", "exit 1")
+    done = subprocess.run(["bash", ROOT / "tools/build.sh", build, "all"], capture_output=True, text=True, check=False,
+                          env=env)
     assert done.returncode == 1 and done.stderr.strip() == "x.cpp:1: error: no"

@@ -3,6 +3,7 @@
 
 namespace gaitpad {
 
-template void solve_legs(const RobustOptions&, LegLanes<4>&) noexcept;
+template void solve_legs<4>(const RobustOptions&, LegLanes<4>&) noexcept;
+template void solve_legs<2, 4>(const RobustOptions&, LegLanes<2>&) noexcept;
 
 }  // namespace gaitpad

@@ -3,6 +3,7 @@
 
 namespace gaitpad {
 
-template void solve_legs(const RobustOptions&, LegLanes<8>&) noexcept;
+template void solve_legs<8>(const RobustOptions&, LegLanes<8>&) noexcept;
+template void solve_legs<2, 8>(const RobustOptions&, LegLanes<2>&) noexcept;
 
 }  // namespace gaitpad

@@ -239,7 +239,7 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
 
 }  // namespace
 
-template <int kWidth>
+template <int kWidth, int kRegister>
 void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept {
   using V = Lanes<kWidth>;
   LegGoals<V> goals;

@@ -3,6 +3,6 @@
 
 namespace gaitpad {
 
-template void solve_legs(const RobustOptions&, LegLanes<2>&) noexcept;
+template void solve_legs<2>(const RobustOptions&, LegLanes<2>&) noexcept;
 
 }  // namespace gaitpad

@@ -398,7 +398,7 @@ void pose_legs(const PlannedTick& planned) noexcept {
       set_lanes(goals, side, lanes.goals);
       set_lanes(angles, side, lanes.angles_rad);
     }
-    solve_legs(kRobust, lanes);
+    solve_two_legs(kRobust, lanes);
     for (const Side side : {kLeftSide, kRightSide}) {
       LegSolution<double> solution;
       get_lane(lanes.angles_rad, side, state.legs.angles_rad[side]);

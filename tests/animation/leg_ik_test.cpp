@@ -73,14 +73,21 @@ Leg random_leg(Random& random, double from_goal_rad, double off_m, double least_
   return leg;
 }
 
-template <class Width>
+// How many legs, in registers of how many numbers.
+template <int kLegs, int kNumbers>
+struct CompiledFor {
+  static constexpr int kWidth = kLegs, kRegister = kNumbers;
+};
+
+template <class Compiled>
 class LegIk : public testing::Test {
  protected:
-  static constexpr int kWidth = Width::value;
+  static constexpr int kWidth = Compiled::kWidth, kRegister = Compiled::kRegister;
   using Legs = LegLanes<kWidth>;
 
   void SetUp() override {
-    if (widest_lanes() < kWidth) GTEST_SKIP() << "this processor has no " << kWidth << " lanes";
+    if (widest_lanes() < kRegister)
+      GTEST_SKIP() << "this processor has no " << kRegister << " lanes";
   }
   static void set_vector(const vec3& from, int lane, Vec3Of<Row<kWidth>>& to) {
     to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
@@ -105,7 +112,7 @@ class LegIk : public testing::Test {
   static Legs solved(const std::vector<Leg>& legs) {
     Legs lanes;
     for (int lane = 0; lane < kWidth; ++lane) set_lane(legs[lane], lane, lanes);
-    solve_legs(kOptions, lanes);
+    solve_legs<kWidth, kRegister>(kOptions, lanes);
     return lanes;
   }
   // As many legs as lanes, each with a difficulty of its own.
@@ -138,8 +145,8 @@ class LegIk : public testing::Test {
     }
   }
 };
-using Widths = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 4>,
-                              std::integral_constant<int, 8>>;
+using Widths = testing::Types<CompiledFor<2, 2>, CompiledFor<2, 4>, CompiledFor<2, 8>,
+                              CompiledFor<4, 4>, CompiledFor<8, 8>>;
 TYPED_TEST_SUITE(LegIk, Widths);
 
 TYPED_TEST(LegIk, GivesTheBitsOfTheGeneralSolverNearTheGoal) {

@@ -193,7 +193,7 @@ std::vector<Legs> solves_of(const Session& session, Simulation simulation,
 
 int solve(RobustLegs& legs) {
   legs.lanes.angles_rad = legs.start_rad;
-  solve_legs(kRobust, legs.lanes);
+  solve_two_legs(kRobust, legs.lanes);
   benchmark::DoNotOptimize(legs.lanes);
   const Row<2>& iterations = legs.lanes.solution.iterations;
   return static_cast<int>(iterations[0] + iterations[1]);

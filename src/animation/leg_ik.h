@@ -44,8 +44,8 @@ struct LegLanes {
 };
 
 // Starts at `angles_rad` and leaves the best pose there. Angles and weights have to be finite.
-// kWidth: 2, 4 or 8. kRegister: the width of the registers that it is compiled for; wider ones bring
-// instructions with three operands, by which two legs take a seventh less time.
+// kWidth: 2, 4 or 8. kRegister: the width of the registers that it is compiled for; wider ones
+// bring instructions with three operands, by which two legs take a seventh less time.
 template <int kWidth, int kRegister = kWidth>
 void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept;
 

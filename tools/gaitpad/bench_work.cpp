@@ -131,9 +131,9 @@ void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<
     double largest = 0.0;
     for (const Damped<double>& w : now.state.gait.weight[side]) largest = std::max(largest, w.x);
     for (int j = 0; j < kLegDofs; ++j) {
-      both.start_rad[j][side] =
-          solved.data_rad[side][j] +
-          (1.0 - kLeak_per_s * dt_s) * (last.angles_rad[side][j] - last.data_rad[side][j]);
+      const double off = last.angles_rad[side][j] - last.data_rad[side][j];
+      both.start_rad[j][side] = solved.data_rad[side][j] + kept_off(dt_s) * off +
+                                off_ahead(dt_s) * (off - last.last_off_rad[side][j]);
       goals.weight[j][side] =
           std::clamp(now.state.gait.weight[side][j].x / largest, kLeastWeight, 1.0);
       goals.min_rad[j][side] = leg.chain.dof[j].min_rad;

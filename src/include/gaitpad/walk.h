@@ -212,10 +212,11 @@ struct PathState : PathFlow<double> {
   Damped<double> slope_lean_rad;  // of the trunk into a slope or stair, forwards positive
 };
 
-// The legs' angles: the tables', with what the style changes, and the pose's.
+// The legs' angles: the tables', with what the style changes, and the pose's; what the pose's
+// differed by a tick before.
 template <class V>
 struct LegFlow {
-  std::array<std::array<V, kLegDofs>, 2> data_rad{}, angles_rad{};
+  std::array<std::array<V, kLegDofs>, 2> data_rad{}, angles_rad{}, last_off_rad{};
 };
 using LegState = LegFlow<double>;
 

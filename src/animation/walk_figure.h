@@ -42,31 +42,39 @@ std::array<V, kLegDofs> relative_weights(const GaitFlow<V>& gait, Side side) noe
   return weight;
 }
 
-// How much of the correction on the data's angles is kept from tick to tick, and how much of its
-// last change is expected again. The second is the most with which the swivel still returns without
-// swinging: the double root of z^2 - (kept + ahead) z + ahead.
-inline double kept_off(double dt_s) noexcept { return 1.0 - std::min(1.0, kLeak_per_s * dt_s); }
-inline double off_ahead(double dt_s) noexcept {
-  const double root = 1.0 - std::sqrt(1.0 - kept_off(dt_s));
-  return root * root;
-}
+// The angle at which a leg's solver starts: the data's, and what had to be added to it a tick ago
+// (`off`), less what leaks away, and most of what that had changed by in the tick before. The share
+// of the change is the most with which the swivel, which no row holds, still returns to the data's
+// without swinging: the double root of z^2 - (keep + ahead) z + ahead.
+class StartAngle {
+ public:
+  explicit StartAngle(double dt_s) noexcept : keep_(1.0 - std::min(1.0, kLeak_per_s * dt_s)) {
+    const double root = 1.0 - std::sqrt(1.0 - keep_);
+    ahead_ = root * root;
+  }
+  template <class V>
+  V operator()(const V& data, const V& off, const V& last_off) const noexcept {
+    return data + keep_ * off + ahead_ * (off - last_off);
+  }
 
-// Where one leg's solver starts, and what is to be reached: from the data's angles plus what the
-// solver had to add a tick ago, and most of what that had changed by. So one iteration is mostly
-// enough. The correction leaks away: the swivel, which no row holds, is pulled to the data's and
-// cannot drift.
+ private:
+  double keep_, ahead_;
+};
+
+// Where one leg's solver starts, and what is to be reached. So near to where it ends that one
+// iteration is mostly enough.
 template <class V>
 void set_leg_goals(const Tick& tick, const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
                    StateOf<V>& state, LegGoals<V>& goals,
                    std::array<V, kLegDofs>& angles_rad) noexcept {
   const LegBuild& leg = tick.model.leg[side];
-  const double keep = kept_off(tick.dt_s), ahead = off_ahead(tick.dt_s);
+  const StartAngle start(tick.dt_s);
   goals.weight = relative_weights<V>(state.gait, side);
   for (int j = 0; j < kLegDofs; ++j) {
     V data = tick.model.stand_rad[side][j] + plan.cell.leg_rad[side][j];
     if (j == kKneeX) data = max_of(data, all_of<V>(kLeastKnee));
     const V off = state.legs.angles_rad[side][j] - state.legs.data_rad[side][j];
-    angles_rad[j] = data + keep * off + ahead * (off - state.legs.last_off_rad[side][j]);
+    angles_rad[j] = start(data, off, V(state.legs.last_off_rad[side][j]));
     state.legs.last_off_rad[side][j] = off;
     state.legs.data_rad[side][j] = data;
     goals.min_rad[j] = all_of<V>(leg.chain.dof[j].min_rad);

@@ -124,6 +124,7 @@ struct RobustLegs {
 };
 void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<RobustLegs>& legs) {
   RobustLegs& both = legs.emplace_back();
+  const StartAngle start(dt_s);
   LegGoals<Row<2>>& goals = both.lanes.goals;
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = now.model->leg[side];
@@ -132,8 +133,7 @@ void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<
     for (const Damped<double>& w : now.state.gait.weight[side]) largest = std::max(largest, w.x);
     for (int j = 0; j < kLegDofs; ++j) {
       const double off = last.angles_rad[side][j] - last.data_rad[side][j];
-      both.start_rad[j][side] = solved.data_rad[side][j] + kept_off(dt_s) * off +
-                                off_ahead(dt_s) * (off - last.last_off_rad[side][j]);
+      both.start_rad[j][side] = start(solved.data_rad[side][j], off, last.last_off_rad[side][j]);
       goals.weight[j][side] =
           std::clamp(now.state.gait.weight[side][j].x / largest, kLeastWeight, 1.0);
       goals.min_rad[j][side] = leg.chain.dof[j].min_rad;

@@ -21,8 +21,8 @@ done
 "$root/build/tools/soak/soak" "$seconds" "${motions[@]}"
 
 short=$((seconds / 10 > 30 ? seconds / 10 : 30))
-bash "$root/tools/build.sh" "$root/build-asan" soak -DGAITPAD_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug \
-  -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
+bash "$root/tools/build.sh" "$root/build-asan" soak -DCMAKE_CXX_COMPILER=clang++ \
+  -DGAITPAD_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 echo "under AddressSanitizer and UndefinedBehaviorSanitizer:"
 "$root/build-asan/tools/soak/soak" $short "${motions[@]}"
 bash "$root/tools/build.sh" "$root/build-tsan" soak -DGAITPAD_TSAN=ON -DCMAKE_BUILD_TYPE=Debug \

@@ -95,6 +95,8 @@ namespace {
 
 constexpr std::size_t kMaxBundleBytes = 1400;  // with the headers of IP and UDP below 1500
 
+constexpr lo_timetag kAtOnce = {.sec = 0, .frac = 1};  // LO_TT_IMMEDIATE is no C++
+
 // Collects messages into bundles.
 class OscBundles {
  public:
@@ -104,7 +106,7 @@ class OscBundles {
         lo_bundle_length(bundle_) + lo_message_length(message, path) > kMaxBundleBytes) {
       close();
     }
-    if (bundle_ == nullptr) bundle_ = lo_bundle_new(LO_TT_IMMEDIATE);
+    if (bundle_ == nullptr) bundle_ = lo_bundle_new(kAtOnce);
     lo_bundle_add_message(bundle_, path, message);
   }
   std::vector<std::string> take() {

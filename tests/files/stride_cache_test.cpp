@@ -31,7 +31,7 @@ class StrideCache : public testing::Test {
   std::string cache() const { return folder_.at("cache"); }
   fs::path only_file() const { return fs::directory_iterator(cache())->path(); }
 
-  const OwnFolder folder_;
+  OwnFolder folder_;
   const std::vector<double> solved_ = numbers_of(value_of(with_clean_strides(procedural_gait())));
 };
 

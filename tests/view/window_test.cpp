@@ -281,7 +281,6 @@ class ActionScript : public Script {
   bool was_on_ = false;
   std::int64_t tick_ = 0;
   double yaw_rad_ = 0.0;
-  int frames_left_ = 0;
 };
 
 void ActionScript::add_pause(const ActionInfo& info) {

@@ -417,8 +417,10 @@ void pose_sample(const UpperBodyTurn& turn, int i, GaitCycle& out) {
     const LegPose pose = leg_pose(out.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
     set_leg_locals(out.skeleton, out.leg[side], pose, local);
   }
-  for (std::size_t j = 0; i > 0 && j < joints; ++j) {
-    if (glm::dot(local[j], local[j - joints]) < 0.0) local[j] = -local[j];
+  if (i == 0) return;
+  const quat* before = local - joints;
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (glm::dot(local[j], before[j]) < 0.0) local[j] = -local[j];
   }
 }
 

@@ -280,7 +280,8 @@ TEST(Walk, NeitherFailsNorJumpsOverRandomSticksAndStyles) {
     };
     while (walker.frames().size() < 60 * kRate) {
       const double y = in(-0.3, 1.0), x = chance() % 3 == 0 ? 0.0 : in(-0.7, 0.7);
-      walker.walk(x, y, 20 + static_cast<int>(chance() % 400), styles[chance() % 3]);
+      const int ticks = 20 + static_cast<int>(chance() % 400);
+      walker.walk(x, y, ticks, styles[chance() % 3]);
       ASSERT_TRUE(is_finite(walker.pose()));
     }
     int failures = 0;

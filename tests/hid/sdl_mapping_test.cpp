@@ -401,7 +401,8 @@ TEST(SdlMapping, HostileLinesDoNoHarm) {
     for (std::size_t k = 0; k < length; ++k) line += kAlphabet[random() % kAlphabet.size()];
     pad.device.mapping = line;
     pad.device.driver = i % 2 == 0 ? "sdl" : "hidraw";
-    pad.set_axis(random() % 3, static_cast<std::uint8_t>(random()));
+    const std::size_t axis = random() % 3;
+    pad.set_axis(axis, static_cast<std::uint8_t>(random()));
     for (const float value : pad.state().axis) EXPECT_LE(std::abs(value), 1.0f);
   }
 }

@@ -374,7 +374,10 @@ void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Ch
   for (int tick = 0; tick < 40000; ++tick) {
     std::vector<Report> reports;
     if (tick % 60 == 0) reports.push_back(made_command(command(random)));
-    if (tick % 500 == 0) reports.push_back(made_report(random() % 256, random() % 256));
+    if (tick % 500 == 0) {
+      const auto x = random() % 256;
+      reports.push_back(made_report(x, random() % 256));
+    }
     s.step(reports);
     for (const Walker& w : s.walkers()) {
       check(w);

@@ -338,9 +338,11 @@ TEST(CalibrationImport, DamagedTextsDoNotCrash) {
         case 1:
           text.erase(at, random() % 8);
           break;
-        case 2:
-          text.insert(at, text.substr(random() % text.size(), random() % 12));
+        case 2: {
+          const std::size_t from = random() % text.size();
+          text.insert(at, text.substr(from, random() % 12));
           break;
+        }
         default:
           text.insert(at, 1, kBytes[random() % kBytes.size()]);
       }

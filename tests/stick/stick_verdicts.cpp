@@ -84,7 +84,10 @@ const Kind kKinds[] = {
     {"creeps home by up to 0.03 in 0.3 s", Must::pass,
      [](Draw& draw, MadeStick& s) { s.creep = draw.within(0.005, 0.03); }, 66.0},
     {"drifts by 0.003 to 0.02 a second", Must::be_replace,
-     [](Draw& draw, MadeStick& s) { s.drift_per_s = draw.within(0.003, 0.02) * draw.direction(); }},
+     [](Draw& draw, MadeStick& s) {
+       s.drift_per_s = draw.direction();
+       s.drift_per_s *= draw.within(0.003, 0.02);
+     }},
     {"wanders by 0.1, time constant 1 to 3 s", Must::stand_still,
      [](Draw& draw, MadeStick& s) { s.roam = 0.1, s.roam_s = draw.within(1.0, 3.0); }},
     {"wanders by 0.04 to 0.15, time constant 1 to 5 s", Must::stand_still,

@@ -27,6 +27,15 @@ class Chance {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * kPi * uniform());
   }
+  // y is drawn first with every compiler; the arguments of a call would be drawn in any order.
+  vec2 normal_of_both() {
+    const double y = normal();
+    return {normal(), y};
+  }
+  vec2 within_of_both(double least, double most) {
+    const double y = within(least, most);
+    return {within(least, most), y};
+  }
   std::size_t below(std::size_t count) { return random_() % count; }
 
  private:
@@ -247,26 +256,26 @@ inline StickTrack reported(const MadeStick& stick, std::vector<vec2> path) {
                       });
   StickTrack track;
   vec2 walk(0.0), spike(0.0), frozen(0.0);
-  vec2 roam{stick.roam * faults.normal(), stick.roam * faults.normal()};
+  vec2 roam = stick.roam * faults.normal_of_both();
   int spike_left = 0;
   for (std::size_t k = 0; k < path.size(); ++k) {
     const double n = static_cast<double>(k), middle = 0.5 * static_cast<double>(path.size() - 1);
     const double time_s = (n - middle) / stick.rate_hz;
     const double stride = stick.wander / std::sqrt(stick.rate_hz);
-    walk += vec2{stride * random.normal(), stride * random.normal()};
+    walk += stride * random.normal_of_both();
     if (stick.roam > 0.0) {
       const double kept = std::exp(-1.0 / (stick.rate_hz * stick.roam_s));
       const double fresh = stick.roam * std::sqrt(1.0 - kept * kept);
-      roam = kept * roam + fresh * vec2{faults.normal(), faults.normal()};
+      roam = kept * roam + fresh * faults.normal_of_both();
     }
-    vec2 at = path[k] + stick.drift_per_s * time_s + walk + roam +
-              vec2{stick.sigma.x * random.normal(), stick.sigma.y * random.normal()};
+    vec2 at =
+        path[k] + stick.drift_per_s * time_s + walk + roam + stick.sigma * random.normal_of_both();
     // An interval is the difference of two time stamps, so each gets 1/sqrt(2) of the jitter.
     const double late_ns = stick.jitter_ms * 1e6 / std::sqrt(2.0) * random.normal();
     if (spike_left == 0 && random.uniform() < stick.spike_chance) {
       spike_left = 1 + static_cast<int>(stick.spike_reports * random.uniform());
       do {
-        spike = vec2{random.within(-1.0, 1.0), random.within(-1.0, 1.0)};
+        spike = random.within_of_both(-1.0, 1.0);
       } while (glm::length(spike - at) < 0.3);
     }
     if (spike_left > 0) {
@@ -330,8 +339,8 @@ inline StickTrack made_session(const MadeStick& stick) {
   Chance hand(stick.seed * 17u + 3u);
   moves.rest(1.0);
   for (int k = 0; k < 12; ++k) {
-    const double angle = 2.0 * kPi * k / 12 + hand.within(-0.3, 0.3);
-    moves.push(angle, hand.within(0.08, 0.2));
+    const double time_s = hand.within(0.08, 0.2);
+    moves.push(2.0 * kPi * k / 12 + hand.within(-0.3, 0.3), time_s);
     moves.hold(hand.within(0.05, 0.3));
     moves.release();
     moves.rest(k == 11 ? 2.6 : hand.within(0.6, 1.0));

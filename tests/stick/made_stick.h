@@ -388,7 +388,7 @@ class Draw {
   }
   MadeStick stick() {
     MadeStick& s = stick_;
-    s.centre = vec2(within(-0.2, 0.2), within(-0.2, 0.2));
+    s.centre = random_.within_of_both(-0.2, 0.2);
     s.bits = static_cast<int>(one_of(std::array{0.0, 8.0, 10.0, 12.0, 16.0}));
     const double sigma = chance(0.2) ? 0.0 : std::exp(within(std::log(5e-4), std::log(0.03)));
     s.sigma = vec2(sigma, sigma * within(0.5, 1.0));

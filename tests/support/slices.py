@@ -1,0 +1,24 @@
+"""The part of a long sweep that this run does. tools/ctest.sh and tools/rig.sh set GAITPAD_SLICE to a number that the
+commit's hash chooses, so that a failure can be repeated; GAITPAD_ALL=1 runs everything.
+
+    for walk in slices.chosen(walks, 6, name=lambda walk: walk.label): ...
+"""
+import os
+import zlib
+
+ALL = os.environ.get("GAITPAD_ALL") == "1"
+NUMBER = int(os.environ.get("GAITPAD_SLICE", "0"))
+
+
+def is_chosen(name, parts):
+    """Whether the thing of that name is in this run's part of `parts`. A name stays in its part when others come or go."""
+    return ALL or zlib.crc32(name.encode()) % parts == NUMBER % parts
+
+
+def chosen(items, parts, name=str):
+    return [item for item in items if is_chosen(name(item), parts)]
+
+
+def text(parts):
+    """For the test's output: how to repeat it."""
+    return "all (GAITPAD_ALL=1)" if ALL else f"part {NUMBER % parts + 1} of {parts} (GAITPAD_SLICE={NUMBER}; GAITPAD_ALL=1: all)"

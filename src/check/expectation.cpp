@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "base/text.h"
+#include "check/pose_track.h"
 #include "files/toml_file.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kDegrees = 57.29577951308232;
 constexpr double kMostValue = 1e9;  // of any number
 constexpr const char* kHashKey = "pose_hash";
 

@@ -18,7 +18,6 @@ constexpr std::string_view kMagic = "gaitpad poses 1\n";
 constexpr std::size_t kMaxNameBytes = 512;
 constexpr std::size_t kMaxChannels = (kMaxJoints + 1) * kMaxWalkers + 1;
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;  // before compression
-constexpr double kDegrees = 57.29577951308232;
 
 std::uint16_t print_of(std::uint64_t hash) {
   return static_cast<std::uint16_t>(hash ^ (hash >> 16) ^ (hash >> 32) ^ (hash >> 48));

@@ -21,6 +21,8 @@
 
 namespace gaitpad {
 
+inline constexpr double kDegrees = 57.29577951308232;  // of a radian
+
 // One joint of one character, or its root's place.
 struct PoseChannel {
   int character = 1;  // from 1; 0: all of the crowd, fingerprints alone

@@ -21,6 +21,14 @@ struct Colour {
 constexpr Colour rgb(unsigned hex, double alpha = 1.0) {
   return {((hex >> 16) & 0xff) / 255.0, ((hex >> 8) & 0xff) / 255.0, (hex & 0xff) / 255.0, alpha};
 }
+inline Colour faint(Colour colour, double alpha) {
+  colour.alpha = alpha;
+  return colour;
+}
+inline Colour mixed(const Colour& a, const Colour& b, double share) {
+  return {mix(a.red, b.red, share), mix(a.green, b.green, share), mix(a.blue, b.blue, share),
+          a.alpha};
+}
 // Okabe and Ito's palette, whose colours people with any colour vision can tell apart, and greys.
 namespace colour {
 inline constexpr unsigned kOrange = 0xe69f00, kSkyBlue = 0x56b4e9, kGreen = 0x009e73,

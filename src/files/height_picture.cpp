@@ -18,7 +18,7 @@ constexpr std::size_t kMaxBytes = 4 << 20;
 
 // libpng reports errors by longjmp, which skips destructors: no function here that calls libpng may
 // hold an object with a destructor.
-struct Reader {
+struct PngReader {
   png_structp png = nullptr;
   png_infop info = nullptr;
   std::string_view bytes;
@@ -27,19 +27,19 @@ struct Reader {
 };
 
 void keep_problem(png_structp png, const char* text) {
-  auto& reader = *static_cast<Reader*>(png_get_error_ptr(png));
+  auto& reader = *static_cast<PngReader*>(png_get_error_ptr(png));
   std::strncpy(reader.problem.data(), text, reader.problem.size() - 1);
   png_longjmp(png, 1);
 }
 
 void take_bytes(png_structp png, png_bytep to, png_size_t count) {
-  auto& reader = *static_cast<Reader*>(png_get_io_ptr(png));
+  auto& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
   if (count > reader.bytes.size() - reader.at) png_error(png, "it ends too early");
   std::memcpy(to, reader.bytes.data() + reader.at, count);
   reader.at += count;
 }
 
-bool begin(Reader& reader) noexcept {
+bool begin(PngReader& reader) noexcept {
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, &keep_problem,
                                       [](png_structp, const char*) {});
   if (reader.png == nullptr) return false;
@@ -61,7 +61,7 @@ bool begin(Reader& reader) noexcept {
 }
 
 // Reads all rows into `to`, one or two bytes a sample, `row_bytes` a row.
-bool read_rows(Reader& reader, png_bytep to, std::size_t row_bytes, std::size_t rows) noexcept {
+bool read_rows(PngReader& reader, png_bytep to, std::size_t row_bytes, std::size_t rows) noexcept {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   const int passes = png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
@@ -75,7 +75,7 @@ bool read_rows(Reader& reader, png_bytep to, std::size_t row_bytes, std::size_t 
   return true;
 }
 
-bool read(Reader& reader, HeightPicture& picture) {
+bool read(PngReader& reader, HeightPicture& picture) {
   if (!begin(reader)) return false;
   picture.columns = static_cast<int>(png_get_image_width(reader.png, reader.info));
   picture.rows = static_cast<int>(png_get_image_height(reader.png, reader.info));
@@ -95,7 +95,7 @@ bool read(Reader& reader, HeightPicture& picture) {
 }  // namespace
 
 Result<HeightPicture> height_picture(std::string_view png, const std::string& name) {
-  Reader reader;
+  PngReader reader;
   reader.bytes = png;
   HeightPicture picture;
   const bool is_read = read(reader, picture);

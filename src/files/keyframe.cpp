@@ -63,9 +63,9 @@ struct KeyedStride {
 };
 
 // Collects the keys of all poses, and of a symmetric walk their mirror images half a stride later.
-class Reader {
+class KeyframeReader {
  public:
-  explicit Reader(bool is_symmetric) : is_symmetric_(is_symmetric) {}
+  explicit KeyframeReader(bool is_symmetric) : is_symmetric_(is_symmetric) {}
 
   void read(TomlTable& pose) {
     const double phase = pose.number("phase", 0.0, 1.0).value_or(0.0);
@@ -133,7 +133,7 @@ KeyedStride stride_of(TomlTable& root) {
   stride.track_m = root.number("track_m", 0.0, 0.3).value_or(stride.track_m);
   stride.shoulder_out_rad = root.number("arms_out", 0.0, 90.0).value_or(6.0) * kDegree;
   const bool is_symmetric = root.boolean("symmetric").value_or(true);
-  Reader reader(is_symmetric);
+  KeyframeReader reader(is_symmetric);
   for (TomlTable& pose : root.tables("pose", kMostPoses)) reader.read(pose);
   for (const Side side : {kLeftSide, kRightSide}) {
     for (const int c : {kHip, kKnee}) {

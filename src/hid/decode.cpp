@@ -409,8 +409,6 @@ FieldBits part_of(const Field& f, AxisPart part) {
   return bits;
 }
 
-// HID's y of a stick grows towards the thumb's owner, ours away from it.
-bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
 bool is_trigger(PadAxis axis) { return axis == kLeftTrigger || axis == kRightTrigger; }
 int side_of(PadAxis axis, StickSide side) {
   if (side == StickSide::both || is_trigger(axis)) return 0;

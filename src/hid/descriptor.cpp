@@ -52,7 +52,6 @@ ItemAt item_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
 constexpr std::size_t kMaxPushed = 4;  // HID_GLOBAL_STACK_SIZE
 constexpr std::size_t kMaxCollections = 64;
 constexpr std::size_t kMaxUsages = 12288;  // HID_MAX_USAGES
-constexpr std::uint8_t kApplicationCollection = 0x01;
 
 // An item's data and width: whether a maximum is signed depends on its minimum.
 struct ItemData {

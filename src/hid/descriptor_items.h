@@ -18,6 +18,8 @@ inline constexpr std::uint8_t kUsage = 0x0, kUsageMinimum = 0x1, kUsageMaximum =
                               kDelimiter = 0xa;  // local
 }  // namespace tag
 
+inline constexpr std::uint8_t kApplicationCollection = 0x01;  // what a collection is
+
 namespace main_flag {
 inline constexpr std::uint32_t kConstant = 0x01, kVariable = 0x02, kRelative = 0x04,
                                kNullState = 0x40;

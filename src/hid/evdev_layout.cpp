@@ -241,7 +241,7 @@ std::optional<Wish> wish_of(const Field& f, std::uint32_t u, std::uint32_t appli
 }
 
 // Assigns the codes of an input node as hid-input does.
-class InputNode {
+class LaidOutNode {
  public:
   bool take(const Wish& wish) {
     if (wish.code.type == EvdevType::key) return take(keys_, wish);
@@ -300,7 +300,7 @@ std::vector<std::size_t> node_fields(const ReportDescriptor& d) {
 }
 
 // An array gets a code for each usage that it can name.
-void take_array(const ReportDescriptor& d, const Field& f, InputNode& node) {
+void take_array(const ReportDescriptor& d, const Field& f, LaidOutNode& node) {
   for (std::uint32_t i = 0; i < f.range_count; ++i) {
     const UsageRange& range = d.ranges[f.first_range + i];
     for (std::uint32_t u = range.first; u <= range.last && u >= range.first; ++u) {
@@ -349,7 +349,7 @@ void keep_one_of_each(const ReportDescriptor& d, Codes& codes) {
 
 Codes kernel_codes(const ReportDescriptor& d) {
   Codes codes(d.fields.size());
-  InputNode node;
+  LaidOutNode node;
   std::optional<std::uint32_t> last_array;
   for (const std::size_t i : node_fields(d)) {
     const Field& f = d.fields[i];
@@ -417,7 +417,6 @@ namespace {
 
 constexpr std::uint16_t kFirstMultiTouch = 0x2f;  // ABS_MT_SLOT
 constexpr std::int64_t kHatReleased = 8;
-constexpr std::uint8_t kApplicationCollection = 0x01;
 
 // Writes report-descriptor items, each as short as its value allows.
 class ItemWriter {

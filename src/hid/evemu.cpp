@@ -251,10 +251,6 @@ class EvemuWriter {
   std::vector<Key> changed_;
 };
 
-bool is_dpad(const Field& field) {
-  return field.usage >= usage::kDpadUp && field.usage <= usage::kDpadLeft;
-}
-
 bool is_hat(const Field& field, const EvdevCode& code) {
   return code.type == EvdevType::absolute && code.code == evdev::kAbsHat0X &&
          (field.usage == usage::kHatSwitch || is_dpad(field));

@@ -13,7 +13,7 @@ namespace gaitpad {
 
 namespace {
 
-constexpr std::size_t kMaxPads = 256;
+constexpr std::size_t kMaxMapPads = 256;
 constexpr std::size_t kMaxProducts = 64;
 constexpr std::size_t kMaxSources = 8;
 
@@ -195,7 +195,8 @@ PadOverride read_pad(TomlTable pad, const std::string& name) {
 Result<PadOverrides> read_file(TomlFile file) {
   PadOverrides result;
   TomlTable root = file.root();
-  for (TomlTable& pad : root.tables("pad", kMaxPads)) result.push_back(read_pad(pad, file.name()));
+  for (TomlTable& pad : root.tables("pad", kMaxMapPads))
+    result.push_back(read_pad(pad, file.name()));
   if (auto problem = file.problem()) return *problem;
   if (result.empty()) return Error{file.name() + ":1: there is no [[pad]]"};
   return result;

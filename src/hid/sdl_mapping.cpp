@@ -44,8 +44,6 @@ struct InputField {
 };
 
 bool is_hat(const Field& f) { return f.usage == usage::kHatSwitch; }
-bool is_dpad(const Field& f) { return f.usage >= usage::kDpadUp && f.usage <= usage::kDpadLeft; }
-
 // Counts the occurrences of each usage in each report.
 class Occurrences {
  public:
@@ -397,8 +395,6 @@ std::vector<std::string> merged_mappings(const std::vector<std::string>& lines,
 
 namespace {
 
-bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
-
 // Finds the number that SDL gives to a field.
 class FieldNumbers {
  public:
@@ -467,16 +463,16 @@ class FieldNumbers {
 };
 
 // Control and source; the sign names one side of a stick's axis and is written before the control.
-struct Pair {
+struct SdlPair {
   std::string control, sign, source;
-  bool operator<(const Pair& b) const {
+  bool operator<(const SdlPair& b) const {
     return std::tie(control, sign, source) < std::tie(b.control, b.sign, b.source);
   }
 };
-using Pairs = std::set<Pair>;
+using Pairs = std::set<SdlPair>;
 
 void add(Pairs& pairs, std::string_view control, std::string_view sign, std::string source) {
-  const auto is_same = [control](const Pair& p) { return p.control == control; };
+  const auto is_same = [control](const SdlPair& p) { return p.control == control; };
   const auto known = std::count_if(pairs.begin(), pairs.end(), is_same);
   if (source.empty() || known >= static_cast<std::ptrdiff_t>(kMaxSdlSources)) return;
   pairs.insert({std::string(control), std::string(sign), std::move(source)});
@@ -620,7 +616,7 @@ Result<std::string> sdl_mapping_text(const DeviceInfo& device, const PadLayout& 
   const Pairs pairs = pairs_of(layout, stated_by(device.driver), sticks);
   if (pairs.empty()) return Error{device.name + ": no control that SDL could number"};
   std::string controls;
-  for (const Pair& p : pairs) controls += p.sign + p.control + ":" + p.source + ",";
+  for (const SdlPair& p : pairs) controls += p.sign + p.control + ":" + p.source + ",";
   controls += "platform:Linux,";
   const std::string guid = guid_text(device, device.version);
   const std::size_t others = guid.size() + controls.size() + 2;

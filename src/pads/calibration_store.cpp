@@ -113,7 +113,7 @@ constexpr double kCircularityChange = 2.0;   // percent
 constexpr double kDriftChange = 0.002;  // raw a second: it crosses the least inner zone in 25 s
 
 // One stick, then and now.
-struct Pair {
+struct StickPair {
   std::string_view name;
   const StickCalibration &then, &now;
   StickMeasured before, today;
@@ -133,7 +133,7 @@ double inner_zone_raw(const StickCalibration& c) {
   return c.inner * reach;
 }
 
-void compare_centre(Pair& stick) {
+void compare_centre(StickPair& stick) {
   const auto& [name, then, now, before, today, told] = stick;
   const double moved = std::hypot(now.x.centre - then.x.centre, now.y.centre - then.y.centre);
   const double zone = inner_zone_raw(then);
@@ -146,7 +146,7 @@ void compare_centre(Pair& stick) {
       moved > zone ? "so the pad walks by itself" : "so it may soon walk by itself");
 }
 
-void compare_reach(Pair& stick) {
+void compare_reach(StickPair& stick) {
   const auto& [name, then, now, before, today, told] = stick;
   if (!today.circularity_error) return;  // it was not turned along the rim
   const struct {
@@ -168,7 +168,7 @@ void compare_reach(Pair& stick) {
   }
 }
 
-void compare_rest(Pair& stick) {
+void compare_rest(StickPair& stick) {
   const auto& [name, then, now, before, today, told] = stick;
   const double zone = inner_zone_raw(then);
   const bool is_covered = 3.0 * today.sigma.value_or(0.0) + today.hysteresis.value_or(0.0) <= zone;
@@ -196,7 +196,7 @@ void compare_rest(Pair& stick) {
   }
 }
 
-void compare_roundness(Pair& stick) {
+void compare_roundness(StickPair& stick) {
   const auto& [name, then, now, before, today, told] = stick;
   if (!before.circularity_error || !today.circularity_error) return;
   const double error = *today.circularity_error, old = *before.circularity_error;
@@ -214,12 +214,12 @@ std::vector<std::string> changes_since(const CalibrationFile& then, const Calibr
   const StickCalibration* sticks[2][2] = {{&c.left, &d.left}, {&c.right, &d.right}};
   for (std::size_t side = 0; side < 2; ++side) {
     if (!now.measured[side]) continue;
-    Pair stick{side == 0 ? "left" : "right",
-               *sticks[side][0],
-               *sticks[side][1],
-               then.measured[side].value_or(StickMeasured()),
-               *now.measured[side],
-               told};
+    StickPair stick{side == 0 ? "left" : "right",
+                    *sticks[side][0],
+                    *sticks[side][1],
+                    then.measured[side].value_or(StickMeasured()),
+                    *now.measured[side],
+                    told};
     if (stick.then.frame != stick.now.frame) {
       stick.tell("its axes lie otherwise than in the file: was another pad calibrated?");
       continue;

@@ -47,20 +47,20 @@ class HumanoidBuilder {
   std::vector<HumanoidBone> bones_;
 };
 
-struct LegNames {
+struct BonesOfLeg {
   const char *upper, *lower, *foot, *toes;
 };
 struct ArmNames {
   const char *shoulder, *upper, *lower, *hand;
 };
 // By Side.
-constexpr LegNames kLegNames[2] = {{"LeftUpperLeg", "LeftLowerLeg", "LeftFoot", "LeftToes"},
-                                   {"RightUpperLeg", "RightLowerLeg", "RightFoot", "RightToes"}};
+constexpr BonesOfLeg kLegBones[2] = {{"LeftUpperLeg", "LeftLowerLeg", "LeftFoot", "LeftToes"},
+                                     {"RightUpperLeg", "RightLowerLeg", "RightFoot", "RightToes"}};
 constexpr ArmNames kArmNames[2] = {
     {"LeftShoulder", "LeftUpperArm", "LeftLowerArm", "LeftHand"},
     {"RightShoulder", "RightUpperArm", "RightLowerArm", "RightHand"}};
 
-void add_leg(const LegJoints& leg, const LegNames& names, const Skeleton& skeleton, int hips,
+void add_leg(const LegJoints& leg, const BonesOfLeg& names, const Skeleton& skeleton, int hips,
              HumanoidBuilder& builder) {
   int bone = builder.add(names.upper, leg.hip, hips, builder.pointing(leg.hip, leg.knee, kDown));
   bone = builder.add(names.lower, leg.knee, bone, builder.pointing(leg.knee, leg.ankle, kDown));
@@ -103,7 +103,7 @@ Humanoid humanoid_of(const WalkModel& model) {
   builder.face_forward(leg(kLeftSide).hip, leg(kRightSide).hip);
   const int hips = builder.add("Hips", model.cycle.pelvis, -1, builder.facing());
   for (const Side side : {kLeftSide, kRightSide})
-    add_leg(leg(side), kLegNames[side], skeleton, hips, builder);
+    add_leg(leg(side), kLegBones[side], skeleton, hips, builder);
   const int chest = add_spine(upper.spine, hips, builder);
   const int neck_joint = upper.neck.empty() ? -1 : upper.neck.front();
   const int neck = builder.add("Neck", neck_joint, chest, builder.facing());

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "session/live_loop.h"
 
 namespace gaitpad {
 
@@ -24,7 +25,6 @@ namespace gaitpad {
 
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr int kOscPort = 39539, kJsonPort = 39540, kLastPort = 65535;
 
 Error address_error(const std::string& text, std::string_view cause) {

@@ -31,6 +31,7 @@
 #include "gaitpad/live.h"
 #include "pads/calibration_store.h"
 #include "pads/guided_calibration.h"
+#include "session/live_loop.h"
 #include "stick/guide.h"
 #include "stick/pad_analysis.h"
 
@@ -41,7 +42,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using Answer = SelfTestPerson::Answer;
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::chrono::milliseconds kLook{20};
 constexpr std::int64_t kOpening_ns = 8 * kSecond_ns;  // a pad that takes longer does not open
 

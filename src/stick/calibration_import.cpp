@@ -307,8 +307,8 @@ Result<ImportText> import_text(std::string_view text, const std::string& source)
 
 // ---- What it means for the pad
 
-constexpr double kLeastHalfRange = 0.1;  // raw, as calibration files have it
-constexpr double kLeastInner = 0.05, kMostInner = 0.9;
+constexpr double kLeastImportedHalfRange = 0.1;  // raw, as calibration files have it
+constexpr double kLeastImportedInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
 constexpr unsigned kCodesByKernel = 0x8000;
 
@@ -390,14 +390,15 @@ std::string apply_to_stick(const Claim& claim, const AxisOp& op, Sticks& sticks)
   axis.max = std::max(ends[0], ends[1]);
   axis.centre = (zone[0] + zone[1]) / 2.0;
   const double nearest = std::min(axis.max - axis.centre, axis.centre - axis.min);
-  if (nearest < kLeastHalfRange) {
+  if (nearest < kLeastImportedHalfRange) {
     return fmt::format("{}: {:g} to {:g} about {:g} is next to nothing of the pad's {} to {}",
                        claim.axis, claim.min, claim.max, (claim.low + claim.high) / 2.0,
                        op.bits.min, op.bits.max);
   }
   if (claim.is_zone_told) {
     double& inner = sticks.inner[is_left ? 0 : 1];
-    inner = std::max(inner, std::max(std::fabs(zone[1] - zone[0]) / 2.0 / nearest, kLeastInner));
+    inner = std::max(inner,
+                     std::max(std::fabs(zone[1] - zone[0]) / 2.0 / nearest, kLeastImportedInner));
     if (inner > kMostInner) {
       return fmt::format("{}: hardly anything is left beside its zone from {:g} to {:g}",
                          claim.axis, claim.low, claim.high);

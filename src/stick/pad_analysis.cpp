@@ -15,7 +15,7 @@ namespace gaitpad {
 namespace {
 
 // The limits of a calibration file, with a little room for rounding.
-constexpr double kLeastHalfRange = 0.1001, kGreatestCentre = 0.89;
+constexpr double kLeastJudgedHalfRange = 0.1001, kGreatestCentre = 0.89;
 constexpr double kGreatestInner = 0.89, kLeastSpan = 0.0501, kGreatestOuter = 0.95;
 
 constexpr double kLeastInner = 0.05;         // raw; a good stick returns within 5 %
@@ -103,8 +103,8 @@ AxisCalibration axis_of(double centre, const std::optional<double>& min,
                         const std::optional<double>& max) noexcept {
   AxisCalibration axis;
   axis.centre = std::clamp(centre, -kGreatestCentre, kGreatestCentre);
-  axis.min = std::clamp(min.value_or(-1.0), -1.0, axis.centre - kLeastHalfRange);
-  axis.max = std::clamp(max.value_or(1.0), axis.centre + kLeastHalfRange, 1.0);
+  axis.min = std::clamp(min.value_or(-1.0), -1.0, axis.centre - kLeastJudgedHalfRange);
+  axis.max = std::clamp(max.value_or(1.0), axis.centre + kLeastJudgedHalfRange, 1.0);
   return axis;
 }
 

@@ -11,7 +11,7 @@ constexpr std::int64_t kPart_ns = 125'000'000, kJudged_ns = 250'000'000, kPush_n
 // the mean over an eighth of a second by far less than kMoved.
 constexpr double kNoise = 0.4, kMoved = 0.35;
 // A push goes that far from where it began, and so does a jump, but not for long.
-constexpr double kPushed = 1.0;
+constexpr double kPushedOnce = 1.0;
 
 // The inner zone in raw units, along the shorter half of the shorter axis.
 double zone_of(const StickCalibration& c) noexcept {
@@ -56,7 +56,7 @@ bool UntouchedWatch::take(std::int64_t time_ns, const StickCalibration& calibrat
     pushed_ns_ = 0;
     from_ = raw_;
   }
-  if (is_judging_ && glm::length(raw - from_) > kPushed * zone_of(calibration))
+  if (is_judging_ && glm::length(raw - from_) > kPushedOnce * zone_of(calibration))
     pushed_ns_ += std::clamp<std::int64_t>(time_ns - last_ns_, 0, kPush_ns);
   Part& now = parts_[static_cast<std::size_t>(part_ % kParts)];
   now.sum += raw;

@@ -16,8 +16,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kWidth = 900.0, kHeight = 600.0;  // at scale 1
-constexpr double kPlane = 150.0;                   // side of a control's picture, at scale 1
+constexpr double kCalibrationWidth = 900.0, kCalibrationHeight = 600.0;  // at scale 1
+constexpr double kPlane = 150.0;  // side of a control's picture, at scale 1
 constexpr const char* kTitles[] = {"Left stick", "Right stick"};
 
 std::string shown_name(const DeviceInfo& info) {
@@ -240,7 +240,8 @@ void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& mess
 PadDialog::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
                                        std::vector<std::string>& messages) {
   read_pad(messages);
-  const ImVec2 size = begin_modal(ui, "calibration", kWidth, kHeight, window_px);
+  const ImVec2 size =
+      begin_modal(ui, "calibration", kCalibrationWidth, kCalibrationHeight, window_px);
   CalibrationGuide* guide = guided_ ? guided_->guide() : nullptr;
   const float buttons_y = size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y;
   if (guide != nullptr) {

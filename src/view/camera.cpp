@@ -10,10 +10,6 @@ constexpr double kNearPlane_m = 0.1, kFarPlane_m = 200.0;
 constexpr double kFollowTime_s = 0.25;
 constexpr double kJump_m = 1.0;  // between two frames: a reset or another character
 
-bool is_finite(const vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 // The picture's axes as unit vectors of the world.
 struct Axes {
   vec3 right, up, back;

@@ -1,11 +1,17 @@
 // The camera: on a sphere around a target that may follow a character. Arguments that are not
 // finite change nothing.
 #pragma once
+#include <cmath>
+
 #include "gaitpad/math.h"
 
 namespace gaitpad {
 
 using mat4 = glm::dmat4;
+
+inline bool is_finite(const vec3& v) noexcept {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 struct Camera {
   vec3 target_m{0.0, 0.8, 0.0};

@@ -9,16 +9,12 @@ namespace {
 constexpr double kFull_m = 11.0;  // members nearer to the eye are drawn with all bones
 constexpr Colour kPlain = {0.60, 0.61, 0.64};
 constexpr double kPlainShare = 0.45;  // of it in the colour of a member: the walkers stand out
-constexpr double kPaleShare = 0.30;
+constexpr double kPaleCrowdShare = 0.30;
 constexpr double kAroundFocus_m = 3.0;  // of floor behind the last member
 // Shades on the floor: below each foot, and towards where the light throws the body's shadow.
 constexpr double kFootShade_m = 0.17, kBodyShade_m = 0.26, kHeadShade_m = 0.22;
 constexpr double kShadeUp_m = 0.006;
 const vec3 kThrown = vec3(-0.49, 0.0, -0.42);  // of a metre of height
-
-Colour mixed(const Colour& a, const Colour& b, double share) {
-  return {mix(a.red, b.red, share), mix(a.green, b.green, share), mix(a.blue, b.blue, share), 1.0};
-}
 
 // By style, and brighter or darker by member, so that neighbours differ.
 Colour colour_of(const Theme& theme, int style, std::size_t member) {
@@ -27,11 +23,6 @@ Colour colour_of(const Theme& theme, int style, std::size_t member) {
   const double light = 0.82 + 0.30 * static_cast<double>((member * 7919) % 101) / 100.0;
   return {std::min(tone.red * light, 1.0), std::min(tone.green * light, 1.0),
           std::min(tone.blue * light, 1.0), 1.0};
-}
-
-glm::vec4 row(const vec3& v, double w) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
-          static_cast<float>(w)};
 }
 
 quat between(const std::array<float, 4>& a, const std::array<float, 4>& b, double share) {
@@ -93,7 +84,7 @@ void CrowdBodies::add(const Mannequin& mannequin, const Colour& colour, const Te
                       SceneContent& content) {
   const WalkModel& model = *mannequin.model;
   forward_kinematics(model.cycle.skeleton, pose_, frames_);
-  const Colour pale = mixed(colour, {0.83, 0.84, 0.86, 1.0}, kPaleShare);
+  const Colour pale = mixed(colour, {0.83, 0.84, 0.86, 1.0}, kPaleCrowdShare);
   const vec3& origin_m = content.crowd_origin_m;
   for (const MannequinBone& bone : mannequin.bones) {
     const quat& turn = frames_.rotation[bone.from];

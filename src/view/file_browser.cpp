@@ -109,7 +109,7 @@ std::string date_of(const fs::path& path) {
   return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(status.st_mtime));
 }
 
-constexpr double kWidth = 780.0, kHeight = 520.0;  // at scale 1
+constexpr double kBrowserWidth = 780.0, kBrowserHeight = 520.0;  // at scale 1
 constexpr std::pair<FileFilter, const char*> kFilters[] = {{FileFilter::all, "All"},
                                                            {FileFilter::motions, "Motions"},
                                                            {FileFilter::recordings, "Recordings"},
@@ -375,7 +375,7 @@ void FileBrowser::draw_buttons(Ui& ui) {
 
 std::optional<std::string> FileBrowser::draw(Ui& ui, const ImVec2& window_px) {
   result_.reset();
-  begin_modal(ui, "browser", kWidth, kHeight, window_px);
+  begin_modal(ui, "browser", kBrowserWidth, kBrowserHeight, window_px);
   text_line(ui, ui.fonts.title, ui.theme.text, "Open a file");
   draw_path(ui);
   draw_filters(ui);

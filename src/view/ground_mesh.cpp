@@ -9,7 +9,7 @@ namespace {
 constexpr int kMostSide = 400;      // rows or columns
 constexpr double kBeside_m = 1e-6;  // distance at which the two sides of a riser are sampled
 
-struct Row {
+struct GroundRow {
   double z_m = 0.0;
   double look_m = 0.0;    // offset at which the height is sampled
   double riser = 0.0;     // of a riser's face: its normal's z; 0: the ground's own normal
@@ -21,7 +21,7 @@ bool climbs(const Terrain& terrain, double riser_m) {
          ground_at(terrain, 0.0, riser_m - kBeside_m).height_m;
 }
 
-void add_riser(const Terrain& terrain, double z_m, std::vector<Row>& rows) {
+void add_riser(const Terrain& terrain, double z_m, std::vector<GroundRow>& rows) {
   const double normal = climbs(terrain, z_m) ? -1.0 : 1.0;
   rows.push_back({z_m, -kBeside_m, 0.0, true});
   rows.push_back({z_m, -kBeside_m, normal, false});
@@ -29,8 +29,8 @@ void add_riser(const Terrain& terrain, double z_m, std::vector<Row>& rows) {
   rows.push_back({z_m, kBeside_m, 0.0, false});
 }
 
-std::vector<Row> rows_of(const Terrain& terrain, double from_m, double to_m, double step_m) {
-  std::vector<Row> rows;
+std::vector<GroundRow> rows_of(const Terrain& terrain, double from_m, double to_m, double step_m) {
+  std::vector<GroundRow> rows;
   const auto count = static_cast<int>(std::min(floor((to_m - from_m) / step_m), kMostSide - 1.0));
   double riser_m = piece_at(terrain, from_m).to_m;
   for (int k = 0; k <= count; ++k) {
@@ -64,7 +64,7 @@ std::vector<double> columns_of(double from_m, double to_m, double step_m, bool i
 struct Edges {
   double nose_m = kEdge_m, foot_m = kEdge_m;
 };
-Edges edges_of(const Terrain& terrain, const Row& row) {
+Edges edges_of(const Terrain& terrain, const GroundRow& row) {
   Edges edges;
   const double z_m = row.z_m + row.look_m;
   if (row.riser != 0.0) {
@@ -84,7 +84,7 @@ Edges edges_of(const Terrain& terrain, const Row& row) {
   return edges;
 }
 
-GroundVertex vertex_of(const Terrain& terrain, double x_m, const Row& row, const Edges& edges,
+GroundVertex vertex_of(const Terrain& terrain, double x_m, const GroundRow& row, const Edges& edges,
                        const vec3& origin_m) {
   const Ground ground = ground_at(terrain, x_m, row.z_m + row.look_m);
   const vec3 place = vec3(x_m, ground.height_m, row.z_m) - origin_m;
@@ -102,11 +102,11 @@ GroundMesh ground_mesh(const Terrain& terrain, const vec2& centre_m, double half
   const double right_m = left_m + 2.0 * half_m + step_m, far_m = near_m + 2.0 * half_m + step_m;
   GroundMesh mesh;
   mesh.origin_m = vec3(centre_m.x, ground_at(terrain, centre_m.x, centre_m.y).height_m, centre_m.y);
-  const std::vector<Row> rows = rows_of(terrain, near_m, far_m, step_m);
+  const std::vector<GroundRow> rows = rows_of(terrain, near_m, far_m, step_m);
   const std::vector<double> columns =
       columns_of(left_m, right_m, step_m, varies_sideways(terrain, near_m, far_m));
   mesh.vertices.reserve(rows.size() * columns.size());
-  for (const Row& row : rows) {
+  for (const GroundRow& row : rows) {
     const Edges edges = edges_of(terrain, row);
     for (const double x_m : columns)
       mesh.vertices.push_back(vertex_of(terrain, x_m, row, edges, mesh.origin_m));

@@ -80,10 +80,6 @@ struct StyleColour {
 };
 
 void set_colours(const Theme& theme, ImGuiStyle& style) {
-  const auto faint = [](Colour colour, double alpha) {
-    colour.alpha = alpha;
-    return colour;
-  };
   const Colour none{0.0, 0.0, 0.0, 0.0};
   const StyleColour colours[] = {
       {ImGuiCol_Text, theme.text},

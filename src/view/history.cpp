@@ -104,11 +104,6 @@ SpanRow row_of(std::string_view label, const GraphSpan& span, const Key& key, co
   return row;
 }
 
-Colour faint(Colour colour, double alpha) {
-  colour.alpha = alpha;
-  return colour;
-}
-
 int stage_key(const WalkerSample& s) {
   if (s.stage == Stage::idle) return 1;
   return (s.stage == Stage::flight ? 2 : 4) + static_cast<int>(s.swing);

@@ -368,11 +368,6 @@ constexpr double kLongestEnd = 0.5,
 constexpr double kShortestLine = 0.015,
                  kShortestDotted = 0.045;  // in leg lengths; fingers are left out
 
-Colour mixed(const Colour& a, const Colour& b, double share) {
-  return {mix(a.red, b.red, share), mix(a.green, b.green, share), mix(a.blue, b.blue, share),
-          a.alpha};
-}
-
 // Takes the shorter way round. The poses are a tick apart, so a normalised sum is exact enough.
 quat between(const quat& a, const quat& b, double share) noexcept {
   const quat near = glm::dot(a, b) < 0.0 ? -b : b;

@@ -12,7 +12,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kWidth = 760.0, kHeight = 320.0;  // at scale 1
+constexpr double kMapWidth = 760.0, kMapHeight = 320.0;  // at scale 1
 
 class MapView final : public PadDialog {
  public:
@@ -69,7 +69,7 @@ PadDialog::State MapView::draw(Ui& ui, const ImVec2& window_px,
     return State::ended;
   }
   State state = State::goes_on;
-  const ImVec2 size = begin_modal(ui, "map", kWidth, kHeight, window_px);
+  const ImVec2 size = begin_modal(ui, "map", kMapWidth, kMapHeight, window_px);
   draw_step(ui);
   ImGui::SetCursorPosY(size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y);
   const bool is_entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);

@@ -27,11 +27,6 @@ struct PlotArea {
   }
 };
 
-ImU32 faint(Colour colour, double alpha) {
-  colour.alpha *= alpha;
-  return packed(colour);
-}
-
 enum class TextPlace { left, centre, right };
 
 float label_width(const PlotStyle& style, const std::string& text) {
@@ -70,7 +65,7 @@ void draw_y_axis(ImDrawList& list, const PlotArea& area, const PlotStyle& style)
   for (const PlotTick& tick : plot_ticks(area.y, steps)) {
     const float y = std::round(area.py(tick.value));
     list.AddLine({area.min.x, y}, {area.max.x, y},
-                 faint(style.theme->border, tick.value == 0.0 ? 1.0 : 0.6));
+                 packed(faint(style.theme->border, tick.value == 0.0 ? 1.0 : 0.6)));
     const float text_y = std::clamp(y - half, area.min.y - half * 0.5f, area.max.y - half * 1.5f);
     tick_label(list, style, {area.min.x - 5.0f * style.scale, text_y}, TextPlace::right, tick.text,
                style.theme->tick);
@@ -81,7 +76,7 @@ void draw_x_axis(ImDrawList& list, const PlotArea& area, const PlotStyle& style,
   const int steps = std::max(1, static_cast<int>(area.width() / (kTickWidthPixels * style.scale)));
   for (const PlotTick& tick : plot_ticks(area.x, steps)) {
     const float x = std::round(area.px(tick.value));
-    list.AddLine({x, area.min.y}, {x, area.max.y}, faint(style.theme->border, 0.6));
+    list.AddLine({x, area.min.y}, {x, area.max.y}, packed(faint(style.theme->border, 0.6)));
     if (!has_labels) continue;
     const float edge = 10.0f * style.scale;
     const float text_x = std::clamp(x, area.min.x + edge, area.max.x - edge * 0.2f);

@@ -37,10 +37,6 @@ struct SceneView {
 // Towards the only light.
 const vec3 kLightDirection = glm::normalize(vec3(0.42, 0.86, 0.36));
 
-bool is_finite(const vec3& v) noexcept {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 struct MeshDetail {
   int segments = 36, rings = 8;  // round the axis; of each cap
   int shadow_px = 1024;          // side of the shadows' texture
@@ -89,11 +85,6 @@ constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's lines for
 constexpr double kContact_m = 0.55;      // bodies above this height cast no contact shadow
 constexpr double kShadowStep_m = 2.0;    // steps of the texture's size, against flicker
 constexpr double kLargestShadow_m = 16.0;
-
-glm::vec4 row(const vec3& v, double w) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
-          static_cast<float>(w)};
-}
 
 // A unit vector at right angles to the axis, towards `wide` if possible.
 vec3 across(const vec3& axis, const vec3& wide) {
@@ -705,7 +696,7 @@ void StrokeScene::draw_lines(const SceneContent& content, const SceneView& view)
 }
 
 constexpr int kSamples = 4;
-constexpr int kLargest_px = 16384;
+constexpr int kLargestPicture_px = 16384;
 // A fine picture is drawn in bands of so many pixels: all its samples at once would take 120 MB in
 // double size.
 constexpr int kBandArea_px = 1 << 19, kLowestBand_px = 16;
@@ -830,7 +821,7 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
                  const Viewport& viewport, int window_height_px, double scale) {
   Impl& s = *impl_;
   const int width = viewport.width, height = viewport.height;
-  if (width < 1 || height < 1 || width > kLargest_px || height > kLargest_px) return;
+  if (width < 1 || height < 1 || width > kLargestPicture_px || height > kLargestPicture_px) return;
   GLint window = 0;
   std::array<GLint, 4> before{};
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &window);

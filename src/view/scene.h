@@ -32,6 +32,11 @@ struct Trail {  // oldest first; fades towards the old end
   std::vector<vec3> points_m;
   Colour colour;
 };
+// A row of what the shaders read.
+inline glm::vec4 row(const vec3& v, double w) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
+          static_cast<float>(w)};
+}
 // A capsule of a body that is one of many: drawn as a rectangle that faces the eye, shaded as if it
 // were round, for a fraction of the cost. It casts no shadow. Places are relative to
 // SceneContent::crowd_origin_m.

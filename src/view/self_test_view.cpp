@@ -16,7 +16,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kWidth = 760.0, kHeight = 320.0;  // at scale 1
+constexpr double kSelfTestWidth = 760.0, kSelfTestHeight = 320.0;  // at scale 1
 
 std::string outcome(const Result<std::optional<SelfTestResult>>& result) {
   if (!result) return result.error().message;
@@ -100,7 +100,7 @@ PadDialog::State SelfTestView::draw(Ui& ui, const ImVec2& window_px,
                                     std::vector<std::string>& messages) {
   if (!person_.take_remarks(messages)) return State::ended;
   const SelfTestPrompt prompt = person_.prompt();
-  const ImVec2 size = begin_modal(ui, "self test", kWidth, kHeight, window_px);
+  const ImVec2 size = begin_modal(ui, "self test", kSelfTestWidth, kSelfTestHeight, window_px);
   text_line(ui, ui.fonts.title, ui.theme.text,
             prompt.parts > 0
                 ? fmt::format("Part {} of {}: {}", prompt.part, prompt.parts, prompt.title)

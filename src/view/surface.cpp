@@ -17,7 +17,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kSmallest_px = 64, kLargest_px = 16384;
+constexpr int kSmallest_px = 64, kLargestWindow_px = 16384;
 constexpr int kSmallestWindowWidth = 640, kSmallestWindowHeight = 400;  // at scale 1
 constexpr int kNeededGl = 33;                                           // 3.3
 constexpr const char* kWithoutDisplay =
@@ -82,7 +82,7 @@ double scale_of_display(const SurfaceOptions& options) {
 
 int scaled(int pixels, double scale) {
   return static_cast<int>(
-      std::lround(std::clamp(pixels * scale, 1.0 * kSmallest_px, 1.0 * kLargest_px)));
+      std::lround(std::clamp(pixels * scale, 1.0 * kSmallest_px, 1.0 * kLargestWindow_px)));
 }
 
 SDL_Window* new_window(const SurfaceOptions& options, double scale) {

@@ -804,7 +804,7 @@ constexpr double kRowPixels = 24.0, kHeadingPixels = 32.0, kColumnPixels = 420.0
 constexpr double kKeysPixels = 124.0, kButtonPixels = 86.0;
 
 // A row of the help page: a heading, or keys, pad button and text.
-struct Row {
+struct KeyRow {
   std::string_view heading;  // if not empty, the row is a heading
   std::vector<std::string> keys;
   std::string_view button, text;
@@ -816,7 +816,7 @@ bool is_numbered_style(Action action) {
 }
 
 // The nine keys of the styles in one row: "1 .. 9".
-void add_style(const ActionInfo& info, Row& row) {
+void add_style(const ActionInfo& info, KeyRow& row) {
   row.names.push_back(info.name);
   if (info.action != Action::style_9) return;
   row.keys[0] += fmt::format(" .. {}", key_name(info.key));
@@ -824,8 +824,8 @@ void add_style(const ActionInfo& info, Row& row) {
   row.text = "the style with that number";
 }
 
-std::vector<Row> rows() {
-  std::vector<Row> all;
+std::vector<KeyRow> rows() {
+  std::vector<KeyRow> all;
   all.push_back({"Walk and look", {}, {}, {}, {}});
   for (const HelpLine& line : walking_help()) {
     all.push_back({{}, {std::string(line.input)}, {}, line.text, {"walking"}});
@@ -838,7 +838,7 @@ std::vector<Row> rows() {
       add_style(info, all.back());
       continue;
     }
-    Row row{{}, {}, {}, info.text, {info.name}};
+    KeyRow row{{}, {}, {}, info.text, {info.name}};
     for (const SDL_Keycode key : {info.key, info.second_key}) {
       if (key != SDLK_UNKNOWN) row.keys.emplace_back(key_name(key));
     }
@@ -851,7 +851,7 @@ std::vector<Row> rows() {
   return all;
 }
 
-float height_of(const Ui& ui, const Row& row) {
+float height_of(const Ui& ui, const KeyRow& row) {
   return std::round(ui.px(row.heading.empty() ? kRowPixels : kHeadingPixels));
 }
 
@@ -868,7 +868,7 @@ float draw_key(Ui& ui, const ImVec2& at, std::string_view text, float max_width)
   return at.x + width + ui.px(5);
 }
 
-void draw_row(Ui& ui, const ImVec2& at, const Row& row, float width) {
+void draw_row(Ui& ui, const ImVec2& at, const KeyRow& row, float width) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (!row.heading.empty()) {
     put_text(list, ui.fonts.heading, ui.theme.left, {at.x, at.y + ui.px(10)}, row.heading, width);
@@ -892,9 +892,9 @@ void draw_row(Ui& ui, const ImVec2& at, const Row& row, float width) {
 }
 
 // Where to break the rows into columns of about equal height; a column starts with a heading.
-std::vector<std::size_t> column_ends(const Ui& ui, const std::vector<Row>& all, int columns) {
+std::vector<std::size_t> column_ends(const Ui& ui, const std::vector<KeyRow>& all, int columns) {
   float total = 0.0f;
-  for (const Row& row : all) total += height_of(ui, row);
+  for (const KeyRow& row : all) total += height_of(ui, row);
   const float wanted = total / static_cast<float>(columns);
   std::vector<std::size_t> ends;
   float height = 0.0f;
@@ -917,7 +917,7 @@ std::vector<std::size_t> column_ends(const Ui& ui, const std::vector<Row>& all, 
 }
 
 void draw_rows(Ui& ui, float width) {
-  const std::vector<Row> all = rows();
+  const std::vector<KeyRow> all = rows();
   const float gap = ui.px(28);
   const int columns =
       std::clamp(static_cast<int>((width + gap) / (ui.px(kColumnPixels) + gap)), 1, 3);

@@ -28,7 +28,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kLargest_px = 8192, kFastest_hz = 1000;
+constexpr int kLargestVideo_px = 8192, kFastest_hz = 1000;
 
 void close_fd(int& fd) noexcept {
   if (fd >= 0) ::close(std::exchange(fd, -1));
@@ -141,7 +141,7 @@ std::optional<Error> VideoWriter::problem_of(const std::string& path) {
 
 Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const std::string& path, int width,
                                                        int height, int frames_per_second) {
-  if (width < 1 || height < 1 || width > kLargest_px || height > kLargest_px ||
+  if (width < 1 || height < 1 || width > kLargestVideo_px || height > kLargestVideo_px ||
       frames_per_second < 1 || frames_per_second > kFastest_hz) {
     return problem(path, fmt::format("a video of {} x {} pixels, {} a second", width, height,
                                      frames_per_second));

@@ -85,7 +85,7 @@ std::string lanes_text(int lanes) {
 }
 
 // What a unit of a work, or one of its stages, took.
-struct Row {
+struct BenchRow {
   const Work* work = nullptr;
   int stage = -1;          // in kStages; -1: the whole
   std::vector<double> ns;  // in each round
@@ -131,8 +131,8 @@ Block measured_block(const Work& work, std::int64_t passes) {
 
 // All works take turns, block by block, so that what the machine does besides falls on all of them.
 // Before the first round each finds its number of passes.
-std::vector<Row> measured(const std::vector<Work>& works, int rounds, const Cores& cores) {
-  std::vector<Row> rows;
+std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const Cores& cores) {
+  std::vector<BenchRow> rows;
   std::vector<std::size_t> first_row;
   std::vector<std::int64_t> passes;
   const auto block_of = [&](const Work& work, std::int64_t count) {
@@ -170,8 +170,9 @@ std::vector<Row> measured(const std::vector<Work>& works, int rounds, const Core
 
 // The median of the first row with this name, and this many characters and lanes; 0 stands for any.
 // Nothing if there is none.
-double median_of(const std::vector<Row>& rows, std::string_view name, int characters, int width) {
-  for (const Row& row : rows) {
+double median_of(const std::vector<BenchRow>& rows, std::string_view name, int characters,
+                 int width) {
+  for (const BenchRow& row : rows) {
     const Work& work = *row.work;
     if (work.name == name && (characters == 0 || work.characters == characters) &&
         (width == 0 || work.width == width))
@@ -180,7 +181,7 @@ double median_of(const std::vector<Row>& rows, std::string_view name, int charac
   return std::nan("");
 }
 
-ordered_json json_of(const Row& row, const std::vector<Row>& rows) {
+ordered_json json_of(const BenchRow& row, const std::vector<BenchRow>& rows) {
   const Work& work = *row.work;
   const double ns = row.median();
   ordered_json json = {{"name", work.name}, {"characters", work.characters}};
@@ -222,9 +223,9 @@ ordered_json json_of(const Row& row, const std::vector<Row>& rows) {
 
 // The rows as a list, and two under names of their own: a leg's share of the tick's inverse
 // kinematics, and loading a clip.
-ordered_json list_of(const std::vector<Row>& rows, const std::string& processor) {
+ordered_json list_of(const std::vector<BenchRow>& rows, const std::string& processor) {
   ordered_json list = ordered_json::array();
-  for (const Row& row : rows) {
+  for (const BenchRow& row : rows) {
     list.push_back(json_of(row, rows));
     ordered_json again = list.back();
     if (row.work->name == "load_clip") {
@@ -281,14 +282,14 @@ std::string bounds_text(const ordered_json& row) {
   return text;
 }
 
-void print_table(const std::vector<Row>& rows, const ordered_json& list, const Cores& cores,
+void print_table(const std::vector<BenchRow>& rows, const ordered_json& list, const Cores& cores,
                  int rounds) {
   const ordered_json& first = list.front();
   fmt::print("{}, {}", first["processor"].get<std::string>(), lanes_text(first["lanes"]));
   if (cores.core() >= 0) fmt::print(", core {}", cores.core());
   fmt::print("; medians over {} rounds, quartiles, times the peer, bound\n", rounds);
   std::string heading;
-  for (const Row& row : rows) {
+  for (const BenchRow& row : rows) {
     const ordered_json json = json_of(row, rows);
     const std::string next = heading_of(row.work->name);
     if (next != heading) fmt::print("{}\n", next);
@@ -329,7 +330,7 @@ std::string plot_problem(const std::string& path) {
 
 // A character's time over the size of its crowd, both axes logarithmic, for each width, with bare
 // playback as lines across.
-std::optional<Error> write_plot(const std::string& path, const std::vector<Row>& rows,
+std::optional<Error> write_plot(const std::string& path, const std::vector<BenchRow>& rows,
                                 const std::string& processor) {
   constexpr std::array kColours = {colour::kBlue, colour::kGreen, colour::kOrange, colour::kPurple};
   constexpr int kWidth = 900, kHeight = 620;
@@ -353,18 +354,18 @@ std::optional<Error> write_plot(const std::string& path, const std::vector<Row>&
     legend.push_back(
         {is_dashed ? LegendEntry::Mark::dashed : LegendEntry::Mark::line, colour, text});
   };
-  for (const Row& row : rows)
+  for (const BenchRow& row : rows)
     if (row.work->name == "crowd") largest = std::max(largest, double(row.work->characters));
   std::size_t next_colour = 0;
   for (int lanes = widest_lanes(); lanes >= 1; lanes /= 2) {
     std::vector<PlotPoint> points;
-    for (const Row& row : rows)
+    for (const BenchRow& row : rows)
       if (row.work->name == "crowd" && row.work->width == lanes)
         points.emplace_back(row.work->characters, row.median());
     add(lanes_text(lanes), kColours[next_colour++ % kColours.size()], false, std::move(points));
   }
   std::vector<PlotPoint> all_cores;
-  for (const Row& row : rows)
+  for (const BenchRow& row : rows)
     if (row.work->name == "crowd_all_cores")
       all_cores.emplace_back(row.work->characters, row.median());
   if (!all_cores.empty()) add("all cores", colour::kVermilion, false, std::move(all_cores));
@@ -394,7 +395,8 @@ std::optional<Error> write_plot(const std::string& path, const std::vector<Row>&
 }
 #else
 std::string plot_problem(const std::string&) { return missing_window(); }
-std::optional<Error> write_plot(const std::string&, const std::vector<Row>&, const std::string&) {
+std::optional<Error> write_plot(const std::string&, const std::vector<BenchRow>&,
+                                const std::string&) {
   return Error{missing_window()};
 }
 #endif
@@ -403,7 +405,7 @@ int run(const BenchArguments& arguments) {
   const auto works = bench_work(arguments.most_characters);
   if (!works) return fail("bench", works.error().message);
   const Cores cores;
-  const std::vector<Row> rows = measured(*works, arguments.rounds, cores);
+  const std::vector<BenchRow> rows = measured(*works, arguments.rounds, cores);
   const std::string processor = processor_name();
   const ordered_json list = list_of(rows, processor);
   if (arguments.as_json) {

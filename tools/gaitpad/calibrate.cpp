@@ -34,8 +34,6 @@
 namespace gaitpad {
 namespace {
 
-constexpr const char* kCommand = "calibrate";
-
 struct CalibrateArguments {
   PadWish wish;
   std::vector<std::string> traces, pushes, compare;
@@ -397,7 +395,7 @@ Result<GuidedPad> named_pad(const CalibrateArguments& arguments, const PadFiles&
                  ? live_pad(arguments.wish, files, remarks)
                  : traced_pad(arguments.traces,
                               arguments.is_lenient ? Damage::skip : Damage::refuse, files, remarks);
-  print_remarks(kCommand, remarks);
+  print_remarks(kCalibrateCommand, remarks);
   return pad;
 }
 
@@ -409,8 +407,8 @@ int print_or_save(const std::string& target, const CalibrationFile& file,
     return 0;
   }
   if (const auto problem = save_calibration(target, file, comments))
-    return fail(kCommand, problem->message);
-  print_remarks(kCommand, {"written to " + target});
+    return fail(kCalibrateCommand, problem->message);
+  print_remarks(kCalibrateCommand, {"written to " + target});
   return 0;
 }
 
@@ -425,9 +423,10 @@ bool is_data_base(const std::vector<std::string>& lines) {
 int import_data_base(const std::string& source, const std::vector<std::string>& lines) {
   const std::string target = user_mapping_file();
   const auto count = save_mappings(target, lines);
-  if (!count) return fail(kCommand, count.error().message);
-  print_remarks(kCommand, {fmt::format("{}: {} Linux mappings taken over; {} are in {} now", source,
-                                       lines.size(), *count, target)});
+  if (!count) return fail(kCalibrateCommand, count.error().message);
+  print_remarks(kCalibrateCommand,
+                {fmt::format("{}: {} Linux mappings taken over; {} are in {} now", source,
+                             lines.size(), *count, target)});
   return 0;
 }
 
@@ -435,21 +434,21 @@ int import_data_base(const std::string& source, const std::vector<std::string>& 
 int import_calibration(const CalibrateArguments& arguments, const PadFiles& files) {
   const std::string origin = arguments.import == "-" ? "standard input" : arguments.import;
   auto given = import_text(arguments.import);
-  if (!given) return fail(kCommand, given.error().message);
+  if (!given) return fail(kCalibrateCommand, given.error().message);
   const bool is_for_a_pad =
       !arguments.wish.pad.empty() || !arguments.traces.empty() || !arguments.out.empty();
   if (const auto lines = mapping_lines(*given); !is_for_a_pad && is_data_base(lines))
     return import_data_base(origin, lines);
   auto pad = named_pad(arguments, files);
-  if (!pad) return fail(kCommand, pad.error().message);
+  if (!pad) return fail(kCalibrateCommand, pad.error().message);
   auto imported = calibration_import(*given, origin, pad->info, pad->layout);
-  if (!imported) return fail(kCommand, imported.error().message);
+  if (!imported) return fail(kCalibrateCommand, imported.error().message);
   CalibrationFile file = calibration_for(pad->info, pad->has_factory_sticks);
   auto target = calibration_target(arguments.out, file);
-  if (!target) return fail(kCommand, target.error().message);
+  if (!target) return fail(kCalibrateCommand, target.error().message);
   std::vector<std::string> remarks;
   take_what_holds(files, pad->info, *target, file, remarks);
-  print_remarks(kCommand, remarks);
+  print_remarks(kCalibrateCommand, remarks);
   if (imported->mapping.empty()) {
     file.calibration = imported->calibration;
     file.measured = {};
@@ -463,12 +462,12 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
 // --export-sdl, the same way.
 int export_sdl(const CalibrateArguments& arguments, const PadFiles& files) {
   auto pad = named_pad(arguments, files);
-  if (!pad) return fail(kCommand, pad.error().message);
+  if (!pad) return fail(kCalibrateCommand, pad.error().message);
   // The stick's axes as in the device's own file, if there is one.
   const std::string own[] = {files.user_calibrations};
   const FoundCalibration found = find_calibration(own, identity_of(pad->info));
   auto line = sdl_mapping_text(pad->info, pad->layout, stick_axes(found.file.calibration));
-  if (!line) return fail(kCommand, line.error().message);
+  if (!line) return fail(kCalibrateCommand, line.error().message);
   fmt::print("{}\n", printable(*line));
   return 0;
 }
@@ -530,13 +529,13 @@ int compare(const CalibrateArguments& arguments) {
   ComparedFiles files;
   for (std::size_t i = 0; i < 2; ++i) {
     auto file = load_calibration_file(arguments.compare[i]);
-    if (!file) return fail(kCommand, file.error().message);
+    if (!file) return fail(kCalibrateCommand, file.error().message);
     files.file[i] = std::move(*file);
     files.names[i] = printable(std::filesystem::path(arguments.compare[i]).filename().string());
   }
   const auto& [a, b] = files.file;
   if (a.unique_id != b.unique_id || a.devices != b.devices)
-    print_remarks(kCommand, {"the files are of different devices; compared all the same"});
+    print_remarks(kCalibrateCommand, {"the files are of different devices; compared all the same"});
   for (std::size_t side = 0; side < 2; ++side) {
     files.numbers[side] = compared_numbers(a, b, side);
     fmt::print("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
@@ -549,7 +548,7 @@ int compare(const CalibrateArguments& arguments) {
   print_changes(changes_since(a, b), "what was measured for both files has not changed");
   if (arguments.plot.empty()) return 0;
   const auto problem = draw_comparison(arguments.plot, files);
-  return problem ? fail(kCommand, problem->message) : 0;
+  return problem ? fail(kCalibrateCommand, problem->message) : 0;
 }
 
 // A problem that a person should know before the guided steps, not after them.
@@ -589,7 +588,7 @@ std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& 
 
 int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAnalysis& analysis) {
   const auto then = load_calibration_file(arguments.check);
-  if (!then) return fail(kCommand, then.error().message);
+  if (!then) return fail(kCalibrateCommand, then.error().message);
   if (calibration_fit(*then, identity_of(pad.info)) == 0) {
     print_remarks("calibrate",
                   {fmt::format("{}: is the file of \"{}\", and its devices, unique_id, port or "
@@ -601,7 +600,7 @@ int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAn
   now.calibration = then->calibration;
   take_advice(analysis, now);
   const auto problem = show(arguments, pad, analysis, changes_since(*then, now));
-  return problem ? fail(kCommand, problem->message) : 0;
+  return problem ? fail(kCalibrateCommand, problem->message) : 0;
 }
 
 // Shows what was measured and writes the file. If somebody is at the terminal (`asked` is not
@@ -610,18 +609,18 @@ int keep(const CalibrateArguments& arguments, const PadFiles& files, const Guide
          const PadAnalysis& analysis, RunEnd* asked) {
   CalibrationFile file = calibration_for(pad.info, pad.has_factory_sticks);
   const auto target = calibration_target(arguments.out, file);
-  if (!target) return fail(kCommand, target.error().message);
+  if (!target) return fail(kCalibrateCommand, target.error().message);
   std::vector<std::string> remarks;
   take_what_holds(files, pad.info, *target, file, remarks);
-  print_remarks(kCommand, remarks);
+  print_remarks(kCalibrateCommand, remarks);
   take_advice(analysis, file);
   file.measured_on = today();
   if (const auto problem = show(arguments, pad, analysis, std::nullopt))
-    return fail(kCommand, problem->message);
+    return fail(kCalibrateCommand, problem->message);
   if (asked && *target != "-" &&
       !confirmed(fmt::format("Enter writes {}, q leaves it as it was.", printable(*target)),
                  *asked))
-    return fail(kCommand, "left before the end; nothing written");
+    return fail(kCalibrateCommand, "left before the end; nothing written");
   return print_or_save(*target, file, calibration_comments(analysis));
 }
 
@@ -636,24 +635,25 @@ int run(const CalibrateArguments& arguments) {
   if (!arguments.compare.empty()) return compare(arguments);
   RunEnd end;
   const auto files = pad_files(arguments.map, "");
-  if (!files) return fail(kCommand, files.error().message);
+  if (!files) return fail(kCalibrateCommand, files.error().message);
   if (arguments.exports_sdl) return export_sdl(arguments, *files);
   if (!arguments.import.empty()) return import_calibration(arguments, *files);
   if (arguments.traces.empty()) {
-    if (const auto problem = problem_beforehand(arguments)) return fail(kCommand, problem->message);
+    if (const auto problem = problem_beforehand(arguments))
+      return fail(kCalibrateCommand, problem->message);
     const auto pad = guided_pad(*files, arguments.wish, end);
-    if (!pad) return fail(kCommand, pad.error().message);
-    if (!*pad) return fail(kCommand, "left before the end; nothing written");
+    if (!pad) return fail(kCalibrateCommand, pad.error().message);
+    if (!*pad) return fail(kCalibrateCommand, "left before the end; nothing written");
     return finish(arguments, *files, **pad, &end);
   }
   std::vector<std::string> remarks;
   auto pad = traced_pad(arguments.traces, arguments.is_lenient ? Damage::skip : Damage::refuse,
                         *files, remarks);
-  if (!pad) return fail(kCommand, pad.error().message);
+  if (!pad) return fail(kCalibrateCommand, pad.error().message);
   const auto problem = learn_frames(arguments.pushes, *pad, remarks);
-  if (problem) return fail(kCommand, problem->message);
-  print_remarks(kCommand, driver_remarks(pad->info));
-  print_remarks(kCommand, remarks);
+  if (problem) return fail(kCalibrateCommand, problem->message);
+  print_remarks(kCalibrateCommand, driver_remarks(pad->info));
+  print_remarks(kCalibrateCommand, remarks);
   return finish(arguments, *files, *pad, nullptr);
 }
 

@@ -41,9 +41,9 @@ class GuideScreen {
   std::vector<std::string> printed_;
 };
 
-constexpr std::int64_t kRewriteNs = 50'000'000;  // in place
-constexpr std::int64_t kPrintNs = 500'000'000;   // line below line
-constexpr std::size_t kBarWidth = 55;            // narrower screens have no room for bars
+constexpr std::int64_t kGuideRewriteNs = 50'000'000;  // in place
+constexpr std::int64_t kPrintNs = 500'000'000;        // line below line
+constexpr std::size_t kBarWidth = 55;                 // narrower screens have no room for bars
 constexpr int kBarCells = 10;
 
 constexpr const char* kUnplugged = "UNPLUGGED: plug it in again, it goes on from here.";
@@ -90,7 +90,8 @@ void GuideScreen::show(const CalibrationGuide& guide, const ShownPad& pad) {
   if (guide.step() == GuideStep::done) return;
   const bool is_new_step = shown_step_ != guide.step();
   const std::int64_t time_ns = now_ns();
-  if (!is_new_step && time_ns < shown_ns_ + (line_.is_terminal() ? kRewriteNs : kPrintNs)) return;
+  if (!is_new_step && time_ns < shown_ns_ + (line_.is_terminal() ? kGuideRewriteNs : kPrintNs))
+    return;
   shown_ns_ = time_ns;
   shown_step_ = guide.step();
   if (line_.is_terminal()) {
@@ -135,8 +136,7 @@ void GuideScreen::print_news(const CalibrationGuide& guide, const ShownPad& pad)
 
 // --- the guide
 
-constexpr std::chrono::milliseconds kWait{20};
-constexpr const char* kCommand = "calibrate";
+constexpr std::chrono::milliseconds kGuideWait{20};
 
 std::string name_of(const DeviceInfo& info) {
   const std::string name = printable(info.name);
@@ -188,17 +188,17 @@ Wish obey_keys(TerminalKeys& keys, CalibrationGuide* guide, GuideScreen& screen)
 Result<bool> run_guide(GuidedCalibration& calibration, const PadWish& wish, RunEnd& end) {
   GuideScreen screen;
   TerminalKeys keys;  // destroyed before the stream, whose closing may take long
-  MissingPad missing(kCommand, wish);
+  MissingPad missing(kCalibrateCommand, wish);
   while (!end.is_reached()) {
     const bool was_there = calibration.guide() != nullptr;
-    calibration.look(kWait);
+    calibration.look(kGuideWait);
     CalibrationGuide* guide = calibration.guide();
-    print_remarks(kCommand, calibration.take_remarks(), &screen.line());
+    print_remarks(kCalibrateCommand, calibration.take_remarks(), &screen.line());
     missing.look(calibration.plugged(), screen.line());
     if (guide && !was_there) {
       if (guide->steps().size() <= 1)  // nothing but `done`
         return Error{name_of(calibration.pad()) + ": has no stick to calibrate"};
-      print_remarks(kCommand, driver_remarks(calibration.pad()), &screen.line());
+      print_remarks(kCalibrateCommand, driver_remarks(calibration.pad()), &screen.line());
     }
     if (obey_keys(keys, guide, screen) == Wish::give_up) return false;
     if (!guide && calibration.has_ended()) return false;
@@ -236,7 +236,7 @@ bool confirmed(const std::string& question, RunEnd& end) {
       if (*key == 'q' || *key == 'Q' || *key == 'n' || *key == 'N') return false;
     }
     if (keys.is_at_end()) return false;
-    end.wait(kWait);
+    end.wait(kGuideWait);
   }
   return false;
 }

@@ -11,6 +11,7 @@
 
 namespace gaitpad {
 
+inline constexpr const char* kCalibrateCommand = "calibrate";
 inline constexpr const char* kSideNames[] = {"left", "right"};
 
 // Runs the guided steps on the first wished pad that comes. Nothing if the user gave up (q, Ctrl-C,

@@ -26,7 +26,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr const char* kCommand = "check";
+constexpr const char* kCheckCommand = "check";
 constexpr int kMaxShards = 100'000, kMaxJobs = 1024;
 
 // The part of the recordings that is this run's: every `total`-th, counted from 1.
@@ -215,12 +215,12 @@ std::optional<Error> draw_curves(const JointCurves& curves, const std::string& t
   draw_plot(cr, {left, kPageTop + 372.0, width, 130.0}, apart);
   return write_png(path, page.surface.get());
 }
-std::string plot_problem(const std::string&) { return ""; }
+std::string joints_plot_problem(const std::string&) { return ""; }
 #else
 std::optional<Error> draw_curves(const JointCurves&, const std::string&, const std::string&) {
   return Error{missing_window()};
 }
-std::string plot_problem(const std::string&) { return missing_window(); }
+std::string joints_plot_problem(const std::string&) { return missing_window(); }
 #endif
 
 // One in the folder for each recording: `walks/round` becomes `walks_round.png`.
@@ -236,16 +236,17 @@ std::string picture_path(const std::string& folder, const CheckedTrace& trace) {
 
 int run(const CheckArguments& arguments) {
   const auto shard = wished_shard(arguments.shard);
-  if (!shard) return fail(kCommand, shard.error().message);
+  if (!shard) return fail(kCheckCommand, shard.error().message);
   auto found = found_traces(arguments.paths, arguments.updates);
-  if (!found) return fail(kCommand, found.error().message);
+  if (!found) return fail(kCheckCommand, found.error().message);
   if (found->traces.empty()) {
-    return fail(kCommand, found->without == 0
-                              ? "no recording is there"
-                              : "no recording has an expectation beside it; --update writes them");
+    return fail(kCheckCommand,
+                found->without == 0
+                    ? "no recording is there"
+                    : "no recording has an expectation beside it; --update writes them");
   }
   if (found->without > 0 && !arguments.updates) {
-    print_remarks(kCommand,
+    print_remarks(kCheckCommand,
                   {fmt::format("recordings without an expectation, left out: {}", found->without)});
   }
   std::vector<CheckedTrace> traces;
@@ -257,7 +258,7 @@ int run(const CheckArguments& arguments) {
   JunitReport junit;
   int failures = 0;
   std::vector<std::string> problems;
-  Progress progress(kCommand);
+  Progress progress(kCheckCommand);
   double done = 0.0;
   fmt::print("TAP version 14\n1..{}\n", traces.size());
   check_all(traces, options, jobs, [&](std::size_t i, CheckResult&& result) {
@@ -274,13 +275,13 @@ int run(const CheckArguments& arguments) {
     failures += problem.has_value();
   });
   progress.clear();
-  print_remarks(kCommand, problems);
+  print_remarks(kCheckCommand, problems);
   if (!arguments.junit.empty()) {
     if (auto problem = write_file(arguments.junit, junit.text()))
-      return fail(kCommand, problem->message);
+      return fail(kCheckCommand, problem->message);
   }
   if (failures == 0) return 0;
-  return fail(kCommand,
+  return fail(kCheckCommand,
               fmt::format("{} of {} recordings are not as expected", failures, traces.size()));
 }
 
@@ -307,7 +308,7 @@ void add_check(CLI::App& app, int& status) {
   command
       ->add_option("--plot", arguments->plot,
                    "folder for a picture of each pose that differs: both courses of the joint")
-      ->check(plot_problem);
+      ->check(joints_plot_problem);
   command->footer(
       "Results are TAP on standard output. Exit status: 0 all are met, 1 one is not, 2 wrong "
       "usage.\n"

@@ -15,25 +15,26 @@
 namespace gaitpad {
 namespace {
 
-constexpr const char* kCommand = "map";
-constexpr std::chrono::milliseconds kWait{20};
+constexpr const char* kMapCommand = "map";
+constexpr std::chrono::milliseconds kMapWait{20};
 
 // Asks for one control after the other, until all were asked for or the recording is over. False:
 // the person gave up.
 bool ask(PadMapping& mapping, const PadWish& wish, RunEnd& end) {
   InputLines input;
   StatusLine line(2);
-  MissingPad missing(kCommand, wish);
+  MissingPad missing(kMapCommand, wish);
   bool is_pad_told = false;
   const char* told = nullptr;  // the prompt
   std::size_t found = 0;
   while (!mapping.is_done() && !mapping.has_ended() && !end.is_reached()) {
-    mapping.look(kWait);
-    print_remarks(kCommand, mapping.take_remarks(), &line);
+    mapping.look(kMapWait);
+    print_remarks(kMapCommand, mapping.take_remarks(), &line);
     missing.look(mapping.plugged(), line);
     if (mapping.has_pad() && !std::exchange(is_pad_told, true)) {
-      print_remarks(kCommand, {mapping.pad().name +
-                               ": let everything go; s and Enter skips a step, q and Enter ends"});
+      print_remarks(
+          kMapCommand,
+          {mapping.pad().name + ": let everything go; s and Enter skips a step, q and Enter ends"});
     }
     for (const std::string& word : input.take_lines()) {
       if (word == "q") return false;
@@ -41,12 +42,12 @@ bool ask(PadMapping& mapping, const PadWish& wish, RunEnd& end) {
     }
     if (mapping.found() != found) {
       found = mapping.found();
-      print_remarks(kCommand, {"  " + mapping.last_found()});
+      print_remarks(kMapCommand, {"  " + mapping.last_found()});
     }
     const char* prompt = mapping.prompt();
     if (prompt != nullptr && prompt != told) {
-      print_remarks(kCommand, {fmt::format("{} of {}: {}", mapping.step() + 1,
-                                           PadMapping::step_count(), prompt)});
+      print_remarks(kMapCommand, {fmt::format("{} of {}: {}", mapping.step() + 1,
+                                              PadMapping::step_count(), prompt)});
     }
     told = prompt;
   }
@@ -57,19 +58,19 @@ bool ask(PadMapping& mapping, const PadWish& wish, RunEnd& end) {
 int run(const PadWish& wish, const std::string& out) {
   RunEnd end;
   const auto files = pad_files("", "");
-  if (!files) return fail(kCommand, files.error().message);
+  if (!files) return fail(kMapCommand, files.error().message);
   const auto mapping = PadMapping::start(*files, wish);
-  if (!mapping) return fail(kCommand, mapping.error().message);
+  if (!mapping) return fail(kMapCommand, mapping.error().message);
   if (!ask(**mapping, wish, end)) {
-    const int status = fail(kCommand, "given up; nothing is kept");
+    const int status = fail(kMapCommand, "given up; nothing is kept");
     return end.cut_off_status() != 0 ? end.cut_off_status() : status;
   }
   if (!(*mapping)->has_left_stick())
-    return fail(kCommand, "ended before the left stick was known; nothing is kept");
+    return fail(kMapCommand, "ended before the left stick was known; nothing is kept");
   const auto line = (*mapping)->keep(out);
-  if (!line) return fail(kCommand, line.error().message);
+  if (!line) return fail(kMapCommand, line.error().message);
   fmt::print("{}\n", printable(*line));
-  print_remarks(kCommand,
+  print_remarks(kMapCommand,
                 {fmt::format("{} controls of {} are kept in {}", (*mapping)->found(),
                              (*mapping)->pad().name, out.empty() ? user_mapping_file() : out)});
   return 0;

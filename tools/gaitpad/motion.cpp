@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
+constexpr std::array<const char*, 2> kLegNames = {"left", "right"};
 
 struct MotionArguments {
   std::string file;
@@ -85,7 +85,7 @@ ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
   out["frames"] = motion.frames.size();
   out["joints"] = joint_names(motion);
   for (const Side side : {kLeftSide, kRightSide}) {
-    const char* name = kSideNames[side];
+    const char* name = kLegNames[side];
     out["legs"][name] = leg_json(motion, side);
     out["flight"][name] = flight_json(robust_flight(motion, side));
     out["flight_paper"][name] = paper_json(paper_flight(motion, side));
@@ -129,14 +129,14 @@ void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegJoints& leg = motion.legs[side];
     const auto name = [&](int joint) { return printable(motion.skeleton.joints[joint].name); };
-    fmt::print("{:<5} leg     {} - {} - {} - {}, thigh + shank {:.3f} m\n", kSideNames[side],
+    fmt::print("{:<5} leg     {} - {} - {} - {}, thigh + shank {:.3f} m\n", kLegNames[side],
                name(leg.hip), name(leg.knee), name(leg.ankle), name(leg.toe),
                leg_length_m(motion, leg));
   }
   for (const Side side : {kLeftSide, kRightSide}) {
     const auto flight = robust_flight(motion, side);
     const std::string heel_off = flight ? fmt::format("heel off {}, ", flight->heel_off) : "";
-    fmt::print("{:<5} flight  {}{}; by the paper's rule {}\n", kSideNames[side], heel_off,
+    fmt::print("{:<5} flight  {}{}; by the paper's rule {}\n", kLegNames[side], heel_off,
                flight_text(flight), flight_text(paper_flight(motion, side)));
   }
   fmt::print("gait          {}\n", printable(gait_text(cycle)));
@@ -194,7 +194,7 @@ void add_motion(CLI::App& app, int& status) {
       ->add_option("--frame-rate", arguments->load.frame_rate_hz,
                    "frames a second (default: the file's; 120 for .amc, which does not say)")
       ->check(CLI::Range(1.0, 1e4));
-  for (int s = 0; s < 2; ++s) add_leg_options(*command, arguments->load.legs[s], kSideNames[s]);
+  for (int s = 0; s < 2; ++s) add_leg_options(*command, arguments->load.legs[s], kLegNames[s]);
   command->callback([arguments, &status] { status = run_motion(*arguments); });
 }
 

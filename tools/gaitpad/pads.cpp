@@ -23,7 +23,7 @@ struct PadsArguments {
   bool as_json = false;
 };
 
-struct Row {
+struct PadRow {
   PadSighting sighting;
   bool is_chosen = false;
 };
@@ -64,16 +64,16 @@ std::vector<std::string> usages_of(const DeviceInfo& info) {
   return usages;
 }
 
-std::vector<Row> rows_of(const std::vector<PadSighting>& sightings,
-                         const std::vector<PadSighting>& chosen) {
-  std::vector<Row> rows;
+std::vector<PadRow> rows_of(const std::vector<PadSighting>& sightings,
+                            const std::vector<PadSighting>& chosen) {
+  std::vector<PadRow> rows;
   for (const PadSighting& sighting : sightings) {
     const bool is_chosen = !chosen.empty() && chosen.front().driver == sighting.driver &&
                            chosen.front().listing.node == sighting.listing.node;
     rows.push_back({sighting, is_chosen});
   }
-  std::ranges::stable_sort(rows, [](const Row& a, const Row& b) {
-    const auto rank = [](const Row& row) {
+  std::ranges::stable_sort(rows, [](const PadRow& a, const PadRow& b) {
+    const auto rank = [](const PadRow& row) {
       return row.is_chosen ? 0 : is_usable(row.sighting) ? 1 : row.sighting.is_pad ? 2 : 3;
     };
     return rank(a) < rank(b);
@@ -81,7 +81,7 @@ std::vector<Row> rows_of(const std::vector<PadSighting>& sightings,
   return rows;
 }
 
-ordered_json row_json(const Row& row) {
+ordered_json row_json(const PadRow& row) {
   const DeviceListing& listing = row.sighting.listing;
   const DeviceInfo& info = listing.info;
   ordered_json object = {{"driver", row.sighting.driver->name},
@@ -112,9 +112,9 @@ std::vector<std::pair<std::string, std::string>> missing_drivers(const PadWish& 
   return missing;
 }
 
-void print_rows_json(const std::vector<Row>& rows, const PadWish& wish) {
+void print_rows_json(const std::vector<PadRow>& rows, const PadWish& wish) {
   ordered_json list = ordered_json::array();
-  for (const Row& row : rows) list.push_back(row_json(row));
+  for (const PadRow& row : rows) list.push_back(row_json(row));
   for (const auto& [driver, problem] : missing_drivers(wish))
     list.push_back({{"driver", driver}, {"problem", problem}});
   print_json(list);
@@ -137,11 +137,11 @@ void print_table(const std::vector<std::vector<std::string>>& table) {
   }
 }
 
-void print_text(const std::vector<Row>& rows, const PadWish& wish) {
+void print_text(const std::vector<PadRow>& rows, const PadWish& wish) {
   std::vector<std::vector<std::string>> table = {{"", "driver", "path", "bus", "vid:pid", "name",
                                                   "unique id", "usages", "rate", "kernel",
                                                   "usable"}};
-  for (const Row& row : rows) {
+  for (const PadRow& row : rows) {
     const DeviceListing& listing = row.sighting.listing;
     const DeviceInfo& info = listing.info;
     const std::string rate =
@@ -159,7 +159,7 @@ void print_text(const std::vector<Row>& rows, const PadWish& wish) {
   }
   for (const auto& [driver, problem] : missing_drivers(wish))
     fmt::print("{}: {}\n", driver, printable(problem));
-  if (std::ranges::any_of(rows, &Row::is_chosen)) fmt::print("* is the one that play takes\n");
+  if (std::ranges::any_of(rows, &PadRow::is_chosen)) fmt::print("* is the one that play takes\n");
 }
 
 int run(const PadsArguments& arguments) {
@@ -172,7 +172,7 @@ int run(const PadsArguments& arguments) {
   }
   const auto chosen = chosen_pads(*sightings, arguments.wish);
   if (!chosen) return fail("pads", chosen.error().message);
-  const std::vector<Row> rows = rows_of(*sightings, *chosen);
+  const std::vector<PadRow> rows = rows_of(*sightings, *chosen);
   if (arguments.as_json) {
     print_rows_json(rows, arguments.wish);
   } else {

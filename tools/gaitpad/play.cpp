@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* kCommand = "play";
+constexpr const char* kPlayCommand = "play";
 constexpr std::chrono::milliseconds kLook{50};  // between looks at a session without a window
 
 struct PlayArguments {
@@ -71,11 +71,11 @@ class ReportTimes {
 void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSession& session,
                          ReportTimes& times) {
   StatusLine line(2);
-  MissingPad missing(kCommand, arguments.spec.pad.wish);
+  MissingPad missing(kPlayCommand, arguments.spec.pad.wish);
   const int rate_hz = session.cast().rate_hz;
   InputLines input;
   while (!end.is_reached() && !session.has_ended()) {
-    print_remarks(kCommand, session.take_remarks(), &line);
+    print_remarks(kPlayCommand, session.take_remarks(), &line);
     missing.look(session.status().pads.plugged, line);
     if (arguments.takes_commands) {
       for (const std::string& command : input.take_lines()) session.command(command);
@@ -132,7 +132,7 @@ int status_of(const PlayArguments& arguments, const LiveStatus& status, const Ru
   const bool is_alone = is_choosy(arguments.spec.pad.wish) && status.pads.plugged == 0;
   const bool is_wrong = arguments.takes_commands && run.bad_commands > 0;
   if (is_wrong)
-    print_remarks(kCommand, {fmt::format("{} commands could not be obeyed", run.bad_commands)});
+    print_remarks(kPlayCommand, {fmt::format("{} commands could not be obeyed", run.bad_commands)});
   return is_alone || is_wrong ? 1 : 0;
 }
 
@@ -140,17 +140,17 @@ int run_without_window(const PlayArguments& arguments) {
   RunEnd end;
   ReportTimes times(arguments.report_times);
   if (!arguments.report_times.empty() && !times.is_open())
-    return fail(kCommand, write_error(arguments.report_times, errno).message);
+    return fail(kPlayCommand, write_error(arguments.report_times, errno).message);
   SessionSpec unseen = arguments.spec;
   unseen.walk.shows_crowd = false;
   auto session = LiveSession::start(unseen);
-  if (!session) return fail(kCommand, session.error().message);
+  if (!session) return fail(kPlayCommand, session.error().message);
   end.end_after(arguments.seconds);
   walk_without_window(arguments, end, **session, times);
   const auto run = (*session)->stop();
   times.write(**session);
-  print_remarks(kCommand, (*session)->take_remarks());
-  if (!run) return fail(kCommand, run.error().message);
+  print_remarks(kPlayCommand, (*session)->take_remarks());
+  if (!run) return fail(kPlayCommand, run.error().message);
   const LiveStatus status = (*session)->status();
   if (arguments.json) {
     std::vector<ordered_json> summaries;
@@ -215,7 +215,8 @@ int run_with_window(const PlayArguments& arguments) {
   InputLines input;
   if (!makes_pictures(arguments.window)) end.end_after(arguments.seconds);
   WindowResult result;
-  if (const int status = show_window(kCommand, options_of_window(arguments, input), end, result))
+  if (const int status =
+          show_window(kPlayCommand, options_of_window(arguments, input), end, result))
     return status;
   if (arguments.json) {
     print_window_json(result);
@@ -225,7 +226,7 @@ int run_with_window(const PlayArguments& arguments) {
   if (!result.status) return 0;
   StatusLine line(2);
   if (const PadWish& wish = arguments.spec.pad.wish; is_choosy(wish))
-    MissingPad(kCommand, wish).finish(result.status->pads.plugged, line);
+    MissingPad(kPlayCommand, wish).finish(result.status->pads.plugged, line);
   return status_of(arguments, *result.status, result.summary);
 }
 

@@ -14,7 +14,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::chrono::milliseconds kWait{20};  // longest sleep until the end is noticed
+constexpr std::chrono::milliseconds kRecordWait{20};  // longest sleep until the end is noticed
 
 struct RecordArguments {
   PadWish wish;
@@ -59,7 +59,7 @@ Recorded record(const PadWish& wish, RunEnd& end, PadStream& stream, Recording& 
       take_report(*report, recording, recorded);
   };
   while (!end.is_reached() && !stream.has_ended() && !recording.problem()) {
-    stream.wait(kWait);
+    stream.wait(kRecordWait);
     take_all();
     print_remarks("record", stream.take_remarks(), &line);
     missing.look(stream.counts().plugged, line);

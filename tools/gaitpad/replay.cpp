@@ -19,7 +19,6 @@
 namespace gaitpad {
 namespace {
 
-constexpr const char* kCommand = "replay";
 constexpr int kMaxCrowdFiles = 256;  // each takes three open files
 constexpr double kLong_s = 5.0;      // a longer replay says how fast it was
 
@@ -46,21 +45,21 @@ void print_text(const SessionSpec::Replay& wanted, const RunSummary& run) {
 // The files and the summary.
 int run_through(const ReplayArguments& arguments) {
   RunEnd end;
-  Progress progress(kCommand);
+  Progress progress(kReplayCommand);
   const auto result = replay(arguments.spec, [&](std::int64_t done, std::int64_t ticks) {
     progress.show(static_cast<double>(done) / static_cast<double>(ticks));
     return !end.is_reached();
   });
   progress.clear();
   if (!result) {
-    const int status = fail(kCommand, result.error().message);
+    const int status = fail(kReplayCommand, result.error().message);
     return end.cut_off_status() != 0 ? end.cut_off_status() : status;
   }
-  print_remarks(kCommand, result->remarks);
+  print_remarks(kReplayCommand, result->remarks);
   if (const double seconds = progress.seconds(); seconds >= kLong_s) {
     const auto ticks = static_cast<double>(result->summary.ticks);
-    print_remarks(kCommand, {fmt::format("{:.0f} ticks in {:.1f} s, {:.0f} ticks a second", ticks,
-                                         seconds, ticks / seconds)});
+    print_remarks(kReplayCommand, {fmt::format("{:.0f} ticks in {:.1f} s, {:.0f} ticks a second",
+                                               ticks, seconds, ticks / seconds)});
   }
   if (arguments.json) {
     std::vector<nlohmann::ordered_json> summaries;
@@ -80,10 +79,10 @@ int view(const ReplayArguments& arguments) {
   WindowOptions options = window_options(arguments.window, true);
   options.session = arguments.spec;
   WindowResult result;
-  return show_window(kCommand, options, end, result);
+  return show_window(kReplayCommand, options, end, result);
 }
 #else
-int view(const ReplayArguments&) { return fail(kCommand, missing_window()); }
+int view(const ReplayArguments&) { return fail(kReplayCommand, missing_window()); }
 #endif
 
 int run(ReplayArguments& arguments) {

@@ -23,7 +23,6 @@
 namespace gaitpad {
 namespace {
 
-constexpr const char* kCommand = "replay";
 constexpr std::int64_t kBinding_ns = 5'000'000'000;  // longest wait for the kernel's driver
 constexpr std::int64_t kNear_ns = 2'000'000;         // this close it sleeps exactly
 
@@ -129,7 +128,7 @@ Result<std::int64_t> play_to_uinput(const SessionSpec& spec, Trace trace, double
   if (!ticks) return ticks.error();
   auto pad = VirtualPad::create();
   if (!pad) return pad.error();
-  print_remarks(kCommand, {"it plays to " + (*pad)->node()});
+  print_remarks(kReplayCommand, {"it plays to " + (*pad)->node()});
   Pads pads(std::move(*configs), rate_hz);
   const std::int64_t start_ns = now_ns() + nanoseconds(delay_s);
   std::int64_t reports = 0;
@@ -166,17 +165,18 @@ std::string target_problem(const std::string& target) {
 int replay_to(const SessionSpec& spec, const ReplayTo& to) {
   RunEnd end;
   const auto trace = read_trace(spec.replay.trace, spec.replay.damage);
-  if (!trace) return fail(kCommand, trace.error().message);
+  if (!trace) return fail(kReplayCommand, trace.error().message);
   if (to.target.ends_with(".evemu")) {
     const auto text = evemu_text(*trace);
-    if (!text) return fail(kCommand, text.error().message);
-    if (const auto problem = write_file(to.target, *text)) return fail(kCommand, problem->message);
+    if (!text) return fail(kReplayCommand, text.error().message);
+    if (const auto problem = write_file(to.target, *text))
+      return fail(kReplayCommand, problem->message);
     fmt::print("{}\n", printable(to.target));
     return 0;
   }
   const auto reports = to.target == "uhid" ? play_to_uhid(*trace, to.delay_s, end)
                                            : play_to_uinput(spec, *trace, to.delay_s, end);
-  if (!reports) return fail(kCommand, reports.error().message);
+  if (!reports) return fail(kReplayCommand, reports.error().message);
   fmt::print("{}: {} reports to {}\n", printable(spec.replay.trace), *reports, to.target);
   return 0;
 }

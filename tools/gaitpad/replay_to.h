@@ -6,6 +6,8 @@
 
 namespace gaitpad {
 
+inline constexpr const char* kReplayCommand = "replay";
+
 struct ReplayTo {
   std::string target;    // `uinput`, `uhid`, or a path that ends with .evemu; empty: none
   double delay_s = 1.0;  // from when the device is there to its first report

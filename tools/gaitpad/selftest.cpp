@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kCommand = "selftest";
 constexpr std::size_t kBarCells = 20;
-constexpr std::int64_t kRewriteNs = 50'000'000;
+constexpr std::int64_t kSelfTestRewriteNs = 50'000'000;
 
 struct SelfTestArguments {
   SelfTestOptions options;
@@ -41,7 +41,7 @@ class TerminalPerson final : public SelfTestPerson {
       return;
     }
     const std::int64_t time_ns = now_ns();
-    if (request == printed_ && time_ns < shown_ns_ + kRewriteNs) return;
+    if (request == printed_ && time_ns < shown_ns_ + kSelfTestRewriteNs) return;
     printed_ = request;
     shown_ns_ = time_ns;
     const ScreenSize size = screen_size();

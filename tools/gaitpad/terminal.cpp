@@ -13,7 +13,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxLineBytes = 256;
+constexpr std::size_t kMaxTypedBytes = 256;
 constexpr char kEscape = 0x1b, kEndOfInput = 0x04;
 constexpr int kMaxEscapeBytes = 16;
 
@@ -80,7 +80,7 @@ std::optional<char> TerminalKeys::byte() {
 std::optional<char> TerminalKeys::take_key() {
   while (const std::optional<char> next = byte()) {
     if (!is_terminal_ && *next != '\n') {
-      if (line_.size() < kMaxLineBytes && *next != '\r') line_ += *next;
+      if (line_.size() < kMaxTypedBytes && *next != '\r') line_ += *next;
       continue;
     }
     if (!is_terminal_) {

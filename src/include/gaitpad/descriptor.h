@@ -85,6 +85,9 @@ struct Field {
   std::uint32_t range_count = 0;
 };
 inline constexpr std::uint16_t kNoApplication = 0xffff;
+inline bool is_dpad(const Field& field) {
+  return field.usage >= usage::kDpadUp && field.usage <= usage::kDpadLeft;
+}
 
 struct ReportLength {
   std::uint8_t report_id = 0;

@@ -69,6 +69,8 @@ enum PadAxis : int {
   kRightTrigger,
   kAxisCount,
 };
+// HID's y of a stick grows towards the player, ours away from the player.
+constexpr bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
 
 // Bit numbers in PadState::buttons, named by position as in SDL: `a` is the bottom one of four.
 enum PadButton : int {

@@ -8,7 +8,7 @@ shift 2
 mkdir -p "$folder"
 log=$folder/build.log
 
-options=(-G Ninja "$@")
+options=(-G Ninja -DCMAKE_UNITY_BUILD=ON "$@")
 # A compiler cache, where there is one, serves every checkout of the repository.
 command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# check.sh [--all | --since COMMIT | --slice N | FILE.cpp ...]: checks the layout of every C++ file (clang-format 14) and runs
-# clang-tidy 14 with the checks of .clang-tidy over the sources that changed since COMMIT, default: since main.
-# --all: over all sources, half an hour of processor time. --slice N: over every N-th source; the day decides where the
-# count begins, so that N days cover them all. --format: the layout alone.
+# check.sh [--all | --since COMMIT | --recent | --slice N | FILE.cpp ...]: checks the layout of every C++ file (clang-format
+# 14) and runs clang-tidy 14 with the checks of .clang-tidy over the sources that changed since COMMIT, default: since main.
+# --recent: since the newest commit that is a day older than the last one. --slice N: over every N-th source, too; the commit
+# decides where the count begins (slice.sh). --all, or GAITPAD_ALL=1: over all sources, half an hour of processor time.
+# --format: the layout alone.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
-all=0 tidy=1 since= slice=0 files=()
+all=${GAITPAD_ALL:-0} tidy=1 since= slice=0 files=()
 while [ $# -gt 0 ]; do
   case $1 in
     --all) all=1 ;;
@@ -15,6 +16,7 @@ while [ $# -gt 0 ]; do
       since=${2:?check.sh: --since needs a commit}
       shift
       ;;
+    --recent) since=$(git rev-list -1 --before="$(($(git log -1 --format=%ct) - 86400))" HEAD) ;;
     --slice)
       slice=${2:?check.sh: --slice needs a number}
       shift
@@ -28,6 +30,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 
+source tools/slice.sh
 bash tools/install.sh clang-format clang-tidy
 # /usr/bin: the versions of Debian 12, whatever else is on PATH.
 git ls-files -z '*.cpp' '*.h' '*.c' | xargs -0 /usr/bin/clang-format --dry-run -Werror
@@ -51,17 +54,17 @@ changed_sources() {
 }
 if [ $all -eq 1 ]; then
   mapfile -t files < <(sources)
-elif [ "$slice" -gt 0 ]; then
-  first=$((10#$(date +%j) % slice))
-  mapfile -t files < <(sources | awk -v n="$slice" -v first="$first" 'NR % n == first')
 elif [ ${#files[@]} -eq 0 ]; then
-  if [ -z "$since" ]; then
+  if [ -z "$since" ] && [ "$slice" -eq 0 ]; then
     for branch in origin/main main; do
       since=$(git merge-base HEAD "$branch" 2>/dev/null) && break
     done
   fi
   [ -n "$since" ] || since=HEAD
-  mapfile -t files < <(changed_sources "$since" | sort -u | grep -Fxf <(sources) || true)
+  sliced() {
+    [ "$slice" -eq 0 ] || sources | awk -v n="$slice" -v first=$((GAITPAD_SLICE % slice)) 'NR % n == first'
+  }
+  mapfile -t files < <({ changed_sources "$since"; sliced; } | sort -u | grep -Fxf <(sources) || true)
 fi
 if [ ${#files[@]} -eq 0 ]; then
   echo "clang-tidy: no source changed"

@@ -2,8 +2,10 @@
 # ctest.sh FOLDER [CTEST OPTION...]: runs the tests built in FOLDER. Prints what failed, why some were
 # skipped, the ten slowest, and ctest's closing line last; the whole log stays in FOLDER/ctest.log.
 set -uo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
 folder=$1
 shift
+source "$root/tools/slice.sh"
 log=$folder/ctest.log
 
 ctest --test-dir "$folder" --output-on-failure -j "$(nproc)" --no-tests=error "$@" >"$log" 2>&1

@@ -1,11 +1,23 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, runs every test. Where it builds: as run.sh.
+# test.sh [--all]: installs what is missing, builds, and runs what a clone can prove in a few minutes: every room and the
+# program, with a part of the long sweeps. --all: the whole sweeps, and the tests that compile the sources themselves
+# (other compilers, without the drivers' libraries, as an installed library). Where it builds: as run.sh.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
+chosen=(-LE own_build)
+case ${1:-} in
+  "") ;;
+  --all) export GAITPAD_ALL=1 ;;
+  *)
+    echo "test.sh: unknown option $1" >&2
+    exit 2
+    ;;
+esac
+[ "${GAITPAD_ALL:-}" != 1 ] || chosen=()
 source "$root/tools/folders.sh"
 bash "$root/tools/install.sh" xvfb ffmpeg # a display and an encoder for the window's tests
 if command -v npm >/dev/null && ! bash "$root/tools/gltf/install.sh"; then
   echo "No glTF validator: its test is skipped." >&2
 fi
 bash "$root/tools/build.sh" "$build" all -DCMAKE_BUILD_TYPE=Release
-bash "$root/tools/ctest.sh" "$build"
+bash "$root/tools/ctest.sh" "$build" "${chosen[@]}"

@@ -52,24 +52,6 @@ TEST(WalkModel, StepsAndFlightsScaleWithTheLeg) {
   }
 }
 
-TEST(WalkModel, ItsOwnPaceIsTheDatasOnLegsOfAnyLength) {
-  GaitCycle cycle = procedural_gait();
-  cycle.pace = Pace::own;
-  EXPECT_EQ(own_stick(cycle), 0.8);
-  Stick stick;
-  stick.left = vec2(0.0, 0.8);
-  for (const double legs : {0.6, 1.0, 1.6}) {
-    Character character;
-    character.leg_ratio = legs;
-    const WalkModel model = model_of(cycle, character);
-    const GaitParams p = gait_params(stick, StyleValues{}, gait_limits(model));
-    for (const Side side : {kLeftSide, kRightSide}) {
-      EXPECT_NEAR(p.stride[side].length_m, legs * cycle.step_m[side], 1e-14);
-      EXPECT_NEAR(p.stride[side].time_s, 0.5 * std::pow(legs, 0.25) * cycle.duration_s, 1e-14);
-    }
-  }
-}
-
 TEST(WalkModel, TheAdultsPaceHasTheDatasSpeedAtTheStickThatIsTold) {
   GaitCycle cycle = procedural_gait();
   const double stick = own_stick(cycle).value();

@@ -68,21 +68,6 @@ TEST(WalkModel, LeavesTheSourcesCycleOfEventsAlone) {
   for (double share : plain.share) EXPECT_GT(share, 0.05);
 }
 
-TEST(WalkModel, StandsFlatWithItsHeelsOnTheFloorAtEveryLegRatio) {
-  for (double ratio : {0.6, 1.0, 1.6}) {
-    const WalkModel model = model_of(ratio);
-    Pose pose;
-    const WalkState state = standing(model, vec3(3.0, 0.0, -2.0), pose);
-    for (Side side : {kLeftSide, kRightSide}) {
-      const LegBuild& leg = model.leg[side];
-      EXPECT_NEAR(state.frame.heel_m[side].y, 0.0, 1e-6) << ratio;
-      EXPECT_NEAR(state.frame.toe_m[side].y, leg.model.toe_rest_m, 1e-6) << ratio;
-      EXPECT_NEAR(state.frame.heel_m[side].x, 3.0 + leg.track_m, 1e-6) << ratio;
-    }
-    EXPECT_GT(state.frame.pelvis_m.y, 0.9 * model.leg_length_m);
-  }
-}
-
 // Joints keep their angles on legs of any length if hips and feet are where the legs want them:
 // from hip to ankle all is as long as the leg.
 TEST(WalkModel, LegsOfAnyLengthSpanAsMuchOfTheirLength) {
@@ -123,21 +108,6 @@ TEST(WalkModel, GroundGrowsUntilASoleAndSomeRoomFitItsTreads) {
     EXPECT_GE(0.2 * scale, needed_m - 1e-12) << ratio;
     EXPECT_EQ(scale > 1.0, needed_m > 0.2) << ratio;
     EXPECT_EQ(terrain_scale(wide, model), 1.0) << ratio;
-  }
-}
-
-// The normative walk is symmetric: what the left leg does, the right one does half a cycle later.
-TEST(WalkModel, TheDefaultsSidesMirrorEachOther) {
-  const WalkModel model = model_of(1.0);
-  EXPECT_NEAR(model.leg[kLeftSide].track_m, -model.leg[kRightSide].track_m, 1e-6);
-  EXPECT_NEAR(model.share[0], model.share[2], 1e-6);
-  for (double phase = 0.0; phase < 1.0; phase += 0.02) {
-    for (int j : {kHipX, kKneeX, kAnkleX}) {
-      const auto angle_at = [&](Side side, double at) {
-        return stride_of(model, false, at, 1.0).cell.leg_rad[side][j];
-      };
-      EXPECT_NEAR(angle_at(kLeftSide, phase + 0.5), angle_at(kRightSide, phase), 1e-6);
-    }
   }
 }
 

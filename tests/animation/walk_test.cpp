@@ -26,29 +26,6 @@ StyleValues with_hip_weight(double weight) {
   return style;
 }
 
-TEST(Walk, AMirroredStickGivesTheMirroredWalk) {
-  MadeWalker left, right;
-  const struct {
-    double x, y;
-    int ticks;
-  } plan[] = {{-0.5, 0.7, 700}, {0.3, 0.5, 500}, {-0.8, 0.0, 400}, {0.0, 0.0, 400}};
-  for (const auto& p : plan) {
-    left.walk(p.x, p.y, p.ticks);
-    right.walk(-p.x, p.y, p.ticks);
-  }
-  const auto mirrored = [](const vec3& v) { return vec3(-v.x, v.y, v.z); };
-  for (std::size_t k = 0; k < left.frames().size(); ++k) {
-    const WalkFrame &l = left.frames()[k], &r = right.frames()[k];
-    ASSERT_NEAR(l.heading_rad, -r.heading_rad, 1e-12) << "tick " << k;
-    ASSERT_EQ(l.stage, r.stage) << "tick " << k;
-    ASSERT_LT(glm::distance(l.pelvis_m, mirrored(r.pelvis_m)), 1e-3) << "tick " << k;
-    for (Side side : {kLeftSide, kRightSide}) {
-      ASSERT_LT(glm::distance(l.heel_m[side], mirrored(r.heel_m[other(side)])), 1e-3)
-          << "tick " << k;
-    }
-  }
-}
-
 TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
   for (int ticks = 300; ticks < 420; ticks += 13) {  // in every part of a step
     MadeWalker walker;

@@ -57,6 +57,11 @@ def walk_at(x, y, end, start=0.5):
     return {"stick": [(start, x, y)], "end": end}
 
 
+def circle(x):
+    """A full turn at a constant stick, then on the spot, then a stop."""
+    return {"stick": [(0.5, x, 0.7), (26, x, 0.0), (29, 0, 0)], "end": 31}
+
+
 def start_and_stop(forward=0.8):
     """From rest, down, up, stop in flight, start again, full, stop."""
     stick = [(0.5, 0, forward), (4.0, 0, 0.4), (6.5, 0, forward), (9.1, 0, 0), (11.5, 0, forward), (13.0, 0, 1.0),
@@ -114,7 +119,7 @@ def cases_of(motion, quick):
     for style in STYLES + BUILDS if not quick else ("even", "stiff_hip", "stiff_knee", "limp_left"):
         add(f"style {style}", walk_at(0, 0.8, 12), style=style)
     for x in (-0.5, 0.5):
-        add(f"turn {x:+}", walk_at(x, 0.7, 26))
+        add(f"turn {x:+}", circle(x))
     add("start and stop", start_and_stop())
     add("back", walk_at(0, -1.0, 10))
     add("back and forth", back_and_forth())

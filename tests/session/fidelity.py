@@ -27,7 +27,6 @@ That a mirrored stick gives the mirrored walk is judged by acceptance.py, on the
 """
 import argparse
 import json
-import os
 import pathlib
 import sys
 import tempfile

@@ -5,27 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <vector>
+
+#include "tests/animation/random.h"
 
 namespace gaitpad::test {
 namespace {
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : bits_(seed) {}
-  double between(double a, double b) {
-    return a + (b - a) * (static_cast<double>(bits_() >> 11) * 0x1p-53);
-  }
-  vec3 inside(double most) {
-    vec3 v;  // one by one: compilers differ in the order in which they evaluate arguments
-    for (int i = 0; i < 3; ++i) v[i] = between(-most, most);
-    return v;
-  }
-
- private:
-  std::mt19937_64 bits_;
-};
 
 constexpr RobustOptions kOptions = {.tolerance_m = 1e-6, .max_tries = 1};
 
@@ -157,23 +142,6 @@ TYPED_TEST(LegIk, GivesTheBitsOfTheGeneralSolverNearTheGoal) {
 TYPED_TEST(LegIk, GivesTheBitsOfTheGeneralSolverAtLimitsAndOutOfReach) {
   Random random(2);
   for (int k = 0; k < 500; ++k) this->expect_same(this->random_legs(random, 0.8, 0.4), k);
-}
-
-TYPED_TEST(LegIk, ALaneDoesNotDependOnItsNeighbours) {
-  Random random(3);
-  for (int k = 0; k < 500; ++k) {
-    std::vector<Leg> legs = this->random_legs(random, 0.05, 0.0);
-    const auto first = [&] {
-      const auto lanes = this->solved(legs);
-      LegAngles own;
-      for (int j = 0; j < kLegDofs; ++j) own[j] = lanes.angles_rad[j][0];
-      return own;
-    };
-    const LegAngles before = first();
-    for (std::size_t lane = 1; lane < legs.size(); ++lane)
-      legs[lane] = random_leg(random, 1.0, 0.4, 0.05);
-    EXPECT_EQ(before, first()) << "leg " << k;
-  }
 }
 
 TYPED_TEST(LegIk, AnInputThatIsNotFiniteFailsAloneAndEnds) {

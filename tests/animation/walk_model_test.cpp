@@ -52,24 +52,6 @@ TEST(WalkModel, StepsAndFlightsScaleWithTheLeg) {
   }
 }
 
-TEST(WalkModel, ItsOwnPaceIsTheDatasOnLegsOfAnyLength) {
-  GaitCycle cycle = procedural_gait();
-  cycle.pace = Pace::own;
-  EXPECT_EQ(own_stick(cycle), 0.8);
-  Stick stick;
-  stick.left = vec2(0.0, 0.8);
-  for (const double legs : {0.6, 1.0, 1.6}) {
-    Character character;
-    character.leg_ratio = legs;
-    const WalkModel model = model_of(cycle, character);
-    const GaitParams p = gait_params(stick, StyleValues{}, gait_limits(model));
-    for (const Side side : {kLeftSide, kRightSide}) {
-      EXPECT_NEAR(p.stride[side].length_m, legs * cycle.step_m[side], 1e-14);
-      EXPECT_NEAR(p.stride[side].time_s, 0.5 * std::pow(legs, 0.25) * cycle.duration_s, 1e-14);
-    }
-  }
-}
-
 TEST(WalkModel, TheAdultsPaceHasTheDatasSpeedAtTheStickThatIsTold) {
   GaitCycle cycle = procedural_gait();
   const double stick = own_stick(cycle).value();
@@ -84,21 +66,6 @@ TEST(WalkModel, LeavesTheSourcesCycleOfEventsAlone) {
   EXPECT_EQ(plain.share, small.share);
   EXPECT_NEAR(std::accumulate(plain.share.begin(), plain.share.end(), 0.0), 1.0, 1e-12);
   for (double share : plain.share) EXPECT_GT(share, 0.05);
-}
-
-TEST(WalkModel, StandsFlatWithItsHeelsOnTheFloorAtEveryLegRatio) {
-  for (double ratio : {0.6, 1.0, 1.6}) {
-    const WalkModel model = model_of(ratio);
-    Pose pose;
-    const WalkState state = standing(model, vec3(3.0, 0.0, -2.0), pose);
-    for (Side side : {kLeftSide, kRightSide}) {
-      const LegBuild& leg = model.leg[side];
-      EXPECT_NEAR(state.frame.heel_m[side].y, 0.0, 1e-6) << ratio;
-      EXPECT_NEAR(state.frame.toe_m[side].y, leg.model.toe_rest_m, 1e-6) << ratio;
-      EXPECT_NEAR(state.frame.heel_m[side].x, 3.0 + leg.track_m, 1e-6) << ratio;
-    }
-    EXPECT_GT(state.frame.pelvis_m.y, 0.9 * model.leg_length_m);
-  }
 }
 
 // Joints keep their angles on legs of any length if hips and feet are where the legs want them:
@@ -141,21 +108,6 @@ TEST(WalkModel, GroundGrowsUntilASoleAndSomeRoomFitItsTreads) {
     EXPECT_GE(0.2 * scale, needed_m - 1e-12) << ratio;
     EXPECT_EQ(scale > 1.0, needed_m > 0.2) << ratio;
     EXPECT_EQ(terrain_scale(wide, model), 1.0) << ratio;
-  }
-}
-
-// The normative walk is symmetric: what the left leg does, the right one does half a cycle later.
-TEST(WalkModel, TheDefaultsSidesMirrorEachOther) {
-  const WalkModel model = model_of(1.0);
-  EXPECT_NEAR(model.leg[kLeftSide].track_m, -model.leg[kRightSide].track_m, 1e-6);
-  EXPECT_NEAR(model.share[0], model.share[2], 1e-6);
-  for (double phase = 0.0; phase < 1.0; phase += 0.02) {
-    for (int j : {kHipX, kKneeX, kAnkleX}) {
-      const auto angle_at = [&](Side side, double at) {
-        return stride_of(model, false, at, 1.0).cell.leg_rad[side][j];
-      };
-      EXPECT_NEAR(angle_at(kLeftSide, phase + 0.5), angle_at(kRightSide, phase), 1e-6);
-    }
   }
 }
 

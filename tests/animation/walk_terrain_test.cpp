@@ -92,14 +92,11 @@ TEST(WalkTerrain, FeetStandOnEveryGroundAndNeverSinkIntoIt) {
       expect_sound(hiker.worst(), "leg " + std::to_string(ratio) + " stick " + std::to_string(y));
     }
   }
-}
-
-TEST(WalkTerrain, ALimpKeepsToTheGroundToo) {
   const WalkModel model = model_on(1.0, ground_of(all_kinds()));
-  Hiker hiker(model);
-  hiker.walk_to(17.0, 0.7, limp());
-  EXPECT_GE(hiker.worst().end_z_m, 17.0);
-  expect_sound(hiker.worst(), "limp");
+  Hiker limping(model);
+  limping.walk_to(17.0, 0.7, limp());
+  EXPECT_GE(limping.worst().end_z_m, 17.0);
+  expect_sound(limping.worst(), "limp");
 }
 
 TEST(WalkTerrain, LevelGroundIsWalkedAsWithoutTerrain) {
@@ -269,11 +266,11 @@ TEST(WalkTerrain, AFootSinksToItsLandingAndDoesNotComeBackToIt) {
       FlatSection{2.0}};
   for (const double ratio : {0.6, 1.0, 1.6}) {
     const double scale = ratio > 1.0 ? ratio : 1.0;
-    for (const auto& sections : {stairs(-0.17), kerbs}) {
-      const WalkModel flat = model_on(ratio, flat_terrain()),
-                      model = model_on(ratio, ground_of(sections, scale));
-      for (const double y : {0.4, 0.7, 1.0}) {
-        const double own = most_beyond_m(flat, y, 4.0);
+    const WalkModel flat = model_on(ratio, flat_terrain());
+    for (const double y : {0.4, 0.7, 1.0}) {
+      const double own = most_beyond_m(flat, y, 4.0);
+      for (const auto& sections : {stairs(-0.17), kerbs}) {
+        const WalkModel model = model_on(ratio, ground_of(sections, scale));
         EXPECT_LT(most_beyond_m(model, y, 4.5 * scale), own + 0.03 * ratio)
             << "leg " << ratio << " stick " << y << " sections " << sections.size();
       }
@@ -297,19 +294,19 @@ TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
 }
 
 TEST(WalkTerrain, BackwardsUpAndDownStairsIsAsSmooth) {
+  double from = 7.6;  // each walk comes to the stairs in another part of a step
   for (const double ratio : {0.6, 1.0, 1.6}) {
     const double scale = ratio > 1.0 ? ratio : 1.0;
     std::vector<SectionShape> sections = stairs(0.17);
     sections.insert(sections.end(), {StairsSection{-0.17, 0.28, 6}, FlatSection{2.0}});
     const WalkModel model = model_on(ratio, ground_of(sections, scale));
     for (const double y : {-0.4, -0.7, -1.0}) {
-      for (const double from : {7.6, 7.75, 7.9}) {
-        Hiker hiker(model, IkMode::robust, from * scale);
-        hiker.walk_back_to(0.5 * scale, y);
-        EXPECT_LT(hiker.worst().end_z_m, 0.6 * scale);
-        expect_sound(hiker.worst(), "leg " + std::to_string(ratio) + " stick " + std::to_string(y) +
-                                        " from " + std::to_string(from));
-      }
+      Hiker hiker(model, IkMode::robust, from * scale);
+      hiker.walk_back_to(0.5 * scale, y);
+      EXPECT_LT(hiker.worst().end_z_m, 0.6 * scale);
+      expect_sound(hiker.worst(), "leg " + std::to_string(ratio) + " stick " + std::to_string(y) +
+                                      " from " + std::to_string(from));
+      from += 0.04;
     }
   }
 }
@@ -318,7 +315,7 @@ TEST(WalkTerrain, AStickPulledBackOnStairsLeadsDownAsSmoothly) {
   for (const double ratio : {0.6, 1.0, 1.6}) {
     const double scale = ratio > 1.0 ? ratio : 1.0;
     const WalkModel model = model_on(ratio, ground_of(stairs(0.17), scale));
-    for (double z = 1.4; z < 3.4; z += 0.1) {
+    for (double z = 1.4; z < 3.4; z += 0.34) {  // in each part of a tread of 0.28
       Hiker hiker(model);
       hiker.walk_to(z * scale, 0.7);
       hiker.walk_back_to(0.5 * scale, -0.7);
@@ -375,17 +372,6 @@ TEST(WalkTerrain, AStartOnAnEdgeStandsBesideIt) {
     EXPECT_LE(hiker.worst().overhang_mm, 0.0) << z;
     EXPECT_LT(hiker.worst().height_mm, 1.0) << z;
     EXPECT_EQ(hiker.worst().failures, 0) << z;
-  }
-}
-
-TEST(WalkTerrain, FeetLieOnASlope) {
-  const double grade = 0.2;
-  const WalkModel model = model_on(1.0, ground_of({SlopeSection{40.0, grade, 0.5}}));
-  Hiker hiker(model, IkMode::robust, 5.0);
-  hiker.walk(0.0, 0.0, 10);
-  for (Side side : {kLeftSide, kRightSide}) {
-    const auto sole = hiker.sole(side);
-    EXPECT_NEAR((sole.tip.y - sole.heel.y) / (sole.tip.z - sole.heel.z), grade, 0.01);
   }
 }
 

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "animation/made_walker.h"
@@ -26,77 +24,6 @@ StyleValues with_hip_weight(double weight) {
   StyleValues style;
   for (LegWeights& w : style.weight) w[kHipX] = w[kHipY] = w[kHipZ] = weight;
   return style;
-}
-
-TEST(Walk, PlantedPointsStayOnTheirPlaceWhateverTheStickDoes) {
-  MadeWalker walker;
-  walker.walk(0, 0, 60);
-  walker.walk(0, 1.0, 500);
-  walker.walk(0.7, 0.6, 500);
-  walker.walk(-0.5, 0.0, 500);
-  walker.walk(0, 0.3, 500, limp());
-  walker.walk(0, 0, 400);
-  EXPECT_LT(walker.drift_m(), 1e-4);
-}
-
-TEST(Walk, StagesFollowInTheOrderOfTableOne) {
-  MadeWalker walker;
-  walker.walk(0, 0, 10);
-  walker.walk(0, 0.8, 1500);
-  walker.walk(0, 0, 500);
-  using Key = std::pair<Stage, Side>;
-  const std::map<Key, Key> next = {{{Stage::roll, kRightSide}, {Stage::flight, kLeftSide}},
-                                   {{Stage::flight, kLeftSide}, {Stage::roll, kLeftSide}},
-                                   {{Stage::roll, kLeftSide}, {Stage::flight, kRightSide}},
-                                   {{Stage::flight, kRightSide}, {Stage::roll, kRightSide}}};
-  int changes = 0;
-  for (std::size_t k = 1; k < walker.frames().size(); ++k) {
-    const WalkFrame &a = walker.frames()[k - 1], &b = walker.frames()[k];
-    if (a.stage == b.stage && a.swing == b.swing) continue;
-    ++changes;
-    if (a.stage == Stage::idle || b.stage == Stage::idle) {
-      EXPECT_TRUE(a.stage == Stage::roll || b.stage == Stage::roll);
-    } else {
-      EXPECT_EQ((Key{b.stage, b.swing}), next.at({a.stage, a.swing})) << "tick " << k;
-    }
-  }
-  EXPECT_GT(changes, 20);
-}
-
-TEST(Walk, PlantedIsWhatTableOneSays) {
-  MadeWalker walker;
-  walker.walk(0.3, 0.7, 1200);
-  walker.walk(0, 0, 500);
-  for (const WalkFrame& f : walker.frames()) {
-    for (Side side : {kLeftSide, kRightSide}) {
-      const bool swings = f.stage != Stage::idle && f.swing == side;
-      EXPECT_EQ(f.toe_planted[side], !swings);
-      EXPECT_EQ(f.heel_planted[side], f.stage == Stage::idle || (f.stage == Stage::roll && swings));
-    }
-  }
-}
-
-TEST(Walk, AMirroredStickGivesTheMirroredWalk) {
-  MadeWalker left, right;
-  const struct {
-    double x, y;
-    int ticks;
-  } plan[] = {{-0.5, 0.7, 700}, {0.3, 0.5, 500}, {-0.8, 0.0, 400}, {0.0, 0.0, 400}};
-  for (const auto& p : plan) {
-    left.walk(p.x, p.y, p.ticks);
-    right.walk(-p.x, p.y, p.ticks);
-  }
-  const auto mirrored = [](const vec3& v) { return vec3(-v.x, v.y, v.z); };
-  for (std::size_t k = 0; k < left.frames().size(); ++k) {
-    const WalkFrame &l = left.frames()[k], &r = right.frames()[k];
-    ASSERT_NEAR(l.heading_rad, -r.heading_rad, 1e-12) << "tick " << k;
-    ASSERT_EQ(l.stage, r.stage) << "tick " << k;
-    ASSERT_LT(glm::distance(l.pelvis_m, mirrored(r.pelvis_m)), 1e-3) << "tick " << k;
-    for (Side side : {kLeftSide, kRightSide}) {
-      ASSERT_LT(glm::distance(l.heel_m[side], mirrored(r.heel_m[other(side)])), 1e-3)
-          << "tick " << k;
-    }
-  }
 }
 
 TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
@@ -152,124 +79,43 @@ TEST(Walk, StandingStillChangesNothing) {
   EXPECT_EQ(walker.last().stage, Stage::idle);
 }
 
-TEST(Walk, AStepIsAsLongAsItsFrameSays) {
-  for (double ratio : {0.6, 1.0, 1.6}) {
-    const WalkModel model = model_of(ratio);
-    MadeWalker walker(model);
-    walker.walk(0, 0.4, 900);
-    walker.walk(0, 0.9, 1200, limp());
-    for (std::size_t k = 1; k < walker.frames().size(); ++k) {
-      const WalkFrame &a = walker.frames()[k - 1], &b = walker.frames()[k];
-      if (a.stage != Stage::flight || b.stage != Stage::roll) continue;
-      const Side swing = b.swing;
-      double stood_z = 0.0;  // where the standing foot's heel was last on the ground
-      for (std::size_t j = 0; j < k; ++j) {
-        if (walker.frames()[j].heel_planted[other(swing)])
-          stood_z = walker.frames()[j].heel_m[other(swing)].z;
-      }
-      EXPECT_NEAR(b.heel_m[swing].z - stood_z, b.stride_m[swing], 1e-3) << ratio << " tick " << k;
-    }
-  }
-}
-
-TEST(Walk, SpeedIsTheNetDisplacementOverWholeCycles) {
-  for (double y : {0.3, 0.6, 1.0}) {
-    MadeWalker walker;
-    walker.walk(0, y, 2400);
-    std::vector<std::size_t> strikes;
-    for (std::size_t k = 1200; k < walker.frames().size(); ++k) {
-      const WalkFrame &a = walker.frames()[k - 1], &b = walker.frames()[k];
-      if (a.stage == Stage::flight && b.stage == Stage::roll && b.swing == kRightSide)
-        strikes.push_back(k);
-    }
-    ASSERT_GE(strikes.size(), 3u);
-    const WalkFrame &first = walker.frames()[strikes.front()],
-                    &last = walker.frames()[strikes.back()];
-    const double time_s = static_cast<double>(strikes.back() - strikes.front()) * kDt;
-    const double speed_m_s = (last.pelvis_m.z - first.pelvis_m.z) / time_s;
-    EXPECT_NEAR(speed_m_s, last.speed_m_s, 0.01 * last.speed_m_s) << y;
-    EXPECT_NEAR(last.pelvis_m.x, first.pelvis_m.x, 1e-4 * static_cast<double>(strikes.size()));
-  }
-}
-
-struct HipMotion {
-  double travel_m, yaw_rad, planted_drift_m;
-};
-HipMotion hips_of(const StyleValues& style) {
+// How far the pelvis turns to and fro.
+double yaw_range_rad(const StyleValues& style) {
   MadeWalker walker;
-  double low = 1e9, high = -1e9, left = -1e9, right = 1e9;
+  double left = -1e9, right = 1e9;
   walker.walk(0, 0.8, 1200, style);
   for (int tick = 0; tick < 600; ++tick) {
     walker.walk(0, 0.8, 1, style);
     const double yaw = heading_of(walker.pose().local[0] * kForward);  // the root is the pelvis
-    low = std::min(low, walker.last().pelvis_m.y);
-    high = std::max(high, walker.last().pelvis_m.y);
     left = std::max(left, yaw);
     right = std::min(right, yaw);
   }
-  return {high - low, left - right, walker.drift_m()};
-}
-
-TEST(Walk, HipBounceGrowsTheVerticalTravelAndLeavesPlantedFeet) {
-  double last_m = 0.0;
-  for (double bounce : {0.0, 1.0, 2.0, 3.0}) {
-    StyleValues style;
-    style.hip_bounce = bounce;
-    const HipMotion hips = hips_of(style);
-    RecordProperty("travel_mm_at_" + std::to_string(static_cast<int>(bounce)),
-                   static_cast<int>(1000.0 * hips.travel_m));
-    EXPECT_GT(hips.travel_m, last_m) << bounce;
-    EXPECT_LT(hips.planted_drift_m, 1e-4) << bounce;
-    last_m = hips.travel_m;
-  }
+  EXPECT_LT(walker.drift_m(), 1e-4);
+  return left - right;
 }
 
 TEST(Walk, HipSwayIsProportionalAndLeavesPlantedFeet) {
   StyleValues style;
-  const double once = hips_of(style).yaw_rad;
+  const double once = yaw_range_rad(style);
   EXPECT_GT(once, 2.0 * kDegree);
   for (double sway : {0.0, 2.0, 3.0}) {
     style.hip_sway = sway;
-    const HipMotion hips = hips_of(style);
-    EXPECT_NEAR(hips.yaw_rad, sway * once, 0.1 * once) << sway;
-    EXPECT_LT(hips.planted_drift_m, 1e-4) << sway;
+    EXPECT_NEAR(yaw_range_rad(style), sway * once, 0.1 * once) << sway;
   }
 }
 
-TEST(Walk, WeightsChangeTheLegAndNeitherLiftOffNorLandingPlace) {
-  MadeWalker even, stiff;
-  even.walk(0, 0.8, 2000);
-  stiff.walk(0, 0.8, 2000, with_hip_weight(0.2));
-  double square = 0.0;
-  for (std::size_t k = 1; k < even.frames().size(); ++k) {
-    const WalkFrame &a = even.frames()[k], &b = stiff.frames()[k];
-    ASSERT_EQ(a.stage, b.stage) << "tick " << k;
-    const double change = even.angles_rad()[k][0][kHipX] - stiff.angles_rad()[k][0][kHipX];
-    if (k >= 1000) square += change * change / 1000.0;
-    if (even.frames()[k - 1].stage == a.stage) continue;
-    // Into a flight: the foot that lifts; into a roll: the one that has landed.
-    EXPECT_LT(glm::distance(a.heel_m[a.swing], b.heel_m[b.swing]), 1e-3) << "tick " << k;
-  }
-  EXPECT_GT(std::sqrt(square), 1.5 * kDegree);
-}
-
-TEST(Walk, JointsStayWithinTheirLimits) {
-  MadeWalker walker(adult());
-  walker.walk(0, 1.0, 800);
-  walker.walk(0.9, 0.3, 800, limp());
-  walker.walk(0, 0.0, 400, with_hip_weight(0.2));
-  for (const auto& legs : walker.angles_rad()) {
-    for (Side side : {kLeftSide, kRightSide}) {
-      for (int j = 0; j < kLegDofs; ++j) {
-        const IkDof& dof = adult().leg[side].chain.dof[j];
-        ASSERT_GE(legs[side][j], dof.min_rad - 1e-12);
-        ASSERT_LE(legs[side][j], dof.max_rad + 1e-12);
-      }
+bool within_limits(const WalkModel& model, const std::array<LegAngles, 2>& legs_rad) {
+  for (Side side : {kLeftSide, kRightSide}) {
+    for (int j = 0; j < kLegDofs; ++j) {
+      const IkDof& dof = model.leg[side].chain.dof[j];
+      if (legs_rad[side][j] < dof.min_rad - 1e-12 || legs_rad[side][j] > dof.max_rad + 1e-12)
+        return false;
     }
   }
+  return true;
 }
 
-TEST(Walk, NeitherFailsNorJumpsOverRandomSticksAndStyles) {
+TEST(Walk, NeitherFailsNorJumpsNorLeavesItsLimitsOverRandomSticksAndStyles) {
   const StyleValues styles[] = {{}, limp(), with_hip_weight(0.2)};
   for (double ratio : {0.6, 1.0, 1.6}) {
     const WalkModel model = model_of(ratio);
@@ -287,6 +133,7 @@ TEST(Walk, NeitherFailsNorJumpsOverRandomSticksAndStyles) {
     int failures = 0;
     for (const WalkFrame& f : walker.frames()) failures += f.ik_failed[0] + f.ik_failed[1];
     EXPECT_EQ(failures, 0) << ratio;
+    for (const auto& legs_rad : walker.angles_rad()) ASSERT_TRUE(within_limits(model, legs_rad));
     EXPECT_LT(walker.drift_m(), 1e-4) << ratio;
     EXPECT_LT(walker.sharpest_turn_rad(), 1.0 * kDegree) << ratio;
   }
@@ -318,39 +165,6 @@ TEST(Walk, PaperModeStaysBoundedAndFinite) {
   }
 }
 
-// Whole-tick stages: nothing accumulates.
-TEST(Walk, TheHundredthStrideIsTheTenth) {
-  MadeWalker walker;
-  walker.walk(0, 0.7, 120 * 300);
-  std::vector<std::size_t> strikes;
-  for (std::size_t k = 1; k < walker.frames().size(); ++k) {
-    const WalkFrame &a = walker.frames()[k - 1], &b = walker.frames()[k];
-    if (a.stage == Stage::flight && b.stage == Stage::roll && b.swing == kRightSide)
-      strikes.push_back(k);
-  }
-  ASSERT_GT(strikes.size(), 101u);
-  const std::size_t ticks = strikes[11] - strikes[10];
-  ASSERT_EQ(strikes[101] - strikes[100], ticks);
-  for (std::size_t i = 0; i < ticks; ++i) {
-    for (Side side : {kLeftSide, kRightSide}) {
-      for (int j = 0; j < kLegDofs; ++j) {
-        ASSERT_NEAR(walker.angles_rad()[strikes[10] + i][side][j],
-                    walker.angles_rad()[strikes[100] + i][side][j], 0.1 * kDegree);
-      }
-    }
-  }
-}
-
-TEST(Walk, TheSameTicksGiveTheSameBits) {
-  MadeWalker a, b;
-  for (MadeWalker* walker : {&a, &b}) {
-    walker->walk(0.2, 0.9, 500);
-    walker->walk(0, 0.2, 300, limp());
-  }
-  EXPECT_EQ(a.angles_rad(), b.angles_rad());
-  EXPECT_EQ(a.last().pelvis_m, b.last().pelvis_m);
-}
-
 int steps(const MadeWalker& walker) { return walker.last().steps[0] + walker.last().steps[1]; }
 
 TEST(Range, BackwardDeflectionWalksBackwardsFacingAhead) {
@@ -362,14 +176,6 @@ TEST(Range, BackwardDeflectionWalksBackwardsFacingAhead) {
   EXPECT_NEAR(speed_m_s, -kBackwardShare * kMaxSpeed_m_s, 0.05);
   EXPECT_NEAR(walker.last().speed_m_s, -kBackwardShare * kMaxSpeed_m_s, 0.01);
   EXPECT_EQ(walker.last().heading_rad, 0.0);
-  EXPECT_LT(walker.drift_m(), 1e-4);
-  EXPECT_LE(walker.sharpest_turn_rad(), 1.0 * kDegree);
-  for (const WalkFrame& frame : walker.frames()) {
-    for (int side = 0; side < 2; ++side) {
-      EXPECT_GT(frame.heel_m[side].y, -1e-4);
-      EXPECT_GT(frame.toe_m[side].y, adult().leg[side].model.toe_rest_m - 1e-4);
-    }
-  }
 }
 
 // The running step ends, the feet come together, the walk begins anew.

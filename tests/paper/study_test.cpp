@@ -41,16 +41,6 @@ TEST(WalkRun, AnglesAreFlexionsInDegrees) {
   EXPECT_NEAR(joint_deg(angles, LegJoint::ankle), -14.32394, 1e-5);
 }
 
-TEST(WalkRun, TwoRunsAreTheSameToTheBit) {
-  WalkCase what;
-  what.model = &study().model();
-  what.end_s = 3.0;
-  const Walk a = walked(what), b = walked(what);
-  for (std::size_t k = 0; k < a.samples.size(); ++k) {
-    EXPECT_EQ(a.samples[k].angles_rad, b.samples[k].angles_rad);
-  }
-}
-
 TEST(WalkRun, ShortWalksHaveNoStride) {
   WalkCase what;
   what.model = &study().model();

@@ -7,7 +7,9 @@ import pytest
 
 from support import bvh as bvhs
 from support import judge
-from support.exact_walk import Files
+from support.exact_walk import Files, faults_mark
+
+pytestmark = faults_mark("support/judge", "session/acceptance_faults_test")
 
 
 class Spot:

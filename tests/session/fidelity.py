@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Judges how much of its capture a walk keeps, from files alone: the source clip and what `gaitpad replay` exports.
 
-  fidelity.py PROGRAM [FILE_OR_FOLDER ...] [--built-in] [--long] [--json] [--picture OUT.png] [--sheet OUT.png]
+  fidelity.py PROGRAM [FILE_OR_FOLDER ...] [--built-in] [--json] [--picture OUT.png] [--sheet OUT.png]
 
 Each clip is walked straight on flat ground, style even, at its own pace (the stick that `motion --json` names in
 "gait"). One row a clip; exit status 1 where a bound is broken. Clips that the program refuses are listed with its reason.
@@ -27,7 +27,6 @@ That a mirrored stick gives the mirrored walk is judged by acceptance.py, on the
 """
 import argparse
 import json
-import os
 import pathlib
 import sys
 import tempfile
@@ -38,7 +37,6 @@ import numpy as np
 if __name__ == "__main__":
     sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from support import gait_pictures, judge, program as programs
-from support.bvh import second_differences
 from support.sources import BUILT_IN_FRAMES, built_in_track, read_source
 from support.traces import EXACT_CALIBRATION, write_trace
 from support.walk import SIDES, Walk
@@ -231,50 +229,13 @@ def trimmed(s, a, b):
     return Stride(s.phase[part], s.seconds, s.position[part], s.rotation[part], s.pelvis, s.legs, s.heel_m)
 
 
-def found_stride(track, legs, heel_m, flight):
-    """For a program without "gait": the stretch of 0.6 to 2.4 s that best returns to where it began, by the leg joints'
-    angles around its ends; knees bend and the hips travel in it; it holds the flight that the program names."""
-    whole, _, _ = stride_of_track(track, legs, heel_m, 0, len(track.position) - 1)
-    angles, way = flexions(whole, standing_axes(whole)), whole.position[:, whole.pelvis]
-    near = max(1, round(0.05 * track.rate_hz))
-    best = []  # (gap, length, first) of each length
-    for length in range(round(0.6 * track.rate_hz), min(len(angles) - 1, round(2.4 * track.rate_hz)) + 1):
-        gap = np.mean((angles[length:] - angles[:-length]) ** 2, -1)
-        gap = np.convolve(gap, np.ones(2 * near + 1) / (2 * near + 1), "same") if len(gap) > 2 * near + 1 else gap
-        for first in np.argsort(gap)[:200]:
-            part = slice(first, first + length + 1)
-            bends = min(np.ptp(angles[part, c]) for c in (1, 4))
-            held = not flight or flight["peak_frame"] >= len(angles) or first <= flight["peak_frame"] <= first + length
-            if bends > 12 and held and np.linalg.norm(way[first + length] - way[first]) > 0.15:
-                best.append((gap[first], length, int(first)))
-                break
-    if not best:
-        raise ValueError("no stride found in the file")
-    _, most, _ = min(best)
-    limit = 2.5 * min(best)[0] + 4.0  # square degrees; twice a stride returns as well as a stride
-    _, length, first = min(b for b in best if b[1] <= most and b[0] <= limit and b[1] <= 1.25 * min(
-        c[1] for c in best if c[0] <= limit))
-    return first, float(length)
-
-
 # ---- a clip --------------------------------------------------------------------------------------
-def replay(options, folder, motion, sticks, seconds, style="even"):
+def replay(options, folder, motion, sticks, seconds):
     folder.mkdir(exist_ok=True)
     (folder / "exact.toml").write_text(EXACT_CALIBRATION)
     write_trace(folder / "walk.hid", sticks, (), seconds)
-    words = ["replay", folder / "walk.hid", "--out", folder, "--calibration", folder / "exact.toml", "--style", style]
+    words = ["replay", folder / "walk.hid", "--out", folder, "--calibration", folder / "exact.toml", "--style", "even"]
     return programs.run(options.program, *words, *(["--motion", motion] if motion else []), status=None)
-
-
-def matched_style(w, folder, way_m, seconds):
-    """For a program without own pace: today's walk brought to the clip's step length and time by a style's factors."""
-    steady = np.nonzero(w.steady)[0][-1]
-    length_m = w.col["stride_left_m"][steady] + w.col["stride_right_m"][steady]
-    own_s = length_m / w.col["speed_m_s"][steady]
-    length, speed = np.clip(way_m / length_m, 0.05, 1.5), np.clip(own_s / seconds, 0.5, 2.0)
-    path = folder / "matched.toml"
-    path.write_text(f"[legs]\nstride_length = {length:.6f}\nstride_speed = {speed:.6f}\n")
-    return path
 
 
 def reason_of(done):
@@ -289,10 +250,8 @@ def judge_clip(options, folder, path=None):
     if done.returncode:
         return {"clip": name, "refused": reason_of(done)}
     told = json.loads(done.stdout)
-    gait = told.get("gait")
-    sticks = [(0.5, 0, gait["own_stick"] if gait else 0.8)]
-    seconds = 4 + (205 if options.long else 24) * (gait["stride_s"] if gait else 1.2)
-    done = replay(options, folder, path, sticks, seconds)
+    gait = told["gait"] or {"own_stick": 0.8, "stride_s": 1.2}  # of what replay refuses
+    done = replay(options, folder, path, [(0.5, 0, gait["own_stick"])], 4 + 24 * gait["stride_s"])
     if done.returncode:
         return {"clip": name, "refused": reason_of(done)}
     w = Walk(folder)
@@ -301,27 +260,23 @@ def judge_clip(options, folder, path=None):
     if path:
         track = read_source(path, told["metres_per_unit"], told["frame_rate_hz"])
         legs = [[track.index(told["legs"][s][j]) for j in ("hip", "knee", "ankle", "toe")] for s in SIDES]
-        first, frames = (gait["first_frame"], gait["frames"]) if gait else \
-            found_stride(track, legs, heel_m, told["flight"]["right"])
+        first, frames = gait["first_frame"], gait["frames"]
     else:
-        track = built_in_track(w, gait["speed_m_s"] if gait else 1.25, strides=3)
+        track = built_in_track(w, gait["speed_m_s"], strides=3)
         legs, first, frames = list(zip(w.hip, w.knee, w.ankle, w.toe)), BUILT_IN_FRAMES, float(BUILT_IN_FRAMES)
     half_s = max(1 / 30, 2 / track.rate_hz)
     wide, a, b = stride_of_track(track, legs, heel_m, first, frames, margin=round(half_s * track.rate_hz))
     source = trimmed(wide, a, b)
     ends = wide.position[[a, b], wide.pelvis]
     way_m = np.linalg.norm(ends[1] - ends[0] - ((ends[1] - ends[0]) @ wide.up) * wide.up) * frames / (b - a)
-    if not gait:
-        replay(options, folder, path, sticks, seconds, matched_style(w, folder, way_m, frames / track.rate_hz))
-        w = Walk(folder)
-    row = {"clip": name, "gait_told": bool(gait), "first_frame": first, "frames": frames, "stride_s": source.seconds,
+    row = {"clip": name, "first_frame": first, "frames": frames, "stride_s": source.seconds,
            "speed_m_s": way_m / source.seconds, "slide_mm": foot_slide_mm(source)}
     walk, at = stride_of_walk(w)
     row.update(compare(source, walk))
     hips_m = 0.5 * (w.position[:, w.hip[0], 1] + w.position[:, w.hip[1], 1])
     row["fall_m_s2"] = [vertical_acceleration(wide.height(), track.rate_hz, half_s, a, b),
                         vertical_acceleration(hips_m, w.rate, half_s, at, at + len(walk.phase) - 1)]
-    row["d2_deg"], row["d2_joint"] = sharpest_leg_joint(w, w.steady)
+    row["d2_deg"], row["d2_joint"] = sharpest_leg_joint(w, np.nonzero(w.steady)[0])
     row["walk_stride_s"], row["walk_speed_m_s"] = walk.seconds, float(w.col["speed_m_s"][at])
     replay(options, folder / "changes", path, CHANGES, CHANGES_S)
     row["checks"] = judge_row(row, w, walk, gait, path is None) + change_checks(Walk(folder / "changes"))
@@ -334,7 +289,7 @@ def judge_clip(options, folder, path=None):
 def sharpest_leg_joint(w, ticks):
     """Greatest second difference in degrees a tick^2 at 240 Hz, and the joint that has it."""
     joints = sorted(set(w.leg_joints[0] + w.leg_joints[1]))
-    d2 = (second_differences(w.local[:, joints]) * (w.rate / 240) ** 2)[ticks].max(0)
+    d2 = w.second_differences[np.ix_(ticks, joints)].max(0)
     return float(d2.max()), w.bvh.names[joints[int(d2.argmax())]]
 
 
@@ -371,9 +326,7 @@ def judge_row(row, w, walk, gait, is_built_in):
     checks += contacts(w)
     checks += judge.stage_checks(w) + judge.step_checks(w) + judge.speed_checks(w) + judge.repeat_check(w)
     checks += [c for c in judge.file_checks(w) if c.name.startswith(("FK", "ik_fail", "Euler", "steps"))]
-    if gait:
-        checks += pace_checks(row, w, walk, gait, is_built_in)
-    return checks
+    return checks + pace_checks(row, w, walk, gait, is_built_in)
 
 
 def pace_checks(row, w, walk, gait, is_built_in):
@@ -434,7 +387,6 @@ def arguments(words=None):
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("clips", nargs="*", metavar="FILE_OR_FOLDER", help=".bvh or .amc (its .asf beside it)")
     parser.add_argument("--built-in", action="store_true", help="the built-in motion, too")
-    parser.add_argument("--long", action="store_true", help="200 strides")
     parser.add_argument("--json", action="store_true", help="every figure, for machines")
     parser.add_argument("--picture", metavar="OUT.png", help="curves of all clips")
     parser.add_argument("--sheet", metavar="OUT.png", help="stick figures of all clips")
@@ -472,8 +424,6 @@ def main():
     rows, refused, middle = run_all(options, say)
     for check in middle:
         say(f"{check.name:28s} {check.value:.2f} {check.bound_text()} {'ok' if check.ok else 'FAIL'} ({check.note})")
-    if any(not r["gait_told"] for r in rows):
-        print('fidelity.py: this program tells no "gait": strides were found here, steps matched by a style', file=sys.stderr)
     failed = [r for r in rows if r["broken"]] + [r for r in refused if r.get("failed")]
     for row in rows if not options.json else ():
         for c in row["broken"]:

@@ -5,8 +5,9 @@ import pytest
 
 import fidelity
 from support import sources
-from support.exact_walk import Files
+from support.exact_walk import Files, faults_mark
 
+pytestmark = faults_mark("support/judge", "support/sources", "session/fidelity", "session/fidelity_faults_test")
 LEFT_KNEE, RIGHT_KNEE = ("LeftLeg", "Xrotation"), ("RightLeg", "Xrotation")
 
 

@@ -19,7 +19,6 @@ def judged(program, folder, *words):
 
 
 def assert_kept(row):
-    assert row["gait_told"], 'gaitpad motion --json tells no "gait"'
     assert not row["broken"], "\n".join(f"{c.name}: {c.value:.4g} {c.unit}, bound {c.bound_text()} {c.note}"
                                         for c in row["broken"])
 

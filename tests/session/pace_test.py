@@ -40,7 +40,7 @@ class Paces:
     def walk(self, stick, *options, motion=None):
         """The last row of frames.csv and the summary of a straight walk."""
         trace = self.folder / "straight.hid"
-        write_trace(trace, [(0.5, 0, stick)], (), 14)
+        write_trace(trace, [(0.5, 0, stick)], (), 8)
         folder = self.out(trace, *options, motion=motion)
         with open(folder / "frames.csv", newline="") as file:
             *_, row = csv.DictReader(file)
@@ -53,12 +53,15 @@ def paces(run, tmp_path_factory):
     return Paces(run, tmp_path_factory.mktemp("paces"))
 
 
-def test_stick_08_is_the_clips_own_speed_and_steps(paces):
-    gait = paces.gait
-    assert gait["own_stick"] == 0.8
-    assert gait["step_left_m"] < 0.7 * gait["step_right_m"], "the clip limps"
-    numbers, summary = paces.walk(0.8)
-    assert numbers == pytest.approx([gait["step_left_m"], gait["step_right_m"], gait["speed_m_s"]], rel=OWN)
+@pytest.mark.parametrize("stick, legs", [(0.8, 1.0), (0.4, 1.0), (1.0, 1.0), (0.8, 0.6)])
+def test_stick_08_is_the_clips_own_gait(paces, stick, legs):
+    """Speed goes with the stick and steps with its root; lengths with the legs and times with their fourth root."""
+    gait, share = paces.gait, stick / 0.8
+    assert gait["own_stick"] == 0.8 and gait["step_left_m"] < 0.7 * gait["step_right_m"], "the clip limps"
+    (paces.folder / "legs.toml").write_text(f"leg_ratio = {legs}\n")
+    numbers, summary = paces.walk(stick, "--character", paces.folder / "legs.toml")
+    assert numbers == pytest.approx([legs * share ** 0.5 * gait["step_left_m"], legs * share ** 0.5 * gait["step_right_m"],
+                                     legs ** 0.75 * share * gait["speed_m_s"]], rel=OWN)
     assert summary["pace"] == "own"
 
 
@@ -70,33 +73,14 @@ def test_the_feet_land_at_the_clips_own_steps(paces):
         assert steps == pytest.approx([paces.gait[name]] * len(steps), rel=OWN) and len(steps) > 5
 
 
-@pytest.mark.parametrize("stick", [0.4, 1.0])
-def test_speed_goes_with_the_stick_and_the_step_with_its_root(paces, stick):
-    gait, share = paces.gait, stick / 0.8
-    numbers, _ = paces.walk(stick)
-    assert numbers == pytest.approx([share ** 0.5 * gait["step_left_m"], share ** 0.5 * gait["step_right_m"],
-                                     share * gait["speed_m_s"]], rel=OWN)
-
-
-def test_lengths_scale_with_the_legs_and_times_with_their_fourth_root(paces):
-    (paces.folder / "small.toml").write_text("leg_ratio = 0.6\n")
-    numbers, _ = paces.walk(0.8, "--character", paces.folder / "small.toml")
-    gait = paces.gait
-    assert numbers == pytest.approx([0.6 * gait["step_left_m"], 0.6 * gait["step_right_m"],
-                                     0.6 ** 0.75 * gait["speed_m_s"]], rel=OWN)
-
-
 def test_adult_is_the_pace_of_an_adult(paces):
     for walked in (paces.walk(1.0, "--pace", "adult"), paces.walk(1.0, motion=paces.described('pace = "adult"'))):
         numbers, summary = walked
         legs = summary["leg_length_m"] / ADULT_LEG_M
         assert numbers == pytest.approx([legs * ADULT_STEP_M] * 2 + [legs ** 0.75 * ADULT_SPEED_M_S], rel=OWN)
         assert summary["pace"] == "adult"
-
-
-def test_the_option_goes_before_the_description(paces):
-    numbers, summary = paces.walk(0.8, "--pace", "own", motion=paces.described('pace = "adult"'))
-    assert numbers[2] == pytest.approx(paces.gait["speed_m_s"], rel=OWN) and summary["pace"] == "own"
+    _, summary = paces.walk(0.8, "--pace", "own", motion=paces.described('pace = "adult"'))
+    assert summary["pace"] == "own", "the option goes before the description"
 
 
 def test_the_built_in_motion_has_the_adults_pace(paces):

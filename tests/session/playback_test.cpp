@@ -44,10 +44,7 @@ std::uint64_t print_of(const SessionFrame& frame) {
       }
     }
     add(w.landing_m);
-    add(w.walk.heel_m[kLeftSide]);
-    for (const double x : {w.phase, w.presence, w.walk.speed_m_s, w.params.hip_sway,
-                           w.style.fatigue, static_cast<double>(w.ik_failures)})
-      hash.add(x);
+    add({w.phase, w.params.hip_sway, w.style.fatigue});
   }
   for (const double x :
        {static_cast<double>(frame.tick), frame.stick.left.x, frame.stick.left.y,

@@ -4,14 +4,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 #include "drivers/posix.h"
 #include "session/live_loop.h"
+#include "tests/comes_true.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"
 
@@ -288,13 +287,9 @@ class RecordingFile : public testing::Test {
   std::unique_ptr<Recording> started() const {
     return value_of(Recording::start({file_.string(), 240, {}}, made_devices));
   }
-  // Waits until the text is in FILE.part, which takes a second at most.
+  // Until the text is in FILE.part.
   bool is_written(const std::string& piece) const {
-    for (int i = 0; i < 100; ++i) {
-      if (text_in(part_).find(piece) != std::string::npos) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
+    return comes_true([&] { return text_in(part_).find(piece) != std::string::npos; });
   }
 
   OwnFolder own_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
 #include <string>
 
 #include "tests/session/live_fixture.h"
@@ -68,38 +69,13 @@ TEST(Commands, WhatIsWrongIsNamedWithWhatIsKnown) {
 TEST(Commands, ASingleNumberIsAName) { expect("style 1", Verb::style, 0, "1", 0); }
 
 TEST(Commands, MalformedOnesAreRejected) {
-  const char* const bad[] = {"",
-                             " ",
-                             "style",
-                             "Style even",
-                             "styles even",
-                             "set",
-                             "set fatigue",
-                             "set 1 fatigue",
-                             "set fatigue x",
-                             "set fatigue 0.5x",
-                             "set fatigue +0.5",
-                             "set fatigue 0,5",
-                             "set fatigue nan",
-                             "set fatigue inf",
-                             "set fatigue 1e999",
-                             "set fatigue 0.5 0.5",
-                             "set 0 fatigue 0.5",
-                             "set 1 2 fatigue 0.5",
-                             "set 99999999999 fatigue 0.5",
-                             "gait",
-                             "gait 1",
-                             "gait speed_m_s",
-                             "gait speed_m_s 1 2",
-                             "gait stick stick 1",
-                             "gait stick 1",
-                             "gait stick stick",
-
-                             "reset 1",
-                             "reset now",
-                             "resets",
-                             "sing"};
-  for (const char* text : bad) EXPECT_FALSE(parsed_command(text)) << text;
+  std::istringstream lines(
+      "\n \nstyle\nStyle even\nstyles even\nset\nset fatigue\nset 1 fatigue\nset fatigue x\n"
+      "set fatigue 0.5x\nset fatigue +0.5\nset fatigue 0,5\nset fatigue nan\nset fatigue inf\n"
+      "set fatigue 1e999\nset fatigue 0.5 0.5\nset 0 fatigue 0.5\nset 1 2 fatigue 0.5\n"
+      "set 99999999999 fatigue 0.5\ngait\ngait 1\ngait speed_m_s\ngait speed_m_s 1 2\n"
+      "gait stick stick 1\ngait stick 1\ngait stick stick\nreset 1\nreset now\nresets\nsing");
+  for (std::string text; std::getline(lines, text);) EXPECT_FALSE(parsed_command(text)) << text;
 }
 
 // --- scripts

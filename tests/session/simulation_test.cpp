@@ -91,23 +91,6 @@ TEST(Simulation, CharactersStandSideBySideAndDoNotDisturbEachOther) {
   EXPECT_NEAR(pelvis(standing, 1).x - pelvis(standing, 2).x, 1.2, 1e-9);
 }
 
-TEST(Simulation, AMirroredStickMirrorsTheHeadingAtEveryTick) {
-  Simulation left = made_simulation(made_config(1)), right = made_simulation(made_config(1));
-  // 8-bit counts have no middle value: 0x00 and 0xff are symmetric about 127.5.
-  for (int tick = 0; tick < 1920; ++tick) {
-    std::vector<Report> to_left, to_right;
-    if (tick == 0) to_left = {made_report(0x40, 0x20)}, to_right = {made_report(0xbf, 0x20)};
-    if (tick == 900) to_left = {made_report(0x00, 0x70)}, to_right = {made_report(0xff, 0x70)};
-    left.step(to_left);
-    right.step(to_right);
-    const WalkFrame& l = left.walkers()[0].state.frame;
-    const WalkFrame& r = right.walkers()[0].state.frame;
-    ASSERT_EQ(left.stick().left.x, -right.stick().left.x);
-    ASSERT_NEAR(l.heading_rad, -r.heading_rad, 1e-12) << "tick " << tick;
-  }
-  EXPECT_GT(left.walkers()[0].state.frame.heading_rad, 1.0);
-}
-
 TEST(Simulation, ACopyIsIndependentAndSharesTheModel) {
   Simulation s = walked(made_config(4), 0x80, 0x20, 333), copy = s;
   EXPECT_EQ(&s.styles(), &copy.styles());
@@ -371,7 +354,7 @@ void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Ch
   config.walkers[1].style = 0;
   config.ik = mode;
   Simulation s = made_simulation(config);
-  for (int tick = 0; tick < 40000; ++tick) {
+  for (int tick = 0; tick < 12000; ++tick) {
     std::vector<Report> reports;
     if (tick % 60 == 0) reports.push_back(made_command(command(random)));
     if (tick % 500 == 0) {

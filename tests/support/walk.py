@@ -1,5 +1,5 @@
 """Loads what `gaitpad replay --out DIR` wrote and cuts it into landings, cycles and steady parts."""
-import csv
+import functools
 import json
 import os
 
@@ -17,23 +17,22 @@ COLUMNS = (
 SETTLE_S = 3.0  # after a change of stick or style the walk counts as steady again
 
 
+STAGES, SWINGS = np.array(["idle", "flight", "roll"]), np.array(["none", "left", "right"])
+CODES = {f",{stage},{swing},": f",{a},{b}," for a, stage in enumerate(STAGES) for b, swing in enumerate(SWINGS)}
+
+
 def read_frames(path):
     """Header and columns of frames.csv; stage, swing as text, planted as bool, the rest float."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
-    header, body = rows[0], rows[1:]
-    columns = {}
-    for i, name in enumerate(header):
-        values = [row[i] for row in body]
-        if name in ("stage", "swing"):
-            columns[name] = np.array(values)
-        elif name.endswith("_planted"):
-            columns[name] = np.array([v.strip().lower() in ("1", "true") for v in values])
-        else:
-            try:
-                columns[name] = np.array(values, dtype=float)
-            except ValueError:
-                columns[name] = np.array(values)
+    with open(path, encoding="utf-8") as file:
+        header, body = file.readline().strip().split(","), file.read()
+    for words, numbers in CODES.items():
+        body = body.replace(words, numbers)
+    values = np.fromstring(body.replace("\n", ","), sep=",").reshape(body.count("\n"), len(header))
+    columns = dict(zip(header, np.ascontiguousarray(values.T)))
+    columns["stage"], columns["swing"] = STAGES[columns["stage"].astype(int)], SWINGS[columns["swing"].astype(int)]
+    for name in header:
+        if name.endswith("_planted"):
+            columns[name] = columns[name] == 1
     return header, columns
 
 
@@ -137,16 +136,19 @@ class Walk:
     def _find_steady(self, settle_s):
         """steady: walking forward (or straight back), nothing changed for settle_s. walking: stage is not idle."""
         self.walking = self.col["stage"] != "idle"
-        since = np.zeros(self.ticks, dtype=int)
-        marks = set(self.change_ticks) | set(np.nonzero(np.diff(self.walking.astype(int)))[0] + 1) | {0}
-        last = 0
-        for k in range(self.ticks):
-            last = k if k in marks else last
-            since[k] = k - last
+        marks = np.union1d(self.change_ticks, np.nonzero(np.diff(self.walking.astype(int)))[0] + 1).astype(int)
+        last = np.zeros(self.ticks, dtype=int)
+        last[marks[marks < self.ticks]] = marks[marks < self.ticks]
+        since = np.arange(self.ticks) - np.maximum.accumulate(last)
         self.straight = self.col["stick_x"] == 0
         walks = (self.col["stick_y"] > 0) | (self.straight & (self.col["stick_y"] < 0))
         self.steady = self.walking & (since >= settle_s * self.rate) & walks
         self.turning = ~self.straight | (np.abs(self.col["turn_rate_rad_s"]) > 1e-6)
+
+    @functools.cached_property
+    def second_differences(self):
+        """(ticks, joints) degrees per tick^2 at 240 Hz."""
+        return bvhs.second_differences(self.local) * (self.rate / 240.0) ** 2
 
     def cycles(self, side, mask):
         """(from, to) between neighbouring landings of one foot lying wholly inside the mask."""

@@ -36,10 +36,6 @@ StickStatistics measured() {
 
 StickAdvice advice_for(const StickStatistics& s) { return stick_advice(s, {}); }
 
-StickAdvice advice_for(const MadeStick& stick, const StickTrack& track) {
-  return stick_advice(statistics_of(stick, track), {});
-}
-
 // Checks that a file with this calibration loads and gives the same numbers.
 void expect_loadable(const StickCalibration& c) {
   CalibrationFile file;
@@ -62,34 +58,6 @@ TEST(StickAdvice, InnerZoneIsThreeSigmaPlusHysteresisAndAtLeastFivePercent) {
   // The calibration stores the inner zone as a fraction of the shortest side.
   const double shortest = 0.95 - -0.01;
   EXPECT_NEAR(advice_for(s).calibration.inner, 0.18 / shortest, 1e-12);
-}
-
-TEST(StickAdvice, AWanderingStickRestsInItsZonesUnlessTheVerdictIsReplace) {
-  for (const double wander : {0.005, 0.01}) {
-    std::int64_t walking = 0, resting = 0;
-    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
-      MadeStick stick;
-      stick.seed = seed;
-      stick.sigma = vec2(0.003);
-      stick.wander = wander;
-      MadeMoves moves(stick);
-      moves.rest(10.0);
-      for (int k = 0; k < 6; ++k) {
-        moves.push(k);
-        moves.release();
-        moves.rest(0.6);
-      }
-      moves.turn(3.0);
-      const StickTrack track = reported(stick, moves.path());
-      const StickAdvice advice = advice_for(stick, track);
-      if (advice.verdict == Verdict::replace) continue;
-      for (std::size_t i = 0; i < 2500; ++i) {
-        walking += stick_position(advice.calibration, track[i].raw) != vec2(0.0);
-        ++resting;
-      }
-    }
-    EXPECT_LE(static_cast<double>(walking), 0.015 * static_cast<double>(resting)) << wander;
-  }
 }
 
 // A radius of 3 sigma would let one report in ninety pass, because the noise has two directions.
@@ -251,7 +219,7 @@ TEST(StickAdvice, NoiseJustAboveAStepIsNotWear) {
 TEST(StickAdvice, AnyStatisticsGiveAFileThatLoads) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1.5, 1.5);
-  for (int n = 0; n < 2000; ++n) {
+  for (int n = 0; n < 400; ++n) {
     StickStatistics s = measured();
     if (n % 5 != 0) s.centre = vec2(any(random), any(random));
     s.sigma = vec2(std::fabs(any(random)), 0.1 * std::fabs(any(random)));
@@ -261,25 +229,6 @@ TEST(StickAdvice, AnyStatisticsGiveAFileThatLoads) {
     s.max_y = any(random);
     for (double& r : s.outline.radius) r = std::max(0.0, any(random));
     expect_loadable(advice_for(s).calibration);
-  }
-}
-
-TEST(StickAdvice, NewSticksAreGoodAndNeutralAtRest) {
-  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
-    MadeStick stick;
-    stick.seed = seed;
-    stick.centre = vec2(0.03, -0.02);
-    stick.sigma = vec2(0.002);
-    stick.hysteresis = 0.03;
-    stick.reach_x = 0.95;
-    stick.bits = seed % 2 == 0 ? 8 : 12;
-    const StickTrack track = made_track(stick);
-    const StickAdvice advice = advice_for(stick, track);
-    EXPECT_EQ(advice.verdict, Verdict::good) << seed << ": " << advice.reason;
-    // Also the first rest, of 0.6 s, is neutral.
-    for (std::size_t i = 0; i < 150; ++i) {
-      EXPECT_EQ(stick_position(advice.calibration, track[i].raw), vec2(0.0));
-    }
   }
 }
 

@@ -100,7 +100,7 @@ void pass_items(std::size_t capacity, std::uint64_t items) {
 }
 
 TEST(SpscRing, ItemsPassWholeAndInOrderBetweenTwoThreads) {
-  pass_items(16, 20'000);
+  pass_items(16, 5'000);
   pass_items(4096, 200'000);
 }
 

@@ -253,21 +253,7 @@ TEST(GaitParams, StyleFactorsActOnTheirLegOnly) {
   EXPECT_EQ(p.hip_bounce, 1.4);
 }
 
-TEST(GaitParams, OddSticksGiveFiniteParameters) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double inf = std::numeric_limits<double>::infinity();
-  for (double x : {nan, inf, -inf, 5.0, 1e-310, 0.0}) {
-    for (double y : {nan, inf, -inf, 5.0, 1e-310, 0.0}) {
-      const GaitParams p = at(x, y);
-      EXPECT_TRUE(std::isfinite(p.stride[0].length_m) && std::isfinite(p.stride[0].time_s));
-      EXPECT_GT(p.stride[0].time_s, 0.0);
-      EXPECT_LE(p.stride[0].length_m, kAdult.max_step_m);
-      EXPECT_LE(std::fabs(p.turn_rate_rad_s), kMaxTurnRate_rad_s);
-    }
-  }
-  static_assert(std::is_trivially_copyable_v<GaitParams>);
-}
-
+static_assert(std::is_trivially_copyable_v<GaitParams>);
 static_assert(std::is_trivially_copyable_v<GaitOverrides>);
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -455,7 +441,7 @@ TEST(GaitOverrides, AnyCombinationIsSane) {
   std::mt19937 random(5);
   const double values[] = {0.0,  -0.0,  1e-310, 1e-9,   0.01, 0.4,  1.0,  3.0,
                            20.0, 1e300, -1.0,   -1e300, kNan, kInf, -kInf};
-  const double sticks[] = {0.0, 1e-310, 1e-6, 0.3, 1.0, -1.0, kNan, kInf};
+  const double sticks[] = {0.0, 1e-310, 1e-6, 0.3, 1.0, -1.0, 5.0, kNan, kInf, -kInf};
   const auto any = [&random](const auto& list) { return list[random() % std::size(list)]; };
   for (int i = 0; i < 5000; ++i) {
     GaitOverrides o;

@@ -186,20 +186,6 @@ TEST(ReportStatistics, SpikesAreCountedAndChangeNothingElse) {
   }
 }
 
-TEST(ReportStatistics, AValueThatFreezesWhileTheStickMovesOnIsStuck) {
-  MadeStick stick;
-  stick.bits = 8;
-  MadeMoves moves(stick);
-  moves.rest(0.5);
-  moves.move({0.9, 0.0}, 0.4);
-  moves.rest(0.1);
-  StickTrack track = reported(stick, moves.path());
-  EXPECT_EQ(statistics_of(stick, track).stuck, 0);
-  const std::size_t from = 125 + 40;  // in the middle of the movement, 80 ms
-  for (std::size_t i = from; i < from + 20; ++i) track[i].raw = track[from].raw;
-  EXPECT_EQ(statistics_of(stick, track).stuck, 1);
-}
-
 MadeStick faulty_stick(std::uint32_t seed, double rate_hz) {
   MadeStick stick;
   stick.seed = seed;

@@ -78,20 +78,6 @@ TEST(Stills, TheRestAfterEachReleaseIsFound) {
   }
 }
 
-TEST(Stills, TurningIsNotRest) {
-  for (const MadeStick& stick : every_kind()) {
-    for (const double seconds_a_turn : {0.4, 1.0, 3.0}) {
-      MadeMoves moves(stick);
-      moves.move(stick.centre + vec2(0.75, 0.0), 0.01);
-      moves.turn(3.0, seconds_a_turn);
-      const Stills found = stills_of(stick, moves);
-      EXPECT_TRUE(found.rests.empty())
-          << name_of(stick) << " " << seconds_a_turn << " s a turn, at " << found.rests[0].mean.x
-          << " " << found.rests[0].mean.y;
-    }
-  }
-}
-
 TEST(Stills, AHeldPushIsAPushAndNotARest) {
   for (const MadeStick& stick : every_kind()) {
     MadeMoves moves(stick);

@@ -462,8 +462,11 @@ TEST_F(RecordingAsPad, KeepsItsOwnCalibrationElseHasTheUsers) {
     play(trace, options);
     expect(ReportKind::added, 0);
     EXPECT_EQ(stream_->take_config(0).calibration.left.inner, *own == 0 ? 0.31 : 0.21);
+    if (*own != 0) {
+      EXPECT_EQ(stream_->device(0).calibration, own);
+    }
+    stream_.reset();  // a file that is played is read once
   }
-  EXPECT_NE(stream_->device(0).calibration.find("inner = 0.21"), std::string::npos);
 }
 
 TEST_F(RecordingAsPad, WithoutAnyStickIsAnError) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <initializer_list>
-#include <set>
 
 namespace gaitpad {
 namespace {
@@ -22,21 +21,6 @@ TEST(WordHash, GivesTheValuesOfItsDefinition) {
 }
 
 TEST(WordHash, TellsBitsApartThatCompareEqual) { EXPECT_NE(hash_of({0.0}), hash_of({-0.0})); }
-
-TEST(WordHash, TheOrderAndTheCountMatter) {
-  EXPECT_NE(hash_of({1.0, 2.0}), hash_of({2.0, 1.0}));
-  EXPECT_NE(hash_of({0.0}), hash_of({0.0, 0.0}));
-}
-
-// Each step can be undone, so words that differ in one place can never meet again.
-TEST(WordHash, WordsThatDifferInOneBitDiffer) {
-  std::set<std::uint64_t> seen = {hash_of({0.25, 0.25, 0.25})};
-  for (int bit = 0; bit < 64; ++bit) {
-    const double other =
-        std::bit_cast<double>(std::bit_cast<std::uint64_t>(0.25) ^ (std::uint64_t{1} << bit));
-    EXPECT_TRUE(seen.insert(hash_of({0.25, other, 0.25})).second) << "bit " << bit;
-  }
-}
 
 }  // namespace
 }  // namespace gaitpad

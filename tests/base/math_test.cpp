@@ -10,7 +10,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr int kTries = 200000;
+constexpr int kTries = 50000;
 
 // Distance in units of the wanted value's last place.
 double ulps(double got, double wanted) {

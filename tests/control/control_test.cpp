@@ -54,30 +54,19 @@ TEST(GaitParams, WalkRatioIsConstantUntilTheStepTimeLimit) {
   }
 }
 
-TEST(GaitParams, LengthAndSpeedRiseWithForwardDeflection) {
-  for (double x : {-0.6, 0.0, 0.01, 0.3}) {
-    for (double y = 0.001; y < 1.0; y += 0.001) {
-      const StrideParams a = at(x, y).stride[kLeftSide], b = at(x, y + 0.001).stride[kLeftSide];
-      EXPECT_GT(b.length_m, a.length_m);
-      EXPECT_GT(speed_of(b), speed_of(a));
-    }
-  }
-}
-
-TEST(GaitParams, ContinuousInTheForwardDeflection) {
-  constexpr double kStep = 1e-4;
-  for (double x : {0.0, 0.05, 0.5, -1.0}) {
+TEST(GaitParams, ContinuousInTheStickAndRisingWithItsForwardDeflection) {
+  constexpr double kStep = 1e-3;
+  for (const double x : {-0.6, 0.0, 0.05, 0.3}) {
     for (double y = x == 0.0 ? kStep : -0.1; y < 1.0; y += kStep) {
       const StrideParams a = at(x, y).stride[kLeftSide], b = at(x, y + kStep).stride[kLeftSide];
       ASSERT_NEAR(a.length_m, b.length_m, 40 * kStep) << x << " " << y;
       ASSERT_NEAR(a.time_s, b.time_s, 20 * kStep) << x << " " << y;
+      if (y <= 0.0) continue;
+      ASSERT_GT(b.length_m, a.length_m) << x << " " << y;
+      ASSERT_GT(speed_of(b), speed_of(a)) << x << " " << y;
     }
   }
-}
-
-TEST(GaitParams, ContinuousInTheSidewaysDeflection) {
-  constexpr double kStep = 1e-4;
-  for (double y : {0.05, 0.3, 1.0}) {
+  for (const double y : {0.05, 0.3, 1.0}) {
     for (double x = -1.0; x < 1.0; x += kStep) {
       const GaitParams a = at(x, y), b = at(x + kStep, y);
       ASSERT_NEAR(a.stride[0].time_s, b.stride[0].time_s, 20 * kStep) << x << " " << y;
@@ -99,7 +88,7 @@ TEST(GaitParams, SidewaysTurnsAgainstTheStickAndMirrors) {
   }
 }
 
-TEST(GaitParams, NeutralStands) {
+TEST(GaitParams, NeutralStandsAndSidewaysAloneTurnsInPlace) {
   for (double y : {0.0, -0.0}) {
     const GaitParams p = at(0.0, y);
     EXPECT_FALSE(p.walking);
@@ -108,9 +97,7 @@ TEST(GaitParams, NeutralStands) {
     EXPECT_FALSE(std::signbit(p.turn_rate_rad_s));
     EXPECT_GT(p.stride[kLeftSide].time_s, 0.0);
   }
-}
 
-TEST(GaitParams, SidewaysAloneTurnsInPlace) {
   for (double y : {0.0, -0.05}) {  // 6 degrees behind the side: a thumb's noise
     const GaitParams p = at(-0.5, y);
     EXPECT_FALSE(p.backward);
@@ -155,26 +142,12 @@ TEST(GaitLimits, ScaleWithTheLegs) {
 constexpr OwnGait kSlowLimp = {.stick = 0.8, .step_m = {0.31, 0.47}, .step_time_s = 1.05};
 const GaitLimits kOwn = gait_limits(0.9, kSlowLimp);
 
-TEST(OwnPace, ItsStickGivesExactlyTheWalksStepsAndTime) {
-  const GaitParams p = at(0.0, 0.8, {}, kOwn);
-  for (const Side side : {kLeftSide, kRightSide}) {
-    EXPECT_NEAR(p.stride[side].length_m, kSlowLimp.step_m[side], 1e-15);
-    EXPECT_NEAR(p.stride[side].time_s, 1.05, 1e-14);
-  }
-  EXPECT_NEAR(value_of(GaitKey::speed_m_s, p), 0.78 / 2.1, 1e-15);
-}
-
-TEST(OwnPace, FullStickIsAQuarterFaster) {
-  const GaitParams p = at(0.0, 1.0, {}, kOwn);
-  EXPECT_NEAR(value_of(GaitKey::speed_m_s, p), 1.25 * 0.78 / 2.1, 1e-15);
-  EXPECT_NEAR(kOwn.max_speed_m_s, 1.25 * 0.78 / 2.1, 1e-15);
-  for (const Side side : {kLeftSide, kRightSide})
-    EXPECT_NEAR(p.stride[side].length_m, std::sqrt(1.25) * kSlowLimp.step_m[side], 1e-15);
-}
-
-// Step length over cadence stays the walk's own: 0.39 m at 60 / 1.05 steps a minute.
+// Its stick gives exactly the walk's steps and time, a full one is a quarter faster. Step length
+// over cadence stays the walk's own: 0.39 m at 60 / 1.05 steps a minute.
 TEST(OwnPace, SpeedGoesWithTheStickAndTheStepWithItsRoot) {
-  for (double y = 0.25; y <= 1.0; y += 0.05) {
+  EXPECT_NEAR(kOwn.max_speed_m_s, 1.25 * 0.78 / 2.1, 1e-15);
+  EXPECT_NEAR(at(0.0, 0.8, {}, kOwn).stride[kLeftSide].time_s, 1.05, 1e-14);
+  for (const double y : {0.25, 0.4, 0.6, 0.8, 0.9, 1.0}) {
     const GaitParams p = at(0.0, y, {}, kOwn);
     EXPECT_NEAR(value_of(GaitKey::speed_m_s, p), y / 0.8 * 0.78 / 2.1, 1e-14);
     for (const Side side : {kLeftSide, kRightSide}) {
@@ -262,15 +235,6 @@ TEST(Fatigue, LowersMaximumSpeedAndStrideLinearly) {
   }
 }
 
-TEST(Fatigue, NoneIsIdenticalToFresh) {
-  Style style;
-  style.fatigue = 0.0;
-  for (double y = 0.0; y <= 1.0; y += 0.01) {
-    EXPECT_EQ(at(0.2, y, style).stride[0].length_m, at(0.2, y).stride[0].length_m);
-    EXPECT_EQ(at(0.2, y, style).stride[0].time_s, at(0.2, y).stride[0].time_s);
-  }
-}
-
 // The paper's injured leg: stride -50 %, flight height -50 %, speed +30 %.
 TEST(GaitParams, StyleFactorsActOnTheirLegOnly) {
   Style limp;
@@ -289,21 +253,7 @@ TEST(GaitParams, StyleFactorsActOnTheirLegOnly) {
   EXPECT_EQ(p.hip_bounce, 1.4);
 }
 
-TEST(GaitParams, OddSticksGiveFiniteParameters) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double inf = std::numeric_limits<double>::infinity();
-  for (double x : {nan, inf, -inf, 5.0, 1e-310, 0.0}) {
-    for (double y : {nan, inf, -inf, 5.0, 1e-310, 0.0}) {
-      const GaitParams p = at(x, y);
-      EXPECT_TRUE(std::isfinite(p.stride[0].length_m) && std::isfinite(p.stride[0].time_s));
-      EXPECT_GT(p.stride[0].time_s, 0.0);
-      EXPECT_LE(p.stride[0].length_m, kAdult.max_step_m);
-      EXPECT_LE(std::fabs(p.turn_rate_rad_s), kMaxTurnRate_rad_s);
-    }
-  }
-  static_assert(std::is_trivially_copyable_v<GaitParams>);
-}
-
+static_assert(std::is_trivially_copyable_v<GaitParams>);
 static_assert(std::is_trivially_copyable_v<GaitOverrides>);
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -367,13 +317,11 @@ TEST(GaitOverrides, ASpeedWalksWithoutTheStickAtTheWalkRatio) {
     for (const StrideParams& step : p.stride)
       EXPECT_NEAR(step.length_m, std::sqrt(0.348 * speed_m_s), 1e-12);
     EXPECT_EQ(p.turn_rate_rad_s, 0.0);
+    // It takes the place of the forward deflection alone.
+    const GaitParams turning = with(pushed(-0.5, 0.9), {{GaitKey::speed_m_s, speed_m_s}});
+    EXPECT_NEAR(value_of(GaitKey::speed_m_s, turning), speed_m_s, 1e-12);
+    EXPECT_EQ(turning.turn_rate_rad_s, 0.5);
   }
-}
-
-TEST(GaitOverrides, ASpeedTakesThePlaceOfTheForwardDeflectionAlone) {
-  const GaitParams p = with(pushed(-0.5, 0.9), {{GaitKey::speed_m_s, 0.6}});
-  EXPECT_NEAR(value_of(GaitKey::speed_m_s, p), 0.6, 1e-12);
-  EXPECT_EQ(p.turn_rate_rad_s, 0.5);
 }
 
 TEST(GaitOverrides, ASpeedOf0StandsWhateverElseIsGiven) {
@@ -431,17 +379,13 @@ TEST(GaitOverrides, StepTimesStayWithinWhatAStickAndAStyleCanGive) {
   EXPECT_NEAR(sharp.stride[0].time_s, 1.1, 1e-12);
 }
 
-TEST(GaitOverrides, AStrideWithoutSpeedKeepsTheSticksTime) {
+TEST(GaitOverrides, AStrideWithoutSpeedKeepsTheSticksTimeAndWaitsForTheStick) {
   const GaitParams stick = with(pushed(0.1, 0.6), {});
   const GaitParams p = with(pushed(0.1, 0.6), {{GaitKey::stride_right_m, 0.2}});
   EXPECT_EQ(p.stride[kRightSide].length_m, 0.2);
   EXPECT_EQ(p.stride[kRightSide].time_s, stick.stride[kRightSide].time_s);
   EXPECT_EQ(p.stride[kLeftSide].length_m, stick.stride[kLeftSide].length_m);
-}
-
-TEST(GaitOverrides, AStrideWaitsForTheStick) {
-  const GaitParams standing = with(pushed(0.0, 0.0), {{GaitKey::stride_left_m, 0.6}});
-  EXPECT_FALSE(standing.walking);
+  EXPECT_FALSE(with(pushed(0.0, 0.0), {{GaitKey::stride_left_m, 0.6}}).walking);
   const GaitParams turning = with(pushed(0.8, 0.0), {{GaitKey::stride_left_m, 0.6}});
   EXPECT_TRUE(turning.walking);
   EXPECT_EQ(turning.stride[kLeftSide].length_m, 0.0);
@@ -497,9 +441,9 @@ TEST(GaitOverrides, AnyCombinationIsSane) {
   std::mt19937 random(5);
   const double values[] = {0.0,  -0.0,  1e-310, 1e-9,   0.01, 0.4,  1.0,  3.0,
                            20.0, 1e300, -1.0,   -1e300, kNan, kInf, -kInf};
-  const double sticks[] = {0.0, 1e-310, 1e-6, 0.3, 1.0, -1.0, kNan, kInf};
+  const double sticks[] = {0.0, 1e-310, 1e-6, 0.3, 1.0, -1.0, 5.0, kNan, kInf, -kInf};
   const auto any = [&random](const auto& list) { return list[random() % std::size(list)]; };
-  for (int i = 0; i < 50000; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     GaitOverrides o;
     for (int k = 0; k < kGaitKeys; ++k) {
       o.value[k] = any(values);

@@ -57,24 +57,20 @@ TEST(StyleValue, WhatIsUnknownOrOutOfBoundsChangesNothing) {
   EXPECT_TRUE(style == StyleValues{});
 }
 
-TEST(StyleValue, ALegIsNeverLockedAsAWhole) {
+TEST(StyleValue, NoLimbIsLockedAsAWhole) {
   StyleValues style;
-  EXPECT_TRUE(set_value(style, "left_leg.weight.hip", 0.0));
-  EXPECT_TRUE(set_value(style, "left_leg.weight.knee", 0.0));
-  EXPECT_FALSE(set_value(style, "left_leg.weight.ankle", 0.0));
+  for (const auto& [first, second, third] :
+       {std::tuple("left_leg.weight.hip", "left_leg.weight.knee", "left_leg.weight.ankle"),
+        {"left_arm.weight.shoulder", "left_arm.weight.elbow", "left_arm.weight.wrist"},
+        {"spine.weight.upper", "spine.weight.upper", "spine.weight.lower"}}) {
+    EXPECT_TRUE(set_value(style, first, 0.0)) << first;
+    EXPECT_TRUE(set_value(style, second, 0.0)) << second;
+    EXPECT_FALSE(set_value(style, third, 0.0)) << third;
+  }
   EXPECT_FALSE(set_value(style, "legs.weight.ankle", 0.0)) << "the right one could, the left not";
   EXPECT_EQ(value_of(style, "right_leg.weight.ankle"), 1.0);
-  EXPECT_TRUE(set_value(style, "left_leg.weight.ankle_y", 0.0));
-}
-
-TEST(StyleValue, NoArmIsLockedAsAWhole) {
-  StyleValues style;
-  EXPECT_TRUE(set_value(style, "left_arm.weight.shoulder", 0.0));
-  EXPECT_TRUE(set_value(style, "left_arm.weight.elbow", 0.0));
-  EXPECT_FALSE(set_value(style, "left_arm.weight.wrist", 0.0));
-  EXPECT_TRUE(set_value(style, "spine.weight.upper", 0.0));
-  EXPECT_FALSE(set_value(style, "spine.weight.lower", 0.0));
   EXPECT_EQ(value_of(style, "right_arm.weight.shoulder"), 1.0);
+  EXPECT_TRUE(set_value(style, "left_leg.weight.ankle_y", 0.0));
 }
 
 // All values as far as they go, the even ones' opposite.

@@ -87,13 +87,13 @@ TEST_F(JoyCons, EachReportHasTheNewestOfBothSides) {
   EXPECT_TRUE(next().empty());
 }
 
-TEST_F(JoyCons, OtherReportsAreLeftOut) {
+TEST_F(JoyCons, OtherReportsAreLeftOutBothRumbleAndOneThatIsGoneEndsThePair) {
   left_->reports.push_back({0x3f, 0, 0, 8});
   right_->reports.push_back({0x30, 7, 0x8c, 0x08, 0x00, 0x00, 0, 0, 0, 0x44, 0x55, 0x66});
   EXPECT_EQ(next()[3], 0x08);
-}
-
-TEST_F(JoyCons, OneThatIsGoneEndsThePair) {
+  EXPECT_TRUE(pair_->rumble({40000, 0}));
+  EXPECT_EQ(left_->strong, 40000);
+  EXPECT_EQ(right_->strong, 40000);
   right_->is_gone = true;
   Report report;
   EXPECT_EQ(pair_->read(report), Device::Status::gone);
@@ -108,12 +108,6 @@ TEST_F(JoyCons, TheSticksAreThoseOfJoyConsHeldUpright) {
   EXPECT_DOUBLE_EQ(sticks.right_x.min, -0.45);
   EXPECT_DOUBLE_EQ(sticks.right_x.max, 0.55);
   EXPECT_DOUBLE_EQ(sticks.right_y.max, 0.8);
-}
-
-TEST_F(JoyCons, BothRumble) {
-  EXPECT_TRUE(pair_->rumble({40000, 0}));
-  EXPECT_EQ(left_->strong, 40000);
-  EXPECT_EQ(right_->strong, 40000);
 }
 
 TEST(JoyConPairs, TwoOfOneSideAreNoPair) {

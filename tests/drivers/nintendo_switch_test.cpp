@@ -2,8 +2,6 @@
 // amplitudes), Linux's hid-nintendo.c (order of the calibration bytes, range without calibration).
 #include <gtest/gtest.h>
 
-#include <chrono>
-
 #include "drivers/scripted_port.h"
 
 namespace gaitpad {
@@ -24,6 +22,17 @@ DeviceInfo switch_pad(std::uint16_t product, BusType bus) {
 }
 std::unique_ptr<PadModel> model(BusType bus = BusType::usb) {
   return make_switch_model(switch_pad(0x2009, bus));
+}
+// A Pro Controller that the kernel drives: only asked for its memory.
+std::unique_ptr<PadModel> asked(ScriptedPort& port) {
+  auto pad = model();
+  pad->start(port, StartedBy::kernel);
+  return pad;
+}
+std::unique_ptr<PadModel> started(std::uint16_t product, ScriptedPort& port) {
+  auto pad = make_switch_model(switch_pad(product, BusType::bluetooth));
+  pad->start(port, StartedBy::us);
+  return pad;
 }
 
 double fraction(int count) { return (count - 2047.5) / 2047.5; }
@@ -96,8 +105,7 @@ const Packet kUneven = packed({0x500, 0x610, 0x800, 0x7f0, 0x600, 0x6f0});
 TEST(SwitchPro, TheSticksOfASingleJoyConAreTurnedAsItIsHeld) {
   const Packet uneven_right = packed({0x800, 0x7f0, 0x600, 0x6f0, 0x500, 0x610});
   ScriptedPort port = pad_with({{0x603d, joined(kUneven, uneven_right)}}, 1);
-  const auto left = make_switch_model(switch_pad(0x2006, BusType::bluetooth));
-  left->start(port, StartedBy::us);
+  const auto left = started(0x2006, port);
   ASSERT_TRUE(left->factory_sticks());
   // Turned to the left: what was up is left, what was right is up.
   FactoryAxis x = left->factory_sticks()->left_x;
@@ -105,8 +113,7 @@ TEST(SwitchPro, TheSticksOfASingleJoyConAreTurnedAsItIsHeld) {
   expect_axis(left->factory_sticks()->left_y, 0x200, 0x800, 0xd00);
 
   port = pad_with({{0x603d, joined(kLeft, uneven_right)}}, 2);
-  const auto right = make_switch_model(switch_pad(0x2007, BusType::bluetooth));
-  right->start(port, StartedBy::us);
+  const auto right = started(0x2007, port);
   ASSERT_TRUE(right->factory_sticks());
   expect_axis(right->factory_sticks()->left_x, 0x100, 0x7f0, 0xe00);
   const FactoryAxis y = right->factory_sticks()->left_y;
@@ -117,8 +124,7 @@ TEST(SwitchPro, TheSticksOfASingleJoyConAreTurnedAsItIsHeld) {
 TEST(SwitchPro, AJoyConNeedsTheCalibrationOfItsOwnStickAlone) {
   const Packet blank(9, 0xff);
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, blank)}}, 1);
-  const auto left = make_switch_model(switch_pad(0x2006, BusType::bluetooth));
-  left->start(port, StartedBy::us);
+  const auto left = started(0x2006, port);
   EXPECT_TRUE(left->factory_sticks());
   EXPECT_TRUE(left->take_remarks().empty());
 }
@@ -148,12 +154,10 @@ TEST(SwitchPro, TheChargingGripTellsWhichJoyConIsInIt) {
 
 TEST(SwitchPro, OnlyTheSticksOfAModelAreRead) {
   ScriptedPort port = pad_with({{0x603d, joined(kUneven, kRight)}});
-  const auto snes = make_switch_model(switch_pad(0x2017, BusType::bluetooth));
-  snes->start(port, StartedBy::us);
+  const auto snes = started(0x2017, port);
   EXPECT_FALSE(snes->factory_sticks());
   EXPECT_EQ(port.written.size(), 2u) << "it is started, and its memory is left alone";
-  const auto n64 = make_switch_model(switch_pad(0x2019, BusType::bluetooth));
-  n64->start(port, StartedBy::us);
+  const auto n64 = started(0x2019, port);
   ASSERT_TRUE(n64->factory_sticks());
   expect_axis(n64->factory_sticks()->left_y, 0x100, 0x7f0, 0xe00);
 }
@@ -177,28 +181,22 @@ TEST(SwitchPro, StartsOverUsbAsTheConsoleDoes) {
   EXPECT_TRUE(pad->take_remarks().empty());
 }
 
-TEST(SwitchPro, OnBluetoothThereIsNoUsbHandshake) {
+TEST(SwitchPro, OnBluetoothThereIsNoUsbHandshakeAndTheKernelsPadIsOnlyAskedForItsMemory) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
-  model(BusType::bluetooth)->start(port, StartedBy::us);
+  started(0x2009, port);
   ASSERT_EQ(port.written.size(), 4u);
   EXPECT_EQ(port.written[0][10], 0x03);
-}
-
-TEST(SwitchPro, APadThatTheKernelDrivesIsOnlyAskedForItsMemory) {
-  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
-  const auto pad = model();
-  pad->start(port, StartedBy::kernel);
+  port = pad_with({{0x603d, joined(kLeft, kRight)}});
+  EXPECT_TRUE(asked(port)->factory_sticks());
   ASSERT_EQ(port.written.size(), 2u);
   EXPECT_EQ(port.written[0][10], 0x10);
   EXPECT_EQ(port.written[1][10], 0x10);
-  EXPECT_TRUE(pad->factory_sticks());
 }
 
 TEST(SwitchPro, TheTwoSticksKeepTheirNumbersInDifferentOrder) {
   ScriptedPort port = pad_with({{0x603d, joined(packed({1500, 1400, 2100, 1950, 1300, 1200}),
                                                 packed({2000, 2150, 1250, 1350, 1450, 1550}))}});
-  const auto pad = model();
-  pad->start(port, StartedBy::kernel);
+  const auto pad = asked(port);
   const auto sticks = pad->factory_sticks();
   ASSERT_TRUE(sticks);
   expect_axis(sticks->left_x, 2100 - 1300, 2100, 2100 + 1500);
@@ -207,37 +205,31 @@ TEST(SwitchPro, TheTwoSticksKeepTheirNumbersInDifferentOrder) {
   expect_axis(sticks->right_y, 2150 - 1350, 2150, 2150 + 1550);
 }
 
-TEST(SwitchPro, TheUsersCalibrationOfAStickComesFirst) {
+TEST(SwitchPro, TheUsersPlausibleCalibrationOfAStickComesFirst) {
   Packet user(kUserBytes, 0xff);
   user[11] = 0xb2;
   user[12] = 0xa1;
   const Packet own = packed({2222, 1888, 1100, 1101, 1102, 1103});
   std::copy(own.begin(), own.end(), user.begin() + 13);
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}, {0x8010, user}});
-  const auto pad = model();
-  pad->start(port, StartedBy::kernel);
+  const auto pad = asked(port);
   const auto sticks = pad->factory_sticks();
   ASSERT_TRUE(sticks);
   expect_axis(sticks->left_x, 0x200, 0x800, 0xe00);
   expect_axis(sticks->right_x, 2222 - 1100, 2222, 2222 + 1102);
   expect_axis(sticks->right_y, 1888 - 1101, 1888, 1888 + 1103);
-}
-
-TEST(SwitchPro, AnImplausibleUserCalibrationGivesWayToTheFactorys) {
-  Packet user(kUserBytes, 0x00);  // marked, all zero
+  user.assign(kUserBytes, 0x00);  // marked, all zero: the factory's
   user[0] = user[11] = 0xb2;
   user[1] = user[12] = 0xa1;
-  ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}, {0x8010, user}});
-  const auto pad = model();
-  pad->start(port, StartedBy::kernel);
-  ASSERT_TRUE(pad->factory_sticks());
-  expect_axis(pad->factory_sticks()->left_x, 0x200, 0x800, 0xe00);
+  port = pad_with({{0x603d, joined(kLeft, kRight)}, {0x8010, user}});
+  const auto other = asked(port);
+  ASSERT_TRUE(other->factory_sticks());
+  expect_axis(other->factory_sticks()->left_x, 0x200, 0x800, 0xe00);
 }
 
 TEST(SwitchPro, BlankMemoryIsNoCalibration) {
   ScriptedPort port = pad_with({});
-  const auto pad = model();
-  pad->start(port, StartedBy::kernel);
+  const auto pad = asked(port);
   EXPECT_FALSE(pad->factory_sticks());
   EXPECT_EQ(
       pad->take_remarks(),
@@ -247,8 +239,7 @@ TEST(SwitchPro, BlankMemoryIsNoCalibration) {
 
 TEST(SwitchPro, OneBlankStickTakesTheUsualRange) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, Packet(9, 0xff))}});
-  const auto pad = model();
-  pad->start(port, StartedBy::kernel);
+  const auto pad = asked(port);
   ASSERT_TRUE(pad->factory_sticks());
   expect_axis(pad->factory_sticks()->right_y, 500, 2000, 3500);
   EXPECT_EQ(pad->take_remarks().size(), 1u);
@@ -257,8 +248,7 @@ TEST(SwitchPro, OneBlankStickTakesTheUsualRange) {
 TEST(SwitchPro, NumbersThatNoStickHasAreRefused) {
   const auto is_taken = [](const std::array<int, 6>& left) {
     ScriptedPort port = pad_with({{0x603d, joined(packed(left), Packet(9, 0xff))}});
-    const auto pad = model();
-    pad->start(port, StartedBy::kernel);
+    const auto pad = asked(port);
     return pad->factory_sticks().has_value();
   };
   EXPECT_TRUE(is_taken({1500, 1500, 2048, 2048, 1500, 1500}));
@@ -289,8 +279,7 @@ TEST(SwitchPro, AnswersToOthersAreNotTakenForOurs) {
     waiting.push_back(other);
     honest(packet, waiting);
   };
-  const auto pad = model();
-  pad->start(port, StartedBy::kernel);
+  const auto pad = asked(port);
   ASSERT_TRUE(pad->factory_sticks());
   expect_axis(pad->factory_sticks()->left_x, 0x200, 0x800, 0xe00);
 }
@@ -307,8 +296,7 @@ TEST(SwitchPro, ShortRepliesAreNone) {
       reply.resize(size);
       waiting.push_back(reply);
     };
-    const auto pad = model();
-    pad->start(port, StartedBy::kernel);
+    const auto pad = asked(port);
     EXPECT_FALSE(pad->factory_sticks());
   }
 }
@@ -320,8 +308,7 @@ TEST(SwitchPro, ALostAnswerIsAskedForAgain) {
   port.answer = [&](const Packet& packet, std::deque<Packet>& waiting) {
     if (++writes % 3 == 0) honest(packet, waiting);
   };
-  const auto pad = model();
-  pad->start(port, StartedBy::kernel);
+  const auto pad = asked(port);
   EXPECT_TRUE(pad->factory_sticks());
   EXPECT_EQ(port.written.size(), 6u);
 }
@@ -342,20 +329,14 @@ TEST(SwitchPro, APadThatTalksWithoutEverAnsweringEndsTheStart) {
   ScriptedPort port;
   port.is_endless = true;
   port.waiting.push_back(Packet(64, 0x30));
-  const auto begin = std::chrono::steady_clock::now();
   const auto pad = model();
   pad->start(port, StartedBy::us);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
   EXPECT_LT(port.reads, 16 * 512 + 1);
   EXPECT_FALSE(pad->factory_sticks());
-}
-
-TEST(SwitchPro, APadThatHasGoneIsLeftAlone) {
-  ScriptedPort port;
-  port.is_gone = true;
-  const auto pad = model();
-  pad->start(port, StartedBy::us);
-  EXPECT_EQ(port.reads, 0);
+  ScriptedPort gone;
+  gone.is_gone = true;
+  model()->start(gone, StartedBy::us);
+  EXPECT_EQ(gone.reads, 0) << "a pad that has gone is left alone";
 }
 
 TEST(SwitchPro, OnlyInputReportsAreHandedOn) {

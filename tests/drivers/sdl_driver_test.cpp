@@ -78,7 +78,7 @@ std::unique_ptr<Device> opened(const std::string& name) {
 // As the I/O thread does it.
 std::vector<Report> reports_of(Device& device) {
   pollfd fd = device.poll_fds()[0];
-  EXPECT_EQ(::poll(&fd, 1, 1000), 1);
+  EXPECT_EQ(::poll(&fd, 1, 60000), 1);
   std::vector<Report> reports;
   Report report;
   while (device.read(report) == Device::Status::report) reports.push_back(report);
@@ -255,7 +255,7 @@ TEST(SdlDriver, OtherThreadsMayUseSdlMeanwhile) {
     }
   });
   std::vector<Report> last;
-  for (int i = 1; i <= 300; ++i) {
+  for (int i = 1; i <= 100; ++i) {
     SDL_JoystickSetVirtualAxis(pad.joystick, 0, static_cast<Sint16>(i));
     const auto reports = reports_of(*device);
     if (!reports.empty()) last = {reports.back()};
@@ -265,7 +265,7 @@ TEST(SdlDriver, OtherThreadsMayUseSdlMeanwhile) {
   window.join();
   const auto rest = reports_of(*device);
   if (!rest.empty()) last = {rest.back()};
-  EXPECT_FLOAT_EQ(decoded(*device, last).axis[kLeftX], (2.0f * 300 + 1) / 65535);
+  EXPECT_FLOAT_EQ(decoded(*device, last).axis[kLeftX], (2.0f * 100 + 1) / 65535);
   EXPECT_EQ(device->lost(), 0);
 }
 
@@ -303,16 +303,9 @@ TEST(SdlDriver, LinesThatCountTheKernelsCodesAreForNodesOnly) {
   device.version = 0x0111;
   EXPECT_STREQ(first("evdev"), "x");
   EXPECT_STREQ(first("usb"), "x");
+  // Nintendo prints A on the right button; ours, like SDL's by position, is the bottom one.
   device = device_with(BusType::usb, 0x057e, 0x2009, 0x8111);
   EXPECT_STREQ(first("evdev"), "a");
-}
-
-TEST(SdlDriver, NamesAreByPosition) {
-  // Nintendo prints A on the right button; ours, like SDL's by position, is the bottom one.
-  DeviceInfo device = device_with(BusType::usb, 0x057e, 0x2009, 0x8111);
-  device.driver = "evdev";
-  const std::string line = sdl_library_mapping(device);
-  EXPECT_NE(line.find(",a:b0,"), std::string::npos) << line;
 }
 
 TEST(SdlDriver, WhatTheDataBaseDoesNotKnowIsNotGuessed) {

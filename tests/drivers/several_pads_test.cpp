@@ -73,6 +73,7 @@ TEST(SeveralPads, OnePadStaysOne) {
   EXPECT_TRUE(split_pads(listed(0x1209, 1, shared)).empty());
 }
 
+std::vector<DeviceListing> adapter() { return split_pads(listed(0x057e, 0x0337, {})); }
 // Report 21 with this type, these buttons and axes in one plug.
 Packet adapter_report(int plug, std::uint8_t type, std::array<std::uint8_t, 8> rest) {
   Packet report(37);
@@ -94,17 +95,14 @@ TEST(SeveralPads, TheGameCubeAdapterIsAPadForEachPlug) {
     const Packet report = adapter_report(plug, 0x14, {0x81, 0x03, 255, 0, 0, 255, 255, 0});
     PadState state;
     ASSERT_TRUE(decode(layout, report_of(report), state));
-    EXPECT_EQ(state.axis[kLeftX], 1.0f);
-    EXPECT_EQ(state.axis[kLeftY], -1.0f);
-    EXPECT_EQ(state.axis[kRightX], -1.0f);
-    EXPECT_EQ(state.axis[kRightY], 1.0f);
-    EXPECT_EQ(state.axis[kLeftTrigger], 1.0f);
-    EXPECT_EQ(names_of(state.buttons), "a start rightshoulder dpup");
+    expect_state(state,
+                 "left_x 1 left_y -1 right_x -1 right_y 1 left_trigger 1 buttons a start "
+                 "rightshoulder dpup");
   }
 }
 
 TEST(SeveralPads, AnEmptyPlugIsAPadThatIsUnplugged) {
-  const auto pads = split_pads(listed(0x057e, 0x0337, {}));
+  const auto pads = adapter();
   ASSERT_EQ(pads.size(), 4u);
   const auto model = make_pad_model(pads[1].info);
   ScriptedPort port;
@@ -124,7 +122,7 @@ TEST(SeveralPads, AnEmptyPlugIsAPadThatIsUnplugged) {
 }
 
 TEST(SeveralPads, OnePacketSetsTheMotorsOfAllPlugs) {
-  const auto pads = split_pads(listed(0x057e, 0x0337, {}));
+  const auto pads = adapter();
   const auto first = make_pad_model(pads[0].info), third = make_pad_model(pads[2].info);
   OutPacket reply;
   EXPECT_EQ(rumble_of(*first, {0xffff, 0}), (Packet{0x11, 0, 0, 0, 0})) << "power is not known";

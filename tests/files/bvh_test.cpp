@@ -122,15 +122,13 @@ TEST(Bvh, EveryTruncationIsRefused) {
 
 TEST(Bvh, DamagedHierarchiesAreRefused) {
   EXPECT_NE(error_of(""), "");
-  EXPECT_NE(error_of(replaced(kTiny, "HIERARCHY", "BIERARCHY")), "");
-  EXPECT_NE(error_of(replaced(kTiny, "Yposition", "Wposition")), "");
-  EXPECT_NE(error_of(replaced(kTiny, "Yposition", "Xrotation")), "");
-  EXPECT_NE(error_of(replaced(kTiny, "OFFSET 0 1 0", "OFFSET 0 1 0\nJOINT b\n{\n}")), "");
-  EXPECT_NE(error_of(replaced(kTiny, "MOTION", "ROOT b\n{\n}\nMOTION")), "");
-}
-
-TEST(Bvh, AJointHasOneOffset) {
-  EXPECT_NE(error_of(replaced(kTiny, "OFFSET 0 1 0", "OFFSET 0 1 0\nOFFSET 0 1 0")), "");
+  for (const auto& [sound, damaged] : {std::pair("HIERARCHY", "BIERARCHY"),
+                                       {"Yposition", "Wposition"},
+                                       {"Yposition", "Xrotation"},
+                                       {"OFFSET 0 1 0", "OFFSET 0 1 0\nJOINT b\n{\n}"},
+                                       {"MOTION", "ROOT b\n{\n}\nMOTION"},
+                                       {"OFFSET 0 1 0", "OFFSET 0 1 0\nOFFSET 0 1 0"}})
+    EXPECT_NE(error_of(replaced(kTiny, sound, damaged)), "") << damaged;
   const std::string text = replaced(WalkerText().text(), "OFFSET 10 -2 0\n", "");
   EXPECT_NE(error_of(text).find("\"LeftUpLeg\" has no OFFSET"), std::string::npos);
 }
@@ -138,17 +136,6 @@ TEST(Bvh, AJointHasOneOffset) {
 TEST(Bvh, AMissingFileOrAFolderIsOneSentence) {
   EXPECT_EQ(read_bvh("/nowhere/walk.bvh").error().message, "/nowhere/walk.bvh: no such file");
   EXPECT_FALSE(read_bvh(std::filesystem::temp_directory_path().string()));
-}
-
-TEST(Bvh, AllSharedFilesAreRead) {
-  GAITPAD_NEEDS(kCapturedMotions);
-  int files = 0;
-  for (const std::string& entry : files_in(kCapturedMotions, ".bvh")) {
-    const auto bvh = read_bvh(entry);
-    EXPECT_TRUE(bvh) << bvh.error().message;
-    ++files;
-  }
-  EXPECT_GE(files, 30);
 }
 
 TEST(Bvh, LineEndsOfASharedFileChangeNothing) {
@@ -270,12 +257,24 @@ TEST(BvhWriter, AnEndSiteThatIsAToeBecomesAJoint) {
   EXPECT_EQ(out.str().find("JOINT RightToeBase_End\n"), std::string::npos);
 }
 
+// Of a rotation channel, from frame to frame.
+double largest_step_deg(const Bvh& bvh) {
+  double largest = 0.0;
+  for (int f = 1; f < bvh.frames; ++f) {
+    for (int c = 3; c < bvh.channels; ++c) {
+      const std::size_t at = static_cast<std::size_t>(f) * bvh.channels + c;
+      largest = std::max(largest, std::abs(bvh.values[at] - bvh.values[at - bvh.channels]));
+    }
+  }
+  return largest;
+}
+
 TEST(BvhWriter, ATurningRootNeverFlipsAChannel) {
   auto m = motion_from_bvh(WalkerText().text(), "a");
   ASSERT_TRUE(m);
   const MotionFrame still = m->frames[0];
   m->frames.clear();
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 800; ++i) {
     m->frames.push_back(still);
     m->frames.back().local[0] = rotation_y(i * kDegree) * rotation_x(0.3) * rotation_z(0.2);
     m->frames.back().local[2] = rotation_x(0.1 * i) * rotation_z(0.2);
@@ -283,12 +282,7 @@ TEST(BvhWriter, ATurningRootNeverFlipsAChannel) {
   const auto bvh = parse_bvh(exported(*m), "out");
   ASSERT_TRUE(bvh) << bvh.error().message;
   expect_same_motion(*m, *bvh);
-  for (int f = 1; f < bvh->frames; ++f) {
-    for (int c = 3; c < bvh->channels; ++c) {
-      const std::size_t at = static_cast<std::size_t>(f) * bvh->channels + c;
-      ASSERT_LT(std::abs(bvh->values[at] - bvh->values[at - bvh->channels]), 10.0);
-    }
-  }
+  EXPECT_LT(largest_step_deg(*bvh), 10.0);
 }
 
 TEST(BvhWriter, SharedWalksComeBackWithinAMicrometreAndSmooth) {
@@ -300,14 +294,7 @@ TEST(BvhWriter, SharedWalksComeBackWithinAMicrometreAndSmooth) {
     const auto bvh = parse_bvh(exported(*m), file);
     ASSERT_TRUE(bvh) << bvh.error().message;
     expect_same_motion(*m, *bvh);
-    double largest = 0.0;
-    for (int f = 1; f < bvh->frames; ++f) {
-      for (int c = 3; c < bvh->channels; ++c) {
-        const std::size_t at = static_cast<std::size_t>(f) * bvh->channels + c;
-        largest = std::max(largest, std::abs(bvh->values[at] - bvh->values[at - bvh->channels]));
-      }
-    }
-    EXPECT_LT(largest, 60.0) << file;
+    EXPECT_LT(largest_step_deg(*bvh), 60.0) << file;
   }
 }
 

@@ -5,7 +5,6 @@
 
 #include <charconv>
 
-#include "base/text.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 
@@ -45,7 +44,7 @@ TEST(TomlFile, TypedValuesArriveAsWritten) {
 // The same bits as from_chars, whatever toml++ uses inside: a replay depends on it.
 TEST(TomlFile, NumbersAreTheNearestDoubles) {
   std::uint64_t seed = 1;
-  for (int i = 0; i < 5'000; ++i) {
+  for (int i = 0; i < 2'000; ++i) {
     seed = seed * 6364136223846793005u + 1442695040888963407u;
     const std::string digits = "0." + std::to_string(seed);
     double expected = 0.0;
@@ -65,24 +64,18 @@ TEST(TomlFile, AbsentKeyIsNoProblemUntilItIsRequired) {
   EXPECT_EQ(problem(file), "f.toml:1: key \"x\" is missing");
 }
 
-TEST(TomlFile, UnknownKeyIsNamedWithItsLineAndTheNearestKnownOne) {
+TEST(TomlFile, TheFirstUnknownKeyIsNamedWithItsLineAndTheNearestKnownOne) {
   TomlFile file = parsed("outer = 1\n\ninenr = 2\n");
   TomlTable root = file.root();
   root.number("inner", 0, 3);
   root.number("outer", 0, 3);
   EXPECT_EQ(problem(file), "f.toml:3: unknown key \"inenr\"; did you mean \"inner\"?");
-}
-
-TEST(TomlFile, UnknownKeyFarFromAllHasNoSuggestion) {
-  TomlFile file = parsed("banana = 1\n");
-  file.root().number("inner", 0, 3);
-  EXPECT_EQ(problem(file), "f.toml:1: unknown key \"banana\"");
-}
-
-TEST(TomlFile, FirstUnknownKeyOfTheFileIsReportedInNestedTablesToo) {
-  TomlFile file = parsed("[t]\na = 1\nb = 2\n[u]\nc = 3\n");
-  file.root().table("t")->number("a", 0, 3);
-  EXPECT_EQ(problem(file).substr(0, 25), "f.toml:3: unknown key \"b\"");
+  TomlFile far = parsed("banana = 1\n");
+  far.root().number("inner", 0, 3);
+  EXPECT_EQ(problem(far), "f.toml:1: unknown key \"banana\"");
+  TomlFile nested = parsed("[t]\na = 1\nb = 2\n[u]\nc = 3\n");
+  nested.root().table("t")->number("a", 0, 3);
+  EXPECT_EQ(problem(nested).substr(0, 25), "f.toml:3: unknown key \"b\"");
 }
 
 TEST(TomlFile, WrongValuesNameLineAndCause) {
@@ -187,17 +180,12 @@ TEST(TomlFile, FilesThatCannotBeReadAreNamed) {
   EXPECT_EQ(TomlFile::load(big).error().message, big + ": larger than 1048576 bytes");
 }
 
-TEST(TomlFile, QuotedTextIsShortAndPrintable) {
-  EXPECT_EQ(in_quotes("a\nb"), "\"a\\x0ab\"");
-  EXPECT_LT(in_quotes(std::string(1000, 'x')).size(), 70u);
-}
-
 // Any bytes give a table or a sentence, never a crash.
 TEST(TomlFile, DamagedFilesNeverThrow) {
   const std::string sound =
       "a = 1.5\n[b.c]\nd = ['x', \"y\\n\"]\n[[e]]\nf = {g = 1, h = 2020-01-01}\n";
   std::uint32_t seed = 1;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < 5'000; ++i) {
     std::string text = sound;
     for (int n = 0; n < 3; ++n) {
       seed = seed * 1664525u + 1013904223u;

@@ -186,56 +186,62 @@ TEST(Decode, FourDpadUsagesMakeAHat) {
   EXPECT_EQ(state_of(l, {0, 0, 0b0011}).hat, Hat::released) << "up and down cancel out";
 }
 
-TEST(DefaultMap, RightStickIsZAndRzOnMostPads) {
-  const PadLayout l = layout_of(pad(0x04, axes({0x30, 0x31, 0x32, 0x35}) + buttons(12)));
-  const PadState s = state_of(l, {128, 128, 255, 0, 0x42, 0});
-  EXPECT_EQ(s.axis[kRightX], 1.0f);
-  EXPECT_EQ(s.axis[kRightY], 1.0f);
-  EXPECT_EQ(s.buttons, mask({kButtonA}));
-  EXPECT_EQ(s.axis[kLeftTrigger], 1.0f) << "button 7 is a trigger where there is no trigger axis";
-}
+// Xbox pads in Windows mode have triggers of 10 bits on Z and Rz.
+const Bytes kNarrow = {0x09, 0x32, 0x26, 0xff, 0x03, 0x75, 0x10, 0x95,
+                       0x01, 0x81, 0x02, 0x09, 0x35, 0x81, 0x02};
+// Brake and accelerator mean Android's order of buttons; the accelerator is the right trigger,
+// whatever comes first.
+const Bytes kPedals = {0x05, 0x02, 0x09, 0xc4, 0x09, 0xc5, 0x15, 0x00, 0x26,
+                       0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
+const Bytes kButtonNumbers = {0x05, 0x09, 0x19, 0x01, 0x29, 0x0c, 0x15, 0x01,
+                              0x25, 0x0c, 0x75, 0x08, 0x95, 0x02, 0x81, 0x00};
 
-TEST(DefaultMap, SonyHasTriggersOnRxAndRy) {
-  const PadLayout l =
-      layout_of(pad(0x05, axes({0x30, 0x31, 0x32, 0x35, 0x33, 0x34}) + buttons(15)));
-  const PadState s = state_of(l, {0, 0, 255, 0, 51, 255, 0x40, 0});
-  EXPECT_EQ(s.axis[kRightX], 1.0f);
-  EXPECT_FLOAT_EQ(s.axis[kLeftTrigger], 0.2f);
-  EXPECT_EQ(s.axis[kRightTrigger], 1.0f);
-  EXPECT_EQ(s.buttons, 0u) << "the digital trigger beside the analog one is no control";
-}
-
-TEST(DefaultMap, XboxInWindowsModeHasTheStickOnRxAndRy) {
-  const Bytes narrow = {0x09, 0x32, 0x26, 0xff, 0x03, 0x75, 0x10, 0x95,
-                        0x01, 0x81, 0x02, 0x09, 0x35, 0x81, 0x02};
-  const PadLayout l = layout_of(pad(0x05, axes({0x30, 0x31, 0x33, 0x34}) + narrow + buttons(10)));
-  const PadState s = state_of(l, {0, 0, 255, 255, 0xff, 0x03, 0, 0, 0xc4, 0x03});
-  EXPECT_EQ(s.axis[kRightX], 1.0f);
-  EXPECT_EQ(s.axis[kRightY], -1.0f);
-  EXPECT_EQ(s.axis[kLeftTrigger], 1.0f);
-  EXPECT_EQ(s.axis[kRightTrigger], 0.0f);
-  EXPECT_EQ(s.buttons,
-            mask({kButtonX, kButtonBack, kButtonStart, kButtonLeftStick, kButtonRightStick}));
-}
-
-TEST(DefaultMap, BrakeAndAcceleratorMeanAndroidsButtonOrder) {
-  const Bytes pedals = {0x05, 0x02, 0x09, 0xc4, 0x09, 0xc5, 0x15, 0x00, 0x26,
-                        0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
-  const PadLayout l = layout_of(pad(0x05, axes({0x30, 0x31, 0x32, 0x35}) + pedals + buttons(15)));
-  const PadState s = state_of(l, {0, 0, 0, 0, 255, 0, 0b11011011, 0b01111100});
-  EXPECT_EQ(s.axis[kRightTrigger], 1.0f)
-      << "the accelerator is the right one, whatever comes first";
-  EXPECT_EQ(s.axis[kLeftTrigger], 0.0f);
-  EXPECT_EQ(s.buttons,
-            mask({kButtonA, kButtonB, kButtonX, kButtonY, kButtonLeftShoulder, kButtonRightShoulder,
-                  kButtonBack, kButtonStart, kButtonGuide, kButtonLeftStick, kButtonRightStick}));
-}
-
-TEST(DefaultMap, OfSeveralXTheOneBesideYCounts) {
-  const PadLayout l = layout_of(pad(0x04, axes({0x30, 0x30, 0x30, 0x31})));
-  const PadState s = state_of(l, {0x80, 0x80, 0xff, 0x00});
-  EXPECT_EQ(s.axis[kLeftX], 1.0f);
-  EXPECT_EQ(s.axis[kLeftY], 1.0f);
+TEST(DefaultMap, ControlsAreNamedByTheUsagesThatAPadHas) {
+  struct Row {
+    const char* what;
+    std::uint8_t kind;
+    Bytes items, report;
+    const char* words;
+  };
+  const Bytes four = axes({0x30, 0x31, 0x32, 0x35});
+  const Row kRows[] = {
+      {"most pads: Z and Rz; button 7 is a trigger where there is no trigger axis",
+       0x04,
+       four + buttons(12),
+       {128, 128, 255, 0, 0x42, 0},
+       "right_x 1 right_y 1 left_trigger 1 buttons a"},
+      {"Sony: triggers on Rx and Ry, and the digital ones beside them are no control",
+       0x05,
+       axes({0x30, 0x31, 0x32, 0x35, 0x33, 0x34}) + buttons(15),
+       {128, 128, 255, 0, 51, 255, 0x40, 0},
+       "right_x 1 right_y 1 left_trigger 0.2 right_trigger 1"},
+      {"Xbox in Windows mode: the stick on Rx and Ry",
+       0x05,
+       axes({0x30, 0x31, 0x33, 0x34}) + kNarrow + buttons(10),
+       {128, 128, 255, 255, 0xff, 0x03, 0, 0, 0xc4, 0x03},
+       "right_x 1 right_y -1 left_trigger 1 buttons x back start leftstick rightstick"},
+      {"Android",
+       0x05,
+       four + kPedals + buttons(15),
+       {128, 128, 128, 128, 255, 0, 0b11011011, 0b01111100},
+       "right_trigger 1 buttons a b x y leftshoulder rightshoulder back start guide leftstick "
+       "rightstick"},
+      {"of several X the one beside Y",
+       0x04,
+       axes({0x30, 0x30, 0x30, 0x31}),
+       {0x80, 0x80, 0xff, 0x00},
+       "left_x 1 left_y 1"},
+      {"buttons as an array of numbers",
+       0x04,
+       four + kButtonNumbers,
+       {128, 128, 128, 128, 2, 9},
+       "buttons a back"},
+      {"none of an array", 0x04, four + kButtonNumbers, {128, 128, 128, 128, 0, 0}, ""},
+  };
+  for (const Row& row : kRows) {
+    SCOPED_TRACE(row.what);
+    expect_state(state_of(layout_of(pad(row.kind, row.items)), row.report), row.words);
+  }
 }
 
 TEST(DefaultMap, OnlyTheFirstPadOfAnAdapterDrives) {
@@ -247,14 +253,6 @@ TEST(DefaultMap, OnlyTheFirstPadOfAnAdapterDrives) {
   EXPECT_EQ(s.axis[kLeftX], 0.0f);
   EXPECT_TRUE(decode(l, report_of({0x01, 0xff, 0xff}), s));
   EXPECT_EQ(s.axis[kLeftX], 1.0f);
-}
-
-TEST(DefaultMap, ButtonsMayComeAsAnArrayOfNumbers) {
-  const Bytes array = {0x05, 0x09, 0x19, 0x01, 0x29, 0x0c, 0x15, 0x01,
-                       0x25, 0x0c, 0x75, 0x08, 0x95, 0x02, 0x81, 0x00};
-  const PadLayout l = layout_of(pad(0x04, axes({0x30, 0x31, 0x32, 0x35}) + array));
-  EXPECT_EQ(state_of(l, {0, 0, 0, 0, 2, 9}).buttons, mask({kButtonA, kButtonBack}));
-  EXPECT_EQ(state_of(l, {0, 0, 0, 0, 0, 0}).buttons, 0u);
 }
 
 TEST(DefaultMap, MiceAndVendorDevicesAreNoPads) {

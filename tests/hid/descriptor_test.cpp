@@ -82,43 +82,32 @@ TEST(ReportDescriptor, UsageRangeGivesEachFieldItsOwnUsage) {
   EXPECT_EQ(d.fields[3].bit_offset, 3u);
 }
 
-TEST(ReportDescriptor, UsageMaximumMayStandBeforeTheMinimum) {
-  const auto d = parsed(game_pad(
-      {0x05, 0x09, 0x29, 0x02, 0x19, 0x01, 0x25, 0x01, 0x75, 0x01, 0x95, 0x02, 0x81, 0x02}));
-  EXPECT_EQ(d.fields[0].usage, 0x00090001u);
-  EXPECT_EQ(d.fields[1].usage, 0x00090002u);
-}
-
-TEST(ReportDescriptor, FourByteUsageHoldsItsPage) {
-  const auto d = parsed({0x05, 0x0c, 0x0b, 0x04, 0x00, 0x01, 0x00, 0xa1, 0x01, 0x0b, 0x30, 0x00,
-                         0x01, 0x00, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x01, 0x81, 0x02, 0xc0});
-  EXPECT_EQ(d.applications[0], usage::kJoystick);
-  EXPECT_EQ(d.fields[0].usage, usage::kX);
-}
-
-TEST(ReportDescriptor, ShortUsageTakesThePageInForceWhereItStands) {
-  // The Asus pad: X, then page 2 with Brake: X stays on page 1.
-  const auto d = parsed(game_pad(
-      {0x09, 0x30, 0x05, 0x02, 0x09, 0xc5, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02}));
-  EXPECT_EQ(d.fields[0].usage, usage::kX);
-  EXPECT_EQ(d.fields[1].usage, usage::kBrake);
-}
-
-TEST(ReportDescriptor, PageBehindTheLastUsageReachesBack) {
-  const auto d = parsed({0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x05, 0x0c, 0x09, 0x30, 0x09, 0x31,
-                         0x05, 0x01, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0});
-  EXPECT_EQ(d.fields[0].usage, usage::kX);
-  EXPECT_EQ(d.fields[1].usage, usage::kY);
-}
-
-TEST(ReportDescriptor, ReachingBackStopsAtAUsageThatIsAlreadyOnThePage) {
-  // Page 2: 0xc5; page 1: 0x30; page 0c: 0x40; then page 1: only the last one moves.
-  const auto d = parsed({0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x05, 0x02, 0x09, 0xc5,
-                         0x05, 0x01, 0x09, 0x30, 0x05, 0x0c, 0x09, 0x40, 0x05, 0x01,
-                         0x25, 0x7f, 0x75, 0x08, 0x95, 0x03, 0x81, 0x02, 0xc0});
-  EXPECT_EQ(d.fields[0].usage, usage::kBrake);
-  EXPECT_EQ(d.fields[1].usage, usage::kX);
-  EXPECT_EQ(d.fields[2].usage, 0x00010040u);
+TEST(ReportDescriptor, UsagesTakeTheirPages) {
+  const auto usages = [](const Bytes& bytes) {
+    std::vector<std::uint32_t> all;
+    for (const Field& field : parsed(bytes).fields) all.push_back(field.usage);
+    return all;
+  };
+  using Usages = std::vector<std::uint32_t>;
+  const Bytes two = {0x25, 0x7f, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
+  // The usage maximum may stand before the minimum.
+  EXPECT_EQ(usages(game_pad(Bytes{0x05, 0x09, 0x29, 0x02, 0x19, 0x01} + two)),
+            (Usages{0x00090001, 0x00090002}));
+  // The Asus pad: X, then page 2 with Brake: X takes the page in force where it stands.
+  EXPECT_EQ(usages(game_pad(Bytes{0x09, 0x30, 0x05, 0x02, 0x09, 0xc5} + two)),
+            (Usages{usage::kX, usage::kBrake}));
+  // A page behind the last usage reaches back,
+  EXPECT_EQ(usages(game_pad(Bytes{0x05, 0x0c, 0x09, 0x30, 0x09, 0x31, 0x05, 0x01} + two)),
+            (Usages{usage::kX, usage::kY}));
+  // but stops at a usage that is already on it: page 2: c5; page 1: 30; page 0c: 40; then page 1.
+  EXPECT_EQ(usages(game_pad({0x05, 0x02, 0x09, 0xc5, 0x05, 0x01, 0x09, 0x30, 0x05, 0x0c, 0x09,
+                             0x40, 0x05, 0x01, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x03, 0x81, 0x02})),
+            (Usages{usage::kBrake, usage::kX, 0x00010040}));
+  // A usage of four bytes holds its page.
+  const Bytes four = {0x05, 0x0c, 0x0b, 0x04, 0x00, 0x01, 0x00, 0xa1, 0x01, 0x0b, 0x30, 0x00,
+                      0x01, 0x00, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x01, 0x81, 0x02, 0xc0};
+  EXPECT_EQ(parsed(four).applications[0], usage::kJoystick);
+  EXPECT_EQ(usages(four), Usages{usage::kX});
 }
 
 TEST(ReportDescriptor, PopBringsBackWhatPushKept) {

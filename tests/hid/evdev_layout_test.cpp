@@ -55,25 +55,16 @@ constexpr std::uint8_t kJoystick = 0x04, kGamePad = 0x05, kMultiAxis = 0x08;
 const std::vector<std::uint8_t> kEighteenButtons = {0x05, 0x09, 0x19, 0x01, 0x29, 0x12, 0x25,
                                                     0x01, 0x75, 0x01, 0x95, 0x12, 0x81, 0x02};
 
-TEST(EvdevCodes, ButtonsOfAGamePadBeginAtBtnGamepadAndGoOnAtTriggerHappy) {
-  const auto codes = codes_of(kGamePad, kEighteenButtons);
-  EXPECT_EQ(codes.at("9:1"), 0x130);
-  EXPECT_EQ(codes.at("9:10"), 0x13f);
-  EXPECT_EQ(codes.at("9:11"), 0x2c0);
-  EXPECT_EQ(codes.at("9:12"), 0x2c1);
-}
-
-TEST(EvdevCodes, ButtonsOfAJoystickBeginAtBtnJoystickAndGoOnAtTriggerHappy) {
-  const auto codes = codes_of(kJoystick, kEighteenButtons);
-  EXPECT_EQ(codes.at("9:1"), 0x120);
-  EXPECT_EQ(codes.at("9:10"), 0x12f);
-  EXPECT_EQ(codes.at("9:11"), 0x2c0);
-}
-
-TEST(EvdevCodes, ButtonsOfAnotherApplicationBeginAtBtnMisc) {
-  const auto codes = codes_of(kMultiAxis, kEighteenButtons);
-  EXPECT_EQ(codes.at("9:1"), 0x100);
-  EXPECT_EQ(codes.at("9:12"), 0x111);
+// From BTN_GAMEPAD, BTN_JOYSTICK and BTN_MISC on; the 17th and later ones of a pad or joystick are
+// BTN_TRIGGER_HAPPY.
+TEST(EvdevCodes, ButtonsBeginWhereTheirApplicationSays) {
+  const auto codes = [](std::uint8_t application) {
+    const Map all = codes_of(application, kEighteenButtons);
+    return std::vector<int>{all.at("9:1"), all.at("9:10"), all.at("9:11"), all.at("9:12")};
+  };
+  EXPECT_EQ(codes(kGamePad), (std::vector<int>{0x130, 0x13f, 0x2c0, 0x2c1}));
+  EXPECT_EQ(codes(kJoystick), (std::vector<int>{0x120, 0x12f, 0x2c0, 0x2c1}));
+  EXPECT_EQ(codes(kMultiAxis), (std::vector<int>{0x100, 0x10f, 0x110, 0x111}));
 }
 
 TEST(EvdevCodes, AxesAndSimulationControls) {
@@ -101,21 +92,15 @@ TEST(EvdevCodes, ACodeThatIsTakenIsGivenToNoOther) {
   EXPECT_EQ(codes_of(kJoystick, {0x09, 0x36, 0x09, 0x36, 0x95, 0x02, 0x81, 0x02, 0x05, 0x02, 0x09,
                                  0xbb, 0x95, 0x01, 0x81, 0x02}),
             (Map{{"1:36", 6}, {"1:36.2", -1}, {"2:bb", -1}}));
-}
-
-TEST(EvdevCodes, OfSeveralZTheOneBesideRzHasTheCode) {
-  // Z Z Rz, as DragonRise's pads state them
+  // of Z Z Rz, as DragonRise's pads state them, the Z beside Rz has it
   EXPECT_EQ(codes_of(kJoystick, {0x09, 0x32, 0x09, 0x32, 0x09, 0x35, 0x95, 0x03, 0x81, 0x02}),
             (Map{{"1:32", -1}, {"1:32.2", 2}, {"1:35", 5}}));
 }
 
-TEST(EvdevCodes, AHatIsAPairAndASecondOneHasNone) {
+TEST(EvdevCodes, AHatAndDpadUsagesAreAPairAndASecondHatHasNone) {
   EXPECT_EQ(
       codes_of(kGamePad, {0x09, 0x39, 0x09, 0x39, 0x25, 0x07, 0x75, 0x04, 0x95, 0x02, 0x81, 0x42}),
       (Map{{"1:39", 0x10}, {"1:39.2", -1}}));
-}
-
-TEST(EvdevCodes, DpadUsagesAreAHat) {
   EXPECT_EQ(
       codes_of(kGamePad, {0x19, 0x90, 0x29, 0x93, 0x25, 0x01, 0x75, 0x01, 0x95, 0x04, 0x81, 0x02}),
       (Map{{"1:90", 0x10}, {"1:91", 0x10}, {"1:92", 0x10}, {"1:93", 0x10}}));
@@ -264,108 +249,101 @@ void expect_sticks(Node& node, std::int32_t min, std::int32_t max) {
   }
 }
 
-void expect_triggers(Node& node, std::int32_t max) {
-  node.set_axis(2, max);
-  node.set_axis(5, 0);
-  EXPECT_FLOAT_EQ(node.state().axis[kLeftTrigger], 1.0f);
-  EXPECT_FLOAT_EQ(node.state().axis[kRightTrigger], 0.0f);
-  node.set_axis(2, 0);
-  node.set_axis(5, max);
-  EXPECT_FLOAT_EQ(node.state().axis[kLeftTrigger], 0.0f);
-  EXPECT_FLOAT_EQ(node.state().axis[kRightTrigger], 1.0f);
+void expect_triggers(Node& node) {
+  for (const auto& [code, trigger] :
+       {std::pair<std::uint16_t, PadAxis>{2, kLeftTrigger}, {5, kRightTrigger}}) {
+    node.set_axis(code, 255);
+    EXPECT_FLOAT_EQ(node.state().axis[trigger], 1.0f);
+    node.set_axis(code, 0);
+    EXPECT_FLOAT_EQ(node.state().axis[trigger], 0.0f);
+  }
 }
 
 void expect_hat(Node& node) {
   const Hat kHats[3][3] = {{Hat::up_left, Hat::up, Hat::up_right},
                            {Hat::left, Hat::released, Hat::right},
                            {Hat::down_left, Hat::down, Hat::down_right}};
-  for (int y = -1; y <= 1; ++y) {
+  for (int y = 1; y >= -1; --y) {
     for (int x = -1; x <= 1; ++x) {
       node.set_axis(0x10, x);
       node.set_axis(0x11, y);
       EXPECT_EQ(node.state().hat, kHats[y + 1][x + 1]);
     }
   }
-}
-
-void expect_common_buttons(Node& node) {
-  const std::pair<std::uint16_t, PadButton> kCommon[] = {{0x130, kButtonA},
-                                                         {0x131, kButtonB},
-                                                         {0x136, kButtonLeftShoulder},
-                                                         {0x137, kButtonRightShoulder},
-                                                         {0x13a, kButtonBack},
-                                                         {0x13b, kButtonStart},
-                                                         {0x13c, kButtonGuide},
-                                                         {0x13d, kButtonLeftStick},
-                                                         {0x13e, kButtonRightStick}};
-  for (const auto& [code, button] : kCommon) EXPECT_EQ(node.buttons_of(code), bit(button)) << code;
-}
-
-TEST(EvdevLayout, AnXboxPadOnXpadIsNamedByItsPrintedLetters) {
-  Node node(xpad_node(), 0x045e, 0x028e, 0x0114);
-  EXPECT_TRUE(node.layout().is_pad);
-  expect_sticks(node, -32768, 32767);
-  expect_triggers(node, 255);
-  expect_hat(node);
   node.set_axis(0x10, 0);
   node.set_axis(0x11, 0);
-  expect_common_buttons(node);
-  EXPECT_EQ(node.buttons_of(0x133), bit(kButtonX));  // BTN_X
-  EXPECT_EQ(node.buttons_of(0x134), bit(kButtonY));  // BTN_Y
 }
 
-TEST(EvdevLayout, PaddlesOfAnElitePadAreCountedAsSdlDoes) {
-  EvdevAbilities abilities = xpad_node();
-  for (std::uint16_t code = 0x2c4; code <= 0x2c7; ++code) abilities.keys.push_back(code);
-  Node node(abilities, 0x045e, 0x0b00, 0x0500);
-  EXPECT_EQ(node.buttons_of(0x2c4), bit(kButtonPaddle1));
-  EXPECT_EQ(node.buttons_of(0x2c5), bit(kButtonPaddle3));
-  EXPECT_EQ(node.buttons_of(0x2c6), bit(kButtonPaddle2));
-  EXPECT_EQ(node.buttons_of(0x2c7), bit(kButtonPaddle4));
-  EXPECT_EQ(node.buttons_of(0x133), bit(kButtonX));
+using Buttons = std::vector<std::pair<std::uint16_t, PadButton>>;
+const Buttons kCommon = {{0x130, kButtonA},
+                         {0x131, kButtonB},
+                         {0x136, kButtonLeftShoulder},
+                         {0x137, kButtonRightShoulder},
+                         {0x13a, kButtonBack},
+                         {0x13b, kButtonStart},
+                         {0x13c, kButtonGuide},
+                         {0x13d, kButtonLeftStick},
+                         {0x13e, kButtonRightStick}};
+
+EvdevAbilities with_keys(EvdevAbilities node, std::uint16_t first, std::uint16_t last) {
+  for (std::uint16_t code = first; code <= last; ++code) node.keys.push_back(code);
+  return node;
 }
 
-TEST(EvdevLayout, SonyPadsOnTheirKernelDriverHaveNorthOnTop) {
-  for (const std::uint16_t product : {0x09cc, 0x0ce6, 0x05c4}) {
-    Node node(playstation_node(), 0x054c, product, 0x8111);
-    expect_sticks(node, 0, 255);
-    expect_triggers(node, 255);
-    expect_hat(node);
-    node.set_axis(0x10, 0);
-    node.set_axis(0x11, 0);
-    expect_common_buttons(node);
-    EXPECT_EQ(node.buttons_of(0x133), bit(kButtonY));  // BTN_NORTH
-    EXPECT_EQ(node.buttons_of(0x134), bit(kButtonX));  // BTN_WEST
+// BTN_NORTH is 0x133, BTN_WEST 0x134: on top and on the left but with xpad, which names them X and
+// Y. Paddles of an Elite pad are counted as SDL does.
+TEST(EvdevLayout, PadsOnTheirKernelDriversAreNamedByPosition) {
+  const Buttons xbox = {{0x133, kButtonX}, {0x134, kButtonY}};
+  const Buttons sony = {{0x133, kButtonY}, {0x134, kButtonX}};
+  const Buttons elite = {{0x2c4, kButtonPaddle1},
+                         {0x2c5, kButtonPaddle3},
+                         {0x2c6, kButtonPaddle2},
+                         {0x2c7, kButtonPaddle4},
+                         {0x133, kButtonX}};
+  const Buttons nintendo = {{0x133, kButtonY}, {0x134, kButtonX}, {0x135, kButtonMisc1}};
+  struct Row {
+    EvdevAbilities node;
+    std::uint16_t vendor, product, version;
+    std::int32_t min, max;
+    const Buttons& own;
+    bool has_triggers;
+  };
+  for (const Row& row :
+       {Row{xpad_node(), 0x045e, 0x028e, 0x0114, -32768, 32767, xbox, true},
+        {with_keys(xpad_node(), 0x2c4, 0x2c7), 0x045e, 0x0b00, 0x0500, -32768, 32767, elite, true},
+        {playstation_node(), 0x054c, 0x09cc, 0x8111, 0, 255, sony, true},
+        {playstation_node(), 0x054c, 0x0ce6, 0x8111, 0, 255, sony, true},
+        {playstation_node(), 0x054c, 0x05c4, 0x8111, 0, 255, sony, true},
+        {nintendo_node(), 0x057e, 0x2009, 0x8111, -32767, 32767, nintendo, false}}) {
+    SCOPED_TRACE(row.product);
+    Node node(row.node, row.vendor, row.product, row.version);
+    EXPECT_TRUE(node.layout().is_pad);
     EXPECT_FALSE(node.layout().streams);
+    expect_sticks(node, row.min, row.max);
+    expect_hat(node);
+    for (const Buttons& buttons : {kCommon, row.own})
+      for (const auto& [code, button] : buttons)
+        EXPECT_EQ(node.buttons_of(code), bit(button)) << code;
+    if (row.has_triggers) {
+      expect_triggers(node);
+    } else {  // they are keys
+      node.set_key(0x138, true);
+      node.set_key(0x139, true);
+      EXPECT_FLOAT_EQ(node.state().axis[kLeftTrigger], 1.0f);
+      EXPECT_FLOAT_EQ(node.state().axis[kRightTrigger], 1.0f);
+    }
   }
 }
 
-TEST(EvdevLayout, SwitchPadsOnTheirKernelDriverHaveNorthOnTopAndDigitalTriggers) {
-  Node node(nintendo_node(), 0x057e, 0x2009, 0x8111);
-  expect_sticks(node, -32767, 32767);
-  expect_hat(node);
-  node.set_axis(0x10, 0);
-  node.set_axis(0x11, 0);
-  expect_common_buttons(node);
-  EXPECT_EQ(node.buttons_of(0x133), bit(kButtonY));
-  EXPECT_EQ(node.buttons_of(0x134), bit(kButtonX));
-  EXPECT_EQ(node.buttons_of(0x135), bit(kButtonMisc1));  // capture
-  node.set_key(0x138, true);
-  EXPECT_FLOAT_EQ(node.state().axis[kLeftTrigger], 1.0f);
-  node.set_key(0x139, true);
-  EXPECT_FLOAT_EQ(node.state().axis[kRightTrigger], 1.0f);
-  EXPECT_FALSE(node.layout().streams);
-}
-
 TEST(EvdevLayout, DpadKeysAreADpad) {
-  EvdevAbilities abilities = playstation_node();
+  EvdevAbilities abilities = with_keys(playstation_node(), 0x220, 0x223);
   abilities.axes.resize(6);  // hid-sony's DualShock 3 has no hat
-  for (std::uint16_t code = 0x220; code <= 0x223; ++code) abilities.keys.push_back(code);
   Node node(abilities, 0x054c, 0x0268, 0x8111);
-  EXPECT_EQ(node.buttons_of(0x220), bit(kButtonDpadUp));
-  EXPECT_EQ(node.buttons_of(0x221), bit(kButtonDpadDown));
-  EXPECT_EQ(node.buttons_of(0x222), bit(kButtonDpadLeft));
-  EXPECT_EQ(node.buttons_of(0x223), bit(kButtonDpadRight));
+  for (const auto& [code, button] : Buttons{{0x220, kButtonDpadUp},
+                                            {0x221, kButtonDpadDown},
+                                            {0x222, kButtonDpadLeft},
+                                            {0x223, kButtonDpadRight}})
+    EXPECT_EQ(node.buttons_of(code), bit(button));
 }
 
 TEST(EvdevLayout, AJoystickIsStatedAsOne) {

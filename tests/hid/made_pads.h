@@ -1,7 +1,10 @@
-// Pads for tests: the shipped pad files, recordings, reports of given bytes, and event nodes as
-// Linux's drivers state them.
+// Pads for tests: the shipped pad files, recordings, reports of given bytes, states in words, and
+// event nodes as Linux's drivers state them.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -46,6 +49,29 @@ inline std::string names_of(std::uint32_t buttons) {
     if ((buttons >> b) & 1u) names += (names.empty() ? "" : " ") + std::string(kButtonNames[b]);
   }
   return names;
+}
+
+// A state in words: the axes that are not 0 (to 0.01), then `buttons` and the pressed ones, as in
+// tests/data/pads: "left_x 1 left_y -0.5 buttons a dpup".
+inline void expect_state(const PadState& state, const std::string& words) {
+  std::array<float, kAxisCount> axis{};
+  std::uint32_t buttons = 0;
+  std::istringstream in(words);
+  bool in_buttons = false;
+  const auto place_in = [&](const auto& names, const std::string& word) {
+    const auto it = std::find(names.begin(), names.end(), word);
+    if (it == names.end()) throw std::runtime_error("no control \"" + word + "\" in: " + words);
+    return static_cast<std::size_t>(it - names.begin());
+  };
+  for (std::string word; in >> word;) {
+    if (in_buttons)
+      buttons |= 1u << place_in(kButtonNames, word);
+    else if (!(in_buttons = word == "buttons"))
+      in >> axis[place_in(kAxisNames, word)];
+  }
+  for (int a = 0; a < kAxisCount; ++a)
+    EXPECT_NEAR(state.axis[a], axis[a], 0.01) << kAxisNames[a] << " of: " << words;
+  EXPECT_EQ(names_of(state.buttons), names_of(buttons)) << "of: " << words;
 }
 
 // xpad, drivers/input/joystick/xpad.c.

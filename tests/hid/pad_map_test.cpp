@@ -86,24 +86,5 @@ TEST(PadFile, IdsNamePadsOfSeveralVendors) {
             "p.toml:2: \"0e8f\" is no vendor:product such as 054c:0268");
 }
 
-TEST(PadFile, TheShippedFilesAreSound) { EXPECT_GE(shipped_pads().size(), 10u); }
-
-TEST(PadFile, StreamingIsWhatTheContractSays) {
-  const PadOverrides pads = shipped_pads();
-  const auto streams = [&](std::uint16_t vendor, std::uint16_t product) {
-    DeviceInfo device;
-    device.vendor = vendor;
-    device.product = product;
-    const PadOverride* o = find_override(pads, device);
-    return o != nullptr && o->streams;
-  };
-  EXPECT_TRUE(streams(0x054c, 0x09cc));
-  EXPECT_TRUE(streams(0x054c, 0x0ce6));
-  EXPECT_TRUE(streams(0x054c, 0x0df2));
-  EXPECT_TRUE(streams(0x057e, 0x2009));
-  EXPECT_FALSE(streams(0x045e, 0x0b13));
-  EXPECT_FALSE(streams(0x046d, 0xc216));
-}
-
 }  // namespace
 }  // namespace gaitpad

@@ -241,26 +241,21 @@ struct Made {
 };
 
 struct Names {
-  std::string collar, shoulder, elbow, wrist;  // of the left; "L" stands for the side
+  std::string collar, shoulder, elbow, wrist;  // "#" stands for the side
 };
-std::string sided(std::string name, char side) {
-  for (char& c : name) c = c == '#' ? side : c;
-  return name;
-}
 std::string sided(std::string name, const std::string& side) {
   const auto at = name.find('#');
   return at == std::string::npos ? name : name.replace(at, 1, side);
 }
 
-template <class Side>
-Made made(const Names& names, const Side& left, const Side& right) {
+Made made(const Names& names, const std::array<std::string, 2>& sides) {
   Made m;
   const int hips = m.add("Hips", -1, {0.0, 1.0, 0.0});
   const int spine = m.add("Spine", hips, {0.0, 1.2, 0.0});
   for (int side = 0; side < 2; ++side) {
     const double x = side == 0 ? 1.0 : -1.0;
     int above = spine;
-    const auto name = [&](const std::string& n) { return sided(n, side == 0 ? left : right); };
+    const auto name = [&](const std::string& n) { return sided(n, sides[side]); };
     if (!names.collar.empty()) above = m.add(name(names.collar), spine, {0.05 * x, 1.45, 0.0});
     const int shoulder = m.add(name(names.shoulder), above, {0.2 * x, 1.45, 0.0});
     const int elbow = m.add(name(names.elbow), shoulder, {0.2 * x, 1.15, 0.0});
@@ -273,24 +268,34 @@ Made made(const Names& names, const Side& left, const Side& right) {
 }
 
 TEST(UpperBodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
-  const std::vector<Names> all = {
-      {"#Shoulder", "#Arm", "#ForeArm", "#Hand"},
-      {"mixamorig:#Shoulder", "mixamorig:#Arm", "mixamorig:#ForeArm", "mixamorig:#Hand"},
-      {"#Collar", "#Shoulder", "#Elbow", "#Wrist"},
-      {"#Collar", "#UpArm", "#LowArm", "#Hand"},
-      {"", "#Shoulder", "#Elbow", "#Hand"},
+  using Sides = std::array<std::string, 2>;
+  const Sides words = {"Left", "Right"}, small = {"l", "r"}, large = {"L", "R"};
+  const std::vector<std::pair<Sides, Names>> all = {
+      {words, {"#Shoulder", "#Arm", "#ForeArm", "#Hand"}},
+      {words, {"mixamorig:#Shoulder", "mixamorig:#Arm", "mixamorig:#ForeArm", "mixamorig:#Hand"}},
+      {words, {"#Collar", "#Shoulder", "#Elbow", "#Wrist"}},
+      {words, {"#Collar", "#UpArm", "#LowArm", "#Hand"}},
+      {words, {"", "#Shoulder", "#Elbow", "#Hand"}},
+      {small, {"#clavicle", "#humerus", "#radius", "#wrist"}},
+      {small, {"#collar", "#Shldr", "#ForeArm", "#Hand"}},
+      {large, {"CC_Base_#_Clavicle", "CC_Base_#_Upperarm", "CC_Base_#_Forearm", "CC_Base_#_Hand"}},
+      {large, {"Clavicle_#", "UpArm_#", "LoArm_#", "Hand_#"}},
+      {large, {"Bip01 # Clavicle", "Bip01 # UpperArm", "Bip01 # Forearm", "Bip01 # Hand"}},
+      {large, {"shoulder.#", "upper_arm.#", "forearm.#", "hand.#"}},
+      {large, {"clavicle_#", "upperarm_#", "lowerarm_#", "hand_#"}},
+      {large, {"J_#_Clavicle", "J_#_Shoulder", "J_#_Elbow", "J_#_Hand"}},
   };
-  for (const Names& names : all) {
-    const Made m = made(names, std::string("Left"), std::string("Right"));
+  for (const auto& [sides, names] : all) {
+    const Made m = made(names, sides);
     const UpperBodyJoints found = m.found();
     for (int side = 0; side < 2; ++side) {
-      const auto name = [&](const std::string& n) {
-        return sided(n, side == 0 ? std::string("Left") : std::string("Right"));
+      const auto joint = [&](const std::string& n) {
+        return m.skeleton.find(sided(n, sides[side]));
       };
-      EXPECT_EQ(found.arm[side].shoulder, m.skeleton.find(name(names.shoulder))) << names.shoulder;
-      EXPECT_EQ(found.arm[side].elbow, m.skeleton.find(name(names.elbow)));
-      EXPECT_EQ(found.arm[side].wrist, m.skeleton.find(name(names.wrist)));
-      EXPECT_EQ(found.arm[side].collar, m.skeleton.find(name(names.collar)));
+      EXPECT_EQ(found.arm[side].shoulder, joint(names.shoulder)) << names.shoulder;
+      EXPECT_EQ(found.arm[side].elbow, joint(names.elbow)) << names.elbow;
+      EXPECT_EQ(found.arm[side].wrist, joint(names.wrist)) << names.wrist;
+      EXPECT_EQ(found.arm[side].collar, joint(names.collar)) << names.collar;
     }
     EXPECT_EQ(found.head, m.skeleton.find("Head"));
     EXPECT_EQ(found.neck, std::vector<int>{m.skeleton.find("Neck")});
@@ -298,32 +303,8 @@ TEST(UpperBodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
   }
 }
 
-TEST(UpperBodyJoints, AreFoundWhereTheSideIsALetter) {
-  const std::vector<Names> all = {
-      {"#clavicle", "#humerus", "#radius", "#wrist"},
-      {"#collar", "#Shldr", "#ForeArm", "#Hand"},
-      {"CC_Base_#_Clavicle", "CC_Base_#_Upperarm", "CC_Base_#_Forearm", "CC_Base_#_Hand"},
-      {"Clavicle_#", "UpArm_#", "LoArm_#", "Hand_#"},
-      {"Bip01 # Clavicle", "Bip01 # UpperArm", "Bip01 # Forearm", "Bip01 # Hand"},
-      {"shoulder.#", "upper_arm.#", "forearm.#", "hand.#"},
-      {"clavicle_#", "upperarm_#", "lowerarm_#", "hand_#"},
-      {"J_#_Clavicle", "J_#_Shoulder", "J_#_Elbow", "J_#_Hand"},
-  };
-  for (const Names& names : all) {
-    const bool is_small = names.shoulder[0] == '#';
-    const char left = is_small ? 'l' : 'L', right = is_small ? 'r' : 'R';
-    const Made m = made(names, left, right);
-    const UpperBodyJoints found = m.found();
-    EXPECT_EQ(found.arm[0].shoulder, m.skeleton.find(sided(names.shoulder, left)))
-        << names.shoulder;
-    EXPECT_EQ(found.arm[1].elbow, m.skeleton.find(sided(names.elbow, right))) << names.elbow;
-    EXPECT_EQ(found.arm[1].wrist, m.skeleton.find(sided(names.wrist, right))) << names.wrist;
-    EXPECT_EQ(found.arm[0].collar, m.skeleton.find(sided(names.collar, left))) << names.collar;
-  }
-}
-
 TEST(UpperBodyJoints, AreFoundByShapeWhereNamesSayNothing) {
-  const Made m = made({"p#", "q#", "s#", "t#"}, '1', '2');
+  const Made m = made({"p#", "q#", "s#", "t#"}, {"1", "2"});
   const UpperBodyJoints found = m.found();
   EXPECT_EQ(found.arm[0].shoulder, m.skeleton.find("q1"));
   EXPECT_EQ(found.arm[0].elbow, m.skeleton.find("s1"));
@@ -396,7 +377,7 @@ TEST(UpperBodyJoints, OfRealMotionsAreArmsSpineAndHead) {
 }
 
 TEST(UpperBodyJoints, AHandEndsInItsLongestFingerAndAHeadInItsTop) {
-  const Made bare = made({"#clavicle", "#humerus", "#radius", "#wrist"}, 'l', 'r');
+  const Made bare = made({"#clavicle", "#humerus", "#radius", "#wrist"}, {"l", "r"});
   EXPECT_EQ(bare.found().arm[0].hand_end, -1);
   EXPECT_EQ(bare.found().head_top, bare.found().head);
   Made body;
@@ -423,7 +404,7 @@ TEST(UpperBodyJoints, AHandEndsInItsLongestFingerAndAHeadInItsTop) {
 }
 
 TEST(UpperBodyJoints, AJointNamedWristAboveTheHandTurnsTheForearm) {
-  Made m = made({"#clavicle", "#humerus", "#radius", "#wrist"}, 'l', 'r');
+  Made m = made({"#clavicle", "#humerus", "#radius", "#wrist"}, {"l", "r"});
   const int wrist = m.skeleton.find("lwrist");
   Joint hand{"lhand", wrist, vec3(0.0, -0.1, 0.0), false};
   m.skeleton.joints.insert(m.skeleton.joints.begin() + wrist + 1, hand);

@@ -1,5 +1,7 @@
 // Motions and walks as their tests look at them.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <memory>
 #include <vector>
 
@@ -19,6 +21,26 @@ inline LegPose pose_of(const GaitCycle& cycle, const CycleSample& at, int side) 
 }
 inline LegPose pose_at(const GaitCycle& cycle, int side, double phase) {
   return pose_of(cycle, sample_at(cycle, phase), side);
+}
+
+// The joints of the whole body are where the legs' model has them.
+inline void expect_body_agrees_with_legs(const GaitCycle& cycle, double tolerance_m) {
+  const auto pose = std::make_unique<Pose>();
+  const auto world = std::make_unique<JointFrames>();
+  for (int i = 0; i < kCycleSamples; i += 5) {
+    const double phase = double(i) / kCycleSamples;
+    sample_local(cycle, phase, *pose);
+    pose->root_m = sample_at(cycle, phase).pelvis_m;
+    forward_kinematics(cycle.skeleton, *pose, *world);
+    for (const int side : {0, 1}) {
+      const LegPose leg = pose_at(cycle, side, phase);
+      const LegJoints& j = cycle.leg[side].joints;
+      EXPECT_LT(glm::distance(world->position_m[j.hip], leg.hip_m), tolerance_m) << phase;
+      EXPECT_LT(glm::distance(world->position_m[j.ankle], leg.ankle_m), tolerance_m) << phase;
+      EXPECT_LT(glm::distance(world->position_m[j.toe], leg.toe_m), tolerance_m) << phase;
+      EXPECT_LT(glm::distance(world->position_m[j.toe_end], leg.toe_end_m), tolerance_m) << phase;
+    }
+  }
 }
 
 // Cuts everything above the hips off the built-in walk: pelvis and two legs of five joints stay.

@@ -7,6 +7,13 @@
 
 namespace gaitpad {
 
+// The walks among the captured motions, but for the one in place.
+constexpr const char* kCapturedWalks[] = {
+    "bvhtoolbox_walk01", "cmu_006_01_iclone", "cmu_007_01_iclone", "cmu_007_04_iclone",
+    "cmu_007_12_iclone", "cmu_12_01_walk",    "cmu_m21_depressed", "cmu_m21_female_walk",
+    "cmu_m21_happy",     "cmu_m21_old2",      "cmu_m21_sneaky",    "cmu_m21_walk",
+    "dme_example_crlf",  "dpr_walk_simple",   "mass_walk",         "sheffield_swagger"};
+
 struct MadeWalk {
   double stride_m = 1.2, stride_s = 1.2;
   double stance = 0.62;  // of the stride

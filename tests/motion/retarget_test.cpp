@@ -1,6 +1,8 @@
 // The procedural walk on other skeletons: larger ones, ones that only stand, ones in a T pose.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "files/bvh_text.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion_file.h"
@@ -86,22 +88,6 @@ TEST(CycleOnSkeleton, TheHeadingOfTheFileDoesNotMatter) {
   }
 }
 
-TEST(CycleOnSkeleton, ArmsOfATPoseHangAsInTheSource) {
-  const GaitCycle source = procedural_gait();
-  Motion t_pose = standing_body(source);
-  t_pose.frames[0].local[t_pose.skeleton.find("LeftArm")] = rotation_z(0.5 * kPi);
-  const auto cycle = cycle_on_skeleton(source, t_pose);
-  ASSERT_TRUE(cycle);
-  const int forearm = source.skeleton.find("LeftForeArm");
-  for (int i = 0; i < kCycleSamples; i += 16) {
-    const auto from = sample_rotations(source, i);
-    const auto to = sample_rotations(*cycle, i);
-    const vec3 bone = source.skeleton.joints[forearm].offset_m;
-    const int arm = source.skeleton.joints[forearm].parent;
-    EXPECT_LT(glm::distance(from[arm] * bone, to[arm] * bone), 1e-9) << i;
-  }
-}
-
 // A bone's direction at sample i of a cycle, by the joints' names.
 vec3 bone(const GaitCycle& c, int i, const std::string& from, const std::string& to) {
   const auto world = sample_rotations(c, i);
@@ -177,14 +163,6 @@ TEST(CycleOnSkeleton, ArmsOfOtherNamesTurnAsInTheSource) {
        {"Chest", "thorax"},
        {"Neck", "lowerneck"},
        {"Head", "head"}},
-      {{"LeftShoulder", "LeftCollar"},
-       {"LeftArm", "LeftShoulder"},
-       {"LeftForeArm", "LeftElbow"},
-       {"LeftHand", "LeftWrist"},
-       {"RightShoulder", "RightCollar"},
-       {"RightArm", "RightShoulder"},
-       {"RightForeArm", "RightElbow"},
-       {"RightHand", "RightWrist"}},
       {{"LeftShoulder", "a"},
        {"LeftArm", "b"},
        {"LeftForeArm", "c"},
@@ -333,15 +311,14 @@ TEST(CycleOnSkeleton, SharedBodiesTakeTheWalksOfOneAnother) {
       {"bvhparser_sample.bvh", "chest", "head", "lShldr", "lForeArm", "lHand"},
       {"cmu_m21_walk.bvh", "Spine1", "Head", "LeftArm", "LeftForeArm", "LeftHand"},
   };
+  std::map<std::string, Motion> motions;
+  for (const Body& body : kBodies)
+    motions[body.file] = value_of(load_motion(kCapturedMotions + body.file));
   for (const Body& from : kBodies) {
-    const auto motion = load_motion(kCapturedMotions + from.file);
-    ASSERT_TRUE(motion);
-    const auto source = gait_cycle(*motion);
+    const auto source = gait_cycle(motions[from.file]);
     ASSERT_TRUE(source) << source.error().message;
     for (const Body& to : kBodies) {
-      const auto body = load_motion(kCapturedMotions + to.file);
-      ASSERT_TRUE(body);
-      const GaitCycle cycle = on_skeleton(*source, *body);
+      const GaitCycle cycle = on_skeleton(*source, motions[to.file]);
       for (int i = 0; i < kCycleSamples; i += 16) {
         const std::string what = std::string(from.file) + " on " + to.file;
         EXPECT_LT(angle_between_deg(turn_of(cycle, i, to.chest), turn_of(*source, i, from.chest)),

@@ -181,23 +181,18 @@ TEST_F(SaveCalibration, ReadsBackAsItWasAndMakesItsFolder) {
   EXPECT_EQ(entries_in(top_ + "/a/b"), 1);
 }
 
-TEST_F(SaveCalibration, TheFileBeforeIsKept) {
+TEST_F(SaveCalibration, TheFileBeforeIsKeptEvenADamagedOne) {
   EXPECT_EQ(problem(path_, 0.1), "none");
   EXPECT_FALSE(fs::exists(path_ + ".old"));
   const std::string first = text_in(path_);
   EXPECT_EQ(problem(path_, 0.2), "none");
   EXPECT_EQ(text_in(path_ + ".old"), first);
   EXPECT_EQ(inner_of(path_), 0.2);
-  EXPECT_EQ(problem(path_, 0.3), "none");
-  EXPECT_EQ(inner_of(path_ + ".old"), 0.2);
-  EXPECT_EQ(own_.entries(), 2);
-}
-
-TEST_F(SaveCalibration, ADamagedFileIsReplacedAndKept) {
   std::ofstream(path_) << "damaged";
-  EXPECT_EQ(problem(path_, 0.2), "none");
-  EXPECT_EQ(inner_of(path_), 0.2);
+  EXPECT_EQ(problem(path_, 0.3), "none");
+  EXPECT_EQ(inner_of(path_), 0.3);
   EXPECT_EQ(text_in(path_ + ".old"), "damaged");
+  EXPECT_EQ(own_.entries(), 2);
 }
 
 // rename() does nothing where both names are one file: as it is left when a save is killed between
@@ -209,27 +204,6 @@ TEST_F(SaveCalibration, ASaveThatWasKilledBetweenItsStepsLeavesNothingOdd) {
   EXPECT_EQ(inner_of(path_ + ".old"), 0.1);
   EXPECT_EQ(inner_of(path_), 0.2);
   EXPECT_EQ(own_.entries(), 2);
-}
-
-TEST_F(SaveCalibration, ASymbolicLinkStaysOneAndItsTargetIsWritten) {
-  fs::create_directories(top_ + "/dotfiles");
-  fs::create_directories(top_ + "/config");
-  const std::string link = top_ + "/config/pad.toml", target = top_ + "/dotfiles/pad.toml";
-  fs::create_symlink("../dotfiles/pad.toml", link);
-  EXPECT_EQ(problem(link, 0.1), "none");  // to nothing yet
-  EXPECT_EQ(problem(link, 0.2), "none");
-  EXPECT_TRUE(fs::is_symlink(link));
-  EXPECT_FALSE(fs::is_symlink(target));
-  EXPECT_EQ(inner_of(target), 0.2);
-  EXPECT_EQ(inner_of(target + ".old"), 0.1);
-  EXPECT_EQ(entries_in(top_ + "/config"), 1);
-}
-
-TEST_F(SaveCalibration, LinksInACircleAreAnError) {
-  fs::create_symlink("b.toml", top_ + "/a.toml");
-  fs::create_symlink("a.toml", top_ + "/b.toml");
-  EXPECT_EQ(problem(top_ + "/a.toml", 0.1),
-            top_ + "/a.toml: cannot be written: Too many levels of symbolic links");
 }
 
 TEST_F(SaveCalibration, AFullDiskIsToldAndTheOldFileStays) {
@@ -291,7 +265,7 @@ TEST_F(SaveCalibration, AProcessKilledAtAnyMomentLeavesAWholeFile) {
   ASSERT_EQ(problem(path_, 0.2), "none");
   const std::set<std::string> whole = {text_in(path_), text_in(path_ + ".old")};
   ::fflush(nullptr);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 40; ++round) {
     const pid_t child = ::fork();
     if (child == 0) {
       for (int i = 0;; ++i) {
@@ -320,14 +294,6 @@ CalibrationFile measured_file() {
   for (auto& measured : file.measured) measured = StickMeasured{0.002, 0.01, 0.0, 8.0};
   return file;
 }
-std::string only_change(const CalibrationFile& then, const CalibrationFile& now) {
-  const auto changes = changes_since(then, now);
-  if (changes.size() == 1) return changes[0];
-  std::string all = std::to_string(changes.size()) + ":";
-  for (const std::string& change : changes) all += " " + change + ";";
-  return all;
-}
-
 TEST(ChangesSince, TheSameStickHasNone) {
   EXPECT_EQ(changes_since(measured_file(), measured_file()), std::vector<std::string>());
   // Nor one measured a second time, within what two measurements differ by.
@@ -337,56 +303,49 @@ TEST(ChangesSince, TheSameStickHasNone) {
   EXPECT_EQ(changes_since(measured_file(), again), std::vector<std::string>());
 }
 
-TEST(ChangesSince, AMovedCentreIsComparedWithTheInnerZone) {
-  CalibrationFile now = measured_file();
-  now.calibration.left.x.centre = 0.04;
-  EXPECT_EQ(only_change(measured_file(), now),
-            "left stick: the centre has moved by 0.030, from (0.010, -0.020) to (0.040, -0.020): "
-            "more than half of the inner zone of 0.047, so it may soon walk by itself");
-  now.calibration.left.x.centre = 0.07;
-  EXPECT_NE(only_change(measured_file(), now).find("beyond the inner zone"), std::string::npos);
-}
-
-TEST(ChangesSince, AShorterReachTellsWhetherFullDeflectionIsLeft) {
-  CalibrationFile now = measured_file();
-  now.calibration.right.y.max = 0.80;
-  EXPECT_EQ(only_change(measured_file(), now),
+TEST(ChangesSince, EachChangeHasBothNumbersAndWhatItMeans) {
+  struct Row {
+    void (*change)(CalibrationFile&);
+    const char* says;  // a part of it
+  };
+  for (const Row& row : {
+           Row{[](CalibrationFile& f) { f.calibration.left.x.centre = 0.04; },
+               "left stick: the centre has moved by 0.030, from (0.010, -0.020) to (0.040, "
+               "-0.020): more than half of the inner zone of 0.047, so it may soon walk by itself"},
+           {[](CalibrationFile& f) { f.calibration.left.x.centre = 0.07; },
+            "beyond the inner zone"},
+           {[](CalibrationFile& f) { f.calibration.right.y.max = 0.80; },
             "right stick: it reaches 0.800 forward, 0.950 in the file: full deflection is not "
-            "reached there any more");
-  now.calibration.right.y.max = 0.95 - 0.04;
-  EXPECT_NE(only_change(measured_file(), now).find("barely"), std::string::npos);
-  now.calibration.right = measured_file().calibration.right;
-  now.calibration.right.x.min = -1.0;
-  EXPECT_NE(only_change(measured_file(), now)
-                .find("1.000 to the left, 0.950 in the file: full "
-                      "deflection comes before the rim"),
-            std::string::npos);
-}
-
-TEST(ChangesSince, NoiseHysteresisDriftAndCircularityHaveBothNumbers) {
-  CalibrationFile now = measured_file();
-  now.measured[0]->sigma = 0.0085;
-  EXPECT_EQ(
-      only_change(measured_file(), now),
-      "left stick: its noise at rest is 0.0085 (sigma), 0.0020 in the file: the inner zone of "
-      "0.047 covers it");
-  now.measured[0]->sigma = 0.0130;
-  EXPECT_NE(only_change(measured_file(), now).find("0.047 is too small for it"), std::string::npos);
-  now = measured_file();
-  now.measured[1]->hysteresis = 0.03;
-  EXPECT_EQ(only_change(measured_file(), now),
+            "reached there any more"},
+           {[](CalibrationFile& f) { f.calibration.right.y.max = 0.95 - 0.04; }, "barely"},
+           {[](CalibrationFile& f) { f.calibration.right.x.min = -1.0; },
+            "1.000 to the left, 0.950 in the file: full deflection comes before the rim"},
+           {[](CalibrationFile& f) { f.measured[0]->sigma = 0.0085; },
+            "left stick: its noise at rest is 0.0085 (sigma), 0.0020 in the file: the inner zone "
+            "of 0.047 covers it"},
+           {[](CalibrationFile& f) { f.measured[0]->sigma = 0.0130; }, "0.047 is too small for it"},
+           {[](CalibrationFile& f) { f.measured[1]->hysteresis = 0.03; },
             "right stick: the places to which it returns lie 0.030 apart, 0.010 in the file: the "
-            "inner zone of 0.047 covers it");
-  now = measured_file();
-  now.measured[1]->drift_per_s = 0.0075;
-  EXPECT_EQ(only_change(measured_file(), now),
+            "inner zone of 0.047 covers it"},
+           {[](CalibrationFile& f) { f.measured[1]->drift_per_s = 0.0075; },
             "right stick: at rest it drifts by 0.0075 a second, 0.0000 in the file: no dead zone "
-            "cures that");
-  now = measured_file();
-  now.measured[0]->circularity_error = 12.25;
-  EXPECT_EQ(only_change(measured_file(), now),
+            "cures that"},
+           {[](CalibrationFile& f) { f.measured[0]->circularity_error = 12.25; },
             "left stick: its circularity error is 12.2 %, 8.0 % in the file: the directions differ "
-            "more in how far it reaches");
+            "more in how far it reaches"},
+           // turned axes are told alone
+           {[](CalibrationFile& f) {
+              f.calibration.left.frame = {RawDirection::plus_y, RawDirection::plus_x};
+              f.calibration.left.x.centre = 0.5;
+            },
+            "left stick: its axes lie otherwise"},
+       }) {
+    CalibrationFile now = measured_file();
+    row.change(now);
+    const auto changes = changes_since(measured_file(), now);
+    ASSERT_EQ(changes.size(), 1u) << row.says;
+    EXPECT_NE(changes[0].find(row.says), std::string::npos) << changes[0];
+  }
 }
 
 TEST(ChangesSince, WhatWasNotMeasuredTodayIsNotCompared) {
@@ -399,21 +358,16 @@ TEST(ChangesSince, WhatWasNotMeasuredTodayIsNotCompared) {
   EXPECT_EQ(changes_since(measured_file(), now).size(), 1u);
 }
 
-TEST(ChangesSince, AFileMadeByHandIsComparedInWhatSteers) {
+TEST(ChangesSince, AFileMadeByHandIsComparedInWhatSteersAndNotANumberIsNoChange) {
   CalibrationFile then;
   then.calibration.left.inner = 0.1;
   CalibrationFile now = measured_file();
   now.calibration.left.x = {-0.8, 0.0, 1.0};
   now.calibration.left.y = {-1.0, 0.0, 1.0};
   now.measured[1].reset();
-  EXPECT_EQ(only_change(then, now).find("left stick: it reaches 0.800 to the left, 1.000 in"), 0u);
-}
-
-TEST(ChangesSince, TurnedAxesAreToldAloneAndNotANumberIsNoChange) {
-  CalibrationFile now = measured_file();
-  now.calibration.left.frame = {RawDirection::plus_y, RawDirection::plus_x};
-  now.calibration.left.x.centre = 0.5;
-  EXPECT_EQ(only_change(measured_file(), now).find("left stick: its axes lie otherwise"), 0u);
+  const auto changes = changes_since(then, now);
+  ASSERT_EQ(changes.size(), 1u);
+  EXPECT_EQ(changes[0].find("left stick: it reaches 0.800 to the left, 1.000 in"), 0u);
   now = measured_file();
   const double nan = std::nan("");
   now.calibration.left.x = {nan, nan, nan};

@@ -109,43 +109,31 @@ TEST_F(PadSetup, TheKeyboardIsAFallbackLiveAndInAReplay) {
   EXPECT_FALSE(replayed_pad(all, recorded(all, info)).is_fallback);
 }
 
-TEST_F(PadSetup, FactorySticksComeBeforeTheModelsFileAndKeepItsZones) {
-  write("calibration/a.toml",
-        "devices = ['1209:0001']\n[left]\ninner = 0.3\nx = { min = -0.5, max = 0.5 }\n");
-  const TraceDevice device = recorded(files(), made_pad(), kFactory);
-  const Calibration calibration = replayed(files(), device);
-  EXPECT_EQ(calibration.left.inner, 0.3);
-  EXPECT_EQ(calibration.left.x.centre, 1.0 / 30);
-  EXPECT_EQ(calibration.left.x.min, -0.7123456789012345);
-  EXPECT_EQ(calibration.right.y.max, 0.75);
-}
-
-TEST_F(PadSetup, AFileForThisOneDeviceComesBeforeItsFactorySticks) {
+// They come before the model's file, whose zones they keep; they are not for axes that are turned,
+// which the pad tells as they are. A file for this one device or one given by hand comes before
+// them.
+TEST_F(PadSetup, FactorySticksComeBeforeWhatIsNotForThisOneDevice) {
   DeviceInfo info = made_pad();
   info.unique_id = "A1";
   info.physical_path = "usb-1";
-  for (const char* whose : {"unique_id = 'A1'\n", "devices = ['*:*']\nport = 'usb-1'\n"}) {
-    write("calibration/a.toml", std::string(whose) + "[left]\nx = { centre = 0.05 }\n");
-    const TraceDevice device = recorded(files(), info, kFactory);
-    EXPECT_EQ(replayed(files(), device).left.x.centre, 0.05);
-  }
-}
-
-TEST_F(PadSetup, WhatIsGivenByHandComesBeforeEverything) {
-  write("calibration/a.toml", "unique_id = 'A1'\n[left]\ninner = 0.3\n");
+  const auto with = [&](const std::string& file) {
+    write("calibration/a.toml", file);
+    return replayed(files(), recorded(files(), info, kFactory));
+  };
+  const Calibration model =
+      with("devices = ['1209:0001']\n[left]\ninner = 0.3\nx = { min = -0.5, max = 0.5 }\n");
+  EXPECT_EQ(model.left.inner, 0.3);
+  EXPECT_EQ(model.left.x.centre, 1.0 / 30);
+  EXPECT_EQ(model.left.x.min, -0.7123456789012345);
+  EXPECT_EQ(model.right.y.max, 0.75);
+  for (const char* file :
+       {"unique_id = 'A1'\n[left]\n", "devices = ['*:*']\nport = 'usb-1'\n[left]\n",
+        "devices = ['*:*']\n[left]\nright = '-x'\n"})
+    EXPECT_EQ(with(file + std::string("x = { centre = 0.05 }\n")).left.x.centre, 0.05) << file;
   const std::string by_hand = write("own.toml", "[left]\ninner = 0.4\n");
-  DeviceInfo info = made_pad();
-  info.unique_id = "A1";
-  const TraceDevice device = recorded(files("", by_hand), info, kFactory);
-  const Calibration calibration = replayed(files(), device);
-  EXPECT_EQ(calibration.left.inner, 0.4);
-  EXPECT_EQ(calibration.left.x.centre, 0.0);
-}
-
-// The pad tells them for its axes as they are.
-TEST_F(PadSetup, FactorySticksAreNotForTurnedAxes) {
-  write("calibration/a.toml", "devices = ['*:*']\n[left]\nright = '-x'\nx = { centre = 0.05 }\n");
-  EXPECT_EQ(replayed(files(), recorded(files(), made_pad(), kFactory)).left.x.centre, 0.05);
+  const Calibration hand = replayed(files(), recorded(files("", by_hand), info, kFactory));
+  EXPECT_EQ(hand.left.inner, 0.4);
+  EXPECT_EQ(hand.left.x.centre, 0.0);
 }
 
 TEST_F(PadSetup, TheUsersFileComesBeforeAnEquallyGoodOneOfConfig) {
@@ -211,6 +199,9 @@ PadState decoded(const PadConfig& pad) {
 }
 
 TEST_F(PadSetup, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
+  write("user/a.toml", "devices = ['*:*']\n");  // without one config/pads names the controls
+  write("pads/a.toml", "[[pad]]\nvendor = 0x1209\n[pad.axes]\nright_x = '0001:0030'\n");
+  EXPECT_EQ(decoded(replayed_pad(files(), recorded(files(), made_pad()))).axis[kRightX], 1.0f);
   write("user/a.toml", std::string("devices = ['*:*']\nmapping = '") + kSwapped + "'\n");
   const std::string other = "[[pad]]\nvendor = 0x1234\n";
   const std::string own =
@@ -233,12 +224,6 @@ TEST_F(PadSetup, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
       EXPECT_EQ(pad.streams, entry == own);
     }
   }
-}
-
-TEST_F(PadSetup, WithoutAMappingConfigPadsNamesTheControls) {
-  write("user/a.toml", "devices = ['*:*']\n");
-  write("pads/a.toml", "[[pad]]\nvendor = 0x1209\n[pad.axes]\nright_x = '0001:0030'\n");
-  EXPECT_EQ(decoded(replayed_pad(files(), recorded(files(), made_pad()))).axis[kRightX], 1.0f);
 }
 
 // SDL counts what the kernel shows, which a descriptor that is untrue does not tell.
@@ -312,25 +297,17 @@ TEST_F(PadSetup, DamagedFilesAreErrorsThatNameThem) {
   EXPECT_FALSE(load_pad_files({folder_}, "/nonexistent.toml", ""));
 }
 
-// What the environment says, for as long as this lives.
-struct Variable {
-  Variable(const char* name, const std::string& value) : name(name) {
-    ::setenv(name, value.c_str(), 1);
-  }
-  ~Variable() { ::unsetenv(name); }
-  const char* name;
-};
-
 TEST_F(PadSetup, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
   const std::string guid = "03000000091200000100000000000000,Mine,";
   const std::string in_file = guid + "leftx:a2,lefty:a3,platform:Linux,",
                     in_line = guid + "leftx:a1,lefty:a0,platform:Linux,";
-  const Variable file("SDL_GAMECONTROLLERCONFIG_FILE", write("db.txt", "# x\n" + in_file + "\n"));
+  const std::string db = write("db.txt", "# x\n" + in_file + "\n");
+  const Environment file("SDL_GAMECONTROLLERCONFIG_FILE", db.c_str());
   for (const char* driver : {"hidraw", "evdev", "usb", "sdl"}) {
     DeviceInfo info = made_pad();
     info.driver = driver;
     EXPECT_EQ(recorded(files(), info).info.mapping, in_file) << driver;
-    const Variable line("SDL_GAMECONTROLLERCONFIG", in_line);
+    const Environment line("SDL_GAMECONTROLLERCONFIG", in_line.c_str());
     EXPECT_EQ(recorded(files(), info).info.mapping, in_line) << driver;
   }
   EXPECT_TRUE(remarks_.empty());
@@ -341,7 +318,7 @@ TEST_F(PadSetup, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
 
 TEST_F(PadSetup, ADataBaseThatCannotBeReadIsToldOf) {
   // Not SDL's variable: SDL itself would try to load a folder, of 2^63 bytes.
-  const Variable config("XDG_CONFIG_HOME", folder_);
+  const Environment config("XDG_CONFIG_HOME", folder_.c_str());
   fs::create_directories(user_mapping_file());
   recorded(files(), made_pad());
   ASSERT_EQ(remarks_.size(), 1u);

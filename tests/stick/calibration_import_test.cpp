@@ -327,7 +327,7 @@ TEST(CalibrationImport, DamagedTextsDoNotCrash) {
   constexpr std::string_view kBytes = "0123456789-,: \nabAE.~+\x00\xff(";
   std::mt19937 random(11);
   int accepted = 0;
-  for (int i = 0; i < 60000; ++i) {
+  for (int i = 0; i < 15000; ++i) {
     std::string text = seeds[random() % std::size(seeds)];
     for (unsigned k = random() % 4; k > 0 && !text.empty(); --k) {
       const std::size_t at = random() % text.size();
@@ -359,7 +359,7 @@ TEST(CalibrationImport, DamagedTextsDoNotCrash) {
     const vec2 p = stick_position(file->calibration.left, {0.3, -0.9});
     ASSERT_LE(p.x * p.x + p.y * p.y, 1.0 + 1e-9);
   }
-  EXPECT_GT(accepted, 1000);
+  EXPECT_GT(accepted, 250);
 }
 
 }  // namespace

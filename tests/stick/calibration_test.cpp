@@ -50,8 +50,8 @@ TEST(StickPosition, OuterZoneHasLengthOne) {
 // The sideways zone shortens a full deflection by up to 2.1 %.
 TEST(StickPosition, SidewaysZoneTakesAtMostTwoPointOnePercentOfTheLength) {
   double shortest = 1.0;
-  for (int i = 0; i < 36000; ++i) {
-    const vec2 p = stick_position(shaped(ZoneShape::both), polar(1.0, i * 0.01 * kDegree));
+  for (int i = 0; i < 3600; ++i) {
+    const vec2 p = stick_position(shaped(ZoneShape::both), polar(1.0, i * 0.1 * kDegree));
     shortest = std::min(shortest, glm::length(p));
   }
   EXPECT_GE(shortest, 1.0 - 0.0215);
@@ -81,11 +81,11 @@ TEST(StickPosition, CurveBlendsLinearAndCubic) {
 }
 
 TEST(StickPosition, ContinuousOverTheWholeGate) {
-  constexpr double kStep = 1e-3;
+  constexpr double kStep = 4e-3;
   for (const ZoneShape shape : kShapes) {
     for (double curve : {0.0, 1.0}) {
       const StickCalibration c = shaped(shape, 0.12, 0.95, curve);
-      for (double y = -1.0; y <= 1.0; y += 0.01) {
+      for (double y = -1.0; y <= 1.0; y += 0.04) {
         vec2 before = stick_position(c, {-1.0, y});
         for (double x = -1.0; x <= 1.0; x += kStep) {
           const vec2 now = stick_position(c, {x, y});
@@ -114,9 +114,9 @@ TEST(StickPosition, OddAboutTheCentre) {
 
 TEST(StickPosition, MonotoneAlongEveryDirection) {
   for (const ZoneShape shape : kShapes) {
-    for (int i = 0; i < 91; ++i) {
+    for (int i = 0; i < 91; i += 3) {
       vec2 before(0.0);
-      for (double radius = 0.0; radius <= 1.0; radius += 0.002) {
+      for (double radius = 0.0; radius <= 1.0; radius += 0.01) {
         const vec2 now = stick_position(shaped(shape, 0.12, 0.95, 0.7), polar(radius, i * kDegree));
         ASSERT_GE(glm::length(now), glm::length(before) - 1e-15);
         // With the axial shape the limit to the unit disc changes the direction once an axis is
@@ -159,6 +159,9 @@ TEST(StickPosition, NotANumberCountsAsTheCentre) {
   const double inf = std::numeric_limits<double>::infinity();
   EXPECT_EQ(stick_position(shaped(ZoneShape::both), {nan, 1.0}), vec2(0.0, 1.0));
   EXPECT_EQ(stick_position(shaped(ZoneShape::both), {inf, nan}), vec2(0.0));
+  StickCalibration turned = shaped(ZoneShape::both);
+  turned.frame = {RawDirection::minus_y, RawDirection::minus_x};
+  EXPECT_EQ(stick_position(turned, {-1.0, nan}), vec2(0.0, 1.0));
 }
 
 TEST(StickPosition, BothSticksHaveTheirOwnCalibration) {
@@ -221,38 +224,18 @@ TEST(StickFrame, EveryFrameGivesThePositionOfTheUprightFrame) {
   for (const StickFrame& frame : all_frames()) {
     StickCalibration turned = straight;
     turned.frame = frame;
-    for (double x = -1.0; x <= 1.0; x += 0.13) {
-      for (double y = -1.0; y <= 1.0; y += 0.17) {
+    for (double x = -1.0; x <= 1.0; x += 0.03) {
+      for (double y = -1.0; y <= 1.0; y += 0.07) {
         const vec2 raw = shown_along(frame.right, x) + shown_along(frame.forward, y);
         ASSERT_EQ(in_frame(frame, raw), vec2(x, y));
         ASSERT_EQ(stick_position(turned, raw), stick_position(straight, {x, y}));
-      }
-    }
-  }
-}
-
-TEST(StickFrame, OddAboutTheCentreAndExactlyZeroInside) {
-  for (const StickFrame& frame : all_frames()) {
-    StickCalibration c = shaped(ZoneShape::both, 0.12);
-    c.frame = frame;
-    for (double x = -1.0; x <= 1.0; x += 0.037) {
-      for (double y = -1.0; y <= 1.0; y += 0.041) {
-        const vec2 there = stick_position(c, {x, y}), opposite = stick_position(c, {-x, -y});
-        ASSERT_EQ(opposite, -there);
-        if (std::sqrt(x * x + y * y) > 0.12) continue;
+        if (glm::length(vec2(x, y) - vec2(0.06, -0.04)) > 0.09) continue;
         // Neutral has one bit pattern in every frame, because poses are compared bit by bit.
-        ASSERT_EQ(std::bit_cast<std::uint64_t>(there.x), 0u);
-        ASSERT_EQ(std::bit_cast<std::uint64_t>(there.y), 0u);
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(stick_position(turned, raw).x), 0u);
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(stick_position(turned, raw).y), 0u);
       }
     }
   }
-}
-
-TEST(StickFrame, NotANumberCountsAsTheCentre) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  StickCalibration c = shaped(ZoneShape::both);
-  c.frame = {RawDirection::minus_y, RawDirection::minus_x};
-  EXPECT_EQ(stick_position(c, {-1.0, nan}), vec2(0.0, 1.0));
 }
 
 TEST(TriggerPosition, GoesFromReleasedToPressedAndNotBeyond) {
@@ -268,14 +251,6 @@ TEST(TriggerPosition, GoesFromReleasedToPressedAndNotBeyond) {
 
 TEST(TriggerPosition, AnUncalibratedTriggerPassesUnchanged) {
   for (double raw = 0.0; raw <= 1.0; raw += 1.0 / 255) EXPECT_EQ(trigger_position({}, raw), raw);
-}
-
-// A worn 8-bit stick that rests 6 % off with 2 counts of noise stays neutral with Sony's zone.
-TEST(StickPosition, RestOfAWornSonyStickIsNeutral) {
-  for (int count = 0; count <= 10; ++count) {
-    const double raw = (128 + count - 127.5) / 127.5;
-    EXPECT_EQ(stick_position(shaped(ZoneShape::both, kInnerZoneSony), {raw, -raw}), vec2(0.0));
-  }
 }
 
 PadState pad_at(double left_x, double left_y, double right_x) {
@@ -304,22 +279,14 @@ TEST(JumpFilter, AMovementIsOneReportLateAndCatchesUpInSilence) {
   Calibration c;
   c.left.filters_jumps = true;
   JumpFilter filter;
-  double before = 0.0;
-  for (const double x : {0.0, 0.1, 0.2, 0.4, 0.7}) {
+  double before = 0.6;  // the first report counts at once
+  for (const double x : {0.6, 0.7, 0.8, 0.9, 1.0}) {
     filter.take(pad_at(x, 0.0, 0.0));
     EXPECT_EQ(filter.filtered(c, pad_at(x, 0.0, 0.0)).axis[kLeftX], static_cast<float>(before));
     before = x;
   }
   filter.settle();
-  EXPECT_EQ(filter.filtered(c, pad_at(0.7, 0.0, 0.0)).axis[kLeftX], 0.7f);
-}
-
-TEST(JumpFilter, TheFirstReportCountsAtOnce) {
-  Calibration c;
-  c.left.filters_jumps = true;
-  JumpFilter filter;
-  filter.take(pad_at(0.6, 0.0, 0.0));
-  EXPECT_EQ(filter.filtered(c, pad_at(0.6, 0.0, 0.0)).axis[kLeftX], 0.6f);
+  EXPECT_EQ(filter.filtered(c, pad_at(1.0, 0.0, 0.0)).axis[kLeftX], 1.0f);
 }
 
 }  // namespace

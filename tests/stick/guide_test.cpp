@@ -38,20 +38,18 @@ TEST(CalibrationGuide, NamesTheControlsThatItWaitsFor) {
 
 TEST(CalibrationGuide, FinishesInEveryFrameWhenItsRequestsAreFollowed) {
   for (const StickFrame& frame : kFrames) {
-    for (const bool changes_only : {false, true}) {
-      MadeHand hand(Controls::two_sticks_and_triggers);
-      hand.frame = frame;
-      hand.centre = vec2(0.08, -0.05);
-      hand.reach = 0.9;
-      hand.reports_changes_only = changes_only;
-      hand.steps_of_sticks(2);
-      EXPECT_EQ(hand.guide.step(), GuideStep::triggers);
-      hand.press(1, 1.0);
-      hand.press(0, 0.8);
-      EXPECT_EQ(hand.guide.step(), GuideStep::done);
-      EXPECT_EQ(hand.guide.frame(0), frame);
-      EXPECT_EQ(hand.guide.frame(1), frame);
-    }
+    MadeHand hand(Controls::two_sticks_and_triggers);
+    hand.frame = frame;
+    hand.centre = vec2(0.08, -0.05);
+    hand.reach = 0.9;
+    hand.reports_changes_only = frame.forward == RawDirection::plus_x;
+    hand.steps_of_sticks(2);
+    EXPECT_EQ(hand.guide.step(), GuideStep::triggers);
+    hand.press(1, 1.0);
+    hand.press(0, 0.8);
+    EXPECT_EQ(hand.guide.step(), GuideStep::done);
+    EXPECT_EQ(hand.guide.frame(0), frame);
+    EXPECT_EQ(hand.guide.frame(1), frame);
   }
 }
 
@@ -70,30 +68,22 @@ TEST(CalibrationGuide, BothSticksMayBeMovedAtOnce) {
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 
-TEST(CalibrationGuide, ANoisyWornStickCompletesEveryStep) {
-  for (const bool changes_only : {false, true}) {
-    MadeHand hand;
-    hand.sigma = 0.03;
-    hand.centre = vec2(-0.15, 0.12);
-    hand.reach = 0.75;
-    hand.reports_changes_only = changes_only;
-    hand.steps_of_sticks(2);
-    EXPECT_EQ(hand.guide.step(), GuideStep::done) << hand.text();
-    EXPECT_EQ(hand.guide.frame(0), StickFrame{});
-  }
-}
-
-TEST(CalibrationGuide, AStickThatReachesLessThanHalfOfTheRangeCompletesEveryStep) {
-  for (const double reach : {0.36, 0.45}) {
-    MadeHand hand(Controls::one_stick);
-    hand.sigma = 0.01;
-    hand.centre = vec2(0.06, -0.05);
-    hand.reach = reach;
-    hand.frame = kFrames[6];
-    hand.steps_of_sticks(1);
-    EXPECT_EQ(hand.guide.step(), GuideStep::done) << hand.text();
-    EXPECT_EQ(hand.guide.frame(0), kFrames[6]);
-    EXPECT_EQ(hand.guide.frame(1), StickFrame{});
+// Noisy, off its middle; one that reaches less than half of the range.
+TEST(CalibrationGuide, AWornStickCompletesEveryStep) {
+  for (const auto& [sigma, centre, reach] :
+       {std::tuple(0.03, vec2(-0.15, 0.12), 0.75), {0.01, vec2(0.06, -0.05), 0.36}}) {
+    for (const bool changes_only : {false, true}) {
+      MadeHand hand(Controls::one_stick);
+      hand.sigma = sigma;
+      hand.centre = centre;
+      hand.reach = reach;
+      hand.frame = kFrames[6];
+      hand.reports_changes_only = changes_only;
+      hand.steps_of_sticks(1);
+      EXPECT_EQ(hand.guide.step(), GuideStep::done) << hand.text();
+      EXPECT_EQ(hand.guide.frame(0), kFrames[6]);
+      EXPECT_EQ(hand.guide.frame(1), StickFrame{});
+    }
   }
 }
 
@@ -186,20 +176,10 @@ TEST(CalibrationGuide, UnpluggingCutsTheTrackAndLosesNothing) {
   hand.push(0, vec2(0, -1));
   hand.push(0, vec2(1, 0), 0.1, 2.7);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
-}
-
-TEST(CalibrationGuide, UnpluggingBetweenTwoStepsCutsTheTrackToo) {
-  MadeHand hand(Controls::one_stick);
-  hand.wait(0.5);
-  hand.guide.unplugged();
+  hand.guide.unplugged();  // between two steps
   hand.guide.skip();
   hand.wait(0.5);
-  hand.guide.skip();
-  hand.wait(0.5);
-  const PadTracks tracks = hand.guide.tracks();
-  ASSERT_EQ(tracks.stick[0].size(), 2u);
-  EXPECT_EQ(tracks.stick[0][0].size(), 125u);
-  EXPECT_EQ(tracks.stick[0][1].size(), 250u);
+  EXPECT_EQ(hand.guide.tracks().stick[0].size(), 3u);
 }
 
 TEST(CalibrationGuide, TheResultDependsOnTheReportsNotOnTheTicks) {
@@ -390,12 +370,7 @@ TEST(CalibrationGuide, SmallCirclesAndAHeldRimDoNotCountAsTurns) {
   hand.thumb[0] = vec2(0.7, 0.7);
   hand.wait(20.0);
   EXPECT_NE(hand.text().find("0.0 of 2 turns"), std::string::npos) << hand.text();
-}
-
-TEST(CalibrationGuide, OneTurnIsNotEnough) {
-  MadeHand hand(Controls::one_stick);
-  hand.skip_to(GuideStep::turn);
-  hand.turn(0, 1.2, 0.9);
+  hand.turn(0, 1.2, 0.9);  // one turn is not enough
   EXPECT_NE(hand.text().find("48 of 48 directions, 1."), std::string::npos) << hand.text();
   hand.turn(0, 1.0, 0.9, 0.2);
   EXPECT_EQ(hand.guide.step(), GuideStep::forward);

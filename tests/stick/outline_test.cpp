@@ -67,21 +67,24 @@ MadeStick made(const Shape& shape, const vec2& centre, double sigma, int bits, s
   return stick;
 }
 
+void expect_true_outline(const StickTrack& track, const MadeStick& stick) {
+  const Outline outline = outline_of(track, stick);
+  ASSERT_TRUE(circularity_error(outline));
+  EXPECT_NEAR(*circularity_error(outline), true_circularity_error(stick), 0.5);
+  EXPECT_EQ(filled_bins(outline), kCircularityBins);
+  expect_ends(outline, stick);
+}
+
 TEST(Outline, CircularityAndReachOfEveryGateOffCentreNoisyAndQuantised) {
   std::uint32_t seed = 0;
   for (const Shape& shape : kShapes) {
-    for (const vec2& centre : {vec2(0.0), vec2(0.06, -0.04), vec2(-0.08, 0.15)}) {
-      for (const double sigma : {0.0, 0.005, 0.02}) {
-        for (const int bits : {8, 10, 12, 16}) {
-          const MadeStick stick = made(shape, centre, sigma, bits, ++seed);
+    for (const vec2& centre : {vec2(0.06, -0.04), vec2(-0.08, 0.15)}) {
+      for (const double sigma : {0.0, 0.02}) {
+        for (const int bits : {8, 16}) {
           SCOPED_TRACE(testing::Message() << shape.name << " at " << centre.x << " sigma " << sigma
                                           << " bits " << bits);
-          const Outline outline = outline_of(made_track(stick), stick);
-          const auto error = circularity_error(outline);
-          ASSERT_TRUE(error);
-          EXPECT_NEAR(*error, true_circularity_error(stick), 0.5);
-          EXPECT_EQ(filled_bins(outline), kCircularityBins);
-          expect_ends(outline, stick);
+          const MadeStick stick = made(shape, centre, sigma, bits, ++seed);
+          expect_true_outline(made_track(stick), stick);
         }
       }
     }
@@ -90,18 +93,14 @@ TEST(Outline, CircularityAndReachOfEveryGateOffCentreNoisyAndQuantised) {
 
 TEST(Outline, HoldsAtAnyReportRateAndNumberOfTurnsAndWithLostReports) {
   for (const Shape& shape : kShapes) {
-    for (const double rate_hz : {125.0, 500.0, 1000.0}) {
-      for (const double turns : {2.0, 5.0}) {
-        MadeStick stick = made(shape, vec2(0.03, -0.05), 0.01, 8, 6);
-        stick.rate_hz = rate_hz;
-        stick.drop_chance = 0.1;
-        stick.reports_changes_only = turns > 2.0;
-        SCOPED_TRACE(testing::Message() << shape.name << " at " << rate_hz << " Hz");
-        const Outline outline = outline_of(made_track(stick, 8, 0.2, turns), stick);
-        ASSERT_TRUE(circularity_error(outline));
-        EXPECT_NEAR(*circularity_error(outline), true_circularity_error(stick), 0.5);
-        expect_ends(outline, stick);
-      }
+    for (const double rate_hz : {125.0, 1000.0}) {
+      MadeStick stick = made(shape, vec2(0.03, -0.05), 0.01, 8, 6);
+      stick.rate_hz = rate_hz;
+      stick.drop_chance = 0.1;
+      stick.reports_changes_only = rate_hz == 125.0;
+      SCOPED_TRACE(testing::Message() << shape.name << " at " << rate_hz << " Hz");
+      const double turns = stick.reports_changes_only ? 5.0 : 2.0;
+      expect_true_outline(made_track(stick, 8, 0.2, turns), stick);
     }
   }
 }
@@ -109,7 +108,7 @@ TEST(Outline, HoldsAtAnyReportRateAndNumberOfTurnsAndWithLostReports) {
 // On a slow pad some directions next to a corner are never reported.
 TEST(Outline, CircularityOfASquareGateTurnedQuicklyOnASlowPad) {
   for (const vec2& centre : {vec2(0.0), vec2(0.05, 0.1), vec2(0.18, 0.16)}) {
-    for (const double reach : {0.8, 0.87, 0.95}) {
+    for (const double reach : {0.8, 0.95}) {
       MadeStick stick = made({"square", Gate::square, reach, reach}, centre, 0.0, 12, 1);
       stick.rate_hz = 66.0;
       SCOPED_TRACE(testing::Message() << "at " << centre.x << " reach " << reach);
@@ -126,19 +125,14 @@ TEST(Outline, FullSquareIsTwentyAndAHalfPercentByTheGreatestRadiusOfEachBin) {
   EXPECT_NEAR(*circularity_error(outline_of(made_track(stick), stick)), 20.5, 0.3);
 }
 
-void expect_true_outline(const MadeMoves& moves, const MadeStick& stick) {
-  const Outline outline = outline_of(reported(stick, moves.path()), stick);
-  ASSERT_TRUE(circularity_error(outline));
-  EXPECT_NEAR(*circularity_error(outline), true_circularity_error(stick), 0.5);
-  expect_ends(outline, stick);
-}
-
-// A turn that cuts corners lies below the others and is left out of the rim.
-TEST(Outline, TurnsThatCutCornersDoNotShrinkTheGate) {
+// A turn that cuts corners lies below the others and is left out of the rim; a held corner, which a
+// streaming pad repeats hundreds of times, does not outweigh its neighbours.
+TEST(Outline, TurnsThatCutCornersAndLongHoldsDoNotShrinkTheGate) {
   for (const Shape& shape : kShapes) {
     for (const double sigma : {0.0, 0.01}) {
-      const MadeStick stick = made(shape, vec2(0.05, 0.0), sigma, 12, 9);
-      MadeMoves moves(stick);
+      SCOPED_TRACE(testing::Message() << shape.name << " sigma " << sigma);
+      const MadeStick cut = made(shape, vec2(0.05, 0.0), sigma, 12, 9);
+      MadeMoves moves(cut);
       moves.rest(0.5);
       moves.push(0.0);
       moves.turn(1.0);
@@ -147,24 +141,14 @@ TEST(Outline, TurnsThatCutCornersDoNotShrinkTheGate) {
       moves.turn(1.0);
       moves.release();
       moves.rest(0.5);
-      SCOPED_TRACE(testing::Message() << shape.name << " sigma " << sigma);
-      expect_true_outline(moves, stick);
-    }
-  }
-}
-
-// A streaming pad repeats a held corner hundreds of times.
-TEST(Outline, ALongHoldDoesNotOutweighItsNeighbours) {
-  for (const Shape& shape : kShapes) {
-    for (const double sigma : {0.0, 0.01}) {
-      const MadeStick stick = made(shape, vec2(0.0), sigma, 8, 4);
-      MadeMoves moves(stick);
-      moves.push(0.0);
-      moves.turn(2.125);
-      moves.hold(4.0);
-      moves.release();
-      SCOPED_TRACE(testing::Message() << shape.name << " sigma " << sigma);
-      expect_true_outline(moves, stick);
+      expect_true_outline(reported(cut, moves.path()), cut);
+      const MadeStick held = made(shape, vec2(0.0), sigma, 8, 4);
+      MadeMoves holds(held);
+      holds.push(0.0);
+      holds.turn(2.125);
+      holds.hold(4.0);
+      holds.release();
+      expect_true_outline(reported(held, holds.path()), held);
     }
   }
 }
@@ -244,7 +228,7 @@ TEST(Outline, NeverLeavesTheRange) {
 }
 
 TEST(Outline, AWeakSectorIsItsWorstDirection) {
-  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     Draw draw(seed);
     MadeStick stick;
     stick.seed = seed;

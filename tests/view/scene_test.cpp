@@ -10,12 +10,7 @@
 #include <limits>
 #include <memory>
 
-#include "gaitpad/control.h"
-#include "gaitpad/walk.h"
-#include "tests/clean_cycle.h"
-#include "tests/value_of.h"
 #include "view/gl_program.h"
-#include "view/mannequin.h"
 #include "view/offscreen.h"
 
 namespace gaitpad {
@@ -220,22 +215,6 @@ TEST_F(SceneTest, AWideCapsuleIsWideAcrossOnly) {
   EXPECT_NEAR(from_front / from_side, 1.8, 0.15);
 }
 
-TEST_F(SceneTest, TheNearerCapsuleHidesTheOther) {
-  camera_.yaw_rad = 0.0;
-  const vec3 at = camera_.target_m;
-  Capsule near = bone(at, at, 0.2), far = near;
-  near.a_m.z = near.b_m.z = 1.0;
-  far.colour = kBlue;
-  for (const bool is_near_first : {true, false}) {
-    content_.capsules = {is_near_first ? near : far, is_near_first ? far : near};
-    const Pixels pixels = drawn(content_);
-    const vec3 middle = place(near.a_m);
-    const std::uint8_t* c =
-        pixels.rgba.data() + 4 * (static_cast<int>(middle.y) * kWidth + static_cast<int>(middle.x));
-    EXPECT_GT(c[0], c[2] + 40);
-  }
-}
-
 TEST_F(SceneTest, AShadowDarkensTheFloorAwayFromTheLight) {
   look_down();
   content_.has_grid = false;
@@ -266,36 +245,6 @@ TEST_F(SceneTest, AFootDarkensTheFloorRoundItAndALiftedFootDoesNot) {
   };
   EXPECT_GT(darker_beside(0.03), 3.0);
   EXPECT_LT(darker_beside(0.60), 1.0);
-}
-
-// Seen from the side, the eye a hand above the floor: the floor's line is as good as one row.
-TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
-  camera_.target_m = {0.0, 0.3, 0.0};
-  camera_.distance_m = 5.0;
-  camera_.yaw_rad = kPi / 2.0;
-  orbit(camera_, 0.0, -1.0);
-  ASSERT_LT(camera_.eye_m().y, 0.11);
-  const Mannequin body = mannequin_of(std::make_shared<const WalkModel>(
-      value_of(walk_model(clean_cycle(procedural_gait()), Character{}))));
-  Stick stick;
-  stick.left = {0.2, 0.7};
-  const GaitParams params = gait_params(stick, StyleValues{}, GaitLimits{});
-  Pose pose;
-  WalkState state = standing(*body.model, vec3(0.0), pose);
-  for (int frame = 0; frame < 8; ++frame) {
-    content_.capsules.clear();
-    camera_.target_m.z = content_.focus_m.z = pose.root_m.z;
-    camera_.target_m.x = content_.focus_m.x = pose.root_m.x;
-    const Pixels without = drawn(content_);
-    add_mannequin(body, pose, kRed, content_);
-    const Extent seen = difference(without, drawn(content_));
-    const vec3 under(pose.root_m.x, 0.0, pose.root_m.z);
-    EXPECT_LE(seen.bottom, place(under + 0.3 * kLeft).y + 1.0) << frame;
-    EXPECT_GE(seen.bottom, place(under - 0.3 * kLeft).y - 2.0) << frame;  // and it stands there
-    for (int i = 0; i < 37; ++i) {
-      advance(*body.model, params, IkMode::robust, 1.0 / 240.0, state, pose);
-    }
-  }
 }
 
 TEST_F(SceneTest, OutsideTheViewportNothingChanges) {

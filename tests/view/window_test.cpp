@@ -4,12 +4,13 @@
 #include "view/window.h"
 
 #include <SDL2/SDL.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -611,29 +612,49 @@ TEST_F(WindowFiles, TheBrowserOpensWhatIsTypedOrClicked) {
   EXPECT_EQ(text_in(options_.recent_file), (folder_ / "walks/limp.hid").string() + "\n");
 }
 
+// So many reports of six bytes each: X, Y, Z, Rz and two more.
+void add_reports(std::string& text, int& ms, const std::array<int, 6>& bytes, int count,
+                 int every_ms) {
+  for (int i = 0; i < count; ++i, ms += every_ms) {
+    text +=
+        fmt::format("E: {:06}.{:03}000 6 {:02x}\n", ms / 1000, ms % 1000, fmt::join(bytes, " "));
+  }
+}
+
 // A pad with one stick that is let go four times from all sides, at once and often enough to be
-// measured: sooner than any thumb.
+// measured: sooner than any thumb. At rest it trembles by one count.
 std::string thumb_trace() {
   std::string text =
       "R: 54 05 01 09 05 a1 01 15 00 26 ff 00 75 08 95 04 09 30 09 31 09 32 09 35 81 02 15 00 25 "
-      "07 "
-      "75 04 95 01 09 39 81 42 05 09 15 00 25 01 75 01 95 0c 19 01 29 0c 81 02 c0\n"
+      "07 75 04 95 01 09 39 81 42 05 09 15 00 25 01 75 01 95 0c 19 01 29 0c 81 02 c0\n"
       "N: Thumb Pad\nI: 3 1209 0002\n";
   int ms = 0;
-  const auto report = [&](int x, int y) {
-    char line[80];
-    std::snprintf(line, sizeof line, "E: %06d.%06d 6 %02x %02x 80 80 08 00\n", ms / 1000,
-                  ms % 1000 * 1000, x, y);
-    text += line;
-    ms += 8;
+  const auto rest = [&](int count) {
+    for (int i = 0; i < count; ++i)
+      add_reports(text, ms, {0x80 + i % 2, 0x80, 0x80, 0x80, 8, 0}, 1, 8);
   };
-  for (int i = 0; i < 120; ++i) report(0x80 + i % 2, 0x80);
-  constexpr std::array<std::array<int, 2>, 4> kSides = {
-      {{0x80, 0}, {0xff, 0x80}, {0x80, 0xff}, {0, 0x80}}};
-  for (const auto& side : kSides) {
-    for (int i = 0; i < 25; ++i) report(side[0], side[1]);
-    for (int i = 0; i < 100; ++i) report(0x80 + i % 2, 0x80);
+  rest(120);
+  for (const auto& [x, y] : {std::pair(0x80, 0), {0xff, 0x80}, {0x80, 0xff}, {0, 0x80}}) {
+    add_reports(text, ms, {x, y, 0x80, 0x80, 8, 0}, 25, 8);
+    rest(100);
   }
+  return text;
+}
+
+// A person who pushes the left stick, which is Z and Rz on this pad, upside down.
+std::string odd_pad_trace() {
+  std::string text =
+      "D: 0\nN: Odd Pad\nP: made/0\nI: 3 1209 0077\nR: 30 05 01 09 05 a1 01 15 00 26 ff 00 75 08 "
+      "95 06 09 30 09 31 09 32 09 35 09 33 09 34 81 02 c0\n";
+  constexpr std::array<int, 6> kRest = {0x80, 0x80, 0x80, 0x80, 0, 0};
+  int ms = 0;
+  for (const std::size_t moved : {3, 2}) {
+    add_reports(text, ms, kRest, 30, 50);
+    std::array<int, 6> pushed = kRest;
+    pushed[moved] = 0xff;
+    add_reports(text, ms, pushed, 12, 50);
+  }
+  add_reports(text, ms, kRest, 60, 50);
   return text;
 }
 
@@ -649,37 +670,6 @@ TEST_F(WindowFiles, TheSelfTestNeedsThePadItselfAndTheSessionGoesOnWithoutIt) {
   script.until("it runs again",
                [](const Glance& g) { return !g.is_calibrating && g.session.tick > 0; });
   run(script);
-}
-
-// The bytes of one report of six: X, Y, Z, Rz, two spare ones; for so many reports of 50 ms.
-void add_reports(std::string& text, int& ms, const std::array<int, 6>& bytes, int count) {
-  for (int i = 0; i < count; ++i, ms += 50) {
-    char line[80];
-    std::snprintf(line, sizeof line, "E: %06d.%06d 6", ms / 1000, ms % 1000 * 1000);
-    text += line;
-    for (const int byte : bytes) {
-      std::snprintf(line, sizeof line, " %02x", byte);
-      text += line;
-    }
-    text += "\n";
-  }
-}
-
-// A person who pushes the left stick, which is Z and Rz on this pad, upside down.
-std::string odd_pad_trace() {
-  std::string text =
-      "D: 0\nN: Odd Pad\nP: made/0\nI: 3 1209 0077\nR: 30 05 01 09 05 a1 01 15 00 26 ff 00 75 08 "
-      "95 06 09 30 09 31 09 32 09 35 09 33 09 34 81 02 c0\n";
-  constexpr std::array<int, 6> kRest = {0x80, 0x80, 0x80, 0x80, 0, 0};
-  int ms = 0;
-  for (const int moved : {3, 2}) {
-    add_reports(text, ms, kRest, 30);
-    std::array<int, 6> pushed = kRest;
-    pushed[static_cast<std::size_t>(moved)] = 0xff;
-    add_reports(text, ms, pushed, 12);
-  }
-  add_reports(text, ms, kRest, 60);
-  return text;
 }
 
 TEST_F(WindowFiles, ControlsThatAreWrongAreAskedForAndKept) {

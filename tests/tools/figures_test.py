@@ -165,6 +165,17 @@ def heels_apart_mm(t):
     return most
 
 
+@pytest.mark.parametrize("mode", MODES)
+def test_figure_5b_s_claims_follow_from_its_csv(made, mode):
+    t = made.csv["figure5b" + MODES[mode]]
+    made.check("20 left hip's range of limp_left_hip over limp_left", mode,
+               spread(t["limp_left_hip_left_hip_deg"]) / spread(t["limp_left_left_hip_deg"]))
+    apart = max(abs(a - b) for s in ("limp_left_hip", "limp_left_knee") for j in ("hip", "knee", "ankle")
+                for a, b in zip(t[f"limp_left_right_{j}_deg"], t[f"{s}_right_{j}_deg"]))
+    assert apart <= made.claim("20 right leg's angles change by, deg", mode)["value"] + 1e-5
+    assert apart <= 1.0
+
+
 def test_figure_4_moves_the_root_less_and_the_second_joint_more(made):
     t = made.csv["figure4"]
     for mode in MODES:
@@ -173,6 +184,18 @@ def test_figure_4_moves_the_root_less_and_the_second_joint_more(made):
         made.check("10 root's change at weight 0.2 over even", mode, change["0.2"][0] / change["1"][0])
         made.check("10 second joint's change at root weight 0.2 over even", mode,
                    change["0.2"][1] / change["1"][1], delta=1e-4)
+
+
+def test_figure_3_plants_the_points_of_table_1(made):
+    t = made.csv["figure3"]
+    planted = {}
+    for time_s, stage, swing, point, stands in zip(t["time_s"], t["stage"], t["swing"], t["point"], t["planted"]):
+        planted.setdefault((time_s, stage, swing), set()).update({point} if stands else set())
+    assert [(k[1:], v) for k, v in planted.items()] == [
+        (("flight", "right"), {"left_heel", "left_toe", "right_toe"}),
+        (("roll", "right"), {"left_toe", "right_heel"}),
+        (("flight", "left"), {"right_heel", "right_toe", "left_toe"}),
+        (("roll", "left"), {"right_toe", "left_heel"})]
 
 
 def test_figure_2_s_targets_lie_in_their_bands(made):

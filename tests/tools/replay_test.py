@@ -328,9 +328,9 @@ def test_what_a_killed_replay_left_is_removed_by_the_next(started, run, tmp_path
 
 def test_long_gaps_take_the_time_of_their_ticks_and_show_progress(program, made):
     gap_s = 540
-    reports = [report(gap_s * i, y=0x10) for i in range(4)]
-    path = made.write("gaps.hid", HEADER + "".join(reports) + end(3 * gap_s))
+    reports = [report(gap_s * i, y=0x10) for i in range(11)]
+    path = made.write("gaps.hid", HEADER + "".join(reports) + end(10 * gap_s))
     with Terminal(program, "replay", path) as terminal:
         terminal.wait_for(r"replay: \d+ %, (\d+ min )?\d+ s left", 60)
         assert terminal.wait_end(300) == 0
-    assert f"{3 * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text
+    assert f"{10 * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text

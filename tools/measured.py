@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Writes docs/measured.md from what the tools themselves measured.
 
-  measured.py                        writes the page from docs/measured.json
-  measured.py SECTION ... | all      measures these sections first, keeps them in docs/measured.json
+  measured.py SECTION ... | all      measures these sections and writes their tables
   measured.py --from SECTION=FILE    takes a tool's output that is already there
+  measured.py                        writes the texts round the tables anew
+  measured.py --check                writes nothing; says where the page is not as this script writes it
 
-Sections: walk kept terrain bench window pads latency sticks worn claims. A section that is not
-measured in this run keeps its former values and their date. `--build` names the build folder (default
+Sections: walk kept terrain bench window frames pads latency sticks worn claims. A section that is not
+measured in this run keeps the table of the page and its date. `--build` names the build folder (default
 build), `--data` the folder of captured motions and recordings (default ../shared/data); sections
 that need them say so on the page.
 """
@@ -14,6 +15,7 @@ import argparse
 import csv
 import datetime
 import glob
+import itertools
 import json
 import os
 import pathlib
@@ -28,7 +30,7 @@ import paper_table
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tools" / "rig")]
 from more_kinds import MORE  # noqa: E402
-STORE, PAGE = ROOT / "docs" / "measured.json", ROOT / "docs" / "measured.md"
+PAGE = ROOT / "docs" / "measured.md"
 MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_006_01_iclone")
 PYTHON = "/usr/bin/python3"
 
@@ -148,6 +150,11 @@ TERRAIN = {  # column of terrain_sweep: (name, unit, allowed)
     "edge_mm": ("a standing sole over an edge", "mm", "== 0"),
     "bad": ("IK failures", "", "== 0"),
 }
+CURVED = (  # second difference of a leg angle in these walks, degrees a tick squared
+    ("second difference of a leg angle, built-in walk", "<= 1", lambda w: w["motion"] == "procedural"),
+    ("the same in captured walks at sticks below 1", "<= 1", lambda w: w["motion"] != "procedural" and float(w["y"]) < 1),
+    ("the same in captured walks at full stick", "<= 5", lambda w: w["motion"] != "procedural" and float(w["y"]) >= 1),
+)
 
 
 def measure_terrain(options, text=None):
@@ -165,13 +172,7 @@ def measure_terrain(options, text=None):
     for column, (name, unit, allowed) in TERRAIN.items():
         worst = max(walks, key=lambda w: float(w[column]))
         rows.append(row(name, float(worst[column]), allowed, unit, len(walks), 0, place(worst)))
-    for name, allowed, chosen in (
-            ("second difference of a leg angle, built-in walk", "<= 1",
-             lambda w: w["motion"] == "procedural"),
-            ("the same in captured walks at sticks below 1", "<= 1",
-             lambda w: w["motion"] != "procedural" and float(w["y"]) < 1),
-            ("the same in captured walks at full stick", "<= 5",
-             lambda w: w["motion"] != "procedural" and float(w["y"]) >= 1)):
+    for name, allowed, chosen in CURVED:
         found = [w for w in walks if chosen(w)]
         if found:
             worst = max(found, key=lambda w: float(w["d2_deg"]))
@@ -379,7 +380,7 @@ def measure_claims(options, text=None):
     claims = json.loads(text)["claims"]
     paper_table.write(claims, ROOT / "docs" / "paper.md")
     rows = []
-    for mode in ("paper", "robust"):
+    for mode in MODES:
         mine = [c for c in claims if c["mode"] == mode]
         rows.append({"name": mode, "held": sum(c["pass"] is True for c in mine),
                      "failed": sum(c["pass"] is False for c in mine),
@@ -387,33 +388,25 @@ def measure_claims(options, text=None):
     return {"claims": rows}
 
 
-# ---- the page --------------------------------------------------------------------------------
+# ---- rows of tables --------------------------------------------------------------------------
 def value_text(entry):
     if isinstance(entry["worst"], str):
         return entry["worst"]
     return f"{number(entry['worst'])} {entry['unit']}".strip()
 
 
-def table(heads, rows):
-    lines = ["| " + " | ".join(cells) + " |" for cells in (heads, *rows)]
-    return [lines[0], "|" + "---|" * len(heads), *lines[1:]]
+def bounds_rows(section):
+    return [[r["name"], value_text(r), r["allowed"] or "-"] for r in section["rows"]]
 
 
-def bounds_table(section):
-    rows = section["rows"]
-    if not any(r.get("runs") for r in rows):
-        return table(["", "measured", "allowed"],
-                     [[r["name"], value_text(r), r["allowed"] or "-"] for r in rows])
-
+def runs_rows(section):
     def runs_text(r):
         return f"{r['failed']} of {r['runs']} failed" if r["failed"] else str(r["runs"] or "-")
 
-    return table(["", "worst", "allowed", "runs", "worst run"],
-                 [[r["name"], value_text(r), r["allowed"] or "-", runs_text(r), r["where"] or "-"]
-                  for r in rows])
+    return [[*cells, runs_text(r), r["where"] or "-"] for cells, r in zip(bounds_rows(section), section["rows"])]
 
 
-def kept_table(section):
+def kept_rows(section):
     def pairs(values):
         return ", ".join(f"{round(a)} > {round(b)}" for a, b in values)
 
@@ -423,26 +416,23 @@ def kept_table(section):
              ", ".join(k["broken"]) or "-"] for k in section["kept"]]
     medians = [f"{m['value']:.2f} ({m['bound']})" for m in section["medians"]] or ["-"] * 3
     rows.append(["median of the clips", *medians, *["-"] * 7])
-    return table(["walk", "hip", "knee", "ankle", "knee maxima", "least knee", "acceleration",
-                  "d2", "d2, changing", "own slide", "beyond its bound"], rows)
+    return rows
 
 
-def pads_table(section):
-    return table(["", *(f"`{d}`" for d in DRIVERS)],
-                 [[label, *(section["cells"].get(f"{kind}-{d}", "not measured") for d in DRIVERS)]
-                  for kind, label in (KINDS | {f"bluetooth-{kind}": label
-                                               for kind, label in BLUETOOTH.items()}).items()])
+ALL_PADS = KINDS | {f"bluetooth-{kind}": label for kind, label in BLUETOOTH.items()}
 
 
-def frames_table(section):
+def pads_rows(section):
+    return [[label, *(section["cells"][f"{kind}-{d}"] for d in DRIVERS)] for kind, label in ALL_PADS.items()]
+
+
+def frames_rows(section):
     def ms(us):
         return f"{us / 1000:.1f} ms"
 
-    return table(["ticks", "a frame", "report to tick, median", "stick to frame, median",
-                  "99th percentile", "a frame and 5 ms"],
-                 [[f"{r['rate_hz']} Hz", ms(1e6 / r["frames_per_second"]), ms(r["wait_us_median"]),
-                   ms(r["frame_us_p50"]), ms(r["frame_us_p99"]),
-                   ms(1e6 / r["frames_per_second"] + 5000)] for r in section["rates"]])
+    return [[f"{r['rate_hz']} Hz", ms(1e6 / r["frames_per_second"]), ms(r["wait_us_median"]),
+             ms(r["frame_us_p50"]), ms(r["frame_us_p99"]),
+             ms(1e6 / r["frames_per_second"] + 5000)] for r in section["rates"]]
 
 
 WAYS = {"bare_hidraw": "bare `poll` + `read` of the hidraw node",
@@ -450,7 +440,7 @@ WAYS = {"bare_hidraw": "bare `poll` + `read` of the hidraw node",
         "plain_sdl": "a plain SDL2 program (`SDL_WaitEventTimeout`)"}
 
 
-def latency_table(section):
+def latency_rows(section):
     def ms(text, unit=" ms"):
         return f"{float(text) / 1000:.1f}{unit}" if text not in ("", None) else "-"
 
@@ -458,38 +448,35 @@ def latency_table(section):
         median = way.get(f"{start}median_us")
         if median in ("", None):
             return "-"
-        if f"{start}q1_us" not in way:  # measured before the quartiles were kept
-            return ms(median)
         low, high = (ms(way[f"{start}{q}_us"], "") for q in ("q1", "q3"))
         return f"{ms(median)} ({low} to {high})"
 
-    return table(["way", "to the program", "99th percentile", "over the bare read",
-                  "to the tick's begin", "99th percentile"],
-                 [[WAYS.get(w["way"], f"`{w['way']}` driver"), spread(w, ""), ms(w["p99_us"]),
-                   ms(w["over_bare_us"]), spread(w, "to_tick_"), ms(w["to_tick_p99_us"])]
-                  for w in section["ways"]])
+    return [[WAYS.get(w["way"], f"`{w['way']}` driver"), spread(w, ""), ms(w["p99_us"]),
+             ms(w["over_bare_us"]), spread(w, "to_tick_"), ms(w["to_tick_p99_us"])]
+            for w in section["ways"]]
 
 
-def sticks_table(section):
+def sticks_rows(section):
     def cell(value, unit):
         if isinstance(value, str):
             return value
         return f"{number(round(value, 3) if value is not None else None)} {unit}".strip()
 
-    return table(["", "left", "right"],
-                 [[r["name"], cell(r["left"], r["unit"]), cell(r["right"], r["unit"])]
-                  for r in section["sticks"]])
+    return [[r["name"], cell(r["left"], r["unit"]), cell(r["right"], r["unit"])]
+            for r in section["sticks"]]
 
 
-def claims_table(section):
-    return table(["mode", "hold", "fail", "cannot be tested with this motion"],
-                 [[r["name"], str(r["held"]), str(r["failed"]), str(r["untestable"])]
-                  for r in section["claims"]])
+MODES = ("paper", "robust")
 
 
-# section: (measure, table, title, made data alone, text before, text after)
+def claims_rows(section):
+    return [[r["name"], str(r["held"]), str(r["failed"]), str(r["untestable"])]
+            for r in section["claims"]]
+
+
+# section: (measure, rows, title, made data alone, text before, text after)
 SECTIONS = {
-    "walk": (measure_walk, bounds_table, "Walks on level ground", False, """\
+    "walk": (measure_walk, runs_rows, "Walks on level ground", False, """\
 `tests/session/acceptance.py build/gaitpad` replays the built-in motion and three captured walks
 (CMU's m21 walk and 006_01, bvh-toolbox's walk01) with all styles that change the legs, legs of
 0.6, 1 and 1.6 times the length, straight, backwards, turning, starting, stopping and with random
@@ -501,7 +488,7 @@ a hip weight of 0.2 (hip RMS at least 1.5 degrees) and a knee weight of 0.8 (0.2
 with even weights. `raw playback` plays the same angles on the same character without adaptation;
 it has no bound.""", """\
 The three captured walks are plain walks. The next section has the other clips."""),
-    "kept": (measure_kept, kept_table, "What a walk keeps of its capture", False, """\
+    "kept": (measure_kept, kept_rows, "What a walk keeps of its capture", False, """\
 `tests/session/fidelity.py build/gaitpad FOLDER --built-in` walks each clip of a folder straight on
 level ground at its own pace, style `even`, and compares the exported poses with the file's own
 frames, after the one phase shift that is best. Hip, knee and ankle are flexions, degrees RMS of
@@ -513,28 +500,28 @@ a leg joint, degrees a tick²: in the steady walk (0.7; built-in 0.5), and where
 stops and changes its stride (1).""", """\
 A walk keeps neither a knee that a file bends backwards nor the gap of a stride that does not end
 as it began."""),
-    "terrain": (measure_terrain, bounds_table, "Walks over terrain", False, """\
+    "terrain": (measure_terrain, runs_rows, "Walks over terrain", False, """\
 `build/tests/terrain_sweep MOTION ...` (`cmake --build build --target terrain_sweep`) walks the
 course from its beginning to a stop after its end and judges every tick by a grid of points over
 each sole: the built-in motion and those three, all styles, legs of 0.6, 1 and 1.6, sticks of 0.4,
 0.7 and 1.""", """\
 [walk.md](walk.md) says which walks miss a bound, and why."""),
-    "bench": (measure_bench, bounds_table, "Time of a tick, and of loading", True, """\
+    "bench": (measure_bench, bounds_rows, "Time of a tick, and of loading", True, """\
 `build/gaitpad bench`, one core of the machine that wrote this page; yours prints its own. A tick
 comes every 4167 us. [crowd.md](crowd.md) says what each row holds. A motion that was loaded before
 has its strides in the cache.""",
               ""),
-    "window": (measure_window, bounds_table, "The window", True, """\
+    "window": (measure_window, bounds_rows, "The window", True, """\
 `bash tools/realtime.sh` lets four characters walk for five minutes in the window, drawn by
 software (llvmpipe, one drawing thread) on two cores, with the loop under `SCHED_FIFO`. The
 machine was a virtual one that others used at the same time. The bound on late ticks is not judged
 where the host takes processor time away (`steal`).""", ""),
-    "frames": (measure_frames, frames_table, "From the stick to the frame", True, """\
+    "frames": (measure_frames, frames_rows, "From the stick to the frame", True, """\
 `build/gaitpad play TRACE --rate HZ` with four characters in the window, drawn by software: from
 each report's stamp to the hand-over of the first frame that shows it.""", """\
 It is half a frame, the time of drawing, and the wait for the tick. With a graphics card drawing
 takes a few milliseconds, and the frame begins so late that it is ready just before the refresh."""),
-    "pads": (measure_pads, pads_table, "Pads and drivers", True, """\
+    "pads": (measure_pads, pads_rows, "Pads and drivers", True, """\
 `bash tools/rig.sh` boots a current Debian kernel in QEMU, plugs virtual USB pads into it and runs
 the program there ([rig.md](rig.md)). For each cell it lists the pad, decodes every stick, trigger
 and button as sent, records the session, and replays the recording to the session's `pose_hash`.
@@ -543,14 +530,14 @@ walking, and each stop. The last rows are pads behind the kernel's own Bluetooth
 virtual controllers without a radio; **L**: the link was also lost, noticed and found again. A dash:
 there is no such way to that pad.""", """\
 The kernel is real, the pads are not: no physical pad has been through these tests."""),
-    "latency": (measure_latency, latency_table, "Latency", True, """\
+    "latency": (measure_latency, latency_rows, "Latency", True, """\
 From the pad's write to `gaitpad play`, on its own threads, and to the begin of the tick that uses
 the report, in that virtual machine: the median, and from the first to the third quartile. It
 compares the ways with each other and is no figure of your PC.""", """\
 A generic pad, 250 reports a second. The blocks of 200 reports of each driver alternate with those
 of the bare read, and `over` is the median of the differences block by block. A tick comes every
 4.17 ms, so a report waits half of that on average."""),
-    "sticks": (measure_sticks, sticks_table, "A real DualSense", False, """\
+    "sticks": (measure_sticks, sticks_rows, "A real DualSense", False, """\
 `build/gaitpad calibrate --trace ...` on recordings of a DualSense over USB, 3 to 7 seconds each,
 that others made. Each stick is turned round in one of them and rests in the others.""", """\
 The pad reports 8 bits, so one step is 0.0078: the sticks rest up to 2.5 counts of 256 off the
@@ -561,22 +548,38 @@ recorder's stamps. The inner zone is the least one; without a calibration it is 
 zones found in the two recordings that turn a stick, the calibrated stick is exactly 0 in every
 other recording, except in the two in which the left hand moves it (`build/tests/test_stick
 --gtest_filter='RecordedSticks.*'`)."""),
-    "worn": (measure_worn, bounds_table, "A worn stick", True, """\
+    "worn": (measure_worn, runs_rows, "A worn stick", True, """\
 `build/tests/test_stick` checks the analysis on made sticks whose truth is known: 8 to 16 bits,
 noisy, off centre, square, drifting, with spikes and lost reports, 500 of them without a false
 alarm. The worst of these (8 bits, 0.15 off centre, noise 0.02, hysteresis 0.1, reach 0.8 and 0.7)
 is calibrated and walked with by `build/tests/test_session --gtest_filter='WornStick.*'`.""", ""),
-    "claims": (measure_claims, claims_table, "The paper's claims", True, """\
+    "claims": (measure_claims, claims_rows, "The paper's claims", True, """\
 `build/gaitpad figures --out out/figures`, the built-in motion: how many assertions hold.
 [paper.md](paper.md) lists each one, and why some fail.""", ""),
 }
 
+ONE_RUN, MANY_RUNS = ["", "measured", "allowed"], ["", "worst", "allowed", "runs", "worst run"]
+# section: the columns of its table, and the names of its rows where they do not come from what was measured
+SHAPES = {
+    "walk": (MANY_RUNS, None), "worn": (MANY_RUNS, None), "bench": (ONE_RUN, None), "window": (ONE_RUN, None),
+    "kept": (["walk", "hip", "knee", "ankle", "knee maxima", "least knee", "acceleration", "d2", "d2, changing",
+              "own slide", "beyond its bound"], None),
+    "terrain": (MANY_RUNS, [name for name, _, _ in (*TERRAIN.values(), *CURVED)]),
+    "frames": (["ticks", "a frame", "report to tick, median", "stick to frame, median", "99th percentile",
+                "a frame and 5 ms"], [f"{rate_hz} Hz" for rate_hz in RATES_HZ]),
+    "pads": (["", *(f"`{d}`" for d in DRIVERS)], list(ALL_PADS.values())),
+    "latency": (["way", "to the program", "99th percentile", "over the bare read", "to the tick's begin",
+                 "99th percentile"], None),
+    "sticks": (["", "left", "right"], [name for _, name, _ in STICK]),
+    "claims": (["mode", "hold", "fail", "cannot be tested with this motion"], list(MODES)),
+}
+
+# ---- the page --------------------------------------------------------------------------------
 HEAD = """\
 # What was measured
 
-`tools/measured.py` writes this page from the output of the tools that it names, kept in
-`docs/measured.json`. Do not edit it by hand. A section that was not measured in the latest run
-keeps its former values and their date.
+`tools/measured.py` writes this page from the output of the tools that it names. Do not edit it by hand. A section that
+was not measured in the latest run keeps its table and its date.
 
 ```
 /usr/bin/python3 tools/measured.py bench claims    # measures these two and writes the page
@@ -592,21 +595,57 @@ def wrapped(text):
                          break_on_hyphens=False)
 
 
-def page_of(store):
+def table(name, rows):
+    heads, names = SHAPES[name]
+    if names is not None:
+        found = {row[0]: row for row in rows}
+        rows = [found.get(one, [one, *["not measured"] * (len(heads) - 1)]) for one in names]
+    lines = ["| " + " | ".join(cells) + " |" for cells in (heads, *rows)]
+    return [lines[0], "|" + "---|" * len(heads), *lines[1:]]
+
+
+def page_of(results):
+    """results: section -> (rows, what is said of its measurement)."""
     lines = HEAD.splitlines()
-    for name, (_, write_table, title, is_made, before, after) in SECTIONS.items():
+    for name, (_, _, title, _, before, after) in SECTIONS.items():
         lines += ["", f"## {title}", "", *wrapped(before), ""]
-        section = store.get(name)
-        if section is None:
+        if name not in results:
             lines.append("Not measured.")
             continue
-        lines += write_table(section)
+        rows, said = results[name]
+        lines += table(name, rows)
         if after:
             lines += ["", *wrapped(after)]
-        mark = "" if is_made else " *Needs real data.*"
-        note = f" {section['note']}" if section.get("note") else ""
-        lines += ["", *wrapped(f"Measured on {section['measured_on']}.{mark}{note}")]
+        lines += ["", *wrapped(said)]
     return "\n".join(lines) + "\n"
+
+
+def results_of(page):
+    """What page_of() wrote. A row whose cells are not as many as the columns is left out."""
+    results = {}
+    for name, (_, _, title, *_) in SECTIONS.items():
+        text = re.search(rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)", page, re.S | re.M)
+        said = re.search(r"^Measured on .*", text[1], re.S | re.M) if text else None
+        if said:
+            rows = [line[2:-2].split(" | ") for line in text[1].splitlines() if line.startswith("| ")][1:]
+            results[name] = [row for row in rows if len(row) == len(SHAPES[name][0])], said[0]
+    return results
+
+
+def new_result(name, options, text):
+    measure, rows, _, is_made, _, _ = SECTIONS[name]
+    found = measure(options, text)
+    mark = "" if is_made else " *Needs real data.*"
+    note = f" {found['note']}" if found.get("note") else ""
+    return rows(found), f"Measured on {datetime.date.today().isoformat()}.{mark}{note}"
+
+
+def difference(page):
+    """Where the page is not as this script writes it, its numbers aside; None where it is."""
+    for ours, theirs in itertools.zip_longest(page_of(results_of(page)).splitlines(), page.splitlines()):
+        if ours != theirs:
+            return f"docs/measured.md: {theirs!r} stands where this script writes {ours!r}"
+    return None
 
 
 # ---- the command -----------------------------------------------------------------------------
@@ -618,8 +657,7 @@ def arguments():
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
     parser.add_argument("--data", type=pathlib.Path, default=ROOT.parent / "shared" / "data")
     parser.add_argument("--kernel", default="6.1", help="whose results of the rig are taken")
-    parser.add_argument("--check", action="store_true",
-                        help="writes nothing; exit status 1 if the page is not that of the store")
+    parser.add_argument("--check", action="store_true", help="exit status 1 if the page is not as this script writes it")
     options = parser.parse_args()
     options.build, options.data = options.build.resolve(), options.data.resolve()
     options.rig = options.build / "rig" / f"results-{options.kernel}"
@@ -628,9 +666,13 @@ def arguments():
 
 def main():
     options = arguments()
-    store = json.loads(STORE.read_text()) if STORE.exists() else {}
+    page = PAGE.read_text()
     if options.check:
-        return 0 if PAGE.exists() and PAGE.read_text() == page_of(store) else 1
+        found = difference(page)
+        if found:
+            print(found, file=sys.stderr)
+        return 1 if found else 0
+    results = results_of(page)
     wanted = {name: None for name in (SECTIONS if "all" in options.section else options.section)}
     for entry in options.files:
         name, _, path = entry.partition("=")
@@ -640,15 +682,11 @@ def main():
         wanted[name] = pathlib.Path(path).read_text()
     for name, text in wanted.items():
         try:
-            found = SECTIONS[name][0](options, text)
+            results[name] = new_result(name, options, text)
         except Missing as problem:
-            former = store.get(name, {}).get("measured_on")
-            kept = f"keeps the values of {former}" if former else "is not measured"
+            kept = "keeps its table" if name in results else "is not measured"
             print(f"{name} {kept}: {problem}", file=sys.stderr)
-            continue
-        store[name] = {"measured_on": datetime.date.today().isoformat(), **found}
-    STORE.write_text(json.dumps(store, indent=1, ensure_ascii=False) + "\n")
-    PAGE.write_text(page_of(store))
+    PAGE.write_text(page_of(results))
     return 0
 
 

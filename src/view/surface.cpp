@@ -140,10 +140,13 @@ Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions&
 }
 
 // After an I/O error Xlib ends the program, in the error handler or right after it. Both handlers
-// have to be replaced, which versions before 1.7 do not allow.
+// have to be replaced, which versions before 1.7 do not allow. A swap that the lost server does not
+// answer is reported as an error of the request (GLXBadDrawable) first, which would end the program
+// too; it is ignored, and the next request fails as an I/O error.
 void WindowSurface::outlive_x_server() {
 #ifdef SDL_VIDEO_DRIVER_X11
   using SetHandler = void (*)(int (*)(Display*));
+  using SetErrorHandler = void (*)(int (*)(Display*, XErrorEvent*));
   using SetExit = void (*)(Display*, void (*)(Display*, void*), void*);
   SDL_SysWMinfo info;
   SDL_VERSION(&info.version);
@@ -153,7 +156,10 @@ void WindowSurface::outlive_x_server() {
   const auto set_exit = reinterpret_cast<SetExit>(SDL_LoadFunction(xlib, "XSetIOErrorExitHandler"));
   const auto set_handler =
       reinterpret_cast<SetHandler>(SDL_LoadFunction(xlib, "XSetIOErrorHandler"));
-  if (set_exit && set_handler) {
+  const auto set_error_handler =
+      reinterpret_cast<SetErrorHandler>(SDL_LoadFunction(xlib, "XSetErrorHandler"));
+  if (set_exit && set_handler && set_error_handler) {
+    set_error_handler([](Display*, XErrorEvent*) { return 0; });
     set_handler([](Display*) { return 0; });
     set_exit(
         info.info.x11.display, [](Display*, void*) { is_display_lost = true; }, nullptr);

@@ -64,10 +64,24 @@ def wait_until(condition, most_s=60):
         time.sleep(0.02)
 
 
+def wait_until_recorded(path):
+    """Until the session that records there has written reports."""
+    part = pathlib.Path(f"{path}.part")
+    wait_until(lambda: part.exists() and part.stat().st_size > 2000)
+
+
+def wait_until_works(process, seconds=0.5):
+    """Until a started program has used so much processor time."""
+    def used_s():
+        fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    wait_until(lambda: used_s() > seconds)
+
+
 def end_by(process, *signals, status=0):
     """(stdout, stderr) of a started program that ends by these signals."""
     for number in signals:
         process.send_signal(number)
-    out, errors = process.communicate(timeout=30)
+    out, errors = process.communicate(timeout=60)
     assert process.returncode == status, errors
     return out, errors

@@ -106,7 +106,7 @@ stranger = made()
 puppet = addon.Puppet(stranger, addon.guessed_bones(list(stranger.data.bones)))
 print(json.dumps({"port": listener.port, "bones": bones}), flush=True)
 
-ticks, end = [], time.monotonic() + 120
+ticks, end = [], time.monotonic() + 300
 waiting = listener.waiting
 while len(ticks) < int(count) and time.monotonic() < end:
     frames = waiting()

@@ -128,9 +128,11 @@ def test_a_line_never_is_wider_than_the_screen_and_the_screen_never_fuller(at_te
                 assert len(lines) <= rows, screen
 
 
-@pytest.mark.parametrize("give_up", [
-    pytest.param(lambda t: t.press("\x03"), id="ctrl-c"), pytest.param(lambda t: t.send_signal(signal.SIGTERM), id="sigterm"),
-    pytest.param(lambda t: t.press("q"), id="q"), pytest.param(lambda t: t.press("\x04"), id="ctrl-d")])
+GIVE_UP = {"ctrl-c": lambda t: t.press("\x03"), "sigterm": lambda t: t.send_signal(signal.SIGTERM),
+           "ctrl-d": lambda t: t.press("\x04"), "q, at the question": lambda t: (skip_to_the_question(t), t.press("q"))}
+
+
+@pytest.mark.parametrize("give_up", GIVE_UP.values(), ids=GIVE_UP)
 def test_giving_up_leaves_the_old_file_and_the_terminal_as_they_were(at_terminal, rest_trace, files, written, give_up):
     with at_terminal(rest_trace) as terminal:
         terminal.wait_for("Step 1 of 7")
@@ -139,16 +141,6 @@ def test_giving_up_leaves_the_old_file_and_the_terminal_as_they_were(at_terminal
         assert terminal.wait_end() == 1
         assert terminal.is_as_before()
         assert "nothing written" in terminal.text
-    assert files() == written
-
-
-@pytest.mark.parametrize("key", ["\x03", "q"], ids=["ctrl-c", "q"])
-def test_giving_up_at_the_question_leaves_the_old_file(at_terminal, rest_trace, files, written, key):
-    with at_terminal(rest_trace) as terminal:
-        skip_to_the_question(terminal)
-        terminal.press(key)
-        assert terminal.wait_end() == 1
-        assert terminal.is_as_before()
     assert files() == written
 
 

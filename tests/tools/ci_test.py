@@ -26,18 +26,25 @@ def prefix(program, tmp_path_factory):
     return folder
 
 
-@pytest.fixture
-def walks(run, tmp_path):
-    """The folder that holds `walks`, with expectations."""
-    (tmp_path / "walks").mkdir()
+@pytest.fixture(scope="module")
+def expected(run, tmp_path_factory):
+    """Recordings with expectations."""
+    folder = tmp_path_factory.mktemp("expected")
     for i in range(4):
-        write_trace(tmp_path / f"walks/walk{i}.hid", [(0.2, *raw_stick(0, 0.5 + 0.1 * i)), (2, 0, 0)], end_s=3)
-    run("check", "--update", tmp_path / "walks")
+        write_trace(folder / f"walk{i}.hid", [(0.2, *raw_stick(0, 0.5 + 0.1 * i)), (0.6, 0, 0)], end_s=1)
+    run("check", "--update", folder)
+    return folder
+
+
+@pytest.fixture
+def walks(expected, tmp_path):
+    """The folder that holds them as `walks`."""
+    shutil.copytree(expected, tmp_path / "walks")
     return tmp_path
 
 
 def plant(folder):
-    write_trace(folder / "walks/walk2.hid", [(0.2, *raw_stick(0.2, 0.7)), (2, 0, 0)], end_s=3)
+    write_trace(folder / "walks/walk2.hid", [(0.2, *raw_stick(0.2, 0.7)), (0.6, 0, 0)], end_s=1)
 
 
 @pytest.fixture

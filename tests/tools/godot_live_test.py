@@ -4,7 +4,6 @@ import math
 import shutil
 import socket
 import subprocess
-import time
 
 import numpy as np
 import pytest
@@ -25,7 +24,7 @@ def made_frames():
     def place(m, axis, angle_rad):
         return [*m, *(math.sin(angle_rad / 2) * np.asarray(axis)), math.cos(angle_rad / 2)]
 
-    for tick in range(40):
+    for tick in range(20):
         angle = 0.05 * tick
         bones = {bone: place([0, 0.92 + 0.01 * math.sin(angle), 0] if bone == "Hips" else [0, 0, 0], axes[bone], angle)
                  for bone in PARENTS}
@@ -47,17 +46,19 @@ def test_the_skeleton_stands_as_the_stream_says(tmp_path):
             if line.strip() == "ready" or "SCRIPT ERROR" in line:
                 break
         assert said[-1:] == ["ready\n"], "".join(said)
+        said.clear()
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-            for frame in [*frames, *[{**frames[0], "tick": -1}] * 3]:
+            for frame in frames:  # each when the one before has been looked at, however slow this machine is
                 sender.sendto(json.dumps(frame).encode(), ("127.0.0.1", PORT))
-                time.sleep(0.05)
-        rest = godot.communicate(timeout=30)[0]
+                said.append(godot.stdout.readline())
+            sender.sendto(json.dumps({**frames[0], "tick": -1}).encode(), ("127.0.0.1", PORT))
+        rest = "".join(said) + godot.communicate(timeout=60)[0]
     finally:
         godot.terminate()  # timeout ends Godot, too
     assert "ERROR" not in rest, rest
     rows = {row["tick"]: row["bones"] for row in (json.loads(line) for line in rest.splitlines() if line[:1] == "{")}
-    assert len(rows) > 0.8 * len(frames), rest
-    for frame in (f for f in frames if f["tick"] in rows):
+    assert len(rows) == len(frames), rest
+    for frame in frames:
         bones = rows[frame["tick"]]
         expected = world_rotations(frame["bones"], frame["root"])
         for bone, turn in expected.items():

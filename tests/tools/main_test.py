@@ -6,23 +6,13 @@ import sys
 
 import pytest
 
+from support import slices
 from support.program import ROOT, ROUND
 from support.sticks import worn_trace
 
 
 def test_version_is_three_numbers(run):
     assert re.fullmatch(r"gaitpad \d+\.\d+\.\d+\n", run("--version").stdout)
-
-
-@pytest.mark.parametrize("command", [[], ["replay"], ["bench"], ["motion"]])
-def test_each_command_has_help(run, command):
-    assert "Usage:" in run(*command, "--help").stdout
-
-
-@pytest.mark.parametrize("command", ["play", "replay", "record", "pads", "doctor", "decode", "monitor", "motion", "ik",
-                                     "figures", "bench"])
-def test_help_names_every_command(run, command):
-    assert f"  {command} " in run("--help").stdout
 
 
 COMMANDS = ["play", "replay", "record", "pads", "doctor", "decode", "monitor", "calibrate", "motion", "ik", "figures", "bench",
@@ -87,30 +77,30 @@ def test_the_bundled_traces_are_what_their_scripts_write():
 
 @pytest.fixture(scope="module")
 def benched(run, tmp_path_factory):
-    """A short run: its rows and its picture."""
+    """The rows of a short run, which draws its picture."""
     picture = tmp_path_factory.mktemp("bench") / "cost.png"
-    return json.loads(run("bench", "--json", "--rounds", "1", "--crowd", "64", "--plot", picture).stdout), picture
+    rows = json.loads(run("bench", "--json", "--rounds", "1", "--crowd", "64", "--plot", picture).stdout)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    return rows
 
 
 def test_bench_lists_each_measurement(benched):
-    rows, _ = benched
-    names = [r["name"] for r in rows]
+    names = [r["name"] for r in benched]
     assert set(names) == {"leg_paper", "leg_robust_even", "leg_robust_weighted", "leg_ik", "playback", "playback_world", "stage",
                           "character_even", "characters_even", "characters_styled", "step", "crowd", "crowd_memory", "load_built_in",
                           "load_clip", "load_cached", "load"}
-    assert all(0 < r["ns_low"] <= r["ns"] <= r["ns_high"] for r in rows if r["name"] != "stage")
-    assert all(r["processor"] and r["lanes"] in (2, 4, 8) for r in rows)
-    assert {r["stage"] for r in rows if r["name"] == "stage"} == {"clock and plan", "sampling", "ik", "pose"}
-    widest = rows[0]["lanes"]
-    assert {(r["characters"], r["width"]) for r in rows if r["name"] == "crowd"} == {
+    assert all(0 < r["ns_low"] <= r["ns"] <= r["ns_high"] for r in benched if r["name"] != "stage")
+    assert all(r["processor"] and r["lanes"] in (2, 4, 8) for r in benched)
+    assert {r["stage"] for r in benched if r["name"] == "stage"} == {"clock and plan", "sampling", "ik", "pose"}
+    widest = benched[0]["lanes"]
+    assert {(r["characters"], r["width"]) for r in benched if r["name"] == "crowd"} == {
         (n, width) for n in (1, 8, 64) for width in (1, 2, 4, 8) if width <= widest}
-    assert [r["characters"] for r in rows if r["name"] == "step"] == [1, 4]
+    assert [r["characters"] for r in benched if r["name"] == "step"] == [1, 4]
 
 
 def test_bench_counts_in_its_peers(benched):
-    rows, _ = benched
-    ns = {r["name"]: r["ns"] for r in rows if r["characters"] <= 4 and r["name"] != "crowd"}
-    for row in rows:
+    ns = {r["name"]: r["ns"] for r in benched if r["characters"] <= 4 and r["name"] != "crowd"}
+    for row in benched:
         assert row["time_us"] == pytest.approx(row["ns"] * row["characters"] / 1000)
         if "ratio" in row:
             assert row["over"] == ("characters_even" if row["name"] == "characters_styled" else "playback")
@@ -118,28 +108,19 @@ def test_bench_counts_in_its_peers(benched):
         if "at_60_hz" in row:
             assert row["at_60_hz"] == pytest.approx(1e9 / 60 / row["ns"], abs=1)
         assert row.get("bytes", 1000) >= 1000
-    assert {r["name"] for r in rows if "ratio" in r} == {"character_even", "characters_even", "characters_styled", "step",
+    assert {r["name"] for r in benched if "ratio" in r} == {"character_even", "characters_even", "characters_styled", "step",
                                                          "crowd", "crowd_memory"}
     assert ns["load"] == ns["load_clip"] > ns["load_cached"]
 
 
 def test_bench_says_which_bounds_are_met(benched):
-    rows, _ = benched
-    bounds = {(r["name"], key): r[key] for r in rows for key in ("bound_ns", "bound_ratio", "limit_us") if key in r}
-    assert bounds == {("leg_robust_even", "bound_ns"): 250, ("leg_robust_even", "limit_us"): 0.25,
-                      ("character_even", "bound_ratio"): 2.5, ("characters_styled", "bound_ratio"): 1.15,
-                      ("step", "bound_ns"): 5000, ("step", "limit_us"): 20, ("load_built_in", "bound_ns"): 150e6,
-                      ("load_built_in", "limit_us"): 150000, ("load_clip", "bound_ns"): 800e6,
-                      ("load_clip", "limit_us"): 800000, ("load", "bound_ns"): 800e6, ("load", "limit_us"): 800000}
-    for row in rows:
+    assert {r["name"] for r in benched if "bound_ns" in r} == {"leg_robust_even", "step", "load_built_in", "load_clip", "load"}
+    for row in benched:
         met = [row[value] <= row[bound] for value, bound in (("ns", "bound_ns"), ("ratio", "bound_ratio")) if bound in row]
         assert row.get("met", True) == all(met)
 
 
-def test_bench_draws_its_picture(benched):
-    assert benched[1].read_bytes().startswith(b"\x89PNG")
-
-
+@pytest.mark.skipif(not slices.is_chosen("the table of bench", 3), reason=f"another slice runs it: {slices.text(3)}")
 def test_bench_prints_a_table_and_refuses_a_picture_it_cannot_write(program):
     done = subprocess.run([program, "bench", "--rounds", "1", "--crowd", "1", "--plot", "/proc/mine.png"],
                           capture_output=True, text=True, check=False)

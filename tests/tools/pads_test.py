@@ -8,8 +8,13 @@ KEYS = {"driver": str, "path": str, "bus": str, "vendor": int, "product": int, "
         "problem": str, "chosen": bool}
 
 
-def test_every_row_has_the_keys_of_the_contract(run):
-    for row in json.loads(run("pads", "--json").stdout):
+@pytest.fixture(scope="module")
+def pads(run):
+    return json.loads(run("pads", "--json").stdout)
+
+
+def test_every_row_has_the_keys_of_the_contract(pads):
+    for row in pads:
         if set(row) == {"driver", "problem"}:  # built without its library
             assert "built without" in row["problem"]
             continue
@@ -19,8 +24,8 @@ def test_every_row_has_the_keys_of_the_contract(run):
         assert row["usable"] == (row["problem"] == "")
 
 
-def test_at_most_one_is_chosen_and_it_is_usable(run):
-    rows = [row for row in json.loads(run("pads", "--json").stdout) if "chosen" in row]
+def test_at_most_one_is_chosen_and_it_is_usable(pads):
+    rows = [row for row in pads if "chosen" in row]
     chosen = [row for row in rows if row["chosen"]]
     assert len(chosen) == (1 if any(row["usable"] for row in rows) else 0)
     assert all(row["usable"] for row in chosen)

@@ -55,7 +55,7 @@ def test_names_of_files_and_unknown_options_are_escaped(said, tmp_path):
                     ["replay", ROUND, "--style", name], ["replay", ROUND, "--character", name],
                     ["replay", ROUND, "--motion", name], ["replay", ROUND, "--terrain", name],
                     ["replay", ROUND, "--map", name], ["decode", ROUND, "--map", name], ["record", "--out", f"{name}/x.hid"],
-                    ["figures", "--out", f"/proc/{name}"], [f"--{name}"], ["replay", f"--{name}"], [name],
+                    ["figures", "--out", "out", "--motion", f"no{name}"], [f"--{name}"], ["replay", f"--{name}"], [name],
                     ["pads", "--driver", name]):
         status, _ = said(*command)
         assert status != 0, command

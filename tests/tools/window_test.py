@@ -2,30 +2,28 @@
 
 The pictures stay in build/pictures. Skipped where Xvfb, numpy or matplotlib is not there.
 """
+import functools
 import json
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
 np = pytest.importorskip("numpy")
 colors = pytest.importorskip("matplotlib.colors")
 from support.pictures import pixels  # noqa: E402
-from support.program import ROUND, end_by, has_sanitizers, wait_until  # noqa: E402
+from support.program import ROUND, end_by, has_sanitizers, wait_until, wait_until_recorded, wait_until_works  # noqa: E402
 from support.traces import raw_stick, write_trace  # noqa: E402
 
 pytestmark = pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb (package xvfb)")
 
-PANELS = ["pad", "control", "style", "graphs", "solver", "loop"]
 FOUR = [word for style in ("even", "stiff_hip", "stiff_knee", "limp_left") for word in ("--style", style)]
 # The characters' colours of the dark theme (Okabe and Ito's), by hue.
 HUES = {"even": 0x56B4E9, "stiff_hip": 0xE69F00, "stiff_knee": 0x009E73, "limp_left": 0xCC79A7}
-EARLY, LATE = 100, 130  # frames of a walk that begins at 0.1 s: 1.6 s and 2.1 s
+EARLY, LATE = 40, 60  # frames of a walk that begins at 0.1 s
 
 
 class Display:
@@ -85,10 +83,19 @@ def window(program, run, started, tmp_path_factory):
 SCENE_ROWS = slice(46, 628)  # between the bars, at scale 1
 
 
+@functools.cache
+def hsv_of(data, shape):
+    return colors.rgb_to_hsv(np.frombuffer(data, np.uint8).reshape(shape) / 255.0)
+
+
+def hsv_of_scene(picture):
+    scene = picture[SCENE_ROWS].astype(np.uint8)
+    return hsv_of(scene.tobytes(), scene.shape)
+
+
 def coloured(picture, colour):
     """Pixels of a character in the scene: its hue, within 10 degrees, however lit; shoes are pale."""
-    picture = picture[SCENE_ROWS]
-    hsv = colors.rgb_to_hsv(picture / 255.0)
+    hsv = hsv_of_scene(picture)
     rgb = np.array([(colour >> 16) & 255, (colour >> 8) & 255, colour & 255]) / 255.0
     hue = colors.rgb_to_hsv(rgb)[0]
     away = np.abs((hsv[:, :, 0] - hue + 0.5) % 1.0 - 0.5)
@@ -129,103 +136,48 @@ def test_a_crowd_is_seen_behind_them(window):
 
     def bodies(picture):
         """Bright or coloured pixels: the floor and the sky are neither."""
-        scene = colors.rgb_to_hsv(picture[SCENE_ROWS] / 255.0)
+        scene = hsv_of_scene(picture)
         return ((scene[:, :, 1] > 0.35) & (scene[:, :, 2] > 0.25)).sum()
     assert bodies(full) > 1.5 * bodies(empty) > 1000
 
 
-def test_trails_grow(window):
-    grown = []
-    for name, frames in (("early", EARLY), ("late", LATE)):
-        bare = window.picture(f"bare_{name}", *BARE, frames=frames)
-        trails = window.picture(f"trails_{name}", "--panels", "none", "--hide", "source,names,grid,shadows",
-                              frames=frames)
-        grown.append((np.abs(bare - trails).sum(axis=2) > 24).sum())
-    assert grown[0] > 100
-    assert grown[1] > 1.2 * grown[0]
-
-
-def test_nothing_of_a_character_is_below_its_feet(window):
-    standing = window.picture("bare_standing", *BARE, frames=2)
-    lowest, heights = {}, {}
-    for name, colour in HUES.items():
-        rows, columns = np.nonzero(coloured(standing, colour))
-        lowest[name] = (np.median(columns), np.percentile(rows, 99.9))
-        heights[name] = rows.max() - rows.min()
-    # They stand side by side: their feet lie on one line across the floor.
-    x, y = np.array(list(lowest.values())).T
-    slope, offset = np.polyfit(x, y, 1)
-    assert np.abs(slope * x + offset - y).max() < 4.0
-    # Walking, the foot ahead of a step is 0.35 of the height nearer at the most; the camera looks down on it by
-    # 0.2 rad, which shows a fifth of that.
-    walking = window.picture("bare_late", *BARE, frames=LATE)
-    for name, colour in HUES.items():
-        rows, columns = np.nonzero(coloured(walking, colour))
-        line = slope * np.median(columns) + offset
-        assert rows.max() - line < 0.2 * heights[name], name
-
-
-def test_a_picture_is_the_same_each_time(window):
-    first = window.picture("again_1", frames=40)
-    second = window.picture("again_2", frames=40)
-    assert np.abs(first - second).max() == 0
-
-
-def plain_columns(picture, x_range, y_range):
-    """Columns along which nothing is drawn but one colour."""
-    part = picture[y_range[0]:y_range[1], x_range[0]:x_range[1]]
-    return [x_range[0] + i for i in range(part.shape[1]) if (np.ptp(part[:, i], axis=0) <= 2).all()]
-
-
-def check_sound(picture, name):
-    assert picture.std() > 8.0, name
-    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 300, name
-
-
-@pytest.mark.parametrize("panel", PANELS)
-def test_each_panel_is_drawn_and_keeps_its_text(window, panel):
-    none = window.picture("panel_none", "--panels", "none", frames=40)
+def test_panels_keep_their_place_and_their_text(window):
+    none = window.picture("bare_early", *BARE)
     height, width = none.shape[:2]
-    picture = window.picture(f"panel_{panel}", "--panels", panel, frames=60 if panel == "graphs" else 40)
-    check_sound(picture, panel)
-    # A column stands at the left or at the right; its edge to the scene is one line that no text crosses.
-    left = (60, 330), (960, width - 60)
-    edges = [plain_columns(picture, x_range, (60, height - 110)) for x_range in left]
-    assert edges[0] or edges[1], f"{panel}: no edge of a panel"
-    # What differs from the bare scene lies in the panel, but for the scene that moves aside.
-    assert (np.abs(picture - none).sum(axis=2) > 24).mean() > 0.05
+    panels = window.picture("panels", "--hide", BARE[-1], "--panels", "pad,control,style,graphs,solver,loop")
+    assert panels.std() > 8.0 and len(np.unique(panels.reshape(-1, 3), axis=0)) > 300
+
+    def plain_columns(first, last):
+        """Columns along which nothing is drawn but one colour: the edge of a panel, which no text crosses."""
+        part = panels[60:height - 110, first:last]
+        return [i for i in range(part.shape[1]) if (np.ptp(part[:, i], axis=0) <= 2).all()]
+    assert plain_columns(60, 330) and plain_columns(960, width - 60)
+    assert (np.abs(panels - none).sum(axis=2) > 24).mean() > 0.2
 
 
-def test_light_is_lighter_than_dark(window):
-    dark = window.picture("theme_dark", "--theme", "dark", frames=40)
-    light = window.picture("theme_light", "--theme", "light", frames=40)
-    check_sound(light, "light")
-    assert light.mean() - dark.mean() > 80.0
+def test_light_is_lighter_and_scale_2_doubles_every_size(window):
+    dark = window.picture("bare_early", *BARE)
+    one, two = (window.picture(f"light_{scale}", *BARE, "--theme", "light", "--scale", scale) for scale in (1, 2))
+    assert one.mean() - dark.mean() > 80.0
     # Text is dark on light, light on dark: the extreme is on the other side of the mean.
-    assert np.percentile(light, 0.5) < 90
-    assert np.percentile(dark, 99.5) > 170
-
-
-def test_scale_2_doubles_every_size(window):
-    one = window.picture("theme_dark", "--theme", "dark", frames=40)
-    two = window.picture("scale_2", "--theme", "dark", "--scale", "2", frames=40)
+    assert np.percentile(one, 0.5) < 90 and np.percentile(dark, 99.5) > 150
     assert two.shape[:2] == (2 * one.shape[0], 2 * one.shape[1])
     halved = two.reshape(one.shape[0], 2, one.shape[1], 2, 3).mean(axis=(1, 3))
-    # The same picture but for the sharpness of type; the bars and panels lie where they lay.
-    assert np.abs(halved - one).mean() < 8.0
+    assert np.abs(halved - one).mean() < 8.0, "the same picture but for the sharpness of type"
 
 
-def wait_until_recorded(record):
-    part = pathlib.Path(f"{record}.part")
-    wait_until(lambda: part.exists() and part.stat().st_size > 2000)
+def test_clean_pictures_have_no_bars(window):
+    bars, clean = window.picture("bare_early", *BARE), window.picture("clean", *BARE, "--clean")
+    dark = [np.abs(p[:40] - np.array([0x16, 0x19, 0x1F])).max(axis=2) < 6 for p in (bars, clean)]  # the tool bar's colour
+    assert dark[0].mean() > 0.5 and dark[1].mean() < 0.1
+    assert np.ptp(clean[-40:], axis=(0, 1)).max() < 120  # no time line either
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_it_in_good_order(window, tmp_path, number):
+def test_a_signal_ends_it_in_good_order(window, tmp_path):
     record = tmp_path / "signal.hid"
     with window.started("play", ROUND, "--record", record, "--json") as process:
         wait_until_recorded(record)
-        out, _ = end_by(process, number)
+        out, _ = end_by(process, signal.SIGTERM)
     summary = json.loads(out)[0]
     assert summary["frames"] > 0
     again = json.loads(window.run("replay", record, *FOUR, "--json").stdout)[0]
@@ -243,7 +195,10 @@ def test_it_outlives_its_x_server_long_enough_to_finish(window, tmp_path):
     window.run("replay", record, *FOUR)
 
 
-@pytest.mark.skipif(not (shutil.which("ffmpeg") and shutil.which("ffprobe")), reason="there is no ffmpeg")
+needs_ffmpeg = pytest.mark.skipif(not (shutil.which("ffmpeg") and shutil.which("ffprobe")), reason="there is no ffmpeg")
+
+
+@needs_ffmpeg
 def test_a_video_has_as_many_frames_as_were_asked_for(window):
     video = window.pictures / "walk.mp4"
     window.run("replay", window.trace, "--view", "--frames", "20", "--video", video)
@@ -256,10 +211,11 @@ def test_a_video_has_as_many_frames_as_were_asked_for(window):
 
 def test_without_a_display_pictures_are_made_and_a_window_is_one_sentence(window, tmp_path):
     path = tmp_path / "hidden.png"
-    window.run("play", window.trace, "--frames", "5", "--screenshot", path)
+    assert f"written to {path}" in window.run("play", window.trace, "--frames", "5", "--screenshot", path).stderr
     assert pixels(path).shape == (720, 1280, 3)
-    errors = window.run("play", window.trace, status=1).stderr
-    assert len(errors.strip().splitlines()) == 1 and "display" in errors, errors
+    for command in (["play"], ["replay", "--view"]):
+        errors = window.run(*command, window.trace, status=1).stderr
+        assert len(errors.strip().splitlines()) == 1 and "no display" in errors and "--screenshot" in errors, errors
 
 
 def test_replay_view_writes_its_files_too(window, tmp_path):
@@ -297,24 +253,19 @@ def test_a_still_needs_no_more_memory_for_more_frames(program, tmp_path):
 
     def peak(frames):
         return peak_mib(program, "play", ROUND, "--frames", frames, "--screenshot", tmp_path / "still.png", "--scale", "2", "--clean")
-    few, many = peak(20), peak(1200)
-    print(f"{few:.0f} MiB after 20 frames, {many:.0f} MiB after 1200")
+    few, many = peak(20), peak(600)
+    print(f"{few:.0f} MiB after 20 frames, {many:.0f} MiB after 600")
     assert many < MOST_MIB and many < few + 20
 
 
-def test_control_c_gives_a_still_up_at_once(started, tmp_path):
+def test_control_c_gives_a_still_up(started, tmp_path):
     picture = tmp_path / "still.png"
     picture.write_bytes(b"an earlier one")
     with started("play", ROUND, "--frames", "1000000", "--screenshot", picture, env=environment()) as process:
-        time.sleep(2.0)
-        begin = time.monotonic()
-        _, errors = end_by(process, signal.SIGINT, status=130)
-        assert time.monotonic() - begin < 3.0  # a busy machine
+        wait_until_works(process)
+        _, errors = end_by(process, signal.SIGINT, status=130)  # a million frames would take hours
     assert "no picture was written" in errors
     assert [p.name for p in tmp_path.iterdir()] == ["still.png"] and picture.read_bytes() == b"an earlier one"
-
-
-needs_ffmpeg = pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="there is no ffmpeg")
 
 
 @needs_ffmpeg
@@ -325,29 +276,7 @@ def test_control_c_gives_a_video_up(started, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@needs_ffmpeg
-def test_a_video_that_the_disk_does_not_take_is_an_error(program, tmp_path):
-    command = f'ulimit -f 40; exec "{program}" play "{ROUND}" --frames 60 --video "{tmp_path}/walk.mp4"'
-    done = subprocess.run(["bash", "-c", command], env=environment(), capture_output=True, text=True, check=False, timeout=300)
-    assert done.returncode == 1 and done.stdout == "", done.stderr
-    assert "walk.mp4: cannot be written" in done.stderr.splitlines()[-1]
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_missing_ffmpeg_is_named_before_the_work_begins(refuse, tmp_path):
     bare = {**environment(), "PATH": str(tmp_path)}
     refuse("play", tmp_path / "none.hid", "--frames", "5", "--video", tmp_path / "walk.mp4", env=bare,
            says=["ffmpeg is not installed", "sudo apt-get install ffmpeg"])
-
-
-def test_written_pictures_are_named(window, tmp_path):
-    done = window.run("play", window.trace, "--frames", "3", "--screenshot", tmp_path / "still.png")
-    assert f"written to {tmp_path}/still.png" in done.stderr
-
-
-def test_clean_pictures_have_no_bars(window):
-    bars, clean = window.picture("bare_early", *BARE), window.picture("clean", *BARE, "--clean")
-    dark = np.abs(bars[:40].astype(int) - np.array([0x16, 0x19, 0x1F])).max(axis=2) < 6  # the tool bar's own colour
-    assert dark.mean() > 0.5
-    assert (np.abs(clean[:40].astype(int) - np.array([0x16, 0x19, 0x1F])).max(axis=2) < 6).mean() < 0.1
-    assert np.ptp(clean[-40:].astype(int), axis=(0, 1)).max() < 120  # no time line either

@@ -6,47 +6,22 @@
 #include <cmath>
 #include <memory>
 
-#include "gaitpad/session_spec.h"
-#include "tests/folders.h"
-#include "tests/value_of.h"
+#include "tests/view/walking_fixture.h"
 
 namespace gaitpad {
 namespace {
 
-// Characters of the bundled configuration walking ahead, every tick in a history.
-class Walking : public testing::Test {
+class Walking : public WalkingTest {
  protected:
   void SetUp() override { begin({"even", "limp_left"}); }
   void begin(const std::vector<std::string>& styles, int crowd = 0,
              const std::string& terrain = "") {
-    SessionSpec spec;
-    spec.walk.terrain = terrain;
-    spec.config_folders = {kSourceFolder + "/config"};
-    spec.walk.styles = styles;
-    spec.walk.crowd = crowd;
-    auto config = simulation_config(spec, 240);
-    ASSERT_TRUE(config) << config.error().message;
-    simulation_ = std::make_unique<Simulation>(value_of(Simulation::create(*config)));
-    cast_ = cast_of(*simulation_, *config);
-    ensemble_ = std::make_unique<Ensemble>(cast_);
-    run(1);
+    start(styles, crowd, terrain);
+    ensemble_ = std::make_unique<Ensemble>(cast);
   }
-  void run(int ticks) {
-    Report walk;
-    walk.kind = ReportKind::command;
-    const std::string_view text = "gait speed_m_s 1.2";
-    walk.size = static_cast<std::uint16_t>(text.size());
-    std::copy(text.begin(), text.end(), walk.bytes.begin());
-    for (int i = 0; i < ticks; ++i) {
-      simulation_->step(std::span(&walk, 1));
-      TickSample sample;
-      copy_sample(*simulation_, sample);
-      history_.add(sample);
-    }
-    copy_frame(*simulation_, *frame_);
-  }
+  void run(int ticks) { step(ticks, {"gait speed_m_s 1.2"}); }
   void fill(double share = 1.0) {
-    ensemble_->fill(*frame_, history_, share, cast_, state_, theme_of(ThemeName::dark), content_);
+    ensemble_->fill(*frame, history, share, cast, state_, theme_of(ThemeName::dark), content_);
   }
   double length_m(const Trail& trail) const {
     double sum_m = 0.0;
@@ -55,10 +30,6 @@ class Walking : public testing::Test {
     return sum_m;
   }
 
-  std::unique_ptr<Simulation> simulation_;
-  Cast cast_;
-  std::unique_ptr<SessionFrame> frame_ = std::make_unique<SessionFrame>();
-  History history_;
   std::unique_ptr<Ensemble> ensemble_;
   UiState state_;
   SceneContent content_;
@@ -98,10 +69,12 @@ TEST_F(Walking, WhatIsSwitchedOffIsNotThere) {
   EXPECT_TRUE(content_.trails.empty());
   EXPECT_TRUE(content_.lines.empty());
   EXPECT_FALSE(content_.capsules.empty());
+  EXPECT_TRUE(content_.crowd.empty());  // there is none
+  EXPECT_TRUE(content_.crowd_shades.empty());
+  EXPECT_EQ(content_.reach_m, 0.0);
   const Viewport viewport{0, 0, 800, 600};
-  EXPECT_TRUE(
-      ensemble_->labels(*frame_, cast_, Camera(), viewport, state_, theme_of(ThemeName::dark))
-          .empty());
+  EXPECT_TRUE(ensemble_->labels(*frame, cast, Camera(), viewport, state_, theme_of(ThemeName::dark))
+                  .empty());
 }
 
 TEST_F(Walking, AMomentBetweenTwoTicksIsDrawnBetweenTheirPoses) {
@@ -111,8 +84,8 @@ TEST_F(Walking, AMomentBetweenTwoTicksIsDrawnBetweenTheirPoses) {
     return ensemble_->focus_m(0).z;
   };
   const double from = z_at(0.0), to = z_at(1.0);
-  EXPECT_EQ(from, frame_->walkers[0].before.root_m.z);
-  EXPECT_EQ(to, frame_->walkers[0].pose.root_m.z);
+  EXPECT_EQ(from, frame->walkers[0].before.root_m.z);
+  EXPECT_EQ(to, frame->walkers[0].pose.root_m.z);
   EXPECT_NEAR(z_at(0.25), from + 0.25 * (to - from), 1e-12);
   EXPECT_GT(to - from, 0.001);
 }
@@ -126,7 +99,7 @@ TEST_F(Walking, FromItsDistanceTheCameraSeesEverybodyWithTheirNames) {
       camera.target_m = ensemble_->focus_m(-1);
       camera.distance_m = ensemble_->distance_m(-1, camera, viewport);
       const auto labels =
-          ensemble_->labels(*frame_, cast_, camera, viewport, state_, theme_of(ThemeName::dark));
+          ensemble_->labels(*frame, cast, camera, viewport, state_, theme_of(ThemeName::dark));
       ASSERT_EQ(labels.size(), 5u);
       EXPECT_EQ(labels[0].text, "even");
       EXPECT_EQ(labels[3].text, "limp left");
@@ -148,10 +121,10 @@ TEST_F(Walking, ACrowdStandsBehindTheWalkers) {
   begin({"even"}, 30);
   run(300);
   fill();
-  ASSERT_EQ(cast_.crowd.size(), 30u);
+  ASSERT_EQ(cast.crowd.size(), 30u);
   ASSERT_EQ(content_.crowd_shades.size(), 90u);  // two feet and a body each
   EXPECT_GT(content_.crowd.size(), 30u * 14);
-  const vec3 first = simulation_->walkers().front().pose.root_m;
+  const vec3 first = simulation->walkers().front().pose.root_m;
   double lowest_m = 1.0, highest_m = 0.0;
   for (const FlatCapsule& c : content_.crowd) {
     const vec3 a = vec3(c.a_radius) + content_.crowd_origin_m;
@@ -197,12 +170,12 @@ TEST_F(Walking, OnStairsTheSourceIsNeverInTheGround) {
     double lowest_m = 1.0;
     for (const SceneLine& line : content_.lines) {
       for (const vec3& end : {line.a_m, line.b_m}) {
-        const double ground_m = ground_at(*cast_.terrain, end.x, end.z).height_m;
+        const double ground_m = ground_at(*cast.terrain, end.x, end.z).height_m;
         lowest_m = std::min(lowest_m, end.y - ground_m);
         highest_m = std::max(highest_m, ground_m);
       }
     }
-    EXPECT_GE(lowest_m, -1e-9) << "tick " << frame_->tick;
+    EXPECT_GE(lowest_m, -1e-9) << "tick " << frame->tick;
     most_above_m = std::max(most_above_m, lowest_m);
   }
   EXPECT_GT(highest_m, 0.9) << "it was on the stairs";
@@ -221,13 +194,6 @@ TEST_F(Walking, TheGroundAheadIsHigherOnTheWayUpAndLowerOnTheWayDown) {
     was_down = was_down || (was_up && ensemble_->rise_ahead_m(-1) < -0.3);
   }
   EXPECT_TRUE(was_up && was_down);
-}
-
-TEST_F(Walking, WithoutACrowdThereIsNone) {
-  fill();
-  EXPECT_TRUE(content_.crowd.empty());
-  EXPECT_TRUE(content_.crowd_shades.empty());
-  EXPECT_EQ(content_.reach_m, 0.0);
 }
 
 }  // namespace

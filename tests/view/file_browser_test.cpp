@@ -11,7 +11,6 @@
 
 namespace gaitpad {
 namespace fs = std::filesystem;
-namespace fs = std::filesystem;
 namespace {
 
 class Opening : public testing::Test {
@@ -196,5 +195,4 @@ TEST_F(Folder, OnlySoManyRecentFilesAreKeptAndAStrangersListIsBounded) {
 }
 
 }  // namespace
-
 }  // namespace gaitpad

@@ -39,10 +39,6 @@ TEST_F(LayoutTest, WhatIsSavedIsLoadedAgain) {
   EXPECT_FALSE(layout.state.has_shadows);
   EXPECT_TRUE(layout.state.has_source);
   EXPECT_FALSE(layout.state.has_names);
-}
-
-TEST_F(LayoutTest, NoPanelOpenIsRememberedToo) {
-  UiState state;
   state.is_open.fill(false);
   ASSERT_FALSE(save_layout(path(), state));
   EXPECT_EQ(load_layout(path()).state.is_open, state.is_open);

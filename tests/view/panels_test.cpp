@@ -11,8 +11,50 @@ namespace {
 
 using Commands = std::vector<std::string>;
 
+// Not a line's and not a surface's, which the atlas keeps in places of their own.
+bool is_letter(const ImDrawVert& v) {
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  for (const int place : {atlas.PackIdLines, atlas.PackIdMouseCursors}) {
+    const ImFontAtlasCustomRect& r = *atlas.GetCustomRectByIndex(place);
+    const float x = v.uv.x * static_cast<float>(atlas.TexWidth);
+    const float y = v.uv.y * static_cast<float>(atlas.TexHeight);
+    if (x >= r.X && x <= r.X + r.Width && y >= r.Y && y <= r.Y + r.Height) return false;
+  }
+  return true;
+}
+
+// Everything within the area; letters beside its scroll bar and inside its margins, too.
+void expect_inside(const ImDrawList& list, const UiItem& area, const UiItem* panel, int panels) {
+  for (const ImDrawVert& v : list.VtxBuffer) {
+    const UiItem& limits = panel != nullptr && is_letter(v) ? *panel : area;
+    ASSERT_TRUE(std::isfinite(v.pos.x) && std::isfinite(v.pos.y)) << list._OwnerName;
+    ASSERT_GE(v.pos.x, limits.min.x - 1.5f) << list._OwnerName << " panels " << panels;
+    ASSERT_LE(v.pos.x, limits.max.x + 1.5f) << list._OwnerName << " panels " << panels;
+  }
+}
+
 class PanelTest : public UiTest {
  protected:
+  // Every list that is drawn in an area that ui_items() names.
+  void expect_all_inside(int panels) {
+    int seen = 0;
+    const ImDrawData* data = ImGui::GetDrawData();
+    for (int l = 0; l < data->CmdListsCount; ++l) {
+      const ImDrawList& list = *data->CmdLists[l];
+      const UiItem* area = find(list._OwnerName);
+      if (area == nullptr) continue;
+      ++seen;
+      const UiItem* panel = nullptr;
+      for (const std::string_view name : kPanelNames) {
+        const UiItem* item = find("area " + std::string(name));
+        if (item != nullptr && std::string(list._OwnerName).ends_with("column") &&
+            item->min.x >= area->min.x && item->max.x <= area->max.x)
+          panel = item;
+      }
+      expect_inside(list, *area, panel, panels);
+    }
+    EXPECT_GE(seen, 1);
+  }
   void show(Panel panel) {
     state.is_open.fill(false);
     state.is_open[static_cast<std::size_t>(panel)] = true;
@@ -221,77 +263,39 @@ struct Look {
   ThemeName theme;
   bool is_hostile;
 };
-void PrintTo(const Look& look, std::ostream* out) {
-  *out << look.width << " x " << look.height << " at scale " << look.scale;
-}
-class Looks : public PanelTest, public ::testing::WithParamInterface<Look> {};
-
-// Not a line's and not a surface's, which the atlas keeps in places of their own.
-bool is_letter(const ImDrawVert& v) {
-  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  for (const int place : {atlas.PackIdLines, atlas.PackIdMouseCursors}) {
-    const ImFontAtlasCustomRect& r = *atlas.GetCustomRectByIndex(place);
-    const float x = v.uv.x * static_cast<float>(atlas.TexWidth);
-    const float y = v.uv.y * static_cast<float>(atlas.TexHeight);
-    if (x >= r.X && x <= r.X + r.Width && y >= r.Y && y <= r.Y + r.Height) return false;
-  }
-  return true;
-}
-
-// Everything within the area; letters beside its scroll bar and inside its margins, too.
-void expect_inside(const ImDrawList& list, const UiItem& area, const UiItem* panel, int panels) {
-  for (const ImDrawVert& v : list.VtxBuffer) {
-    const UiItem& limits = panel != nullptr && is_letter(v) ? *panel : area;
-    ASSERT_TRUE(std::isfinite(v.pos.x) && std::isfinite(v.pos.y)) << list._OwnerName;
-    ASSERT_GE(v.pos.x, limits.min.x - 1.5f) << list._OwnerName << " panels " << panels;
-    ASSERT_LE(v.pos.x, limits.max.x + 1.5f) << list._OwnerName << " panels " << panels;
-  }
-}
+constexpr Look kLooks[] = {
+    {1.0, 1280, 720, ThemeName::dark, false}, {1.0, 1280, 720, ThemeName::dark, true},
+    {1.0, 640, 480, ThemeName::light, true},  {1.5, 1920, 1080, ThemeName::light, false},
+    {2.0, 2560, 1440, ThemeName::dark, true}, {2.0, 1280, 720, ThemeName::light, false},
+    {1.0, 320, 200, ThemeName::dark, true}};
 
 // The scissor cuts what leaves a panel, so a picture would not tell. The list before it does.
-TEST_P(Looks, NothingLeavesItsPanel) {
-  const Look& look = GetParam();
-  open(look.width, look.height, look.scale, look.theme);
-  walk();
-  status.time_policy = "SCHED_FIFO 50";
-  status.overruns = status.standstills = 123456789;
-  status.wait_counts.fill(1000000);
-  if (look.is_hostile) make_hostile(cast, pad_name, renderer, source, messages, labels);
-  for (const bool is_playback : {false, true}) {
-    if (is_playback) timeline = UiTimeline{};
-    for (int panels = 1; panels <= 64; panels *= 2) {
-      for (std::size_t i = 0; i < kPanels; ++i) state.is_open[i] = panels == 64 || panels >> i & 1;
-      draw();
-      draw();
-      int seen = 0;
-      const ImDrawData* data = ImGui::GetDrawData();
-      for (int l = 0; l < data->CmdListsCount; ++l) {
-        const ImDrawList& list = *data->CmdLists[l];
-        const UiItem* area = find(list._OwnerName);
-        if (area == nullptr) continue;
-        ++seen;
-        const UiItem* panel = nullptr;
-        for (const std::string_view name : kPanelNames) {
-          const UiItem* item = find("area " + std::string(name));
-          if (item != nullptr && std::string(list._OwnerName).ends_with("column") &&
-              item->min.x >= area->min.x && item->max.x <= area->max.x)
-            panel = item;
-        }
-        expect_inside(list, *area, panel, panels);
+TEST_F(PanelTest, NothingLeavesItsPanel) {
+  const std::string pad = pad_name;
+  for (const Look& look : kLooks) {
+    SCOPED_TRACE(std::to_string(look.width) + " at scale " + std::to_string(look.scale));
+    open(look.width, look.height, look.scale, look.theme);
+    walk();
+    status.time_policy = "SCHED_FIFO 50";
+    status.overruns = status.standstills = 123456789;
+    status.wait_counts.fill(1000000);
+    pad_name = renderer = source = pad;
+    messages.clear();
+    labels.clear();
+    if (look.is_hostile) make_hostile(cast, pad_name, renderer, source, messages, labels);
+    for (const bool is_playback : {false, true}) {
+      timeline.reset();
+      if (is_playback) timeline = UiTimeline{};
+      for (int panels = 1; panels <= 64; panels *= 2) {
+        for (std::size_t i = 0; i < kPanels; ++i)
+          state.is_open[i] = panels == 64 || panels >> i & 1;
+        draw();
+        draw();
+        expect_all_inside(panels);
       }
-      EXPECT_GE(seen, 1);
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Sizes, Looks,
-                         ::testing::Values(Look{1.0, 1280, 720, ThemeName::dark, false},
-                                           Look{1.0, 1280, 720, ThemeName::dark, true},
-                                           Look{1.0, 640, 480, ThemeName::light, true},
-                                           Look{1.5, 1920, 1080, ThemeName::light, false},
-                                           Look{2.0, 2560, 1440, ThemeName::dark, true},
-                                           Look{2.0, 1280, 720, ThemeName::light, false},
-                                           Look{1.0, 320, 200, ThemeName::dark, true}));
 
 TEST_F(PanelTest, WhatIsNoNumberIsDrawnAsNone) {
   walk();

@@ -1,5 +1,5 @@
-// A scene drawn without a display, looked at pixel by pixel.
-
+// A scene drawn without a display, looked at pixel by pixel: what is drawn is where the camera
+// projects it, and does what the header says.
 #include "view/scene.h"
 
 #include <epoxy/gl.h>
@@ -10,35 +10,30 @@
 #include <limits>
 #include <memory>
 
-#include "gaitpad/control.h"
-#include "gaitpad/walk.h"
-#include "tests/clean_cycle.h"
-#include "tests/value_of.h"
 #include "view/gl_program.h"
-#include "view/mannequin.h"
 #include "view/offscreen.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
-inline const Colour kRed = rgb(0xd02020);
+const Colour kRed = rgb(0xd02020);
 
-inline Capsule bone(const vec3& a, const vec3& b, double radius_a_m, double radius_b_m) {
+Capsule bone(const vec3& a, const vec3& b, double radius_a_m, double radius_b_m) {
   return {a, b, radius_a_m, radius_b_m, vec3(0.0), 1.0, 1.0, kRed};
 }
-inline Capsule bone(const vec3& a, const vec3& b, double radius_m) {
+Capsule bone(const vec3& a, const vec3& b, double radius_m) {
   return bone(a, b, radius_m, radius_m);
 }
 
 // 0 .. 255
-inline double brightness(const Pixels& p, double x, double y) {
+double brightness(const Pixels& p, double x, double y) {
   const int px = std::clamp(static_cast<int>(x), 0, p.width - 1);
   const int py = std::clamp(static_cast<int>(y), 0, p.height - 1);
   const std::uint8_t* c = p.rgba.data() + 4 * (py * p.width + px);
   return (c[0] + c[1] + c[2]) / 3.0;
 }
-inline bool differs(const Pixels& a, const Pixels& b, int x, int y) {
+bool differs(const Pixels& a, const Pixels& b, int x, int y) {
   const std::size_t i = 4 * (static_cast<std::size_t>(y) * a.width + x);
   int sum = 0;
   for (int c = 0; c < 3; ++c) sum += std::abs(a.rgba[i + c] - b.rgba[i + c]);
@@ -47,7 +42,7 @@ inline bool differs(const Pixels& a, const Pixels& b, int x, int y) {
 struct Extent {
   int left = kWidth, top = kHeight, right = -1, bottom = -1, pixels = 0;
 };
-inline Extent difference(const Pixels& a, const Pixels& b) {
+Extent difference(const Pixels& a, const Pixels& b) {
   Extent e;
   for (int y = 0; y < a.height; ++y) {
     for (int x = 0; x < a.width; ++x) {
@@ -108,9 +103,6 @@ class SceneTest : public testing::Test {
   ThemeName theme_ = ThemeName::dark;
   double scale_ = 1.0;
 };
-
-// What is drawn is where the camera projects it, and does what the header says: looked at pixel by
-// pixel, without a display.
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Colour kBlue = rgb(0x2020d0);
@@ -223,22 +215,6 @@ TEST_F(SceneTest, AWideCapsuleIsWideAcrossOnly) {
   EXPECT_NEAR(from_front / from_side, 1.8, 0.15);
 }
 
-TEST_F(SceneTest, TheNearerCapsuleHidesTheOther) {
-  camera_.yaw_rad = 0.0;
-  const vec3 at = camera_.target_m;
-  Capsule near = bone(at, at, 0.2), far = near;
-  near.a_m.z = near.b_m.z = 1.0;
-  far.colour = kBlue;
-  for (const bool is_near_first : {true, false}) {
-    content_.capsules = {is_near_first ? near : far, is_near_first ? far : near};
-    const Pixels pixels = drawn(content_);
-    const vec3 middle = place(near.a_m);
-    const std::uint8_t* c =
-        pixels.rgba.data() + 4 * (static_cast<int>(middle.y) * kWidth + static_cast<int>(middle.x));
-    EXPECT_GT(c[0], c[2] + 40);
-  }
-}
-
 TEST_F(SceneTest, AShadowDarkensTheFloorAwayFromTheLight) {
   look_down();
   content_.has_grid = false;
@@ -269,46 +245,6 @@ TEST_F(SceneTest, AFootDarkensTheFloorRoundItAndALiftedFootDoesNot) {
   };
   EXPECT_GT(darker_beside(0.03), 3.0);
   EXPECT_LT(darker_beside(0.60), 1.0);
-}
-
-// Seen from the side, the eye a hand above the floor: the floor's line is as good as one row.
-TEST_F(SceneTest, NoPixelOfAWalkingBodyIsBelowTheFloorLine) {
-  camera_.target_m = {0.0, 0.3, 0.0};
-  camera_.distance_m = 5.0;
-  camera_.yaw_rad = kPi / 2.0;
-  orbit(camera_, 0.0, -1.0);
-  ASSERT_LT(camera_.eye_m().y, 0.11);
-  const Mannequin body = mannequin_of(std::make_shared<const WalkModel>(
-      value_of(walk_model(clean_cycle(procedural_gait()), Character{}))));
-  Stick stick;
-  stick.left = {0.2, 0.7};
-  const GaitParams params = gait_params(stick, StyleValues{}, GaitLimits{});
-  Pose pose;
-  WalkState state = standing(*body.model, vec3(0.0), pose);
-  for (int frame = 0; frame < 8; ++frame) {
-    content_.capsules.clear();
-    camera_.target_m.z = content_.focus_m.z = pose.root_m.z;
-    camera_.target_m.x = content_.focus_m.x = pose.root_m.x;
-    const Pixels without = drawn(content_);
-    add_mannequin(body, pose, kRed, content_);
-    const Extent seen = difference(without, drawn(content_));
-    const vec3 under(pose.root_m.x, 0.0, pose.root_m.z);
-    EXPECT_LE(seen.bottom, place(under + 0.3 * kLeft).y + 1.0) << frame;
-    EXPECT_GE(seen.bottom, place(under - 0.3 * kLeft).y - 2.0) << frame;  // and it stands there
-    for (int i = 0; i < 37; ++i) {
-      advance(*body.model, params, IkMode::robust, 1.0 / 240.0, state, pose);
-    }
-  }
-}
-
-TEST_F(SceneTest, TheLightThemeIsBright) {
-  const Pixels dark = drawn(content_);
-  theme_ = ThemeName::light;
-  const Pixels light = drawn(content_);
-  for (const int y : {5, kHeight / 2, kHeight - 5}) {
-    EXPECT_LT(brightness(dark, 60, y), 110.0) << y;
-    EXPECT_GT(brightness(light, 60, y), 170.0) << y;
-  }
 }
 
 TEST_F(SceneTest, OutsideTheViewportNothingChanges) {
@@ -527,5 +463,4 @@ TEST_F(SceneTest, AFloorShadeDarkensTheFloorWhereItLies) {
 }
 
 }  // namespace
-
 }  // namespace gaitpad

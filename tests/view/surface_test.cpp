@@ -3,15 +3,8 @@
 
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <optional>
 #include <thread>
 
 #include "tests/own_folder.h"
@@ -20,7 +13,6 @@
 namespace gaitpad {
 namespace {
 
-namespace fs = std::filesystem;
 using Rgb = std::array<int, 3>;
 
 Rgb at(const Pixels& pixels, int x, int y) {
@@ -82,14 +74,6 @@ TEST(Surface, AWindowThatIsMadeLargerHasMorePixels) {
   EXPECT_EQ(at(drawn_corner(500, 300), 499, 0), (Rgb{0, 0, 255}));
 }
 
-TEST(Surface, OneAfterTheOtherOpens) {
-  for (int i = 0; i < 3; ++i) {
-    GAITPAD_OFFSCREEN(surface, 64, 64);
-    surface.begin();
-    EXPECT_EQ(at(drawn_corner(64, 64), 0, 63), (Rgb{255, 0, 0}));
-  }
-}
-
 // As the program does it: the driver starts and asks SDL's joysticks on its own thread, at any
 // moment after the window was opened, and they outlive the window.
 TEST(Surface, JoysticksOnAnotherThreadOutliveTheWindow) {
@@ -130,58 +114,6 @@ TEST(Surface, AnUnknownDisplayIsNamed) {
   ASSERT_FALSE(surface);
   EXPECT_NE(surface.error().message.find("no_such_driver"), std::string::npos)
       << surface.error().message;
-}
-
-// An X server of its own; its display's number is empty where none starts.
-class XServer {
- public:
-  XServer() {
-    output_ = ::popen("echo $$; exec Xvfb -displayfd 1 -screen 0 640x480x24 2>/dev/null", "r");
-    process_ = static_cast<pid_t>(std::strtol(line().c_str(), nullptr, 10));
-    display_ = line();
-  }
-  const std::string& display() const { return display_; }
-  void kill() const { ::kill(process_, SIGKILL); }
-
- private:
-  std::string line() {
-    std::array<char, 64> text{};
-    if (!std::fgets(text.data(), text.size(), output_)) return {};
-    std::string whole(text.data());
-    return whole.substr(0, whole.find('\n'));
-  }
-  FILE* output_ = nullptr;
-  pid_t process_ = 0;
-  std::string display_;
-};
-
-// In a process of its own. Ends with 0 where the window notices and can be closed, 2 without a
-// display.
-void lose_the_x_server() {
-  const XServer server;
-  if (server.display().empty()) ::_exit(2);
-  ::setenv("DISPLAY", (":" + server.display()).c_str(), 1);
-  ::setenv("SDL_VIDEODRIVER", "x11", 1);
-  auto surface = WindowSurface::open(SurfaceOptions{});
-  if (!surface) {
-    server.kill();
-    ::_exit(2);
-  }
-  for (int frame = 0; frame < 1000 && !(*surface)->is_lost(); ++frame) {
-    if (frame == 5) server.kill();
-    SDL_Event event;
-    while (!(*surface)->is_lost() && SDL_PollEvent(&event)) continue;
-    if (!(*surface)->is_lost()) (*surface)->show();
-  }
-  const bool is_lost = (*surface)->is_lost();
-  *surface = nullptr;
-  ::_exit(is_lost ? 0 : 1);
-}
-
-TEST(SurfaceDeathTest, AnXServerThatIsKilledEndsTheWindowNotTheProgram) {
-  if (std::system("command -v Xvfb > /dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
-  testing::GTEST_FLAG(death_test_style) = "threadsafe";
-  EXPECT_EXIT(lose_the_x_server(), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

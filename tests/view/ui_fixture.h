@@ -4,19 +4,16 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "gaitpad/session_spec.h"
-#include "tests/folders.h"
-#include "tests/value_of.h"
+#include "tests/view/walking_fixture.h"
 #include "view/gui.h"
 #include "view/ui.h"
 
 namespace gaitpad {
 
-class UiTest : public ::testing::Test {
+class UiTest : public WalkingTest {
  protected:
   void SetUp() override { open(1280, 720, 1.0); }
   void TearDown() override { close(); }
@@ -44,38 +41,6 @@ class UiTest : public ::testing::Test {
     context_ = nullptr;
   }
 
-  // These characters, in these styles, all from the program's own files.
-  void start(const std::vector<std::string>& styles) {
-    SessionSpec spec;
-    spec.config_folders = {kSourceFolder + "/config"};
-    spec.walk.styles = styles;
-    spec.walk.characters.assign(styles.size(), "adult");
-    auto config = simulation_config(spec, 240);
-    ASSERT_TRUE(config) << config.error().message;
-    simulation_ = std::make_unique<Simulation>(value_of(Simulation::create(*config)));
-    cast = cast_of(*simulation_, *config);
-    frame = std::make_unique<SessionFrame>();
-    history = History();
-    step(1);
-  }
-  void step(int ticks, const std::vector<std::string>& commands = {}) {
-    std::vector<Report> reports;
-    for (const std::string& text : commands) {
-      Report& report = reports.emplace_back();
-      report.kind = ReportKind::command;
-      report.size = static_cast<std::uint16_t>(text.size());
-      std::copy(text.begin(), text.end(), report.bytes.begin());
-    }
-    for (int i = 0; i < ticks; ++i) {
-      simulation_->step(reports);
-      reports.clear();
-      TickSample sample;
-      copy_sample(*simulation_, sample);
-      sample.step_us = 150.0f + static_cast<float>(i % 7);
-      history.add(sample);
-    }
-    copy_frame(*simulation_, *frame);
-  }
   // The paper's four, walking.
   void walk() {
     start({"even", "stiff_hip", "stiff_knee", "limp_left"});
@@ -147,9 +112,6 @@ class UiTest : public ::testing::Test {
 
   Fonts fonts;
   UiState state;
-  Cast cast;
-  std::unique_ptr<SessionFrame> frame = std::make_unique<SessionFrame>();
-  History history;
   LiveStatus status;
   std::optional<UiTimeline> timeline;
   std::string pad_name = "Wireless Controller", renderer = "llvmpipe", source, recording;
@@ -161,7 +123,6 @@ class UiTest : public ::testing::Test {
  private:
   ImGuiContext* context_ = nullptr;
   double scale_ = 1.0;
-  std::unique_ptr<Simulation> simulation_;
 };
 
 }  // namespace gaitpad

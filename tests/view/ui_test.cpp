@@ -107,6 +107,8 @@ TEST_F(UiTest, HelpOfASmallWindowScrollsToItsEnd) {
 
 TEST_F(UiTest, APlaybackIsSoughtWhereItsLineIsClicked) {
   walk();
+  draw();
+  EXPECT_EQ(find("timeline"), nullptr) << "a live session has none";
   timeline = UiTimeline{};
   timeline->ticks = 2401;
   draw();
@@ -120,12 +122,6 @@ TEST_F(UiTest, APlaybackIsSoughtWhereItsLineIsClicked) {
   EXPECT_TRUE(*click("loop").is_looping);
   EXPECT_EQ(click("timeline play").actions, Actions{Action::pause});
   EXPECT_EQ(click("timeline step").actions, Actions{Action::step});
-}
-
-TEST_F(UiTest, ALiveSessionHasNoTimeLine) {
-  walk();
-  draw();
-  EXPECT_EQ(find("timeline"), nullptr);
 }
 
 TEST_F(UiTest, MessagesStayUntilTheyAreDismissed) {
@@ -147,7 +143,7 @@ TEST_F(UiTest, UnderADialogNothingTakesTheMouse) {
   EXPECT_EQ(state.walker, -1);
 }
 
-TEST_F(UiTest, ItemsHaveDifferentNamesAndLieInTheWindow) {
+TEST_F(UiTest, ItemsHaveDifferentNamesLieInTheWindowAndLeaveTheSceneFree) {
   walk();
   state.is_open.fill(true);
   for (const ImVec2& size : kSizes) {
@@ -155,12 +151,17 @@ TEST_F(UiTest, ItemsHaveDifferentNamesAndLieInTheWindow) {
     draw();
     draw();
     std::set<std::string> names;
+    const Viewport v =
+        scene_viewport(state, false, static_cast<int>(size.x), static_cast<int>(size.y), 1.0);
     for (const UiItem& item : ui_items()) {
       EXPECT_TRUE(names.insert(item.name).second) << item.name;
       EXPECT_GE(item.min.x, 0.0f) << item.name;
       EXPECT_GE(item.min.y, 0.0f) << item.name;
       EXPECT_LE(item.max.x, size.x) << item.name;
       EXPECT_LE(item.max.y, size.y) << item.name;
+      EXPECT_TRUE(item.max.x <= v.x || item.min.x >= v.x + v.width || item.max.y <= v.y ||
+                  item.min.y >= v.y + v.height)
+          << item.name << " at " << size.x << " x " << size.y;
     }
   }
 }
@@ -301,23 +302,6 @@ TEST(UiLayout, ACleanWindowIsTheSceneAlone) {
   EXPECT_EQ(l.scene.height, 720.0f);
   for (const UiRect& rect : {l.top, l.left, l.right, l.timeline, l.status}) {
     EXPECT_TRUE(rect.is_empty());
-  }
-}
-
-TEST_F(UiTest, TheSceneIsLeftFree) {
-  walk();
-  state.is_open.fill(true);
-  for (const ImVec2& size : kSizes) {
-    ImGui::GetIO().DisplaySize = size;
-    draw();
-    draw();
-    const Viewport v =
-        scene_viewport(state, false, static_cast<int>(size.x), static_cast<int>(size.y), 1.0);
-    for (const UiItem& item : ui_items()) {
-      const bool is_apart = item.max.x <= v.x || item.min.x >= v.x + v.width || item.max.y <= v.y ||
-                            item.min.y >= v.y + v.height;
-      EXPECT_TRUE(is_apart) << item.name << " at " << size.x << " x " << size.y;
-    }
   }
 }
 

@@ -94,17 +94,6 @@ TEST_F(Video, HoldsEveryFrameTheRightWayUpInItsColours) {
   expect_colour(40, 56, {0, 114, 178});
 }
 
-TEST_F(Video, WithoutFfmpegOneSentenceSaysSoAndNothingIsLeft) {
-  ::setenv("PATH", folder_.c_str(), 1);
-  const auto writer = VideoWriter::open(file("a.mp4"), 64, 64, 30);
-  ASSERT_FALSE(writer);
-  EXPECT_EQ(writer.error().message,
-            file("a.mp4") +
-                ": cannot be written: ffmpeg is not installed; run: sudo apt-get install "
-                "ffmpeg");
-  EXPECT_TRUE(files().empty());
-}
-
 // It would have ended this program by SIGPIPE.
 TEST_F(Video, FfmpegsOwnReasonIsToldWhereItEndsEarly) {
   pretend_ffmpeg("echo 'first line' >&2; echo 'Unknown encoder libx264' >&2; exit 1");

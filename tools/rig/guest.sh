@@ -3,7 +3,7 @@
 # Boots the kernel in QEMU on the host's own files and runs COMMAND there as root. Changes stay in the guest; only
 # /results is the host's FOLDER. One argument is a line of bash, several are a program and its arguments. The
 # command's output goes to stdout and its exit status is this script's; 124 after S seconds, 125 if the guest
-# ended without a status.
+# ended without a status. outside.py answers beside it what needs no kernel.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 series=6.1 memory=1024 seconds=300 results=
@@ -39,6 +39,8 @@ cp "$root/tools/rig/guest_init.sh" "$results/.guest_init"
 share() {
   echo "local,path=$2,mount_tag=$1,security_model=none,multidevs=remap${3:-}"
 }
+/usr/bin/python3 "$root/tools/rig/outside.py" "$results" &
+outside=$!
 timeout -s KILL "$seconds" qemu-system-x86_64 -accel tcg -smp 1 -m "$memory" -nodefaults -display none \
   -nic none -no-reboot -kernel "$kernel/vmlinuz" -initrd "$kernel/initramfs" \
   -append "console=ttyS0 quiet loglevel=4 panic=-1 mitigations=off random.trust_cpu=on" \
@@ -46,7 +48,7 @@ timeout -s KILL "$seconds" qemu-system-x86_64 -accel tcg -smp 1 -m "$memory" -no
   -virtfs "$(share modules "$kernel/modules" ,readonly=on)" -virtfs "$(share results "$results")" \
   </dev/null 2>"$results/qemu" &
 qemu=$!
-trap 'kill $qemu 2>/dev/null || true; rm -rf "$work"' EXIT
+trap 'kill $qemu $outside 2>/dev/null || true; rm -rf "$work"' EXIT
 tail -s 0.2 -c +1 -f --pid=$qemu "$results/output"
 status=0
 wait $qemu 2>/dev/null || status=$?

@@ -241,9 +241,9 @@ def decoded_last(session):
     """The axes of the newest report in the recording so far."""
     lines = session.lines()
     newest = max(i for i, line in enumerate(lines) if line.startswith("E:"))
-    with open("/tmp/newest.hid", "w") as file:
+    with open("/results/newest.hid", "w") as file:
         file.writelines(line + "\n" for i, line in enumerate(lines) if i == newest or not line.startswith("E:"))
-    rows = map(json.loads, run("gaitpad", "decode", "/tmp/newest.hid", "--json").stdout.splitlines())
+    rows = map(json.loads, run("gaitpad", "decode", "/results/newest.hid", "--json").stdout.splitlines())
     return [row["axes"] for row in rows if "axes" in row][-1]
 
 

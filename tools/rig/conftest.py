@@ -4,6 +4,7 @@ A test fails by an exception and skips by pytest.skip; what it prints is in /res
   @pytest.mark.timeout(120)  seconds on a free machine, 60 without it: the test is ended after three times as long, with
                              whatever it started
   @pytest.mark.long          only by `rig.sh --long` (pads.LONG tells within a test)
+  @pytest.mark.other_slice   another run's part of a table (cells.py)
 """
 import collections
 import os
@@ -17,6 +18,7 @@ from _pytest.runner import runtestprotocol
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests"))  # for `support`
 pytest.register_assert_rewrite("session")
+from support import slices  # noqa: E402
 
 RESULTS = pathlib.Path("/results")
 REMARKS = RESULTS / "remarks"
@@ -38,6 +40,7 @@ def pytest_configure(config):
     config.addinivalue_line("markers", "timeout(seconds): on a free machine; 60 without it")
     config.addinivalue_line("markers", "long: only by rig.sh --long")
     if not config.option.collectonly:
+    config.addinivalue_line("markers", "other_slice: not in this run's part of a table")
         config.pluginmanager.unregister(name="terminalreporter")  # the lines below stand in its place
 
 
@@ -47,10 +50,12 @@ def name_of(item):
 
 def pytest_collection_modifyitems(config, items):
     is_long = os.environ.get("RIG_LONG") == "1"
-    without = config.option.without
-    items[:] = [item for item in items if config.option.only in name_of(item) and
-                not (without and without in name_of(item)) and
-                (is_long or not item.get_closest_marker("long"))]
+    only, without = config.option.only, config.option.without
+    is_whole = is_long or only or slices.ALL
+    items[:] = [item for item in items if only in name_of(item) and not (without and without in name_of(item)) and
+                (is_long or not item.get_closest_marker("long")) and
+                (is_whole or not item.get_closest_marker("other_slice"))]
+    print("Every cell of its tables" if is_whole else f"Of the tables slice {slices.NUMBER}", flush=True)
 
 
 def pytest_collectreport(report):

@@ -8,8 +8,9 @@ import tomllib
 
 import pytest
 
-from pads import LONG, Pad, wait_for
-from session import IDS, PROGRAM, Session, remark, run
+from cells import cells
+from pads import Pad, wait_for
+from session import IDS, PROGRAM, Session, record, remark
 from support.hands import Hand
 from support.terminal import Terminal
 
@@ -169,11 +170,11 @@ def check_giving_up(kind, driver):
         assert files() == before
 
 
-CASES = ("generic-hidraw", "dualsense-evdev") + (("generic-evdev", "dualsense-hidraw") if LONG else ())
+DRIVERS = {"generic": ("hidraw", "evdev"), "dualsense": ("hidraw", "evdev")}
 
 
 @pytest.mark.timeout(180)
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", cells(DRIVERS))
 def test_a_worn_pad_is_calibrated_at_a_terminal(case):
     kind, driver = case.split("-")
     os.environ["XDG_CONFIG_HOME"] = tempfile.mkdtemp()

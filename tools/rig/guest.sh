@@ -43,7 +43,7 @@ share() {
 outside=$!
 timeout -s KILL "$seconds" qemu-system-x86_64 -accel tcg -smp 1 -m "$memory" -nodefaults -display none \
   -nic none -no-reboot -kernel "$kernel/vmlinuz" -initrd "$kernel/initramfs" \
-  -append "console=ttyS0 quiet loglevel=4 panic=-1 mitigations=off random.trust_cpu=on" \
+  -append "console=ttyS0 quiet loglevel=4 panic=-1 mitigations=off random.trust_cpu=on no_timer_check" \
   -serial "file:$results/console" -virtfs "$(share hostroot / ,readonly=on)" \
   -virtfs "$(share modules "$kernel/modules" ,readonly=on)" -virtfs "$(share results "$results")" \
   </dev/null 2>"$results/qemu" &

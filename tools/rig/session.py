@@ -41,6 +41,31 @@ def run(*command, seconds=60, columns=()):
 
 
 class Session:
+def record(*arguments, reports=1, user=()):
+    """`gaitpad record`, by the command `user` as somebody else, until it has so many reports: a busy host may take long to
+    open the pad. The recording's lines."""
+    path = "/tmp/recorded.hid"
+
+    def lines():
+        with contextlib.suppress(FileNotFoundError), open(path if os.path.exists(path) else path + ".part") as file:
+            return file.read().splitlines()
+        return []
+
+    with contextlib.suppress(FileNotFoundError):
+        os.unlink(path)
+    command = [*user, PROGRAM, "record", *arguments, "--out", path]
+    print("$", *command, flush=True)
+    with subprocess.Popen(command) as process:
+        try:
+            wait_for(lambda: sum(line.startswith("E:") for line in lines()) >= reports or process.poll() is not None, 60,
+                     f"{reports} reports in the recording")
+            process.send_signal(signal.SIGINT)
+            assert process.wait(60) == 0, f"record ended with {process.returncode}"
+        finally:
+            process.kill()
+    return lines()
+
+
     """Plays until the block ends, by Ctrl-C, and then replays its recording. `summary`, `replayed` and `reports`
     are known afterwards; `reports` are the decoded ones, in order."""
 
@@ -106,6 +131,12 @@ class Session:
 
     def wait_unplugged(self, count, seconds=10):
         wait_for(lambda: self.unplugged() >= count, seconds, f"unplugging number {count} in the recording")
+    def wait_quiet(self, seconds=0.5):
+        """Until no report has come for so long: what was sent is in the recording, however busy the host is."""
+        before = -1
+        while before != (before := len(self.lines("E:"))):
+            time.sleep(seconds)
+
 
     def handles(self):
         """Open file descriptors of the program."""

@@ -133,9 +133,8 @@ def check_file(mounted):
 
 def check_use(pad, driver):
     """record embeds it; play rests at rest and walks straight, at full stride, with the stick held forward."""
-    run("gaitpad", "record", IDS[pad.kind], "--driver", driver, "--out", "/tmp/used.hid", "--seconds", "1")
-    with open("/tmp/used.hid") as file:
-        assert any(line.startswith("K:") for line in file), "the recording has no calibration"
+    lines = record(IDS[pad.kind], "--driver", driver)
+    assert any(line.startswith("K:") for line in lines), "the recording has no calibration"
     (x, y), reach = CENTRES["left"], REACHES["left"]
     with Session(IDS[pad.kind], "--driver", driver, name=f"calibrated-{pad.kind}-{driver}") as session:
         pad.set(lx=x + 1, ly=y - 1)

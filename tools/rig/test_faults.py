@@ -19,7 +19,7 @@ import pytest
 
 import pads
 from pads import LONG, Pad, settle, wait_for
-from session import HAS_SANITIZERS, IDS, PROGRAM, TICK_S, Session, remark, run, tick_times_ns, ticks_of
+from session import HAS_SANITIZERS, IDS, PROGRAM, TICK_S, Session, record, remark, run, tick_times_ns, ticks_of
 from test_matrix import NAMES, VALUES, expected_stick
 
 # A session with sanitizers takes most of the guest's one core.
@@ -140,9 +140,7 @@ def test_two_equal_pads_are_kept_apart():
             mine, other = (first, second) if turn % 2 else (second, first)
             mine.set(lx=40 + turn)
             other.set(lx=200)
-            path = "/tmp/apart.hid"
-            run("gaitpad", "record", ids[mine], "--out", path, "--seconds", "1")
-            values = {line.split()[4] for line in open(path) if line.startswith("E:")}
+            values = {line.split()[4] for line in record(ids[mine], reports=100) if line.startswith("E:")}
             assert values == {f"{40 + turn:02x}"}, (turn, values)
     with Pad("dualsense", 0) as first, Pad("dualsense", 1) as second, \
             Session("--driver", "hidraw", name="equal", awaited=2) as session:
@@ -190,7 +188,7 @@ def test_flood_of_four_pads_with_a_paused_reader(driver):
             time.sleep(0.9)
             session.process.send_signal(signal.SIGCONT)
         sent = [pad.wait_burst(3 * seconds + 60)[0] for pad in pads_]
-        time.sleep(1.0)
+        session.wait_quiet()
     found = numbers_of(session, at)
     assert len(found) == 4, found.keys()
     gaps = 0
@@ -223,7 +221,7 @@ def test_the_last_state_is_right_after_a_burst_with_a_stopped_reader(driver):
             time.sleep(seconds)
             session.process.send_signal(signal.SIGCONT)
             wait_for(lambda: len(pad.lines("burst_end")) > ends, 20, "the burst's end")
-            time.sleep(0.3)
+            session.wait_quiet()
             state = dict(zip(("lx", "ly", "rx", "ry"), pad.sent()[-1].data))
             wanted = {NAMES[name]: expected_stick("generic", driver, name, value) for name, value in state.items()}
             row = decoded_last(session)
@@ -301,7 +299,7 @@ def test_odd_packets_on_usb_change_nothing():
             pad.raw(odd[turn % len(odd)])
             time.sleep(0.02)
         pad.set(lx=128)
-        time.sleep(0.3)
+        session.wait_quiet()
     assert session.replayed["bad_reports"] == TIMES, session.replayed
     assert not [frame for frame in session.frames() if float(frame["stick_x"]) < 0], "an odd packet moved the stick"
     remark(f"odd packets on usb: {TIMES}, each counted, none moved the stick")
@@ -332,7 +330,7 @@ def test_no_permission_and_the_rule():
         for _ in range(TIMES):
             rows = [row for row in listed("--groups", group) if row["path"] in (pad.hidraw, pad.joystick)]
             assert len(rows) == 2 and all(row["usable"] for row in rows), rows
-        run(*as_user, "--groups", group, PROGRAM, "record", "--out", "/tmp/as_user.hid", "--seconds", "0.5")
+        record(user=[*as_user, "--groups", group])
         pad.unplug()
         pad.plug()  # the rule holds for the node that comes next, too
         assert [row["usable"] for row in listed("--groups", group) if row["path"] == pad.hidraw] == [True]
@@ -392,7 +390,7 @@ def test_four_pads_at_a_kilohertz_undisturbed():
         for pad in pads_:
             pad.burst(1000, 60, at=8)
         sent = [pad.wait_burst(240)[0] for pad in pads_]
-        time.sleep(1.0)
+        session.wait_quiet()
     found = numbers_of(session, 8)
     missing = [count - len(set(numbers) & set(range(count))) for (_, numbers), count in zip(sorted(found.items()), sent)]
     assert sum(missing) == 0, missing

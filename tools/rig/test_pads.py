@@ -68,7 +68,7 @@ def test_logs_the_rumble_that_the_kernel_sends(kind):
         node.rumble(0xc000, 0x4000, 300)
         first = wait_for(lambda: next(filter(strong, pad.out_packets()), None), 5, "the rumble packet")
         last = wait_for(lambda: next(filter(stopped, pad.out_packets(first.ns)), None), 5, "the stop packet")
-        assert 0.2 < (last.ns - first.ns) / 1e9 < 0.5, (last.ns - first.ns) / 1e9
+        assert 0.2 < (last.ns - first.ns) / 1e9 < 1.5, (last.ns - first.ns) / 1e9  # a busy machine is late, never early
 
 
 def test_switch_rumble_is_encoded_and_stops():
@@ -124,7 +124,7 @@ def test_plays_a_recording_at_its_own_times():
         for number in range(50):
             assert node.read(2.0) == bytes([number, 0x80, 0xff])
         sent = pad.sent()
-        assert abs((sent[-1].ns - sent[0].ns) / 1e9 - 1.96) < 0.5  # a busy machine is late
+        assert 1.9 < (sent[-1].ns - sent[0].ns) / 1e9 < 3.5  # a busy machine is late, never early
 
 
 def test_faults_of_the_pad():

@@ -30,7 +30,7 @@ def wait_for(condition, seconds=10.0, what="a condition"):
             return value
         if time.monotonic() > end:
             raise TimeoutError(f"waited {seconds} s for {what}")
-        time.sleep(0.01)
+        time.sleep(0.02)
 
 
 def settle():
@@ -49,23 +49,29 @@ def udev_properties(node):
 
 
 class Nodes:
-    """Device nodes below one folder of /sys; each property looks anew."""
+    """Device nodes below one folder of /sys/devices; each property looks anew."""
 
     def __init__(self, sysfs):
         self.sysfs = sysfs
 
-    def _find(self, prefix):
-        names = [name for _, folders, _ in os.walk(self.sysfs) for name in folders]  # follows no link
-        found = {name for name in names if name.startswith(prefix) and name[len(prefix):].isdigit()}
+    def _find(self, kind, prefix):
+        """By the links of /sys/class: walking through the folder itself takes the guest a tenth of a second."""
+        links, found = f"/sys/class/{kind}", []
+        inside = self.sysfs.removeprefix("/sys/") + "/"
+        with contextlib.suppress(FileNotFoundError):  # no device of this class has been there yet
+            for name in os.listdir(links):
+                with contextlib.suppress(FileNotFoundError):  # it is going away
+                    if name.startswith(prefix) and inside in os.readlink(f"{links}/{name}"):
+                        found.append(name)
         return sorted(found, key=lambda name: int(name[len(prefix):]))
 
     @property
     def hidraws(self):
-        return ["/dev/" + name for name in self._find("hidraw")]
+        return ["/dev/" + name for name in self._find("hidraw", "hidraw")]
 
     @property
     def events(self):
-        return ["/dev/input/" + name for name in self._find("event")]
+        return ["/dev/input/" + name for name in self._find("input", "event")]
 
     @property
     def hidraw(self):

@@ -1,6 +1,7 @@
 """The program in a test: run("gaitpad", "pads"), and a `gaitpad play` beside the test with what its recording says,
 `with Session(...) as session: ...`. What a test measured for the reader: remark("median 0.3 ms") comes to the
 screen and into build/rig/results."""
+import collections
 import contextlib
 import csv
 import json
@@ -10,8 +11,8 @@ import signal
 import subprocess
 import time
 
-from pads import ROOT, wait_for
 import outside
+from pads import ROOT, wait_for
 
 BUILD = os.environ.get("RIG_BUILD") or os.path.join(ROOT, "build")
 PROGRAM = os.path.join(BUILD, "gaitpad")
@@ -40,7 +41,6 @@ def run(*command, seconds=60, columns=()):
     return done
 
 
-class Session:
 def record(*arguments, reports=1, user=()):
     """`gaitpad record`, by the command `user` as somebody else, until it has so many reports: a busy host may take long to
     open the pad. The recording's lines."""
@@ -66,12 +66,14 @@ def record(*arguments, reports=1, user=()):
     return lines()
 
 
+class Session:
     """Plays until the block ends, by Ctrl-C, and then replays its recording. `summary`, `replayed` and `reports`
     are known afterwards; `reports` are the decoded ones, in order."""
 
     def __init__(self, *arguments, name="session", awaited=1):
         self.path = f"/results/{name}.hid"
         self.awaited = awaited  # pads to wait for
+        self._read, self._lines = 0, collections.defaultdict(list)
         self._command = [PROGRAM, "play", *map(str, arguments), "--no-window", "--json", "--record", self.path]
 
     def __enter__(self):
@@ -102,14 +104,17 @@ def record(*arguments, reports=1, user=()):
         assert self.summary["pose_hash"] == self.replayed["pose_hash"], "the replay differs from the session"
 
     def lines(self, start=""):
-        """Of the recording so far."""
+        """Of the recording so far, all or those that begin with two characters."""
         path = self.path if os.path.exists(self.path) else self.path + ".part"
-        try:
-            with open(path) as file:
-                text = file.read()
-        except FileNotFoundError:
-            return []
-        return [line for line in text[: text.rfind("\n") + 1].splitlines() if line.startswith(start)]
+        with contextlib.suppress(FileNotFoundError), open(path, "rb") as file:
+            file.seek(self._read)  # what is known is not read again: a test asks many times a second
+            data = file.read()
+            data = data[:data.rfind(b"\n") + 1]
+            self._read += len(data)
+            for line in data.decode().splitlines():
+                self._lines[line[:2]].append(line)
+                self._lines[""].append(line)
+        return list(self._lines[start])
 
     def plugged(self):
         return sum(line.endswith(" add") for line in self.lines("H:"))
@@ -126,17 +131,17 @@ def record(*arguments, reports=1, user=()):
         if driver == "sdl":
             wait_for(lambda: len(self.lines("E:")) > before, 10, f"a report of {state}")
 
-    def wait_plugged(self, count, seconds=30):
-        wait_for(lambda: self.plugged() >= count, seconds, f"pad number {count} in the recording")
-
-    def wait_unplugged(self, count, seconds=10):
-        wait_for(lambda: self.unplugged() >= count, seconds, f"unplugging number {count} in the recording")
     def wait_quiet(self, seconds=0.5):
         """Until no report has come for so long: what was sent is in the recording, however busy the host is."""
         before = -1
         while before != (before := len(self.lines("E:"))):
             time.sleep(seconds)
 
+    def wait_plugged(self, count, seconds=30):
+        wait_for(lambda: self.plugged() >= count, seconds, f"pad number {count} in the recording")
+
+    def wait_unplugged(self, count, seconds=10):
+        wait_for(lambda: self.unplugged() >= count, seconds, f"unplugging number {count} in the recording")
 
     def handles(self):
         """Open file descriptors of the program."""

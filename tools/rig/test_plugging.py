@@ -1,6 +1,6 @@
 """Plugging in again and again: pads of all kinds in turn, each with one short push, every one of which is seen.
 
-Fifty times, a thousand with --long, in sessions of fifty.
+Four times each kind, a thousand times with --long, in sessions of fifty.
 """
 import contextlib
 import random
@@ -13,7 +13,7 @@ from pads import KINDS, LONG, Pad, wait_for
 from session import HAS_SANITIZERS, IDS, Session, remark
 from test_matrix import VALUES
 
-SESSIONS, TURNS = (20, 50) if LONG else (1, 12 if HAS_SANITIZERS else 50)
+SESSIONS, TURNS = (20, 50) if LONG else (1, 12 if HAS_SANITIZERS else 24)
 PUSH_S = 0.15  # a tap of the stick
 MOST_S = 3.0  # from the node to the session, in the median
 

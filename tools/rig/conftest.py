@@ -1,8 +1,8 @@
 """The rig's tests in the guest: each in a process of its own with a time limit, one line a test.
 
 A test fails by an exception and skips by pytest.skip; what it prints is in /results/NAME.log. Marks:
-  @pytest.mark.timeout(120)  seconds on a free machine, 60 without it: the test is ended after three times as long, with
-                             whatever it started
+  @pytest.mark.timeout(120)  seconds on a free machine, 60 without it: the test is ended after pads.PATIENCE times as
+                             long, with whatever it started
   @pytest.mark.long          only by `rig.sh --long` (pads.LONG tells within a test)
   @pytest.mark.other_slice   another run's part of a table (cells.py)
 """
@@ -18,6 +18,7 @@ import pytest
 from _pytest.runner import runtestprotocol
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests"))  # for `support`
+from pads import PATIENCE  # noqa: E402
 from support import slices  # noqa: E402
 pytest.register_assert_rewrite("session")
 
@@ -25,7 +26,6 @@ RESULTS = pathlib.Path("/results")
 REMARKS = RESULTS / "remarks"
 PASSED, FAILED, SKIPPED = 0, 1, 77
 WORDS = {PASSED: "ok  ", FAILED: "FAIL", SKIPPED: "SKIP"}
-PATIENCE = 3  # a busy host gives the guest a fraction of a processor
 counts = dict.fromkeys(WORDS, 0)
 parts_s, parts_busy_s = collections.Counter(), collections.Counter()  # seconds by file
 shown = 0  # remarks so far

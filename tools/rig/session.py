@@ -12,7 +12,8 @@ import subprocess
 import time
 
 import outside
-from pads import ROOT, wait_for
+from pads import PATIENCE, ROOT, wait_for
+from support import terminal
 
 BUILD = os.environ.get("RIG_BUILD") or os.path.join(ROOT, "build")
 PROGRAM = os.path.join(BUILD, "gaitpad")
@@ -33,9 +34,9 @@ def run(*command, seconds=60, columns=()):
     command = [PROGRAM if word == "gaitpad" else str(word) for word in command]
     print("$", *command, flush=True)
     if command[0] == PROGRAM and command[1] in outside.COMMANDS:
-        done = outside.ask(command, columns, seconds)
+        done = outside.ask(command, columns, PATIENCE * seconds)
     else:
-        done = subprocess.run(command, timeout=seconds, capture_output=True, text=True, check=False)
+        done = subprocess.run(command, timeout=PATIENCE * seconds, capture_output=True, text=True, check=False)
     print(done.stdout[:2000], done.stderr, sep="", flush=True)
     assert done.returncode == 0, f"{' '.join(command)} ended with {done.returncode}: {done.stderr.strip()[-500:]}"
     return done
@@ -60,10 +61,20 @@ def record(*arguments, reports=1, user=()):
             wait_for(lambda: sum(line.startswith("E:") for line in lines()) >= reports or process.poll() is not None, 60,
                      f"{reports} reports in the recording")
             process.send_signal(signal.SIGINT)
-            assert process.wait(60) == 0, f"record ended with {process.returncode}"
+            assert process.wait(60 * PATIENCE) == 0, f"record ended with {process.returncode}"
         finally:
             process.kill()
     return lines()
+
+
+class Terminal(terminal.Terminal):
+    """With the guest's patience."""
+
+    def wait_for(self, pattern, seconds=20.0, since=0):
+        return super().wait_for(pattern, PATIENCE * seconds, since)
+
+    def wait_end(self, seconds=20.0):
+        return super().wait_end(PATIENCE * seconds)
 
 
 class Session:
@@ -96,7 +107,7 @@ class Session:
             self.process.communicate()
             return
         self.process.send_signal(signal.SIGINT)
-        output, _ = self.process.communicate(timeout=60)
+        output, _ = self.process.communicate(timeout=60 * PATIENCE)
         assert self.process.returncode == 0, f"play ended with {self.process.returncode}"
         self.summary = json.loads(output)
         self.replayed = json.loads(run("gaitpad", "replay", self.path, "--json", seconds=300).stdout)

@@ -10,9 +10,8 @@ import pytest
 
 from cells import cells
 from pads import Pad, wait_for
-from session import IDS, PROGRAM, Session, record, remark
+from session import IDS, PROGRAM, Session, Terminal, record, remark
 from support.hands import Hand
-from support.terminal import Terminal
 
 RATE_HZ = 100
 COUNT = 1 / 127.5  # of an 8-bit axis, raw

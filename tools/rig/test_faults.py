@@ -120,7 +120,7 @@ def test_unplugged_during_open():
             pad.command("unplug")
             time.sleep(chance.uniform(0.02, 0.2))
             pad.command("plug")
-            _, errors = opener.communicate(timeout=150)  # with sanitizers it shares the guest's core with a slow session
+            _, errors = opener.communicate(timeout=60 * pads.PATIENCE)
             assert opener.returncode in (0, 1) and "Sanitizer" not in errors, (opener.returncode, errors)
         pad.wait_ready(60)
         reports = len(session.lines("E:"))
@@ -352,7 +352,7 @@ def test_the_kernel_gets_its_pad_back(name):
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             wait_for(lambda: not pad.hidraws and not pad.events, 20, "the pad's being taken")
             play.send_signal(getattr(signal, name))
-            play.wait(20)
+            play.wait(20 * pads.PATIENCE)
             wait_for(lambda: pad.hidraws and pad.events, 20, "the pad's coming back")
 
 

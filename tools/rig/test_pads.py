@@ -123,8 +123,8 @@ def test_plays_a_recording_at_its_own_times():
         pad.play()
         for number in range(50):
             assert node.read(2.0) == bytes([number, 0x80, 0xff])
-        sent = pad.sent()
-        assert 1.9 < (sent[-1].ns - sent[0].ns) / 1e9 < 3.5  # a busy machine is late, never early
+        late_s = sorted(sent.ns / 1e9 - 0.04 * sent.data[0] for sent in pad.sent())
+        assert late_s[len(late_s) // 2] - late_s[0] < 0.25  # behind the most punctual one: at double speed it would be half a second
 
 
 def test_faults_of_the_pad():

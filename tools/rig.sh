@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # rig.sh [--long] [--kernel 6.12] [--only NAME] [--without NAME]: builds, boots a Debian kernel in QEMU and proves there, with
 # virtual pads, what needs hardware: tools/rig/test_*.py. Logs and tables in build/rig/results-KERNEL.
+# Of the tables of pads and drivers it does the part that GAITPAD_SLICE chooses; all of them with GAITPAD_ALL=1 or --long.
 # --long: the long floods and counts too, on 6.1 and 6.12. Without QEMU or a kernel to be had it tests
 # nothing, says so and ends with 0. RIG_BUILD names another build folder than build (one with sanitizers).
 set -euo pipefail
@@ -31,10 +32,16 @@ skip() {
 }
 
 bash "$root/tools/install.sh"
-bash "$root/tools/build.sh" "$build" all -DCMAKE_BUILD_TYPE=Release
+bash "$root/tools/build.sh" "$build" rig -DCMAKE_BUILD_TYPE=Release
 bash "$root/tools/rig/install.sh" || skip "QEMU or what it needs cannot be installed here"
 
-seconds=3000
+# shellcheck source=tools/slice.sh
+. "$root/tools/slice.sh"
+# What needs no kernel is done out here. The guest sees it: its root is the host's.
+export XDG_CACHE_HOME=$build/rig/cache
+"$build/gaitpad" replay "$root/config/traces/round.hid" --json >/dev/null                 # solves the strides
+/usr/bin/python3 -m pytest --collect-only -q -p no:cacheprovider "$root/tools/rig" >/dev/null  # compiles the tests
+seconds=7200
 [ $long -eq 0 ] || seconds=14400
 status=0
 for kernel in "${kernels[@]}"; do
@@ -45,7 +52,9 @@ for kernel in "${kernels[@]}"; do
   results=$build/rig/results-$kernel
   rm -rf "$results"
   bash "$root/tools/rig/guest.sh" --kernel "$kernel" --memory 1536 --timeout $seconds --results "$results" -- \
-    env RIG_LONG=$long RIG_BUILD="$build" /usr/bin/python3 -m pytest -s --tb=short -p no:cacheprovider \
-    "$root/tools/rig" --only="$only" --without="$without" || status=1  # the path first, or conftest.py is not found
+    env RIG_LONG=$long RIG_BUILD="$build" XDG_CACHE_HOME="$XDG_CACHE_HOME" \
+    GAITPAD_SLICE="$GAITPAD_SLICE" GAITPAD_ALL="${GAITPAD_ALL:-}" PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 \
+    /usr/bin/python3 -m pytest -s --tb=short -p no:cacheprovider "$root/tools/rig" \
+    --only="$only" --without="$without" || status=1  # the path first, or conftest.py is not found
 done
 exit $status

@@ -28,7 +28,7 @@ class Kind:
     name: str
     ids: str
     source: str        # of the layout
-    drivers: tuple     # that can serve it; the first one is tested always, the others by --long
+    drivers: tuple     # that can serve it
     axes: dict
     buttons: dict
     gadget: str = ""   # in pad_kinds.c; else a plain HID pad:

@@ -7,6 +7,8 @@ import select
 import struct
 import time
 
+from pads import PATIENCE
+
 EV_SYN, EV_KEY, EV_ABS, EV_FF = 0, 1, 3, 0x15
 SYN_DROPPED = 3
 FF_RUMBLE = 0x50
@@ -58,7 +60,7 @@ class HidrawNode(Node):
 
     def until(self, condition, seconds=3.0):
         """Reads reports until `condition(report)`; the report, or AssertionError."""
-        end = time.monotonic() + seconds
+        end = time.monotonic() + PATIENCE * seconds
         last = b""
         while time.monotonic() < end:
             last = self.read(0.2) or last
@@ -88,7 +90,7 @@ class EventNode(Node):
 
     def until_absolute(self, seconds=3.0, **values):
         """Waits until axes stand at values: until_absolute(X=200, Y=100)."""
-        end = time.monotonic() + seconds
+        end = time.monotonic() + PATIENCE * seconds
         while True:
             now = {name: self.absolute(ABS[name]).value for name in values}
             if now == values:

@@ -1,6 +1,7 @@
 """The program in a test: run("gaitpad", "pads"), and a `gaitpad play` beside the test with what its recording says,
 `with Session(...) as session: ...`. What a test measured for the reader: remark("median 0.3 ms") comes to the
 screen and into build/rig/results."""
+import collections
 import contextlib
 import csv
 import json
@@ -10,7 +11,9 @@ import signal
 import subprocess
 import time
 
-from pads import ROOT, wait_for
+import outside
+from pads import PATIENCE, ROOT, wait_for
+from support import terminal
 
 BUILD = os.environ.get("RIG_BUILD") or os.path.join(ROOT, "build")
 PROGRAM = os.path.join(BUILD, "gaitpad")
@@ -25,14 +28,53 @@ def remark(text):
         file.write(text + "\n")
 
 
-def run(*command, seconds=60):
-    """Runs a command, the program's path for "gaitpad", which must succeed; its output."""
+def run(*command, seconds=60, columns=()):
+    """Runs a command, the program's path for "gaitpad", which must succeed; its output. Outside the guest where it opens
+    no device."""
     command = [PROGRAM if word == "gaitpad" else str(word) for word in command]
     print("$", *command, flush=True)
-    done = subprocess.run(command, timeout=seconds, capture_output=True, text=True, check=False)
-    print(done.stdout, done.stderr, sep="", flush=True)
+    if command[0] == PROGRAM and command[1] in outside.COMMANDS:
+        done = outside.ask(command, columns, PATIENCE * seconds)
+    else:
+        done = subprocess.run(command, timeout=PATIENCE * seconds, capture_output=True, text=True, check=False)
+    print(done.stdout[:2000], done.stderr, sep="", flush=True)
     assert done.returncode == 0, f"{' '.join(command)} ended with {done.returncode}: {done.stderr.strip()[-500:]}"
     return done
+
+
+def record(*arguments, reports=1, user=()):
+    """`gaitpad record`, by the command `user` as somebody else, until it has so many reports: a busy host may take long to
+    open the pad. The recording's lines."""
+    path = "/tmp/recorded.hid"
+
+    def lines():
+        with contextlib.suppress(FileNotFoundError), open(path if os.path.exists(path) else path + ".part") as file:
+            return file.read().splitlines()
+        return []
+
+    with contextlib.suppress(FileNotFoundError):
+        os.unlink(path)
+    command = [*user, PROGRAM, "record", *arguments, "--out", path]
+    print("$", *command, flush=True)
+    with subprocess.Popen(command) as process:
+        try:
+            wait_for(lambda: sum(line.startswith("E:") for line in lines()) >= reports or process.poll() is not None, 60,
+                     f"{reports} reports in the recording")
+            process.send_signal(signal.SIGINT)
+            assert process.wait(60 * PATIENCE) == 0, f"record ended with {process.returncode}"
+        finally:
+            process.kill()
+    return lines()
+
+
+class Terminal(terminal.Terminal):
+    """With the guest's patience."""
+
+    def wait_for(self, pattern, seconds=20.0, since=0):
+        return super().wait_for(pattern, PATIENCE * seconds, since)
+
+    def wait_end(self, seconds=20.0):
+        return super().wait_end(PATIENCE * seconds)
 
 
 class Session:
@@ -42,6 +84,7 @@ class Session:
     def __init__(self, *arguments, name="session", awaited=1):
         self.path = f"/results/{name}.hid"
         self.awaited = awaited  # pads to wait for
+        self._read, self._lines = 0, collections.defaultdict(list)
         self._command = [PROGRAM, "play", *map(str, arguments), "--no-window", "--json", "--record", self.path]
 
     def __enter__(self):
@@ -64,7 +107,7 @@ class Session:
             self.process.communicate()
             return
         self.process.send_signal(signal.SIGINT)
-        output, _ = self.process.communicate(timeout=60)
+        output, _ = self.process.communicate(timeout=60 * PATIENCE)
         assert self.process.returncode == 0, f"play ended with {self.process.returncode}"
         self.summary = json.loads(output)
         self.replayed = json.loads(run("gaitpad", "replay", self.path, "--json", seconds=300).stdout)
@@ -72,14 +115,17 @@ class Session:
         assert self.summary["pose_hash"] == self.replayed["pose_hash"], "the replay differs from the session"
 
     def lines(self, start=""):
-        """Of the recording so far."""
+        """Of the recording so far, all or those that begin with two characters."""
         path = self.path if os.path.exists(self.path) else self.path + ".part"
-        try:
-            with open(path) as file:
-                text = file.read()
-        except FileNotFoundError:
-            return []
-        return [line for line in text[: text.rfind("\n") + 1].splitlines() if line.startswith(start)]
+        with contextlib.suppress(FileNotFoundError), open(path, "rb") as file:
+            file.seek(self._read)  # what is known is not read again: a test asks many times a second
+            data = file.read()
+            data = data[:data.rfind(b"\n") + 1]
+            self._read += len(data)
+            for line in data.decode().splitlines():
+                self._lines[line[:2]].append(line)
+                self._lines[""].append(line)
+        return list(self._lines[start])
 
     def plugged(self):
         return sum(line.endswith(" add") for line in self.lines("H:"))
@@ -95,6 +141,12 @@ class Session:
         time.sleep(seconds)
         if driver == "sdl":
             wait_for(lambda: len(self.lines("E:")) > before, 10, f"a report of {state}")
+
+    def wait_quiet(self, seconds=0.5):
+        """Until no report has come for so long: what was sent is in the recording, however busy the host is."""
+        before = -1
+        while before != (before := len(self.lines("E:"))):
+            time.sleep(seconds)
 
     def wait_plugged(self, count, seconds=30):
         wait_for(lambda: self.plugged() >= count, seconds, f"pad number {count} in the recording")
@@ -112,10 +164,9 @@ class Session:
         return [row for row in rows if "axes" in row]
 
     def frames(self):
-        """frames.csv of the replay, as a list of dictionaries of texts."""
-        run("gaitpad", "replay", self.path, "--out", "/tmp/frames", seconds=300)
-        with open("/tmp/frames/frames.csv", newline="") as file:
-            return list(csv.DictReader(file))
+        """The replay's ticks, of frames.csv: a list of dictionaries of texts."""
+        text = run("gaitpad", "replay", self.path, columns=("stage", "stick_x", "stick_y"), seconds=300).stdout
+        return list(csv.DictReader(text.splitlines()))
 
 
 def tick_times_ns(lines):

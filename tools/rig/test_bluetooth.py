@@ -3,6 +3,7 @@ import time
 
 import pytest
 
+from cells import cells
 from session import Session, remark
 from test_matrix import check_sequence
 from uhid_pad import UhidPad, with_checksum
@@ -31,9 +32,7 @@ def states(half):
 
 
 @pytest.mark.timeout(90)
-@pytest.mark.parametrize("case", [f"{kind}-{driver}" if kind == "dualsense_bt" or driver == "hidraw" else
-                                  pytest.param(f"{kind}-{driver}", marks=pytest.mark.long)
-                                  for kind in HALF for driver in ("hidraw", "evdev", "sdl")])
+@pytest.mark.parametrize("case", cells(dict.fromkeys(HALF, ("hidraw", "evdev", "sdl"))))
 def test_decoded_and_replayed(case):
     kind, driver = case.split("-")
     half = HALF[kind]

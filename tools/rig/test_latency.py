@@ -3,7 +3,8 @@ uses the report.
 
 Reports of the generic pad, 250 a second, each numbered in its left stick. A driver's blocks alternate
 with those of a bare poll() and read() of the node, since the same read differs by a tenth from one run to
-the next. Writes latency.md and latency.csv to the results.
+the next. Work beside the emulator makes some reports of a block late, never one early: what is judged is each
+block's first quartile. Writes latency.md and latency.csv to the results.
 """
 import csv
 import pathlib
@@ -19,12 +20,14 @@ from session import BUILD, HAS_SANITIZERS, Session, remark
 RESULTS = pathlib.Path("/results")
 GENERIC = "1209:0001"
 RATE_HZ, SECONDS = 250, 0.8
-BLOCKS = 10 if LONG else 5
+BLOCKS = 10 if LONG else 3
 ATTEMPTS = 3
+LOST_BY_SDL = 0.02  # it keeps the newest state alone: a guest that its host holds back may miss some
 WARM_UP = 10  # reports of a block that are not counted: the first was written before anybody polled
-# driver: (the bare read beside it, by how much its median may exceed that one's, in us)
-LIMITS_US = {"hidraw": ("bare_hidraw", 250), "usb": ("bare_hidraw", 250), "evdev": ("bare_evdev", 250),
-             "sdl": ("bare_evdev", 1500)}
+# driver: (the bare read beside it, by how much its first quartile may exceed that one's, in us). A reader that looks
+# once in a millisecond would exceed it by 250, one of SDL's looks in two by 500.
+LIMITS_US = {"hidraw": ("bare_hidraw", 150), "usb": ("bare_hidraw", 150), "evdev": ("bare_evdev", 150),
+             "sdl": ("bare_evdev", 1000)}
 LABELS = {"bare_hidraw": "bare `poll` + `read` of the hidraw node", "bare_evdev": "the same of the event node",
           "plain_sdl": "a plain SDL2 program (`SDL_WaitEventTimeout`)"}
 
@@ -89,9 +92,12 @@ def block(pad, way):
     return found, latencies_us(sent, begins), len(sent) - len(found)
 
 
-def over_bare_us(medians, driver):
+def over_bare_us(blocks, driver, what):
     """Block by block against the bare one beside it; of these the median, which one noisy block does not move."""
-    return statistics.median(a - b for a, b in zip(medians[driver], medians[LIMITS_US[driver][0]]))
+    return statistics.median(a[what] - b[what] for a, b in zip(blocks[driver], blocks[LIMITS_US[driver][0]]))
+
+
+FIRST_QUARTILE, MEDIAN = 0, 1
 
 
 def quartiles(values):
@@ -99,7 +105,7 @@ def quartiles(values):
     return [percentile(ordered, share) for share in (0.25, 0.5, 0.75, 0.99)]
 
 
-def write(found, medians, ticks):
+def write(found, blocks, ticks):
     """To one decimal, the median with the quartiles: blocks of the same read differ by more than a hundredth of a
     millisecond."""
     rows = [["way", "reports", "q1_us", "median_us", "q3_us", "p99_us", "over_bare_us", "to_tick_q1_us", "to_tick_median_us",
@@ -107,7 +113,7 @@ def write(found, medians, ticks):
     text = ["| way | to the program | 99th percentile | over the bare read | to the tick's begin | 99th percentile |",
             "|---|---|---|---|---|---|"]
     for way, values in found.items():
-        over = over_bare_us(medians, way) if way in LIMITS_US else None
+        over = over_bare_us(blocks, way, MEDIAN) if way in LIMITS_US else None
         there, tick = quartiles(values), quartiles(ticks[way]) if ticks.get(way) else 4 * [None]
         rows.append([way, len(values), *there, over, *tick])
         cells = [spread_text(there), ms_text(there[3]), ms_text(over), spread_text(tick), ms_text(tick[3])]
@@ -128,22 +134,22 @@ def spread_text(quarters):
 
 
 def measure(pad, ways, found, ticks, lost):
-    """BLOCKS blocks of each way, in turns; the median of each block."""
-    medians = {way: [] for way in ways}
+    """BLOCKS blocks of each way, in turns; the quartiles of each block."""
+    blocks = {way: [] for way in ways}
     for _ in range(BLOCKS):
         for way in ways:
             values, to_ticks, missing = block(pad, way)
-            print(way, len(values), "lost", missing, "median", statistics.median(values), flush=True)
+            print(f"{way}: {len(values)}, {missing} lost, quartiles and 99th percentile in us {quartiles(values)}", flush=True)
             found[way] += values
             ticks[way] += to_ticks
-            medians[way].append(statistics.median(values))
+            blocks[way].append(quartiles(values))
             lost[way] += missing
             pad.wait_ready()
-    return medians
+    return blocks
 
 
-def too_slow(medians):
-    return [way for way in medians if way in LIMITS_US and over_bare_us(medians, way) > LIMITS_US[way][1]]
+def too_slow(blocks):
+    return [way for way in blocks if way in LIMITS_US and over_bare_us(blocks, way, FIRST_QUARTILE) > LIMITS_US[way][1]]
 
 
 @pytest.mark.timeout(600)
@@ -155,14 +161,15 @@ def test_drivers_are_as_fast_as_the_bare_read():
     ticks = {way: [] for way in ways}
     lost = dict.fromkeys(ways, 0)
     with Pad("generic") as pad:
-        medians = measure(pad, ways, found, ticks, lost)
-        slow = too_slow(medians)
+        blocks = measure(pad, ways, found, ticks, lost)
+        slow = too_slow(blocks)
         # The host of an emulator may be busy for a while: what was too slow is measured anew, beside its bare read.
         for _ in range(ATTEMPTS):
             if slow:
                 slow = too_slow(measure(pad, [*{LIMITS_US[way][0]: None for way in slow}, *slow], found, ticks, lost))
-    write(found, medians, ticks)
+    write(found, blocks, ticks)
     for driver, (_, limit_us) in LIMITS_US.items():
-        assert lost[driver] == 0, f"{driver} lost {lost[driver]}"
+        most_lost = LOST_BY_SDL * len(found[driver]) if driver == "sdl" else 0
+        assert lost[driver] <= most_lost, f"{driver} lost {lost[driver]}"
         assert len(ticks[driver]) > 300, f"{driver}: {len(ticks[driver])} reports found in ticks"
         assert driver not in slow, f"{driver} takes over {limit_us} us more than the bare read, {1 + ATTEMPTS} times in a row"

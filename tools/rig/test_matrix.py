@@ -4,13 +4,13 @@ import time
 
 import pytest
 
+from cells import cells
 from pads import Pad
 from session import IDS, Session, remark, run
 
 DRIVERS = {"generic": ("hidraw", "usb", "evdev", "sdl"), "ds4": ("hidraw", "usb", "evdev", "sdl"),
            "dualsense": ("hidraw", "usb", "evdev", "sdl"), "switch": ("hidraw", "usb", "evdev", "sdl"),
            "xbox360": ("usb", "evdev", "sdl"), "xboxone": ("usb", "evdev", "sdl")}
-MATRIX = [f"{kind}-{driver}" for kind, drivers in DRIVERS.items() for driver in drivers]
 
 BYTES = {"rest": 128, "low": 0, "high": 255, "some": (200, 100, 50, 25), "trigger": 255, "forward": 0}
 WORDS = {"rest": 0, "low": -32768, "high": 32767, "some": (20000, 10000, -5000, -20000), "forward": 32767}
@@ -112,7 +112,7 @@ def check_sequence(rows, wanted):
 
 
 @pytest.mark.timeout(90)
-@pytest.mark.parametrize("case", MATRIX)
+@pytest.mark.parametrize("case", cells(DRIVERS))
 def test_found_decoded_recorded_and_replayed(case):
     kind, driver = case.split("-")
     with Pad(kind) as pad:

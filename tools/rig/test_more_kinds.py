@@ -1,17 +1,16 @@
 """A dozen more kinds of pads, by the tables of more_kinds.py: every control decoded as its maker meant it, and no other.
 
-One driver of each always, all drivers with --long.
+One driver of each in every run (cells.py).
 """
 import time
 
 import pytest
 
+from cells import cells
 from more_kinds import MORE, plug
 from session import Session, remark
 from test_matrix import DPAD, directions
 
-CELLS = [f"{name}-{driver}" if place == 0 else pytest.param(f"{name}-{driver}", marks=pytest.mark.long)
-         for name, kind in MORE.items() for place, driver in enumerate(kind.drivers)]
 TOLERANCE = 0.01  # counts of a stick, and what the kernel's driver rounds
 
 
@@ -53,7 +52,7 @@ def is_as_sent(row, axes, buttons, names):
 
 
 @pytest.mark.timeout(120)
-@pytest.mark.parametrize("cell", CELLS)
+@pytest.mark.parametrize("cell", cells({name: kind.drivers for name, kind in MORE.items()}))
 def test_every_control_is_decoded_as_meant(cell):
     name, driver = cell.split("-")
     kind = MORE[name]

@@ -68,7 +68,7 @@ def test_logs_the_rumble_that_the_kernel_sends(kind):
         node.rumble(0xc000, 0x4000, 300)
         first = wait_for(lambda: next(filter(strong, pad.out_packets()), None), 5, "the rumble packet")
         last = wait_for(lambda: next(filter(stopped, pad.out_packets(first.ns)), None), 5, "the stop packet")
-        assert 0.2 < (last.ns - first.ns) / 1e9 < 0.5, (last.ns - first.ns) / 1e9
+        assert 0.2 < (last.ns - first.ns) / 1e9 < 1.5, (last.ns - first.ns) / 1e9  # a busy machine is late, never early
 
 
 def test_switch_rumble_is_encoded_and_stops():
@@ -123,8 +123,8 @@ def test_plays_a_recording_at_its_own_times():
         pad.play()
         for number in range(50):
             assert node.read(2.0) == bytes([number, 0x80, 0xff])
-        sent = pad.sent()
-        assert abs((sent[-1].ns - sent[0].ns) / 1e9 - 1.96) < 0.5  # a busy machine is late
+        late_s = sorted(sent.ns / 1e9 - 0.04 * sent.data[0] for sent in pad.sent())
+        assert late_s[len(late_s) // 2] - late_s[0] < 0.25  # behind the most punctual one: at double speed it would be half a second
 
 
 def test_faults_of_the_pad():

@@ -11,9 +11,8 @@ import time
 import pytest
 
 from pads import ROOT, Pad, wait_for
-from session import IDS, PROGRAM, remark, run
+from session import IDS, PROGRAM, Terminal, remark, run
 from support import tested_pad
-from support.terminal import Terminal
 from test_calibrate import AS_IT_SHOULD_BE, CENTRES, REACHES, PadHand
 
 STRAIGHT = {"left": AS_IT_SHOULD_BE, "right": AS_IT_SHOULD_BE}

@@ -41,7 +41,7 @@ bash "$root/tools/rig/install.sh" || skip "QEMU or what it needs cannot be insta
 export XDG_CACHE_HOME=$build/rig/cache
 "$build/gaitpad" replay "$root/config/traces/round.hid" --json >/dev/null                 # solves the strides
 /usr/bin/python3 -m pytest --collect-only -q -p no:cacheprovider "$root/tools/rig" >/dev/null  # compiles the tests
-seconds=7200
+seconds=3600
 [ $long -eq 0 ] || seconds=14400
 status=0
 for kernel in "${kernels[@]}"; do

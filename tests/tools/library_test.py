@@ -3,6 +3,7 @@ import csv
 import io
 import os
 import re
+import shutil
 import subprocess
 
 import pytest
@@ -120,6 +121,8 @@ FetchContent_MakeAvailable(gaitpad)
 add_executable(consumer {EXAMPLES}/solve_leg.cpp)
 target_link_libraries(consumer PRIVATE gaitpad::core)
 """)
-    call("cmake", "-G", "Ninja", "-S", tmp_path, "-B", tmp_path / "build", "-DCMAKE_BUILD_TYPE=Release")
-    call("cmake", "--build", tmp_path / "build", "--target", "consumer")
+    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    call("cmake", "-G", "Ninja", "-S", tmp_path, "-B", tmp_path / "build", "-DCMAKE_BUILD_TYPE=Release", *launcher)
+    call("cmake", "--build", tmp_path / "build", "--target", "consumer",
+         env={**os.environ, "CCACHE_BASEDIR": str(ROOT), "CCACHE_NOHASHDIR": "1"})
     assert "m from the goal" in call(tmp_path / "build/consumer")

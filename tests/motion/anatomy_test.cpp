@@ -286,11 +286,12 @@ TEST(UpperBodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
       {large, {"J_#_Clavicle", "J_#_Shoulder", "J_#_Elbow", "J_#_Hand"}},
   };
   for (const auto& [sides, names] : all) {
+    const auto& names_of_sides = sides;  // clang 14 captures no structured binding
     const Made m = made(names, sides);
     const UpperBodyJoints found = m.found();
     for (int side = 0; side < 2; ++side) {
       const auto joint = [&](const std::string& n) {
-        return m.skeleton.find(sided(n, sides[side]));
+        return m.skeleton.find(sided(n, names_of_sides[side]));
       };
       EXPECT_EQ(found.arm[side].shoulder, joint(names.shoulder)) << names.shoulder;
       EXPECT_EQ(found.arm[side].elbow, joint(names.elbow)) << names.elbow;

@@ -522,7 +522,7 @@ each report's stamp to the hand-over of the first frame that shows it.""", """\
 It is half a frame, the time of drawing, and the wait for the tick. With a graphics card drawing
 takes a few milliseconds, and the frame begins so late that it is ready just before the refresh."""),
     "pads": (measure_pads, pads_rows, "Pads and drivers", True, """\
-`bash tools/rig.sh` boots a current Debian kernel in QEMU, plugs virtual USB pads into it and runs
+`GAITPAD_ALL=1 bash tools/rig.sh` boots a current Debian kernel in QEMU, plugs virtual USB pads into it and runs
 the program there ([rig.md](rig.md)). For each cell it lists the pad, decodes every stick, trigger
 and button as sent, records the session, and replays the recording to the session's `pose_hash`.
 **R**: the pad also received the rumble of the heel strikes, weak at slow and strong at fast

@@ -6,6 +6,7 @@
 # /proc/stat counted no `steal`; otherwise the numbers are printed with that reason. For comparison the script
 # also prints how often threads that only sleep (tools/realtime_control.py) were late on this machine.
 #   tools/realtime.sh 60 --no-window
+#   tools/realtime.sh 60 --no-window --stream osc://127.0.0.1:39539   beside a stream of poses
 # REALTIME_BUILD names another build folder than build; it is then not rebuilt.
 # Exit status: 0 if it passed or was not judged, 1 if it failed.
 set -euo pipefail

@@ -103,6 +103,8 @@ TEST(Bvh, LyingCountsAreRefusedBeforeMemoryIsTaken) {
   EXPECT_NE(error_of(replaced(kTiny, "Frames: 2", "Frames: 1.5")), "");
   EXPECT_NE(error_of(replaced(kTiny, "CHANNELS 2", "CHANNELS 7")), "");
   EXPECT_NE(error_of(replaced(kTiny, "CHANNELS 2", "CHANNELS 3")), "");
+  EXPECT_EQ(error_of(replaced(kTiny, "OFFSET 0 1 0\n", "OFFSET 0 1 0\nCHANNELS 1 Xrotation\n")),
+            "walk.bvh:9: an End Site has CHANNELS");
   EXPECT_NE(error_of(replaced(kTiny, "0.5", "0")), "");
 }
 

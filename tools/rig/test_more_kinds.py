@@ -63,8 +63,7 @@ def test_every_control_is_decoded_as_meant(cell):
             time.sleep(0.3)
             sent = list(states(kind))
             for state in sent:
-                pad.set(**state)
-                time.sleep(0.04)
+                session.show(driver, pad, 0.04, **state)
             pad.set(**{**at_rest(kind), "ly": forward(kind)})
             time.sleep(1.5)
             pad.set(**at_rest(kind))

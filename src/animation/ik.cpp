@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "animation/robust_step.h"
+
 namespace gaitpad {
 namespace {
 
@@ -435,17 +437,6 @@ void IkStep<kRows>::subtract(int j, double angle_rad, Rows& b) const noexcept {
 
 // --- The robust solver: theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits ---------------
 
-// l^2 = damping^2 + growth |dX|^2 (after Sugihara 2011, "Solvability-unconcerned inverse kinematics
-// by the Levenberg-Marquardt method"); growth rises where a step makes the error greater.
-constexpr double kLeastDampingSquared = 1e-20;
-constexpr double kGrowth = 0.1;
-constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
-constexpr double kFarthest = 0.5;  // metres: the greatest |dX| that one step asks for
-// The error stands still if kPatience iterations together lower it by less than the share
-// kLeastGain of itself, or of kGainFrom metres if it is greater.
-constexpr int kPatience = 6;
-constexpr double kLeastGain = 0.001;
-constexpr double kGainFrom = 0.1;
 constexpr int kCandidates = 16;       // starts compared before each further try
 constexpr double kWorthAJump = 0.99;  // a later try replaces an earlier one only below this share
 

@@ -28,6 +28,20 @@ struct LegSolution {
   Vec3Of<V> heel_m, toe_m;  // the first two points, in the pelvis' frame from the hip joint
 };
 
+// The weights of equation (5), as one step of a solve takes them: they share out what the planted
+// point of the sole leaves free. `of` LegGoals, the first point is the one that is met exactly; the
+// second and third are `lever_m` from it along the foot and across it, and give way.
+template <class V>
+struct LegShares {
+  V uneven;                                       // 1, or 0: this leg is left as it is
+  std::array<V, kLegDofs> weight, reference_rad;  // W of the leg, and the pose that it pulls to
+  V on_heel;                                      // where the first point is: 0 toe .. 1 heel
+  V lever_m;
+  std::array<V, 3> give_m2;      // how far yaw, pitch and roll of the foot give way
+  V room_down_rad, room_up_rad;  // how far the foot may pitch away from its goal
+  V knee_rad, knee_soft_rad;     // a knee that is straighter than this is bent
+};
+
 // One number of each of several legs, in memory.
 template <int kWidth>
 struct alignas(8 * kWidth) Row {
@@ -49,7 +63,21 @@ struct LegLanes {
 template <int kWidth, int kRegister = kWidth>
 void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept;
 
+// The pose that the weights make of solved legs. Starts at `angles_rad`; LegSolution has the first
+// two points, and the error of the first one.
+template <int kWidth>
+struct SharedLegs : LegLanes<kWidth> {
+  LegShares<Row<kWidth>> shares;
+};
+template <int kWidth, int kRegister = kWidth>
+void share_legs(SharedLegs<kWidth>& legs) noexcept;
+
 // The two of one character, for the widest registers in use.
+inline void share_two_legs(SharedLegs<2>& legs) noexcept {
+  const int lanes = lanes_in_use();
+  const auto share = lanes >= 8 ? share_legs<2, 8> : lanes >= 4 ? share_legs<2, 4> : share_legs<2>;
+  share(legs);
+}
 inline void solve_two_legs(const RobustOptions& options, LegLanes<2>& legs) noexcept {
   const int lanes = lanes_in_use();
   const auto solve = lanes >= 8 ? solve_legs<2, 8> : lanes >= 4 ? solve_legs<2, 4> : solve_legs<2>;

@@ -4,18 +4,12 @@
 #include <utility>
 
 #include "animation/leg_ik.h"
+#include "animation/robust_step.h"
 
 namespace gaitpad {
 
 // Which of a goal's points a row is of.
 inline constexpr std::array<int, 6> kPointOf = {0, 0, 0, 1, 1, 2};
-
-// As in ik.cpp.
-inline constexpr double kLegLeastDamping = 1e-20;
-inline constexpr double kLegGrowth = 0.1, kLegGrowthUp = 8.0, kLegGrowthDown = 0.25;
-inline constexpr double kLegFarthest = 0.5;
-inline constexpr int kLegPatience = 6;
-inline constexpr double kLegLeastGain = 0.001, kLegGainFrom = 0.1;
 
 namespace {
 
@@ -107,10 +101,10 @@ inline void set_columns(const LegGoals<V>& goals, const LegPlace<V>& place,
   }
 }
 
-// J W J^T + l^2 I = L D L^T, y = its inverse times b.
+// J W J^T + a diagonal = L D L^T, y = its inverse times b.
 template <class V>
 inline void solve_step(const LegColumns<V>& column, const LegValues<V>& weight,
-                       const V& damping_squared, const LegRows<V>& b, LegRows<V>& y) noexcept {
+                       const LegRows<V>& diagonal, const LegRows<V>& b, LegRows<V>& y) noexcept {
   std::array<LegRows<V>, 6> m;
   for (int r = 0; r < 6; ++r) {
     for (int s = 0; s <= r; ++s) m[r][s] = (weight[0] * column[0][r]) * column[0][s];
@@ -121,7 +115,7 @@ inline void solve_step(const LegColumns<V>& column, const LegValues<V>& weight,
       for (int s = 0; s <= r; ++s) m[r][s] += weighted * column[j][s];
     }
   }
-  for (int r = 0; r < 6; ++r) m[r][r] += damping_squared;
+  for (int r = 0; r < 6; ++r) m[r][r] += diagonal[r];
   LegRows<V> reciprocal;
   for (int k = 0; k < 6; ++k) {
     reciprocal[k] = 1.0 / m[k][k];
@@ -148,10 +142,11 @@ inline void limited_step(const LegGoals<V>& goals, const LegColumns<V>& column,
                          const V& damping_squared, LegRows<V> dx, const LegValues<V>& angles_rad,
                          const MaskOf<V>& lanes, LegValues<V>& delta) noexcept {
   LegValues<V> weight = goals.weight;
-  LegRows<V> y;
+  LegRows<V> y, damping;
+  damping.fill(damping_squared);
   for (V& d : delta) d = V{};
   for (int round = 0; round <= kLegDofs; ++round) {
-    solve_step(column, weight, damping_squared, dx, y);
+    solve_step(column, weight, damping, dx, y);
     auto frozen = lanes & 0;
     for (int j = 0; j < kLegDofs; ++j) {
       const V even = column[j][0] * y[0] + column[j][2] * y[2] + column[j][4] * y[4],
@@ -179,7 +174,7 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
   LegValues<V> next = angles_rad;
   LegPlace<V> best, place;
   const V infinite = all_of<V>(std::numeric_limits<double>::infinity());
-  V growth = all_of<V>(kLegGrowth), iterations{}, seen_m = infinite, seen_at{};
+  V growth = all_of<V>(kGrowth), iterations{}, seen_m = infinite, seen_at{};
   best.squares = infinite;
   auto lanes = V{} == V{};  // still on their way
   const double enough = options.tolerance_m * options.tolerance_m;
@@ -187,8 +182,7 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
     place_legs(goals, next, k == 0 ? best : place);
     if (k > 0) {
       const auto better = lanes & (place.squares < best.squares);
-      growth =
-          better ? max_of(growth * kLegGrowthDown, all_of<V>(kLegGrowth)) : growth * kLegGrowthUp;
+      growth = better ? max_of(growth * kGrowthDown, all_of<V>(kGrowth)) : growth * kGrowthUp;
       for (int j = 0; j < kLegDofs; ++j) angles_rad[j] = better ? next[j] : angles_rad[j];
       if (!any(~better)) {
         best = place;
@@ -207,20 +201,20 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
     lanes &= ~(best.squares <= all_of<V>(enough));
     if (!any(lanes) || k >= options.max_iterations) break;
     const V error_m = sqrt_of(best.squares);
-    const auto falls = error_m < seen_m - kLegLeastGain * min_of(error_m, all_of<V>(kLegGainFrom));
+    const auto falls = error_m < seen_m - kLeastGain * min_of(error_m, all_of<V>(kGainFrom));
     seen_at = falls ? all_of<V>(k) : seen_at;
     seen_m = falls ? error_m : seen_m;
     lanes &= best.squares < infinite;
-    lanes &= all_of<V>(k) - seen_at < all_of<V>(kLegPatience);
+    lanes &= all_of<V>(k) - seen_at < all_of<V>(kPatience);
     if (!any(lanes)) break;
 
     LegColumns<V> column;
     set_columns(goals, best, column);
-    constexpr double most = kLegFarthest * kLegFarthest;
-    const V share = best.squares > all_of<V>(most) ? kLegFarthest / error_m : all_of<V>(1.0);
+    constexpr double most = kFarthest * kFarthest;
+    const V share = best.squares > all_of<V>(most) ? kFarthest / error_m : all_of<V>(1.0);
     LegRows<V> dx;
     for (int r = 0; r < 6; ++r) dx[r] = share * best.dx[r];
-    const V damping_squared = std::max(options.damping * options.damping, kLegLeastDamping) +
+    const V damping_squared = std::max(options.damping * options.damping, kLeastDampingSquared) +
                               growth * min_of(best.squares, all_of<V>(most));
     LegValues<V> delta;
     limited_step(goals, column, damping_squared, dx, angles_rad, lanes, delta);
@@ -237,7 +231,104 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
   return {best.squares, iterations, best.point_m[0], best.point_m[1]};
 }
 
+// --- Equation (5) --------------------------------------------------------------------------------
+
+// The exact rows are closed in every step, this share of the rest: with all of it some walks swing
+// between two poses.
+constexpr double kShareStep = 0.5;
+constexpr double kMostShareStep_rad = 0.6;
+constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
+constexpr int kMostShareSteps = 8;
+constexpr double kExactRow_m2 = 1e-13;
+constexpr double kKneeSpring = 100.0;
+constexpr double kRoomUsed =
+    0.8;  // of the room of a foot's pitch: from here on it gives way no more
+
+// Least sum of (angle - reference)^2 / W and of the squares of the rows that give way over what
+// they give, under the exact rows: one step from `angles_rad` to it.
+template <class V>
+inline void share_step(const LegGoals<V>& goals, const LegShares<V>& shares, const LegPlace<V>& at,
+                       const LegValues<V>& angles_rad, LegValues<V>& delta) noexcept {
+  LegColumns<V> column;
+  set_columns(goals, at, column);
+  LegRows<V> b = at.dx;
+  for (int r : {3, 4, 5}) {
+    const int of = r == 3 ? 0 : 1;
+    for (auto& c : column) c[r] -= c[of];
+    b[r] -= at.dx[of];
+  }
+  // Down positive. Near the floor, and near a toe's, a turn counts more and more.
+  const V lever = shares.lever_m, down = b[4] / lever;
+  const V room = down > V{} ? shares.room_down_rad : shares.room_up_rad, size = abs_of(down),
+          t = min_of(V(size / room), all_of<V>(kRoomUsed)), left = 1.0 / (1.0 - t),
+          steep = left * left, bent = t * room * left + steep * (size - t * room);
+  b[4] = lever * (down > V{} ? bent : -bent);
+  for (auto& c : column) c[4] = steep * c[4];
+  LegValues<V> weight = shares.weight;
+  for (int j = 0; j < kLegDofs; ++j) delta[j] = shares.reference_rad[j] - angles_rad[j];
+  const V knee = angles_rad[kKneeX], bend = max_of(V(shares.knee_rad - knee), V{}),
+          q = bend + shares.knee_soft_rad, push = kKneeSpring * bend * bend / q,
+          stiff = kKneeSpring * bend * (bend + 2.0 * shares.knee_soft_rad) / (q * q),
+          free = weight[kKneeX] / (1.0 + weight[kKneeX] * stiff);
+  delta[kKneeX] =
+      free * (shares.reference_rad[kKneeX] / weight[kKneeX] + push + stiff * knee) - knee;
+  weight[kKneeX] = free;
+  for (int r : {3, 4, 5}) b[r] = kShareStep * b[r];
+  for (int j = 0; j < kLegDofs; ++j) {
+    delta[j] = kShareStep * delta[j];
+    for (int r = 0; r < 6; ++r) b[r] -= column[j][r] * delta[j];
+  }
+  LegRows<V> diagonal, y;
+  for (int r = 0; r < 6; ++r)
+    diagonal[r] = r < 3 ? all_of<V>(kExactRow_m2) : kExactRow_m2 + shares.give_m2[r - 3];
+  solve_step(column, weight, diagonal, b, y);
+  for (int j = 0; j < kLegDofs; ++j) {
+    const V even = column[j][0] * y[0] + column[j][2] * y[2] + column[j][4] * y[4],
+            odd = column[j][1] * y[1] + column[j][3] * y[3] + column[j][5] * y[5];
+    delta[j] += weight[j] * (even + odd);
+  }
+}
+
+template <class V>
+inline LegSolution<V> share_lanes(const LegGoals<V>& goals, const LegShares<V>& shares,
+                                  LegValues<V>& angles_rad) noexcept {
+  LegPlace<V> at;
+  auto lanes = shares.uneven != V{};  // still on their way
+  V greatest = all_of<V>(1.0), missed{}, steps{};
+  for (int k = 0;; ++k) {
+    place_legs(goals, angles_rad, at);
+    lanes &= ~((greatest < all_of<V>(kSharedNear_rad)) &
+               (missed < all_of<V>(kSharedNear_m * kSharedNear_m)));
+    missed = at.dx[0] * at.dx[0] + at.dx[1] * at.dx[1] + at.dx[2] * at.dx[2];
+    if (!any(lanes) || k == kMostShareSteps) break;
+    LegValues<V> delta;
+    share_step(goals, shares, at, angles_rad, delta);
+    greatest = V{};
+    for (const V& d : delta) greatest = max_of(greatest, abs_of(d));
+    const V cap_rad = all_of<V>(kMostShareStep_rad),
+            cap = greatest > cap_rad ? cap_rad / greatest : all_of<V>(1.0);
+    for (int j = 0; j < kLegDofs; ++j)
+      angles_rad[j] = lanes ? angles_rad[j] + cap * delta[j] : angles_rad[j];
+    steps = lanes ? steps + 1.0 : steps;
+  }
+  return {missed, steps, at.point_m[0], at.point_m[1]};
+}
+
 }  // namespace
+
+template <int kWidth, int kRegister>
+void share_legs(SharedLegs<kWidth>& legs) noexcept {
+  using V = Lanes<kWidth>;
+  LegGoals<V> goals;
+  LegShares<V> shares;
+  LegValues<V> angles_rad;
+  std::memcpy(&goals, &legs.goals, sizeof goals);
+  std::memcpy(&shares, &legs.shares, sizeof shares);
+  std::memcpy(&angles_rad, &legs.angles_rad, sizeof angles_rad);
+  const LegSolution<V> solution = share_lanes(goals, shares, angles_rad);
+  std::memcpy(&legs.angles_rad, &angles_rad, sizeof angles_rad);
+  std::memcpy(&legs.solution, &solution, sizeof solution);
+}
 
 template <int kWidth, int kRegister>
 void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept {

@@ -4,5 +4,6 @@
 namespace gaitpad {
 
 template void solve_legs<2>(const RobustOptions&, LegLanes<2>&) noexcept;
+template void share_legs<2>(SharedLegs<2>&) noexcept;
 
 }  // namespace gaitpad

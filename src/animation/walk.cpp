@@ -340,6 +340,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   state.path.base.height_m = state.path.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
+  state.legs.mean_rad = state.legs.lagging_rad = state.legs.even_rad;
   return state;
 }
 
@@ -380,6 +381,33 @@ void plan_tick(const Tick& tick, WalkState& state, PlannedTick& planned) noexcep
                      planned.plan, planned.pelvis);
 }
 
+// What the weights make of both legs.
+void share_both(const PlannedTick& planned, std::array<LegGoals<double>, 2>& goals,
+                std::array<PosedLeg, 2>& posed) noexcept {
+  const Tick& tick = *planned.tick;
+  WalkState& state = *planned.state;
+  if (!has_weights(state.gait, kLeftSide) && !has_weights(state.gait, kRightSide)) {
+    state.legs.angles_rad = state.legs.even_rad;
+    return;
+  }
+  std::array<LegShares<double>, 2> shares;
+  SharedLegs<2> lanes;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    set_shares<double>(tick, planned.at, planned.plan, planned.pelvis, side, state, goals[side],
+                       shares[side]);
+    set_lanes(goals[side], side, lanes.goals);
+    set_lanes(shares[side], side, lanes.shares);
+    set_lanes(state.legs.angles_rad[side], side, lanes.angles_rad);
+  }
+  share_two_legs(lanes);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    LegSolution<double> solution;
+    get_lane(lanes.angles_rad, side, state.legs.angles_rad[side]);
+    get_lane(lanes.solution, side, solution);
+    add_shared<double>(tick.model.leg[side], goals[side], shares[side], solution, posed[side]);
+  }
+}
+
 // Both legs side by side.
 void pose_legs(const PlannedTick& planned) noexcept {
   const Tick& tick = *planned.tick;
@@ -391,23 +419,27 @@ void pose_legs(const PlannedTick& planned) noexcept {
       posed[side] = pose_paper(tick, state, pelvis, side);
   } else {
     LegLanes<2> lanes;
+    std::array<LegGoals<double>, 2> goals;
     for (const Side side : {kLeftSide, kRightSide}) {
-      LegGoals<double> goals;
       LegAngles angles;
-      set_leg_goals<double>(tick, planned.plan, pelvis, side, state, goals, angles);
-      set_lanes(goals, side, lanes.goals);
+      set_leg_goals<double>(tick, planned.plan, pelvis, side, state, goals[side], angles);
+      set_lanes(goals[side], side, lanes.goals);
       set_lanes(angles, side, lanes.angles_rad);
     }
     solve_two_legs(kRobust, lanes);
     for (const Side side : {kLeftSide, kRightSide}) {
       LegSolution<double> solution;
-      get_lane(lanes.angles_rad, side, state.legs.angles_rad[side]);
+      get_lane(lanes.angles_rad, side, state.legs.even_rad[side]);
       get_lane(lanes.solution, side, solution);
       posed[side] = posed_leg<double>(solution, state.foot[side].pose.pitch_rad);
-      const double ankle = state.legs.angles_rad[side][kAnkleX];
-      if (needs_mending<double>(tick.model, planned.at, side, ankle, posed[side].failed))
+      const double ankle = state.legs.even_rad[side][kAnkleX];
+      if (needs_mending<double>(tick.model, planned.at, side, ankle, posed[side].failed)) {
         posed[side] = mended_leg(tick, state, pelvis, side, posed[side]);
+        set_leg<double>(tick.model.leg[side], state.foot[side].pose, pelvis, goals[side]);
+      }
+      advance_means<double>(tick, side, state.legs);
     }
+    share_both(planned, goals, posed);
   }
   WalkFrame* const frame = &state.frame;
   for (const Side side : {kLeftSide, kRightSide})

@@ -67,9 +67,9 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.gap_slope_m = slope_m - (to - from) * ticks;
   foot.gap_m.y -= foot.rise_m;
   foot.gap_slope_m.y -= end_slope(foot.last_rise_m[1], foot.last_rise_m[0], foot.rise_m) * ticks;
-  const double pitch = table_pitch<double>(at, now, side);
+  const double pitch = table_pitch<double>(at, state, now, side);
   foot.pitch_fade = {lifts.pitch_rad - pitch,
-                     pitch_rate - (table_pitch<double>(at, next, side) - pitch),
+                     pitch_rate - (table_pitch<double>(at, state, next, side) - pitch),
                      kPitchFade * ticks};
   if (!tick.flat) plan_room(tick, state, side);
 }
@@ -84,7 +84,7 @@ void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   StridePlan plan;
   const Moment at = moment_of(tick.model, state);
   plan_stride<double>(tick, at, state, plan);
-  const double pitch = foot.pose.pitch_rad - table_pitch<double>(at, plan, side);
+  const double pitch = foot.pose.pitch_rad - table_pitch<double>(at, state, plan, side);
   foot.pitch_fade = {pitch, 0.0, kRollEnd * state.clock.stage_ticks};
   FootPose flat = foot.pose;
   flat.heel_m = foot.heel_anchor_m;

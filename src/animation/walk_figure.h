@@ -21,26 +21,10 @@ inline constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * 
 // it would do so in a jerk.
 inline constexpr double kHeldDorsiflexion = -57.0 * kDegree, kSoftHeld = 4.0 * kDegree;
 inline constexpr double kSoftToe = 15.0 * kDegree;
-inline constexpr double kLeastWeight = 0.05;
 inline constexpr double kLeak_per_s = 4.0;  // of the correction on the data's angles
 inline constexpr double kSoftElbow = 0.1;
 inline constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
 inline constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
-
-// Weights count relative to the leg's largest. The foot's place goes before a locked joint.
-template <class V>
-std::array<V, kLegDofs> relative_weights(const GaitFlow<V>& gait, Side side) noexcept {
-  std::array<V, kLegDofs> weight;
-  weight.fill(all_of<V>(1.0));
-  if (!any(has_weights(gait, side))) return weight;
-  V largest{};
-  for (const Damped<V>& w : gait.weight[side]) largest = max_of(largest, w.x);
-  const auto none = largest <= all_of<V>(1e-6 * kLeastWeight);
-  for (int j = 0; j < kLegDofs; ++j) {
-    weight[j] = none ? weight[j] : within(V(gait.weight[side][j].x / largest), kLeastWeight, 1.0);
-  }
-  return weight;
-}
 
 // The angle at which a leg's solver starts: the data's, and what had to be added to it a tick ago
 // (`off`), less what leaks away, and most of what that had changed by in the tick before. The share
@@ -61,6 +45,40 @@ class StartAngle {
   double keep_, ahead_;
 };
 
+template <class V>
+void set_vector(const Vec<V>& from, Vec3Of<V>& to) noexcept {
+  to = {from.x, from.y, from.z};
+}
+
+// The leg's bones, and the planned foot's own axes in the pelvis' frame.
+template <class V>
+void set_leg(const LegBuild& leg, const PoseOf<V>& foot, const PelvisOf<V>& pelvis,
+             LegGoals<V>& goals) noexcept {
+  goals.thigh_m = all_of<V>(leg.model.thigh_m);
+  goals.shank_m = all_of<V>(leg.model.shank_m);
+  const Quat<V> rotation = conjugate_of(pelvis.rotation) * foot.rotation;
+  const Vec<V> side = rotation * all_of<V>(leg.side), along = rotation * all_of<V>(leg.line);
+  set_vector<V>(side, goals.side);
+  set_vector<V>(cross_of(along, side), goals.across);
+  set_vector<V>(along, goals.along);
+}
+
+// The rows' goals: of the first point, of one that is `ahead_m` of it in the foot, and of one
+// beside it. What lies between the foot's points does not turn in its own axes.
+template <class V>
+void set_rows(const LegBuild& leg, const Vec<V>& first_m, const vec3& ahead_m,
+              LegGoals<V>& goals) noexcept {
+  Vec3Of<V> first;
+  set_vector<V>(first_m, first);
+  const V sideways = dot_of(goals.side, first), up = dot_of(goals.across, first);
+  goals.goal_m = {sideways,
+                  up,
+                  dot_of(goals.along, first),
+                  sideways + glm::dot(leg.side, ahead_m),
+                  up + glm::dot(glm::cross(leg.line, leg.side), ahead_m),
+                  up};
+}
+
 // Where one leg's solver starts, and what is to be reached. So near to where it ends that one
 // iteration is mostly enough.
 template <class V>
@@ -69,44 +87,31 @@ void set_leg_goals(const Tick& tick, const PlanOf<V>& plan, const PelvisOf<V>& p
                    std::array<V, kLegDofs>& angles_rad) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   const StartAngle start(tick.dt_s);
-  goals.weight = relative_weights<V>(state.gait, side);
+  goals.weight.fill(all_of<V>(1.0));
   for (int j = 0; j < kLegDofs; ++j) {
     V data = tick.model.stand_rad[side][j] + plan.cell.leg_rad[side][j];
     if (j == kKneeX) data = max_of(data, all_of<V>(kLeastKnee));
-    const V off = state.legs.angles_rad[side][j] - state.legs.data_rad[side][j];
-    angles_rad[j] = start(data, off, V(state.legs.last_off_rad[side][j]));
-    state.legs.last_off_rad[side][j] = off;
-    state.legs.data_rad[side][j] = data;
+    auto& legs = state.legs;
+    const V off = legs.even_rad[side][j] - legs.data_rad[side][j];
+    // What the weights change goes on as it did.
+    const V shift = legs.angles_rad[side][j] - legs.even_rad[side][j];
+    legs.angles_rad[side][j] = shift + (shift - legs.last_shift_rad[side][j]);
+    legs.last_shift_rad[side][j] = shift;
+    angles_rad[j] = start(data, off, V(legs.last_off_rad[side][j]));
+    legs.last_off_rad[side][j] = off;
+    legs.data_rad[side][j] = data;
     goals.min_rad[j] = all_of<V>(leg.chain.dof[j].min_rad);
     goals.max_rad[j] = all_of<V>(leg.chain.dof[j].max_rad);
   }
   // Without the ankle's limit first, so that the knee does not twist.
   goals.min_rad[kAnkleX] = all_of<V>(-kPi);
-  goals.thigh_m = all_of<V>(leg.model.thigh_m);
-  goals.shank_m = all_of<V>(leg.model.shank_m);
-  // What lies between the foot's points does not turn in its own axes.
-  const auto& foot = state.foot[side].pose;
-  const Quat<V> to_pelvis = conjugate_of(pelvis.rotation), rotation = to_pelvis * foot.rotation;
-  const vec3 across_foot = glm::cross(leg.line, leg.side),
-             to_toe = leg.model.toe_m - leg.model.heel_m;
-  const Vec<V> heel = to_pelvis * (foot.heel_m - pelvis.hip(leg));
-  const Vec<V> side_axis = rotation * all_of<V>(leg.side),
-               along_axis = rotation * all_of<V>(leg.line),
-               across_axis = cross_of(along_axis, side_axis);
-  const auto set = [](const Vec<V>& from, Vec3Of<V>& to) { to = {from.x, from.y, from.z}; };
-  set(all_of<V>(leg.model.heel_m), goals.point_m[0]);
-  set(all_of<V>(leg.model.toe_m), goals.point_m[1]);
-  set(all_of<V>(leg.model.heel_m + leg.side * kSideLever_m), goals.point_m[2]);
-  set(side_axis, goals.side);
-  set(across_axis, goals.across);
-  set(along_axis, goals.along);
-  const V sideways = dot_of(side_axis, heel), up = dot_of(across_axis, heel);
-  goals.goal_m = {sideways,
-                  up,
-                  dot_of(along_axis, heel),
-                  sideways + glm::dot(leg.side, to_toe),
-                  up + glm::dot(across_foot, to_toe),
-                  up};
+  set_leg<V>(leg, state.foot[side].pose, pelvis, goals);
+  set_vector<V>(all_of<V>(leg.model.heel_m), goals.point_m[0]);
+  set_vector<V>(all_of<V>(leg.model.toe_m), goals.point_m[1]);
+  set_vector<V>(all_of<V>(leg.model.heel_m + leg.side * kSideLever_m), goals.point_m[2]);
+  const Vec<V> heel =
+      conjugate_of(pelvis.rotation) * (state.foot[side].pose.heel_m - pelvis.hip(leg));
+  set_rows<V>(leg, heel, leg.model.toe_m - leg.model.heel_m, goals);
 }
 
 // True where the ankle bends up too far, or the foot was not reached: such a leg is looked at again
@@ -121,6 +126,154 @@ MaskOf<V> needs_mending(const WalkModel& model, const MomentOf<V>& at, Side side
       not_of(flies) & not_of(at.in_roll[side]) & (heel_rise<V>(model, at, side) != V{});
   const MaskOf<V> held = kHeldDorsiflexion - ankle_rad > all_of<V>(-kSoftHeld);
   return missed | (bends & (flies | may_rise)) | held;
+}
+
+// --- The weights ---------------------------------------------------------------------------------
+// Equation (5) from the stride's mean pose. The pose of even weights is solved first. A joint of
+// weight w is pulled from it to its running mean by 1 - w, and a weighted step meets the sole's
+// planted point again: the toe in support, the heel in roll and in late flight, a point that moves
+// along the sole in between. The foot gives way where it may turn: its pitch with the heel's rise
+// and in flight, its yaw and roll in flight. The walk itself sees even legs alone: weights change
+// no footprint, and cannot drift.
+
+inline constexpr double kMeanTime_s = 0.5;  // of each of two filters in a row
+inline constexpr double kLeastW = 0.08;     // of a locked joint
+inline constexpr double kMostPull_rad = 26.0 * kDegree;
+inline constexpr double kHeldPull = 0.3;  // what acts of the pull where the foot may not turn
+inline constexpr double kFootLever_m = 0.2;
+// Of the flight: from here on the heel is the planted point, or as good as landed.
+inline constexpr double kOnHeel = 0.5, kToLand = 0.4, kLanded = 0.95;
+// How far a foot gives way: squared radians that cost as much as one of a joint's.
+inline constexpr double kGiveAside = 0.15, kGiveFlying = 0.5, kGiveRolling = 0.05;
+// A foot is free from this pitch on, and from this share of its flight on.
+inline constexpr double kRisen_rad = 4.0 * kDegree, kFreeFrom = 0.3;
+inline constexpr double kTight_rad = 3.0 * kDegree;  // a foot with less room hardly gives way
+inline constexpr double kFloorRoom_m = 0.0003;
+inline constexpr double kStraightest = 1.0 * kDegree, kBentKnee = 0.65, kLeastSoft = 0.1 * kDegree;
+
+// The leg's weights over its largest; 1 where they differ, else 0.
+template <class V>
+V relative_weights(const GaitFlow<V>& gait, Side side, std::array<V, kLegDofs>& weight) noexcept {
+  V largest = all_of<V>(1e-9), least = all_of<V>(1.0);
+  for (const Damped<V>& w : gait.weight[side]) largest = max_of(largest, w.x);
+  for (int j = 0; j < kLegDofs; ++j) {
+    weight[j] = within(V(gait.weight[side][j].x / largest), 0.0, 1.0);
+    least = min_of(least, weight[j]);
+  }
+  return value<V>(least < all_of<V>(1.0 - kEvenSpread), 1.0, 0.0);
+}
+
+template <class V>
+void advance_means(const Tick& tick, Side side, LegFlow<V>& legs) noexcept {
+  const double pull = tick.dt_s / (kMeanTime_s * tick.model.time_scale + tick.dt_s);
+  for (int j = 0; j < kLegDofs; ++j) {
+    V &lagging = legs.lagging_rad[side][j], &mean = legs.mean_rad[side][j];
+    lagging += pull * (legs.even_rad[side][j] - lagging);
+    mean += pull * (lagging - mean);
+  }
+}
+
+// How far the foot may turn about the planted point, until toe or heel is on its floor.
+template <class V>
+void set_room(const Tick& tick, const StateOf<V>& state, Side side, const V& flown,
+              LegShares<V>& shares) noexcept {
+  const LegBuild& leg = tick.model.leg[side];
+  const auto& foot = state.foot[side];
+  V heel_m = foot.pose.heel_m.y, toe_m = foot.pose.toe_m.y;
+  if constexpr (kAlone<V>) {
+    if (!tick.flat) {
+      const vec3 under(foot.pose.heel_m.x, foot.base_m, foot.pose.heel_m.z);
+      const vec3 floor_m = mix(foot.plane.place_m, under, smootherstep(flown / kLiftGround));
+      heel_m = glm::dot(foot.pose.heel_m - floor_m, foot.plane.normal);
+      toe_m = glm::dot(foot.pose.toe_m - floor_m, foot.plane.normal);
+    }
+  }
+  const auto room = [](const V& over_m, const V& arm_m) {
+    return V((max_of(over_m, V{}) + kFloorRoom_m) / (arm_m + kFloorRoom_m));
+  };
+  shares.room_down_rad = room(V(toe_m - leg.model.toe_rest_m), V(leg.foot_m * shares.on_heel));
+  shares.room_up_rad = room(heel_m, V(leg.foot_m * (1.0 - shares.on_heel)));
+}
+
+// What the weights of one leg ask for, and where the step to it begins. `goals` has the leg and the
+// axes of the planned foot.
+template <class V>
+void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
+                const PelvisOf<V>& pelvis, Side side, StateOf<V>& state, LegGoals<V>& goals,
+                LegShares<V>& shares) noexcept {
+  const LegBuild& leg = tick.model.leg[side];
+  const auto& foot = state.foot[side].pose;
+  auto& legs = state.legs;
+  const MaskOf<V> flies = at.in_flight[side], rolls = at.in_roll[side];
+  const V one = all_of<V>(1.0), zero{}, u = flies ? at.flight_progress() : zero,
+          rolled = at.rolls ? V(at.tick / at.stage_ticks) : zero,
+          risen = smoothstep(0.0, kRisen_rad, max_of(foot.pitch_rad, V{})),
+          rise = heel_rise<V>(tick.model, at, side) * risen,
+          lifts = mix(risen, 1.0, smootherstep(V(u / kFreeFrom)));
+  const auto by_mode = [&](const V& flying, const V& rolling, const V& standing) {
+    const V planted = rolls ? rolling : standing;
+    return V(flies ? flying : planted);
+  };
+  const V lands = smootherstep(V((u - kToLand) / (kLanded - kToLand))),
+          free = by_mode(V(lifts * (1.0 - lands)), zero, rise),
+          pitches = by_mode(V(lifts * (1.0 - (1.0 - kGiveFlying) * smootherstep(V(u / kToLand)) -
+                                       (kGiveFlying - kGiveRolling) * lands)),
+                            V(kGiveRolling * (1.0 - smootherstep(V(rolled / 0.9)))), rise),
+          aside =
+              flies ? smootherstep(V(u / 0.35)) * (1.0 - smootherstep(V((u - 0.6) / 0.4))) : zero;
+  shares.on_heel = by_mode(smootherstep(V(u / kOnHeel)), one, zero);
+  shares.uneven = relative_weights<V>(state.gait, side, shares.weight);
+  const auto uneven = shares.uneven != zero;
+  const V pull = plan.shown * (kHeldPull + (1.0 - kHeldPull) * free);
+  for (int j = 0; j < kLegDofs; ++j) {
+    const V even = legs.even_rad[side][j], w = shares.weight[j];
+    V& reference = shares.reference_rad[j] = even;
+    if (any(w != one)) {
+      const V way = (1.0 - w) * (legs.mean_rad[side][j] - even), share = way / kMostPull_rad;
+      reference += pull * way / sqrt_of(V(1.0 + share * share));
+    }
+    shares.weight[j] = kLeastW + (1.0 - kLeastW) * w;
+    V& angle = legs.angles_rad[side][j];
+    angle = uneven ? even + angle : even;
+  }
+  const V bent = kBentKnee * (legs.even_rad[side][kKneeX] - kStraightest);
+  shares.knee_rad = kStraightest + bent;
+  shares.knee_soft_rad = max_of(bent, all_of<V>(kLeastSoft));
+  set_room<V>(tick, state, side, u, shares);
+  const double lever_m = kFootLever_m * tick.model.size, square = lever_m * lever_m;
+  const V room = shares.room_down_rad * shares.room_down_rad;
+  shares.lever_m = all_of<V>(lever_m);
+  shares.give_m2 = {square * kGiveAside * aside,
+                    square * plan.shown * pitches * (room / (room + kTight_rad * kTight_rad)),
+                    square * kGiveAside * aside};
+  const Vec<V> in_foot =
+      all_of<V>(leg.model.toe_m) + all_of<V>(leg.model.heel_m - leg.model.toe_m) * shares.on_heel;
+  set_vector<V>(in_foot, goals.point_m[0]);
+  set_vector<V>(in_foot + all_of<V>(lever_m * leg.line), goals.point_m[1]);
+  set_vector<V>(in_foot + all_of<V>(lever_m * leg.side), goals.point_m[2]);
+  const Vec<V> planted_m = foot.toe_m + (foot.heel_m - foot.toe_m) * shares.on_heel;
+  set_rows<V>(leg, conjugate_of(pelvis.rotation) * (planted_m - pelvis.hip(leg)),
+              lever_m * leg.line, goals);
+}
+
+// Adds what the weighted step came to.
+template <class V>
+void add_shared(const LegBuild& leg, const LegGoals<V>& goals, const LegShares<V>& shares,
+                const LegSolution<V>& solution, PosedLegOf<V>& posed) noexcept {
+  const auto uneven = shares.uneven != V{};
+  const Vec3Of<V>& point = solution.heel_m;
+  const Vec3Of<V> line = (solution.toe_m - point) / shares.lever_m;
+  const auto along = [&](const V& way_m) {
+    const Vec3Of<V> place = point + line * way_m;
+    return Vec<V>{place.x, place.y, place.z};
+  };
+  posed.iterations += solution.iterations;
+  posed.squares = uneven ? solution.squares : posed.squares;
+  posed.heel_m = chosen(uneven, along(V(-leg.foot_m * (1.0 - shares.on_heel))), posed.heel_m);
+  posed.toe_m = chosen(uneven, along(V(leg.foot_m * shares.on_heel)), posed.toe_m);
+  // Of the sine the arc's series: a foot turns by less than 20 degrees.
+  const V sine = -dot_of(goals.across, line), cube = sine * sine * sine;
+  posed.pitch_rad += uneven ? sine + cube / 6.0 + 0.075 * cube * sine * sine : V{};
 }
 
 // Toes stay level while the heel is the higher end, on the floor and in the air, so they never dig

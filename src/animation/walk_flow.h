@@ -157,23 +157,6 @@ V presence_of(const GaitFlow<V>& gait) noexcept {
   return within(gait.amplitude.x, 0.0, 1.0) * within(V(2.0 * gait.pace.x), 0.0, 1.0);
 }
 
-// --- What a style asks of the stride -------------------------------------------------------------
-// The planted feet fix where the hips go, so a joint that is to flex less cannot do so by itself:
-// the pelvis has to give way over the whole stride. The clean strides were solved for that when the
-// motion was loaded (StrideWish), and a tick only adds up what is asked for. The weights of
-// equation (5) then act on what is left to the inverse kinematics, too.
-
-inline constexpr double kMostShown = 1.2;  // responses grow with the stride up to here
-inline constexpr double kSoftShown = 0.1;
-inline constexpr int kOfOneLeg = 6;  // wishes of one leg: three joints, two sides
-// Of a step's length the ground leaves so little on stairs, and so much where it is nearly level:
-// what the responses know of is level ground.
-inline constexpr double kStairs = 0.5, kLevel = 0.95;
-// What several wishes ask for together does not bend a knee less than this.
-inline constexpr double kStraightKnee = 1.5 * kDegree;
-
-constexpr std::size_t index_of(StrideWish wish) noexcept { return static_cast<std::size_t>(wish); }
-
 // True where a leg's weights are not all 1.
 template <class V>
 MaskOf<V> has_weights(const GaitFlow<V>& gait, int side) noexcept {
@@ -181,38 +164,6 @@ MaskOf<V> has_weights(const GaitFlow<V>& gait, int side) noexcept {
   MaskOf<V> uneven = gait.weight[side][0].x != one;
   for (int j = 1; j < kLegDofs; ++j) uneven = uneven | (gait.weight[side][j].x != one);
   return uneven;
-}
-
-// How stiff hip, knee and ankle are beside the leg's freest joint: 0 free .. held_back(0) locked.
-template <class V>
-std::array<V, 3> stiffness(const GaitFlow<V>& gait, int side) noexcept {
-  if (!any(has_weights(gait, side))) return {};
-  const auto& weight = gait.weight[side];
-  V largest = all_of<V>(1e-6);
-  for (const Damped<V>& w : weight) largest = max_of(largest, w.x);
-  const auto of = [&](int dof) { return held_back(within(V(weight[dof].x / largest), 0.0, 1.0)); };
-  return {of(kHipX), of(kKneeX), of(kAnkleX)};
-}
-
-// From the smoothed parameters. In paper mode weights act on the inverse kinematics alone.
-template <class V>
-WishesOf<V> wishes_of(IkMode mode, const GaitFlow<V>& gait) noexcept {
-  WishesOf<V> wish{};
-  const V bounce = gait.bounce.x - 1.0;
-  wish[index_of(StrideWish::more_bounce)] = max_of(V{}, bounce);
-  wish[index_of(StrideWish::less_bounce)] = max_of(V{}, V(-bounce));
-  for (int side : {0, 1})
-    wish[index_of(StrideWish::low_left) + side] =
-        max_of(V{}, V(1.0 - gait.flight_height[side].x)) / (1.0 - kLowLift);
-  if (mode == IkMode::paper) return wish;
-  const std::array<V, 3> left = stiffness(gait, kLeftSide), right = stiffness(gait, kRightSide);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const V both = min_of(left[k], right[k]);
-    wish[index_of(StrideWish::stiff_hips) + k] = both;
-    wish[index_of(StrideWish::stiff_left_hip) + k] = left[k] - both;
-    wish[index_of(StrideWish::stiff_right_hip) + k] = right[k] - both;
-  }
-  return wish;
 }
 
 // --- The strides' tables -------------------------------------------------------------------------
@@ -251,64 +202,57 @@ V ratio_ahead(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& s
   return max_of(V{}, V(ratio_of_step<V>(model, at, state) + state.gait.off_ratio.x));
 }
 
-// x, but never beyond `most`: the closer, the less of it. Both at least 0.
+// A walk limps from the one difference of both feet's strides on, wholly from the other.
+inline constexpr double kEvenSteps = 0.03, kUnevenSteps = 0.2, kLeastAsked = 1e-9;
+
+// Where one foot's steps are shorter than the other's, the tables of short strides would keep both
+// feet low: then a heel flies as high as in strides in which both go as far as the longer one, and
+// comes down as the tables have it.
 template <class V>
-V bounded(const V& x, const V& most) noexcept {
-  const V a = x * x, b = most * most;
-  return x == V{} ? V{} : x * most / sqrt_of(sqrt_of(V(a * a + b * b)));
+void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
+                        const TablesOf<V>& tables, const KnotsOf<V>& knots, const V& ahead,
+                        PlanOf<V>& plan) noexcept {
+  const WalkModel& model = tick.model;
+  const auto& foot = plan.cell.foot;
+  plan.heel_up_m = at.right_steps ? foot[kRightSide].heel_m.y : foot[kLeftSide].heel_m.y;
+  // Even styles ask for equal steps, or for the data's own, which may differ.
+  std::array<V, 2> asked;
+  std::array<V, 2> length_m;
+  for (int side : {0, 1}) {
+    const V own_m = value<V>(at.backward, model.own_step_m[1 - side], model.own_step_m[side]);
+    length_m[side] = state.gait.length_m[side].x;
+    asked[side] = length_m[side] / own_m;
+  }
+  const auto evenness = [](const std::array<V, 2>& of) {
+    return V((min_of(of[0], of[1]) + kLeastAsked) / (max_of(of[0], of[1]) + kLeastAsked));
+  };
+  const V longer = max_of(asked[0], asked[1]);
+  const V limps =
+      smoothstep(kEvenSteps, kUnevenSteps, V(1.0 - max_of(evenness(asked), evenness(length_m)))) *
+      smootherstep(V(at.flight_progress() / 0.2)) *
+      (1.0 - smootherstep(V((at.flight_progress() - 0.5) / 0.4)));
+  const auto is_limping = at.flies & (limps != V{});
+  if (!any(is_limping)) return;
+  const V own = at.right_steps ? asked[kRightSide] : asked[kLeftSide];
+  const Vec<V> heel_m =
+      heel_at<V>(ratios_at<V>(tables, V(ahead * longer / max_of(own, all_of<V>(kLeastAsked)))),
+                 knots, at.right_steps);
+  const V high_m = plan.shown * model.stride_scale.length * heel_m.y;
+  plan.heel_up_m = is_limping ? mix(plan.heel_up_m, high_m, limps) : plan.heel_up_m;
 }
 
-// Changes the tables' cell by what is granted in a stride of this ratio.
+// More bounce lets the pelvis sink deeper, less keeps it as low as it is at its lowest: no leg has
+// to be longer for it.
 template <class V>
-void change_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
-                   const KnotsOf<V>& knots, const V& ratio, PlanOf<V>& plan) noexcept {
-  const WalkModel& model = tick.model;
-  const std::vector<StrideResponse>& response = model.cycle.strides->response;
-  if (response.empty()) return;
-  WishesOf<V> wishes = wishes_of<V>(tick.mode, state.gait);
-  MaskOf<V> wished = at.backward & not_of(at.backward);
-  for (const V& wish : wishes) wished = wished | (wish != V{});
-  wished = wished & not_of(at.backward);
-  if (!any(wished)) return;
-  const V share = wished ? plan.shown * soft_min(ratio, kMostShown, kSoftShown) *
-                               smoothstep(kStairs, kLevel, state.gait.ground_share.x)
-                         : V{};
-  for (V& wish : wishes) wish = wish * share;
-  // The hips' travel grows with the square of the stride.
-  for (const StrideWish wish : {StrideWish::more_bounce, StrideWish::less_bounce})
-    wishes[index_of(wish)] = wishes[index_of(wish)] * ratio;
-  WishesOf<V> of_leg{};
-  MaskOf<V> injured = wished & not_of(wished);
-  for (std::size_t k = 0; k < kOfOneLeg; ++k) {
-    V& wish = wishes[index_of(StrideWish::stiff_left_hip) + k];
-    of_leg[index_of(StrideWish::stiff_left_hip) + k] = wish;
-    injured = injured | (wish != V{});
-    wish = V{};
-  }
-  StrideChangeOf<V> change;
-  change_at<V>(response, wishes, knots, change);
-  if (any(injured)) {
-    plan.is_injured = true;
-    change_at<V>(response, of_leg, knots, plan.injury);
-    for (int side : {0, 1}) {
-      change.heel_m[side] += plan.injury.heel_m[side];
-      change.pitch_rad[side] += plan.injury.pitch_rad[side];
-      for (int j = 0; j < kLegDofs; ++j) change.leg_rad[side][j] += plan.injury.leg_rad[side][j];
-    }
-  }
-  const double length = model.stride_scale.length;
-  plan.cell.pelvis_m += length * change.pelvis_m;
-  for (int side : {0, 1}) {
-    plan.heel_m[side] = length * change.heel_m[side];
-    plan.cell.foot[side].pitch_rad += change.pitch_rad[side];
-    auto& angles = plan.cell.leg_rad[side];
-    const V knee = angles[kKneeX];
-    for (int j = 0; j < kLegDofs; ++j) angles[j] += change.leg_rad[side][j];
-    const V room = knee + model.stand_rad[side][kKneeX] - kStraightKnee;
-    angles[kKneeX] = angles[kKneeX] < knee
-                         ? knee - bounded<V>(V(knee - angles[kKneeX]), max_of(room, V{}))
-                         : angles[kKneeX];
-  }
+V bounced(const GaitFlow<V>& gait, const PlanOf<V>& plan) noexcept {
+  const V y = plan.cell.pelvis_m.y, more = gait.bounce.x - 1.0;
+  const auto bounces = more != V{};
+  if (!any(bounces)) return y;
+  const auto of = [&](V StrideTrackOf<V>::*height) {
+    return V(plan.shown * mix(plan.track[0].*height, plan.track[1].*height, plan.change));
+  };
+  const V stays = more > V{} ? of(&StrideTrackOf<V>::high_m) : of(&StrideTrackOf<V>::low_m);
+  return bounces ? y + more * (y - stays) : y;
 }
 
 // At a phase of the walk and a share of the running step's time.
@@ -318,8 +262,6 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
   plan.phase = phase;
   plan.change = smootherstep(step_share);
   plan.shown = within(state.gait.amplitude.x, 0.0, 1.0);
-  plan.heel_m = {};
-  plan.is_injured = false;
   const KnotsOf<V> knots = knots_at<V>(phase);
   const V behind = state.gait.ratio_behind, ahead = ratio_ahead<V>(tick.model, at, state);
   const TablesOf<V> tables = tables_of<V>(tick.model, at.backward);
@@ -340,7 +282,8 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
   constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
   auto* to = reinterpret_cast<V*>(&plan.cell);
   for (int k = 0; k < kNumbers; ++k) to[k] = plan.shown * to[k];
-  change_stride<V>(tick, at, state, knots, mix(behind, ahead, plan.change), plan);
+  raise_limping_heel<V>(tick, at, state, tables, knots, ahead, plan);
+  plan.cell.pelvis_m.y = bounced<V>(state.gait, plan);
 }
 // Now.
 template <class V>
@@ -374,9 +317,6 @@ inline constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
 inline constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
 inline constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6,
                         kWidest_m = 0.06;
-// Of what an injury changes of its leg's reach, so much does not lower or raise the hips: the sound
-// leg then changes by less than a degree.
-inline constexpr double kUnseenInjury = 0.85;
 inline constexpr double kFreeze = 0.55;  // of the flight: after it the landing place is settled
 
 // A power to a whole number, at least 0.
@@ -551,18 +491,19 @@ inline constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree, kWider
 inline constexpr double kRiseBegin = 0.20, kHeelRiseLasts = 0.18;  // own phase: the heel may rise
 inline constexpr double kReachOnToe =
     0.99995;  // of the leg: with the hip further away, the heel rises
+// A low foot rises when its leg is longer than this, of the leg, with hips that are lower by this.
+inline constexpr double kLowHips_m = 0.022, kLowReach = 0.995, kSoftRise = 8.0 * kDegree;
 inline constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
 inline constexpr double kMaxPitch = 85.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // A foot that goes far up is lifted less: its way over the riser is lift enough, and the knee folds
 // only so far.
 inline constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
 inline constexpr double kLiftFade = 0.5;  // of the flight: the lift-off's own motion has faded
-inline constexpr double kHeelStays =
-    0.85;  // of the flight: from here on a style leaves its end alone
 inline constexpr double kEdgeUp = 0.25,
                         kEdgeDown = 0.9;  // of the flight: between them soles clear the floor
 inline constexpr double kLiftGround =
-    0.5;  // of the flight: until then the plane left bounds the toe
+    0.5;                                  // of the flight: until then the plane left bounds the toe
+inline constexpr double kLowPitch = 0.5;  // of the flight: until then a low foot's pitch is less
 // Of the flight: from kLiftGrown until kLiftFalls all of a style's factor on its height acts.
 inline constexpr double kLiftGrown = 0.4, kLiftFalls = 0.5, kLiftEnds = 0.85;
 
@@ -625,12 +566,24 @@ V highest_pitch(const LegBuild& leg, const V& heel_m, const V& clearance_m) noex
   return leg.elevation_rad - asin_of(within(low, -1.0, 1.0));
 }
 
-// The foot's pitch in the tables.
+// The factor on a rising heel's height, at most 1: a lame foot stays low.
 template <class V>
-V table_pitch(const MomentOf<V>& at, const PlanOf<V>& plan, Side side) noexcept {
+V low_lift(const StateOf<V>& state, Side side) noexcept {
+  return min_of(state.gait.flight_height[side].x, all_of<V>(1.0));
+}
+
+// The foot's pitch in the tables, less where its heel is to rise less.
+template <class V>
+V table_pitch(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& plan,
+              Side side) noexcept {
   // The foot that stands when a walk begins has not landed: its toe is down.
   const auto stands = at.in_roll[side] & (at.last_step_ticks == V{});
-  return (at.started & not_of(stands)) ? plan.cell.foot[side].pitch_rad : V{};
+  const V pitch = (at.started & not_of(stands)) ? plan.cell.foot[side].pitch_rad : V{};
+  const V low = low_lift<V>(state, side);
+  const auto is_low = not_of(at.in_roll[side]) & (low != all_of<V>(1.0));
+  if (!any(is_low)) return pitch;
+  const V u = at.in_flight[side] ? at.flight_progress() : V{};
+  return is_low ? pitch * mix(low, 1.0, smootherstep(V(u / kLowPitch))) : pitch;
 }
 
 // How much of the tables' twist and roll a foot on the ground shows: when standing it is flat.
@@ -647,7 +600,6 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
                    const PlanOf<V>& plan, Side side, const V& u, V& base_m) noexcept {
   const auto& foot = state.foot[side];
   const PathFlow<V>& path = state.path;
-  const StrideFootOf<V>& cell = plan.cell.foot[side];
   const Quat<V> old = rotation_about_y(foot.lift_yaw_rad),
                 next = rotation_about_y(path.landing_heading_rad);
   const V gone = smootherstep(u);
@@ -657,14 +609,8 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
                    from_footprint<V>(at, plan.track[1], plan.phase, side, 1, plan.flying_m[1]);
   Vec<V> p = (foot.heel_anchor_m + old * from_old) * (1.0 - gone) +
              (path.landing_m + next * from_next) * gone;
-  const Vec<V> styled = plan.heel_m[side] * (1.0 - smoothstep(kHeelStays, 1.0, u));
-  if (any((styled.x != V{}) | (styled.z != V{}))) {
-    p += rotation_about_y(mix(foot.lift_yaw_rad, path.landing_heading_rad, gone)) *
-         Vec<V>{styled.x, V{}, styled.z};
-  }
-  // A lame foot is low from its lift-off on (StrideWish::low_left).
+  // A greater factor acts while the foot is high, a smaller one from the lift-off on.
   const V one = all_of<V>(1.0), factor = state.gait.flight_height[side].x;
-  // A style's factor acts while the foot is high.
   const V more = mix(1.0, max_of(factor, one), V(1.0 - smoothstep(kLiftFalls, kLiftEnds, u)));
   V lifted = more;
   base_m = V{};
@@ -675,9 +621,8 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
       lifted = more * mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, climb.rise_legs));
     }
   }
-  const V height =
-      low_lift(u, min_of(factor, one)) * mix(1.0, lifted, smootherstep(V(u / kLiftGrown)));
-  p.y = base_m + (cell.heel_m.y + styled.y) * height;
+  const V height = min_of(factor, one) * mix(1.0, lifted, smootherstep(V(u / kLiftGrown)));
+  p.y = base_m + plan.heel_up_m * height;
   const V s = u / kLiftFade;
   const auto fading = u < all_of<V>(kLiftFade);
   const V of_gap = fading ? h00(s) : V{}, of_slope = fading ? h10(s) * kLiftFade : V{};
@@ -699,7 +644,8 @@ FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<
   const V turn = state.path.landing_heading_rad - foot.lift_yaw_rad;
   pose.yaw = rotation_about_y(V(foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u)));
   // A lame foot that hardly leaves the floor does not roll onto an edge.
-  const V low = low_lift(u, min_of(state.gait.flight_height[side].x, all_of<V>(1.0)));
+  const V low = mix(1.0, low_lift<V>(state, side),
+                    V(smootherstep(V(u / 0.5)) * (1.0 - smootherstep(V((u - 0.6) / 0.4)))));
   pose.edge = edge_of<V>(tick.model.leg[side], low * cell.twist_rad, low * cell.roll_rad);
   point.lifted_m = V{};
   if constexpr (kAlone<V>) {
@@ -720,7 +666,7 @@ void pitch_in_flight(const WalkModel& model, const MomentOf<V>& at, const StateO
   if constexpr (kAlone<V>) height *= foot.plane.normal.y;
   // The tables keep the toe off the floor. What differs from them must do so itself.
   const V fade = foot.pitch_fade.at(u * at.stage_ticks);
-  const V pitch = table_pitch<V>(at, plan, side) + fade;
+  const V pitch = table_pitch<V>(at, state, plan, side) + fade;
   // A low foot that rolls onto its edge keeps this edge off the floor.
   point.pose.pitch_rad = pitch;
   const Vec<V> across = foot_rotation<V>(leg, point.pose) * all_of<V>(leg.side);
@@ -751,7 +697,7 @@ void plan_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state, const
   }
   if (any(not_of(flies))) {
     const StrideFootOf<V>& cell = plan.cell.foot[side];
-    const V pitch = table_pitch<V>(at, plan, side) + foot.pitch_fade.at(at.mode_ticks[side]);
+    const V pitch = table_pitch<V>(at, state, plan, side) + foot.pitch_fade.at(at.mode_ticks[side]);
     const V shows = on_its_edges<V>(at);
     pose.edge = edge_of<V>(leg, shows * cell.twist_rad, shows * cell.roll_rad);
     pose.toe_m = chosen(supports, foot.toe_anchor_m, pose.toe_m);
@@ -812,6 +758,23 @@ void reach_with_toe(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& s
   foot.pose = chosen_pose(short_of, pose, foot.pose);
 }
 
+// A standing foot whose heel stays low rises as far as its leg asks, with hips a little lower.
+template <class V>
+void rise_as_asked(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state, Side side,
+                   const Vec<V>& hip_m) noexcept {
+  auto& foot = state.foot[side];
+  const LegBuild& leg = model.leg[side];
+  const auto is_low = not_of(at.in_flight[side]) & not_of(at.in_roll[side]) &
+                      (low_lift<V>(state, side) != all_of<V>(1.0));
+  if (!any(is_low)) return;
+  const Vec<V> hip = hip_m - all_of<V>(kUp) * all_of<V>(kLowHips_m * model.size);
+  auto pose = foot.pose;
+  const V asked = pitch_in_reach<V>(leg, pose, hip, kLowReach * leg.model.length_m());
+  const V more = soft_positive(V(asked - pose.pitch_rad), kSoftRise);
+  set_pitch<V>(leg, pose.pitch_rad + heel_rise<V>(model, at, side) * more, is_low, pose);
+  foot.pose = chosen_pose(is_low, pose, foot.pose);
+}
+
 // --- The pelvis ----------------------------------------------------------------------------------
 
 // The pelvis of this tick, still without the height that the legs ask for.
@@ -860,8 +823,8 @@ V span_of(const LegModel& leg, const V& knee_rad) noexcept {
 
 // The pelvis' height: the tables', lowered where ground or turn ask more of a leg than they know.
 template <class V>
-V pelvis_height(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
-                const PlanOf<V>& plan, const PelvisOf<V>& pelvis) noexcept {
+V pelvis_height(const WalkModel& model, const StateOf<V>& state, const PlanOf<V>& plan,
+                const PelvisOf<V>& pelvis) noexcept {
   // Legs that are about to change their pace are bent a little, so that they have room.
   const V one = all_of<V>(1.0), change = state.gait.pace.x - state.gait.settled_pace.x;
   V y = pelvis.position_m.y;
@@ -870,18 +833,9 @@ V pelvis_height(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>&
   V squares{};
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
-    // The sound leg goes nearly as if the other were sound, too: then the hips are as high.
-    V knee = model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
-    if (plan.is_injured) knee -= kUnseenInjury * plan.injury.leg_rad[side][kKneeX];
-    const V known = span_of<V>(leg.model, knee);
-    auto pose = state.foot[side].pose;
-    const V injury = plan.is_injured ? plan.injury.pitch_rad[side] : V{};
-    if (plan.is_injured && any(injury != V{})) {
-      auto sound = pose;
-      const auto supports = not_of(at.in_flight[side]) & not_of(at.in_roll[side]);
-      set_pitch<V>(leg, pose.pitch_rad - kUnseenInjury * injury, supports, sound);
-      pose = chosen_pose(injury != V{}, sound, pose);
-    }
+    const V known =
+        span_of<V>(leg.model, V(model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX]));
+    const auto& pose = state.foot[side].pose;
     const Vec<V> ankle = pose.heel_m - pose.rotation * all_of<V>(leg.model.heel_m),
                  hip = pelvis.hip(leg);
     const V span = length_of(ankle - hip);
@@ -911,7 +865,9 @@ void plan_walks(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V>& para
   advance_hips<V>(tick, at, state, plan);
   for (const Side side : {kLeftSide, kRightSide}) plan_foot<V>(tick, at, state, plan, side);
   pelvis = pelvis_over_ground<V>(tick.model, state, plan);
-  pelvis.position_m.y = pelvis_height<V>(tick.model, at, state, plan, pelvis);
+  for (const Side side : {kLeftSide, kRightSide})
+    rise_as_asked<V>(tick.model, at, state, side, pelvis.hip(tick.model.leg[side]));
+  pelvis.position_m.y = pelvis_height<V>(tick.model, state, plan, pelvis);
   for (const Side side : {kLeftSide, kRightSide})
     reach_with_toe<V>(tick.model, at, state, side, pelvis.hip(tick.model.leg[side]));
 }

@@ -76,13 +76,13 @@ Pelvis pelvis_of(const PelvisOf<V>& pelvis, int lane) noexcept {
   return one;
 }
 
-// Solves the legs of one side. Those that need mending are mended one by one.
+// Solves the legs of one side as if their weights were even. Those that need mending are mended one
+// by one.
 template <class V>
-PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const MomentOf<V>& at,
-                        const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
-                        StateLanes<V>& state) noexcept {
-  LegGoals<V> goals;
-  std::array<V, kLegDofs>& angles = state.legs.angles_rad[side];
+PosedLegOf<V> solve_side(const Tick& tick, std::span<const Walking> walks, const MomentOf<V>& at,
+                         const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
+                         StateLanes<V>& state, LegGoals<V>& goals) noexcept {
+  std::array<V, kLegDofs>& angles = state.legs.even_rad[side];
   set_leg_goals<V>(tick, plan, pelvis, side, state, goals, angles);
   const LegSolution<V> solution = solve_lanes(goals, kRobust, angles);
   PosedLegOf<V> posed = posed_leg<V>(solution, state.foot[side].pose.pitch_rad);
@@ -93,13 +93,32 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
     if (!is_set(mends, lane)) continue;
     WalkState& walk = *walks[i].state;
     PosedLeg one;
-    get_lane(angles, lane, walk.legs.angles_rad[side]);
+    get_lane(angles, lane, walk.legs.even_rad[side]);
     get_lane(posed, lane, one);
     set_lanes(mended_leg(tick, walk, pelvis_of(pelvis, lane), side, one), lane, posed);
-    set_lanes(walk.legs.angles_rad[side], lane, angles);
+    set_lanes(walk.legs.even_rad[side], lane, angles);
     set_lanes(static_cast<const FootPoseOf<double>&>(walk.foot[side].pose), lane,
               state.foot[side].pose);
   }
+  set_leg<V>(tick.model.leg[side], state.foot[side].pose, pelvis, goals);
+  return posed;
+}
+
+template <class V>
+PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const MomentOf<V>& at,
+                        const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
+                        StateLanes<V>& state) noexcept {
+  LegGoals<V> goals;
+  PosedLegOf<V> posed = solve_side<V>(tick, walks, at, plan, pelvis, side, state, goals);
+  advance_means<V>(tick, side, state.legs);
+  if (!any(has_weights(state.gait, side))) {
+    state.legs.angles_rad[side] = state.legs.even_rad[side];
+    return posed;
+  }
+  LegShares<V> shares;
+  set_shares<V>(tick, at, plan, pelvis, side, state, goals, shares);
+  add_shared<V>(tick.model.leg[side], goals, shares,
+                share_lanes(goals, shares, state.legs.angles_rad[side]), posed);
   return posed;
 }
 

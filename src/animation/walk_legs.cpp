@@ -123,8 +123,6 @@ bool ease_ankle(const Tick& tick, WalkState& state, Side side, const Pelvis& pel
   double over = soft_positive(kHeldDorsiflexion - angles[kAnkleX], kSoftHeld);
   if (excess == 0.0 && over == 0.0) return false;
   IkChain chain = leg.chain;
-  const LegAngles weight = relative_weights(state.gait, side);
-  for (int j = 0; j < kLegDofs; ++j) chain.dof[j].weight = weight[j];
   if (excess != 0.0) {
     if (flies) {
       point_foot_down(leg, excess, moment_of(tick.model, state).flight_progress(), foot);
@@ -158,16 +156,16 @@ PosedLeg pose_paper(const Tick& tick, WalkState& state, const Pelvis& pelvis, Si
                      heel_rise<double>(tick.model, moment_of(tick.model, state), side) == 0.0);
   PosedLeg solve;
   add(solve_paper(chain, both ? goal.both_ends() : goal.effector(), kPaper, angles), solve);
-  state.legs.angles_rad[side] = leg_angles(angles);
+  state.legs.even_rad[side] = state.legs.angles_rad[side] = leg_angles(angles);
   return posed_leg(solve, angles, leg, pelvis, foot.pose);
 }
 
 PosedLeg mended_leg(const Tick& tick, WalkState& state, const Pelvis& pelvis, Side side,
                     PosedLeg solved) noexcept {
-  IkAngles angles = padded(state.legs.angles_rad[side]);
+  IkAngles angles = padded(state.legs.even_rad[side]);
   const bool eased = ease_ankle(tick, state, side, pelvis, angles, solved);
   if (!eased && solved.failed == 0.0) return solved;
-  state.legs.angles_rad[side] = leg_angles(angles);
+  state.legs.even_rad[side] = leg_angles(angles);
   const FootState& foot = state.foot[side];
   return posed_leg(solved, angles, tick.model.leg[side], pelvis, foot.pose);
 }

@@ -95,10 +95,8 @@ struct PlanOf {
   V shown{};   // how much of the tables shows: 0 when standing
   std::array<StrideTrackOf<V>, 2> track;  // of the two strides,
   std::array<Vec<V>, 2> flying_m;         // and where the heel that flies is in each of them
-  StrideCellOf<V> cell;            // both, mixed by `change` and `shown`, and what a style changes
-  std::array<Vec<V>, 2> heel_m{};  // of that: what flying heels change by, in the travel frame
-  bool is_injured = false;
-  StrideChangeOf<V> injury;  // if so: what one stiff leg alone changes
+  StrideCellOf<V> cell;                   // both, mixed by `change` and `shown`
+  V heel_up_m{};                          // the flying heel's height
 };
 
 template <class V>

@@ -55,7 +55,6 @@ std::optional<StrideFamily> read_family(const std::string& path, const std::vect
   StrideFamily family;
   family.table.resize(kStrideRatios);
   family.back.resize(kBackRatios);
-  family.response.resize(kStrideWishes);
   const std::size_t size = file_numbers(input, family).size() * sizeof(double);
   const auto bytes = file_text(path, size);
   if (!bytes || bytes->size() != size) return std::nullopt;

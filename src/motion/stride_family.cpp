@@ -13,41 +13,12 @@ constexpr double kShorterRoll = 2.4;  // and falls so steeply for longer ones
 constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
 
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
-static_assert(sizeof(StrideChange) == 25 * sizeof(double));
 
-// Both kinds of cells are numbers alone.
-template <class Cell>
-void add(Cell& sum, const Cell& cell, double weight) noexcept {
+// Cells are numbers alone.
+void add(StrideCell& sum, const StrideCell& cell, double weight) noexcept {
   double* to = &sum.pelvis_m.x;
   const double* from = &cell.pelvis_m.x;
-  for (std::size_t k = 0; k < sizeof(Cell) / sizeof(double); ++k) to[k] += weight * from[k];
-}
-
-// The inverse of [1 4 1] / 6: the samples, filtered forwards and back by the filter's pole (Unser
-// 1993). Its response is cut off where it is below the rounding of a double.
-template <class Cell>
-std::array<Cell, kCycleSamples> knots_of(const std::array<Cell, kCycleSamples>& samples) noexcept {
-  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
-  constexpr int kReach = 28;
-  const auto at = [](int i) { return (i + 2 * kCycleSamples) % kCycleSamples; };
-  const auto filtered = [](const Cell& cell, double gain, const Cell& before) {
-    Cell sum;
-    add(sum, cell, gain);
-    add(sum, before, kPole);
-    return sum;
-  };
-  std::array<Cell, kCycleSamples> once, knots;
-  Cell sum;
-  for (int i = -kReach; i < kCycleSamples; ++i) {
-    sum = filtered(samples[at(i)], 1.0, sum);
-    if (i >= 0) once[i] = sum;
-  }
-  sum = Cell{};
-  for (int i = kCycleSamples - 1 + kReach; i >= 0; --i) {
-    sum = filtered(once[at(i)], -6.0 * kPole, sum);
-    if (i < kCycleSamples) knots[i] = sum;
-  }
-  return knots;
+  for (std::size_t k = 0; k < sizeof(StrideCell) / sizeof(double); ++k) to[k] += weight * from[k];
 }
 
 }  // namespace
@@ -60,20 +31,31 @@ StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
   return sum;
 }
 
+// The inverse of [1 4 1] / 6: the samples, filtered forwards and back by the filter's pole (Unser
+// 1993). Its response is cut off where it is below the rounding of a double.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept {
-  return knots_of(samples);
-}
-std::array<StrideChange, kCycleSamples> knots_through(
-    const std::array<StrideChange, kCycleSamples>& samples) noexcept {
-  return knots_of(samples);
-}
-
-StrideChange change_at(const std::vector<StrideResponse>& response, const StrideWishes& granted,
-                       double phase) noexcept {
-  StrideChange change;
-  change_at<double>(response, granted, knots_at(phase), change);
-  return change;
+  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
+  constexpr int kReach = 28;
+  const auto at = [](int i) { return (i + 2 * kCycleSamples) % kCycleSamples; };
+  const auto filtered = [](const StrideCell& cell, double gain, const StrideCell& before) {
+    StrideCell sum;
+    add(sum, cell, gain);
+    add(sum, before, kPole);
+    return sum;
+  };
+  std::array<StrideCell, kCycleSamples> once, knots;
+  StrideCell sum;
+  for (int i = -kReach; i < kCycleSamples; ++i) {
+    sum = filtered(samples[at(i)], 1.0, sum);
+    if (i >= 0) once[i] = sum;
+  }
+  sum = StrideCell{};
+  for (int i = kCycleSamples - 1 + kReach; i >= 0; --i) {
+    sum = filtered(once[at(i)], -6.0 * kPole, sum);
+    if (i < kCycleSamples) knots[i] = sum;
+  }
+  return knots;
 }
 
 StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {

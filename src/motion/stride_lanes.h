@@ -1,5 +1,5 @@
 // How the tables of clean strides are read, by one walk or by several side by side (V as in
-// gaitpad/math.h). Every walk has its own phase, ratio and wishes.
+// gaitpad/math.h). Every walk has its own phase and ratio.
 #pragma once
 #include "base/lanes.h"
 #include "gaitpad/stride_family.h"
@@ -7,10 +7,6 @@
 #include "motion/stencil.h"
 
 namespace gaitpad {
-
-// How much of each wish is granted, by StrideWish.
-template <class V>
-using WishesOf = std::array<V, kStrideWishes>;
 
 namespace {
 
@@ -83,10 +79,9 @@ RatiosOf<V> ratios_at(const TablesOf<V>& tables, const V& ratio) noexcept {
 
 template <class V>
 void track_at(const RatiosOf<V>& at, StrideTrackOf<V>& track) noexcept {
-  // A table begins with its track; what follows is read, too, so that all of it fits registers.
-  constexpr int kNumbers = sizeof(StrideTrack) / sizeof(double), kRead = 8;
-  static_assert(kNumbers <= kRead);
-  std::array<V, kRead> sum{}, numbers;
+  // A table begins with its track.
+  constexpr int kNumbers = sizeof(StrideTrack) / sizeof(double);
+  std::array<V, kNumbers> sum{}, numbers;
   for (int n = 0; n < 4; ++n) {
     std::array<const double*, kWidthOf<V>> from;
     for (int lane = 0; lane < kWidthOf<V>; ++lane) {
@@ -94,7 +89,7 @@ void track_at(const RatiosOf<V>& at, StrideTrackOf<V>& track) noexcept {
       const StrideTable& table = (*at.tables[lane])[std::clamp(at.first[lane] + n, 0, last)];
       from[lane] = reinterpret_cast<const double*>(&table);
     }
-    load_lanes<V>(from, kRead, numbers.data());
+    load_lanes<V>(from, kNumbers, numbers.data());
     for (int k = 0; k < kNumbers; ++k) sum[k] += at.weight[n] * numbers[k];
   }
   std::copy_n(sum.begin(), kNumbers, reinterpret_cast<V*>(&track));
@@ -179,29 +174,14 @@ Vec<V> heel_at(const RatiosOf<V>& at, const KnotsOf<V>& knots, const MaskOf<V>& 
   return sum.heel_m;
 }
 
-template <class V>
-void change_at(const std::vector<StrideResponse>& response, const WishesOf<V>& wish,
-               const KnotsOf<V>& knots, StrideChangeOf<V>& change) noexcept {
-  RowsOf<V, StrideChangeOf, 4 * kStrideWishes> rows;
-  for (int w = 0; w < kStrideWishes; ++w) {
-    if (!any(wish[w] != V{})) continue;
-    for (int m = 0; m < 4; ++m) {
-      const V weight = wish[w] * knots.weight[m];
-      for (int lane = 0; lane < kWidthOf<V>; ++lane) {
-        if (lane_of(wish[w], lane) != 0.0)
-          rows.add(lane, response[w].knot[knots.of(lane, m)], lane_of(weight, lane));
-      }
-    }
-  }
-  rows.total(change);
-}
-
 // --- The motion's strides in a character's lengths -----------------------------------------------
 
 template <class V>
 void scale_track(const StrideScale& to, StrideTrackOf<V>& track) noexcept {
   if (to.length == 1.0 && to.pelvis == 1.0) return;
   track.stride_m = track.stride_m * to.length;
+  track.low_m = track.low_m * to.length;
+  track.high_m = track.high_m * to.length;
   for (int side : {0, 1})
     track.footprint_m[side] = track.footprint_m[side] * to.length + all_of<V>(to.apart_m[side]);
 }

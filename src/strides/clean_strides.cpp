@@ -32,30 +32,6 @@ constexpr double kFlat = 0.2;  // own phase: how long a foot stands flat after i
 // What no walker has. A leg opens by less than half a turn, so a step is shorter than two legs.
 constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0, kMostAngle = 2.0 * kPi;
 
-// How a joint is stiffened: the pull to its curve's mean, and what it weighs beside the others.
-struct Stiffness {
-  int dof;
-  double pull, weight;
-};
-constexpr std::array<Stiffness, 3> kStiffness = {
-    {{kHipX, 0.28, 10.0}, {kKneeX, 0.15, 10.0}, {kAnkleX, 0.2, 10.0}}};
-// What a stiff hip does not move, knee and ankle do: their curves leave their means by this.
-constexpr double kMoreKnee = 0.45;
-// A stiff leg's heel may fly a little beside its way: one degree costs as much as a millimetre
-// where both legs are stiff, as two where one is and the pelvis cannot give way.
-constexpr double kStiffHeelsHeld = 3e4, kStiffHeelHeld = 1e4;
-// A leg's hip is stiffened alone while the pelvis moves by about a millimetre: with none, a
-// standing leg could not change at all.
-constexpr double kSteadyPelvis = 1e4;
-constexpr double kSmoothLeg = 2.0;  // a leg alone changes more smoothly
-// A bounce is met by the pelvis' height first; it does not move sideways or ahead for it, and the
-// legs change smoothly.
-const vec3 kBounceWeight(1e3, 1e4, 1e3);
-constexpr double kBounceSmooth = 10.0;
-constexpr double kAskedBounce = 1.3;  // of this much more, the legs allow for about 1
-constexpr double kBounceRoom = 0.4;   // of the travel: the hips sink by so much more
-constexpr int kResponseSolve = 3;     // iterations from the clean stride
-
 // The cycle run back: what it lifts lands. Its phases count from where the data lift the right
 // foot, and its stages have the shares of the cycle's.
 GaitCycle run_back(const GaitCycle& cycle) {
@@ -221,12 +197,15 @@ struct Builder {
     StrideTable table;
     table.stride_m = p.stride_m;
     table.footprint_m = p.heel_m;
+    table.low_m = 1e9, table.high_m = -1e9;
     std::array<StrideCell, kCycleSamples> cells;
     for (int i = 0; i < kCycleSamples; ++i) {
       const StrideSample& s = solved[i];
       StrideCell& cell = cells[i];
       const double travel = p.stride_m * (p.time[i] - double(i) / kCycleSamples);
       cell.pelvis_m = s.pelvis_m + vec3(0.0, -family.stand_m, travel);
+      table.low_m = std::min(table.low_m, cell.pelvis_m.y);
+      table.high_m = std::max(table.high_m, cell.pelvis_m.y);
       cell.pelvis_yaw_rad = ratio * yaw[i];
       cell.pelvis_tilt = tilt_at(i, ratio);
       for (int side : {0, 1}) {
@@ -258,210 +237,6 @@ struct Builder {
     const vec3 rest = rest_of(foot.pitch_rad);
     foot.twist_rad = rest.y;
     foot.roll_rad = glm::dot(rest, ahead);
-  }
-
-  // --- What styles ask for: what one stride changes by ---
-
-  // A problem whose answer is `clean` as long as nothing else is wanted: flying heels keep their
-  // way, and some angles weigh more than others.
-  StrideProblem held(const StrideProblem& own, const std::vector<StrideSample>& clean) const {
-    StrideProblem p = own;
-    for (const StrideSample& s : clean) {
-      std::array<vec3, 2>& heel = p.flying_heel_m.emplace_back();
-      for (int side : {0, 1})
-        heel[side] = leg_pose(cycle.leg[side], s.pelvis_m, s.pelvis, s.leg[side], 0.0).heel_m;
-    }
-    return p;
-  }
-
-  // Keeps `clean` the answer where the weights are no longer 1.
-  static void balance(const std::vector<StrideSample>& clean, StrideProblem& p) {
-    for (int i = 0; i < kCycleSamples; ++i) {
-      const StrideSample& x = clean[i];
-      StrideSample& wanted = p.wanted[i];
-      wanted.pelvis_m = x.pelvis_m + (wanted.pelvis_m - x.pelvis_m) / p.pelvis_weight;
-      for (int side : {0, 1}) {
-        for (int j = 0; j < kLegDofs; ++j)
-          wanted.leg[side][j] =
-              x.leg[side][j] + (wanted.leg[side][j] - x.leg[side][j]) / p.leg_weight[side][j];
-      }
-    }
-  }
-
-  bool stands(int i, int side) const {
-    return fraction(double(i) / kCycleSamples - cycle.strike[side]) <=
-           fraction(cycle.toe_off[side] - cycle.strike[side]);
-  }
-
-  StrideResponse response_of(const std::vector<StrideSample>& clean,
-                             const std::vector<StrideSample>& changed, bool heels_give_way) const {
-    std::array<StrideChange, kCycleSamples> change;
-    for (int i = 0; i < kCycleSamples; ++i) {
-      const StrideSample &a = clean[i], &b = changed[i];
-      change[i].pelvis_m = b.pelvis_m - a.pelvis_m;
-      for (int side : {0, 1}) {
-        const LegModel& leg = cycle.leg[side];
-        StrideFoot before, after;
-        set_rotation(leg, leg_pose(leg, a.pelvis_m, a.pelvis, a.leg[side], 0.0).foot, before);
-        set_rotation(leg, leg_pose(leg, b.pelvis_m, b.pelvis, b.leg[side], 0.0).foot, after);
-        // A foot that stands on its toe does not sink its heel.
-        if (fraction(double(i) / kCycleSamples - cycle.toe_off[1 - side]) <=
-            fraction(cycle.toe_off[side] - cycle.toe_off[1 - side]))
-          after.pitch_rad = std::max(after.pitch_rad, std::min(0.0, before.pitch_rad));
-        change[i].pitch_rad[side] = after.pitch_rad - before.pitch_rad;
-        if (heels_give_way && !stands(i, side))
-          change[i].heel_m[side] = leg_pose(leg, b.pelvis_m, b.pelvis, b.leg[side], 0.0).heel_m -
-                                   leg_pose(leg, a.pelvis_m, a.pelvis, a.leg[side], 0.0).heel_m;
-        for (int j = 0; j < kLegDofs; ++j)
-          change[i].leg_rad[side][j] = b.leg[side][j] - a.leg[side][j];
-      }
-    }
-    return {knots_through(change)};
-  }
-
-  // A joint of both legs nearer to the mean of its curve.
-  std::vector<StrideSample> stiffened(StrideSolver& solver, StrideProblem p,
-                                      const std::vector<StrideSample>& clean,
-                                      const Stiffness& joint) const {
-    for (int side : {0, 1}) p.leg_weight[side][joint.dof] = joint.weight;
-    balance(clean, p);
-    const auto pull = [&](int side, int dof, double share) {
-      double mean = 0.0;
-      for (const StrideSample& s : clean) mean += s.leg[side][dof] / kCycleSamples;
-      for (int i = 0; i < kCycleSamples; ++i)
-        p.wanted[i].leg[side][dof] += share * (mean - clean[i].leg[side][dof]);
-    };
-    for (int side : {0, 1}) {
-      pull(side, joint.dof, joint.pull);
-      if (joint.dof == kHipX) pull(side, kKneeX, -kMoreKnee), pull(side, kAnkleX, -kMoreKnee);
-    }
-    return solver.solve(p, clean, kResponseSolve);
-  }
-
-  // Both feet lifted less, from before their lift-off until near their strike.
-  std::vector<StrideSample> lowered(StrideSolver& solver, StrideProblem p,
-                                    const std::vector<StrideSample>& clean) const {
-    balance(clean, p);
-    for (int i = 0; i < kCycleSamples; ++i) {
-      for (int side : {0, 1}) {
-        const double flies = fraction(double(i) / kCycleSamples - cycle.toe_off[side]);
-        const double u = flies / fraction(cycle.strike[side] - cycle.toe_off[side]);
-        if (u <= 1.0) p.flying_heel_m[i][side].y *= low_lift(u, kLowLift);
-      }
-    }
-    return solver.solve(p, clean, kResponseSolve);
-  }
-
-  // The pelvis' travel up and down larger by the factor 1 + more.
-  std::vector<StrideSample> bounced(StrideSolver& solver, StrideProblem p,
-                                    const std::vector<StrideSample>& clean, double more) const {
-    p.pelvis_weight = kBounceWeight;
-    for (LegAngles& weight : p.leg_weight) weight.fill(kBounceSmooth);
-    balance(clean, p);
-    const std::array<double, kCycleSamples> wave = slow_waves(clean);
-    const double high = *std::max_element(wave.begin(), wave.end()),
-                 low = *std::min_element(wave.begin(), wave.end());
-    // What stays where it is: about the highest place with more bounce, the lowest one with less.
-    // So no leg has to be longer than it is.
-    const double stays =
-        more > 0.0 ? high + kBounceRoom * (high - low) : low - kBounceRoom * (high - low);
-    for (int i = 0; i < kCycleSamples; ++i) p.wanted[i].pelvis_m.y += more * (wave[i] - stays);
-    return solver.solve(p, clean, kResponseSolve);
-  }
-
-  // The pelvis' height about its mean, up to two waves a stride: what is quicker is no bounce.
-  static std::array<double, kCycleSamples> slow_waves(const std::vector<StrideSample>& stride) {
-    std::array<double, kCycleSamples> wave{};
-    for (int waves : {1, 2}) {
-      double cosine = 0.0, sine = 0.0;
-      const auto at = [waves](int i) { return sin_cos(2.0 * kPi * waves * i / kCycleSamples); };
-      for (int i = 0; i < kCycleSamples; ++i) {
-        cosine += at(i).cos * stride[i].pelvis_m.y * 2.0 / kCycleSamples;
-        sine += at(i).sin * stride[i].pelvis_m.y * 2.0 / kCycleSamples;
-      }
-      for (int i = 0; i < kCycleSamples; ++i) wave[i] += cosine * at(i).cos + sine * at(i).sin;
-    }
-    return wave;
-  }
-
-  // Scales a change so that the pelvis' travel grows by the factor 1 + more.
-  static void meet_travel(const std::vector<StrideSample>& clean, double more,
-                          StrideResponse& response) {
-    const auto travel = [&](double scale) {
-      double low = 1e9, high = -1e9;
-      for (int i = 0; i < kCycleSamples; ++i) {
-        // Of the samples the knots' values are near enough.
-        const double y = clean[i].pelvis_m.y + scale * response.knot[i].pelvis_m.y;
-        low = std::min(low, y), high = std::max(high, y);
-      }
-      return high - low;
-    };
-    double low = 0.5, high = 2.0;
-    for (int n = 0; n < 30; ++n) {
-      const double middle = 0.5 * (low + high);
-      (travel(middle) < (1.0 + more) * travel(0.0) ? low : high) = middle;
-    }
-    for (StrideChange& change : response.knot) {
-      change.pelvis_m *= low;
-      for (int side : {0, 1}) {
-        change.heel_m[side] *= low;
-        change.pitch_rad[side] *= low;
-        for (double& angle : change.leg_rad[side]) angle *= low;
-      }
-    }
-  }
-
-  // The part of one leg.
-  static StrideResponse of_leg(const StrideResponse& both, int side) {
-    StrideResponse one;
-    for (int i = 0; i < kCycleSamples; ++i) {
-      one.knot[i].heel_m[side] = both.knot[i].heel_m[side];
-      one.knot[i].pitch_rad[side] = both.knot[i].pitch_rad[side];
-      one.knot[i].leg_rad[side] = both.knot[i].leg_rad[side];
-    }
-    return one;
-  }
-
-  // False where there is no solution.
-  bool respond(StrideSolver& solver, const StrideProblem& data,
-               const std::vector<StrideSample>& clean) {
-    family.response.resize(kStrideWishes);
-    const auto at = [this](StrideWish wish, int more = 0) -> StrideResponse& {
-      return family.response[static_cast<std::size_t>(wish) + more];
-    };
-    bool solved = true;
-    const auto keep = [&](const std::vector<StrideSample>& changed,
-                          bool heels_give_way = false) -> StrideResponse {
-      solved = solved && !changed.empty();
-      return changed.empty() ? StrideResponse{} : response_of(clean, changed, heels_give_way);
-    };
-    const StrideProblem free = held(data, clean);
-    StrideProblem stiff = free;
-    stiff.heel_held = kStiffHeelsHeld;
-    // The sound leg goes as if the other were sound, too: the pelvis does not give way.
-    StrideProblem steady = free;
-    for (LegAngles& weight : steady.leg_weight) weight.fill(kSmoothLeg);
-    StrideProblem alone = steady;
-    steady.pelvis_weight = vec3(kSteadyPelvis);
-    alone.is_pelvis_held = true;
-    StrideProblem bouncy = free;
-    bouncy.most_heave_m_s2 *= 2.0;
-    at(StrideWish::more_bounce) = keep(bounced(solver, bouncy, clean, kAskedBounce));
-    meet_travel(clean, 1.0, at(StrideWish::more_bounce));
-    at(StrideWish::less_bounce) = keep(bounced(solver, free, clean, -1.0));
-    for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k)
-      at(StrideWish::stiff_hips, k) = keep(stiffened(solver, stiff, clean, kStiffness[k]), true);
-    for (int k = 0; k < static_cast<int>(kStiffness.size()); ++k) {
-      StrideProblem one_leg = kStiffness[k].dof == kHipX ? steady : alone;
-      one_leg.heel_held = kStiffHeelHeld;
-      const StrideResponse one = keep(stiffened(solver, one_leg, clean, kStiffness[k]), true);
-      at(StrideWish::stiff_left_hip, k) = of_leg(one, kLeftSide);
-      at(StrideWish::stiff_right_hip, k) = of_leg(one, kRightSide);
-    }
-    const StrideResponse low = keep(lowered(solver, alone, clean));
-    at(StrideWish::low_left) = of_leg(low, kLeftSide);
-    at(StrideWish::low_right) = of_leg(low, kRightSide);
-    return solved;
   }
 
   // --- All strides ---
@@ -508,15 +283,6 @@ struct Builder {
     StrideProblem own = problem(first * kRatioStep);
     std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
     if (!keep(first, std::move(own), std::move(clean))) return false;
-    // What styles ask for and the other strides do not need each other: side by side, where there
-    // are two cores.
-    std::future<bool> responded;
-    if (forwards) {
-      responded = std::async([this, &of = all[first]] {
-        StrideSolver solver_of_styles;
-        return respond(solver_of_styles, of.problem, of.stride);
-      });
-    }
     const auto go_on = [&](int k, int from) {
       const int beyond = 2 * from - k;
       const bool is_known = beyond >= 0 && beyond < tables && !all[beyond].stride.empty();
@@ -532,7 +298,7 @@ struct Builder {
     for (int k = first + 1; k < tables; ++k) {
       if (!go_on(k, k - 1)) return false;
     }
-    return !forwards || responded.get();
+    return true;
   }
 };
 

@@ -24,6 +24,7 @@ void for_each_number(Family& family, Each each) {
     for (auto& table : *tables) {
       each(table.stride_m);
       for (auto& place : table.footprint_m) each_of(place);
+      each(table.low_m), each(table.high_m);
       for (auto& cell : table.knot) {
         each_of(cell.pelvis_m);
         each(cell.pelvis_yaw_rad);
@@ -37,16 +38,6 @@ void for_each_number(Family& family, Each each) {
         }
       }
     }
-  for (auto& response : family.response) {
-    for (auto& change : response.knot) {
-      each_of(change.pelvis_m);
-      for (auto& heel : change.heel_m) each_of(heel);
-      for (auto& pitch : change.pitch_rad) each(pitch);
-      for (auto& angles : change.leg_rad) {
-        for (auto& angle : angles) each(angle);
-      }
-    }
-  }
 }
 
 }  // namespace gaitpad

@@ -99,7 +99,6 @@ struct StrideSolver::System {
 
   int samples;  // of the stride
   int solved;   // samples that are unknown: half of them where the other half mirrors them
-  int first;  // unknown of a sample that a row can see: the pelvis' where it is free, or the legs'
   // Normal equations as blocks: of sample i and sample i + d, unknown by unknown. An entry that was
   // ever written is one of the sparse matrix.
   std::vector<double> block;
@@ -110,10 +109,9 @@ struct StrideSolver::System {
   Eigen::VectorXd gradient;
   Eigen::SimplicialLDLT<Matrix, Eigen::Lower> factor;
 
-  System(int n, int unknown_samples, int first_seen)
+  System(int n, int unknown_samples)
       : samples(n),
         solved(unknown_samples),
-        first(first_seen),
         block(solved * kReach * kBlock),
         is_entry(block.size()),
         normal(solved * kUnknowns, solved * kUnknowns),
@@ -132,8 +130,7 @@ struct StrideSolver::System {
 
   // A row within a sample sees the pelvis and one leg.
   bool is_seen(int k, int side) const {
-    return (k >= first && k < kPelvis) ||
-           (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
+    return k < kPelvis || (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
   }
 
   void clear() {
@@ -205,9 +202,9 @@ struct StrideSolver::System {
       row[kPelvis + j] = glm::dot(direction, point.by_angle[j]);
       where[kPelvis + j] = leg + j;
     }
-    for (std::size_t p = first; p < row.size(); ++p) {
+    for (std::size_t p = 0; p < row.size(); ++p) {
       gradient[where[p]] += weight * row[p] * error_m;
-      for (std::size_t q = first; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
+      for (std::size_t q = 0; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
     }
   }
 
@@ -240,7 +237,7 @@ struct StrideSolver::System {
           row[m] = kBend[d] * slope * place.factor;
           where[m++] = place.unknown;
         };
-        for (int a = first; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
+        for (int a = 0; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
         for (int k = 0; k < kLegDofs; ++k) add(leg_unknown(side) + k, point[j].by_angle[k][axis]);
       }
       for (int p = 0; p < m; ++p) {
@@ -300,7 +297,7 @@ double& unknown(StrideSample& s, int k) {
 double unknown(const StrideSample& s, int k) { return unknown(const_cast<StrideSample&>(s), k); }
 
 double factor_of(const StrideProblem& p, int k) {
-  if (k < kPelvis) return p.pelvis_weight[k];
+  if (k < kPelvis) return 1.0;
   return p.leg_weight[(k - kPelvis) / kLegDofs][(k - kPelvis) % kLegDofs];
 }
 
@@ -323,10 +320,6 @@ bool is_symmetric(const StrideProblem& p) {
               is_same(left.shank_m, right.shank_m) && is_same(p.strike[0], p.strike[1] + 0.5) &&
               is_same(p.toe_off[0] + 0.5, p.toe_off[1]) &&
               is_mirrored(p.heel_m[0], p.heel_m[1] + on);
-  for (int i = 0; i < half && same && !p.flying_heel_m.empty(); ++i) {
-    for (int side : {0, 1})
-      same = same && is_mirrored(p.flying_heel_m[i][side], p.flying_heel_m[i + half][1 - side]);
-  }
   for (int i = 0; i < half && same; ++i) {
     const StrideSample &a = p.wanted[i], &b = p.wanted[i + half];
     same = is_same(p.time[i] + 0.5, p.time[i + half]) &&
@@ -351,10 +344,6 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   for (int i = 0; i < solved; ++i) {
     for (int k = 0; k < kUnknowns; ++k) {
       const int at = i * kUnknowns + k;
-      if (k < s.first) {
-        s.at(at, at) = 1.0;
-        continue;
-      }
       const double weight = weight_of(k) * factor_of(problem, k);
       const double smooth = problem.smoothness * kSmooth * weight *
                             (k == 1        ? kPelvisSmoothUp
@@ -383,7 +372,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   std::vector<double> path_m(n);
   for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
   const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
-  for (int i = 0; i < solved && s.first == 0; ++i) {
+  for (int i = 0; i < solved; ++i) {
     s.add_surge(i, 2, x, problem.time, problem.stride_m, kMostSurge_m_s2 * tick2,
                 kSoftSurge_m_s2 * tick2);
     s.add_surge(i, 1, x, problem.time, problem.stride_m, problem.most_heave_m_s2 * tick2,
@@ -442,14 +431,10 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       } else {
         s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
         // A foot that twists and rolls may not push an edge of its heel into the floor.
-        if (problem.flying_heel_m.empty())
-          for (double half : {-kHalfFoot, kHalfFoot}) {
-            const vec3 edge_m = leg.heel_m + across_foot * (half * leg.length_m());
-            s.add_floor(i, side, point_rows(frames, edge_m), -kMostSink_m, kSoftEdge_m);
-          }
-      }
-      if (!problem.flying_heel_m.empty() && !rolls && own > support - sample) {
-        s.add_place(i, side, heel, problem.flying_heel_m[i][side], problem.heel_held);
+        for (double half : {-kHalfFoot, kHalfFoot}) {
+          const vec3 edge_m = leg.heel_m + across_foot * (half * leg.length_m());
+          s.add_floor(i, side, point_rows(frames, edge_m), -kMostSink_m, kSoftEdge_m);
+        }
       }
       if (supports) {
         s.add_place(i, side, toe, toe_goal, kPlanted);
@@ -516,9 +501,8 @@ bool StrideSolver::move(std::vector<StrideSample>& x) {
 void StrideSolver::begin(const StrideProblem& problem) {
   const int n = static_cast<int>(problem.wanted.size());
   const int solved = is_symmetric(problem) ? n / 2 : n;
-  const int first = problem.is_pelvis_held ? kPelvis : 0;
-  if (!system_ || system_->samples != n || system_->solved != solved || system_->first != first)
-    system_ = std::make_unique<System>(n, solved, first);
+  if (!system_ || system_->samples != n || system_->solved != solved)
+    system_ = std::make_unique<System>(n, solved);
 }
 
 std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,

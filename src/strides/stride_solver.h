@@ -34,18 +34,13 @@ struct StrideProblem {
   std::vector<double> time;  // of each sample, in cycles: 0 at sample 0
   // Where the heel stands along the path: the travel frame is at stride_m * time.
   std::array<vec3, 2> heel_m{};
-  // Factors on what it costs to change the pelvis' place and the angles.
-  vec3 pelvis_weight{1.0};
-  bool is_pelvis_held = false;  // it stays where the start has it, so that each leg is on its own
+  // Factors on what it costs to change the angles.
   std::array<LegAngles, 2> leg_weight{{{1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1}}};
   double smoothness = 1.0;  // and on what it costs to change them unevenly
   double least_knee_rad = 2.0 * kDegree;
   double soft_toe =
       3e3;  // how smoothly a toe begins to move: per square metre of second differences
   double most_heave_m_s2 = 7.0;  // how hard the hips rise and fall, about
-  // Where the heels have to be in flight, sample by sample, in the travel frame. Empty: anywhere.
-  std::vector<std::array<vec3, 2>> flying_heel_m;
-  double heel_held = 3e5;  // how strictly: per square metre
 };
 // Whether half a stride later everything is the mirror image.
 bool is_symmetric(const StrideProblem& problem);

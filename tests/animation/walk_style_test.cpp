@@ -91,6 +91,21 @@ TEST(WalkStyle, EveryShippedStyleWalksSmoothlyOnPlantedFeet) {
   }
 }
 
+TEST(WalkStyle, AChangeOfWeightsActsWithinATenthOfASecondAndWithoutAHitch) {
+  MadeWalker even, changed;
+  even.walk(0.0, kStick, kSteady + kRate);
+  changed.walk(0.0, kStick, kSteady);
+  changed.walk(0.0, kStick, kRate, shipped("stiff_hip"));
+  double after_rad = 0.0;
+  // A leg whose foot stands flat cannot change; the other one is free then.
+  for (int k = kSteady; k < kSteady + kRate / 10; ++k)
+    for (int side : {0, 1})
+      after_rad = std::max(after_rad, std::abs(even.angles_rad()[k][side][kHipX] -
+                                               changed.angles_rad()[k][side][kHipX]));
+  EXPECT_GT(after_rad, 0.1 * kDegree);
+  EXPECT_LE(changed.sharpest_turn_rad(), kSharpest * kDegree);
+}
+
 TEST(WalkStyle, PaperModeDoesNotChangeTheStrideByItsWeights) {
   const Steady even({}, IkMode::paper), stiff(shipped("stiff_hip"), IkMode::paper);
   for (int k = 0; k < kEnd; ++k)

@@ -326,64 +326,18 @@ TEST(StrideFamily, OfUnlikelyWalksHasFiniteTables) {
   })));
 }
 
-// What a wish changes, on the own stride at this sample.
-StrideCell granted(const StrideFamily& family, StrideWish wish, double amount, int i) {
-  StrideWishes wishes{};
-  wishes[static_cast<std::size_t>(wish)] = amount;
-  const double phase = double(i) / kCycleSamples;
-  StrideCell cell = stride_at(family.table, phase, 1.0).cell;
-  const StrideChange change = change_at(family.response, wishes, phase);
-  cell.pelvis_m += change.pelvis_m;
-  for (int side : kSides) {
-    cell.foot[side].pitch_rad += change.pitch_rad[side];
-    for (int j = 0; j < kLegDofs; ++j) cell.leg_rad[side][j] += change.leg_rad[side][j];
-  }
-  return cell;
-}
-
-TEST_P(StrideFamilyOf, KeepsHeelsAndToesNearlyWhereTheyAreWhenAWishIsGranted) {
-  constexpr double kNear_m = 0.02;  // what the inverse kinematics has to close
-  const StrideFamily& family = *cycle.strides;
-  for (const StrideWish wish : {StrideWish::stiff_hips, StrideWish::stiff_knees,
-                                StrideWish::stiff_left_hip, StrideWish::stiff_right_hip}) {
-    for (int i = 0; i < kCycleSamples; ++i) {
-      const StrideCell own = granted(family, wish, 0.0, i), stiff = granted(family, wish, 0.8, i);
-      for (int side : kSides) {
-        const LegPose a = pose_in(cycle, own, side), b = pose_in(cycle, stiff, side);
-        const Stance at = stance_of(cycle, i, side);
-        if (at.own <= at.roll || at.own >= at.support) {
-          EXPECT_LT(glm::distance(a.heel_m, b.heel_m), kNear_m) << int(wish) << " at " << i;
-        }
-        if (at.own >= at.roll && at.own <= at.support) {
-          EXPECT_LT(glm::distance(a.toe_m, b.toe_m), kNear_m) << int(wish) << " at " << i;
-        }
+TEST_P(StrideFamilyOf, KnowsHowHighAndLowThePelvisIs) {
+  for (const auto* tables : {&cycle.strides->table, &cycle.strides->back}) {
+    for (std::size_t k = 0; k < tables->size(); ++k) {
+      double low = 1e9, high = -1e9;
+      for (int i = 0; i < kCycleSamples; ++i) {
+        const double y =
+            stride_at(*tables, double(i) / kCycleSamples, kRatioStep * double(k)).cell.pelvis_m.y;
+        low = std::min(low, y), high = std::max(high, y);
       }
+      EXPECT_NEAR((*tables)[k].low_m, low, 1e-9) << k;
+      EXPECT_NEAR((*tables)[k].high_m, high, 1e-9) << k;
     }
-  }
-}
-
-TEST_P(StrideFamilyOf, BouncesMoreAndLess) {
-  const auto travel = [&](StrideWish wish, double amount) {
-    double low = 1e9, high = -1e9;
-    for (int i = 0; i < kCycleSamples; ++i) {
-      const double y = granted(*cycle.strides, wish, amount, i).pelvis_m.y;
-      low = std::min(low, y), high = std::max(high, y);
-    }
-    return high - low;
-  };
-  // The made walk's pelvis moves in quicker waves, too, which are no bounce.
-  const bool is_built_in = GetParam() == std::string("built_in");
-  const double own = travel(StrideWish::more_bounce, 0.0);
-  EXPECT_NEAR(travel(StrideWish::more_bounce, 1.0) / own, 2.0, is_built_in ? 0.02 : 0.25);
-  EXPECT_LT(travel(StrideWish::less_bounce, 1.0) / own, is_built_in ? 0.6 : 0.9);
-}
-
-TEST(StrideFamily, LeavesPelvisAndSoundLegWhereOneLegIsStiff) {
-  const auto strides = clean_cycle(procedural_gait()).strides;
-  const auto& left = strides->response[static_cast<std::size_t>(StrideWish::stiff_left_hip)];
-  for (const StrideChange& change : left.knot) {
-    EXPECT_EQ(change.pelvis_m, vec3(0.0));
-    EXPECT_EQ(change.leg_rad[kRightSide], LegAngles{});
   }
 }
 

@@ -515,17 +515,17 @@ def limp_checks(even, limp, side=0):
 
 # ---- weights ---------------------------------------------------------------------------------
 def weight_figures(even, other, side):
-    """RMS and extremes of the hip's change (degrees) and heel places (mm) over steady walking."""
+    """RMS and extremes of the hip's change (degrees), places of lifting toe and landing heel (mm), over steady walking."""
     n = min(even.ticks, other.ticks)
     mask = even.steady[:n] & other.steady[:n]
     a, b = even.hip_flexion(side)[:n][mask], other.hip_flexion(side)[:n][mask]
     hip = even.hip[side]
     turn = angle_between(even.local[:n, hip][mask], other.local[:n, hip][mask])
     heel = {}
-    for name, marks in (("lift-off", even.lift_offs[side]), ("landing", even.landings[side])):
+    for name, track, marks in (("lift-off", "toe_fk", even.lift_offs[side]), ("landing", "heel_fk", even.landings[side])):
         marks = [k for k in marks if k < n and mask[k]]
-        heel[name] = MM * worst(np.linalg.norm(even.heel_fk[side][marks] - other.heel_fk[side][marks], axis=-1),
-                                float("nan"))
+        off = getattr(even, track)[side][marks] - getattr(other, track)[side][marks]
+        heel[name] = MM * worst(np.linalg.norm(off, axis=-1), float("nan"))
     stages = (even.col["stage"][:n] != other.col["stage"][:n]) | (even.col["swing"][:n] != other.col["swing"][:n])
     return {"rms": float(np.sqrt(np.mean((a - b) ** 2))), "rms_turn": float(np.sqrt(np.mean(turn ** 2))),
             "extremes": max(abs(a.max() - b.max()), abs(a.min() - b.min())), "stages": int(stages.sum()), **heel}
@@ -541,7 +541,7 @@ def weight_checks(even, other, low, high=None, extremes=None, sides=(0, 1)):
         else:
             checks.append(Check(f"{name} hip RMS", f["rms"], high, "in", low=low, unit="deg", note=note))
         checks += [Check(f"{name} hip extremes", f["extremes"], extremes, unit="deg"),
-                   Check(f"{name} heel at lift-off", f["lift-off"], 1.0, unit="mm"),
+                   Check(f"{name} toe at lift-off", f["lift-off"], 1.0, unit="mm"),
                    Check(f"{name} heel at landing", f["landing"], 1.0, unit="mm"),
                    Check(f"{name} stage ticks differ", f["stages"], 0, "==")]
     return checks

@@ -129,13 +129,10 @@ void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = now.model->leg[side];
     const LegState &last = before.state.legs, &solved = now.state.legs;
-    double largest = 0.0;
-    for (const Damped<double>& w : now.state.gait.weight[side]) largest = std::max(largest, w.x);
     for (int j = 0; j < kLegDofs; ++j) {
-      const double off = last.angles_rad[side][j] - last.data_rad[side][j];
+      const double off = last.even_rad[side][j] - last.data_rad[side][j];
       both.start_rad[j][side] = start(solved.data_rad[side][j], off, last.last_off_rad[side][j]);
-      goals.weight[j][side] =
-          std::clamp(now.state.gait.weight[side][j].x / largest, kLeastWeight, 1.0);
+      goals.weight[j][side] = 1.0;
       goals.min_rad[j][side] = leg.chain.dof[j].min_rad;
       goals.max_rad[j][side] = leg.chain.dof[j].max_rad;
     }
@@ -143,7 +140,7 @@ void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<
     goals.thigh_m[side] = leg.model.thigh_m;
     goals.shank_m[side] = leg.model.shank_m;
     const auto rows =
-        foot_rows(leg, end_frame(leg.chain, all_angles(solved.angles_rad[side])), false);
+        foot_rows(leg, end_frame(leg.chain, all_angles(solved.even_rad[side])), false);
     for (const auto& [row, point] : {std::pair(0, 0), {3, 1}, {5, 2}})
       set_lanes(rows[row].point_m, side, goals.point_m[point]);
     set_lanes(rows[0].direction, side, goals.side);

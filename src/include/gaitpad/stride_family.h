@@ -51,6 +51,7 @@ struct StrideTrackOf {
   // Where the heels stand along the path: the left foot's after its strike near phase 0.5, the
   // right foot's after phase 0.
   std::array<Vec<V>, 2> footprint_m{};
+  V low_m{}, high_m{};  // between which the pelvis rises and falls, as in StrideCell
 };
 using StrideTrack = StrideTrackOf<double>;
 
@@ -70,55 +71,6 @@ struct StrideTable : StrideTrack {
   std::array<StrideCell, kCycleSamples> knot{};
 };
 
-// What a style can ask of a stride.
-enum class StrideWish : std::uint8_t {
-  // A joint flexes less, its curve nears its mean. Of both legs: the pelvis gives way.
-  stiff_hips,
-  stiff_knees,
-  stiff_ankles,
-  // Of one leg: neither the pelvis nor the other leg changes.
-  stiff_left_hip,
-  stiff_left_knee,
-  stiff_left_ankle,
-  stiff_right_hip,
-  stiff_right_knee,
-  stiff_right_ankle,
-  low_left,
-  low_right,    // the heel is lifted kLowLift as high
-  more_bounce,  // the pelvis' vertical travel is doubled: it sinks deeper
-  less_bounce,  // it is gone: the pelvis stays as low as it was at its lowest
-};
-inline constexpr int kStrideWishes = 13;
-inline constexpr double kLowLift = 0.5;  // how high a heel is lifted then
-
-// The factor on the heel's height at a share of the flight, for a foot whose lift has the factor
-// `lift`, at most 1. At the lift-off it acts in part, since the leg has to reach the floor, and
-// near its strike the foot comes down as ever.
-template <class V>
-V low_lift(const V& u, const V& lift) noexcept {
-  constexpr double kAll = 0.5, kUntil = 0.6;  // shares of the flight
-  return mix(1.0, lift,
-             smootherstep(u / kAll) * (1.0 - smootherstep((u - kUntil) / (1.0 - kUntil))));
-}
-
-// What a stride changes by at one phase when a wish is granted. The feet stand where they did. A
-// low lift's heels are not in here (low_lift).
-template <class V>
-struct StrideChangeOf {
-  Vec<V> pelvis_m{};
-  std::array<Vec<V>, 2> heel_m{};  // in flight
-  std::array<V, 2> pitch_rad{};    // of the feet
-  std::array<std::array<V, kLegDofs>, 2> leg_rad{};
-};
-using StrideChange = StrideChangeOf<double>;
-// Of a stride of ratio 1. In other strides it is smaller or larger with the ratio. Knots as in
-// StrideTable.
-struct StrideResponse {
-  std::array<StrideChange, kCycleSamples> knot{};
-};
-// How much of each wish is granted, by StrideWish.
-using StrideWishes = std::array<double, kStrideWishes>;
-
 struct StrideFamily {
   double stand_m = 0.0;                  // the pelvis' height when standing,
   double lead_m = 0.0;                   // how far it is before the heels,
@@ -126,9 +78,8 @@ struct StrideFamily {
   std::array<LegAngles, 2> stand_rad{};  // and the legs' angles
   // Walking backwards is walking forwards run back (Thorstensson 1986), but the feet land and leave
   // as Table I has it. These strides have negative lengths.
-  std::vector<StrideTable> back;         // kBackRatios
-  std::vector<StrideTable> table;        // kStrideRatios
-  std::vector<StrideResponse> response;  // kStrideWishes; for walking forwards
+  std::vector<StrideTable> back;   // kBackRatios
+  std::vector<StrideTable> table;  // kStrideRatios
 };
 
 // A stride at one phase and ratio.
@@ -141,11 +92,6 @@ using StridePlace = StridePlaceOf<double>;
 // Knots of the spline that goes through these samples of a cycle.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept;
-std::array<StrideChange, kCycleSamples> knots_through(
-    const std::array<StrideChange, kCycleSamples>& samples) noexcept;
-// What all wishes that are granted change at a phase. No heap.
-StrideChange change_at(const std::vector<StrideResponse>& response, const StrideWishes& granted,
-                       double phase) noexcept;
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
 // A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is
 // clamped to the family's. No heap.

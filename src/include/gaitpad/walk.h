@@ -212,11 +212,13 @@ struct PathState : PathFlow<double> {
   Damped<double> slope_lean_rad;  // of the trunk into a slope or stair, forwards positive
 };
 
-// The legs' angles: the tables', with what the style changes, and the pose's; what the pose's
-// differed by a tick before.
+// The legs' angles: the pose's; those of even weights, and their running means; the tables', and
+// what even ones differed by from them a tick before; what the weights changed then.
 template <class V>
 struct LegFlow {
-  std::array<std::array<V, kLegDofs>, 2> data_rad{}, angles_rad{}, last_off_rad{};
+  using Angles = std::array<std::array<V, kLegDofs>, 2>;
+  Angles angles_rad{}, even_rad{}, mean_rad{}, lagging_rad{};
+  Angles data_rad{}, last_off_rad{}, last_shift_rad{};
 };
 using LegState = LegFlow<double>;
 

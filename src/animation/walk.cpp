@@ -332,8 +332,8 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     pitch_foot(leg, 0.0, foot.pose, FootMode::roll);
     foot.toe_anchor_m = foot.pose.toe_m;
     foot.lift_m = foot.heel_anchor_m;
-    remember_foot(foot);
-    remember_foot(foot);
+    remember_foot(model.leg[side], foot);
+    remember_foot(model.leg[side], foot);
   }
   state.path.landing_m = state.foot[kLeftSide].heel_anchor_m;
   state.path.landing_plane = state.foot[kLeftSide].plane;
@@ -370,7 +370,8 @@ void end_tick(const Tick& tick, const vec3& pelvis_m, WalkState& state) noexcept
   fill_report(pelvis_m, tick.dt_s, state);
   report_ground(tick, state.frame);
   finish_stage(tick, state);
-  for (FootState& foot : state.foot) remember_foot(foot);
+  for (const Side side : {kLeftSide, kRightSide})
+    remember_foot(tick.model.leg[side], state.foot[side]);
 }
 
 void plan_tick(const Tick& tick, WalkState& state, PlannedTick& planned) noexcept {

@@ -22,9 +22,18 @@ void pitch_foot(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode 
   set_pitch<double>(leg, pitch_rad, mode == FootMode::support, pose);
 }
 
-void remember_foot(FootState& foot) noexcept {
-  foot.last_heel_m = {foot.pose.heel_m, foot.last_heel_m[0]};
-  foot.last_pitch_rad = {foot.pose.pitch_rad, foot.last_pitch_rad[0]};
+// The foot before it rose as its leg asked.
+FootPose planned_pose(const LegBuild& leg, const FootState& foot) noexcept {
+  FootPose pose = foot.pose;
+  if (foot.asked_rad != 0.0)
+    pitch_foot(leg, pose.pitch_rad - foot.asked_rad, pose, FootMode::support);
+  return pose;
+}
+
+void remember_foot(const LegBuild& leg, FootState& foot) noexcept {
+  const FootPose planned = planned_pose(leg, foot);
+  foot.last_heel_m = {planned.heel_m, foot.last_heel_m[0]};
+  foot.last_pitch_rad = {planned.pitch_rad, foot.last_pitch_rad[0]};
   foot.last_rise_m = {foot.rise_m, foot.last_rise_m[0]};
 }
 
@@ -39,7 +48,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   const Moment at = moment_of(model, state);
   FootState& foot = state.foot[side];
   const double ticks = state.clock.stage_ticks;
-  const FootPose lifts = foot.pose;
+  const FootPose lifts = planned_pose(model.leg[side], foot);
   const vec3 slope_m = end_slope(foot.last_heel_m[1], foot.last_heel_m[0], lifts.heel_m) * ticks;
   const double pitch_rate =
       end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], lifts.pitch_rad);

@@ -101,6 +101,9 @@ struct FootFlow {
   Vec<V> heel_anchor_m{}, toe_anchor_m{};  // where they were planted last
   std::array<Vec<V>, 2> last_heel_m{};     // one and two ticks ago
   std::array<V, 2> last_pitch_rad{};
+  // How low its heel is kept where it would rise, and the pitch that its leg asks for all the same.
+  Damped<V> low;
+  V asked_rad{};
   FadeOf<V> pitch_fade;  // over the running mode, argument in ticks
   Vec<V> lift_m{};       // heel at lift-off
   // What the heel's place at lift-off differs by from the tables', and its slope per flight.

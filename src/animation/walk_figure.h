@@ -145,8 +145,8 @@ inline constexpr double kFootLever_m = 0.2;
 inline constexpr double kOnHeel = 0.5, kToLand = 0.4, kLanded = 0.95;
 // How far a foot gives way: squared radians that cost as much as one of a joint's.
 inline constexpr double kGiveAside = 0.15, kGiveFlying = 0.5, kGiveRolling = 0.05;
-// A foot is free from this pitch on, and from this share of its flight on.
-inline constexpr double kRisen_rad = 4.0 * kDegree, kFreeFrom = 0.3;
+// A foot that stood flat becomes free so slowly, when a walk begins.
+inline constexpr double kLoosening_s = 0.04;
 inline constexpr double kTight_rad = 3.0 * kDegree;  // a foot with less room hardly gives way
 inline constexpr double kFloorRoom_m = 0.0003;
 inline constexpr double kStraightest = 1.0 * kDegree, kBentKnee = 0.65, kLeastSoft = 0.1 * kDegree;
@@ -207,9 +207,11 @@ void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
   const MaskOf<V> flies = at.in_flight[side], rolls = at.in_roll[side];
   const V one = all_of<V>(1.0), zero{}, u = flies ? at.flight_progress() : zero,
           rolled = at.rolls ? V(at.tick / at.stage_ticks) : zero,
-          risen = smoothstep(0.0, kRisen_rad, max_of(foot.pitch_rad, V{})),
-          rise = heel_rise<V>(tick.model, at, side) * risen,
-          lifts = mix(risen, 1.0, smootherstep(V(u / kFreeFrom)));
+          may_rise = heel_rise<V>(tick.model, at, side);
+  auto& loose = state.foot[side].loose;
+  loose.advance(value<V>(flies | (not_of(rolls) & (may_rise != zero)), 1.0, 0.0),
+                Damping(kLoosening_s * tick.model.time_scale, tick.dt_s));
+  const V lifts = loose.x, rise = lifts * may_rise;
   const auto by_mode = [&](const V& flying, const V& rolling, const V& standing) {
     const V planted = rolls ? rolling : standing;
     return V(flies ? flying : planted);

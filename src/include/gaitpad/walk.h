@@ -101,6 +101,7 @@ struct FootFlow {
   Vec<V> heel_anchor_m{}, toe_anchor_m{};  // where they were planted last
   std::array<Vec<V>, 2> last_heel_m{};     // one and two ticks ago
   std::array<V, 2> last_pitch_rad{};
+  Damped<V> loose;  // whether uneven weights may turn the foot: 0 not .. 1
   // How low its heel is kept where it would rise, and the pitch that its leg asks for all the same.
   Damped<V> low;
   V asked_rad{};

@@ -134,41 +134,114 @@ inline void solve_step(const LegColumns<V>& column, const LegValues<V>& weight,
   }
 }
 
+// The error of the first point alone, squared.
+template <class V>
+inline V first_rows(const LegRows<V>& dx) noexcept {
+  return dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2];
+}
+
+// What one step of the solver closes, and from where.
+template <class V>
+struct LegStep {
+  LegValues<V> weight, first_rad;  // the part of the step that the rows do not ask for
+  LegRows<V> give, error;          // what the rows give way, and what is left to close
+};
+
 // Solves for a step within the limits. A rotation that the step would carry past a limit moves
 // exactly to the limit, its column leaves the system, and the system is solved again for the
 // others. A lane that is done finds the same step again.
-template <class V>
-inline void limited_step(const LegGoals<V>& goals, const LegColumns<V>& column,
-                         const V& damping_squared, LegRows<V> dx, const LegValues<V>& angles_rad,
-                         const MaskOf<V>& lanes, LegValues<V>& delta) noexcept {
-  LegValues<V> weight = goals.weight;
-  LegRows<V> y, damping;
-  damping.fill(damping_squared);
+template <class V, bool kWeighted>
+inline void limited_step(const LegGoals<V>& goals, const LegColumns<V>& column, LegStep<V>& step,
+                         const LegValues<V>& angles_rad, const MaskOf<V>& lanes,
+                         LegValues<V>& delta) noexcept {
+  LegRows<V> y;
   for (V& d : delta) d = V{};
   for (int round = 0; round <= kLegDofs; ++round) {
-    solve_step(column, weight, damping, dx, y);
+    solve_step(column, step.weight, step.give, step.error, y);
     auto frozen = lanes & 0;
     for (int j = 0; j < kLegDofs; ++j) {
       const V even = column[j][0] * y[0] + column[j][2] * y[2] + column[j][4] * y[4],
               odd = column[j][1] * y[1] + column[j][3] * y[3] + column[j][5] * y[5];
-      const auto moves = weight[j] != V{};
-      delta[j] = moves ? weight[j] * (even + odd) : delta[j];
+      const auto moves = step.weight[j] != V{};
+      V turn = step.weight[j] * (even + odd);
+      if constexpr (kWeighted) turn += step.first_rad[j];
+      delta[j] = moves ? turn : delta[j];
       const V wanted = angles_rad[j] + delta[j],
               allowed = min_of(max_of(wanted, goals.min_rad[j]), goals.max_rad[j]);
       const auto stops = lanes & moves & (allowed != wanted);
       if (!any(stops)) continue;
       frozen |= stops;
       delta[j] = stops ? allowed - angles_rad[j] : delta[j];
-      weight[j] = stops ? V{} : weight[j];
-      for (int r = 0; r < 6; ++r) dx[r] = stops ? dx[r] - column[j][r] * delta[j] : dx[r];
+      step.weight[j] = stops ? V{} : step.weight[j];
+      V closes = delta[j];
+      if constexpr (kWeighted) closes -= step.first_rad[j];
+      for (int r = 0; r < 6; ++r)
+        step.error[r] = stops ? step.error[r] - column[j][r] * closes : step.error[r];
     }
     if (!any(frozen)) return;
   }
 }
 
+// --- Equation (5) --------------------------------------------------------------------------------
+
+// The exact rows are closed in every step, this share of the rest: with all of it some walks swing
+// between two poses.
+constexpr double kShareStep = 0.5;
+constexpr double kMostShareStep_rad = 0.6;
+constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
+constexpr int kMostShareSteps = 8;
+constexpr double kExactRow_m2 = 1e-13;
+constexpr double kKneeSpring = 100.0;
+// Of the room of a foot's pitch: from here on it gives way no more.
+constexpr double kRoomUsed = 0.8;
+
+// Makes a step of legs whose weights differ one towards the least sum of (angle - reference)^2 / W
+// and of the squares of the rows that give way over what they give, under the exact rows.
 template <class V>
-inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions& options,
-                                  LegValues<V>& angles_rad) noexcept {
+inline void share_step(const LegShares<V>& shares, const MaskOf<V>& shared, const LegPlace<V>& at,
+                       const LegValues<V>& angles_rad, LegColumns<V>& column,
+                       LegStep<V>& step) noexcept {
+  LegRows<V> b = at.dx;
+  for (int r : {3, 4, 5}) {
+    const int of = r == 3 ? 0 : 1;
+    for (auto& c : column) c[r] = shared ? c[r] - c[of] : c[r];
+    b[r] -= at.dx[of];
+  }
+  // Down positive. Near the floor, and near a toe's, a turn counts more and more.
+  const V lever = shares.lever_m, down = b[4] / lever;
+  const V room = down > V{} ? shares.room_down_rad : shares.room_up_rad, size = abs_of(down),
+          t = min_of(V(size / room), all_of<V>(kRoomUsed)), left = 1.0 / (1.0 - t),
+          steep = left * left, bent = t * room * left + steep * (size - t * room);
+  b[4] = lever * (down > V{} ? bent : -bent);
+  for (auto& c : column) c[4] = shared ? steep * c[4] : c[4];
+  LegValues<V> first, weight = step.weight;
+  for (int j = 0; j < kLegDofs; ++j) first[j] = shares.reference_rad[j] - angles_rad[j];
+  const V knee = angles_rad[kKneeX], bend = max_of(V(shares.knee_rad - knee), V{}),
+          q = bend + shares.knee_soft_rad, push = kKneeSpring * bend * bend / q,
+          stiff = kKneeSpring * bend * (bend + 2.0 * shares.knee_soft_rad) / (q * q),
+          free = weight[kKneeX] / (1.0 + weight[kKneeX] * stiff);
+  first[kKneeX] =
+      free * (shares.reference_rad[kKneeX] / weight[kKneeX] + push + stiff * knee) - knee;
+  step.weight[kKneeX] = shared ? free : weight[kKneeX];
+  for (int r : {3, 4, 5}) b[r] = kShareStep * b[r];
+  for (int j = 0; j < kLegDofs; ++j) {
+    step.first_rad[j] = shared ? kShareStep * first[j] : V{};
+    for (int r = 0; r < 6; ++r) b[r] -= column[j][r] * step.first_rad[j];
+  }
+  for (int r = 0; r < 6; ++r) {
+    const V give = r < 3 ? all_of<V>(kExactRow_m2) : kExactRow_m2 + shares.give_m2[r - 3];
+    step.give[r] = shared ? give : step.give[r];
+    step.error[r] = shared ? b[r] : step.error[r];
+  }
+}
+
+// --- The solver ----------------------------------------------------------------------------------
+
+// kWeighted: some of the legs have weights that differ.
+template <class V, bool kWeighted>
+inline LegSolution<V> solve_lanes(const LegGoals<V>& goals,
+                                  [[maybe_unused]] const LegShares<V>* shares,
+                                  const RobustOptions& options, LegValues<V>& angles_rad) noexcept {
   for (int j = 0; j < kLegDofs; ++j)
     angles_rad[j] = min_of(max_of(angles_rad[j], goals.min_rad[j]), goals.max_rad[j]);
   LegValues<V> next = angles_rad;
@@ -177,11 +250,15 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
   V growth = all_of<V>(kGrowth), iterations{}, seen_m = infinite, seen_at{};
   best.squares = infinite;
   auto lanes = V{} == V{};  // still on their way
+  auto shared = V{} != V{}, settled = shared;
+  if constexpr (kWeighted) {
+    lanes = shared = shares->uneven != V{};
+  }
   const double enough = options.tolerance_m * options.tolerance_m;
   for (int k = 0;; ++k) {
     place_legs(goals, next, k == 0 ? best : place);
     if (k > 0) {
-      const auto better = lanes & (place.squares < best.squares);
+      const auto better = lanes & ((place.squares < best.squares) | shared);
       growth = better ? max_of(growth * kGrowthDown, all_of<V>(kGrowth)) : growth * kGrowthUp;
       for (int j = 0; j < kLegDofs; ++j) angles_rad[j] = better ? next[j] : angles_rad[j];
       if (!any(~better)) {
@@ -198,149 +275,89 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions&
       }
     }
     iterations = lanes ? all_of<V>(k) : iterations;
-    lanes &= ~(best.squares <= all_of<V>(enough));
+    lanes &= ~((best.squares <= all_of<V>(enough)) & ~shared) & ~settled;
     if (!any(lanes) || k >= options.max_iterations) break;
     const V error_m = sqrt_of(best.squares);
     const auto falls = error_m < seen_m - kLeastGain * min_of(error_m, all_of<V>(kGainFrom));
     seen_at = falls ? all_of<V>(k) : seen_at;
     seen_m = falls ? error_m : seen_m;
     lanes &= best.squares < infinite;
-    lanes &= all_of<V>(k) - seen_at < all_of<V>(kPatience);
+    lanes &= (all_of<V>(k) - seen_at < all_of<V>(kPatience)) | shared;
     if (!any(lanes)) break;
 
     LegColumns<V> column;
     set_columns(goals, best, column);
     constexpr double most = kFarthest * kFarthest;
     const V share = best.squares > all_of<V>(most) ? kFarthest / error_m : all_of<V>(1.0);
-    LegRows<V> dx;
-    for (int r = 0; r < 6; ++r) dx[r] = share * best.dx[r];
-    const V damping_squared = std::max(options.damping * options.damping, kLeastDampingSquared) +
-                              growth * min_of(best.squares, all_of<V>(most));
+    LegStep<V> step;
+    step.weight = goals.weight;
+    step.give.fill(std::max(options.damping * options.damping, kLeastDampingSquared) +
+                   growth * min_of(best.squares, all_of<V>(most)));
+    for (int r = 0; r < 6; ++r) step.error[r] = share * best.dx[r];
+    if constexpr (kWeighted) share_step(*shares, shared, best, angles_rad, column, step);
     LegValues<V> delta;
-    limited_step(goals, column, damping_squared, dx, angles_rad, lanes, delta);
+    limited_step<V, kWeighted>(goals, column, step, angles_rad, lanes, delta);
     V greatest{};
     for (const V& d : delta) greatest = max_of(greatest, abs_of(d));
-    const V cap_rad = all_of<V>(options.max_step_rad),
+    const V cap_rad = shared ? all_of<V>(kMostShareStep_rad) : all_of<V>(options.max_step_rad),
             cap = greatest > cap_rad ? cap_rad / greatest : all_of<V>(1.0);
     for (int j = 0; j < kLegDofs; ++j) {
       const V wanted = angles_rad[j] + cap * delta[j];
       next[j] = min_of(max_of(wanted, goals.min_rad[j]), goals.max_rad[j]);
       next[j] = lanes ? next[j] : angles_rad[j];
     }
+    if constexpr (kWeighted) {
+      const V missed = first_rows(best.dx);
+      settled = shared & (((greatest < all_of<V>(kSharedNear_rad)) &
+                           (missed < all_of<V>(kSharedNear_m * kSharedNear_m))) |
+                          (all_of<V>(k + 1) >= all_of<V>(kMostShareSteps)));
+    }
   }
+  if constexpr (kWeighted) best.squares = shared ? first_rows(best.dx) : best.squares;
   return {best.squares, iterations, best.point_m[0], best.point_m[1]};
 }
 
-// --- Equation (5) --------------------------------------------------------------------------------
-
-// The exact rows are closed in every step, this share of the rest: with all of it some walks swing
-// between two poses.
-constexpr double kShareStep = 0.5;
-constexpr double kMostShareStep_rad = 0.6;
-constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
-constexpr int kMostShareSteps = 8;
-constexpr double kExactRow_m2 = 1e-13;
-constexpr double kKneeSpring = 100.0;
-constexpr double kRoomUsed =
-    0.8;  // of the room of a foot's pitch: from here on it gives way no more
-
-// Least sum of (angle - reference)^2 / W and of the squares of the rows that give way over what
-// they give, under the exact rows: one step from `angles_rad` to it.
-template <class V>
-inline void share_step(const LegGoals<V>& goals, const LegShares<V>& shares, const LegPlace<V>& at,
-                       const LegValues<V>& angles_rad, LegValues<V>& delta) noexcept {
-  LegColumns<V> column;
-  set_columns(goals, at, column);
-  LegRows<V> b = at.dx;
-  for (int r : {3, 4, 5}) {
-    const int of = r == 3 ? 0 : 1;
-    for (auto& c : column) c[r] -= c[of];
-    b[r] -= at.dx[of];
-  }
-  // Down positive. Near the floor, and near a toe's, a turn counts more and more.
-  const V lever = shares.lever_m, down = b[4] / lever;
-  const V room = down > V{} ? shares.room_down_rad : shares.room_up_rad, size = abs_of(down),
-          t = min_of(V(size / room), all_of<V>(kRoomUsed)), left = 1.0 / (1.0 - t),
-          steep = left * left, bent = t * room * left + steep * (size - t * room);
-  b[4] = lever * (down > V{} ? bent : -bent);
-  for (auto& c : column) c[4] = steep * c[4];
-  LegValues<V> weight = shares.weight;
-  for (int j = 0; j < kLegDofs; ++j) delta[j] = shares.reference_rad[j] - angles_rad[j];
-  const V knee = angles_rad[kKneeX], bend = max_of(V(shares.knee_rad - knee), V{}),
-          q = bend + shares.knee_soft_rad, push = kKneeSpring * bend * bend / q,
-          stiff = kKneeSpring * bend * (bend + 2.0 * shares.knee_soft_rad) / (q * q),
-          free = weight[kKneeX] / (1.0 + weight[kKneeX] * stiff);
-  delta[kKneeX] =
-      free * (shares.reference_rad[kKneeX] / weight[kKneeX] + push + stiff * knee) - knee;
-  weight[kKneeX] = free;
-  for (int r : {3, 4, 5}) b[r] = kShareStep * b[r];
-  for (int j = 0; j < kLegDofs; ++j) {
-    delta[j] = kShareStep * delta[j];
-    for (int r = 0; r < 6; ++r) b[r] -= column[j][r] * delta[j];
-  }
-  LegRows<V> diagonal, y;
-  for (int r = 0; r < 6; ++r)
-    diagonal[r] = r < 3 ? all_of<V>(kExactRow_m2) : kExactRow_m2 + shares.give_m2[r - 3];
-  solve_step(column, weight, diagonal, b, y);
-  for (int j = 0; j < kLegDofs; ++j) {
-    const V even = column[j][0] * y[0] + column[j][2] * y[2] + column[j][4] * y[4],
-            odd = column[j][1] * y[1] + column[j][3] * y[3] + column[j][5] * y[5];
-    delta[j] += weight[j] * (even + odd);
+// Numbers of several legs side by side, and back: the structs are the same numbers in the same
+// order.
+template <std::size_t kWidth, class One, class Several>
+inline void gather(const std::array<LegToSolve*, kWidth>& legs, One LegToSolve::*part,
+                   Several& to) noexcept {
+  static_assert(sizeof to == kWidth * sizeof(One));
+  auto* lanes = reinterpret_cast<Lanes<kWidth>*>(&to);
+  std::array<const double*, kWidth> from;
+  for (std::size_t i = 0; i < kWidth; ++i)
+    from[i] = reinterpret_cast<const double*>(&(legs[i]->*part));
+  for (std::size_t k = 0; k < sizeof(One) / sizeof(double); ++k) {
+    Lanes<kWidth> row;
+    for (std::size_t i = 0; i < kWidth; ++i) row[i] = from[i][k];
+    lanes[k] = row;
   }
 }
-
-template <class V>
-inline LegSolution<V> share_lanes(const LegGoals<V>& goals, const LegShares<V>& shares,
-                                  LegValues<V>& angles_rad) noexcept {
-  LegPlace<V> at;
-  auto lanes = shares.uneven != V{};  // still on their way
-  V greatest = all_of<V>(1.0), missed{}, steps{};
-  for (int k = 0;; ++k) {
-    place_legs(goals, angles_rad, at);
-    lanes &= ~((greatest < all_of<V>(kSharedNear_rad)) &
-               (missed < all_of<V>(kSharedNear_m * kSharedNear_m)));
-    missed = at.dx[0] * at.dx[0] + at.dx[1] * at.dx[1] + at.dx[2] * at.dx[2];
-    if (!any(lanes) || k == kMostShareSteps) break;
-    LegValues<V> delta;
-    share_step(goals, shares, at, angles_rad, delta);
-    greatest = V{};
-    for (const V& d : delta) greatest = max_of(greatest, abs_of(d));
-    const V cap_rad = all_of<V>(kMostShareStep_rad),
-            cap = greatest > cap_rad ? cap_rad / greatest : all_of<V>(1.0);
-    for (int j = 0; j < kLegDofs; ++j)
-      angles_rad[j] = lanes ? angles_rad[j] + cap * delta[j] : angles_rad[j];
-    steps = lanes ? steps + 1.0 : steps;
+template <std::size_t kWidth, class One, class Several>
+inline void scatter(const Several& from, One LegToSolve::*part,
+                    const std::array<LegToSolve*, kWidth>& legs) noexcept {
+  const auto* lanes = reinterpret_cast<const Lanes<kWidth>*>(&from);
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    auto* to = reinterpret_cast<double*>(&(legs[i]->*part));
+    for (std::size_t k = 0; k < sizeof(One) / sizeof(double); ++k) to[k] = lanes[k][i];
   }
-  return {missed, steps, at.point_m[0], at.point_m[1]};
 }
 
 }  // namespace
 
-template <int kWidth, int kRegister>
-void share_legs(SharedLegs<kWidth>& legs) noexcept {
+template <int kWidth, bool kWeighted, int kRegister>
+void solve_legs(const RobustOptions& options,
+                const std::array<LegToSolve*, kWidth>& legs) noexcept {
   using V = Lanes<kWidth>;
   LegGoals<V> goals;
   LegShares<V> shares;
   LegValues<V> angles_rad;
-  std::memcpy(&goals, &legs.goals, sizeof goals);
-  std::memcpy(&shares, &legs.shares, sizeof shares);
-  std::memcpy(&angles_rad, &legs.angles_rad, sizeof angles_rad);
-  const LegSolution<V> solution = share_lanes(goals, shares, angles_rad);
-  std::memcpy(&legs.angles_rad, &angles_rad, sizeof angles_rad);
-  std::memcpy(&legs.solution, &solution, sizeof solution);
-}
-
-template <int kWidth, int kRegister>
-void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept {
-  using V = Lanes<kWidth>;
-  LegGoals<V> goals;
-  LegValues<V> angles_rad;
-  static_assert(sizeof goals == sizeof legs.goals && sizeof angles_rad == sizeof legs.angles_rad);
-  std::memcpy(&goals, &legs.goals, sizeof goals);
-  std::memcpy(&angles_rad, &legs.angles_rad, sizeof angles_rad);
-  const LegSolution<V> solution = solve_lanes(goals, options, angles_rad);
-  std::memcpy(&legs.angles_rad, &angles_rad, sizeof angles_rad);
-  std::memcpy(&legs.solution, &solution, sizeof solution);
+  gather(legs, &LegToSolve::goals, goals);
+  if constexpr (kWeighted) gather(legs, &LegToSolve::shares, shares);
+  gather(legs, &LegToSolve::angles_rad, angles_rad);
+  const LegSolution<V> solution = solve_lanes<V, kWeighted>(goals, &shares, options, angles_rad);
+  scatter(angles_rad, &LegToSolve::angles_rad, legs);
+  scatter(solution, &LegToSolve::solution, legs);
 }
 
 }  // namespace gaitpad

@@ -23,18 +23,22 @@ void pitch_foot(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode 
 }
 
 // The foot before it rose as its leg asked.
-FootPose planned_pose(const LegBuild& leg, const FootState& foot) noexcept {
-  FootPose pose = foot.pose;
-  if (foot.asked_rad != 0.0)
-    pitch_foot(leg, pose.pitch_rad - foot.asked_rad, pose, FootMode::support);
+FootPose planned_pose(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  FootPose pose = state.foot[side].pose;
+  const double asked_rad = state.legs.asked_rad[side];
+  if (asked_rad != 0.0)
+    pitch_foot(model.leg[side], pose.pitch_rad - asked_rad, pose, FootMode::support);
   return pose;
 }
 
-void remember_foot(const LegBuild& leg, FootState& foot) noexcept {
-  const FootPose planned = planned_pose(leg, foot);
-  foot.last_heel_m = {planned.heel_m, foot.last_heel_m[0]};
-  foot.last_pitch_rad = {planned.pitch_rad, foot.last_pitch_rad[0]};
-  foot.last_rise_m = {foot.rise_m, foot.last_rise_m[0]};
+void remember_feet(const WalkModel& model, WalkState& state) noexcept {
+  for (const Side side : {kLeftSide, kRightSide}) {
+    FootState& foot = state.foot[side];
+    const FootPose planned = planned_pose(model, state, side);
+    foot.last_heel_m = {planned.heel_m, foot.last_heel_m[0]};
+    foot.last_pitch_rad = {planned.pitch_rad, foot.last_pitch_rad[0]};
+    foot.last_rise_m = {foot.rise_m, foot.last_rise_m[0]};
+  }
 }
 
 void begin_support(FootState& foot) noexcept {
@@ -48,7 +52,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   const Moment at = moment_of(model, state);
   FootState& foot = state.foot[side];
   const double ticks = state.clock.stage_ticks;
-  const FootPose lifts = planned_pose(model.leg[side], foot);
+  const FootPose lifts = planned_pose(model, state, side);
   const vec3 slope_m = end_slope(foot.last_heel_m[1], foot.last_heel_m[0], lifts.heel_m) * ticks;
   const double pitch_rate =
       end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], lifts.pitch_rad);

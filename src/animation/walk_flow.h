@@ -237,8 +237,7 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
   const Vec<V> heel_m =
       heel_at<V>(ratios_at<V>(tables, V(ahead * longer / max_of(own, all_of<V>(kLeastAsked)))),
                  knots, at.right_steps);
-  const V high_m =
-      max_of(plan.heel_up_m, V(plan.shown * model.stride_scale.length * heel_m.y));
+  const V high_m = max_of(plan.heel_up_m, V(plan.shown * model.stride_scale.length * heel_m.y));
   plan.heel_up_m = is_limping ? mix(plan.heel_up_m, high_m, limps) : plan.heel_up_m;
 }
 
@@ -493,7 +492,8 @@ inline constexpr double kRiseBegin = 0.20, kHeelRiseLasts = 0.18;  // own phase:
 inline constexpr double kReachOnToe =
     0.99995;  // of the leg: with the hip further away, the heel rises
 // A low foot rises when its leg is longer than this, of the leg, with hips that are lower by this.
-inline constexpr double kLowHips_m = 0.045, kLowSmoothing = 0.04, kLowReach = 0.985, kSoftRise = 12.0 * kDegree;
+inline constexpr double kLowHips_m = 0.045, kLowSmoothing = 0.03, kLowUntil = 0.25,
+                        kLowRisen = 45.0 * kDegree, kLowReach = 0.985, kSoftRise = 12.0 * kDegree;
 inline constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
 inline constexpr double kMaxPitch = 85.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // A foot that goes far up is lifted less: its way over the riser is lift enough, and the knee folds
@@ -764,12 +764,12 @@ void reach_with_toe(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& s
 template <class V>
 void advance_low_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
                       Side side) noexcept {
-  const V rises = at.in_flight[side] ? 1.0 - smootherstep(V(at.flight_progress() / kLowPitch))
+  const V rises = at.in_flight[side] ? 1.0 - smootherstep(V(at.flight_progress() / kLowUntil))
                                      : heel_rise<V>(tick.model, at, side);
   const V goal = at.in_roll[side]
                      ? V{}
                      : presence_of<V>(state.gait) * rises * (1.0 - low_lift<V>(state, side));
-  state.foot[side].low.advance(goal, Damping(kLowSmoothing * tick.model.time_scale, tick.dt_s));
+  state.legs.low[side].advance(goal, Damping(kLowSmoothing * tick.model.time_scale, tick.dt_s));
 }
 
 // Such a foot rises as far as its leg asks.
@@ -777,15 +777,16 @@ template <class V>
 void rise_as_asked(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state, Side side,
                    const Vec<V>& hip_m) noexcept {
   auto& foot = state.foot[side];
+  auto& legs = state.legs;
   const LegBuild& leg = model.leg[side];
-  const auto is_low = not_of(at.in_roll[side]) & (foot.low.x > V{});
-  foot.asked_rad = V{};
+  const auto is_low = not_of(at.in_roll[side]) & (legs.low[side].x > V{});
+  legs.asked_rad[side] = V{};
   if (!any(is_low)) return;
   auto pose = foot.pose;
   const V asked = pitch_in_reach<V>(leg, pose, hip_m, kLowReach * leg.model.length_m());
-  const V more = min_of(all_of<V>(1.0), V(2.0 * foot.low.x)) *
+  const V more = min_of(all_of<V>(1.0), V(2.0 * legs.low[side].x)) *
                  soft_positive(V(asked - pose.pitch_rad), kSoftRise);
-  foot.asked_rad = is_low ? more : V{};
+  legs.asked_rad[side] = is_low ? more : V{};
   set_pitch<V>(leg, pose.pitch_rad + more, is_low, pose);
   foot.pose = chosen_pose(is_low, pose, foot.pose);
 }
@@ -850,7 +851,8 @@ V pelvis_height(const WalkModel& model, const StateOf<V>& state, const PlanOf<V>
     const LegBuild& leg = model.leg[side];
     const V table =
         span_of<V>(leg.model, V(model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX]));
-    const V known = mix(all_of<V>(kLowReach * leg.model.length_m()), table, low_lift<V>(state, side));
+    const V known =
+        mix(all_of<V>(kLowReach * leg.model.length_m()), table, low_lift<V>(state, side));
     const auto& pose = state.foot[side].pose;
     const Vec<V> ankle = pose.heel_m - pose.rotation * all_of<V>(leg.model.heel_m),
                  hip = pelvis.hip(leg);
@@ -883,7 +885,8 @@ void plan_walks(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V>& para
   pelvis = pelvis_over_ground<V>(tick.model, state, plan);
   for (const Side side : {kLeftSide, kRightSide}) {
     advance_low_foot<V>(tick, at, state, side);
-    pelvis.position_m.y -= kLowHips_m * tick.model.size * state.foot[side].low.x;
+    pelvis.position_m.y -= kLowHips_m * tick.model.size * state.legs.low[side].x *
+                           smoothstep(0.0, kLowRisen, plan.cell.foot[side].pitch_rad);
   }
   for (const Side side : {kLeftSide, kRightSide})
     rise_as_asked<V>(tick.model, at, state, side, pelvis.hip(tick.model.leg[side]));

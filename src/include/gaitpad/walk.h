@@ -101,10 +101,6 @@ struct FootFlow {
   Vec<V> heel_anchor_m{}, toe_anchor_m{};  // where they were planted last
   std::array<Vec<V>, 2> last_heel_m{};     // one and two ticks ago
   std::array<V, 2> last_pitch_rad{};
-  Damped<V> loose;  // whether uneven weights may turn the foot: 0 not .. 1
-  // How low its heel is kept where it would rise, and the pitch that its leg asks for all the same.
-  Damped<V> low;
-  V asked_rad{};
   FadeOf<V> pitch_fade;  // over the running mode, argument in ticks
   Vec<V> lift_m{};       // heel at lift-off
   // What the heel's place at lift-off differs by from the tables', and its slope per flight.
@@ -223,6 +219,10 @@ struct LegFlow {
   using Angles = std::array<std::array<V, kLegDofs>, 2>;
   Angles angles_rad{}, even_rad{}, mean_rad{}, lagging_rad{};
   Angles data_rad{}, last_off_rad{}, last_shift_rad{};
+  std::array<Damped<V>, 2> loose;  // whether uneven weights may turn the foot: 0 not .. 1
+  // How low its heel is kept where it would rise, and the pitch that its leg asks for all the same.
+  std::array<Damped<V>, 2> low;
+  std::array<V, 2> asked_rad{};
 };
 using LegState = LegFlow<double>;
 

@@ -9,6 +9,8 @@
 
 namespace gaitpad {
 
+inline constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
+
 template <class V>
 struct LegGoals {
   V thigh_m, shank_m;
@@ -55,16 +57,16 @@ struct LegToSolve {
 // registers that it is compiled for; wider ones bring instructions with three operands, by which
 // two legs take a seventh less time.
 template <int kWidth, bool kWeighted, int kRegister = kWidth>
-void solve_legs(const RobustOptions& options, const std::array<LegToSolve*, kWidth>& legs) noexcept;
+void solve_legs(const std::array<LegToSolve*, kWidth>& legs) noexcept;
 
 // The two of one character, for the widest registers in use.
 template <bool kWeighted>
-inline void solve_two_legs(const RobustOptions& options, std::array<LegToSolve, 2>& legs) noexcept {
+inline void solve_two_legs(std::array<LegToSolve, 2>& legs) noexcept {
   const int lanes = lanes_in_use();
   const auto solve = lanes >= 8   ? solve_legs<2, kWeighted, 8>
                      : lanes >= 4 ? solve_legs<2, kWeighted, 4>
                                   : solve_legs<2, kWeighted>;
-  solve(options, {&legs[0], &legs[1]});
+  solve({&legs[0], &legs[1]});
 }
 
 }  // namespace gaitpad

@@ -3,11 +3,8 @@
 
 namespace gaitpad {
 
-template void solve_legs<4, false>(const RobustOptions&,
-                                   const std::array<LegToSolve*, 4>&) noexcept;
-template void solve_legs<2, false, 4>(const RobustOptions&,
-                                      const std::array<LegToSolve*, 2>&) noexcept;
-template void solve_legs<2, true, 4>(const RobustOptions&,
-                                     const std::array<LegToSolve*, 2>&) noexcept;
+template void solve_legs<4, false>(const std::array<LegToSolve*, 4>&) noexcept;
+template void solve_legs<2, false, 4>(const std::array<LegToSolve*, 2>&) noexcept;
+template void solve_legs<2, true, 4>(const std::array<LegToSolve*, 2>&) noexcept;
 
 }  // namespace gaitpad

@@ -1,10 +1,7 @@
 // The body of solve_legs(), for one width and one set of instructions at a time.
 #pragma once
-#include <limits>
-#include <utility>
-
 #include "animation/leg_ik.h"
-#include "animation/robust_step.h"
+#include "animation/robust_solver.h"
 
 namespace gaitpad {
 
@@ -101,85 +98,10 @@ inline void set_columns(const LegGoals<V>& goals, const LegPlace<V>& place,
   }
 }
 
-// J W J^T + a diagonal = L D L^T, y = its inverse times b.
-template <class V>
-inline void solve_step(const LegColumns<V>& column, const LegValues<V>& weight,
-                       const LegRows<V>& diagonal, const LegRows<V>& b, LegRows<V>& y) noexcept {
-  std::array<LegRows<V>, 6> m;
-  for (int r = 0; r < 6; ++r) {
-    for (int s = 0; s <= r; ++s) m[r][s] = (weight[0] * column[0][r]) * column[0][s];
-  }
-  for (int j = 1; j < kLegDofs; ++j) {
-    for (int r = 0; r < 6; ++r) {
-      const V weighted = weight[j] * column[j][r];
-      for (int s = 0; s <= r; ++s) m[r][s] += weighted * column[j][s];
-    }
-  }
-  for (int r = 0; r < 6; ++r) m[r][r] += diagonal[r];
-  LegRows<V> reciprocal;
-  for (int k = 0; k < 6; ++k) {
-    reciprocal[k] = 1.0 / m[k][k];
-    for (int r = k + 1; r < 6; ++r) {
-      const V l = m[k][r] = m[r][k] * reciprocal[k];
-      for (int s = k + 1; s <= r; ++s) m[r][s] -= l * m[s][k];
-    }
-  }
-  y = b;
-  for (int k = 0; k < 6; ++k) {
-    for (int r = k + 1; r < 6; ++r) y[r] -= m[k][r] * y[k];
-  }
-  for (int k = 0; k < 6; ++k) y[k] *= reciprocal[k];
-  for (int k = 5; k > 0; --k) {
-    for (int r = 0; r < k; ++r) y[r] -= m[r][k] * y[k];
-  }
-}
-
 // The error of the first point alone, squared.
 template <class V>
 inline V first_rows(const LegRows<V>& dx) noexcept {
   return dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2];
-}
-
-// What one step of the solver closes, and from where.
-template <class V>
-struct LegStep {
-  LegValues<V> weight, first_rad;  // the part of the step that the rows do not ask for
-  LegRows<V> give, error;          // what the rows give way, and what is left to close
-};
-
-// Solves for a step within the limits. A rotation that the step would carry past a limit moves
-// exactly to the limit, its column leaves the system, and the system is solved again for the
-// others. A lane that is done finds the same step again.
-template <class V, bool kWeighted>
-inline void limited_step(const LegGoals<V>& goals, const LegColumns<V>& column, LegStep<V>& step,
-                         const LegValues<V>& angles_rad, const MaskOf<V>& lanes,
-                         LegValues<V>& delta) noexcept {
-  LegRows<V> y;
-  for (V& d : delta) d = V{};
-  for (int round = 0; round <= kLegDofs; ++round) {
-    solve_step(column, step.weight, step.give, step.error, y);
-    auto frozen = lanes & 0;
-    for (int j = 0; j < kLegDofs; ++j) {
-      const V even = column[j][0] * y[0] + column[j][2] * y[2] + column[j][4] * y[4],
-              odd = column[j][1] * y[1] + column[j][3] * y[3] + column[j][5] * y[5];
-      const auto moves = step.weight[j] != V{};
-      V turn = step.weight[j] * (even + odd);
-      if constexpr (kWeighted) turn += step.first_rad[j];
-      delta[j] = moves ? turn : delta[j];
-      const V wanted = angles_rad[j] + delta[j],
-              allowed = min_of(max_of(wanted, goals.min_rad[j]), goals.max_rad[j]);
-      const auto stops = lanes & moves & (allowed != wanted);
-      if (!any(stops)) continue;
-      frozen |= stops;
-      delta[j] = stops ? allowed - angles_rad[j] : delta[j];
-      step.weight[j] = stops ? V{} : step.weight[j];
-      V closes = delta[j];
-      if constexpr (kWeighted) closes -= step.first_rad[j];
-      for (int r = 0; r < 6; ++r)
-        step.error[r] = stops ? step.error[r] - column[j][r] * closes : step.error[r];
-    }
-    if (!any(frozen)) return;
-  }
 }
 
 // --- Equation (5) --------------------------------------------------------------------------------
@@ -197,10 +119,10 @@ constexpr double kRoomUsed = 0.8;
 
 // Makes a step of legs whose weights differ one towards the least sum of (angle - reference)^2 / W
 // and of the squares of the rows that give way over what they give, under the exact rows.
-template <class V>
+template <class V, class Step>
 inline void share_step(const LegShares<V>& shares, const MaskOf<V>& shared, const LegPlace<V>& at,
                        const LegValues<V>& angles_rad, LegColumns<V>& column,
-                       LegStep<V>& step) noexcept {
+                       Step& step) noexcept {
   LegRows<V> b = at.dx;
   for (int r : {3, 4, 5}) {
     const int of = r == 3 ? 0 : 1;
@@ -235,86 +157,65 @@ inline void share_step(const LegShares<V>& shares, const MaskOf<V>& shared, cons
   }
 }
 
-// --- The solver ----------------------------------------------------------------------------------
+// Several legs, as the robust solver takes them.
+template <class Lane, bool kShares>
+struct LegSystem {
+  using V = Lane;
+  static constexpr int kRows = 6, kDofs = kLegDofs, dofs = kLegDofs;
+  static constexpr bool kWeighted = kShares;
+  static constexpr double kMostStep_rad = kMostShareStep_rad;
+  using Place = LegPlace<V>;
+
+  const LegGoals<V>& goals;
+  const LegShares<V>& shares;
+  const LegValues<V>&weight = goals.weight, &min_rad = goals.min_rad, &max_rad = goals.max_rad;
+  const MaskOf<V> shared = kShares ? shares.uneven != V{} : V{} != V{};
+
+  void place(const LegValues<V>& angles_rad, Place& place) const noexcept {
+    place_legs(goals, angles_rad, place);
+  }
+  void set_columns(const Place& place, LegColumns<V>& column) const noexcept {
+    gaitpad::set_columns(goals, place, column);
+  }
+  static void keep(const MaskOf<V>& better, const Place& place, Place& best) noexcept {
+    if (!any(not_of(better))) {
+      best = place;
+      return;
+    }
+    for (int j = 1; j < kLegDofs; ++j) best.axis[j] = chosen(better, place.axis[j], best.axis[j]);
+    for (const auto member : {&Place::knee_m, &Place::ankle_m})
+      best.*member = chosen(better, place.*member, best.*member);
+    for (int p = 0; p < 3; ++p)
+      best.point_m[p] = chosen(better, place.point_m[p], best.point_m[p]);
+    for (int r = 0; r < 6; ++r) best.dx[r] = better ? place.dx[r] : best.dx[r];
+    best.squares = better ? place.squares : best.squares;
+  }
+  static void trace(const LegValues<V>&, const V&) noexcept {}
+  void share_step(const Place& at, const LegValues<V>& angles_rad, LegColumns<V>& column,
+                  StepIn<LegSystem>& step) const noexcept {
+    gaitpad::share_step(shares, shared, at, angles_rad, column, step);
+  }
+  // The exact point was near enough before a step this small.
+  MaskOf<V> settles(const Place& at, const V& greatest_rad, int steps) const noexcept {
+    return shared & (((greatest_rad < all_of<V>(kSharedNear_rad)) &
+                      (first_rows(at.dx) < all_of<V>(kSharedNear_m * kSharedNear_m))) |
+                     (all_of<V>(steps) >= all_of<V>(kMostShareSteps)));
+  }
+};
 
 // kWeighted: some of the legs have weights that differ.
 template <class V, bool kWeighted>
-inline LegSolution<V> solve_lanes(const LegGoals<V>& goals,
-                                  [[maybe_unused]] const LegShares<V>* shares,
-                                  const RobustOptions& options, LegValues<V>& angles_rad) noexcept {
+inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const LegShares<V>& shares,
+                                  LegValues<V>& angles_rad) noexcept {
   for (int j = 0; j < kLegDofs; ++j)
     angles_rad[j] = min_of(max_of(angles_rad[j], goals.min_rad[j]), goals.max_rad[j]);
-  LegValues<V> next = angles_rad;
-  LegPlace<V> best, place;
-  const V infinite = all_of<V>(std::numeric_limits<double>::infinity());
-  V growth = all_of<V>(kGrowth), iterations{}, seen_m = infinite, seen_at{};
-  best.squares = infinite;
-  auto lanes = V{} == V{};  // still on their way
-  auto shared = V{} != V{}, settled = shared;
-  if constexpr (kWeighted) {
-    lanes = shared = shares->uneven != V{};
-  }
-  const double enough = options.tolerance_m * options.tolerance_m;
-  for (int k = 0;; ++k) {
-    place_legs(goals, next, k == 0 ? best : place);
-    if (k > 0) {
-      const auto better = lanes & ((place.squares < best.squares) | shared);
-      growth = better ? max_of(growth * kGrowthDown, all_of<V>(kGrowth)) : growth * kGrowthUp;
-      for (int j = 0; j < kLegDofs; ++j) angles_rad[j] = better ? next[j] : angles_rad[j];
-      if (!any(~better)) {
-        best = place;
-      } else if (any(better)) {
-        for (int j = 1; j < kLegDofs; ++j)
-          best.axis[j] = chosen(better, place.axis[j], best.axis[j]);
-        for (const auto member : {&LegPlace<V>::knee_m, &LegPlace<V>::ankle_m})
-          best.*member = chosen(better, place.*member, best.*member);
-        for (int p = 0; p < 3; ++p)
-          best.point_m[p] = chosen(better, place.point_m[p], best.point_m[p]);
-        for (int r = 0; r < 6; ++r) best.dx[r] = better ? place.dx[r] : best.dx[r];
-        best.squares = better ? place.squares : best.squares;
-      }
-    }
-    iterations = lanes ? all_of<V>(k) : iterations;
-    lanes &= ~((best.squares <= all_of<V>(enough)) & ~shared) & ~settled;
-    if (!any(lanes) || k >= options.max_iterations) break;
-    const V error_m = sqrt_of(best.squares);
-    const auto falls = error_m < seen_m - kLeastGain * min_of(error_m, all_of<V>(kGainFrom));
-    seen_at = falls ? all_of<V>(k) : seen_at;
-    seen_m = falls ? error_m : seen_m;
-    lanes &= best.squares < infinite;
-    lanes &= (all_of<V>(k) - seen_at < all_of<V>(kPatience)) | shared;
-    if (!any(lanes)) break;
-
-    LegColumns<V> column;
-    set_columns(goals, best, column);
-    constexpr double most = kFarthest * kFarthest;
-    const V share = best.squares > all_of<V>(most) ? kFarthest / error_m : all_of<V>(1.0);
-    LegStep<V> step;
-    step.weight = goals.weight;
-    step.give.fill(std::max(options.damping * options.damping, kLeastDampingSquared) +
-                   growth * min_of(best.squares, all_of<V>(most)));
-    for (int r = 0; r < 6; ++r) step.error[r] = share * best.dx[r];
-    if constexpr (kWeighted) share_step(*shares, shared, best, angles_rad, column, step);
-    LegValues<V> delta;
-    limited_step<V, kWeighted>(goals, column, step, angles_rad, lanes, delta);
-    V greatest{};
-    for (const V& d : delta) greatest = max_of(greatest, abs_of(d));
-    const V cap_rad = shared ? all_of<V>(kMostShareStep_rad) : all_of<V>(options.max_step_rad),
-            cap = greatest > cap_rad ? cap_rad / greatest : all_of<V>(1.0);
-    for (int j = 0; j < kLegDofs; ++j) {
-      const V wanted = angles_rad[j] + cap * delta[j];
-      next[j] = min_of(max_of(wanted, goals.min_rad[j]), goals.max_rad[j]);
-      next[j] = lanes ? next[j] : angles_rad[j];
-    }
-    if constexpr (kWeighted) {
-      const V missed = first_rows(best.dx);
-      settled = shared & (((greatest < all_of<V>(kSharedNear_rad)) &
-                           (missed < all_of<V>(kSharedNear_m * kSharedNear_m))) |
-                          (all_of<V>(k + 1) >= all_of<V>(kMostShareSteps)));
-    }
-  }
-  if constexpr (kWeighted) best.squares = shared ? first_rows(best.dx) : best.squares;
-  return {best.squares, iterations, best.point_m[0], best.point_m[1]};
+  LegSystem<V, kWeighted> system{goals, shares};
+  LegPlace<V> best;
+  const auto lanes = kWeighted ? system.shared : V{} == V{};
+  auto [squares, iterations] =
+      iterate(system, kRobust, kRobust.max_iterations, lanes, angles_rad, best);
+  if constexpr (kWeighted) squares = first_rows(best.dx);
+  return {squares, iterations, best.point_m[0], best.point_m[1]};
 }
 
 // Numbers of several legs side by side, and back: the structs are the same numbers in the same
@@ -346,8 +247,7 @@ inline void scatter(const Several& from, One LegToSolve::*part,
 }  // namespace
 
 template <int kWidth, bool kWeighted, int kRegister>
-void solve_legs(const RobustOptions& options,
-                const std::array<LegToSolve*, kWidth>& legs) noexcept {
+void solve_legs(const std::array<LegToSolve*, kWidth>& legs) noexcept {
   using V = Lanes<kWidth>;
   LegGoals<V> goals;
   LegShares<V> shares;
@@ -355,7 +255,7 @@ void solve_legs(const RobustOptions& options,
   gather(legs, &LegToSolve::goals, goals);
   if constexpr (kWeighted) gather(legs, &LegToSolve::shares, shares);
   gather(legs, &LegToSolve::angles_rad, angles_rad);
-  const LegSolution<V> solution = solve_lanes<V, kWeighted>(goals, &shares, options, angles_rad);
+  const LegSolution<V> solution = solve_lanes<V, kWeighted>(goals, shares, angles_rad);
   scatter(angles_rad, &LegToSolve::angles_rad, legs);
   scatter(solution, &LegToSolve::solution, legs);
 }

@@ -3,8 +3,7 @@
 
 namespace gaitpad {
 
-template void solve_legs<2, false>(const RobustOptions&,
-                                   const std::array<LegToSolve*, 2>&) noexcept;
-template void solve_legs<2, true>(const RobustOptions&, const std::array<LegToSolve*, 2>&) noexcept;
+template void solve_legs<2, false>(const std::array<LegToSolve*, 2>&) noexcept;
+template void solve_legs<2, true>(const std::array<LegToSolve*, 2>&) noexcept;
 
 }  // namespace gaitpad

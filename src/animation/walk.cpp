@@ -391,7 +391,7 @@ void pose_robust(const PlannedTick& planned, std::array<PosedLeg, 2>& posed) noe
     set_leg_goals<double>(tick, planned.plan, pelvis, side, state, legs[side].goals,
                           legs[side].angles_rad);
   }
-  solve_two_legs<false>(kRobust, legs);
+  solve_two_legs<false>(legs);
   for (const Side side : {kLeftSide, kRightSide}) {
     state.legs.even_rad[side] = legs[side].angles_rad;
     posed[side] = posed_leg<double>(legs[side].solution, state.foot[side].pose.pitch_rad);
@@ -407,7 +407,7 @@ void pose_robust(const PlannedTick& planned, std::array<PosedLeg, 2>& posed) noe
   for (const Side side : {kLeftSide, kRightSide})
     set_shares<double>(tick, planned.at, planned.plan, pelvis, side, state, legs[side].goals,
                        legs[side].shares, legs[side].angles_rad);
-  solve_two_legs<true>(kRobust, legs);
+  solve_two_legs<true>(legs);
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegToSolve& leg = legs[side];
     keep_shared<double>(tick.model.leg[side], side, leg.goals, leg.shares, leg.angles_rad,

@@ -24,7 +24,6 @@ inline constexpr double kSoftToe = 15.0 * kDegree;
 inline constexpr double kLeak_per_s = 4.0;  // of the correction on the data's angles
 inline constexpr double kSoftElbow = 0.1;
 inline constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
-inline constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 
 // The angle at which a leg's solver starts: the data's, and what had to be added to it a tick ago
 // (`off`), less what leaks away, and most of what that had changed by in the tick before. The share

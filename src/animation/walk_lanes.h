@@ -86,7 +86,7 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
   LegGoals<V> goals;
   std::array<V, kLegDofs>& even = state.legs.even_rad[side];
   set_leg_goals<V>(tick, plan, pelvis, side, state, goals, even);
-  const LegSolution<V> solution = solve_lanes<V, false>(goals, nullptr, kRobust, even);
+  const LegSolution<V> solution = solve_lanes<V, false>(goals, LegShares<V>{}, even);
   PosedLegOf<V> posed = posed_leg<V>(solution, state.foot[side].pose.pitch_rad);
   const MaskOf<V> mends = needs_mending<V>(tick.model, at, side, even[kAnkleX], posed.failed);
   for (std::size_t i = 0; any(mends) && i < walks.size(); ++i) {
@@ -109,7 +109,7 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
   LegShares<V> shares;
   std::array<V, kLegDofs> angles;
   set_shares<V>(tick, at, plan, pelvis, side, state, goals, shares, angles);
-  const LegSolution<V> shared = solve_lanes<V, true>(goals, &shares, kRobust, angles);
+  const LegSolution<V> shared = solve_lanes<V, true>(goals, shares, angles);
   keep_shared<V>(tick.model.leg[side], side, goals, shares, angles, shared, state.legs, posed);
   return posed;
 }

@@ -12,7 +12,6 @@
 namespace gaitpad::test {
 namespace {
 
-constexpr RobustOptions kOptions = {.tolerance_m = 1e-6, .max_tries = 1};
 
 // A leg, the six rows of its foot, and where its solver starts.
 struct Leg {
@@ -101,7 +100,7 @@ class LegIk : public testing::Test {
       several[lane] = to_solve(legs[lane]);
       places[lane] = &several[lane];
     }
-    solve_legs<kWidth, false, kRegister>(kOptions, places);
+    solve_legs<kWidth, false, kRegister>(places);
     return several;
   }
   // As many legs as lanes, each with a difficulty of its own.
@@ -117,7 +116,7 @@ class LegIk : public testing::Test {
     const Legs lanes = solved(legs);
     for (int lane = 0; lane < kWidth; ++lane) {
       IkAngles alone = legs[lane].start;
-      const IkResult result = solve_robust(legs[lane].chain, legs[lane].rows, kOptions, alone);
+      const IkResult result = solve_robust(legs[lane].chain, legs[lane].rows, kRobust, alone);
       for (int j = 0; j < kLegDofs; ++j) {
         EXPECT_EQ(std::bit_cast<std::uint64_t>(lanes[lane].angles_rad[j]),
                   std::bit_cast<std::uint64_t>(alone[j]))

@@ -190,7 +190,7 @@ std::vector<Legs> solves_of(const Session& session, Simulation simulation,
 
 int solve(RobustLegs& both) {
   for (const Side side : {kLeftSide, kRightSide}) both.legs[side].angles_rad = both.start_rad[side];
-  solve_two_legs<false>(kRobust, both.legs);
+  solve_two_legs<false>(both.legs);
   benchmark::DoNotOptimize(both.legs);
   return static_cast<int>(both.legs[0].solution.iterations + both.legs[1].solution.iterations);
 }

@@ -136,12 +136,13 @@ MaskOf<V> needs_mending(const WalkModel& model, const MomentOf<V>& at, Side side
 // no footprint, and cannot drift.
 
 inline constexpr double kMeanTime_s = 0.5;  // of each of two filters in a row
-inline constexpr double kLeastW = 0.08;     // of a locked joint
-inline constexpr double kMostPull_rad = 26.0 * kDegree;
+inline constexpr double kLeastW = 0.09;     // of a locked joint
+inline constexpr double kMostPull_rad = 18.0 * kDegree;
 inline constexpr double kHeldPull = 0.3;  // what acts of the pull where the foot may not turn
 inline constexpr double kFootLever_m = 0.2;
-// Of the flight: from here on the heel is the planted point, or as good as landed.
-inline constexpr double kOnHeel = 0.5, kToLand = 0.4, kLanded = 0.95;
+// Of the flight: until here the toe is the planted point, from here on the heel; from here on the foot
+// turns back to its plan, and is as good as landed.
+inline constexpr double kToeUntil = 0.15, kOnHeel = 0.6, kToLand = 0.4, kLanded = 0.95;
 // How far a foot gives way: squared radians that cost as much as one of a joint's.
 inline constexpr double kGiveAside = 0.15, kGiveFlying = 0.5, kGiveRolling = 0.05;
 // A foot that stood flat becomes free so slowly, when a walk begins.
@@ -226,7 +227,7 @@ void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
                             V(kGiveRolling * (1.0 - smootherstep(V(rolled / 0.9)))), rise),
           aside =
               flies ? smootherstep(V(u / 0.35)) * (1.0 - smootherstep(V((u - 0.6) / 0.4))) : zero;
-  shares.on_heel = by_mode(smootherstep(V(u / kOnHeel)), one, zero);
+  shares.on_heel = by_mode(smootherstep(V((u - kToeUntil) / (kOnHeel - kToeUntil))), one, zero);
   const auto uneven = set_relative_weights<V>(state.gait, side, goals.weight);
   shares.uneven = value<V>(uneven, 1.0, 0.0);
   const V bent = kBentKnee * (legs.even_rad[side][kKneeX] - kStraightest);

@@ -722,11 +722,7 @@ std::string trace_text(const Trace& trace) {
 
 Result<std::int64_t> write_trace(const Trace& trace, const std::string& path) {
   const std::string text = trace_text(trace);
-  std::ofstream out(path, std::ios::binary);
-  if (!out) return Error{path + ": cannot be opened for writing"};
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out) return Error{path + ": writing failed"};
+  if (auto problem = write_file(path, text)) return *problem;
   return static_cast<std::int64_t>(text.size());
 }
 

@@ -26,6 +26,14 @@ std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pad
 }
 
 }  // namespace
+std::optional<Error> length_problem(const std::string& path, std::int64_t ticks, int rate_hz,
+                                    double max_hours) {
+  const double hours = static_cast<double>(ticks) / rate_hz / 3600.0;
+  if (hours <= max_hours) return std::nullopt;
+  return Error{fmt::format("{}: lasts {:.4g} hours, longer than {:g}; --max-hours raises the limit",
+                           path, hours, max_hours)};
+}
+
 
 Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
   auto trace = read_trace(spec.replay.trace, spec.replay.damage);
@@ -35,6 +43,8 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
   if (!ticks) return ticks.error();
   auto files = load_pad_files(spec);
   if (!files) return files.error();
+  if (auto problem = length_problem(trace->path, *ticks, rate, spec.replay.max_hours))
+    return *problem;
   auto pads = pad_configs(*files, trace->devices, trace->path);
   if (!pads) return pads.error();
   SessionSpec walked = spec;

@@ -317,6 +317,25 @@ def test_control_c_ends_it_at_once_and_leaves_nothing(started, tmp_path):
 
 def test_what_a_killed_replay_left_is_removed_by_the_next(started, run, tmp_path):
     trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
+# 11 KB that ask for 11.7 million ticks.
+def test_a_recording_of_many_hours_is_refused_unless_it_is_asked_for(made):
+    reports = "".join(report(540 * i) for i in range(91))
+    made.refuse(HEADER + reports, says=("made.hid: lasts 13.5 hours, longer than 12; --max-hours raises the limit",))
+    made.refuse(WALK, "--max-hours", "0.0019", says=("--max-hours",))
+    made.run(WALK, "--max-hours", "0.002")
+
+
+# With the process's number alone as its temporary name.
+def test_a_link_in_the_way_is_not_followed(program, made):
+    kept = made.write("kept", "mine")
+    trace = made.write("made.hid", WALK)
+    made.out.mkdir()
+    script = 'for f in pose.bvh frames.csv summary.json; do ln -s "$1" "$2/.$f.$$"; done; exec "$3" replay "$4" --out "$2"'
+    subprocess.run(["sh", "-c", script, "sh", kept, made.out, program, trace], check=True, capture_output=True)
+    assert kept.read_text() == "mine"
+    assert (made.out / "pose.bvh").read_text().startswith("HIERARCHY")
+
+
     out = tmp_path / "out"
     with started("replay", trace, "--out", out) as process:
         wait_until(lambda: has_begun(out))

@@ -54,6 +54,7 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
   config->pads = std::move(*pads);
   if (auto problem = settle_pads(*trace, config->pads)) return *problem;
   auto start = Simulation::create(*config);
+  config->pad_rules = trace->version < 2 ? PadRules::version_1 : PadRules::version_2;
   if (!start) return start.error();
   auto script = script_for(*start, spec.walk.script);
   if (!script) return script.error();

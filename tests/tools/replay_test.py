@@ -131,6 +131,21 @@ def test_the_rate_of_the_trace_holds(made):
     made.refuse(trace, "--rate", "240", says=("120", "240"))
 
 
+def test_the_pad_that_is_moved_walks_beside_one_that_never_reports(made):
+    receiver = "D: 0\n" + traces.device(DESCRIPTOR, "Receiver")
+    pad = "D: 1\n" + HEADER
+    # The thumb takes 100 ms.
+    push = report(0) + "".join(report(1 + k / 240, y=0x80 - 0x80 * k // 24) for k in range(25)) + report(5) + end(7)
+    _, alone = made.replay(HEADER + push)
+    _, beside = made.replay(receiver + pad + push)
+    _, recorded = made.replay("V: 2 rate_hz=240\n" + receiver + pad + push)
+    _, before = made.replay("V: 1 rate_hz=240\n" + receiver + pad + push)
+    steps = lambda summary: summary["steps_left"] + summary["steps_right"]
+    assert steps(beside) == steps(alone) >= 5
+    assert beside["pose_hash"] == recorded["pose_hash"]
+    assert steps(before) == 0, "as it was recorded"
+
+
 def test_a_style_command_counts_from_its_tick_on(made):
     trace = HEADER + report(0, y=0x10) + "C: 000003.000000 style limp_left\n" + end(7)
     rows, summary = made.replay(trace)
@@ -302,21 +317,6 @@ def test_a_crowd_that_cannot_be_is_refused(made, refuse, options, says):
     refuse("replay", made.write("made.hid", WALK), "--out", made.out, *options, says=says, status=2)
 
 
-def has_begun(out):
-    return out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())
-
-
-def test_control_c_ends_it_at_once_and_leaves_nothing(started, tmp_path):
-    trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
-    out = tmp_path / "out"
-    with started("replay", trace, "--out", out) as process:
-        wait_until(lambda: has_begun(out))
-        _, errors = end_by(process, signal.SIGINT, status=130)
-    assert "nothing was written" in errors and list(out.iterdir()) == []
-
-
-def test_what_a_killed_replay_left_is_removed_by_the_next(started, run, tmp_path):
-    trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
 # 11 KB that ask for 11.7 million ticks.
 def test_a_recording_of_many_hours_is_refused_unless_it_is_asked_for(made):
     reports = "".join(report(540 * i) for i in range(91))
@@ -336,6 +336,21 @@ def test_a_link_in_the_way_is_not_followed(program, made):
     assert (made.out / "pose.bvh").read_text().startswith("HIERARCHY")
 
 
+def has_begun(out):
+    return out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())
+
+
+def test_control_c_ends_it_at_once_and_leaves_nothing(started, tmp_path):
+    trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
+    out = tmp_path / "out"
+    with started("replay", trace, "--out", out) as process:
+        wait_until(lambda: has_begun(out))
+        _, errors = end_by(process, signal.SIGINT, status=130)
+    assert "nothing was written" in errors and list(out.iterdir()) == []
+
+
+def test_what_a_killed_replay_left_is_removed_by_the_next(started, run, tmp_path):
+    trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
     out = tmp_path / "out"
     with started("replay", trace, "--out", out) as process:
         wait_until(lambda: has_begun(out))

@@ -257,7 +257,7 @@ void check_pad(const PadHardware& pad, Diagnosis& diagnosis) {
   const bool is_usable = !ways.empty();
   if (is_usable) {
     diagnosis.add(Finding::State::usable, pad.hidraw.empty() ? pad.path : pad.hidraw.front().node,
-                  pad, "works through " + ways);
+                  pad, fmt::format("works through {}; {}", ways, kHatDrives));
   }
   // One usable driver is enough: problems of the others are notes then.
   const auto state = is_usable ? Finding::State::note : Finding::State::problem;

@@ -217,6 +217,7 @@ class HidrawDevice final : public Device {
     OutPacket packet;
     model_->rumble(rumble, packet);
     is_rumbling_ = rumble.strong != 0 || rumble.weak != 0;
+  void hand_on_raw() noexcept override { is_raw_ = true; }
     return sender_->send(packet);
   }
   std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
@@ -245,7 +246,7 @@ class HidrawDevice final : public Device {
   std::unique_ptr<PacketSender> sender_;  // null: no motors
   bool is_numbered_;
   PresentState present_;
-  bool is_rumbling_ = false;
+  bool is_rumbling_ = false, is_raw_ = false;
   PlugWatch plug_;
   bool is_unplugged_ = false;  // reports from before are still to be read
   int errors_in_row_ = 0;
@@ -291,10 +292,12 @@ bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) no
   OutPacket reply;
   const bool is_input = model_->accept(packet, reply);
   if (reply.size > 0 && sender_) sender_->send(reply);
-  if (plug_.has_changed(*model_, report)) return true;
-  if (!is_input) return false;
-  present_.heard(packet);
-  const std::span<const std::uint8_t> input = model_->report_of(packet);
+  if (is_input) present_.heard(packet);
+  if (!is_raw_) {
+    if (plug_.has_changed(*model_, report)) return true;
+    if (!is_input) return false;
+  }
+  const std::span<const std::uint8_t> input = is_raw_ ? packet : model_->report_of(packet);
   report.kind = ReportKind::input;
   report.size = static_cast<std::uint16_t>(input.size());
   std::copy(input.begin(), input.end(), report.bytes.begin());

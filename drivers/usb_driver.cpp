@@ -335,6 +335,8 @@ class UsbDevice final : public Device {
     return transfers_->is_gone() ? Status::gone : Status::nothing;
   }
 
+  void hand_on_raw() noexcept override { is_raw_ = true; }
+
   bool rumble(const Rumble& strengths) noexcept override {
     OutPacket packet;
     model_->rumble(strengths, packet);
@@ -354,7 +356,7 @@ class UsbDevice final : public Device {
       const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
       const bool is_input = model_->accept(packet, reply_);
       if (reply_.size > 0) transfers_->send(reply_);
-      if (is_input) return true;
+      if (is_input || is_raw_) return true;
     }
     return false;
   }
@@ -366,7 +368,7 @@ class UsbDevice final : public Device {
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
   OutPacket reply_;
   std::uint8_t interface_number_ = 0;
-  bool is_rumbling_ = false;
+  bool is_rumbling_ = false, is_raw_ = false;
 };
 
 // The model and descriptor of a vendor-class pad; without a model for all others.

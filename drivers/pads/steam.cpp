@@ -159,6 +159,11 @@ class SteamBluetooth final : public PadModel {
 
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
+    // A state that was put together already: recordings were made of those once.
+    if (packet.size() == state_.size() && packet[0] == kSegmentId) {
+      std::copy(packet.begin(), packet.end(), state_.begin());
+      return true;
+    }
     if (packet.size() != kHeaderBytes + kSegmentBytes || packet[0] != kSegmentId ||
         (packet[1] & kIsSegment) == 0)
       return false;

@@ -98,7 +98,19 @@ int hid_get_feature_report(hid_device*, unsigned char* data, size_t length) {
   std::copy_n(firmware->begin(), std::min(length, firmware->size()), data);
   return static_cast<int>(std::min(length, firmware->size()));
 }
-int hid_get_input_report(hid_device*, unsigned char* data, size_t length) {
+int hid_send_feature_report(hid_device*, const unsigned char*, size_t length) {
+  return static_cast<int>(length);
+}
+// The kernel's: HIDIOCGINPUT of a hidraw node, which a pseudo-terminal is not.
+int ioctl(int fd, unsigned long request, ...) {
+  va_list arguments;
+  va_start(arguments, request);
+  void* argument = va_arg(arguments, void*);
+  va_end(arguments);
+  const std::size_t length = _IOC_SIZE(request);
+  if (request != static_cast<unsigned long>(HIDIOCGINPUT(length)))
+    return static_cast<int>(::syscall(SYS_ioctl, fd, request, argument));
+  auto* data = static_cast<unsigned char*>(argument);
   const std::lock_guard lock(present.mutex);
   present.asked.push_back(data[0]);
   if (!present.answer) return errno = EPIPE, -1;
@@ -356,6 +368,24 @@ TEST_F(HidrawDriver, AFloodOfRefusedPacketsLeavesOtherPadsTheirTurn) {
   EXPECT_EQ(device->read(report_), Status::nothing);
   EXPECT_GT(script.size(), 900u);
 }
+// A Steam Controller's battery message.
+TEST_F(HidrawDriver, ARecorderGetsWhatTheModelRefusesToo) {
+  use(0x28de, 0x1102);
+  listing_.info.descriptor = {0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff,
+                              0x00, 0x75, 0x08, 0x95, 0x40, 0x09, 0x01, 0x81, 0x02, 0xc0};
+  const auto device = opened();
+  const Packet battery = {1, 0, 4, 0x0b}, state = {1, 0, 1, 0x3c};
+  script = {{.bytes = battery}, {.bytes = state}};
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), state);
+  device->hand_on_raw();
+  script = {{.bytes = battery}, {.bytes = state}};
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), battery);
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), state);
+}
+
 
 TEST_F(HidrawDriver, MotorsRunAndStopWhenTheDeviceIsClosed) {
   use(0x054c, 0x09cc);

@@ -15,6 +15,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "drivers/pads/recorded_packets.h"
 #include "gaitpad/config_files.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
@@ -98,6 +99,7 @@ Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damag
     auto trace = read_trace(path, damage);
     if (!trace) return trace.error();
     if (const auto remark = damage_remark(*trace)) remarks.push_back(*remark);
+    accept_packets(*trace);
     auto found = first_pad(*trace, files.overrides);
     if (!found) return found.error();
     const DeviceInfo& info = trace->devices[found->device].info;
@@ -377,7 +379,7 @@ Result<GuidedPad> live_pad(const PadWish& wish, const PadFiles& files,
   auto chosen = chosen_pads(*sightings, wish);
   if (!chosen) return chosen.error();
   if (chosen->empty()) return Error{"there is no usable pad; gaitpad doctor finds out why"};
-  auto device = chosen->front().driver->open(chosen->front().listing, Detach::allowed);
+  auto device = chosen->front().driver->open(chosen->front().listing, detach_asked(wish));
   if (!device) return device.error();
   const auto factory = (*device)->factory_sticks();
   GuidedPad pad;

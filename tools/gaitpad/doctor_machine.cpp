@@ -46,7 +46,7 @@ PadHardware& pad_at(PadsByPath& pads, const std::string& path, const SystemNode&
 }
 
 RuleSubject subject_of(const SystemNode& node) {
-  return {static_cast<std::uint16_t>(node.bus), node.vendor, node.product};
+  return {static_cast<std::uint16_t>(node.bus), node.vendor, node.product, std::nullopt};
 }
 
 // By its descriptor, or by what config/pads says about it.
@@ -279,8 +279,10 @@ bool opens_hidraw(std::string_view rules, const RuleSubject& subject) {
 }
 
 std::string hidraw_rule(const RuleSubject& subject) {
-  return fmt::format("SUBSYSTEM==\"hidraw\", KERNELS==\"*:{:04X}:{:04X}.*\", {}", subject.vendor,
-                     subject.product, kGrant);
+  const std::string interface =
+      subject.interface ? fmt::format(" DEVPATH==\"*.{}/0003:*\",", *subject.interface) : "";
+  return fmt::format("SUBSYSTEM==\"hidraw\", KERNELS==\"*:{:04X}:{:04X}.*\",{} {}", subject.vendor,
+                     subject.product, interface, kGrant);
 }
 
 std::string usb_rule(const RuleSubject& subject) {

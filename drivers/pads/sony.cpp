@@ -99,6 +99,8 @@ class SonyModel : public PadModel {
 };
 
 class DualShock4 final : public SonyModel {
+  static constexpr std::uint8_t kReportInterval_ms = 4;
+
  public:
   explicit DualShock4(const DeviceInfo& device) : SonyModel(device, 0x11) {}
 
@@ -112,8 +114,10 @@ class DualShock4 final : public SonyModel {
     packet = {};
     const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part common to USB and Bluetooth
     packet.bytes[0] = is_bluetooth_ ? 0x11 : 0x05;
-    if (is_bluetooth_) packet.bytes[1] = 0xc0;  // a HID report with checksum
-    packet.bytes[at] = 0x01;                    // sets the motors and leaves the light alone
+    // A HID report with checksum. The lower bits are the pad's report interval in milliseconds: 4
+    // is what the kernel and SDL set, 0 would make it as fast as the link.
+    if (is_bluetooth_) packet.bytes[1] = 0xc0 | kReportInterval_ms;
+    packet.bytes[at] = 0x01;  // sets the motors and leaves the light alone
     packet.bytes[at + 3] = motor(rumble.weak);
     packet.bytes[at + 4] = motor(rumble.strong);
     packet.size = 32;

@@ -5,9 +5,13 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <hidapi/hidapi.h>
+#include <linux/hidraw.h>
 #include <poll.h>
+#include <stdarg.h>
 #include <stdlib.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -40,7 +44,7 @@ struct ScriptedRead {
 std::deque<ScriptedRead> script;  // empty: the node itself is read
 std::vector<int> timeouts;        // of the reads
 ScriptedRead failure(int error) { return {.bytes = {}, .error = error}; }
-int descriptors_per_opening = 1;
+int openings = 0, descriptors_per_opening = 1;
 std::optional<Packet> firmware;  // feature report 0x20
 // Input report by request, beginning with the id; a thread of the driver asks for it.
 struct PresentReport {
@@ -58,6 +62,7 @@ struct hid_device_ {
 extern "C" {
 
 hid_device* hid_open_path(const char* path) {
+  ++openings;
   auto device = std::make_unique<hid_device>();
   for (int i = 0; i < descriptors_per_opening; ++i) {
     const int fd = ::open(path, O_RDWR | O_CLOEXEC | O_NOCTTY);
@@ -138,6 +143,7 @@ class HidrawDriver : public testing::Test {
   void SetUp() override {
     script.clear();
     timeouts.clear();
+    openings = 0;
     descriptors_per_opening = 1;
     firmware.reset();
     set_present(std::nullopt);
@@ -362,12 +368,6 @@ TEST_F(HidrawDriver, AReportThatIsTooLongIsRefusedAndCounted) {
   EXPECT_EQ(device->lost(), 2);
 }
 
-TEST_F(HidrawDriver, AFloodOfRefusedPacketsLeavesOtherPadsTheirTurn) {
-  const auto device = opened();
-  for (int i = 0; i < 1000; ++i) script.push_back({.bytes = Packet(2000, 0)});
-  EXPECT_EQ(device->read(report_), Status::nothing);
-  EXPECT_GT(script.size(), 900u);
-}
 // A Steam Controller's battery message.
 TEST_F(HidrawDriver, ARecorderGetsWhatTheModelRefusesToo) {
   use(0x28de, 0x1102);
@@ -386,6 +386,12 @@ TEST_F(HidrawDriver, ARecorderGetsWhatTheModelRefusesToo) {
   EXPECT_EQ(bytes_of(report_), state);
 }
 
+TEST_F(HidrawDriver, AFloodOfRefusedPacketsLeavesOtherPadsTheirTurn) {
+  const auto device = opened();
+  for (int i = 0; i < 1000; ++i) script.push_back({.bytes = Packet(2000, 0)});
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  EXPECT_GT(script.size(), 900u);
+}
 
 TEST_F(HidrawDriver, MotorsRunAndStopWhenTheDeviceIsClosed) {
   use(0x054c, 0x09cc);
@@ -409,6 +415,15 @@ TEST_F(HidrawDriver, WhereReportsHaveNoIdTheKernelGetsAZeroInFront) {
   const Packet on = written(33);
   ASSERT_EQ(on.size(), 33u);
   EXPECT_EQ(Packet(on.begin(), on.begin() + 3), (Packet{0x00, 0x05, 0x01}));
+}
+
+// Reading, motors and the question for its state share it.
+TEST_F(HidrawDriver, APadIsOpenedOnce) {
+  use(0x054c, 0x0ce6);
+  const auto device = opened();
+  EXPECT_TRUE(device->rumble({0x4000, 0x4000}));
+  EXPECT_FALSE(written(48).empty());
+  EXPECT_EQ(openings, 1);
 }
 
 TEST_F(HidrawDriver, APlainPadHasNoMotors) {

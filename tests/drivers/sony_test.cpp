@@ -89,7 +89,7 @@ TEST(DualShock4, RumblesOverBluetoothIn78BytesWithChecksum) {
   const auto pad = model(kDualShock4, BusType::bluetooth);
   Packet expected(78, 0);
   expected[0] = 0x11;
-  expected[1] = 0xc0;
+  expected[1] = 0xc4;  // checksum, HID, reports every 4 ms (hid-playstation.c, SDL_hidapi_ps4.c)
   expected[3] = 0x01;
   expected[6] = 0x40;
   expected[7] = 0xc0;

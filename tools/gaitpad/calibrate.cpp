@@ -238,6 +238,12 @@ void print_reports(const StickStatistics& s) {
   }
   print_row("rate", s.rate_hz ? fmt::format("{:>9.1f} Hz", *s.rate_hz) : kUnknown,
             s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms", from, *s.jitter_ms) : from);
+  if (s.moving) {
+    print_row(
+        "new values", fmt::format("{:>9.1f} Hz", s.moving->new_value_hz),
+        fmt::format("while it moved, {:.0f} % of {:.0f} reports a second repeat the one before",
+                    100.0 * s.moving->repeats(), s.moving->report_hz));
+  }
   const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
   print_row("gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
   if (s.drop_outs > 0) {
@@ -298,6 +304,8 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"step_x", s.step_x},
           {"step_y", s.step_y},
           {"jitter_ms", value_or_null(s.jitter_ms)},
+          {"new_values_hz", s.moving ? nlohmann::ordered_json(s.moving->new_value_hz) : nullptr},
+          {"repeats", s.moving ? nlohmann::ordered_json(s.moving->repeats()) : nullptr},
           {"gaps", value_or_null(s.gaps)},
           {"jumps", s.jumps},
           {"stuck", s.stuck},

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <mutex>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -68,6 +69,10 @@ std::vector<std::uint8_t> with_id(bool is_numbered, std::span<const std::uint8_t
 // hidapi does not expose its file descriptor, which the I/O thread needs for poll(): it is looked
 // for among those of this process.
 Result<OpenNode> open_hidraw_node(const std::string& node) {
+  // hidapi 0.13 frees its text of the last error on each opening, whichever thread opens; and which
+  // descriptor is new could not be told while another thread opens the same node.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   struct stat status {};
   if (::stat(node.c_str(), &status) != 0)
     return Error{fmt::format("{}: {}", node, std::strerror(errno))};

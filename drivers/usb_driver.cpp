@@ -54,9 +54,19 @@ struct CloseHandle {
   void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
 };
 
+// Without discovery where libusb has that for one context: the devices are known from sysfs. Its
+// options for all contexts are the host's.
+int start_libusb(libusb_context*& context) {
+#if LIBUSB_API_VERSION >= 0x0100010A
+  const libusb_init_option option = {LIBUSB_OPTION_NO_DEVICE_DISCOVERY, {0}};
+  return libusb_init_context(&context, &option, 1);
+#else
+  return libusb_init(&context);
+#endif
+}
+
 // A USB interface in our hands: its device's node is open and the kernel driver detached. All of it
-// is undone at the end, also if the process dies. One context a pad: no thread of the library, no
-// events of other pads.
+// is undone at the end, also if the process dies. One context a pad: no events of other pads.
 class ClaimedInterface {
  public:
   static Result<std::unique_ptr<ClaimedInterface>> claim(const std::string& node,
@@ -98,7 +108,7 @@ Result<bool> ClaimedInterface::open(const std::string& node) {
   // whole process.
   libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
   libusb_context* context = nullptr;
-  int error = libusb_init(&context);
+  int error = start_libusb(context);
   if (error != LIBUSB_SUCCESS) return usb_error(node, "libusb does not start", error);
   context_.reset(context);
   libusb_device_handle* handle = nullptr;

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <deque>
@@ -44,7 +45,9 @@ struct ScriptedRead {
 std::deque<ScriptedRead> script;  // empty: the node itself is read
 std::vector<int> timeouts;        // of the reads
 ScriptedRead failure(int error) { return {.bytes = {}, .error = error}; }
-int openings = 0, descriptors_per_opening = 1;
+std::atomic<int> openings{0}, opening_now{0}, openings_at_once{0};
+std::chrono::milliseconds opening_time{0};
+int descriptors_per_opening = 1;
 std::optional<Packet> firmware;  // feature report 0x20
 // Input report by request, beginning with the id; a thread of the driver asks for it.
 struct PresentReport {
@@ -63,6 +66,10 @@ extern "C" {
 
 hid_device* hid_open_path(const char* path) {
   ++openings;
+  // hidapi frees and sets its text of the last error here.
+  if (opening_now++ > 0) ++openings_at_once;
+  std::this_thread::sleep_for(opening_time);
+  --opening_now;
   auto device = std::make_unique<hid_device>();
   for (int i = 0; i < descriptors_per_opening; ++i) {
     const int fd = ::open(path, O_RDWR | O_CLOEXEC | O_NOCTTY);
@@ -424,6 +431,18 @@ TEST_F(HidrawDriver, APadIsOpenedOnce) {
   EXPECT_TRUE(device->rumble({0x4000, 0x4000}));
   EXPECT_FALSE(written(48).empty());
   EXPECT_EQ(openings, 1);
+}
+
+// Of two streams: the library's own text of the last error is not made for that.
+TEST_F(HidrawDriver, TwoThreadsDoNotOpenAtOnce) {
+  openings_at_once = 0;
+  opening_time = 20ms;
+  std::thread other([this] { opened(); });
+  opened();
+  other.join();
+  opening_time = 0ms;
+  EXPECT_EQ(openings, 2);
+  EXPECT_EQ(openings_at_once, 0);
 }
 
 TEST_F(HidrawDriver, APlainPadHasNoMotors) {

@@ -150,9 +150,13 @@ std::shared_ptr<const OwnedFd> shared_opening(int fd) {
 std::unique_ptr<PacketSender> hidraw_sender(int fd, bool is_numbered) {
   const auto own = shared_opening(fd);
   if (own->get() < 0) return nullptr;
-  return PacketSender::create([own, is_numbered](std::span<const std::uint8_t> packet) {
-    const std::vector<std::uint8_t> whole = with_id(is_numbered, packet);
-    return !packet.empty() && ::write(own->get(), whole.data(), whole.size()) >= 0;
+  return PacketSender::create([own, is_numbered](const OutPacket& packet) {
+    const auto bytes = std::span(packet.bytes).first(packet.size);
+    if (bytes.empty()) return false;
+    std::vector<std::uint8_t> whole = with_id(is_numbered || packet.is_feature, bytes);
+    if (packet.is_feature)
+      return ::ioctl(own->get(), HIDIOCSFEATURE(whole.size()), whole.data()) >= 0;
+    return ::write(own->get(), whole.data(), whole.size()) >= 0;
   });
 }
 
@@ -211,7 +215,7 @@ class HidrawDevice final : public Device {
     std::ranges::copy(present_.poll_fds(), wait_on_.begin() + 1);
     OutPacket still;
     model_->rumble({}, still);
-    if (still.size == 0) return;
+    if (still.size == 0 && !model_->replies()) return;
     sender_ = hidraw_sender(fd_, is_numbered_);
     if (!sender_ && access_problem(node_).empty())
       remarks_.push_back(node_ + ": the motors cannot be reached");

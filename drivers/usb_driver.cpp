@@ -104,9 +104,6 @@ Result<bool> ClaimedInterface::open(const std::string& node) {
     const std::string problem = access_problem(node);
     return Error{problem.empty() ? fmt::format("{}: {}", node, std::strerror(cause)) : problem};
   }
-  // No discovery, because the devices are known from sysfs. libusb only has this option for the
-  // whole process.
-  libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
   libusb_context* context = nullptr;
   int error = start_libusb(context);
   if (error != LIBUSB_SUCCESS) return usb_error(node, "libusb does not start", error);
@@ -366,7 +363,13 @@ class UsbDevice final : public Device {
       const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
       const bool is_input = model_->accept(packet, reply_);
       if (reply_.size > 0) transfers_->send(reply_);
-      if (is_input || is_raw_) return true;
+      if (is_raw_ || plug_.has_changed(*model_, report)) return true;
+      if (!is_input) continue;
+      const std::span<const std::uint8_t> input = model_->report_of(packet);
+      if (input.data() == packet.data()) return true;
+      report.size = static_cast<std::uint16_t>(input.size());
+      std::copy(input.begin(), input.end(), report.bytes.begin());
+      return true;
     }
     return false;
   }
@@ -377,6 +380,7 @@ class UsbDevice final : public Device {
   std::unique_ptr<ClaimedInterface> interface_;
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
   OutPacket reply_;
+  PlugWatch plug_;
   std::uint8_t interface_number_ = 0;
   bool is_rumbling_ = false, is_raw_ = false;
 };

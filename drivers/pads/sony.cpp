@@ -12,7 +12,10 @@ namespace gaitpad {
 namespace {
 
 constexpr std::uint16_t kSony = 0x054c;
-constexpr std::uint16_t kDualSenseEdge = 0x0df2;
+constexpr std::uint16_t kDualSenseEdge = 0x0df2, kAdapter = 0x0ba0;
+// The second status byte of a DualShock 4's report 0x01 (hid-playstation.c).
+constexpr std::size_t kAdapterStateAt = 31;
+constexpr std::uint8_t kHasNoPad = 0x04;
 constexpr std::size_t kBluetoothBytes = 78;  // full input and output reports of both families
 constexpr std::size_t kChecksumBytes = 4;
 
@@ -65,9 +68,16 @@ class SonyModel : public PadModel {
         is_bluetooth_(device.bus == BusType::bluetooth),
         full_report_(full_report) {}
 
+  // The wireless adapter sends reports without a pad, too.
+  bool is_plugged() const noexcept final { return is_plugged_; }
+
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept final {
     reply.size = 0;
     if (packet.empty()) return false;
+    if (product_ == kAdapter && packet[0] == 0x01 && packet.size() > kAdapterStateAt) {
+      is_plugged_ = (packet[kAdapterStateAt] & kHasNoPad) == 0;
+      return is_plugged_;
+    }
     if (!is_bluetooth_ || packet[0] != full_report_) return true;
     const bool is_whole = packet.size() == kBluetoothBytes;
     if (is_whole && (is_intact(Direction::input, packet) || has_no_checksum(packet))) return true;
@@ -94,6 +104,7 @@ class SonyModel : public PadModel {
 
  private:
   std::uint8_t full_report_;
+  bool is_plugged_ = true;
   std::int64_t damaged_ = 0;
   std::vector<std::string> remarks_;
 };
@@ -176,7 +187,7 @@ std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device) {
   switch (device.product) {
     case 0x05c4:  // first DualShock 4
     case 0x09cc:
-    case 0x0ba0:  // its wireless adapter: USB
+    case kAdapter:  // its wireless adapter: USB
       return std::make_unique<DualShock4>(device);
     case 0x0ce6:
     case kDualSenseEdge:

@@ -15,6 +15,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "drivers/pads/recorded_packets.h"
 #include "gaitpad/config_files.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
@@ -98,6 +99,7 @@ Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damag
     auto trace = read_trace(path, damage);
     if (!trace) return trace.error();
     if (const auto remark = damage_remark(*trace)) remarks.push_back(*remark);
+    accept_packets(*trace);
     auto found = first_pad(*trace, files.overrides);
     if (!found) return found.error();
     const DeviceInfo& info = trace->devices[found->device].info;
@@ -236,6 +238,12 @@ void print_reports(const StickStatistics& s) {
   }
   print_row("rate", s.rate_hz ? fmt::format("{:>9.1f} Hz", *s.rate_hz) : kUnknown,
             s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms", from, *s.jitter_ms) : from);
+  if (s.moving) {
+    print_row(
+        "new values", fmt::format("{:>9.1f} Hz", s.moving->new_value_hz),
+        fmt::format("while it moved, {:.0f} % of {:.0f} reports a second repeat the one before",
+                    100.0 * s.moving->repeats(), s.moving->report_hz));
+  }
   const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
   print_row("gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
   if (s.drop_outs > 0) {
@@ -296,6 +304,8 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"step_x", s.step_x},
           {"step_y", s.step_y},
           {"jitter_ms", value_or_null(s.jitter_ms)},
+          {"new_values_hz", s.moving ? nlohmann::ordered_json(s.moving->new_value_hz) : nullptr},
+          {"repeats", s.moving ? nlohmann::ordered_json(s.moving->repeats()) : nullptr},
           {"gaps", value_or_null(s.gaps)},
           {"jumps", s.jumps},
           {"stuck", s.stuck},
@@ -377,7 +387,7 @@ Result<GuidedPad> live_pad(const PadWish& wish, const PadFiles& files,
   auto chosen = chosen_pads(*sightings, wish);
   if (!chosen) return chosen.error();
   if (chosen->empty()) return Error{"there is no usable pad; gaitpad doctor finds out why"};
-  auto device = chosen->front().driver->open(chosen->front().listing, Detach::allowed);
+  auto device = chosen->front().driver->open(chosen->front().listing, detach_asked(wish));
   if (!device) return device.error();
   const auto factory = (*device)->factory_sticks();
   GuidedPad pad;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 
+#include "drivers/pads/recorded_packets.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/trace.h"
 #include "hid/usage_names.h"
@@ -236,9 +237,9 @@ bool is_trace(const std::string& source) {
 }
 
 int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
-  const auto trace =
-      read_trace(arguments.wish.pad, arguments.lenient ? Damage::skip : Damage::refuse);
+  auto trace = read_trace(arguments.wish.pad, arguments.lenient ? Damage::skip : Damage::refuse);
   if (!trace) return fail("decode", trace.error().message);
+  accept_packets(*trace);
   auto devices = devices_of(*trace, overrides);
   if (!devices) return fail("decode", devices.error().message);
   if (const auto remark = damage_remark(*trace)) print_remarks("decode", {*remark});
@@ -304,7 +305,7 @@ int run_live(const DecodeArguments& arguments, const PadFiles& files) {
   std::unique_ptr<Device> device;
   // The system shows most descriptors even to users who may not open the device.
   if (!arguments.descriptor_only || sighting->listing.info.descriptor.empty()) {
-    auto opened = sighting->driver->open(sighting->listing, Detach::allowed);
+    auto opened = sighting->driver->open(sighting->listing, detach_asked(arguments.wish));
     if (!opened) return fail("decode", opened.error().message);
     device = std::move(*opened);
   }

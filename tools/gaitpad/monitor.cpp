@@ -15,6 +15,7 @@
 #include "base/numeric.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
+#include "stick/new_values.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
@@ -39,6 +40,7 @@ struct MonitoredPad {
   PadConfig config;
   PadState state;
   JumpFilter filter;
+  NewValueCount new_values;
   std::array<UntouchedWatch, 2> watch;  // left, right
   int untouched = 0;                    // how often a stick moved by itself
   bool is_warned = false;               // of that
@@ -132,6 +134,7 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
     pad.is_plugged = false;
     pad.state = {};
     pad.filter = {};
+    pad.new_values = {};
     pad.watch = {};
     pad.last_ns = 0;
     return false;
@@ -146,9 +149,21 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
     ++pad.running.bad_reports;
   } else {
     pad.filter.take(pad.state);
+    const auto& axis = pad.state.axis;
+    pad.new_values.take(report.time_ns, {axis[kLeftX], axis[kLeftY]},
+                        {axis[kRightX], axis[kRightY]});
     watch_sticks(pad, report.time_ns);
   }
   return false;
+}
+
+// While a stick moved, since the pad was plugged in.
+ordered_json movement_json(const NewValueCount& new_values) {
+  const auto rate = new_values.rate();
+  if (!rate) return nullptr;
+  return {{"rate_hz", rate->report_hz},
+          {"new_values_hz", rate->new_value_hz},
+          {"repeats", rate->repeats()}};
 }
 
 ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream,
@@ -163,6 +178,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"time_s", time_s},
           {"plugged", pad.is_plugged},
           {"rate_hz", rate_hz(w)},
+          {"moving", movement_json(pad.new_values)},
           {"interval_us_median", median(w.interval_us)},
           {"jitter_us", jitter(w.interval_us)},
           {"longest_gap_us", greatest(w.interval_us)},
@@ -180,13 +196,21 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
 }
 
 std::string pad_header() {
-  return "left         right        triggers     Hz jitter   gap ms latency max us frame p99 ms "
+  return "left         right        triggers     Hz   new  same jitter   gap ms latency max us "
+         "frame p99 ms "
          "lost buttons, pad";
 }
 
 std::string frame_text(const Window& window, std::size_t percent) {
   if (window.frame_us.empty()) return "-";
   return fmt::format("{:.1f}", percentile(window.frame_us, percent) / 1e3);
+}
+
+// New positions a second while a stick moved, and the share of reports that repeat one.
+std::string movement_text(const NewValueCount& new_values) {
+  const auto rate = new_values.rate();
+  if (!rate) return fmt::format("{:>5} {:>5}", "-", "-");
+  return fmt::format("{:>5.0f} {:>3.0f} %", rate->new_value_hz, 100.0 * rate->repeats());
 }
 
 std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
@@ -198,12 +222,12 @@ std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStre
   std::string buttons;
   for (const std::string& name : button_names(pad.state)) buttons += name + " ";
   return fmt::format(
-      "{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f} {:>7.0f} "
+      "{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {} {:>6.2f} {:>8.1f} {:>7.0f} "
       "{:>6.0f} {:>5} {:>6} {:>4} {}{}",
       stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left, triggers.right,
-      rate_hz(w), jitter(w.interval_us) / 1e3, greatest(w.interval_us) / 1e3, median(w.latency_us),
-      greatest(w.latency_us), frame_text(w, 50), frame_text(w, 99), stream.counts().lost, buttons,
-      who);
+      rate_hz(w), movement_text(pad.new_values), jitter(w.interval_us) / 1e3,
+      greatest(w.interval_us) / 1e3, median(w.latency_us), greatest(w.latency_us),
+      frame_text(w, 50), frame_text(w, 99), stream.counts().lost, buttons, who);
 }
 
 // The line with these reports has just been written.

@@ -73,6 +73,13 @@ void add_seconds_option(CLI::App& command, double& seconds) {
       ->check(CLI::Range(kLeastSeconds, kMostSeconds));
 }
 
+void add_max_hours_option(CLI::App& command, double& hours) {
+  command
+      .add_option("--max-hours", hours,
+                  fmt::format("refuse a recording that lasts longer (default: {:g})", hours))
+      ->check(CLI::PositiveNumber);
+}
+
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration) {
   return load_pad_files(config_folders(), map, calibration);
 }

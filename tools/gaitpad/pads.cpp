@@ -159,7 +159,8 @@ void print_text(const std::vector<PadRow>& rows, const PadWish& wish) {
   }
   for (const auto& [driver, problem] : missing_drivers(wish))
     fmt::print("{}: {}\n", driver, printable(problem));
-  if (std::ranges::any_of(rows, &PadRow::is_chosen)) fmt::print("* is the one that play takes\n");
+  if (std::ranges::any_of(rows, &PadRow::is_chosen))
+    fmt::print("* is the one that play takes until another is moved; {}\n", kHatDrives);
 }
 
 int run(const PadsArguments& arguments) {

@@ -69,7 +69,7 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
     const WalkerFrame& walker = frame.walkers[i];
     interpolate(walker.before, walker.pose, share, shown_[i]);
     const Colour& colour = series_colour(theme, i);
-    add_mannequin(mannequins_[i], shown_[i], colour, content);
+    add_mannequin(mannequins_[i], shown_[i], terrain_.get(), colour, content);
     if (state.has_trails) add_trails(history, static_cast<int>(i), colour, content);
   }
   has_source_ = state.has_source && cast.source != nullptr && count > 0;

@@ -182,6 +182,55 @@ TEST_F(Walking, OnStairsTheSourceIsNeverInTheGround) {
   EXPECT_LT(most_above_m, 0.25) << "nor does it fly";
 }
 
+// The distance from a place to the nearest end of a drawn bone.
+double nearest_end_m(const SceneContent& content, const vec3& place_m) {
+  double nearest_m = 1e9;
+  for (const Capsule& bone : content.capsules)
+    nearest_m =
+        std::min({nearest_m, glm::distance(bone.a_m, place_m), glm::distance(bone.b_m, place_m)});
+  return nearest_m;
+}
+
+// Heel and toe of `frames.csv` have an end of a drawn bone as near as in a standing foot: the
+// drawing moves no foot by more than 2 cm, neither above level 0 nor below it.
+TEST_F(Walking, OnEveryTerrainTheFeetAreDrawnWhereTheyAreExported) {
+  constexpr double kMoved_m = 0.02;
+  struct Heights {
+    double lowest, highest;
+  };
+  const std::pair<const char*, Heights> kTerrains[] = {
+      {"flat", {0.0, 0.0}},   {"slope_up", {0.0, 1.5}}, {"slope_down", {-1.5, 0.0}},
+      {"stairs", {0.0, 0.9}}, {"rough", {-0.02, 0.02}}, {"zones", {0.0, 0.5}},
+      {"course", {0.0, 0.8}}};
+  for (const auto& [terrain, was_m] : kTerrains) {
+    SCOPED_TRACE(terrain);
+    begin({"even"}, 0, terrain);
+    fill();
+    const auto reach_m = [this](Side side) {
+      const WalkFrame& walk = frame->walkers[0].walk;
+      return std::array{nearest_end_m(content_, walk.heel_m[side]),
+                        nearest_end_m(content_, walk.toe_m[side])};
+    };
+    const std::array standing = {reach_m(kLeftSide), reach_m(kRightSide)};
+    double lowest_m = 0.0, highest_m = 0.0, most_m = 0.0;
+    for (int i = 0; i < 460; ++i) {  // 27 m: the whole of all but the course
+      run(12);
+      fill();
+      for (const Side side : {kLeftSide, kRightSide}) {
+        const auto now = reach_m(side);
+        for (const std::size_t point : {0, 1})
+          most_m = std::max(most_m, std::abs(now[point] - standing[side][point]));
+        const double heel_m = frame->walkers[0].walk.heel_m[side].y;
+        lowest_m = std::min(lowest_m, heel_m);
+        highest_m = std::max(highest_m, heel_m);
+      }
+    }
+    EXPECT_LT(most_m, kMoved_m);
+    EXPECT_LE(lowest_m, was_m.lowest) << "it went down";
+    EXPECT_GE(highest_m, was_m.highest) << "it went up";
+  }
+}
+
 TEST_F(Walking, TheGroundAheadIsHigherOnTheWayUpAndLowerOnTheWayDown) {
   EXPECT_EQ(ensemble_->rise_ahead_m(-1), 0.0);
   begin({"even"}, 0, "stairs");

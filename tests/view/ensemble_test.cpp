@@ -90,27 +90,47 @@ TEST_F(Walking, AMomentBetweenTwoTicksIsDrawnBetweenTheirPoses) {
   EXPECT_GT(to - from, 0.001);
 }
 
-TEST_F(Walking, FromItsDistanceTheCameraSeesEverybodyWithTheirNames) {
-  begin({"even", "stiff_hip", "stiff_knee", "limp_left"});
-  for (const Viewport& viewport : {Viewport{232, 44, 744, 612}, Viewport{0, 0, 1280, 600}}) {
-    for (const double yaw : {Camera().yaw_rad, 1.1, kPi / 2.0, -kPi / 2.0}) {
-      fill();
-      Camera camera{.yaw_rad = yaw};
-      camera.target_m = ensemble_->focus_m(-1);
-      camera.distance_m = ensemble_->distance_m(-1, camera, viewport);
-      const auto labels =
-          ensemble_->labels(*frame, cast, camera, viewport, state_, theme_of(ThemeName::dark));
-      ASSERT_EQ(labels.size(), 5u);
-      EXPECT_EQ(labels[0].text, "even");
-      EXPECT_EQ(labels[3].text, "limp left");
-      EXPECT_EQ(labels[4].text, "source");
-      for (const Capsule& bone : content_.capsules) {
-        const vec3 place = projected(camera, bone.a_m, viewport.width, viewport.height);
-        EXPECT_GT(place.z, 0.0);
-        EXPECT_GT(place.x, 0.0);
-        EXPECT_LT(place.x, viewport.width);
-        EXPECT_GT(place.y, 0.0);
-        EXPECT_LT(place.y, viewport.height);
+// Every end of every drawn bone and line, on level ground, on a slope and on stairs.
+TEST_F(Walking, InItsFramingTheCameraSeesEverybodyWithTheirNames) {
+  struct Size {
+    Viewport viewport;
+    double scale;
+  };
+  for (const char* terrain : {"flat", "slope_down", "stairs"}) {
+    begin({"even", "stiff_hip", "stiff_knee", "limp_left"}, 0, terrain);
+    run(600);
+    fill();
+    for (const auto& [viewport, scale] :
+         {Size{{232, 44, 744, 612}, 1.0}, Size{{0, 0, 1280, 600}, 1.0},
+          Size{{0, 44, 640, 330}, 1.0}, Size{{464, 88, 2768, 1960}, 2.0},
+          Size{{0, 0, 300, 700}, 1.0}}) {
+      for (const double yaw : {Camera().yaw_rad, 1.1, kPi / 2.0, -kPi / 2.0, 2.05}) {
+        SCOPED_TRACE(std::string(terrain) + ", yaw " + std::to_string(yaw) + ", width " +
+                     std::to_string(viewport.width));
+        Camera camera{.yaw_rad = yaw};
+        show(camera, ensemble_->framing(camera, viewport, state_, scale), ensemble_->focus_m(-1));
+        const auto expect_seen = [&](const vec3& place_m) {
+          const vec3 place = projected(camera, place_m, viewport.width, viewport.height);
+          EXPECT_GT(place.z, 0.0);
+          EXPECT_GT(place.x, 0.0);
+          EXPECT_LT(place.x, viewport.width);
+          EXPECT_GT(place.y, 0.0);
+          EXPECT_LT(place.y, viewport.height);
+        };
+        for (const Capsule& bone : content_.capsules) {
+          expect_seen(bone.a_m);
+          expect_seen(bone.b_m);
+        }
+        for (const SceneLine& line : content_.lines) {
+          expect_seen(line.a_m);
+          expect_seen(line.b_m);
+        }
+        const auto labels =
+            ensemble_->labels(*frame, cast, camera, viewport, state_, theme_of(ThemeName::dark));
+        ASSERT_EQ(labels.size(), 5u);
+        EXPECT_EQ(labels[0].text, "even");
+        EXPECT_EQ(labels[3].text, "limp left");
+        EXPECT_EQ(labels[4].text, "source");
       }
     }
   }

@@ -131,7 +131,7 @@ void draw_mark_words(Ui& ui) {
 }
 
 void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
-  draw_graph(ui, "graph heel", "Heel height", "cm",
+  draw_graph(ui, "graph heel", "Heel above its ground", "cm",
              heel_plot(ui.in.history, span, walker, ui.theme), 1, 84.0);
   draw_mark_words(ui);
   text_line(ui, ui.fonts.small, ui.theme.text, "Stage and planted points");

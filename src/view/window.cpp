@@ -657,7 +657,7 @@ UiInput WindowLoop::ui_input() {
   in.can_rumble = has_pad && !is_recording(show_->options().pad.wish.pad);
   in.pad_rate_hz = clock_.rate_hz(frame.pad.reports);
   in.frames_per_second = clock_.frames_per_second();
-  in.memory_mib = memory_mib();
+  if (state_.is_open[static_cast<std::size_t>(Panel::loop)]) in.memory_mib = memory_mib();
   return in;
 }
 

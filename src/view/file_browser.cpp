@@ -340,7 +340,7 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
       const float date = text_width(ui.fonts.small, entry.date);
       put_text(*ImGui::GetWindowDrawList(), ui.fonts.body, colour, at,
                entry.is_folder ? entry.name + "/" : entry.name, width - date - ui.px(12));
-      put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.tick,
+      put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.secondary,
                {at.x + width - date - ui.px(4), at.y + ui.px(2)}, entry.date, date + 1.0f);
       ImGui::PopID();
     }

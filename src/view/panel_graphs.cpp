@@ -32,7 +32,8 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
         fmt::format("{} {:.{}f}", series.letter, series.points.back().y, decimals);
     x -= text_width(ui.fonts.tick, value);
     if (x < left) return;
-    put_text(list, ui.fonts.tick, series.colour, {x, at.y + ui.px(1)}, value, width);
+    put_text(list, ui.fonts.tick, with_alpha(series.colour, 1.0), {x, at.y + ui.px(1)}, value,
+             width);
     x -= ui.px(8);
   }
 }

@@ -358,10 +358,10 @@ void draw_choice(Ui& ui) {
     const bool is_on = !who.empty();
     if (is_on || (ImGui::IsItemHovered() && ui.is_live())) {
       list.AddRectFilled(at, {at.x + width, at.y + row - 1.0f},
-                         packed(with_alpha(ui.theme.accent, is_on ? 0.45 : 0.2)), ui.px(4));
+                         packed(with_alpha(ui.theme.accent, is_on ? kChosenShare : 0.2)), ui.px(4));
     }
     if (i < 9)
-      put_text(list, ui.fonts.tick, ui.theme.tick, {at.x + ui.px(6), at.y + ui.px(4)},
+      put_text(list, ui.fonts.tick, ui.theme.secondary, {at.x + ui.px(6), at.y + ui.px(4)},
                fmt::format("{}", i + 1), number);
     const float who_width =
         ui.selected().size() > 1 && is_on ? text_width(ui.fonts.small, who) + ui.px(6) : 0.0f;

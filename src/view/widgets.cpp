@@ -45,15 +45,16 @@ void draw_button_back(Ui& ui, const ImVec2& min, const ImVec2& max, const Button
   const float rounding = ui.px(5);
   const bool is_chosen = look.is_on && !look.is_primary;
   Colour back = look.is_primary || look.is_on ? ui.theme.accent : ui.theme.frame;
-  back.alpha = (is_chosen ? 0.45 : 1.0) * (look.is_enabled ? 1.0 : 0.5);
+  back.alpha = (is_chosen ? kChosenShare : 1.0) * (look.is_enabled ? 1.0 : 0.5);
   list.AddRectFilled(min, max, packed(back), rounding);
   if (look.is_enabled && ImGui::IsItemHovered()) {
     const double strength = ImGui::IsItemActive() ? 0.18 : 0.08;
     list.AddRectFilled(min, max, packed(with_alpha(ui.theme.text, strength)), rounding);
   }
-  if (is_chosen) {
-    list.AddRect(min, max, packed(with_alpha(ui.theme.left, 0.8)), rounding, 0, ui.px(1));
-  }
+  const Colour& edge = is_chosen ? ui.theme.left : ui.theme.edge;
+  if (!look.is_primary)
+    list.AddRect(min, max, packed(with_alpha(edge, look.is_enabled ? 1.0 : 0.5)), rounding, 0,
+                 ui.px(1));
 }
 
 // Icon or dot, then the label, centred on the button.
@@ -139,7 +140,9 @@ void draw_slider(Ui& ui, const ImVec2& min, const ImVec2& max, double value,
     list.AddRectFilled({grab - ui.px(3.5), min.y + ui.px(2)}, {grab + ui.px(3.5), max.y - ui.px(2)},
                        packed(with_alpha(knob, strength)), ui.px(3));
   }
-  if (look.is_changed) list.AddRect(min, max, packed(ui.theme.warning), ui.px(4), 0, ui.px(1.4));
+  const Colour& edge = look.is_changed ? ui.theme.warning : ui.theme.edge;
+  list.AddRect(min, max, packed(with_alpha(edge, strength)), ui.px(4), 0,
+               ui.px(look.is_changed ? 1.4 : 1.0));
   draw_number(ui, min, max, grab, value, look);
 }
 

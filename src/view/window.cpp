@@ -299,8 +299,8 @@ std::optional<Error> WindowLoop::open() {
   if (auto problem = picture_problem()) return problem;
   auto start = Show::prepare(options_.session);
   if (!start) return start.error();
-  auto surface = WindowSurface::open(
-      {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
+  auto surface = WindowSurface::open({"gaitpad", options_.width, options_.height, options_.scale,
+                                      options_.without_display, options_.is_hidden});
   if (!surface) return surface.error();
   surface_ = std::move(*surface);
   set_window_icon(surface_->window());

@@ -170,7 +170,7 @@ constexpr const char* kUnknown = " not known";
 
 // A label, one value or those of x and y, and what they were measured from.
 void print_row(const char* what, const std::string& value, const std::string& from) {
-  fmt::print("  {:<18}{:<20}{}\n", what, value, from);
+  say("  {:<18}{:<20}{}\n", what, value, from);
 }
 
 std::string pair_text(const std::optional<vec2>& p, bool is_signed) {
@@ -309,29 +309,28 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
 }
 
 void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
-  fmt::print("{} ({:04x}:{:04x})\n", printable(device.name), device.vendor, device.product);
+  say("{} ({:04x}:{:04x})\n", printable(device.name), device.vendor, device.product);
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick) continue;
-    fmt::print("\n{} stick: {}. {}\n  {:<18}{:>9}{:>9}\n", kSideNames[i],
-               name_of(stick->advice.verdict), stick->advice.reason, "", "x right", "y front");
+    say("\n{} stick: {}. {}\n  {:<18}{:>9}{:>9}\n", kSideNames[i], name_of(stick->advice.verdict),
+        stick->advice.reason, "", "x right", "y front");
     print_rest(stick->statistics);
     print_rim(stick->statistics);
     print_reports(stick->statistics);
     if (stick->statistics.centre) print_advice(stick->advice);
   }
-  if (analysis.trigger[0] || analysis.trigger[1]) fmt::print("\n");
+  if (analysis.trigger[0] || analysis.trigger[1]) say("\n");
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{:.3f}", *value) : "not known";
   };
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& trigger = analysis.trigger[i];
     if (!trigger) continue;
-    fmt::print("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
-               number(trigger->released), number(trigger->pressed), trigger->samples);
+    say("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
+        number(trigger->released), number(trigger->pressed), trigger->samples);
   }
-  fmt::print(
-      "\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
+  say("\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
 }
 
 // As interface.md has it, with further keys.
@@ -519,9 +518,9 @@ std::optional<Error> draw_comparison(const std::string&, const ComparedFiles&) {
 #endif
 
 void print_changes(const std::vector<std::string>& changes, const std::string& if_none) {
-  fmt::print("\n");
-  if (changes.empty()) fmt::print("{}\n", if_none);
-  for (const std::string& change : changes) fmt::print("{}\n", printable(change));
+  say("\n");
+  if (changes.empty()) say("{}\n", if_none);
+  for (const std::string& change : changes) say("{}\n", printable(change));
 }
 
 // --compare: two files of one pad. Returns the exit status.
@@ -538,11 +537,11 @@ int compare(const CalibrateArguments& arguments) {
     print_remarks(kCalibrateCommand, {"the files are of different devices; compared all the same"});
   for (std::size_t side = 0; side < 2; ++side) {
     files.numbers[side] = compared_numbers(a, b, side);
-    fmt::print("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
-               files.names[0], files.names[1]);
+    say("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
+        files.names[0], files.names[1]);
     for (const ComparedNumber& number : files.numbers[side]) {
-      fmt::print("  {:<24}{:>16}  {:>16}{}\n", number.label, number.values[0], number.values[1],
-                 number.values[0] == number.values[1] ? "" : "  *");
+      say("  {:<24}{:>16}  {:>16}{}\n", number.label, number.values[0], number.values[1],
+          number.values[0] == number.values[1] ? "" : "  *");
     }
   }
   print_changes(changes_since(a, b), "what was measured for both files has not changed");

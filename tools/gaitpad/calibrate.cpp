@@ -170,7 +170,7 @@ constexpr const char* kUnknown = " not known";
 
 // A label, one value or those of x and y, and what they were measured from.
 void print_row(const char* what, const std::string& value, const std::string& from) {
-  say("  {:<18}{:<20}{}\n", what, value, from);
+  say("  {:<18}  {:<20}  {}\n", what, value, from);
 }
 
 std::string pair_text(const std::optional<vec2>& p, bool is_signed) {
@@ -209,7 +209,6 @@ void print_rest(const StickStatistics& s) {
 double reach_in(const Outline& outline, int direction) {
   return outline.radius[static_cast<std::size_t>(direction)];
 }
-double degrees_of(int direction) { return 360.0 * direction / kOutlineDirections; }
 
 void print_rim(const StickStatistics& s) {
   const std::string from =
@@ -219,7 +218,7 @@ void print_rim(const StickStatistics& s) {
   print_row("reach left, back", pair_text(s.min_x, s.min_y), from);
   if (const auto worst = worst_direction(s.outline)) {
     print_row("least reach", fmt::format("{:>9.4f}", reach_in(s.outline, *worst)),
-              fmt::format("{:.0f} degrees from the right", degrees_of(*worst)));
+              fmt::format("{} degrees from the right", degrees_of(*worst)));
   }
   print_row("circularity error",
             s.circularity_error ? fmt::format("{:>9.1f} %", *s.circularity_error) : kUnknown,
@@ -244,12 +243,17 @@ void print_reports(const StickStatistics& s) {
   }
 }
 
-void print_advice(const StickAdvice& a) {
+void print_advice(const StickAnalysis& stick) {
+  const StickAdvice& a = stick.advice;
   const StickCalibration& c = a.calibration;
   print_row("inner zone", fmt::format("{:>9.3f}", a.inner_zone),
             fmt::format("{:.3f} of the deflection", c.inner));
-  print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
-            fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
+  if (is_turned(stick.statistics)) {
+    print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
+              fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
+  } else {
+    print_row("outer zone", kUnknown, "range and outer zone stay as they were");
+  }
   if (c.frame == StickFrame{}) return;
   constexpr const char* kRaw[] = {"x", "-x", "y", "-y"};
   print_row("axes",
@@ -283,7 +287,8 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"drift_per_s", value_or_null(s.drift_per_s)},
           {"rate_hz", value_or_null(s.rate_hz)},
           {"inner_zone", is_known ? nlohmann::ordered_json(stick.advice.inner_zone) : nullptr},
-          {"outer_zone", is_known ? nlohmann::ordered_json(stick.advice.outer_zone) : nullptr},
+          {"outer_zone",
+           is_known && is_turned(s) ? nlohmann::ordered_json(stick.advice.outer_zone) : nullptr},
           {"verdict", name_of(stick.advice.verdict)},
           {"reason", stick.advice.reason},
           {"samples", s.samples},
@@ -305,7 +310,8 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"displaced_by", s.displaced_by},
           {"hands_off_s", seconds_of(s.hands_off)},
           {"least_reach", worst ? nlohmann::ordered_json(reach_in(s.outline, *worst)) : nullptr},
-          {"least_reach_deg", worst ? nlohmann::ordered_json(degrees_of(*worst)) : nullptr}};
+          {"least_reach_deg",
+           worst ? nlohmann::ordered_json(360.0 * *worst / kOutlineDirections) : nullptr}};
 }
 
 void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
@@ -313,12 +319,12 @@ void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick) continue;
-    say("\n{} stick: {}. {}\n  {:<18}{:>9}{:>9}\n", kSideNames[i], name_of(stick->advice.verdict),
+    say("\n{} stick: {}. {}\n  {:<18}  {:>9}{:>9}\n", kSideNames[i], name_of(stick->advice.verdict),
         stick->advice.reason, "", "x right", "y front");
     print_rest(stick->statistics);
     print_rim(stick->statistics);
     print_reports(stick->statistics);
-    if (stick->statistics.centre) print_advice(stick->advice);
+    if (stick->statistics.centre) print_advice(*stick);
   }
   if (analysis.trigger[0] || analysis.trigger[1]) say("\n");
   const auto number = [](const std::optional<double>& value) {

@@ -456,6 +456,12 @@ void forget_wish(Ui& ui, const std::string& name) {
                 [&](const UiMemory::Wish& w) { return name.empty() || w.name == name; });
 }
 
+bool is_menu_open() noexcept { return ImGui::GetCurrentContext()->OpenPopupStack.Size > 0; }
+
+void close_menus() noexcept {
+  if (is_menu_open()) ImGui::ClosePopupToLevel(0, false);
+}
+
 ImVec2 begin_modal(Ui& ui, const char* id, double width, double height, const ImVec2& window_px) {
   const float room = ui.px(kRoom);
   const ImVec2 size(std::min(ui.px(width), std::max(window_px.x - room, room)),

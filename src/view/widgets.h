@@ -111,6 +111,10 @@ Colour walker_colour(const Ui& ui, int walker);
 std::string walker_name(const Ui& ui, int walker);
 std::string style_name(const Ui& ui, int style_index);
 
+// Menus that a button has opened.
+bool is_menu_open() noexcept;
+void close_menus() noexcept;
+
 // Begins a box in the middle of the window and darkens everything else; end it with end_modal().
 // The size is at scale 1 and limited by the window's; returns it in pixels. ui_items() has the box
 // as "area ID".

@@ -39,6 +39,7 @@
 #include "view/tooltips.h"
 #include "view/undo.h"
 #include "view/video.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 namespace {
@@ -920,7 +921,9 @@ void WindowLoop::say_change(std::string what) {
 }
 
 void WindowLoop::go_back() {
-  if (state_.is_help_open) {
+  if (is_menu_open()) {
+    close_menus();
+  } else if (state_.is_help_open) {
     state_.is_help_open = false;
   } else if (browser_.is_open()) {
     browser_.close();

@@ -352,6 +352,18 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   EXPECT_GT(value_of(replay(replayed)).summary.ticks, 20);
 }
 
+TEST_F(Window, EscapeClosesTheMenu) {
+  Script script;
+  script.until("it is drawn", [](const Glance& g) { return g.frame > 2; });
+  script.click("view");
+  script.until("the menu is open",
+               [](const Glance&) { return Script::find("type larger") != nullptr; });
+  script.tap(SDLK_ESCAPE);
+  script.until("the menu is closed",
+               [](const Glance&) { return Script::find("type larger") == nullptr; });
+  run(script);
+}
+
 TEST_F(Window, QuitEndsItAtOnce) {
   options_.frames = 500;
   options_.script = [&](const Glance& g) {

@@ -120,6 +120,20 @@ def test_summary_counts_by_mode(made):
         assert f"{mode:<6} mode: {passed} pass, {broken} fail" in made.stdout
 
 
+def test_each_of_the_thirty_claims_has_a_line_and_each_failure_its_reason(made):
+    lines = made.stdout.splitlines()
+    numbers = [int(line.split()[0]) for line in lines if line[:1].isdigit()]
+    assert numbers == list(range(1, 31))
+    for claim in made.json["claims"]:
+        told = [line for line in lines if line.startswith(f"FAIL  {claim['name']}, {claim['mode']} mode: ")]
+        assert len(told) == (claim["pass"] is False), claim
+        assert not told or told[0].endswith(claim["note"])
+        [line] = [line for line in lines if line.split(" ")[0] == claim["name"].split(" ")[0]]
+        assert claim["pass"] is not False or "FAIL" in line
+    assert max(len(line) for line in lines if line[:1].isdigit()) <= 60
+    assert "docs/paper.md" in lines[-1]
+
+
 def test_figure_5_has_the_contracts_columns_over_one_stride(made):
     for figure, styles in STYLES.items():
         for suffix in MODES.values():

@@ -172,7 +172,7 @@ constexpr const char* kUnknown = " not known";
 
 // A label, one value or those of x and y, and what they were measured from.
 void print_row(const char* what, const std::string& value, const std::string& from) {
-  fmt::print("  {:<18}{:<20}{}\n", what, value, from);
+  say("  {:<18}  {:<20}  {}\n", what, value, from);
 }
 
 std::string pair_text(const std::optional<vec2>& p, bool is_signed) {
@@ -211,7 +211,6 @@ void print_rest(const StickStatistics& s) {
 double reach_in(const Outline& outline, int direction) {
   return outline.radius[static_cast<std::size_t>(direction)];
 }
-double degrees_of(int direction) { return 360.0 * direction / kOutlineDirections; }
 
 void print_rim(const StickStatistics& s) {
   const std::string from =
@@ -221,7 +220,7 @@ void print_rim(const StickStatistics& s) {
   print_row("reach left, back", pair_text(s.min_x, s.min_y), from);
   if (const auto worst = worst_direction(s.outline)) {
     print_row("least reach", fmt::format("{:>9.4f}", reach_in(s.outline, *worst)),
-              fmt::format("{:.0f} degrees from the right", degrees_of(*worst)));
+              fmt::format("{} degrees from the right", degrees_of(*worst)));
   }
   print_row("circularity error",
             s.circularity_error ? fmt::format("{:>9.1f} %", *s.circularity_error) : kUnknown,
@@ -252,12 +251,17 @@ void print_reports(const StickStatistics& s) {
   }
 }
 
-void print_advice(const StickAdvice& a) {
+void print_advice(const StickAnalysis& stick) {
+  const StickAdvice& a = stick.advice;
   const StickCalibration& c = a.calibration;
   print_row("inner zone", fmt::format("{:>9.3f}", a.inner_zone),
             fmt::format("{:.3f} of the deflection", c.inner));
-  print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
-            fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
+  if (is_turned(stick.statistics)) {
+    print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
+              fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
+  } else {
+    print_row("outer zone", kUnknown, "range and outer zone stay as they were");
+  }
   if (c.frame == StickFrame{}) return;
   constexpr const char* kRaw[] = {"x", "-x", "y", "-y"};
   print_row("axes",
@@ -291,7 +295,8 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"drift_per_s", value_or_null(s.drift_per_s)},
           {"rate_hz", value_or_null(s.rate_hz)},
           {"inner_zone", is_known ? nlohmann::ordered_json(stick.advice.inner_zone) : nullptr},
-          {"outer_zone", is_known ? nlohmann::ordered_json(stick.advice.outer_zone) : nullptr},
+          {"outer_zone",
+           is_known && is_turned(s) ? nlohmann::ordered_json(stick.advice.outer_zone) : nullptr},
           {"verdict", name_of(stick.advice.verdict)},
           {"reason", stick.advice.reason},
           {"samples", s.samples},
@@ -315,33 +320,33 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"displaced_by", s.displaced_by},
           {"hands_off_s", seconds_of(s.hands_off)},
           {"least_reach", worst ? nlohmann::ordered_json(reach_in(s.outline, *worst)) : nullptr},
-          {"least_reach_deg", worst ? nlohmann::ordered_json(degrees_of(*worst)) : nullptr}};
+          {"least_reach_deg",
+           worst ? nlohmann::ordered_json(360.0 * *worst / kOutlineDirections) : nullptr}};
 }
 
 void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
-  fmt::print("{} ({:04x}:{:04x})\n", printable(device.name), device.vendor, device.product);
+  say("{} ({:04x}:{:04x})\n", printable(device.name), device.vendor, device.product);
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick) continue;
-    fmt::print("\n{} stick: {}. {}\n  {:<18}{:>9}{:>9}\n", kSideNames[i],
-               name_of(stick->advice.verdict), stick->advice.reason, "", "x right", "y front");
+    say("\n{} stick: {}. {}\n  {:<18}  {:>9}{:>9}\n", kSideNames[i], name_of(stick->advice.verdict),
+        stick->advice.reason, "", "x right", "y front");
     print_rest(stick->statistics);
     print_rim(stick->statistics);
     print_reports(stick->statistics);
-    if (stick->statistics.centre) print_advice(stick->advice);
+    if (stick->statistics.centre) print_advice(*stick);
   }
-  if (analysis.trigger[0] || analysis.trigger[1]) fmt::print("\n");
+  if (analysis.trigger[0] || analysis.trigger[1]) say("\n");
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{:.3f}", *value) : "not known";
   };
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& trigger = analysis.trigger[i];
     if (!trigger) continue;
-    fmt::print("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
-               number(trigger->released), number(trigger->pressed), trigger->samples);
+    say("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
+        number(trigger->released), number(trigger->pressed), trigger->samples);
   }
-  fmt::print(
-      "\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
+  say("\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
 }
 
 // As interface.md has it, with further keys.
@@ -529,9 +534,9 @@ std::optional<Error> draw_comparison(const std::string&, const ComparedFiles&) {
 #endif
 
 void print_changes(const std::vector<std::string>& changes, const std::string& if_none) {
-  fmt::print("\n");
-  if (changes.empty()) fmt::print("{}\n", if_none);
-  for (const std::string& change : changes) fmt::print("{}\n", printable(change));
+  say("\n");
+  if (changes.empty()) say("{}\n", if_none);
+  for (const std::string& change : changes) say("{}\n", printable(change));
 }
 
 // --compare: two files of one pad. Returns the exit status.
@@ -548,11 +553,11 @@ int compare(const CalibrateArguments& arguments) {
     print_remarks(kCalibrateCommand, {"the files are of different devices; compared all the same"});
   for (std::size_t side = 0; side < 2; ++side) {
     files.numbers[side] = compared_numbers(a, b, side);
-    fmt::print("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
-               files.names[0], files.names[1]);
+    say("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
+        files.names[0], files.names[1]);
     for (const ComparedNumber& number : files.numbers[side]) {
-      fmt::print("  {:<24}{:>16}  {:>16}{}\n", number.label, number.values[0], number.values[1],
-                 number.values[0] == number.values[1] ? "" : "  *");
+      say("  {:<24}{:>16}  {:>16}{}\n", number.label, number.values[0], number.values[1],
+          number.values[0] == number.values[1] ? "" : "  *");
     }
   }
   print_changes(changes_since(a, b), "what was measured for both files has not changed");

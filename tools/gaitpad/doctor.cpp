@@ -381,9 +381,8 @@ void print_findings_json(const std::vector<Finding>& list) {
 
 void print_text(const std::vector<Finding>& list) {
   for (const Finding& f : list) {
-    fmt::print("{:<8} {}{}{}{}\n", state_name(f.state),
-               f.device.empty() ? "" : printable(f.device) + ": ", printable(f.cause),
-               f.fix.empty() ? "" : "; fix: ", printable(f.fix));
+    say("{:<8} {}{}{}{}\n", state_name(f.state), f.device.empty() ? "" : printable(f.device) + ": ",
+        printable(f.cause), f.fix.empty() ? "" : "; fix: ", printable(f.fix));
   }
 }
 

@@ -20,6 +20,7 @@
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 #include "tools/gaitpad/run_end.h"
+#include "tools/gaitpad/terminal.h"
 
 namespace gaitpad {
 namespace {
@@ -195,10 +196,20 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"buttons", button_names(pad.state)}};
 }
 
-std::string pad_header() {
-  return "left         right        triggers     Hz   new  same jitter   gap ms latency max us "
-         "frame p99 ms "
-         "lost buttons, pad";
+// What a pad shows: one line, or three where the terminal is too narrow for it.
+struct PadLine {
+  std::string sticks, times, who;
+};
+const PadLine kHeader = {"left         right        triggers     Hz jitter   gap ms",
+                         "  new  same latency max us frame p99 ms lost", "buttons, pad"};
+
+void add_lines(const PadLine& pad, std::size_t columns, std::vector<std::string>& lines) {
+  std::string line = fmt::format("{} {} {}", pad.sticks, pad.times, pad.who);
+  if (columns >= 122 || pad.times.empty()) {
+    lines.push_back(std::move(line));
+  } else {
+    lines.insert(lines.end(), {pad.sticks, "  " + pad.times, "  " + pad.who});
+  }
 }
 
 std::string frame_text(const Window& window, std::size_t percent) {
@@ -213,21 +224,22 @@ std::string movement_text(const NewValueCount& new_values) {
   return fmt::format("{:>5.0f} {:>3.0f} %", rate->new_value_hz, 100.0 * rate->repeats());
 }
 
-std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
+PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
   const std::string who = pad_name(stream.device(index).info);
-  if (!pad.is_plugged) return "unplugged: " + who;
+  if (!pad.is_plugged) return {"unplugged:", "", who};
   const Stick stick = stick_of(pad);
   const Triggers triggers = triggers_of(pad);
   const Window& w = pad.shown;
   std::string buttons;
   for (const std::string& name : button_names(pad.state)) buttons += name + " ";
-  return fmt::format(
-      "{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {} {:>6.2f} {:>8.1f} {:>7.0f} "
-      "{:>6.0f} {:>5} {:>6} {:>4} {}{}",
-      stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left, triggers.right,
-      rate_hz(w), movement_text(pad.new_values), jitter(w.interval_us) / 1e3,
-      greatest(w.interval_us) / 1e3, median(w.latency_us), greatest(w.latency_us),
-      frame_text(w, 50), frame_text(w, 99), stream.counts().lost, buttons, who);
+  return {fmt::format("{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f}",
+                      stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left,
+                      triggers.right, rate_hz(w), jitter(w.interval_us) / 1e3,
+                      greatest(w.interval_us) / 1e3),
+          fmt::format("{} {:>7.0f} {:>6.0f} {:>5} {:>6} {:>4}", movement_text(pad.new_values),
+                      median(w.latency_us), greatest(w.latency_us), frame_text(w, 50),
+                      frame_text(w, 99), stream.counts().lost),
+          buttons + who};
 }
 
 // The line with these reports has just been written.
@@ -266,8 +278,10 @@ class Display {
     }
     if (!is_rewritten_ || time_ns < rewritten_ns_ + kRewriteNs) return;
     rewritten_ns_ = time_ns;
-    std::vector<std::string> lines = {pad_header()};
-    for (const auto& [index, pad] : pads) lines.push_back(pad_text(index, pad, stream));
+    const std::size_t columns = screen_size().columns;
+    std::vector<std::string> lines;
+    add_lines(kHeader, columns, lines);
+    for (const auto& [index, pad] : pads) add_lines(pad_text(index, pad, stream), columns, lines);
     line_.show(lines);
     note_shown(pads);
   }
@@ -296,8 +310,11 @@ class Display {
         print_json_line(
             pad_json(index, pad, stream, static_cast<double>(time_ns - start_ns_) / 1e9));
       } else {
-        if (!std::exchange(has_header_, true)) fmt::print("{}\n", pad_header());
-        fmt::print("{}\n", pad_text(index, pad, stream));
+        constexpr std::size_t kWhole = 1000;  // one line for each pad
+        std::vector<std::string> lines;
+        if (!std::exchange(has_header_, true)) add_lines(kHeader, kWhole, lines);
+        add_lines(pad_text(index, pad, stream), kWhole, lines);
+        for (const std::string& line : lines) fmt::print("{}\n", line);
       }
     }
   }

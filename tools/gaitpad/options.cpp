@@ -85,7 +85,7 @@ Result<PadFiles> pad_files(const std::string& map, const std::string& calibratio
 }
 
 void MissingPad::look(std::int64_t plugged, StatusLine& line) {
-  if (now_ns() >= start_ns_ + kPatienceNs) tell(plugged, "not there yet, waiting", line);
+  if (now_ns() >= start_ns_ + kPatienceNs) tell(plugged, "is not there yet; waiting for it", line);
 }
 
 void MissingPad::finish(std::int64_t plugged, StatusLine& line) {
@@ -96,7 +96,7 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
   if (is_told_ || plugged > 0) return;
   is_told_ = true;
   std::vector<std::string> remarks = {
-      fmt::format("{}: {}", wish_.pad.empty() ? "a pad" : wish_.pad, what)};
+      fmt::format("{} {}", wish_.pad.empty() ? "the pad" : in_quotes(wish_.pad), what)};
   for (const std::string& other : is_choosy(wish_) ? pads_of_system() : std::vector<std::string>())
     remarks.push_back(other);
   remarks.emplace_back("gaitpad doctor finds why a pad does not work");

@@ -85,9 +85,9 @@ void print_result(const RecordArguments& arguments, const Recorded& recorded,
                      {"unplugged", recorded.unplugged},
                      {"lost", lost}});
   } else {
-    fmt::print("{}: {} ({:04x}:{:04x}, {}), {} reports in {:.1f} s, {} lost\n",
-               printable(arguments.out), printable(info.name), info.vendor, info.product,
-               info.driver.empty() ? "a recording" : info.driver, recorded.reports, seconds, lost);
+    say("{}: {} ({:04x}:{:04x}, {}), {} reports in {:.1f} s, {} lost\n", printable(arguments.out),
+        printable(info.name), info.vendor, info.product,
+        info.driver.empty() ? "a recording" : info.driver, recorded.reports, seconds, lost);
   }
 }
 

@@ -352,7 +352,7 @@ struct ChainSystem {
     IkPose pose;
   };
   const Problem& p;
-  const IkDofValues&weight = p.weight, &min_rad = p.min_rad, &max_rad = p.max_rad;
+  const IkDofValues &weight = p.weight, &min_rad = p.min_rad, &max_rad = p.max_rad;
   const int dofs = p.chain.dofs;
 
   void place(const IkAngles& angles_rad, Place& place) const noexcept {
@@ -487,8 +487,8 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
     start[j] = min_of(max_of(start[j], p.min_rad[j]), p.max_rad[j]);
   }
   IkAngles answer = start;
-  const IkResult result = rows.size() <= 4 ? best_of_tries<4>(p, start, answer)
-                                           : best_of_tries<6>(p, start, answer);
+  const IkResult result =
+      rows.size() <= 4 ? best_of_tries<4>(p, start, answer) : best_of_tries<6>(p, start, answer);
   if (!std::isfinite(result.error_m)) return refused();
   angles_rad = answer;
   return result;

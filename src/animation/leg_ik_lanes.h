@@ -121,8 +121,7 @@ constexpr double kRoomUsed = 0.8;
 // and of the squares of the rows that give way over what they give, under the exact rows.
 template <class V, class Step>
 inline void share_step(const LegShares<V>& shares, const MaskOf<V>& shared, const LegPlace<V>& at,
-                       const LegValues<V>& angles_rad, LegColumns<V>& column,
-                       Step& step) noexcept {
+                       const LegValues<V>& angles_rad, LegColumns<V>& column, Step& step) noexcept {
   LegRows<V> b = at.dx;
   for (int r : {3, 4, 5}) {
     const int of = r == 3 ? 0 : 1;
@@ -185,8 +184,7 @@ struct LegSystem {
     for (int j = 1; j < kLegDofs; ++j) best.axis[j] = chosen(better, place.axis[j], best.axis[j]);
     for (const auto member : {&Place::knee_m, &Place::ankle_m})
       best.*member = chosen(better, place.*member, best.*member);
-    for (int p = 0; p < 3; ++p)
-      best.point_m[p] = chosen(better, place.point_m[p], best.point_m[p]);
+    for (int p = 0; p < 3; ++p) best.point_m[p] = chosen(better, place.point_m[p], best.point_m[p]);
     for (int r = 0; r < 6; ++r) best.dx[r] = better ? place.dx[r] : best.dx[r];
     best.squares = better ? place.squares : best.squares;
   }

@@ -140,8 +140,8 @@ inline constexpr double kLeastW = 0.09;     // of a locked joint
 inline constexpr double kMostPull_rad = 18.0 * kDegree;
 inline constexpr double kHeldPull = 0.3;  // what acts of the pull where the foot may not turn
 inline constexpr double kFootLever_m = 0.2;
-// Of the flight: until here the toe is the planted point, from here on the heel; from here on the foot
-// turns back to its plan, and is as good as landed.
+// Of the flight: until here the toe is the planted point, from here on the heel; from here on the
+// foot turns back to its plan, and is as good as landed.
 inline constexpr double kToeUntil = 0.15, kOnHeel = 0.6, kToLand = 0.4, kLanded = 0.95;
 // How far a foot gives way: squared radians that cost as much as one of a joint's.
 inline constexpr double kGiveAside = 0.15, kGiveFlying = 0.5, kGiveRolling = 0.05;

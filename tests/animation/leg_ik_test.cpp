@@ -12,7 +12,6 @@
 namespace gaitpad::test {
 namespace {
 
-
 // A leg, the six rows of its foot, and where its solver starts.
 struct Leg {
   IkChain chain;

@@ -16,12 +16,12 @@ using Packet = std::vector<std::uint8_t>;
 
 // A wired Steam Controller: hid-steam.c's collection ff00:0001 of 64 bytes without ids.
 const std::string kSteam =
-    "R: 21 06 00 ff 09 01 a1 01 15 00 26 ff 00 75 08 95 40 09 01 81 02 c0\nN: Steam\nI: 3 28de 1102\n";
+    "R: 21 06 00 ff 09 01 a1 01 15 00 26 ff 00 75 08 95 40 09 01 81 02 c0\nN: Steam\nI: 3 28de "
+    "1102\n";
 // Over Bluetooth: report 3 of 19 bytes (SDL_hidapi_steam.c).
 const std::string kBluetooth =
     "R: 18 06 00 ff 09 01 a1 01 85 03 75 08 95 13 09 01 81 02 c0\nN: Steam\nI: 5 28de 1106\n";
-const std::string kAdapter =
-    "R: 7 05 01 09 05 a1 01 c0\nN: Pad\nI: 3 1209 0001\n";
+const std::string kAdapter = "R: 7 05 01 09 05 a1 01 c0\nN: Pad\nI: 3 1209 0001\n";
 
 std::string report_line(int ms, Packet bytes, std::size_t size) {
   bytes.resize(size);
@@ -50,9 +50,9 @@ Packet bytes_of(const Trace& trace, std::size_t event) {
 
 // Type 4 tells the battery (hid-steam.c), type 1 is a state.
 TEST(RecordedPackets, ABatteryMessageIsNoStateOfTheStick) {
-  const Trace trace = accepted(kSteam + report_line(0, {1, 0, 1, 0x3c, 7}, 64) +
-                               report_line(4, {1, 0, 4, 0x0b, 9}, 64) +
-                               report_line(8, {1, 0, 1, 0x3c, 8}, 64));
+  const Trace trace =
+      accepted(kSteam + report_line(0, {1, 0, 1, 0x3c, 7}, 64) +
+               report_line(4, {1, 0, 4, 0x0b, 9}, 64) + report_line(8, {1, 0, 1, 0x3c, 8}, 64));
   ASSERT_EQ(trace.events.size(), 2u);
   EXPECT_EQ(bytes_of(trace, 1)[4], 8);
   EXPECT_EQ(trace.events[1].time_us, 8000);
@@ -77,7 +77,8 @@ TEST(RecordedPackets, ASessionAndOtherDriversStayAsTheyAre) {
   EXPECT_EQ(accepted("V: 1 rate_hz=240\n" + kSteam + "T: 0\n" + battery).events.size(), 1u);
   EXPECT_EQ(accepted(kSteam + "B: evdev\n" + battery).events.size(), 1u);
   EXPECT_EQ(accepted(kSteam + "B: hidraw\n" + battery).events.size(), 0u);
-  EXPECT_EQ(accepted(kAdapter + report_line(0, {1, 2}, 2) + "E: 000000.001000 0\n").events.size(), 2u)
+  EXPECT_EQ(accepted(kAdapter + report_line(0, {1, 2}, 2) + "E: 000000.001000 0\n").events.size(),
+            2u)
       << "an empty report is counted as bad";
 }
 

@@ -1,3 +1,5 @@
+#include <atomic>
+
 #include "drivers/driver_entries.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/drivers.h"
@@ -67,6 +69,19 @@ Result<std::unique_ptr<VirtualPad>> VirtualPad::create() {
 #else
   return Error{"no pad can be made: the program was built without libevdev"};
 #endif
+}
+
+namespace {
+std::atomic<bool> uses_sdl_database{false};
+}  // namespace
+
+void use_sdl_database() noexcept { uses_sdl_database = true; }
+
+std::string sdl_mapping_of([[maybe_unused]] const DeviceInfo& device) {
+#ifdef GAITPAD_HAS_SDL
+  if (uses_sdl_database) return sdl_library_mapping(device);
+#endif
+  return {};
 }
 
 }  // namespace gaitpad

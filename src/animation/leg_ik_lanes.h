@@ -108,14 +108,14 @@ inline V first_rows(const LegRows<V>& dx) noexcept {
 
 // The exact rows are closed in every step, this share of the rest: with all of it some walks swing
 // between two poses.
-constexpr double kShareStep = 0.5;
-constexpr double kMostShareStep_rad = 0.6;
-constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
-constexpr int kMostShareSteps = 8;
-constexpr double kExactRow_m2 = 1e-13;
-constexpr double kKneeSpring = 100.0;
+inline constexpr double kShareStep = 0.5;
+inline constexpr double kMostShareStep_rad = 0.6;
+inline constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
+inline constexpr int kMostShareSteps = 8;
+inline constexpr double kExactRow_m2 = 1e-13;
+inline constexpr double kKneeSpring = 100.0;
 // Of the room of a foot's pitch: from here on it gives way no more.
-constexpr double kRoomUsed = 0.8;
+inline constexpr double kRoomUsed = 0.8;
 
 // Makes a step of legs whose weights differ one towards the least sum of (angle - reference)^2 / W
 // and of the squares of the rows that give way over what they give, under the exact rows.

@@ -13,15 +13,15 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kLeastDampingSquared = 1e-20;
-constexpr double kGrowth = 0.1;
-constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
-constexpr double kFarthest = 0.5;  // metres: the greatest |dX| that one step asks for
+inline constexpr double kLeastDampingSquared = 1e-20;
+inline constexpr double kGrowth = 0.1;
+inline constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
+inline constexpr double kFarthest = 0.5;  // metres: the greatest |dX| that one step asks for
 // The error stands still if kPatience iterations together lower it by less than the share
 // kLeastGain of itself, or of kGainFrom metres if it is greater.
-constexpr int kPatience = 6;
-constexpr double kLeastGain = 0.001;
-constexpr double kGainFrom = 0.1;
+inline constexpr int kPatience = 6;
+inline constexpr double kLeastGain = 0.001;
+inline constexpr double kGainFrom = 0.1;
 
 // A System has kRows, kDofs (at most) and `dofs`; weight, min_rad and max_rad of each DOF; a Place
 // with dx, how far each row is from its goal, and the sum of their squares; place(), set_columns(),

@@ -17,6 +17,7 @@
 
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "gaitpad/drivers.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
@@ -157,6 +158,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "gaitpad " GAITPAD_VERSION);
   hold_standard_descriptors();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that is too large is a failed write like any other
+  gaitpad::use_sdl_database();
   int status = 0;
   bool is_written = true;
   gaitpad::add_play(app, status);

@@ -100,15 +100,16 @@ TEST_F(Walking, InItsFramingTheCameraSeesEverybodyWithTheirNames) {
     begin({"even", "stiff_hip", "stiff_knee", "limp_left"}, 0, terrain);
     run(600);
     fill();
-    for (const auto& [viewport, scale] :
-         {Size{{232, 44, 744, 612}, 1.0}, Size{{0, 0, 1280, 600}, 1.0},
-          Size{{0, 44, 640, 330}, 1.0}, Size{{464, 88, 2768, 1960}, 2.0},
-          Size{{0, 0, 300, 700}, 1.0}}) {
+    for (const Size& size : {Size{{232, 44, 744, 612}, 1.0}, Size{{0, 0, 1280, 600}, 1.0},
+                             Size{{0, 44, 640, 330}, 1.0}, Size{{464, 88, 2768, 1960}, 2.0},
+                             Size{{0, 0, 300, 700}, 1.0}}) {
+      const Viewport& viewport = size.viewport;
       for (const double yaw : {Camera().yaw_rad, 1.1, kPi / 2.0, -kPi / 2.0, 2.05}) {
         SCOPED_TRACE(std::string(terrain) + ", yaw " + std::to_string(yaw) + ", width " +
                      std::to_string(viewport.width));
         Camera camera{.yaw_rad = yaw};
-        show(camera, ensemble_->framing(camera, viewport, state_, scale), ensemble_->focus_m(-1));
+        show(camera, ensemble_->framing(camera, viewport, state_, size.scale),
+             ensemble_->focus_m(-1));
         const auto expect_seen = [&](const vec3& place_m) {
           const vec3 place = projected(camera, place_m, viewport.width, viewport.height);
           EXPECT_GT(place.z, 0.0);

@@ -408,9 +408,12 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
     const auto in = [&chance](double low, double high) {
       return low + (high - low) * (chance() >> 8) / double(1 << 24);
     };
-    for (int k = 0; k < 60; ++k)
-      hiker.walk(chance() % 2 ? 0.0 : in(-0.6, 0.6), in(-0.3, 1.0),
-                 40 + static_cast<int>(chance() % 300));
+    for (int k = 0; k < 60; ++k) {
+      // One after the other: compilers draw the arguments of a call in orders of their own.
+      const int ticks = 40 + static_cast<int>(chance() % 300);
+      const double y = in(-0.3, 1.0), x = chance() % 2 ? 0.0 : in(-0.6, 0.6);
+      hiker.walk(x, y, ticks);
+    }
     // Now and then a foot lands hard that was sent somewhere else in mid-flight.
     expect_sound(hiker.worst(), "random sticks, leg " + std::to_string(ratio), 1.0, 1.5);
   }

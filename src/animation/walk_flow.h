@@ -74,8 +74,8 @@ inline ParamsOf<double> params_of(const GaitParams& params,
 
 // Time constants in seconds at the reference leg; they scale with pendulum time.
 inline constexpr double kStepSmoothing = 0.12;
-inline constexpr double kTurnGoalSmoothing = 0.08;
-inline constexpr double kTurnSmoothing = 0.25;
+inline constexpr double kTurnGoalSmoothing = 0.03;
+inline constexpr double kTurnSmoothing = 0.12;
 inline constexpr double kBounceSmoothing = 0.30;
 inline constexpr double kAmplitudeSmoothing = 0.18, kAmplitudeFading = 0.07;
 inline constexpr double kWeightSmoothing = 0.15;

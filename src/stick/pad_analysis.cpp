@@ -25,7 +25,7 @@ constexpr double kAssumedHysteresis = 0.05;  // raw, if the stick was let go onl
 constexpr double kSigmasOfRest = 5.5;
 constexpr double kSigmasOfRim = 4.5;  // at the rim one report in 300,000 is not full
 // From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
-constexpr double kLeastSideways = 0.08, kGreatestSideways = 0.14;
+constexpr double kLeastSideways = 0.11, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
 constexpr double kSpreadOfDisplaced = 1.1;
 constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured

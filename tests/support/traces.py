@@ -13,8 +13,8 @@ DESCRIPTOR = bytes([
     0x75, 0x04, 0x95, 0x01, 0x81, 0x42, 0x65, 0x00, 0x45, 0x00,  # hat with null state
     0x05, 0x09, 0x19, 0x01, 0x29, 0x0C, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x0C, 0x81, 0x02,
     0xC0])
-# Default calibration of the interface: radial zone, then 0.08 on the sideways axis.
-DEFAULT_INNER, DEFAULT_OUTER, DEFAULT_SIDEWAYS = 0.2, 0.95, 0.08
+# Default calibration of the interface: radial zone, then 0.11 on the sideways axis.
+DEFAULT_INNER, DEFAULT_OUTER, DEFAULT_SIDEWAYS = 0.2, 0.95, 0.11
 # A calibration without zones: what the trace says is what frames.csv shows.
 EXACT_CALIBRATION = """name = "exact, for tests"
 devices = ["1209:0001"]

@@ -57,7 +57,7 @@ struct StickCalibration {
   ZoneShape shape = ZoneShape::both;
   double inner = 0.20;     // 0 .. 0.9
   double outer = 0.95;     // inner + 0.05 .. 1
-  double sideways = 0.08;  // ZoneShape::both only: fraction of the calibrated deflection, 0 .. 0.5
+  double sideways = 0.11;  // ZoneShape::both only: fraction of the calibrated deflection, 0 .. 0.5
   double curve = 0.0;      // 0 linear .. 1 cubic: (1 - curve) t + curve t^3
   bool filters_jumps = false;  // each axis is the median of its last three reports: JumpFilter
   bool operator==(const StickCalibration&) const = default;
@@ -77,7 +77,7 @@ inline constexpr double kInnerZoneSony = 0.12;
 inline constexpr double kInnerZoneUnknown = 0.20;
 
 // The calibrated position, on the unit disc, +x right, +y forward. Exactly 0 inside the inner zone,
-// of length 1 from the outer zone on (ZoneShape::both: 2.1 % shorter at most), continuous and
+// of length 1 from the outer zone on (ZoneShape::both: 3 % shorter at most), continuous and
 // monotone between them, odd about the centre. Not-a-number counts as the centre.
 vec2 stick_position(const StickCalibration& calibration, const vec2& raw) noexcept;
 // Both sticks of a decoded pad.

@@ -1073,8 +1073,8 @@ FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<
                          const PlanOf<V>& plan, Side side, const V& u) noexcept {
   const auto& foot = state.foot[side];
   StrideFootOf<V> cell = plan.flying;
-  const auto is_short = at.starting | at.closing;
-  const V goes = is_short ? smootherstep(V(u / kEdgeGoes)) : all_of<V>(1.0);
+  // Where the hips lead, the foot stood at another phase than it flies at.
+  const V goes = at.led ? smootherstep(V(u / kEdgeGoes)) : all_of<V>(1.0);
   const StrideFootOf<V>& stood = plan.cell.foot[side];
   cell.twist_rad = mix(stood.twist_rad, cell.twist_rad, goes);
   cell.roll_rad = mix(stood.roll_rad, cell.roll_rad, goes);

@@ -217,8 +217,7 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
                         const TablesOf<V>& tables, const KnotsOf<V>& knots, const V& ahead,
                         PlanOf<V>& plan) noexcept {
   const WalkModel& model = tick.model;
-  const auto& foot = plan.cell.foot;
-  plan.heel_up_m = at.right_steps ? foot[kRightSide].heel_m.y : foot[kLeftSide].heel_m.y;
+  plan.heel_up_m = plan.flying.heel_m.y;
   // Even styles ask for equal steps, or for the data's own, which may differ.
   std::array<V, 2> asked;
   std::array<V, 2> length_m;
@@ -241,7 +240,7 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
   const Vec<V> heel_m =
       heel_at<V>(ratios_at<V>(tables, V(ahead * longer / max_of(own, all_of<V>(kLeastAsked)))),
                  knots, at.right_steps);
-  const V high_m = plan.shown * model.stride_scale.length * heel_m.y;
+  const V high_m = model.stride_scale.length * heel_m.y;
   plan.heel_up_m = is_limping ? mix(plan.heel_up_m, high_m, limps) : plan.heel_up_m;
 }
 
@@ -344,12 +343,13 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
   }
   stride_between<V>(ratios[0], ratios[1], plan.change, knots, plan.cell);
   scale_stride<V>(scale, plan.cell);
+  // A foot that flies does so whatever else shows of the tables.
+  const auto& feet = plan.cell.foot;
+  plan.flying = chosen_foot<V>(at.right_steps, feet[kRightSide], feet[kLeftSide]);
   constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
   auto* to = reinterpret_cast<V*>(&plan.cell);
   for (int k = 0; k < kNumbers; ++k) to[k] = plan.shown * to[k];
   raise_limping_heel<V>(tick, at, state, tables, knots, ahead, plan);
-  const auto& feet = plan.cell.foot;
-  plan.flying = chosen_foot<V>(at.right_steps, feet[kRightSide], feet[kLeftSide]);
   if (any(at.starting | at.closing))
     plan_short_flight<V>(tick, at, state, tables, ahead, phase, plan);
   plan.cell.pelvis_m.y = bounced<V>(state.gait, plan);

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <mutex>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -59,17 +60,19 @@ struct OpenNode {
 
 // The kernel always expects a report id, 0 if the pad has none; pad models only write one that
 // exists.
-bool write_packet(hid_device* handle, bool is_numbered, std::span<const std::uint8_t> packet) {
-  if (packet.empty()) return false;
-  if (is_numbered) return hid_write(handle, packet.data(), packet.size()) >= 0;
-  std::vector<std::uint8_t> with_id(packet.size() + 1, 0);
-  std::copy(packet.begin(), packet.end(), with_id.begin() + 1);
-  return hid_write(handle, with_id.data(), with_id.size()) >= 0;
+std::vector<std::uint8_t> with_id(bool is_numbered, std::span<const std::uint8_t> packet) {
+  std::vector<std::uint8_t> whole(packet.begin(), packet.end());
+  if (!is_numbered) whole.insert(whole.begin(), 0);
+  return whole;
 }
 
 // hidapi does not expose its file descriptor, which the I/O thread needs for poll(): it is looked
 // for among those of this process.
 Result<OpenNode> open_hidraw_node(const std::string& node) {
+  // hidapi 0.13 frees its text of the last error on each opening, whichever thread opens; and which
+  // descriptor is new could not be told while another thread opens the same node.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   struct stat status {};
   if (::stat(node.c_str(), &status) != 0)
     return Error{fmt::format("{}: {}", node, std::strerror(errno))};
@@ -111,7 +114,8 @@ class HidrawPort final : public PadPort {
  public:
   HidrawPort(hid_device* handle, bool is_numbered) : handle_(handle), is_numbered_(is_numbered) {}
   bool write(std::span<const std::uint8_t> packet) noexcept override {
-    return write_packet(handle_, is_numbered_, packet);
+    const std::vector<std::uint8_t> whole = with_id(is_numbered_, packet);
+    return !packet.empty() && hid_write(handle_, whole.data(), whole.size()) >= 0;
   }
   std::size_t read(std::span<std::uint8_t> packet,
                    std::chrono::milliseconds timeout) noexcept override {
@@ -136,23 +140,33 @@ class HidrawPort final : public PadPort {
   bool is_numbered_;
 };
 
-// For threads: each has a handle of its own, because hidapi writes its error text into the handle
-// on every call. Null if the node cannot be opened again, or no thread can be started.
-std::unique_ptr<PacketSender> hidraw_sender(const std::string& node, bool is_numbered) {
-  const std::shared_ptr<hid_device> handle(hid_open_path(node.c_str()), CloseHandle());
-  if (!handle) return nullptr;
-  return PacketSender::create([handle, is_numbered](std::span<const std::uint8_t> packet) {
-    return write_packet(handle.get(), is_numbered, packet);
+// For threads, which must not use the handle: hidapi writes its error text into it on every call.
+// They share the one opening; another one would have a queue of reports that nobody reads.
+std::shared_ptr<const OwnedFd> shared_opening(int fd) {
+  return std::make_shared<const OwnedFd>(fd < 0 ? -1 : ::fcntl(fd, F_DUPFD_CLOEXEC, 0));
+}
+
+// Null if the descriptor is not known, or no thread can be started.
+std::unique_ptr<PacketSender> hidraw_sender(int fd, bool is_numbered) {
+  const auto own = shared_opening(fd);
+  if (own->get() < 0) return nullptr;
+  return PacketSender::create([own, is_numbered](const OutPacket& packet) {
+    const auto bytes = std::span(packet.bytes).first(packet.size);
+    if (bytes.empty()) return false;
+    std::vector<std::uint8_t> whole = with_id(is_numbered || packet.is_feature, bytes);
+    if (packet.is_feature)
+      return ::ioctl(own->get(), HIDIOCSFEATURE(whole.size()), whole.data()) >= 0;
+    return ::write(own->get(), whole.data(), whole.size()) >= 0;
   });
 }
 
-PresentState::Ask hidraw_input_request(const std::string& node) {
-  const std::shared_ptr<hid_device> handle(hid_open_path(node.c_str()), CloseHandle());
-  if (!handle) return nullptr;
-  return [handle](std::uint8_t id, std::span<std::uint8_t> answer) -> std::size_t {
+PresentState::Ask hidraw_input_request(int fd) {
+  const auto own = shared_opening(fd);
+  if (own->get() < 0) return nullptr;
+  return [own](std::uint8_t id, std::span<std::uint8_t> answer) -> std::size_t {
     if (answer.empty()) return 0;
     answer[0] = id;
-    const int size = hid_get_input_report(handle.get(), answer.data(), answer.size());
+    const int size = ::ioctl(own->get(), HIDIOCGINPUT(answer.size()), answer.data());
     return size > 0 ? static_cast<std::size_t>(size) : 0;
   };
 }
@@ -182,7 +196,7 @@ class HidrawDevice final : public Device {
         timer_(fd_ < 0 ? blind_timer() : -1),
         model_(make_pad_model(info_)),
         is_numbered_(has_report_ids(info_)),
-        present_(is_numbered_, hidraw_input_request(node_)) {
+        present_(is_numbered_, hidraw_input_request(fd_)) {
     wait_on_[0] = {.fd = fd_ >= 0 ? fd_ : timer_.get(), .events = POLLIN, .revents = 0};
   }
   ~HidrawDevice() override {
@@ -201,8 +215,8 @@ class HidrawDevice final : public Device {
     std::ranges::copy(present_.poll_fds(), wait_on_.begin() + 1);
     OutPacket still;
     model_->rumble({}, still);
-    if (still.size == 0) return;
-    sender_ = hidraw_sender(node_, is_numbered_);
+    if (still.size == 0 && !model_->replies()) return;
+    sender_ = hidraw_sender(fd_, is_numbered_);
     if (!sender_ && access_problem(node_).empty())
       remarks_.push_back(node_ + ": the motors cannot be reached");
   }
@@ -212,6 +226,7 @@ class HidrawDevice final : public Device {
     return std::span(wait_on_).first(present_.is_waiting() ? wait_on_.size() : 1);
   }
   Status read(Report& report) noexcept override;
+  void hand_on_raw() noexcept override { is_raw_ = true; }
   bool rumble(const Rumble& rumble) noexcept override {
     if (!sender_) return false;
     OutPacket packet;
@@ -245,7 +260,7 @@ class HidrawDevice final : public Device {
   std::unique_ptr<PacketSender> sender_;  // null: no motors
   bool is_numbered_;
   PresentState present_;
-  bool is_rumbling_ = false;
+  bool is_rumbling_ = false, is_raw_ = false;
   PlugWatch plug_;
   bool is_unplugged_ = false;  // reports from before are still to be read
   int errors_in_row_ = 0;
@@ -291,10 +306,12 @@ bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) no
   OutPacket reply;
   const bool is_input = model_->accept(packet, reply);
   if (reply.size > 0 && sender_) sender_->send(reply);
-  if (plug_.has_changed(*model_, report)) return true;
-  if (!is_input) return false;
-  present_.heard(packet);
-  const std::span<const std::uint8_t> input = model_->report_of(packet);
+  if (is_input) present_.heard(packet);
+  if (!is_raw_) {
+    if (plug_.has_changed(*model_, report)) return true;
+    if (!is_input) return false;
+  }
+  const std::span<const std::uint8_t> input = is_raw_ ? packet : model_->report_of(packet);
   report.kind = ReportKind::input;
   report.size = static_cast<std::uint16_t>(input.size());
   std::copy(input.begin(), input.end(), report.bytes.begin());

@@ -69,13 +69,4 @@ Result<std::unique_ptr<VirtualPad>> VirtualPad::create() {
 #endif
 }
 
-std::string sdl_mapping_of(const DeviceInfo& device) {
-#ifdef GAITPAD_HAS_SDL
-  return sdl_library_mapping(device);
-#else
-  static_cast<void>(device);
-  return {};
-#endif
-}
-
 }  // namespace gaitpad

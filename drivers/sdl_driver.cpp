@@ -1,8 +1,9 @@
-// Joysticks of SDL2, and its data base of mappings. SDL has one list of joysticks and one queue of
-// events for the whole program, including windows. So nothing is taken off that queue: an event
-// watch sees each joystick event when SDL creates it, on any thread, and stores it for the open
-// device. SDL has nothing to poll(): it looks at its joysticks when it is asked to, here once a
-// millisecond.
+// Joysticks of SDL2, and its data base of mappings, where a user asks for the driver `sdl`. SDL has
+// one list of joysticks, one set of hints and one queue of events for the whole program, which may
+// be somebody else's. So hints are only set if the program has no joysticks, and nothing of others
+// is taken off the queue: an event watch sees each joystick event when SDL creates it, on any
+// thread, and stores it for the open device. SDL has nothing to poll(): it looks at its joysticks
+// when it is asked to, here once a millisecond.
 #include <SDL2/SDL.h>
 #include <fmt/format.h>
 #include <sys/timerfd.h>
@@ -65,6 +66,8 @@ class Sdl {
     return sdl;
   }
   Sdl(const Sdl&) = delete;
+  // Takes events of our open joysticks off the queue, if nobody else in the program empties it.
+  void clear_queue() noexcept;
   ~Sdl() {
     if (!problem_.empty()) return;
     SDL_DelEventWatch(&Sdl::watch, this);
@@ -81,19 +84,23 @@ class Sdl {
   };
   Sdl();
   static int SDLCALL watch(void* self, SDL_Event* event);
+  static int SDLCALL is_of_others(void* self, SDL_Event* event);
   std::string problem_;
+  bool has_host_ = false;  // the program had started SDL's events before
 };
 
 // Joysticks only. HIDAPI is off because its drivers send packets to pads while they look for them.
-// Buttons are named by position: the one that Nintendo labels A is our b.
-Sdl::Sdl() {
+// Buttons are named by position: the one that Nintendo labels A is our b. A program that has
+// started SDL's joysticks itself keeps its own hints.
+Sdl::Sdl() : has_host_(SDL_WasInit(SDL_INIT_EVENTS) != 0) {
   constexpr std::pair<const char*, const char*> kHints[] = {
       {SDL_HINT_JOYSTICK_HIDAPI, "0"},
       {SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1"},
       {SDL_HINT_NO_SIGNAL_HANDLERS, "1"},
-      {SDL_HINT_LINUX_JOYSTICK_DEADZONES, "0"},
       {SDL_HINT_GAMECONTROLLER_USE_BUTTON_LABELS, "0"}};
-  for (const auto& [name, value] : kHints) SDL_SetHintWithPriority(name, value, SDL_HINT_OVERRIDE);
+  if (SDL_WasInit(SDL_INIT_JOYSTICK) == 0) {
+    for (const auto& [name, value] : kHints) SDL_SetHint(name, value);
+  }
   if (SDL_InitSubSystem(SDL_INIT_JOYSTICK) != 0) {
     problem_ = fmt::format("SDL does not start: {}", SDL_GetError());
     return;
@@ -146,12 +153,30 @@ struct JoystickLock {
   JoystickLock(const JoystickLock&) = delete;
 };
 
+int SDLCALL Sdl::is_of_others(void* self, SDL_Event* event) {
+  const JoystickInboxes& inboxes = static_cast<Sdl*>(self)->inboxes;
+  switch (event->type) {
+    case SDL_JOYAXISMOTION:
+      return !inboxes.has(event->jaxis.which);
+    case SDL_JOYBUTTONDOWN:
+    case SDL_JOYBUTTONUP:
+      return !inboxes.has(event->jbutton.which);
+    case SDL_JOYHATMOTION:
+      return !inboxes.has(event->jhat.which);
+    default:
+      return 1;
+  }
+}
+
+void Sdl::clear_queue() noexcept {
+  if (!has_host_ && SDL_WasInit(SDL_INIT_VIDEO) == 0) SDL_FilterEvents(&Sdl::is_of_others, this);
+}
+
 // Updates all joysticks and looks for new ones; SDL does both in one call, which waits for the
-// kernel when a joystick was plugged in. The watch has stored the events; they are removed from
-// SDL's queue, which nobody empties in a program without a window.
+// kernel when a joystick was plugged in. The watch has stored the events.
 void update_joysticks() {
   SDL_JoystickUpdate();
-  SDL_FlushEvents(SDL_JOYAXISMOTION, SDL_CONTROLLERSENSORUPDATE);
+  Sdl::started().clear_queue();
 }
 
 JoystickState current_state(SDL_Joystick* joystick) {

@@ -224,6 +224,12 @@ JoystickInbox JoystickInboxes::take(JoystickInbox& inbox) {
   return taken;
 }
 
+bool JoystickInboxes::has(std::int32_t joystick) const noexcept {
+  const std::lock_guard lock(mutex_);
+  return std::ranges::any_of(inboxes_,
+                             [joystick](const auto* i) { return i->joystick == joystick; });
+}
+
 void JoystickInboxes::put(std::int32_t joystick, const JoystickReports::Change& change) {
   const std::lock_guard lock(mutex_);
   for (JoystickInbox* inbox : inboxes_) {

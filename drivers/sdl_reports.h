@@ -99,13 +99,14 @@ class JoystickInboxes {
   void add(JoystickInbox& inbox);
   void remove(const JoystickInbox& inbox) noexcept;
   JoystickInbox take(JoystickInbox& inbox);  // its content since the last take
+  bool has(std::int32_t joystick) const noexcept;
   void put(std::int32_t joystick, const JoystickReports::Change& change);
   // Drops the last changes as long as `is_reset` is true of them.
   void mark_removed(std::int32_t joystick,
                     const std::function<bool(const JoystickReports::Change&)>& is_reset);
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::vector<JoystickInbox*> inboxes_;
 };
 

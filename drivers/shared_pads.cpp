@@ -78,6 +78,8 @@ class SharedPad final : public Device {
     return status == Status::gone ? Status::gone : Status::nothing;
   }
 
+  void hand_on_raw() noexcept override { is_raw_ = true; }
+
   bool rumble(const Rumble& strengths) noexcept override {
     const std::lock_guard lock(device_->mutex);
     OutPacket packet;
@@ -116,7 +118,7 @@ class SharedPad final : public Device {
       --count_;
       OutPacket reply;
       const bool is_input = model_->accept({report.bytes.data(), report.size}, reply);
-      if (plug_.has_changed(*model_, report) || is_input) return true;
+      if (is_raw_ || plug_.has_changed(*model_, report) || is_input) return true;
     }
     return false;
   }
@@ -130,7 +132,7 @@ class SharedPad final : public Device {
   std::size_t first_ = 0, count_ = 0;
   PlugWatch plug_;
   std::int64_t lost_ = 0;
-  bool is_rumbling_ = false;
+  bool is_rumbling_ = false, is_raw_ = false;
 };
 
 std::unique_ptr<Device> open_shared_pad(std::shared_ptr<SharedDevice> device, DeviceInfo info) {

@@ -12,6 +12,7 @@
 
 #include "base/text.h"
 #include "drivers/driver_entries.h"
+#include "drivers/pads/recorded_packets.h"
 #include "drivers/posix.h"
 #include "gaitpad/trace.h"
 
@@ -22,7 +23,8 @@ constexpr std::int64_t kTail_us = 1'000'000;  // like a replay: one more second 
 
 // One run of a file. All of its open devices share it and its start time.
 struct Playback {
-  Trace trace;
+  Trace trace;                            // behind the models of its pads
+  std::vector<TraceEvent> raw_events;     // before them
   std::int64_t start_ns = 0;              // CLOCK_MONOTONIC
   std::int64_t first_us = 0, end_us = 0;  // of the file
 
@@ -39,6 +41,8 @@ Playback started_playback(Trace trace) {
     playback.first_us = first->time_us;
     playback.end_us = std::max(last->time_us, trace.end_time_us.value_or(last->time_us + kTail_us));
   }
+  playback.raw_events = trace.events;
+  accept_packets(trace);
   playback.trace = std::move(trace);
   playback.start_ns = now_ns();
   return playback;
@@ -82,7 +86,7 @@ class TraceFileDevice final : public Device {
       wake_at(due);
       return Status::nothing;
     }
-    const std::vector<TraceEvent>& events = playback_->trace.events;
+    const std::vector<TraceEvent>& events = *events_;
     if (next_ == events.size()) return Status::gone;
     copy_report(playback_->trace, events[next_], report);
     report.time_ns = due;
@@ -91,14 +95,21 @@ class TraceFileDevice final : public Device {
     return Status::report;
   }
 
+  void hand_on_raw() noexcept override {
+    events_ = &playback_->raw_events;
+    next_ = 0;
+    find_own();
+    wake_at(due_ns());
+  }
+
  private:
   void find_own() noexcept {
-    const std::vector<TraceEvent>& events = playback_->trace.events;
+    const std::vector<TraceEvent>& events = *events_;
     while (next_ < events.size() && events[next_].device != device_) ++next_;
   }
   // Of the next event; after the last one: of the end.
   std::int64_t due_ns() const noexcept {
-    const std::vector<TraceEvent>& events = playback_->trace.events;
+    const std::vector<TraceEvent>& events = *events_;
     return next_ < events.size() ? playback_->due_ns(events[next_].time_us) : end_ns_;
   }
   void wake_at(std::int64_t time_ns) noexcept {
@@ -109,6 +120,7 @@ class TraceFileDevice final : public Device {
   }
 
   const std::shared_ptr<const Playback> playback_;
+  const std::vector<TraceEvent>* events_ = &playback_->trace.events;
   const std::uint16_t device_;
   const std::int64_t end_ns_;
   const OwnedFd timer_;

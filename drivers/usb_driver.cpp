@@ -54,9 +54,19 @@ struct CloseHandle {
   void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
 };
 
+// Without discovery where libusb has that for one context: the devices are known from sysfs. Its
+// options for all contexts are the host's.
+int start_libusb(libusb_context*& context) {
+#if LIBUSB_API_VERSION >= 0x0100010A
+  const libusb_init_option option = {LIBUSB_OPTION_NO_DEVICE_DISCOVERY, {0}};
+  return libusb_init_context(&context, &option, 1);
+#else
+  return libusb_init(&context);
+#endif
+}
+
 // A USB interface in our hands: its device's node is open and the kernel driver detached. All of it
-// is undone at the end, also if the process dies. One context a pad: no thread of the library, no
-// events of other pads.
+// is undone at the end, also if the process dies. One context a pad: no events of other pads.
 class ClaimedInterface {
  public:
   static Result<std::unique_ptr<ClaimedInterface>> claim(const std::string& node,
@@ -94,11 +104,8 @@ Result<bool> ClaimedInterface::open(const std::string& node) {
     const std::string problem = access_problem(node);
     return Error{problem.empty() ? fmt::format("{}: {}", node, std::strerror(cause)) : problem};
   }
-  // No discovery, because the devices are known from sysfs. libusb only has this option for the
-  // whole process.
-  libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
   libusb_context* context = nullptr;
-  int error = libusb_init(&context);
+  int error = start_libusb(context);
   if (error != LIBUSB_SUCCESS) return usb_error(node, "libusb does not start", error);
   context_.reset(context);
   libusb_device_handle* handle = nullptr;
@@ -335,6 +342,8 @@ class UsbDevice final : public Device {
     return transfers_->is_gone() ? Status::gone : Status::nothing;
   }
 
+  void hand_on_raw() noexcept override { is_raw_ = true; }
+
   bool rumble(const Rumble& strengths) noexcept override {
     OutPacket packet;
     model_->rumble(strengths, packet);
@@ -354,7 +363,13 @@ class UsbDevice final : public Device {
       const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
       const bool is_input = model_->accept(packet, reply_);
       if (reply_.size > 0) transfers_->send(reply_);
-      if (is_input) return true;
+      if (is_raw_ || plug_.has_changed(*model_, report)) return true;
+      if (!is_input) continue;
+      const std::span<const std::uint8_t> input = model_->report_of(packet);
+      if (input.data() == packet.data()) return true;
+      report.size = static_cast<std::uint16_t>(input.size());
+      std::copy(input.begin(), input.end(), report.bytes.begin());
+      return true;
     }
     return false;
   }
@@ -365,8 +380,9 @@ class UsbDevice final : public Device {
   std::unique_ptr<ClaimedInterface> interface_;
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
   OutPacket reply_;
+  PlugWatch plug_;
   std::uint8_t interface_number_ = 0;
-  bool is_rumbling_ = false;
+  bool is_rumbling_ = false, is_raw_ = false;
 };
 
 // The model and descriptor of a vendor-class pad; without a model for all others.

@@ -12,7 +12,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::uint8_t kSetReport = 0x09, kToInterface = 0x21, kOutputReport = 2;
+constexpr std::uint8_t kSetReport = 0x09, kToInterface = 0x21, kOutputReport = 2,
+                       kFeatureReport = 3;
 constexpr unsigned int kOutTimeoutMs =
     1000;  // so that a pad that takes no packet does not block the queue
 constexpr std::int64_t kRecoverPauseNs = 100'000'000;
@@ -205,17 +206,21 @@ bool UsbTransfers::send(const OutPacket& packet) noexcept {
 
 void UsbTransfers::fill_out(const OutPacket& packet) noexcept {
   const auto size = static_cast<std::uint16_t>(packet.size);
-  if (endpoints_.out != 0) {
+  if (endpoints_.out != 0 && !packet.is_feature) {
     std::copy_n(packet.bytes.begin(), size, out_buffer_.begin());
     libusb_fill_interrupt_transfer(out_, handle_, endpoints_.out, out_buffer_.data(), size, &on_out,
                                    this, kOutTimeoutMs);
     return;
   }
   const std::uint8_t id = endpoints_.is_numbered ? packet.bytes[0] : 0;
+  const std::uint8_t kind = packet.is_feature ? kFeatureReport : kOutputReport;
+  // The id 0 is not sent.
+  const std::uint16_t skip = packet.is_feature && id == 0 ? 1 : 0;
   libusb_fill_control_setup(out_buffer_.data(), kToInterface, kSetReport,
-                            static_cast<std::uint16_t>(kOutputReport << 8 | id),
-                            endpoints_.interface_number, size);
-  std::copy_n(packet.bytes.begin(), size, out_buffer_.begin() + LIBUSB_CONTROL_SETUP_SIZE);
+                            static_cast<std::uint16_t>(kind << 8 | id), endpoints_.interface_number,
+                            static_cast<std::uint16_t>(size - skip));
+  std::copy(packet.bytes.begin() + skip, packet.bytes.begin() + size,
+            out_buffer_.begin() + LIBUSB_CONTROL_SETUP_SIZE);
   libusb_fill_control_transfer(out_, handle_, out_buffer_.data(), &on_out, this, kOutTimeoutMs);
 }
 

@@ -30,6 +30,10 @@ constexpr std::uint8_t kDescriptor[] = {
     0x75, 0x10, 0x95, 0x02, 0x81, 0x02,                          //
     0x09, 0x30, 0x09, 0x31, 0x09, 0x33, 0x09, 0x34,              // bytes 10..17: sticks
     0x16, 0x00, 0x80, 0x26, 0xff, 0x7f, 0x95, 0x04, 0x81, 0x02,  //
+    0x05, 0x0c, 0x09, 0xb2, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01,  // byte 18: share
+    0x95, 0x01, 0x81, 0x02,                                      //
+    0x05, 0x09, 0x19, 0x0c, 0x29, 0x0f, 0x95, 0x04, 0x81, 0x02,  //   paddles P1 .. P4
+    0x95, 0x03, 0x81, 0x03,                                      //
     0x85, 0x07, 0x75, 0x08, 0x95, 0x03, 0x81, 0x03,              // guide: options, number, length
     0x05, 0x09, 0x09, 0x0b, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01,  // byte 4: pressed
     0x95, 0x01, 0x81, 0x02, 0x95, 0x0f, 0x81, 0x03, 0xc0,        // byte 5: 5b, the key's name
@@ -46,6 +50,45 @@ struct StartMessage {
 constexpr std::uint32_t pad_id(std::uint16_t vendor, std::uint16_t product) {
   return std::uint32_t{vendor} << 16 | product;
 }
+constexpr std::uint32_t kElite1 = pad_id(0x045e, 0x02e3), kElite2 = pad_id(0x045e, 0x0b00);
+
+// Behind the state that all pads send, each firmware has more, which its packets' size tells. Sizes
+// and bytes, with the header, are from SDL's SDL_hidapi_xboxone.c.
+constexpr std::size_t kStateBytes = 18;
+struct SharePlace {
+  std::size_t size, at;
+};
+constexpr SharePlace kSharePlaces[] = {{36, 18},
+                                       {44, 18},
+                                       {48, 22},   // Xbox Series 5.0, 5.1, 5.5
+                                       {50, 32},   // Victrix Gambit
+                                       {64, 46}};  // ThrustMaster eSwap
+// Bits of byte 18 of what is handed on.
+constexpr std::uint8_t kShare = 0x01, kPaddles[] = {0x02, 0x04, 0x08, 0x10};  // P1 .. P4
+
+// Each bit of `byte` that is in `bits` presses the paddle of the same place.
+std::uint8_t paddles(std::uint8_t byte, const std::array<std::uint8_t, 4>& bits) noexcept {
+  std::uint8_t pressed = 0;
+  for (std::size_t i = 0; i < bits.size(); ++i) pressed |= (byte & bits[i]) != 0 ? kPaddles[i] : 0;
+  return pressed;
+}
+
+// Paddles that the pad itself maps to other buttons press these alone.
+std::uint8_t extra_buttons(std::uint32_t id, std::span<const std::uint8_t> p) noexcept {
+  if (id == kElite1) {
+    const bool is_mapped = p.size() == 33 && (p[4] != p[18] || p[5] != p[19]);
+    return p.size() == 33 && !is_mapped ? paddles(p[32], {0x02, 0x08, 0x01, 0x04}) : 0;
+  }
+  if (id == kElite2) {
+    const std::size_t at = p.size() == 38 ? 18 : p.size() == 50 ? 22 : 0;
+    return at != 0 && p[at + 1] == 0 ? paddles(p[at], {0x01, 0x02, 0x04, 0x08}) : 0;
+  }
+  for (const SharePlace& place : kSharePlaces) {
+    if (p.size() == place.size) return (p[place.at] & 0x01) != 0 ? kShare : 0;
+  }
+  return 0;
+}
+
 constexpr StartMessage kStartMessages[] = {
     // These two wait until their announcement is acknowledged.
     {pad_id(0x0e6f, 0x0165),
@@ -100,7 +143,16 @@ class GipModel final : public PadModel {
     }
     if ((options & kWantsAnswer) != 0) acknowledge(packet, reply);
     if (packet[0] == kAnnounce && (options & kClient) == 0) power_on(reply);
-    return is_input && (options & kClient) == 0;
+    if (!is_input || (options & kClient) != 0) return false;
+    if (has_state(packet)) {
+      std::copy_n(packet.begin(), kStateBytes, state_.begin());
+      state_[kStateBytes] = extra_buttons(id_, packet);
+    }
+    return true;
+  }
+  std::span<const std::uint8_t> report_of(
+      std::span<const std::uint8_t> packet) const noexcept override {
+    return has_state(packet) ? std::span<const std::uint8_t>(state_) : packet;
   }
 
   std::int64_t lost() const noexcept override { return refused_; }
@@ -127,6 +179,10 @@ class GipModel final : public PadModel {
   }
 
  private:
+  static bool has_state(std::span<const std::uint8_t> packet) noexcept {
+    return packet.size() >= kStateBytes && packet[0] == kInput;
+  }
+
   void number(OutPacket& packet) noexcept {
     if (++sequence_ == 0) sequence_ = 1;
     packet.bytes[2] = sequence_;
@@ -150,6 +206,7 @@ class GipModel final : public PadModel {
   }
 
   std::uint32_t id_;
+  std::array<std::uint8_t, kStateBytes + 1> state_{};
   std::uint8_t sequence_ = 0;
   std::int64_t refused_ = 0;
 };

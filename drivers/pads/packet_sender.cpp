@@ -63,7 +63,7 @@ void PacketSender::run(const std::shared_ptr<State>& state) {
     if (state->is_ending && !state->next) break;
     if (state->next) packet = *std::exchange(state->next, std::nullopt);
     lock.unlock();
-    const bool has_left = state->write(std::span(packet.bytes).first(packet.size));
+    const bool has_left = state->write(packet);
     lock.lock();
     state->has_failed = !has_left;
     if (!has_left) packet.repeat = 0ms;

@@ -11,7 +11,7 @@ namespace gaitpad {
 
 class PacketSender {
  public:
-  using Write = std::function<bool(std::span<const std::uint8_t>)>;
+  using Write = std::function<bool(const OutPacket&)>;
 
   // Only the thread calls `write`; it is destroyed when the thread has ended. Null: no thread can
   // be started.

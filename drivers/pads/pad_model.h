@@ -33,7 +33,8 @@ class PadPort {
 
 struct OutPacket {
   std::array<std::uint8_t, 128> bytes{};
-  std::size_t size = 0;  // 0: nothing to send
+  std::size_t size = 0;     // 0: nothing to send
+  bool is_feature = false;  // a feature report (HID pads only), which begins with its id, or 0
   // Sent again after this time until another packet follows; 0: sent once.
   std::chrono::milliseconds repeat{0};
 };
@@ -57,6 +58,8 @@ class PadModel {
     reply.size = 0;
     return !packet.empty();
   }
+  // Whether accept() ever has a reply.
+  virtual bool replies() const noexcept { return false; }
   // What is handed on of a packet that was accepted: itself, or a state made of several packets.
   virtual std::span<const std::uint8_t> report_of(
       std::span<const std::uint8_t> packet) const noexcept {

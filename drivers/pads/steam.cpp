@@ -28,6 +28,7 @@ enum : std::uint8_t {  // commands
   kDefaultMappings = 0x85,
   kWriteSettings = 0x87,
   kDefaultSettings = 0x8e,
+  kAskForPresence = 0xb4,  // the receiver answers with kPresence
 };
 struct Setting {
   std::uint8_t number = 0;
@@ -45,8 +46,9 @@ enum : std::uint8_t {  // settings
 constexpr std::uint16_t kMouse = 0, kNoMouse = 7, kNeverClicks = 0xffff;
 
 // A message from the pad: version 1, 0, its type, its length.
-constexpr std::size_t kTypeAt = 2;
-enum : std::uint8_t { kControllerState = 1, kDeckState = 9 };
+constexpr std::size_t kTypeAt = 2, kPresenceAt = 4;
+enum : std::uint8_t { kControllerState = 1, kPresence = 3, kDeckState = 9 };
+enum : std::uint8_t { kIsOff = 1, kIsOn = 2 };  // of kPresence
 
 constexpr const char* kStaysMouse = ": stays a mouse and keyboard as well";
 std::string name_of(const DeviceInfo& device) {
@@ -71,7 +73,9 @@ struct Message {
 class SteamModel final : public PadModel {
  public:
   explicit SteamModel(const DeviceInfo& device)
-      : name_(name_of(device)), is_deck_(device.product == kDeck) {}
+      : name_(name_of(device)),
+        is_deck_(device.product == kDeck),
+        is_receiver_(device.product == kWireless) {}
 
   void start(PadPort& port, StartedBy) override {
     const bool has_left =
@@ -84,6 +88,7 @@ class SteamModel final : public PadModel {
                   : send(port, Message(kWriteSettings,
                                        {{kRightPadMode, kNoMouse}, {kRightPadMargin, 0}})));
     if (!has_left) remark_ = name_ + kStaysMouse;
+    if (is_receiver_) send(port, Message(kAskForPresence));
   }
 
   void stop(PadPort& port) noexcept override {
@@ -92,11 +97,19 @@ class SteamModel final : public PadModel {
     if (!is_deck_) send(port, Message(kWriteSettings, {{kRightPadMargin, 1}}));
   }
 
-  // Other messages tell the battery, and that a wireless pad came or went.
+  // Other messages tell the battery, and that a pad behind the receiver was switched on or off.
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
-    return packet.size() > kTypeAt && packet[kTypeAt] == (is_deck_ ? kDeckState : kControllerState);
+    if (packet.size() <= kTypeAt) return false;
+    const bool is_state = packet[kTypeAt] == (is_deck_ ? kDeckState : kControllerState);
+    if (is_receiver_ && packet[kTypeAt] == kPresence && packet.size() > kPresenceAt)
+      take_presence(packet[kPresenceAt]);
+    if (is_state) is_plugged_ = true;
+    leave_lizard_mode(reply);
+    return is_state;
   }
+  bool is_plugged() const noexcept override { return is_plugged_; }
+  bool replies() const noexcept override { return is_receiver_; }
 
   std::vector<std::string> take_remarks() override {
     if (remark_.empty()) return {};
@@ -104,14 +117,41 @@ class SteamModel final : public PadModel {
   }
 
  private:
+  // Packets from one message to the next: each is a request that the pad has to answer first.
+  static constexpr int kBetweenMessages = 30;
+
   static bool send(PadPort& port, const Message& message) {
     std::array<std::uint8_t, 1 + kMessageBytes> report{};  // begins with the id 0
     std::copy(message.bytes.begin(), message.bytes.end(), report.begin() + 1);
     return port.send_feature(report);
   }
 
+  // A pad that is switched on is a mouse and keyboard again.
+  void take_presence(std::uint8_t state) noexcept {
+    if (state == kIsOff) is_plugged_ = false;
+    if (state != kIsOn) return;
+    is_plugged_ = true;
+    packets_since_on_ = 0;
+  }
+
+  void leave_lizard_mode(OutPacket& reply) noexcept {
+    if (packets_since_on_ < 0) return;
+    if (packets_since_on_ == 0) put(Message(kClearMappings), reply);
+    if (packets_since_on_++ < kBetweenMessages) return;
+    put(Message(kWriteSettings, {{kRightPadMode, kNoMouse}, {kRightPadMargin, 0}}), reply);
+    packets_since_on_ = -1;
+  }
+  static void put(const Message& message, OutPacket& reply) noexcept {
+    reply = {};
+    std::copy(message.bytes.begin(), message.bytes.end(), reply.bytes.begin() + 1);
+    reply.size = 1 + kMessageBytes;
+    reply.is_feature = true;
+  }
+
   std::string name_;
-  bool is_deck_;
+  bool is_deck_, is_receiver_;
+  bool is_plugged_ = true;
+  int packets_since_on_ = -1;  // -1: nothing is to be sent
   std::string remark_;
 };
 
@@ -159,6 +199,11 @@ class SteamBluetooth final : public PadModel {
 
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
+    // A state that was put together already: recordings were made of those once.
+    if (packet.size() == state_.size() && packet[0] == kSegmentId) {
+      std::copy(packet.begin(), packet.end(), state_.begin());
+      return true;
+    }
     if (packet.size() != kHeaderBytes + kSegmentBytes || packet[0] != kSegmentId ||
         (packet[1] & kIsSegment) == 0)
       return false;

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "animation/robust_step.h"
+#include "animation/robust_solver.h"
 
 namespace gaitpad {
 namespace {
@@ -316,136 +316,21 @@ IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const Pa
 
 namespace {
 
-// --- The linear system of one robust step --------------------------------------------------------
-
-using IkDofValues = std::array<double, kMaxIkDofs>;
-
-// Two doubles in one SSE2 register: the same bits as one after the other, in half the time.
-using Pair = double __attribute__((vector_size(16)));
-
-// f(0), f(1) ... with the index as a constant: unrolled on every compiler at -O2.
-template <int kCount, class F>
-inline void unrolled(F&& f) noexcept {
-  [&]<int... i>(std::integer_sequence<int, i...>) { (f(std::integral_constant<int, i>{}), ...); }
-  (std::make_integer_sequence<int, kCount>{});
-}
-
-// (J W J^T + l^2 I) y = b, with sizes known to the compiler. kRows is even; a row too many is zero.
-template <int kRows>
-class IkStep {
- public:
-  using Rows = std::array<double, kRows>;
-
-  void set_columns(const IkPose& pose, std::span<const IkRow> rows, const IkErrors& errors,
-                   int dofs) noexcept;
-  // No pivot is less than l^2 > 0, so none is checked.
-  void factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
-  void solve(const Rows& b, Rows& y) const noexcept;
-  // Row j of J^T times y, and b -= column j of J times an angle.
-  double product(int j, const Rows& y) const noexcept;
-  void subtract(int j, double angle_rad, Rows& b) const noexcept;
-
- private:
-  static constexpr int kPairs = kRows / 2;
-  template <int kBlock>
-  void gram_block(const IkDofValues& weight, int dofs, double damping_squared) noexcept;
-
-  Pair column_[kMaxIkDofs][kPairs];  // of J
-  std::array<Rows, kRows> factor_;   // J W J^T + l^2 I = L D L^T: above the diagonal L^T, else L D
-  Rows reciprocal_;                  // 1 / D
-};
-
-// An entry is d . (a x (p - q)) for direction d, point p and an axis a through q, which is
-// a . (p x d) + d . (q x a).
-template <int kRows>
-void IkStep<kRows>::set_columns(const IkPose& pose, std::span<const IkRow> rows,
-                                const IkErrors& errors, int dofs) noexcept {
-  Pair d[3][kPairs] = {}, m[3][kPairs] = {};
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const vec3& direction = rows[r].direction;
-    const vec3 moment = glm::cross(errors.point_m[r], direction);
-    for (int i = 0; i < 3; ++i) d[i][r / 2][r % 2] = direction[i], m[i][r / 2][r % 2] = moment[i];
-  }
-  for (int j = 0; j < dofs; ++j) {
-    const vec3& a = pose.axis[j];
-    const vec3 n = glm::cross(pose.pivot_m[j], a);
-    unrolled<kPairs>([&](auto i) {
-      column_[j][i] = (a.x * m[0][i] + a.y * m[1][i]) + (a.z * m[2][i] + n.x * d[0][i]) +
-                      (n.y * d[1][i] + n.z * d[2][i]);
-    });
-  }
-}
-
-// Two rows of the lower half at a time: their sums stay in registers.
-template <int kRows>
-template <int kBlock>
-void IkStep<kRows>::gram_block(const IkDofValues& weight, int dofs,
-                               double damping_squared) noexcept {
-  Pair even[kBlock + 1] = {}, odd[kBlock + 1] = {};
-  for (int j = 0; j < dofs; ++j) {
-    const Pair weighted = weight[j] * column_[j][kBlock];
-    unrolled<kBlock + 1>([&](auto i) {
-      even[i] += weighted[0] * column_[j][i];
-      odd[i] += weighted[1] * column_[j][i];
-    });
-  }
-  unrolled<2 * kBlock + 2>([&](auto s) {
-    factor_[2 * kBlock][s] = even[s / 2][s % 2];
-    factor_[2 * kBlock + 1][s] = odd[s / 2][s % 2];
-  });
-  factor_[2 * kBlock][2 * kBlock] += damping_squared;
-  factor_[2 * kBlock + 1][2 * kBlock + 1] += damping_squared;
-}
-
-template <int kRows>
-void IkStep<kRows>::factor(const IkDofValues& weight, int dofs, double damping_squared) noexcept {
-  unrolled<kPairs>([&](auto block) { gram_block<block>(weight, dofs, damping_squared); });
-  unrolled<kRows>([&](auto k) {
-    reciprocal_[k] = 1.0 / factor_[k][k];
-    unrolled<kRows - 1 - k>([&](auto i) {
-      constexpr int r = k + 1 + i;
-      const double l = factor_[k][r] = factor_[r][k] * reciprocal_[k];
-      unrolled<i + 1>([&](auto s) { factor_[r][k + 1 + s] -= l * factor_[k + 1 + s][k]; });
-    });
-  });
-}
-
-template <int kRows>
-void IkStep<kRows>::solve(const Rows& b, Rows& y) const noexcept {
-  y = b;
-  unrolled<kRows>([&](auto k) {
-    unrolled<kRows - 1 - k>([&](auto i) { y[k + 1 + i] -= factor_[k][k + 1 + i] * y[k]; });
-  });
-  unrolled<kRows>([&](auto k) { y[k] *= reciprocal_[k]; });
-  unrolled<kRows>([&](auto back) {
-    constexpr int k = kRows - 1 - back;
-    unrolled<k>([&](auto r) { y[r] -= factor_[r][k] * y[k]; });
-  });
-}
-
-template <int kRows>
-double IkStep<kRows>::product(int j, const Rows& y) const noexcept {
-  Pair sum = {};
-  unrolled<kPairs>([&](auto i) { sum += column_[j][i] * Pair{y[2 * i], y[2 * i + 1]}; });
-  return sum[0] + sum[1];
-}
-
-template <int kRows>
-void IkStep<kRows>::subtract(int j, double angle_rad, Rows& b) const noexcept {
-  unrolled<kRows>([&](auto r) { b[r] -= column_[j][r / 2][r % 2] * angle_rad; });
-}
-
-// --- The robust solver: theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits ---------------
+// --- The robust solver ---------------------------------------------------------------------------
 
 constexpr int kCandidates = 16;       // starts compared before each further try
 constexpr double kWorthAJump = 0.99;  // a later try replaces an earlier one only below this share
+
+using IkDofValues = std::array<double, kMaxIkDofs>;
 
 // What stays the same during a solve.
 struct Problem {
   const IkChain& chain;
   std::span<const IkRow> rows;
   const RobustOptions& options;
+  IkTrace* trace;
   IkDofValues weight;  // divided by the greatest
+  IkDofValues min_rad, max_rad;
 };
 
 IkDofValues relative_weights(const IkChain& chain) noexcept {
@@ -457,113 +342,61 @@ IkDofValues relative_weights(const IkChain& chain) noexcept {
   return w;
 }
 
-double inside(const IkDof& dof, double angle_rad) noexcept {
-  return std::min(std::max(angle_rad, dof.min_rad), dof.max_rad);
-}
-
-// Solves for a step within the limits. A DOF that the step would carry past a limit moves exactly
-// to the limit, its column leaves the system, and the system is solved again for the others. The
-// result depends continuously on goal and pose.
-template <int kRows>
-void solve_limited_step(const Problem& p, IkStep<kRows>& step, double damping_squared,
-                        typename IkStep<kRows>::Rows& dx, const IkAngles& angles_rad,
-                        IkDofValues& delta) noexcept {
+// A chain, as the robust solver takes it. A row more than there are is zero: kRowCount is even.
+template <int kRowCount>
+struct ChainSystem {
+  using V = double;
+  static constexpr int kRows = kRowCount, kDofs = kMaxIkDofs;
+  static constexpr bool kWeighted = false;
+  struct Place : IkErrors {
+    IkPose pose;
+  };
+  const Problem& p;
+  const IkDofValues&weight = p.weight, &min_rad = p.min_rad, &max_rad = p.max_rad;
   const int dofs = p.chain.dofs;
-  IkDofValues weight = p.weight;
-  typename IkStep<kRows>::Rows y;
-  for (int j = 0; j < dofs; ++j) delta[j] = 0.0;
-  for (int round = 0; round <= dofs; ++round) {
-    step.factor(weight, dofs, damping_squared);
-    step.solve(dx, y);
-    bool frozen = false;
-    for (int j = 0; j < dofs; ++j) {
-      if (weight[j] == 0.0) continue;
-      delta[j] = weight[j] * step.product(j, y);
-      const double wanted = angles_rad[j] + delta[j], allowed = inside(p.chain.dof[j], wanted);
-      if (allowed == wanted) continue;
-      delta[j] = allowed - angles_rad[j];
-      weight[j] = 0.0;
-      frozen = true;
-      step.subtract(j, delta[j], dx);
+
+  void place(const IkAngles& angles_rad, Place& place) const noexcept {
+    pose_chain(p.chain, angles_rad, place.pose);
+    measure_errors(place.pose, p.rows, place);
+    for (std::size_t r = p.rows.size(); r < kRows; ++r) place.dx[r] = 0.0;
+  }
+  // An entry is d . (a x (p - q)) for direction d, point p and an axis a through q, which is
+  // a . (p x d) + d . (q x a).
+  void set_columns(const Place& place, ColumnsIn<ChainSystem>& column) const noexcept {
+    std::array<vec3, kRows> direction{}, moment{};
+    for (std::size_t r = 0; r < p.rows.size(); ++r) {
+      direction[r] = p.rows[r].direction;
+      moment[r] = glm::cross(place.point_m[r], direction[r]);
     }
-    if (!frozen) return;
+    for (int j = 0; j < dofs; ++j) {
+      const vec3& a = place.pose.axis[j];
+      const vec3 n = glm::cross(place.pose.pivot_m[j], a);
+      for (int r = 0; r < kRows; ++r) {
+        const vec3 &d = direction[r], &m = moment[r];
+        column[j][r] = (a.x * m.x + a.y * m.y) + (a.z * m.z + n.x * d.x) + (n.y * d.y + n.z * d.z);
+      }
+    }
   }
-}
-
-double cap_share(const IkDofValues& delta, int dofs, double cap_rad) noexcept {
-  double greatest = 0.0;
-  for (int j = 0; j < dofs; ++j) greatest = std::max(greatest, std::abs(delta[j]));
-  return greatest > cap_rad ? cap_rad / greatest : 1.0;
-}
-
-template <int kRows>
-void take_step(const Problem& p, const IkPose& pose, const IkErrors& errors, double growth,
-               IkAngles& angles_rad) noexcept {
-  IkStep<kRows> step;
-  step.set_columns(pose, p.rows, errors, p.chain.dofs);
-  const double most = kFarthest * kFarthest;
-  const double share = errors.squares > most ? kFarthest / std::sqrt(errors.squares) : 1.0;
-  typename IkStep<kRows>::Rows dx{};
-  for (std::size_t r = 0; r < p.rows.size(); ++r) dx[r] = share * errors.dx[r];
-  const double damping_squared =
-      std::max(p.options.damping * p.options.damping, kLeastDampingSquared) +
-      growth * std::min(errors.squares, most);
-  IkDofValues delta;
-  solve_limited_step(p, step, damping_squared, dx, angles_rad, delta);
-  const double cap = cap_share(delta, p.chain.dofs, p.options.max_step_rad);
-  for (int j = 0; j < p.chain.dofs; ++j) {
-    angles_rad[j] = inside(p.chain.dof[j], angles_rad[j] + cap * delta[j]);
+  static void keep(bool, const Place& place, Place& best) noexcept { best = place; }
+  void trace(const IkAngles& angles_rad, double squares) const noexcept {
+    if (p.trace != nullptr) add_trace_row(p.trace, angles_rad, std::sqrt(squares));
   }
-}
+};
 
 struct Try {
   IkAngles angles_rad;  // the best met
-  double squares = std::numeric_limits<double>::infinity();
-  int iterations = 0;
+  double squares;
+  int iterations;
 };
 
-// Tells when the error hardly falls any more.
-struct Progress {
-  double error_m = std::numeric_limits<double>::infinity();
-  int iteration = 0;
-
-  bool stands_still(double squares, int k) noexcept {
-    const double now = std::sqrt(squares);
-    if (now < error_m - kLeastGain * std::min(now, kGainFrom)) error_m = now, iteration = k;
-    return k - iteration >= kPatience;
-  }
-};
-
-// Iterates from `start` until the tolerance is met, the error stands still or the iterations are
-// used up.
 template <int kRows>
-Try one_try(const Problem& p, const IkAngles& start, int max_iterations, IkTrace* trace) noexcept {
-  Try best;
-  IkAngles angles_rad = best.angles_rad = start;
-  std::array<IkPose, 2> pose;
-  std::array<IkErrors, 2> errors;
-  int best_at = 0;
-  Progress progress;
-  double growth = kGrowth;
-  const double enough = p.options.tolerance_m * p.options.tolerance_m;
-  for (int k = 0;; ++k) {
-    const int at = 1 - best_at;
-    pose_chain(p.chain, angles_rad, pose[at]);
-    measure_errors(pose[at], p.rows, errors[at]);
-    if (errors[at].squares < best.squares) {
-      best.squares = errors[at].squares, best.angles_rad = angles_rad, best_at = at;
-      growth = std::max(growth * kGrowthDown, kGrowth);
-    } else {
-      growth *= kGrowthUp;
-    }
-    best.iterations = k;
-    if (trace != nullptr) add_trace_row(trace, best.angles_rad, std::sqrt(best.squares));
-    if (best.squares <= enough || k >= max_iterations) break;
-    if (!std::isfinite(best.squares) || progress.stands_still(best.squares, k)) break;
-    angles_rad = best.angles_rad;
-    take_step<kRows>(p, pose[best_at], errors[best_at], growth, angles_rad);
-  }
-  return best;
+Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcept {
+  ChainSystem<kRows> system{p};
+  typename ChainSystem<kRows>::Place best;
+  IkAngles angles_rad = start;
+  const auto [squares, iterations] =
+      iterate(system, p.options, max_iterations, true, angles_rad, best);
+  return {angles_rad, squares, static_cast<int>(iterations)};
 }
 
 // Start number k: a sequence that fills the box of the limits evenly (Weyl: multiples of an
@@ -618,10 +451,9 @@ bool beyond_reach(const Problem& p) noexcept {
 }
 
 template <int kRows>
-IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles_rad,
-                       IkTrace* trace) noexcept {
+IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles_rad) noexcept {
   const double enough = p.options.tolerance_m * p.options.tolerance_m;
-  Try best = one_try<kRows>(p, start, p.options.max_iterations, trace);
+  Try best = one_try<kRows>(p, start, p.options.max_iterations);
   IkResult result;
   result.iterations = best.iterations;
   const int tries = best.squares <= enough || beyond_reach(p) ? 1 : p.options.max_tries;
@@ -629,7 +461,7 @@ IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles
          result.iterations < p.options.max_iterations) {
     const IkAngles other = nearest_start(p, start, (result.tries - 1) * kCandidates);
     const int left = p.options.max_iterations - result.iterations - 1;
-    const Try next = one_try<kRows>(p, other, left, trace);
+    const Try next = one_try<kRows>(p, other, left);
     ++result.tries;
     result.iterations += 1 + next.iterations;  // the jump counts
     if (next.squares <= enough || next.squares < kWorthAJump * best.squares) best = next;
@@ -637,7 +469,7 @@ IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles
   angles_rad = best.angles_rad;
   result.error_m = std::sqrt(best.squares);
   result.status = best.squares <= enough ? IkStatus::converged : IkStatus::unreachable;
-  end_trace(trace, angles_rad, result.error_m);
+  end_trace(p.trace, angles_rad, result.error_m);
   return result;
 }
 
@@ -647,12 +479,16 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
                       const RobustOptions& options, IkAngles& angles_rad, IkTrace* trace) noexcept {
   assert(rows.size() <= kMaxIkRows);
   if (!are_inputs_finite(chain, angles_rad)) return refused();
-  const Problem p{chain, rows, options, relative_weights(chain)};
+  Problem p{chain, rows, options, trace, relative_weights(chain), {}, {}};
   IkAngles start = angles_rad;
-  for (int j = 0; j < chain.dofs; ++j) start[j] = inside(chain.dof[j], start[j]);
+  for (int j = 0; j < chain.dofs; ++j) {
+    p.min_rad[j] = chain.dof[j].min_rad;
+    p.max_rad[j] = chain.dof[j].max_rad;
+    start[j] = min_of(max_of(start[j], p.min_rad[j]), p.max_rad[j]);
+  }
   IkAngles answer = start;
-  const IkResult result = rows.size() <= 4 ? best_of_tries<4>(p, start, answer, trace)
-                                           : best_of_tries<6>(p, start, answer, trace);
+  const IkResult result = rows.size() <= 4 ? best_of_tries<4>(p, start, answer)
+                                           : best_of_tries<6>(p, start, answer);
   if (!std::isfinite(result.error_m)) return refused();
   angles_rad = answer;
   return result;

@@ -9,6 +9,8 @@
 
 namespace gaitpad {
 
+inline constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
+
 template <class V>
 struct LegGoals {
   V thigh_m, shank_m;
@@ -28,60 +30,43 @@ struct LegSolution {
   Vec3Of<V> heel_m, toe_m;  // the first two points, in the pelvis' frame from the hip joint
 };
 
-// The weights of equation (5), as one step of a solve takes them: they share out what the planted
-// point of the sole leaves free. `of` LegGoals, the first point is the one that is met exactly; the
-// second and third are `lever_m` from it along the foot and across it, and give way.
+// The weights of equation (5): they share out what the planted point of the sole leaves free. `of`
+// LegGoals, the weights are W, the first point is the one that is met exactly; the second and third
+// are `lever_m` from it along the foot and across it, and give way.
 template <class V>
 struct LegShares {
-  V uneven;                                       // 1, or 0: this leg is left as it is
-  std::array<V, kLegDofs> weight, reference_rad;  // W of the leg, and the pose that it pulls to
-  V on_heel;                                      // where the first point is: 0 toe .. 1 heel
+  V uneven;                               // 1, or 0: this leg is left as it is
+  std::array<V, kLegDofs> reference_rad;  // the pose that it pulls to
+  V on_heel;                              // where the first point is: 0 toe .. 1 heel
   V lever_m;
   std::array<V, 3> give_m2;      // how far yaw, pitch and roll of the foot give way
   V room_down_rad, room_up_rad;  // how far the foot may pitch away from its goal
   V knee_rad, knee_soft_rad;     // a knee that is straighter than this is bent
 };
 
-// One number of each of several legs, in memory.
-template <int kWidth>
-struct alignas(8 * kWidth) Row {
-  std::array<double, kWidth> lane;
-  double& operator[](std::size_t i) noexcept { return lane[i]; }
-  double operator[](std::size_t i) const noexcept { return lane[i]; }
+// One leg: what is to be reached and where the solver starts, then the best pose and what it came
+// to. Angles and weights have to be finite.
+struct LegToSolve {
+  LegGoals<double> goals;
+  LegShares<double> shares;  // where weights differ
+  LegAngles angles_rad;
+  LegSolution<double> solution;
 };
 
-template <int kWidth>
-struct LegLanes {
-  LegGoals<Row<kWidth>> goals;
-  std::array<Row<kWidth>, kLegDofs> angles_rad;
-  LegSolution<Row<kWidth>> solution;
-};
-
-// Starts at `angles_rad` and leaves the best pose there. Angles and weights have to be finite.
-// kWidth: 2, 4 or 8. kRegister: the width of the registers that it is compiled for; wider ones
-// bring instructions with three operands, by which two legs take a seventh less time.
-template <int kWidth, int kRegister = kWidth>
-void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept;
-
-// The pose that the weights make of solved legs. Starts at `angles_rad`; LegSolution has the first
-// two points, and the error of the first one.
-template <int kWidth>
-struct SharedLegs : LegLanes<kWidth> {
-  LegShares<Row<kWidth>> shares;
-};
-template <int kWidth, int kRegister = kWidth>
-void share_legs(SharedLegs<kWidth>& legs) noexcept;
+// kWidth: 2, 4 or 8. kWeighted: the legs' `shares` are looked at. kRegister: the width of the
+// registers that it is compiled for; wider ones bring instructions with three operands, by which
+// two legs take a seventh less time.
+template <int kWidth, bool kWeighted, int kRegister = kWidth>
+void solve_legs(const std::array<LegToSolve*, kWidth>& legs) noexcept;
 
 // The two of one character, for the widest registers in use.
-inline void share_two_legs(SharedLegs<2>& legs) noexcept {
+template <bool kWeighted>
+inline void solve_two_legs(std::array<LegToSolve, 2>& legs) noexcept {
   const int lanes = lanes_in_use();
-  const auto share = lanes >= 8 ? share_legs<2, 8> : lanes >= 4 ? share_legs<2, 4> : share_legs<2>;
-  share(legs);
-}
-inline void solve_two_legs(const RobustOptions& options, LegLanes<2>& legs) noexcept {
-  const int lanes = lanes_in_use();
-  const auto solve = lanes >= 8 ? solve_legs<2, 8> : lanes >= 4 ? solve_legs<2, 4> : solve_legs<2>;
-  solve(options, legs);
+  const auto solve = lanes >= 8   ? solve_legs<2, kWeighted, 8>
+                     : lanes >= 4 ? solve_legs<2, kWeighted, 4>
+                                  : solve_legs<2, kWeighted>;
+  solve({&legs[0], &legs[1]});
 }
 
 }  // namespace gaitpad

@@ -3,8 +3,8 @@
 
 namespace gaitpad {
 
-template void solve_legs<4>(const RobustOptions&, LegLanes<4>&) noexcept;
-template void solve_legs<2, 4>(const RobustOptions&, LegLanes<2>&) noexcept;
-template void share_legs<2, 4>(SharedLegs<2>&) noexcept;
+template void solve_legs<4, false>(const std::array<LegToSolve*, 4>&) noexcept;
+template void solve_legs<2, false, 4>(const std::array<LegToSolve*, 2>&) noexcept;
+template void solve_legs<2, true, 4>(const std::array<LegToSolve*, 2>&) noexcept;
 
 }  // namespace gaitpad

@@ -3,8 +3,8 @@
 
 namespace gaitpad {
 
-template void solve_legs<8>(const RobustOptions&, LegLanes<8>&) noexcept;
-template void solve_legs<2, 8>(const RobustOptions&, LegLanes<2>&) noexcept;
-template void share_legs<2, 8>(SharedLegs<2>&) noexcept;
+template void solve_legs<8, false>(const std::array<LegToSolve*, 8>&) noexcept;
+template void solve_legs<2, false, 8>(const std::array<LegToSolve*, 2>&) noexcept;
+template void solve_legs<2, true, 8>(const std::array<LegToSolve*, 2>&) noexcept;
 
 }  // namespace gaitpad

@@ -1,10 +1,7 @@
 // The body of solve_legs(), for one width and one set of instructions at a time.
 #pragma once
-#include <limits>
-#include <utility>
-
 #include "animation/leg_ik.h"
-#include "animation/robust_step.h"
+#include "animation/robust_solver.h"
 
 namespace gaitpad {
 
@@ -101,134 +98,10 @@ inline void set_columns(const LegGoals<V>& goals, const LegPlace<V>& place,
   }
 }
 
-// J W J^T + a diagonal = L D L^T, y = its inverse times b.
+// The error of the first point alone, squared.
 template <class V>
-inline void solve_step(const LegColumns<V>& column, const LegValues<V>& weight,
-                       const LegRows<V>& diagonal, const LegRows<V>& b, LegRows<V>& y) noexcept {
-  std::array<LegRows<V>, 6> m;
-  for (int r = 0; r < 6; ++r) {
-    for (int s = 0; s <= r; ++s) m[r][s] = (weight[0] * column[0][r]) * column[0][s];
-  }
-  for (int j = 1; j < kLegDofs; ++j) {
-    for (int r = 0; r < 6; ++r) {
-      const V weighted = weight[j] * column[j][r];
-      for (int s = 0; s <= r; ++s) m[r][s] += weighted * column[j][s];
-    }
-  }
-  for (int r = 0; r < 6; ++r) m[r][r] += diagonal[r];
-  LegRows<V> reciprocal;
-  for (int k = 0; k < 6; ++k) {
-    reciprocal[k] = 1.0 / m[k][k];
-    for (int r = k + 1; r < 6; ++r) {
-      const V l = m[k][r] = m[r][k] * reciprocal[k];
-      for (int s = k + 1; s <= r; ++s) m[r][s] -= l * m[s][k];
-    }
-  }
-  y = b;
-  for (int k = 0; k < 6; ++k) {
-    for (int r = k + 1; r < 6; ++r) y[r] -= m[k][r] * y[k];
-  }
-  for (int k = 0; k < 6; ++k) y[k] *= reciprocal[k];
-  for (int k = 5; k > 0; --k) {
-    for (int r = 0; r < k; ++r) y[r] -= m[r][k] * y[k];
-  }
-}
-
-// Solves for a step within the limits. A rotation that the step would carry past a limit moves
-// exactly to the limit, its column leaves the system, and the system is solved again for the
-// others. A lane that is done finds the same step again.
-template <class V>
-inline void limited_step(const LegGoals<V>& goals, const LegColumns<V>& column,
-                         const V& damping_squared, LegRows<V> dx, const LegValues<V>& angles_rad,
-                         const MaskOf<V>& lanes, LegValues<V>& delta) noexcept {
-  LegValues<V> weight = goals.weight;
-  LegRows<V> y, damping;
-  damping.fill(damping_squared);
-  for (V& d : delta) d = V{};
-  for (int round = 0; round <= kLegDofs; ++round) {
-    solve_step(column, weight, damping, dx, y);
-    auto frozen = lanes & 0;
-    for (int j = 0; j < kLegDofs; ++j) {
-      const V even = column[j][0] * y[0] + column[j][2] * y[2] + column[j][4] * y[4],
-              odd = column[j][1] * y[1] + column[j][3] * y[3] + column[j][5] * y[5];
-      const auto moves = weight[j] != V{};
-      delta[j] = moves ? weight[j] * (even + odd) : delta[j];
-      const V wanted = angles_rad[j] + delta[j],
-              allowed = min_of(max_of(wanted, goals.min_rad[j]), goals.max_rad[j]);
-      const auto stops = lanes & moves & (allowed != wanted);
-      if (!any(stops)) continue;
-      frozen |= stops;
-      delta[j] = stops ? allowed - angles_rad[j] : delta[j];
-      weight[j] = stops ? V{} : weight[j];
-      for (int r = 0; r < 6; ++r) dx[r] = stops ? dx[r] - column[j][r] * delta[j] : dx[r];
-    }
-    if (!any(frozen)) return;
-  }
-}
-
-template <class V>
-inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const RobustOptions& options,
-                                  LegValues<V>& angles_rad) noexcept {
-  for (int j = 0; j < kLegDofs; ++j)
-    angles_rad[j] = min_of(max_of(angles_rad[j], goals.min_rad[j]), goals.max_rad[j]);
-  LegValues<V> next = angles_rad;
-  LegPlace<V> best, place;
-  const V infinite = all_of<V>(std::numeric_limits<double>::infinity());
-  V growth = all_of<V>(kGrowth), iterations{}, seen_m = infinite, seen_at{};
-  best.squares = infinite;
-  auto lanes = V{} == V{};  // still on their way
-  const double enough = options.tolerance_m * options.tolerance_m;
-  for (int k = 0;; ++k) {
-    place_legs(goals, next, k == 0 ? best : place);
-    if (k > 0) {
-      const auto better = lanes & (place.squares < best.squares);
-      growth = better ? max_of(growth * kGrowthDown, all_of<V>(kGrowth)) : growth * kGrowthUp;
-      for (int j = 0; j < kLegDofs; ++j) angles_rad[j] = better ? next[j] : angles_rad[j];
-      if (!any(~better)) {
-        best = place;
-      } else if (any(better)) {
-        for (int j = 1; j < kLegDofs; ++j)
-          best.axis[j] = chosen(better, place.axis[j], best.axis[j]);
-        for (const auto member : {&LegPlace<V>::knee_m, &LegPlace<V>::ankle_m})
-          best.*member = chosen(better, place.*member, best.*member);
-        for (int p = 0; p < 3; ++p)
-          best.point_m[p] = chosen(better, place.point_m[p], best.point_m[p]);
-        for (int r = 0; r < 6; ++r) best.dx[r] = better ? place.dx[r] : best.dx[r];
-        best.squares = better ? place.squares : best.squares;
-      }
-    }
-    iterations = lanes ? all_of<V>(k) : iterations;
-    lanes &= ~(best.squares <= all_of<V>(enough));
-    if (!any(lanes) || k >= options.max_iterations) break;
-    const V error_m = sqrt_of(best.squares);
-    const auto falls = error_m < seen_m - kLeastGain * min_of(error_m, all_of<V>(kGainFrom));
-    seen_at = falls ? all_of<V>(k) : seen_at;
-    seen_m = falls ? error_m : seen_m;
-    lanes &= best.squares < infinite;
-    lanes &= all_of<V>(k) - seen_at < all_of<V>(kPatience);
-    if (!any(lanes)) break;
-
-    LegColumns<V> column;
-    set_columns(goals, best, column);
-    constexpr double most = kFarthest * kFarthest;
-    const V share = best.squares > all_of<V>(most) ? kFarthest / error_m : all_of<V>(1.0);
-    LegRows<V> dx;
-    for (int r = 0; r < 6; ++r) dx[r] = share * best.dx[r];
-    const V damping_squared = std::max(options.damping * options.damping, kLeastDampingSquared) +
-                              growth * min_of(best.squares, all_of<V>(most));
-    LegValues<V> delta;
-    limited_step(goals, column, damping_squared, dx, angles_rad, lanes, delta);
-    V greatest{};
-    for (const V& d : delta) greatest = max_of(greatest, abs_of(d));
-    const V cap_rad = all_of<V>(options.max_step_rad),
-            cap = greatest > cap_rad ? cap_rad / greatest : all_of<V>(1.0);
-    for (int j = 0; j < kLegDofs; ++j) {
-      const V wanted = angles_rad[j] + cap * delta[j];
-      next[j] = min_of(max_of(wanted, goals.min_rad[j]), goals.max_rad[j]);
-      next[j] = lanes ? next[j] : angles_rad[j];
-    }
-  }
-  return {best.squares, iterations, best.point_m[0], best.point_m[1]};
+inline V first_rows(const LegRows<V>& dx) noexcept {
+  return dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2];
 }
 
 // --- Equation (5) --------------------------------------------------------------------------------
@@ -241,20 +114,19 @@ constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
 constexpr int kMostShareSteps = 8;
 constexpr double kExactRow_m2 = 1e-13;
 constexpr double kKneeSpring = 100.0;
-constexpr double kRoomUsed =
-    0.8;  // of the room of a foot's pitch: from here on it gives way no more
+// Of the room of a foot's pitch: from here on it gives way no more.
+constexpr double kRoomUsed = 0.8;
 
-// Least sum of (angle - reference)^2 / W and of the squares of the rows that give way over what
-// they give, under the exact rows: one step from `angles_rad` to it.
-template <class V>
-inline void share_step(const LegGoals<V>& goals, const LegShares<V>& shares, const LegPlace<V>& at,
-                       const LegValues<V>& angles_rad, LegValues<V>& delta) noexcept {
-  LegColumns<V> column;
-  set_columns(goals, at, column);
+// Makes a step of legs whose weights differ one towards the least sum of (angle - reference)^2 / W
+// and of the squares of the rows that give way over what they give, under the exact rows.
+template <class V, class Step>
+inline void share_step(const LegShares<V>& shares, const MaskOf<V>& shared, const LegPlace<V>& at,
+                       const LegValues<V>& angles_rad, LegColumns<V>& column,
+                       Step& step) noexcept {
   LegRows<V> b = at.dx;
   for (int r : {3, 4, 5}) {
     const int of = r == 3 ? 0 : 1;
-    for (auto& c : column) c[r] -= c[of];
+    for (auto& c : column) c[r] = shared ? c[r] - c[of] : c[r];
     b[r] -= at.dx[of];
   }
   // Down positive. Near the floor, and near a toe's, a turn counts more and more.
@@ -263,84 +135,129 @@ inline void share_step(const LegGoals<V>& goals, const LegShares<V>& shares, con
           t = min_of(V(size / room), all_of<V>(kRoomUsed)), left = 1.0 / (1.0 - t),
           steep = left * left, bent = t * room * left + steep * (size - t * room);
   b[4] = lever * (down > V{} ? bent : -bent);
-  for (auto& c : column) c[4] = steep * c[4];
-  LegValues<V> weight = shares.weight;
-  for (int j = 0; j < kLegDofs; ++j) delta[j] = shares.reference_rad[j] - angles_rad[j];
+  for (auto& c : column) c[4] = shared ? steep * c[4] : c[4];
+  LegValues<V> first, weight = step.weight;
+  for (int j = 0; j < kLegDofs; ++j) first[j] = shares.reference_rad[j] - angles_rad[j];
   const V knee = angles_rad[kKneeX], bend = max_of(V(shares.knee_rad - knee), V{}),
           q = bend + shares.knee_soft_rad, push = kKneeSpring * bend * bend / q,
           stiff = kKneeSpring * bend * (bend + 2.0 * shares.knee_soft_rad) / (q * q),
           free = weight[kKneeX] / (1.0 + weight[kKneeX] * stiff);
-  delta[kKneeX] =
+  first[kKneeX] =
       free * (shares.reference_rad[kKneeX] / weight[kKneeX] + push + stiff * knee) - knee;
-  weight[kKneeX] = free;
+  step.weight[kKneeX] = shared ? free : weight[kKneeX];
   for (int r : {3, 4, 5}) b[r] = kShareStep * b[r];
   for (int j = 0; j < kLegDofs; ++j) {
-    delta[j] = kShareStep * delta[j];
-    for (int r = 0; r < 6; ++r) b[r] -= column[j][r] * delta[j];
+    step.first_rad[j] = shared ? kShareStep * first[j] : V{};
+    for (int r = 0; r < 6; ++r) b[r] -= column[j][r] * step.first_rad[j];
   }
-  LegRows<V> diagonal, y;
-  for (int r = 0; r < 6; ++r)
-    diagonal[r] = r < 3 ? all_of<V>(kExactRow_m2) : kExactRow_m2 + shares.give_m2[r - 3];
-  solve_step(column, weight, diagonal, b, y);
-  for (int j = 0; j < kLegDofs; ++j) {
-    const V even = column[j][0] * y[0] + column[j][2] * y[2] + column[j][4] * y[4],
-            odd = column[j][1] * y[1] + column[j][3] * y[3] + column[j][5] * y[5];
-    delta[j] += weight[j] * (even + odd);
+  for (int r = 0; r < 6; ++r) {
+    const V give = r < 3 ? all_of<V>(kExactRow_m2) : kExactRow_m2 + shares.give_m2[r - 3];
+    step.give[r] = shared ? give : step.give[r];
+    step.error[r] = shared ? b[r] : step.error[r];
   }
 }
 
-template <class V>
-inline LegSolution<V> share_lanes(const LegGoals<V>& goals, const LegShares<V>& shares,
-                                  LegValues<V>& angles_rad) noexcept {
-  LegPlace<V> at;
-  auto lanes = shares.uneven != V{};  // still on their way
-  V greatest = all_of<V>(1.0), missed{}, steps{};
-  for (int k = 0;; ++k) {
-    place_legs(goals, angles_rad, at);
-    lanes &= ~((greatest < all_of<V>(kSharedNear_rad)) &
-               (missed < all_of<V>(kSharedNear_m * kSharedNear_m)));
-    missed = at.dx[0] * at.dx[0] + at.dx[1] * at.dx[1] + at.dx[2] * at.dx[2];
-    if (!any(lanes) || k == kMostShareSteps) break;
-    LegValues<V> delta;
-    share_step(goals, shares, at, angles_rad, delta);
-    greatest = V{};
-    for (const V& d : delta) greatest = max_of(greatest, abs_of(d));
-    const V cap_rad = all_of<V>(kMostShareStep_rad),
-            cap = greatest > cap_rad ? cap_rad / greatest : all_of<V>(1.0);
-    for (int j = 0; j < kLegDofs; ++j)
-      angles_rad[j] = lanes ? angles_rad[j] + cap * delta[j] : angles_rad[j];
-    steps = lanes ? steps + 1.0 : steps;
+// Several legs, as the robust solver takes them.
+template <class Lane, bool kShares>
+struct LegSystem {
+  using V = Lane;
+  static constexpr int kRows = 6, kDofs = kLegDofs, dofs = kLegDofs;
+  static constexpr bool kWeighted = kShares;
+  static constexpr double kMostStep_rad = kMostShareStep_rad;
+  using Place = LegPlace<V>;
+
+  const LegGoals<V>& goals;
+  const LegShares<V>& shares;
+  const LegValues<V>&weight = goals.weight, &min_rad = goals.min_rad, &max_rad = goals.max_rad;
+  const MaskOf<V> shared = kShares ? shares.uneven != V{} : V{} != V{};
+
+  void place(const LegValues<V>& angles_rad, Place& place) const noexcept {
+    place_legs(goals, angles_rad, place);
   }
-  return {missed, steps, at.point_m[0], at.point_m[1]};
+  void set_columns(const Place& place, LegColumns<V>& column) const noexcept {
+    gaitpad::set_columns(goals, place, column);
+  }
+  static void keep(const MaskOf<V>& better, const Place& place, Place& best) noexcept {
+    if (!any(not_of(better))) {
+      best = place;
+      return;
+    }
+    for (int j = 1; j < kLegDofs; ++j) best.axis[j] = chosen(better, place.axis[j], best.axis[j]);
+    for (const auto member : {&Place::knee_m, &Place::ankle_m})
+      best.*member = chosen(better, place.*member, best.*member);
+    for (int p = 0; p < 3; ++p)
+      best.point_m[p] = chosen(better, place.point_m[p], best.point_m[p]);
+    for (int r = 0; r < 6; ++r) best.dx[r] = better ? place.dx[r] : best.dx[r];
+    best.squares = better ? place.squares : best.squares;
+  }
+  static void trace(const LegValues<V>&, const V&) noexcept {}
+  void share_step(const Place& at, const LegValues<V>& angles_rad, LegColumns<V>& column,
+                  StepIn<LegSystem>& step) const noexcept {
+    gaitpad::share_step(shares, shared, at, angles_rad, column, step);
+  }
+  // The exact point was near enough before a step this small.
+  MaskOf<V> settles(const Place& at, const V& greatest_rad, int steps) const noexcept {
+    return shared & (((greatest_rad < all_of<V>(kSharedNear_rad)) &
+                      (first_rows(at.dx) < all_of<V>(kSharedNear_m * kSharedNear_m))) |
+                     (all_of<V>(steps) >= all_of<V>(kMostShareSteps)));
+  }
+};
+
+// kWeighted: some of the legs have weights that differ.
+template <class V, bool kWeighted>
+inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const LegShares<V>& shares,
+                                  LegValues<V>& angles_rad) noexcept {
+  for (int j = 0; j < kLegDofs; ++j)
+    angles_rad[j] = min_of(max_of(angles_rad[j], goals.min_rad[j]), goals.max_rad[j]);
+  LegSystem<V, kWeighted> system{goals, shares};
+  LegPlace<V> best;
+  const auto lanes = kWeighted ? system.shared : V{} == V{};
+  auto [squares, iterations] =
+      iterate(system, kRobust, kRobust.max_iterations, lanes, angles_rad, best);
+  if constexpr (kWeighted) squares = first_rows(best.dx);
+  return {squares, iterations, best.point_m[0], best.point_m[1]};
+}
+
+// Numbers of several legs side by side, and back: the structs are the same numbers in the same
+// order.
+template <std::size_t kWidth, class One, class Several>
+inline void gather(const std::array<LegToSolve*, kWidth>& legs, One LegToSolve::*part,
+                   Several& to) noexcept {
+  static_assert(sizeof to == kWidth * sizeof(One));
+  auto* lanes = reinterpret_cast<Lanes<kWidth>*>(&to);
+  std::array<const double*, kWidth> from;
+  for (std::size_t i = 0; i < kWidth; ++i)
+    from[i] = reinterpret_cast<const double*>(&(legs[i]->*part));
+  for (std::size_t k = 0; k < sizeof(One) / sizeof(double); ++k) {
+    Lanes<kWidth> row;
+    for (std::size_t i = 0; i < kWidth; ++i) row[i] = from[i][k];
+    lanes[k] = row;
+  }
+}
+template <std::size_t kWidth, class One, class Several>
+inline void scatter(const Several& from, One LegToSolve::*part,
+                    const std::array<LegToSolve*, kWidth>& legs) noexcept {
+  const auto* lanes = reinterpret_cast<const Lanes<kWidth>*>(&from);
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    auto* to = reinterpret_cast<double*>(&(legs[i]->*part));
+    for (std::size_t k = 0; k < sizeof(One) / sizeof(double); ++k) to[k] = lanes[k][i];
+  }
 }
 
 }  // namespace
 
-template <int kWidth, int kRegister>
-void share_legs(SharedLegs<kWidth>& legs) noexcept {
+template <int kWidth, bool kWeighted, int kRegister>
+void solve_legs(const std::array<LegToSolve*, kWidth>& legs) noexcept {
   using V = Lanes<kWidth>;
   LegGoals<V> goals;
   LegShares<V> shares;
   LegValues<V> angles_rad;
-  std::memcpy(&goals, &legs.goals, sizeof goals);
-  std::memcpy(&shares, &legs.shares, sizeof shares);
-  std::memcpy(&angles_rad, &legs.angles_rad, sizeof angles_rad);
-  const LegSolution<V> solution = share_lanes(goals, shares, angles_rad);
-  std::memcpy(&legs.angles_rad, &angles_rad, sizeof angles_rad);
-  std::memcpy(&legs.solution, &solution, sizeof solution);
-}
-
-template <int kWidth, int kRegister>
-void solve_legs(const RobustOptions& options, LegLanes<kWidth>& legs) noexcept {
-  using V = Lanes<kWidth>;
-  LegGoals<V> goals;
-  LegValues<V> angles_rad;
-  static_assert(sizeof goals == sizeof legs.goals && sizeof angles_rad == sizeof legs.angles_rad);
-  std::memcpy(&goals, &legs.goals, sizeof goals);
-  std::memcpy(&angles_rad, &legs.angles_rad, sizeof angles_rad);
-  const LegSolution<V> solution = solve_lanes(goals, options, angles_rad);
-  std::memcpy(&legs.angles_rad, &angles_rad, sizeof angles_rad);
-  std::memcpy(&legs.solution, &solution, sizeof solution);
+  gather(legs, &LegToSolve::goals, goals);
+  if constexpr (kWeighted) gather(legs, &LegToSolve::shares, shares);
+  gather(legs, &LegToSolve::angles_rad, angles_rad);
+  const LegSolution<V> solution = solve_lanes<V, kWeighted>(goals, shares, angles_rad);
+  scatter(angles_rad, &LegToSolve::angles_rad, legs);
+  scatter(solution, &LegToSolve::solution, legs);
 }
 
 }  // namespace gaitpad

@@ -3,7 +3,7 @@
 
 namespace gaitpad {
 
-template void solve_legs<2>(const RobustOptions&, LegLanes<2>&) noexcept;
-template void share_legs<2>(SharedLegs<2>&) noexcept;
+template void solve_legs<2, false>(const std::array<LegToSolve*, 2>&) noexcept;
+template void solve_legs<2, true>(const std::array<LegToSolve*, 2>&) noexcept;
 
 }  // namespace gaitpad

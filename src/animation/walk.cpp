@@ -433,9 +433,8 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     pitch_foot(leg, 0.0, foot.pose, FootMode::roll);
     foot.toe_anchor_m = foot.pose.toe_m;
     foot.lift_m = foot.heel_anchor_m;
-    remember_foot(foot);
-    remember_foot(foot);
   }
+  for (int ticks = 0; ticks < 2; ++ticks) remember_feet(model, state);
   state.path.landing_m = state.foot[kLeftSide].heel_anchor_m;
   state.path.landing_plane = state.foot[kLeftSide].plane;
   state.path.base.height_m = state.path.base.level_m =
@@ -476,7 +475,7 @@ void end_tick(const Tick& tick, const vec3& pelvis_m, WalkState& state) noexcept
   report_ground(tick, state.frame);
   state.clock.replanned = false;
   finish_stage(tick, state);
-  for (FootState& foot : state.foot) remember_foot(foot);
+  remember_feet(tick.model, state);
 }
 
 void plan_tick(const Tick& tick, WalkState& state, PlannedTick& planned) noexcept {
@@ -487,34 +486,41 @@ void plan_tick(const Tick& tick, WalkState& state, PlannedTick& planned) noexcep
                      planned.plan, planned.pelvis);
 }
 
-// What the weights make of both legs.
-void share_both(const PlannedTick& planned, std::array<LegGoals<double>, 2>& goals,
-                std::array<PosedLeg, 2>& posed) noexcept {
+// Both legs side by side: with even weights first.
+void pose_robust(const PlannedTick& planned, std::array<PosedLeg, 2>& posed) noexcept {
   const Tick& tick = *planned.tick;
   WalkState& state = *planned.state;
+  const Pelvis& pelvis = planned.pelvis;
+  std::array<LegToSolve, 2> legs;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    advance_weighted_leg<double>(tick, planned.at, side, state);
+    set_leg_goals<double>(tick, planned.plan, pelvis, side, state, legs[side].goals,
+                          legs[side].angles_rad);
+  }
+  solve_two_legs<false>(legs);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    state.legs.even_rad[side] = legs[side].angles_rad;
+    posed[side] = posed_leg<double>(legs[side].solution, state.foot[side].pose.pitch_rad);
+    const double ankle = state.legs.even_rad[side][kAnkleX];
+    if (!needs_mending<double>(tick.model, planned.at, side, ankle, posed[side].failed)) continue;
+    posed[side] = mended_leg(tick, state, pelvis, side, posed[side]);
+    set_leg<double>(tick.model.leg[side], state.foot[side].pose, pelvis, legs[side].goals);
+  }
   if (!has_weights(state.gait, kLeftSide) && !has_weights(state.gait, kRightSide)) {
     state.legs.angles_rad = state.legs.even_rad;
     return;
   }
-  std::array<LegShares<double>, 2> shares;
-  SharedLegs<2> lanes;
+  for (const Side side : {kLeftSide, kRightSide})
+    set_shares<double>(tick, planned.at, planned.plan, pelvis, side, state, legs[side].goals,
+                       legs[side].shares, legs[side].angles_rad);
+  solve_two_legs<true>(legs);
   for (const Side side : {kLeftSide, kRightSide}) {
-    set_shares<double>(tick, planned.at, planned.plan, planned.pelvis, side, state, goals[side],
-                       shares[side]);
-    set_lanes(goals[side], side, lanes.goals);
-    set_lanes(shares[side], side, lanes.shares);
-    set_lanes(state.legs.angles_rad[side], side, lanes.angles_rad);
-  }
-  share_two_legs(lanes);
-  for (const Side side : {kLeftSide, kRightSide}) {
-    LegSolution<double> solution;
-    get_lane(lanes.angles_rad, side, state.legs.angles_rad[side]);
-    get_lane(lanes.solution, side, solution);
-    add_shared<double>(tick.model.leg[side], goals[side], shares[side], solution, posed[side]);
+    const LegToSolve& leg = legs[side];
+    keep_shared<double>(tick.model.leg[side], side, leg.goals, leg.shares, leg.angles_rad,
+                        leg.solution, state.legs, posed[side]);
   }
 }
 
-// Both legs side by side.
 void pose_legs(const PlannedTick& planned) noexcept {
   const Tick& tick = *planned.tick;
   WalkState& state = *planned.state;
@@ -524,28 +530,7 @@ void pose_legs(const PlannedTick& planned) noexcept {
     for (const Side side : {kLeftSide, kRightSide})
       posed[side] = pose_paper(tick, state, pelvis, side);
   } else {
-    LegLanes<2> lanes;
-    std::array<LegGoals<double>, 2> goals;
-    for (const Side side : {kLeftSide, kRightSide}) {
-      LegAngles angles;
-      set_leg_goals<double>(tick, planned.plan, pelvis, side, state, goals[side], angles);
-      set_lanes(goals[side], side, lanes.goals);
-      set_lanes(angles, side, lanes.angles_rad);
-    }
-    solve_two_legs(kRobust, lanes);
-    for (const Side side : {kLeftSide, kRightSide}) {
-      LegSolution<double> solution;
-      get_lane(lanes.angles_rad, side, state.legs.even_rad[side]);
-      get_lane(lanes.solution, side, solution);
-      posed[side] = posed_leg<double>(solution, state.foot[side].pose.pitch_rad);
-      const double ankle = state.legs.even_rad[side][kAnkleX];
-      if (needs_mending<double>(tick.model, planned.at, side, ankle, posed[side].failed)) {
-        posed[side] = mended_leg(tick, state, pelvis, side, posed[side]);
-        set_leg<double>(tick.model.leg[side], state.foot[side].pose, pelvis, goals[side]);
-      }
-      advance_means<double>(tick, side, state.legs);
-    }
-    share_both(planned, goals, posed);
+    pose_robust(planned, posed);
   }
   WalkFrame* const frame = &state.frame;
   for (const Side side : {kLeftSide, kRightSide})

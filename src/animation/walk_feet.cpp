@@ -21,10 +21,23 @@ void pitch_foot(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode 
   set_pitch<double>(leg, pitch_rad, mode == FootMode::support, pose);
 }
 
-void remember_foot(FootState& foot) noexcept {
-  foot.last_heel_m = {foot.pose.heel_m, foot.last_heel_m[0]};
-  foot.last_pitch_rad = {foot.pose.pitch_rad, foot.last_pitch_rad[0]};
-  foot.last_rise_m = {foot.rise_m, foot.last_rise_m[0]};
+// The foot before it rose as its leg asked.
+FootPose planned_pose(const WalkModel& model, const WalkState& state, Side side) noexcept {
+  FootPose pose = state.foot[side].pose;
+  const double asked_rad = state.legs.asked_rad[side];
+  if (asked_rad != 0.0)
+    pitch_foot(model.leg[side], pose.pitch_rad - asked_rad, pose, FootMode::support);
+  return pose;
+}
+
+void remember_feet(const WalkModel& model, WalkState& state) noexcept {
+  for (const Side side : {kLeftSide, kRightSide}) {
+    FootState& foot = state.foot[side];
+    const FootPose planned = planned_pose(model, state, side);
+    foot.last_heel_m = {planned.heel_m, foot.last_heel_m[0]};
+    foot.last_pitch_rad = {planned.pitch_rad, foot.last_pitch_rad[0]};
+    foot.last_rise_m = {foot.rise_m, foot.last_rise_m[0]};
+  }
 }
 
 void begin_support(FootState& foot) noexcept {
@@ -38,7 +51,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
   FootState& foot = state.foot[side];
   const double ticks = state.clock.stage_ticks;
-  const FootPose lifts = foot.pose;
+  const FootPose lifts = planned_pose(model, state, side);
   const vec3 slope_m = end_slope(foot.last_heel_m[1], foot.last_heel_m[0], lifts.heel_m) * ticks;
   const double pitch_rate =
       end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], lifts.pitch_rad);

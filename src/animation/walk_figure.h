@@ -24,7 +24,6 @@ inline constexpr double kSoftToe = 15.0 * kDegree;
 inline constexpr double kLeak_per_s = 4.0;  // of the correction on the data's angles
 inline constexpr double kSoftElbow = 0.1;
 inline constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
-inline constexpr RobustOptions kRobust = {.tolerance_m = 1e-6, .max_tries = 1};
 
 // The angle at which a leg's solver starts: the data's, and what had to be added to it a tick ago
 // (`off`), less what leaks away, and most of what that had changed by in the tick before. The share
@@ -137,40 +136,32 @@ MaskOf<V> needs_mending(const WalkModel& model, const MomentOf<V>& at, Side side
 // no footprint, and cannot drift.
 
 inline constexpr double kMeanTime_s = 0.5;  // of each of two filters in a row
-inline constexpr double kLeastW = 0.08;     // of a locked joint
-inline constexpr double kMostPull_rad = 26.0 * kDegree;
+inline constexpr double kLeastW = 0.09;     // of a locked joint
+inline constexpr double kMostPull_rad = 18.0 * kDegree;
 inline constexpr double kHeldPull = 0.3;  // what acts of the pull where the foot may not turn
 inline constexpr double kFootLever_m = 0.2;
-// Of the flight: from here on the heel is the planted point, or as good as landed.
-inline constexpr double kOnHeel = 0.5, kToLand = 0.4, kLanded = 0.95;
+// Of the flight: until here the toe is the planted point, from here on the heel; from here on the foot
+// turns back to its plan, and is as good as landed.
+inline constexpr double kToeUntil = 0.15, kOnHeel = 0.6, kToLand = 0.4, kLanded = 0.95;
 // How far a foot gives way: squared radians that cost as much as one of a joint's.
 inline constexpr double kGiveAside = 0.15, kGiveFlying = 0.5, kGiveRolling = 0.05;
-// A foot is free from this pitch on, and from this share of its flight on.
-inline constexpr double kRisen_rad = 4.0 * kDegree, kFreeFrom = 0.3;
+// A foot that stood flat becomes free so slowly, when a walk begins.
+inline constexpr double kLoosening_s = 0.04;
 inline constexpr double kTight_rad = 3.0 * kDegree;  // a foot with less room hardly gives way
 inline constexpr double kFloorRoom_m = 0.0003;
 inline constexpr double kStraightest = 1.0 * kDegree, kBentKnee = 0.65, kLeastSoft = 0.1 * kDegree;
 
-// The leg's weights over its largest; 1 where they differ, else 0.
+// The leg's weights over its largest. True where they differ.
 template <class V>
-V relative_weights(const GaitFlow<V>& gait, Side side, std::array<V, kLegDofs>& weight) noexcept {
+MaskOf<V> set_relative_weights(const GaitFlow<V>& gait, Side side,
+                               std::array<V, kLegDofs>& weight) noexcept {
   V largest = all_of<V>(1e-9), least = all_of<V>(1.0);
   for (const Damped<V>& w : gait.weight[side]) largest = max_of(largest, w.x);
   for (int j = 0; j < kLegDofs; ++j) {
     weight[j] = within(V(gait.weight[side][j].x / largest), 0.0, 1.0);
     least = min_of(least, weight[j]);
   }
-  return value<V>(least < all_of<V>(1.0 - kEvenSpread), 1.0, 0.0);
-}
-
-template <class V>
-void advance_means(const Tick& tick, Side side, LegFlow<V>& legs) noexcept {
-  const double pull = tick.dt_s / (kMeanTime_s * tick.model.time_scale + tick.dt_s);
-  for (int j = 0; j < kLegDofs; ++j) {
-    V &lagging = legs.lagging_rad[side][j], &mean = legs.mean_rad[side][j];
-    lagging += pull * (legs.even_rad[side][j] - lagging);
-    mean += pull * (lagging - mean);
-  }
+  return least < all_of<V>(1.0 - kEvenSpread);
 }
 
 // How far the foot may turn about the planted point, until toe or heel is on its floor.
@@ -195,21 +186,36 @@ void set_room(const Tick& tick, const StateOf<V>& state, Side side, const V& flo
   shares.room_up_rad = room(heel_m, V(leg.foot_m * (1.0 - shares.on_heel)));
 }
 
-// What the weights of one leg ask for, and where the step to it begins. `goals` has the leg and the
-// axes of the planned foot.
+// Before the weights act: the running means, and how freely the foot may turn.
+template <class V>
+void advance_weighted_leg(const Tick& tick, const MomentOf<V>& at, Side side,
+                          StateOf<V>& state) noexcept {
+  auto& legs = state.legs;
+  const double pull = tick.dt_s / (kMeanTime_s * tick.model.time_scale + tick.dt_s);
+  for (int j = 0; j < kLegDofs; ++j) {
+    V &lagging = legs.lagging_rad[side][j], &mean = legs.mean_rad[side][j];
+    lagging += pull * (legs.even_rad[side][j] - lagging);
+    mean += pull * (lagging - mean);
+  }
+  const auto may_turn =
+      at.in_flight[side] | (not_of(at.in_roll[side]) & (heel_rise<V>(tick.model, at, side) != V{}));
+  state.legs.loose[side].advance(value<V>(may_turn, 1.0, 0.0),
+                                 Damping(kLoosening_s * tick.model.time_scale, tick.dt_s));
+}
+
+// What the weights of one leg ask for. `goals` has the leg and the axes of the planned foot, and is
+// the weighted leg's afterwards. `angles_rad` is where it starts.
 template <class V>
 void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
-                const PelvisOf<V>& pelvis, Side side, StateOf<V>& state, LegGoals<V>& goals,
-                LegShares<V>& shares) noexcept {
+                const PelvisOf<V>& pelvis, Side side, const StateOf<V>& state, LegGoals<V>& goals,
+                LegShares<V>& shares, std::array<V, kLegDofs>& angles_rad) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   const auto& foot = state.foot[side].pose;
-  auto& legs = state.legs;
+  const auto& legs = state.legs;
   const MaskOf<V> flies = at.in_flight[side], rolls = at.in_roll[side];
   const V one = all_of<V>(1.0), zero{}, u = flies ? at.flight_progress() : zero,
-          rolled = at.rolls ? V(at.tick / at.stage_ticks) : zero,
-          risen = smoothstep(0.0, kRisen_rad, max_of(foot.pitch_rad, V{})),
-          rise = heel_rise<V>(tick.model, at, side) * risen,
-          lifts = mix(risen, 1.0, smootherstep(V(u / kFreeFrom)));
+          rolled = at.rolls ? V(at.tick / at.stage_ticks) : zero, lifts = state.legs.loose[side].x,
+          rise = lifts * heel_rise<V>(tick.model, at, side);
   const auto by_mode = [&](const V& flying, const V& rolling, const V& standing) {
     const V planted = rolls ? rolling : standing;
     return V(flies ? flying : planted);
@@ -221,24 +227,23 @@ void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
                             V(kGiveRolling * (1.0 - smootherstep(V(rolled / 0.9)))), rise),
           aside =
               flies ? smootherstep(V(u / 0.35)) * (1.0 - smootherstep(V((u - 0.6) / 0.4))) : zero;
-  shares.on_heel = by_mode(smootherstep(V(u / kOnHeel)), one, zero);
-  shares.uneven = relative_weights<V>(state.gait, side, shares.weight);
-  const auto uneven = shares.uneven != zero;
+  shares.on_heel = by_mode(smootherstep(V((u - kToeUntil) / (kOnHeel - kToeUntil))), one, zero);
+  const auto uneven = set_relative_weights<V>(state.gait, side, goals.weight);
+  shares.uneven = value<V>(uneven, 1.0, 0.0);
+  const V bent = kBentKnee * (legs.even_rad[side][kKneeX] - kStraightest);
+  shares.knee_rad = kStraightest + bent;
+  shares.knee_soft_rad = max_of(bent, all_of<V>(kLeastSoft));
   const V pull = plan.shown * (kHeldPull + (1.0 - kHeldPull) * free);
   for (int j = 0; j < kLegDofs; ++j) {
-    const V even = legs.even_rad[side][j], w = shares.weight[j];
+    const V even = legs.even_rad[side][j], w = goals.weight[j];
     V& reference = shares.reference_rad[j] = even;
     if (any(w != one)) {
       const V way = (1.0 - w) * (legs.mean_rad[side][j] - even), share = way / kMostPull_rad;
       reference += pull * way / sqrt_of(V(1.0 + share * share));
     }
-    shares.weight[j] = kLeastW + (1.0 - kLeastW) * w;
-    V& angle = legs.angles_rad[side][j];
-    angle = uneven ? even + angle : even;
+    goals.weight[j] = kLeastW + (1.0 - kLeastW) * w;
+    angles_rad[j] = even + legs.angles_rad[side][j];
   }
-  const V bent = kBentKnee * (legs.even_rad[side][kKneeX] - kStraightest);
-  shares.knee_rad = kStraightest + bent;
-  shares.knee_soft_rad = max_of(bent, all_of<V>(kLeastSoft));
   set_room<V>(tick, state, side, u, shares);
   const double lever_m = kFootLever_m * tick.model.size, square = lever_m * lever_m;
   const V room = shares.room_down_rad * shares.room_down_rad;
@@ -256,18 +261,21 @@ void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
               lever_m * leg.line, goals);
 }
 
-// Adds what the weighted step came to.
+// What the weighted step came to; of even legs the even pose.
 template <class V>
-void add_shared(const LegBuild& leg, const LegGoals<V>& goals, const LegShares<V>& shares,
-                const LegSolution<V>& solution, PosedLegOf<V>& posed) noexcept {
+void keep_shared(const LegBuild& leg, Side side, const LegGoals<V>& goals,
+                 const LegShares<V>& shares, const std::array<V, kLegDofs>& angles_rad,
+                 const LegSolution<V>& solution, LegFlow<V>& legs, PosedLegOf<V>& posed) noexcept {
   const auto uneven = shares.uneven != V{};
+  for (int j = 0; j < kLegDofs; ++j)
+    legs.angles_rad[side][j] = uneven ? angles_rad[j] : legs.even_rad[side][j];
   const Vec3Of<V>& point = solution.heel_m;
   const Vec3Of<V> line = (solution.toe_m - point) / shares.lever_m;
   const auto along = [&](const V& way_m) {
     const Vec3Of<V> place = point + line * way_m;
     return Vec<V>{place.x, place.y, place.z};
   };
-  posed.iterations += solution.iterations;
+  posed.iterations += uneven ? solution.iterations : V{};
   posed.squares = uneven ? solution.squares : posed.squares;
   posed.heel_m = chosen(uneven, along(V(-leg.foot_m * (1.0 - shares.on_heel))), posed.heel_m);
   posed.toe_m = chosen(uneven, along(V(leg.foot_m * shares.on_heel)), posed.toe_m);

@@ -207,7 +207,7 @@ V ratio_ahead(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& s
 }
 
 // A walk limps from the one difference of both feet's strides on, wholly from the other.
-inline constexpr double kEvenSteps = 0.03, kUnevenSteps = 0.2, kLeastAsked = 1e-9;
+inline constexpr double kEvenSteps = 0.03, kUnevenSteps = 0.2, kLeastAsked = 0.1;
 
 // Where one foot's steps are shorter than the other's, the tables of short strides would keep both
 // feet low: then a heel flies as high as in strides in which both go as far as the longer one, and
@@ -240,7 +240,7 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
   const Vec<V> heel_m =
       heel_at<V>(ratios_at<V>(tables, V(ahead * longer / max_of(own, all_of<V>(kLeastAsked)))),
                  knots, at.right_steps);
-  const V high_m = model.stride_scale.length * heel_m.y;
+  const V high_m = max_of(plan.heel_up_m, V(model.stride_scale.length * heel_m.y));
   plan.heel_up_m = is_limping ? mix(plan.heel_up_m, high_m, limps) : plan.heel_up_m;
 }
 
@@ -850,7 +850,8 @@ inline constexpr double kRiseBegin = 0.20, kHeelRiseLasts = 0.18;  // own phase:
 inline constexpr double kReachOnToe =
     0.99995;  // of the leg: with the hip further away, the heel rises
 // A low foot rises when its leg is longer than this, of the leg, with hips that are lower by this.
-inline constexpr double kLowHips_m = 0.022, kLowReach = 0.995, kSoftRise = 8.0 * kDegree;
+inline constexpr double kLowHips_m = 0.045, kLowSmoothing = 0.03, kLowUntil = 0.25,
+                        kLowRisen = 45.0 * kDegree, kLowReach = 0.985, kSoftRise = 12.0 * kDegree;
 inline constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
 inline constexpr double kMaxPitch = 85.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // A foot that goes far up is lifted less: its way over the riser is lift enough, and the knee folds
@@ -1224,20 +1225,35 @@ void reach_with_toe(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& s
   foot.pose = chosen_pose(short_of, pose, foot.pose);
 }
 
-// A standing foot whose heel stays low rises as far as its leg asks, with hips a little lower.
+// How much a foot whose heel stays low asks of the hips and of its own pitch: from its rise on, and
+// until its heel swings forward.
+template <class V>
+void advance_low_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
+                      Side side) noexcept {
+  const V rises = at.in_flight[side] ? 1.0 - smootherstep(V(at.flight_progress() / kLowUntil))
+                                     : heel_rise<V>(tick.model, at, side);
+  const V goal = at.in_roll[side]
+                     ? V{}
+                     : presence_of<V>(state.gait) * rises * (1.0 - low_lift<V>(state, side));
+  state.legs.low[side].advance(goal, Damping(kLowSmoothing * tick.model.time_scale, tick.dt_s));
+}
+
+// Such a foot rises as far as its leg asks.
 template <class V>
 void rise_as_asked(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state, Side side,
                    const Vec<V>& hip_m) noexcept {
   auto& foot = state.foot[side];
+  auto& legs = state.legs;
   const LegBuild& leg = model.leg[side];
-  const auto is_low = not_of(at.in_flight[side]) & not_of(at.in_roll[side]) &
-                      (low_lift<V>(state, side) != all_of<V>(1.0));
+  const auto is_low = not_of(at.in_roll[side]) & (legs.low[side].x > V{});
+  legs.asked_rad[side] = V{};
   if (!any(is_low)) return;
-  const Vec<V> hip = hip_m - all_of<V>(kUp) * all_of<V>(kLowHips_m * model.size);
   auto pose = foot.pose;
-  const V asked = pitch_in_reach<V>(leg, pose, hip, kLowReach * leg.model.length_m());
-  const V more = soft_positive(V(asked - pose.pitch_rad), kSoftRise);
-  set_pitch<V>(leg, pose.pitch_rad + heel_rise<V>(model, at, side) * more, is_low, pose);
+  const V asked = pitch_in_reach<V>(leg, pose, hip_m, kLowReach * leg.model.length_m());
+  const V more = min_of(all_of<V>(1.0), V(2.0 * legs.low[side].x)) *
+                 soft_positive(V(asked - pose.pitch_rad), kSoftRise);
+  legs.asked_rad[side] = is_low ? more : V{};
+  set_pitch<V>(leg, pose.pitch_rad + more, is_low, pose);
   foot.pose = chosen_pose(is_low, pose, foot.pose);
 }
 
@@ -1296,7 +1312,9 @@ V pelvis_height(const WalkModel& model, const MomentOf<V>& at, double tick_s, St
     const LegBuild& leg = model.leg[side];
     const V knee = model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
     // Between the tables of two strides a knee may be straighter than in both.
-    const V known = span_of<V>(leg.model, at.led ? max_of(knee, all_of<V>(kLeastKnown)) : knee);
+    const V table = span_of<V>(leg.model, at.led ? max_of(knee, all_of<V>(kLeastKnown)) : knee);
+    const V known =
+        mix(all_of<V>(kLowReach * leg.model.length_m()), table, low_lift<V>(state, side));
     const auto& pose = state.foot[side].pose;
     const Vec<V> ankle = pose.heel_m - pose.rotation * all_of<V>(leg.model.heel_m),
                  hip = pelvis.hip(leg);
@@ -1345,6 +1363,11 @@ void plan_walks(const Tick& tick, MomentOf<V>& at, const ParamsOf<V>& params, St
   lead_hips<V>(tick, at, state, plan);
   for (const Side side : {kLeftSide, kRightSide}) plan_foot<V>(tick, at, state, plan, side);
   pelvis = pelvis_over_ground<V>(tick.model, state, plan);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    advance_low_foot<V>(tick, at, state, side);
+    pelvis.position_m.y -= kLowHips_m * tick.model.size * state.legs.low[side].x *
+                           smoothstep(0.0, kLowRisen, plan.cell.foot[side].pitch_rad);
+  }
   for (const Side side : {kLeftSide, kRightSide})
     rise_as_asked<V>(tick.model, at, state, side, pelvis.hip(tick.model.leg[side]));
   pelvis.position_m.y = pelvis_height<V>(tick.model, at, tick.dt_s, state, plan, pelvis);

@@ -81,49 +81,41 @@ Pelvis pelvis_of(const PelvisOf<V>& pelvis, int lane) noexcept {
   return one;
 }
 
-// Solves the legs of one side as if their weights were even. Those that need mending are mended one
-// by one.
-template <class V>
-PosedLegOf<V> solve_side(const Tick& tick, std::span<const Walking> walks, const MomentOf<V>& at,
-                         const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
-                         StateLanes<V>& state, LegGoals<V>& goals) noexcept {
-  std::array<V, kLegDofs>& angles = state.legs.even_rad[side];
-  set_leg_goals<V>(tick, plan, pelvis, side, state, goals, angles);
-  const LegSolution<V> solution = solve_lanes(goals, kRobust, angles);
-  PosedLegOf<V> posed = posed_leg<V>(solution, state.foot[side].pose.pitch_rad);
-  const MaskOf<V> mends = needs_mending<V>(tick.model, at, side, angles[kAnkleX], posed.failed);
-  if (!any(mends)) return posed;
-  for (std::size_t i = 0; i < walks.size(); ++i) {
-    const int lane = static_cast<int>(i);
-    if (!is_set(mends, lane)) continue;
-    WalkState& walk = *walks[i].state;
-    PosedLeg one;
-    get_lane(angles, lane, walk.legs.even_rad[side]);
-    get_lane(posed, lane, one);
-    set_lanes(mended_leg(tick, walk, pelvis_of(pelvis, lane), side, one), lane, posed);
-    set_lanes(walk.legs.even_rad[side], lane, angles);
-    set_lanes(static_cast<const FootPoseOf<double>&>(walk.foot[side].pose), lane,
-              state.foot[side].pose);
-  }
-  set_leg<V>(tick.model.leg[side], state.foot[side].pose, pelvis, goals);
-  return posed;
-}
-
+// Solves the legs of one side, with even weights first. Those that need mending are mended one by
+// one.
 template <class V>
 PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const MomentOf<V>& at,
                         const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
                         StateLanes<V>& state) noexcept {
+  advance_weighted_leg<V>(tick, at, side, state);
   LegGoals<V> goals;
-  PosedLegOf<V> posed = solve_side<V>(tick, walks, at, plan, pelvis, side, state, goals);
-  advance_means<V>(tick, side, state.legs);
+  std::array<V, kLegDofs>& even = state.legs.even_rad[side];
+  set_leg_goals<V>(tick, plan, pelvis, side, state, goals, even);
+  const LegSolution<V> solution = solve_lanes<V, false>(goals, LegShares<V>{}, even);
+  PosedLegOf<V> posed = posed_leg<V>(solution, state.foot[side].pose.pitch_rad);
+  const MaskOf<V> mends = needs_mending<V>(tick.model, at, side, even[kAnkleX], posed.failed);
+  for (std::size_t i = 0; any(mends) && i < walks.size(); ++i) {
+    const int lane = static_cast<int>(i);
+    if (!is_set(mends, lane)) continue;
+    WalkState& walk = *walks[i].state;
+    PosedLeg one;
+    get_lane(even, lane, walk.legs.even_rad[side]);
+    get_lane(posed, lane, one);
+    set_lanes(mended_leg(tick, walk, pelvis_of(pelvis, lane), side, one), lane, posed);
+    set_lanes(walk.legs.even_rad[side], lane, even);
+    set_lanes(static_cast<const FootPoseOf<double>&>(walk.foot[side].pose), lane,
+              state.foot[side].pose);
+  }
   if (!any(has_weights(state.gait, side))) {
-    state.legs.angles_rad[side] = state.legs.even_rad[side];
+    state.legs.angles_rad[side] = even;
     return posed;
   }
+  if (any(mends)) set_leg<V>(tick.model.leg[side], state.foot[side].pose, pelvis, goals);
   LegShares<V> shares;
-  set_shares<V>(tick, at, plan, pelvis, side, state, goals, shares);
-  add_shared<V>(tick.model.leg[side], goals, shares,
-                share_lanes(goals, shares, state.legs.angles_rad[side]), posed);
+  std::array<V, kLegDofs> angles;
+  set_shares<V>(tick, at, plan, pelvis, side, state, goals, shares, angles);
+  const LegSolution<V> shared = solve_lanes<V, true>(goals, shares, angles);
+  keep_shared<V>(tick.model.leg[side], side, goals, shares, angles, shared, state.legs, posed);
   return posed;
 }
 

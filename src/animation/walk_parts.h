@@ -219,7 +219,7 @@ void rise_on_toe(const Tick& tick, WalkState& state, const StridePlan& plan, Sid
 // Turns a foot about its pivot: the toe in support, else the heel.
 void pitch_foot(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode mode) noexcept;
 // At the end of a tick: keeps what the next ticks' derivatives need.
-void remember_foot(FootState& foot) noexcept;
+void remember_feet(const WalkModel& model, WalkState& state) noexcept;
 void begin_support(FootState& foot) noexcept;
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
 // A foot that lands stands on its heel from now on.

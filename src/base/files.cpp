@@ -2,16 +2,20 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/random.h>
 #include <sys/vfs.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include "base/text.h"
@@ -70,27 +74,13 @@ int write_all(int file, std::string_view bytes) {
   return 0;
 }
 
-enum class Write { cached, to_disk };
-
-// Writes a new file with these bytes; 0 or errno.
-int write_new(const std::string& path, std::string_view bytes, Write write) {
-  ::unlink(path.c_str());  // a killed process may have had the same number
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (file < 0) return errno;
-  int problem = write_all(file, bytes);
-  // fsync() reports lost bytes that close() might not.
-  if (problem == 0 && write == Write::to_disk && ::fsync(file) != 0) problem = errno;
-  if (::close(file) != 0 && problem == 0) problem = errno;
-  return problem;
-}
-
 int rename_file(const std::string& from, const std::string& to) {
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
 // Keeps what stands at `place` as PLACE.old, too, which is whole at any moment; 0 or errno.
-int keep_old(const std::string& place, const std::string& temporary) {
-  ::unlink(temporary.c_str());
+int keep_old(const std::string& place) {
+  const std::string temporary = temporary_beside(place);
   if (::link(place.c_str(), temporary.c_str()) != 0) {
     if (errno == ENOENT) return 0;  // nothing to keep
     std::error_code error;          // this file system has no hard links
@@ -151,10 +141,32 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   return text;
 }
 
+namespace {
+
+constexpr std::size_t kNumberDigits = 16;
+
+// Of a name `.NAME.PID.NUMBER` what follows `.NAME.`; also `PID` and `PID.old` of earlier versions.
+// None: it is another kind of name.
+std::optional<pid_t> process_of(std::string_view end) {
+  const std::string_view process = end.substr(0, end.find('.'));
+  end.remove_prefix(process.size());
+  const bool is_numbered = end.size() == 1 + kNumberDigits &&
+                           end.find_first_not_of("0123456789abcdef", 1) == std::string_view::npos;
+  if (!end.empty() && end != ".old" && !is_numbered) return std::nullopt;
+  return parse_number<pid_t>(process);
+}
+
+}  // namespace
+
 std::string temporary_beside(const std::string& path) {
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof number, 0) != sizeof number)
+    number = std::random_device{}() | std::uint64_t{std::random_device{}()} << 32;
+  std::array<char, kNumberDigits + 1> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(number));
   const fs::path place(path);
-  const std::string name = place.filename().string();
-  return (place.parent_path() / ("." + name + "." + std::to_string(::getpid()))).string();
+  const std::string name = "." + place.filename().string() + "." + std::to_string(::getpid());
+  return (place.parent_path() / (name + "." + digits.data())).string();
 }
 
 void remove_leftovers(const std::string& path) {
@@ -165,9 +177,7 @@ void remove_leftovers(const std::string& path) {
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
     if (!name.starts_with(begin)) continue;
-    std::string_view number = std::string_view(name).substr(begin.size());
-    if (number.ends_with(".old")) number.remove_suffix(4);  // of save_text()
-    const auto process = parse_number<pid_t>(number);
+    const auto process = process_of(std::string_view(name).substr(begin.size()));
     if (!process || *process <= 0 || ::kill(*process, 0) == 0 || errno != ESRCH) continue;
     ::unlink(it->path().c_str());
   }
@@ -177,19 +187,53 @@ Error write_error(const std::string& path, int number) {
   return Error{path + ": cannot be written: " + std::strerror(number)};
 }
 
+Result<NewFile> NewFile::create(const std::string& path) {
+  remove_leftovers(path);
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return write_error(path, EISDIR);
+  std::string temporary = temporary_beside(path);
+  const int fd =
+      ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (fd < 0) return write_error(path, errno);
+  return NewFile(path, std::move(temporary), fd);
+}
+
+NewFile::NewFile(NewFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      fd_(std::exchange(other.fd_, -1)) {}
+
+NewFile::~NewFile() {
+  if (fd_ >= 0) ::close(fd_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+std::optional<Error> NewFile::write(std::string_view bytes) {
+  const int problem = write_all(fd_, bytes);
+  return problem == 0 ? std::nullopt : std::optional(write_error(path_, problem));
+}
+
+// fsync() reports lost bytes that close() might not.
+std::optional<Error> NewFile::write_to_disk() {
+  return ::fsync(fd_) == 0 ? std::nullopt : std::optional(write_error(path_, errno));
+}
+
+std::optional<Error> NewFile::publish() {
+  if (::close(std::exchange(fd_, -1)) != 0) return write_error(path_, errno);
+  if (const int problem = rename_file(temporary_, path_); problem != 0)
+    return write_error(path_, problem);
+  temporary_.clear();
+  return std::nullopt;
+}
+
 std::optional<Error> write_file(const std::string& path, std::string_view bytes) {
   const fs::path place(path);
   if (!place.has_filename()) return Error{path + ": is not a file name"};
   if (auto problem = make_folder(place.parent_path())) return problem;
-  std::error_code ignored;
-  if (fs::is_directory(place, ignored)) return write_error(path, EISDIR);
-  remove_leftovers(path);
-  const std::string temporary = temporary_beside(path);
-  int problem = write_new(temporary, bytes, Write::cached);
-  if (problem == 0) problem = rename_file(temporary, path);
-  if (problem == 0) return std::nullopt;
-  ::unlink(temporary.c_str());
-  return write_error(path, problem);
+  auto file = NewFile::create(path);
+  if (!file) return file.error();
+  if (auto problem = file->write(bytes)) return problem;
+  return file->publish();
 }
 
 std::optional<Error> saving_problem(const std::string& path) {
@@ -212,21 +256,15 @@ std::optional<Error> save_text(const std::string& path, std::string_view text) {
   if (auto problem = make_folder(fs::path(path).parent_path())) return problem;
   const auto place = target_of_links(path);
   if (!place) return place.error();
-  remove_leftovers(*place);
-  const std::string temporary = temporary_beside(*place);
-  std::string blamed = *place;
-  int problem = write_new(temporary, text, Write::to_disk);
-  if (problem == 0) {
-    problem = keep_old(*place, temporary + ".old");
-    if (problem != 0) blamed = *place + ".old";
-  }
-  if (problem == 0) problem = rename_file(temporary, *place);
-  if (problem == 0) {
-    sync_folder(fs::path(*place).parent_path());
-    return std::nullopt;
-  }
-  ::unlink(temporary.c_str());
-  return write_error(blamed, problem);
+  auto file = NewFile::create(*place);
+  if (!file) return file.error();
+  if (auto problem = file->write(text)) return problem;
+  if (auto problem = file->write_to_disk()) return problem;
+  if (const int problem = keep_old(*place); problem != 0)
+    return write_error(*place + ".old", problem);
+  if (auto problem = file->publish()) return problem;
+  sync_folder(fs::path(*place).parent_path());
+  return std::nullopt;
 }
 
 }  // namespace gaitpad

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "gaitpad/result.h"
 
@@ -21,12 +22,37 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes);
 // `PATH: cannot be written: ` and the cause that `number`, an errno, stands for.
 Error write_error(const std::string& path, int number);
 
-// Where to write what becomes `path` when it is complete: hidden, in the same folder, and different
-// for every process.
+// Where to write what becomes `path` when it is complete: hidden, in the same folder, different for
+// every call, and not to be guessed, so that nobody can put a link there beforehand.
 std::string temporary_beside(const std::string& path);
 
-// Removes temporary files for `path` (`.NAME.PID` beside it) whose process was killed.
+// Removes temporary files for `path` (`.NAME.PID.NUMBER` beside it) whose process was killed.
 void remove_leftovers(const std::string& path);
+
+// A file on its way to `path`, under a temporary name: new, and never through a link. Without
+// publish() it is removed.
+class NewFile {
+ public:
+  static Result<NewFile> create(const std::string& path);
+  NewFile(NewFile&& other) noexcept;
+  NewFile& operator=(NewFile&&) = delete;
+  ~NewFile();
+
+  const std::string& path() const { return path_; }
+  int fd() const { return fd_; }
+  // A name of the open file for streams, whatever stands in the folder by now.
+  std::string name_for_streams() const { return "/proc/self/fd/" + std::to_string(fd_); }
+  std::optional<Error> write(std::string_view bytes);
+  std::optional<Error> write_to_disk();  // what was written survives a power cut
+  std::optional<Error> publish();        // renames it; once
+
+ private:
+  NewFile(std::string path, std::string temporary, int fd)
+      : path_(std::move(path)), temporary_(std::move(temporary)), fd_(fd) {}
+
+  std::string path_, temporary_;
+  int fd_ = -1;
+};
 
 // Makes the folder of `path`, writes a temporary file in it and renames that to `path`. On error
 // what stood there before is unchanged.

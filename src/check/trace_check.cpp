@@ -284,6 +284,7 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
   SessionSpec session =
       session_of(expectation, fs::path(trace.path).parent_path().string(), trace.recording());
   session.config_folders = options.config_folders;
+  session.replay.max_hours = options.max_hours;
   auto prepared = prepared_trace(session);
   if (!prepared) return prepared.error();
   const Measured measured = measured_run(*prepared);

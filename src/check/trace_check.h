@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gaitpad/result.h"
+#include "gaitpad/session_spec.h"
 
 namespace gaitpad {
 
@@ -14,6 +15,7 @@ struct CheckOptions {
   std::vector<std::string> config_folders;
   bool updates = false;      // writes the expectations that are not met or are missing
   bool with_curves = false;  // of the joint that differs first
+  double max_hours = SessionSpec::Replay::kMaxHours;
 };
 
 // A recording and what stands beside it.

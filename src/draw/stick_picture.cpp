@@ -357,7 +357,7 @@ std::vector<LegendEntry> rest_legend(const StickPicture& stick) {
   return entries;
 }
 
-// Radius from the raw middle in each direction, in the circularity error's bins. 0: not seen.
+// The least radius from the stick's centre in each bin, as the verdict has it. 0: not seen.
 using Reaches = std::array<double, kCircularityBins>;
 
 bool is_seen(const Reaches& reaches) {
@@ -420,22 +420,6 @@ void draw_bars(cairo_t* cr, const Box& plot, const PlotRange& range, const Reach
   cairo_stroke(cr);
 }
 
-Reaches reaches_of(const Outline& outline) noexcept {
-  Reaches reaches{};
-  for (int i = 0; i < kOutlineDirections; ++i) {
-    const double r = outline.radius[static_cast<std::size_t>(i)];
-    if (!(r > 0.0) || !std::isfinite(r)) continue;
-    const double angle = i * 2.0 * kPi / kOutlineDirections;
-    const vec2 p = outline.middle + r * vec2(std::cos(angle), std::sin(angle));
-    const double turn = std::atan2(p.y, p.x) / (2.0 * kPi);
-    if (!std::isfinite(turn)) continue;
-    const int bin = static_cast<int>(std::lround((turn + 1.0) * kCircularityBins));
-    double& reach = reaches[static_cast<std::size_t>(bin % kCircularityBins)];
-    reach = std::max(reach, std::hypot(p.x, p.y));
-  }
-  return reaches;
-}
-
 // A pointer at the direction that reaches least far, from the stick's centre, and its name.
 void draw_worst(cairo_t* cr, const Box& plot, const Outline& outline) {
   const std::optional<int> worst = worst_direction(outline);
@@ -458,7 +442,7 @@ void draw_worst(cairo_t* cr, const Box& plot, const Outline& outline) {
 }
 
 void draw_reach(cairo_t* cr, const Box& plot, const StickPicture& stick) {
-  const Reaches reaches = stick.statistics ? reaches_of(stick.statistics->outline) : Reaches{};
+  const Reaches reaches = stick.statistics ? least_reaches(stick.statistics->outline) : Reaches{};
   const PlotRange range = range_of(reaches);
   draw_reach_grid(cr, plot, range);
   if (is_seen(reaches)) {
@@ -475,7 +459,7 @@ std::vector<LegendEntry> raw_legend(const StickPicture& stick) {
   using Mark = LegendEntry::Mark;
   std::vector<LegendEntry> entries;
   if (!stick.tracks.empty()) entries.push_back({Mark::line, colour::kBlue, "track"});
-  if (stick.statistics && is_seen(reaches_of(stick.statistics->outline))) {
+  if (stick.statistics && is_seen(least_reaches(stick.statistics->outline))) {
     entries.push_back({Mark::line, colour::kVermilion, "outline"});
   }
   if (stick.statistics && stick.statistics->centre) {
@@ -495,7 +479,7 @@ std::vector<LegendEntry> calibrated_legend(const StickPicture& stick) {
   using Mark = LegendEntry::Mark;
   if (!stick.advice) return {};
   std::vector<LegendEntry> entries = {{Mark::line, colour::kBlue, "track"}};
-  if (stick.statistics && is_seen(reaches_of(stick.statistics->outline))) {
+  if (stick.statistics && is_seen(least_reaches(stick.statistics->outline))) {
     entries.push_back({Mark::line, colour::kVermilion, "outline"});
   }
   entries.push_back({Mark::dot, colour::kGreen, "neutral"});
@@ -504,11 +488,11 @@ std::vector<LegendEntry> calibrated_legend(const StickPicture& stick) {
 
 std::vector<LegendEntry> reach_legend(const StickPicture& stick) {
   using Mark = LegendEntry::Mark;
-  if (!stick.statistics || !is_seen(reaches_of(stick.statistics->outline))) return {};
+  if (!stick.statistics || !is_seen(least_reaches(stick.statistics->outline))) return {};
   std::vector<LegendEntry> entries = {{Mark::line, colour::kInk, "circle"},
                                       {Mark::bar, colour::kSkyBlue, "beyond it"},
                                       {Mark::bar, colour::kOrange, "short of it"}};
-  const Reaches reaches = reaches_of(stick.statistics->outline);
+  const Reaches reaches = least_reaches(stick.statistics->outline);
   if (std::find(reaches.begin(), reaches.end(), 0.0) != reaches.end()) {
     entries.push_back({Mark::bar, colour::kBorder, "not seen"});
   }
@@ -728,7 +712,7 @@ void draw_panels(cairo_t* cr, const Box& box, const StickPicture& stick) {
   draw_panel(cr, {left(2), top, kPlot, half}, {"At rest, magnified, raw", &draw_rest, &rest_legend},
              stick);
   draw_panel(cr, {left(2), top + kPlot - half, kPlot, half},
-             {"Reach by direction, raw", &draw_reach, &reach_legend}, stick);
+             {"Reach from centre, raw", &draw_reach, &reach_legend}, stick);
   if (!stick.statistics || !stick.statistics->circularity_error) return;
   draw_text(cr, {13.0, colour::kInk, Align::right}, {left(2) + kPlot, top + kPlot - half - 9.0},
             "circularity error: " + error_text(*stick.statistics));

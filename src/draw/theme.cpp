@@ -6,12 +6,12 @@ namespace {
 
 constexpr std::array<Colour, 8> kSeries = {
     rgb(0x56b4e9), rgb(0xe69f00), rgb(0x009e73), rgb(0xcc79a7),
-    rgb(0xd55e00), rgb(0x0072b2), rgb(0xf0e442), rgb(0x999999),
+    rgb(0xd8680f), rgb(0x348fc2), rgb(0xf0e442), rgb(0x999999),
 };
-// Darker, for thin lines on white.
+// Darker, for thin lines and numbers on white.
 constexpr std::array<Colour, 8> kSeriesOnLight = {
-    rgb(0x2b8cc9), rgb(0xc98500), rgb(0x00805d), rgb(0xb85c8f),
-    rgb(0xc25400), rgb(0x005d94), rgb(0xa89b00), rgb(0x707070),
+    rgb(0x2474a7), rgb(0x986400), rgb(0x007e5c), rgb(0xa65381),
+    rgb(0xb74f00), rgb(0x005d94), rgb(0x7a7000), rgb(0x6f6f6f),
 };
 
 constexpr Theme dark_theme() {
@@ -24,6 +24,7 @@ constexpr Theme dark_theme() {
   t.plot = rgb(0x14171c);
   t.frame = rgb(0x2a303a);
   t.border = rgb(0x303744);
+  t.edge = rgb(0x707a8a);
   t.text = rgb(0xe6e9ee);
   t.secondary = rgb(0xa9b2bf);
   t.tick = rgb(0x8f98a6);
@@ -58,13 +59,14 @@ constexpr Theme light_theme() {
   t.plot = rgb(0xffffff);
   t.frame = rgb(0xe2e6eb);
   t.border = rgb(0xd5d9df);
+  t.edge = rgb(0x7b838e);
   t.text = rgb(0x1d2430);
   t.secondary = rgb(0x4a5362);
-  t.tick = rgb(0x6b7480);
-  t.accent = rgb(0x2f7fb5);
-  t.good = rgb(0x00805d);
-  t.warning = rgb(0xb87400);
-  t.bad = rgb(0xc25400);
+  t.tick = rgb(0x666e7a);
+  t.accent = rgb(0x2d7baf);
+  t.good = rgb(0x007e5c);
+  t.warning = rgb(0x986000);
+  t.bad = rgb(0xb74f00);
   t.sky_top = {.86, .89, .93};
   t.sky_bottom = {.95, .96, .97};
   t.floor = {.83, .85, .88};
@@ -74,8 +76,8 @@ constexpr Theme light_theme() {
   t.grid = {.62, .66, .71};
   t.bone = rgb(0x4a5362);
   t.series = kSeriesOnLight;
-  t.left = rgb(0x2b8cc9);
-  t.right = rgb(0xc98500);
+  t.left = rgb(0x2474a7);
+  t.right = rgb(0x986400);
   t.axis_x = rgb(0xc25400);
   t.axis_y = rgb(0x00805d);
   t.axis_z = rgb(0x2b8cc9);

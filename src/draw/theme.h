@@ -10,14 +10,19 @@ namespace gaitpad {
 
 enum class ThemeName : std::uint8_t { dark, light };
 
+// Text has a contrast of 4.5 at least, and edges of controls 3 (tests/draw/theme_test.cpp).
 struct Theme {
   ThemeName name = ThemeName::dark;
   Colour window, bar, panel, card, plot, frame, border;
+  Colour edge;  // of buttons, sliders and fields
   Colour text, secondary, tick, accent, good, warning, bad;
   Colour sky_top, sky_bottom, floor, floor_far, riser, nose, grid, bone;  // of the scene
   std::array<Colour, 8> series;  // of characters and curves, used in turn
   Colour left, right, axis_x, axis_y, axis_z;
 };
+inline constexpr double kChosenShare = 0.35;  // of the accent on what is chosen
+inline constexpr double kScrollShare = 0.65;  // of secondary on a scroll bar's grab
+
 const Theme& theme_of(ThemeName name) noexcept;
 const Colour& series_colour(const Theme& theme, std::size_t index) noexcept;
 

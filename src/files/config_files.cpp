@@ -1,6 +1,7 @@
 #include "gaitpad/config_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <map>
 
 #include "base/files.h"
+#include "base/suggestion.h"
 #include "base/text.h"
 
 namespace gaitpad {
@@ -87,14 +89,15 @@ Result<std::string> config_file(const std::vector<std::string>& folders, const s
   if (file_or_name.find('/') != std::string::npos || file_or_name.ends_with(".toml")) {
     return file_or_name;
   }
-  std::string known;
+  std::vector<std::string> known;
   for (const std::string& path : config_files(folders, kind)) {
     if (config_name(path) == file_or_name) return path;
-    known += (known.empty() ? "" : ", ") + config_name(path);
+    known.push_back(config_name(path));
   }
-  if (known.empty()) known = "none found; set GAITPAD_CONFIG to the config folder";
-  return Error{
-      fmt::format("there is no \"{}\" in config/{} (known: {})", file_or_name, kind, known)};
+  std::string meant = suggestion(file_or_name, known);
+  if (known.empty()) meant = " (none found; set GAITPAD_CONFIG to the config folder)";
+  if (meant.empty()) meant = fmt::format(" (known: {})", fmt::join(known, ", "));
+  return Error{fmt::format("there is no \"{}\" in config/{}{}", file_or_name, kind, meant)};
 }
 
 std::string config_name(const std::string& path) { return fs::path(path).stem().string(); }

@@ -209,7 +209,8 @@ Cause TraceReader::add_lettered(char letter, std::string_view text) {
 }
 
 Cause TraceReader::version(Words words) {
-  if (words.next() != "1") return "this version of the format is not known, 1 is";
+  const auto version = decimal(words.next(), kTraceVersion);
+  if (!version || *version < 1) return "this version of the format is not known, 1 and 2 are";
   if (trace_.rate_hz || trace_.has_ticks || !trace_.events.empty())
     return "a V: line stands first, once";
   std::optional<int> rate_hz;
@@ -223,6 +224,7 @@ Cause TraceReader::version(Words words) {
     }
     rate_hz = static_cast<int>(*rate);
   }
+  trace_.version = static_cast<int>(*version);
   trace_.rate_hz = rate_hz;
   return std::nullopt;
 }
@@ -649,7 +651,9 @@ void append_device(std::string& out, const TraceDevice& device) {
 
 }  // namespace
 
-void TraceWriter::begin(int rate_hz) { text_ += fmt::format("V: 1 rate_hz={}\n", rate_hz); }
+void TraceWriter::begin(int rate_hz, int version) {
+  text_ += fmt::format("V: {} rate_hz={}\n", version, rate_hz);
+}
 
 void TraceWriter::pace(Pace pace) { text_ += fmt::format("O: pace {}\n", name_of(pace)); }
 
@@ -703,7 +707,7 @@ std::string TraceWriter::take_text() { return std::exchange(text_, {}); }
 
 std::string trace_text(const Trace& trace) {
   TraceWriter writer;
-  if (trace.rate_hz) writer.begin(*trace.rate_hz);
+  if (trace.rate_hz) writer.begin(*trace.rate_hz, trace.version);
   if (trace.pace) writer.pace(*trace.pace);
   const bool plain = trace.devices.size() == 1 && trace.devices.front().index == 0;
   for (const TraceDevice& device : trace.devices) {
@@ -722,11 +726,7 @@ std::string trace_text(const Trace& trace) {
 
 Result<std::int64_t> write_trace(const Trace& trace, const std::string& path) {
   const std::string text = trace_text(trace);
-  std::ofstream out(path, std::ios::binary);
-  if (!out) return Error{path + ": cannot be opened for writing"};
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out) return Error{path + ": writing failed"};
+  if (auto problem = write_file(path, text)) return *problem;
   return static_cast<std::int64_t>(text.size());
 }
 

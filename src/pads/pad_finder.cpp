@@ -557,8 +557,7 @@ void PadFinder::consider(const PadSighting& sighting) {
 }
 
 void PadFinder::open(const PadSighting& sighting, Candidate& candidate) {
-  const Detach detach = options_.wish.driver == "usb" ? Detach::allowed : Detach::never;
-  auto device = sighting.driver->open(sighting.listing, detach);
+  auto device = sighting.driver->open(sighting.listing, detach_asked(options_.wish));
   const Clock::time_point now = Clock::now();
   if (!device) {
     const auto tries = static_cast<std::size_t>(candidate.failures++);
@@ -571,6 +570,7 @@ void PadFinder::open(const PadSighting& sighting, Candidate& candidate) {
     --awaited_ends_;
     return;
   }
+  if (options_.is_raw) (*device)->hand_on_raw();
   auto pad = std::make_unique<KnownPad>();
   auto problem = set_up(sighting, **device, *pad);
   std::optional<std::uint16_t> index;
@@ -637,6 +637,7 @@ void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> d
   OpenedPad opened;
   opened.layout = known->layout;
   opened.is_recording = is_recording_;
+  opened.is_raw = options_.is_raw;
   opened.index = index;
   opened.id = ++openings_;
   opened.name = name_of(sighting);

@@ -91,6 +91,7 @@ struct OpenedPad {
   std::unique_ptr<KnownPad> known;  // null: the index was used before, the reader knows the pad
   std::shared_ptr<const PadLayout> layout;
   bool is_recording = false;  // its end is not an unplugging that users should be told of
+  bool is_raw = false;        // its packets need not be reports
   bool is_keyboard = false;   // it does not count as a pad that was plugged in
   std::string name;           // for sentences
 };
@@ -101,6 +102,7 @@ class PadFinder {
     PadFiles files;
     PadWish wish;
     std::span<const DriverEntry> drivers;
+    bool is_raw = false;
     int changes_fd = -1;              // for tests, in place of udev; one read() makes it silent
     std::optional<DeviceInfo> first;  // of a device that has index 0 and was opened elsewhere
   };

@@ -11,7 +11,6 @@
 
 #include "base/files.h"
 #include "gaitpad/config_files.h"
-#include "gaitpad/drivers.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
 
@@ -93,16 +92,14 @@ CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& in
   return std::move(found.file);
 }
 
-// The user's or SDL's line, if config/pads has no entry for the pad. Empty also if a recording
-// cannot hold the line or if it does not fit the descriptor.
+// The user's line, or that of the SDL driver, if config/pads has no entry for the pad. Empty also
+// if a recording cannot hold the line or if it does not fit the descriptor.
 std::string sdl_line_of(const PadFiles& files, const DeviceInfo& info) {
   DeviceInfo mapped = info;
   const bool is_asked = info.mapping.empty() && info.driver != "sdl";
   if (is_asked && find_override(files.overrides, info) != nullptr) return {};
   if (std::string own = fitting_mapping(files.mappings, info); !own.empty())
     mapped.mapping = std::move(own);
-  else if (is_asked)
-    mapped.mapping = sdl_mapping_of(info);
   if (mapped.mapping.size() > kMaxTraceTextBytes) return {};
   return pad_layout(mapped, files.overrides) ? mapped.mapping : std::string();
 }

@@ -402,6 +402,7 @@ void PadIo::take_pads() {
     pads_.push_back(std::make_unique<Pad>());
     Pad& pad = *pads_.back();
     pad.opened = std::move(opened);
+    pad.is_stick_awaited = !pad.opened.is_raw;
     introduce(pad);
     announce(pad, ReportKind::added, now_ns_);
   }
@@ -647,7 +648,8 @@ struct PadStream::Impl {
               finder.tell_stickless(id, sentence);
             }),
         finder(
-            {std::move(options.files), std::move(options.wish), options.drivers, options.changes_fd,
+            {std::move(options.files), std::move(options.wish), options.drivers, options.is_raw,
+             options.changes_fd,
              keyboard ? std::optional(keyboard->known->device.info) : std::nullopt},
             [this](OpenedPad pad) { io.take_over(std::move(pad)); },
             [this](std::uint64_t id) { io.release(id); }, remarks) {}

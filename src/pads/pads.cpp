@@ -7,9 +7,23 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kNearCentre = 0.1;    // of the calibrated deflection
+constexpr double kNearCentre = 0.1;  // of the calibrated deflection
+constexpr double kMoved = 0.1;       // likewise; the inner zone has taken the noise away
+constexpr int kYielding_s = 5;
 constexpr int kSilencesInSecond = 10;  // 100 ms each
 const PadState kAtRest;
+
+// Of the D-pad: fully deflected, or 0.
+vec2 hat_position(const PadState& state) noexcept {
+  const auto is_down = [&state](PadButton b) { return pressed(state, b) ? 1.0 : 0.0; };
+  const vec2 place(is_down(kButtonDpadRight) - is_down(kButtonDpadLeft),
+                   is_down(kButtonDpadUp) - is_down(kButtonDpadDown));
+  return place == vec2(0.0) ? place : glm::normalize(place);
+}
+
+bool has_moved(const Stick& from, const Stick& to) noexcept {
+  return glm::length(to.left - from.left) > kMoved || glm::length(to.right - from.right) > kMoved;
+}
 
 }  // namespace
 
@@ -17,10 +31,12 @@ void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses
   for (int b = 0; b < kButtonCount; ++b) presses[b] += (now & ~before) >> b & 1u;
 }
 
-Pads::Pads(std::vector<PadConfig> configs, int rate_hz)
-    : rate_hz_(rate_hz),
+Pads::Pads(std::vector<PadConfig> configs, int rate_hz, PadRules rules)
+    : rules_(rules),
+      rate_hz_(rate_hz),
       silence_ticks_((rate_hz + kSilencesInSecond - 1) / kSilencesInSecond),
-      settled_ticks_(static_cast<int>(std::ceil(JumpFilter::kSettled_s * rate_hz))) {
+      settled_ticks_(static_cast<int>(std::ceil(JumpFilter::kSettled_s * rate_hz))),
+      yielding_ticks_(kYielding_s * rate_hz) {
   pads_.resize(configs.size());
   for (std::size_t i = 0; i < configs.size(); ++i) {
     pads_[i].config = std::move(configs[i]);
@@ -45,9 +61,12 @@ bool Pads::take_report(const Report& report) noexcept {
   pad.settled_ticks = std::max(settled_ticks_, is_steady ? 2 * pad.silent_ticks : 0);
   pad.silent_ticks = 0;
   pad.filter.take(pad.state);
+  const bool is_first = !pad.is_seen;
+  const bool has_moved = take_movement(pad, buttons_before);
   pad.is_seen = true;
   if (pad.is_awaited) pad.is_awaited = !is_near_centre(pad);
-  if (has_lost_its_driver() && can_take_over(pad)) driving_ = report.device;
+  if (has_lost_its_driver() && can_take_over(pad)) give_seat(report.device);
+  if (rules_ == PadRules::version_2) offer_seat(report.device, is_first, has_moved);
   if (report.device == driving_) count_presses(buttons_before, pad.state.buttons, presses_);
   return true;
 }
@@ -59,7 +78,40 @@ void Pads::add_pad(std::uint16_t device) noexcept {
   pad.silent_ticks = 0;
   if (pad.turn == 0) pad.turn = ++turns_;
   if (!pad.config.is_usable) return;
-  if (driving_ == kNoDevice || (is_fallback(driving_) && !is_fallback(device))) driving_ = device;
+  if (driving_ == kNoDevice || (is_fallback(driving_) && !is_fallback(device))) give_seat(device);
+}
+
+// The first report tells where the pad is, not that somebody has moved it.
+bool Pads::take_movement(Pad& pad, std::uint32_t buttons_before) noexcept {
+  const Stick stick = calibrated(pad);
+  const bool is_elsewhere = has_moved(pad.moved_to, stick);
+  pad.has_left_moved = pad.has_left_moved || !is_near_centre(pad);
+  if (is_elsewhere || !pad.is_seen) pad.moved_to = stick;
+  const bool is_moved = pad.is_seen && (is_elsewhere || pad.state.buttons != buttons_before);
+  if (is_moved || !is_at_rest(pad)) pad.resting_ticks = 0;
+  return is_moved;
+}
+
+void Pads::offer_seat(std::uint16_t device, bool is_first, bool has_moved) noexcept {
+  const Pad& pad = pads_[device];
+  if (!pad.config.is_usable || !pad.config.is_present || pad.config.is_fallback || pad.is_awaited)
+    return;
+  if (device != driving_) {
+    if (driving_ == kNoDevice || has_lost_its_driver()) return;
+    const Pad& driver = pads_[driving_];
+    const bool yields = !is_driver_moved_ || driver.resting_ticks >= yielding_ticks_;
+    const bool is_found_held =
+        is_first && !is_driver_moved_ && is_at_rest(driver) && !is_at_rest(pad);
+    if (!(has_moved && yields) && !is_found_held) return;
+    give_seat(device);
+  }
+  is_driver_moved_ = is_driver_moved_ || has_moved;
+}
+
+void Pads::give_seat(std::uint16_t device) noexcept {
+  if (device != driving_) watch_ = UntouchedWatch();
+  driving_ = device;
+  is_driver_moved_ = false;
 }
 
 void Pads::remove_pad(std::uint16_t device) noexcept {
@@ -70,7 +122,12 @@ void Pads::remove_pad(std::uint16_t device) noexcept {
   lost.is_seen = false;
   lost.state = PadState{};
   lost.filter = JumpFilter();
-  if (device == driving_) watch_ = UntouchedWatch();
+  lost.resting_ticks = 0;
+  lost.has_left_moved = false;
+  if (device == driving_) {
+    watch_ = UntouchedWatch();
+    is_driver_moved_ = false;
+  }
   if (has_lost_its_driver()) replace_driver();
 }
 
@@ -81,7 +138,7 @@ void Pads::replace_driver() noexcept {
     const Pad& pad = pads_[i];
     if (!can_take_over(pad) || (first != 0 && pad.turn > first)) continue;
     first = pad.turn;
-    driving_ = static_cast<std::uint16_t>(i);
+    give_seat(static_cast<std::uint16_t>(i));
   }
 }
 
@@ -96,6 +153,12 @@ Stick Pads::calibrated(const Pad& pad) noexcept {
 
 bool Pads::is_near_centre(const Pad& pad) const noexcept {
   return glm::length(calibrated(pad).left) <= kNearCentre;
+}
+
+bool Pads::is_at_rest(const Pad& pad) const noexcept {
+  if (is_silent(pad)) return true;
+  const Stick stick = calibrated(pad);
+  return pad.state.buttons == 0 && !has_moved({}, stick);
 }
 
 bool Pads::can_take_over(const Pad& pad) const noexcept {
@@ -120,9 +183,16 @@ bool Pads::is_other_plugged_in() const noexcept {
   });
 }
 
+bool Pads::is_driven_by_hat(const Pad& pad) const noexcept {
+  return rules_ == PadRules::version_2 && !pad.has_left_moved &&
+         hat_position(pad.state) != vec2(0.0);
+}
+
 Stick Pads::stick_of(const Pad& pad) const noexcept {
   if (!pad.config.is_present || pad.is_awaited || is_silent(pad)) return {};
-  return calibrated(pad);
+  Stick stick = calibrated(pad);
+  if (is_driven_by_hat(pad)) stick.left = hat_position(pad.state);
+  return stick;
 }
 
 // If several are deflected, the one that was plugged in first counts.
@@ -151,12 +221,13 @@ Stick Pads::finish_tick() noexcept {
   if (driving_ != kNoDevice) {
     const Pad& pad = pads_[driving_];
     stick = stick_of(pad);
-    if (!pad.config.is_fallback) watch(pad, stick.left);
+    if (!pad.config.is_fallback && !is_driven_by_hat(pad)) watch(pad, stick.left);
   }
   if (const Stick other = fallback_stick(); stick.left == vec2(0.0) && other.left != vec2(0.0))
     stick = other;
   for (Pad& pad : pads_) {
     pad.silent_ticks = std::min(pad.silent_ticks + 1, silence_ticks_);
+    pad.resting_ticks = is_at_rest(pad) ? std::min(pad.resting_ticks + 1, yielding_ticks_) : 0;
     if (pad.silent_ticks >= std::min(pad.settled_ticks, silence_ticks_)) pad.filter.settle();
   }
   return stick;

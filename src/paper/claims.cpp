@@ -177,19 +177,6 @@ std::string claims_json(const std::string& motion, const std::vector<Claim>& cla
   return all.dump(1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string claims_table(const std::vector<Claim>& claims) {
-  std::string text;
-  std::size_t widest = 0;
-  for (const Claim& c : claims) widest = std::max(widest, c.name.size());
-  for (const Claim& c : claims) {
-    const char* verdict = !c.pass ? "-" : *c.pass ? "pass" : "FAIL";
-    const std::string value = c.value ? fmt::format("{:.4g}", *c.value) : "-";
-    text += fmt::format("{:<{}}  {:<6}  {:>10}  {:<14}  {}\n", c.name, widest, name_of(c.mode),
-                        value, c.bound, verdict);
-  }
-  return text;
-}
-
 std::vector<Claim> all_claims(Study& study, const std::function<void(double share)>& progress) {
   Claims all;
   double done = 0.0;

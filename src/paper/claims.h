@@ -58,8 +58,6 @@ class ClaimList {
 const char* name_of(IkMode mode) noexcept;
 // {"motion", "claims": [...]}, the file claims.json.
 std::string claims_json(const std::string& motion, const std::vector<Claim>& claims);
-// One line for each claim, for people.
-std::string claims_table(const std::vector<Claim>& claims);
 
 // All groups, ordered by number; those that depend on the solver in both modes. `progress`, if
 // there is one, is told now and then which share of them is measured.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/pads/recorded_packets.h"
 #include "session/script.h"
 
 namespace gaitpad {
@@ -25,14 +26,25 @@ std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pad
   return Error{trace.path + ": none of its devices is a pad with a stick"};
 }
 
+std::optional<Error> length_problem(const std::string& path, std::int64_t ticks, int rate_hz,
+                                    double max_hours) {
+  const double hours = static_cast<double>(ticks) / rate_hz / 3600.0;
+  if (hours <= max_hours) return std::nullopt;
+  return Error{fmt::format("{}: lasts {:.4g} hours, longer than {:g}; --max-hours raises the limit",
+                           path, hours, max_hours)};
+}
+
 }  // namespace
 
 Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
   auto trace = read_trace(spec.replay.trace, spec.replay.damage);
   if (!trace) return trace.error();
+  accept_packets(*trace);
   const int rate = replay_rate_hz(*trace, spec.rate_hz);
   auto ticks = assign_ticks(*trace, rate);
   if (!ticks) return ticks.error();
+  if (auto problem = length_problem(trace->path, *ticks, rate, spec.replay.max_hours))
+    return *problem;
   auto files = load_pad_files(spec);
   if (!files) return files.error();
   auto pads = pad_configs(*files, trace->devices, trace->path);
@@ -42,6 +54,7 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
   auto config = simulation_config(walked, rate);
   if (!config) return config.error();
   config->pads = std::move(*pads);
+  config->pad_rules = trace->version < 2 ? PadRules::version_1 : PadRules::version_2;
   if (auto problem = settle_pads(*trace, config->pads)) return *problem;
   auto start = Simulation::create(*config);
   if (!start) return start.error();

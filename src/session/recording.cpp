@@ -165,15 +165,17 @@ constexpr std::size_t kRingItems = 4096;
 constexpr std::chrono::milliseconds kPause{20};  // between looks at the ring: nobody wakes it
 constexpr std::size_t kWriteBytes = std::size_t{1} << 18;
 
-// Opens the file, empties it and locks it for this session. If it is a pipe without a reader, that
-// is an error instead of a wait.
+// A new file, locked for this session, in place of what a killed one has left.
 Result<OwnedFd> opened_part(const std::string& part) {
-  OwnedFd file(
-      ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
-  if (file.get() < 0) return write_error(part, errno);
-  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0)
+  // O_NONBLOCK: a pipe without a reader is an error instead of a wait.
+  OwnedFd left(::open(part.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (left.get() >= 0 && ::flock(left.get(), LOCK_EX | LOCK_NB) != 0)
     return Error{part + ": another session is recording into it"};
-  if (::ftruncate(file.get(), 0) != 0) return write_error(part, errno);
+  if (left.get() < 0 && errno != ENOENT) return write_error(part, errno);
+  ::unlink(part.c_str());
+  OwnedFd file(::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666));
+  if (file.get() < 0) return write_error(part, errno);
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) return write_error(part, errno);
   return file;
 }
 

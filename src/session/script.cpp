@@ -127,6 +127,8 @@ std::optional<std::string> command_problem(std::string_view text,
   switch (command->verb) {
     case Verb::style:
       if (std::ranges::count(styles, command->name) > 0) return std::nullopt;
+      if (const std::string meant = suggestion(command->name, styles); !meant.empty())
+        return fmt::format("unknown style {}{}", in_quotes(command->name), meant);
       return fmt::format("unknown style {}; known: {}", in_quotes(command->name),
                          fmt::join(styles, ", "));
     case Verb::set:

@@ -33,6 +33,7 @@
 #include "pads/guided_calibration.h"
 #include "session/live_loop.h"
 #include "stick/guide.h"
+#include "stick/new_values.h"
 #include "stick/pad_analysis.h"
 
 namespace gaitpad {
@@ -125,6 +126,7 @@ class OpenPad {
   std::int64_t start_ns_ = now_ns();
   std::int64_t reports_ = 0, bad_reports_ = 0, reports_since_plugged_ = 0, last_ns_ = 0;
   std::vector<double> interval_us_;
+  NewValueCount new_values_;
 };
 
 void OpenPad::take_report(const Report& report) {
@@ -144,7 +146,13 @@ void OpenPad::take_report(const Report& report) {
     if (last_ns_ != 0) interval_us_.push_back(static_cast<double>(report.time_ns - last_ns_) / 1e3);
     last_ns_ = report.time_ns;
     ++reports_, ++reports_since_plugged_;
-    bad_reports_ += !decode(layout(), report, state_);
+    if (decode(layout(), report, state_)) {
+      const auto& axis = state_.axis;
+      new_values_.take(report.time_ns, {axis[kLeftX], axis[kLeftY]},
+                       {axis[kRightX], axis[kRightY]});
+    } else {
+      ++bad_reports_;
+    }
   }
   const auto first = static_cast<std::uint32_t>(trace_.bytes.size());
   trace_.bytes.insert(trace_.bytes.end(), report.bytes.begin(), report.bytes.begin() + report.size);
@@ -171,7 +179,11 @@ ordered_json OpenPad::rate() const {
   const double sum = std::accumulate(running.begin(), running.end(), 0.0);
   double squares = 0.0;
   for (const double us : running) squares += (us - sum / count) * (us - sum / count);
+  const auto moving = new_values_.rate();
   return {{"reports", reports_},
+          {"moving_rate_hz", moving ? ordered_json(moving->report_hz) : nullptr},
+          {"new_values_hz", moving ? ordered_json(moving->new_value_hz) : nullptr},
+          {"repeats", moving ? ordered_json(moving->repeats()) : nullptr},
           {"bad_reports", bad_reports_},
           {"lost", stream_->counts().lost},
           {"rate_hz", sum > 0.0 ? count * 1e6 / sum : 0.0},

@@ -88,6 +88,7 @@ void copy_sample(const Simulation& simulation, TickSample& sample) noexcept {
       }
       s.ik_iterations[side] = static_cast<std::int16_t>(walk.ik_iterations[side]);
       s.ik_error_m[side] = static_cast<float>(walk.ik_error_m[side]);
+      s.heel_above_m[side] = static_cast<float>(walk.heel_m[side].y - walk.heel_ground_m[side]);
     }
     s.heel_m = walk.heel_m;
     s.toe_m = walk.toe_m;

@@ -161,7 +161,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   Simulation s;
   s.dt_s_ = 1.0 / config.rate_hz;
   s.ik_ = config.ik;
-  s.pads_ = Pads(config.pads, config.rate_hz);
+  s.pads_ = Pads(config.pads, config.rate_hz, config.pad_rules);
   s.styles_ = std::make_shared<const std::vector<Style>>(config.styles);
   s.walkers_.reserve(config.walkers.size());
   auto models = s.models_of(config);

@@ -1,11 +1,8 @@
 #include "session/walk_export.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <string_view>
@@ -25,51 +22,35 @@ Result<OutputFiles> OutputFiles::open(const std::string& folder) {
 }
 
 Result<std::ostream*> OutputFiles::add(const std::string& name) {
-  File file;
-  file.path = (fs::path(folder_) / name).string();
-  remove_leftovers(file.path);
-  file.temporary = (fs::path(folder_) / fmt::format(".{}.{}", name, ::getpid())).string();
-  std::error_code ignored;
-  if (fs::is_directory(file.path, ignored)) return write_error(file.path, EISDIR);
+  auto file = NewFile::create((fs::path(folder_) / name).string());
+  if (!file) return file.error();
   errno = 0;
-  file.stream = std::make_unique<std::ofstream>(file.temporary, std::ios::binary);
-  if (!*file.stream) return write_error(file.path, errno);
-  files_.push_back(std::move(file));
+  auto stream = std::make_unique<std::ofstream>(file->name_for_streams(), std::ios::binary);
+  if (!*stream) return write_error(file->path(), errno);
+  files_.push_back({std::move(*file), std::move(stream)});
   return files_.back().stream.get();
 }
 
 Result<std::fstream> OutputFiles::scratch() const {
-  remove_leftovers((fs::path(folder_) / "scratch").string());
-  const std::string path = (fs::path(folder_) / fmt::format(".scratch.{}", ::getpid())).string();
+  auto file = NewFile::create((fs::path(folder_) / "scratch").string());
+  if (!file) return file.error();
   errno = 0;
-  std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
-  if (!stream) return write_error(path, errno);
-  std::error_code ignored;
-  fs::remove(path, ignored);  // the open stream keeps the file
-  return stream;
+  std::fstream stream(file->name_for_streams(),
+                      std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+  if (!stream) return write_error(file->path(), errno);
+  return stream;  // which keeps the file, though it loses its name now
 }
 
 std::optional<Error> OutputFiles::publish() {
   for (const File& file : files_) {
     errno = 0;
     file.stream->close();
-    if (file.stream->fail()) return write_error(file.path, errno != 0 ? errno : EIO);
+    if (file.stream->fail()) return write_error(file.file.path(), errno != 0 ? errno : EIO);
   }
   for (File& file : files_) {
-    if (std::rename(file.temporary.c_str(), file.path.c_str()) != 0) {
-      return write_error(file.path, errno);
-    }
-    file.temporary.clear();
+    if (auto problem = file.file.publish()) return problem;
   }
   return std::nullopt;
-}
-
-OutputFiles::~OutputFiles() {
-  for (File& file : files_) {
-    file.stream.reset();
-    std::error_code ignored;
-    if (!file.temporary.empty()) fs::remove(file.temporary, ignored);
-  }
 }
 
 namespace {

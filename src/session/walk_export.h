@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/files.h"
 #include "gaitpad/bvh.h"
 #include "gaitpad/gltf.h"
 #include "gaitpad/result.h"
@@ -35,13 +36,9 @@ class OutputFiles {
   // even if the program is killed.
   Result<std::fstream> scratch() const;
 
-  OutputFiles(OutputFiles&&) noexcept = default;
-  OutputFiles& operator=(OutputFiles&&) = delete;
-  ~OutputFiles();
-
  private:
   struct File {
-    std::string path, temporary;
+    NewFile file;
     std::unique_ptr<std::ofstream> stream;
   };
   explicit OutputFiles(std::string folder) : folder_(std::move(folder)) {}

@@ -32,22 +32,6 @@ constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;  /
 constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
 constexpr double kInOfRim = 0.6;  // nearer than this it is let go
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(values.begin(), middle)) / 2.0;
-}
-
-vec2 median(const std::vector<vec2>& points) {
-  std::vector<double> x, y;
-  for (const vec2& point : points) {
-    x.push_back(point.x);
-    y.push_back(point.y);
-  }
-  return {median(std::move(x)), median(std::move(y))};
-}
-
 // 0 right, 1 front, 2 left, 3 back.
 std::size_t quarter_of(const vec2& v) noexcept {
   if (std::fabs(v.x) >= std::fabs(v.y)) return v.x >= 0.0 ? 0 : 2;
@@ -118,7 +102,7 @@ void ReleaseWatch::add_release() {
   away_ns_ = 0;
   sides_[quarter_of(away_)] = true;
   if (rests_.size() < kMaxRests) rests_.push_back(place);
-  rest_ = median(rests_);
+  rest_ = median_of(rests_);
 }
 
 void ReleaseWatch::restart() {

@@ -514,12 +514,26 @@ std::optional<int> worst_direction(const Outline& outline) noexcept {
   return worst;
 }
 
+std::array<double, kCircularityBins> least_reaches(const Outline& outline) noexcept {
+  constexpr int kShare = kOutlineDirections / kCircularityBins;
+  std::array<double, kCircularityBins> least{};
+  for (int k = 0; k < kOutlineDirections; ++k) {
+    const double radius = outline.radius[k];
+    double& reach = least[(k + kShare / 2) / kShare % kCircularityBins];
+    if (radius > 0.0 && std::isfinite(radius) && !(reach > 0.0 && reach <= radius)) reach = radius;
+  }
+  return least;
+}
+
+int degrees_of(int k) noexcept {
+  return (k * 360 + kOutlineDirections / 2) / kOutlineDirections % 360;
+}
+
 std::string direction_text(int k) {
   constexpr const char* kNames[] = {"right", "front right", "front", "front left",
                                     "left",  "back left",   "back",  "back right"};
   const int eighth = (k * 8 + kOutlineDirections / 2) / kOutlineDirections % 8;
-  return fmt::format("{} ({} degrees from the right)", kNames[eighth],
-                     k * 360 / kOutlineDirections);
+  return fmt::format("{} ({} degrees from the right)", kNames[eighth], degrees_of(k));
 }
 
 int filled_bins(const Outline& outline) noexcept {

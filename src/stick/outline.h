@@ -28,7 +28,11 @@ vec2 point_of(const Outline& outline, int k) noexcept;
 
 // The direction in which it reaches least far; none if no direction was seen.
 std::optional<int> worst_direction(const Outline& outline) noexcept;
+// The least radius of the directions in each of the 48 bins about the middle; 0: not seen.
+std::array<double, kCircularityBins> least_reaches(const Outline& outline) noexcept;
 
+// Degrees from the right, counter-clockwise, in whole ones.
+int degrees_of(int k) noexcept;
 // "front left (135 degrees from the right)"
 std::string direction_text(int k);
 

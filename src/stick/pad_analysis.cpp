@@ -51,31 +51,40 @@ constexpr int kWornJumps = 3;
 struct Side {
   const char* name;
   std::optional<double> reach;  // raw, from the centre
+  int direction;                // of the outline
 };
 std::array<Side, 4> sides_of(const StickStatistics& s) {
   const vec2 centre = s.centre.value_or(vec2(0.0));
   const auto from = [](const std::optional<double>& end, double middle) {
     return end ? std::optional(std::fabs(*end - middle)) : std::nullopt;
   };
-  return {Side{"left", from(s.min_x, centre.x)}, Side{"right", from(s.max_x, centre.x)},
-          Side{"back", from(s.min_y, centre.y)}, Side{"front", from(s.max_y, centre.y)}};
+  constexpr int kQuarter = kOutlineDirections / 4;
+  return {Side{"left", from(s.min_x, centre.x), 2 * kQuarter},
+          Side{"right", from(s.max_x, centre.x), 0},
+          Side{"back", from(s.min_y, centre.y), 3 * kQuarter},
+          Side{"front", from(s.max_y, centre.y), kQuarter}};
 }
 
-// Reasons for which a side, or the worst of all directions, reaches less far than `least`.
+double reach_in(const Outline& outline, int direction) noexcept {
+  return outline.radius[static_cast<std::size_t>(direction)];
+}
+
+// Reasons for which a side, or the worst of all directions, reaches less far than `least`. Of a
+// side beside the worst direction that one's number is told, which the picture shows.
 std::vector<std::string> short_sides(const StickStatistics& s, double least) {
+  constexpr int kBeside = kOutlineDirections / 16;
+  std::optional<int> worst = worst_direction(s.outline);
+  if (worst && reach_in(s.outline, *worst) >= least) worst.reset();
   std::vector<std::string> reasons;
-  double shortest = least;
   for (const Side& side : sides_of(s)) {
     if (!side.reach || *side.reach >= least) continue;
-    shortest = std::min(shortest, *side.reach);
+    const int off = worst ? std::abs(side.direction - *worst) : kOutlineDirections / 2;
+    if (std::min(off, kOutlineDirections - off) <= kBeside) continue;
     reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", side.name, *side.reach));
   }
-  const std::optional<int> worst = worst_direction(s.outline);
-  if (!worst) return reasons;
-  const double reach = s.outline.radius[static_cast<std::size_t>(*worst)];
-  if (reach < shortest - 0.03)
-    reasons.push_back(
-        fmt::format("to the {} it reaches only {:.2f}", direction_text(*worst), reach));
+  if (worst)
+    reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", direction_text(*worst),
+                                  reach_in(s.outline, *worst)));
   return reasons;
 }
 
@@ -261,8 +270,6 @@ Reasons worn(const StickStatistics& s) {
 }
 
 std::string good(const StickStatistics& s) {
-  double least = 2.0;
-  for (const Side& side : sides_of(s)) least = std::min(least, side.reach.value_or(least));
   std::string text = fmt::format("its noise is {:.4f}{}", greatest_sigma(s),
                                  s.is_sigma_hidden ? " (hidden by its steps)" : "");
   if (s.hysteresis && *s.hysteresis < 0.0005) {
@@ -271,8 +278,9 @@ std::string good(const StickStatistics& s) {
     text += fmt::format(", it comes back within {:.3f}", *s.hysteresis);
   }
   if (const auto worst = worst_direction(s.outline))
-    least = std::min(least, s.outline.radius[static_cast<std::size_t>(*worst)]);
-  return text + fmt::format(" and it reaches {:.2f} or more to every side", least);
+    text +=
+        fmt::format(" and it reaches {:.2f} or more to every side", reach_in(s.outline, *worst));
+  return text;
 }
 
 // `opening` and the reasons as one sentence with a capital letter.
@@ -363,19 +371,32 @@ TriggerCalibration trigger_advice(const TriggerStatistics& statistics) noexcept 
           statistics.pressed ? high - slack : plain.pressed};
 }
 
-namespace {
-
 bool is_turned(const StickStatistics& s) noexcept {
   return s.min_x && s.max_x && s.min_y && s.max_y;
 }
+
+namespace {
 
 StickAnalysis stick_analysis(std::vector<StickTrack> tracks, const vec2& step,
                              const StickFrame& frame) {
   StickAnalysis analysis;
   analysis.tracks = in_frame(frame, std::move(tracks));
   analysis.statistics = stick_statistics(analysis.tracks, step);
-  analysis.advice = stick_advice(analysis.statistics, frame);
   return analysis;
+}
+
+// Both sticks come in the same reports. The one that moved tells their rate best: repeated values
+// of one that rests may look like lost reports.
+void share_timing(StickStatistics& a, StickStatistics& b) noexcept {
+  const StickStatistics& best = a.rate_hz.value_or(0.0) >= b.rate_hz.value_or(0.0) ? a : b;
+  const bool is_silent_at_rest = (a.rate_hz && !a.gaps) || (b.rate_hz && !b.gaps);
+  const auto rate_hz = best.rate_hz, jitter_ms = best.jitter_ms;
+  const auto gaps = is_silent_at_rest ? std::nullopt : best.gaps;
+  for (StickStatistics* s : {&a, &b}) {
+    s->rate_hz = rate_hz;
+    s->jitter_ms = jitter_ms;
+    s->gaps = gaps;
+  }
 }
 
 vec2 step_in_frame(const PadLayout& layout, int side, const StickFrame& frame) {
@@ -441,6 +462,11 @@ PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
           stick_analysis(tracks.stick[i], step_in_frame(layout, side, frames[i]), frames[i]);
     }
     if (has_trigger(layout, side)) analysis.trigger[i] = trigger_statistics(tracks.trigger[i]);
+  }
+  auto& [left, right] = analysis.stick;
+  if (left && right) share_timing(left->statistics, right->statistics);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (auto& stick = analysis.stick[i]) stick->advice = stick_advice(stick->statistics, frames[i]);
   }
   return analysis;
 }

@@ -39,6 +39,8 @@ struct PadAnalysis {  // left, right; none if the pad has no such control
 PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
                         const std::array<StickFrame, 2>& frames);
 
+// Whether its range was seen to all four sides; else range and outer zone are not known.
+bool is_turned(const StickStatistics& statistics) noexcept;
 // Whether it can calibrate anything: at least one centre is known.
 bool is_useful(const PadAnalysis& analysis) noexcept;
 // Writes the advice into `file`. The calibration that `file` holds stays where nothing was

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/numeric.h"
+
 namespace gaitpad {
 
 namespace {
@@ -709,8 +711,8 @@ double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2&
     }
   }
   if (changes < kFewest) return 0.0;
-  const double square = median_of(std::move(squares));
-  const double noise = median_of(std::move(noises)) + 0.5 * glm::dot(step, step);
+  const double square = median(std::move(squares));
+  const double noise = median(std::move(noises)) + 0.5 * glm::dot(step, step);
   if (square < noise * (1.0 + 6.0 / std::sqrt(changes))) return 0.0;
   const double wander = std::sqrt((square - noise) / (2.0 * kShare));
   return wander > 0.004 ? wander : 0.0;
@@ -737,7 +739,7 @@ void add_displaced(RestStatistics& to) {
     quiet.push_back(&time);
   }
   if (away.size() < 3) return;
-  const double usual = median_of(away);
+  const double usual = median(away);
   for (std::size_t k = 0; k < away.size(); ++k) {
     if (away[k] < std::max(kFarOff, kOfUsual * usual)) continue;
     quiet[k]->is_displaced = true;

@@ -63,6 +63,10 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   const ReportTiming timing = report_timing(tracks, result.sigma ? repeats.x * repeats.y : 0.0);
   result.rate_hz = timing.rate_hz;
   result.jitter_ms = timing.jitter_ms;
+  NewValueCount new_values;
+  for (const StickTrack& track : tracks)
+    for (const StickSample& sample : track) new_values.take(sample.time_ns, sample.raw, vec2(0.0));
+  result.moving = new_values.rate();
   result.gaps = timing.gaps;
   result.stuck =
       stuck_values(clean.tracks, interval_s, result.is_sigma_hidden ? vec2(1.0) : repeats);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "stick/new_values.h"
 #include "stick/outline.h"
 #include "stick/rests.h"
 #include "stick/stick_track.h"
@@ -24,13 +25,14 @@ struct StickStatistics : RestStatistics {
   int turns = 0;  // whole ones, either way
 
   // The values and the reports, see stick_track.h.
-  double step_x = 0.0, step_y = 0.0;  // as measured, else as declared; 0: not known
-  std::optional<double> rate_hz;      // without gaps
-  std::optional<double> jitter_ms;    // standard deviation of the intervals, without gaps
-  std::optional<std::int64_t> gaps;   // where reports were lost; none: the pad is silent at rest
-  std::int64_t jumps = 0;             // spikes: to another place and back within three reports
-  std::int64_t long_jumps = 0;        // those of them that last for more than one report
-  std::int64_t drop_outs = 0;         // an axis lost contact for longer
+  double step_x = 0.0, step_y = 0.0;   // as measured, else as declared; 0: not known
+  std::optional<double> rate_hz;       // without gaps
+  std::optional<MovementRate> moving;  // while the stick moved
+  std::optional<double> jitter_ms;     // standard deviation of the intervals, without gaps
+  std::optional<std::int64_t> gaps;    // where reports were lost; none: the pad is silent at rest
+  std::int64_t jumps = 0;              // spikes: to another place and back within three reports
+  std::int64_t long_jumps = 0;         // those of them that last for more than one report
+  std::int64_t drop_outs = 0;          // an axis lost contact for longer
   double drop_out_s = 0.0;
   std::int64_t stuck = 0;  // the value froze while the stick moved; seen if the pad repeats values
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/numeric.h"
+
 namespace gaitpad {
 
 namespace {
@@ -98,20 +100,13 @@ std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack
   return tracks;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 vec2 median_of(std::span<const vec2> places) {
   std::vector<double> x, y;
   for (const vec2& place : places) {
     x.push_back(place.x);
     y.push_back(place.y);
   }
-  return {median_of(std::move(x)), median_of(std::move(y))};
+  return {median(std::move(x)), median(std::move(y))};
 }
 
 Extent extent_of(std::span<const StickTrack> tracks) noexcept {
@@ -410,11 +405,11 @@ Spacing spacing_within(std::span<const double> intervals, double least_s, double
 std::optional<Spacing> spacing(std::span<const StickTrack> tracks) {
   const std::vector<double> found = intervals(tracks);
   if (found.size() < kFewestIntervals) return {};
-  const double median = median_of(found);
+  const double usual = median(found);
   const Spacing all = spacing_within(found, 0.0, kSilence_s);
   // If most reports come in bursts, the pauses between bursts belong to the rate.
-  if (median < kBurst_s && all.mean_s > 2.0 * median) return all;
-  const double mean_s = spacing_within(found, 0.5 * median, 1.5 * median).mean_s;
+  if (usual < kBurst_s && all.mean_s > 2.0 * usual) return all;
+  const double mean_s = spacing_within(found, 0.5 * usual, 1.5 * usual).mean_s;
   if (!(mean_s > 0.0)) return {};
   return Spacing{mean_s, spacing_within(found, 0.0, 1.5 * mean_s).deviation_s};
 }

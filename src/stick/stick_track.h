@@ -64,10 +64,8 @@ class PadTracker {
 // Turns every sample into the frame.
 std::vector<StickTrack> in_frame(const StickFrame& frame, std::vector<StickTrack> tracks);
 
-// ---- Medians: of an even number the upper one; 0 of nothing
-
-double median_of(std::vector<double> values);
-vec2 median_of(std::span<const vec2> places);  // of each axis
+// The median (base/numeric.h) of each axis.
+vec2 median_of(std::span<const vec2> places);
 
 // ---- Where the stick went
 

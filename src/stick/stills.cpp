@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "base/numeric.h"
 #include "stick/outline.h"
 
 namespace gaitpad {
@@ -349,7 +350,7 @@ double usual_reach(std::span<const std::vector<Cell>> cells, const vec2& home) {
     }
   }
   std::erase_if(away, [&](double distance) { return distance <= kPushed * farthest; });
-  return away.empty() ? farthest : median_of(std::move(away));
+  return away.empty() ? farthest : median(std::move(away));
 }
 
 }  // namespace

@@ -86,6 +86,8 @@ void CrowdBodies::add(const Mannequin& mannequin, const Colour& colour, const Te
   forward_kinematics(model.cycle.skeleton, pose_, frames_);
   const Colour pale = mixed(colour, {0.83, 0.84, 0.86, 1.0}, kPaleCrowdShare);
   const vec3& origin_m = content.crowd_origin_m;
+  const vec3 below = vec3(pose_.root_m.x, floor_m(terrain, pose_.root_m), pose_.root_m.z);
+  const auto ground_m = static_cast<float>(below.y - origin_m.y);
   for (const MannequinBone& bone : mannequin.bones) {
     const quat& turn = frames_.rotation[bone.from];
     const vec3 a = frames_.position_m[bone.from] + turn * bone.from_m - origin_m;
@@ -95,7 +97,7 @@ void CrowdBodies::add(const Mannequin& mannequin, const Colour& colour, const Te
     const Colour& paint = bone.is_pale ? pale : colour;
     content.crowd.push_back({row(a, bone.radius_from_m), row(b, bone.radius_to_m),
                              row(turn * bone.wide, bone.width_from),
-                             row(vec3(paint.red, paint.green, paint.blue), width)});
+                             row(vec3(paint.red, paint.green, paint.blue), width), ground_m});
   }
   const auto on_floor = [&](vec3 place_m) {
     place_m.y = floor_m(terrain, place_m) + kShadeUp_m;
@@ -110,13 +112,13 @@ void CrowdBodies::add(const Mannequin& mannequin, const Colour& colour, const Te
     const vec3 toe = on_floor(frames_.position_m[leg.model.joints.toe]);
     shade(heel, toe, kFootShade_m, kFootShade_m, 0.45f);
   }
-  const vec3 below = on_floor(pose_.root_m);
+  const vec3 body = below + kUp * kShadeUp_m - origin_m;
   if (terrain != nullptr) {  // a long shade would float over steps
-    shade(below, below, kBodyShade_m, kBodyShade_m, 0.3f);
+    shade(body, body, kBodyShade_m, kBodyShade_m, 0.3f);
     return;
   }
-  const vec3 head = below + kThrown * (1.9 * pose_.root_m.y);
-  shade(below, head, kBodyShade_m, kHeadShade_m, 0.42f);
+  const vec3 head = body + kThrown * (1.9 * pose_.root_m.y);
+  shade(body, head, kBodyShade_m, kHeadShade_m, 0.42f);
 }
 
 }  // namespace gaitpad

@@ -17,10 +17,12 @@ constexpr double kLook_m = 0.95;         // height of the place that a camera fo
 constexpr double kSourceAside_m = 1.2;   // the distance between neighbours
 constexpr double kAdult_m = 1.8;
 constexpr double kHeightOverLeg = 2.1;  // a person's height over thigh + shank
-constexpr double kAside_m = 0.9;        // room beside the outermost character
-constexpr double kOnePerson_m = 4.2;    // distance from which one person is seen
+constexpr double kOnePerson_m = 4.2;    // least distance from which one person is seen
 constexpr double kWithCrowd_m = 9.0;    // and a crowd behind it
 constexpr double kLabelAbove_m = 0.14;  // of a name above the head
+constexpr double kHalfLabel_px = 40.0, kLabel_px = 22.0;  // half its width; its height
+constexpr double kReach = 0.25;     // of a foot from below the root, over the person's height
+constexpr double kHeadReach = 0.5;  // of the head, over that of the feet
 
 std::string with_blanks(std::string name) {
   std::ranges::replace(name, '_', ' ');
@@ -69,7 +71,7 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
     const WalkerFrame& walker = frame.walkers[i];
     interpolate(walker.before, walker.pose, share, shown_[i]);
     const Colour& colour = series_colour(theme, i);
-    add_mannequin(mannequins_[i], shown_[i], colour, content);
+    add_mannequin(mannequins_[i], shown_[i], terrain_.get(), colour, content);
     if (state.has_trails) add_trails(history, static_cast<int>(i), colour, content);
   }
   has_source_ = state.has_source && cast.source != nullptr && count > 0;
@@ -168,25 +170,26 @@ void Ensemble::stand_on_ground(Camera& camera) const noexcept {
   stand_on(camera, ground_m(camera.target_m), ground_m(camera.eye_m()));
 }
 
-double Ensemble::distance_m(int walker, const Camera& camera,
-                            const Viewport& viewport) const noexcept {
-  if (walker >= 0 || shown_.empty()) return kOnePerson_m;
-  const vec3 middle = focus_m(-1), to_eye = camera.eye_m() - camera.target_m;
-  double reach_m = 0.0, nearest_m = 0.0;
-  const auto reach = [&](const vec3& place) {
-    const vec3 away = place - middle;
-    reach_m = std::max(reach_m, std::hypot(away.x, away.z));
-    nearest_m = std::max(nearest_m, glm::dot(away, to_eye) / camera.distance_m);
+Framing Ensemble::framing(const Camera& camera, const Viewport& viewport, const UiState& state,
+                          double scale) const {
+  const double label_m = state.has_names ? kLabelAbove_m : 0.0;
+  const vec2 label_px = state.has_names ? vec2(kHalfLabel_px, kLabel_px) * scale : vec2(0.0);
+  std::vector<vec3> points_m;
+  const auto add = [&](const vec3& place_m, double floor_m, double height_m) {
+    const double reach_m = kReach * height_m, top_m = floor_m + height_m + label_m;
+    for (const double x : {-reach_m, reach_m}) {
+      for (const double z : {-reach_m, reach_m}) {
+        const vec3 foot_m = place_m + vec3(x, 0.0, z);
+        points_m.emplace_back(foot_m.x, ground_m(foot_m), foot_m.z);
+        points_m.emplace_back(place_m.x + kHeadReach * x, top_m, place_m.z + kHeadReach * z);
+      }
+    }
   };
-  for (const Pose& pose : shown_) reach(pose.root_m);
-  if (has_source_) reach(source_place_m_);
-  const double aspect =
-      static_cast<double>(std::max(viewport.width, 1)) / std::max(viewport.height, 1);
-  const double half_view = std::tan(camera.field_of_view_rad / 2.0) * std::min(aspect, 2.0);
-  // The nearest character has to be visible from head to foot.
-  const double least_m = has_crowd_ ? kWithCrowd_m : kOnePerson_m;
-  return std::clamp(std::max((reach_m + kAside_m) / half_view, nearest_m + kOnePerson_m), least_m,
-                    14.0);
+  for (std::size_t i = 0; i < shown_.size(); ++i)
+    add(shown_[i].root_m, ground_m(shown_[i].root_m), mannequins_[i].height_m);
+  if (has_source_) add(source_place_m_, source_place_m_.y, source_height_m_);
+  return gaitpad::framing(camera, points_m, viewport.width, viewport.height, label_px,
+                          has_crowd_ ? kWithCrowd_m : kOnePerson_m);
 }
 
 std::vector<UiLabel> Ensemble::labels(const SessionFrame& frame, const Cast& cast,

@@ -31,8 +31,9 @@ class Ensemble {
   double rise_ahead_m(int walker) const noexcept;
   // Tells the camera the ground's height; call it when the camera has moved.
   void stand_on_ground(Camera& camera) const noexcept;
-  // The distance from which a camera sees that character or all.
-  double distance_m(int walker, const Camera& camera, const Viewport& viewport) const noexcept;
+  // How a camera that is turned so sees everybody, from head to foot and with their names.
+  Framing framing(const Camera& camera, const Viewport& viewport, const UiState& state,
+                  double scale) const;
   // Names above heads, in window pixels.
   std::vector<UiLabel> labels(const SessionFrame& frame, const Cast& cast, const Camera& camera,
                               const Viewport& viewport, const UiState& state,

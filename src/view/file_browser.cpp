@@ -222,9 +222,17 @@ void RecentFiles::add(const std::string& path) {
 
 void FileBrowser::open(const std::vector<std::string>& config_folders) {
   is_open_ = true;
-  bundled_ = config_files(config_folders, "traces", ".hid");
-  for (std::string& path : config_files(config_folders, "motions"))
-    bundled_.push_back(std::move(path));
+  last_.clear();
+  for (const std::string& path : recent_.paths())
+    last_.push_back({path, fmt::format("{}  {}", drawable(path), date_of(path))});
+  bundled_.clear();
+  for (const auto& files :
+       {config_files(config_folders, "traces", ".hid"), config_files(config_folders, "motions")}) {
+    for (const std::string& path : files) {
+      const std::string summary = config_summary(path);
+      bundled_.push_back({path, summary.empty() ? drawable(path) : summary + "."});
+    }
+  }
   problem_.clear();
   std::error_code error;
   if (folder_.empty()) folder_ = fs::current_path(error).string();
@@ -269,36 +277,29 @@ void FileBrowser::draw_path(Ui& ui) {
   if (button(ui, "browser up", "Up")) go_to(fs::path(folder_).parent_path().string());
 }
 
-// A file that one click opens.
-void FileBrowser::draw_place(Ui& ui, const std::string& id, const std::string& path,
-                             const std::string& tip) {
+void FileBrowser::draw_place(Ui& ui, const std::string& id, const Place& place) {
   ImGui::PushID(id.c_str());
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const bool is_clicked = ImGui::Selectable("##place");
   keep_item(id);
   put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.text, at,
-           fs::path(path).filename().string(), ImGui::GetItemRectSize().x);
-  show_tip(ui, tip);
+           fs::path(place.path).filename().string(), ImGui::GetItemRectSize().x);
+  show_tip(ui, place.tip);
   ImGui::PopID();
-  if (is_clicked) enter(path);
+  if (is_clicked) enter(place.path);
 }
 
 void FileBrowser::draw_places(Ui& ui) {
   text_line(ui, ui.fonts.small, ui.theme.secondary, "Opened last");
   int number = 0;
-  for (const std::string& path : std::vector<std::string>(recent_.paths())) {
-    draw_place(ui, fmt::format("browser recent {}", number++), path,
-               fmt::format("{}  {}", drawable(path), date_of(path)));
-  }
+  for (const Place& place : last_)
+    draw_place(ui, fmt::format("browser recent {}", number++), place);
   if (number == 0) text_line(ui, ui.fonts.small, ui.theme.tick, "nothing yet");
   ImGui::Dummy({1.0f, ui.px(6)});
   text_line(ui, ui.fonts.small, ui.theme.secondary, "Bundled");
   number = 0;
-  for (const std::string& path : std::vector<std::string>(bundled_)) {
-    const std::string summary = config_summary(path);
-    draw_place(ui, fmt::format("browser bundled {}", number++), path,
-               summary.empty() ? drawable(path) : summary + ".");
-  }
+  for (const Place& place : bundled_)
+    draw_place(ui, fmt::format("browser bundled {}", number++), place);
 }
 
 void FileBrowser::draw_filters(Ui& ui) {
@@ -340,7 +341,7 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
       const float date = text_width(ui.fonts.small, entry.date);
       put_text(*ImGui::GetWindowDrawList(), ui.fonts.body, colour, at,
                entry.is_folder ? entry.name + "/" : entry.name, width - date - ui.px(12));
-      put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.tick,
+      put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.secondary,
                {at.x + width - date - ui.px(4), at.y + ui.px(2)}, entry.date, date + 1.0f);
       ImGui::PopID();
     }

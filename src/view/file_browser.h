@@ -77,7 +77,10 @@ class FileBrowser {
   void enter(const std::string& path);
   void draw_path(Ui& ui);
   void draw_places(Ui& ui);
-  void draw_place(Ui& ui, const std::string& id, const std::string& path, const std::string& tip);
+  struct Place {  // a file that one click opens
+    std::string path, tip;
+  };
+  void draw_place(Ui& ui, const std::string& id, const Place& place);
   void draw_filters(Ui& ui);
   void draw_entries(Ui& ui, float height_px);
   void draw_buttons(Ui& ui);
@@ -91,7 +94,7 @@ class FileBrowser {
   std::string problem_;            // of the path that was typed
   std::optional<std::string> result_;
   RecentFiles recent_;
-  std::vector<std::string> bundled_;
+  std::vector<Place> last_, bundled_;  // as they were when the browser was opened
 };
 
 }  // namespace gaitpad

@@ -87,21 +87,21 @@ void set_colours(const Theme& theme, ImGuiStyle& style) {
       {ImGuiCol_WindowBg, theme.panel},
       {ImGuiCol_ChildBg, none},
       {ImGuiCol_PopupBg, theme.card},
-      {ImGuiCol_Border, theme.border},
+      {ImGuiCol_Border, theme.edge},
       {ImGuiCol_FrameBg, theme.frame},
       {ImGuiCol_FrameBgHovered, faint(theme.accent, 0.35)},
       {ImGuiCol_FrameBgActive, faint(theme.accent, 0.5)},
       {ImGuiCol_ScrollbarBg, none},
-      {ImGuiCol_ScrollbarGrab, faint(theme.secondary, 0.35)},
-      {ImGuiCol_ScrollbarGrabHovered, faint(theme.secondary, 0.55)},
-      {ImGuiCol_ScrollbarGrabActive, faint(theme.secondary, 0.75)},
+      {ImGuiCol_ScrollbarGrab, faint(theme.secondary, kScrollShare)},
+      {ImGuiCol_ScrollbarGrabHovered, faint(theme.secondary, 0.8)},
+      {ImGuiCol_ScrollbarGrabActive, faint(theme.secondary, 0.95)},
       {ImGuiCol_CheckMark, theme.left},
       {ImGuiCol_SliderGrab, theme.left},
       {ImGuiCol_SliderGrabActive, theme.left},
       {ImGuiCol_Button, theme.frame},
       {ImGuiCol_ButtonHovered, faint(theme.accent, 0.55)},
       {ImGuiCol_ButtonActive, faint(theme.accent, 0.8)},
-      {ImGuiCol_Header, faint(theme.accent, 0.45)},
+      {ImGuiCol_Header, faint(theme.accent, kChosenShare)},
       {ImGuiCol_HeaderHovered, faint(theme.accent, 0.55)},
       {ImGuiCol_HeaderActive, faint(theme.accent, 0.8)},
       {ImGuiCol_Separator, theme.border},
@@ -148,6 +148,7 @@ void apply_style(const Theme& theme, double scale) {
   style.ScrollbarSize = 10.0f;
   style.WindowBorderSize = 0.0f;
   style.ChildBorderSize = 0.0f;
+  style.FrameBorderSize = 1.0f;
   style.WindowMinSize = {8.0f, 8.0f};
   style.DisabledAlpha = 0.5f;
   style.ScaleAllSizes(static_cast<float>(bounded(scale)));

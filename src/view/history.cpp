@@ -67,7 +67,7 @@ void add_marks(const History& history, const GraphSpan& span, int walker, Side s
                const Theme& theme, Plot& plot) {
   const Colour colour = leg_colour(theme, side);
   const auto at = [&](std::size_t i) {
-    return PlotPoint{span.x_of(i), sample(history, i, walker).heel_m[side].y * 100.0};
+    return PlotPoint{span.x_of(i), sample(history, i, walker).heel_above_m[side] * 100.0};
   };
   std::size_t peak = span.end;  // of the present flight; end: none
   for (std::size_t i = span.begin; i < span.end; ++i) {
@@ -187,7 +187,7 @@ Plot joint_plot(const History& history, const GraphSpan& span, Side leg, std::si
 Plot heel_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme) {
   Plot plot = leg_plot(
       history, span, walker, theme,
-      [](const WalkerSample& s, Side side) { return s.heel_m[side].y * 100.0; }, 4.0);
+      [](const WalkerSample& s, Side side) { return s.heel_above_m[side] * 100.0; }, 4.0);
   plot.y.min -= 0.06 * (plot.y.max - plot.y.min);  // room for curves that lie on the floor
   if (!has_walker(history, walker)) return plot;
   for (const Side side : {kLeftSide, kRightSide}) {

@@ -56,7 +56,8 @@ GraphSpan graph_span(const History& history, int walker, int rate_hz);
 // thicker.
 Plot joint_plot(const History& history, const GraphSpan& span, Side leg, std::size_t joint,
                 const Theme& theme, int chosen, double least_span_deg);
-// The height of both heels in cm, with marks at the lift, the peak and the landing.
+// The height of both heels above the ground below them in cm, with marks at the lift, the peak and
+// the landing.
 Plot heel_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
 // The stage, and when each heel and toe is planted.
 SpanPlot stage_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);

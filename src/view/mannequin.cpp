@@ -365,6 +365,7 @@ constexpr double kPaleShare = 0.48;
 constexpr double kStickLine_px = 3.2;
 constexpr double kLongestEnd = 0.5,
                  kLongestLine = 0.9;  // in leg lengths; joints of meshes lie anywhere
+constexpr double kDeepest_m = 0.05;   // of a foot's bone in the ground; deeper is beside a riser
 constexpr double kShortestLine = 0.015,
                  kShortestDotted = 0.045;  // in leg lengths; fingers are left out
 
@@ -376,10 +377,16 @@ quat between(const quat& a, const quat& b, double share) noexcept {
   return length > 1e-9 ? sum * (1.0 / length) : a;
 }
 
-// Lifts an end that would sink below the floor.
-void put_on_floor(vec3& end_m, double radius_m, const vec3& wide, double width) {
-  const double upright = wide.y * wide.y * std::max(width * width - 1.0, 0.0);
-  end_m.y = std::max(end_m.y, radius_m * std::sqrt(1.0 + upright));
+// Lifts an end that would sink into the ground below it. An end that is deeper in the ground is
+// beside a riser, not on its tread, and stays where it is.
+void put_on_ground(const Terrain* terrain, vec3& end_m, double radius_m, const vec3& wide,
+                   double width) {
+  const Ground ground = terrain == nullptr ? Ground() : ground_at(*terrain, end_m.x, end_m.z);
+  const double upright = glm::dot(wide, ground.normal);
+  const double reach_m =
+      radius_m * std::sqrt(1.0 + upright * upright * std::max(width * width - 1.0, 0.0));
+  const double above_m = (end_m.y - ground.height_m) * ground.normal.y;
+  if (above_m > -kDeepest_m && above_m < reach_m) end_m.y += (reach_m - above_m) / ground.normal.y;
 }
 
 }  // namespace
@@ -405,8 +412,8 @@ void interpolate(const Pose& before, const Pose& pose, double share, Pose& shown
   }
 }
 
-void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Colour& colour,
-                   SceneContent& content) {
+void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Terrain* terrain,
+                   const Colour& colour, SceneContent& content) {
   JointFrames frames;
   forward_kinematics(mannequin.model->cycle.skeleton, pose, frames);
   const Colour pale = mixed(colour, kPale, kPaleShare);
@@ -420,8 +427,8 @@ void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Colour& c
     c.width_a = bone.width_from;
     c.width_b = bone.width_to;
     c.colour = bone.is_pale ? pale : colour;
-    put_on_floor(c.a_m, c.radius_a_m, c.wide, c.width_a);
-    put_on_floor(c.b_m, c.radius_b_m, c.wide, c.width_b);
+    put_on_ground(terrain, c.a_m, c.radius_a_m, c.wide, c.width_a);
+    put_on_ground(terrain, c.b_m, c.radius_b_m, c.wide, c.width_b);
     content.capsules.push_back(c);
   }
 }

@@ -36,9 +36,9 @@ Mannequin mannequin_of(std::shared_ptr<const WalkModel> model,
 
 // Between the two latest poses; share 0 gives the earlier one.
 void interpolate(const Pose& before, const Pose& pose, double share, Pose& shown) noexcept;
-// Nothing of it is drawn below the floor.
-void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Colour& colour,
-                   SceneContent& content);
+// Nothing of it is drawn in the ground that it stands on; null: level at height 0.
+void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Terrain* terrain,
+                   const Colour& colour, SceneContent& content);
 // Its highest point, for a name above it.
 vec3 head_m(const Mannequin& mannequin, const Pose& pose) noexcept;
 

@@ -32,7 +32,8 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
         fmt::format("{} {:.{}f}", series.letter, series.points.back().y, decimals);
     x -= text_width(ui.fonts.tick, value);
     if (x < left) return;
-    put_text(list, ui.fonts.tick, series.colour, {x, at.y + ui.px(1)}, value, width);
+    put_text(list, ui.fonts.tick, with_alpha(series.colour, 1.0), {x, at.y + ui.px(1)}, value,
+             width);
     x -= ui.px(8);
   }
 }
@@ -131,7 +132,7 @@ void draw_mark_words(Ui& ui) {
 }
 
 void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
-  draw_graph(ui, "graph heel", "Heel height", "cm",
+  draw_graph(ui, "graph heel", "Heel above its ground", "cm",
              heel_plot(ui.in.history, span, walker, ui.theme), 1, 84.0);
   draw_mark_words(ui);
   text_line(ui, ui.fonts.small, ui.theme.text, "Stage and planted points");

@@ -165,7 +165,7 @@ bool is_lit(const PadState& pad, PadButton button) noexcept {
 }
 
 void draw_body(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
-  const ImU32 body = packed(ui.theme.frame), edge = packed(ui.theme.border);
+  const ImU32 body = packed(ui.theme.frame), edge = packed(ui.theme.edge);
   for (const float x : {0.24f, 0.76f})
     list.AddCircleFilled({at.x + x * w, at.y + 0.31f * w}, 0.145f * w, body, 32);
   list.AddRectFilled({at.x + 0.20f * w, at.y + 0.07f * w}, {at.x + 0.80f * w, at.y + 0.37f * w},

@@ -1,7 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
 
 #include "view/panels.h"
 #include "view/tooltips.h"
@@ -19,20 +23,55 @@ constexpr ControlRow kRows[] = {
     {"speed", "m/s", GaitKey::speed_m_s, std::nullopt},
     {"stride", "m", GaitKey::stride_left_m, GaitKey::stride_right_m},
     {"flight height", "x", GaitKey::flight_left, GaitKey::flight_right},
-    {"turn rate", "rad/s", GaitKey::turn_rate_rad_s, std::nullopt},
+    {"turn", "rad/s", GaitKey::turn_rate_rad_s, std::nullopt},
     {"hip sway", "x", GaitKey::hip_sway, std::nullopt},
     {"hip bounce", "x", GaitKey::hip_bounce, std::nullopt},
 };
 
-// A walker, and the parameters that its stick and style alone would give.
+// The value that all walkers have; none if they differ.
+template <class Value>
+std::optional<double> shared_value(std::span<const WalkerFrame> walkers, const Value& value) {
+  const double first = value(walkers.front());
+  const bool is_shared = std::ranges::all_of(walkers, [&](const WalkerFrame& walker) {
+    const double other = value(walker);
+    return std::abs(other - first) < 1e-9 || (std::isnan(other) && std::isnan(first));
+  });
+  return is_shared ? std::optional(first) : std::nullopt;
+}
+
+// The selected walkers, and the parameters that the stick and the first one's style alone would
+// give.
 struct Controlled {
-  const WalkerFrame& walker;
+  std::span<const WalkerFrame> walkers;
   const GaitParams from_stick;
   const GaitLimits& limits;
   bool is_set(std::optional<GaitKey> key) const noexcept {
-    return key && walker.overrides.is_set[static_cast<std::size_t>(*key)];
+    return key && std::ranges::any_of(walkers, [key](const WalkerFrame& walker) {
+             return walker.overrides.is_set[static_cast<std::size_t>(*key)];
+           });
   }
 };
+
+double asked_value(const WalkerFrame& walker, GaitKey key) {
+  const auto k = static_cast<std::size_t>(key);
+  return walker.overrides.is_set[k] ? walker.overrides.value[k] : value_of(key, walker.params);
+}
+
+// What the walk makes of it, as in `frames.csv`; none if that does not tell.
+std::optional<double> done_value(const WalkerFrame& walker, GaitKey key) {
+  switch (key) {
+    case GaitKey::speed_m_s:
+      return walker.walk.speed_m_s;
+    case GaitKey::stride_left_m:
+      return walker.walk.stride_m[kLeftSide];
+    case GaitKey::stride_right_m:
+      return walker.walk.stride_m[kRightSide];
+    case GaitKey::turn_rate_rad_s:
+      return walker.walk.turn_rate_rad_s;
+    default:
+      return std::nullopt;
+  }
+}
 
 void give_back(Ui& ui, const Controlled& c, std::optional<GaitKey> key) {
   if (!c.is_set(key)) return;
@@ -41,13 +80,36 @@ void give_back(Ui& ui, const Controlled& c, std::optional<GaitKey> key) {
   forget_wish(ui, "gait " + name);
 }
 
+// "does 0.37", of both feet "does 0.64 | 0.31", of several who differ "does 0.31 to 0.64". Empty
+// for a parameter of which the walk has no value.
+std::string done_text(const ControlRow& row, const Controlled& c) {
+  if (!done_value(c.walkers.front(), row.left)) return {};
+  std::vector<std::string> texts;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  bool is_shared = true;
+  for (const std::optional<GaitKey> key : {std::optional(row.left), row.right}) {
+    if (!key) continue;
+    const auto done = [key](const WalkerFrame& walker) { return *done_value(walker, *key); };
+    is_shared = is_shared && shared_value(c.walkers, done);
+    texts.push_back(tick_text(done(c.walkers.front()), 0.01));
+    for (const WalkerFrame& walker : c.walkers) {
+      low = std::min(low, done(walker));
+      high = std::max(high, done(walker));
+    }
+  }
+  if (is_shared) return fmt::format("does {}", fmt::join(texts, " | "));
+  const std::string from = tick_text(low, 0.01), to = tick_text(high, 0.01);
+  return from == to ? "does " + from : fmt::format("does {} to {}", from, to);
+}
+
 std::string stick_text(const ControlRow& row, const Controlled& c) {
   std::string text = fmt::format("stick {}", tick_text(value_of(row.left, c.from_stick), 0.01));
   if (row.right) text += fmt::format(" | {}", tick_text(value_of(*row.right, c.from_stick), 0.01));
   return text;
 }
 
-// The name, and at the right the stick's value, or a button that gives an overridden value back.
+// The name, and at the right what the walk does or else the stick's value, and a button that gives
+// an overridden value back.
 void draw_row_head(Ui& ui, const ControlRow& row, const Controlled& c) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, y = at.y + ui.px(1);
@@ -55,24 +117,25 @@ void draw_row_head(Ui& ui, const ControlRow& row, const Controlled& c) {
   const ImFont* font = ui.fonts.small;
   const std::string label = fmt::format("{} ({})", row.label, row.unit);
   put_text(list, font, ui.theme.text, {at.x, y}, label, width * 0.62f);
-  if (!c.is_set(row.left) && !c.is_set(row.right)) {
-    const std::string stick = stick_text(row, c);
-    const float stick_width = text_width(font, stick);
-    put_text(list, font, ui.theme.tick, {at.x + width - stick_width, y}, stick, stick_width + 1.0f);
-  } else {
-    const float x = at.x + text_width(font, label) + ui.px(8);
+  float end = at.x + width;
+  const bool is_set = c.is_set(row.left) || c.is_set(row.right);
+  if (is_set) {
     ButtonLook back;
-    back.width = std::round(ui.px(64));
+    back.width = std::round(ui.px(44));
     back.height = std::round(ui.px(17));
     back.is_enabled = ui.is_live();
-    put_text(list, font, ui.theme.warning, {x, y}, "overridden",
-             at.x + width - x - back.width - ui.px(4));
-    ImGui::SetCursorScreenPos({at.x + width - back.width, at.y - ui.px(1)});
-    if (button(ui, fmt::format("give back {}", info_of(row.left).name), "give back", back)) {
+    ImGui::SetCursorScreenPos({end - back.width, at.y - ui.px(1)});
+    if (button(ui, fmt::format("give back {}", info_of(row.left).name), "back", back)) {
       give_back(ui, c, row.left);
       give_back(ui, c, row.right);
     }
+    end -= back.width + ui.px(6);
   }
+  const std::string done = done_text(row, c);
+  const std::string text = !done.empty() ? done : is_set ? "overridden" : stick_text(row, c);
+  const Colour& colour = !done.empty() ? ui.theme.text : is_set ? ui.theme.warning : ui.theme.tick;
+  const float x = std::max(end - text_width(font, text), at.x + text_width(font, label) + ui.px(6));
+  put_text(list, font, colour, {x, y}, text, end - x + 1.0f);
   ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(17))});
 }
 
@@ -87,9 +150,11 @@ void draw_slider(Ui& ui, GaitKey key, const Controlled& c, float width, std::str
   look.is_enabled = ui.is_live();
   look.width = width;
   look.letter = letter;
-  const double now = c.is_set(key) ? c.walker.overrides.value[static_cast<std::size_t>(key)]
-                                   : value_of(key, c.walker.params);
-  double value = wished_value(ui, "gait " + name, now);
+  const auto now = wished_value(
+      ui, "gait " + name,
+      shared_value(c.walkers, [key](const WalkerFrame& w) { return asked_value(w, key); }));
+  look.is_mixed = !now;
+  double value = now.value_or(look.min);
   if (slider(ui, "slider " + name, value, look)) {
     send(ui, "gait", name, value);
     remember_wish(ui, "gait " + name, value);
@@ -108,12 +173,9 @@ void draw_row(Ui& ui, const ControlRow& row, const Controlled& c) {
 }
 
 bool is_any_set(const Ui& ui) {
-  for (int w = 0; w < ui.in.frame.walker_count; ++w) {
-    if (ui.state.walker >= 0 && w != ui.state.walker) continue;
-    const auto& set = ui.in.frame.walkers[static_cast<std::size_t>(w)].overrides.is_set;
-    if (std::any_of(set.begin(), set.end(), [](bool s) { return s; })) return true;
-  }
-  return false;
+  return std::ranges::any_of(ui.selected(), [](const WalkerFrame& walker) {
+    return std::ranges::any_of(walker.overrides.is_set, std::identity());
+  });
 }
 
 constexpr std::string_view kLeftOf = "left_", kRightOf = "right_";
@@ -175,45 +237,63 @@ std::optional<double> own_value(const Ui& ui, const WalkerFrame& walker, const S
   return value_of(all[index], key.name);
 }
 
-void draw_value(Ui& ui, const WalkerFrame& walker, const StyleKey& key, float width,
-                std::string_view letter) {
-  const double now = value_of(walker.style, key.name).value_or(key.min);
-  const std::optional<double> own = own_value(ui, walker, key);
+bool is_changed(const Ui& ui, const WalkerFrame& walker, const StyleKey& key) {
+  const auto own = own_value(ui, walker, key);
+  const auto now = value_of(walker.style, key.name);
+  return own && now && *own != *now;
+}
+
+bool is_changed(const Ui& ui, const StyleKey* key) {
+  return key != nullptr && std::ranges::any_of(ui.selected(), [&](const WalkerFrame& walker) {
+           return is_changed(ui, walker, *key);
+         });
+}
+
+void draw_value(Ui& ui, const StyleKey& key, float width, std::string_view letter) {
+  const auto walkers = ui.selected();
   SliderLook look;
   look.min = key.min;
   look.max = key.max;
-  look.mark = own;
-  look.is_changed = own && *own != now;
+  look.mark = own_value(ui, walkers.front(), key);
+  look.is_changed = is_changed(ui, &key);
   look.is_enabled = ui.is_live();
   look.width = width;
   look.letter = letter;
-  double value = wished_value(ui, "set " + key.name, now);
+  const auto now =
+      wished_value(ui, "set " + key.name, shared_value(walkers, [&key](const WalkerFrame& walker) {
+                     return value_of(walker.style, key.name).value_or(key.min);
+                   }));
+  look.is_mixed = !now;
+  double value = now.value_or(look.min);
   if (slider(ui, "style slider " + key.name, value, look)) {
     send(ui, "set", key.name, value);
     remember_wish(ui, "set " + key.name, value);
   }
 }
 
-bool is_changed(const Ui& ui, const WalkerFrame& walker, const StyleKey* key) {
-  if (key == nullptr) return false;
-  const auto own = own_value(ui, walker, *key);
-  const auto now = value_of(walker.style, key->name);
-  return own && now && *own != *now;
+// The number that commands know a selected walker by.
+int number_of(const Ui& ui, const WalkerFrame& walker) {
+  return static_cast<int>(&walker - ui.in.frame.walkers.data()) + 1;
 }
 
-void give_own_back(Ui& ui, const WalkerFrame& walker, const StyleKey* key) {
-  if (!is_changed(ui, walker, key)) return;
-  send(ui, "set", key->name, *own_value(ui, walker, *key));
+// Each selected walker gets the value of its own style.
+void give_own_back(Ui& ui, const StyleKey* key) {
+  if (key == nullptr) return;
+  for (const WalkerFrame& walker : ui.selected()) {
+    if (!is_changed(ui, walker, *key)) continue;
+    ui.out.commands.push_back(fmt::format("set {} {} {}", number_of(ui, walker), key->name,
+                                          *own_value(ui, walker, *key)));
+  }
   forget_wish(ui, "set " + key->name);
 }
 
-void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
+void draw_row(Ui& ui, const StyleRow& row) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float y = at.y + ui.px(2);
   put_text(list, ui.fonts.small, ui.theme.text, {at.x, y}, row.label, width * 0.6f);
-  if (is_changed(ui, walker, row.left) || is_changed(ui, walker, row.right)) {
+  if (is_changed(ui, row.left) || is_changed(ui, row.right)) {
     const float x = at.x + text_width(ui.fonts.small, row.label) + ui.px(8);
     put_text(list, ui.fonts.small, ui.theme.warning, {x, y}, "changed",
              at.x + width - x - ui.px(48));
@@ -223,27 +303,36 @@ void draw_row(Ui& ui, const WalkerFrame& walker, const StyleRow& row) {
     back.is_enabled = ui.is_live();
     ImGui::SetCursorScreenPos({at.x + width - back.width, at.y - ui.px(1)});
     if (button(ui, "own " + row.left->name, "back", back)) {
-      give_own_back(ui, walker, row.left);
-      give_own_back(ui, walker, row.right);
+      give_own_back(ui, row.left);
+      give_own_back(ui, row.right);
     }
   }
   ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(18))});
   const float cell = row.right != nullptr ? std::floor((width - gap) / 2.0f) : width;
-  draw_value(ui, walker, *row.left, cell, row.right != nullptr ? "L" : "");
+  draw_value(ui, *row.left, cell, row.right != nullptr ? "L" : "");
   if (row.right != nullptr) {
     ImGui::SameLine(0.0f, gap);
-    draw_value(ui, walker, *row.right, cell, "R");
+    draw_value(ui, *row.right, cell, "R");
   }
 }
 
 constexpr double kStyleListPixels = 236.0;
 constexpr int kSummaryLines = 4;
 
-// The list of styles: number, name and what each does. A click lets the selected characters walk
-// so.
-void draw_choice(Ui& ui, const WalkerFrame& walker) {
+// The numbers of the selected walkers that walk in this style: "1 3".
+std::string who_walks_so(const Ui& ui, const std::string& style) {
+  std::string numbers;
+  for (const WalkerFrame& walker : ui.selected()) {
+    if (style_name(ui, walker.style_index) != style) continue;
+    numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", number_of(ui, walker));
+  }
+  return numbers;
+}
+
+// The list of styles: number, name and what each does; of several selected characters, who walks
+// so. A click lets them all walk so.
+void draw_choice(Ui& ui) {
   const std::vector<int> choices = style_choices(ui.in.cast);
-  const std::string now = style_name(ui, walker.style_index);
   const float number = ui.px(18), line = ui.fonts.tick->FontSize + ui.px(1);
   ImGui::PushStyleColor(ImGuiCol_ChildBg, imgui_colour(ui.theme.plot));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{0.0f, 0.0f});
@@ -265,15 +354,21 @@ void draw_choice(Ui& ui, const WalkerFrame& walker) {
     ImGui::PopID();
     if (ui.is_live()) keep_item(id);
     explain(ui, id);
-    const bool is_on = name == now;
+    const std::string who = who_walks_so(ui, name);
+    const bool is_on = !who.empty();
     if (is_on || (ImGui::IsItemHovered() && ui.is_live())) {
       list.AddRectFilled(at, {at.x + width, at.y + row - 1.0f},
-                         packed(with_alpha(ui.theme.accent, is_on ? 0.45 : 0.2)), ui.px(4));
+                         packed(with_alpha(ui.theme.accent, is_on ? kChosenShare : 0.2)), ui.px(4));
     }
     if (i < 9)
-      put_text(list, ui.fonts.tick, ui.theme.tick, {at.x + ui.px(6), at.y + ui.px(4)},
+      put_text(list, ui.fonts.tick, ui.theme.secondary, {at.x + ui.px(6), at.y + ui.px(4)},
                fmt::format("{}", i + 1), number);
-    put_text(list, ui.fonts.small, ui.theme.text, {x, at.y + ui.px(2)}, name, room);
+    const float who_width =
+        ui.selected().size() > 1 && is_on ? text_width(ui.fonts.small, who) + ui.px(6) : 0.0f;
+    put_text(list, ui.fonts.small, ui.theme.text, {x, at.y + ui.px(2)}, name, room - who_width);
+    if (who_width > 0.0f)
+      put_text(list, ui.fonts.small, ui.theme.text,
+               {x + room - who_width + ui.px(6), at.y + ui.px(2)}, who, who_width);
     for (std::size_t l = 0; l < lines.size(); ++l)
       put_text(list, ui.fonts.tick, ui.theme.secondary,
                {x, at.y + ui.px(18) + line * static_cast<float>(l)}, lines[l], room);
@@ -319,18 +414,20 @@ void draw_save(Ui& ui) {
   if ((is_pressed || is_entered) && name[0] != '\0') ui.out.save_style = std::string(name.data());
 }
 
-void draw_buttons(Ui& ui, const WalkerFrame& walker) {
+void draw_buttons(Ui& ui) {
   const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
   const float cell = std::floor((width - gap) / 2.0f);
   const std::vector<StyleKey>& keys = style_keys();
   ButtonLook look;
   look.width = cell;
   look.height = std::round(ui.px(22));
-  look.is_enabled = ui.is_live() && std::any_of(keys.begin(), keys.end(), [&](const StyleKey& k) {
-                      return is_changed(ui, walker, &k);
+  look.is_enabled = ui.is_live() && std::ranges::any_of(keys, [&](const StyleKey& key) {
+                      return is_changed(ui, &key);
                     });
   if (button(ui, "own all", "all back", look)) {
-    send(ui, "style", style_name(ui, walker.style_index));
+    for (const WalkerFrame& walker : ui.selected())
+      ui.out.commands.push_back(
+          fmt::format("style {} {}", number_of(ui, walker), style_name(ui, walker.style_index)));
     forget_wish(ui, "");
   }
   ImGui::SameLine(0.0f, gap);
@@ -353,9 +450,10 @@ void draw_control_panel(Ui& ui) {
   if (index < 0 || index >= static_cast<int>(ui.in.cast.members.size())) {
     return note(ui, "no character yet");
   }
-  const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
+  const auto walkers = ui.selected();
   const GaitLimits& limits = ui.in.cast.members[static_cast<std::size_t>(index)].limits;
-  const Controlled controlled{walker, gait_params(ui.in.frame.stick, walker.style, limits), limits};
+  const Controlled controlled{
+      walkers, gait_params(ui.in.frame.stick, walkers.front().style, limits), limits};
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   for (const ControlRow& row : kRows) draw_row(ui, row, controlled);
   if (!ui.is_live()) {
@@ -373,14 +471,12 @@ void draw_control_panel(Ui& ui) {
 }
 
 void draw_style_panel(Ui& ui) {
-  const int index = ui.walker();
-  if (index < 0) return note(ui, "no character yet");
-  const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
+  if (ui.walker() < 0) return note(ui, "no character yet");
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
-  draw_choice(ui, walker);
+  draw_choice(ui);
   draw_save(ui);
-  for (const StyleRow& row : rows_of(ui.state.memory)) draw_row(ui, walker, row);
-  draw_buttons(ui, walker);
+  for (const StyleRow& row : rows_of(ui.state.memory)) draw_row(ui, row);
+  draw_buttons(ui);
   ImGui::PopStyleVar();
 }
 

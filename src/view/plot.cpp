@@ -156,7 +156,7 @@ void draw_ends(ImDrawList& list, const PlotArea& area, const Plot& plot, const P
   }
   for (const EndLabel& end : ends) {
     tick_label(list, style, {area.max.x + 5.0f * style.scale, end.y - height / 2.0f},
-               TextPlace::left, end.series->letter, end.series->colour);
+               TextPlace::left, end.series->letter, faint(end.series->colour, 1.0));
   }
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -75,9 +74,9 @@ class CapsuleScene {
   GlFrameBuffer shadow_target_;
   GLsizei index_count_ = 0;
   int shadow_px_ = 0;
-  void add_rows(const SceneContent& content, const SceneView& view, double from_m, double to_m);
 
-  std::vector<Instance> rows_;  // bodies near the floor, the others, lines
+  std::vector<Instance> rows_;       // bodies near the floor, the others, lines
+  std::vector<Instance> high_rows_;  // the others, while rows_ is filled
   std::size_t low_capsules_ = 0, capsules_ = 0;
 };
 
@@ -185,28 +184,23 @@ void CapsuleScene::make_shadow_target(int size_px) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shadow_.get(), 0);
 }
 
-// Adds the bodies whose lower end is within [from_m, to_m) above the floor.
-void CapsuleScene::add_rows(const SceneContent& content, const SceneView& view, double from_m,
-                            double to_m) {
+void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
+  rows_.clear();
+  high_rows_.clear();
   for (const Capsule& c : content.capsules) {
     if (!is_drawable(c)) continue;
     const vec2 ground(floor_below(content, c.a_m), floor_below(content, c.b_m));
     const double low_m =
         std::min(c.a_m.y - c.radius_a_m - ground.x, c.b_m.y - c.radius_b_m - ground.y);
-    if (low_m < from_m || low_m >= to_m) continue;
     const vec3 colour(c.colour.red, c.colour.green, c.colour.blue);
-    rows_.push_back(
-        {row(c.a_m - view.origin_m, c.radius_a_m), row(c.b_m - view.origin_m, c.radius_b_m),
-         row(across(c.b_m - c.a_m, c.wide), c.width_a), row(colour, c.width_b), glm::vec2(ground)});
+    (low_m < kContact_m ? rows_ : high_rows_)
+        .push_back({row(c.a_m - view.origin_m, c.radius_a_m),
+                    row(c.b_m - view.origin_m, c.radius_b_m),
+                    row(across(c.b_m - c.a_m, c.wide), c.width_a), row(colour, c.width_b),
+                    glm::vec2(ground)});
   }
-}
-
-void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
-  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  rows_.clear();
-  add_rows(content, view, -kAnywhere, kContact_m);
   low_capsules_ = rows_.size();
-  add_rows(content, view, kContact_m, kAnywhere);
+  rows_.insert(rows_.end(), high_rows_.begin(), high_rows_.end());
   capsules_ = rows_.size();
   for (const SceneLine& l : content.lines) {
     if (!is_finite(l.a_m) || !is_finite(l.b_m)) continue;
@@ -326,8 +320,8 @@ Result<CrowdScene> CrowdScene::create() {
   crowd.body_rows_ = new_buffer();
   glBindVertexArray(crowd.body_vertices_.get());
   glBindBuffer(GL_ARRAY_BUFFER, crowd.body_rows_.get());
-  constexpr VertexPart kBody[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}};
-  set_vertex_parts(kBody, 4, 1);
+  constexpr VertexPart kBody[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 1}};
+  set_vertex_parts(kBody, 5, 1);
   crowd.shade_vertices_ = new_vertex_array();
   crowd.shade_rows_ = new_buffer();
   glBindVertexArray(crowd.shade_vertices_.get());

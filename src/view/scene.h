@@ -44,6 +44,7 @@ struct FlatCapsule {
   glm::vec4 a_radius{0.0f}, b_radius{0.0f};
   // As in Capsule. A negative width at b: both ends lie in other capsules and show no caps.
   glm::vec4 wide_width_a{0.0f}, colour_width_b{0.0f};
+  float ground_m = 0.0f;  // height of the ground below it
 };
 // A soft dark strip on the floor between two places, its radius at each end; relative likewise.
 struct FloorShade {

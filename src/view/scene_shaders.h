@@ -54,7 +54,7 @@ out vec4 shown;
 void main() {
   vec3 n = normalize(normal);
   vec3 to_eye = normalize(eye - place);
-  float near_floor = mix(0.55, 1.0, smoothstep(0.0, 0.35, place.y));
+  float near_floor = mix(0.55, 1.0, smoothstep(0.0, 0.35, above));
   vec3 ambient = mix(ground_light, sky_light, 0.5 + 0.5 * n.y) * near_floor;
   float key = smoothstep(-0.25, 1.0, dot(n, light)) * key_strength;
   float edge = 1.0 - max(dot(n, to_eye), 0.0);
@@ -75,11 +75,12 @@ layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
 layout(location = 3) in vec4 wide_width_a;
 layout(location = 4) in vec4 colour_width_b;
+layout(location = 5) in float ground;  // height of the floor below it
 uniform mat4 to_clip;
 uniform vec3 eye;
 uniform vec3 light;
 uniform vec3 moved;
-out float height;
+out float height;  // above the floor
 out vec2 spot;  // metres aside of the axis, and along it from a as it is seen
 flat out vec3 aside;
 flat out vec3 upwards;
@@ -108,7 +109,7 @@ void main() {
   float aside_m = (gl_VertexID & 1) == 1 ? reach : -reach;
   spot = vec2(aside_m, at_b ? radii.z + radii.y * 1.05 : -radii.x * 1.05);
   vec3 place = (at_b ? b + upwards * radii.y * 1.05 : a - upwards * radii.x * 1.05) + aside * aside_m;
-  height = place.y;
+  height = place.y - moved.y - ground;
   half_way = normalize(light + to_eye);
   vec3 c = colour_width_b.rgb;
   base = c * c * (0.25 + 0.75 * c);

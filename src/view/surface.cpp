@@ -20,9 +20,7 @@ namespace {
 constexpr int kSmallest_px = 64, kLargestWindow_px = 16384;
 constexpr int kSmallestWindowWidth = 640, kSmallestWindowHeight = 400;  // at scale 1
 constexpr int kNeededGl = 33;                                           // 3.3
-constexpr const char* kWithoutDisplay =
-    "play --no-window walks without one, --screenshot FILE.png and --video FILE.mp4 draw without "
-    "one";
+constexpr const char* kPictures = "--screenshot FILE.png and --video FILE.mp4 draw without one";
 
 std::atomic<bool> is_display_lost = false;  // Xlib's connection outlives every surface
 
@@ -49,17 +47,18 @@ void set_hints(bool is_hidden) {
 }
 
 // Why no window can be opened on the video driver that SDL has started; empty if one can.
-std::string display_problem(bool is_hidden) {
-  if (is_hidden || !is_offscreen(SDL_GetCurrentVideoDriver())) return {};
+std::string display_problem(const SurfaceOptions& options) {
+  if (options.is_hidden || !is_offscreen(SDL_GetCurrentVideoDriver())) return {};
   const char* wish = std::getenv("SDL_VIDEODRIVER");
   if (wish && is_offscreen(wish)) return {};
-  return fmt::format("no display to open a window on; {}", kWithoutDisplay);
+  return fmt::format("no display to open a window on; {}, {}", options.without_display, kPictures);
 }
 
-std::string video_problem(bool is_hidden) {
+std::string video_problem(const SurfaceOptions& options) {
   const std::string cause = SDL_GetError();
-  if (is_hidden) return fmt::format("nothing to draw on without a display: {}", cause);
-  return fmt::format("no display to open a window on: {}; {}", cause, kWithoutDisplay);
+  if (options.is_hidden) return fmt::format("nothing to draw on without a display: {}", cause);
+  return fmt::format("no display to open a window on: {}; {}, {}", cause, options.without_display,
+                     kPictures);
 }
 
 // The scene has its own frame buffers for anti-aliasing and depth.
@@ -114,9 +113,9 @@ Error gl_problem(const char* what) {
 
 Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions& options) {
   set_hints(options.is_hidden);
-  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return Error{video_problem(options.is_hidden)};
+  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return Error{video_problem(options)};
   std::unique_ptr<WindowSurface> surface(new WindowSurface);  // its destructor stops SDL's video
-  if (std::string problem = display_problem(options.is_hidden); !problem.empty()) {
+  if (std::string problem = display_problem(options); !problem.empty()) {
     return Error{std::move(problem)};
   }
   surface->scale_ = scale_of_display(options);

@@ -26,6 +26,7 @@ struct SurfaceOptions {
   std::string title = "gaitpad";
   int width = 1280, height = 720;  // pixels at scale 1
   double scale = 0.0;              // 0: the display's own
+  std::string without_display;     // what else can be done, for the error
   bool is_hidden = false;          // draws pictures only, with SDL's offscreen driver, at scale 1
 };
 

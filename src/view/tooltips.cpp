@@ -105,12 +105,15 @@ struct KeyWords {
   std::string_view key, words, text;
 };
 constexpr KeyWords kKeys[] = {
-    {"speed_m_s", "speed", "How fast it walks, in metres a second."},
-    {"stride_left_m", "stride", "Length of the left foot's step, in metres."},
-    {"stride_right_m", "stride", "Length of the right foot's step, in metres."},
+    {"speed_m_s", "speed", "How fast it is to walk, in m/s. Does: over the cycle that runs."},
+    {"stride_left_m", "stride",
+     "Length of the left foot's step, in metres. Does: its last or running step."},
+    {"stride_right_m", "stride",
+     "Length of the right foot's step, in metres. Does: its last or running step."},
     {"flight_left", "flight height", "How high the left foot is lifted; 1 as in the motion."},
     {"flight_right", "flight height", "How high the right foot is lifted; 1 as in the motion."},
-    {"turn_rate_rad_s", "turn rate", "How fast it turns, to the left above 0."},
+    {"turn_rate_rad_s", "turn rate",
+     "How fast it is to turn, to the left above 0. Does: in this moment."},
     {"hip_sway", "hip sway", "How far the hips move sideways; 1 as in the motion."},
     {"hip_bounce", "hip bounce", "How far the hips move up and down; 1 as in the motion."},
     {"fatigue", "fatigue", "0 fresh, 1 exhausted: shortens and slows each step."},

@@ -146,7 +146,8 @@ struct UiItem {
   ImVec2 min, max;
 };
 const std::vector<UiItem>& ui_items() noexcept;
-// The texts of that frame for which there was no room, whole.
+// The texts of that frame, as they were drawn, and whole those for which there was no room.
+const std::vector<std::string>& drawn_texts() noexcept;
 const std::vector<std::string>& cut_texts() noexcept;
 
 // The layout of the window: bars at top and bottom and a column of panels on either side of the

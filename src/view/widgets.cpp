@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "view/tooltips.h"
 
@@ -30,7 +31,7 @@ std::string_view fitting(const ImFont* font, std::string_view text, float width)
 
 // Of the frame drawn last; only one window draws, from one thread.
 std::vector<UiItem> items;
-std::vector<std::string> cut;
+std::vector<std::string> cut, drawn;
 
 void keep(std::string_view name, const ImVec2& min, const ImVec2& max, const ImRect& clip) {
   ImRect rect(min, max);
@@ -44,15 +45,16 @@ void draw_button_back(Ui& ui, const ImVec2& min, const ImVec2& max, const Button
   const float rounding = ui.px(5);
   const bool is_chosen = look.is_on && !look.is_primary;
   Colour back = look.is_primary || look.is_on ? ui.theme.accent : ui.theme.frame;
-  back.alpha = (is_chosen ? 0.45 : 1.0) * (look.is_enabled ? 1.0 : 0.5);
+  back.alpha = (is_chosen ? kChosenShare : 1.0) * (look.is_enabled ? 1.0 : 0.5);
   list.AddRectFilled(min, max, packed(back), rounding);
   if (look.is_enabled && ImGui::IsItemHovered()) {
     const double strength = ImGui::IsItemActive() ? 0.18 : 0.08;
     list.AddRectFilled(min, max, packed(with_alpha(ui.theme.text, strength)), rounding);
   }
-  if (is_chosen) {
-    list.AddRect(min, max, packed(with_alpha(ui.theme.left, 0.8)), rounding, 0, ui.px(1));
-  }
+  const Colour& edge = is_chosen ? ui.theme.left : ui.theme.edge;
+  if (!look.is_primary)
+    list.AddRect(min, max, packed(with_alpha(edge, look.is_enabled ? 1.0 : 0.5)), rounding, 0,
+                 ui.px(1));
 }
 
 // Icon or dot, then the label, centred on the button.
@@ -93,7 +95,7 @@ double value_under_mouse(Ui& ui, float left, float right, const SliderLook& look
 // In the middle, or beside the knob if the knob would cover it.
 void draw_number(Ui& ui, const ImVec2& min, const ImVec2& max, float knob, double value,
                  const SliderLook& look) {
-  std::string text = tick_text(value, std::pow(10.0, -look.decimals));
+  std::string text = look.is_mixed ? "mixed" : tick_text(value, std::pow(10.0, -look.decimals));
   if (!look.letter.empty()) text = fmt::format("{} {}", look.letter, text);
   const ImFont* font = ui.fonts.small;
   const float width = text_width(font, text), room = ui.px(7);
@@ -127,19 +129,20 @@ void draw_slider(Ui& ui, const ImVec2& min, const ImVec2& max, double value,
   };
   const double strength = look.is_enabled ? 1.0 : 0.55;
   list.AddRectFilled(min, max, packed(ui.theme.frame), ui.px(4));
-  const float grab = place(value);
-  list.AddRectFilled(min, {grab, max.y}, packed(with_alpha(ui.theme.accent, 0.45 * strength)),
-                     ui.px(4));
-  if (look.mark && std::isfinite(*look.mark) && *look.mark != value) {
-    draw_notch(ui, place(*look.mark), min, max);
+  const float grab = look.is_mixed ? min.x : place(value);
+  if (!look.is_mixed) {
+    list.AddRectFilled(min, {grab, max.y}, packed(with_alpha(ui.theme.accent, 0.45 * strength)),
+                       ui.px(4));
+    if (look.mark && std::isfinite(*look.mark) && *look.mark != value)
+      draw_notch(ui, place(*look.mark), min, max);
+    const bool is_hot = ImGui::IsItemHovered() || ImGui::IsItemActive();
+    const Colour& knob = is_hot && look.is_enabled ? ui.theme.text : ui.theme.left;
+    list.AddRectFilled({grab - ui.px(3.5), min.y + ui.px(2)}, {grab + ui.px(3.5), max.y - ui.px(2)},
+                       packed(with_alpha(knob, strength)), ui.px(3));
   }
-  const bool is_hot = ImGui::IsItemHovered() || ImGui::IsItemActive();
-  Colour knob = is_hot && look.is_enabled ? ui.theme.text : ui.theme.left;
-  list.AddRectFilled({grab - ui.px(3.5), min.y + ui.px(2)}, {grab + ui.px(3.5), max.y - ui.px(2)},
-                     packed(with_alpha(knob, strength)), ui.px(3));
-  if (look.is_changed) {
-    list.AddRect(min, max, packed(ui.theme.warning), ui.px(4), 0, ui.px(1.4));
-  }
+  const Colour& edge = look.is_changed ? ui.theme.warning : ui.theme.edge;
+  list.AddRect(min, max, packed(with_alpha(edge, strength)), ui.px(4), 0,
+               ui.px(look.is_changed ? 1.4 : 1.0));
   draw_number(ui, min, max, grab, value, look);
 }
 
@@ -166,6 +169,7 @@ void put_text(ImDrawList& list, const ImFont* font, const Colour& colour, const 
   }
   list.AddText(font, font->FontSize, {std::floor(at.x), std::floor(at.y)}, packed(colour),
                shown.data(), shown.data() + shown.size());
+  drawn.push_back(std::move(shown));
 }
 
 void text_line(Ui&, const ImFont* font, const Colour& colour, std::string_view text,
@@ -235,9 +239,19 @@ int Ui::walker() const noexcept {
   return state.walker >= 0 && state.walker < in.frame.walker_count ? state.walker : 0;
 }
 
+std::span<const WalkerFrame> Ui::selected() const noexcept {
+  const int first = walker();
+  if (first < 0) return {};
+  const bool is_one = state.walker >= 0;
+  return std::span(in.frame.walkers)
+      .subspan(static_cast<std::size_t>(first),
+               is_one ? 1 : static_cast<std::size_t>(in.frame.walker_count));
+}
+
 void clear_items() {
   items.clear();
   cut.clear();
+  drawn.clear();
 }
 
 void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max) {
@@ -255,9 +269,17 @@ void keep_item(std::string_view name) {
 }
 
 const std::vector<UiItem>& ui_items() noexcept { return items; }
+const std::vector<std::string>& drawn_texts() noexcept { return drawn; }
 const std::vector<std::string>& cut_texts() noexcept { return cut; }
 
 namespace {
+
+// Whether the pointer rests on the last widget.
+bool is_rested_on() {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsItemActive())
+    return false;
+  return ImGui::GetCurrentContext()->HoveredIdTimer >= kRest_s;
+}
 
 // A card with the text at the pointer.
 void draw_tip(Ui& ui, std::string_view text) {
@@ -276,12 +298,12 @@ void draw_tip(Ui& ui, std::string_view text) {
 }  // namespace
 
 void show_tip(Ui& ui, std::string_view text) {
-  const ImGuiContext& context = *ImGui::GetCurrentContext();
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsItemActive()) return;
-  if (context.HoveredIdTimer >= kRest_s) draw_tip(ui, text);
+  if (is_rested_on()) draw_tip(ui, text);
 }
 
-void explain(Ui& ui, std::string_view item) { show_tip(ui, tooltip_of(item)); }
+void explain(Ui& ui, std::string_view item) {
+  if (is_rested_on()) draw_tip(ui, tooltip_of(item));
+}
 
 void keep_picture(Ui& ui, std::string_view name, const ImVec2& min, const ImVec2& max) {
   keep_item(name, min, max);
@@ -396,7 +418,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   if (look.is_enabled) keep_item(id);
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
   double& held = ui.state.memory.held;  // the value last asked for in this drag
-  if (is_taken) held = value;
+  if (is_taken) held = look.is_mixed ? std::numeric_limits<double>::quiet_NaN() : value;
   bool is_moved = false;
   if (is_held && look.max > look.min) {
     const double wanted = value_under_mouse(ui, min.x, max.x, look);
@@ -408,7 +430,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   return is_moved;
 }
 
-double wished_value(Ui& ui, const std::string& name, double value) {
+std::optional<double> wished_value(Ui& ui, const std::string& name, std::optional<double> value) {
   auto& wishes = ui.state.memory.wishes;
   const std::int64_t now = ui.in.frame.tick;
   std::erase_if(wishes, [&](const UiMemory::Wish& w) {
@@ -432,6 +454,12 @@ void remember_wish(Ui& ui, const std::string& name, double value) {
 void forget_wish(Ui& ui, const std::string& name) {
   std::erase_if(ui.state.memory.wishes,
                 [&](const UiMemory::Wish& w) { return name.empty() || w.name == name; });
+}
+
+bool is_menu_open() noexcept { return ImGui::GetCurrentContext()->OpenPopupStack.Size > 0; }
+
+void close_menus() noexcept {
+  if (is_menu_open()) ImGui::ClosePopupToLevel(0, false);
 }
 
 ImVec2 begin_modal(Ui& ui, const char* id, double width, double height, const ImVec2& window_px) {

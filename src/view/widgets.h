@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,8 @@ struct Ui {
   bool is_live() const noexcept { return in.timeline == nullptr; }
   // The walker that panels show: the chosen one, else the first; -1: none.
   int walker() const noexcept;
+  // Those whose values they show and change: the chosen one, else all.
+  std::span<const WalkerFrame> selected() const noexcept;
   PlotStyle plot_style() const noexcept { return {&theme, &fonts, scale}; }
 };
 
@@ -84,6 +87,7 @@ struct SliderLook {
   int decimals = 2;
   std::optional<double> mark;
   bool is_changed = false;  // outlined
+  bool is_mixed = false;    // the characters have different values
   bool is_enabled = true;
   float width = 0.0f;
   std::string_view letter;  // before the number, for instance "L"
@@ -92,8 +96,9 @@ struct SliderLook {
 // shown. While the slider is dragged `value` is the person's.
 bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look);
 
-// The value to show for `name`: the person's, until the session has taken it over.
-double wished_value(Ui& ui, const std::string& name, double value);
+// The value to show for `name`: the person's, until the session has taken it over. None of both:
+// the characters have different values.
+std::optional<double> wished_value(Ui& ui, const std::string& name, std::optional<double> value);
 void remember_wish(Ui& ui, const std::string& name, double value);
 void forget_wish(Ui& ui, const std::string& name);  // "": all
 // Sends `VERB 2 KEY VALUE` to the session, without the number for all characters. The value has the
@@ -105,6 +110,10 @@ Colour walker_colour(const Ui& ui, int walker);
 // The number and the present style: "2 stiff_hip".
 std::string walker_name(const Ui& ui, int walker);
 std::string style_name(const Ui& ui, int style_index);
+
+// Menus that a button has opened.
+bool is_menu_open() noexcept;
+void close_menus() noexcept;
 
 // Begins a box in the middle of the window and darkens everything else; end it with end_modal().
 // The size is at scale 1 and limited by the window's; returns it in pixels. ui_items() has the box

@@ -39,6 +39,7 @@
 #include "view/tooltips.h"
 #include "view/undo.h"
 #include "view/video.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 namespace {
@@ -166,7 +167,8 @@ class WindowLoop {
   const LiveStatus* shown_status();
   void draw_browser(Ui& ui, const ImVec2& window_px);
   void draw_pad_dialog(Ui& ui, const ImVec2& window_px);
-  void reset_camera();
+  void reset_camera(const Viewport& viewport);
+  Framing wished_framing(const Viewport& viewport) const;
   void turn_to_risers(double passed_s);
   void set_type_size(double size);
   double scale() const { return surface_->scale() * state_.type_size; }
@@ -298,8 +300,8 @@ std::optional<Error> WindowLoop::open() {
   if (auto problem = picture_problem()) return problem;
   auto start = Show::prepare(options_.session);
   if (!start) return start.error();
-  auto surface = WindowSurface::open(
-      {"gaitpad", options_.width, options_.height, options_.scale, options_.is_hidden});
+  auto surface = WindowSurface::open({"gaitpad", options_.width, options_.height, options_.scale,
+                                      options_.without_display, options_.is_hidden});
   if (!surface) return surface.error();
   surface_ = std::move(*surface);
   set_window_icon(surface_->window());
@@ -540,9 +542,10 @@ void WindowLoop::draw_window(bool is_last) {
   ensemble_->look_from(camera_.eye_m());
   ensemble_->fill(show_->frame(), show_->history(), show_->share(now_ns()), show_->cast(), state_,
                   theme, content_);
-  if (std::exchange(is_camera_new_, false)) reset_camera();
+  if (std::exchange(is_camera_new_, false)) reset_camera(viewport);
   const double passed_s = makes_pictures() ? 1.0 / kPictureRateHz : clock_.passed_s();
-  follow(camera_, ensemble_->focus_m(state_.walker), passed_s);
+  follow(camera_, ensemble_->focus_m(-1), passed_s);
+  approach(camera_, wished_framing(viewport), passed_s);
   turn_to_risers(passed_s);
   ensemble_->stand_on_ground(camera_);
   if (is_drawn && viewport.width > 0 && viewport.height > 0)
@@ -557,11 +560,16 @@ void WindowLoop::draw_window(bool is_last) {
   surface_->show();
 }
 
-void WindowLoop::reset_camera() {
-  int width_px = 0, height_px = 0;
-  surface_->size(width_px, height_px);
-  const Viewport viewport =
-      scene_viewport(state_, show_->timeline() != nullptr, width_px, height_px, scale());
+// Everybody, in what the panels leave free. What is zoomed in is the chosen character.
+Framing WindowLoop::wished_framing(const Viewport& viewport) const {
+  Framing wish = ensemble_->framing(camera_, viewport, state_, scale());
+  const double zoomed = std::clamp(2.0 * (1.0 - camera_.distance_m / camera_.framed_m), 0.0, 1.0);
+  if (state_.walker >= 0)
+    wish.target_m = glm::mix(wish.target_m, ensemble_->focus_m(state_.walker), zoomed);
+  return wish;
+}
+
+void WindowLoop::reset_camera(const Viewport& viewport) {
   camera_ = Camera();
   is_camera_moved_ = false;
   if (ensemble_->is_on_uneven_ground()) {  // from the side, so that steps ahead hide no feet
@@ -574,8 +582,7 @@ void WindowLoop::reset_camera() {
     camera_.yaw_rad = options_.camera_deg[0] * kDegree;
     camera_.pitch_rad = options_.camera_deg[1] * kDegree;
   }
-  camera_.target_m = camera_.followed_m = ensemble_->focus_m(state_.walker);
-  camera_.distance_m = ensemble_->distance_m(state_.walker, camera_, viewport);
+  show(camera_, ensemble_->framing(camera_, viewport, state_, scale()), ensemble_->focus_m(-1));
 }
 
 void WindowLoop::turn_to_risers(double passed_s) {
@@ -651,7 +658,7 @@ UiInput WindowLoop::ui_input() {
   in.can_rumble = has_pad && !is_recording(show_->options().pad.wish.pad);
   in.pad_rate_hz = clock_.rate_hz(frame.pad.reports);
   in.frames_per_second = clock_.frames_per_second();
-  in.memory_mib = memory_mib();
+  if (state_.is_open[static_cast<std::size_t>(Panel::loop)]) in.memory_mib = memory_mib();
   return in;
 }
 
@@ -914,7 +921,9 @@ void WindowLoop::say_change(std::string what) {
 }
 
 void WindowLoop::go_back() {
-  if (state_.is_help_open) {
+  if (is_menu_open()) {
+    close_menus();
+  } else if (state_.is_help_open) {
     state_.is_help_open = false;
   } else if (browser_.is_open()) {
     browser_.close();

@@ -29,7 +29,8 @@ struct WindowGlance {
 };
 
 struct WindowOptions {
-  SessionSpec session;              // live, or a playback if session.replay.trace is not empty
+  SessionSpec session;  // live, or a playback if session.replay.trace is not empty
+  std::string without_display = "play --no-window walks without one";  // for the error
   std::string program = "gaitpad";  // its name and version, for the report of a self-test
   std::string calibration_folder;   // where calibrations are kept (calibration_store.h)
   std::string layout_file;  // remembers the window from one start to the next; empty: nothing does

@@ -12,7 +12,6 @@
 namespace gaitpad::test {
 namespace {
 
-constexpr RobustOptions kOptions = {.tolerance_m = 1e-6, .max_tries = 1};
 
 // A leg, the six rows of its foot, and where its solver starts.
 struct Leg {
@@ -68,37 +67,41 @@ template <class Compiled>
 class LegIk : public testing::Test {
  protected:
   static constexpr int kWidth = Compiled::kWidth, kRegister = Compiled::kRegister;
-  using Legs = LegLanes<kWidth>;
+  using Legs = std::array<LegToSolve, kWidth>;
 
   void SetUp() override {
     if (widest_lanes() < kRegister)
       GTEST_SKIP() << "this processor has no " << kRegister << " lanes";
   }
-  static void set_vector(const vec3& from, int lane, Vec3Of<Row<kWidth>>& to) {
-    to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
-  }
-  static void set_lane(const Leg& leg, int lane, Legs& legs) {
-    LegGoals<Row<kWidth>>& goals = legs.goals;
-    goals.thigh_m[lane] = -leg.chain.dof[kHipY].link_m.y;
-    goals.shank_m[lane] = -leg.chain.dof[kKneeX].link_m.y;
+  static Vec3Of<double> three(const vec3& v) { return {v.x, v.y, v.z}; }
+  static LegToSolve to_solve(const Leg& leg) {
+    LegToSolve one;
+    LegGoals<double>& goals = one.goals;
+    goals.thigh_m = -leg.chain.dof[kHipY].link_m.y;
+    goals.shank_m = -leg.chain.dof[kKneeX].link_m.y;
     for (int j = 0; j < kLegDofs; ++j) {
-      goals.weight[j][lane] = leg.chain.dof[j].weight;
-      goals.min_rad[j][lane] = leg.chain.dof[j].min_rad;
-      goals.max_rad[j][lane] = leg.chain.dof[j].max_rad;
-      legs.angles_rad[j][lane] = leg.start[j];
+      goals.weight[j] = leg.chain.dof[j].weight;
+      goals.min_rad[j] = leg.chain.dof[j].min_rad;
+      goals.max_rad[j] = leg.chain.dof[j].max_rad;
+      one.angles_rad[j] = leg.start[j];
     }
-    for (int p = 0; p < 3; ++p)
-      set_vector(leg.rows[p == 0 ? 0 : 2 * p + 1].point_m, lane, goals.point_m[p]);
-    set_vector(leg.rows[0].direction, lane, goals.side);
-    set_vector(leg.rows[1].direction, lane, goals.across);
-    set_vector(leg.rows[2].direction, lane, goals.along);
-    for (int r = 0; r < 6; ++r) goals.goal_m[r][lane] = leg.rows[r].goal_m;
+    goals.point_m = {three(leg.rows[0].point_m), three(leg.rows[3].point_m),
+                     three(leg.rows[5].point_m)};
+    goals.side = three(leg.rows[0].direction);
+    goals.across = three(leg.rows[1].direction);
+    goals.along = three(leg.rows[2].direction);
+    for (int r = 0; r < 6; ++r) goals.goal_m[r] = leg.rows[r].goal_m;
+    return one;
   }
   static Legs solved(const std::vector<Leg>& legs) {
-    Legs lanes;
-    for (int lane = 0; lane < kWidth; ++lane) set_lane(legs[lane], lane, lanes);
-    solve_legs<kWidth, kRegister>(kOptions, lanes);
-    return lanes;
+    Legs several;
+    std::array<LegToSolve*, kWidth> places;
+    for (int lane = 0; lane < kWidth; ++lane) {
+      several[lane] = to_solve(legs[lane]);
+      places[lane] = &several[lane];
+    }
+    solve_legs<kWidth, false, kRegister>(places);
+    return several;
   }
   // As many legs as lanes, each with a difficulty of its own.
   static std::vector<Leg> random_legs(Random& random, double off_m, double limit_rad) {
@@ -113,16 +116,16 @@ class LegIk : public testing::Test {
     const Legs lanes = solved(legs);
     for (int lane = 0; lane < kWidth; ++lane) {
       IkAngles alone = legs[lane].start;
-      const IkResult result = solve_robust(legs[lane].chain, legs[lane].rows, kOptions, alone);
+      const IkResult result = solve_robust(legs[lane].chain, legs[lane].rows, kRobust, alone);
       for (int j = 0; j < kLegDofs; ++j) {
-        EXPECT_EQ(std::bit_cast<std::uint64_t>(lanes.angles_rad[j][lane]),
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(lanes[lane].angles_rad[j]),
                   std::bit_cast<std::uint64_t>(alone[j]))
             << "legs " << number << ", lane " << lane << ", angle " << j;
       }
-      const auto& solution = lanes.solution;
-      EXPECT_EQ(static_cast<int>(solution.iterations[lane]), result.iterations) << number;
-      EXPECT_EQ(std::sqrt(solution.squares[lane]), result.error_m) << number;
-      const vec3 heel(solution.heel_m.x[lane], solution.heel_m.y[lane], solution.heel_m.z[lane]);
+      const auto& solution = lanes[lane].solution;
+      EXPECT_EQ(static_cast<int>(solution.iterations), result.iterations) << number;
+      EXPECT_EQ(std::sqrt(solution.squares), result.error_m) << number;
+      const vec3 heel(solution.heel_m.x, solution.heel_m.y, solution.heel_m.z);
       const IkFrame end = end_frame(legs[lane].chain, alone);
       EXPECT_LT(glm::distance(heel, end.position_m + end.rotation * legs[lane].rows[0].point_m),
                 1e-12)
@@ -149,10 +152,10 @@ TYPED_TEST(LegIk, AnInputThatIsNotFiniteFailsAloneAndEnds) {
   std::vector<Leg> legs = this->random_legs(random, 0.02, 0.0);
   legs[0].rows[2].goal_m = std::nan("");
   const auto lanes = this->solved(legs);
-  EXPECT_FALSE(lanes.solution.squares[0] <= 1e-12);
+  EXPECT_FALSE(lanes[0].solution.squares <= 1e-12);
   for (std::size_t lane = 1; lane < legs.size(); ++lane) {
-    EXPECT_LE(lanes.solution.squares[lane], 1e-12);
-    for (int j = 0; j < kLegDofs; ++j) EXPECT_TRUE(std::isfinite(lanes.angles_rad[j][lane]));
+    EXPECT_LE(lanes[lane].solution.squares, 1e-12);
+    for (int j = 0; j < kLegDofs; ++j) EXPECT_TRUE(std::isfinite(lanes[lane].angles_rad[j]));
   }
 }
 

@@ -43,6 +43,7 @@ TEST_F(Files, WhatAKilledProcessLeftIsRemovedByTheNextOne) {
   const std::string own = std::to_string(::getpid());
   own_.write(".a.toml.4194305", "half");
   own_.write(".a.toml.4194305.old", "half");
+  own_.write(".a.toml.4194305.0123456789abcdef", "half");
   own_.write(".a.toml." + own + "0000000", "no process number");
   own_.write(".b.toml.4194305", "of another file");
   own_.write(".a.toml.1", "of a process that runs");
@@ -62,6 +63,30 @@ TEST_F(Files, WritingReplacesTheFileAndLeavesNothingBeside) {
   EXPECT_EQ(write_file(own_.at("new"), "four")->message,
             own_.at("new") + ": cannot be written: Is a directory");
   EXPECT_EQ(own_.entries(), 2);
+}
+
+// With the process's number alone, a link put there beforehand would be written through.
+TEST_F(Files, TemporaryNamesCannotBeGuessed) {
+  const std::string one = temporary_beside(own_.at("a")), other = temporary_beside(own_.at("a"));
+  EXPECT_NE(one, other);
+  EXPECT_EQ(fs::path(one).parent_path(), fs::path(own_.at("a")).parent_path());
+  EXPECT_GE(one.size(), own_.at("a").size() + 2 + 16) << one;
+}
+
+TEST_F(Files, ANewFileIsThereOncePublishedAndElseLeavesNothing) {
+  own_.write("a", "before");
+  {
+    auto file = value_of(NewFile::create(own_.at("a")));
+    EXPECT_FALSE(file.write("half"));
+    EXPECT_EQ(text_of("a"), "before");
+  }
+  EXPECT_EQ(own_.entries(), 1);
+  auto file = value_of(NewFile::create(own_.at("a")));
+  EXPECT_FALSE(file.write("who"));
+  EXPECT_FALSE(file.write("le"));
+  EXPECT_FALSE(file.publish());
+  EXPECT_EQ(text_of("a"), "whole");
+  EXPECT_EQ(own_.entries(), 1);
 }
 
 TEST_F(Files, SavingKeepsWhatStoodThereAndFollowsLinks) {

@@ -1,5 +1,8 @@
 """config/udev: the rules are read in time, jump to labels that follow, and open pads, no other hardware."""
+import fnmatch
 import re
+
+import pytest
 
 from support.program import ROOT
 
@@ -91,3 +94,111 @@ def test_event_nodes_are_asked_what_they_are_and_keyboards_are_not_opened():
     opens = next(n for n, line in enumerate(LINES) if 'ENV{ID_INPUT_JOYSTICK}=="1"' in line)
     assert asks < opens
     assert 'ENV{ID_INPUT_KEYBOARD}!="1"' in LINES[opens]
+
+
+# ---- the rules as udev reads them ------------------------------------------------------------
+class Node:
+    """A device node beside the chain of its parents: (subsystem, kernel name, attributes) each, the nearest first."""
+
+    def __init__(self, subsystem, kernel, parents=(), interfaces="", attributes=None, **env):
+        self.own = {"SUBSYSTEM": subsystem, "KERNEL": kernel, "ACTION": "add"}
+        self.parents = [(subsystem, kernel, attributes or {}), *parents]
+        self.interfaces, self.env = interfaces, {"DEVTYPE": "", **env}
+
+
+def hidraw_of(ids, interface, interfaces):
+    """Of one interface (class, subclass, protocol) of a USB device."""
+    shape = dict(zip(("bInterfaceClass", "bInterfaceSubClass", "bInterfaceProtocol"), (interface[:2], interface[2:4], interface[4:])))
+    return Node("hidraw", "hidraw0", [("hid", f"0003:{ids.upper()}.0001", {}), ("usb", "1-1:1.0", shape), ("usb", "1-1", {})],
+                interfaces)
+
+
+def usb_of(ids, interfaces):
+    vendor, product = ids.split(":")
+    return Node("usb", "1-1", interfaces=interfaces, attributes={"idVendor": vendor, "idProduct": product}, DEVTYPE="usb_device")
+
+
+def fits(pattern, text):
+    return any(fnmatch.fnmatchcase(text, part) for part in pattern.split("|"))
+
+
+def terms_of(line):
+    return re.findall(r'([A-Z]+)(?:\{(\w+)\})?(==|!=|\+=|=)"([^"]*)"', line)
+
+
+def matches(line, node):
+    """udev: KERNELS, SUBSYSTEMS and ATTRS of a line must fit one and the same device of the chain."""
+    above = []
+    for key, name, operator, value in terms_of(line):
+        if operator not in ("==", "!="):
+            continue
+        if key in ("KERNELS", "SUBSYSTEMS", "ATTRS"):
+            above.append((key, name, value))
+            continue
+        attributes = node.parents[0][2]
+        found = node.env.get(name, "") if key == "ENV" else attributes.get(name) if key == "ATTR" else node.own[key]
+        if (found is not None and fits(value, found)) != (operator == "=="):
+            return False
+    def is_it(device, key, name, value):
+        text = {"KERNELS": device[1], "SUBSYSTEMS": device[0], "ATTRS": device[2].get(name)}[key]
+        return text is not None and fits(value, text)
+    return any(all(is_it(device, *term) for term in above) for device in node.parents)
+
+
+def is_opened(node):
+    """Whether the rules give the node to the user at the machine."""
+    lines, waits_for, opened = list(LINES), None, False
+    for line in lines:
+        label = values(line.replace("LABEL=", "LABEL=="), "LABEL")
+        if waits_for:
+            waits_for = None if label == [waits_for] else waits_for
+            continue
+        if not matches(line, node):
+            continue
+        for key, name, operator, value in terms_of(line):
+            if key == "IMPORT" and value == "usb_id":
+                node.env["ID_USB_INTERFACES"] = node.interfaces
+            if key == "MODE":
+                opened = True
+            if key == "GOTO":
+                waits_for = value
+    return opened
+
+
+KEYBOARD, MOUSE, PLAIN, XBOX_360, XBOX_ONE = "030101", "030102", "030000", "ff5d01", "ff47d0"
+# What a device has: ids and its interfaces. Keyboards: Wooting's have the interface of an Xbox 360 pad, PowerA's vendor
+# number stands for any keyboard of a maker of pads; Razer's and Logitech's makers are listed pad by pad.
+KEYBOARDS = [("31e3:1312", [XBOX_360, PLAIN, KEYBOARD, PLAIN]), ("20d6:ffff", [KEYBOARD, PLAIN]),
+             ("1532:0221", [MOUSE, KEYBOARD, "030001"]), ("046d:c52b", [KEYBOARD, MOUSE, PLAIN])]
+PADS = [("045e:028e", [XBOX_360, "ff5d03", "ff5d02", "fffd13"]), ("24c6:543a", [XBOX_360]), ("1209:0360", [XBOX_360]),
+        ("045e:02ea", [XBOX_ONE, XBOX_ONE, XBOX_ONE]), ("054c:09cc", ["010100", "010200", "010200", PLAIN]),
+        ("057e:2009", [PLAIN]), ("20d6:a711", [PLAIN]), ("0f0d:00c1", [PLAIN])]
+STEAM = ("28de:1142", [KEYBOARD, PLAIN, PLAIN, PLAIN, PLAIN])  # named, with a keyboard of its own
+
+
+def listed(interfaces):
+    return ":" + ":".join(interfaces) + ":"
+
+
+@pytest.mark.parametrize("ids, interfaces", PADS + [STEAM])
+def test_a_pad_is_opened_as_a_usb_device_and_by_its_hid_interfaces(ids, interfaces):
+    assert is_opened(usb_of(ids, listed(interfaces)))
+    for interface in interfaces:
+        if interface == PLAIN and not ids.startswith("1209"):
+            assert is_opened(hidraw_of(ids, interface, listed(interfaces)))
+
+
+@pytest.mark.parametrize("ids, interfaces", KEYBOARDS)
+def test_nothing_of_a_keyboard_is_opened(ids, interfaces):
+    assert not is_opened(usb_of(ids, listed(interfaces)))
+    for interface in interfaces:
+        assert not is_opened(hidraw_of(ids, interface, listed(interfaces)))
+
+
+def test_the_keyboard_of_a_pad_is_not_opened():
+    assert not is_opened(hidraw_of(STEAM[0], KEYBOARD, listed(STEAM[1])))
+
+
+def test_over_bluetooth_a_pad_is_opened_by_its_ids():
+    assert is_opened(Node("hidraw", "hidraw0", [("hid", "0005:054C:09CC.0001", {})]))
+    assert not is_opened(Node("hidraw", "hidraw0", [("hid", "0005:046D:B342.0001", {})]))

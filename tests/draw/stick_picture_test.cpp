@@ -4,10 +4,11 @@
 
 #include <cairo/cairo.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -188,16 +189,19 @@ TEST_F(StickPictureFile, AnUnwritableFileIsOneSentenceAndTheOldOneStays) {
   Made made;
   drawn(made);
   const auto old = fs::file_size(path);
-  // The name of the temporary file is taken by a folder: whoever is root may write anywhere else.
-  const fs::path taken = folder / (".plot.png." + std::to_string(::getpid()));
-  fs::create_directory(taken);
   made.tracks = {{{0, {0.0, 0.0}}, {1, {0.9, 0.9}}}};
   const StickPicture picture = made.picture();
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small = {100, before.rlim_max};
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  ::setrlimit(RLIMIT_FSIZE, &small);
   const auto error = write_stick_picture(path, "another heading", {&picture, 1});
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handler);
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->message, path + ": cannot be written: File exists");
+  EXPECT_EQ(error->message, path + ": cannot be written: File too large");
   EXPECT_EQ(fs::file_size(path), old);
-  fs::remove(taken);
 
   const auto below_a_file = write_stick_picture(path + "/x.png", "", {&picture, 1});
   ASSERT_TRUE(below_a_file);

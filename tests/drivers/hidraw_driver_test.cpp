@@ -5,13 +5,18 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <hidapi/hidapi.h>
+#include <linux/hidraw.h>
 #include <poll.h>
+#include <stdarg.h>
 #include <stdlib.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <deque>
@@ -40,6 +45,8 @@ struct ScriptedRead {
 std::deque<ScriptedRead> script;  // empty: the node itself is read
 std::vector<int> timeouts;        // of the reads
 ScriptedRead failure(int error) { return {.bytes = {}, .error = error}; }
+std::atomic<int> openings{0}, opening_now{0}, openings_at_once{0};
+std::chrono::milliseconds opening_time{0};
 int descriptors_per_opening = 1;
 std::optional<Packet> firmware;  // feature report 0x20
 // Input report by request, beginning with the id; a thread of the driver asks for it.
@@ -58,6 +65,11 @@ struct hid_device_ {
 extern "C" {
 
 hid_device* hid_open_path(const char* path) {
+  ++openings;
+  // hidapi frees and sets its text of the last error here.
+  if (opening_now++ > 0) ++openings_at_once;
+  std::this_thread::sleep_for(opening_time);
+  --opening_now;
   auto device = std::make_unique<hid_device>();
   for (int i = 0; i < descriptors_per_opening; ++i) {
     const int fd = ::open(path, O_RDWR | O_CLOEXEC | O_NOCTTY);
@@ -98,7 +110,19 @@ int hid_get_feature_report(hid_device*, unsigned char* data, size_t length) {
   std::copy_n(firmware->begin(), std::min(length, firmware->size()), data);
   return static_cast<int>(std::min(length, firmware->size()));
 }
-int hid_get_input_report(hid_device*, unsigned char* data, size_t length) {
+int hid_send_feature_report(hid_device*, const unsigned char*, size_t length) {
+  return static_cast<int>(length);
+}
+// The kernel's: HIDIOCGINPUT of a hidraw node, which a pseudo-terminal is not.
+int ioctl(int fd, unsigned long request, ...) {
+  va_list arguments;
+  va_start(arguments, request);
+  void* argument = va_arg(arguments, void*);
+  va_end(arguments);
+  const std::size_t length = _IOC_SIZE(request);
+  if (request != static_cast<unsigned long>(HIDIOCGINPUT(length)))
+    return static_cast<int>(::syscall(SYS_ioctl, fd, request, argument));
+  auto* data = static_cast<unsigned char*>(argument);
   const std::lock_guard lock(present.mutex);
   present.asked.push_back(data[0]);
   if (!present.answer) return errno = EPIPE, -1;
@@ -126,6 +150,7 @@ class HidrawDriver : public testing::Test {
   void SetUp() override {
     script.clear();
     timeouts.clear();
+    openings = 0;
     descriptors_per_opening = 1;
     firmware.reset();
     set_present(std::nullopt);
@@ -350,6 +375,24 @@ TEST_F(HidrawDriver, AReportThatIsTooLongIsRefusedAndCounted) {
   EXPECT_EQ(device->lost(), 2);
 }
 
+// A Steam Controller's battery message.
+TEST_F(HidrawDriver, ARecorderGetsWhatTheModelRefusesToo) {
+  use(0x28de, 0x1102);
+  listing_.info.descriptor = {0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff,
+                              0x00, 0x75, 0x08, 0x95, 0x40, 0x09, 0x01, 0x81, 0x02, 0xc0};
+  const auto device = opened();
+  const Packet battery = {1, 0, 4, 0x0b}, state = {1, 0, 1, 0x3c};
+  script = {{.bytes = battery}, {.bytes = state}};
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), state);
+  device->hand_on_raw();
+  script = {{.bytes = battery}, {.bytes = state}};
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), battery);
+  EXPECT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), state);
+}
+
 TEST_F(HidrawDriver, AFloodOfRefusedPacketsLeavesOtherPadsTheirTurn) {
   const auto device = opened();
   for (int i = 0; i < 1000; ++i) script.push_back({.bytes = Packet(2000, 0)});
@@ -379,6 +422,27 @@ TEST_F(HidrawDriver, WhereReportsHaveNoIdTheKernelGetsAZeroInFront) {
   const Packet on = written(33);
   ASSERT_EQ(on.size(), 33u);
   EXPECT_EQ(Packet(on.begin(), on.begin() + 3), (Packet{0x00, 0x05, 0x01}));
+}
+
+// Reading, motors and the question for its state share it.
+TEST_F(HidrawDriver, APadIsOpenedOnce) {
+  use(0x054c, 0x0ce6);
+  const auto device = opened();
+  EXPECT_TRUE(device->rumble({0x4000, 0x4000}));
+  EXPECT_FALSE(written(48).empty());
+  EXPECT_EQ(openings, 1);
+}
+
+// Of two streams: the library's own text of the last error is not made for that.
+TEST_F(HidrawDriver, TwoThreadsDoNotOpenAtOnce) {
+  openings_at_once = 0;
+  opening_time = 20ms;
+  std::thread other([this] { opened(); });
+  opened();
+  other.join();
+  opening_time = 0ms;
+  EXPECT_EQ(openings, 2);
+  EXPECT_EQ(openings_at_once, 0);
 }
 
 TEST_F(HidrawDriver, APlainPadHasNoMotors) {

@@ -25,12 +25,12 @@ OutPacket packet(std::uint8_t value, std::chrono::milliseconds repeat = 0ms) {
 class Sink {
  public:
   PacketSender::Write write() {
-    return [this](std::span<const std::uint8_t> bytes) {
+    return [this](const OutPacket& packet) {
       std::unique_lock lock(mutex_);
       ++entered_;
       changed_.notify_all();
       changed_.wait(lock, [this] { return is_open_; });
-      got_.push_back(bytes[0]);
+      got_.push_back(packet.bytes[0]);
       changed_.notify_all();
       return is_working.load();
     };
@@ -63,7 +63,7 @@ class Sink {
 // Like hidraw_driver: the target of the writes lives as long as the thread.
 std::unique_ptr<PacketSender> sender_to(const std::shared_ptr<Sink>& sink) {
   return PacketSender::create(
-      [sink, write = sink->write()](std::span<const std::uint8_t> bytes) { return write(bytes); });
+      [sink, write = sink->write()](const OutPacket& packet) { return write(packet); });
 }
 
 TEST(PacketSender, SendsWhatWaitsBeforeItEnds) {

@@ -212,6 +212,28 @@ TEST(SdlDriver, OtherEventsStayOnSdlsQueue) {
   EXPECT_EQ(events[0].type, Uint32{SDL_KEYDOWN});
 }
 
+// The joystick of the program that the driver is a guest of.
+TEST(SdlDriver, EventsOfAJoystickThatIsNotOursStayOnSdlsQueue) {
+  VirtualPad pad("Our Pad"), theirs("Their Pad");
+  const auto device = opened("Our Pad");
+  SDL_JoystickUpdate();
+  SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);
+  SDL_JoystickSetVirtualAxis(theirs.joystick, 0, 1234);
+  SDL_JoystickSetVirtualAxis(pad.joystick, 0, 4321);
+  EXPECT_FALSE(reports_of(*device).empty());
+  SDL_Event events[16];
+  ASSERT_EQ(SDL_PeepEvents(events, 16, SDL_GETEVENT, SDL_FIRSTEVENT, SDL_LASTEVENT), 1);
+  EXPECT_EQ(events[0].jaxis.which, SDL_JoystickInstanceID(theirs.joystick));
+}
+
+TEST(SdlDriver, AHintOfTheProgramsStays) {
+  find_sdl_devices();
+  EXPECT_TRUE(SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "0"));
+  find_sdl_devices();
+  EXPECT_STREQ(SDL_GetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS), "0");
+  SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
+}
+
 TEST(SdlDriver, RumbleRunsUntilItIsStopped) {
   VirtualPad pad("Shaking Pad");
   const auto device = opened("Shaking Pad");

@@ -85,11 +85,29 @@ TEST(DualShock4, RumblesOverUsbIn32BytesWithoutTouchingTheLight) {
   EXPECT_EQ(rumble_of(*pad, {}), expected);
 }
 
+// Bit 2 of the second status byte (hid-playstation.c, DS4_STATUS1_DONGLE_STATE).
+TEST(DualShock4, ItsAdapterTellsWhetherAPadIsConnected) {
+  const auto adapter = model(0x0ba0, BusType::usb);
+  Packet report(64, 0x80);
+  report[0] = 0x01;
+  OutPacket reply;
+  report[31] = 0x04;
+  EXPECT_FALSE(adapter->accept(report, reply));
+  EXPECT_FALSE(adapter->is_plugged());
+  report[31] = 0x00;
+  EXPECT_TRUE(adapter->accept(report, reply));
+  EXPECT_TRUE(adapter->is_plugged());
+  report[31] = 0x04;
+  const auto cable = model(kDualShock4, BusType::usb);
+  EXPECT_TRUE(cable->accept(report, reply)) << "no adapter";
+  EXPECT_TRUE(cable->is_plugged());
+}
+
 TEST(DualShock4, RumblesOverBluetoothIn78BytesWithChecksum) {
   const auto pad = model(kDualShock4, BusType::bluetooth);
   Packet expected(78, 0);
   expected[0] = 0x11;
-  expected[1] = 0xc0;
+  expected[1] = 0xc4;  // checksum, HID, reports every 4 ms (hid-playstation.c, SDL_hidapi_ps4.c)
   expected[3] = 0x01;
   expected[6] = 0x40;
   expected[7] = 0xc0;

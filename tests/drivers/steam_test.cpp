@@ -87,6 +87,56 @@ TEST(Steam, ItsMouseAndKeyboardAreLeftAlone) {
   EXPECT_EQ(make_steam_model(mouse), nullptr);
 }
 
+// hid-steam.c: a message of 64 bytes is 1, 0, its type, its length; type 3 tells that the pad
+// behind the receiver went (1) or came (2).
+Packet steam_message(std::uint8_t type, std::uint8_t first) {
+  Packet message(64);
+  message[0] = 1;
+  message[2] = type;
+  message[4] = first;
+  return message;
+}
+
+TEST(SteamReceiver, IsAskedWhetherAPadIsOnAndTellsWhenThatChanges) {
+  FeaturePort port;
+  const auto receiver = make_steam_model(steam(0x1142, 0x00));
+  ASSERT_NE(receiver, nullptr);
+  receiver->start(port, StartedBy::us);
+  EXPECT_EQ(begin_of(port.sent.back(), 3), (Packet{0, 0xb4, 0}));
+  PlugWatch plug;
+  Report event;
+  OutPacket reply;
+  EXPECT_FALSE(receiver->accept(steam_message(3, 1), reply));
+  ASSERT_TRUE(plug.has_changed(*receiver, event));
+  EXPECT_EQ(event.kind, ReportKind::removed);
+  EXPECT_FALSE(receiver->accept(steam_message(4, 0), reply)) << "battery";
+  EXPECT_FALSE(plug.has_changed(*receiver, event));
+  EXPECT_FALSE(receiver->accept(steam_message(3, 2), reply));
+  ASSERT_TRUE(plug.has_changed(*receiver, event));
+  EXPECT_EQ(event.kind, ReportKind::added);
+}
+
+TEST(SteamReceiver, APadThatIsSwitchedOnLeavesLizardModeAgain) {
+  const auto receiver = make_steam_model(steam(0x1142, 0x00));
+  EXPECT_TRUE(receiver->replies());
+  std::vector<Packet> sent;
+  const auto take = [&](const Packet& packet) {
+    OutPacket reply;
+    receiver->accept(packet, reply);
+    if (reply.size == 0) return;
+    EXPECT_TRUE(reply.is_feature);
+    EXPECT_EQ(reply.size, 65u);
+    sent.emplace_back(reply.bytes.begin(), reply.bytes.begin() + 9);
+  };
+  for (int i = 0; i < 100; ++i) take(steam_message(1, 0));
+  EXPECT_TRUE(sent.empty());
+  take(steam_message(3, 2));
+  for (int i = 0; i < 100; ++i) take(steam_message(1, 0));
+  EXPECT_EQ(sent,
+            (std::vector<Packet>{{0, 0x81, 0, 0, 0, 0, 0, 0, 0}, {0, 0x87, 6, 8, 7, 0, 24, 0, 0}}));
+  EXPECT_FALSE(make_steam_model(steam(0x1102, 0x00))->replies());
+}
+
 // A report of 20 bytes over Bluetooth: the id, this header, these bytes of a message.
 Packet segment(std::uint8_t header, Packet message) {
   message.insert(message.begin(), {3, header});

@@ -14,6 +14,17 @@
 #include "drivers/usb_reattach.h"
 #include "tests/own_folder.h"
 
+#ifdef GAITPAD_HAS_USB
+#include <libusb-1.0/libusb.h>
+
+static int default_options = 0;  // set for contexts to come
+
+extern "C" int libusb_set_option(libusb_context* context, enum libusb_option, ...) {
+  default_options += context == nullptr;
+  return LIBUSB_SUCCESS;
+}
+#endif
+
 namespace gaitpad {
 namespace {
 
@@ -183,6 +194,19 @@ TEST_F(UsbFolders, APadThatIsGoneOrHeldByAProgramIsNotOpened) {
   listing.pad_path = folder.string();
   EXPECT_EQ(open_usb_device(listing, Detach::allowed).error().message,
             "/dev/bus/usb/999/999:1: another program has the pad");
+}
+
+// The driver is a guest: the program may use libusb, too.
+TEST_F(UsbFolders, NoOptionOfAllContextsIsSet) {
+  const fs::path folder = add_interface("0", "ff 5d 01");
+  add_endpoint(folder);
+  own_.write("node", "");  // no USB device, so that nothing more than opening it is tried
+  DeviceListing listing;
+  listing.node = own_.at("node");
+  listing.pad_path = folder.string();
+  default_options = 0;
+  EXPECT_FALSE(open_usb_device(listing, Detach::allowed));
+  EXPECT_EQ(default_options, 0);
 }
 
 TEST_F(UsbFolders, KeyboardsAreNeverTaken) {

@@ -45,7 +45,13 @@ class XboxPad : public testing::Test {
   }
   void use_360() { use(false, kMicrosoft, kXbox360); }
   void use_gip() { use(true, kMicrosoft, kOneS); }
-  bool decodes(const Packet& packet) { return decode(layout_, report_of(packet), state_); }
+  // As the driver hands it on.
+  bool decodes(const Packet& packet) {
+    OutPacket reply;
+    if (!model_->accept(packet, reply)) return false;
+    const std::span<const std::uint8_t> input = model_->report_of(packet);
+    return decode(layout_, report_of(Packet(input.begin(), input.end())), state_);
+  }
   bool accepts(const Packet& packet) { return model_->accept(packet, reply_); }
   void expect_read(const Packet& packet, const std::string& words) {
     EXPECT_TRUE(decodes(packet)) << words;
@@ -122,6 +128,35 @@ TEST_F(XboxPad, SeriesPadsHaveAShareButton) {
   expect_read(of_gip({{4, 0x40}}, 48), "buttons x");
   expect_read({0x07, 0x20, 0x02, 0x02, 0x01, 0x5b}, "buttons x guide");
   EXPECT_TRUE(decodes(of_gip({}, 36)));  // older firmware: without it
+}
+
+// Sizes and bytes of SDL_hidapi_xboxone.c, from the header on.
+TEST_F(XboxPad, TheShareButtonIsWhereThePacketsSizeSays) {
+  const std::pair<std::size_t, std::size_t> kPlaces[] = {
+      {36, 18}, {44, 18}, {48, 22}, {50, 32}, {64, 46}};
+  for (const auto& [size, at] : kPlaces) {
+    use(true, 0x0e6f, 0x02d6);
+    expect_read(of_gip({{at, 0x01}, {4, 0x10}}, size), "buttons a misc1");
+    expect_read(of_gip({{at, 0xfe}}, size), "");
+  }
+  expect_read(of_gip({{18, 0x01}}, 40), "");
+}
+
+TEST_F(XboxPad, ElitePadsHavePaddlesUnlessTheyMapThemThemselves) {
+  const std::vector<std::string> names = {"paddle1", "paddle3", "paddle2", "paddle4"};  // P1 .. P4
+  const auto expect_paddles = [&](const Packet& neutral, std::size_t at, std::array<int, 4> bits) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      expect_read(changed(neutral, {{at, static_cast<std::uint8_t>(bits[i])}}),
+                  "buttons " + names[i]);
+  };
+  use(true, kMicrosoft, 0x02e3);  // the first one
+  expect_paddles(of_gip({}, 33), 32, {2, 8, 1, 4});
+  expect_read(of_gip({{32, 0x02}, {4, 0x20}, {18, 0x00}}, 33), "buttons b");  // P1 is its b
+  use(true, kMicrosoft, 0x0b00);
+  expect_paddles(of_gip({}, 38), 18, {1, 2, 4, 8});
+  expect_read(of_gip({{18, 0x0f}, {19, 0x01}}, 38), "");
+  expect_paddles(of_gip({}, 50), 22, {1, 2, 4, 8});
+  expect_read(of_gip({{32, 0x01}}, 50), "");
 }
 
 TEST_F(XboxPad, GipIsSwitchedOnWithoutWaitingForAnAnnouncementAndAnswersOne) {

@@ -38,7 +38,9 @@ TEST_F(ConfigFiles, APathStaysAPathAndAnUnknownNameListsTheKnownOnes) {
   EXPECT_EQ(*config_file({}, "styles", "some/where"), "some/where");
   EXPECT_EQ(*config_file({}, "styles", "mine.toml"), "mine.toml");
   EXPECT_EQ(cause_of(config_file({at("shipped")}, "styles", "tyred")),
-            "there is no \"tyred\" in config/styles (known: even, tired)");
+            "there is no \"tyred\" in config/styles; did you mean \"tired\"?");
+  EXPECT_EQ(cause_of(config_file({at("shipped")}, "styles", "sideways")),
+            "there is no \"sideways\" in config/styles (known: even, tired)");
 }
 
 TEST_F(ConfigFiles, TheEnvironmentComesFirstAndTheBuiltInFolderLast) {

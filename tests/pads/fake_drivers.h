@@ -37,6 +37,7 @@ struct FakePad {
   std::atomic<int> openings{0}, closings{0};
   std::atomic<bool> keeps_closing{false};  // its closing waits for the end of this
   std::atomic<std::int64_t> lost{0};
+  std::atomic<bool> is_raw{false};
   std::mutex mutex;
   std::vector<Rumble> rumbles;  // under the mutex
   int sockets[2] = {-1, -1};    // the pad's end, the device's end
@@ -93,6 +94,7 @@ class FakeDevice final : public Device {
     pad_->rumbles.push_back(rumble);
     return true;
   }
+  void hand_on_raw() noexcept override { pad_->is_raw = true; }
   std::int64_t lost() const noexcept override { return pad_->lost; }
   std::optional<FactorySticks> factory_sticks() const override { return pad_->factory_sticks; }
 

@@ -421,6 +421,30 @@ TEST_F(PadStreamTest, AWishThatMakesNoSenseIsAnErrorAtOnceAndOneThatNothingFitsW
   EXPECT_EQ(cause({"ffff:ffff", ""}), "accepted");
 }
 
+TEST_F(PadStreamTest, AKernelsDriverIsDetachedOnlyWhereUsbIsNamed) {
+  EXPECT_EQ(detach_asked({"", "usb"}), Detach::allowed);
+  EXPECT_EQ(detach_asked({"/dev/bus/usb/001/004", ""}), Detach::never);
+  EXPECT_EQ(detach_asked({"", "hidraw"}), Detach::never);
+}
+
+// Packets that are no reports do not make another driver take the pad.
+TEST_F(PadStreamTest, ARecordersPadHandsOnEveryPacket) {
+  PadStreamOptions options;
+  options.is_raw = true;
+  auto pad = bus_.make(kHidraw, "A", "port1");
+  bus_.show(kHidraw, pad);
+  start(options);
+  expect(ReportKind::added, 0);
+  EXPECT_TRUE(pad->is_raw);
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_TRUE(pad->send({7}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(i == 20 ? 1100 : 1));
+  }
+  EXPECT_TRUE(stream_->take_remarks().empty());
+  stream_.reset();
+  EXPECT_EQ(pad->openings, 1);
+}
+
 // A recording through the real driver.
 class RecordingAsPad : public PadStreamTest {
  protected:

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 
 #include "tests/session/made_session.h"
 
@@ -74,10 +75,10 @@ TEST(Pads, NotYetPluggedInIsNeutralAndSoAreNone) {
   EXPECT_EQ(Pads({}, kRateHz).finish_tick().left, vec2(0.0));
 }
 
-TEST(Pads, TheFirstUsablePadDrives) {
+TEST(Pads, InVersion1TheFirstUsablePadDrivesWhoeverMoves) {
   PadConfig unusable = made_pad_config();
   unusable.is_usable = false;
-  Pads pads({unusable, made_pad_config(), made_pad_config()}, kRateHz);
+  Pads pads({unusable, made_pad_config(), made_pad_config()}, kRateHz, PadRules::version_1);
   pads.take_report(made_report(kMiddle, kForward, 0));
   pads.take_report(made_report(0xff, kMiddle, 2));
   EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
@@ -95,10 +96,65 @@ TEST(Pads, AShortReportAndAnUnknownDeviceAreRefusedAndChangeNothing) {
   EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
+// Pushes the left stick as a thumb does, in 100 ms, one report a tick.
+void push(Pads& pads, std::uint16_t device, int from_y, int to_y) {
+  constexpr int kTicks = 24;
+  for (int i = 0; i <= kTicks; ++i) {
+    pads.take_report(made_report(kMiddle, from_y + (to_y - from_y) * i / kTicks, device));
+    pads.finish_tick();
+  }
+}
+
+// The second is a receiver, a virtual pad or the pad's twin: always there, never moved.
+TEST(Pads, APadThatIsMovedDrivesThoughAnotherIsThereThatNeverReports) {
+  Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
+  push(pads, 1, kMiddle, kForward);
+  EXPECT_EQ(pads.driving(), 1);
+  EXPECT_GT(pads.finish_tick().left.y, 0.9);
+}
+
+TEST(Pads, APadThatReportsAHeldStickAllTheTimeIsNotMoved) {
+  Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
+  for (int i = 0; i < kRateHz; ++i) {
+    pads.take_report(made_report(i % 2, i % 3, 0));  // zeros and noise: no pad behind the adapter
+    pads.finish_tick();
+  }
+  push(pads, 1, kMiddle, kForward);
+  EXPECT_EQ(pads.driving(), 1);
+}
+
+TEST(Pads, NoiseOfARestingStickMovesNothing) {
+  Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
+  for (int i = 0; i < 10 * kRateHz; ++i) {
+    pads.take_report(made_report(kMiddle + i % 5, kMiddle - i % 7, 1));
+    pads.finish_tick();
+  }
+  EXPECT_EQ(pads.driving(), 0);
+}
+
+TEST(Pads, APadInUseKeepsTheSeatUntilItHasBeenUntouchedForFiveSeconds) {
+  Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
+  push(pads, 0, kMiddle, kForward);
+  after_silence(pads, 60 * kRateHz);  // held, not untouched
+  push(pads, 1, kMiddle, kForward);
+  EXPECT_EQ(pads.driving(), 0);
+  push(pads, 1, kForward, kMiddle);
+  push(pads, 0, kForward, kMiddle);
+  after_silence(pads, 5 * kRateHz - kRateHz / 2);
+  push(pads, 1, kMiddle, 0x40);
+  EXPECT_EQ(pads.driving(), 0) << "4.6 s";
+  after_silence(pads, kRateHz);
+  EXPECT_EQ(pads.driving(), 0) << "the other pad is held, not moved";
+  push(pads, 1, 0x40, kForward);
+  EXPECT_EQ(pads.driving(), 1);
+  push(pads, 0, kMiddle, kForward);
+  EXPECT_EQ(pads.driving(), 1);
+}
+
 // Two pads, both plugged in; the first drives and is held forward.
 Pads two_pads(int second_y) {
   Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
-  pads.take_report(made_report(kMiddle, kForward, 0));
+  push(pads, 0, kMiddle, kForward);
   pads.take_report(made_report(kMiddle, second_y, 1));
   pads.finish_tick();
   return pads;
@@ -143,8 +199,7 @@ TEST(Pads, TheOldPadDrivesAgainIfNoneHasTakenOver) {
   Pads pads = two_pads(kForward);
   pads.remove_pad(0);
   pads.add_pad(0);
-  pads.take_report(made_report(kMiddle, kMiddle, 1));
-  pads.take_report(made_report(kMiddle, kForward, 1));
+  pads.take_report(made_report(kMiddle, kForward + 4, 1));  // still held
   EXPECT_EQ(pads.driving(), 0);
   EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
   pads.take_report(made_report(kMiddle, kMiddle, 0));
@@ -249,6 +304,7 @@ TEST(Pads, BothSticksOfAFallbackCountWhileTheDrivingOneRestsExactly) {
 TEST(Pads, AFallbackDrivesAgainWhenTheLastPadIsLostAndNotBefore) {
   Pads pads = keys_and_pad();
   pads.add_pad(kPad);
+  push(pads, kPad, kMiddle, kForward);
   pads.add_pad(kPad + 1);
   pads.take_report(made_report(kMiddle, kForward, kPad + 1));
   pads.remove_pad(kPad);
@@ -278,6 +334,51 @@ Report made_buttons(std::uint16_t pressed, std::uint16_t device = 0) {
   report.bytes[4] = static_cast<std::uint8_t>(0x08 | (pressed & 0x0f) << 4);
   report.bytes[5] = static_cast<std::uint8_t>(pressed >> 4);
   return report;
+}
+
+// The hat of made_pad() counts clockwise from 0, up; 8 is none.
+Report made_hat(int hat, int x = kMiddle, int y = kMiddle) {
+  Report report = made_report(x, y);
+  report.bytes[4] = static_cast<std::uint8_t>(hat);
+  return report;
+}
+
+TEST(Pads, TheDPadIsTheStickUntilTheStickHasMoved) {
+  Pads pads = one_pad();
+  const auto left = [&pads](int hat) {
+    pads.take_report(made_hat(hat));
+    return pads.finish_tick().left;
+  };
+  EXPECT_EQ(left(0), vec2(0.0, 1.0));
+  EXPECT_EQ(left(6), vec2(-1.0, 0.0));
+  EXPECT_NEAR(glm::length(left(3) - vec2(std::sqrt(0.5), -std::sqrt(0.5))), 0.0, 1e-12);
+  EXPECT_EQ(left(8), vec2(0.0));
+  after_silence(pads, 2 * kRateHz);
+  left(0);
+  after_silence(pads, kRateHz);
+  EXPECT_EQ(pads.untouched(), 0);
+  push(pads, 0, kMiddle, kForward);
+  push(pads, 0, kForward, kMiddle);
+  EXPECT_EQ(left(4), vec2(0.0)) << "a pad with a stick";
+  pads.remove_pad(0);
+  pads.add_pad(0);
+  left(8);
+  EXPECT_EQ(left(4), vec2(0.0, -1.0)) << "another one may be plugged in now";
+  Pads before({made_pad_config()}, kRateHz, PadRules::version_1);
+  before.take_report(made_hat(0));
+  EXPECT_EQ(before.finish_tick().left, vec2(0.0));
+}
+
+TEST(Pads, AButtonTakesTheSeatToo) {
+  Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
+  pads.take_report(made_buttons(0, 1));
+  EXPECT_EQ(pads.driving(), 0);
+  pads.take_report(made_buttons(1, 1));
+  EXPECT_EQ(pads.driving(), 1);
+  Pads digital({made_pad_config(), made_pad_config()}, kRateHz);
+  digital.take_report(made_report(kMiddle, kForward, 1));  // its first report is the push
+  EXPECT_EQ(digital.driving(), 1);
+  EXPECT_GT(digital.finish_tick().left.y, 0.9);
 }
 
 TEST(Pads, PressesOfTheDrivingPadAreCountedByEveryReport) {

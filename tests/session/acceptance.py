@@ -33,15 +33,14 @@ MOTIONS = ("cmu_m21_walk", "bvhtoolbox_walk01", "cmu_006_01_iclone")
 STYLES = ("even", "stiff_hip", "stiff_knee", "limp_left", "limp_left_hip", "limp_left_knee", "tired")
 BUILDS = ("heavy_slack", "muscular")
 RATIOS = (0.6, 1.0, 1.6)
+THUMB_S = 0.06
 
 
 # Bounds that are not met yet: the check, where, from what to what it may be, and why. They are told apart from
 # broken ones, so that none gets worse unseen.
 NOT_MET = {
     "leg d2, steady": ("", 0.0, 0.66, "short legs and limps step quicker, and angles change more from tick to tick"),
-    "limp: left heel peak / even's": ("", 0.56, 0.80, "a heel is highest just behind its lift-off, where it still "
-                                      "has the height that it left the ground with"),
-    "weights, left: hip RMS": ("", 0.9, 1.5, "one leg's hip alone can change little while its foot stands"),
+    "toe joint d2, steady": ("leg 0.6 style limp_left", 0.5, 0.6, "short legs and limps step quicker"),
     "ik_failures": ("cmu_m21_walk leg 0.6 start and stop", 0, 8, "a knee that the capture bends back"),
     "smallest knee angle": ("cmu_m21_walk leg 0.6 start and stop", 0.9, 1.1, "a knee that the capture bends back"),
 }
@@ -89,14 +88,15 @@ def gentle():
 
 
 def wander(seed):
-    """Random input: jumps all over the disc, rests, backward walking, changes of style."""
+    """Random input of a thumb: all over the disc, rests, backward walking, changes of style."""
     chance = random.Random(seed)
-    time_s, stick, commands = 0.3, [], []
+    time_s, stick, commands, last = 0.3, [], [], (0.0, 0.0)
     while time_s < 28.0:
         x, y = chance.uniform(-0.7, 0.7), chance.uniform(-0.5, 1.0)
         kind = chance.random()
         place = (0.0, y) if kind < 0.3 else (0.0, 0.0) if kind < 0.45 else (x, min(y, 0.7))
-        stick.append((time_s,) + place)
+        stick += ramp(time_s, time_s + THUMB_S, last, place)
+        last = place
         if chance.random() < 0.25:
             commands.append((time_s + 0.1, f"style {chance.choice(STYLES)}"))
         time_s += chance.uniform(0.1, 2.0)

@@ -74,7 +74,7 @@ TEST(RecordingLines, FollowTheTraceFormat) {
     header += hex;
   }
   EXPECT_EQ(l.text(),
-            "V: 1 rate_hz=240\n# recorded by gaitpad: a session\n"
+            "V: 2 rate_hz=240\n# recorded by gaitpad: a session\n"
             "# tick 0 began at CLOCK_MONOTONIC 5.000000123\n" +
                 header +
                 "\nN: Example Walk Pad\nI: 3 1209 0001\nB: hidraw 0000\n"
@@ -87,7 +87,7 @@ TEST(RecordingLines, FollowTheTraceFormat) {
 
 TEST(RecordingLines, SayThePaceBehindTheRate) {
   RecordingLines lines(240, made_devices, {}, Pace::own);
-  EXPECT_TRUE(lines.take_text().starts_with("V: 1 rate_hz=240\nO: pace own\n#"));
+  EXPECT_TRUE(lines.take_text().starts_with("V: 2 rate_hz=240\nO: pace own\n#"));
 }
 
 TEST(RecordingLines, ReadBackAsTheTicksThatUsedThem) {

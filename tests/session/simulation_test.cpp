@@ -372,14 +372,14 @@ void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Ch
 }
 
 // The commands change parameters abruptly and in mid-step, which a stick cannot do. The feet may
-// lag behind by a decimetre, where one leg is asked to stand still and the other to take its
-// longest step.
+// lag behind by a decimetre and a half, where one leg is asked to stand still and the other to take
+// its longest step, or to turn at once.
 TEST(Simulation, LegsFollowRandomGaitCommands) {
   walk_at_random(IkMode::robust, any_gait_command, [](const Walker& w) {
     EXPECT_GT(w.state.frame.pelvis_m.y, 0.45 * w.model->stand_m);
     for (const Side side : {kLeftSide, kRightSide}) {
       EXPECT_GT(w.state.frame.heel_m[side].y, -0.02);
-      EXPECT_LT(w.state.frame.ik_error_m[side], 0.12);
+      EXPECT_LT(w.state.frame.ik_error_m[side], 0.16);
     }
   });
 }

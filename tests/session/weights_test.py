@@ -159,16 +159,15 @@ def limp_figures(program, folder, motion=None):
 
 
 def travels_mm(program, folder, action, motion=None):
-    """How far the hips rise and fall with hip_bounce 0, 1 and 2: on stairs what it adds to the way up or down."""
+    """How far the hips rise and fall with hip_bounce 0, 1 and 2. Stairs lift and lower the hips by themselves:
+    there it is how far they leave the way that they take with bounce 0."""
     stick, seconds, stairs = ACTIONS[action]
-    made = {b: f"hip_bounce = {b}\n" for b in (1, 0, 2)}
+    made = {b: f"hip_bounce = {b}\n" for b in (0, 1, 2)}
     walks = walked(program, folder, made, stick, seconds, stairs, motion)
     found = {}
     for part, mask in windows(walks[1], stairs).items():
         height = {b: 1e3 * w.position[mask, w.pelvis, 1] for b, w in walks.items()}
-        even = np.ptp(height[1] - height[0]) if stairs else np.ptp(height[1])
-        found[part or action] = [0.0 if stairs else np.ptp(height[0]), even,
-                                 even + np.ptp(height[2] - height[1]) if stairs else np.ptp(height[2])]
+        found[part or action] = [np.ptp(h - height[0] if stairs else h) for h in height.values()]
     return found
 
 
@@ -185,6 +184,7 @@ LEAST_RMS_DEG, LEAST_HIP_RMS_DEG, LEAST_DOF_RMS_DEG = 0.8, 2.5, 0.4
 MOST_RANGE = {"straight": 0.88, "turn": 0.88, "back": 0.96, "up": 0.96, "down": 0.96}
 PLANTED_MM, BELOW_MM, LEAST_KNEE_DEG = 0.1, 1.0, 0.8
 D2_DEG, D2_LOCKED_DEG = 0.8, 1.2
+LEAST_BOUNCE_MM = 8.0
 
 
 @pytest.fixture(scope="module", params=ACTIONS)
@@ -247,8 +247,10 @@ def test_limp_has_the_asked_measure(program, tmp_path):
 @pytest.mark.parametrize("action", ACTIONS)
 def test_bounce_is_a_factor_in_every_action(program, tmp_path, action):
     for part, (none, once, twice) in travels_mm(program, tmp_path, action).items():
-        assert none <= 0.15 * once, (part, none, once, twice)
-        assert 1.85 <= twice / once <= 2.15, (part, none, once, twice)
+        if not ACTIONS[action][2]:
+            assert none <= 0.15 * once, (part, none, once, twice)
+        assert once >= LEAST_BOUNCE_MM, (part, none, once, twice)
+        assert 0.85 * 2.0 <= twice / once <= 1.15 * 2.0, (part, none, once, twice)
 
 
 def main():

@@ -1,7 +1,9 @@
 #include "stick/outline.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -245,6 +247,33 @@ TEST(Outline, AWeakSectorIsItsWorstDirection) {
     EXPECT_LT(std::fabs(wrapped(angle - stick.weak_rad)), 0.5 * stick.weak_width_rad + 0.05)
         << seed;
     EXPECT_NEAR(outline.radius[static_cast<std::size_t>(*worst)], stick.weak_reach, 0.03) << seed;
+  }
+}
+
+// The picture's lowest bar stands at the arrow and is the number beside it, also of a stick whose
+// centre is off the middle.
+TEST(Outline, TheLeastReachByDirectionIsThatOfTheWorstDirection) {
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    Draw draw(seed);
+    MadeStick stick;
+    stick.seed = seed;
+    stick.sigma = vec2(0.003);
+    stick.centre = vec2(draw.within(-0.1, 0.1), draw.within(-0.1, 0.1));
+    stick.bits = 12;
+    stick.weak_rad = draw.within(-kPi, kPi);
+    stick.weak_width_rad = draw.within(10.0, 57.0) * kDegree;
+    stick.weak_reach = draw.within(0.5, 0.8);
+    const Outline outline = outline_of(made_track(stick, 0, 0.6, 3.0), stick);
+    const int worst = worst_direction(outline).value_or(-1);
+    ASSERT_GE(worst, 0) << seed;
+    const auto bars = least_reaches(outline);
+    const auto lowest = std::min_element(bars.begin(), bars.end());
+    EXPECT_EQ(*lowest, outline.radius[static_cast<std::size_t>(worst)]) << seed;
+    const double bar_deg = 360.0 / kCircularityBins * static_cast<double>(lowest - bars.begin());
+    EXPECT_LE(std::fabs(std::remainder(bar_deg - degrees_of(worst), 360.0)), 3.75 + 0.5) << seed;
+    EXPECT_NE(direction_text(worst).find(fmt::format("({} degrees", degrees_of(worst))),
+              std::string::npos);
+    EXPECT_NEAR(degrees_of(worst), worst * 360.0 / kOutlineDirections, 0.5);
   }
 }
 

@@ -123,6 +123,27 @@ TEST(StickAdvice, OneReleaseAssumesAHysteresisAndSaysSo) {
   EXPECT_NE(advice.reason.find("assumed"), std::string::npos) << advice.reason;
 }
 
+// The reason's number is that of the picture and the table: the worst direction's, not that of the
+// side next to it.
+TEST(StickAdvice, TheReasonNamesTheWorstDirectionsReach) {
+  StickStatistics s = measured();
+  s.max_x = 0.78;  // 0.76 from the centre
+  for (const int k : {0, 1, 2, 190, 191}) s.outline.radius[static_cast<std::size_t>(k)] = 0.76;
+  s.outline.radius[5] = 0.75;
+  StickAdvice advice = advice_for(s);
+  EXPECT_EQ(advice.verdict, Verdict::worn);
+  EXPECT_NE(advice.reason.find("right (9 degrees from the right) it reaches only 0.75"),
+            std::string::npos)
+      << advice.reason;
+  EXPECT_EQ(advice.reason.find("0.76"), std::string::npos) << advice.reason;
+  // A good stick's number likewise.
+  s = measured();
+  s.outline.radius[70] = 0.85;
+  advice = advice_for(s);
+  EXPECT_EQ(advice.verdict, Verdict::good) << advice.reason;
+  EXPECT_NE(advice.reason.find("reaches 0.85 or more"), std::string::npos) << advice.reason;
+}
+
 TEST(StickAdvice, UnknownSaysWhatIsMissing) {
   StickStatistics s = measured();
   s.min_x = {};

@@ -3,6 +3,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import resource
 import shutil
 import subprocess
@@ -11,6 +12,7 @@ import tomllib
 import pytest
 
 from support.pictures import pixels
+from support.program import ROUND
 from support.sticks import Stick, thumb, trace_text
 from support.traces import lines
 
@@ -79,9 +81,31 @@ def test_says_null_for_what_a_recording_cannot_tell(user):
     still = [(i / 250, (0, 0), (0, 0)) for i in range(500)]
     found = user.calibrated("--trace", user.trace(steps=still))["sticks"]["left"]
     assert found["centre_x"] == pytest.approx(0, abs=1e-4)
-    for key in ("hysteresis", "min_x", "max_y", "circularity_error"):
+    for key in ("hysteresis", "min_x", "max_y", "circularity_error", "outer_zone"):
         assert found[key] is None, key
     assert found["verdict"] == "unknown"
+
+
+def test_what_was_not_seen_is_neither_printed_nor_stored(user):
+    """Half a turn: the range is not known, so the file keeps the one of a stick that nobody measured."""
+    half = [(i / 250, (0, 0), (0, 0)) for i in range(500)]
+    half += [(2 + i / 250, (math.cos(i / 250), math.sin(i / 250)), (0, 0)) for i in range(700)]
+    trace = user.trace(Stick(reach=(0.8, 0.8)), steps=half, serial=SERIAL)
+    printed = user.run("calibrate", "--trace", trace).stdout
+    left = user.table()["left"]
+    assert re.search(r"outer zone +not known", printed), printed
+    assert (left["x"]["min"], left["x"]["max"]) == (-1, 1) and left["outer"] == 0.95
+    # Columns: two blanks at least between a label, its numbers and what they are from.
+    for row in (line for line in printed.splitlines() if line.startswith("  ") and "reports" in line):
+        assert re.fullmatch(r"  [a-z][a-z(), ]+?  .*\S  +\S.*", row), row
+
+
+def test_both_sticks_of_a_pad_report_at_one_rate(user):
+    """Of a pad that reports changes only, every 8 ms, the right stick rests while the left one moves."""
+    sticks = user.calibrated("--trace", ROUND)["sticks"]
+    assert sticks["left"]["rate_hz"] == pytest.approx(125, abs=1)
+    for key in ("rate_hz", "jitter_ms", "gaps"):
+        assert sticks["left"][key] == sticks["right"][key], key
 
 
 def test_several_recordings_of_a_pad_count_together(user):

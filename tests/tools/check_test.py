@@ -11,7 +11,7 @@ import pytest
 
 from support.bvh import angle_between, local_rotations, read_bvh, write_bvh
 from support.program import ROUND
-from support.traces import RATE_HZ, raw_stick, write_trace
+from support.traces import RATE_HZ, raw_stick, report, stick_report, write_trace
 
 RECORDINGS = 8
 
@@ -129,8 +129,26 @@ def test_a_planted_change_in_one_of_many_is_found_with_tick_and_joint(many, run,
     most = re.search(r"most different in tick (\d+) \([\d.]+ s\): (\w+), by ([\d.]+) degrees", details)
     assert most[2] == before.names[int(np.argmax(apart.max(axis=0)))]
     assert float(most[3]) == pytest.approx(apart.max(), abs=0.03)
-    pictures = list((tmp_path / "plots").iterdir())
+    pictures = [p for p in (tmp_path / "plots").rglob("*") if p.is_file()]
     assert len(pictures) == 1 and pictures[0].read_bytes().startswith(b"\x89PNG")
+
+
+def test_pictures_keep_the_folders_of_their_recordings(run, tmp_path):
+    traces = [walk(tmp_path / name, seconds=1.0, end_s=1.5) for name in ("set/a/b.hid", "set/a_b.hid")]
+    run("check", "--update", *traces)
+    for trace in traces:
+        lines = trace.read_text().splitlines(keepends=True)
+        lines[-1:-1] = [report(1.2, stick_report(0.0, 0.9))]
+        trace.write_text("".join(lines))
+    plots = tmp_path / "plots"
+    run("check", "set", "--plot", plots, cwd=tmp_path, status=1)
+    assert sorted(str(p.relative_to(plots)) for p in plots.rglob("*.png")) == ["set/a/b.png", "set/a_b.png"]
+
+
+def test_a_recording_of_days_is_refused_unless_it_is_asked_for(one, run):
+    edit(one, r"^Q: .*$", "Q: 000500.000000 100000")
+    done = run("check", "--update", one, "--max-hours", 0.1, status=1)
+    assert "lasts 0.1157 hours, longer than 0.1; --max-hours raises the limit" in done.stdout
 
 
 def replayed(run, trace, motion, out):

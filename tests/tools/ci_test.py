@@ -78,7 +78,7 @@ def test_the_hosted_workflow(shell, walks):
     assert sorted(found) == EVERY
     plant(walks)
     shell(command, status=1, GAITPAD_SHARD_INDEX="3", GAITPAD_SHARD_TOTAL=total)
-    assert list((walks / "differences").glob("*.png"))
+    assert list((walks / "differences").rglob("*.png"))
 
 
 def test_gnu_parallel(shell, walks):

@@ -4,6 +4,7 @@ import json
 import re
 import resource
 import signal
+import subprocess
 
 import pytest
 
@@ -128,6 +129,21 @@ def test_the_rate_of_the_trace_holds(made):
     rows, summary = made.replay(trace)
     assert (len(rows), summary["rate_hz"]) == (120, 120)
     made.refuse(trace, "--rate", "240", says=("120", "240"))
+
+
+def test_the_pad_that_is_moved_walks_beside_one_that_never_reports(made):
+    receiver = "D: 0\n" + traces.device(DESCRIPTOR, "Receiver")
+    pad = "D: 1\n" + HEADER
+    # The thumb takes 100 ms.
+    push = report(0) + "".join(report(1 + k / 240, y=0x80 - 0x80 * k // 24) for k in range(25)) + report(5) + end(7)
+    _, alone = made.replay(HEADER + push)
+    _, beside = made.replay(receiver + pad + push)
+    _, recorded = made.replay("V: 2 rate_hz=240\n" + receiver + pad + push)
+    _, before = made.replay("V: 1 rate_hz=240\n" + receiver + pad + push)
+    steps = lambda summary: summary["steps_left"] + summary["steps_right"]
+    assert steps(beside) == steps(alone) >= 5
+    assert beside["pose_hash"] == recorded["pose_hash"]
+    assert steps(before) == 0, "as it was recorded"
 
 
 def test_a_style_command_counts_from_its_tick_on(made):
@@ -299,6 +315,25 @@ def test_a_crowd_has_files_of_its_first_members_and_one_hash(made):
 ])
 def test_a_crowd_that_cannot_be_is_refused(made, refuse, options, says):
     refuse("replay", made.write("made.hid", WALK), "--out", made.out, *options, says=says, status=2)
+
+
+# 11 KB that ask for 11.7 million ticks.
+def test_a_recording_of_many_hours_is_refused_unless_it_is_asked_for(made):
+    reports = "".join(report(540 * i) for i in range(91))
+    made.refuse(HEADER + reports, says=("made.hid: lasts 13.5 hours, longer than 12; --max-hours raises the limit",))
+    made.refuse(WALK, "--max-hours", "0.0019", says=("--max-hours",))
+    made.run(WALK, "--max-hours", "0.002")
+
+
+# With the process's number alone as its temporary name.
+def test_a_link_in_the_way_is_not_followed(program, made):
+    kept = made.write("kept", "mine")
+    trace = made.write("made.hid", WALK)
+    made.out.mkdir()
+    script = 'for f in pose.bvh frames.csv summary.json; do ln -s "$1" "$2/.$f.$$"; done; exec "$3" replay "$4" --out "$2"'
+    subprocess.run(["sh", "-c", script, "sh", kept, made.out, program, trace], check=True, capture_output=True)
+    assert kept.read_text() == "mine"
+    assert (made.out / "pose.bvh").read_text().startswith("HIERARCHY")
 
 
 def has_begun(out):

@@ -90,27 +90,47 @@ TEST_F(Walking, AMomentBetweenTwoTicksIsDrawnBetweenTheirPoses) {
   EXPECT_GT(to - from, 0.001);
 }
 
-TEST_F(Walking, FromItsDistanceTheCameraSeesEverybodyWithTheirNames) {
-  begin({"even", "stiff_hip", "stiff_knee", "limp_left"});
-  for (const Viewport& viewport : {Viewport{232, 44, 744, 612}, Viewport{0, 0, 1280, 600}}) {
-    for (const double yaw : {Camera().yaw_rad, 1.1, kPi / 2.0, -kPi / 2.0}) {
-      fill();
-      Camera camera{.yaw_rad = yaw};
-      camera.target_m = ensemble_->focus_m(-1);
-      camera.distance_m = ensemble_->distance_m(-1, camera, viewport);
-      const auto labels =
-          ensemble_->labels(*frame, cast, camera, viewport, state_, theme_of(ThemeName::dark));
-      ASSERT_EQ(labels.size(), 5u);
-      EXPECT_EQ(labels[0].text, "even");
-      EXPECT_EQ(labels[3].text, "limp left");
-      EXPECT_EQ(labels[4].text, "source");
-      for (const Capsule& bone : content_.capsules) {
-        const vec3 place = projected(camera, bone.a_m, viewport.width, viewport.height);
-        EXPECT_GT(place.z, 0.0);
-        EXPECT_GT(place.x, 0.0);
-        EXPECT_LT(place.x, viewport.width);
-        EXPECT_GT(place.y, 0.0);
-        EXPECT_LT(place.y, viewport.height);
+// Every end of every drawn bone and line, on level ground, on a slope and on stairs.
+TEST_F(Walking, InItsFramingTheCameraSeesEverybodyWithTheirNames) {
+  struct Size {
+    Viewport viewport;
+    double scale;
+  };
+  for (const char* terrain : {"flat", "slope_down", "stairs"}) {
+    begin({"even", "stiff_hip", "stiff_knee", "limp_left"}, 0, terrain);
+    run(600);
+    fill();
+    for (const auto& [viewport, scale] :
+         {Size{{232, 44, 744, 612}, 1.0}, Size{{0, 0, 1280, 600}, 1.0},
+          Size{{0, 44, 640, 330}, 1.0}, Size{{464, 88, 2768, 1960}, 2.0},
+          Size{{0, 0, 300, 700}, 1.0}}) {
+      for (const double yaw : {Camera().yaw_rad, 1.1, kPi / 2.0, -kPi / 2.0, 2.05}) {
+        SCOPED_TRACE(std::string(terrain) + ", yaw " + std::to_string(yaw) + ", width " +
+                     std::to_string(viewport.width));
+        Camera camera{.yaw_rad = yaw};
+        show(camera, ensemble_->framing(camera, viewport, state_, scale), ensemble_->focus_m(-1));
+        const auto expect_seen = [&](const vec3& place_m) {
+          const vec3 place = projected(camera, place_m, viewport.width, viewport.height);
+          EXPECT_GT(place.z, 0.0);
+          EXPECT_GT(place.x, 0.0);
+          EXPECT_LT(place.x, viewport.width);
+          EXPECT_GT(place.y, 0.0);
+          EXPECT_LT(place.y, viewport.height);
+        };
+        for (const Capsule& bone : content_.capsules) {
+          expect_seen(bone.a_m);
+          expect_seen(bone.b_m);
+        }
+        for (const SceneLine& line : content_.lines) {
+          expect_seen(line.a_m);
+          expect_seen(line.b_m);
+        }
+        const auto labels =
+            ensemble_->labels(*frame, cast, camera, viewport, state_, theme_of(ThemeName::dark));
+        ASSERT_EQ(labels.size(), 5u);
+        EXPECT_EQ(labels[0].text, "even");
+        EXPECT_EQ(labels[3].text, "limp left");
+        EXPECT_EQ(labels[4].text, "source");
       }
     }
   }
@@ -180,6 +200,55 @@ TEST_F(Walking, OnStairsTheSourceIsNeverInTheGround) {
   }
   EXPECT_GT(highest_m, 0.9) << "it was on the stairs";
   EXPECT_LT(most_above_m, 0.25) << "nor does it fly";
+}
+
+// The distance from a place to the nearest end of a drawn bone.
+double nearest_end_m(const SceneContent& content, const vec3& place_m) {
+  double nearest_m = 1e9;
+  for (const Capsule& bone : content.capsules)
+    nearest_m =
+        std::min({nearest_m, glm::distance(bone.a_m, place_m), glm::distance(bone.b_m, place_m)});
+  return nearest_m;
+}
+
+// Heel and toe of `frames.csv` have an end of a drawn bone as near as in a standing foot: the
+// drawing moves no foot by more than 2 cm, neither above level 0 nor below it.
+TEST_F(Walking, OnEveryTerrainTheFeetAreDrawnWhereTheyAreExported) {
+  constexpr double kMoved_m = 0.02;
+  struct Heights {
+    double lowest, highest;
+  };
+  const std::pair<const char*, Heights> kTerrains[] = {
+      {"flat", {0.0, 0.0}},   {"slope_up", {0.0, 1.5}}, {"slope_down", {-1.5, 0.0}},
+      {"stairs", {0.0, 0.9}}, {"rough", {-0.02, 0.02}}, {"zones", {0.0, 0.5}},
+      {"course", {0.0, 0.8}}};
+  for (const auto& [terrain, was_m] : kTerrains) {
+    SCOPED_TRACE(terrain);
+    begin({"even"}, 0, terrain);
+    fill();
+    const auto reach_m = [this](Side side) {
+      const WalkFrame& walk = frame->walkers[0].walk;
+      return std::array{nearest_end_m(content_, walk.heel_m[side]),
+                        nearest_end_m(content_, walk.toe_m[side])};
+    };
+    const std::array standing = {reach_m(kLeftSide), reach_m(kRightSide)};
+    double lowest_m = 0.0, highest_m = 0.0, most_m = 0.0;
+    for (int i = 0; i < 460; ++i) {  // 27 m: the whole of all but the course
+      run(12);
+      fill();
+      for (const Side side : {kLeftSide, kRightSide}) {
+        const auto now = reach_m(side);
+        for (const std::size_t point : {0, 1})
+          most_m = std::max(most_m, std::abs(now[point] - standing[side][point]));
+        const double heel_m = frame->walkers[0].walk.heel_m[side].y;
+        lowest_m = std::min(lowest_m, heel_m);
+        highest_m = std::max(highest_m, heel_m);
+      }
+    }
+    EXPECT_LT(most_m, kMoved_m);
+    EXPECT_LE(lowest_m, was_m.lowest) << "it went down";
+    EXPECT_GE(highest_m, was_m.highest) << "it went up";
+  }
 }
 
 TEST_F(Walking, TheGroundAheadIsHigherOnTheWayUpAndLowerOnTheWayDown) {

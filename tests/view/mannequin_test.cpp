@@ -50,7 +50,7 @@ constexpr double kGraze_m = 3e-4;
 
 std::vector<Capsule> posed(const Mannequin& mannequin, const Pose& pose) {
   SceneContent content;
-  add_mannequin(mannequin, pose, rgb(0x56b4e9), content);
+  add_mannequin(mannequin, pose, nullptr, rgb(0x56b4e9), content);
   return content.capsules;
 }
 

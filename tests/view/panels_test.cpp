@@ -1,9 +1,17 @@
 // What the panels ask for, and that what they draw stays in its place.
 #include "view/panels.h"
 
-#include <cmath>
-#include <limits>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "session/walk_export.h"
 #include "ui_fixture.h"
 
 namespace gaitpad {
@@ -244,6 +252,96 @@ TEST_F(PanelTest, TheChosenCharacterIsOneOrAll) {
   state.walker = 9;  // of an earlier session
   draw();
   EXPECT_EQ(state.walker, -1);
+}
+
+bool is_drawn(const std::string& text) { return std::ranges::count(drawn_texts(), text) > 0; }
+
+// The row of `frames.csv` of the tick that a frame shows, by column.
+std::map<std::string, double> file_row(const SessionFrame& frame, int rate_hz) {
+  fmt::memory_buffer text;
+  append_frames_header(text);
+  append_frames_row(frame.tick, rate_hz, frame.stick, frame.walkers[0].walk, text);
+  std::istringstream lines(fmt::to_string(text));
+  std::string header, row, name, value;
+  std::getline(lines, header);
+  std::getline(lines, row);
+  std::istringstream names(header), values(row);
+  std::map<std::string, double> columns;
+  while (std::getline(names, name, ',') && std::getline(values, value, ','))
+    columns[name] = std::strtod(value.c_str(), nullptr);
+  return columns;
+}
+
+// On stairs the steps are as long as the treads, whatever the stick asks for.
+TEST_F(PanelTest, WhatTheWalkDoesIsBesideWhatIsAskedAndIsTheFiles) {
+  start({"even"}, 0, "stairs");
+  show(Panel::control);
+  double least_m_s = 9.0;
+  for (int i = 0; i < 40; ++i) {
+    step(60, {"gait speed_m_s 1.2"});
+    draw();
+    const auto file = file_row(*frame, cast.rate_hz);
+    const double turn = file.at("turn_rate_rad_s");
+    EXPECT_TRUE(is_drawn(fmt::format("does {:.2f}", file.at("speed_m_s")))) << frame->tick;
+    EXPECT_TRUE(is_drawn(
+        fmt::format("does {:.2f} | {:.2f}", file.at("stride_left_m"), file.at("stride_right_m"))))
+        << frame->tick;
+    EXPECT_TRUE(is_drawn(fmt::format("does {:.2f}", std::abs(turn) < 0.005 ? 0.0 : turn)));
+    EXPECT_TRUE(is_drawn("1.20")) << "the slider shows what is asked";
+    if (i > 5) least_m_s = std::min(least_m_s, file.at("speed_m_s"));
+  }
+  EXPECT_LT(least_m_s, 0.8) << "it was on the stairs";
+}
+
+// The plotted heights are those above the ground below each heel, also high on the stairs.
+TEST_F(PanelTest, HeelsArePlottedAboveTheGroundBelowThemAsTheFileHasThem) {
+  start({"even"}, 0, "stairs");
+  double highest_m = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    step(7, {"gait speed_m_s 1.2"});
+    const auto file = file_row(*frame, cast.rate_hz);
+    const GraphSpan span = graph_span(history, 0, cast.rate_hz);
+    const Plot plot = heel_plot(history, span, 0, theme_of(ThemeName::dark));
+    ASSERT_EQ(plot.series.size(), 2u);
+    for (const auto& [series, foot] : {std::pair(0, "left"), {1, "right"}}) {
+      const double height_m = file.at(fmt::format("{}_heel_y_m", foot)),
+                   ground_m = file.at(fmt::format("{}_heel_ground_m", foot));
+      EXPECT_NEAR(plot.series[static_cast<std::size_t>(series)].points.back().y,
+                  100.0 * (height_m - ground_m), 1e-4);
+      highest_m = std::max(highest_m, ground_m);
+    }
+  }
+  EXPECT_GT(highest_m, 0.9) << "it was on the stairs";
+}
+
+// With all selected no panel shows the first one's values for everybody's.
+TEST_F(PanelTest, WhereTheSelectedDifferTheirValuesAreShownAsMixed) {
+  open(1280, 3200, 1.0);
+  walk();
+  const auto is_mixed = [] { return is_drawn("mixed") || is_drawn("L mixed"); };
+  for (const Panel panel : {Panel::control, Panel::style}) {
+    state.walker = 0;
+    show(panel);
+    EXPECT_FALSE(is_mixed());
+    state.walker = -1;
+    draw();
+    EXPECT_TRUE(is_mixed()) << "panel " << static_cast<int>(panel);
+  }
+  // A mixed slider sends what it is pulled to, also its least value.
+  const UiOutput out = press_at("style slider left_leg.stride_length", 0.0);
+  ASSERT_EQ(out.commands.size(), 1u);
+  EXPECT_TRUE(out.commands[0].starts_with("set left_leg.stride_length ")) << out.commands[0];
+  release();
+  step(120);  // what was pulled to was not taken over
+  // Each goes back to the value of its own style.
+  step(2, {"set left_leg.stride_length 1.25"});
+  draw();
+  EXPECT_TRUE(is_drawn("L 1.25"));
+  EXPECT_EQ(click("own left_leg.stride_length").commands,
+            (Commands{"set 1 left_leg.stride_length 1", "set 2 left_leg.stride_length 1",
+                      "set 3 left_leg.stride_length 1", "set 4 left_leg.stride_length 0.5"}));
+  EXPECT_EQ(click("own all").commands, (Commands{"style 1 even", "style 2 stiff_hip",
+                                                 "style 3 stiff_knee", "style 4 limp_left"}));
 }
 
 // Names as bad as they come, everywhere a stranger's name is shown.

@@ -414,6 +414,34 @@ FlatCapsule flat(const vec3& a, const vec3& b, double radius_a_m, double radius_
           glm::vec4(kRed.red, kRed.green, kRed.blue, 1.0f)};
 }
 
+// The same body, near the ground and seen likewise, is as bright on a height as on level 0.
+TEST_F(SceneTest, ABodysShadeNearTheGroundIsThatOfItsHeightAboveTheGround) {
+  const auto shade_at = [this](double ground_m, bool is_crowd) {
+    auto terrain = std::make_shared<Terrain>();
+    if (ground_m != 0.0) {
+      EXPECT_FALSE(add_section(*terrain, StairsSection{ground_m, 2.0, 1}));
+    }
+    content_.terrain = terrain;
+    const vec3 at(0.0, ground_m + 0.06, 12.0);
+    camera_ = Camera{.target_m = at, .distance_m = 3.0};
+    content_.focus_m = at;
+    content_.capsules.clear();
+    content_.crowd.clear();
+    if (is_crowd) {
+      content_.crowd = {flat(at, at, 0.05, 0.05)};
+      content_.crowd.front().ground_m = static_cast<float>(ground_m);
+    } else {
+      content_.capsules = {bone(at, at, 0.05)};
+    }
+    return brightness(drawn(content_), kWidth / 2.0, kHeight / 2.0);
+  };
+  for (const bool is_crowd : {false, true}) {
+    const double level = shade_at(0.0, is_crowd);
+    EXPECT_NEAR(shade_at(0.4, is_crowd), level, 1.0);
+    EXPECT_NEAR(shade_at(-0.4, is_crowd), level, 1.0);
+  }
+}
+
 TEST_F(SceneTest, AFlatCapsulesPixelsAreThoseOfARoundOne) {
   camera_.target_m = {20.0, 0.8, -7.0};
   content_.focus_m = camera_.target_m;

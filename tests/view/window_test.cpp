@@ -18,6 +18,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gaitpad/config_files.h"
@@ -26,6 +27,7 @@
 #include "tests/folders.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
+#include "view/mannequin.h"
 #include "view/surface.h"
 
 namespace gaitpad {
@@ -350,6 +352,18 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   EXPECT_GT(value_of(replay(replayed)).summary.ticks, 20);
 }
 
+TEST_F(Window, EscapeClosesTheMenu) {
+  Script script;
+  script.until("it is drawn", [](const Glance& g) { return g.frame > 2; });
+  script.click("view");
+  script.until("the menu is open",
+               [](const Glance&) { return Script::find("type larger") != nullptr; });
+  script.tap(SDLK_ESCAPE);
+  script.until("the menu is closed",
+               [](const Glance&) { return Script::find("type larger") == nullptr; });
+  run(script);
+}
+
 TEST_F(Window, QuitEndsItAtOnce) {
   options_.frames = 500;
   options_.script = [&](const Glance& g) {
@@ -376,11 +390,83 @@ TEST_F(Window, TheMouseTurnsMovesAndNearsTheCamera) {
   wheel.wheel.y = 3;
   script.push(wheel);
   script.until("it nears", [&](const Glance& g) {
-    return std::abs(g.camera.distance_m / first.distance_m - 0.9 * 0.9 * 0.9) < 1e-9;
+    return std::abs(g.camera.distance_m / g.camera.framed_m - 0.9 * 0.9 * 0.9) < 1e-9;
   });
   script.drag(SDL_BUTTON_MIDDLE, 500, 300, 540, 300);
   script.until("it stands aside", [](const Glance& g) { return !g.camera.is_following; });
   run(script);
+}
+
+// Frames of 1/60 s that are not drawn, except the last. Four walk; panels open one after the other,
+// the selection changes, names and the source go and come. A second after each change everybody is
+// in what the panels leave free, from head to feet, and no frame before jumps.
+TEST_F(Window, EverybodyIsInSightWhateverIsOpenAtEverySize) {
+  struct Size {
+    int width, height;
+    double scale;
+  };
+  for (const Size& size : {Size{1280, 720, 1.0}, Size{640, 400, 1.0}, Size{1920, 1080, 2.0}}) {
+    SCOPED_TRACE(fmt::format("{} x {} at scale {}", size.width, size.height, size.scale));
+    options_.width = size.width;
+    options_.height = size.height;
+    options_.scale = size.scale;
+    options_.screenshot = (folder_ / "last.png").string();
+    options_.are_panels_given = true;
+    options_.panels = {};
+    const std::vector<SDL_Keycode> keys = {SDLK_F2,  SDLK_F3, SDLK_F5, SDLK_TAB, SDLK_TAB,
+                                           SDLK_TAB, SDLK_F4, SDLK_F2, SDLK_F3,  SDLK_F5};
+    constexpr int kSettles = 60, kBegin = 120;
+    options_.frames = kBegin + kSettles * static_cast<int>(keys.size() + 1);
+    std::vector<Mannequin> people;
+    int looks = 0;
+    Camera last;
+    options_.script = [&](const Glance& g) {
+      if (people.empty())
+        for (const CastMember& member : g.cast.members)
+          people.push_back(mannequin_of(member.model));
+      if (g.frame > 2) {
+        EXPECT_NEAR(g.camera.distance_m / last.distance_m, 1.0, 0.08) << g.frame;
+        EXPECT_LT(glm::distance(g.camera.target_m, last.target_m), 0.2) << g.frame;
+      }
+      last = g.camera;
+      const std::int64_t behind = g.frame - kBegin;
+      if (behind < 0 || behind % kSettles != 0) return;
+      const int width_px = static_cast<int>(size.width * size.scale),
+                height_px = static_cast<int>(size.height * size.scale);
+      const Viewport scene = scene_viewport(g.ui, false, width_px, height_px, size.scale);
+      const auto expect_seen = [&](const vec3& place_m, const char* what) {
+        const vec3 at = projected(g.camera, place_m, scene.width, scene.height);
+        EXPECT_TRUE(at.z > 0.0 && at.x > 0.0 && at.x < scene.width && at.y > 0.0 &&
+                    at.y < scene.height)
+            << what << " at " << at.x << ", " << at.y << " of " << scene.width << " x "
+            << scene.height << " in frame " << g.frame;
+      };
+      for (std::size_t i = 0; i < people.size(); ++i) {
+        const WalkerFrame& walker = g.session.walkers[i];
+        expect_seen(head_m(people[i], walker.pose), "a head");
+        for (const Side side : {kLeftSide, kRightSide}) {
+          expect_seen(walker.walk.heel_m[side], "a heel");
+          expect_seen(walker.walk.toe_m[side], "a toe");
+        }
+      }
+      ++looks;
+      const auto next = static_cast<std::size_t>(behind / kSettles);
+      if (next >= keys.size()) return;
+      SDL_Event event = {};
+      event.type = SDL_KEYDOWN;
+      event.key.keysym.sym = keys[next];
+      event.key.keysym.scancode = SDL_GetScancodeFromKey(keys[next]);
+      SDL_PushEvent(&event);
+      event.type = SDL_KEYUP;
+      SDL_PushEvent(&event);
+    };
+    options_.take_commands = [walks = false]() mutable {
+      return std::exchange(walks, true) ? std::vector<std::string>{}
+                                        : std::vector<std::string>{"gait speed_m_s 1.3"};
+    };
+    value_of(run_window(options_));
+    EXPECT_EQ(looks, static_cast<int>(keys.size()) + 1);
+  }
 }
 
 TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {

@@ -282,17 +282,17 @@ std::string bounds_text(const ordered_json& row) {
   return text;
 }
 
-void print_table(const std::vector<BenchRow>& rows, const ordered_json& list, const Cores& cores,
+void print_bench(const std::vector<BenchRow>& rows, const ordered_json& list, const Cores& cores,
                  int rounds) {
   const ordered_json& first = list.front();
-  fmt::print("{}, {}", first["processor"].get<std::string>(), lanes_text(first["lanes"]));
-  if (cores.core() >= 0) fmt::print(", core {}", cores.core());
-  fmt::print("; medians over {} rounds, quartiles, times the peer, bound\n", rounds);
+  say("{}, {}{}; medians over {} rounds, quartiles, times the peer, bound\n",
+      first["processor"].get<std::string>(), lanes_text(first["lanes"]),
+      cores.core() >= 0 ? fmt::format(", core {}", cores.core()) : "", rounds);
   std::string heading;
   for (const BenchRow& row : rows) {
     const ordered_json json = json_of(row, rows);
     const std::string next = heading_of(row.work->name);
-    if (next != heading) fmt::print("{}\n", next);
+    if (next != heading) say("{}\n", next);
     heading = next;
     const std::string label = row.stage >= 0 ? kStages[row.stage] : row.work->label;
     const std::string spread =
@@ -308,13 +308,12 @@ void print_table(const std::vector<BenchRow>& rows, const ordered_json& list, co
       line += fmt::format("  {:.2f} iterations a leg", json["iterations_per_leg"].get<double>());
     if (json.contains("bytes")) line += fmt::format("  {:.0f} bytes", json["bytes"].get<double>());
     line.erase(line.find_last_not_of(' ') + 1);
-    fmt::print("{}\n", line);
+    say("{}\n", line);
   }
   for (const ordered_json& row : list) {
     if (row["name"] != "character_even") continue;
     const double state = row["state_bytes"];
-    fmt::print(
-        "a character's state {:.0f} bytes (bound 2048, {}), parameters {}, pose {}; "
+    say("a character's state {:.0f} bytes (bound 2048, {}), parameters {}, pose {}; "
         "a build's model {:.0f} KB, shared\n",
         state, state <= 2048 ? "met" : "MISSED", row["params_bytes"].get<int>(),
         row["pose_bytes"].get<int>(), row["model_bytes"].get<double>() / 1e3);
@@ -411,7 +410,7 @@ int run(const BenchArguments& arguments) {
   if (arguments.as_json) {
     print_json(list);
   } else {
-    print_table(rows, list, cores, arguments.rounds);
+    print_bench(rows, list, cores, arguments.rounds);
   }
   std::fflush(stdout);
   if (arguments.plot.empty()) return 0;

@@ -119,34 +119,34 @@ std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool i
 // Both legs of one tick, as the walk solves them: side by side. They start where the walk's solver
 // did and go where it came to.
 struct RobustLegs {
-  LegLanes<2> lanes;
-  std::array<Row<2>, kLegDofs> start_rad;
+  std::array<LegToSolve, 2> legs;
+  std::array<LegAngles, 2> start_rad;
 };
+Vec3Of<double> three(const vec3& v) { return {v.x, v.y, v.z}; }
 void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<RobustLegs>& legs) {
   RobustLegs& both = legs.emplace_back();
   const StartAngle start(dt_s);
-  LegGoals<Row<2>>& goals = both.lanes.goals;
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = now.model->leg[side];
     const LegState &last = before.state.legs, &solved = now.state.legs;
+    LegGoals<double>& goals = both.legs[side].goals;
+    goals.weight.fill(1.0);
     for (int j = 0; j < kLegDofs; ++j) {
       const double off = last.even_rad[side][j] - last.data_rad[side][j];
-      both.start_rad[j][side] = start(solved.data_rad[side][j], off, last.last_off_rad[side][j]);
-      goals.weight[j][side] = 1.0;
-      goals.min_rad[j][side] = leg.chain.dof[j].min_rad;
-      goals.max_rad[j][side] = leg.chain.dof[j].max_rad;
+      both.start_rad[side][j] = start(solved.data_rad[side][j], off, last.last_off_rad[side][j]);
+      goals.min_rad[j] = leg.chain.dof[j].min_rad;
+      goals.max_rad[j] = leg.chain.dof[j].max_rad;
     }
-    goals.min_rad[kAnkleX][side] = -kPi;
-    goals.thigh_m[side] = leg.model.thigh_m;
-    goals.shank_m[side] = leg.model.shank_m;
+    goals.min_rad[kAnkleX] = -kPi;
+    goals.thigh_m = leg.model.thigh_m;
+    goals.shank_m = leg.model.shank_m;
     const auto rows =
         foot_rows(leg, end_frame(leg.chain, all_angles(solved.even_rad[side])), false);
-    for (const auto& [row, point] : {std::pair(0, 0), {3, 1}, {5, 2}})
-      set_lanes(rows[row].point_m, side, goals.point_m[point]);
-    set_lanes(rows[0].direction, side, goals.side);
-    set_lanes(rows[1].direction, side, goals.across);
-    set_lanes(rows[2].direction, side, goals.along);
-    for (int r = 0; r < 6; ++r) goals.goal_m[r][side] = rows[r].goal_m;
+    goals.point_m = {three(rows[0].point_m), three(rows[3].point_m), three(rows[5].point_m)};
+    goals.side = three(rows[0].direction);
+    goals.across = three(rows[1].direction);
+    goals.along = three(rows[2].direction);
+    for (int r = 0; r < 6; ++r) goals.goal_m[r] = rows[r].goal_m;
   }
 }
 
@@ -188,12 +188,11 @@ std::vector<Legs> solves_of(const Session& session, Simulation simulation,
   return legs;
 }
 
-int solve(RobustLegs& legs) {
-  legs.lanes.angles_rad = legs.start_rad;
-  solve_two_legs(kRobust, legs.lanes);
-  benchmark::DoNotOptimize(legs.lanes);
-  const Row<2>& iterations = legs.lanes.solution.iterations;
-  return static_cast<int>(iterations[0] + iterations[1]);
+int solve(RobustLegs& both) {
+  for (const Side side : {kLeftSide, kRightSide}) both.legs[side].angles_rad = both.start_rad[side];
+  solve_two_legs<false>(both.legs);
+  benchmark::DoNotOptimize(both.legs);
+  return static_cast<int>(both.legs[0].solution.iterations + both.legs[1].solution.iterations);
 }
 int solve(PaperLeg& leg) {
   IkAngles angles = leg.start;

@@ -15,6 +15,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "drivers/pads/recorded_packets.h"
 #include "gaitpad/config_files.h"
 #include "hid/sdl_mapping.h"
 #include "pads/calibration_store.h"
@@ -98,6 +99,7 @@ Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damag
     auto trace = read_trace(path, damage);
     if (!trace) return trace.error();
     if (const auto remark = damage_remark(*trace)) remarks.push_back(*remark);
+    accept_packets(*trace);
     auto found = first_pad(*trace, files.overrides);
     if (!found) return found.error();
     const DeviceInfo& info = trace->devices[found->device].info;
@@ -170,7 +172,7 @@ constexpr const char* kUnknown = " not known";
 
 // A label, one value or those of x and y, and what they were measured from.
 void print_row(const char* what, const std::string& value, const std::string& from) {
-  fmt::print("  {:<18}{:<20}{}\n", what, value, from);
+  say("  {:<18}  {:<20}  {}\n", what, value, from);
 }
 
 std::string pair_text(const std::optional<vec2>& p, bool is_signed) {
@@ -209,7 +211,6 @@ void print_rest(const StickStatistics& s) {
 double reach_in(const Outline& outline, int direction) {
   return outline.radius[static_cast<std::size_t>(direction)];
 }
-double degrees_of(int direction) { return 360.0 * direction / kOutlineDirections; }
 
 void print_rim(const StickStatistics& s) {
   const std::string from =
@@ -219,7 +220,7 @@ void print_rim(const StickStatistics& s) {
   print_row("reach left, back", pair_text(s.min_x, s.min_y), from);
   if (const auto worst = worst_direction(s.outline)) {
     print_row("least reach", fmt::format("{:>9.4f}", reach_in(s.outline, *worst)),
-              fmt::format("{:.0f} degrees from the right", degrees_of(*worst)));
+              fmt::format("{} degrees from the right", degrees_of(*worst)));
   }
   print_row("circularity error",
             s.circularity_error ? fmt::format("{:>9.1f} %", *s.circularity_error) : kUnknown,
@@ -236,6 +237,12 @@ void print_reports(const StickStatistics& s) {
   }
   print_row("rate", s.rate_hz ? fmt::format("{:>9.1f} Hz", *s.rate_hz) : kUnknown,
             s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms", from, *s.jitter_ms) : from);
+  if (s.moving) {
+    print_row(
+        "new values", fmt::format("{:>9.1f} Hz", s.moving->new_value_hz),
+        fmt::format("while it moved, {:.0f} % of {:.0f} reports a second repeat the one before",
+                    100.0 * s.moving->repeats(), s.moving->report_hz));
+  }
   const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
   print_row("gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
   if (s.drop_outs > 0) {
@@ -244,12 +251,17 @@ void print_reports(const StickStatistics& s) {
   }
 }
 
-void print_advice(const StickAdvice& a) {
+void print_advice(const StickAnalysis& stick) {
+  const StickAdvice& a = stick.advice;
   const StickCalibration& c = a.calibration;
   print_row("inner zone", fmt::format("{:>9.3f}", a.inner_zone),
             fmt::format("{:.3f} of the deflection", c.inner));
-  print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
-            fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
+  if (is_turned(stick.statistics)) {
+    print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
+              fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
+  } else {
+    print_row("outer zone", kUnknown, "range and outer zone stay as they were");
+  }
   if (c.frame == StickFrame{}) return;
   constexpr const char* kRaw[] = {"x", "-x", "y", "-y"};
   print_row("axes",
@@ -283,7 +295,8 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"drift_per_s", value_or_null(s.drift_per_s)},
           {"rate_hz", value_or_null(s.rate_hz)},
           {"inner_zone", is_known ? nlohmann::ordered_json(stick.advice.inner_zone) : nullptr},
-          {"outer_zone", is_known ? nlohmann::ordered_json(stick.advice.outer_zone) : nullptr},
+          {"outer_zone",
+           is_known && is_turned(s) ? nlohmann::ordered_json(stick.advice.outer_zone) : nullptr},
           {"verdict", name_of(stick.advice.verdict)},
           {"reason", stick.advice.reason},
           {"samples", s.samples},
@@ -296,6 +309,8 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"step_x", s.step_x},
           {"step_y", s.step_y},
           {"jitter_ms", value_or_null(s.jitter_ms)},
+          {"new_values_hz", s.moving ? nlohmann::ordered_json(s.moving->new_value_hz) : nullptr},
+          {"repeats", s.moving ? nlohmann::ordered_json(s.moving->repeats()) : nullptr},
           {"gaps", value_or_null(s.gaps)},
           {"jumps", s.jumps},
           {"stuck", s.stuck},
@@ -305,33 +320,33 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"displaced_by", s.displaced_by},
           {"hands_off_s", seconds_of(s.hands_off)},
           {"least_reach", worst ? nlohmann::ordered_json(reach_in(s.outline, *worst)) : nullptr},
-          {"least_reach_deg", worst ? nlohmann::ordered_json(degrees_of(*worst)) : nullptr}};
+          {"least_reach_deg",
+           worst ? nlohmann::ordered_json(360.0 * *worst / kOutlineDirections) : nullptr}};
 }
 
 void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
-  fmt::print("{} ({:04x}:{:04x})\n", printable(device.name), device.vendor, device.product);
+  say("{} ({:04x}:{:04x})\n", printable(device.name), device.vendor, device.product);
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick) continue;
-    fmt::print("\n{} stick: {}. {}\n  {:<18}{:>9}{:>9}\n", kSideNames[i],
-               name_of(stick->advice.verdict), stick->advice.reason, "", "x right", "y front");
+    say("\n{} stick: {}. {}\n  {:<18}  {:>9}{:>9}\n", kSideNames[i], name_of(stick->advice.verdict),
+        stick->advice.reason, "", "x right", "y front");
     print_rest(stick->statistics);
     print_rim(stick->statistics);
     print_reports(stick->statistics);
-    if (stick->statistics.centre) print_advice(stick->advice);
+    if (stick->statistics.centre) print_advice(*stick);
   }
-  if (analysis.trigger[0] || analysis.trigger[1]) fmt::print("\n");
+  if (analysis.trigger[0] || analysis.trigger[1]) say("\n");
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{:.3f}", *value) : "not known";
   };
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& trigger = analysis.trigger[i];
     if (!trigger) continue;
-    fmt::print("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
-               number(trigger->released), number(trigger->pressed), trigger->samples);
+    say("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
+        number(trigger->released), number(trigger->pressed), trigger->samples);
   }
-  fmt::print(
-      "\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
+  say("\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
 }
 
 // As interface.md has it, with further keys.
@@ -377,7 +392,7 @@ Result<GuidedPad> live_pad(const PadWish& wish, const PadFiles& files,
   auto chosen = chosen_pads(*sightings, wish);
   if (!chosen) return chosen.error();
   if (chosen->empty()) return Error{"there is no usable pad; gaitpad doctor finds out why"};
-  auto device = chosen->front().driver->open(chosen->front().listing, Detach::allowed);
+  auto device = chosen->front().driver->open(chosen->front().listing, detach_asked(wish));
   if (!device) return device.error();
   const auto factory = (*device)->factory_sticks();
   GuidedPad pad;
@@ -519,9 +534,9 @@ std::optional<Error> draw_comparison(const std::string&, const ComparedFiles&) {
 #endif
 
 void print_changes(const std::vector<std::string>& changes, const std::string& if_none) {
-  fmt::print("\n");
-  if (changes.empty()) fmt::print("{}\n", if_none);
-  for (const std::string& change : changes) fmt::print("{}\n", printable(change));
+  say("\n");
+  if (changes.empty()) say("{}\n", if_none);
+  for (const std::string& change : changes) say("{}\n", printable(change));
 }
 
 // --compare: two files of one pad. Returns the exit status.
@@ -538,11 +553,11 @@ int compare(const CalibrateArguments& arguments) {
     print_remarks(kCalibrateCommand, {"the files are of different devices; compared all the same"});
   for (std::size_t side = 0; side < 2; ++side) {
     files.numbers[side] = compared_numbers(a, b, side);
-    fmt::print("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
-               files.names[0], files.names[1]);
+    say("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
+        files.names[0], files.names[1]);
     for (const ComparedNumber& number : files.numbers[side]) {
-      fmt::print("  {:<24}{:>16}  {:>16}{}\n", number.label, number.values[0], number.values[1],
-                 number.values[0] == number.values[1] ? "" : "  *");
+      say("  {:<24}{:>16}  {:>16}{}\n", number.label, number.values[0], number.values[1],
+          number.values[0] == number.values[1] ? "" : "  *");
     }
   }
   print_changes(changes_since(a, b), "what was measured for both files has not changed");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ struct CheckArguments {
   bool updates = false;
   int jobs = machine_threads();
   std::string shard, junit, plot;
+  double max_hours = SessionSpec::Replay::kMaxHours;
 };
 
 // `2/8`.
@@ -223,13 +225,13 @@ std::optional<Error> draw_curves(const JointCurves&, const std::string&, const s
 std::string joints_plot_problem(const std::string&) { return missing_window(); }
 #endif
 
-// One in the folder for each recording: `walks/round` becomes `walks_round.png`.
+// In the folder, below the recording's own folders: `../walks/round` becomes `walks/round.png`.
 std::string picture_path(const std::string& folder, const CheckedTrace& trace) {
-  std::string name = trace.path;
-  while (name.starts_with("./") || name.starts_with("../") || name.starts_with("/"))
-    name.erase(0, name.find('/') + 1);
-  std::ranges::replace(name, '/', '_');
-  return fmt::format("{}/{}.png", folder, name);
+  std::filesystem::path place = folder;
+  for (const std::filesystem::path& part : std::filesystem::path(trace.path).lexically_normal()) {
+    if (part != ".." && part != "." && !part.is_absolute()) place /= part;
+  }
+  return place.string() + ".png";
 }
 
 // --- the command
@@ -253,7 +255,8 @@ int run(const CheckArguments& arguments) {
   for (std::size_t i = shard->index - 1; i < found->traces.size(); i += shard->total)
     traces.push_back(found->traces[i]);
 
-  const CheckOptions options = {config_folders(), arguments.updates, !arguments.plot.empty()};
+  const CheckOptions options = {config_folders(), arguments.updates, !arguments.plot.empty(),
+                                arguments.max_hours};
   const int jobs = std::min(arguments.jobs, std::max(1, static_cast<int>(traces.size())));
   JunitReport junit;
   int failures = 0;
@@ -309,6 +312,7 @@ void add_check(CLI::App& app, int& status) {
       ->add_option("--plot", arguments->plot,
                    "folder for a picture of each pose that differs: both courses of the joint")
       ->check(joints_plot_problem);
+  add_max_hours_option(*command, arguments->max_hours);
   command->footer(
       "Results are TAP on standard output. Exit status: 0 all are met, 1 one is not, 2 wrong "
       "usage.\n"

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 
+#include "drivers/pads/recorded_packets.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/trace.h"
 #include "hid/usage_names.h"
@@ -127,42 +128,43 @@ ordered_json report_json(const DecodedDevice& device, const Report& report, bool
 
 void print_descriptor_text(const DecodedDevice& device) {
   const DeviceInfo& info = device.source.info;
-  fmt::print("device {}: {} (bus {:x}, {:04x}:{:04x}), {}, {} bytes of descriptor\n",
-             device.source.index, printable(info.name), static_cast<unsigned>(info.bus),
-             info.vendor, info.product, device.layout.is_pad ? "a pad" : "no pad",
-             info.descriptor.size());
+  say("device {}: {} (bus {:x}, {:04x}:{:04x}), {}, {} bytes of descriptor\n", device.source.index,
+      printable(info.name), static_cast<unsigned>(info.bus), info.vendor, info.product,
+      device.layout.is_pad ? "a pad" : "no pad", info.descriptor.size());
   if (!device.layout.override_origin.empty()) {
-    fmt::print("controls by {}\n", printable(device.layout.override_origin));
+    say("controls by {}\n", printable(device.layout.override_origin));
   }
-  fmt::print("{:<8} {:>2} {:>7} {:>5} {:>5}  {:<9}  {:<20} {:>12} {:>12}\n", "kind", "id", "bit",
-             "size", "count", "usage", "name", "min", "max");
+  std::vector<TableRow> table = {
+      {"kind", "id", "bit", "size", "count", "usage", "name", "min", "max"}};
   const std::vector<Field>& fields = device.layout.descriptor.fields;
   for (std::size_t i = 0; i < fields.size();) {
     const Field& f = fields[i];
     std::size_t end = i + 1;
     while (end < fields.size() && continues(f, fields[end])) ++end;
-    fmt::print("{:<8} {:>2x} {:>7} {:>5} {:>5}  {:<9}  {:<20} {:>12} {:>12}{}\n", kind_name(f.kind),
-               f.report_id, f.bit_offset, f.bit_size, end - i, usage_text(f.usage),
-               usage_name(f.usage), f.logical_min, f.logical_max, f.is_array ? "  array" : "");
+    table.push_back({std::string(kind_name(f.kind)), fmt::format("{:x}", f.report_id),
+                     fmt::format("{}", f.bit_offset), fmt::format("{}", f.bit_size),
+                     fmt::format("{}", end - i), usage_text(f.usage), usage_name(f.usage),
+                     fmt::format("{}", f.logical_min),
+                     fmt::format("{}{}", f.logical_max, f.is_array ? " array" : "")});
     i = end;
   }
+  print_table(table);
 }
 
 void print_report_text(const DecodedDevice& device, const Report& report, bool is_good) {
   const std::uint8_t id = report_id_of(device.layout, report);
-  fmt::print("{:>12.6f} device {} report {:2x}", static_cast<double>(report.time_ns) / 1e9,
-             device.source.index, id);
-  if (!is_good) {
-    fmt::print("  {} bytes: too short, or an unknown id\n", report.size);
-    return;
-  }
+  std::string line =
+      fmt::format("{:>12.6f} device {} report {:2x}", static_cast<double>(report.time_ns) / 1e9,
+                  device.source.index, id);
+  if (!is_good) return say("{}  {} bytes: too short, or an unknown id\n", line, report.size);
   if (device.layout.is_pad) {
     const auto& a = device.state.axis;
-    fmt::print("  left {:+.3f} {:+.3f}  right {:+.3f} {:+.3f}  triggers {:.3f} {:.3f} ", a[kLeftX],
-               a[kLeftY], a[kRightX], a[kRightY], a[kLeftTrigger], a[kRightTrigger]);
-    for (const std::string& name : pressed_names(device, report, id)) fmt::print(" {}", name);
+    line += fmt::format("  left {:+.3f} {:+.3f}  right {:+.3f} {:+.3f}  triggers {:.3f} {:.3f} ",
+                        a[kLeftX], a[kLeftY], a[kRightX], a[kRightY], a[kLeftTrigger],
+                        a[kRightTrigger]);
+    for (const std::string& name : pressed_names(device, report, id)) line += " " + name;
   }
-  fmt::print("\n");
+  say("{}\n", line);
 }
 
 void print_descriptor(const DecodedDevice& device, OutputForm form) {
@@ -236,9 +238,9 @@ bool is_trace(const std::string& source) {
 }
 
 int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
-  const auto trace =
-      read_trace(arguments.wish.pad, arguments.lenient ? Damage::skip : Damage::refuse);
+  auto trace = read_trace(arguments.wish.pad, arguments.lenient ? Damage::skip : Damage::refuse);
   if (!trace) return fail("decode", trace.error().message);
+  accept_packets(*trace);
   auto devices = devices_of(*trace, overrides);
   if (!devices) return fail("decode", devices.error().message);
   if (const auto remark = damage_remark(*trace)) print_remarks("decode", {*remark});
@@ -304,7 +306,7 @@ int run_live(const DecodeArguments& arguments, const PadFiles& files) {
   std::unique_ptr<Device> device;
   // The system shows most descriptors even to users who may not open the device.
   if (!arguments.descriptor_only || sighting->listing.info.descriptor.empty()) {
-    auto opened = sighting->driver->open(sighting->listing, Detach::allowed);
+    auto opened = sighting->driver->open(sighting->listing, detach_asked(arguments.wish));
     if (!opened) return fail("decode", opened.error().message);
     device = std::move(*opened);
   }

@@ -49,7 +49,16 @@ struct Diagnosis {
 };
 
 RuleSubject subject_of(const PadHardware& pad) {
-  return {static_cast<std::uint16_t>(pad.bus), pad.vendor, pad.product};
+  return {static_cast<std::uint16_t>(pad.bus), pad.vendor, pad.product,
+          pad.interface ? std::optional<int>(pad.interface->number) : std::nullopt};
+}
+// Whether another interface of its USB device is a keyboard or a mouse: a rule for the device would
+// open that one, too.
+bool is_beside_a_keyboard(const PadHardware& pad) {
+  if (!pad.interface) return false;
+  const fs::path device = fs::path(pad.interface->path).parent_path();
+  return std::ranges::any_of(usb_interfaces(device.string()),
+                             [](const UsbInterface& i) { return !boot_device(i).empty(); });
 }
 // Whether the node has the sticks of a pad: one pad makes several.
 bool is_pad_event(const SystemNode& node) { return !node.is_motion_sensor && !node.is_touchpad; }
@@ -257,7 +266,7 @@ void check_pad(const PadHardware& pad, Diagnosis& diagnosis) {
   const bool is_usable = !ways.empty();
   if (is_usable) {
     diagnosis.add(Finding::State::usable, pad.hidraw.empty() ? pad.path : pad.hidraw.front().node,
-                  pad, "works through " + ways);
+                  pad, fmt::format("works through {}; {}", ways, kHatDrives));
   }
   // One usable driver is enough: problems of the others are notes then.
   const auto state = is_usable ? Finding::State::note : Finding::State::problem;
@@ -325,14 +334,14 @@ std::vector<Finding> findings(const Machine& machine, const RulesFile& shipped) 
   return std::move(diagnosis.list);
 }
 
-// The pads that are plugged in and that the shipped rules do not name.
+// The pads that are plugged in and that the shipped rules do not name, none of a keyboard.
 std::vector<RuleSubject> uncovered_pads(const Machine& machine, const RulesFile& shipped) {
   std::vector<RuleSubject> subjects;
   for (const PadHardware& pad : machine.pads) {
     const RuleSubject subject = subject_of(pad);
     const bool needs_rule =
         !pad.hidraw.empty() || (pad.interface && pad.interface->ids.interface_class == kHidClass);
-    if (!needs_rule || opens_hidraw(shipped.text, subject)) continue;
+    if (!needs_rule || is_beside_a_keyboard(pad) || opens_hidraw(shipped.text, subject)) continue;
     if (std::ranges::find(subjects, subject) == subjects.end()) subjects.push_back(subject);
   }
   return subjects;
@@ -372,9 +381,8 @@ void print_findings_json(const std::vector<Finding>& list) {
 
 void print_text(const std::vector<Finding>& list) {
   for (const Finding& f : list) {
-    fmt::print("{:<8} {}{}{}{}\n", state_name(f.state),
-               f.device.empty() ? "" : printable(f.device) + ": ", printable(f.cause),
-               f.fix.empty() ? "" : "; fix: ", printable(f.fix));
+    say("{:<8} {}{}{}{}\n", state_name(f.state), f.device.empty() ? "" : printable(f.device) + ": ",
+        printable(f.cause), f.fix.empty() ? "" : "; fix: ", printable(f.fix));
   }
 }
 

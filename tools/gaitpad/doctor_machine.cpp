@@ -16,6 +16,7 @@
 #include <iterator>
 #include <map>
 
+#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/decode.h"
@@ -45,7 +46,7 @@ PadHardware& pad_at(PadsByPath& pads, const std::string& path, const SystemNode&
 }
 
 RuleSubject subject_of(const SystemNode& node) {
-  return {static_cast<std::uint16_t>(node.bus), node.vendor, node.product};
+  return {static_cast<std::uint16_t>(node.bus), node.vendor, node.product, std::nullopt};
 }
 
 // By its descriptor, or by what config/pads says about it.
@@ -247,28 +248,6 @@ std::string program() {
   return self.empty() ? "gaitpad" : self.string();
 }
 
-Error failure(const std::string& path) {
-  return Error{fmt::format("{}: cannot be written: {}", path, std::strerror(errno))};
-}
-
-std::optional<Error> write_whole(const std::string& path, std::string_view text) {
-  const int file =
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
-  if (file < 0) return failure(path);
-  std::optional<Error> problem;
-  while (!text.empty() && !problem) {
-    const ssize_t count = ::write(file, text.data(), text.size());
-    if (count >= 0) {
-      text.remove_prefix(static_cast<std::size_t>(count));
-    } else if (errno != EINTR) {
-      problem = failure(path);
-    }
-  }
-  if (!problem && (::fchmod(file, 0644) != 0 || ::fsync(file) != 0)) problem = failure(path);
-  ::close(file);
-  return problem;
-}
-
 }  // namespace
 
 Result<RulesFile> shipped_rules() {
@@ -300,8 +279,10 @@ bool opens_hidraw(std::string_view rules, const RuleSubject& subject) {
 }
 
 std::string hidraw_rule(const RuleSubject& subject) {
-  return fmt::format("SUBSYSTEM==\"hidraw\", KERNELS==\"*:{:04X}:{:04X}.*\", {}", subject.vendor,
-                     subject.product, kGrant);
+  const std::string interface =
+      subject.interface ? fmt::format(" DEVPATH==\"*.{}/0003:*\",", *subject.interface) : "";
+  return fmt::format("SUBSYSTEM==\"hidraw\", KERNELS==\"*:{:04X}:{:04X}.*\",{} {}", subject.vendor,
+                     subject.product, interface, kGrant);
 }
 
 std::string usb_rule(const RuleSubject& subject) {
@@ -317,18 +298,8 @@ std::string manual_install_command(const RulesFile& rules) {
 }
 
 std::optional<Error> install_rules(const std::string& text) {
-  const fs::path target(kRulesTarget);
-  std::error_code error;
-  fs::create_directories(target.parent_path(), error);
-  if (error) return Error{fmt::format("{}: {}", target.parent_path().string(), error.message())};
-  const std::string temporary = fmt::format("{}.{}", kRulesTarget, ::getpid());  // no *.rules
-  auto problem = write_whole(temporary, text);
-  if (!problem && std::rename(temporary.c_str(), kRulesTarget) != 0)
-    problem = failure(kRulesTarget);
-  if (problem) {
-    ::unlink(temporary.c_str());
-    return problem;
-  }
+  if (auto problem = write_file(kRulesTarget, text)) return problem;
+  if (::chmod(kRulesTarget, 0644) != 0) return write_error(kRulesTarget, errno);
   if (std::system(kApplyRules) == 0) return std::nullopt;
   return Error{fmt::format("{}: is written, but udev was not told; do: sudo sh -c '{}'",
                            kRulesTarget, kApplyRules)};

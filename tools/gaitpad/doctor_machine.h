@@ -56,6 +56,7 @@ inline constexpr const char* kApplyRules =
 // A device as a rule sees it.
 struct RuleSubject {
   std::uint16_t bus = 0, vendor = 0, product = 0;
+  std::optional<int> interface;  // of a USB device: its number
   bool operator==(const RuleSubject&) const = default;
 };
 
@@ -68,7 +69,7 @@ std::optional<RulesFile> installed_rules();
 
 // Whether a line for hidraw nodes fits the device.
 bool opens_hidraw(std::string_view rules, const RuleSubject& subject);
-// The lines for this model: for its hidraw node, for its USB device.
+// The lines for this model: for the hidraw node of its interface, for its USB device.
 std::string hidraw_rule(const RuleSubject& subject);
 std::string usb_rule(const RuleSubject& subject);
 

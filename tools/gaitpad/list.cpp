@@ -43,14 +43,13 @@ std::vector<Entry> entries_of(const Kind& kind, const std::vector<std::string>& 
 }
 
 void print_kind(const Kind& kind, const std::vector<Entry>& entries) {
-  fmt::print("{} ({})\n", kind.name, kind.option);
+  say("{} ({})\n", kind.name, kind.option);
   std::size_t width = 0;
   for (const Entry& entry : entries) width = std::max(width, entry.name.size());
   for (const Entry& entry : entries) {
     const std::string name = printable(entry.name);
-    fmt::print("{}\n", entry.summary.empty()
-                           ? "  " + name
-                           : fmt::format("  {:<{}}  {}", name, width, entry.summary));
+    say("{}\n", entry.summary.empty() ? "  " + name
+                                      : fmt::format("  {:<{}}  {}", name, width, entry.summary));
   }
 }
 

@@ -137,15 +137,15 @@ std::optional<int> answer_shell(const CLI::App& app, int argc, char** argv) {
 // Help and version on standard output, a wrong usage on standard error. It may quote any argument.
 int tell(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    std::fputs((unexpected(app) + "\nRun with --help for more information.\n").c_str(), stderr);
+    gaitpad::warn(unexpected(app) + "\nRun with --help for more information.\n");
     return kWrongUsage;
   }
   std::ostringstream help, usage;
   const bool is_done = app.exit(error, help, usage) == 0;
-  std::fputs(gaitpad::printable_lines(help.str()).c_str(), stdout);
-  std::fputs(gaitpad::printable_lines(usage.str()).c_str(), stderr);
+  gaitpad::say(stdout, gaitpad::printable_lines(help.str()));
+  gaitpad::warn(gaitpad::printable_lines(usage.str()));
   if (!is_done) return kWrongUsage;
-  return std::fflush(stdout) == 0 ? 0 : kFailed;
+  return 0;
 }
 
 bool is_flushed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
@@ -187,7 +187,7 @@ int main(int argc, char** argv) {
       "  gaitpad doctor                          why a pad does not work");
   std::vector<std::string> words = arguments_of(app, argc, argv);
   if (const std::string problem = gaitpad::config_problem(); !problem.empty()) {
-    std::fputs(fmt::format("gaitpad: {}\n", problem).c_str(), stderr);
+    gaitpad::warn(fmt::format("gaitpad: {}\n", problem));
     return kFailed;
   }
   std::ranges::reverse(words);  // as CLI11 wants them
@@ -195,11 +195,15 @@ int main(int argc, char** argv) {
     if (const auto answered = answer_shell(app, argc, argv)) return *answered;
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
-    return tell(app, error);
+    try {
+      status = tell(app, error);
+    } catch (const std::system_error&) {
+      is_written = false;
+    }
   } catch (const std::system_error&) {  // fmt::print on a full disk
     is_written = false;
   }
   if (is_written && is_flushed()) return status;
-  std::fputs("gaitpad: standard output cannot be written\n", stderr);
+  gaitpad::warn("gaitpad: standard output cannot be written\n");
   return kFailed;
 }

@@ -15,10 +15,12 @@
 #include "base/numeric.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
+#include "stick/new_values.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 #include "tools/gaitpad/run_end.h"
+#include "tools/gaitpad/terminal.h"
 
 namespace gaitpad {
 namespace {
@@ -39,6 +41,7 @@ struct MonitoredPad {
   PadConfig config;
   PadState state;
   JumpFilter filter;
+  NewValueCount new_values;
   std::array<UntouchedWatch, 2> watch;  // left, right
   int untouched = 0;                    // how often a stick moved by itself
   bool is_warned = false;               // of that
@@ -132,6 +135,7 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
     pad.is_plugged = false;
     pad.state = {};
     pad.filter = {};
+    pad.new_values = {};
     pad.watch = {};
     pad.last_ns = 0;
     return false;
@@ -146,9 +150,21 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
     ++pad.running.bad_reports;
   } else {
     pad.filter.take(pad.state);
+    const auto& axis = pad.state.axis;
+    pad.new_values.take(report.time_ns, {axis[kLeftX], axis[kLeftY]},
+                        {axis[kRightX], axis[kRightY]});
     watch_sticks(pad, report.time_ns);
   }
   return false;
+}
+
+// While a stick moved, since the pad was plugged in.
+ordered_json movement_json(const NewValueCount& new_values) {
+  const auto rate = new_values.rate();
+  if (!rate) return nullptr;
+  return {{"rate_hz", rate->report_hz},
+          {"new_values_hz", rate->new_value_hz},
+          {"repeats", rate->repeats()}};
 }
 
 ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream,
@@ -163,6 +179,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"time_s", time_s},
           {"plugged", pad.is_plugged},
           {"rate_hz", rate_hz(w)},
+          {"moving", movement_json(pad.new_values)},
           {"interval_us_median", median(w.interval_us)},
           {"jitter_us", jitter(w.interval_us)},
           {"longest_gap_us", greatest(w.interval_us)},
@@ -179,9 +196,20 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"buttons", button_names(pad.state)}};
 }
 
-std::string pad_header() {
-  return "left         right        triggers     Hz jitter   gap ms latency max us frame p99 ms "
-         "lost buttons, pad";
+// What a pad shows: one line, or three where the terminal is too narrow for it.
+struct PadLine {
+  std::string sticks, times, who;
+};
+const PadLine kHeader = {"left         right        triggers     Hz jitter   gap ms",
+                         "  new  same latency max us frame p99 ms lost", "buttons, pad"};
+
+void add_lines(const PadLine& pad, std::size_t columns, std::vector<std::string>& lines) {
+  std::string line = fmt::format("{} {} {}", pad.sticks, pad.times, pad.who);
+  if (columns >= 122 || pad.times.empty()) {
+    lines.push_back(std::move(line));
+  } else {
+    lines.insert(lines.end(), {pad.sticks, "  " + pad.times, "  " + pad.who});
+  }
 }
 
 std::string frame_text(const Window& window, std::size_t percent) {
@@ -189,21 +217,29 @@ std::string frame_text(const Window& window, std::size_t percent) {
   return fmt::format("{:.1f}", percentile(window.frame_us, percent) / 1e3);
 }
 
-std::string pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
+// New positions a second while a stick moved, and the share of reports that repeat one.
+std::string movement_text(const NewValueCount& new_values) {
+  const auto rate = new_values.rate();
+  if (!rate) return fmt::format("{:>5} {:>5}", "-", "-");
+  return fmt::format("{:>5.0f} {:>3.0f} %", rate->new_value_hz, 100.0 * rate->repeats());
+}
+
+PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
   const std::string who = pad_name(stream.device(index).info);
-  if (!pad.is_plugged) return "unplugged: " + who;
+  if (!pad.is_plugged) return {"unplugged:", "", who};
   const Stick stick = stick_of(pad);
   const Triggers triggers = triggers_of(pad);
   const Window& w = pad.shown;
   std::string buttons;
   for (const std::string& name : button_names(pad.state)) buttons += name + " ";
-  return fmt::format(
-      "{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f} {:>7.0f} "
-      "{:>6.0f} {:>5} {:>6} {:>4} {}{}",
-      stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left, triggers.right,
-      rate_hz(w), jitter(w.interval_us) / 1e3, greatest(w.interval_us) / 1e3, median(w.latency_us),
-      greatest(w.latency_us), frame_text(w, 50), frame_text(w, 99), stream.counts().lost, buttons,
-      who);
+  return {fmt::format("{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f}",
+                      stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left,
+                      triggers.right, rate_hz(w), jitter(w.interval_us) / 1e3,
+                      greatest(w.interval_us) / 1e3),
+          fmt::format("{} {:>7.0f} {:>6.0f} {:>5} {:>6} {:>4}", movement_text(pad.new_values),
+                      median(w.latency_us), greatest(w.latency_us), frame_text(w, 50),
+                      frame_text(w, 99), stream.counts().lost),
+          buttons + who};
 }
 
 // The line with these reports has just been written.
@@ -242,8 +278,10 @@ class Display {
     }
     if (!is_rewritten_ || time_ns < rewritten_ns_ + kRewriteNs) return;
     rewritten_ns_ = time_ns;
-    std::vector<std::string> lines = {pad_header()};
-    for (const auto& [index, pad] : pads) lines.push_back(pad_text(index, pad, stream));
+    const std::size_t columns = screen_size().columns;
+    std::vector<std::string> lines;
+    add_lines(kHeader, columns, lines);
+    for (const auto& [index, pad] : pads) add_lines(pad_text(index, pad, stream), columns, lines);
     line_.show(lines);
     note_shown(pads);
   }
@@ -272,8 +310,11 @@ class Display {
         print_json_line(
             pad_json(index, pad, stream, static_cast<double>(time_ns - start_ns_) / 1e9));
       } else {
-        if (!std::exchange(has_header_, true)) fmt::print("{}\n", pad_header());
-        fmt::print("{}\n", pad_text(index, pad, stream));
+        constexpr std::size_t kWhole = 1000;  // one line for each pad
+        std::vector<std::string> lines;
+        if (!std::exchange(has_header_, true)) add_lines(kHeader, kWhole, lines);
+        add_lines(pad_text(index, pad, stream), kWhole, lines);
+        for (const std::string& line : lines) fmt::print("{}\n", line);
       }
     }
   }

@@ -120,26 +120,25 @@ std::string gait_text(const Result<GaitCycle>& cycle) {
 void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {
   const double rate_hz = 1.0 / motion.frame_time_s;
   const std::size_t frames = motion.frames.size();
-  fmt::print("motion        {}\n", printable(motion.name));
-  fmt::print("units         1 unit = {:.6g} m\n", motion.metres_per_unit);
-  fmt::print("rate          {:.6g} Hz, {} frames, {:.2f} s\n", rate_hz, frames,
-             static_cast<double>(frames) * motion.frame_time_s);
-  fmt::print("joints        {} (pelvis {})\n", joint_names(motion).size(),
-             printable(motion.skeleton.joints[motion.pelvis].name));
+  say("motion        {}\n", printable(motion.name));
+  say("units         1 unit = {:.6g} m\n", motion.metres_per_unit);
+  say("rate          {:.6g} Hz, {} frames, {:.2f} s\n", rate_hz, frames,
+      static_cast<double>(frames) * motion.frame_time_s);
+  say("joints        {} (pelvis {})\n", joint_names(motion).size(),
+      printable(motion.skeleton.joints[motion.pelvis].name));
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegJoints& leg = motion.legs[side];
     const auto name = [&](int joint) { return printable(motion.skeleton.joints[joint].name); };
-    fmt::print("{:<5} leg     {} - {} - {} - {}, thigh + shank {:.3f} m\n", kLegNames[side],
-               name(leg.hip), name(leg.knee), name(leg.ankle), name(leg.toe),
-               leg_length_m(motion, leg));
+    say("{:<5} leg     {} - {} - {} - {}, thigh + shank {:.3f} m\n", kLegNames[side], name(leg.hip),
+        name(leg.knee), name(leg.ankle), name(leg.toe), leg_length_m(motion, leg));
   }
   for (const Side side : {kLeftSide, kRightSide}) {
     const auto flight = robust_flight(motion, side);
     const std::string heel_off = flight ? fmt::format("heel off {}, ", flight->heel_off) : "";
-    fmt::print("{:<5} flight  {}{}; by the paper's rule {}\n", kLegNames[side], heel_off,
-               flight_text(flight), flight_text(paper_flight(motion, side)));
+    say("{:<5} flight  {}{}; by the paper's rule {}\n", kLegNames[side], heel_off,
+        flight_text(flight), flight_text(paper_flight(motion, side)));
   }
-  fmt::print("gait          {}\n", printable(gait_text(cycle)));
+  say("gait          {}\n", printable(gait_text(cycle)));
 }
 
 Result<Motion> chosen_motion(const MotionArguments& arguments) {

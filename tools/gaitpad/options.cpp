@@ -73,12 +73,19 @@ void add_seconds_option(CLI::App& command, double& seconds) {
       ->check(CLI::Range(kLeastSeconds, kMostSeconds));
 }
 
+void add_max_hours_option(CLI::App& command, double& hours) {
+  command
+      .add_option("--max-hours", hours,
+                  fmt::format("refuse a recording that lasts longer (default: {:g})", hours))
+      ->check(CLI::PositiveNumber);
+}
+
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration) {
   return load_pad_files(config_folders(), map, calibration);
 }
 
 void MissingPad::look(std::int64_t plugged, StatusLine& line) {
-  if (now_ns() >= start_ns_ + kPatienceNs) tell(plugged, "not there yet, waiting", line);
+  if (now_ns() >= start_ns_ + kPatienceNs) tell(plugged, "is not there yet; waiting for it", line);
 }
 
 void MissingPad::finish(std::int64_t plugged, StatusLine& line) {
@@ -89,7 +96,7 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
   if (is_told_ || plugged > 0) return;
   is_told_ = true;
   std::vector<std::string> remarks = {
-      fmt::format("{}: {}", wish_.pad.empty() ? "a pad" : wish_.pad, what)};
+      fmt::format("{} {}", wish_.pad.empty() ? "the pad" : in_quotes(wish_.pad), what)};
   for (const std::string& other : is_choosy(wish_) ? pads_of_system() : std::vector<std::string>())
     remarks.push_back(other);
   remarks.emplace_back("gaitpad doctor finds why a pad does not work");

@@ -124,23 +124,9 @@ std::string joined(const std::vector<std::string>& texts) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-void print_table(const std::vector<std::vector<std::string>>& table) {
-  std::vector<std::size_t> widths(table.front().size(), 0);
-  for (const auto& row : table) {
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  for (const auto& row : table) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
-    line.erase(line.find_last_not_of(' ') + 1);
-    fmt::print("{}\n", printable(line));
-  }
-}
-
 void print_text(const std::vector<PadRow>& rows, const PadWish& wish) {
-  std::vector<std::vector<std::string>> table = {{"", "driver", "path", "bus", "vid:pid", "name",
-                                                  "unique id", "usages", "rate", "kernel",
-                                                  "usable"}};
+  std::vector<TableRow> table = {{"", "driver", "path", "bus", "vid:pid", "name", "unique id",
+                                  "usages", "rate", "kernel", "usable"}};
   for (const PadRow& row : rows) {
     const DeviceListing& listing = row.sighting.listing;
     const DeviceInfo& info = listing.info;
@@ -153,13 +139,14 @@ void print_text(const std::vector<PadRow>& rows, const PadWish& wish) {
                      is_usable(row.sighting) ? "yes" : "no: " + problem_of(row.sighting)});
   }
   if (rows.empty()) {
-    fmt::print("no device is seen by any driver; gaitpad doctor says more\n");
+    say("no device is seen by any driver; gaitpad doctor says more\n");
   } else {
     print_table(table);
   }
   for (const auto& [driver, problem] : missing_drivers(wish))
-    fmt::print("{}: {}\n", driver, printable(problem));
-  if (std::ranges::any_of(rows, &PadRow::is_chosen)) fmt::print("* is the one that play takes\n");
+    say("{}: {}\n", driver, printable(problem));
+  if (std::ranges::any_of(rows, &PadRow::is_chosen))
+    say("* is the one that play takes until another is moved; {}\n", kHatDrives);
 }
 
 int run(const PadsArguments& arguments) {

@@ -94,14 +94,13 @@ void print_text(const PlayArguments& arguments, const LiveStatus& status, const 
   const std::string& record = arguments.spec.live.record;
   print_session(record.empty() ? "live" : record, run);
   for (std::size_t i = 0; i < run.walkers.size(); ++i) print_character(run, i, Way::left_out);
-  fmt::print(
-      "a tick takes {:.0f} us (at most {:.0f}), a report waits {:.0f} us for it (at most {:.0f}); "
+  say("a tick takes {:.0f} us (at most {:.0f}), a report waits {:.0f} us for it (at most {:.0f}); "
       "{} ticks were late, {} reports lost\n",
       status.tick_us_median, status.tick_us_max, status.wait_us_median, status.wait_us_max,
       status.overruns, status.pads.lost);
   if (status.frame_us_p99 > 0.0) {
-    fmt::print("from the stick to the frame: {:.1f} ms (99 of 100 within {:.1f} ms)\n",
-               status.frame_us_p50 / 1000.0, status.frame_us_p99 / 1000.0);
+    say("from the stick to the frame: {:.1f} ms (99 of 100 within {:.1f} ms)\n",
+        status.frame_us_p50 / 1000.0, status.frame_us_p99 / 1000.0);
   }
 }
 

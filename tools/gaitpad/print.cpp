@@ -2,17 +2,44 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+
+#include "tools/gaitpad/terminal.h"
 
 namespace gaitpad {
 
 using nlohmann::ordered_json;
 
+void say(std::FILE* file, std::string_view text) {
+  const auto columns = terminal_columns(::fileno(file));
+  fmt::print(file, "{}", columns ? fitted(text, *columns) : std::string(text));
+}
+
+void warn(std::string_view text) {
+  const auto columns = terminal_columns(::fileno(stderr));
+  const std::string shown = columns ? fitted(text, *columns) : std::string(text);
+  std::fputs(shown.c_str(), stderr);
+}
+
+void print_table(const std::vector<TableRow>& table) {
+  std::vector<std::size_t> widths(table.front().size(), 0);
+  for (const TableRow& row : table) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  for (const TableRow& row : table) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    say("{}\n", printable(line));
+  }
+}
+
 void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
                    StatusLine* line) {
   if (line && !remarks.empty()) line->clear();
-  for (const std::string& remark : remarks)  // a remark that nobody can read is no failure
-    std::fputs(fmt::format("gaitpad {}: {}\n", command, printable(remark)).c_str(), stderr);
+  for (const std::string& remark : remarks)
+    warn(fmt::format("gaitpad {}: {}\n", command, printable(remark)));
 }
 
 int fail(std::string_view command, const std::string& sentence) {
@@ -47,18 +74,18 @@ ordered_json axes_json(const PadState& state) {
 }
 
 void print_session(const std::string& source, const RunSummary& run) {
-  fmt::print("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {:016x}\n", printable(source),
-             run.reports, run.ticks, run.rate_hz, static_cast<double>(run.ticks) / run.rate_hz,
-             run.pose_hash);
-  if (run.crowd > 0) fmt::print("a crowd of {} behind character 1\n", run.crowd);
+  say("{}: {} reports, {} ticks at {} Hz ({:.1f} s), pose hash {:016x}\n", printable(source),
+      run.reports, run.ticks, run.rate_hz, static_cast<double>(run.ticks) / run.rate_hz,
+      run.pose_hash);
+  if (run.crowd > 0) say("a crowd of {} behind character 1\n", run.crowd);
 }
 
 void print_character(const RunSummary& run, std::size_t walker, Way way) {
   const WalkerSummary& w = run.walkers[walker];
-  fmt::print("character {}: {}, style {} at the end, leg {:.3f} m: {}{} steps, {} IK failures\n",
-             walker + 1, printable(w.motion), printable(w.style), w.leg_length_m,
-             way == Way::shown ? fmt::format("{:.1f} m in ", w.distance_m) : "",
-             w.steps[0] + w.steps[1], w.ik_failures);
+  say("character {}: {}, style {} at the end, leg {:.3f} m: {}{} steps, {} IK failures\n",
+      walker + 1, printable(w.motion), printable(w.style), w.leg_length_m,
+      way == Way::shown ? fmt::format("{:.1f} m in ", w.distance_m) : "", w.steps[0] + w.steps[1],
+      w.ik_failures);
 }
 
 }  // namespace gaitpad

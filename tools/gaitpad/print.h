@@ -1,10 +1,14 @@
 // What commands print: sentences for people on standard error, JSON and texts of devices on
 // standard output.
 #pragma once
+#include <fmt/format.h>
+
 #include <cstdint>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/text.h"
@@ -14,6 +18,20 @@
 
 namespace gaitpad {
 
+// Prints text for people. On a terminal its lines are broken to the width (fitted()); in a pipe and
+// in a file they stay whole. Throws std::system_error if the file cannot be written.
+void say(std::FILE* file, std::string_view text);
+template <class... T>
+void say(fmt::format_string<T...> format, T&&... values) {
+  say(stdout, fmt::format(format, std::forward<T>(values)...));
+}
+
+// Columns as wide as their widest text, two blanks apart; the rows have equally many.
+using TableRow = std::vector<std::string>;
+void print_table(const std::vector<TableRow>& table);
+
+// Prints a text on standard error; one that nobody can read is no failure.
+void warn(std::string_view text);
 // Prints `gaitpad COMMAND: SENTENCE` on standard error and returns the exit status 1.
 int fail(std::string_view command, const std::string& sentence);
 // The same for each remark, and no exit status. Each sentence is made printable(): it may quote

@@ -85,9 +85,9 @@ void print_result(const RecordArguments& arguments, const Recorded& recorded,
                      {"unplugged", recorded.unplugged},
                      {"lost", lost}});
   } else {
-    fmt::print("{}: {} ({:04x}:{:04x}, {}), {} reports in {:.1f} s, {} lost\n",
-               printable(arguments.out), printable(info.name), info.vendor, info.product,
-               info.driver.empty() ? "a recording" : info.driver, recorded.reports, seconds, lost);
+    say("{}: {} ({:04x}:{:04x}, {}), {} reports in {:.1f} s, {} lost\n", printable(arguments.out),
+        printable(info.name), info.vendor, info.product,
+        info.driver.empty() ? "a recording" : info.driver, recorded.reports, seconds, lost);
   }
 }
 
@@ -96,7 +96,9 @@ int run(const RecordArguments& arguments) {
   auto files = pad_files(arguments.map, arguments.calibration);
   if (!files) return fail("record", files.error().message);
   // The stream outlives the recording, which asks it for its devices.
-  auto stream = PadStream::start({std::move(*files), arguments.wish});
+  PadStreamOptions options{std::move(*files), arguments.wish};
+  options.is_raw = true;
+  auto stream = PadStream::start(std::move(options));
   if (!stream) return fail("record", stream.error().message);
   auto recording = Recording::start(
       {arguments.out, std::nullopt, {}},

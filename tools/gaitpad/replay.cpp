@@ -34,11 +34,9 @@ void print_text(const SessionSpec::Replay& wanted, const RunSummary& run) {
   for (std::size_t i = 0; i < run.walkers.size(); ++i) {
     print_character(run, i, Way::shown);
     if (wanted.out.empty()) continue;
-    if (wanted.gltf)
-      fmt::print("  {}/{}\n", printable(wanted.out), numbered_name("pose", ".glb", i));
-    fmt::print("  {0}/{1}  {0}/{2}  {0}/{3}\n", printable(wanted.out),
-               numbered_name("pose", ".bvh", i), numbered_name("frames", ".csv", i),
-               numbered_name("summary", ".json", i));
+    if (wanted.gltf) say("  {}/{}\n", printable(wanted.out), numbered_name("pose", ".glb", i));
+    say("  {0}/{1}  {0}/{2}  {0}/{3}\n", printable(wanted.out), numbered_name("pose", ".bvh", i),
+        numbered_name("frames", ".csv", i), numbered_name("summary", ".json", i));
   }
 }
 
@@ -78,6 +76,7 @@ int view(const ReplayArguments& arguments) {
   RunEnd end;
   WindowOptions options = window_options(arguments.window, true);
   options.session = arguments.spec;
+  options.without_display = "leave out --view to replay without one";
   WindowResult result;
   return show_window(kReplayCommand, options, end, result);
 }
@@ -118,6 +117,7 @@ void add_replay(CLI::App& app, int& status) {
       ->check(CLI::Range(0, kMaxCrowdFiles))
       ->needs(out);
   command->add_flag("--lenient", arguments->is_lenient, "skip damaged lines and count them");
+  add_max_hours_option(*command, wanted.max_hours);
   auto* in_window = command->add_flag("--view", arguments->view,
                                       "open the window: a time line to scrub, any speed");
   for (CLI::Option* option : add_window_options(*command, arguments->window))

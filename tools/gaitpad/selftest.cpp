@@ -107,11 +107,10 @@ int run(SelfTestArguments& arguments) {
   if (arguments.as_json) {
     fmt::print("{}", result.report);
   } else {
-    for (const std::string& failure : result.failures)
-      fmt::print("failed: {}\n", printable(failure));
-    fmt::print("{}: {}; docs/tested-pads.md says how to contribute it\n", printable(result.folder),
-               result.failures.empty() ? "everything that was asked for was seen"
-                                       : fmt::format("{} failed", result.failures.size()));
+    for (const std::string& failure : result.failures) say("failed: {}\n", printable(failure));
+    say("{}: {}; docs/tested-pads.md says how to contribute it\n", printable(result.folder),
+        result.failures.empty() ? "everything that was asked for was seen"
+                                : fmt::format("{} failed", result.failures.size()));
   }
   return result.failures.empty() ? 0 : 1;
 }

@@ -6,9 +6,12 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <utility>
+
+#include "base/text.h"
 
 namespace gaitpad {
 namespace {
@@ -101,17 +104,84 @@ ScreenSize screen_size() noexcept {
   return {window.ws_col - 1u, window.ws_row};
 }
 
+std::optional<std::size_t> terminal_columns(int descriptor) noexcept {
+  winsize window = {};
+  if (::isatty(descriptor) == 0 || ::ioctl(descriptor, TIOCGWINSZ, &window) != 0 ||
+      window.ws_col == 0)
+    return std::nullopt;
+  return window.ws_col;
+}
+
+namespace {
+
+// Bytes of the first `count` characters, at most all of them.
+std::size_t bytes_of(std::string_view text, std::size_t count) {
+  std::size_t at = 0;
+  for (; at < text.size() && count > 0; --count)
+    at += std::max<std::size_t>(character_bytes(text.substr(at)), 1);
+  return std::min(at, text.size());
+}
+
+// Cuts off the first line of at most `width` characters. A word that is longer is broken behind a
+// comma, else anywhere.
+std::string_view take_fitting(std::string_view& rest, std::size_t width) {
+  const std::size_t most = bytes_of(rest, std::max<std::size_t>(width, 1));
+  std::size_t end = most;
+  if (most < rest.size()) {
+    const std::size_t blank = rest.rfind(' ', most);
+    const std::size_t comma = most > 0 ? rest.rfind(',', most - 1) : std::string_view::npos;
+    if (blank != std::string_view::npos && blank > 0) {
+      end = blank;
+    } else if (comma != std::string_view::npos) {
+      end = comma + 1;
+    }
+  }
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(end);
+  if (rest.starts_with(' ')) rest.remove_prefix(1);
+  return line;
+}
+
+// Where the last column in the left half of the width begins; 2 where the line has none.
+std::size_t hanging_indent(std::string_view line, std::size_t width) {
+  std::size_t indent = 0;
+  for (std::size_t i = 2; i < line.size() && i <= width / 2; ++i) {
+    if (line[i] != ' ' && line[i - 1] == ' ' && line[i - 2] == ' ') indent = i;
+  }
+  return indent > 0 ? indent : std::min<std::size_t>(2, width / 2);
+}
+
+}  // namespace
+
 std::vector<std::string> wrapped_lines(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
-  std::size_t begin = 0;
-  while (text.size() - begin > width) {
-    std::size_t end = text.rfind(' ', begin + width);
-    if (end == std::string::npos || end <= begin) end = begin + width;
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end < text.size() && text[end] == ' ' ? end + 1 : end;
-  }
-  lines.push_back(text.substr(begin));
+  std::string_view rest = text;
+  do {
+    lines.emplace_back(take_fitting(rest, width));
+  } while (!rest.empty());
   return lines;
+}
+
+std::string fitted(std::string_view text, std::size_t width) {
+  std::string all;
+  while (!text.empty()) {
+    const bool is_whole = text.find('\n') != std::string_view::npos;
+    std::string_view line = take_line(text);
+    const std::size_t indent = hanging_indent(line, width);
+    // The blanks before the first word are no place to break at.
+    const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+    const std::size_t lead = std::min(begin, width / 2);
+    all.append(lead, ' ');
+    line.remove_prefix(begin);
+    all += take_fitting(line, width - lead);
+    while (!line.empty()) {
+      line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+      all.append("\n").append(indent, ' ');
+      all += take_fitting(line, width - indent);
+    }
+    if (is_whole) all += '\n';
+  }
+  return all;
 }
 
 }  // namespace gaitpad

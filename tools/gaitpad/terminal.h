@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gaitpad {
@@ -39,7 +40,13 @@ struct ScreenSize {
 };
 ScreenSize screen_size() noexcept;
 
-// Lines of at most `width`, broken at blanks.
+// Lines of at most `width` characters, broken at blanks.
 std::vector<std::string> wrapped_lines(const std::string& text, std::size_t width);
+
+// The text with its lines broken at blanks to at most `width` characters. What goes on stands below
+// the last column that begins in the left half: a column has two blanks before it.
+std::string fitted(std::string_view text, std::size_t width);
+// Columns of a terminal; nothing if the descriptor is none.
+std::optional<std::size_t> terminal_columns(int descriptor) noexcept;
 
 }  // namespace gaitpad

@@ -173,7 +173,7 @@ def tick_times_ns(lines):
     """When each tick of a recording was due, by CLOCK_MONOTONIC: a function of its number."""
     rate_hz, starts = 240, []
     for line in lines:
-        if found := re.match(r"V: 1 rate_hz=(\d+)", line):
+        if found := re.match(r"V: \d rate_hz=(\d+)", line):
             rate_hz = int(found[1])
         if found := re.match(r"# tick (\d+) began at CLOCK_MONOTONIC (\d+)\.(\d{9})", line):
             starts.append((int(found[1]), int(found[2]) * 10**9 + int(found[3])))

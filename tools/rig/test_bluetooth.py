@@ -71,6 +71,23 @@ def test_a_wrong_checksum_moves_nothing(kind):
 
 
 @pytest.mark.timeout(60)
+def test_rumble_keeps_the_rate_of_reports():
+    """A DualShock 4's output report also sets how often it reports."""
+    with UhidPad("ds4_bt") as pad:
+        with Session("%04x:%04x" % pad.kind.ids, "--driver", "hidraw", name="rate-ds4_bt"):
+            time.sleep(1.0)
+            before_hz = pad.rate_hz
+            since = time.monotonic_ns()
+            pad.set(ly=0)
+            time.sleep(3.0)
+            beats = [p.data for p in pad.out_packets(since) if p.data[0] == 0x11 and p.data[6] + p.data[7] > 0]
+            after_hz = pad.rate_hz
+    assert beats, "no heel beat"
+    assert after_hz == before_hz, f"{before_hz} reports a second, {after_hz} after the first beat"
+    remark(f"ds4_bt: {before_hz:.0f} reports a second before and after {len(beats)} beats")
+
+
+@pytest.mark.timeout(60)
 @pytest.mark.parametrize("kind", ["dualsense_bt", "ds4_bt"])
 def test_rumble_carries_its_checksum(kind):
     number, strong, weak = OUTPUT[kind]

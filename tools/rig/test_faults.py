@@ -129,6 +129,16 @@ def test_unplugged_during_open():
     remark(f"unplugged during open: {TIMES} times, {session.summary['unplugged']} openings were cut")
 
 
+@pytest.mark.timeout(120)
+def test_a_pad_is_not_taken_from_the_kernel_unasked():
+    with Pad("xbox360") as pad:
+        node = pad.joystick
+        done = subprocess.run([PROGRAM, "decode", pad.usb, "--seconds", "1"], stdin=subprocess.DEVNULL, capture_output=True,
+                              text=True, timeout=60, check=False)
+        assert done.returncode == 1 and "the kernel's driver xpad has the pad" in done.stderr, done
+        assert node and pad.joystick == node, "xpad was detached"
+
+
 @pytest.mark.timeout(200)
 def test_two_equal_pads_are_kept_apart():
     with Pad("dualsense", 0) as first, Pad("dualsense", 1) as second:

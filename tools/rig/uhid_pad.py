@@ -90,6 +90,12 @@ def _ds4_feature(report, mac):
     return None
 
 
+def _ds4_interval(pad, report):
+    """The lower six bits of an output report's second byte: milliseconds between reports; 0 is as fast as the link."""
+    if report[0] == 0x11:
+        pad.rate_hz = 1000 / max(1, report[1] & 0x3f)
+
+
 def _neutral(size, start, **values):
     data = bytearray(size)
     data[:len(start)] = start
@@ -124,7 +130,7 @@ KINDS = {
     "ds4_bt": Kind(
         "Wireless Controller", (0x054c, 0x09cc), _DS4_BT,
         _neutral(78, b"\x11\xc0\x00\x80\x80\x80\x80\x08", b32=0x0b, b37=0x80, b41=0x80), _sony_fields(3, 10, 7),
-        rate_hz=250, seed=0xa1, feature=_ds4_feature),
+        rate_hz=250, seed=0xa1, feature=_ds4_feature, answer=_ds4_interval),
     "xbox_bt": Kind(
         "Xbox Wireless Controller", (0x045e, 0x0b13), _XBOX_BT, _neutral(17, b"\x01" + b"\x00\x80" * 4),
         {"lx": (8, 16), "ly": (24, 16), "rx": (40, 16), "ry": (56, 16), "lt": (72, 10), "rt": (88, 10), "hat": (104, 4),

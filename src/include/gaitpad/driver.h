@@ -71,6 +71,9 @@ class Device {
   // change after a read.
   virtual std::span<const pollfd> poll_fds() const noexcept = 0;
   virtual Status read(Report& report) noexcept = 0;
+  // From now on `read` gives every packet as the source gives it, also those that are no input. For
+  // recordings; nothing changes if the source has only reports.
+  virtual void hand_on_raw() noexcept {}
 
   // Sets the motors until the next call. False: the pad has none, or the packet was not sent.
   virtual bool rumble(const Rumble&) noexcept { return false; }

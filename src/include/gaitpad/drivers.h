@@ -1,7 +1,6 @@
 // The drivers that gaitpad has: find devices with them and open these (contract: driver.h).
 #pragma once
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "gaitpad/driver.h"
@@ -12,10 +11,5 @@ namespace gaitpad {
 std::span<const DriverEntry> drivers() noexcept;
 // hidraw, evdev, sdl, usb or trace; null: there is no driver of that name.
 const DriverEntry* find_driver(std::string_view name) noexcept;
-
-// The line of SDL's controller data base for this device, by bus, ids and version; empty if there
-// is none or gaitpad was built without SDL. Starts SDL's joysticks (up to a second), so it is for
-// the thread that finds devices.
-std::string sdl_mapping_of(const DeviceInfo& device);
 
 }  // namespace gaitpad

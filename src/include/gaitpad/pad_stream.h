@@ -25,6 +25,11 @@ struct PadWish {
   std::string driver;  // hidraw, evdev, sdl or usb: this driver alone
 };
 
+// A kernel's driver is detached only for a user who names usb.
+inline Detach detach_asked(const PadWish& wish) {
+  return wish.driver == "usb" ? Detach::allowed : Detach::never;
+}
+
 // A device as one driver sees it.
 struct PadSighting {
   DeviceListing listing;
@@ -79,6 +84,7 @@ struct PadStreamOptions {
   PadWish wish;
   // The keyboard as a further device. It has index 0 and is there from the start. Null: none.
   std::shared_ptr<KeyboardStick> keyboard = nullptr;
+  bool is_raw = false;  // every packet as its node gives it, input or not (Device::hand_on_raw)
   // For tests: other drivers; a file descriptor that replaces udev (readable when something was
   // plugged in or out, silent after one read()); the size of the ring in reports, a power of two.
   std::span<const DriverEntry> drivers = gaitpad::drivers();

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "gaitpad/calibration.h"
@@ -28,15 +29,32 @@ struct PadConfig {
   bool has_factory_sticks = false;  // live pads: it told its own calibration when it was opened
 };
 
+// For users.
+inline constexpr std::string_view kHatDrives =
+    "while a pad's left stick has not moved, its D-pad drives (arcade sticks in D-pad mode)";
+
 // How often each button was pressed.
 using PressCounts = std::array<std::uint32_t, kButtonCount>;
 // Counts the buttons that are up in `before` and down in `now` (PadState::buttons).
 void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses) noexcept;
 
+// By which of the rules below a recording was made, as its V: line says.
+enum class PadRules {
+  version_1,  // the first pad drives, moved or not, and a D-pad drives never
+  version_2,
+};
+
 // The first usable pad drives: the first of those plugged in at the start, else the first to be
-// added. It drives until it is removed. Then another pad that is plugged in takes over as soon as
-// its stick is near its centre. If none has taken over, the old pad drives again when it comes
-// back.
+// added. Another pad takes over when it is moved, by a tenth of a stick's deflection or a button,
+// if the driving one has not been moved yet or has rested for 5 s: receivers without a pad, virtual
+// pads and a pad's second device are there all the time but are never moved. A pad whose first
+// report is already deflected or pressed takes over from one that rests and has not been moved yet.
+//
+// While a pad's left stick has not moved since it was plugged in, its D-pad is its left stick: the
+// lever of an arcade stick in D-pad mode.
+//
+// When the driving pad is removed, another one takes over as soon as its stick is near its centre.
+// If none has taken over, the old pad drives again when it comes back.
 //
 // The stick of a removed pad is neutral. After plugging in again it stays neutral until it has been
 // near its centre. The stick of a streaming pad is neutral while the pad is silent for 100 ms. Time
@@ -51,7 +69,8 @@ void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses
 class Pads {
  public:
   Pads() = default;
-  Pads(std::vector<PadConfig> configs, int rate_hz);  // a report's device is the index in `configs`
+  // A report's device is the index in `configs`.
+  Pads(std::vector<PadConfig> configs, int rate_hz, PadRules rules = PadRules::version_2);
 
   // Sets what is known of a device that was found later, before its first add_pad(). Swaps:
   // `config` receives what was known before.
@@ -81,10 +100,13 @@ class Pads {
  private:
   struct Pad {
     PadConfig config;
-    PadState state;           // as reported
-    JumpFilter filter;        // of its sticks
-    bool is_awaited = false;  // plugged in again and not yet seen near its centre
-    bool is_seen = false;     // it has reported since it was plugged in
+    PadState state;               // as reported
+    JumpFilter filter;            // of its sticks
+    bool is_awaited = false;      // plugged in again and not yet seen near its centre
+    bool is_seen = false;         // it has reported since it was plugged in
+    bool has_left_moved = false;  // since it was plugged in
+    Stick moved_to;               // where its sticks were when they moved last
+    int resting_ticks = 0;        // since it was moved, deflected or pressed
     std::uint64_t reports = 0;
     int silent_ticks = 0;
     int settled_ticks = 0;  // of silence: the filter then ends its delay
@@ -93,23 +115,31 @@ class Pads {
   bool is_silent(const Pad& pad) const noexcept;
   static Stick calibrated(const Pad& pad) noexcept;
   bool is_near_centre(const Pad& pad) const noexcept;
+  bool is_at_rest(const Pad& pad) const noexcept;
+  bool take_movement(Pad& pad, std::uint32_t buttons_before) noexcept;
+  // `is_first`: the pad's first report since it was plugged in.
+  void offer_seat(std::uint16_t device, bool is_first, bool has_moved) noexcept;
+  void give_seat(std::uint16_t device) noexcept;
   bool can_take_over(const Pad& pad) const noexcept;
   bool has_lost_its_driver() const noexcept;
   bool is_fallback(std::uint16_t device) const noexcept;
   bool is_other_plugged_in() const noexcept;
   void replace_driver() noexcept;
+  bool is_driven_by_hat(const Pad& pad) const noexcept;
   Stick stick_of(const Pad& pad) const noexcept;
   Stick fallback_stick() const noexcept;
   void watch(const Pad& pad, const vec2& left) noexcept;
 
   std::vector<Pad> pads_;
+  PadRules rules_ = PadRules::version_2;
   std::uint16_t driving_ = kNoDevice;
+  bool is_driver_moved_ = false;  // since it drives
   int turns_ = 0;
   PressCounts presses_{};
   UntouchedWatch watch_;  // of the driving pad
   std::int64_t untouched_ = 0, ticks_ = 0;
   int rate_hz_ = 1;
-  int silence_ticks_ = 0, settled_ticks_ = 0;
+  int silence_ticks_ = 0, settled_ticks_ = 0, yielding_ticks_ = 0;
 };
 
 }  // namespace gaitpad

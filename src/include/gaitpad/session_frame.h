@@ -79,6 +79,7 @@ void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept;
 struct WalkerSample {
   std::array<std::array<float, 3>, 2> joint_rad{};  // hip flexion, knee flexion, ankle dorsiflexion
   std::array<vec3, 2> heel_m{}, toe_m{};            // world
+  std::array<float, 2> heel_above_m{};              // the ground below it
   std::array<std::int16_t, 2> ik_iterations{};
   std::array<float, 2> ik_error_m{};
   Stage stage = Stage::idle;

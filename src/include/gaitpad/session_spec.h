@@ -48,8 +48,10 @@ struct SessionSpec {
   };
   // Of a replay alone.
   struct Replay {
+    static constexpr double kMaxHours = 12.0;
     std::string trace;               // the recording; empty: the session is live
     Damage damage = Damage::refuse;  // what a damaged line of it means
+    double max_hours = kMaxHours;    // a longer one is an error: 40 KB can ask for hours of work
     std::string out;                 // folder for the files that replay() writes; empty: none
     std::optional<int> fps;          // of the poses written; none: one pose a tick
     bool gltf = false;               // write pose.glb beside pose.bvh

@@ -36,9 +36,10 @@ struct SimulationConfig {
   int rate_hz = 240;
   IkMode ik = IkMode::robust;
   std::vector<PadConfig> pads;  // a report's device is the index here
-  std::vector<Style> styles;    // that commands may name; of equal names the first one counts
-  GaitCycle cycle;              // its pace is the one in force
-  Pace pace = Pace::own;        // that was chosen; with the built-in motion it changes nothing
+  PadRules pad_rules = PadRules::version_2;
+  std::vector<Style> styles;  // that commands may name; of equal names the first one counts
+  GaitCycle cycle;            // its pace is the one in force
+  Pace pace = Pace::own;      // that was chosen; with the built-in motion it changes nothing
   std::vector<WalkerConfig>
       walkers;            // at least one; they stand side by side, the first at the origin
   int crowd = 0;          // so many more walk behind the first, at most kMaxFollowers

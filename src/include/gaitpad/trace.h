@@ -17,6 +17,7 @@ namespace gaitpad {
 
 inline constexpr int kDefaultRateHz = 240;
 inline constexpr int kMaxRateHz = 10000;
+inline constexpr int kTraceVersion = 2;  // what it changed: PadRules
 inline constexpr std::size_t kMaxTraceDevices = 16;
 inline constexpr std::size_t kMaxTraceBytes = std::size_t{512} << 20;  // of a file
 inline constexpr std::size_t kMaxTraceEvents = std::size_t{1} << 24;
@@ -46,9 +47,10 @@ struct TraceEvent {
 
 struct Trace {
   std::string path;
-  std::optional<int> rate_hz;  // of the `V:` line
-  std::optional<Pace> pace;    // of the `O:` line
-  bool has_ticks = false;      // from `T:` lines: TraceEvent::tick is set
+  int version = kTraceVersion;  // of the `V:` line; a file without one replays by today's rules
+  std::optional<int> rate_hz;   // of the `V:` line
+  std::optional<Pace> pace;     // of the `O:` line
+  bool has_ticks = false;       // from `T:` lines: TraceEvent::tick is set
   std::vector<TraceDevice> devices;
   std::vector<TraceEvent> events;  // in the order of the file; ticks never decrease
   std::vector<std::uint8_t> bytes;
@@ -86,8 +88,8 @@ Report report_of(const Trace& trace, const TraceEvent& event) noexcept;
 // Writes a trace line by line in the order of the calls.
 class TraceWriter {
  public:
-  void begin(int rate_hz);  // `V:`, before anything else
-  void pace(Pace pace);     // `O:`, before any event
+  void begin(int rate_hz, int version = kTraceVersion);  // `V:`, before anything else
+  void pace(Pace pace);                                  // `O:`, before any event
   void comment(std::string_view sentence);
   // The lines that describe the device; texts are cut to the reader's limits. The only device of a
   // recording needs no `D:` line if its index is 0.

@@ -257,6 +257,10 @@ struct LegFlow {
   using Angles = std::array<std::array<V, kLegDofs>, 2>;
   Angles angles_rad{}, even_rad{}, mean_rad{}, lagging_rad{};
   Angles data_rad{}, last_off_rad{}, last_shift_rad{};
+  std::array<Damped<V>, 2> loose;  // whether uneven weights may turn the foot: 0 not .. 1
+  // How low its heel is kept where it would rise, and the pitch that its leg asks for all the same.
+  std::array<Damped<V>, 2> low;
+  std::array<V, 2> asked_rad{};
 };
 using LegState = LegFlow<double>;
 

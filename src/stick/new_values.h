@@ -1,0 +1,41 @@
+// How often a pad has something new to say: many send the same position several times, so that
+// their rate of reports is no rate of positions. Counted while a stick moves, since at rest every
+// sound stick repeats itself.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "gaitpad/math.h"
+
+namespace gaitpad {
+
+struct MovementRate {
+  double report_hz = 0.0;     // reports
+  double new_value_hz = 0.0;  // reports with another position than the one before
+  double repeats() const noexcept { return 1.0 - new_value_hz / report_hz; }  // share, 0..1
+};
+
+class NewValueCount {
+ public:
+  // Each report, in the order of time: the raw positions of both sticks.
+  void take(std::int64_t time_ns, const vec2& left, const vec2& right) noexcept;
+  // Over all movements so far; none: there was no whole one.
+  std::optional<MovementRate> rate() const noexcept;
+
+ private:
+  // From one position to the next, as long as they follow within kPause_ns.
+  struct Movement {
+    std::int64_t time_ns = 0;
+    std::int64_t reports = 0, values = 0;
+    double travel = 0.0;
+  };
+  static void add(const Movement& movement, Movement& sum) noexcept;
+
+  bool has_position_ = false;
+  vec2 left_{0.0}, right_{0.0};
+  std::int64_t changed_ns_ = 0;  // when the position was new
+  std::int64_t reports_ = 0;     // since then
+  Movement running_, sum_;
+};
+
+}  // namespace gaitpad

@@ -566,7 +566,9 @@ SmoothFade<Vec<V>> path_at_strike(const WalkModel& model, const MomentOf<V>& at,
       from = chosen(at.was_led, goes - over_ground<V>(path.heading_rad, cell.pelvis_m), from);
     }
     off[k] = from - path_to_landing<V>(at, ahead, phase, path.landing_m, path.landing_heading_rad);
-    approach(phase, rate, at.stage_end, at.end_rate, V(at.stage_ticks - double(k)), 1.0);
+    // A walk beside it that stands has no ticks left.
+    const V left = max_of(V(at.stage_ticks - double(k)), all_of<V>(1.0));
+    approach(phase, rate, at.stage_end, at.end_rate, left, 1.0);
   }
   return {off[0], 0.5 * (4.0 * off[1] - 3.0 * off[0] - off[2]), off[0] - 2.0 * off[1] + off[2]};
 }

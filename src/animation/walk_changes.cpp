@@ -21,6 +21,7 @@ constexpr double kInPlace = 0.1;      // steps below this ratio turn on the spot
 constexpr double kNewFlight = 0.2;    // a flight that has come no further may become quicker
 constexpr double kTurnsBack = 0.45;   // of a closing flight: until then the walk goes on
 constexpr double kGoesOn = 0.7;       // of the asked step
+constexpr double kNearStrike_s = 0.15;
 constexpr double kStandAgain_s = 0.35;
 
 vec3 left_of(double heading_rad) noexcept {
@@ -259,6 +260,10 @@ void walk_on(const Tick& tick, WalkState& state) noexcept {
   StepClock& clock = state.clock;
   const bool flies = clock.stage == Stage::flight;
   if (clock.closing && flies && (!tick.flat || clock.tick > kTurnsBack * clock.stage_ticks)) return;
+  // Hips that have braked cannot be where the tables have them at a strike that is near: it goes on
+  // from there.
+  const double left_s = (clock.stage_ticks - clock.tick) * tick.dt_s;
+  if (flies && left_s < kNearStrike_s * tick.model.time_scale) return;
   change_step(tick, state, [&] {
     const Side swing = step_foot(state);
     if (clock.closing)

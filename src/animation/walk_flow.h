@@ -703,9 +703,9 @@ V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V
                time = kInTime_m * kInTime_m * model.size * model.size;
   const V in_time = (at.starting | at.closing) ? V{} : all_of<V>(time);
   const V low = at.step_phase - kBeforeStep, high = at.strike_phase + kAfterStep;
-  // The phase counts from the running step's own strike.
+  // The phase counts from the running step's own strike; it may fall far behind the clock.
   V phase = state.gait.phase - state.gait.off_phase.x;
-  phase = phase - floor_of(V(phase - at.phase + 0.5));
+  phase = phase - floor_of(V(phase - 0.5 * (low + high) + 0.5));
   phase = min_of(max_of(phase, low), high);
   const auto all_tries = at.replanned | at.strikes();
   for (int n = 0; n < (any(all_tries) ? kPhaseTries : kFewTries); ++n) {
@@ -864,6 +864,7 @@ inline constexpr double kRollEnd = 0.9;   // of the roll: the toe is down
 inline constexpr double kInPlaceStride_m = 0.02, kLikeAStep = 0.4, kWalksFrom = 0.3;
 inline constexpr double kSoftFloor_m = 0.02, kFirstLift_m = 0.03, kLastLift_m = 0.025,
                         kEdgeGoes = 0.4;
+inline constexpr double kSoftFrom = 0.3;  // of a changed flight: from it on the floor is soft
 // Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
 inline constexpr double kHeelStays = 0.25, kFirstPitch = 0.8;
 inline constexpr double kEdgeUp = 0.25,
@@ -1063,7 +1064,8 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
           slope_of = changed ? w3 * s * (1.0 + 3.0 * s) : h10(s);
   const V of_gap = fading ? value_of : V{}, of_slope = fading ? slope_of * foot.gap_lasts : V{};
   p += foot.gap_m * of_gap + foot.gap_slope_m * of_slope;
-  const V soft_m = kSoftFloor_m * tick.model.size * (1.0 - smootherstep(V((u - 0.7) / 0.3)));
+  const V soft_m = kSoftFloor_m * tick.model.size * smootherstep(V(s / kSoftFrom)) *
+                   (1.0 - smootherstep(V((u - 0.7) / 0.3)));
   const V above = max_of(V(p.y - base_m), V{}),
           softly = soft_positive(V(p.y - base_m), max_of(soft_m, all_of<V>(1e-6)));
   p.y = base_m + (changed ? softly : above);

@@ -252,9 +252,12 @@ void begin_settling(const Tick& tick, Side landed, WalkState& state) noexcept {
 void land_foot(const Tick& tick, WalkState& state) noexcept {
   StepClock& clock = state.clock;
   const Side landed = clock.swing;
-  state.gait.ratio_behind =
-      clock.closing ? state.gait.ratio_behind
-                    : ratio_ahead<double>(tick.model, moment_of(tick.model, state), state);
+  // A step that was walked on with may not have come over to its own stride.
+  const double change = std::clamp(state.gait.change, 0.0, 1.0);
+  if (!clock.closing)
+    state.gait.ratio_behind =
+        mix(state.gait.ratio_behind,
+            ratio_ahead<double>(tick.model, moment_of(tick.model, state), state), change);
   state.gait.off_ahead = {};
   plant_foot(state, landed);
   if (clock.closing) {

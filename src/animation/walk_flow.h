@@ -828,11 +828,11 @@ void fade_changes(const MomentOf<V>& at, const V& step_share, const V& share_a_t
   if (any(at.replanned)) {
     carry_over<V>(at.replanned, gait.shown, gait.shown_rate, share, V(next_share - share),
                   gait.off_shown);
-    // At a strike the stride ahead becomes the one behind; a first step has none.
-    const V last = at.strikes() ? gait.change - 1.0 : gait.change;
+    // At a strike what is reached becomes the stride behind; a first step has none.
     const auto first = at.starting & at.strikes();
-    carry_over<V>(at.replanned, first ? change : last, first ? V{} : gait.change_rate, change,
-                  V(next_change - change), gait.off_change);
+    const V last = at.strikes() ? V{} : gait.change;
+    carry_over<V>(at.replanned, first ? change : last, at.strikes() ? V{} : gait.change_rate,
+                  change, V(next_change - change), gait.off_change);
     gait.off_ticks = at.replanned ? at.fade_ticks : gait.off_ticks;
   }
   const V shown = share + gait.off_shown.x, changed = change + gait.off_change.x;

@@ -21,7 +21,7 @@ constexpr double kInPlace = 0.1;      // steps below this ratio turn on the spot
 constexpr double kNewFlight = 0.2;    // a flight that has come no further may become quicker
 constexpr double kTurnsBack = 0.45;   // of a closing flight: until then the walk goes on
 constexpr double kGoesOn = 0.7;       // of the asked step
-constexpr double kNearStrike_s = 0.15;
+constexpr double kNearStrike_s = 0.15, kLands_s = 0.05;
 constexpr double kStandAgain_s = 0.35;
 
 vec3 left_of(double heading_rad) noexcept {
@@ -184,6 +184,8 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
   for (double& time_s : state.gait.time_s) time_s = usual * tick.dt_s / clock.slowness;
   state.gait.asked_ratio = ratio_ahead<double>(model, moment_of(model, state), state);
   const bool flies = clock.stage == Stage::flight;
+  // A foot that is about to land does so where it is.
+  if (flies && (clock.stage_ticks - clock.tick) * tick.dt_s < kLands_s * scale) return;
   if (clock.starting && !flies) {  // the foot has not left the floor
     path.rest_m = 0.5 * (standing + state.foot[swing].heel_anchor_m) + forward * model.rest_lead_m -
                   left * (0.5 * (model.leg[0].track_m + model.leg[1].track_m));

@@ -263,9 +263,9 @@ void walk_on(const Tick& tick, WalkState& state) noexcept {
   const bool flies = clock.stage == Stage::flight;
   if (clock.closing && flies && (!tick.flat || clock.tick > kTurnsBack * clock.stage_ticks)) return;
   // Hips that have braked cannot be where the tables have them at a strike that is near: it goes on
-  // from there.
+  // from there. Not over uneven ground, where a foothold further on is planned with the step.
   const double left_s = (clock.stage_ticks - clock.tick) * tick.dt_s;
-  if (flies && left_s < kNearStrike_s * tick.model.time_scale) return;
+  if (tick.flat && flies && left_s < kNearStrike_s * tick.model.time_scale) return;
   change_step(tick, state, [&] {
     const Side swing = step_foot(state);
     if (clock.closing)

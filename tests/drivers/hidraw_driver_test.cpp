@@ -437,8 +437,9 @@ TEST_F(HidrawDriver, APadIsOpenedOnce) {
 TEST_F(HidrawDriver, TwoThreadsDoNotOpenAtOnce) {
   openings_at_once = 0;
   opening_time = 20ms;
-  std::thread other([this] { opened(); });
-  opened();
+  std::unique_ptr<Device> first;
+  std::thread other([this, &first] { first = opened(); });
+  const auto second = opened();
   other.join();
   opening_time = 0ms;
   EXPECT_EQ(openings, 2);

@@ -9,12 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -160,8 +160,10 @@ std::optional<pid_t> process_of(std::string_view end) {
 
 std::string temporary_beside(const std::string& path) {
   std::uint64_t number = 0;
-  if (::getrandom(&number, sizeof number, 0) != sizeof number)
-    number = std::random_device{}() | std::uint64_t{std::random_device{}()} << 32;
+  // It never waits: soon after a boot the kernel has little to be random with, and O_EXCL holds.
+  constexpr unsigned kWithoutWaiting = 4;  // GRND_INSECURE, from Linux 5.6 on
+  if (::getrandom(&number, sizeof number, kWithoutWaiting) != sizeof number)
+    number = std::uint64_t(std::chrono::steady_clock::now().time_since_epoch().count());
   std::array<char, kNumberDigits + 1> digits{};
   std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(number));
   const fs::path place(path);

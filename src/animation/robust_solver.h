@@ -169,9 +169,13 @@ inline RobustSolution<typename System::V> iterate(System& system, const RobustOp
     const V share = best.squares > all_of<V>(most) ? kFarthest / error_m : all_of<V>(1.0);
     StepIn<System> step;
     step.weight = system.weight;
-    step.give.fill(std::max(options.damping * options.damping, kLeastDampingSquared) +
-                   growth * min_of(best.squares, all_of<V>(most)));
-    for (int r = 0; r < System::kRows; ++r) step.error[r] = share * best.dx[r];
+    const V damping = std::max(options.damping * options.damping, kLeastDampingSquared) +
+                      growth * min_of(best.squares, all_of<V>(most));
+    // By hand: of std::array's fill() the linker might take the one compiled for wider registers.
+    for (int r = 0; r < System::kRows; ++r) {
+      step.give[r] = damping;
+      step.error[r] = share * best.dx[r];
+    }
     if constexpr (System::kWeighted) system.share_step(best, angles_rad, column, step);
     AnglesIn<System> delta;
     limited_step<System>(system, column, step, angles_rad, lanes, delta);

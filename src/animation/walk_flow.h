@@ -879,8 +879,8 @@ inline double size_of(const vec3& x) noexcept { return length_of(x); }
 template <class V, class T>
 T ease(const T& goal, double most, double grows, const V& lasts, const V& unsteady,
        EasedOf<T, V>& eased) noexcept {
-  const auto runs = eased.ticks > all_of<V>(1.0),
-             eases = (unsteady > V{}) & (lasts > all_of<V>(kLeastFade));
+  const MaskOf<V> runs = eased.ticks > all_of<V>(1.0);
+  const MaskOf<V> eases = (unsteady > V{}) & (lasts > all_of<V>(kLeastFade));
   if (!any(runs | eases)) return goal;
   SmoothFade<T> off = eased.off;
   const V left = min_of(eased.ticks, lasts);
@@ -1144,7 +1144,7 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
           slope_of = changed ? w3 * s * (1.0 + 3.0 * s) : h10(s);
   const V of_gap = fading ? value_of : V{}, of_slope = fading ? slope_of * foot.gap_lasts : V{};
   const V high = p.y - base_m,
-          falls = changed & (foot.gap_m.y < V{}) ? V(high / foot.gap_high_m) : all_of<V>(1.0);
+          falls = (changed & (foot.gap_m.y < V{})) ? V(high / foot.gap_high_m) : all_of<V>(1.0);
   p.x += foot.gap_m.x * of_gap + foot.gap_slope_m.x * of_slope;
   p.z += foot.gap_m.z * of_gap + foot.gap_slope_m.z * of_slope;
   p.y += foot.gap_m.y * of_gap * falls + foot.gap_slope_m.y * of_slope;

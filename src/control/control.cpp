@@ -151,6 +151,23 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   return params;
 }
 
+Stick pointed_stick(const Stick& stick, double heading_rad, double camera_rad,
+                    const GaitLimits& limits) noexcept {
+  constexpr double kTurns_per_s = 3.0;  // rate for the angle that is left
+  Stick steers = stick;
+  const double right = finite_or_zero(stick.left.x), ahead = finite_or_zero(stick.left.y);
+  const double pushed = std::min(std::sqrt(right * right + ahead * ahead), 1.0);
+  steers.left = vec2(0.0);
+  if (pushed == 0.0) return steers;
+  const double aim = camera_rad + gaitpad::atan2(0.0 - right, ahead) - heading_rad;
+  const double off = aim - 2.0 * kPi * std::floor(aim / (2.0 * kPi) + 0.5);
+  const double along = std::max(0.0, sin_cos(off).cos);
+  steers.left.y = pushed * along * along;
+  steers.left.x =
+      std::clamp(0.0 - kTurns_per_s * off / greatest_turn_rad_s(steers.left.y, limits), -1.0, 1.0);
+  return steers;
+}
+
 GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept {
   const GaitKeyInfo& info = info_of(key);
   switch (key) {

@@ -73,6 +73,16 @@ double vigour(double fatigue) noexcept;
 GaitParams gait_params(const Stick& stick, const StyleValues& style,
                        const GaitLimits& limits) noexcept;
 
+// What a deflection means: how far ahead and how quickly round, as in a car; or the direction in
+// which to go, seen along `camera_rad` (a heading, 0 along +z, to the left positive).
+enum class StickMeans : std::uint8_t { steers, points };
+
+// The stick that steers a walker with this heading to where `stick` points: as far as it is pushed
+// and in that direction, at once within 60 degrees of the heading, beyond that with slower steps,
+// and from 90 degrees on by a turn on the spot. Only stick.left is read and written.
+Stick pointed_stick(const Stick& stick, double heading_rad, double camera_rad,
+                    const GaitLimits& limits) noexcept;
+
 // Gait parameters that are set in place of what the stick gives, one by one: by the window's
 // sliders or by a `gait` command of a script.
 enum class GaitKey : std::uint8_t {

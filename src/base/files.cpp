@@ -141,6 +141,80 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   return text;
 }
 
+// --- what a session is made of
+
+namespace {
+
+thread_local InputFiles* innermost = nullptr;
+
+std::string normal(const std::string& path) { return fs::path(path).lexically_normal().string(); }
+
+}  // namespace
+
+InputFiles::InputFiles(const std::string& folder, std::vector<InputFile> held)
+    : folder_(folder.empty() ? "" : normal(folder) + "/"),
+      held_(std::move(held)),
+      outer_(std::exchange(innermost, this)) {}
+
+InputFiles::~InputFiles() { innermost = outer_; }
+
+const InputFiles* InputFiles::holder_of(const std::string& path) {
+  const std::string place = normal(path);
+  for (const InputFiles* files = innermost; files != nullptr; files = files->outer_) {
+    if (!files->folder_.empty() && place.starts_with(files->folder_)) return files;
+  }
+  return nullptr;
+}
+
+const InputFile* InputFiles::find(const std::string& path) const {
+  const std::string name = normal(path).substr(folder_.size());
+  const auto found = std::ranges::find(held_, name, &InputFile::path);
+  return found == held_.end() ? nullptr : &*found;
+}
+
+Result<std::string> input_text(const std::string& path, std::size_t max_bytes) {
+  if (const InputFiles* holder = InputFiles::holder_of(path)) {
+    if (const InputFile* file = holder->find(path)) return file->bytes;
+    return Error{printable(path) + ": the recording does not hold this file"};
+  }
+  auto text = file_text(path, max_bytes);
+  if (!text) return text;
+  for (InputFiles* files = innermost; files != nullptr; files = files->outer_) {
+    if (std::ranges::count(files->read_, path, &InputFile::path) == 0)
+      files->read_.push_back({path, *text});
+  }
+  return text;
+}
+
+bool is_input(const std::string& path) {
+  if (const InputFiles* holder = InputFiles::holder_of(path)) return holder->find(path) != nullptr;
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+std::vector<std::string> inputs_in(const std::string& folder) {
+  std::vector<std::string> paths;
+  if (const InputFiles* holder = InputFiles::holder_of(folder + "/")) {
+    const std::string inside = normal(folder + "/").substr(holder->folder_.size());
+    for (const InputFile& file : holder->held_) {
+      const bool is_inside =
+          file.path.starts_with(inside) && file.path.find('/', inside.size()) == std::string::npos;
+      if (is_inside) paths.push_back(holder->folder_ + file.path);
+    }
+    return paths;
+  }
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    paths.push_back(it->path().string());
+  return paths;
+}
+
+std::string beside(const std::string& path, const std::string& name) {
+  const InputFiles* holder = InputFiles::holder_of(path);
+  if (holder != nullptr && name.starts_with('/')) return holder->folder_ + name.substr(1);
+  return (fs::path(path).parent_path() / name).string();
+}
+
 namespace {
 
 constexpr std::size_t kNumberDigits = 16;

@@ -1,6 +1,7 @@
 """gaitpad replay as a user meets it: what it writes, when an event counts, and what it refuses."""
 import csv
 import json
+import os
 import re
 import resource
 import signal
@@ -369,3 +370,37 @@ def test_long_gaps_take_the_time_of_their_ticks_and_show_progress(program, made)
         terminal.wait_for(r"replay: \d+ %, (\d+ min )?\d+ s left", 60)
         assert terminal.wait_end(300) == 0
     assert f"{10 * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text
+
+
+# ---- a replay depends on its recording alone -------------------------------------------------
+def test_files_of_the_users_folder_change_no_replay(run, tmp_path):
+    """round.hid names limp_left in a command; a user has a style of that name, and a damaged one."""
+    def hash_of(**environment):
+        done = run("replay", ROUND, "--json", env={**os.environ, **environment})
+        return json.loads(done.stdout)["pose_hash"], done.stderr
+    bundled = hash_of()
+    styles = tmp_path / "gaitpad/styles"
+    styles.mkdir(parents=True)
+    (styles / "limp_left.toml").write_text("hip_sway = 3\n")
+    (styles / "even.toml").write_text("hip_sway =\n")
+    assert hash_of(XDG_CONFIG_HOME=str(tmp_path)) == bundled
+    (styles / "mine.toml").write_text("hip_sway =\n")
+    pose_hash, said = hash_of(XDG_CONFIG_HOME=str(tmp_path))
+    assert pose_hash == bundled[0]
+    assert f"{styles}/mine.toml:1: " in said and "the session goes on without this style" in said
+    assert "mine.toml" in run("replay", ROUND, "--style", "mine", env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
+                              status=1).stderr
+
+
+def test_a_recorded_session_replays_without_its_options(run, tmp_path):
+    own = tmp_path / "own.toml"
+    own.write_text("hip_sway = 2\n")
+    played = json.loads(run("play", ROUND, "--no-window", "--style", own, "--style", "tired", "--character", "child",
+                            "--terrain", "stairs", "--crowd", 3, "--seconds", 1.5, "--record", tmp_path / "r.hid",
+                            "--json").stdout)
+    own.unlink()
+    (tmp_path / "empty").mkdir()
+    replayed = json.loads(run("replay", tmp_path / "r.hid", "--json", cwd="/",
+                              env={**os.environ, "GAITPAD_CONFIG": str(tmp_path / "empty")}).stdout)
+    assert [r["pose_hash"] for r in replayed] == [p["pose_hash"] for p in played]
+    assert "/tmp" not in (tmp_path / "r.hid").read_text().split("F: ")[2], "bundled files have no paths of this machine"

@@ -11,8 +11,10 @@
 
 namespace gaitpad {
 
-// FILE|NAME is a path, or the name of a file in the folders of configuration. An empty text or list
-// means the default.
+// A recording of a session holds what the session was made of. What `walk` and `pad.map` leave
+// empty is in its replay as the recording says, and in other sessions the default.
+//
+// FILE|NAME is a path, or the name of a file in the folders of configuration.
 struct SessionSpec {
   // Who walks, how, and where.
   struct Walk {
@@ -21,8 +23,8 @@ struct SessionSpec {
     std::vector<std::string> styles;  // FILE|NAME; the shorter of the two lists repeats its last
     std::string terrain;              // FILE|NAME; empty: flat
     std::string script;               // FILE with commands at given times
-    IkMode ik = IkMode::robust;
-    int crowd = 0;            // so many more walk behind the first character
+    std::optional<IkMode> ik;         // none: robust
+    std::optional<int> crowd;         // so many more walk behind the first character; none: 0
     bool shows_crowd = true;  // frames hold the crowd's poses; false saves their copies in a tick
     // None: in a replay the trace's, else what the motion's description says, else its own. The
     // built-in motion has the adult's whatever stands here.
@@ -66,7 +68,12 @@ struct SessionSpec {
   // from the trace's is an error.
   std::optional<int> rate_hz;
   std::vector<std::string> config_folders;  // config_files.h
+  // Set while a recording that holds files is prepared: its path. Styles that no option names, and
+  // entries for pads, come from it then instead of from the folders.
+  std::string recording;
 };
+
+bool is_built_in(const SessionSpec& spec);  // the motion
 
 // What `spec.pad` and the folders of configuration say about pads. Reads files.
 Result<PadFiles> load_pad_files(const SessionSpec& spec);

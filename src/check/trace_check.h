@@ -28,7 +28,7 @@ struct CheckedTrace {
 
 struct FoundTraces {
   std::vector<CheckedTrace> traces;  // ordered by path, each once
-  int without = 0;                   // further recordings in the folders, without an expectation
+  std::vector<std::string> without;  // further recordings in the folders, without an expectation
 };
 // Files are taken as they are: a recording or its expectation. Folders are searched, hidden ones
 // and links left out; recordings without an expectation count only if `updates` is set. Error: a

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/random.h>
 #include <sys/vfs.h>
 #include <unistd.h>
@@ -125,19 +126,20 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   const auto failure = [&](const std::string& cause) { return Error{printable(path) + cause}; };
   std::error_code code;
   if (auto problem = no_file_problem(path)) return *problem;
+  const std::string too_large = ": larger than " + std::to_string(max_bytes) + " bytes";
+  const auto size = fs::file_size(path, code);
+  if (!code && size > max_bytes) return failure(too_large);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return failure(": cannot be opened for reading");
   std::string text;
-  if (const auto size = fs::file_size(path, code); !code)
-    text.reserve(std::min<std::uintmax_t>(size, max_bytes));
+  if (!code) text.reserve(size);
   std::vector<char> block(1 << 16);
   while (stream && text.size() <= max_bytes) {
     stream.read(block.data(), static_cast<std::streamsize>(block.size()));
     text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) return failure(": reading failed");
-  if (text.size() > max_bytes)
-    return failure(": larger than " + std::to_string(max_bytes) + " bytes");
+  if (text.size() > max_bytes) return failure(too_large);  // it has grown
   return text;
 }
 
@@ -267,6 +269,10 @@ Result<NewFile> NewFile::create(const std::string& path) {
   remove_leftovers(path);
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return write_error(path, EISDIR);
+  // Without a name nothing is left of it if the process is killed. Not every file system can.
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
+  const int unnamed = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666);
+  if (unnamed >= 0) return NewFile(path, "", unnamed);
   std::string temporary = temporary_beside(path);
   const int fd =
       ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
@@ -295,11 +301,32 @@ std::optional<Error> NewFile::write_to_disk() {
 }
 
 std::optional<Error> NewFile::publish() {
+  if (temporary_.empty()) {
+    const std::string name = temporary_beside(path_);
+    if (::linkat(AT_FDCWD, name_for_streams().c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) !=
+        0)
+      return write_error(path_, errno);
+    temporary_ = name;
+  }
   if (::close(std::exchange(fd_, -1)) != 0) return write_error(path_, errno);
   if (const int problem = rename_file(temporary_, path_); problem != 0)
     return write_error(path_, problem);
   temporary_.clear();
   return std::nullopt;
+}
+
+Result<FolderLock> FolderLock::wait(const std::string& path) {
+  const fs::path folder = fs::absolute(path).parent_path();
+  if (auto problem = make_folder(folder)) return *problem;
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return write_error(path, errno);
+  while (::flock(fd, LOCK_EX) != 0 && errno == EINTR) {
+  }
+  return FolderLock(fd);
+}
+
+FolderLock::~FolderLock() {
+  if (fd_ >= 0) ::close(fd_);
 }
 
 std::optional<Error> write_file(const std::string& path, std::string_view bytes) {

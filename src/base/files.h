@@ -68,8 +68,8 @@ std::string temporary_beside(const std::string& path);
 // Removes temporary files for `path` (`.NAME.PID.NUMBER` beside it) whose process was killed.
 void remove_leftovers(const std::string& path);
 
-// A file on its way to `path`, under a temporary name: new, and never through a link. Without
-// publish() it is removed.
+// A file on its way to `path`, without a name or under a temporary one: new, and never through a
+// link. Without publish() it is removed.
 class NewFile {
  public:
   static Result<NewFile> create(const std::string& path);
@@ -91,6 +91,20 @@ class NewFile {
 
   std::string path_, temporary_;
   int fd_ = -1;
+};
+
+// Held by one process at a time for the folder of a path: for a file that is read, changed and
+// written. Makes the folder. Where the file system has no locks nothing is locked.
+class FolderLock {
+ public:
+  static Result<FolderLock> wait(const std::string& path);
+  FolderLock(FolderLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  FolderLock& operator=(FolderLock&&) = delete;
+  ~FolderLock();
+
+ private:
+  explicit FolderLock(int fd) : fd_(fd) {}
+  int fd_;
 };
 
 // Makes the folder of `path`, writes a temporary file in it and renames that to `path`. On error

@@ -18,6 +18,7 @@
 #include "check/pose_track.h"
 #include "files/toml_file.h"
 #include "session/playback.h"
+#include "session/workers.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
@@ -375,7 +376,7 @@ void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& opti
   };
   {
     std::vector<std::jthread> others;
-    for (int i = 1; i < threads; ++i) others.emplace_back(work);
+    for (int i = startable_threads(threads); i > 1; --i) others.emplace_back(work);
     work();
   }
   if (thrown) std::rethrow_exception(thrown);

@@ -13,9 +13,9 @@ namespace gaitpad {
 
 struct CheckOptions {
   std::vector<std::string> config_folders;
-  bool updates = false;      // writes the expectations that are not met or are missing
-  bool with_curves = false;  // of the joint that differs first
-  double max_hours = SessionSpec::Replay::kMaxHours;
+  bool updates = false;             // writes the expectations that are not met or are missing
+  bool with_curves = false;         // of the joint that differs first
+  std::optional<double> max_hours;  // as SessionSpec::Replay's
 };
 
 // A recording and what stands beside it.

@@ -612,6 +612,10 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return Error{path + ": there is no such file"};
   if (auto problem = no_file_problem(path)) return *problem;
+  const auto too_large = [&path] {
+    return Error{fmt::format("{}: larger than {} MiB", path, kMaxTraceBytes >> 20)};
+  };
+  if (std::filesystem::file_size(path, ignored) > kMaxTraceBytes && !ignored) return too_large();
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{path + ": cannot be opened for reading"};
   LineFeed feed(path, damage);
@@ -622,9 +626,7 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
     in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
     const auto got = static_cast<std::size_t>(in.gcount());
     total += got;
-    if (total > kMaxTraceBytes) {
-      return Error{fmt::format("{}: larger than {} MiB", path, kMaxTraceBytes >> 20)};
-    }
+    if (total > kMaxTraceBytes) return too_large();
     const std::string_view piece(buffer.data(), got);
     if (!evemu.empty() || (total == got && is_evemu(piece))) {
       evemu += piece;

@@ -26,12 +26,15 @@ std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pad
   return Error{trace.path + ": none of its devices is a pad with a stick"};
 }
 
-std::optional<Error> length_problem(const std::string& path, std::int64_t ticks, int rate_hz,
-                                    double max_hours) {
+std::optional<Error> length_problem(const Trace& trace, std::int64_t ticks, int rate_hz,
+                                    std::optional<double> asked_hours) {
+  using Replay = SessionSpec::Replay;
+  const double max_hours =
+      asked_hours.value_or(trace.skipped_lines > 0 ? Replay::kMaxDamagedHours : Replay::kMaxHours);
   const double hours = static_cast<double>(ticks) / rate_hz / 3600.0;
   if (hours <= max_hours) return std::nullopt;
   return Error{fmt::format("{}: lasts {:.4g} hours, longer than {:g}; --max-hours raises the limit",
-                           path, hours, max_hours)};
+                           trace.path, hours, max_hours)};
 }
 
 }  // namespace
@@ -45,8 +48,7 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
   const int rate = replay_rate_hz(*trace, spec.rate_hz);
   auto ticks = assign_ticks(*trace, rate);
   if (!ticks) return ticks.error();
-  if (auto problem = length_problem(trace->path, *ticks, rate, spec.replay.max_hours))
-    return *problem;
+  if (auto problem = length_problem(*trace, *ticks, rate, spec.replay.max_hours)) return *problem;
   auto files = load_pad_files(spec);
   if (!files) return files.error();
   auto pads = pad_configs(*files, trace->devices, trace->path);

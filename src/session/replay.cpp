@@ -126,7 +126,7 @@ Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progr
   if (!exports) return exports.error();
 
   if (!run_to_end(*prepared, run, followers, *exports, progress))
-    return Error{"it was ended before its last tick; nothing was written"};
+    return Error{spec.replay.trace + ": ended before its last tick; nothing was written"};
   ReplayResult result{run_summary(simulation, cast_of(simulation, prepared->config)), {}};
   result.summary.damaged_lines = prepared->trace.skipped_lines;
   std::vector<WalkerSummary> walked = result.summary.walkers;

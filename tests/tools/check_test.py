@@ -363,7 +363,7 @@ def test_a_shard_that_there_is_not_is_refused(many, program, refuse, shard):
         refuse("check", many, "--shard", shard, status=2)
     environment = {**os.environ, "GAITPAD_SHARD_INDEX": shard.partition("/")[0],
                    "GAITPAD_SHARD_TOTAL": shard.partition("/")[2]}
-    refuse("check", many, env=environment, says="GAITPAD_SHARD_INDEX")
+    refuse("check", many, env=environment, says="GAITPAD_SHARD_INDEX", status=2)
 
 
 def test_junit_has_a_case_each(many, run, tmp_path):

@@ -404,3 +404,42 @@ def test_a_recorded_session_replays_without_its_options(run, tmp_path):
                               env={**os.environ, "GAITPAD_CONFIG": str(tmp_path / "empty")}).stdout)
     assert [r["pose_hash"] for r in replayed] == [p["pose_hash"] for p in played]
     assert "/tmp" not in (tmp_path / "r.hid").read_text().split("F: ")[2], "bundled files have no paths of this machine"
+
+
+# ---- what hostile use found ------------------------------------------------------------------
+def test_large_files_are_refused_before_they_are_read(refuse, tmp_path):
+    """600 MB of holes, with 200 MB of memory."""
+    for name, option in (("large.bvh", ["--motion"]), ("large.toml", ["--style"]), ("large.hid", [])):
+        path = tmp_path / name
+        path.touch()
+        os.truncate(path, 600 << 20)
+        small = lambda: resource.setrlimit(resource.RLIMIT_AS, (200 << 20, 200 << 20))
+        trace = [] if name == "large.hid" else [ROUND]
+        refuse("replay", *trace, *option, path, says=f"{name}: larger than", preexec_fn=small)
+
+
+def test_skipped_damage_asks_for_no_hours_of_work(made, refuse):
+    """A hundred gaps of ten minutes, and a damaged line."""
+    text = HEADER + "".join(report(599 * i) for i in range(100)) + "E: damaged\n"
+    made.refuse(text, "--lenient", says=["made.hid: lasts 16.4", "longer than 1;", "--max-hours"])
+    made.refuse(HEADER + "".join(report(599 * i) for i in range(10)) + "E: damaged\n", "--lenient", says="longer than 1;")
+    made.run(HEADER + "".join(report(60 * i) for i in range(3)) + "E: damaged\n", "--lenient")
+
+
+def test_ground_without_a_number_is_said_to_be(made, run):
+    ground = made.write("ground.toml", '[[section]]\nkind = "rough"\nlength_m = 5\nheight_m = 0\nwavelength_m = 1\n'
+                                       'fade_m = 1e-300\n')
+    assert "bends infinitely per metre" in run("replay", ROUND, "--terrain", ground, status=1).stderr
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may become somebody without a thread")
+def test_where_no_thread_can_be_started_a_crowd_walks_on_one(run, tmp_path):
+    def alone():
+        os.setgroups([])
+        os.setgid(47631)
+        os.setuid(47631)
+        resource.setrlimit(resource.RLIMIT_NPROC, (0, 0))
+    off = {**os.environ, "GAITPAD_CACHE": "off"}
+    done = run("replay", ROUND, "--crowd", 100, "--json", preexec_fn=alone, env=off, cwd="/")
+    assert json.loads(done.stdout)["pose_hash"] == json.loads(
+        run("replay", ROUND, "--crowd", 100, "--json").stdout)["pose_hash"]

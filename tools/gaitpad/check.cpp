@@ -28,6 +28,7 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kCheckCommand = "check";
+constexpr int kWrongUsage = 2;  // exit status
 constexpr int kMaxShards = 100'000, kMaxJobs = 1024;
 
 // The part of the recordings that is this run's: every `total`-th, counted from 1.
@@ -40,7 +41,7 @@ struct CheckArguments {
   bool updates = false, is_strict = false;
   int jobs = machine_threads();
   std::string shard, junit, plot;
-  double max_hours = SessionSpec::Replay::kMaxHours;
+  std::optional<double> max_hours;
 };
 
 // `2/8`.
@@ -249,7 +250,7 @@ int tell_of_left_out(const CheckArguments& arguments, const std::vector<std::str
 
 int run(const CheckArguments& arguments) {
   const auto shard = wished_shard(arguments.shard);
-  if (!shard) return fail(kCheckCommand, shard.error().message);
+  if (!shard) return fail(kCheckCommand, shard.error().message), kWrongUsage;
   auto found = found_traces(arguments.paths, arguments.updates);
   if (!found) return fail(kCheckCommand, found.error().message);
   if (found->traces.empty()) {

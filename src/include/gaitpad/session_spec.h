@@ -50,14 +50,16 @@ struct SessionSpec {
   };
   // Of a replay alone.
   struct Replay {
-    static constexpr double kMaxHours = 12.0;
+    static constexpr double kMaxHours = 12.0, kMaxDamagedHours = 1.0;
     std::string trace;               // the recording; empty: the session is live
     Damage damage = Damage::refuse;  // what a damaged line of it means
-    double max_hours = kMaxHours;    // a longer one is an error: 40 KB can ask for hours of work
-    std::string out;                 // folder for the files that replay() writes; empty: none
-    std::optional<int> fps;          // of the poses written; none: one pose a tick
-    bool gltf = false;               // write pose.glb beside pose.bvh
-    int crowd_files = 32;            // of the crowd the first so many get files, too
+    // A longer one is an error: 40 KB can ask for hours of work. None: kMaxHours, or
+    // kMaxDamagedHours if lines of it were skipped.
+    std::optional<double> max_hours;
+    std::string out;         // folder for the files that replay() writes; empty: none
+    std::optional<int> fps;  // of the poses written; none: one pose a tick
+    bool gltf = false;       // write pose.glb beside pose.bvh
+    int crowd_files = 32;    // of the crowd the first so many get files, too
   };
 
   Walk walk;

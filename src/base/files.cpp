@@ -212,9 +212,13 @@ std::vector<std::string> inputs_in(const std::string& folder) {
 }
 
 std::string beside(const std::string& path, const std::string& name) {
+  const fs::path folder = fs::path(path).parent_path();
   const InputFiles* holder = InputFiles::holder_of(path);
-  if (holder != nullptr && name.starts_with('/')) return holder->folder_ + name.substr(1);
-  return (fs::path(path).parent_path() / name).string();
+  if (holder == nullptr) return (folder / name).string();
+  // No name leads out of what is held.
+  const std::string inside = normal(folder.string() + "/").substr(holder->folder_.size());
+  return holder->folder_ +
+         (fs::path("/") / inside / name).lexically_normal().relative_path().string();
 }
 
 namespace {

@@ -42,7 +42,9 @@ std::optional<Error> length_problem(const Trace& trace, std::int64_t ticks, int 
 Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
   auto trace = read_trace(asked.replay.trace, asked.replay.damage);
   if (!trace) return trace.error();
-  SessionSpec spec = with_recorded(asked, *trace);
+  auto recorded = with_recorded(asked, *trace);
+  if (!recorded) return recorded.error();
+  SessionSpec& spec = *recorded;
   const InputFiles inputs(spec.recording, held_files(*trace));
   accept_packets(*trace);
   const int rate = replay_rate_hz(*trace, spec.rate_hz);

@@ -76,7 +76,7 @@ RecordedSession recorded_session(const SessionSpec& spec, Pace pace,
   return session;
 }
 
-SessionSpec with_recorded(const SessionSpec& spec, const Trace& trace) {
+Result<SessionSpec> with_recorded(const SessionSpec& spec, const Trace& trace) {
   SessionSpec full = spec;
   if (trace.files.empty()) return full;
   full.recording = trace.path;
@@ -84,13 +84,20 @@ SessionSpec with_recorded(const SessionSpec& spec, const Trace& trace) {
     std::string_view value = option;
     const std::string_view key = take_word(value);
     value = trimmed(value, " ");
-    const std::string path = fmt::format("{}/{}", trace.path, value);
+    // No name leads out of the recording.
+    const fs::path inside = (fs::path("/") / value).lexically_normal().relative_path();
+    const std::string path = fmt::format("{}/{}", trace.path, inside.string());
     if (key == "motion" && spec.walk.motion.empty()) full.walk.motion = path;
     if (key == "character" && spec.walk.characters.empty()) full.walk.characters.push_back(path);
     if (key == "style" && spec.walk.styles.empty()) full.walk.styles.push_back(path);
     if (key == "terrain" && spec.walk.terrain.empty()) full.walk.terrain = path;
     if (key == "ik" && value == "paper" && !spec.walk.ik) full.walk.ik = IkMode::paper;
-    if (key == "crowd" && !spec.walk.crowd) full.walk.crowd = parse_number<int>(value);
+    if (key == "crowd" && !spec.walk.crowd) {
+      full.walk.crowd = parse_number<int>(value).value_or(-1);
+      if (*full.walk.crowd < 0 || *full.walk.crowd > kMaxFollowers)
+        return Error{fmt::format("{}: {} is no crowd of 0 to {}", trace.path, in_quotes(value),
+                                 kMaxFollowers)};
+    }
     if (key == "map" && spec.pad.map.empty()) full.pad.map = path;
   }
   return full;

@@ -22,7 +22,8 @@ RecordedSession recorded_session(const SessionSpec& spec, Pace pace,
 
 // The session that `spec` asks for: what it leaves open is as the recording says, if that holds
 // files. They are found below the recording's path (held_files()).
-SessionSpec with_recorded(const SessionSpec& spec, const Trace& trace);
+// Error: a crowd that there cannot be.
+Result<SessionSpec> with_recorded(const SessionSpec& spec, const Trace& trace);
 // For InputFiles: without the styles that were saved while the recording ran.
 std::vector<InputFile> held_files(const Trace& trace);
 

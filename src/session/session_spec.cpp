@@ -115,7 +115,10 @@ bool is_built_in(const SessionSpec& spec) {
 }
 
 Result<PadFiles> load_pad_files(const SessionSpec& spec) {
-  return load_pad_files(folders_of_lists(spec), spec.pad.map, spec.pad.calibration);
+  auto files = load_pad_files(folders_of_lists(spec), spec.pad.map, spec.pad.calibration);
+  // A recording's devices have their own calibrations, or none.
+  if (files && !spec.recording.empty()) files->calibration_folders.clear();
+  return files;
 }
 
 Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz) {

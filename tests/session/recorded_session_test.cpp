@@ -119,6 +119,32 @@ TEST_F(RecordedSessionTest, OnlyFilesOfPadsThatAreThereAreHeld) {
   EXPECT_EQ(pads, std::vector<std::string>{"pads/a.toml"});
 }
 
+bool is_not_held(const std::string& cause) {
+  return cause.ends_with(": the recording does not hold this file");
+}
+
+// What a stranger's recording names is looked for in the recording alone.
+TEST_F(RecordedSessionTest, NoNameLeadsOutOfARecording) {
+  const std::string secret = own_.write("own/secret.toml", "hip_sway = 1\n");
+  Trace trace = two_pads_trace();
+  SessionSpec spec;
+  spec.replay.trace = own_.at("hostile.hid");
+  for (const std::string& way :
+       {secret, std::string("../own/secret.toml"), std::string("a/../../own/secret.toml")}) {
+    trace.options = {"style " + way};
+    trace.files = {{"styles/x.toml", "\n"}};
+    ASSERT_TRUE(write_trace(trace, spec.replay.trace));
+    EXPECT_TRUE(is_not_held(cause_of(replay(spec)))) << way << ": " << cause_of(replay(spec));
+    trace.options = {"motion m.toml"};
+    trace.files = {{"m.toml", "file = \"" + way + "\"\n"}};
+    ASSERT_TRUE(write_trace(trace, spec.replay.trace));
+    EXPECT_TRUE(is_not_held(cause_of(replay(spec)))) << way << ": " << cause_of(replay(spec));
+  }
+  trace.options = {"crowd -1"};
+  ASSERT_TRUE(write_trace(trace, spec.replay.trace));
+  EXPECT_EQ(cause_of(replay(spec)), spec.replay.trace + ": \"-1\" is no crowd of 0 to 100000");
+}
+
 TEST_F(RecordedSessionTest, ADamagedStyleThatNobodyNamesIsLeftOutWithARemark) {
   own_.write("config/styles/broken.toml", "hip_sway = \n");
   SessionSpec spec = options_;

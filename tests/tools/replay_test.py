@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import pathlib
 import re
 import resource
 import signal
@@ -337,27 +338,32 @@ def test_a_link_in_the_way_is_not_followed(program, made):
     assert (made.out / "pose.bvh").read_text().startswith("HIERARCHY")
 
 
-def has_begun(out):
-    return out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())
+def has_begun(process, out):
+    """It has written to a file there, which has no name yet."""
+    for fd in pathlib.Path(f"/proc/{process.pid}/fd").iterdir():
+        if os.readlink(fd).startswith(str(out)) and fd.stat().st_size > 100_000:
+            return True
+    return False
 
 
 def test_control_c_ends_it_at_once_and_leaves_nothing(started, tmp_path):
     trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
     out = tmp_path / "out"
     with started("replay", trace, "--out", out) as process:
-        wait_until(lambda: has_begun(out))
+        wait_until(lambda: has_begun(process, out))
         _, errors = end_by(process, signal.SIGINT, status=130)
     assert "nothing was written" in errors and list(out.iterdir()) == []
 
 
-def test_what_a_killed_replay_left_is_removed_by_the_next(started, run, tmp_path):
+def test_a_killed_replay_leaves_nothing_and_what_earlier_ones_left_is_removed(started, run, tmp_path):
     trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
     out = tmp_path / "out"
     with started("replay", trace, "--out", out) as process:
-        wait_until(lambda: has_begun(out))
+        wait_until(lambda: has_begun(process, out))
         process.kill()
         process.wait()
-    assert any(p.name.startswith(".pose.bvh.") for p in out.iterdir())
+    assert list(out.iterdir()) == []
+    (out / f".pose.bvh.{process.pid}.0123456789abcdef").touch()  # where files cannot be without a name
     run("replay", ROUND, "--out", out, "--fps", 60)
     assert sorted(p.name for p in out.iterdir()) == ["frames.csv", "pose.bvh", "summary.json"]
 

@@ -42,8 +42,9 @@ std::optional<Error> shape_problem(double bend_1_m, double grade) {
   if (!(grade <= kMaxGrade))
     return Error{"a grade of " + fixed(grade, 2) + " is too steep: at most " + number(kMaxGrade)};
   if (!(bend_1_m <= kMaxBend_1_m)) {
-    return Error{"a sole would not lie on ground that bends by " + fixed(bend_1_m, 2) +
-                 " per metre: at most " + number(kMaxBend_1_m)};
+    const std::string bend = std::isfinite(bend_1_m) ? "by " + fixed(bend_1_m, 2) : "infinitely";
+    return Error{"a sole would not lie on ground that bends " + bend + " per metre: at most " +
+                 number(kMaxBend_1_m)};
   }
   return std::nullopt;
 }

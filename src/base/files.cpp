@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/random.h>
 #include <sys/vfs.h>
 #include <unistd.h>
@@ -125,20 +126,99 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   const auto failure = [&](const std::string& cause) { return Error{printable(path) + cause}; };
   std::error_code code;
   if (auto problem = no_file_problem(path)) return *problem;
+  const std::string too_large = ": larger than " + std::to_string(max_bytes) + " bytes";
+  const auto size = fs::file_size(path, code);
+  if (!code && size > max_bytes) return failure(too_large);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return failure(": cannot be opened for reading");
   std::string text;
-  if (const auto size = fs::file_size(path, code); !code)
-    text.reserve(std::min<std::uintmax_t>(size, max_bytes));
+  if (!code) text.reserve(size);
   std::vector<char> block(1 << 16);
   while (stream && text.size() <= max_bytes) {
     stream.read(block.data(), static_cast<std::streamsize>(block.size()));
     text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) return failure(": reading failed");
-  if (text.size() > max_bytes)
-    return failure(": larger than " + std::to_string(max_bytes) + " bytes");
+  if (text.size() > max_bytes) return failure(too_large);  // it has grown
   return text;
+}
+
+// --- what a session is made of
+
+namespace {
+
+thread_local InputFiles* innermost = nullptr;
+
+std::string normal(const std::string& path) { return fs::path(path).lexically_normal().string(); }
+
+}  // namespace
+
+InputFiles::InputFiles(const std::string& folder, std::vector<InputFile> held)
+    : folder_(folder.empty() ? "" : normal(folder) + "/"),
+      held_(std::move(held)),
+      outer_(std::exchange(innermost, this)) {}
+
+InputFiles::~InputFiles() { innermost = outer_; }
+
+const InputFiles* InputFiles::holder_of(const std::string& path) {
+  const std::string place = normal(path);
+  for (const InputFiles* files = innermost; files != nullptr; files = files->outer_) {
+    if (!files->folder_.empty() && place.starts_with(files->folder_)) return files;
+  }
+  return nullptr;
+}
+
+const InputFile* InputFiles::find(const std::string& path) const {
+  const std::string name = normal(path).substr(folder_.size());
+  const auto found = std::ranges::find(held_, name, &InputFile::path);
+  return found == held_.end() ? nullptr : &*found;
+}
+
+Result<std::string> input_text(const std::string& path, std::size_t max_bytes) {
+  if (const InputFiles* holder = InputFiles::holder_of(path)) {
+    if (const InputFile* file = holder->find(path)) return file->bytes;
+    return Error{printable(path) + ": the recording does not hold this file"};
+  }
+  auto text = file_text(path, max_bytes);
+  if (!text) return text;
+  for (InputFiles* files = innermost; files != nullptr; files = files->outer_) {
+    if (std::ranges::count(files->read_, path, &InputFile::path) == 0)
+      files->read_.push_back({path, *text});
+  }
+  return text;
+}
+
+bool is_input(const std::string& path) {
+  if (const InputFiles* holder = InputFiles::holder_of(path)) return holder->find(path) != nullptr;
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+std::vector<std::string> inputs_in(const std::string& folder) {
+  std::vector<std::string> paths;
+  if (const InputFiles* holder = InputFiles::holder_of(folder + "/")) {
+    const std::string inside = normal(folder + "/").substr(holder->folder_.size());
+    for (const InputFile& file : holder->held_) {
+      const bool is_inside =
+          file.path.starts_with(inside) && file.path.find('/', inside.size()) == std::string::npos;
+      if (is_inside) paths.push_back(holder->folder_ + file.path);
+    }
+    return paths;
+  }
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    paths.push_back(it->path().string());
+  return paths;
+}
+
+std::string beside(const std::string& path, const std::string& name) {
+  const fs::path folder = fs::path(path).parent_path();
+  const InputFiles* holder = InputFiles::holder_of(path);
+  if (holder == nullptr) return (folder / name).string();
+  // No name leads out of what is held.
+  const std::string inside = normal(folder.string() + "/").substr(holder->folder_.size());
+  return holder->folder_ +
+         (fs::path("/") / inside / name).lexically_normal().relative_path().string();
 }
 
 namespace {
@@ -193,6 +273,10 @@ Result<NewFile> NewFile::create(const std::string& path) {
   remove_leftovers(path);
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return write_error(path, EISDIR);
+  // Without a name nothing is left of it if the process is killed. Not every file system can.
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
+  const int unnamed = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666);
+  if (unnamed >= 0) return NewFile(path, "", unnamed);
   std::string temporary = temporary_beside(path);
   const int fd =
       ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
@@ -221,11 +305,32 @@ std::optional<Error> NewFile::write_to_disk() {
 }
 
 std::optional<Error> NewFile::publish() {
+  if (temporary_.empty()) {
+    const std::string name = temporary_beside(path_);
+    if (::linkat(AT_FDCWD, name_for_streams().c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) !=
+        0)
+      return write_error(path_, errno);
+    temporary_ = name;
+  }
   if (::close(std::exchange(fd_, -1)) != 0) return write_error(path_, errno);
   if (const int problem = rename_file(temporary_, path_); problem != 0)
     return write_error(path_, problem);
   temporary_.clear();
   return std::nullopt;
+}
+
+Result<FolderLock> FolderLock::wait(const std::string& path) {
+  const fs::path folder = fs::absolute(path).parent_path();
+  if (auto problem = make_folder(folder)) return *problem;
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return write_error(path, errno);
+  while (::flock(fd, LOCK_EX) != 0 && errno == EINTR) {
+  }
+  return FolderLock(fd);
+}
+
+FolderLock::~FolderLock() {
+  if (fd_ >= 0) ::close(fd_);
 }
 
 std::optional<Error> write_file(const std::string& path, std::string_view bytes) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "gaitpad/result.h"
 
@@ -19,6 +20,44 @@ std::optional<Error> no_file_problem(const std::string& path);
 // could hang, reading it never end. Error: `PATH: cause`.
 Result<std::string> file_text(const std::string& path, std::size_t max_bytes);
 
+struct InputFile {
+  std::string path, bytes;
+};
+// The files that a session is made of. While it lives, what input_text() reads on this thread is
+// kept here. Paths inside `folder` stand for `held` and not for files on the disk. They nest: an
+// outer one keeps what an inner one reads from the disk, too.
+class InputFiles {
+ public:
+  // The paths of `held` are relative to `folder`. Without a folder nothing is held.
+  explicit InputFiles(const std::string& folder = "", std::vector<InputFile> held = {});
+  InputFiles(const InputFiles&) = delete;
+  InputFiles& operator=(const InputFiles&) = delete;
+  ~InputFiles();
+
+  // Read from the disk so far, each once.
+  const std::vector<InputFile>& read() const { return read_; }
+
+ private:
+  friend Result<std::string> input_text(const std::string& path, std::size_t max_bytes);
+  friend bool is_input(const std::string& path);
+  friend std::vector<std::string> inputs_in(const std::string& folder);
+  friend std::string beside(const std::string& path, const std::string& name);
+  static const InputFiles* holder_of(const std::string& path);
+  const InputFile* find(const std::string& path) const;
+
+  std::string folder_;  // ends in `/`
+  std::vector<InputFile> held_, read_;
+  InputFiles* outer_;
+};
+// file_text() of what a session is made of.
+Result<std::string> input_text(const std::string& path, std::size_t max_bytes);
+// Whether it is a regular file.
+bool is_input(const std::string& path);
+// The paths of what stands in a folder, in no order; none if there is no such folder.
+std::vector<std::string> inputs_in(const std::string& folder);
+// What `name` means in the file `path`: relative to its folder, unless it is absolute.
+std::string beside(const std::string& path, const std::string& name);
+
 // `PATH: cannot be written: ` and the cause that `number`, an errno, stands for.
 Error write_error(const std::string& path, int number);
 
@@ -29,8 +68,8 @@ std::string temporary_beside(const std::string& path);
 // Removes temporary files for `path` (`.NAME.PID.NUMBER` beside it) whose process was killed.
 void remove_leftovers(const std::string& path);
 
-// A file on its way to `path`, under a temporary name: new, and never through a link. Without
-// publish() it is removed.
+// A file on its way to `path`, without a name or under a temporary one: new, and never through a
+// link. Without publish() it is removed.
 class NewFile {
  public:
   static Result<NewFile> create(const std::string& path);
@@ -52,6 +91,20 @@ class NewFile {
 
   std::string path_, temporary_;
   int fd_ = -1;
+};
+
+// Held by one process at a time for the folder of a path: for a file that is read, changed and
+// written. Makes the folder. Where the file system has no locks nothing is locked.
+class FolderLock {
+ public:
+  static Result<FolderLock> wait(const std::string& path);
+  FolderLock(FolderLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  FolderLock& operator=(FolderLock&&) = delete;
+  ~FolderLock();
+
+ private:
+  explicit FolderLock(int fd) : fd_(fd) {}
+  int fd_;
 };
 
 // Makes the folder of `path`, writes a temporary file in it and renames that to `path`. On error

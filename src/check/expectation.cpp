@@ -140,7 +140,8 @@ void read_options(TomlTable& options, Expectation& e) {
   }
   walk.characters = options.strings("character", kMaxWalkers).value_or(walk.characters);
   walk.styles = options.strings("style", kMaxWalkers).value_or(walk.styles);
-  walk.crowd = static_cast<int>(options.integer("crowd", 0, kMaxFollowers).value_or(0));
+  if (const auto crowd = options.integer("crowd", 0, kMaxFollowers))
+    walk.crowd = static_cast<int>(*crowd);
   walk.terrain = options.string("terrain").value_or("");
   walk.script = options.string("script").value_or("");
   if (const auto ik = options.string("ik")) {
@@ -174,6 +175,14 @@ std::optional<std::uint64_t> hash_of(std::string_view text) {
   return text.size() == 16 ? parse_number<std::uint64_t>(text, 16) : std::nullopt;
 }
 
+void read_files(TomlTable& files, Expectation& e) {
+  for (const std::string& name : files.keys()) {
+    const auto hash = hash_of(files.string(name).value_or(""));
+    if (!hash) files.reject(name, "a file's hash is 16 hexadecimal digits");
+    e.files.push_back({name, hash.value_or(0)});
+  }
+}
+
 }  // namespace
 
 Result<Expectation> parsed_expectation(std::string_view text, const std::string& name) {
@@ -190,6 +199,7 @@ Result<Expectation> parsed_expectation(std::string_view text, const std::string&
   e.keeps_poses = root.boolean("keep_poses").value_or(true);
   e.run = read_measures(root, kOfRun);
   if (auto options = root.table("replay")) read_options(*options, e);
+  if (auto files = root.table("files")) read_files(*files, e);
   for (TomlTable& character : root.tables("character", kMaxWalkers))
     e.characters.push_back(read_measures(character, kOfCharacter));
   if (auto problem = file->problem()) return *problem;
@@ -226,10 +236,10 @@ std::string options_text(const Expectation& e) {
   if (walk.pace) add("pace", std::string(name_of(*walk.pace)));
   add_list("character", walk.characters);
   add_list("style", walk.styles);
-  if (walk.crowd > 0) text += fmt::format("crowd = {}\n", walk.crowd);
+  if (walk.crowd) text += fmt::format("crowd = {}\n", *walk.crowd);
   add("terrain", walk.terrain);
   add("script", walk.script);
-  if (walk.ik == IkMode::paper) add("ik", "paper");
+  if (walk.ik) add("ik", *walk.ik == IkMode::paper ? "paper" : "robust");
   if (walk.stick == StickMeans::points) add("stick", "points");
   add("calibration", e.pad.calibration);
   add("map", e.pad.map);
@@ -247,6 +257,9 @@ std::string expectation_text(const Expectation& e) {
   if (!e.keeps_poses) text += "keep_poses = false\n";
   write_measures(e.run, kOfRun, text);
   text += options_text(e);
+  if (!e.files.empty()) text += "\n[files]\n";
+  for (const ExpectedFile& file : e.files)
+    text += fmt::format("{} = \"{}\"\n", toml_string(file.name), hash_text(file.hash));
   for (const auto& character : e.characters) {
     text += "\n[[character]]\n";
     write_measures(character, kOfCharacter, text);
@@ -351,6 +364,28 @@ Expectation renewed(const Expectation& expectation, const Measured& measured) {
   for (std::size_t i = 0; i < e.characters.size(); ++i)
     renew(e.characters[i], kOfCharacter, measured.characters[i]);
   return e;
+}
+
+std::vector<std::string> changed_files(const Expectation& expectation,
+                                       const std::vector<ExpectedFile>& now) {
+  std::vector<std::string> sentences;
+  if (expectation.files.empty()) return sentences;
+  constexpr const char* kSince = "since this expectation was written";
+  std::vector<std::string> came;
+  for (const ExpectedFile& file : now) {
+    const auto before = std::ranges::find(expectation.files, file.name, &ExpectedFile::name);
+    if (before == expectation.files.end()) {
+      came.push_back(fmt::format("{} came to the files that are read {}", file.name, kSince));
+    } else if (before->hash != file.hash) {
+      sentences.push_back(fmt::format("{} changed {}", file.name, kSince));
+    }
+  }
+  sentences.insert(sentences.end(), came.begin(), came.end());
+  for (const ExpectedFile& file : expectation.files) {
+    if (std::ranges::count(now, file.name, &ExpectedFile::name) == 0)
+      sentences.push_back(fmt::format("{} left the files that are read {}", file.name, kSince));
+  }
+  return sentences;
 }
 
 std::vector<std::string> unmet_numbers(const Expectation& expectation, const Measured& measured) {

@@ -99,6 +99,12 @@ struct Expected {
   int measure = 0;  // index in kOfRun or kOfCharacter
   double value = 0.0, within = 0.0;
 };
+// A file that the replay depends on.
+struct ExpectedFile {
+  std::string name;  // `config/` and its path in a folder of configuration, else relative
+  std::uint64_t hash = 0;
+  bool operator==(const ExpectedFile&) const = default;
+};
 struct Expectation {
   std::string heading;  // the comment that the file begins with, kept when it is written again
   // Texts as in the file: a path is relative to it.
@@ -111,6 +117,7 @@ struct Expectation {
   std::optional<std::uint64_t> pose_hash;
   std::vector<Expected> run;
   std::vector<std::vector<Expected>> characters;  // the n-th for the n-th character
+  std::vector<ExpectedFile> files;                // as they were when it was written
   bool is_empty() const { return !pose_hash && run.empty() && characters.empty(); }
 };
 
@@ -126,6 +133,10 @@ SessionSpec session_of(const Expectation& expectation, const std::string& folder
 // everything where nothing was.
 Expectation renewed(const Expectation& expectation, const Measured& measured);
 
+// Which files are others than when the expectation was written, a sentence each. Nothing if it
+// knows of none.
+std::vector<std::string> changed_files(const Expectation& expectation,
+                                       const std::vector<ExpectedFile>& now);
 // What is not met, a sentence each: `speed_m_s is 1.31, expected 1.2 within 0.02`.
 std::vector<std::string> unmet_numbers(const Expectation& expectation, const Measured& measured);
 // What renewing changed, a sentence each.

@@ -18,6 +18,7 @@
 #include "check/pose_track.h"
 #include "files/toml_file.h"
 #include "session/playback.h"
+#include "session/workers.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
@@ -44,7 +45,8 @@ std::optional<Error> search(const std::string& folder, bool updates, FoundTraces
       found.traces.push_back({*stem});
     } else if (const auto recording = without_end(path, kRecording)) {
       if (updates) found.traces.push_back({*recording});
-      found.without += !fs::exists(*recording + std::string(kExpectation), ignored);
+      if (!fs::exists(*recording + std::string(kExpectation), ignored))
+        found.without.push_back(path);
     }
   }
   if (error) return Error{fmt::format("{}: {}", folder, error.message())};
@@ -69,6 +71,7 @@ Result<FoundTraces> found_traces(const std::vector<std::string>& paths, bool upd
       return Error{path + ": neither a folder, nor a recording (.hid), nor an expectation"};
     found.traces.push_back({*stem});
   }
+  std::ranges::sort(found.without);
   std::ranges::sort(found.traces, {}, &CheckedTrace::path);
   const auto is_same = [](const CheckedTrace& a, const CheckedTrace& b) {
     return a.path == b.path;
@@ -86,7 +89,7 @@ template <class Look>
 TraceRun run_through(const PreparedTrace& prepared, Look look) {
   TraceRun run = TraceRun::begin(prepared);
   while (run.ticks() < prepared.ticks) {
-    run.step(prepared.trace);
+    run.step(prepared);
     look(run.simulation());
   }
   return run;
@@ -236,6 +239,33 @@ void judge(const Expectation& expectation, const Measured& measured, CheckResult
                                        hash_text(*expectation.pose_hash)));
 }
 
+// The recording first. `folders`: of configuration.
+Result<std::vector<ExpectedFile>> files_of(const CheckedTrace& trace, const PreparedTrace& prepared,
+                                           const std::vector<std::string>& folders) {
+  const fs::path own = fs::absolute(trace.path).lexically_normal().parent_path();
+  const auto name_of = [&](const std::string& path) {
+    const std::string name = name_in_folders(path, folders);
+    if (!name.empty()) return "config/" + name;
+    return fs::absolute(path).lexically_normal().lexically_relative(own).string();
+  };
+  const auto recording = file_text(trace.recording(), kMaxTraceBytes);
+  if (!recording) return recording.error();
+  std::vector<ExpectedFile> files = {{name_of(trace.recording()), bytes_hash(*recording)}};
+  for (const UsedFile& file : prepared.used_files) {
+    const std::string name = name_of(file.path);
+    if (std::ranges::count(files, name, &ExpectedFile::name) == 0)
+      files.push_back({name, file.hash});
+  }
+  return files;
+}
+
+// What a failure says first.
+void blame_files(std::vector<std::string> sentences, CheckResult& result) {
+  if (result.is_met || sentences.empty()) return;
+  sentences.push_back(std::exchange(result.verdict, sentences.front()));
+  result.details.insert(result.details.begin(), sentences.begin() + 1, sentences.end());
+}
+
 // Whether the poses beside it are those of the run, or none are wanted.
 bool has_poses(const CheckedTrace& trace, const Expectation& expectation) {
   if (!expectation.keeps_poses || !expectation.pose_hash) return true;
@@ -246,13 +276,14 @@ bool has_poses(const CheckedTrace& trace, const Expectation& expectation) {
 
 std::optional<Error> update(const CheckedTrace& trace, const Expectation& before,
                             const Measured& measured, const PreparedTrace& prepared,
-                            CheckResult& result) {
-  if (result.is_met && !before.is_empty() && has_poses(trace, before)) {
+                            const std::vector<ExpectedFile>& files, CheckResult& result) {
+  const bool is_met = result.is_met && !before.is_empty();
+  if (is_met && before.files == files && has_poses(trace, before)) {
     result.verdict = "unchanged";
     return std::nullopt;
   }
-  const Expectation after =
-      result.is_met && !before.is_empty() ? before : renewed(before, measured);
+  Expectation after = is_met ? before : renewed(before, measured);
+  after.files = files;
   if (after.keeps_poses && after.pose_hash) {
     if (auto problem = write_file(trace.poses(), kept_run(prepared).poses.bytes())) return problem;
   } else {
@@ -262,6 +293,8 @@ std::optional<Error> update(const CheckedTrace& trace, const Expectation& before
   if (auto problem = write_file(trace.expectation(), expectation_text(after))) return problem;
   result.verdict = before.is_empty() ? "written" : "renewed";
   result.details = changes(before, after);
+  const std::vector<std::string> changed = changed_files(before, files);
+  result.details.insert(result.details.begin(), changed.begin(), changed.end());
   result.is_met = true;
   return std::nullopt;
 }
@@ -287,16 +320,20 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
   session.replay.max_hours = options.max_hours;
   auto prepared = prepared_trace(session);
   if (!prepared) return prepared.error();
+  const auto files = files_of(trace, *prepared, options.config_folders);
+  if (!files) return files.error();
   const Measured measured = measured_run(*prepared);
   judge(expectation, measured, result);
   CheckResult parting;  // found before an update replaces the poses that are kept
   if (expectation.pose_hash && *expectation.pose_hash != measured.pose_hash)
     find_difference(trace, expectation, *prepared, options.with_curves, parting);
   if (options.updates) {
-    if (auto problem = update(trace, expectation, measured, *prepared, result)) return problem;
+    if (auto problem = update(trace, expectation, measured, *prepared, *files, result))
+      return problem;
   }
   result.curves = std::move(parting.curves);
   result.details.insert(result.details.end(), parting.details.begin(), parting.details.end());
+  blame_files(changed_files(expectation, *files), result);
   return std::nullopt;
 }
 
@@ -339,7 +376,7 @@ void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& opti
   };
   {
     std::vector<std::jthread> others;
-    for (int i = 1; i < threads; ++i) others.emplace_back(work);
+    for (int i = startable_threads(threads); i > 1; --i) others.emplace_back(work);
     work();
   }
   if (thrown) std::rethrow_exception(thrown);

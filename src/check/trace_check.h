@@ -13,9 +13,9 @@ namespace gaitpad {
 
 struct CheckOptions {
   std::vector<std::string> config_folders;
-  bool updates = false;      // writes the expectations that are not met or are missing
-  bool with_curves = false;  // of the joint that differs first
-  double max_hours = SessionSpec::Replay::kMaxHours;
+  bool updates = false;             // writes the expectations that are not met or are missing
+  bool with_curves = false;         // of the joint that differs first
+  std::optional<double> max_hours;  // as SessionSpec::Replay's
 };
 
 // A recording and what stands beside it.
@@ -28,7 +28,7 @@ struct CheckedTrace {
 
 struct FoundTraces {
   std::vector<CheckedTrace> traces;  // ordered by path, each once
-  int without = 0;                   // further recordings in the folders, without an expectation
+  std::vector<std::string> without;  // further recordings in the folders, without an expectation
 };
 // Files are taken as they are: a recording or its expectation. Folders are searched, hidden ones
 // and links left out; recordings without an expectation count only if `updates` is set. Error: a

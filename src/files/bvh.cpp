@@ -311,7 +311,7 @@ Result<Bvh> parse_bvh(std::string_view text, const std::string& name) {
 }
 
 Result<Bvh> read_bvh(const std::string& path) {
-  const auto text = file_text(path, kMaxMotionFileBytes);
+  const auto text = input_text(path, kMaxMotionFileBytes);
   if (!text) return text.error();
   return parse_bvh(*text, path);
 }

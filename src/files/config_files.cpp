@@ -50,7 +50,6 @@ std::vector<std::string> config_folders(const std::string& built_in) {
   if (const char* own = std::getenv("GAITPAD_CONFIG"); own != nullptr && *own != '\0') {
     candidates.emplace_back(own);
   }
-  if (const std::string user = user_config_folder(); !user.empty()) candidates.emplace_back(user);
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   if (!program.empty()) {
@@ -59,6 +58,7 @@ std::vector<std::string> config_folders(const std::string& built_in) {
     candidates.push_back(beside / "config");
   }
   if (!built_in.empty()) candidates.emplace_back(built_in);
+  if (const std::string user = user_config_folder(); !user.empty()) candidates.emplace_back(user);
 
   std::vector<std::string> folders;
   for (const fs::path& candidate : candidates) {
@@ -71,12 +71,8 @@ std::vector<std::string> config_files(const std::vector<std::string>& folders,
                                       const std::string& kind, std::string_view ending) {
   std::map<std::string, std::string> by_name;
   for (const std::string& folder : folders) {
-    std::error_code error;
-    for (fs::directory_iterator it(fs::path(folder) / kind, error), end; !error && it != end;
-         it.increment(error)) {
-      if (it->path().extension() == ending) {
-        by_name.emplace(config_name(it->path().string()), it->path().string());
-      }
+    for (const std::string& path : inputs_in((fs::path(folder) / kind).string())) {
+      if (fs::path(path).extension() == ending) by_name.emplace(config_name(path), path);
     }
   }
   std::vector<std::string> files;

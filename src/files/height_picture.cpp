@@ -108,7 +108,7 @@ Result<HeightPicture> height_picture(std::string_view png, const std::string& na
 }
 
 Result<HeightPicture> load_height_picture(const std::string& path) {
-  auto bytes = file_text(path, kMaxBytes);
+  auto bytes = input_text(path, kMaxBytes);
   if (!bytes) return bytes.error();
   return height_picture(*bytes, path);
 }

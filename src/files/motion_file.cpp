@@ -194,17 +194,14 @@ Result<std::string> skeleton_beside(const std::string& path) {
   if (const auto end = stem.rfind('_'); end != stem.npos && end > 0) {
     tried.push_back(stem.substr(0, end) + ".asf");
   }
-  std::error_code error;
   for (const std::string& name : tried) {
-    const fs::path beside = file.parent_path() / name;
-    if (fs::is_regular_file(beside, error)) return beside.string();
+    if (const std::string asf = beside(path, name); is_input(asf)) return asf;
   }
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  std::vector<std::string> all;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (lower_case(it->path().extension().string()) == ".asf") all.push_back(it->path().string());
-    if (all.size() > 1) break;
-  }
+  std::vector<std::string> all =
+      inputs_in(file.has_parent_path() ? file.parent_path().string() : ".");
+  std::erase_if(all, [](const std::string& other) {
+    return lower_case(fs::path(other).extension().string()) != ".asf";
+  });
   if (all.size() == 1) return all.front();
   return Error{
       fmt::format("{}: its skeleton is missing: neither {} nor a single other .asf file "
@@ -403,17 +400,17 @@ Result<Motion> motion_from_acclaim(const NamedText& asf_text, const NamedText& a
 namespace {
 
 Result<Motion> load_amc(const std::string& path, const LoadOptions& options) {
-  const auto amc = file_text(path, kMaxMotionFileBytes);
+  const auto amc = input_text(path, kMaxMotionFileBytes);
   if (!amc) return amc.error();
   auto skeleton = options.skeleton.empty() ? skeleton_beside(path) : options.skeleton;
   if (!skeleton) return skeleton.error();
-  const auto asf = file_text(*skeleton, kMaxMotionFileBytes);
+  const auto asf = input_text(*skeleton, kMaxMotionFileBytes);
   if (!asf) return Error{fmt::format("{} (the skeleton of {})", asf.error().message, path)};
   return motion_from_acclaim({*skeleton, *asf}, {path, *amc}, options);
 }
 
 Result<Motion> load_asf(const std::string& path, const LoadOptions& options) {
-  const auto asf = file_text(path, kMaxMotionFileBytes);
+  const auto asf = input_text(path, kMaxMotionFileBytes);
   if (!asf) return asf.error();
   return motion_from_acclaim({path, *asf}, {}, options);
 }
@@ -449,7 +446,6 @@ Result<Motion> load_motion_source(const std::string& path, const LoadOptions& gi
     return motion;
   }
   root.require("file");
-  const fs::path folder = fs::path(path).parent_path();
   const std::string motion_file = root.string("file").value_or("");
   const double unit_m = root.number("metres_per_unit", 1e-6, 1e3).value_or(0.0);
   const double rate_hz = root.number("frame_rate_hz", 1.0, 1e4).value_or(0.0);
@@ -458,11 +454,11 @@ Result<Motion> load_motion_source(const std::string& path, const LoadOptions& gi
   LoadOptions options = given;
   if (given.metres_per_unit <= 0.0) options.metres_per_unit = unit_m;
   if (given.frame_rate_hz <= 0.0) options.frame_rate_hz = rate_hz;
-  if (given.skeleton.empty() && !skeleton.empty()) options.skeleton = (folder / skeleton).string();
+  if (given.skeleton.empty() && !skeleton.empty()) options.skeleton = beside(path, skeleton);
   read_leg(root, "left_leg", options.legs[kLeftSide]);
   read_leg(root, "right_leg", options.legs[kRightSide]);
   if (auto problem = file->problem()) return *problem;
-  auto motion = load_motion((folder / motion_file).string(), options);
+  auto motion = load_motion(beside(path, motion_file), options);
   if (motion) motion->pace = pace;
   return motion;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/files.h"
 #include "control/fields.h"
 #include "files/toml_file.h"
 #include "gaitpad/config_files.h"
@@ -121,13 +122,12 @@ Result<Character> load_character(const std::string& path) {
   if (!file) return file.error();
   TomlTable root = file->root();
   Character character;
-  const std::filesystem::path place(path);
   character.name = root.string("name").value_or(config_name(path));
   character.scale = root.number("scale", kLeastFactor, kMostFactor).value_or(1.0);
   character.leg_ratio = root.number("leg_ratio", kLeastFactor, kMostFactor).value_or(1.0);
   if (const auto skeleton = root.string("skeleton")) {
     if (skeleton->empty()) root.reject("skeleton", "the path of the skeleton is empty");
-    character.skeleton = (place.parent_path() / *skeleton).string();
+    character.skeleton = beside(path, *skeleton);
   }
   if (character.name.empty()) root.reject("name", "the name is empty");
   if (auto problem = file->problem()) return *problem;

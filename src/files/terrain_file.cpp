@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <utility>
 
+#include "base/files.h"
 #include "base/text.h"
 #include "files/height_picture.h"
 #include "files/toml_file.h"
@@ -81,7 +81,7 @@ std::shared_ptr<const HeightField> field_of(const HeightPicture& picture, double
   return field;
 }
 
-SectionShape picture_of(TomlTable& section, const std::filesystem::path& folder) {
+SectionShape picture_of(TomlTable& section, const std::string& path) {
   FieldSection field;
   for (const char* key : {"picture", "low_m", "high_m"}) section.require(key);
   const std::string name = section.string("picture").value_or("");
@@ -89,7 +89,7 @@ SectionShape picture_of(TomlTable& section, const std::filesystem::path& folder)
   field.fade_m = fade_of(section);
   const double low_m = section.number("low_m", -100.0, 100.0).value_or(0.0);
   const double high_m = section.number("high_m", -100.0, 100.0).value_or(0.0);
-  const auto picture = load_height_picture((folder / name).string());
+  const auto picture = load_height_picture(beside(path, name));
   if (!picture) {
     section.reject("picture", picture.error().message);
     return field;
@@ -99,7 +99,7 @@ SectionShape picture_of(TomlTable& section, const std::filesystem::path& folder)
   return field;
 }
 
-void read_section(TomlTable& section, const std::filesystem::path& folder, Terrain& terrain) {
+void read_section(TomlTable& section, const std::string& path, Terrain& terrain) {
   section.require("kind");
   const std::string kind = section.string("kind").value_or("flat");
   SectionShape shape;
@@ -112,7 +112,7 @@ void read_section(TomlTable& section, const std::filesystem::path& folder, Terra
   } else if (kind == "rough") {
     shape = rough_of(section);
   } else if (kind == "picture") {
-    shape = picture_of(section, folder);
+    shape = picture_of(section, path);
   } else {
     section.reject("kind", "there is no section of kind " + in_quotes(kind) +
                                " (known: flat, slope, stairs, rough, picture)");
@@ -143,13 +143,12 @@ TerrainZone zone_of(TomlTable& table, const std::string& path) {
 
 Result<Terrain> terrain_of(Result<TomlFile> file, const std::string& path) {
   if (!file) return file.error();
-  const std::filesystem::path place(path);
   TomlTable root = file->root();
   Terrain terrain;
-  terrain.name = root.string("name").value_or(place.stem().string());
+  terrain.name = root.string("name").value_or(config_name(path));
   if (terrain.name.empty()) root.reject("name", "the name is empty");
   for (TomlTable& section : root.tables("section", kMaxSections))
-    read_section(section, place.parent_path(), terrain);
+    read_section(section, path, terrain);
   for (TomlTable& zone : root.tables("zone", kMaxZones))
     terrain.zones.push_back(zone_of(zone, path));
   if (auto problem = file->problem()) return *problem;

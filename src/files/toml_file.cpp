@@ -297,7 +297,7 @@ int TomlTable::line(std::string_view key) const {
 }
 
 Result<TomlFile> TomlFile::load(const std::string& path) {
-  auto text = file_text(path, kMaxTomlBytes);
+  auto text = input_text(path, kMaxTomlBytes);
   if (!text) return text.error();
   return parse(*text, path);
 }

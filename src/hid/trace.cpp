@@ -120,7 +120,10 @@ class TraceReader {
  private:
   Cause add_lettered(char letter, std::string_view text);
   Cause version(Words words);
-  Cause option(Words words);
+  Cause option(std::string_view text);
+  Cause file(std::string_view name);
+  Cause file_line(std::string_view text);
+  Cause file_bytes(Words words);
   Cause device_index(Words words);
   Cause descriptor(Words words);
   Cause identity(Words words);
@@ -142,6 +145,7 @@ class TraceReader {
 
   Trace trace_;
   std::optional<std::size_t> current_;    // device of the last `D:`
+  bool has_file_ = false;                 // the last `F:` line is sound
   std::int64_t tick_ = 0;                 // of the last `T:`
   std::int64_t latest_us_ = 0;            // over all devices
   std::vector<std::int64_t> device_us_ =  // last time on each device; commands last
@@ -150,6 +154,7 @@ class TraceReader {
 
 constexpr std::size_t kMaxCalibrationBytes = 1 << 16;
 constexpr int kMaxDeviceIndex = 9999;
+constexpr std::size_t kMaxOptions = 256, kMaxFiles = 4096, kMaxFileNameBytes = 4096;
 
 Cause bad_time(std::string_view word) {
   return fmt::format("{} is no time SECONDS.MICROSECONDS with six digits behind the point",
@@ -174,7 +179,13 @@ Cause TraceReader::add_lettered(char letter, std::string_view text) {
     case 'V':
       return version(words);
     case 'O':
-      return option(words);
+      return option(text);
+    case 'F':
+      return file(text);
+    case 'G':
+      return file_line(text);
+    case 'X':
+      return file_bytes(words);
     case 'D':
       return device_index(words);
     case 'R':
@@ -229,15 +240,44 @@ Cause TraceReader::version(Words words) {
   return std::nullopt;
 }
 
-// `O: pace own`. Options of later versions are skipped.
-Cause TraceReader::option(Words words) {
-  if (words.next() != "pace") return std::nullopt;
+// `O: pace own`. The session knows what the others mean.
+Cause TraceReader::option(std::string_view text) {
+  Words words(text);
+  if (words.next() != "pace") {
+    if (trace_.options.size() == kMaxOptions) return "too many O: lines";
+    trace_.options.emplace_back(text);
+    return std::nullopt;
+  }
   const std::string_view word = words.next();
   const auto pace = pace_named(word);
   if (!pace || !words.at_end()) return fmt::format("{} is no pace: own or adult", in_quotes(word));
   if (trace_.pace || !trace_.events.empty())
     return "an O: line for the pace stands before events, once";
   trace_.pace = pace;
+  return std::nullopt;
+}
+
+Cause TraceReader::file(std::string_view name) {
+  has_file_ = false;
+  if (name.empty() || name.size() > kMaxFileNameBytes)
+    return fmt::format("a file's name has 1 to {} bytes", kMaxFileNameBytes);
+  if (trace_.files.size() == kMaxFiles) return fmt::format("more than {} files", kMaxFiles);
+  trace_.files.push_back({std::string(name), {}, trace_.has_ticks ? tick_ : -1});
+  has_file_ = true;
+  return std::nullopt;
+}
+
+Cause TraceReader::file_line(std::string_view text) {
+  if (!has_file_) return std::nullopt;  // another program's letter
+  trace_.files.back().bytes.append(text).push_back('\n');
+  return std::nullopt;
+}
+
+Cause TraceReader::file_bytes(Words words) {
+  if (!has_file_) return std::nullopt;
+  std::vector<std::uint8_t> bytes;
+  if (Cause cause = append_bytes(words, kMaxReportBytes, bytes)) return "file: " + *cause;
+  trace_.files.back().bytes.append(bytes.begin(), bytes.end());
   return std::nullopt;
 }
 
@@ -572,6 +612,10 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return Error{path + ": there is no such file"};
   if (auto problem = no_file_problem(path)) return *problem;
+  const auto too_large = [&path] {
+    return Error{fmt::format("{}: larger than {} MiB", path, kMaxTraceBytes >> 20)};
+  };
+  if (std::filesystem::file_size(path, ignored) > kMaxTraceBytes && !ignored) return too_large();
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{path + ": cannot be opened for reading"};
   LineFeed feed(path, damage);
@@ -582,9 +626,7 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
     in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
     const auto got = static_cast<std::size_t>(in.gcount());
     total += got;
-    if (total > kMaxTraceBytes) {
-      return Error{fmt::format("{}: larger than {} MiB", path, kMaxTraceBytes >> 20)};
-    }
+    if (total > kMaxTraceBytes) return too_large();
     const std::string_view piece(buffer.data(), got);
     if (!evemu.empty() || (total == got && is_evemu(piece))) {
       evemu += piece;
@@ -619,6 +661,21 @@ void append_bytes(std::string& out, const std::uint8_t* bytes, std::size_t count
     out.push_back(kDigits[bytes[i] & 15]);
   }
   out.push_back('\n');
+}
+
+std::string_view without_return(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+// Whether lines of a trace can hold it. Their line ends are all LF then.
+bool is_plain_text(std::string_view bytes) {
+  if (bytes.find('\0') != bytes.npos) return false;
+  while (!bytes.empty()) {
+    const std::string_view line = without_return(take_line(bytes));
+    if (line.size() > kMaxLineBytes / 2 || line.find('\r') != line.npos) return false;
+  }
+  return true;
 }
 
 std::string time_text(std::int64_t time_us) {
@@ -656,6 +713,27 @@ void TraceWriter::begin(int rate_hz, int version) {
 }
 
 void TraceWriter::pace(Pace pace) { text_ += fmt::format("O: pace {}\n", name_of(pace)); }
+
+void TraceWriter::option(std::string_view text) {
+  text_ += "O: " + one_line(text, text.size()) + "\n";
+}
+
+void TraceWriter::file(std::string_view name, std::string_view bytes) {
+  text_ += "F: " + one_line(name, name.size()) + "\n";
+  if (is_plain_text(bytes)) {
+    while (!bytes.empty()) {
+      text_ += "G: ";
+      text_ += without_return(take_line(bytes));
+      text_ += '\n';
+    }
+    return;
+  }
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), kMaxReportBytes))) {
+    const std::string_view part = bytes.substr(0, kMaxReportBytes);
+    text_ += "X: ";
+    append_bytes(text_, reinterpret_cast<const std::uint8_t*>(part.data()), part.size());
+  }
+}
 
 void TraceWriter::comment(std::string_view sentence) {
   text_ += "# " + one_line(sentence, sentence.size()) + "\n";
@@ -709,11 +787,21 @@ std::string trace_text(const Trace& trace) {
   TraceWriter writer;
   if (trace.rate_hz) writer.begin(*trace.rate_hz, trace.version);
   if (trace.pace) writer.pace(*trace.pace);
+  for (const std::string& option : trace.options) writer.option(option);
+  auto file = trace.files.begin();
+  const auto add_files = [&](std::int64_t tick) {
+    for (; file != trace.files.end() && file->tick <= tick; ++file) {
+      if (file->tick >= 0) writer.tick(file->tick);
+      writer.file(file->name, file->bytes);
+    }
+  };
+  add_files(-1);
   const bool plain = trace.devices.size() == 1 && trace.devices.front().index == 0;
   for (const TraceDevice& device : trace.devices) {
     writer.device(device, plain ? TraceWriter::Index::left_out : TraceWriter::Index::written);
   }
   for (const TraceEvent& event : trace.events) {
+    add_files(event.tick);
     if (trace.has_ticks) writer.tick(event.tick);
     std::optional<int> index;
     if (event.device != kNoDevice) index = trace.devices[event.device].index;

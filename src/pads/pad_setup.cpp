@@ -120,6 +120,8 @@ std::string user_mapping_file() {
 
 Result<std::size_t> save_mappings(const std::string& path, const std::vector<std::string>& lines) {
   if (path.empty()) return Error{"neither XDG_CONFIG_HOME nor HOME is a folder"};
+  const auto lock = FolderLock::wait(path);
+  if (!lock) return lock.error();
   std::vector<std::string> own;
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored)) {

@@ -200,6 +200,9 @@ class PadIo {
   void take_over(OpenedPad pad);        // any thread
   void release(std::uint64_t id);       // any thread: gives this opening back, if it is still open
   void command(std::string_view text);  // any thread
+  std::int64_t commands_left_out() const noexcept {
+    return commands_left_out_.load(std::memory_order_relaxed);
+  }
   void rumble(std::uint16_t device, const Rumble& rumble,
               std::chrono::milliseconds duration) noexcept;  // one thread, wait-free
 
@@ -263,6 +266,7 @@ class PadIo {
   std::vector<OpenedPad> handed_;
   std::vector<std::uint64_t> released_;
   std::deque<std::string> commands_;
+  std::atomic<std::int64_t> commands_left_out_{0};
   SpscRing<MotorWish> motor_wishes_{64};
 
   // The I/O thread's own.
@@ -304,6 +308,7 @@ void PadIo::release(std::uint64_t id) {
 void PadIo::command(std::string_view text) {
   if (trimmed(text, " \t\r\n").empty()) return;  // a recording cannot hold it
   if (text.size() > kMaxReportBytes) {
+    commands_left_out_.fetch_add(1, std::memory_order_relaxed);
     remarks_.add_once(fmt::format("a command of {} bytes was left out, {} can be taken",
                                   text.size(), kMaxReportBytes));
     return;
@@ -311,6 +316,7 @@ void PadIo::command(std::string_view text) {
   {
     const std::lock_guard lock(mutex_);
     if (commands_.size() >= kMaxCommands) {
+      commands_left_out_.fetch_add(1, std::memory_order_relaxed);
       remarks_.add_once("commands come faster than they are obeyed, some were left out");
       return;
     }
@@ -743,6 +749,7 @@ PadStreamCounts PadStream::counts() const noexcept {
   counts.reports = impl_->queue.written();
   counts.lost = impl_->queue.lost() + impl_->counters.lost.load(std::memory_order_relaxed);
   counts.plugged = impl_->counters.plugged.load(std::memory_order_relaxed);
+  counts.commands_left_out = impl_->io.commands_left_out();
   counts.unplugged = impl_->counters.unplugged.load(std::memory_order_relaxed);
   return counts;
 }

@@ -16,7 +16,7 @@
 #include "session/live_loop.h"
 #include "session/pad_forward.h"
 #include "session/pose_stream.h"
-#include "session/recording.h"
+#include "session/recorded_session.h"
 
 namespace gaitpad {
 
@@ -24,24 +24,26 @@ namespace gaitpad {
 struct LiveSession::Prepared {
   SessionSpec spec;
   int rate_hz;
-  Pace pace;
   Simulation simulation;
   Cast cast;
   Script script;
   PadFiles pad_files;
+  RecordedSession recorded;
   std::unique_ptr<PoseStream> stream;  // may be null
+  std::vector<std::string> remarks;
 };
 
 struct LiveSession::Impl {
   explicit Impl(Prepared& prepared)
       : spec(std::move(prepared.spec)),
         rate_hz(prepared.rate_hz),
-        pace(prepared.pace),
         simulation(std::move(prepared.simulation)),
         cast(std::move(prepared.cast)),
         script(std::move(prepared.script)),
         styles(simulation.styles()),
-        stream(std::move(prepared.stream)) {}
+        recorded(std::move(prepared.recorded)),
+        stream(std::move(prepared.stream)),
+        remarks(std::move(prepared.remarks)) {}
 
   bool is_by_hand() const { return spec.live.clock == SessionSpec::Live::Clock::by_hand; }
   std::optional<Error> open_recording();
@@ -54,13 +56,13 @@ struct LiveSession::Impl {
 
   const SessionSpec spec;
   const int rate_hz;
-  const Pace pace;
   Simulation simulation;
   Cast cast;
   Script script;
   std::vector<Style> styles;  // that commands may name; the viewing thread's
   // Lists that the loop has taken over or has given back: never freed on its thread.
   std::deque<std::shared_ptr<const std::vector<Style>>> style_lists;
+  RecordedSession recorded;
   std::unique_ptr<PoseStream> stream;       // may be null
   std::unique_ptr<PadForward> forward;      // may be null
   std::shared_ptr<KeyboardStick> keyboard;  // may be null
@@ -82,7 +84,7 @@ struct LiveSession::Impl {
 std::optional<Error> LiveSession::Impl::open_recording() {
   if (spec.live.record.empty()) return std::nullopt;
   auto opened = Recording::start(
-      {spec.live.record, rate_hz, {}, pace},
+      {spec.live.record, rate_hz, {}, std::move(recorded)},
       [p = pads.get()](std::uint16_t i) -> const TraceDevice& { return p->device(i); });
   if (!opened) return opened.error();
   recording = std::move(*opened);
@@ -177,10 +179,16 @@ Result<std::shared_ptr<LiveSession::Prepared>> LiveSession::prepare(const Sessio
   const int rate_hz = spec.rate_hz.value_or(kDefaultRateHz);
   if (rate_hz < 1 || rate_hz > kMaxRateHz)
     return Error{fmt::format("a rate of {} Hz is not within 1 .. {}", rate_hz, kMaxRateHz)};
+  const InputFiles pad_inputs;
   auto files = load_pad_files(spec);
   if (!files) return files.error();
+  const InputFiles walk_inputs;
   auto config = simulation_config(spec, rate_hz);
   if (!config) return config.error();
+  RecordedSession recorded;
+  if (!spec.live.record.empty())
+    recorded = recorded_session(spec, config->pace, walk_inputs.read(), pad_inputs.read(),
+                                files->overrides);
   config->pads = unknown_pads(kMaxPads);
   auto simulation = Simulation::create(*config);
   if (!simulation) return simulation.error();
@@ -193,9 +201,9 @@ Result<std::shared_ptr<LiveSession::Prepared>> LiveSession::prepare(const Sessio
     if (!opened) return opened.error();
     stream = std::move(*opened);
   }
-  return std::make_shared<Prepared>(Prepared{spec, rate_hz, config->pace, std::move(*simulation),
-                                             std::move(cast), std::move(*script), std::move(*files),
-                                             std::move(stream)});
+  return std::make_shared<Prepared>(Prepared{
+      spec, rate_hz, std::move(*simulation), std::move(cast), std::move(*script), std::move(*files),
+      std::move(recorded), std::move(stream), std::move(config->remarks)});
 }
 
 Result<std::unique_ptr<LiveSession>> LiveSession::start(const std::shared_ptr<Prepared>& prepared) {

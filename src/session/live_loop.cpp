@@ -334,10 +334,13 @@ void LiveLoop::keep_time(std::int64_t now_ns) noexcept {
 }
 
 void LiveLoop::run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept {
+  if (auto* styles = new_styles_.exchange(nullptr, std::memory_order_acquire)) {
+    const std::vector<Style>& before = simulation_.styles();
+    simulation_.swap_styles(*styles);
+    if (recording_ != nullptr) recording_->styles(tick_, before, simulation_.styles());
+  }
   follow_script(now_ns);
   const std::span<const Report> reports = reports_.take_reports(now_ns);
-  if (auto* styles = new_styles_.exchange(nullptr, std::memory_order_acquire))
-    simulation_.swap_styles(*styles);
   use(reports, now_ns);
   simulation_.step(reports);
   publish(shown_ns);

@@ -26,42 +26,51 @@ std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pad
   return Error{trace.path + ": none of its devices is a pad with a stick"};
 }
 
-std::optional<Error> length_problem(const std::string& path, std::int64_t ticks, int rate_hz,
-                                    double max_hours) {
+std::optional<Error> length_problem(const Trace& trace, std::int64_t ticks, int rate_hz,
+                                    std::optional<double> asked_hours) {
+  using Replay = SessionSpec::Replay;
+  const double max_hours =
+      asked_hours.value_or(trace.skipped_lines > 0 ? Replay::kMaxDamagedHours : Replay::kMaxHours);
   const double hours = static_cast<double>(ticks) / rate_hz / 3600.0;
   if (hours <= max_hours) return std::nullopt;
   return Error{fmt::format("{}: lasts {:.4g} hours, longer than {:g}; --max-hours raises the limit",
-                           path, hours, max_hours)};
+                           trace.path, hours, max_hours)};
 }
 
 }  // namespace
 
-Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
-  auto trace = read_trace(spec.replay.trace, spec.replay.damage);
+Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
+  auto trace = read_trace(asked.replay.trace, asked.replay.damage);
   if (!trace) return trace.error();
+  auto recorded = with_recorded(asked, *trace);
+  if (!recorded) return recorded.error();
+  SessionSpec& spec = *recorded;
+  const InputFiles inputs(spec.recording, held_files(*trace));
   accept_packets(*trace);
   const int rate = replay_rate_hz(*trace, spec.rate_hz);
   auto ticks = assign_ticks(*trace, rate);
   if (!ticks) return ticks.error();
-  if (auto problem = length_problem(trace->path, *ticks, rate, spec.replay.max_hours))
-    return *problem;
+  if (auto problem = length_problem(*trace, *ticks, rate, spec.replay.max_hours)) return *problem;
   auto files = load_pad_files(spec);
   if (!files) return files.error();
   auto pads = pad_configs(*files, trace->devices, trace->path);
   if (!pads) return pads.error();
-  SessionSpec walked = spec;
-  walked.walk.pace = replay_pace(*trace, spec.walk.pace);
-  auto config = simulation_config(walked, rate);
+  spec.walk.pace = replay_pace(*trace, spec.walk.pace);
+  auto config = simulation_config(spec, rate);
   if (!config) return config.error();
   config->pads = std::move(*pads);
   config->pad_rules = trace->version < 2 ? PadRules::version_1 : PadRules::version_2;
   if (auto problem = settle_pads(*trace, config->pads)) return *problem;
   auto start = Simulation::create(*config);
   if (!start) return start.error();
+  auto changes = style_changes(*trace, start->styles());
+  if (!changes) return changes.error();
   auto script = script_for(*start, spec.walk.script);
   if (!script) return script.error();
   add_script(*script, rate, *trace);
-  return PreparedTrace{std::move(*trace), *ticks, std::move(*config), std::move(*start)};
+  auto used = used_files(inputs.read(), *trace, *config, files->overrides);
+  return PreparedTrace{std::move(*trace),   *ticks,         std::move(*config), std::move(*start),
+                       std::move(*changes), std::move(used)};
 }
 
 std::optional<std::string> damage_remark(const Trace& trace) {
@@ -70,8 +79,14 @@ std::optional<std::string> damage_remark(const Trace& trace) {
                      trace.first_damage);
 }
 
-void TraceRun::step(const Trace& trace) noexcept {
+void TraceRun::step(const PreparedTrace& prepared) noexcept {
+  const Trace& trace = prepared.trace;
   const std::int64_t tick = ticks();
+  for (const auto& changes = prepared.style_changes;
+       next_change_ < changes.size() && changes[next_change_].tick == tick; ++next_change_) {
+    auto styles = changes[next_change_].styles;
+    simulation_.swap_styles(styles);
+  }
   Report report;
   for (; next_event_ < trace.events.size() && trace.events[next_event_].tick == tick;
        ++next_event_) {
@@ -163,6 +178,8 @@ struct Playback::Impl {
         marks(marks_of(prepared)),
         run(std::move(start)),
         snapshots(run, prepared.config.rate_hz) {
+    remarks = prepared.config.remarks;
+    if (!prepared.style_changes.empty()) name_later_styles(*prepared.style_changes.back().styles);
     if (auto remark = damage_remark(prepared.trace)) remarks.push_back(std::move(*remark));
     copy_frame(run.simulation(), frame);
   }
@@ -171,8 +188,10 @@ struct Playback::Impl {
   void jump(std::int64_t ticks);
   void step();
 
+  void name_later_styles(const std::vector<Style>& styles);
+
   const PreparedTrace prepared;
-  const Cast cast;
+  Cast cast;
   const std::vector<PlaybackMark> marks;
   std::vector<std::string> remarks;
 
@@ -182,6 +201,13 @@ struct Playback::Impl {
   std::deque<TickSample> samples;
   SessionFrame frame;
 };
+
+void Playback::Impl::name_later_styles(const std::vector<Style>& styles) {
+  for (std::size_t i = cast.styles.size(); i < styles.size(); ++i) {
+    cast.styles.push_back(styles[i].name);
+    cast.style_values.push_back(styles[i]);
+  }
+}
 
 // False also if the history begins too late: that of a later place, asked for on the way there.
 bool Playback::Impl::goes_on(std::int64_t ticks) const {
@@ -198,7 +224,7 @@ void Playback::Impl::jump(std::int64_t ticks) {
 }
 
 void Playback::Impl::step() {
-  run.step(prepared.trace);
+  run.step(prepared);
   snapshots.keep_if_due(run);
   if (run.ticks() <= first_sample) return;
   if (samples.size() == kHistoryTicks) samples.pop_front();

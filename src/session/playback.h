@@ -13,6 +13,7 @@
 #include "gaitpad/simulation.h"
 #include "gaitpad/summary.h"
 #include "gaitpad/trace.h"
+#include "session/recorded_session.h"
 
 namespace gaitpad {
 
@@ -21,6 +22,8 @@ struct PreparedTrace {
   std::int64_t ticks = 0;
   SimulationConfig config;  // its rate is the one to run at
   Simulation start;
+  std::vector<StyleChange> style_changes;
+  std::vector<UsedFile> used_files;  // besides the recording
 };
 // Reads `spec.replay.trace` and every file of the session, and adds the script's events. Error
 // also: `spec.rate_hz` differs from the trace's rate, or none of the trace's devices is a pad.
@@ -33,15 +36,15 @@ class TraceRun {
  public:
   static TraceRun begin(const PreparedTrace& prepared) { return TraceRun(prepared.start); }
 
-  // Runs one tick with the reports that belong to it. `trace`: the one that it began with.
-  void step(const Trace& trace) noexcept;
+  // Runs one tick with the reports that belong to it. `prepared`: what it began with.
+  void step(const PreparedTrace& prepared) noexcept;
   std::int64_t ticks() const { return simulation_.counts().ticks; }  // so far
   const Simulation& simulation() const { return simulation_; }
 
  private:
   explicit TraceRun(Simulation simulation) : simulation_(std::move(simulation)) {}
   Simulation simulation_;
-  std::size_t next_event_ = 0;
+  std::size_t next_event_ = 0, next_change_ = 0;
 };
 
 struct PlaybackMark {  // for the time line

@@ -16,6 +16,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "gaitpad/config_files.h"
 #include "gaitpad/descriptor.h"
 #include "session/live_loop.h"
 
@@ -35,10 +36,16 @@ std::string seconds(std::int64_t time_ns) {
 // --- the lines
 
 RecordingLines::RecordingLines(std::optional<int> rate_hz, RecordedDevices devices,
-                               const Limits& limits, std::optional<Pace> pace)
-    : rate_hz_(rate_hz), devices_(std::move(devices)), limits_(limits) {
+                               const Limits& limits, RecordedSession session)
+    : rate_hz_(rate_hz),
+      devices_(std::move(devices)),
+      session_(std::move(session)),
+      limits_(limits) {
   if (rate_hz_) writer_.begin(*rate_hz_);
-  if (pace) writer_.pace(*pace);
+  if (session_.pace) writer_.pace(*session_.pace);
+  for (const std::string& option : session_.options) writer_.option(option);
+  for (const TraceFile& file : session_.files) writer_.file(file.name, file.bytes);
+  session_.files.clear();
   writer_.comment(rate_hz_ ? "recorded by gaitpad: a session" : "recorded by gaitpad: pads alone");
 }
 
@@ -74,6 +81,13 @@ bool RecordingLines::add(std::int64_t tick, const Report& report) {
   return true;
 }
 
+void RecordingLines::style(std::int64_t tick, const Style& style) {
+  if (is_over(tick)) return;
+  bridge(tick, latest_us_);
+  writer_.tick(tick);
+  writer_.file("styles/" + style.name + ".toml", style_text(style));
+}
+
 // A tick is recorded whole or not at all.
 bool RecordingLines::is_over(std::int64_t tick) {
   if (is_full_ || (rate_hz_ && events_ > 0 && tick == tick_)) return is_full_;
@@ -99,6 +113,8 @@ bool RecordingLines::describe(std::uint16_t device) {
   const std::vector<std::uint8_t>& descriptor = described.info.descriptor;
   if (descriptor.empty() || descriptor.size() > kMaxDescriptorBytes) return false;
   described.index = device;
+  const TraceFile* map = session_.pad_file ? session_.pad_file(described.info) : nullptr;
+  if (map != nullptr && pad_files_.insert(map->name).second) writer_.file(map->name, map->bytes);
   const bool may_be_alone = device == 0 && !has_devices_;
   writer_.device(described,
                  may_be_alone ? TraceWriter::Index::left_out : TraceWriter::Index::written);
@@ -161,6 +177,10 @@ std::string RecordingLines::take_text() {
 
 namespace {
 
+bool is_same(const Style& a, const Style& b) {
+  return a.name == b.name && static_cast<const StyleValues&>(a) == b;
+}
+
 constexpr std::size_t kRingItems = 4096;
 constexpr std::chrono::milliseconds kPause{20};  // between looks at the ring: nobody wakes it
 constexpr std::size_t kWriteBytes = std::size_t{1} << 18;
@@ -200,7 +220,7 @@ Recording::Recording(const Options& options, RecordedDevices devices, OwnedFd fi
     : path_(options.path),
       part_(options.path + ".part"),
       file_(std::move(file)),
-      lines_(options.rate_hz, std::move(devices), options.limits, options.pace),
+      lines_(options.rate_hz, std::move(devices), options.limits, options.session),
       ring_(kRingItems) {}
 
 Recording::~Recording() { end_thread(); }
@@ -221,6 +241,15 @@ void Recording::clock(std::int64_t tick, std::int64_t time_ns, double pace) noex
   static_cast<void>(ring_.push(item));
 }
 
+void Recording::styles(std::int64_t tick, const std::vector<Style>& before,
+                       const std::vector<Style>& after) noexcept {
+  Item item;
+  item.tick = tick;
+  item.styles_before = &before;
+  item.styles = &after;
+  if (!ring_.push(item)) lost_.fetch_add(1, std::memory_order_relaxed);
+}
+
 void Recording::run() {
   bool is_last = false;
   while (!is_last) {
@@ -237,6 +266,12 @@ void Recording::drain_ring() {
   while (const Item* item = ring_.front()) {
     if (item->clock_ns != kNoClock) {
       lines_.clock(item->tick, item->clock_ns, item->pace);
+    } else if (item->styles != nullptr) {
+      for (std::size_t i = 0; i < item->styles->size(); ++i) {
+        const Style& style = (*item->styles)[i];
+        if (i >= item->styles_before->size() || !is_same(style, (*item->styles_before)[i]))
+          lines_.style(item->tick, style);
+      }
     } else if (problem_ != 0 || !lines_.add(item->tick, item->report)) {
       lost_.fetch_add(1, std::memory_order_relaxed);
     }

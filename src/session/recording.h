@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "drivers/posix.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
+#include "gaitpad/style.h"
 #include "gaitpad/trace.h"
 
 namespace gaitpad {
@@ -35,6 +37,15 @@ inline void copy_used_bytes(const Report& from, std::int64_t latest_ns, Report& 
   std::memcpy(to.bytes.data(), from.bytes.data(), to.size);
 }
 
+// What a session is made of, so that its recording replays wherever it is.
+struct RecordedSession {
+  std::optional<Pace> pace;
+  std::vector<std::string> options;  // as Trace::options
+  std::vector<TraceFile> files;
+  // That of `config/pads` which has an entry for the pad; null: none. May be empty.
+  std::function<const TraceFile*(const DeviceInfo&)> pad_file;
+};
+
 // The lines of a recording. They stay within what the reader of traces accepts: times never go
 // back; a gap of ten minutes or more holds commands `mark`, which do nothing; the end is late
 // enough for its ticks, which may have run faster than the clock; and it ends before the file is
@@ -47,13 +58,15 @@ class RecordingLines {
   };
   // Without a rate there are no ticks, only times.
   RecordingLines(std::optional<int> rate_hz, RecordedDevices devices, const Limits& limits,
-                 std::optional<Pace> pace = std::nullopt);
+                 RecordedSession session = {});
 
   // `tick` began at `time_ns`, and the next ones follow at the rate times the pace; at pace 0 it
   // has not begun yet. For tick 0, and whenever the clock was set forward or the pace has changed.
   void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0);
   // False: the recording cannot hold it.
   bool add(std::int64_t tick, const Report& report);
+  // From `tick` on, before its reports, a style of this name has these values. Only with a rate.
+  void style(std::int64_t tick, const Style& style);
   void end(std::int64_t ticks, std::int64_t time_ns);
   std::string take_text();  // whole lines, since the last call
   std::size_t text_size() const { return writer_.text().size(); }
@@ -77,6 +90,7 @@ class RecordingLines {
 
   std::optional<int> rate_hz_;
   RecordedDevices devices_;
+  RecordedSession session_;
   Limits limits_;
   TraceWriter writer_;
   std::array<Stream, kMaxTraceDevices + 1> streams_;  // one a device, commands last
@@ -87,6 +101,7 @@ class RecordingLines {
   std::int64_t end_tick_ = 0;  // is_full(): the first tick that is left out
   std::size_t bytes_ = 0, events_ = 0;
   bool is_full_ = false, has_devices_ = false;
+  std::set<std::string> pad_files_;  // that were written
 };
 
 // Writes a trace while the session runs, on a thread of its own. The file is FILE.part until the
@@ -98,7 +113,7 @@ class Recording {
     std::string path;
     std::optional<int> rate_hz;  // of the ticks; none: there is no loop, only times
     RecordingLines::Limits limits;
-    std::optional<Pace> pace{};  // of the session
+    RecordedSession session{};
   };
   // `devices` is called on the recording's thread, for devices of reports given to add(). Error:
   // the file cannot be opened, or another session writes to it.
@@ -109,6 +124,9 @@ class Recording {
   // ones follow at the rate times the pace (0: they stand still).
   void add(std::int64_t tick, const Report& report) noexcept;
   void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0) noexcept;
+  // From `tick` on the styles are others. Both lists outlive the recording.
+  void styles(std::int64_t tick, const std::vector<Style>& before,
+              const std::vector<Style>& after) noexcept;
 
   // Missing reports: there was no room for them in the ring or the file. The recording is inexact.
   std::int64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
@@ -122,6 +140,7 @@ class Recording {
     std::int64_t tick = 0;
     std::int64_t clock_ns = kNoClock;  // set: a clock() instead of a report
     double pace = 1.0;
+    const std::vector<Style>*styles_before = nullptr, *styles = nullptr;  // set: a styles()
     Report report;
   };
   static constexpr std::int64_t kNoClock = -1;

@@ -56,7 +56,7 @@ bool run_to_end(const PreparedTrace& prepared, TraceRun& run,
   constexpr std::int64_t kTicksBetween = 32;  // of a large crowd each takes milliseconds
   for (std::int64_t tick = 0; tick < prepared.ticks; ++tick) {
     if (progress && tick % kTicksBetween == 0 && !progress(tick, prepared.ticks)) return false;
-    run.step(prepared.trace);
+    run.step(prepared);
     for (ExportedFollower& follower : followers) follower.follow(run.simulation());
     for (WalkExport& e : exports) e.write(tick, run.simulation().stick());
   }
@@ -89,7 +89,7 @@ void add_stickless(const PreparedTrace& prepared, std::vector<std::string>& rema
 
 std::vector<std::string> remarks_on(const PreparedTrace& prepared, const SimulationCounts& counts) {
   const Trace& trace = prepared.trace;
-  std::vector<std::string> remarks;
+  std::vector<std::string> remarks = prepared.config.remarks;
   add_stickless(prepared, remarks);
   if (const auto remark = damage_remark(trace)) remarks.push_back(*remark);
   if (counts.bad_reports > 0) {
@@ -126,7 +126,7 @@ Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progr
   if (!exports) return exports.error();
 
   if (!run_to_end(*prepared, run, followers, *exports, progress))
-    return Error{"it was ended before its last tick; nothing was written"};
+    return Error{spec.replay.trace + ": ended before its last tick; nothing was written"};
   ReplayResult result{run_summary(simulation, cast_of(simulation, prepared->config)), {}};
   result.summary.damaged_lines = prepared->trace.skipped_lines;
   std::vector<WalkerSummary> walked = result.summary.walkers;

@@ -15,8 +15,14 @@
 namespace gaitpad {
 namespace {
 
+std::vector<std::string> folders_of_lists(const SessionSpec& spec) {
+  return spec.recording.empty() ? spec.config_folders : std::vector{spec.recording};
+}
+
 // The chosen files come first, so that they win over equal names in the folders of configuration.
-Result<std::vector<Style>> all_styles(const SessionSpec& spec, std::vector<int>& chosen) {
+// `remarks` gets a sentence on each file that no option names and that cannot be read.
+Result<std::vector<Style>> all_styles(const SessionSpec& spec, std::vector<int>& chosen,
+                                      std::vector<std::string>& remarks) {
   std::vector<Style> styles;
   const auto load = [&styles](const std::string& path) -> std::optional<Error> {
     auto style = load_style(path);
@@ -35,8 +41,9 @@ Result<std::vector<Style>> all_styles(const SessionSpec& spec, std::vector<int>&
     chosen.push_back(0);
     styles.emplace_back().name = "even";
   }
-  for (const std::string& path : config_files(spec.config_folders, "styles")) {
-    if (auto problem = load(path)) return *problem;
+  for (const std::string& path : config_files(folders_of_lists(spec), "styles")) {
+    if (auto problem = load(path))
+      remarks.push_back(problem->message + "; the session goes on without this style");
   }
   return styles;
 }
@@ -73,12 +80,8 @@ Result<std::shared_ptr<const Terrain>> terrain_of(const SessionSpec& spec) {
 int crowd_threads(const SessionSpec& spec) {
   constexpr int kAlone = 64, kAloneLive = 1000;
   const bool is_live = spec.replay.trace.empty();
-  if (spec.walk.crowd <= (is_live ? kAloneLive : kAlone)) return 1;
+  if (spec.walk.crowd.value_or(0) <= (is_live ? kAloneLive : kAlone)) return 1;
   return machine_threads();
-}
-
-bool is_built_in(const SessionSpec& spec) {
-  return spec.walk.motion.empty() || spec.walk.motion == "procedural";
 }
 
 Result<GaitCycle> cycle_of(const SessionSpec& spec) {
@@ -107,23 +110,30 @@ Result<WalkerConfig> walker_config(const Character& character, int style, const 
 
 }  // namespace
 
+bool is_built_in(const SessionSpec& spec) {
+  return spec.walk.motion.empty() || spec.walk.motion == "procedural";
+}
+
 Result<PadFiles> load_pad_files(const SessionSpec& spec) {
-  return load_pad_files(spec.config_folders, spec.pad.map, spec.pad.calibration);
+  auto files = load_pad_files(folders_of_lists(spec), spec.pad.map, spec.pad.calibration);
+  // A recording's devices have their own calibrations, or none.
+  if (files && !spec.recording.empty()) files->calibration_folders.clear();
+  return files;
 }
 
 Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz) {
   SimulationConfig config;
   config.rate_hz = rate_hz;
-  config.ik = spec.walk.ik;
+  config.ik = spec.walk.ik.value_or(IkMode::robust);
   config.stick = spec.walk.stick;
-  config.crowd = spec.walk.crowd;
+  config.crowd = spec.walk.crowd.value_or(0);
   config.crowd_threads = crowd_threads(spec);
   config.shows_crowd = spec.walk.shows_crowd;
   auto terrain = terrain_of(spec);
   if (!terrain) return terrain.error();
   config.terrain = std::move(*terrain);
   std::vector<int> chosen_styles;
-  auto styles = all_styles(spec, chosen_styles);
+  auto styles = all_styles(spec, chosen_styles, config.remarks);
   if (!styles) return styles.error();
   config.styles = std::move(*styles);
   auto characters = all_characters(spec);

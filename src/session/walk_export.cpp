@@ -21,8 +21,12 @@ Result<OutputFiles> OutputFiles::open(const std::string& folder) {
   return OutputFiles(folder);
 }
 
+std::string OutputFiles::path_of(const std::string& name) const {
+  return (fs::path(folder_) / name).string();
+}
+
 Result<std::ostream*> OutputFiles::add(const std::string& name) {
-  auto file = NewFile::create((fs::path(folder_) / name).string());
+  auto file = NewFile::create(path_of(name));
   if (!file) return file.error();
   errno = 0;
   auto stream = std::make_unique<std::ofstream>(file->name_for_streams(), std::ios::binary);
@@ -201,6 +205,7 @@ Result<WalkExport> WalkExport::open(OutputFiles& files, const Walker& walker, st
     if (!out) return out.error();
     auto scratch = files.scratch();
     if (!scratch) return scratch.error();
+    e.gltf_path_ = files.path_of(numbered_name("pose", ".glb", index));
     e.gltf_ = std::make_unique<GltfWriter>(**out, std::move(*scratch), walker.model->cycle.skeleton,
                                            gltf_layout(walker, format.fps));
   }
@@ -227,7 +232,7 @@ std::optional<Error> WalkExport::finish(const nlohmann::ordered_json& summary) {
             << '\n';
   if (!gltf_) return std::nullopt;
   const auto problem = gltf_->finish();
-  return problem ? std::optional(Error{"pose.glb: " + *problem}) : std::nullopt;
+  return problem ? std::optional(Error{gltf_path_ + ": " + *problem}) : std::nullopt;
 }
 
 RunSummary run_summary(const Simulation& simulation, const Cast& cast) {

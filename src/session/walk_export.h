@@ -22,8 +22,7 @@
 
 namespace gaitpad {
 
-// Files of one run. They are written under temporary names in the same folder; publish() renames
-// them. Without publish() the temporary files are removed, and files of an earlier run stay.
+// Files of one run. They get their names in publish(); without it files of an earlier run stay.
 class OutputFiles {
  public:
   // Makes the folder if it is missing.
@@ -32,6 +31,7 @@ class OutputFiles {
   // publish().
   Result<std::ostream*> add(const std::string& name);
   std::optional<Error> publish();
+  std::string path_of(const std::string& name) const;
   // A nameless file in the same folder, to write and read while running. It goes with its stream,
   // even if the program is killed.
   Result<std::fstream> scratch() const;
@@ -85,6 +85,7 @@ class WalkExport {
   std::ostream* summary_ = nullptr;
   std::unique_ptr<BvhWriter> poses_;
   std::unique_ptr<GltfWriter> gltf_;  // null: not asked for
+  std::string gltf_path_;
   fmt::memory_buffer row_;
 };
 

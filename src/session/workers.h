@@ -22,6 +22,8 @@ class Workers {
   std::unique_ptr<Arena> arena_;  // null: one thread
 };
 
+// How many threads can be started now, the caller's among them: 1 .. `wanted`.
+int startable_threads(int wanted);
 // How many threads this machine runs at once.
 int machine_threads() noexcept;
 

@@ -1,9 +1,18 @@
 #include "base/files.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <filesystem>
+#include <thread>
+#include <vector>
 
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
@@ -87,6 +96,45 @@ TEST_F(Files, ANewFileIsThereOncePublishedAndElseLeavesNothing) {
   EXPECT_FALSE(file.publish());
   EXPECT_EQ(text_of("a"), "whole");
   EXPECT_EQ(own_.entries(), 1);
+}
+
+TEST_F(Files, AKilledProcessLeavesNothing) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    auto file = NewFile::create(own_.at("a"));
+    if (file && !file->write("half")) ::raise(SIGKILL);
+    ::_exit(1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const int unnamed = ::open(own_.path.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+  if (unnamed < 0) GTEST_SKIP() << "this file system has no files without a name";
+  ::close(unnamed);
+  EXPECT_EQ(own_.entries(), 0);
+}
+
+TEST_F(Files, ATooLargeFileIsRefusedBeforeItIsRead) {
+  own_.write("large");
+  fs::resize_file(own_.at("large"),
+                  std::uintmax_t{1} << 40);  // a hole: reading it would take minutes
+  EXPECT_EQ(file_text(own_.at("large"), 1000).error().message,
+            own_.at("large") + ": larger than 1000 bytes");
+}
+
+TEST_F(Files, AFoldersLockIsHeldByOneAtATime) {
+  std::atomic<int> holders{0}, most{0};
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&] {
+      const auto lock = FolderLock::wait(own_.at("new/file"));
+      most = std::max<int>(most, ++holders);
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      --holders;
+    });
+  }
+  threads.clear();
+  EXPECT_EQ(most, 1);
 }
 
 TEST_F(Files, SavingKeepsWhatStoodThereAndFollowsLinks) {

@@ -43,12 +43,18 @@ TEST_F(ConfigFiles, APathStaysAPathAndAnUnknownNameListsTheKnownOnes) {
             "there is no \"sideways\" in config/styles (known: even, tired)");
 }
 
-TEST_F(ConfigFiles, TheEnvironmentComesFirstAndTheBuiltInFolderLast) {
+TEST_F(ConfigFiles, TheEnvironmentComesFirstAndTheUsersFolderLast) {
   const Environment config("GAITPAD_CONFIG", at("own").c_str());
+  own_.write("home/gaitpad/styles/tired.toml", "hip_sway = 2\n");
+  own_.write("home/gaitpad/styles/mine.toml", "\n");
+  const Environment home("XDG_CONFIG_HOME", at("home").c_str());
   const std::vector<std::string> folders = config_folders(at("shipped"));
-  ASSERT_GE(folders.size(), 2u);
+  ASSERT_GE(folders.size(), 3u);
   EXPECT_EQ(folders.front(), at("own"));
-  EXPECT_EQ(folders.back(), at("shipped"));
+  EXPECT_EQ(folders.back(), at("home/gaitpad"));
+  EXPECT_EQ(*config_file(folders, "styles", "tired"), at("shipped/styles/tired.toml"))
+      << "a user's file hides no bundled one";
+  EXPECT_EQ(*config_file(folders, "styles", "mine"), at("home/gaitpad/styles/mine.toml"));
 }
 
 TEST_F(ConfigFiles, FoldersThatDoNotExistAreLeftOut) {

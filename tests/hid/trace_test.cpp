@@ -56,6 +56,35 @@ TEST(Trace, WhatABpfProgramMadeOfAReportIsNoSecondReport) {
   EXPECT_EQ(t.devices[0].info.driver, "");
 }
 
+TEST(Trace, HoldsTheFilesAndOptionsOfItsSession) {
+  const Trace t = parsed(
+      "V: 2 rate_hz=240\nO: pace own\nO: style styles/a b.toml\n"
+      "F: styles/a b.toml\nG: # a\nG:\nG:  x = 1\n"
+      "F: hills.png\nX: 3 89 50 00\nX: 1 0d\n" +
+      kHeader + "T: 3\nE: 000000.000000 1 07\nT: 5\nF: styles/a b.toml\nG: x = 2\n");
+  EXPECT_EQ(t.pace, Pace::own);
+  EXPECT_EQ(t.options, std::vector<std::string>{"style styles/a b.toml"});
+  const std::string png("\x89\x50\0\x0d", 4);
+  EXPECT_EQ(t.files, (std::vector<TraceFile>{{"styles/a b.toml", "# a\n\n x = 1\n", -1},
+                                             {"hills.png", png, -1},
+                                             {"styles/a b.toml", "x = 2\n", 5}}));
+  const Trace again = parsed(trace_text(t) + "");
+  EXPECT_EQ(again.files, (std::vector<TraceFile>{t.files[0], t.files[1]}))
+      << "without an event behind it the last one has no effect";
+  EXPECT_EQ(again.options, t.options);
+}
+
+TEST(Trace, AFileThatIsNoTextIsHeldAsBytes) {
+  for (const std::string& bytes : {std::string(3000, '\0'), std::string("a\rb\n"), std::string()}) {
+    TraceWriter writer;
+    writer.file("x", bytes);
+    EXPECT_EQ(parsed(writer.text() + kHeader).files.at(0).bytes, bytes);
+  }
+  TraceWriter writer;
+  writer.file("x", "a\r\nb");
+  EXPECT_EQ(parsed(writer.text() + kHeader).files.at(0).bytes, "a\nb\n") << "the same lines";
+}
+
 TEST(Trace, EventsBelongToTheDeviceOfTheLastIndex) {
   const Trace t = parsed(
       "D: 4\nR: 1 c0\nN: a\nI: 3 1 2\nD: 9\nR: 2 c0 c0\nN: b\nI: 5 3 4\n"

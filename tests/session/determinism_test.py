@@ -1,6 +1,7 @@
 """One walk, one hash: two compilers at three levels walk the same sessions, and every tick is compared. Of the five other
 builds two are made, for each takes a minute: clang++ -O3 -march=native always, and one that the commit chooses
-(support/slices.py). GAITPAD_ALL=1 makes them all.
+(support/slices.py). GAITPAD_ALL=1 makes them all, and where there are g++-aarch64-linux-gnu and
+qemu-user-static, one for aarch64.
 
 The program `pose_hash` of the ordinary build is the reference, as users run it; it also says which sources
 a walk needs. The other builds stand in `determinism` beside it, and ninja keeps them up to date. Where two
@@ -9,6 +10,7 @@ builds differ, the test names the first tick that does.
 import collections
 import itertools
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -26,7 +28,11 @@ OTHERS = {f"{compiler}-{name}": (compiler, level) for compiler in ("g++", "clang
 if not slices.ALL:
     FIRST, *REST = sorted(OTHERS, key=lambda name: name != "clang++-O3native")
     OTHERS = {name: OTHERS[name] for name in (FIRST, REST[slices.NUMBER % len(REST)])}
-PRECOMPILED = {"g++": "gch", "clang++": "pch"}  # the ending that each compiler looks for behind the header's name
+CROSS, EMULATOR = "aarch64-linux-gnu-g++", "qemu-aarch64-static"
+if slices.ALL and shutil.which(CROSS) and shutil.which(EMULATOR):  # minutes in the emulator
+    OTHERS["aarch64"] = (CROSS, "-O2")
+# The ending that each compiler looks for behind the header's name.
+PRECOMPILED = {"g++": "gch", "clang++": "pch", CROSS: "gch"}
 
 RULES = """
 rule header
@@ -40,8 +46,8 @@ rule link
 """
 
 
-def output_of(*command, folder):
-    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True)
+def output_of(*command, folder, **options):
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, **options)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -97,11 +103,15 @@ def write_build_file(folder, build):
         if not header.exists() or header.read_text() != text:
             header.write_text(text)
         with_compiler = f"  cxx = {compiler}\n  level = {level}\n  variant = {variant}"
+        is_foreign = compiler == CROSS
+        if is_foreign:  # it has no libraries of ours; what is wider than its registers is computed in parts
+            portable = re.sub(r" -D(FMT|TOML)_\S+| -I\S*/usr/\S+", "", flags)
+            with_compiler += f"\n  flags = {portable} -DFMT_HEADER_ONLY -DTOML_HEADER_ONLY=1\n  libraries = -static"
         precompiled = f"{variant}/system.h.{PRECOMPILED[compiler]}"
         lines.append(f"build {precompiled}: header {variant}/system.h\n{with_compiler}")
         objects = [f"{variant}/{number}_{pathlib.Path(source).stem}.o" for number, source in enumerate(sources)]
         lines += [f"build {target}: compile {source} | {precompiled}\n{with_compiler}\n"
-                  f"  own = {own[source] or f'-include {variant}/system.h'}"
+                  f"  own = {(not is_foreign and own[source]) or f'-include {variant}/system.h'}"
                   for source, target in zip(sources, objects)]
         lines.append(f"build {variant}/walk: link {' '.join(objects)}\n{with_compiler}")
     (folder / "build.ninja").write_text("\n".join(lines) + "\n")
@@ -115,13 +125,12 @@ def folder(program):
     folder = program.parent / "determinism"
     folder.mkdir(exist_ok=True)
     write_build_file(folder, program.parent)
-    output_of("ninja", folder=folder)
     return folder
 
 
-def walk(binary, folder):
+def walk(binary, folder, *emulator, **environment):
     """The pose hash of every tick, a line each."""
-    return output_of(binary, folder, folder=folder).splitlines()
+    return output_of(*emulator, binary, folder, folder=folder, env={**os.environ, **environment}).splitlines()
 
 
 @pytest.fixture(scope="module")
@@ -136,6 +145,30 @@ def first_difference(a, b):
 @pytest.mark.parametrize("variant", [ORDINARY, *OTHERS])
 def test_every_tick_has_the_same_hash(variant, program, folder, ordinary):
     binary = program.parent / "tests/pose_hash" if variant == ORDINARY else folder / variant / "walk"
+    if variant != ORDINARY:
+        output_of("ninja", f"{variant}/walk", folder=folder)
+    emulator = [EMULATOR] if variant == "aarch64" else []
     assert len(ordinary) > 10000
-    assert first_difference(ordinary, walk(binary, folder)) is None
+    assert first_difference(ordinary, walk(binary, folder, *emulator)) is None
     print(f"{variant}: {ordinary[-1]}, {len(ordinary)} ticks")
+
+
+@pytest.fixture(scope="module")
+def locales(tmp_path_factory):
+    """With decimal commas; Turkish has an I of its own."""
+    folder = tmp_path_factory.mktemp("locales")
+    if not shutil.which("localedef") or not pathlib.Path("/usr/share/i18n/locales/tr_TR").exists():
+        pytest.skip("the sources of the locales are not here (package locales)")
+    for name in ("tr_TR", "de_DE"):
+        subprocess.run(["localedef", "-i", name, "-f", "UTF-8", folder / f"{name}.UTF-8"], check=True, capture_output=True)
+    return folder
+
+
+@pytest.mark.parametrize("name", ["tr_TR.UTF-8", "de_DE.UTF-8"])
+def test_a_hosts_locale_changes_no_bit(name, program, locales, tmp_path):
+    """The program `pose_hash` sets the locale of its user, as a host may; it writes and reads a motion, too."""
+    binary = program.parent / "tests/pose_hash"
+    plain = walk(binary, tmp_path, LC_ALL="C", GAITPAD_SAY_LOCALE="1")
+    there = walk(binary, tmp_path, LC_ALL=name, LOCPATH=str(locales), GAITPAD_SAY_LOCALE="1")
+    assert (plain[0], there[0]) == ("locale: 0.5", "locale: 0,5")
+    assert first_difference(plain[1:], there[1:]) is None

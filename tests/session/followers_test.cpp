@@ -91,8 +91,10 @@ TEST(Followers, PosesAreTheSameInEachRunAndForAnyNumberOfThreads) {
   SimulationConfig config = with_crowd(70);
   const std::uint64_t hash = walked_varied(config, 900).pose_hash();
   EXPECT_EQ(walked_varied(config, 900).pose_hash(), hash);
-  config.crowd_threads = 2;
-  EXPECT_EQ(walked_varied(config, 900).pose_hash(), hash);
+  for (const int threads : {2, 64}) {
+    config.crowd_threads = threads;
+    EXPECT_EQ(walked_varied(config, 900).pose_hash(), hash) << threads;
+  }
 }
 
 TEST(Followers, ChangeTheHashButNotTheWalkers) {

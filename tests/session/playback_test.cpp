@@ -78,7 +78,7 @@ Straight straight_run(const std::string& path) {
   auto frame = std::make_unique<SessionFrame>();
   TickSample sample;
   for (std::int64_t tick = 0; tick < prepared.ticks; ++tick) {
-    run.step(prepared.trace);
+    run.step(prepared);
     copy_frame(run.simulation(), *frame);
     copy_sample(run.simulation(), sample);
     straight.frames.push_back(print_of(*frame));

@@ -3,8 +3,11 @@
 // given folder and reads back. The strides that the walks read are solved, not taken from a cache.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <locale>
+#include <stdexcept>
 
 #include "base/lanes.h"
 #include "gaitpad/bvh.h"
@@ -87,6 +90,11 @@ void print_family(const char* name, const StrideFamily& family) {
 int main(int argc, char** argv) {
   if (argc != 2) return fail("usage: pose_hash_main FOLDER");
   ::setenv("GAITPAD_CACHE", "off", 1);
+  try {
+    std::locale::global(std::locale(""));  // as a host may do; std::setlocale(), too
+  } catch (const std::runtime_error&) {    // of the user's environment, and not installed
+  }
+  if (std::getenv("GAITPAD_SAY_LOCALE") != nullptr) std::printf("locale: %.1f\n", 0.5);
   SimulationConfig config = made_config(4);
   print_family("procedural", *config.cycle.strides);
   if (walk("procedural robust", config) != 0) return 1;

@@ -86,7 +86,8 @@ TEST(RecordingLines, FollowTheTraceFormat) {
 }
 
 TEST(RecordingLines, SayThePaceBehindTheRate) {
-  RecordingLines lines(240, made_devices, {}, Pace::own);
+  RecordingLines lines(240, made_devices, {},
+                       {.pace = Pace::own, .options = {}, .files = {}, .pad_file = {}});
   EXPECT_TRUE(lines.take_text().starts_with("V: 2 rate_hz=240\nO: pace own\n#"));
 }
 

@@ -9,7 +9,7 @@ namespace gaitpad::test {
 namespace {
 
 TEST(Workers, DoEachPieceOnce) {
-  for (const int threads : {1, 2, 4}) {
+  for (const int threads : {1, 2, 4, 64}) {
     Workers workers(threads);
     std::vector<std::atomic<int>> done(1000);
     for (int round = 0; round < 20; ++round) workers.for_each(1000, [&](int i) { ++done[i]; });

@@ -67,7 +67,7 @@ def wait_until(condition, most_s=60):
 def wait_until_recorded(path):
     """Until the session that records there has written reports."""
     part = pathlib.Path(f"{path}.part")
-    wait_until(lambda: part.exists() and part.stat().st_size > 2000)
+    wait_until(lambda: part.exists() and part.read_bytes().count(b"\nE: ") > 20)
 
 
 def wait_until_works(process, seconds=0.5):

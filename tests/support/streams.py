@@ -164,3 +164,34 @@ class ExportedBones:
     def rotations(self, tick):
         """By bone, in the world."""
         return {bone: self.world[tick, i] @ self.t_pose[bone].T for bone, i in self.index.items()}
+
+
+def hostile(frame, rng):
+    """A datagram: noise, a damaged object, one with a value of another kind, or a sound one with its tick as it was."""
+    text = json.dumps(frame)
+    kind = rng.integers(6)
+    if kind == 0:
+        return rng.bytes(int(rng.integers(0, 1500)))
+    if kind == 1:
+        data = bytearray(text.encode())
+        for _ in range(int(rng.integers(1, 20))):
+            data[rng.integers(len(data))] = rng.integers(256)
+        return bytes(data)
+    if kind == 2:
+        return text[:rng.integers(len(text))].encode()
+    if kind == 3:
+        return [b"[]", b"null", b"7", b'"Hips"', b'{"bones": "Hips"}', b'{"bones": ["Hips"]}', b"[" * 20000, b"",
+                b'{"bones": {"Hips": []}}', b'{"bones": {"Hips": null}, "root": 1}'][rng.integers(10)]
+    frame = json.loads(text)
+    odd = [None, True, "x", [], {}, -1, 0, 1e308, float("nan"), float("inf"), 10**400, [1e300] * 7, [0] * 7, [0] * 6]
+    value = odd[rng.integers(len(odd))]
+    where = rng.integers(4)
+    if where == 0:
+        frame[list(frame)[rng.integers(len(frame))]] = value
+    elif where == 1:
+        frame["bones"][list(frame["bones"])[rng.integers(len(frame["bones"]))]] = value
+    elif where == 2:
+        frame["bones"]["Hips"][rng.integers(7)] = value
+    else:
+        del frame[list(frame)[rng.integers(len(frame))]]
+    return json.dumps(frame).encode()

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from support.program import DATA, ROOT
-from support.streams import Receiver, world_rotations
+from support.streams import Receiver, hostile, world_rotations
 from support.traces import write_trace
 
 ADDON = ROOT / "tools/blender/gaitpad_live.py"
@@ -23,6 +23,7 @@ ANATOMY = (ROOT / "src/motion/anatomy.cpp").read_text()
 CLIP = DATA / "mocap/cmu_006_01_iclone.bvh"
 FRAMES = 30
 NEAR_DEG = 0.01
+DATAGRAMS = 100_000
 
 
 @pytest.fixture(scope="module")
@@ -154,6 +155,24 @@ def test_blender_walks_as_the_exported_walk_does(run, tmp_path):
         for bone, aim in LIMBS.items():
             aside = math.degrees(np.linalg.norm(np.cross(turns[bone] @ aim, row["made"][bone])))
             assert aside < NEAR_DEG and (turns[bone] @ aim) @ row["made"][bone] > 0, (bone, aside)
+
+
+@pytest.mark.skipif(not shutil.which("blender"), reason="there is no blender (package blender)")
+def test_blender_takes_what_is_sound_of_hundred_thousand_datagrams(run, tmp_path):
+    """Each look at the stream is bounded, whatever comes, and it goes on behind anything malformed."""
+    frame = json.loads(streamed(run, tmp_path)[-1])
+    rng = np.random.default_rng(34)
+    (tmp_path / "datagrams").write_bytes(b"".join(len(d).to_bytes(4, "little") + d
+                                                  for d in (hostile(frame, rng) for _ in range(DATAGRAMS))))
+    (tmp_path / "frame.json").write_text(json.dumps(frame))
+    done = subprocess.run(["blender", "-b", "--factory-startup", "-P", ROOT / "tests/tools/blender_flood.py", "--", ADDON, tmp_path],
+                          capture_output=True, text=True, timeout=280, check=False)
+    said = [line for line in done.stdout.splitlines() if line.startswith("{")]
+    assert said, done.stdout[-3000:] + done.stderr
+    row = json.loads(said[-1])
+    assert row["looked_at"] == DATAGRAMS and row["most_at_once"] == 256
+    assert row["malformed"] + row["taken"] == DATAGRAMS and row["malformed"] > DATAGRAMS / 2
+    assert row["listens"] and row["still_walks"] and row["is_finite"]
 
 
 def test_the_addon_is_one_file_of_python_3_10():

@@ -1,4 +1,5 @@
 """gaitpad calibrate with recordings: what it finds, the file it keeps, what it refuses."""
+import contextlib
 import json
 import math
 import os
@@ -240,6 +241,20 @@ def test_imports_a_whole_data_base_without_a_pad(user):
     user.run("calibrate", "--import", user.folder / "more.txt")
     assert own.read_text().count("platform:Linux") == 6
     assert "Pad new" in own.read_text() and "Pad 1," not in own.read_text()
+
+
+def test_eight_imports_at_once_lose_nothing(user, started):
+    """Each reads the user's file, adds its 92 pads and writes it: 736 in the end."""
+    guid = "0300000009120000{:02x}{:02x}000010010000,Pad {},a:b0,platform:Linux,\n"
+    for k in range(8):
+        (user.folder / f"{k}.txt").write_text("".join(guid.format(n, k, n) for n in range(92)))
+    environment = {**os.environ, "XDG_CONFIG_HOME": str(user.folder / "config")}
+    with contextlib.ExitStack() as stack:
+        importing = [stack.enter_context(started("calibrate", "--import", user.folder / f"{k}.txt", env=environment))
+                     for k in range(8)]
+        assert [process.wait(60) for process in importing] == [0] * 8
+    own = next(user.folder.rglob("gaitpad/gamecontrollerdb.txt"))
+    assert own.read_text().count("platform:Linux") == 8 * 92
 
 
 def test_refusals_are_one_sentence_and_lose_nothing(user):

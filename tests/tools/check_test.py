@@ -3,6 +3,7 @@ import json
 import math
 import os
 import re
+import shutil
 import subprocess
 import xml.etree.ElementTree as ET
 
@@ -10,8 +11,8 @@ import numpy as np
 import pytest
 
 from support.bvh import angle_between, local_rotations, read_bvh, write_bvh
-from support.program import ROUND
-from support.traces import RATE_HZ, raw_stick, report, stick_report, write_trace
+from support.program import ROOT, ROUND
+from support.traces import EXACT_CALIBRATION, RATE_HZ, raw_stick, report, stick_report, write_trace
 
 RECORDINGS = 8
 
@@ -171,7 +172,8 @@ def test_a_changed_report_is_found_in_its_very_tick_with_the_report_before_it(on
     write_trace(one, [(0.5, *raw_stick(0, 0.8)), (2.0, *raw_stick(0.3, 0.8)), (4.0, 0, 0)], end_s=6.0)
     assert one.read_text().count("\nE:") == count + 1
     result = tap(run("check", one, status=1).stdout)[0][2]
-    assert result["message"].startswith("the poses differ and ")
+    assert result["message"] == "one.hid changed since this expectation was written"
+    assert result["details"][0].startswith("the poses differ and ")
     details = " | ".join(result["details"])
     tick = int(re.search(r"first different in tick (\d+)", details)[1])
     assert hash_until(run, one, tick) == hash_until(run, old, tick), "the tick before is the same"
@@ -187,7 +189,7 @@ def test_another_version_of_the_walk_is_told_from_a_failure(one, run):
     x, y = raw_stick(0, 0.8)
     write_trace(one, [(0.5, x, y + 2 / 32767), (4.0, 0, 0)], end_s=6.0)
     result = tap(run("check", one, status=1).stdout)[0][2]
-    assert result["message"].startswith("another version of the walk: ")
+    assert result["details"][0].startswith("another version of the walk: ")
     assert any("pose_hash is" in line for line in result["details"])
 
 
@@ -213,6 +215,92 @@ def test_numbers_are_those_of_the_files_of_a_replay(one, run, tmp_path):
         lands = np.flatnonzero((rows["stage"][1:] == "roll") & (rows["stage"][:-1] == "flight")
                                & (rows["swing"][1:] == side)) + 1
         assert wanted[f"step_{side}_m"] == pytest.approx(rows[f"stride_{side}_m"][lands].mean(), rel=1e-3)
+
+
+# ---- files that changed ----------------------------------------------------------------------
+def world(run, folder):
+    """A recording with an expectation that depends on a file of each kind, in a configuration of its own."""
+    shutil.copytree(ROOT / "config", folder / "config")
+    own = folder / "set"
+    own.mkdir()
+    run("replay", ROUND, "--out", folder / "walked", "--fps", 60)
+    shutil.copy(folder / "walked/pose.bvh", own / "walk.bvh")
+    (own / "walk.toml").write_text('file = "walk.bvh"\n')
+    (own / "build.toml").write_text("leg_ratio = 0.9\n")
+    (own / "mine.toml").write_text("hip_sway = 1.2\n")
+    shutil.copy(ROOT / "config/terrain/hills.png", own / "hills.png")
+    (own / "ground.toml").write_text('[[section]]\nkind = "picture"\npicture = "hills.png"\nlow_m = -0.08\nhigh_m = 0.08\nfade_m = 2.5\n'
+                                     'metres_per_pixel = 0.2\n[[zone]]\nfrom_m = 3\nto_m = 4\nstyle = "tired"\n')
+    (own / "script.toml").write_text('[[event]]\nat_s = 1.5\ncommand = "style 1 muscular"\n')
+    (own / "pad.toml").write_text('[[pad]]\nvendor = 0x1209\n[pad.axes]\nleft_x = "0001:0030"\n')
+    (own / "worn.toml").write_text(EXACT_CALIBRATION)
+    trace = write_trace(own / "one.hid", [(0.2, *raw_stick(0.2, 0.8)), (3.0, 0, 0)], [(0.5, "style 2 limp_left")], end_s=4.0)
+    expectation(trace).write_text('[replay]\nmotion = "walk.toml"\ncharacter = ["build.toml", "adult"]\nstyle = ["./mine.toml"]\n'
+                                  'terrain = "ground.toml"\nscript = "script.toml"\nmap = "pad.toml"\n'
+                                  'calibration = "worn.toml"\n')
+    return trace
+
+
+PLANTED = {  # file: (its name in the sentence, what is replaced, by what)
+    "set/walk.toml": ("walk.toml", 'file = "walk.bvh"', 'file = "walk.bvh"\nframe_rate_hz = 50'),
+    "set/build.toml": ("build.toml", "0.9", "0.95"), "set/mine.toml": ("mine.toml", "1.2", "1.4"),
+    "set/ground.toml": ("ground.toml", "high_m = 0.08", "high_m = 0.07"),
+    "set/script.toml": ("script.toml", "muscular", "stiff_knee"),
+    "set/pad.toml": ("pad.toml", '"0001:0030"', '"-0001:0030"'),
+    "set/worn.toml": ("worn.toml", "outer = 1.0", "outer = 0.9"),
+    "config/styles/limp_left.toml": ("config/styles/limp_left.toml", "flight_height = 0.5", "flight_height = 0.6"),
+    "config/characters/adult.toml": ("config/characters/adult.toml", "leg_ratio = 1.0", "leg_ratio = 1.1"),
+    "set/one.hid": ("one.hid", r"^E: 000000.2.*$", "E: 000000.200000 10 00 20 00 a0 00 00 00 00 08 00")}
+
+
+def test_ten_planted_changes_are_named_first(run, tmp_path):
+    trace = world(run, tmp_path)
+    environment = {**os.environ, "GAITPAD_CONFIG": str(tmp_path / "config")}
+    run("check", "--update", trace, env=environment)
+    run("check", trace, env=environment)
+    for name, (said, old, new) in PLANTED.items():
+        path = tmp_path / name
+        kept = path.read_text()
+        edit(path, old, new)
+        result = tap(run("check", trace, env=environment, status=1).stdout)[0][2]
+        assert result["message"] == f"{said} changed since this expectation was written", name
+        details = " | ".join(result["details"])
+        assert re.search(r"first different in tick \d+ ", details) and "the report before it" in details, (name, details)
+        assert "and 1 more" not in details and details.count("changed since") == 0
+        path.write_text(kept)
+    for spare in ("styles/carry.toml", "pads/sony.toml"):
+        path = tmp_path / "config" / spare
+        path.write_text(path.read_text() + "\n# another comment\n")
+    assert "carry.toml" not in expectation(trace).read_text()
+    run("check", trace, env=environment)
+
+
+def test_a_picture_and_a_motion_that_changed_are_named_too(run, tmp_path):
+    trace = world(run, tmp_path)
+    environment = {**os.environ, "GAITPAD_CONFIG": str(tmp_path / "config")}
+    run("check", "--update", trace, env=environment)
+    own = trace.parent
+    text = (own / "walk.bvh").read_text()
+    (own / "walk.bvh").write_text(re.sub(r"(Frame Time: )\S+", r"\g<1>0.02", text))
+    (own / "hills.png").write_bytes((own / "hills.png").read_bytes() + b"\0")
+    result = tap(run("check", trace, env=environment, status=1).stdout)[0][2]
+    named = [result["message"], *result["details"]]
+    assert [line for line in named if "changed since" in line] == [
+        f"{name} changed since this expectation was written" for name in ("hills.png", "walk.bvh")]
+    run("check", "--update", trace, env=environment)
+    run("check", trace, env=environment)
+
+
+def test_a_lost_expectation_is_a_failure_if_it_is_asked_for(run, tmp_path):
+    for name in ("a", "b"):
+        run("check", "--update", walk(tmp_path / f"{name}.hid", seconds=1.0, end_s=1.5))
+    run("check", tmp_path, "--strict")
+    expectation(tmp_path / "b.hid").unlink()
+    done = run("check", tmp_path)
+    assert done.stderr == "gaitpad check: recordings without an expectation, left out: 1\n"
+    done = run("check", tmp_path, "--strict", status=1)
+    assert done.stdout.startswith("TAP version 14\n1..1\nok 1")
+    assert done.stderr == (f"gaitpad check: recordings without an expectation, left out: 1; the first is {tmp_path}/b.hid\n")
 
 
 # ---- renewing --------------------------------------------------------------------------------
@@ -275,7 +363,7 @@ def test_a_shard_that_there_is_not_is_refused(many, program, refuse, shard):
         refuse("check", many, "--shard", shard, status=2)
     environment = {**os.environ, "GAITPAD_SHARD_INDEX": shard.partition("/")[0],
                    "GAITPAD_SHARD_TOTAL": shard.partition("/")[2]}
-    refuse("check", many, env=environment, says="GAITPAD_SHARD_INDEX")
+    refuse("check", many, env=environment, says="GAITPAD_SHARD_INDEX", status=2)
 
 
 def test_junit_has_a_case_each(many, run, tmp_path):

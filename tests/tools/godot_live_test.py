@@ -10,7 +10,7 @@ import pytest
 
 from support.bvh import angle_between, matrices_of
 from support.program import ROOT
-from support.streams import PARENTS, world_rotations
+from support.streams import PARENTS, hostile, world_rotations
 
 GODOT = shutil.which("godot3-server") or shutil.which("godot3")
 PORT = 39540
@@ -69,3 +69,20 @@ def test_the_skeleton_stands_as_the_stream_says(tmp_path):
         assert np.abs(bones["Hips"][:3] - hips_m).max() < 1e-4
         thigh = np.array(bones["LeftLowerLeg"][:3]) - bones["LeftUpperLeg"][:3]
         assert np.abs(thigh - expected["LeftUpperLeg"] @ [0, -0.41, 0]).max() < 1e-4
+
+
+@pytest.mark.skipif(not GODOT, reason="there is no Godot 3 (package godot3-server)")
+def test_hundred_thousand_datagrams_end_no_link(tmp_path):
+    """Godot reads hostile ones from a file as from its socket, then a sound one."""
+    frame = list(made_frames())[3]
+    rng = np.random.default_rng(35)
+    project = shutil.copytree(ROOT / "tools/examples/godot", tmp_path / "godot")
+    (project / "datagrams").write_bytes(b"".join(len(d).to_bytes(4, "little") + d
+                                                 for d in (hostile(frame, rng) for _ in range(100_000))))
+    (project / "frame.json").write_text(json.dumps(frame))
+    done = subprocess.run(["timeout", "250", GODOT, "--path", project, "-s", ROOT / "tests/tools/godot_flood.gd"], text=True,
+                          capture_output=True, check=False, env={"HOME": str(tmp_path), "PATH": "/usr/bin"})
+    assert "SCRIPT ERROR" not in done.stdout + done.stderr, (done.stdout + done.stderr)[-3000:]
+    row = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("{")))
+    assert row["looked_at"] == 100_000 and row["most_at_once"] == 64
+    assert row["malformed"] > 50_000 and row["still_walks"] and row["is_finite"]

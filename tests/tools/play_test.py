@@ -48,6 +48,11 @@ def test_options_of_replay_hold_and_the_keys_are_replays(run, record, replay):
     assert [s["pose_hash"] for s in replayed] == [s["pose_hash"] for s in live]
 
 
+def test_commands_that_are_left_out_are_a_failure(run):
+    done = run("play", ROUND, "--no-window", "--seconds", "1", "--commands", input="mark " + "x" * 2000 + "\n", status=1)
+    assert "1 commands could not be obeyed" in done.stderr
+
+
 def test_ends_one_second_behind_the_end_of_a_recording(run, tmp_path):
     trace = tmp_path / "short.hid"
     trace.write_text(beginning(ROUND, 1.5))

@@ -1,6 +1,8 @@
 """gaitpad replay as a user meets it: what it writes, when an event counts, and what it refuses."""
 import csv
 import json
+import os
+import pathlib
 import re
 import resource
 import signal
@@ -336,27 +338,32 @@ def test_a_link_in_the_way_is_not_followed(program, made):
     assert (made.out / "pose.bvh").read_text().startswith("HIERARCHY")
 
 
-def has_begun(out):
-    return out.exists() and any(p.stat().st_size > 100_000 for p in out.iterdir())
+def has_begun(process, out):
+    """It has written to a file there, which has no name yet."""
+    for fd in pathlib.Path(f"/proc/{process.pid}/fd").iterdir():
+        if os.readlink(fd).startswith(str(out)) and fd.stat().st_size > 100_000:
+            return True
+    return False
 
 
 def test_control_c_ends_it_at_once_and_leaves_nothing(started, tmp_path):
     trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
     out = tmp_path / "out"
     with started("replay", trace, "--out", out) as process:
-        wait_until(lambda: has_begun(out))
+        wait_until(lambda: has_begun(process, out))
         _, errors = end_by(process, signal.SIGINT, status=130)
     assert "nothing was written" in errors and list(out.iterdir()) == []
 
 
-def test_what_a_killed_replay_left_is_removed_by_the_next(started, run, tmp_path):
+def test_a_killed_replay_leaves_nothing_and_what_earlier_ones_left_is_removed(started, run, tmp_path):
     trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
     out = tmp_path / "out"
     with started("replay", trace, "--out", out) as process:
-        wait_until(lambda: has_begun(out))
+        wait_until(lambda: has_begun(process, out))
         process.kill()
         process.wait()
-    assert any(p.name.startswith(".pose.bvh.") for p in out.iterdir())
+    assert list(out.iterdir()) == []
+    (out / f".pose.bvh.{process.pid}.0123456789abcdef").touch()  # where files cannot be without a name
     run("replay", ROUND, "--out", out, "--fps", 60)
     assert sorted(p.name for p in out.iterdir()) == ["frames.csv", "pose.bvh", "summary.json"]
 
@@ -369,3 +376,76 @@ def test_long_gaps_take_the_time_of_their_ticks_and_show_progress(program, made)
         terminal.wait_for(r"replay: \d+ %, (\d+ min )?\d+ s left", 60)
         assert terminal.wait_end(300) == 0
     assert f"{10 * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text
+
+
+# ---- a replay depends on its recording alone -------------------------------------------------
+def test_files_of_the_users_folder_change_no_replay(run, tmp_path):
+    """round.hid names limp_left in a command; a user has a style of that name, and a damaged one."""
+    def hash_of(**environment):
+        done = run("replay", ROUND, "--json", env={**os.environ, **environment})
+        return json.loads(done.stdout)["pose_hash"], done.stderr
+    bundled = hash_of()
+    styles = tmp_path / "gaitpad/styles"
+    styles.mkdir(parents=True)
+    (styles / "limp_left.toml").write_text("hip_sway = 3\n")
+    (styles / "even.toml").write_text("hip_sway =\n")
+    assert hash_of(XDG_CONFIG_HOME=str(tmp_path)) == bundled
+    (styles / "mine.toml").write_text("hip_sway =\n")
+    pose_hash, said = hash_of(XDG_CONFIG_HOME=str(tmp_path))
+    assert pose_hash == bundled[0]
+    assert f"{styles}/mine.toml:1: " in said and "the session goes on without this style" in said
+    assert "mine.toml" in run("replay", ROUND, "--style", "mine", env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
+                              status=1).stderr
+
+
+def test_a_recorded_session_replays_without_its_options(run, tmp_path):
+    own = tmp_path / "own.toml"
+    own.write_text("hip_sway = 2\n")
+    played = json.loads(run("play", ROUND, "--no-window", "--style", own, "--style", "tired", "--character", "child",
+                            "--terrain", "stairs", "--crowd", 3, "--seconds", 1.5, "--record", tmp_path / "r.hid",
+                            "--json").stdout)
+    own.unlink()
+    (tmp_path / "empty").mkdir()
+    replayed = json.loads(run("replay", tmp_path / "r.hid", "--json", cwd="/",
+                              env={**os.environ, "GAITPAD_CONFIG": str(tmp_path / "empty")}).stdout)
+    assert [r["pose_hash"] for r in replayed] == [p["pose_hash"] for p in played]
+    assert "/tmp" not in (tmp_path / "r.hid").read_text().split("F: ")[2], "bundled files have no paths of this machine"
+
+
+# ---- what hostile use found ------------------------------------------------------------------
+def test_large_files_are_refused_before_they_are_read(refuse, tmp_path):
+    """600 MB of holes, with 200 MB of memory."""
+    for name, option in (("large.bvh", ["--motion"]), ("large.toml", ["--style"]), ("large.hid", [])):
+        path = tmp_path / name
+        path.touch()
+        os.truncate(path, 600 << 20)
+        small = lambda: resource.setrlimit(resource.RLIMIT_AS, (200 << 20, 200 << 20))
+        trace = [] if name == "large.hid" else [ROUND]
+        refuse("replay", *trace, *option, path, says=f"{name}: larger than", preexec_fn=small)
+
+
+def test_skipped_damage_asks_for_no_hours_of_work(made, refuse):
+    """A hundred gaps of ten minutes, and a damaged line."""
+    text = HEADER + "".join(report(599 * i) for i in range(100)) + "E: damaged\n"
+    made.refuse(text, "--lenient", says=["made.hid: lasts 16.4", "longer than 1;", "--max-hours"])
+    made.refuse(HEADER + "".join(report(599 * i) for i in range(10)) + "E: damaged\n", "--lenient", says="longer than 1;")
+    made.run(HEADER + "".join(report(60 * i) for i in range(3)) + "E: damaged\n", "--lenient")
+
+
+def test_ground_without_a_number_is_said_to_be(made, run):
+    ground = made.write("ground.toml", '[[section]]\nkind = "rough"\nlength_m = 5\nheight_m = 0\nwavelength_m = 1\n'
+                                       'fade_m = 1e-300\n')
+    assert "bends infinitely per metre" in run("replay", ROUND, "--terrain", ground, status=1).stderr
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may become somebody without a thread")
+def test_where_no_thread_can_be_started_a_crowd_walks_on_one(run, tmp_path):
+    def alone():
+        os.setgroups([])
+        os.setgid(47631)
+        os.setuid(47631)
+        resource.setrlimit(resource.RLIMIT_NPROC, (0, 0))
+    off = {**os.environ, "GAITPAD_CACHE": "off"}
+    done = run("replay", ROUND, "--crowd", 100, "--json", preexec_fn=alone, env=off, cwd="/")
+    assert json.loads(done.stdout)["pose_hash"] == json.loads(
+        run("replay", ROUND, "--crowd", 100, "--json").stdout)["pose_hash"]

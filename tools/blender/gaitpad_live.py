@@ -20,6 +20,8 @@ bl_info = {"name": "gaitpad live", "author": "gaitpad", "version": (0, 1, 0), "b
            "description": "Walks an armature by the poses that gaitpad streams"}
 
 PORT = 39540
+MOST_AT_ONCE = 256  # datagrams: Blender draws between two looks, and a flood must not keep it from that
+MOST_M = 1e4  # a place farther away is no walk
 # gaitpad's bones: a bone stands behind the one that carries it; where that is not mapped, the one above it does.
 PARENTS = {"Hips": None, "Spine": "Hips", "Chest": "Spine", "UpperChest": "Chest", "Neck": "UpperChest", "Head": "Neck"}
 for _side in ("Left", "Right"):
@@ -280,6 +282,30 @@ class Puppet:
                 bone.keyframe_insert("location", frame=frame)
 
 
+def sound_frame(data):
+    """The object in a datagram of the stream; None: it is somebody else's, or damaged."""
+    try:
+        frame = json.loads(data)
+        is_known = all(isinstance(name, str) for name in frame["bones"])
+        places = [frame["root"], *frame["bones"].values()]
+        is_sound = is_known and "Hips" in frame["bones"] and all(is_place(place) for place in places) and \
+            is_number(frame["time_s"]) and is_number(frame["hips_m"]) and frame["hips_m"] > 0
+        return frame if is_sound else None
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return None
+
+
+def is_number(value):
+    """Not true, nor a whole number too long for a float; NaN fails both comparisons."""
+    return type(value) in (int, float) and -1e9 < value < 1e9
+
+
+def is_place(place):
+    """A place and a quaternion."""
+    return isinstance(place, list) and len(place) == 7 and all(map(is_number, place)) and \
+        all(abs(m) < MOST_M for m in place[:3]) and 0.5 < sum(part * part for part in place[3:]) < 2.0
+
+
 def to_quaternion(place):
     x, y, z, w = place[3:]
     return Quaternion((w, x, y, z))
@@ -300,6 +326,7 @@ class Listener:
             self.socket.close()
             raise
         self.port = self.socket.getsockname()[1]
+        self.malformed = 0  # datagrams that were skipped
         self.record(None)
 
     def close(self):
@@ -311,19 +338,21 @@ class Listener:
         self.first_s = None  # the stream's time there
 
     def waiting(self):
-        """The objects that have come since the last call."""
+        """The objects that have come since the last call, at most MOST_AT_ONCE."""
         frames = []
-        while True:
+        for _ in range(MOST_AT_ONCE):
             try:
                 data = self.socket.recv(65536)
             except BlockingIOError:
-                return frames
-            try:
-                frame = json.loads(data)
-                if "Hips" in frame["bones"]:
-                    frames.append(frame)
-            except (ValueError, KeyError, TypeError):
-                continue  # somebody else's datagram
+                break
+            except OSError:
+                continue  # what an earlier datagram of ours met
+            frame = sound_frame(data)
+            if frame is None:
+                self.malformed += 1
+            else:
+                frames.append(frame)
+        return frames
 
     def take(self, scene):
         """Puts what has come on the armature: while it records every pose, else the newest. How many came."""
@@ -465,6 +494,8 @@ class GAITPAD_PT_live(bpy.types.Panel):
         layout.operator("gaitpad.record", text="Stop recording" if is_recording else "Record", depress=is_recording)
         column = layout.column(align=True)
         column.enabled = listener is None
+        if listener is not None and listener.malformed > 0:
+            layout.label(text=f"{listener.malformed} datagrams were not gaitpad's", icon="ERROR")
         for entry in armature.gaitpad.bones:
             column.prop_search(entry, "bone", armature.data, "bones", text=entry.name)
 

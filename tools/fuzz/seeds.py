@@ -27,6 +27,17 @@ def write_pads(out):
             (out / "fuzz_descriptor" / f"{path.stem}.{override}").write_bytes(head + descriptor + reports)
 
 
+def write_session(out):
+    """A recording that holds files: a text, bytes, one that was saved while it ran."""
+    pad = next(iter(sorted((ROOT / "tests/data/pads").glob("*.hid")))).read_text()
+    lines = [line for line in pad.splitlines() if line[:2] in ("R:", "N:", "I:", "E:")]
+    head = ("V: 2 rate_hz=240\nO: pace own\nO: style styles/even.toml\nO: terrain g.toml\nO: crowd 2\n"
+            "F: styles/even.toml\nG: hip_sway = 1\nG:\nF: g.png\nX: 3 89 50 00\n")
+    (out / "fuzz_trace" / "session.hid").write_text(
+        head + "\n".join(line for line in lines if line[:2] != "E:") + "\nT: 0\n" + lines[-1] +
+        "\nT: 2\nF: styles/mine.toml\nG: hip_sway = 2\n")
+
+
 def leg(side, x):
     """Hip, knee, ankle, toe of a leg 0.8 m long, in centimetres."""
     places = (("UpLeg", f"{x} -2 0"), ("Leg", "0 -40 0"), ("Foot", "0 -40 0"), ("ToeBase", "0 -8 12"))
@@ -121,6 +132,7 @@ def main():
                  "fuzz_terrain"):
         (out / name).mkdir(parents=True, exist_ok=True)
     write_pads(out)
+    write_session(out)
     write_walk(out)
     write_acclaim(out)
     write_calibrations(out)

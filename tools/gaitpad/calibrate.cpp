@@ -461,6 +461,8 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   CalibrationFile file = calibration_for(pad->info, pad->has_factory_sticks);
   auto target = calibration_target(arguments.out, file);
   if (!target) return fail(kCalibrateCommand, target.error().message);
+  const auto lock = FolderLock::wait(*target);  // the file is changed, not replaced
+  if (!lock) return fail(kCalibrateCommand, lock.error().message);
   std::vector<std::string> remarks;
   take_what_holds(files, pad->info, *target, file, remarks);
   print_remarks(kCalibrateCommand, remarks);

@@ -28,6 +28,7 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kCheckCommand = "check";
+constexpr int kWrongUsage = 2;  // exit status
 constexpr int kMaxShards = 100'000, kMaxJobs = 1024;
 
 // The part of the recordings that is this run's: every `total`-th, counted from 1.
@@ -37,10 +38,10 @@ struct Shard {
 
 struct CheckArguments {
   std::vector<std::string> paths;
-  bool updates = false;
+  bool updates = false, is_strict = false;
   int jobs = machine_threads();
   std::string shard, junit, plot;
-  double max_hours = SessionSpec::Replay::kMaxHours;
+  std::optional<double> max_hours;
 };
 
 // `2/8`.
@@ -236,20 +237,27 @@ std::string picture_path(const std::string& folder, const CheckedTrace& trace) {
 
 // --- the command
 
+// The last words, so that they are seen. Returns the exit status.
+int tell_of_left_out(const CheckArguments& arguments, const std::vector<std::string>& without) {
+  if (without.empty()) return 0;
+  std::string text = fmt::format("recordings without an expectation, left out: {}", without.size());
+  if (!arguments.is_strict) {
+    print_remarks(kCheckCommand, {text});
+    return 0;
+  }
+  return fail(kCheckCommand, fmt::format("{}; the first is {}", text, without.front()));
+}
+
 int run(const CheckArguments& arguments) {
   const auto shard = wished_shard(arguments.shard);
-  if (!shard) return fail(kCheckCommand, shard.error().message);
+  if (!shard) return fail(kCheckCommand, shard.error().message), kWrongUsage;
   auto found = found_traces(arguments.paths, arguments.updates);
   if (!found) return fail(kCheckCommand, found.error().message);
   if (found->traces.empty()) {
     return fail(kCheckCommand,
-                found->without == 0
+                found->without.empty()
                     ? "no recording is there"
                     : "no recording has an expectation beside it; --update writes them");
-  }
-  if (found->without > 0 && !arguments.updates) {
-    print_remarks(kCheckCommand,
-                  {fmt::format("recordings without an expectation, left out: {}", found->without)});
   }
   std::vector<CheckedTrace> traces;
   for (std::size_t i = shard->index - 1; i < found->traces.size(); i += shard->total)
@@ -283,9 +291,12 @@ int run(const CheckArguments& arguments) {
     if (auto problem = write_file(arguments.junit, junit.text()))
       return fail(kCheckCommand, problem->message);
   }
-  if (failures == 0) return 0;
-  return fail(kCheckCommand,
-              fmt::format("{} of {} recordings are not as expected", failures, traces.size()));
+  int status = 0;
+  if (failures > 0) {
+    status = fail(kCheckCommand,
+                  fmt::format("{} of {} recordings are not as expected", failures, traces.size()));
+  }
+  return arguments.updates ? status : std::max(status, tell_of_left_out(arguments, found->without));
 }
 
 }  // namespace
@@ -300,6 +311,10 @@ void add_check(CLI::App& app, int& status) {
       ->required();
   command->add_flag("--update", arguments->updates,
                     "writes the expectations that are missing or not met, and says what changed");
+  command
+      ->add_flag("--strict", arguments->is_strict,
+                 "a recording without an expectation is a failure, so that no test gets lost")
+      ->excludes("--update");
   command->add_option("-j,--jobs", arguments->jobs, "so many at once (default: a core each)")
       ->check(CLI::Range(1, kMaxJobs));
   command
@@ -318,7 +333,7 @@ void add_check(CLI::App& app, int& status) {
       "usage.\n"
       "Examples:\n"
       "  gaitpad check --update walks\n"
-      "  gaitpad check walks --junit results.xml --plot out\n"
+      "  gaitpad check walks --strict --junit results.xml --plot out\n"
       "  gaitpad check walks --shard 2/8 -j 2");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

@@ -202,7 +202,11 @@ int main(int argc, char** argv) {
     } catch (const std::system_error&) {
       is_written = false;
     }
-  } catch (const std::system_error&) {  // fmt::print on a full disk
+  } catch (const std::system_error& error) {  // fmt::print on a full disk
+    if (error.code() == std::errc::resource_unavailable_try_again) {
+      gaitpad::warn(fmt::format("gaitpad: no thread can be started: {}\n", error.code().message()));
+      return kFailed;
+    }
     is_written = false;
   }
   if (is_written && is_flushed()) return status;

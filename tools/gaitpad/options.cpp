@@ -73,10 +73,11 @@ void add_seconds_option(CLI::App& command, double& seconds) {
       ->check(CLI::Range(kLeastSeconds, kMostSeconds));
 }
 
-void add_max_hours_option(CLI::App& command, double& hours) {
+void add_max_hours_option(CLI::App& command, std::optional<double>& hours) {
   command
       .add_option("--max-hours", hours,
-                  fmt::format("refuse a recording that lasts longer (default: {:g})", hours))
+                  "refuse a recording that lasts longer (default: 12; 1 if damaged lines were "
+                  "skipped)")
       ->check(CLI::PositiveNumber);
 }
 

@@ -129,9 +129,10 @@ void add_status(const LiveStatus& status, ordered_json& summary) {
 // Failed if the pad that was asked for never came, or a command was none.
 int status_of(const PlayArguments& arguments, const LiveStatus& status, const RunSummary& run) {
   const bool is_alone = is_choosy(arguments.spec.pad.wish) && status.pads.plugged == 0;
-  const bool is_wrong = arguments.takes_commands && run.bad_commands > 0;
+  const std::int64_t wrong = run.bad_commands + status.pads.commands_left_out;
+  const bool is_wrong = arguments.takes_commands && wrong > 0;
   if (is_wrong)
-    print_remarks(kPlayCommand, {fmt::format("{} commands could not be obeyed", run.bad_commands)});
+    print_remarks(kPlayCommand, {fmt::format("{} commands could not be obeyed", wrong)});
   return is_alone || is_wrong ? 1 : 0;
 }
 

@@ -36,9 +36,10 @@ Result<Terrain> parsed_terrain(std::string_view text, const std::string& path);
 std::string user_config_folder();
 
 // Those that exist of the folders laid out like this repository's config/, the most important one
-// first: $GAITPAD_CONFIG, the user's, ../share/gaitpad and ../config beside the program's folder,
-// `built_in` (empty: none). Of files with the same name the first folder's counts. Calibrations and
-// pad files in the user's folder are found in other ways.
+// first: $GAITPAD_CONFIG, ../share/gaitpad and ../config beside the program's folder, `built_in`
+// (empty: none), the user's. Of files with the same name the first folder's counts, so a user's
+// file never hides a bundled one. Calibrations and pad files in the user's folder are found in
+// other ways.
 std::vector<std::string> config_folders(const std::string& built_in);
 
 // The path that a user's FILE|NAME means: itself if it has a slash or ends in .toml, else

@@ -97,6 +97,7 @@ struct PadStreamCounts {
   std::int64_t reports = 0;  // written to the ring
   std::int64_t lost = 0;     // reports that a source lost, and those that found the ring full
   std::int64_t plugged = 0, unplugged = 0;  // pads without the keyboard
+  std::int64_t commands_left_out = 0;       // too long, or too many at once
 };
 
 // Pads as one stream of reports: found, opened, and kept through unplugging and plugging in again.

@@ -11,8 +11,10 @@
 
 namespace gaitpad {
 
-// FILE|NAME is a path, or the name of a file in the folders of configuration. An empty text or list
-// means the default.
+// A recording of a session holds what the session was made of. What `walk` and `pad.map` leave
+// empty is in its replay as the recording says, and in other sessions the default.
+//
+// FILE|NAME is a path, or the name of a file in the folders of configuration.
 struct SessionSpec {
   // Who walks, how, and where.
   struct Walk {
@@ -21,9 +23,9 @@ struct SessionSpec {
     std::vector<std::string> styles;  // FILE|NAME; the shorter of the two lists repeats its last
     std::string terrain;              // FILE|NAME; empty: flat
     std::string script;               // FILE with commands at given times
-    IkMode ik = IkMode::robust;
-    StickMeans stick = StickMeans::steers;
-    int crowd = 0;            // so many more walk behind the first character
+    std::optional<IkMode> ik;         // none: robust
+    StickMeans stick = StickMeans::steers;  // until a command says otherwise
+    std::optional<int> crowd;               // so many more walk behind the first character; none: 0
     bool shows_crowd = true;  // frames hold the crowd's poses; false saves their copies in a tick
     // None: in a replay the trace's, else what the motion's description says, else its own. The
     // built-in motion has the adult's whatever stands here.
@@ -49,14 +51,16 @@ struct SessionSpec {
   };
   // Of a replay alone.
   struct Replay {
-    static constexpr double kMaxHours = 12.0;
+    static constexpr double kMaxHours = 12.0, kMaxDamagedHours = 1.0;
     std::string trace;               // the recording; empty: the session is live
     Damage damage = Damage::refuse;  // what a damaged line of it means
-    double max_hours = kMaxHours;    // a longer one is an error: 40 KB can ask for hours of work
-    std::string out;                 // folder for the files that replay() writes; empty: none
-    std::optional<int> fps;          // of the poses written; none: one pose a tick
-    bool gltf = false;               // write pose.glb beside pose.bvh
-    int crowd_files = 32;            // of the crowd the first so many get files, too
+    // A longer one is an error: 40 KB can ask for hours of work. None: kMaxHours, or
+    // kMaxDamagedHours if lines of it were skipped.
+    std::optional<double> max_hours;
+    std::string out;         // folder for the files that replay() writes; empty: none
+    std::optional<int> fps;  // of the poses written; none: one pose a tick
+    bool gltf = false;       // write pose.glb beside pose.bvh
+    int crowd_files = 32;    // of the crowd the first so many get files, too
   };
 
   Walk walk;
@@ -67,7 +71,12 @@ struct SessionSpec {
   // from the trace's is an error.
   std::optional<int> rate_hz;
   std::vector<std::string> config_folders;  // config_files.h
+  // Set while a recording that holds files is prepared: its path. Styles that no option names, and
+  // entries for pads, come from it then instead of from the folders.
+  std::string recording;
 };
+
+bool is_built_in(const SessionSpec& spec);  // the motion
 
 // What `spec.pad` and the folders of configuration say about pads. Reads files.
 Result<PadFiles> load_pad_files(const SessionSpec& spec);

@@ -47,6 +47,7 @@ struct SimulationConfig {
   int crowd_threads = 1;  // that move the crowd on, at most; the poses are the same for any number
   bool shows_crowd = true;  // keeps the crowd's poses of two ticks for viewers
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
+  std::vector<std::string> remarks;  // what a user should know of the files that it was read from
 };
 
 // Configurations for devices that are not known yet: set_pad() fills them in.

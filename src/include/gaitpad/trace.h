@@ -45,12 +45,22 @@ struct TraceEvent {
   bool operator==(const TraceEvent&) const = default;
 };
 
+// A file that a session was made of, as its recording holds it.
+struct TraceFile {
+  std::string name;        // with the folders that other files find it in
+  std::string bytes;       // of a text: its lines, each with a line feed
+  std::int64_t tick = -1;  // from which on; -1: from the start
+  bool operator==(const TraceFile&) const = default;
+};
+
 struct Trace {
   std::string path;
   int version = kTraceVersion;  // of the `V:` line; a file without one replays by today's rules
   std::optional<int> rate_hz;   // of the `V:` line
-  std::optional<Pace> pace;     // of the `O:` line
-  bool has_ticks = false;       // from `T:` lines: TraceEvent::tick is set
+  std::optional<Pace> pace;     // of the `O: pace` line
+  std::vector<std::string> options;  // the texts of the other `O:` lines
+  std::vector<TraceFile> files;      // in the order of their `F:` lines
+  bool has_ticks = false;            // from `T:` lines: TraceEvent::tick is set
   std::vector<TraceDevice> devices;
   std::vector<TraceEvent> events;  // in the order of the file; ticks never decrease
   std::vector<std::uint8_t> bytes;
@@ -88,8 +98,10 @@ Report report_of(const Trace& trace, const TraceEvent& event) noexcept;
 // Writes a trace line by line in the order of the calls.
 class TraceWriter {
  public:
-  void begin(int rate_hz, int version = kTraceVersion);  // `V:`, before anything else
-  void pace(Pace pace);                                  // `O:`, before any event
+  void begin(int rate_hz, int version = kTraceVersion);      // `V:`, before anything else
+  void pace(Pace pace);                                      // `O:`, before any event
+  void option(std::string_view text);                        // `O:`
+  void file(std::string_view name, std::string_view bytes);  // `F:` and its lines
   void comment(std::string_view sentence);
   // The lines that describe the device; texts are cut to the reader's limits. The only device of a
   // recording needs no `D:` line if its index is 0.

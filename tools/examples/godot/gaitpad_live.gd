@@ -17,7 +17,10 @@ const PARENTS := {
 	"LeftHand": "LeftLowerArm", "RightShoulder": "UpperChest", "RightUpperArm": "RightShoulder",
 	"RightLowerArm": "RightUpperArm", "RightHand": "RightLowerArm"}
 
-var _socket := PacketPeerUDP.new()
+const MOST_AT_ONCE := 64  # datagrams: Godot draws between two looks, and a flood must not keep it from that
+
+var malformed := 0  # datagrams that were skipped
+var _socket = PacketPeerUDP.new()
 
 
 func _ready() -> void:
@@ -31,14 +34,52 @@ func _process(_delta: float) -> void:
 		put(newest)
 
 
-# The newest object that has come since the last call, or null.
+# The newest object that has come since the last call, or null. At most MOST_AT_ONCE are looked at.
 func take():
 	var newest = null
-	while _socket.get_available_packet_count() > 0:
-		var read := JSON.parse(_socket.get_packet().get_string_from_utf8())
-		if read.error == OK and read.result is Dictionary and read.result.has("bones"):
+	for _i in MOST_AT_ONCE:
+		if _socket.get_available_packet_count() == 0:
+			break
+		var data: PoolByteArray = _socket.get_packet()
+		var read = JSON.parse(data.get_string_from_utf8()) if looks_like_json(data) else null
+		if read != null and read.error == OK and is_sound(read.result):
 			newest = read.result
+		else:
+			malformed += 1
 	return newest
+
+
+# Begins with { and ends with }.
+static func looks_like_json(data: PoolByteArray) -> bool:
+	return data.size() > 2 and data[0] == 0x7b and (data[data.size() - 1] == 0x7d or data[data.size() - 2] == 0x7d)
+
+
+# Whether an object is one of the stream: places are three numbers and a quaternion.
+static func is_sound(frame) -> bool:
+	if not (frame is Dictionary and frame.get("bones") is Dictionary and frame["bones"].has("Hips")):
+		return false
+	if not (is_number(frame.get("hips_m")) and frame["hips_m"] > 0 and is_place(frame.get("root"))):
+		return false
+	for bone in frame["bones"].values():
+		if not is_place(bone):
+			return false
+	return true
+
+
+static func is_number(value) -> bool:
+	return value is float and abs(value) < 1e9
+
+
+static func is_place(numbers) -> bool:
+	if not (numbers is Array and numbers.size() == 7):
+		return false
+	var square := 0.0
+	for i in 7:
+		if not is_number(numbers[i]):
+			return false
+		if i >= 3:
+			square += numbers[i] * numbers[i]
+	return 0.5 < square and square < 2.0
 
 
 # Puts one object of the stream on the skeleton.

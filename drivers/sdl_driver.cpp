@@ -1,10 +1,11 @@
-// Joysticks of SDL2, and its data base of mappings, where a user asks for the driver `sdl`. SDL has
+// Joysticks of SDL2, where a user asks for the driver `sdl`. SDL has
 // one list of joysticks, one set of hints and one queue of events for the whole program, which may
 // be somebody else's. So hints are only set if the program has no joysticks, and nothing of others
 // is taken off the queue: an event watch sees each joystick event when SDL creates it, on any
 // thread, and stores it for the open device. SDL has nothing to poll(): it looks at its joysticks
 // when it is asked to, here once a millisecond.
 #include <SDL2/SDL.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <sys/timerfd.h>
 
@@ -14,10 +15,12 @@
 #include <mutex>
 #include <utility>
 
+#include "base/files.h"
 #include "drivers/driver_entries.h"
 #include "drivers/posix.h"
 #include "drivers/sdl_reports.h"
 #include "drivers/system_nodes.h"
+#include "gaitpad/drivers.h"
 #include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
 #include "hid/sdl_mapping.h"
@@ -283,10 +286,6 @@ std::string take_text(char* line) {
   return text;
 }
 
-// SDL guesses a line for a pad that its data base does not have, and adds it to the data base. A
-// guess has a checksum of the pad's name.
-bool is_guess(const std::string& line) { return line.find(",crc:") != std::string::npos; }
-
 // SDL's path of the device with this index; the joysticks are locked.
 std::string node_of(int index) {
   const char* path = SDL_JoystickPathForIndex(index);
@@ -306,8 +305,8 @@ DeviceListing listing_of(int index, const SystemNode* system) {
   info.version = SDL_JoystickGetDeviceProductVersion(index);
   if (const char* name = SDL_JoystickNameForIndex(index)) info.name = name;
   // The codes of a node tell more than SDL's guess.
-  info.mapping = system ? sdl_library_mapping(info)
-                        : take_text(SDL_GameControllerMappingForDeviceIndex(index));
+  info.mapping =
+      system ? sdl_mapping_of(info) : take_text(SDL_GameControllerMappingForDeviceIndex(index));
   listing.node = node_of(index);
   if (listing.pad_path.empty()) listing.pad_path = listing.node;
   return listing;
@@ -389,15 +388,14 @@ Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, De
   return Error{listing.node + ": SDL has no such joystick"};
 }
 
-std::string sdl_library_mapping(const DeviceInfo& device) {
-  const Sdl& sdl = Sdl::started();
-  if (!sdl.problem().empty()) return {};
-  std::vector<std::string> lines;
-  for (int i = 0; i < SDL_GameControllerNumMappings(); ++i) {
-    std::string line = take_text(SDL_GameControllerMappingForIndex(i));
-    if (!is_guess(line)) lines.push_back(std::move(line));
-  }
-  return fitting_mapping(lines, device);
+std::vector<std::string> sdl_library_lines() {
+  Dl_info library{};
+  if (::dladdr(reinterpret_cast<const void*>(&SDL_GetRevision), &library) == 0) return {};
+  constexpr std::size_t kMaxLibraryBytes = std::size_t{64} << 20;
+  auto text = file_text(library.dli_fname, kMaxLibraryBytes);
+  if (!text) return {};
+  std::replace(text->begin(), text->end(), '\0', '\n');
+  return mapping_lines(*text);
 }
 
 }  // namespace gaitpad

@@ -303,9 +303,11 @@ Device::Status EvdevDevice::read(Report& report) noexcept {
 // Node numbers are reused: between finding and opening the node may have become another device.
 bool is_another(const libevdev* device, const DeviceInfo& info) {
   const char* port = libevdev_get_phys(device);
+  const auto of_device = [](std::string_view path) { return path.substr(0, path.rfind("/input")); };
   return libevdev_get_id_vendor(device) != info.vendor ||
          libevdev_get_id_product(device) != info.product ||
-         (!info.physical_path.empty() && info.physical_path != (port ? port : ""));
+         (!info.physical_path.empty() &&
+          of_device(info.physical_path) != of_device(port ? port : ""));
 }
 
 // ---- Finding

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "drivers/pads/pads_of_devices.h"
 #include "drivers/posix.h"
 
 namespace gaitpad {

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "drivers/pads/pads_of_devices.h"
 #include "gaitpad/descriptor.h"
 
 namespace gaitpad {
@@ -129,6 +130,13 @@ bool add_input(udev_device* device, SystemNode& node) {
   node.is_motion_sensor = is_marked(device, "ID_INPUT_ACCELEROMETER");
   node.is_touchpad = is_marked(device, "ID_INPUT_TOUCHPAD");
   if (node.pad_path.empty()) node.pad_path = text(udev_device_get_syspath(input));
+  udev_device* usb = udev_device_get_parent_with_subsystem_devtype(device, "usb", "usb_interface");
+  if (!usb) return true;
+  node.physical_path = port_behind_receiver(node.physical_path, node.kernel_driver,
+                                            hex16(attribute(usb, "bInterfaceNumber")));
+  node.pad_path =
+      path_behind_receiver(node.pad_path, node.kernel_driver,
+                           text(udev_device_get_syspath(udev_device_get_parent(input))));
   return true;
 }
 

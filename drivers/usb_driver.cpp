@@ -15,7 +15,7 @@
 
 #include "drivers/driver_entries.h"
 #include "drivers/pads/pad_model.h"
-#include "drivers/pads/several_pads.h"
+#include "drivers/pads/pads_of_devices.h"
 #include "drivers/posix.h"
 #include "drivers/present_state.h"
 #include "drivers/shared_pads.h"

@@ -78,22 +78,6 @@ class PadModel {
 // The model by ids and bus; a plain one for pads that need nothing.
 std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device);
 
-// Whether something was put into the plug of an adapter, or taken out, since the last packet.
-class PlugWatch {
- public:
-  // Then `report` says so.
-  bool has_changed(const PadModel& model, Report& report) noexcept {
-    if (model.is_plugged() == was_plugged_) return false;
-    was_plugged_ = !was_plugged_;
-    report.kind = was_plugged_ ? ReportKind::added : ReportKind::removed;
-    report.size = 0;
-    return true;
-  }
-
- private:
-  bool was_plugged_ = true;
-};
-
 // One file for each family; null: the device is of another family.
 std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device);
 std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device);

@@ -7,7 +7,6 @@
 #include <SDL2/SDL.h>
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <sys/timerfd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -35,30 +34,16 @@ using Control = JoystickReports::Control;
 
 // When to look at SDL's joysticks: once a millisecond. All open devices share the timer; whichever
 // finds it expired updates SDL for all of them.
-class MillisecondTimer {
- public:
-  MillisecondTimer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {
-    constexpr timespec kMillisecond{0, 1'000'000};
-    const itimerspec times{kMillisecond, kMillisecond};
-    ::timerfd_settime(fd(), 0, &times, nullptr);
-  }
-  int fd() const noexcept { return fd_.get(); }  // below 0: there is none
-  bool take_tick() const noexcept {
-    std::uint64_t count = 0;
-    return ::read(fd(), &count, sizeof count) == sizeof count;
-  }
-  static std::shared_ptr<MillisecondTimer> shared() {
-    static std::mutex mutex;
-    static std::weak_ptr<MillisecondTimer> running;
-    const std::lock_guard lock(mutex);
-    auto timer = running.lock();
-    if (!timer) running = timer = std::make_shared<MillisecondTimer>();
-    return timer;
-  }
-
- private:
-  OwnedFd fd_;
-};
+std::shared_ptr<Timer> millisecond_timer() {
+  static std::mutex mutex;
+  static std::weak_ptr<Timer> running;
+  const std::lock_guard lock(mutex);
+  auto timer = running.lock();
+  if (timer) return timer;
+  running = timer = std::make_shared<Timer>();
+  timer->set(1, 1'000'000);
+  return timer;
+}
 
 // SDL's joysticks, started on first use: that takes up to a second.
 class Sdl {
@@ -209,8 +194,7 @@ using JoystickHandle = std::unique_ptr<SDL_Joystick, JoystickClosing>;
 class SdlDevice : public Device {
  public:
   // The caller has locked SDL's joysticks, so that no change is lost between state and inbox.
-  SdlDevice(JoystickHandle joystick, const DeviceListing& listing,
-            std::shared_ptr<MillisecondTimer> timer)
+  SdlDevice(JoystickHandle joystick, const DeviceListing& listing, std::shared_ptr<Timer> timer)
       : joystick_(std::move(joystick)),
         info_(listing.info),
         reports_(joystick_reports(current_state(joystick_.get()), listing.node, info_.version)),
@@ -238,7 +222,7 @@ class SdlDevice : public Device {
   JoystickHandle joystick_;
   DeviceInfo info_;
   JoystickReports reports_;
-  std::shared_ptr<MillisecondTimer> timer_;
+  std::shared_ptr<Timer> timer_;
   pollfd poll_fd_;
   JoystickInbox inbox_;
   bool has_reported_ = false, removed_ = false;
@@ -248,7 +232,7 @@ class SdlDevice : public Device {
 // SDL does not report the first small movement of an axis, so the axes are also read; locked, so
 // that no event comes in between.
 void SdlDevice::fetch() noexcept {
-  if (timer_->take_tick()) update_joysticks();
+  if (timer_->take()) update_joysticks();
   const JoystickLock lock;
   JoystickInbox inbox = Sdl::started().inboxes.take(inbox_);
   removed_ = inbox.removed;
@@ -374,7 +358,7 @@ std::vector<DeviceListing> find_sdl_devices() {
 Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, Detach) {
   const Sdl& sdl = Sdl::started();
   if (!sdl.problem().empty()) return Error{listing.node + ": " + sdl.problem()};
-  auto timer = MillisecondTimer::shared();
+  auto timer = millisecond_timer();
   if (timer->fd() < 0) return Error{listing.node + ": no timer, too many open files"};
   update_joysticks();
   const JoystickLock lock;

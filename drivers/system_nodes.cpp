@@ -52,31 +52,6 @@ std::uint16_t hex16(std::string_view digits) {
   return static_cast<std::uint16_t>(take_number<std::uint32_t>(digits, 16).value_or(0));
 }
 
-std::string first_line(const fs::path& path) {
-  std::ifstream in(path);
-  std::string line;
-  std::getline(in, line);
-  return unquoted(line);
-}
-
-std::vector<std::uint8_t> file_bytes(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
-// Of the input device that the kernel made of a HID device: the version in SDL's GUID.
-std::uint16_t input_version(const fs::path& hid_device) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(hid_device / "input", error)) {
-    const std::string version = first_line(entry.path() / "id" / "version");
-    if (!version.empty()) return hex16(version);
-  }
-  return 0;
-}
-
 // What the HID device and the USB interface above the node tell.
 void add_parents(udev_device* device, SystemNode& node) {
   udev_device* hid = udev_device_get_parent_with_subsystem_devtype(device, "hid", nullptr);
@@ -111,7 +86,7 @@ bool add_hidraw(udev_device* device, SystemNode& node) {
   node.unique_id = property(hid, "HID_UNIQ");
   node.physical_path = property(hid, "HID_PHYS");
   node.version = input_version(path);
-  node.descriptor = file_bytes(fs::path(path) / "report_descriptor");
+  node.descriptor = sysfs_bytes(fs::path(path) / "report_descriptor");
   return true;
 }
 
@@ -172,6 +147,34 @@ bool is_before(const SystemNode& a, const SystemNode& b) {
 
 }  // namespace
 
+std::vector<std::uint8_t> sysfs_bytes(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  return bytes;
+}
+
+std::string sysfs_text(const fs::path& path) {
+  const std::vector<std::uint8_t> bytes = sysfs_bytes(path);
+  return unquoted({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::optional<std::uint32_t> sysfs_hex(const fs::path& path) {
+  const std::string text = sysfs_text(path);
+  std::string_view digits = text;
+  return take_number<std::uint32_t>(digits, 16);
+}
+
+std::uint16_t input_version(const fs::path& owner) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(owner / "input", error)) {
+    if (const auto version = sysfs_hex(entry.path() / "id" / "version"))
+      return static_cast<std::uint16_t>(*version);
+  }
+  return 0;
+}
+
 std::vector<SystemNode> system_nodes(std::string_view subsystem) {
   std::vector<SystemNode> nodes;
   const Udev context(udev_new());
@@ -219,9 +222,9 @@ double usb_poll_rate_hz(const std::string& interface_path) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(interface_path, error)) {
     if (!entry.path().filename().string().starts_with("ep_")) continue;
-    if (first_line(entry.path() / "direction") != "in") continue;
-    if (first_line(entry.path() / "type") != "Interrupt") continue;
-    const std::string interval = first_line(entry.path() / "interval");
+    if (sysfs_text(entry.path() / "direction") != "in") continue;
+    if (sysfs_text(entry.path() / "type") != "Interrupt") continue;
+    const std::string interval = sysfs_text(entry.path() / "interval");
     std::string_view unit = interval;  // behind the number
     const double value = take_number<double>(unit).value_or(0.0);
     if (value <= 0.0) return 0.0;

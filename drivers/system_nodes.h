@@ -3,7 +3,9 @@
 // doctor`.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +29,18 @@ struct SystemNode {
   double poll_rate_hz = 0.0;             // 1 / bInterval of the interrupt IN endpoint; 0: unknown
   bool is_joystick = false, is_motion_sensor = false, is_touchpad = false;  // udev's ID_INPUT_*
 };
+
+// A file in /sys, at most 4096 bytes, without the blanks, quotes and line ends around it; empty:
+// there is none.
+std::string sysfs_text(const std::filesystem::path& path);
+// The same as it is: a report descriptor.
+std::vector<std::uint8_t> sysfs_bytes(const std::filesystem::path& path);
+// The number that it holds, in hexadecimal; none: there is no such file, or no number.
+std::optional<std::uint32_t> sysfs_hex(const std::filesystem::path& path);
+
+// Of the input device that the kernel made of a HID device or USB interface, the version in SDL's
+// GUID; 0: there is none.
+std::uint16_t input_version(const std::filesystem::path& owner);
 
 // The nodes of "hidraw", "input" (event nodes only) or "usb" (devices; pad_path is empty because
 // they have several interfaces), ordered by node.

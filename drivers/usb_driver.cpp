@@ -17,7 +17,6 @@
 #include "drivers/pads/pad_model.h"
 #include "drivers/pads/pads_of_devices.h"
 #include "drivers/posix.h"
-#include "drivers/present_state.h"
 #include "drivers/shared_pads.h"
 #include "drivers/system_nodes.h"
 #include "drivers/usb_interfaces.h"
@@ -253,15 +252,10 @@ class StartPort final : public PadPort {
   }
 
   std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
-    // A pad without ids sends none, but `packet` begins with one.
-    const std::size_t skip = id == 0 ? 1 : 0;
-    if (packet.size() <= skip || packet.size() > kMaxReportBytes) return 0;
-    packet[0] = id;
-    const int count = libusb_control_transfer(
-        handle_, kFromInterface, kGetReport, static_cast<std::uint16_t>(kFeatureReport | id),
-        interface_, packet.data() + skip, static_cast<std::uint16_t>(packet.size() - skip),
-        kControlTimeoutMs);
-    return count <= 0 ? 0 : static_cast<std::size_t>(count) + skip;
+    return get_report(kFeatureReport, id, packet);
+  }
+  std::size_t input(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
+    return get_report(kInputReport, id, packet);
   }
 
   bool send_feature(std::span<const std::uint8_t> packet) noexcept override {
@@ -276,6 +270,18 @@ class StartPort final : public PadPort {
   }
 
  private:
+  // A pad without ids sends none, but `packet` begins with one.
+  std::size_t get_report(std::uint16_t kind, std::uint8_t id,
+                         std::span<std::uint8_t> packet) noexcept {
+    const std::size_t skip = id == 0 ? 1 : 0;
+    if (packet.size() <= skip || packet.size() > kMaxReportBytes + skip) return 0;
+    packet[0] = id;
+    const int count = libusb_control_transfer(
+        handle_, kFromInterface, kGetReport, static_cast<std::uint16_t>(kind | id), interface_,
+        packet.data() + skip, static_cast<std::uint16_t>(packet.size() - skip), kControlTimeoutMs);
+    return count <= 0 || packet[0] != id ? 0 : static_cast<std::size_t>(count) + skip;
+  }
+
   UsbTransfers& transfers_;
   libusb_device_handle* handle_;
   std::uint8_t interface_;
@@ -298,31 +304,13 @@ class UsbDevice final : public Device {
     model_->stop(port);
   }
 
-  void start(std::uint8_t interface_number) {
-    interface_number_ = interface_number;
-    StartPort port(*transfers_, interface_->handle(), interface_number);
+  void start(const UsbInterface& interface) {
+    interface_number_ = interface.number;
+    StartPort port(*transfers_, interface_->handle(), interface.number);
     model_->start(port, StartedBy::us);
     model_->amend(info_);
-  }
-
-  // What the pad is at, unless it says so by itself at once (PresentState says why). Of a pad that
-  // always answers zeros, which would be a corner of the stick, nothing is kept.
-  void ask_present_state() {
-    constexpr milliseconds kSilence(30);
-    transfers_->handle_events(kSilence);
-    for (const ReportSize& wanted : reports_with_stick(info_.descriptor)) {
-      if (transfers_->has_packet()) return;
-      const int count = libusb_control_transfer(
-          interface_->handle(), kFromInterface, kGetReport,
-          static_cast<std::uint16_t>(kInputReport | wanted.id), interface_number_,
-          present_.bytes.data(), wanted.bytes, kControlTimeoutMs);
-      const auto answer = std::span(present_.bytes).first(wanted.bytes);
-      if (count != wanted.bytes || (wanted.id != 0 && answer[0] != wanted.id)) continue;
-      const auto is_zero = [](std::uint8_t byte) { return byte == 0; };
-      if (std::ranges::all_of(answer.subspan(wanted.id != 0 ? 1 : 0), is_zero)) continue;
-      present_.size = wanted.bytes;
-      return;
-    }
+    if (interface.ids.interface_class != kHidClass) return;
+    first_.size = static_cast<std::uint16_t>(first_packet(port, info_.descriptor, first_.bytes));
   }
 
   const DeviceInfo& info() const noexcept override { return info_; }
@@ -330,13 +318,6 @@ class UsbDevice final : public Device {
 
   Status read(Report& report) noexcept override {
     if (take_input(report)) return Status::report;
-    if (present_.size > 0) {
-      report.time_ns = now_ns();
-      report.kind = ReportKind::input;
-      report.size = std::exchange(present_.size, std::uint16_t{0});
-      std::copy_n(present_.bytes.begin(), report.size, report.bytes.begin());
-      return Status::report;
-    }
     transfers_->handle_events(milliseconds(0));
     if (take_input(report)) return Status::report;
     return transfers_->is_gone() ? Status::gone : Status::nothing;
@@ -359,7 +340,7 @@ class UsbDevice final : public Device {
  private:
   // Fills `report` with the oldest input report that has arrived, and answers packets before it.
   bool take_input(Report& report) noexcept {
-    while (transfers_->take_packet(report)) {
+    while (take_packet(report)) {
       const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
       const bool is_input = model_->accept(packet, reply_);
       if (reply_.size > 0) transfers_->send(reply_);
@@ -374,8 +355,16 @@ class UsbDevice final : public Device {
     return false;
   }
 
+  bool take_packet(Report& report) noexcept {
+    if (first_.size == 0) return transfers_->take_packet(report);
+    report = first_;
+    report.time_ns = now_ns();
+    first_.size = 0;
+    return true;
+  }
+
   DeviceInfo info_;
-  Report present_;  // size 0: none
+  Report first_;  // the first packet; size 0: none
   std::unique_ptr<PadModel> model_;
   std::unique_ptr<ClaimedInterface> interface_;
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
@@ -418,8 +407,7 @@ Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInter
   if (!transfers) return Error{node + ": " + transfers.error().message};
   auto device = std::make_unique<UsbDevice>(std::move(info), std::move(vendor.model),
                                             std::move(*claimed), std::move(*transfers));
-  device->start(interface.number);
-  if (interface.ids.interface_class == kHidClass) device->ask_present_state();
+  device->start(interface);
   return std::unique_ptr<Device>(std::move(device));
 }
 

@@ -27,6 +27,8 @@ class PadPort {
   // Reads a feature report (HID pads only) and returns its size with the id in packet[0]; 0:
   // refused.
   virtual std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept = 0;
+  // Reads an input report (HID pads only), as feature() does. It may take five seconds.
+  virtual std::size_t input(std::uint8_t, std::span<std::uint8_t>) noexcept { return 0; }
   // Sends a feature report (HID pads only), which begins with its id; 0: the pad has no ids.
   virtual bool send_feature(std::span<const std::uint8_t>) noexcept { return false; }
 };
@@ -77,6 +79,13 @@ class PadModel {
 
 // The model by ids and bus; a plain one for pads that need nothing.
 std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device);
+
+// The first packet of a HID pad that was just opened, and its size: what it sends within 30 ms,
+// else its answer when it is asked for a report with its stick; 0: none. A pad that reports changes
+// only would not tell that its stick rests, and its first push would not count. An answer of zeros,
+// a corner of the stick, is none: some pads give it instead of their state.
+std::size_t first_packet(PadPort& port, const std::vector<std::uint8_t>& descriptor,
+                         std::span<std::uint8_t> packet) noexcept;
 
 // One file for each family; null: the device is of another family.
 std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device);

@@ -5,7 +5,6 @@
 // tried again a little later, a pad that was just plugged in gets a moment to show itself to the
 // preferred driver, and devices are looked at now and then even if udev says nothing.
 #pragma once
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -32,25 +31,6 @@
 #include "gaitpad/result.h"
 
 namespace gaitpad {
-
-// A bell that one thread rings and another waits for in poll().
-class WakeFd {
- public:
-  WakeFd() : fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
-  int fd() const noexcept { return fd_.get(); }  // -1: no file descriptors are left
-  // Any thread; never waits.
-  void ring() noexcept {
-    const std::uint64_t one = 1;
-    static_cast<void>(!::write(fd(), &one, sizeof(one)));
-  }
-  void clear() noexcept {
-    std::uint64_t count = 0;
-    static_cast<void>(!::read(fd(), &count, sizeof(count)));
-  }
-
- private:
-  const OwnedFd fd_;
-};
 
 // Sentences for the user from any thread, kept until somebody takes them.
 class Remarks {
@@ -183,7 +163,7 @@ class PadFinder {
   Remarks& remarks_;
   const bool is_recording_;
 
-  WakeFd bell_;
+  Bell bell_;
   std::atomic<bool> is_ending_{false};
   std::atomic<int> awaited_ends_{-1};  // of a recording's devices; -1: it is no recording
   std::mutex mutex_;

@@ -88,9 +88,7 @@ void add_events(const Machine& machine, PadsByPath& pads) {
 }
 
 bool is_hub(const SystemNode& device) {
-  std::ifstream in(device.sysfs_path + "/bDeviceClass");
-  unsigned device_class = 0;
-  return static_cast<bool>(in >> std::hex >> device_class) && device_class == kHubClass;
+  return sysfs_hex(device.sysfs_path + "/bDeviceClass") == kHubClass;
 }
 
 bool has_pad_name(std::string_view device_name) {

@@ -233,6 +233,47 @@ double usb_poll_rate_hz(const std::string& interface_path) {
   return 0.0;
 }
 
+namespace {
+
+// `Unknown` is nothing.
+std::string power_word(const fs::path& path) {
+  const std::string word = lower_case(sysfs_text(path));
+  return word == "unknown" ? std::string() : word;
+}
+
+}  // namespace
+
+// The power supply stands below the HID device, the interface, or the GIP client.
+std::optional<Battery> battery_of(const std::string& pad_path) {
+  if (pad_path.empty()) return std::nullopt;
+  std::vector<fs::path> owners = {pad_path};
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(pad_path, error)) owners.push_back(entry.path());
+  for (const fs::path& owner : owners) {
+    for (const auto& supply : fs::directory_iterator(owner / "power_supply", error)) {
+      Battery battery;
+      battery.level = power_word(supply.path() / "capacity_level");
+      battery.status = power_word(supply.path() / "status");
+      const std::string percent = sysfs_text(supply.path() / "capacity");
+      if (!percent.empty()) battery.percent = parse_number<int>(percent);
+      if (battery.percent || !battery.level.empty()) return battery;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Battery> battery_of(const DeviceInfo& device) {
+  for (const char* subsystem : {"hidraw", "input"}) {
+    for (const SystemNode& node : system_nodes(subsystem)) {
+      if (node.vendor != device.vendor || node.product != device.product ||
+          node.physical_path != device.physical_path || node.unique_id != device.unique_id)
+        continue;
+      if (auto battery = battery_of(node.pad_path)) return battery;
+    }
+  }
+  return std::nullopt;
+}
+
 std::string access_problem(const std::string& node) {
   if (::faccessat(AT_FDCWD, node.c_str(), R_OK | W_OK, AT_EACCESS) == 0) return {};
   if (errno != EACCES && errno != EPERM) return fmt::format("{}: {}", node, std::strerror(errno));

@@ -52,6 +52,16 @@ std::string usb_interface_path(const std::string& interface_name);
 // How often the interface's interrupt IN endpoint is polled, by its `interval` (`4ms`, `125us`); 0:
 // unknown, or there is none.
 double usb_poll_rate_hz(const std::string& interface_path);
+// What the pad reports of its battery, as the kernel's driver has it.
+struct Battery {
+  std::optional<int> percent;  // none: the pad tells a level only
+  std::string level;           // critical, low, normal, high, full; empty: unknown
+  std::string status;          // charging, discharging, full, not charging; empty: unknown
+};
+// By the pad's path; none: it has no battery, or no kernel driver that asks for it.
+std::optional<Battery> battery_of(const std::string& pad_path);
+// By what a stream knows of an open device.
+std::optional<Battery> battery_of(const DeviceInfo& device);
 // Why this user cannot open the node for reading and writing; empty: the user can.
 // `/dev/hidraw3: permission denied (owner 0, group 0, mode 0600); gaitpad doctor tells the fix`
 std::string access_problem(const std::string& node);

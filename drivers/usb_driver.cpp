@@ -225,6 +225,53 @@ void fit_transfers(const std::vector<std::uint8_t>& descriptor, UsbEndpoints& en
 
 // ---- An open pad
 
+// The second interface of a pad whose first one is HID, by its bulk endpoints: commands and
+// answers.
+class CommandInterface {
+ public:
+  explicit CommandInterface(libusb_device_handle* handle) : handle_(handle) {
+    libusb_config_descriptor* active = nullptr;
+    if (libusb_get_active_config_descriptor(libusb_get_device(handle), &active) != LIBUSB_SUCCESS)
+      return;
+    const std::unique_ptr<libusb_config_descriptor, FreeConfig> config(active);
+    if (config->bNumInterfaces <= kNumber || config->interface[kNumber].num_altsetting < 1) return;
+    const libusb_interface_descriptor& interface = config->interface[kNumber].altsetting[0];
+    for (int i = 0; i < interface.bNumEndpoints; ++i) {
+      const libusb_endpoint_descriptor& endpoint = interface.endpoint[i];
+      if ((endpoint.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK) != LIBUSB_TRANSFER_TYPE_BULK)
+        continue;
+      const bool is_in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
+      (is_in ? in_ : out_) = endpoint.bEndpointAddress;
+    }
+    is_claimed_ =
+        in_ != 0 && out_ != 0 && libusb_claim_interface(handle, kNumber) == LIBUSB_SUCCESS;
+  }
+  CommandInterface(const CommandInterface&) = delete;
+  ~CommandInterface() {
+    if (is_claimed_) libusb_release_interface(handle_, kNumber);
+  }
+
+  std::size_t ask(std::span<const std::uint8_t> packet, std::span<std::uint8_t> answer) noexcept {
+    int done = 0;
+    std::vector<std::uint8_t> out(packet.begin(), packet.end());
+    if (!is_claimed_ ||
+        libusb_bulk_transfer(handle_, out_, out.data(), static_cast<int>(out.size()), &done,
+                             kControlTimeoutMs) != LIBUSB_SUCCESS)
+      return 0;
+    if (libusb_bulk_transfer(handle_, in_, answer.data(), static_cast<int>(answer.size()), &done,
+                             kAnswerMs) != LIBUSB_SUCCESS)
+      return 0;
+    return static_cast<std::size_t>(std::max(done, 0));
+  }
+
+ private:
+  static constexpr int kNumber = 1;
+  static constexpr unsigned int kAnswerMs = 100;
+  libusb_device_handle* handle_;
+  std::uint8_t in_ = 0, out_ = 0;
+  bool is_claimed_ = false;
+};
+
 // The pad model's way to the pad while it starts; here waiting is allowed.
 class StartPort final : public PadPort {
  public:
@@ -258,6 +305,12 @@ class StartPort final : public PadPort {
     return get_report(kInputReport, id, packet);
   }
 
+  std::size_t command(std::span<const std::uint8_t> packet,
+                      std::span<std::uint8_t> answer) noexcept override {
+    if (!commands_) commands_ = std::make_unique<CommandInterface>(handle_);
+    return commands_->ask(packet, answer);
+  }
+
   bool send_feature(std::span<const std::uint8_t> packet) noexcept override {
     if (packet.empty() || packet.size() > kMaxReportBytes) return false;
     const std::size_t skip = packet[0] == 0 ? 1 : 0;
@@ -279,12 +332,14 @@ class StartPort final : public PadPort {
     const int count = libusb_control_transfer(
         handle_, kFromInterface, kGetReport, static_cast<std::uint16_t>(kind | id), interface_,
         packet.data() + skip, static_cast<std::uint16_t>(packet.size() - skip), kControlTimeoutMs);
-    return count <= 0 || packet[0] != id ? 0 : static_cast<std::size_t>(count) + skip;
+    const bool is_other = kind == kInputReport && packet[0] != id;
+    return count <= 0 || is_other ? 0 : static_cast<std::size_t>(count) + skip;
   }
 
   UsbTransfers& transfers_;
   libusb_device_handle* handle_;
   std::uint8_t interface_;
+  std::unique_ptr<CommandInterface> commands_;  // from the first command on
   Report report_;
 };
 

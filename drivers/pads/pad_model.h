@@ -29,6 +29,11 @@ class PadPort {
   virtual std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept = 0;
   // Reads an input report (HID pads only), as feature() does. It may take five seconds.
   virtual std::size_t input(std::uint8_t, std::span<std::uint8_t>) noexcept { return 0; }
+  // Sends a command to the pad's second interface and returns the size of its answer (the driver
+  // usb alone); 0: there is no such interface, or no answer.
+  virtual std::size_t command(std::span<const std::uint8_t>, std::span<std::uint8_t>) noexcept {
+    return 0;
+  }
   // Sends a feature report (HID pads only), which begins with its id; 0: the pad has no ids.
   virtual bool send_feature(std::span<const std::uint8_t>) noexcept { return false; }
 };

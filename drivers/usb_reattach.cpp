@@ -52,24 +52,29 @@ void close_others(int kept) {
   for (int fd = 0; fd < kept; ++fd) ::close(fd);
 }
 
+// Without what a program or a sanitizer does at its end.
+[[noreturn]] void leave(int status) {
+  for (;;) ::syscall(SYS_exit_group, status);
+}
+
 [[noreturn]] void watch(int link, const char* node, int interface_number) {
   constexpr int kAttempts = 250;
   constexpr timespec kPause = {0, 20'000'000};
   ::setsid();  // Ctrl-C in the terminal must not end the watcher
   // A process of its own, for which nobody has to wait when it ends.
-  if (const pid_t watcher = ::_Fork(); watcher != 0) ::_exit(watcher < 0 ? errno : 0);
+  if (const pid_t watcher = ::_Fork(); watcher != 0) leave(watcher < 0 ? errno : 0);
   close_others(link);
   char word = 0;
   ssize_t count = 0;
   do {
     count = ::read(link, &word, 1);
   } while (count < 0 && errno == EINTR);
-  if (count > 0) ::_exit(0);  // dismissed
+  if (count > 0) leave(0);  // dismissed
   for (int i = 0; i < kAttempts; ++i) {
     if (try_to_reattach(node, interface_number) == Attempt::done) break;
     ::nanosleep(&kPause, nullptr);
   }
-  ::_exit(0);
+  leave(0);
 }
 
 }  // namespace

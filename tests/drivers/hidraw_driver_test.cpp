@@ -52,6 +52,11 @@ std::optional<Packet> firmware;  // feature report 0x20
 // Input report by request, beginning with the id.
 std::optional<Packet> present;
 std::vector<int> asked;  // ids
+std::mutex noting;       // of what two threads write that open at once
+void note(std::vector<int>& numbers, int number) {
+  const std::lock_guard lock(noting);
+  numbers.push_back(number);
+}
 
 }  // namespace
 
@@ -82,7 +87,7 @@ void hid_close(hid_device* device) {
 }
 // As hidapi 0.13.1: errno is only set if a call failed.
 int hid_read_timeout(hid_device* device, unsigned char* data, size_t length, int milliseconds) {
-  timeouts.push_back(milliseconds);
+  note(timeouts, milliseconds);
   if (!script.empty()) {
     const ScriptedRead now = script.front();
     script.pop_front();
@@ -120,7 +125,7 @@ int ioctl(int fd, unsigned long request, ...) {
   if (request != static_cast<unsigned long>(HIDIOCGINPUT(length)))
     return static_cast<int>(::syscall(SYS_ioctl, fd, request, argument));
   auto* data = static_cast<unsigned char*>(argument);
-  asked.push_back(data[0]);
+  note(asked, data[0]);
   if (!present) return errno = EPIPE, -1;
   std::copy_n(present->begin(), std::min(length, present->size()), data);
   return static_cast<int>(std::min(length, present->size()));
@@ -198,6 +203,7 @@ class HidrawDriver : public testing::Test {
   }
   std::unique_ptr<Device> opened() {
     auto device = value_of(open_hidraw_device(listing_, Detach::never));
+    const std::lock_guard lock(noting);
     timeouts.clear();
     return device;
   }

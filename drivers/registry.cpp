@@ -1,7 +1,7 @@
 #include "drivers/driver_entries.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/drivers.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 namespace gaitpad {
 

@@ -22,7 +22,7 @@
 #include "gaitpad/drivers.h"
 #include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 namespace gaitpad {
 namespace {

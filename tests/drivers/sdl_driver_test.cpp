@@ -12,7 +12,7 @@
 #include "drivers/driver_entries.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/drivers.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {

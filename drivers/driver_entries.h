@@ -23,7 +23,9 @@ Result<std::unique_ptr<Device>> open_usb_device(const DeviceListing& listing, De
 
 std::vector<DeviceListing> find_sdl_devices();
 Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, Detach detach);
-std::string sdl_library_mapping(const DeviceInfo& device);
+// The lines of the data base that was compiled into SDL's library, read as text from its file:
+// nothing of SDL runs. Empty: there are none.
+std::vector<std::string> sdl_library_lines();
 
 // A recording is never found, only named: one listing for each device in it. `node` is the path of
 // the file, with `#2` and so on from the second device on.

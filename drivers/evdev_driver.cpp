@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <libevdev/libevdev.h>
 #include <linux/input.h>
-#include <sys/eventfd.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -15,7 +14,6 @@
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -69,14 +67,9 @@ EvdevAbilities abilities_of(const libevdev* device) {
   return abilities;
 }
 
-// The first 4096 bytes of a sysfs file; empty if it does not exist.
-std::vector<std::uint8_t> sysfs_bytes(const std::string& node, const char* name) {
-  const std::string device = node.substr(node.rfind('/') + 1);
-  std::ifstream in(fmt::format("/sys/class/input/{}/device/{}", device, name), std::ios::binary);
-  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  return bytes;
+// A file of the node's input device.
+std::string in_sysfs(const std::string& node, const char* name) {
+  return fmt::format("/sys/class/input/{}/device/{}", node.substr(node.rfind('/') + 1), name);
 }
 
 // `mode` is O_RDONLY or O_RDWR. Reads never block; stamps are of CLOCK_MONOTONIC.
@@ -100,7 +93,7 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
 EvdevLayout input_node_layout(const InputNode& opened, const std::string& node) {
   std::vector<std::uint8_t> own_descriptor;
   if ((libevdev_get_id_version(opened.device.get()) & kArrangedByKernel) == 0) {
-    own_descriptor = sysfs_bytes(node, "device/report_descriptor");
+    own_descriptor = sysfs_bytes(in_sysfs(node, "device/report_descriptor"));
   }
   return evdev_layout(abilities_of(opened.device.get()), own_descriptor);
 }
@@ -154,9 +147,9 @@ class EvdevDevice final : public Device {
   EvdevDevice(DeviceInfo info, InputNode node, EvdevLayout layout)
       : info_(std::move(info)), node_(std::move(node)), layout_(std::move(layout)) {
     info_.descriptor = layout_.descriptor;
-    wake_ = OwnedFd(::eventfd(1, EFD_CLOEXEC | EFD_NONBLOCK));
+    wake_.ring();
     poll_fds_[0] = {node_.fd.get(), POLLIN, 0};
-    poll_fds_[1] = {wake_.get(), POLLIN, 0};
+    poll_fds_[1] = {wake_.fd(), POLLIN, 0};
     take_state();
     for (int i = 0; i < kMaxEventsAtOpening && next_packet() == Status::report; ++i) continue;
     lost_ = 0;  // events from before the opening are not lost
@@ -186,7 +179,7 @@ class EvdevDevice final : public Device {
   EvdevLayout layout_;
   EvdevState state_;
   Motors motors_;
-  OwnedFd wake_;  // readable until the first report, which has the present state, is read
+  Bell wake_;  // readable until the first report, which has the present state, is read
   std::array<pollfd, 2> poll_fds_{};
   bool is_first_ = true;
   int errors_in_a_row_ = 0;
@@ -303,9 +296,11 @@ Device::Status EvdevDevice::read(Report& report) noexcept {
 // Node numbers are reused: between finding and opening the node may have become another device.
 bool is_another(const libevdev* device, const DeviceInfo& info) {
   const char* port = libevdev_get_phys(device);
+  const auto of_device = [](std::string_view path) { return path.substr(0, path.rfind("/input")); };
   return libevdev_get_id_vendor(device) != info.vendor ||
          libevdev_get_id_product(device) != info.product ||
-         (!info.physical_path.empty() && info.physical_path != (port ? port : ""));
+         (!info.physical_path.empty() &&
+          of_device(info.physical_path) != of_device(port ? port : ""));
 }
 
 // ---- Finding
@@ -342,12 +337,8 @@ const char* what_else(const libevdev* device, const SystemNode& node) {
 // Keyboards, mice and power buttons have neither ABS_X nor ABS_Y, which sysfs tells without opening
 // them. The file holds words in hexadecimal, the lowest last.
 bool cannot_have_a_stick(const std::string& node) {
-  const std::vector<std::uint8_t> bits = sysfs_bytes(node, "capabilities/abs");
-  const std::string text(bits.begin(), bits.end());
-  const std::size_t end = text.find_last_not_of(" \n");
-  if (end == std::string::npos) return false;  // unknown
-  const char lowest = text[end];
-  return std::string_view("37bfBF").find(lowest) == std::string_view::npos;
+  const std::string bits = sysfs_text(in_sysfs(node, "capabilities/abs"));
+  return !bits.empty() && std::string_view("37bfBF").find(bits.back()) == std::string_view::npos;
 }
 
 // What was seen of a node when it was opened.

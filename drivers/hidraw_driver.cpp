@@ -7,7 +7,6 @@
 #include <linux/hidraw.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
-#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,14 +21,11 @@
 #include <utility>
 
 #include "drivers/driver_entries.h"
-#include "drivers/missed_reports.h"
 #include "drivers/open_descriptors.h"
-#include "drivers/pads/joy_con_pair.h"
 #include "drivers/pads/packet_sender.h"
 #include "drivers/pads/pad_model.h"
-#include "drivers/pads/several_pads.h"
+#include "drivers/pads/pads_of_devices.h"
 #include "drivers/posix.h"
-#include "drivers/present_state.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/descriptor.h"
 
@@ -40,9 +36,9 @@ namespace {
 using namespace std::chrono_literals;
 using Status = Device::Status;
 
-constexpr int kMaxRefusedInARow = 64;     // packets to look at before other pads get their turn
-constexpr int kMaxErrorsInARow = 64;      // then the pad counts as gone
-constexpr std::int64_t kKernelRing = 63;  // reports that hidraw keeps for a slow reader
+constexpr int kMaxRefusedInARow = 64;  // packets to look at before other pads get their turn
+constexpr int kMaxErrorsInARow = 64;   // then the pad counts as gone
+constexpr int kKernelRing = 63;        // reports that hidraw keeps for a slow reader
 constexpr auto kKernelStart = 3s;
 constexpr long kBlindPeriod_ns = 1'000'000;
 
@@ -112,7 +108,8 @@ bool is_another_hidraw(int fd, const DeviceInfo& info) {
 // The pad model's way to the open pad.
 class HidrawPort final : public PadPort {
  public:
-  HidrawPort(hid_device* handle, bool is_numbered) : handle_(handle), is_numbered_(is_numbered) {}
+  HidrawPort(hid_device* handle, int fd, bool is_numbered)
+      : handle_(handle), fd_(fd), is_numbered_(is_numbered) {}
   bool write(std::span<const std::uint8_t> packet) noexcept override {
     const std::vector<std::uint8_t> whole = with_id(is_numbered_, packet);
     return !packet.empty() && hid_write(handle_, whole.data(), whole.size()) >= 0;
@@ -131,24 +128,28 @@ class HidrawPort final : public PadPort {
     return std::min(static_cast<std::size_t>(size), packet.size());
   }
 
+  std::size_t input(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
+    if (packet.empty() || fd_ < 0) return 0;
+    packet[0] = id;
+    const int size = ::ioctl(fd_, HIDIOCGINPUT(packet.size()), packet.data());
+    if (size <= 0 || packet[0] != id) return 0;
+    return std::min(static_cast<std::size_t>(size), packet.size());
+  }
   bool send_feature(std::span<const std::uint8_t> packet) noexcept override {
     return hid_send_feature_report(handle_, packet.data(), packet.size()) >= 0;
   }
 
  private:
   hid_device* handle_;
+  int fd_;
   bool is_numbered_;
 };
 
-// For threads, which must not use the handle: hidapi writes its error text into it on every call.
-// They share the one opening; another one would have a queue of reports that nobody reads.
-std::shared_ptr<const OwnedFd> shared_opening(int fd) {
-  return std::make_shared<const OwnedFd>(fd < 0 ? -1 : ::fcntl(fd, F_DUPFD_CLOEXEC, 0));
-}
-
-// Null if the descriptor is not known, or no thread can be started.
+// Its thread must not use the handle: hidapi writes its error text into it on every call. It shares
+// the one opening; another one would have a queue of reports that nobody reads. Null if the
+// descriptor is not known, or no thread can be started.
 std::unique_ptr<PacketSender> hidraw_sender(int fd, bool is_numbered) {
-  const auto own = shared_opening(fd);
+  const auto own = std::make_shared<const OwnedFd>(fd < 0 ? -1 : ::fcntl(fd, F_DUPFD_CLOEXEC, 0));
   if (own->get() < 0) return nullptr;
   return PacketSender::create([own, is_numbered](const OutPacket& packet) {
     const auto bytes = std::span(packet.bytes).first(packet.size);
@@ -160,26 +161,7 @@ std::unique_ptr<PacketSender> hidraw_sender(int fd, bool is_numbered) {
   });
 }
 
-PresentState::Ask hidraw_input_request(int fd) {
-  const auto own = shared_opening(fd);
-  if (own->get() < 0) return nullptr;
-  return [own](std::uint8_t id, std::span<std::uint8_t> answer) -> std::size_t {
-    if (answer.empty()) return 0;
-    answer[0] = id;
-    const int size = ::ioctl(own->get(), HIDIOCGINPUT(answer.size()), answer.data());
-    return size > 0 ? static_cast<std::size_t>(size) : 0;
-  };
-}
-
 // ---- The device
-
-// Ready every millisecond, for a node whose file descriptor was not found; -1: no timer.
-int blind_timer() noexcept {
-  const int timer = ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-  const itimerspec period{{0, kBlindPeriod_ns}, {0, kBlindPeriod_ns}};
-  if (timer >= 0) ::timerfd_settime(timer, 0, &period, nullptr);
-  return timer;
-}
 
 bool has_report_ids(const DeviceInfo& info) {
   const auto descriptor = parse_descriptor(info.descriptor);
@@ -193,26 +175,24 @@ class HidrawDevice final : public Device {
         node_(std::move(node)),
         handle_(std::move(opened.handle)),
         fd_(opened.fd),
-        timer_(fd_ < 0 ? blind_timer() : -1),
         model_(make_pad_model(info_)),
-        is_numbered_(has_report_ids(info_)),
-        present_(is_numbered_, hidraw_input_request(fd_)) {
-    wait_on_[0] = {.fd = fd_ >= 0 ? fd_ : timer_.get(), .events = POLLIN, .revents = 0};
+        is_numbered_(has_report_ids(info_)) {
+    if (fd_ < 0) timer_.emplace().set(1, kBlindPeriod_ns);
+    wait_on_ = {.fd = fd_ >= 0 ? fd_ : timer_->fd(), .events = POLLIN, .revents = 0};
   }
   ~HidrawDevice() override {
     if (is_unplugged_ || ::access(node_.c_str(), F_OK) != 0) return;
     if (is_rumbling_) rumble({});
-    HidrawPort port(handle_.get(), is_numbered_);
+    HidrawPort port(handle_.get(), fd_, is_numbered_);
     model_->stop(port);
   }
 
   void start(StartedBy started) {
-    HidrawPort port(handle_.get(), is_numbered_);
+    HidrawPort port(handle_.get(), fd_, is_numbered_);
     model_->start(port, started);
     model_->amend(info_);
     // Only on a cable: over Bluetooth a pad reports when it connects, and some block on requests.
-    if (info_.bus == BusType::usb) present_.opened(reports_with_stick(info_.descriptor));
-    std::ranges::copy(present_.poll_fds(), wait_on_.begin() + 1);
+    if (info_.bus == BusType::usb) first_size_ = first_packet(port, info_.descriptor, buffer_);
     OutPacket still;
     model_->rumble({}, still);
     if (still.size == 0 && !model_->replies()) return;
@@ -222,9 +202,7 @@ class HidrawDevice final : public Device {
   }
 
   const DeviceInfo& info() const noexcept override { return info_; }
-  std::span<const pollfd> poll_fds() const noexcept override {
-    return std::span(wait_on_).first(present_.is_waiting() ? wait_on_.size() : 1);
-  }
+  std::span<const pollfd> poll_fds() const noexcept override { return {&wait_on_, 1}; }
   Status read(Report& report) noexcept override;
   void hand_on_raw() noexcept override { is_raw_ = true; }
   bool rumble(const Rumble& rumble) noexcept override {
@@ -235,7 +213,7 @@ class HidrawDevice final : public Device {
     return sender_->send(packet);
   }
   std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
-  std::int64_t lost() const noexcept override { return lost_ + missed_.missed() + model_->lost(); }
+  std::int64_t lost() const noexcept override { return lost_ + model_->lost(); }
   std::vector<std::string> take_remarks() override {
     std::vector<std::string> remarks = model_->take_remarks();
     std::move(remarks_.begin(), remarks_.end(), std::back_inserter(remarks));
@@ -245,7 +223,6 @@ class HidrawDevice final : public Device {
 
  private:
   bool fill(std::span<const std::uint8_t> packet, Report& report) noexcept;
-  Status when_empty(Report& report) noexcept;
   bool has_hung_up(int error) const noexcept;
   Status after_error(int error) noexcept;
   void count_waiting() noexcept;
@@ -253,28 +230,30 @@ class HidrawDevice final : public Device {
   DeviceInfo info_;
   std::string node_;
   Handle handle_;
-  int fd_ = -1;    // the handle's
-  OwnedFd timer_;  // if that is unknown
-  std::array<pollfd, 3> wait_on_{};
+  int fd_ = -1;                 // the handle's
+  std::optional<Timer> timer_;  // if that is unknown: ready every millisecond
+  pollfd wait_on_{};
   std::unique_ptr<PadModel> model_;
   std::unique_ptr<PacketSender> sender_;  // null: no motors
   bool is_numbered_;
-  PresentState present_;
   bool is_rumbling_ = false, is_raw_ = false;
   PlugWatch plug_;
   bool is_unplugged_ = false;  // reports from before are still to be read
   int errors_in_row_ = 0;
-  MissedReports missed_{kKernelRing};
+  int reports_in_row_ = kKernelRing;  // what came before the opening is no loss
   bool was_late_ = false;
   std::int64_t lost_ = 0;
   std::vector<std::string> remarks_;
   // One byte more than the longest report, to detect longer ones.
   std::array<std::uint8_t, kMaxReportBytes + 1> buffer_{};
+  std::size_t first_size_ = 0;  // of the first packet, which is in the buffer
 };
 
 Status HidrawDevice::read(Report& report) noexcept {
-  std::uint64_t ticks = 0;
-  if (timer_.get() >= 0 && ::read(timer_.get(), &ticks, sizeof ticks) < 0) ticks = 0;
+  if (timer_) timer_->take();
+  if (const std::size_t size = std::exchange(first_size_, 0);
+      size > 0 && fill(std::span(buffer_).first(size), report))
+    return Status::report;
   for (int i = 0; i < kMaxRefusedInARow; ++i) {
     errno = 0;
     // With a timeout hidapi stops reading when the pad is gone. Without one, an unplugged node
@@ -283,7 +262,10 @@ Status HidrawDevice::read(Report& report) noexcept {
         hid_read_timeout(handle_.get(), buffer_.data(), buffer_.size(), is_unplugged_ ? -1 : 0);
     const int error = errno;
     if (size <= 0 && is_unplugged_) return Status::gone;
-    if (size == 0) return when_empty(report);
+    if (size == 0) {
+      reports_in_row_ = 0;
+      return Status::nothing;
+    }
     if (size < 0 && !has_hung_up(error)) return after_error(error);
     if (size < 0) {
       is_unplugged_ = true;
@@ -306,7 +288,6 @@ bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) no
   OutPacket reply;
   const bool is_input = model_->accept(packet, reply);
   if (reply.size > 0 && sender_) sender_->send(reply);
-  if (is_input) present_.heard(packet);
   if (!is_raw_) {
     if (plug_.has_changed(*model_, report)) return true;
     if (!is_input) return false;
@@ -335,19 +316,13 @@ Status HidrawDevice::after_error(int error) noexcept {
   return Status::gone;
 }
 
-// When its ring is full the kernel drops new reports without notice.
+// If the ring's reports are read without an empty read, it was full, and the kernel has dropped
+// what came then without notice. The next report is the pad's state.
 void HidrawDevice::count_waiting() noexcept {
-  missed_.note_report(now_ns());
-  if (missed_.is_full() && !std::exchange(was_late_, true))
+  if (++reports_in_row_ != kKernelRing) return;
+  ++lost_;
+  if (!std::exchange(was_late_, true))
     remarks_.push_back(node_ + ": was read too late; the kernel may have dropped reports");
-}
-
-// Only now, with no report left, is an answer of the pad newer than all of its reports.
-Status HidrawDevice::when_empty(Report& report) noexcept {
-  if (missed_.note_empty(now_ns())) present_.missed();
-  const std::span<const std::uint8_t> answer = present_.take_answer();
-  std::ranges::copy(present_.poll_fds(), wait_on_.begin() + 1);
-  return !answer.empty() && fill(answer, report) ? Status::report : Status::nothing;
 }
 
 // While it binds, hid-nintendo asks the pad for its calibration and would take our answers for its

@@ -1,5 +1,3 @@
-#include <sys/eventfd.h>
-#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -64,17 +62,18 @@ DeviceInfo keyboard_info() {
 
 class KeyboardDevice final : public Device {
  public:
-  KeyboardDevice(std::shared_ptr<KeyboardStick> stick, OwnedFd timer)
+  KeyboardDevice(std::shared_ptr<KeyboardStick> stick, Timer timer)
       : info_(keyboard_info()),
         stick_(std::move(stick)),
         timer_(std::move(timer)),
-        poll_fds_{{{stick_->fd(), POLLIN, 0}, {timer_.get(), POLLIN, 0}}} {}
+        poll_fds_{{{stick_->bell().fd(), POLLIN, 0}, {timer_.fd(), POLLIN, 0}}} {}
 
   const DeviceInfo& info() const noexcept override { return info_; }
   std::span<const pollfd> poll_fds() const noexcept override { return poll_fds_; }
 
   Status read(Report& report) noexcept override {
-    clear_fds();
+    stick_->bell().clear();
+    timer_.take();
     const std::int64_t time_ns = now_ns();
     if (is_first_) {
       is_first_ = false;
@@ -92,12 +91,6 @@ class KeyboardDevice final : public Device {
   }
 
  private:
-  void clear_fds() const noexcept {
-    for (const pollfd& fd : poll_fds_) {
-      std::uint64_t count = 0;
-      static_cast<void>(!::read(fd.fd, &count, sizeof(count)));
-    }
-  }
   // Goes to sleep then. A change at that moment is seen by the second look or makes fd() readable.
   bool has_arrived() noexcept {
     if (position_ != stick_->wanted()) return false;
@@ -107,10 +100,7 @@ class KeyboardDevice final : public Device {
   void wake_after(std::int64_t time_ns) noexcept {
     next_ns_ += kPeriod_ns;
     if (next_ns_ <= time_ns) next_ns_ = time_ns + kPeriod_ns;
-    itimerspec moment{};
-    moment.it_value.tv_sec = static_cast<time_t>(next_ns_ / 1'000'000'000);
-    moment.it_value.tv_nsec = static_cast<long>(next_ns_ % 1'000'000'000);
-    ::timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &moment, nullptr);
+    timer_.set(next_ns_);
   }
   Status fill(Report& report, std::int64_t time_ns) noexcept {
     reported_ = counts_of(position_);
@@ -127,7 +117,7 @@ class KeyboardDevice final : public Device {
 
   const DeviceInfo info_;
   const std::shared_ptr<KeyboardStick> stick_;
-  const OwnedFd timer_;
+  Timer timer_;
   const std::array<pollfd, 2> poll_fds_;
   vec2 position_{0.0};
   Counts reported_{};
@@ -138,19 +128,15 @@ class KeyboardDevice final : public Device {
 
 }  // namespace
 
-KeyboardStick::KeyboardStick() : fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
-KeyboardStick::~KeyboardStick() {
-  if (fd_ >= 0) ::close(fd_);
-}
+KeyboardStick::KeyboardStick() : bell_(std::make_unique<Bell>()) {}
+KeyboardStick::~KeyboardStick() = default;
 
 void KeyboardStick::steer(const vec2& wanted) noexcept {
   const Counts counts = counts_inside(in_disc(wanted));
   const auto low = static_cast<std::uint16_t>(counts[0]);
   const auto high = static_cast<std::uint16_t>(counts[1]);
   wanted_.store(std::uint32_t{high} << 16 | low);
-  if (is_awake_.exchange(true)) return;
-  const std::uint64_t one = 1;
-  static_cast<void>(!::write(fd(), &one, sizeof(one)));
+  if (!is_awake_.exchange(true)) bell_->ring();
 }
 
 vec2 KeyboardStick::wanted() const noexcept {
@@ -164,8 +150,8 @@ vec2 KeyboardStick::wanted() const noexcept {
 void KeyboardStick::sleep() noexcept { is_awake_.store(false); }
 
 Result<std::unique_ptr<Device>> open_keyboard(std::shared_ptr<KeyboardStick> stick) {
-  OwnedFd timer(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
-  if (timer.get() < 0 || stick->fd() < 0)
+  Timer timer;
+  if (timer.fd() < 0 || stick->bell().fd() < 0)
     return Error{"no file descriptors are left for the keyboard"};
   return std::unique_ptr<Device>(
       std::make_unique<KeyboardDevice>(std::move(stick), std::move(timer)));

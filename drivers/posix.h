@@ -1,5 +1,7 @@
-// File descriptors and time, as the drivers need them.
+// File descriptors, things to wait for in poll(), and time.
 #pragma once
+#include <sys/eventfd.h>
+#include <sys/timerfd.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -32,5 +34,47 @@ inline std::int64_t now_ns() noexcept {
   ::clock_gettime(CLOCK_MONOTONIC, &now);
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
+
+// A bell that one thread rings and another waits for.
+class Bell {
+ public:
+  Bell() : fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+  int fd() const noexcept { return fd_.get(); }  // -1: no file descriptors are left
+  // Any thread; never waits.
+  void ring() noexcept {
+    const std::uint64_t one = 1;
+    static_cast<void>(!::write(fd(), &one, sizeof one));
+  }
+  void clear() noexcept {
+    std::uint64_t count = 0;
+    static_cast<void>(!::read(fd(), &count, sizeof count));
+  }
+
+ private:
+  OwnedFd fd_;
+};
+
+// A moment to wait for.
+class Timer {
+ public:
+  Timer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {}
+  int fd() const noexcept { return fd_.get(); }  // -1: no file descriptors are left
+  // fd() is readable from this time of now_ns() on, then after each period; 0: never, no period.
+  void set(std::int64_t time_ns, std::int64_t period_ns = 0) noexcept {
+    const itimerspec moment{time_of(period_ns), time_of(time_ns)};
+    ::timerfd_settime(fd(), TFD_TIMER_ABSTIME, &moment, nullptr);
+  }
+  // Whether the time has come since the last call; fd() is not readable then.
+  bool take() noexcept {
+    std::uint64_t count = 0;
+    return ::read(fd(), &count, sizeof count) == sizeof count;
+  }
+
+ private:
+  static timespec time_of(std::int64_t ns) noexcept {
+    return {static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+  }
+  OwnedFd fd_;
+};
 
 }  // namespace gaitpad

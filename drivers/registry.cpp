@@ -1,8 +1,7 @@
-#include <atomic>
-
 #include "drivers/driver_entries.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/drivers.h"
+#include "hid/sdl_lines.h"
 
 namespace gaitpad {
 
@@ -71,17 +70,13 @@ Result<std::unique_ptr<VirtualPad>> VirtualPad::create() {
 #endif
 }
 
-namespace {
-std::atomic<bool> uses_sdl_database{false};
-}  // namespace
-
-void use_sdl_database() noexcept { uses_sdl_database = true; }
-
 std::string sdl_mapping_of([[maybe_unused]] const DeviceInfo& device) {
 #ifdef GAITPAD_HAS_SDL
-  if (uses_sdl_database) return sdl_library_mapping(device);
-#endif
+  static const std::vector<std::string> lines = sdl_library_lines();
+  return fitting_mapping(lines, device);
+#else
   return {};
+#endif
 }
 
 }  // namespace gaitpad

@@ -1,12 +1,12 @@
-// Joysticks of SDL2, and its data base of mappings, where a user asks for the driver `sdl`. SDL has
+// Joysticks of SDL2, where a user asks for the driver `sdl`. SDL has
 // one list of joysticks, one set of hints and one queue of events for the whole program, which may
 // be somebody else's. So hints are only set if the program has no joysticks, and nothing of others
 // is taken off the queue: an event watch sees each joystick event when SDL creates it, on any
 // thread, and stores it for the open device. SDL has nothing to poll(): it looks at its joysticks
 // when it is asked to, here once a millisecond.
 #include <SDL2/SDL.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
-#include <sys/timerfd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -14,13 +14,15 @@
 #include <mutex>
 #include <utility>
 
+#include "base/files.h"
 #include "drivers/driver_entries.h"
 #include "drivers/posix.h"
 #include "drivers/sdl_reports.h"
 #include "drivers/system_nodes.h"
+#include "gaitpad/drivers.h"
 #include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 namespace gaitpad {
 namespace {
@@ -32,30 +34,16 @@ using Control = JoystickReports::Control;
 
 // When to look at SDL's joysticks: once a millisecond. All open devices share the timer; whichever
 // finds it expired updates SDL for all of them.
-class MillisecondTimer {
- public:
-  MillisecondTimer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {
-    constexpr timespec kMillisecond{0, 1'000'000};
-    const itimerspec times{kMillisecond, kMillisecond};
-    ::timerfd_settime(fd(), 0, &times, nullptr);
-  }
-  int fd() const noexcept { return fd_.get(); }  // below 0: there is none
-  bool take_tick() const noexcept {
-    std::uint64_t count = 0;
-    return ::read(fd(), &count, sizeof count) == sizeof count;
-  }
-  static std::shared_ptr<MillisecondTimer> shared() {
-    static std::mutex mutex;
-    static std::weak_ptr<MillisecondTimer> running;
-    const std::lock_guard lock(mutex);
-    auto timer = running.lock();
-    if (!timer) running = timer = std::make_shared<MillisecondTimer>();
-    return timer;
-  }
-
- private:
-  OwnedFd fd_;
-};
+std::shared_ptr<Timer> millisecond_timer() {
+  static std::mutex mutex;
+  static std::weak_ptr<Timer> running;
+  const std::lock_guard lock(mutex);
+  auto timer = running.lock();
+  if (timer) return timer;
+  running = timer = std::make_shared<Timer>();
+  timer->set(1, 1'000'000);
+  return timer;
+}
 
 // SDL's joysticks, started on first use: that takes up to a second.
 class Sdl {
@@ -206,8 +194,7 @@ using JoystickHandle = std::unique_ptr<SDL_Joystick, JoystickClosing>;
 class SdlDevice : public Device {
  public:
   // The caller has locked SDL's joysticks, so that no change is lost between state and inbox.
-  SdlDevice(JoystickHandle joystick, const DeviceListing& listing,
-            std::shared_ptr<MillisecondTimer> timer)
+  SdlDevice(JoystickHandle joystick, const DeviceListing& listing, std::shared_ptr<Timer> timer)
       : joystick_(std::move(joystick)),
         info_(listing.info),
         reports_(joystick_reports(current_state(joystick_.get()), listing.node, info_.version)),
@@ -235,7 +222,7 @@ class SdlDevice : public Device {
   JoystickHandle joystick_;
   DeviceInfo info_;
   JoystickReports reports_;
-  std::shared_ptr<MillisecondTimer> timer_;
+  std::shared_ptr<Timer> timer_;
   pollfd poll_fd_;
   JoystickInbox inbox_;
   bool has_reported_ = false, removed_ = false;
@@ -245,7 +232,7 @@ class SdlDevice : public Device {
 // SDL does not report the first small movement of an axis, so the axes are also read; locked, so
 // that no event comes in between.
 void SdlDevice::fetch() noexcept {
-  if (timer_->take_tick()) update_joysticks();
+  if (timer_->take()) update_joysticks();
   const JoystickLock lock;
   JoystickInbox inbox = Sdl::started().inboxes.take(inbox_);
   removed_ = inbox.removed;
@@ -283,10 +270,6 @@ std::string take_text(char* line) {
   return text;
 }
 
-// SDL guesses a line for a pad that its data base does not have, and adds it to the data base. A
-// guess has a checksum of the pad's name.
-bool is_guess(const std::string& line) { return line.find(",crc:") != std::string::npos; }
-
 // SDL's path of the device with this index; the joysticks are locked.
 std::string node_of(int index) {
   const char* path = SDL_JoystickPathForIndex(index);
@@ -306,8 +289,8 @@ DeviceListing listing_of(int index, const SystemNode* system) {
   info.version = SDL_JoystickGetDeviceProductVersion(index);
   if (const char* name = SDL_JoystickNameForIndex(index)) info.name = name;
   // The codes of a node tell more than SDL's guess.
-  info.mapping = system ? sdl_library_mapping(info)
-                        : take_text(SDL_GameControllerMappingForDeviceIndex(index));
+  info.mapping =
+      system ? sdl_mapping_of(info) : take_text(SDL_GameControllerMappingForDeviceIndex(index));
   listing.node = node_of(index);
   if (listing.pad_path.empty()) listing.pad_path = listing.node;
   return listing;
@@ -375,7 +358,7 @@ std::vector<DeviceListing> find_sdl_devices() {
 Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, Detach) {
   const Sdl& sdl = Sdl::started();
   if (!sdl.problem().empty()) return Error{listing.node + ": " + sdl.problem()};
-  auto timer = MillisecondTimer::shared();
+  auto timer = millisecond_timer();
   if (timer->fd() < 0) return Error{listing.node + ": no timer, too many open files"};
   update_joysticks();
   const JoystickLock lock;
@@ -389,15 +372,14 @@ Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, De
   return Error{listing.node + ": SDL has no such joystick"};
 }
 
-std::string sdl_library_mapping(const DeviceInfo& device) {
-  const Sdl& sdl = Sdl::started();
-  if (!sdl.problem().empty()) return {};
-  std::vector<std::string> lines;
-  for (int i = 0; i < SDL_GameControllerNumMappings(); ++i) {
-    std::string line = take_text(SDL_GameControllerMappingForIndex(i));
-    if (!is_guess(line)) lines.push_back(std::move(line));
-  }
-  return fitting_mapping(lines, device);
+std::vector<std::string> sdl_library_lines() {
+  Dl_info library{};
+  if (::dladdr(reinterpret_cast<const void*>(&SDL_GetRevision), &library) == 0) return {};
+  constexpr std::size_t kMaxLibraryBytes = std::size_t{64} << 20;
+  auto text = file_text(library.dli_fname, kMaxLibraryBytes);
+  if (!text) return {};
+  std::replace(text->begin(), text->end(), '\0', '\n');
+  return mapping_lines(*text);
 }
 
 }  // namespace gaitpad

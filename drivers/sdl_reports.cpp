@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <fstream>
 #include <iterator>
 
 #include "base/text.h"
+#include "drivers/system_nodes.h"
 
 namespace gaitpad {
 namespace {
@@ -178,15 +178,9 @@ bool JoystickReports::next(Report& report) noexcept {
 
 namespace {
 
-// The first 4096 bytes of a file in the node's sysfs folder; empty if it does not exist.
-std::string sysfs_text(const std::string& node, const char* name) {
-  if (!node.starts_with("/dev/input/event")) return {};
-  const std::string device = node.substr(node.rfind('/') + 1);
-  std::ifstream in(fmt::format("/sys/class/input/{}/device/{}", device, name), std::ios::binary);
-  std::string text(kMaxDescriptorBytes, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  return text;
+// A file of the node's input device.
+std::string in_sysfs(const std::string& node, const char* name) {
+  return fmt::format("/sys/class/input/{}/device/{}", node.substr(node.rfind('/') + 1), name);
 }
 
 }  // namespace
@@ -194,16 +188,15 @@ std::string sysfs_text(const std::string& node, const char* name) {
 JoystickReports joystick_reports(JoystickState state, const std::string& node,
                                  std::uint16_t version) {
   constexpr std::uint16_t kCodesByKernel = 0x8000;  // its driver chose codes of its own
-  std::string own;
-  auto codes =
-      node_codes(sysfs_text(node, "capabilities/abs"), sysfs_text(node, "capabilities/key"), state);
+  std::vector<std::uint8_t> own;
+  auto codes = node_codes(sysfs_text(in_sysfs(node, "capabilities/abs")),
+                          sysfs_text(in_sysfs(node, "capabilities/key")), state);
   if (!codes) {
     codes = plain_codes(state);
   } else if ((version & kCodesByKernel) == 0) {
-    own = sysfs_text(node, "device/report_descriptor");
+    own = sysfs_bytes(in_sysfs(node, "device/report_descriptor"));
   }
-  EvdevLayout layout =
-      joystick_layout(*codes, {reinterpret_cast<const std::uint8_t*>(own.data()), own.size()});
+  EvdevLayout layout = joystick_layout(*codes, own);
   return {std::move(state), std::move(*codes), std::move(layout)};
 }
 

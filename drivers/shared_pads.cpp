@@ -1,12 +1,12 @@
 #include "drivers/shared_pads.h"
 
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "drivers/pads/pads_of_devices.h"
 #include "drivers/posix.h"
 
 namespace gaitpad {
@@ -41,14 +41,11 @@ class WritingPort final : public PadPort {
 class SharedPad final : public Device {
  public:
   SharedPad(std::shared_ptr<SharedDevice> device, DeviceInfo info)
-      : device_(std::move(device)),
-        info_(std::move(info)),
-        model_(make_pad_model(info_)),
-        bell_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+      : device_(std::move(device)), info_(std::move(info)), model_(make_pad_model(info_)) {
     const std::lock_guard lock(device_->mutex);
     const auto fds = device_->source->poll_fds();
     fds_.assign(fds.begin(), fds.end());
-    if (bell_.get() >= 0) fds_.push_back({.fd = bell_.get(), .events = POLLIN, .revents = 0});
+    if (bell_.fd() >= 0) fds_.push_back({.fd = bell_.fd(), .events = POLLIN, .revents = 0});
     WritingPort port(*device_->source);
     model_->start(port, StartedBy::us);
     device_->pads.push_back(this);
@@ -72,9 +69,7 @@ class SharedPad final : public Device {
       for (SharedPad* pad : device_->pads) pad->put(report, pad == this ? Ring::no : Ring::yes);
     }
     if (take_own(report)) return Status::report;
-    std::uint64_t rung = 0;
-    while (::read(bell_.get(), &rung, sizeof rung) > 0) {
-    }
+    bell_.clear();
     return status == Status::gone ? Status::gone : Status::nothing;
   }
 
@@ -107,8 +102,7 @@ class SharedPad final : public Device {
       --count_;
     }
     inbox_[(first_ + count_++) % kInbox] = packet;
-    const std::uint64_t one = 1;
-    if (ring == Ring::yes) static_cast<void>(!::write(bell_.get(), &one, sizeof one));
+    if (ring == Ring::yes) bell_.ring();
   }
 
   bool take_own(Report& report) noexcept {
@@ -126,7 +120,7 @@ class SharedPad final : public Device {
   std::shared_ptr<SharedDevice> device_;
   DeviceInfo info_;
   std::unique_ptr<PadModel> model_;
-  OwnedFd bell_;  // rings for packets that another pad's read has put into the inbox
+  Bell bell_;  // rings for packets that another pad's read has put into the inbox
   std::vector<pollfd> fds_;
   std::array<Report, kInbox> inbox_;
   std::size_t first_ = 0, count_ = 0;

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "drivers/pads/pads_of_devices.h"
 #include "gaitpad/descriptor.h"
 
 namespace gaitpad {
@@ -49,31 +50,6 @@ std::string unquoted(std::string_view value) { return std::string(trimmed(value,
 
 std::uint16_t hex16(std::string_view digits) {
   return static_cast<std::uint16_t>(take_number<std::uint32_t>(digits, 16).value_or(0));
-}
-
-std::string first_line(const fs::path& path) {
-  std::ifstream in(path);
-  std::string line;
-  std::getline(in, line);
-  return unquoted(line);
-}
-
-std::vector<std::uint8_t> file_bytes(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
-// Of the input device that the kernel made of a HID device: the version in SDL's GUID.
-std::uint16_t input_version(const fs::path& hid_device) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(hid_device / "input", error)) {
-    const std::string version = first_line(entry.path() / "id" / "version");
-    if (!version.empty()) return hex16(version);
-  }
-  return 0;
 }
 
 // What the HID device and the USB interface above the node tell.
@@ -110,7 +86,7 @@ bool add_hidraw(udev_device* device, SystemNode& node) {
   node.unique_id = property(hid, "HID_UNIQ");
   node.physical_path = property(hid, "HID_PHYS");
   node.version = input_version(path);
-  node.descriptor = file_bytes(fs::path(path) / "report_descriptor");
+  node.descriptor = sysfs_bytes(fs::path(path) / "report_descriptor");
   return true;
 }
 
@@ -129,6 +105,13 @@ bool add_input(udev_device* device, SystemNode& node) {
   node.is_motion_sensor = is_marked(device, "ID_INPUT_ACCELEROMETER");
   node.is_touchpad = is_marked(device, "ID_INPUT_TOUCHPAD");
   if (node.pad_path.empty()) node.pad_path = text(udev_device_get_syspath(input));
+  udev_device* usb = udev_device_get_parent_with_subsystem_devtype(device, "usb", "usb_interface");
+  if (!usb) return true;
+  node.physical_path = port_behind_receiver(node.physical_path, node.kernel_driver,
+                                            hex16(attribute(usb, "bInterfaceNumber")));
+  node.pad_path =
+      path_behind_receiver(node.pad_path, node.kernel_driver,
+                           text(udev_device_get_syspath(udev_device_get_parent(input))));
   return true;
 }
 
@@ -163,6 +146,34 @@ bool is_before(const SystemNode& a, const SystemNode& b) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> sysfs_bytes(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  return bytes;
+}
+
+std::string sysfs_text(const fs::path& path) {
+  const std::vector<std::uint8_t> bytes = sysfs_bytes(path);
+  return unquoted({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::optional<std::uint32_t> sysfs_hex(const fs::path& path) {
+  const std::string text = sysfs_text(path);
+  std::string_view digits = text;
+  return take_number<std::uint32_t>(digits, 16);
+}
+
+std::uint16_t input_version(const fs::path& owner) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(owner / "input", error)) {
+    if (const auto version = sysfs_hex(entry.path() / "id" / "version"))
+      return static_cast<std::uint16_t>(*version);
+  }
+  return 0;
+}
 
 std::vector<SystemNode> system_nodes(std::string_view subsystem) {
   std::vector<SystemNode> nodes;
@@ -211,15 +222,56 @@ double usb_poll_rate_hz(const std::string& interface_path) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(interface_path, error)) {
     if (!entry.path().filename().string().starts_with("ep_")) continue;
-    if (first_line(entry.path() / "direction") != "in") continue;
-    if (first_line(entry.path() / "type") != "Interrupt") continue;
-    const std::string interval = first_line(entry.path() / "interval");
+    if (sysfs_text(entry.path() / "direction") != "in") continue;
+    if (sysfs_text(entry.path() / "type") != "Interrupt") continue;
+    const std::string interval = sysfs_text(entry.path() / "interval");
     std::string_view unit = interval;  // behind the number
     const double value = take_number<double>(unit).value_or(0.0);
     if (value <= 0.0) return 0.0;
     return unit == "us" ? 1e6 / value : unit == "ms" ? 1e3 / value : 0.0;
   }
   return 0.0;
+}
+
+namespace {
+
+// `Unknown` is nothing.
+std::string power_word(const fs::path& path) {
+  const std::string word = lower_case(sysfs_text(path));
+  return word == "unknown" ? std::string() : word;
+}
+
+}  // namespace
+
+// The power supply stands below the HID device, the interface, or the GIP client.
+std::optional<Battery> battery_of(const std::string& pad_path) {
+  if (pad_path.empty()) return std::nullopt;
+  std::vector<fs::path> owners = {pad_path};
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(pad_path, error)) owners.push_back(entry.path());
+  for (const fs::path& owner : owners) {
+    for (const auto& supply : fs::directory_iterator(owner / "power_supply", error)) {
+      Battery battery;
+      battery.level = power_word(supply.path() / "capacity_level");
+      battery.status = power_word(supply.path() / "status");
+      const std::string percent = sysfs_text(supply.path() / "capacity");
+      if (!percent.empty()) battery.percent = parse_number<int>(percent);
+      if (battery.percent || !battery.level.empty()) return battery;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Battery> battery_of(const DeviceInfo& device) {
+  for (const char* subsystem : {"hidraw", "input"}) {
+    for (const SystemNode& node : system_nodes(subsystem)) {
+      if (node.vendor != device.vendor || node.product != device.product ||
+          node.physical_path != device.physical_path || node.unique_id != device.unique_id)
+        continue;
+      if (auto battery = battery_of(node.pad_path)) return battery;
+    }
+  }
+  return std::nullopt;
 }
 
 std::string access_problem(const std::string& node) {

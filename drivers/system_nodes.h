@@ -3,7 +3,9 @@
 // doctor`.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +30,18 @@ struct SystemNode {
   bool is_joystick = false, is_motion_sensor = false, is_touchpad = false;  // udev's ID_INPUT_*
 };
 
+// A file in /sys, at most 4096 bytes, without the blanks, quotes and line ends around it; empty:
+// there is none.
+std::string sysfs_text(const std::filesystem::path& path);
+// The same as it is: a report descriptor.
+std::vector<std::uint8_t> sysfs_bytes(const std::filesystem::path& path);
+// The number that it holds, in hexadecimal; none: there is no such file, or no number.
+std::optional<std::uint32_t> sysfs_hex(const std::filesystem::path& path);
+
+// Of the input device that the kernel made of a HID device or USB interface, the version in SDL's
+// GUID; 0: there is none.
+std::uint16_t input_version(const std::filesystem::path& owner);
+
 // The nodes of "hidraw", "input" (event nodes only) or "usb" (devices; pad_path is empty because
 // they have several interfaces), ordered by node.
 std::vector<SystemNode> system_nodes(std::string_view subsystem);
@@ -38,6 +52,16 @@ std::string usb_interface_path(const std::string& interface_name);
 // How often the interface's interrupt IN endpoint is polled, by its `interval` (`4ms`, `125us`); 0:
 // unknown, or there is none.
 double usb_poll_rate_hz(const std::string& interface_path);
+// What the pad reports of its battery, as the kernel's driver has it.
+struct Battery {
+  std::optional<int> percent;  // none: the pad tells a level only
+  std::string level;           // critical, low, normal, high, full; empty: unknown
+  std::string status;          // charging, discharging, full, not charging; empty: unknown
+};
+// By the pad's path; none: it has no battery, or no kernel driver that asks for it.
+std::optional<Battery> battery_of(const std::string& pad_path);
+// By what a stream knows of an open device.
+std::optional<Battery> battery_of(const DeviceInfo& device);
 // Why this user cannot open the node for reading and writing; empty: the user can.
 // `/dev/hidraw3: permission denied (owner 0, group 0, mode 0600); gaitpad doctor tells the fix`
 std::string access_problem(const std::string& node);

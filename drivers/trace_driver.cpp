@@ -1,7 +1,6 @@
 // A recording as devices: delivers its events at their recorded times, counted from the moment when
 // the first of its devices was opened.
 #include <fmt/format.h>
-#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -63,14 +62,14 @@ Result<std::shared_ptr<const Playback>> running_playback(const std::string& path
 
 class TraceFileDevice final : public Device {
  public:
-  TraceFileDevice(std::shared_ptr<const Playback> playback, std::uint16_t device, OwnedFd timer)
+  TraceFileDevice(std::shared_ptr<const Playback> playback, std::uint16_t device, Timer timer)
       : playback_(std::move(playback)),
         device_(device),
         end_ns_(playback_->due_ns(playback_->end_us)),
         timer_(std::move(timer)),
-        poll_fd_{timer_.get(), POLLIN, 0} {
+        poll_fd_{timer_.fd(), POLLIN, 0} {
     find_own();
-    wake_at(due_ns());
+    timer_.set(due_ns());
   }
 
   const DeviceInfo& info() const noexcept override {
@@ -81,9 +80,8 @@ class TraceFileDevice final : public Device {
   Status read(Report& report) noexcept override {
     const std::int64_t due = due_ns();
     if (now_ns() < due) {
-      std::uint64_t expirations = 0;
-      static_cast<void>(!::read(timer_.get(), &expirations, sizeof(expirations)));
-      wake_at(due);
+      timer_.take();
+      timer_.set(due);
       return Status::nothing;
     }
     const std::vector<TraceEvent>& events = *events_;
@@ -99,7 +97,7 @@ class TraceFileDevice final : public Device {
     events_ = &playback_->raw_events;
     next_ = 0;
     find_own();
-    wake_at(due_ns());
+    timer_.set(due_ns());
   }
 
  private:
@@ -112,18 +110,12 @@ class TraceFileDevice final : public Device {
     const std::vector<TraceEvent>& events = *events_;
     return next_ < events.size() ? playback_->due_ns(events[next_].time_us) : end_ns_;
   }
-  void wake_at(std::int64_t time_ns) noexcept {
-    itimerspec moment{};
-    moment.it_value.tv_sec = static_cast<time_t>(time_ns / 1'000'000'000);
-    moment.it_value.tv_nsec = static_cast<long>(time_ns % 1'000'000'000);
-    ::timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &moment, nullptr);
-  }
 
   const std::shared_ptr<const Playback> playback_;
   const std::vector<TraceEvent>* events_ = &playback_->trace.events;
   const std::uint16_t device_;
   const std::int64_t end_ns_;
-  const OwnedFd timer_;
+  Timer timer_;
   const pollfd poll_fd_;
   std::size_t next_ = 0;
 };
@@ -173,8 +165,8 @@ Result<std::unique_ptr<Device>> open_trace_device(const DeviceListing& listing, 
   if (device >= (*playback)->trace.devices.size())
     return Error{fmt::format("{}: there are {} devices in it", listing.node,
                              (*playback)->trace.devices.size())};
-  OwnedFd timer(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
-  if (timer.get() < 0)
+  Timer timer;
+  if (timer.fd() < 0)
     return Error{fmt::format("{}: no timer: {}", listing.node, std::strerror(errno))};
   return std::unique_ptr<Device>(std::make_unique<TraceFileDevice>(
       std::move(*playback), static_cast<std::uint16_t>(device), std::move(timer)));

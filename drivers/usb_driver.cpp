@@ -15,9 +15,8 @@
 
 #include "drivers/driver_entries.h"
 #include "drivers/pads/pad_model.h"
-#include "drivers/pads/several_pads.h"
+#include "drivers/pads/pads_of_devices.h"
 #include "drivers/posix.h"
-#include "drivers/present_state.h"
 #include "drivers/shared_pads.h"
 #include "drivers/system_nodes.h"
 #include "drivers/usb_interfaces.h"
@@ -226,6 +225,53 @@ void fit_transfers(const std::vector<std::uint8_t>& descriptor, UsbEndpoints& en
 
 // ---- An open pad
 
+// The second interface of a pad whose first one is HID, by its bulk endpoints: commands and
+// answers.
+class CommandInterface {
+ public:
+  explicit CommandInterface(libusb_device_handle* handle) : handle_(handle) {
+    libusb_config_descriptor* active = nullptr;
+    if (libusb_get_active_config_descriptor(libusb_get_device(handle), &active) != LIBUSB_SUCCESS)
+      return;
+    const std::unique_ptr<libusb_config_descriptor, FreeConfig> config(active);
+    if (config->bNumInterfaces <= kNumber || config->interface[kNumber].num_altsetting < 1) return;
+    const libusb_interface_descriptor& interface = config->interface[kNumber].altsetting[0];
+    for (int i = 0; i < interface.bNumEndpoints; ++i) {
+      const libusb_endpoint_descriptor& endpoint = interface.endpoint[i];
+      if ((endpoint.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK) != LIBUSB_TRANSFER_TYPE_BULK)
+        continue;
+      const bool is_in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
+      (is_in ? in_ : out_) = endpoint.bEndpointAddress;
+    }
+    is_claimed_ =
+        in_ != 0 && out_ != 0 && libusb_claim_interface(handle, kNumber) == LIBUSB_SUCCESS;
+  }
+  CommandInterface(const CommandInterface&) = delete;
+  ~CommandInterface() {
+    if (is_claimed_) libusb_release_interface(handle_, kNumber);
+  }
+
+  std::size_t ask(std::span<const std::uint8_t> packet, std::span<std::uint8_t> answer) noexcept {
+    int done = 0;
+    std::vector<std::uint8_t> out(packet.begin(), packet.end());
+    if (!is_claimed_ ||
+        libusb_bulk_transfer(handle_, out_, out.data(), static_cast<int>(out.size()), &done,
+                             kControlTimeoutMs) != LIBUSB_SUCCESS)
+      return 0;
+    if (libusb_bulk_transfer(handle_, in_, answer.data(), static_cast<int>(answer.size()), &done,
+                             kAnswerMs) != LIBUSB_SUCCESS)
+      return 0;
+    return static_cast<std::size_t>(std::max(done, 0));
+  }
+
+ private:
+  static constexpr int kNumber = 1;
+  static constexpr unsigned int kAnswerMs = 100;
+  libusb_device_handle* handle_;
+  std::uint8_t in_ = 0, out_ = 0;
+  bool is_claimed_ = false;
+};
+
 // The pad model's way to the pad while it starts; here waiting is allowed.
 class StartPort final : public PadPort {
  public:
@@ -253,15 +299,16 @@ class StartPort final : public PadPort {
   }
 
   std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
-    // A pad without ids sends none, but `packet` begins with one.
-    const std::size_t skip = id == 0 ? 1 : 0;
-    if (packet.size() <= skip || packet.size() > kMaxReportBytes) return 0;
-    packet[0] = id;
-    const int count = libusb_control_transfer(
-        handle_, kFromInterface, kGetReport, static_cast<std::uint16_t>(kFeatureReport | id),
-        interface_, packet.data() + skip, static_cast<std::uint16_t>(packet.size() - skip),
-        kControlTimeoutMs);
-    return count <= 0 ? 0 : static_cast<std::size_t>(count) + skip;
+    return get_report(kFeatureReport, id, packet);
+  }
+  std::size_t input(std::uint8_t id, std::span<std::uint8_t> packet) noexcept override {
+    return get_report(kInputReport, id, packet);
+  }
+
+  std::size_t command(std::span<const std::uint8_t> packet,
+                      std::span<std::uint8_t> answer) noexcept override {
+    if (!commands_) commands_ = std::make_unique<CommandInterface>(handle_);
+    return commands_->ask(packet, answer);
   }
 
   bool send_feature(std::span<const std::uint8_t> packet) noexcept override {
@@ -276,9 +323,23 @@ class StartPort final : public PadPort {
   }
 
  private:
+  // A pad without ids sends none, but `packet` begins with one.
+  std::size_t get_report(std::uint16_t kind, std::uint8_t id,
+                         std::span<std::uint8_t> packet) noexcept {
+    const std::size_t skip = id == 0 ? 1 : 0;
+    if (packet.size() <= skip || packet.size() > kMaxReportBytes + skip) return 0;
+    packet[0] = id;
+    const int count = libusb_control_transfer(
+        handle_, kFromInterface, kGetReport, static_cast<std::uint16_t>(kind | id), interface_,
+        packet.data() + skip, static_cast<std::uint16_t>(packet.size() - skip), kControlTimeoutMs);
+    const bool is_other = kind == kInputReport && packet[0] != id;
+    return count <= 0 || is_other ? 0 : static_cast<std::size_t>(count) + skip;
+  }
+
   UsbTransfers& transfers_;
   libusb_device_handle* handle_;
   std::uint8_t interface_;
+  std::unique_ptr<CommandInterface> commands_;  // from the first command on
   Report report_;
 };
 
@@ -298,31 +359,13 @@ class UsbDevice final : public Device {
     model_->stop(port);
   }
 
-  void start(std::uint8_t interface_number) {
-    interface_number_ = interface_number;
-    StartPort port(*transfers_, interface_->handle(), interface_number);
+  void start(const UsbInterface& interface) {
+    interface_number_ = interface.number;
+    StartPort port(*transfers_, interface_->handle(), interface.number);
     model_->start(port, StartedBy::us);
     model_->amend(info_);
-  }
-
-  // What the pad is at, unless it says so by itself at once (PresentState says why). Of a pad that
-  // always answers zeros, which would be a corner of the stick, nothing is kept.
-  void ask_present_state() {
-    constexpr milliseconds kSilence(30);
-    transfers_->handle_events(kSilence);
-    for (const ReportSize& wanted : reports_with_stick(info_.descriptor)) {
-      if (transfers_->has_packet()) return;
-      const int count = libusb_control_transfer(
-          interface_->handle(), kFromInterface, kGetReport,
-          static_cast<std::uint16_t>(kInputReport | wanted.id), interface_number_,
-          present_.bytes.data(), wanted.bytes, kControlTimeoutMs);
-      const auto answer = std::span(present_.bytes).first(wanted.bytes);
-      if (count != wanted.bytes || (wanted.id != 0 && answer[0] != wanted.id)) continue;
-      const auto is_zero = [](std::uint8_t byte) { return byte == 0; };
-      if (std::ranges::all_of(answer.subspan(wanted.id != 0 ? 1 : 0), is_zero)) continue;
-      present_.size = wanted.bytes;
-      return;
-    }
+    if (interface.ids.interface_class != kHidClass) return;
+    first_.size = static_cast<std::uint16_t>(first_packet(port, info_.descriptor, first_.bytes));
   }
 
   const DeviceInfo& info() const noexcept override { return info_; }
@@ -330,13 +373,6 @@ class UsbDevice final : public Device {
 
   Status read(Report& report) noexcept override {
     if (take_input(report)) return Status::report;
-    if (present_.size > 0) {
-      report.time_ns = now_ns();
-      report.kind = ReportKind::input;
-      report.size = std::exchange(present_.size, std::uint16_t{0});
-      std::copy_n(present_.bytes.begin(), report.size, report.bytes.begin());
-      return Status::report;
-    }
     transfers_->handle_events(milliseconds(0));
     if (take_input(report)) return Status::report;
     return transfers_->is_gone() ? Status::gone : Status::nothing;
@@ -359,7 +395,7 @@ class UsbDevice final : public Device {
  private:
   // Fills `report` with the oldest input report that has arrived, and answers packets before it.
   bool take_input(Report& report) noexcept {
-    while (transfers_->take_packet(report)) {
+    while (take_packet(report)) {
       const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
       const bool is_input = model_->accept(packet, reply_);
       if (reply_.size > 0) transfers_->send(reply_);
@@ -374,8 +410,16 @@ class UsbDevice final : public Device {
     return false;
   }
 
+  bool take_packet(Report& report) noexcept {
+    if (first_.size == 0) return transfers_->take_packet(report);
+    report = first_;
+    report.time_ns = now_ns();
+    first_.size = 0;
+    return true;
+  }
+
   DeviceInfo info_;
-  Report present_;  // size 0: none
+  Report first_;  // the first packet; size 0: none
   std::unique_ptr<PadModel> model_;
   std::unique_ptr<ClaimedInterface> interface_;
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
@@ -418,8 +462,7 @@ Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInter
   if (!transfers) return Error{node + ": " + transfers.error().message};
   auto device = std::make_unique<UsbDevice>(std::move(info), std::move(vendor.model),
                                             std::move(*claimed), std::move(*transfers));
-  device->start(interface.number);
-  if (interface.ids.interface_class == kHidClass) device->ask_present_state();
+  device->start(interface);
   return std::unique_ptr<Device>(std::move(device));
 }
 

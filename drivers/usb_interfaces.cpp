@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 
-#include "base/text.h"
 #include "drivers/system_nodes.h"
-#include "gaitpad/descriptor.h"
 
 namespace gaitpad {
 
@@ -27,21 +24,8 @@ std::vector<fs::path> entries(const fs::path& folder) {
   return paths;
 }
 
-std::string attribute(const fs::path& path) {
-  std::ifstream in(path);
-  std::string line;
-  std::getline(in, line);
-  return line;
-}
-
-std::optional<std::uint16_t> hexadecimal_attribute(const fs::path& path) {
-  const std::string text = attribute(path);
-  std::string_view digits = text;
-  return take_number<std::uint16_t>(digits, 16);
-}
-
 std::uint8_t byte_attribute(const fs::path& path) {
-  return static_cast<std::uint8_t>(hexadecimal_attribute(path).value_or(0));
+  return static_cast<std::uint8_t>(sysfs_hex(path).value_or(0));
 }
 
 std::string driver_of(const fs::path& device) {
@@ -57,26 +41,11 @@ std::optional<fs::path> hid_device_below(const fs::path& interface) {
   return std::nullopt;
 }
 
-std::vector<std::uint8_t> report_descriptor(const fs::path& hid_device) {
-  std::ifstream in(hid_device / "report_descriptor", std::ios::binary);
-  std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
-std::uint16_t input_version(const fs::path& owner) {
-  for (const fs::path& entry : entries(owner / "input")) {
-    if (const auto version = hexadecimal_attribute(entry / "id" / "version")) return *version;
-  }
-  return 0;
-}
-
 }  // namespace
 
 std::optional<UsbInterface> usb_interface(const std::string& path) {
   const fs::path folder(path);
-  const auto number = hexadecimal_attribute(folder / "bInterfaceNumber");
+  const auto number = sysfs_hex(folder / "bInterfaceNumber");
   if (!number) return std::nullopt;
   UsbInterface interface;
   interface.path = path;
@@ -90,7 +59,7 @@ std::optional<UsbInterface> usb_interface(const std::string& path) {
   if (const auto hid = hid_device_below(folder)) {
     interface.hid_driver = driver_of(*hid);
     interface.version = input_version(*hid);
-    interface.descriptor = report_descriptor(*hid);
+    interface.descriptor = sysfs_bytes(*hid / "report_descriptor");
   }
   return interface;
 }

@@ -52,22 +52,29 @@ void close_others(int kept) {
   for (int fd = 0; fd < kept; ++fd) ::close(fd);
 }
 
+// Without what a program or a sanitizer does at its end.
+[[noreturn]] void leave(int status) {
+  for (;;) ::syscall(SYS_exit_group, status);
+}
+
 [[noreturn]] void watch(int link, const char* node, int interface_number) {
   constexpr int kAttempts = 250;
   constexpr timespec kPause = {0, 20'000'000};
   ::setsid();  // Ctrl-C in the terminal must not end the watcher
+  // A process of its own, for which nobody has to wait when it ends.
+  if (const pid_t watcher = ::_Fork(); watcher != 0) leave(watcher < 0 ? errno : 0);
   close_others(link);
   char word = 0;
   ssize_t count = 0;
   do {
     count = ::read(link, &word, 1);
   } while (count < 0 && errno == EINTR);
-  if (count > 0) ::_exit(0);  // dismissed
+  if (count > 0) leave(0);  // dismissed
   for (int i = 0; i < kAttempts; ++i) {
     if (try_to_reattach(node, interface_number) == Attempt::done) break;
     ::nanosleep(&kPause, nullptr);
   }
-  ::_exit(0);
+  leave(0);
 }
 
 }  // namespace
@@ -84,30 +91,20 @@ Result<ReattachWatcher> ReattachWatcher::start(const std::string& node,
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t process = ::fork();
   if (process == 0) watch(ends[0], node.c_str(), interface_number);
-  const int cause = errno;
+  int cause = process < 0 ? errno : 0, status = 0;
+  // No process to wait for: the program lets the kernel bury its children.
+  if (process > 0 && ::waitpid(process, &status, 0) == process) cause = WEXITSTATUS(status);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(ends[0]);
   OwnedFd link(ends[1]);
-  if (process > 0) return ReattachWatcher(std::move(link), process);
+  if (cause == 0) return ReattachWatcher(std::move(link));
   return Error{fmt::format("{}: nothing can watch over it: {}", node, std::strerror(cause))};
 }
 
 void ReattachWatcher::dismiss() noexcept {
-  if (link_.get() < 0) return;
-  constexpr int kAttempts = 100;  // do not wait for ever for a watcher that was stopped
-  constexpr timespec kPause = {0, 1'000'000};
   const char word = 1;
-  static_cast<void>(::send(link_.get(), &word, 1, MSG_NOSIGNAL));
+  if (link_.get() >= 0) static_cast<void>(::send(link_.get(), &word, 1, MSG_NOSIGNAL));
   link_ = OwnedFd();
-  for (int i = 0; i < kAttempts && ::waitpid(process_, nullptr, WNOHANG) == 0; ++i) {
-    ::nanosleep(&kPause, nullptr);
-  }
-}
-
-ReattachWatcher::~ReattachWatcher() {
-  if (link_.get() < 0) return;
-  link_ = OwnedFd();
-  ::waitpid(process_, nullptr, WNOHANG);
 }
 
 }  // namespace gaitpad

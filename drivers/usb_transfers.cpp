@@ -1,7 +1,6 @@
 #include "drivers/usb_transfers.h"
 
 #include <fmt/format.h>
-#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -45,9 +44,8 @@ Result<bool> UsbTransfers::allocate() {
   out_buffer_.resize(LIBUSB_CONTROL_SETUP_SIZE + OutPacket{}.bytes.size());
   out_ = libusb_alloc_transfer(0);
   if (!out_) return Error{"out of memory"};
-  timer_ = OwnedFd(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
-  if (timer_.get() < 0) return Error{"no timer"};
-  poll_fds_.push_back({timer_.get(), POLLIN, 0});
+  if (timer_.fd() < 0) return Error{"no timer"};
+  poll_fds_.push_back({timer_.fd(), POLLIN, 0});
   const libusb_pollfd** fds = libusb_get_pollfds(context_);
   if (!fds) return Error{"out of memory"};
   for (const libusb_pollfd** fd = fds; *fd; ++fd) {
@@ -80,8 +78,7 @@ void UsbTransfers::handle_events(milliseconds timeout) noexcept {
   libusb_handle_events_timeout_completed(context_, &no_wait, nullptr);
   arrival_ns_ = 0;
   if (is_closing_) return;
-  std::uint64_t expirations = 0;
-  if (timer_ns_ != 0 && ::read(timer_.get(), &expirations, sizeof expirations) > 0) timer_ns_ = 0;
+  if (timer_ns_ != 0 && timer_.take()) timer_ns_ = 0;
   recover();
   repeat_out();
   set_timer();
@@ -276,10 +273,7 @@ void UsbTransfers::set_timer() noexcept {
   if (repeat_ns_ != 0 && !is_gone_) next_ns = next_ns ? std::min(next_ns, repeat_ns_) : repeat_ns_;
   if (next_ns == timer_ns_) return;  // nearly always, so a report costs no further system call
   timer_ns_ = next_ns;
-  itimerspec when = {};
-  when.it_value.tv_sec = static_cast<time_t>(next_ns / 1'000'000'000);
-  when.it_value.tv_nsec = static_cast<long>(next_ns % 1'000'000'000);
-  ::timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &when, nullptr);
+  timer_.set(next_ns);
 }
 
 void UsbTransfers::cancel_all() noexcept {

@@ -90,7 +90,7 @@ class UsbTransfers {
   libusb_device_handle* handle_;
   UsbEndpoints endpoints_;
   std::vector<pollfd> poll_fds_;
-  OwnedFd timer_;                // for recovering and repeating
+  Timer timer_;                  // for recovering and repeating
   std::int64_t timer_ns_ = 0;    // the time it is set to; 0: not set
   std::int64_t now_ns_ = 0;      // of the last handle_events()
   std::int64_t arrival_ns_ = 0;  // of the packets that it receives; 0: it is not running

@@ -12,7 +12,7 @@ LIBRARIES = {
     "files": ["src/files"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
-    "program": ["src/draw", "src/view", "src/paper", "src/check"],
+    "program": ["src/draw", "src/view", "src/paper", "src/check", "src/selftest"],
 }
 # room: (rooms of its own library that it may include, vendor headers)
 ROOMS = {
@@ -30,9 +30,10 @@ ROOMS = {
     "src/session": ([], ["fmt/", "nlohmann/", "tbb/"]),
     # Drawing needs cairo alone; the paper's figures are drawn without a window.
     "src/draw": ([], ["fmt/", "cairo/"]),
-    "src/view": (["draw"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
+    "src/view": (["draw", "selftest"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
     "src/paper": (["draw"], ["fmt/", "cairo/", "nlohmann/"]),
     "src/check": ([], ["fmt/"]),
+    "src/selftest": ([], ["fmt/", "nlohmann/"]),
 }
 # The public headers, src/include/gaitpad/NAME.h, by the room whose functions they declare.
 PUBLIC = {
@@ -62,7 +63,7 @@ DRIVER_VENDORS = {
     "drivers/usb_transfers.h": ["libusb"],
     "drivers/usb_reattach.cpp": ["linux/"],
     "drivers/evdev_driver.cpp": ["libevdev", "linux/"],
-    "drivers/sdl_driver.cpp": ["SDL2/", "SDL"],
+    "drivers/sdl_driver.cpp": ["SDL2/", "SDL", "dlfcn.h"],
     "drivers/system_nodes.cpp": ["libudev.h"],
     "tools/rig/latency.cpp": ["linux/"],
     "tools/rig/plain_sdl.cpp": ["SDL2/"],

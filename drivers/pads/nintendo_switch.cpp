@@ -2,7 +2,8 @@
 // start, the stick calibration in their flash memory, their motors. All send the same report 0x30.
 // Packets, memory map and vibration codes are from dekuNukem's Nintendo_Switch_Reverse_Engineering
 // (bluetooth_hid_notes.md, USB-HID-Notes.md, spi_flash_notes.md, rumble_data_table.md), ids and
-// kinds from Linux's hid-nintendo.c.
+// kinds from Linux's hid-nintendo.c. The Switch 2's Pro Controller is started by commands to its
+// second USB interface: numbers from SDL 3's SDL_hidapi_switch2.c.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -26,6 +27,7 @@ enum : std::uint16_t {  // products
   kSnes = 0x2017,
   kN64 = 0x2019,
   kMegaDrive = 0x201e,
+  kSwitch2Pro = 0x2069,
 };
 enum : std::uint8_t { kLeftKind = 1, kRightKind = 2, kNesLeftKind = 9, kNesRightKind = 10 };
 
@@ -90,15 +92,19 @@ std::array<int, 2> unpacked(std::span<const std::uint8_t, 3> bytes) noexcept {
 
 enum class Side { left, right };
 
-// The left stick has the way up, the centre, the way down; the right one the centre, the way down,
-// the way up. None: blank or out of limits.
+// Which of the three pairs of numbers is the way up, the centre, the way down.
+struct RangeOrder {
+  std::size_t up, centre, down;
+};
+constexpr RangeOrder kLeftOrder = {0, 1, 2}, kRightOrder = {2, 0, 1}, kSwitch2Order = {1, 0, 2};
+
+// None: blank or out of limits.
 std::optional<StickRange> stick_range(std::span<const std::uint8_t, kStickBytes> bytes,
-                                      Side side) noexcept {
-  const auto first = unpacked(bytes.subspan<0, 3>()), second = unpacked(bytes.subspan<3, 3>()),
-             third = unpacked(bytes.subspan<6, 3>());
-  const auto& up = side == Side::left ? first : third;
-  const auto& centre = side == Side::left ? second : first;
-  const auto& down = side == Side::left ? third : second;
+                                      const RangeOrder& order) noexcept {
+  const std::array<std::array<int, 2>, 3> pairs = {unpacked(bytes.subspan<0, 3>()),
+                                                   unpacked(bytes.subspan<3, 3>()),
+                                                   unpacked(bytes.subspan<6, 3>())};
+  const auto &up = pairs[order.up], &centre = pairs[order.centre], &down = pairs[order.down];
   StickRange range;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     if (up[axis] == kBlank || centre[axis] == kBlank || down[axis] == kBlank) return std::nullopt;
@@ -316,14 +322,15 @@ class SwitchPad final : public PadModel {
   static std::optional<StickRange> chosen_range(std::span<const std::uint8_t> factory,
                                                 std::span<const std::uint8_t> user, Side side) {
     const std::size_t number = side == Side::left ? 0 : 1;
+    const RangeOrder& order = side == Side::left ? kLeftOrder : kRightOrder;
     if (user.size() == kUserBytes) {
       const auto own = user.subspan(number * (kMarkBytes + kStickBytes));
       if (std::equal(kMark.begin(), kMark.end(), own.begin())) {
-        if (auto range = stick_range(own.subspan<kMarkBytes, kStickBytes>(), side)) return range;
+        if (auto range = stick_range(own.subspan<kMarkBytes, kStickBytes>(), order)) return range;
       }
     }
     if (factory.size() != kFactoryBytes) return std::nullopt;
-    return stick_range(factory.subspan(number * kStickBytes).first<kStickBytes>(), side);
+    return stick_range(factory.subspan(number * kStickBytes).first<kStickBytes>(), order);
   }
 
   void choose_sticks(std::span<const std::uint8_t> factory, std::span<const std::uint8_t> user) {
@@ -363,6 +370,84 @@ class SwitchPad final : public PadModel {
   std::vector<std::string> remarks_;
 };
 
+// ---- Switch 2
+
+// A command, its argument and what follows; the header has the length of that.
+struct Switch2Command {
+  std::uint8_t command, argument;
+  std::uint8_t size = 0;
+  std::array<std::uint8_t, 20> data{};
+};
+constexpr std::uint8_t kAllFeatures = 0x27;  // buttons, sticks, motion, motors
+// In SDL's order; what those without a word do is not known.
+constexpr Switch2Command kStartSwitch2[] = {
+    {0x07, 0x01},
+    {0x16, 0x01},
+    {0x0c, 0x02, 4, {kAllFeatures}},  // which features there are
+    {0x11, 0x03},
+    {0x0a, 0x08, 20, {0x01, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x35, 0x00, 0x46}},
+    {0x0c, 0x04, 4, {kAllFeatures}},  // switches them on
+    {0x10, 0x01},
+    {0x01, 0x01},                                                      // the motors
+    {0x03, 0x0d, 8, {0x01, 0x00, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}}  // reports, by this interface
+};
+constexpr std::uint32_t kFactoryBlock = 0x013080, kUserBlock = 0x1fc040, kNextStick = 0x40;
+// In the answer to a reading of the flash memory: the block, and in it the calibration.
+constexpr std::size_t kBlockAt = 0x10, kFactoryAt = kBlockAt + 0x28, kAnswerBytes = 0x50;
+
+class Switch2Pad final : public PadModel {
+ public:
+  explicit Switch2Pad(const DeviceInfo& device)
+      : name_(device.name.empty() ? "this pad" : device.name) {}
+
+  void start(PadPort& port, StartedBy) override {
+    const auto left = stored_range(port, 0), right = stored_range(port, 1);
+    if (left && right)
+      sticks_ = FactorySticks{factory_axis(*left, 0), factory_axis(*left, 1),
+                              factory_axis(*right, 0), factory_axis(*right, 1)};
+    bool has_answered = true;
+    for (const Switch2Command& command : kStartSwitch2) {
+      std::array<std::uint8_t, kAnswerBytes> answer{};
+      has_answered = has_answered && send(port, command, answer) > 0;
+    }
+    if (!has_answered)
+      remarks_.push_back(name_ + ": was not started; only --driver usb can do that");
+  }
+  std::optional<FactorySticks> factory_sticks() const override { return sticks_; }
+  std::vector<std::string> take_remarks() override { return std::exchange(remarks_, {}); }
+
+ private:
+  static std::size_t send(PadPort& port, const Switch2Command& command,
+                          std::span<std::uint8_t> answer) {
+    std::array<std::uint8_t, 8 + sizeof(command.data)> packet = {
+        command.command, 0x91, 0x00, command.argument, 0x00, command.size};
+    std::copy_n(command.data.begin(), command.size, packet.begin() + 8);
+    return port.command(std::span(packet).first(8u + command.size), answer);
+  }
+
+  // The user's calibration of a stick (0 left, 1 right) comes before the factory's.
+  static std::optional<StickRange> stored_range(PadPort& port, std::uint32_t stick) {
+    for (const std::uint32_t block : {kUserBlock, kFactoryBlock}) {
+      const std::uint32_t address = block + stick * kNextStick;
+      Switch2Command read = {0x02, 0x01, 8, {}};
+      for (std::size_t i = 0; i < 4; ++i)
+        read.data[4 + i] = static_cast<std::uint8_t>(address >> (8 * i));
+      std::array<std::uint8_t, kAnswerBytes> answer{};
+      if (send(port, read, answer) < kFactoryAt + kStickBytes) continue;
+      const bool is_user = block == kUserBlock;
+      if (is_user && !std::equal(kMark.begin(), kMark.end(), answer.begin() + kBlockAt)) continue;
+      const std::size_t at = is_user ? kBlockAt + kMarkBytes : kFactoryAt;
+      const auto bytes = std::span(answer).subspan(at).first<kStickBytes>();
+      if (auto range = stick_range(bytes, kSwitch2Order)) return range;
+    }
+    return std::nullopt;
+  }
+
+  std::string name_;
+  std::optional<FactorySticks> sticks_;
+  std::vector<std::string> remarks_;
+};
+
 }  // namespace
 
 std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device) {
@@ -370,7 +455,9 @@ std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device) {
                                          kSnes,       kN64,         kMegaDrive};
   const bool is_known =
       std::find(std::begin(kProducts), std::end(kProducts), device.product) != std::end(kProducts);
-  if (device.vendor != kNintendo || !is_known) return nullptr;
+  if (device.vendor != kNintendo) return nullptr;
+  if (device.product == kSwitch2Pro) return std::make_unique<Switch2Pad>(device);
+  if (!is_known) return nullptr;
   return std::make_unique<SwitchPad>(device);
 }
 

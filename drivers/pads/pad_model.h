@@ -27,6 +27,13 @@ class PadPort {
   // Reads a feature report (HID pads only) and returns its size with the id in packet[0]; 0:
   // refused.
   virtual std::size_t feature(std::uint8_t id, std::span<std::uint8_t> packet) noexcept = 0;
+  // Reads an input report (HID pads only), as feature() does. It may take five seconds.
+  virtual std::size_t input(std::uint8_t, std::span<std::uint8_t>) noexcept { return 0; }
+  // Sends a command to the pad's second interface and returns the size of its answer (the driver
+  // usb alone); 0: there is no such interface, or no answer.
+  virtual std::size_t command(std::span<const std::uint8_t>, std::span<std::uint8_t>) noexcept {
+    return 0;
+  }
   // Sends a feature report (HID pads only), which begins with its id; 0: the pad has no ids.
   virtual bool send_feature(std::span<const std::uint8_t>) noexcept { return false; }
 };
@@ -78,21 +85,12 @@ class PadModel {
 // The model by ids and bus; a plain one for pads that need nothing.
 std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device);
 
-// Whether something was put into the plug of an adapter, or taken out, since the last packet.
-class PlugWatch {
- public:
-  // Then `report` says so.
-  bool has_changed(const PadModel& model, Report& report) noexcept {
-    if (model.is_plugged() == was_plugged_) return false;
-    was_plugged_ = !was_plugged_;
-    report.kind = was_plugged_ ? ReportKind::added : ReportKind::removed;
-    report.size = 0;
-    return true;
-  }
-
- private:
-  bool was_plugged_ = true;
-};
+// The first packet of a HID pad that was just opened, and its size: what it sends within 30 ms,
+// else its answer when it is asked for a report with its stick; 0: none. A pad that reports changes
+// only would not tell that its stick rests, and its first push would not count. An answer of zeros,
+// a corner of the stick, is none: some pads give it instead of their state.
+std::size_t first_packet(PadPort& port, const std::vector<std::uint8_t>& descriptor,
+                         std::span<std::uint8_t> packet) noexcept;
 
 // One file for each family; null: the device is of another family.
 std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/pads/pad_model.h"
+#include "drivers/pads/pads_of_devices.h"
 
 namespace gaitpad {
 

@@ -1,6 +1,6 @@
-// DualShock 4 and DualSense: their motors, and what Bluetooth adds (full reports on request, a
-// checksum on every long report). Packet layouts are from Linux's hid-playstation.c and were
-// compared with what that driver sends.
+// DualShock 3: its start. DualShock 4 and DualSense: their motors, and what Bluetooth adds (full
+// reports on request, a checksum on every long report). Packet layouts are from Linux's
+// hid-playstation.c and were compared with what that driver sends.
 #include <algorithm>
 #include <utility>
 
@@ -109,6 +109,30 @@ class SonyModel : public PadModel {
   std::vector<std::string> remarks_;
 };
 
+// On USB it sends nothing until two features were read: Linux's hid-sony.c
+// (sixaxis_set_operational_usb), whose third step some copies answer by rumbling for ever.
+class DualShock3 final : public PadModel {
+ public:
+  explicit DualShock3(const DeviceInfo& device)
+      : name_(device.name.empty() ? "this pad" : device.name),
+        is_usb_(device.bus == BusType::usb) {}
+
+  void start(PadPort& port, StartedBy started) override {
+    if (!is_usb_ || started == StartedBy::kernel) return;
+    std::array<std::uint8_t, 17> state{};
+    std::array<std::uint8_t, 8> address{};
+    if (port.feature(0xf2, state) == 0)
+      remarks_.push_back(name_ + ": does not answer the start over USB");
+    port.feature(0xf5, address);  // its answer begins with another id
+  }
+  std::vector<std::string> take_remarks() override { return std::exchange(remarks_, {}); }
+
+ private:
+  std::string name_;
+  bool is_usb_;
+  std::vector<std::string> remarks_;
+};
+
 class DualShock4 final : public SonyModel {
   static constexpr std::uint8_t kReportInterval_ms = 4;
 
@@ -185,6 +209,8 @@ class DualSense final : public SonyModel {
 std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device) {
   if (device.vendor != kSony) return nullptr;
   switch (device.product) {
+    case 0x0268:
+      return std::make_unique<DualShock3>(device);
     case 0x05c4:  // first DualShock 4
     case 0x09cc:
     case kAdapter:  // its wireless adapter: USB

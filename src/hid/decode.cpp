@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 namespace gaitpad {
 

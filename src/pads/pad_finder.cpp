@@ -10,6 +10,7 @@
 #include <functional>
 #include <iterator>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "base/text.h"
@@ -275,6 +276,7 @@ constexpr auto kQuiet = 30ms, kMaxUnrest = 200ms;  // plugging in once makes man
 // Waits after a failed opening. After the last, the next driver that sees the pad has its turn.
 constexpr std::chrono::milliseconds kRetries[] = {100ms, 300ms, 1000ms};
 constexpr auto kSlowRetry = 5000ms;
+constexpr auto kQuickOpening = 100ms;
 constexpr auto kShortLife = 1000ms, kMaxRest = 1000ms;  // for a device that keeps coming and going
 // How long a newly plugged pad may take until the preferred driver sees it, and until the kernel
 // has bound its own driver to it.
@@ -325,6 +327,9 @@ void PadFinder::stop() {
   is_ending_ = true;
   bell_.ring();
   if (thread_.joinable()) thread_.join();
+  for (const auto& opening : openings_)
+    if (opening->thread.joinable()) opening->thread.join();
+  openings_.clear();
 }
 
 std::optional<Error> PadFinder::start() {
@@ -367,6 +372,7 @@ void PadFinder::run(std::promise<std::optional<Error>> first_look) {
     wait();
     if (is_ending_) return;
     close_gone();
+    take_openings();
     if (is_recording_) continue;
     if (auto problem = look(nullptr)) remarks_.add_once(problem->message);
   }
@@ -419,10 +425,12 @@ std::optional<Error> PadFinder::look(std::promise<std::optional<Error>>* first_l
     awaited_ends_ = static_cast<int>(chosen->size());
   }
   answer(std::nullopt);
+  const std::size_t before = openings_.size();
   for (const PadSighting& s : *chosen) {
     if (is_ending_) return std::nullopt;
     consider(s);
   }
+  await_openings(before);
   tell_problems(*sightings, *chosen);
   return std::nullopt;
 }
@@ -489,20 +497,28 @@ void PadFinder::forget(std::uint64_t id) {
   if (is_recording_) --awaited_ends_;
 }
 
-// True also if its name or unique id came after its opening, and if another driver has the pad
-// open.
+// Or is being opened. True also if its name or unique id came after its opening, and if another
+// driver has the pad open.
 bool PadFinder::is_open(const PadSighting& sighting) const {
   const std::string pad = pad_key(sighting);
-  return std::ranges::any_of(open_, [&](const Open& o) {
-    return o.pad_key == pad && (o.driver != sighting.driver || o.node == sighting.listing.node);
-  });
+  const auto is_it = [&](const std::string& key, const DriverEntry* driver,
+                         const std::string& node) {
+    return key == pad && (driver != sighting.driver || node == sighting.listing.node);
+  };
+  return std::ranges::any_of(open_,
+                             [&](const Open& o) { return is_it(o.pad_key, o.driver, o.node); }) ||
+         std::ranges::any_of(openings_, [&](const auto& o) {
+           return is_it(pad_key(o->sighting), o->sighting.driver, o->sighting.listing.node);
+         });
 }
 
 // Whether nothing must be closed before this pad is opened. Asks for the end of a single Joy-Con
 // whose pair is there now, and of a driver's device that does not tell the stick. A pair ends by
 // itself when one of its parts is gone.
 bool PadFinder::clear_the_way(const PadSighting& sighting) {
-  bool is_clear = true;
+  bool is_clear = std::ranges::none_of(openings_, [&](const auto& opening) {
+    return is_part(sighting, opening->sighting) || is_part(opening->sighting, sighting);
+  });
   const std::string pad = pad_key(sighting);
   for (Open& open : open_) {
     const bool is_part = std::ranges::count(sighting.listing.parts, open.pad_key) > 0,
@@ -553,11 +569,65 @@ void PadFinder::consider(const PadSighting& sighting) {
     look_no_later_than(time);
     return;
   }
-  open(sighting, candidate);
+  open(sighting);
 }
 
-void PadFinder::open(const PadSighting& sighting, Candidate& candidate) {
-  auto device = sighting.driver->open(sighting.listing, detach_asked(options_.wish));
+// The devices of a recording are opened in their order.
+void PadFinder::open(const PadSighting& sighting) {
+  const Detach detach = detach_asked(options_.wish);
+  if (is_recording_) return settle(sighting, sighting.driver->open(sighting.listing, detach));
+  Opening& opening = *openings_.emplace_back(std::make_unique<Opening>());
+  opening.sighting = sighting;
+  const auto run = [this, &opening, detach] {
+    auto device = opening.sighting.driver->open(opening.sighting.listing, detach);
+    const std::lock_guard lock(mutex_);
+    opening.outcome.emplace(std::move(device));
+    if (awaits_openings_)
+      opened_.notify_one();
+    else
+      bell_.ring();
+  };
+  try {
+    opening.thread = std::thread(run);
+  } catch (const std::system_error&) {
+    run();  // no more threads: the others wait
+  }
+}
+
+// Pads that open at once keep their order: waits a moment for those that were begun after `before`
+// others.
+void PadFinder::await_openings(std::size_t before) {
+  if (openings_.size() == before) return;
+  {
+    std::unique_lock lock(mutex_);
+    awaits_openings_ = true;
+    opened_.wait_for(lock, kQuickOpening, [&] {
+      return std::all_of(openings_.begin() + static_cast<std::ptrdiff_t>(before), openings_.end(),
+                         [](const auto& o) { return o->outcome.has_value(); });
+    });
+    awaits_openings_ = false;
+  }
+  take_openings();
+}
+
+void PadFinder::take_openings() {
+  std::vector<std::unique_ptr<Opening>> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& opening : openings_)
+      if (opening->outcome) ended.push_back(std::move(opening));
+  }
+  std::erase(openings_, nullptr);
+  for (const auto& opening : ended) {
+    if (opening->thread.joinable()) opening->thread.join();
+    settle(opening->sighting, std::move(*opening->outcome));
+  }
+}
+
+void PadFinder::settle(const PadSighting& sighting, Result<std::unique_ptr<Device>> device) {
+  const auto entry = candidates_.find(key_of(sighting));
+  if (entry == candidates_.end()) return;  // unplugged meanwhile
+  Candidate& candidate = entry->second;
   const Clock::time_point now = Clock::now();
   if (!device) {
     const auto tries = static_cast<std::size_t>(candidate.failures++);
@@ -639,7 +709,7 @@ void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> d
   opened.is_recording = is_recording_;
   opened.is_raw = options_.is_raw;
   opened.index = index;
-  opened.id = ++openings_;
+  opened.id = ++opened_count_;
   opened.name = name_of(sighting);
   if (index == indices_.size()) {
     indices_.push_back({device->info(), true});

@@ -5,11 +5,11 @@
 // tried again a little later, a pad that was just plugged in gets a moment to show itself to the
 // preferred driver, and devices are looked at now and then even if udev says nothing.
 #pragma once
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <future>
@@ -32,25 +32,6 @@
 #include "gaitpad/result.h"
 
 namespace gaitpad {
-
-// A bell that one thread rings and another waits for in poll().
-class WakeFd {
- public:
-  WakeFd() : fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
-  int fd() const noexcept { return fd_.get(); }  // -1: no file descriptors are left
-  // Any thread; never waits.
-  void ring() noexcept {
-    const std::uint64_t one = 1;
-    static_cast<void>(!::write(fd(), &one, sizeof(one)));
-  }
-  void clear() noexcept {
-    std::uint64_t count = 0;
-    static_cast<void>(!::read(fd(), &count, sizeof(count)));
-  }
-
- private:
-  const OwnedFd fd_;
-};
 
 // Sentences for the user from any thread, kept until somebody takes them.
 class Remarks {
@@ -113,7 +94,7 @@ class PadFinder {
 
   // Returns after the first look, before anything is opened. Error: the wish is wrong.
   std::optional<Error> start();
-  void stop();  // waits for an opening that is on its way
+  void stop();  // waits for openings that are on their way
   // Any thread: this opening has come to its end. The finder thread closes the device.
   void take_back(std::uint64_t id, std::unique_ptr<Device> device);
   // Any thread: the reports of this opening do not tell the stick. Another driver that sees the pad
@@ -143,6 +124,12 @@ class PadFinder {
     std::optional<Clock::time_point> missing_since;  // not seen any more, but not yet given back
     bool is_stickless = false, is_released = false;
   };
+  // Each on a thread of its own: a pad that does not answer keeps no other waiting.
+  struct Opening {
+    PadSighting sighting;
+    std::optional<Result<std::unique_ptr<Device>>> outcome;  // under the mutex; none: on its way
+    std::thread thread;
+  };
   struct Gone {
     std::uint64_t id;
     std::unique_ptr<Device> device;
@@ -169,7 +156,10 @@ class PadFinder {
   bool is_awaiting_gone(const PadSighting& sighting) const;
   std::chrono::milliseconds patience(const PadSighting& sighting, const Candidate& candidate) const;
   void consider(const PadSighting& sighting);
-  void open(const PadSighting& sighting, Candidate& candidate);
+  void open(const PadSighting& sighting);
+  void await_openings(std::size_t before);
+  void take_openings();
+  void settle(const PadSighting& sighting, Result<std::unique_ptr<Device>> device);
   std::optional<std::string> set_up(const PadSighting& sighting, Device& device, KnownPad& pad);
   std::optional<std::uint16_t> index_of(const DeviceInfo& info) const;
   void hand_over(const PadSighting& sighting, std::unique_ptr<Device> device,
@@ -183,12 +173,14 @@ class PadFinder {
   Remarks& remarks_;
   const bool is_recording_;
 
-  WakeFd bell_;
+  Bell bell_;
   std::atomic<bool> is_ending_{false};
   std::atomic<int> awaited_ends_{-1};  // of a recording's devices; -1: it is no recording
   std::mutex mutex_;
   std::vector<Gone> gone_;            // under the mutex
   std::vector<Stickless> stickless_;  // likewise
+  bool awaits_openings_ = false;      // likewise
+  std::condition_variable opened_;
 
   // The finder thread's own.
   std::optional<HotplugMonitor> monitor_;
@@ -196,8 +188,9 @@ class PadFinder {
   bool is_first_look_ = true;
   std::map<std::string, Candidate> candidates_;
   std::vector<Open> open_;
+  std::vector<std::unique_ptr<Opening>> openings_;  // in the order of their beginnings
   std::vector<Index> indices_;
-  std::uint64_t openings_ = 0;
+  std::uint64_t opened_count_ = 0;
   std::thread thread_;
 };
 

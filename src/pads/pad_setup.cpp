@@ -12,7 +12,7 @@
 #include "base/files.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/drivers.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 #include "pads/calibration_store.h"
 
 namespace gaitpad {

@@ -69,7 +69,7 @@ class PadQueue {
   NewestReports newest_;         // in waiting_
   std::atomic<std::int64_t> written_{0}, lost_{0};
   std::atomic<bool> reader_sleeps_{false};
-  WakeFd bell_;
+  Bell bell_;
 };
 
 bool PadQueue::put(const Report& report) noexcept {
@@ -260,7 +260,7 @@ class PadIo {
   const GiveBack give_back_;
   const TellStickless tell_stickless_;
 
-  WakeFd bell_;
+  Bell bell_;
   std::atomic<bool> is_ending_{false};
   std::mutex mutex_;  // of the three below
   std::vector<OpenedPad> handed_;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <ctime>
 
+#include "base/numeric.h"
 #include "paper/chain4.h"
 #include "paper/claims.h"
 #include "paper/study.h"
@@ -265,10 +266,6 @@ double seconds_now() {
 }
 // Processor time of this process, without what else the machine runs.
 double cpu_seconds_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-double median(std::vector<double> v) {
-  std::ranges::sort(v);
-  return v[v.size() / 2];
-}
 
 struct Pair {
   double even_s = 0.0, weighted_s = 0.0, ratio = 0.0;

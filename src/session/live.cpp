@@ -94,7 +94,10 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 void LiveSession::Impl::start_loop() {
   // In the recording, too, which then needs no option.
   if (spec.walk.stick == StickMeans::points) pads->command("stick points");
-  const LiveLoop::Options options = {rate_hz, spec.live.rumble, spec.live.report_times,
+  const LiveLoop::Options options = {rate_hz,
+                                     spec.live.rumble,
+                                     spec.live.frame_ticks,
+                                     spec.live.report_times,
                                      stream ? &stream->newest() : nullptr,
                                      forward ? &forward->newest() : nullptr};
   loop = std::make_unique<LiveLoop>(options, script, simulation, *pads, recording.get());

@@ -389,11 +389,13 @@ void LiveLoop::count_wait(std::int64_t report_ns, std::int64_t now_ns) noexcept 
 
 void LiveLoop::publish(std::int64_t shown_ns) noexcept {
   shown_ns_ = shown_ns;
-  SessionFrame& frame = frames_.writable();
-  copy_frame(simulation_, frame);
-  frame.time_ns = shown_ns;
-  reports_.show(frame);
-  frames_.publish();
+  if (options_.frame_ticks > 0 && tick_ % options_.frame_ticks == 0) {
+    SessionFrame& frame = frames_.writable();
+    copy_frame(simulation_, frame);
+    frame.time_ns = shown_ns;
+    reports_.show(frame);
+    frames_.publish();
+  }
   if (options_.stream != nullptr) {
     copy_tick(simulation_, options_.stream->writable());
     options_.stream->publish();

@@ -142,6 +142,7 @@ class LiveLoop {
   struct Options {
     int rate_hz = kDefaultRateHz;
     bool rumble = true;
+    int frame_ticks = 1;  // as in SessionSpec::Live
     bool report_times = false;
     // What other programs get of each tick; may be null.
     Latest<StreamedTick>* stream = nullptr;

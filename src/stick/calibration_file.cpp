@@ -10,7 +10,7 @@
 #include "files/toml_file.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/trace.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 namespace gaitpad {
 

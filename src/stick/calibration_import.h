@@ -7,7 +7,7 @@
 #include "gaitpad/calibration.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/result.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 namespace gaitpad {
 

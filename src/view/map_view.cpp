@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "pads/pad_mapping.h"
+#include "pads/mapping_dialog.h"
 #include "view/pad_dialog.h"
 
 namespace gaitpad {

@@ -7,7 +7,7 @@
 
 #include "gaitpad/pad_setup.h"
 #include "gaitpad/result.h"
-#include "session/self_test.h"
+#include "selftest/self_test.h"
 #include "view/widgets.h"
 
 namespace gaitpad {

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "session/self_test.h"
+#include "selftest/self_test.h"
 #include "view/pad_dialog.h"
 
 namespace gaitpad {

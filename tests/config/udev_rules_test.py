@@ -5,6 +5,7 @@ import re
 import pytest
 
 from support.program import ROOT
+from support.usb_interfaces import KEYBOARD, KEYBOARDS, PADS, PLAIN, STEAM
 
 RULES = ROOT / "config/udev/60-gaitpad.rules"
 LINES = [line for line in RULES.read_text().splitlines() if line and not line.startswith("#")]
@@ -163,17 +164,6 @@ def is_opened(node):
             if key == "GOTO":
                 waits_for = value
     return opened
-
-
-KEYBOARD, MOUSE, PLAIN, XBOX_360, XBOX_ONE = "030101", "030102", "030000", "ff5d01", "ff47d0"
-# What a device has: ids and its interfaces. Keyboards: Wooting's have the interface of an Xbox 360 pad, PowerA's vendor
-# number stands for any keyboard of a maker of pads; Razer's and Logitech's makers are listed pad by pad.
-KEYBOARDS = [("31e3:1312", [XBOX_360, PLAIN, KEYBOARD, PLAIN]), ("20d6:ffff", [KEYBOARD, PLAIN]),
-             ("1532:0221", [MOUSE, KEYBOARD, "030001"]), ("046d:c52b", [KEYBOARD, MOUSE, PLAIN])]
-PADS = [("045e:028e", [XBOX_360, "ff5d03", "ff5d02", "fffd13"]), ("24c6:543a", [XBOX_360]), ("1209:0360", [XBOX_360]),
-        ("045e:02ea", [XBOX_ONE, XBOX_ONE, XBOX_ONE]), ("054c:09cc", ["010100", "010200", "010200", PLAIN]),
-        ("057e:2009", [PLAIN]), ("20d6:a711", [PLAIN]), ("0f0d:00c1", [PLAIN])]
-STEAM = ("28de:1142", [KEYBOARD, PLAIN, PLAIN, PLAIN, PLAIN])  # named, with a keyboard of its own
 
 
 def listed(interfaces):

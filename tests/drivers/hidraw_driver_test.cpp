@@ -49,12 +49,14 @@ std::atomic<int> openings{0}, opening_now{0}, openings_at_once{0};
 std::chrono::milliseconds opening_time{0};
 int descriptors_per_opening = 1;
 std::optional<Packet> firmware;  // feature report 0x20
-// Input report by request, beginning with the id; a thread of the driver asks for it.
-struct PresentReport {
-  std::mutex mutex;
-  std::optional<Packet> answer;
-  std::vector<int> asked;  // ids
-} present;
+// Input report by request, beginning with the id.
+std::optional<Packet> present;
+std::vector<int> asked;  // ids
+std::mutex noting;       // of what two threads write that open at once
+void note(std::vector<int>& numbers, int number) {
+  const std::lock_guard lock(noting);
+  numbers.push_back(number);
+}
 
 }  // namespace
 
@@ -85,7 +87,7 @@ void hid_close(hid_device* device) {
 }
 // As hidapi 0.13.1: errno is only set if a call failed.
 int hid_read_timeout(hid_device* device, unsigned char* data, size_t length, int milliseconds) {
-  timeouts.push_back(milliseconds);
+  note(timeouts, milliseconds);
   if (!script.empty()) {
     const ScriptedRead now = script.front();
     script.pop_front();
@@ -123,11 +125,10 @@ int ioctl(int fd, unsigned long request, ...) {
   if (request != static_cast<unsigned long>(HIDIOCGINPUT(length)))
     return static_cast<int>(::syscall(SYS_ioctl, fd, request, argument));
   auto* data = static_cast<unsigned char*>(argument);
-  const std::lock_guard lock(present.mutex);
-  present.asked.push_back(data[0]);
-  if (!present.answer) return errno = EPIPE, -1;
-  std::copy_n(present.answer->begin(), std::min(length, present.answer->size()), data);
-  return static_cast<int>(std::min(length, present.answer->size()));
+  note(asked, data[0]);
+  if (!present) return errno = EPIPE, -1;
+  std::copy_n(present->begin(), std::min(length, present->size()), data);
+  return static_cast<int>(std::min(length, present->size()));
 }
 
 }  // extern "C"
@@ -153,7 +154,8 @@ class HidrawDriver : public testing::Test {
     openings = 0;
     descriptors_per_opening = 1;
     firmware.reset();
-    set_present(std::nullopt);
+    present.reset();
+    asked.clear();
     pad_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
     if (pad_ < 0 || ::grantpt(pad_) != 0 || ::unlockpt(pad_) != 0)
       GTEST_SKIP() << "there is no pseudo-terminal here";
@@ -193,63 +195,17 @@ class HidrawDriver : public testing::Test {
     bytes.resize(count);
     return bytes;
   }
-  static void set_present(std::optional<Packet> answer) {
-    const std::lock_guard lock(present.mutex);
-    present.answer = std::move(answer);
-    present.asked.clear();
-  }
-  static std::vector<int> asked() {
-    const std::lock_guard lock(present.mutex);
-    return present.asked;
-  }
   // Reads this many reports in a row, then `nothing`.
   void read_in_a_row(Device& device, int count, const Packet& bytes = {1, 2}) {
     for (int i = 0; i < count; ++i) script.push_back({.bytes = bytes});
     for (int i = 0; i < count; ++i) EXPECT_EQ(device.read(report_), Status::report);
     EXPECT_EQ(device.read(report_), Status::nothing);
   }
-  // As the I/O thread does it, until there is a report; or that long where none shall come.
-  Status wait_and_read(Device& device, std::chrono::milliseconds longest = kPatience) {
-    Status status = Status::nothing;
-    const auto end = std::chrono::steady_clock::now() + longest;
-    while (status == Status::nothing && std::chrono::steady_clock::now() < end) {
-      std::vector<pollfd> fds(device.poll_fds().begin(), device.poll_fds().end());
-      if (::poll(fds.data(), fds.size(), 10) > 0) status = device.read(report_);
-    }
-    return status;
-  }
-  std::unique_ptr<Device> opened() { return value_of(open_hidraw_device(listing_, Detach::never)); }
-  // It was asked for its state at the opening and has refused.
-  std::unique_ptr<Device> settled() {
-    set_present(std::nullopt);
-    auto device = opened();
-    comes_true([&] {
-      wait_and_read(*device, 10ms);
-      return device->poll_fds().size() == 1;
-    });
-    set_present(std::nullopt);
+  std::unique_ptr<Device> opened() {
+    auto device = value_of(open_hidraw_device(listing_, Detach::never));
+    const std::lock_guard lock(noting);
+    timeouts.clear();
     return device;
-  }
-  // Reads until the pad was asked and its answer was refused.
-  void wait_for_a_refusal(Device& device) {
-    EXPECT_TRUE(comes_true([&] {
-      EXPECT_EQ(wait_and_read(device, 10ms), Status::nothing);
-      return asked().size() == 1 && device.poll_fds().size() == 1;
-    }));
-  }
-  // A pad is asked once it was silent for 30 ms: does the second part again, after the first, until
-  // it was not held up as long as that.
-  template <typename Before, typename Quick>
-  void in_time(Before before, Quick quick) {
-    std::chrono::steady_clock::duration took{};
-    do {
-      before();
-      ::tcflush(keep_open_, TCIFLUSH);
-      set_present(Packet{0, 0x70, 0x80});
-      const auto begin = std::chrono::steady_clock::now();
-      quick();
-      took = std::chrono::steady_clock::now() - begin;
-    } while (took > 15ms);
   }
   // A model whose motors and firmware are known.
   void use(std::uint16_t vendor, std::uint16_t product) {
@@ -295,7 +251,7 @@ TEST_F(HidrawDriver, HandsOnTheBytesAsTheyCame) {
 }
 
 TEST_F(HidrawDriver, WaitsOnTheLibrarysOwnDescriptor) {
-  const auto device = settled();
+  const auto device = opened();
   ASSERT_EQ(device->poll_fds().size(), 1u);
   struct stat mine {
   }, node{};
@@ -424,7 +380,7 @@ TEST_F(HidrawDriver, WhereReportsHaveNoIdTheKernelGetsAZeroInFront) {
   EXPECT_EQ(Packet(on.begin(), on.begin() + 3), (Packet{0x00, 0x05, 0x01}));
 }
 
-// Reading, motors and the question for its state share it.
+// Reading and motors share it.
 TEST_F(HidrawDriver, APadIsOpenedOnce) {
   use(0x054c, 0x0ce6);
   const auto device = opened();
@@ -478,7 +434,6 @@ TEST_F(HidrawDriver, NothingStaysOpen) {
     const auto device = opened();
     device->rumble({.strong = 1, .weak = 1});
     read_in_a_row(*device, 63, Packet(64, 1));
-    EXPECT_EQ(wait_and_read(*device, 45ms), Status::nothing);
   }
   EXPECT_TRUE(comes_true([&] { return count() == before; }));  // the threads end a little later
 }
@@ -512,81 +467,54 @@ TEST_F(HidrawDriver, AReaderThatComesTooLateIsToldOnce) {
   EXPECT_EQ(device->lost(), 1);
   read_in_a_row(*device, 200);
   EXPECT_TRUE(device->take_remarks().empty());
-  EXPECT_EQ(device->lost(), 2) << "at least one each time";
-}
-
-TEST_F(HidrawDriver, APadThatIsSilentAfterAFullRingIsAskedForItsState) {
-  const auto device = settled();
-  EXPECT_EQ(device->read(report_), Status::nothing);
-  set_present(Packet{0, 0x70, 0x80});
-  EXPECT_EQ(device->poll_fds().size(), 1u);
-  read_in_a_row(*device, 63, {0xff, 0x80});
-  ASSERT_EQ(wait_and_read(*device), Status::report);
-  EXPECT_EQ(bytes_of(report_), (Packet{0x70, 0x80}));
-  EXPECT_EQ(report_.kind, ReportKind::input);
-  expect_stamped_in_the_test();
-  EXPECT_EQ(device->read(report_), Status::nothing);
-  EXPECT_EQ(device->poll_fds().size(), 1u);
-  EXPECT_EQ(asked(), std::vector<int>{0});
-  EXPECT_EQ(device->lost(), 1);
-}
-
-TEST_F(HidrawDriver, ThePresentStateOfANumberedReportIsAskedForByItsId) {
-  listing_.info.descriptor = kNumbered;
-  const auto device = opened();
-  set_present(Packet{1, 0x70, 0x80});
-  read_in_a_row(*device, 63, {1, 0xff, 0x80});  // while it was opened
-  ASSERT_EQ(wait_and_read(*device), Status::report);
-  EXPECT_EQ(bytes_of(report_), (Packet{1, 0x70, 0x80}));
-  EXPECT_EQ(asked(), std::vector<int>{1});
-  EXPECT_EQ(device->lost(), 0);
-}
-
-TEST_F(HidrawDriver, APadThatIsUnpluggedBeforeItsAnswerIsGone) {
-  const auto device = settled();
-  set_present(Packet{0, 0x70, 0x80});
-  read_in_a_row(*device, 63);
-  unplug();
-  Status status = wait_and_read(*device);
-  if (status == Status::report) status = wait_and_read(*device);  // it answered in time
-  EXPECT_EQ(status, Status::gone);
+  EXPECT_EQ(device->lost(), 2) << "one each time";
 }
 
 // ---- At the opening
 
 TEST_F(HidrawDriver, APadThatRestsWhenItIsOpenedIsAskedForItsState) {
-  set_present(Packet{0, 0x70, 0x80});
+  present = Packet{0, 0x70, 0x80};
   const auto device = opened();
-  ASSERT_EQ(wait_and_read(*device), Status::report);
+  ASSERT_EQ(device->read(report_), Status::report);
   EXPECT_EQ(bytes_of(report_), (Packet{0x70, 0x80}));
-  EXPECT_EQ(asked(), std::vector<int>{0});
-  EXPECT_EQ(device->poll_fds().size(), 1u);
+  expect_stamped_in_the_test();
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  EXPECT_EQ(asked, std::vector<int>{0});
+}
+
+TEST_F(HidrawDriver, ANumberedReportIsAskedForByItsId) {
+  listing_.info.descriptor = kNumbered;
+  present = Packet{1, 0x70, 0x80};
+  const auto device = opened();
+  ASSERT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{1, 0x70, 0x80}));
+  EXPECT_EQ(asked, std::vector<int>{1});
 }
 
 TEST_F(HidrawDriver, APadThatReportsWhenItIsOpenedIsNotAsked) {
-  std::unique_ptr<Device> device;
-  in_time([&] { device.reset(); },
-          [&] {
-            device = opened();
-            send({5, 6});
-            ASSERT_EQ(wait_and_read(*device), Status::report);
-          });
-  EXPECT_EQ(wait_and_read(*device, 60ms), Status::nothing);
-  EXPECT_TRUE(asked().empty());
+  send({5, 6});
+  const auto device = opened();
+  ASSERT_EQ(device->read(report_), Status::report);
+  EXPECT_EQ(bytes_of(report_), (Packet{5, 6}));
+  EXPECT_TRUE(asked.empty());
 }
 
-TEST_F(HidrawDriver, ZerosAreNoStateOfAPadThatNeverSentZeros) {
-  set_present(Packet{0, 0, 0});
-  const auto device = opened();
-  wait_for_a_refusal(*device);
+// Zeros, too short, another report.
+TEST_F(HidrawDriver, AnAnswerThatIsNoStateIsDropped) {
+  listing_.info.descriptor = kNumbered;
+  for (const Packet& answer : {Packet{1, 0, 0}, Packet{1, 0x70}, Packet{2, 0x70, 0x80}}) {
+    present = answer;
+    const auto device = opened();
+    EXPECT_EQ(device->read(report_), Status::nothing);
+  }
 }
 
 TEST_F(HidrawDriver, OverBluetoothNothingIsAskedAtTheOpening) {
   listing_.info.bus = BusType::bluetooth;
-  set_present(Packet{0, 0x70, 0x80});
+  present = Packet{0, 0x70, 0x80};
   const auto device = opened();
-  EXPECT_EQ(wait_and_read(*device, 60ms), Status::nothing);
-  EXPECT_TRUE(asked().empty());
+  EXPECT_EQ(device->read(report_), Status::nothing);
+  EXPECT_TRUE(asked.empty());
 }
 
 }  // namespace

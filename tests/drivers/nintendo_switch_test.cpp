@@ -405,5 +405,50 @@ TEST(SwitchPro, RunningMotorsAreToBeToldAgain) {
   EXPECT_EQ(packet.repeat, std::chrono::milliseconds(0));
 }
 
+// ---- Switch 2: numbers from SDL 3's SDL_hidapi_switch2.c
+
+// A pad with these blocks of flash memory, by address; a block begins 16 bytes into an answer.
+ScriptedPort switch_2_with(std::map<std::uint32_t, Packet> flash) {
+  ScriptedPort port;
+  port.answer_command = [flash](const Packet& command) {
+    Packet answer(command[0] == 0x02 ? 0x50 : 8, 0);
+    if (command[0] != 0x02 || command.size() != 16) return answer;
+    const std::uint32_t address = command[12] | command[13] << 8 | command[14] << 16;
+    if (const auto block = flash.find(address); block != flash.end())
+      std::copy(block->second.begin(), block->second.end(), answer.begin() + 0x10);
+    return answer;
+  };
+  return port;
+}
+
+TEST(Switch2Pro, IsStartedByCommandsAndTellsItsSticks) {
+  const Packet range = packed({0x800, 0x800, 0x600, 0x500, 0x400, 0x300});  // centre, up, down
+  const Packet factory = joined(Packet(0x28, 0), range);
+  const Packet user = joined({0xb2, 0xa1}, packed({0x810, 0x800, 0x600, 0x600, 0x600, 0x600}));
+  ScriptedPort port = switch_2_with({{0x013080, factory}, {0x0130c0, factory}, {0x1fc080, user}});
+  const auto pad = make_switch_model(switch_pad(0x2069, BusType::usb));
+  pad->start(port, StartedBy::us);
+  const auto sticks = pad->factory_sticks().value();
+  EXPECT_DOUBLE_EQ(sticks.left_x.min, fraction(0x800 - 0x400));
+  EXPECT_DOUBLE_EQ(sticks.left_x.max, fraction(0x800 + 0x600));
+  EXPECT_DOUBLE_EQ(sticks.left_y.min, fraction(0x800 - 0x300));
+  EXPECT_DOUBLE_EQ(sticks.left_y.max, fraction(0x800 + 0x500));
+  EXPECT_DOUBLE_EQ(sticks.right_x.centre, fraction(0x810)) << "the user's";
+  ASSERT_GE(port.commands.size(), 9u);
+  EXPECT_EQ(port.commands.back(), (Packet{0x03, 0x91, 0x00, 0x0d, 0x00, 0x08, 0x00, 0x00, 0x01,
+                                          0x00, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}));
+  for (const Packet& command : port.commands) EXPECT_EQ(command.size(), 8u + command[5]);
+  EXPECT_TRUE(pad->take_remarks().empty());
+}
+
+TEST(Switch2Pro, SaysThatItWasNotStartedWhereTheDriverCannot) {
+  ScriptedPort port;
+  const auto pad = make_switch_model(switch_pad(0x2069, BusType::usb));
+  pad->start(port, StartedBy::us);
+  EXPECT_FALSE(pad->factory_sticks());
+  EXPECT_EQ(pad->take_remarks(),
+            std::vector<std::string>{"A pad: was not started; only --driver usb can do that"});
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -37,8 +37,18 @@ class ScriptedPort final : public PadPort {
     return size;
   }
 
+  std::size_t command(std::span<const std::uint8_t> packet,
+                      std::span<std::uint8_t> answered) noexcept override {
+    commands.emplace_back(packet.begin(), packet.end());
+    const Packet reply = answer_command ? answer_command(commands.back()) : Packet();
+    std::copy_n(reply.begin(), std::min(reply.size(), answered.size()), answered.begin());
+    return std::min(reply.size(), answered.size());
+  }
+
   std::function<void(const Packet&, std::deque<Packet>&)> answer;  // to each packet written
-  std::deque<Packet> waiting;                                      // input packets to come
+  std::function<Packet(const Packet&)> answer_command;             // to each command
+  std::vector<Packet> commands;
+  std::deque<Packet> waiting;  // input packets to come
   std::map<std::uint8_t, Packet> features;
   bool is_gone = false;
   bool is_endless = false;  // the front one comes again and again

@@ -6,7 +6,7 @@
 
 #include <deque>
 
-#include "drivers/pads/several_pads.h"
+#include "drivers/pads/pads_of_devices.h"
 #include "drivers/scripted_port.h"
 
 namespace gaitpad {

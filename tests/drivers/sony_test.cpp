@@ -50,6 +50,26 @@ bool accepts(PadModel& pad, const Packet& packet) {
   return is_input;
 }
 
+// Linux's hid-sony.c, sixaxis_set_operational_usb().
+TEST(DualShock3, IsStartedByReadingTwoFeaturesOnUsbWithoutTheKernel) {
+  for (const auto& [bus, started, asked] :
+       {std::tuple(BusType::usb, StartedBy::us, std::vector<std::uint8_t>{0xf2, 0xf5}),
+        std::tuple(BusType::usb, StartedBy::kernel, std::vector<std::uint8_t>{}),
+        std::tuple(BusType::bluetooth, StartedBy::us, std::vector<std::uint8_t>{})}) {
+    ScriptedPort port;
+    port.features = {{0xf2, Packet(17, 1)}, {0xf5, Packet(8, 1)}};
+    const auto pad = model(0x0268, bus);
+    pad->start(port, started);
+    EXPECT_EQ(port.features_asked, asked);
+    EXPECT_TRUE(pad->take_remarks().empty());
+  }
+  ScriptedPort deaf;
+  const auto pad = model(0x0268, BusType::usb);
+  pad->start(deaf, StartedBy::us);
+  EXPECT_EQ(pad->take_remarks(),
+            std::vector<std::string>{"Pad: does not answer the start over USB"});
+}
+
 TEST(Crc32, IsTheBitwiseOneWithThePublishedCheckValueAndGoesOnInParts) {
   const std::string_view text = "123456789";
   EXPECT_EQ(crc32(Packet(text.begin(), text.end())), 0xcbf43926u);
@@ -64,9 +84,9 @@ TEST(Crc32, IsTheBitwiseOneWithThePublishedCheckValueAndGoesOnInParts) {
 }
 
 TEST(Sony, KnowsItsPadsAndNoOthers) {
-  for (const std::uint16_t product : {0x05c4, 0x09cc, 0x0ba0, 0x0ce6, 0x0df2})
+  for (const std::uint16_t product : {0x0268, 0x05c4, 0x09cc, 0x0ba0, 0x0ce6, 0x0df2})
     EXPECT_NE(model(product, BusType::usb), nullptr);
-  EXPECT_EQ(model(0x0268, BusType::usb), nullptr);
+  EXPECT_EQ(model(0x0cda, BusType::usb), nullptr);  // PlayStation Classic: plain HID
   DeviceInfo other;
   other.vendor = 0x0f0d;
   other.product = kDualShock4;

@@ -2,6 +2,7 @@
 // SDL_hidapi_stadia.c and others.
 #include <gtest/gtest.h>
 
+#include "drivers/pads/pads_of_devices.h"
 #include "drivers/scripted_port.h"
 
 namespace gaitpad {

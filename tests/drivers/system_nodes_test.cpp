@@ -29,6 +29,35 @@ TEST(SystemNodes, AnInterfaceThatIsNotThereHasNoPath) {
   EXPECT_EQ(usb_interface_path("99-9:1.0"), "");
 }
 
+// Linux's power supplies (Documentation/ABI/testing/sysfs-class-power): hid-playstation tells
+// percent, hid-nintendo a level; both stand below the HID device.
+TEST(Battery, IsWhatTheKernelHasOfThePad) {
+  OwnFolder folder;
+  const std::string supply = "/0003:054C:0CE6.0001/power_supply/it/";
+  const auto pad = [&](const std::string& name) { return (folder.path / name).string(); };
+  const auto write = [&](const std::string& name, const char* file, const std::string& text) {
+    folder.write(name + supply + file, text);
+  };
+  write("percent", "capacity", "45\n");
+  write("percent", "status", "Discharging\n");
+  auto battery = battery_of(pad("percent"));
+  ASSERT_TRUE(battery);
+  EXPECT_EQ(battery->percent, 45);
+  EXPECT_EQ(battery->status, "discharging");
+  EXPECT_EQ(battery->level, "");
+  write("level", "capacity_level", "Low\n");
+  write("level", "status", "Unknown\n");
+  battery = battery_of(pad("level"));
+  ASSERT_TRUE(battery);
+  EXPECT_FALSE(battery->percent);
+  EXPECT_EQ(battery->level, "low");
+  EXPECT_EQ(battery->status, "");
+  write("unknown", "capacity_level", "Unknown\n");
+  EXPECT_FALSE(battery_of(pad("unknown")));
+  EXPECT_FALSE(battery_of(pad("none")));
+  EXPECT_FALSE(battery_of(std::string()));
+}
+
 TEST(AccessProblem, AMissingNodeIsSaidToBeMissing) {
   EXPECT_EQ(access_problem("/dev/none/hidraw0"), "/dev/none/hidraw0: No such file or directory");
 }

@@ -36,6 +36,7 @@ struct FakePad {
   std::optional<std::int64_t> stamp_ns;  // of every report, else the clock's
   std::atomic<int> openings{0}, closings{0};
   std::atomic<bool> keeps_closing{false};  // its closing waits for the end of this
+  std::atomic<bool> keeps_opening{false};  // likewise
   std::atomic<std::int64_t> lost{0};
   std::atomic<bool> is_raw{false};
   std::mutex mutex;
@@ -176,16 +177,19 @@ class FakeBus {
   }
   template <int driver>
   static Result<std::unique_ptr<Device>> open(const DeviceListing& listing, Detach) {
-    const std::lock_guard lock(current_->mutex_);
-    const auto [first, last] = current_->pads_.equal_range(driver);
-    for (auto entry = first; entry != last; ++entry) {
-      const Pad& pad = entry->second;
-      if (pad->listing.node != listing.node) continue;
-      ++pad->openings;
-      if (pad->openings <= pad->failing_openings) return Error{listing.node + ": not yet"};
-      return std::unique_ptr<Device>(std::make_unique<FakeDevice>(pad));
-    }
-    return Error{listing.node + ": there is no such node"};
+    const Pad pad = current_->pad_at(driver, listing.node);
+    if (!pad) return Error{listing.node + ": there is no such node"};
+    while (pad->keeps_opening) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ++pad->openings;
+    if (pad->openings <= pad->failing_openings) return Error{listing.node + ": not yet"};
+    return std::unique_ptr<Device>(std::make_unique<FakeDevice>(pad));
+  }
+  Pad pad_at(int driver, const std::string& node) {
+    const std::lock_guard lock(mutex_);
+    const auto [first, last] = pads_.equal_range(driver);
+    const auto found = std::find_if(
+        first, last, [&node](const auto& entry) { return entry.second->listing.node == node; });
+    return found == last ? nullptr : found->second;
   }
   template <int driver>
   static constexpr DriverEntry entry() {

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <thread>
 
+#include "gaitpad/drivers.h"
 #include "gaitpad/pad_stream.h"
 #include "tests/comes_true.h"
 #include "tests/pads/fake_drivers.h"
@@ -24,8 +25,14 @@ std::unique_ptr<PadStream> stream_of(FakeBus& bus) {
   return value_of(PadStream::start(std::move(options)));
 }
 
-// A pad that no file names: its mapping was looked up in SDL's database once.
+// A pad that no file names, and a twin PlayStation 2 adapter that SDL's library alone names.
 TEST(Guest, SdlIsNotStartedForAPadsMapping) {
+  DeviceInfo twin;
+  twin.bus = BusType::usb;
+  twin.vendor = 0x0810;
+  twin.product = 0x0001;
+  twin.version = 0x0110;
+  EXPECT_NE(sdl_mapping_of(twin).find(",leftx:a0,"), std::string::npos);
   FakeBus bus;
   bus.show(kHidraw, bus.make(kHidraw, "A", "port1"));
   const auto stream = stream_of(bus);

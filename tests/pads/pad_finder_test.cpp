@@ -428,6 +428,30 @@ TEST_F(PadStreamTest, AKernelsDriverIsDetachedOnlyWhereUsbIsNamed) {
 }
 
 // Packets that are no reports do not make another driver take the pad.
+TEST_F(PadStreamTest, APadThatOpensSlowlyKeepsNoOtherWaiting) {
+  const auto slow = bus_.make(kHidraw, "A", "port1");
+  slow->keeps_opening = true;
+  bus_.show(kHidraw, slow);
+  start();
+  const auto quick = plugged("B", "port2", 0);
+  take_away(quick, 0);  // and closing goes on, too
+  slow->keeps_opening = false;
+  expect(ReportKind::added, 1);
+  EXPECT_EQ(slow->openings, 1) << "it was begun once";
+}
+
+TEST_F(PadStreamTest, APadThatGoesWhileItIsOpenedIsNotAnnounced) {
+  const auto slow = bus_.make(kHidraw, "A", "port1");
+  slow->keeps_opening = true;
+  bus_.show(kHidraw, slow);
+  start();
+  EXPECT_TRUE(comes_true([&] { return slow.use_count() > 2; })) << "it is being opened";
+  bus_.unplug(slow);
+  plugged("B", "port2", 0);
+  slow->keeps_opening = false;
+  EXPECT_TRUE(comes_true([&] { return slow->closings == 1; }));
+}
+
 TEST_F(PadStreamTest, ARecordersPadHandsOnEveryPacket) {
   PadStreamOptions options;
   options.is_raw = true;

@@ -433,6 +433,23 @@ TEST_F(LivePace, AViewerGetsASampleOfEveryTickInOrder) {
   EXPECT_EQ(next, session->status().ticks);
 }
 
+TEST_F(LivePace, AFrameIsMadeOnlyAsOftenAsItIsAskedFor) {
+  options_.live.record.clear();
+  options_.live.clock = SessionSpec::Live::Clock::by_hand;
+  for (const int ticks : {0, 1, 10}) {
+    options_.live.frame_ticks = ticks;
+    auto session = started();
+    int frames = 0;
+    for (int i = 0; i < 40; ++i) {
+      session->advance(1);
+      bool is_new = false;
+      static_cast<void>(session->latest(is_new));
+      frames += is_new ? 1 : 0;
+    }
+    EXPECT_EQ(frames, ticks == 0 ? 0 : 40 / ticks);
+  }
+}
+
 TEST_F(LivePace, OnlySamplesThatNobodyTakesAreDropped) {
   options_.live.record.clear();
   options_.live.clock = SessionSpec::Live::Clock::by_hand;

@@ -10,6 +10,7 @@ class Hand:
 
     rate_hz = 100
     releases_a_turn = 7
+    thumb_s = 0.06  # from one place to another
     release_s, turn_s, after_turns_s, push_s, trigger_s = (0.1, 0.68), 0.9, 0.2, (0.4, 0.3), (0.4, 0.2)
 
     def __init__(self):
@@ -22,11 +23,18 @@ class Hand:
         for _ in range(round(seconds * self.rate_hz)):
             self.lines.append(traces.report(len(self.lines) / self.rate_hz, self.data()))
 
+    def go(self, *place):
+        start, steps = self.place, round(self.thumb_s * self.rate_hz)
+        for i in range(1, steps + 1):
+            self.place = tuple(a + (b - a) * i / steps for a, b in zip(start, place))
+            self.hold(1 / self.rate_hz)
+
     def push(self, angle, held_s, rest_s):
-        self.place = (math.cos(angle), math.sin(angle))
-        self.hold(held_s)
-        self.place = (0.0, 0.0)
-        self.hold(rest_s)
+        """The ways there and back count as held and as rest."""
+        self.go(math.cos(angle), math.sin(angle))
+        self.hold(held_s - self.thumb_s)
+        self.go(0.0, 0.0)
+        self.hold(rest_s - self.thumb_s)
 
     def releases(self, first, count):
         for i in range(first, first + count):

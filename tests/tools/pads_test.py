@@ -4,7 +4,8 @@ import json
 import pytest
 
 KEYS = {"driver": str, "path": str, "bus": str, "vendor": int, "product": int, "name": str, "unique_id": str,
-        "port": str, "kernel_driver": str, "usages": list, "poll_rate_hz": (float, int, type(None)), "usable": bool,
+        "port": str, "kernel_driver": str, "usages": list, "poll_rate_hz": (float, int, type(None)),
+        "battery": (dict, type(None)), "usable": bool,
         "problem": str, "chosen": bool}
 
 

@@ -87,7 +87,7 @@ def test_monitor_prints_an_object_a_second_with_rate_and_latency(run):
     assert len(rows) >= 3
     for row in rows:
         assert {"device", "name", "rate_hz", "jitter_us", "longest_gap_us", "latency_us_median", "latency_us_max", "lost",
-                "axes", "sticks", "triggers", "buttons"} <= set(row)
+                "axes", "sticks", "triggers", "buttons", "battery"} <= set(row)
         assert row["name"] == "Example Walk Pad"
     assert max(row["rate_hz"] for row in rows) > 15
     assert rows[-1]["sticks"]["left"][1] > 0.5  # forward, from the second second on

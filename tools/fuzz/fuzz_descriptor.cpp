@@ -8,7 +8,7 @@
 
 #include "gaitpad/decode.h"
 #include "gaitpad/trace.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 namespace {
 

@@ -17,7 +17,7 @@
 #include "base/text.h"
 #include "drivers/pads/recorded_packets.h"
 #include "gaitpad/config_files.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 #include "pads/calibration_store.h"
 #include "session/playback.h"
 #include "stick/calibration_import.h"

@@ -132,13 +132,16 @@ void check_events(const PadHardware& pad, Finding::State state, Diagnosis& diagn
       diagnosis.add(Finding::State::note, node.node, pad,
                     fmt::format("{}: the pad's {}, not its sticks", node.node,
                                 node.is_touchpad ? "touchpad" : "motion sensors"));
-    } else if (check_access(node.node, pad, state, diagnosis) && is_grabbed(node.node)) {
+    } else if (check_access(node.node, pad, state, diagnosis)) {
+      // Whether it is grabbed is only known to who grabs it: the other would lose events.
       const std::string users = users_of(node.node);
-      diagnosis.add(state, node.node, pad,
-                    fmt::format("{}: another program has it for itself{}", node.node,
-                                users.empty() ? "" : ": " + users),
-                    pad.hidraw.empty() ? "end that program"
-                                       : "end that program, or: gaitpad play --driver hidraw");
+      if (users.empty()) continue;
+      diagnosis.add(
+          Finding::State::note, node.node, pad,
+          fmt::format("{}: also open in {}, which may have it for itself", node.node, users),
+          pad.hidraw.empty()
+              ? "if the pad is silent, end that program"
+              : "if the pad is silent, end that program, or: gaitpad play --driver hidraw");
     }
   }
 }
@@ -238,7 +241,6 @@ std::string ways_to(const PadHardware& pad, const Machine& machine) {
   for (const PadSighting& sighting : machine.sightings) {
     const std::string& node = sighting.listing.node;
     if (!is_open_to_us(sighting, pad) || needs_consent(sighting)) continue;
-    if (node.starts_with("/dev/input/") && is_grabbed(node)) continue;
     ways += fmt::format("{}{} ({})", ways.empty() ? "" : ", ", sighting.driver->name, node);
   }
   return ways;

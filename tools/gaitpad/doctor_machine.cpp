@@ -1,10 +1,8 @@
 #include "tools/gaitpad/doctor_machine.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <pwd.h>
-#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,7 +29,6 @@ namespace {
 
 using PadsByPath = std::map<std::string, PadHardware>;
 
-constexpr unsigned long kGrabRequest = _IOW('E', 0x90, int);  // EVIOCGRAB of linux/input.h
 constexpr std::uint8_t kHubClass = 9;
 
 PadHardware& pad_at(PadsByPath& pads, const std::string& path, const SystemNode& node) {
@@ -91,9 +88,7 @@ void add_events(const Machine& machine, PadsByPath& pads) {
 }
 
 bool is_hub(const SystemNode& device) {
-  std::ifstream in(device.sysfs_path + "/bDeviceClass");
-  unsigned device_class = 0;
-  return static_cast<bool>(in >> std::hex >> device_class) && device_class == kHubClass;
+  return sysfs_hex(device.sysfs_path + "/bDeviceClass") == kHubClass;
 }
 
 bool has_pad_name(std::string_view device_name) {
@@ -171,14 +166,6 @@ std::string users_of(const std::string& node) {
     }
   }
   return users;
-}
-
-bool is_grabbed(const std::string& event_node) {
-  const int file = ::open(event_node.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool is_taken = ::ioctl(file, kGrabRequest, 1) != 0 && errno == EBUSY;
-  ::close(file);  // also releases our own grab
-  return is_taken;
 }
 
 std::string own_user_name() {

@@ -41,8 +41,6 @@ Machine look_at_machine(std::vector<PadSighting> sightings, const PadOverrides& 
 
 // The other programs that have the node open, as far as this user may see: `steam (1234), ...`.
 std::string users_of(const std::string& node);
-// Whether another program has grabbed the event node (EVIOCGRAB).
-bool is_grabbed(const std::string& event_node);
 std::string own_user_name();
 
 // --- config/udev/60-gaitpad.rules

@@ -158,7 +158,6 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "gaitpad " GAITPAD_VERSION);
   hold_standard_descriptors();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that is too large is a failed write like any other
-  gaitpad::use_sdl_database();
   int status = 0;
   bool is_written = true;
   gaitpad::add_play(app, status);

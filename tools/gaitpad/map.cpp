@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "pads/pad_mapping.h"
+#include "pads/mapping_dialog.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <future>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -46,6 +47,9 @@ struct MonitoredPad {
   int untouched = 0;                    // how often a stick moved by itself
   bool is_warned = false;               // of that
   bool is_plugged = true;
+  std::optional<Battery> battery;
+  std::future<std::optional<Battery>> asked_battery;  // the kernel may wait for the pad
+  std::int64_t battery_ns = 0;                        // when it was asked last; 0: never
   std::int64_t last_ns = 0;              // stamp of the last report; 0: none since plugging in
   Window running, shown;                 // the present second, and the last full one
   std::vector<std::int64_t> unshown_ns;  // stamps of the reports since the last line
@@ -108,6 +112,18 @@ void watch_sticks(MonitoredPad& pad, std::int64_t time_ns) {
   const auto& axis = pad.state.axis;
   pad.untouched += pad.watch[0].take(time_ns, c.left, {axis[kLeftX], axis[kLeftY]}, stick.left);
   pad.untouched += pad.watch[1].take(time_ns, c.right, {axis[kRightX], axis[kRightY]}, stick.right);
+}
+
+// Once a minute.
+void look_at_battery(MonitoredPad& pad, const DeviceInfo& info, std::int64_t time_ns) {
+  constexpr std::int64_t kMinuteNs = 60'000'000'000;
+  if (pad.battery_ns == 0 || time_ns >= pad.battery_ns + kMinuteNs) {
+    pad.battery_ns = time_ns;
+    pad.asked_battery = std::async(std::launch::async, [info] { return battery_of(info); });
+  }
+  using namespace std::chrono_literals;
+  if (pad.asked_battery.valid() && pad.asked_battery.wait_for(0s) == std::future_status::ready)
+    pad.battery = pad.asked_battery.get();
 }
 
 // A pad that reports changes only is silent while its sticks stand still.
@@ -193,7 +209,8 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
            {{"left", {stick.left.x, stick.left.y}}, {"right", {stick.right.x, stick.right.y}}}},
           {"untouched", pad.untouched},
           {"triggers", {{"left", triggers.left}, {"right", triggers.right}}},
-          {"buttons", button_names(pad.state)}};
+          {"buttons", button_names(pad.state)},
+          {"battery", battery_json(pad.battery)}};
 }
 
 // What a pad shows: one line, or three where the terminal is too narrow for it.
@@ -232,6 +249,10 @@ PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& 
   const Window& w = pad.shown;
   std::string buttons;
   for (const std::string& name : button_names(pad.state)) buttons += name + " ";
+  std::string battery;
+  if (pad.battery)
+    battery = pad.battery->percent ? fmt::format(", battery {} %", *pad.battery->percent)
+                                   : ", battery " + pad.battery->level;
   return {fmt::format("{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f}",
                       stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left,
                       triggers.right, rate_hz(w), jitter(w.interval_us) / 1e3,
@@ -239,7 +260,7 @@ PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& 
           fmt::format("{} {:>7.0f} {:>6.0f} {:>5} {:>6} {:>4}", movement_text(pad.new_values),
                       median(w.latency_us), greatest(w.latency_us), frame_text(w, 50),
                       frame_text(w, 99), stream.counts().lost),
-          buttons + who};
+          buttons + who + battery};
 }
 
 // The line with these reports has just been written.
@@ -273,7 +294,7 @@ class Display {
   void show(MonitoredPads& pads, const PadStream& stream) {
     const std::int64_t time_ns = now_ns();
     if (time_ns >= second_ns_ + kSecondNs) {
-      end_second(pads, time_ns);
+      end_second(pads, stream, time_ns);
       if (!is_rewritten_) print(pads, stream, time_ns);
     }
     if (!is_rewritten_ || time_ns < rewritten_ns_ + kRewriteNs) return;
@@ -291,13 +312,14 @@ class Display {
     const auto is_news = [](const auto& entry) { return entry.second.running.reports > 0; };
     const std::int64_t time_ns = now_ns();
     if (is_rewritten_ || time_ns <= second_ns_ || std::ranges::none_of(pads, is_news)) return;
-    end_second(pads, time_ns);
+    end_second(pads, stream, time_ns);
     print(pads, stream, time_ns);
   }
 
  private:
-  void end_second(MonitoredPads& pads, std::int64_t time_ns) {
+  void end_second(MonitoredPads& pads, const PadStream& stream, std::int64_t time_ns) {
     for (auto& [index, pad] : pads) {
+      look_at_battery(pad, stream.device(index).info, time_ns);
       pad.shown = std::exchange(pad.running, {});
       pad.shown.duration_s = static_cast<double>(time_ns - second_ns_) / 1e9;
     }

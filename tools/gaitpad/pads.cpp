@@ -95,6 +95,7 @@ ordered_json row_json(const PadRow& row) {
                          {"kernel_driver", listing.kernel_driver},
                          {"usages", usages_of(info)},
                          {"poll_rate_hz", nullptr},
+                         {"battery", battery_json(battery_of(listing.pad_path))},
                          {"usable", is_usable(row.sighting)},
                          {"problem", problem_of(row.sighting)},
                          {"chosen", row.is_chosen}};

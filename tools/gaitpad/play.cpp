@@ -143,6 +143,8 @@ int run_without_window(const PlayArguments& arguments) {
     return fail(kPlayCommand, write_error(arguments.report_times, errno).message);
   SessionSpec unseen = arguments.spec;
   unseen.walk.shows_crowd = false;
+  constexpr int kStatusTicks = kDefaultRateHz / 20;
+  unseen.live.frame_ticks = StatusLine(2).is_terminal() ? kStatusTicks : 0;
   auto session = LiveSession::start(unseen);
   if (!session) return fail(kPlayCommand, session.error().message);
   end.end_after(arguments.seconds);

@@ -22,6 +22,16 @@ void warn(std::string_view text) {
   std::fputs(shown.c_str(), stderr);
 }
 
+ordered_json battery_json(const std::optional<Battery>& battery) {
+  if (!battery) return nullptr;
+  const auto text = [](const std::string& word) {
+    return word.empty() ? ordered_json() : ordered_json(word);
+  };
+  return {{"percent", battery->percent ? ordered_json(*battery->percent) : ordered_json()},
+          {"level", text(battery->level)},
+          {"status", text(battery->status)}};
+}
+
 void print_table(const std::vector<TableRow>& table) {
   std::vector<std::size_t> widths(table.front().size(), 0);
   for (const TableRow& row : table) {

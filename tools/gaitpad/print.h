@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/text.h"
+#include "drivers/system_nodes.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/summary.h"
 #include "tools/gaitpad/run_end.h"
@@ -54,5 +56,8 @@ void print_session(const std::string& source, const RunSummary& run);
 // What one character did. The way that it walked is printed for replays alone.
 enum class Way { shown, left_out };
 void print_character(const RunSummary& run, std::size_t walker, Way way);
+
+// Null if the pad tells nothing of its battery.
+nlohmann::ordered_json battery_json(const std::optional<Battery>& battery);
 
 }  // namespace gaitpad

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gaitpad/pad_setup.h"
-#include "session/self_test.h"
+#include "selftest/self_test.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"

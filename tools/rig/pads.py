@@ -204,6 +204,11 @@ class Pad(Nodes):
         """lx ly rx ry lt rt hat buttons a b x y, in the device's own units."""
         self._done("set " + " ".join(f"{name}={int(value)}" for name, value in fields.items()))
 
+    def move(self, **fields):
+        """As a thumb does, in some 60 ms: `ly=(from, to)`."""
+        for part in (1 / 3, 2 / 3, 1.0):
+            self.set(**{name: round(start + (end - start) * part) for name, (start, end) in fields.items()})
+
     def report(self, data):
         """The whole state; counters excepted it is sent as it is."""
         self._done("report " + bytes(data).hex())

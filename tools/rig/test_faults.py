@@ -34,7 +34,7 @@ RULES = "/etc/udev/rules.d/60-gaitpad.rules"
 def push_forward(pad):
     pad.set(ly=VALUES[pad.kind]["rest"])
     time.sleep(0.1)
-    pad.set(ly=VALUES[pad.kind]["forward"])
+    pad.move(ly=(VALUES[pad.kind]["rest"], VALUES[pad.kind]["forward"]))
 
 
 def neutral_in_time(frames, ticks, seconds=0.1):

@@ -19,13 +19,13 @@ MOST_S = 3.0  # from the node to the session, in the median
 
 
 def push(pad, session):
-    """From rest to the rim and back, at once: no report lies between. Back when the rim is in the recording: on a busy
-    host both might come within a tick."""
+    """From rest to the rim and back, as a thumb does. Back when the rim is in the recording: on a busy host both might
+    come within a tick."""
     values, before = VALUES[pad.kind], len(session.lines("E:"))
-    pad.set(ly=values["forward"])
+    pad.move(ly=(values["rest"], values["forward"]))
     time.sleep(PUSH_S)
-    wait_for(lambda: len(session.lines("E:")) > before, 10, "the push in the recording")
-    pad.set(ly=values["rest"])
+    wait_for(lambda: len(session.lines("E:")) > before + 2, 10, "the push in the recording")
+    pad.move(ly=(values["forward"], values["rest"]))
     time.sleep(0.1)
 
 

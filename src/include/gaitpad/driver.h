@@ -2,9 +2,10 @@
 // such a device. An open device delivers its reports as bytes and never interprets them. If its
 // source has no report descriptor, the driver builds one that states the layout of its reports.
 //
-// Threads  `find` and `open` are called by one thread (the finder's) and may take time: they may
-// talk
-//          to the device for up to two seconds. An open Device belongs to the I/O thread, which
+// Threads  `find` is called by one thread (the finder's), `open` by a thread for each pad: of one
+//          pad never twice at once, of several at any time. It may take time: two seconds to start
+//          a pad, three more until the kernel's driver has started it, five for a request that the
+//          pad does not answer. An open Device belongs to the I/O thread, which
 //          makes all further calls; another thread may destroy it. A driver never calls back from a
 //          thread of its own; a thread that only talks to the pad is allowed (hidraw).
 // Blocking No call of Device waits for a report: the I/O thread sleeps in poll() over the

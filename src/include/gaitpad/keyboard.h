@@ -12,6 +12,8 @@
 
 namespace gaitpad {
 
+class Bell;
+
 // Shared by the thread that reads the keys and the device.
 class KeyboardStick {
  public:
@@ -27,11 +29,11 @@ class KeyboardStick {
   // For the device: the position asked for, in steps of 1 / kFull.
   static constexpr int kFull = 32767;
   vec2 wanted() const noexcept;
-  int fd() const noexcept { return fd_; }  // readable after a change during sleep; -1: none
-  void sleep() noexcept;                   // from now on a change makes fd() readable
+  Bell& bell() noexcept { return *bell_; }  // rings at a change during sleep
+  void sleep() noexcept;                    // from now on a change rings
 
  private:
-  const int fd_;
+  const std::unique_ptr<Bell> bell_;
   std::atomic<std::uint32_t> wanted_{0};  // two 16-bit counts
   std::atomic<bool> is_awake_{false};
 };

@@ -1,6 +1,5 @@
-// From a device to a pad that can drive: its layout (config/pads, else a line of the user's
-// data base) and its
-// calibration. Set-up code: it reads files and allocates.
+// From a device to a pad that can drive: its layout (config/pads, else a line of the user's data
+// base or of SDL's) and its calibration. Set-up code: it reads files and allocates.
 #pragma once
 #include <optional>
 #include <string>
@@ -64,7 +63,7 @@ struct RecordedDevice {
 // A calibration file for this one device (by unique id or port) counts more than the pad's factory
 // sticks, and these count more than a file for its model (whose dead zones stay). Of files that fit
 // equally well the user's counts. Without a mapping in the calibration the device gets a line of
-// the user's data base (with the driver sdl: else of SDL's), if config/pads has no entry for it.
+// the user's data base, else of SDL's, if config/pads has no entry for it.
 // `remarks` receives a sentence for each damaged file that was left out.
 RecordedDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
                                const std::optional<FactorySticks>& factory,

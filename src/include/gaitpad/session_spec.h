@@ -41,6 +41,8 @@ struct SessionSpec {
   struct Live {
     std::string record;     // FILE.hid to write the session to
     bool keyboard = false;  // a pad that LiveSession::steer() moves, used while no pad is deflected
+    int frame_ticks =
+        1;  // each so many ticks there is a new LiveSession::latest(); 0: there is none
     bool report_times = false;  // for LiveSession::take_report_time()
     bool rumble = true;         // a beat at each heel strike, stronger the faster the walk
     std::string stream;         // osc://HOST:PORT or json://HOST:PORT to send the poses to

@@ -1,4 +1,4 @@
-#include "pads/pad_mapping.h"
+#include "pads/mapping_dialog.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "drivers/posix.h"
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 #include "hid/usage_names.h"
 #include "pads/newest_reports.h"
 

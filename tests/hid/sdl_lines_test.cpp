@@ -1,4 +1,4 @@
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 #include <gtest/gtest.h>
 

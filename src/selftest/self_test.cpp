@@ -1,4 +1,4 @@
-#include "session/self_test.h"
+#include "selftest/self_test.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "hid/sdl_mapping.h"
+#include "hid/sdl_lines.h"
 
 #include <fmt/format.h>
 

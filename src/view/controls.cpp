@@ -46,7 +46,7 @@ constexpr ActionInfo kActions[] = {
     {Action::next_walker, SDLK_TAB, kNoKey, kButtonY, "next walker", kStyles,
      "choose the next character, then all"},
     {Action::record, SDLK_F9, kNoKey, kButtonDpadUp, "record", kFiles,
-     "restart and record, or stop"},
+     "restart and record; again: end"},
     {Action::screenshot, SDLK_F12, SDLK_PRINTSCREEN, kButtonX, "screenshot", kFiles,
      "save a picture"},
     {Action::open_file, SDLK_o, kNoKey, kNoButton, "open", kFiles,

@@ -125,6 +125,8 @@ void draw_message_card(Ui& ui, float width) {
     if (i + 1 < all.size()) ImGui::Dummy({1.0f, ui.px(2)});
   }
   if (all.size() > shown) note(ui, fmt::format("and {} before", all.size() - shown), 1);
+  if (!ui.in.finished_recording.empty() && button(ui, "replay recording", "Replay it"))
+    ui.out.replays = true;
   const ImVec2 end = ImGui::GetCursorScreenPos();
   ImGui::SetCursorScreenPos({begin.x + width - close, begin.y - ui.px(2)});
   ButtonLook look;

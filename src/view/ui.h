@@ -104,12 +104,13 @@ struct UiInput {
   std::vector<UiLabel> labels{};
   std::vector<std::string> messages{};         // errors and remarks, newest last
   std::vector<std::string> style_summaries{};  // of Cast::styles: what each does
-  std::string change{};     // what was changed last, and of whom; empty: nothing lately
-  std::string hint{};       // over the scene until somebody walks
-  std::string pad_hint{};   // why a pad may not be seen, and what to do
-  bool can_leave = false;   // the playback, for the live session before it
-  bool can_rumble = false;  // the pad that steers
-  bool is_modal = false;    // calibration or browser is open, so panels take no input
+  std::string change{};              // what was changed last, and of whom; empty: nothing lately
+  std::string finished_recording{};  // a message offers to replay it; empty: none
+  std::string hint{};                // over the scene until somebody walks
+  std::string pad_hint{};            // why a pad may not be seen, and what to do
+  bool can_leave = false;            // the playback, for the live session before it
+  bool can_rumble = false;           // the pad that steers
+  bool is_modal = false;             // calibration or browser is open, so panels take no input
 };
 struct UiOutput {
   std::vector<Action> actions;
@@ -120,6 +121,7 @@ struct UiOutput {
   std::optional<std::string> save_style;  // saves the chosen character's style by this name
   bool dismisses_messages = false;
   std::optional<double> type_size;
+  bool replays = false;  // UiInput::finished_recording
   bool rumbles = false;  // asks for one beat of the pad's motors
 };
 

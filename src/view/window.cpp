@@ -203,6 +203,7 @@ class WindowLoop {
   void open_file(const std::string& path);
   void choose_next_terrain();
   void toggle_recording();
+  void end_recording();
   void begin_calibration();
   using PadDialogStart = Result<std::unique_ptr<PadDialog>>(const PadDialogOptions&);
   void begin_pad_dialog(PadDialogStart& start);
@@ -237,6 +238,7 @@ class WindowLoop {
   std::string change_;  // what was changed last, and of whom
   std::int64_t change_ns_ = 0;
   std::vector<std::string> style_summaries_;  // of the show's styles
+  std::string finished_recording_;            // that a message offers to replay
   std::string pad_hint_;
   std::int64_t pad_hint_ns_ = 0;
   FrameClock clock_;
@@ -256,6 +258,8 @@ WindowLoop::WindowLoop(const WindowOptions& options)
     : options_(options), browser_(options.recent_file) {
   // Without a pad the keyboard steers. For pictures the session's time is that of the frames.
   options_.session.live.keyboard = true;
+  if (const std::string& record = options_.session.live.record; !record.empty())
+    options_.record_folder = std::filesystem::path(record).parent_path();
   if (makes_pictures()) options_.session.live.clock = SessionSpec::Live::Clock::by_hand;
 }
 
@@ -465,6 +469,7 @@ void WindowLoop::update_show() {
   } else {
     show_->update(clock_.passed_s());
     messages_.forget_before(clock_.now_ns() - kMessage_ns);
+    if (messages_.sentences().empty()) finished_recording_.clear();
   }
   show_remarks();
   if (!show_->has_ended() || std::exchange(is_end_told_, true) || makes_pictures()) return;
@@ -637,6 +642,7 @@ UiInput WindowLoop::ui_input() {
              .labels = {},
              .messages = messages_.sentences(),
              .style_summaries = style_summaries_,
+             .finished_recording = finished_recording_,
              .can_leave = live_before_.has_value(),
              .is_modal = is_modal()};
   has_walked_ = has_walked_ || has_walked();
@@ -718,6 +724,7 @@ void WindowLoop::run_actions(const UiOutput& out) {
   if (out.is_looping) show_->set_looping(*out.is_looping);
   if (out.save_style) save_walkers_style(*out.save_style);
   if (out.dismisses_messages) messages_.clear();
+  if (out.replays) open_file(std::exchange(finished_recording_, {}));
   if (const auto file = std::exchange(chosen_file_, std::nullopt)) open_file(*file);
   if (pad_dialog_ && pad_dialog_state_ != PadDialog::State::goes_on)
     end_pad_dialog(pad_dialog_state_);
@@ -956,11 +963,13 @@ void WindowLoop::save_walkers_style(const std::string& name) {
 constexpr std::size_t kMostRemarks = 200;
 constexpr int kMostOfOneName = 100;
 
-// A new name such as gaitpad-20240229-235959.hid in the working directory; empty if none is free.
-std::string new_file(const char* ending) {
-  const std::string name =
-      fmt::format("gaitpad-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
+// A new name such as gaitpad-20240229-235959.hid in the folder; empty if none is free.
+std::string new_file(const std::string& folder, const char* ending) {
   std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  const std::string name =
+      std::filesystem::path(folder) /
+      fmt::format("gaitpad-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
   for (int n = 1; n < kMostOfOneName; ++n) {
     const std::string path = n == 1 ? name + ending : fmt::format("{}-{}{}", name, n, ending);
     if (!std::filesystem::exists(path, error) && !std::filesystem::exists(path + ".part", error))
@@ -1090,11 +1099,27 @@ void WindowLoop::toggle_recording() {
   if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
   if (makes_pictures()) return show_message("no recording can be started while pictures are made");
   SessionSpec next = show_->options();
-  const bool is_recorded = !next.live.record.empty();
-  next.live.record = is_recorded ? "" : new_file(".hid");
-  if (!is_recorded && next.live.record.empty())
-    return show_message("no name is free for a recording");
-  if (switch_to(next) && !is_recorded) show_message("recording to " + next.live.record);
+  if (!next.live.record.empty()) return end_recording();
+  next.live.record = new_file(options_.record_folder, ".hid");
+  if (next.live.record.empty()) return show_message("no name is free for a recording");
+  // A recording begins with its session, which walks in the styles of the one before.
+  const auto styles = [this] {
+    return opposite_of("style " + show_->cast().styles.front(), show_->frame(), show_->cast());
+  };
+  const std::vector<std::string> before = styles();
+  if (!switch_to(next)) return;
+  if (const auto now = styles(); now != before)
+    for (const std::string& command : before) show_->command(command);
+  show_message("recording to " + next.live.record);
+}
+
+// The session goes on.
+void WindowLoop::end_recording() {
+  const std::string path = show_->options().live.record;
+  if (auto problem = show_->end_recording()) return show_message(problem->message);
+  show_remarks();
+  finished_recording_ = path;
+  show_message("the recording " + path + " is complete");
 }
 
 void WindowLoop::begin_calibration() {
@@ -1130,7 +1155,7 @@ void WindowLoop::end_pad_dialog(PadDialog::State state) {
 }
 
 void WindowLoop::take_screenshot(int width_px, int height_px) {
-  const std::string path = new_file(".png");
+  const std::string path = new_file(options_.record_folder, ".png");
   if (path.empty()) return show_message("no name is free for a picture");
   const auto problem = write_png(path, read_pixels(width_px, height_px));
   show_message(problem ? problem->message : "written to " + path);

@@ -514,6 +514,48 @@ TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
   EXPECT_EQ(result.summary.bad_commands, 0);
 }
 
+// Recordings go to a folder of their own. A recording begins a session in the styles of the one
+// before; when it ends, the session goes on.
+TEST_F(Window, TheSessionGoesOnWhenItsRecordingEnds) {
+  options_.record_folder = (folder_ / "takes").string();
+  Script script;
+  std::int64_t tick = 0;
+  double z_m = 0.0;
+  std::string recording;
+  script.until("it runs", runs);
+  script.tap(SDLK_TAB);
+  script.tap(SDLK_4);
+  script.until("the first one limps",
+               [](const Glance& g) { return style_of(g, 0) == "limp_left"; });
+  script.tap(SDLK_F9);
+  script.until("it records", [&](const Glance& g) {
+    recording = g.recording;
+    return recording.starts_with(options_.record_folder + "/gaitpad-");
+  });
+  script.until("it still limps", [](const Glance& g) {
+    return style_of(g, 0) == "limp_left" && style_of(g, 1) == "stiff_hip";
+  });
+  script.press(SDLK_w);
+  script.until("they walk", [](const Glance& g) { return forward_m(g) > 0.5; });
+  script.then([&](const Glance& g) { tick = g.session.tick, z_m = forward_m(g); });
+  script.tap(SDLK_F9);
+  script.until("it is told", [&](const Glance& g) { return says(g, recording + " is complete"); });
+  script.then([&](const Glance& g) {
+    EXPECT_TRUE(g.recording.empty());
+    EXPECT_GE(g.session.tick, tick);
+    EXPECT_GE(forward_m(g), z_m);
+    EXPECT_EQ(style_of(g, 0), "limp_left");
+    EXPECT_TRUE(fs::exists(recording));
+  });
+  script.until("they walk on", [&](const Glance& g) { return forward_m(g) > z_m + 0.2; });
+  script.release(SDLK_w);
+  script.click("replay recording");
+  script.until("it plays", [](const Glance& g) { return g.is_playback && runs(g); });
+  script.until("in that style", [](const Glance& g) { return style_of(g, 0) == "limp_left"; });
+  run(script);
+  EXPECT_TRUE(files(".hid").empty());
+}
+
 TEST_F(Window, FramesAreCountedAndEndedFromOutside) {
   options_.frames = 7;
   auto result = run_window(options_);

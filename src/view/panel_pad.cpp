@@ -197,6 +197,22 @@ void draw_shoulders(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
   }
 }
 
+// Those of the buttons that are too small for a letter, as most pads engrave them.
+void draw_pad_words(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
+  const auto word = [&](std::string_view text, float x, float y, float align) {
+    const float width = text_width(ui.fonts.tick, text);
+    put_text(list, ui.fonts.tick, ui.theme.secondary, {at.x + x * w - align * width, at.y + y * w},
+             text, width + 1.0f);
+  };
+  const float line = ui.fonts.tick->FontSize / w;
+  word("LT", 0.195f, 0.018f - 0.6f * line, 1.0f);
+  word("LB", 0.195f, 0.056f - 0.4f * line, 1.0f);
+  word("RT", 0.805f, 0.018f - 0.6f * line, 0.0f);
+  word("RB", 0.805f, 0.056f - 0.4f * line, 0.0f);
+  word("back", 0.425f, 0.190f, 0.5f);
+  word("start", 0.575f, 0.190f, 0.5f);
+}
+
 void draw_leaning_stick(Ui& ui, ImDrawList& list, const ImVec2& middle, float w, const vec2& raw,
                         bool is_pressed) {
   const float r = kStickRadius * w;
@@ -218,6 +234,7 @@ void draw_pad_picture(Ui& ui) {
   const PadState& pad = ui.in.frame.pad.state;
   draw_body(ui, list, corner, w);
   draw_shoulders(ui, list, corner, w);
+  draw_pad_words(ui, list, corner, w);
   const UiMemory::StickPlace place = place_of(ui.in.frame);
   draw_leaning_stick(ui, list, {corner.x + 0.265f * w, corner.y + 0.195f * w}, w,
                      place.raw[kLeftSide], pressed(pad, kButtonLeftStick));

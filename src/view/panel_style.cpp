@@ -349,10 +349,11 @@ void draw_choice(Ui& ui) {
     const float row = std::round(ui.px(19) + line * static_cast<float>(lines.size()) + ui.px(4));
     ImGui::PushID(static_cast<int>(i));
     ImGui::BeginDisabled(!ui.is_live());
-    const bool is_pressed = ImGui::InvisibleButton("style", {width, row});
+    bool is_pressed = ImGui::InvisibleButton("style", {width, row});
     ImGui::EndDisabled();
     ImGui::PopID();
     if (ui.is_live()) keep_item(id);
+    if (ui.is_live() && is_focused(ui, id)) is_pressed |= ui.in.navigation.press;
     explain(ui, id);
     const std::string who = who_walks_so(ui, name);
     const bool is_on = !who.empty();
@@ -403,6 +404,7 @@ void draw_save(Ui& ui) {
       "##style name", "name of a new style", name.data(), name.size(),
       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCharFilter, &accept);
   keep_item("style name");
+  if (is_focused(ui, "style name") && ui.in.navigation.press) ImGui::SetKeyboardFocusHere(-1);
   ImGui::PopStyleVar();
   ImGui::PopFont();
   ImGui::SameLine(0.0f, gap);

@@ -34,7 +34,10 @@ constexpr Tip kTips[] = {
     {"menu", "More buttons, for which the window is too narrow."},
     {"trails", "The paths of the heels over the last steps."},
     {"source", "The motion that the walk is made of, as a stick figure."},
-    {"grid", "Lines every metre and every 20 cm."},
+    {"grid",
+     "Lines every metre and every 20 cm; from the start the blue one leads ahead, the orange one "
+     "to "
+     "the left."},
     {"shadows", "Shadows on the ground."},
     {"names", "Names above heads."},
     {"theme", "Dark or light."},

@@ -40,6 +40,8 @@ struct UiMemory {
   struct StickPlace {
     std::array<vec2, 2> raw{}, calibrated{};  // left, right; raw in the stick's frame
   };
+  std::string focus;          // the item that keys and pad press; empty: they do not navigate
+  bool is_focus_new = false;  // it has to come into sight
   std::vector<Wish> wishes;
   double held = 0.0;                    // the last value of the slider being dragged
   std::vector<StickPlace> stick_trail;  // oldest first
@@ -110,7 +112,9 @@ struct UiInput {
   std::string pad_hint{};            // why a pad may not be seen, and what to do
   bool can_leave = false;            // the playback, for the live session before it
   bool can_rumble = false;           // the pad that steers
-  bool is_modal = false;             // calibration or browser is open, so panels take no input
+  NavigationInput navigation{};
+  std::span<const SDL_Keycode> keys{};  // pressed in this frame
+  bool is_modal = false;                // calibration or browser is open, so panels take no input
 };
 struct UiOutput {
   std::vector<Action> actions;
@@ -138,6 +142,9 @@ Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, i
 // actions, not in here.
 UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, double scale,
                  UiState& state);
+
+// Moves UiMemory::focus; after everything was drawn.
+void move_focus(const UiInput& input, UiMemory& memory);
 
 // For tests and scripts: rectangles of what can be clicked in the frame drawn last, in window
 // pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"). Items that are scrolled

@@ -152,6 +152,7 @@ class WindowLoop {
   void handle_events();
   void follow_wishes(Wishes wishes);
   void add_button_actions(std::vector<Action>& wanted);
+  bool navigates(Action action);
   void move_camera(const Wishes& wishes);
   void call_script();
   void apply_layout(const UiState& layout);
@@ -232,6 +233,8 @@ class WindowLoop {
   SceneContent content_;
   Controls controls_;
   ButtonPresses presses_;
+  std::vector<SDL_Keycode> keys_;  // of this frame, like the next
+  NavigationInput navigation_;
   FileBrowser browser_;
   Messages messages_;
   UndoList undo_;
@@ -413,12 +416,20 @@ void WindowLoop::call_script() {
 void WindowLoop::handle_events() {
   for (SDL_Event event; !surface_->is_lost() && SDL_PollEvent(&event) != 0;) {
     gui_->handle_event(event);
-    controls_.handle_event(event, gui_->taken_input());
+    TakenInput taken = gui_->taken_input();
+    taken.navigates = !state_.memory.focus.empty();
+    taken.is_modal = is_modal();
+    controls_.handle_event(event, taken);
     if (event.type == SDL_DROPFILE) SDL_free(event.drop.file);
+    const bool is_moved =
+        event.type == SDL_WINDOWEVENT && (event.window.event == SDL_WINDOWEVENT_MOVED ||
+                                          event.window.event == SDL_WINDOWEVENT_DISPLAY_CHANGED);
+    if (is_moved && surface_->follow_display()) set_type_size(state_.type_size);
   }
 }
 
 void WindowLoop::follow_wishes(Wishes wishes) {
+  navigation_ = {};
   if (show_->is_live() && !makes_pictures()) add_button_actions(wishes.actions);
   for (const Action action : wishes.actions) {
     const bool is_always = action == Action::back || action == Action::quit ||
@@ -429,6 +440,10 @@ void WindowLoop::follow_wishes(Wishes wishes) {
   if (is_modal()) controls_.release_all();
   show_->steer(controls_.walk());
   move_camera(wishes);
+  keys_ = std::move(wishes.keys);
+  navigation_.steps += wishes.navigation.steps;
+  navigation_.sideways += wishes.navigation.sideways;
+  navigation_.press |= wishes.navigation.press;
 }
 
 // A recording that plays as the pad steers and moves the camera as it did, but its buttons cannot
@@ -442,7 +457,18 @@ void WindowLoop::add_button_actions(std::vector<Action>& wanted) {
              action == Action::open_file || action == Action::calibrate || action == Action::quit;
     });
   }
+  if (!state_.memory.focus.empty())
+    std::erase_if(pressed, [this](Action a) { return navigates(a); });
   wanted.insert(wanted.end(), pressed.begin(), pressed.end());
+}
+
+// While the pad is in the panels its D-pad and its lower button have no other meaning.
+bool WindowLoop::navigates(Action action) {
+  const int button = info_of(action).button;
+  navigation_.steps += (button == kButtonDpadDown) - (button == kButtonDpadUp);
+  navigation_.sideways += (button == kButtonDpadRight) - (button == kButtonDpadLeft);
+  navigation_.press |= button == kButtonA;
+  return button == kButtonA || (button >= kButtonDpadUp && button <= kButtonDpadRight);
 }
 
 void WindowLoop::move_camera(const Wishes& wishes) {
@@ -644,6 +670,8 @@ UiInput WindowLoop::ui_input() {
              .style_summaries = style_summaries_,
              .finished_recording = finished_recording_,
              .can_leave = live_before_.has_value(),
+             .navigation = navigation_,
+             .keys = keys_,
              .is_modal = is_modal()};
   has_walked_ = has_walked_ || has_walked();
   const LiveStatus* status = show_->is_live() ? show_->status() : nullptr;
@@ -680,6 +708,7 @@ UiOutput WindowLoop::draw_panels(int width_px, int height_px, bool is_drawn) {
   Ui ui{in, theme, gui_->fonts(), static_cast<float>(scale()), state_, out};
   draw_browser(ui, window_px);
   draw_pad_dialog(ui, window_px);
+  move_focus(in, state_.memory);
   if (is_drawn) gui_->end();
   if (!is_drawn) gui_->end_undrawn();
   return out;
@@ -796,6 +825,9 @@ bool WindowLoop::run_view_action(Action action) {
       return true;
     case Action::source:
       state_.has_source = !state_.has_source;
+      return true;
+    case Action::navigate:
+      state_.memory.focus = state_.memory.focus.empty() ? "play" : "";
       return true;
     case Action::help:
       state_.is_help_open = !state_.is_help_open;
@@ -930,6 +962,8 @@ void WindowLoop::say_change(std::string what) {
 void WindowLoop::go_back() {
   if (is_menu_open()) {
     close_menus();
+  } else if (!state_.memory.focus.empty()) {
+    state_.memory.focus.clear();
   } else if (state_.is_help_open) {
     state_.is_help_open = false;
   } else if (browser_.is_open()) {

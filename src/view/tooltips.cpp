@@ -52,6 +52,9 @@ constexpr Tip kTips[] = {
     {"leg right", "Show the right leg."},
     {"rumble", "Let the motors of the pad beat once."},
     {"give back all", "Let the stick and the style set all values again."},
+    {"exaggerate",
+     "Shows more of what the style changes, 1 to 3 times; the values below follow. all back: as it "
+     "was."},
     {"save style", "Keep these values as a style of yours, to be used at once."},
     {"style name", "Letters, digits, blanks, _ and -."},
     {"own all", "Undo every change of this style."},
@@ -82,8 +85,12 @@ constexpr Tip kTips[] = {
     {"graph ticks", "How long each tick took."},
     {"graph waits", "How long reports waited for the tick that used them."},
     {"pad picture", "The pad: what is pressed is lit, the sticks lean as they are pushed."},
-    {"pad stick left", "Orange: as the pad reports it. Blue: calibrated, as the walk uses it."},
-    {"pad stick right", "Orange: as the pad reports it. Blue: calibrated. It turns the camera."},
+    {"pad stick left",
+     "Orange: as the pad reports it, and the outline of the last ten seconds. Blue: calibrated, as "
+     "the walk uses it."},
+    {"pad stick right",
+     "Orange: as the pad reports it, and the outline of the last ten seconds. Blue: calibrated. It "
+     "turns the camera."},
 };
 
 // Items whose name begins like this.

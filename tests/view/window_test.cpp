@@ -566,6 +566,35 @@ TEST_F(Window, KeysReachWhatTheMouseReaches) {
   run(script);
 }
 
+TEST_F(Window, AStyleCanBeExaggerated) {
+  options_.are_panels_given = true;
+  options_.panels = {Panel::style};
+  Script script;
+  script.until("it runs", runs);
+  script.tap(SDLK_TAB);
+  script.tap(SDLK_TAB);  // the second one, stiff_hip
+  script.tap(SDLK_RETURN);
+  script.reach("exaggerate");
+  script.tap(SDLK_RIGHT);
+  script.until("it differs from even by 1.1 times as much", [](const Glance& g) {
+    const WalkerFrame& walker = g.session.walkers[1];
+    const StyleValues& own = g.cast.style_values[static_cast<std::size_t>(walker.style_index)];
+    int deviating = 0;
+    for (const StyleKey& key : style_keys()) {
+      const double even = *value_of(StyleValues(), key.name), as_loaded = *value_of(own, key.name);
+      deviating += as_loaded != even;
+      const double wanted = std::clamp(even + 1.1 * (as_loaded - even), key.min, key.max);
+      if (std::abs(*value_of(walker.style, key.name) - wanted) > 1e-9) return false;
+    }
+    return deviating > 0;
+  });
+  script.then([](const Glance& g) {  // nobody else
+    EXPECT_EQ(g.session.walkers[2].style,
+              g.cast.style_values[static_cast<std::size_t>(g.session.walkers[2].style_index)]);
+  });
+  run(script);
+}
+
 // Recordings go to a folder of their own. A recording begins a session in the styles of the one
 // before; when it ends, the session goes on.
 TEST_F(Window, TheSessionGoesOnWhenItsRecordingEnds) {

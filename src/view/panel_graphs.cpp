@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "session/script.h"
 #include "view/history.h"
 #include "view/panels.h"
 
@@ -218,6 +219,29 @@ void draw_table(Ui& ui) {
   for (int i = 0; i < ui.in.frame.walker_count; ++i) draw_walker(ui, i);
 }
 
+// Which solver walks, live and recorded, and what differs.
+void draw_mode(Ui& ui) {
+  const float gap = std::round(ui.px(6)), width = ImGui::GetContentRegionAvail().x;
+  ButtonLook look;
+  look.width = std::floor((width - gap) / 2.0f);
+  look.height = std::round(ui.px(22));
+  look.is_enabled = ui.is_live();
+  for (const IkMode mode : {IkMode::paper, IkMode::robust}) {
+    look.is_on = ui.in.frame.ik == mode;
+    if (mode == IkMode::robust) ImGui::SameLine(0.0f, gap);
+    if (button(ui, mode == IkMode::paper ? "ik paper" : "ik robust",
+               kIkNames[static_cast<std::size_t>(mode)], look))
+      ui.out.commands.push_back(fmt::format("ik {}", kIkNames[static_cast<std::size_t>(mode)]));
+  }
+  note(
+      ui,
+      ui.in.frame.ik == IkMode::paper
+          ? "The paper's steps 1 to 7 and equation (5) with raw weights, without limits of joints."
+          : "Damped and within the limits of joints; only ratios of weights count, and a weight of "
+            "0.2 takes 2 iterations where the paper's takes 16.",
+      4);
+}
+
 void draw_tick_times(Ui& ui) {
   text_line(
       ui, ui.fonts.small, ui.theme.text,
@@ -281,6 +305,7 @@ void draw_solver_panel(Ui& ui) {
   const int walker = ui.walker();
   if (walker < 0) return note(ui, "no character yet");
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(4)});
+  draw_mode(ui);
   draw_table(ui);
   const GraphSpan span = graph_span(ui.in.history, walker, ui.in.cast.rate_hz);
   text_line(ui, ui.fonts.small, ui.theme.text, "Iterations of a tick");

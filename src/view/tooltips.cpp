@@ -52,6 +52,8 @@ constexpr Tip kTips[] = {
     {"leg right", "Show the right leg."},
     {"rumble", "Let the motors of the pad beat once."},
     {"give back all", "Let the stick and the style set all values again."},
+    {"ik paper", "Everybody walks by the paper's solver; recorded."},
+    {"ik robust", "Everybody walks by the robust solver; recorded."},
     {"exaggerate",
      "Shows more of what the style changes, 1 to 3 times; the values below follow. all back: as it "
      "was."},

@@ -941,6 +941,8 @@ void WindowLoop::send_command(const std::string& command) {
       return say_change(fmt::format("{} by the stick for {}", words_of_key(parsed->name), whom));
     case Command::Verb::stick:
       return say_change(fmt::format("everything by the stick for {}", whom));
+    case Command::Verb::ik:
+      return say_change(fmt::format("the {} solver for everybody", parsed->name));
     default:
       return;
   }

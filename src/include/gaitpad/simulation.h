@@ -119,6 +119,7 @@ class Simulation {
   const std::shared_ptr<const Terrain>& terrain() const { return terrain_; }
   double terrain_scale() const { return terrain_scale_; }
   const Stick& stick() const { return stick_; }  // of the last tick
+  IkMode ik() const { return ik_; }              // of the walkers; `ik` commands change it
   const Pads& pads() const { return pads_; }
   // Whether a heel of the first character struck the ground in the last tick.
   bool heel_struck() const { return heel_struck_; }

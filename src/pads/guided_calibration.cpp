@@ -110,6 +110,21 @@ void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::s
       find_calibration(files.calibration_folders, identity_of(info)).file.calibration;
 }
 
+std::vector<std::string> axes_questions(const GuidedPad& pad) {
+  constexpr const char* kRaw[] = {"right", "left", "forward", "back"};  // of RawDirection
+  std::vector<std::string> questions;
+  for (std::size_t i = 0; i < 2 && !pad.layout.override_origin.empty(); ++i) {
+    const StickFrame& frame = pad.frame[i];
+    if (frame == StickFrame{}) continue;
+    questions.push_back(fmt::format(
+        "this pad is known, but pushed right its {} stick went {} and pushed forward {}: is this "
+        "right? if not, measure again and push where it is asked for",
+        kSides[i], kRaw[static_cast<std::size_t>(frame.right)],
+        kRaw[static_cast<std::size_t>(frame.forward)]));
+  }
+  return questions;
+}
+
 std::vector<std::string> calibration_comments(const PadAnalysis& analysis) {
   std::vector<std::string> comments = {
       "Made by gaitpad calibrate; config/README.md says what the "

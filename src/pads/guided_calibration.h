@@ -58,6 +58,8 @@ class GuidedCalibration {
 
 // One sentence if this driver may show other values than the pad's own; else empty.
 std::string driver_remark(const DeviceInfo& info);
+// A question for each stick of a known pad whose pushes went elsewhere than config/pads says.
+std::vector<std::string> axes_questions(const GuidedPad& pad);
 
 // The file that a calibration is written to: `out`, else the device's own file. Error: neither
 // XDG_CONFIG_HOME nor HOME is set.

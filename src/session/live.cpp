@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <future>
 #include <mutex>
@@ -52,7 +53,7 @@ struct LiveSession::Impl {
   void stop_loop();
   void remark_on_time(const LiveStatus& now);
   void remark_on_recording();
-  Result<RunSummary> end_recording();
+  std::optional<Error> finish_recording(std::int64_t ticks);
 
   const SessionSpec spec;
   const int rate_hz;
@@ -162,15 +163,12 @@ void LiveSession::Impl::remark_on_recording() {
   }
 }
 
-Result<RunSummary> LiveSession::Impl::end_recording() {
-  RunSummary run = run_summary(simulation, cast);
-  if (recording == nullptr) return run;
-  auto said = recording->finish(run.ticks, now_ns());
+std::optional<Error> LiveSession::Impl::finish_recording(std::int64_t ticks) {
+  auto said = recording->finish(ticks, now_ns());
   if (!said) return said.error();
-  run.recording_lost = recording->lost();  // if any, it does not replay to this pose_hash
   const std::lock_guard lock(mutex);
   remarks.insert(remarks.end(), said->begin(), said->end());
-  return run;
+  return std::nullopt;
 }
 
 LiveSession::LiveSession() = default;
@@ -321,7 +319,23 @@ std::vector<std::string> LiveSession::take_remarks() {
 Result<RunSummary> LiveSession::stop() {
   if (impl_->is_stopped) return Error{"the session was stopped before"};
   impl_->stop_loop();
-  return impl_->end_recording();
+  RunSummary run = run_summary(impl_->simulation, impl_->cast);
+  if (impl_->recording == nullptr) return run;
+  if (auto problem = impl_->finish_recording(run.ticks)) return *problem;
+  run.recording_lost = impl_->recording->lost();  // if any, it does not replay to this pose_hash
+  return run;
+}
+
+std::optional<Error> LiveSession::end_recording() {
+  constexpr std::chrono::milliseconds kNap{1};
+  if (impl_->recording == nullptr || impl_->is_stopped) return std::nullopt;
+  impl_->loop->leave_recording();
+  if (impl_->is_by_hand()) impl_->loop->advance(0);
+  while (impl_->loop->recorded_ticks() < 0) std::this_thread::sleep_for(kNap);
+  auto problem = impl_->finish_recording(impl_->loop->recorded_ticks());
+  const std::lock_guard lock(impl_->mutex);
+  impl_->recording.reset();
+  return problem;
 }
 
 }  // namespace gaitpad

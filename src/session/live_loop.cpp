@@ -268,6 +268,7 @@ void LiveLoop::run() noexcept {
 }
 
 void LiveLoop::advance(int ticks) noexcept {
+  drop_recording();
   for (int i = 0; i < ticks; ++i) run_tick(now_ns(), 0);
 }
 
@@ -275,6 +276,7 @@ void LiveLoop::advance(int ticks) noexcept {
 bool LiveLoop::wait_for_tick() noexcept {
   while (!is_stopping_.load(kRelaxed)) {
     follow_orders();
+    drop_recording();
     const std::int64_t due = due_ns(), time_ns = now_ns();
     if (time_ns >= due) return true;
     if (clock_.pace() == 0.0) look_at_pads(time_ns);
@@ -303,6 +305,12 @@ void LiveLoop::follow_orders() noexcept {
       recording_->clock(tick_, pace > 0.0 ? clock_.due_ns(tick_) : time_ns, pace);
   }
   steps_left_ = pace > 0.0 ? 0 : steps_left_ + steps;
+}
+
+void LiveLoop::drop_recording() noexcept {
+  if (recording_ == nullptr || !leaves_recording_.load(std::memory_order_acquire)) return;
+  recording_ = nullptr;
+  recorded_ticks_.store(tick_, std::memory_order_release);
 }
 
 std::int64_t LiveLoop::due_ns() const noexcept {

@@ -172,6 +172,12 @@ class LiveLoop {
     new_styles_.store(&styles, std::memory_order_release);
   }
   void beat_once() noexcept { wants_beat_.store(true, std::memory_order_relaxed); }
+  // The recording ends before the next tick: recorded_ticks() has then as many as it holds; -1: not
+  // yet.
+  void leave_recording() noexcept { leaves_recording_.store(true, std::memory_order_release); }
+  std::int64_t recorded_ticks() const noexcept {
+    return recorded_ticks_.load(std::memory_order_acquire);
+  }
   // Any thread.
   bool has_ended() const noexcept { return has_ended_.load(std::memory_order_relaxed); }
   bool is_known(std::uint16_t device) const noexcept { return reports_.is_known(device); }
@@ -181,6 +187,7 @@ class LiveLoop {
  private:
   bool wait_for_tick() noexcept;
   void follow_orders() noexcept;
+  void drop_recording() noexcept;
   std::int64_t due_ns() const noexcept;
   void look_at_pads(std::int64_t now_ns) noexcept;
   void keep_time(std::int64_t now_ns) noexcept;
@@ -225,6 +232,8 @@ class LiveLoop {
   std::atomic<std::int64_t> wanted_steps_{0};
   std::atomic<std::shared_ptr<const std::vector<Style>>*> new_styles_{nullptr};
   std::atomic<bool> wants_beat_{false};
+  std::atomic<bool> leaves_recording_{false};
+  std::atomic<std::int64_t> recorded_ticks_{-1};
   std::atomic<std::int64_t> start_ns_{0}, end_ns_{0};  // of run(); 0: not yet
   std::atomic<std::int64_t> ticks_{0}, overruns_{0}, standstills_{0}, overloads_{0}, skipped_ns_{0};
   std::array<std::atomic<std::int64_t>, LiveStatus::kWaitClasses> wait_counts_{};

@@ -83,6 +83,12 @@ std::optional<Command> parsed_command(std::string_view text) noexcept {
     return command.name.empty() ? std::optional(command) : std::nullopt;
   }
   if (command.name.empty()) return std::nullopt;
+  if (verb == "ik") {
+    command.verb = Verb::ik;
+    const bool is_mode = command.name == kIkNames[0] || command.name == kIkNames[1];
+    const bool is_for_all = command.walker == 0 && second.empty();
+    return is_mode && is_for_all ? std::optional(command) : std::nullopt;
+  }
   command.verb = verb == "set" ? Verb::set : Verb::gait;
   if (verb == "set") return with_value(command, second);
   return verb == "gait" ? gait_command(command, second) : std::nullopt;
@@ -90,10 +96,11 @@ std::optional<Command> parsed_command(std::string_view text) noexcept {
 
 namespace {
 
-constexpr std::string_view kVerbs[] = {"style", "set", "gait", "stick", "reset", "mark"};
+constexpr std::string_view kVerbs[] = {"style", "set", "gait", "stick", "reset", "ik", "mark"};
 constexpr std::string_view kForms =
     "style [CHARACTER] NAME, set [CHARACTER] KEY VALUE, gait [CHARACTER] KEY VALUE|stick, gait "
-    "[CHARACTER] stick, stick steers, stick points [CAMERA_DEGREES], reset [CHARACTER], mark";
+    "[CHARACTER] stick, stick steers, stick points [CAMERA_DEGREES], reset [CHARACTER], ik "
+    "paper|robust, mark";
 
 std::optional<std::string> range_problem(std::string_view key, double value, double min,
                                          double max) {

@@ -1,6 +1,7 @@
 // Commands, as a person or a recording gives them, and scripts: commands at given times of a
 // session. config/README.md has both grammars (`C:` lines, scripts).
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -26,6 +27,7 @@ struct Command {
     steers,   // `stick steers`
     points,   // `stick points`; value: the camera's heading, degrees
     restart,  // `reset`
+    ik,       // name: paper or robust, for all walkers
   } verb = Verb::mark;
   int walker = 0;         // from 1; 0: all
   std::string_view name;  // points into the text
@@ -40,6 +42,8 @@ std::optional<Command> parsed_command(std::string_view text) noexcept;
 // whose joints would all be locked).
 std::optional<std::string> command_problem(std::string_view text,
                                            std::span<const std::string> styles, int characters);
+
+inline constexpr std::array<std::string_view, 2> kIkNames = {"paper", "robust"};  // by IkMode
 
 inline constexpr std::size_t kMaxScriptEvents = 4096;
 

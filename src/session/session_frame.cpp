@@ -59,6 +59,7 @@ Cast cast_of(const Simulation& simulation, const SimulationConfig& config) {
 }
 
 void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept {
+  frame.ik = simulation.ik();
   frame.counts = simulation.counts();
   frame.tick = frame.counts.ticks - 1;
   frame.stick = simulation.stick();

@@ -285,6 +285,9 @@ bool Simulation::obey(std::string_view text) noexcept {
   switch (command->verb) {
     case Verb::mark:
       return true;
+    case Verb::ik:
+      ik_ = command->name == kIkNames[0] ? IkMode::paper : IkMode::robust;
+      return true;
     case Verb::style:
       return choose_style(walkers, command->name);
     case Verb::set:

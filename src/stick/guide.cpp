@@ -24,10 +24,13 @@ constexpr double kAway = 0.3;           // from the rest
 constexpr double kAwayUnknown = 0.5;    // from the middle, while the rest is not known
 constexpr double kFarthestRest = 0.45;  // from the middle; farther out a stick is held
 constexpr std::size_t kMaxRests = 64;   // further releases are not needed
+constexpr double kAside = 0.1;          // from the middle; few sticks rest so far off
 
 constexpr double kOfReach = 0.6;      // of the farthest that was seen: counts as pushed out
 constexpr double kOfMedianRim = 0.6;  // less is a cut corner; a square gate has 0.71
 constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;  // noise, spikes
+
+constexpr double kUnpressed = 0.1;  // raw; a turn that stays so far inside of a push
 
 constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
 constexpr double kInOfRim = 0.6;  // nearer than this it is let go
@@ -76,8 +79,14 @@ void ReleaseWatch::hold(const vec2& raw, std::int64_t duration_ns) {
     near_sum_ += raw * static_cast<double>(duration_ns);
   }
   if (is_back()) add_release();
-  if (count() >= kWantedReleases && sides() >= kWantedSides && near_ns_ >= kWantedRestNs)
+  if (count() >= wanted() && sides() >= kWantedSides && near_ns_ >= kWantedRestNs)
     is_complete_ = true;
+}
+
+bool ReleaseWatch::is_aside() const noexcept { return rest_ && glm::length(*rest_) >= kAside; }
+
+int ReleaseWatch::wanted() const noexcept {
+  return is_aside() ? kWantedReleasesAside : kWantedReleases;
 }
 
 bool ReleaseWatch::is_held() const noexcept {
@@ -150,6 +159,14 @@ double TurnWatch::least_radius() const noexcept {
   return std::max(rim_, kOfMedianRim * *middle);
 }
 
+double TurnWatch::radius_towards(const vec2& to) const noexcept {
+  const auto bin = std::lround(atan2(to.y, to.x) / (2.0 * kPi) * kTurnBins) + kTurnBins;
+  double greatest = 0.0;
+  for (const long k : {bin - 1, bin, bin + 1})
+    greatest = std::max(greatest, radius_[static_cast<std::size_t>(k % kTurnBins)]);
+  return greatest;
+}
+
 int TurnWatch::filled() const noexcept {
   const double least = least_radius();
   return static_cast<int>(
@@ -182,6 +199,7 @@ void PushWatch::hold(const vec2& from_rest, double rim, std::int64_t duration_ns
   }
   if (zone != Zone::in || zone_ns_ < kSpikeNs) return;
   if (out_ns_ >= kHeldNs) push_ = sum_ / static_cast<double>(out_ns_);
+  if (out_ns_ > kSpikeNs) was_short_ = out_ns_ < kHeldNs;
   out_ns_ = 0;
   sum_ = vec2(0.0);
   is_armed_ = true;
@@ -189,6 +207,7 @@ void PushWatch::hold(const vec2& from_rest, double rim, std::int64_t duration_ns
 
 void PushWatch::restart() noexcept {
   is_armed_ = zone_ == Zone::in || zone_ == Zone::unknown;
+  was_short_ = false;
   out_ns_ = 0;
   sum_ = vec2(0.0);
   push_.reset();
@@ -412,6 +431,23 @@ void CalibrationGuide::finish_step() {
   ++index_;
   for (Stick& stick : sticks_) stick.push.restart();
   for (Trigger& trigger : triggers_) trigger.push.restart();
+  if (pieces_.back().step == GuideStep::left) turn_again();
+}
+
+// Goes back to the turn, once, for sticks whose pushes went farther than it. The pushes stay.
+void CalibrationGuide::turn_again() {
+  bool is_any = false;
+  for (Stick& stick : sticks_) {
+    const auto is_short = [&](const std::optional<vec2>& push) {
+      const double turned = push ? stick.turn.radius_towards(*push) : 0.0;
+      return turned > 0.0 && turned < glm::length(*push) - kUnpressed;
+    };
+    if (stick.turns_again || std::ranges::none_of(stick.pushed, is_short)) continue;
+    stick.turns_again = is_any = true;
+    stick.turn.restart();
+  }
+  if (is_any)
+    index_ = static_cast<std::size_t>(std::ranges::find(steps_, GuideStep::turn) - steps_.begin());
 }
 
 // Forgets what the running step has seen.
@@ -492,10 +528,10 @@ const char* control_name(int side, bool is_stick) noexcept {
   return side == 0 ? "left trigger" : "right trigger";
 }
 
-const char* push_text(PushWatch::State state) noexcept {
-  switch (state) {
+const char* push_text(const PushWatch& push) noexcept {
+  switch (push.state()) {
     case PushWatch::State::waiting:
-      return "waiting for it";
+      return push.was_short() ? "that was short: hold it a little longer" : "waiting for it";
     case PushWatch::State::out:
       return "hold it";
     case PushWatch::State::held:
@@ -609,22 +645,25 @@ std::vector<GuideProgress> CalibrationGuide::progress() const {
 
 GuideProgress CalibrationGuide::rest_progress(const Stick& stick) const {
   const ReleaseWatch& release = stick.release;
-  const int count = std::min(release.count(), kWantedReleases);
+  const int wanted = release.wanted(), count = std::min(release.count(), wanted);
   const int sides = std::min(release.sides(), kWantedSides);
   const double alone_s = static_cast<double>(release.rested_ns()) / 1e9;
   const double wanted_s = static_cast<double>(kWantedRestNs) / 1e9;
   GuideProgress progress;
-  progress.done = 0.9 * (count + sides) / (kWantedReleases + kWantedSides);
-  progress.text = fmt::format("{} of {} releases", count, kWantedReleases);
+  progress.done = 0.9 * (count + sides) / (wanted + kWantedSides);
+  progress.text = fmt::format("{} of {} releases", count, wanted);
   if (release.is_complete()) {
     progress.done = 1.0;
   } else if (release.is_held()) {
     progress.text += "; it is held, let go";
   } else if (release.is_away()) {
     progress.text += "; let go and wait";
-  } else if (count == kWantedReleases && sides < kWantedSides) {
+  } else if (release.is_aside() && count >= 2 && count < wanted) {
+    progress.text += fmt::format("; it rests {:.2f} off its middle: take your thumb right off",
+                                 glm::length(*release.rest()));
+  } else if (count == wanted && sides < kWantedSides) {
     progress.text += fmt::format("; only from {} of {} sides", sides, kWantedSides);
-  } else if (count == kWantedReleases) {
+  } else if (count == wanted) {
     progress.text += fmt::format("; leave it alone: {:.1f} of {:.1f} s", alone_s, wanted_s);
   }
   return progress;
@@ -636,9 +675,11 @@ GuideProgress CalibrationGuide::turn_progress(const Stick& stick) const {
   GuideProgress progress;
   progress.done = 0.75 * turn.filled() / kTurnBins + 0.25 * turns / kWantedTurns;
   if (turn.is_complete()) progress.done = 1.0;
+  if (stick.turns_again && !turn.is_complete())
+    progress.text = "it was not pressed to its rim, once more: ";
   // Rounded down, so that "2.0 turns" are two whole turns.
-  progress.text = fmt::format("{} of {} directions, {:.1f} of {:.0f} turns", turn.filled(),
-                              kTurnBins, std::floor(turns * 10.0) / 10.0, kWantedTurns);
+  progress.text += fmt::format("{} of {} directions, {:.1f} of {:.0f} turns", turn.filled(),
+                               kTurnBins, std::floor(turns * 10.0) / 10.0, kWantedTurns);
   const std::optional<vec2> missing = turn.missing();
   if (missing && turn.filled() > 0) progress.text += "; not yet: " + side_name(*missing);
   if (missing && turns == kWantedTurns) progress.text += " (Enter goes on without)";
@@ -651,7 +692,8 @@ GuideProgress CalibrationGuide::push_progress(const Stick& stick) const {
   if (stick.pushed[number]) return {{}, 1.0, "seen", {}};
   const PushWatch::State state = stick.push.state();
   const bool is_advised = state == PushWatch::State::waiting && !stick.advice.empty();
-  return {{}, push_share(state), is_advised ? stick.advice : push_text(state), {}};
+  if (is_advised) return {{}, push_share(state), stick.advice, {}};
+  return {{}, push_share(state), push_text(stick.push), {}};
 }
 
 GuideProgress CalibrationGuide::trigger_progress(const Trigger& trigger) const {
@@ -659,7 +701,7 @@ GuideProgress CalibrationGuide::trigger_progress(const Trigger& trigger) const {
   progress.control = control_name(trigger.side, false);
   const PushWatch::State state = trigger.push.state();
   progress.done = trigger.is_done ? 1.0 : push_share(state);
-  progress.text = trigger.is_done ? "seen" : push_text(state);
+  progress.text = trigger.is_done ? "seen" : push_text(trigger.push);
   progress.raw = vec2(tracker_.state().axis[kLeftTrigger + trigger.side], 0.0);
   return progress;
 }

@@ -38,6 +38,7 @@ class StillWatch {
 inline constexpr double kHalfWay = 0.5;  // from rest; farther out a control is pushed
 
 inline constexpr int kWantedReleases = 6, kWantedSides = 3;
+inline constexpr int kWantedReleasesAside = 10;  // of a stick that rests off its middle: a thumb?
 inline constexpr std::int64_t kWantedRestNs = 2500 * kMillisecondNs;  // at the end, to see drift
 
 // Counts releases: the stick was away from its rest, then stood still there for half a second, or
@@ -49,7 +50,9 @@ class ReleaseWatch {
   void lose() noexcept;  // unplugged: the running release does not count
 
   int count() const noexcept { return static_cast<int>(rests_.size()); }
-  int sides() const noexcept;  // quarters (right, front, left, back) from which it was let go
+  int wanted() const noexcept;     // releases
+  bool is_aside() const noexcept;  // it rests off the raw middle
+  int sides() const noexcept;      // quarters (right, front, left, back) from which it was let go
   bool is_away() const noexcept { return is_away_; }
   std::int64_t rested_ns() const noexcept { return near_ns_; }  // since the last release
   // Once complete it stays so while the other stick is moved.
@@ -89,6 +92,7 @@ class TurnWatch {
   void lose() noexcept { anchor_rad_.reset(); }
 
   int filled() const noexcept;
+  double radius_towards(const vec2& to) const noexcept;  // greatest, about that direction; 0: none
   double turns() const noexcept { return travelled_rad_ / (2.0 * kPi); }  // in either direction
   bool is_complete() const noexcept { return filled() == kTurnBins && turns() >= kWantedTurns; }
   // Direction (unit) of the middle of the greatest gap; none without gaps.
@@ -112,6 +116,7 @@ class PushWatch {
   void lose() noexcept { *this = PushWatch(); }
 
   State state() const noexcept;
+  bool was_short() const noexcept { return was_short_; }  // the last push was not held long enough
   // The mean position (from rest) while it was out; each push is returned once.
   std::optional<vec2> take_push() noexcept;
 
@@ -120,6 +125,7 @@ class PushWatch {
   Zone zone_ = Zone::unknown;
   std::int64_t zone_ns_ = 0, out_ns_ = 0;
   bool is_armed_ = true;  // it was let go since the step began
+  bool was_short_ = false;
   vec2 sum_{0.0};
   std::optional<vec2> push_;
 };
@@ -185,6 +191,7 @@ class CalibrationGuide {
     PushWatch push;
     std::array<std::optional<vec2>, 4> pushed;  // forward, right, back, left: raw, from rest
     std::string advice;                         // what was wrong with the last push; empty: nothing
+    bool turns_again = false;                   // its pushes went farther than its turn
   };
   struct Trigger {
     int side = 0;
@@ -208,6 +215,7 @@ class CalibrationGuide {
   vec2 from_rest(const Stick& stick) const noexcept;
   bool is_complete() const noexcept;
   void finish_step();
+  void turn_again();
   void drop_step() noexcept;
   GuideProgress rest_progress(const Stick& stick) const;
   GuideProgress turn_progress(const Stick& stick) const;

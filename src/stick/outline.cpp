@@ -525,6 +525,35 @@ std::array<double, kCircularityBins> least_reaches(const Outline& outline) noexc
   return least;
 }
 
+std::optional<int> unpressed_direction(const Outline& outline, std::span<const vec2> pushes) {
+  constexpr double kDeep = 0.1, kAsFar = 0.06;  // raw
+  Radii farthest = outline.radius;
+  const auto direction = [&](const vec2& push) {
+    const vec2 p = push - outline.middle;
+    return direction_of(gaitpad::atan2(p.y, p.x));
+  };
+  const auto reach = [&](const vec2& push) { return glm::length(push - outline.middle); };
+  for (const vec2& push : pushes)
+    farthest[direction(push)] = std::max(farthest[direction(push)], reach(push));
+  const Radii hull = hull_of(farthest);
+  std::array<bool, kOutlineDirections> is_deep{};
+  for (int k = 0; k < kOutlineDirections; ++k)
+    is_deep[k] = outline.radius[k] > 0.0 && hull[k] - outline.radius[k] > kDeep;
+  for (const vec2& push : pushes) {
+    const int k = direction(push);
+    if (!is_deep[k] || reach(push) > outline.radius[k] + kAsFar) continue;
+    for (const int step : {-1, 1})
+      for (int n = k; n == k || is_deep[around(n)]; n += step) is_deep[around(n)] = false;
+  }
+  std::optional<int> deepest;
+  for (int k = 0; k < kOutlineDirections; ++k) {
+    if (!is_deep[k]) continue;
+    const auto depth = [&](int n) { return hull[n] - outline.radius[n]; };
+    if (!deepest || depth(k) > depth(*deepest)) deepest = k;
+  }
+  return deepest;
+}
+
 int degrees_of(int k) noexcept {
   return (k * 360 + kOutlineDirections / 2) / kOutlineDirections % 360;
 }

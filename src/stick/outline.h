@@ -28,6 +28,10 @@ vec2 point_of(const Outline& outline, int k) noexcept;
 
 // The direction in which it reaches least far; none if no direction was seen.
 std::optional<int> worst_direction(const Outline& outline) noexcept;
+// The direction (of the outline) in which it lies deepest inside what gates allow, as if the stick
+// was turned there without being pressed to its rim; none if it lies so nowhere. Where a push
+// (`pushes`: raw) was held that reaches no farther than the outline, the gate itself is short.
+std::optional<int> unpressed_direction(const Outline& outline, std::span<const vec2> pushes);
 // The least radius of the directions in each of the 48 bins about the middle; 0: not seen.
 std::array<double, kCircularityBins> least_reaches(const Outline& outline) noexcept;
 

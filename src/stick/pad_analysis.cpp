@@ -47,6 +47,10 @@ constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, 
 constexpr double kWornWander = 0.01;
 constexpr double kWornSteps = 1.5;  // smaller noise comes from the steps
 constexpr int kWornJumps = 3;
+// A thumb or a finger that lies on a stick holds it aside, while its range stays symmetric. So many
+// rests are no accident.
+constexpr double kHeldCentre = 0.1, kSymmetric = 0.05;
+constexpr std::size_t kSureRests = 14;
 
 struct Side {
   const char* name;
@@ -86,6 +90,24 @@ std::vector<std::string> short_sides(const StickStatistics& s, double least) {
     reasons.push_back(fmt::format("to the {} it reaches only {:.2f}", direction_text(*worst),
                                   reach_in(s.outline, *worst)));
   return reasons;
+}
+
+// Whether its range was seen to all four sides.
+bool is_turned(const StickStatistics& s) noexcept {
+  return s.min_x && s.max_x && s.min_y && s.max_y;
+}
+
+vec2 middle_of_range(const StickStatistics& s) noexcept {
+  return 0.5 * vec2(*s.min_x + *s.max_x, *s.min_y + *s.max_y);
+}
+// How far off the middle of its range it rests; 0 if that is not known.
+double off_middle(const StickStatistics& s) noexcept {
+  return s.centre && is_turned(s) ? glm::length(*s.centre - middle_of_range(s)) : 0.0;
+}
+// Whether something may have held it aside at every rest.
+bool may_be_held(const StickStatistics& s) noexcept {
+  return off_middle(s) >= kHeldCentre && glm::length(middle_of_range(s)) <= kSymmetric &&
+         s.rests.size() < kSureRests;
 }
 
 // Those that the median of three takes out.
@@ -171,6 +193,11 @@ std::string displaced(const StickStatistics& s) {
                      s.displaced_by);
 }
 
+std::string stuck(const StickStatistics& s) {
+  return fmt::format("its value stuck {} while it moved",
+                     s.stuck == 1 ? "once" : fmt::format("{} times", s.stuck));
+}
+
 Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   Reasons reasons;
   const double drift = s.drift_per_s.value_or(0.0);
@@ -192,7 +219,8 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   if (greatest_sigma(s) > kUselessSigma) {
     reasons.push_back(fmt::format("its noise is {:.3f}", greatest_sigma(s)));
   }
-  for (std::string& reason : short_sides(s, kUselessReach)) reasons.push_back(std::move(reason));
+  for (std::string& reason : short_sides(s, s.unpressed ? 0.0 : kUselessReach))
+    reasons.push_back(std::move(reason));
   if (s.displaced > 1 && s.displaced_by > kUselessZone) {
     reasons.push_back(displaced(s));
   }
@@ -212,7 +240,7 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
                     s.jumps, 100.0 * share_of_jumps(s)));
   }
   if (s.stuck >= kUselessStuck) {
-    reasons.push_back(fmt::format("its value stuck {} times while it moved", s.stuck));
+    reasons.push_back(stuck(s));
   }
   return reasons;
 }
@@ -231,6 +259,18 @@ Reasons missing(const StickStatistics& s) {
   if (unseen.empty() && seen < kFewestDirections) {
     return {fmt::format("its rim was seen in only {} of {} directions: turn it more slowly", seen,
                         kCircularityBins)};
+  }
+  if (unseen.empty() && s.unpressed) {
+    return {
+        fmt::format("it was not pressed to its rim to the {}: turn it once more, and hold a push "
+                    "there if it goes no farther",
+                    direction_text(*s.unpressed))};
+  }
+  if (unseen.empty() && may_be_held(s)) {
+    return {
+        fmt::format("it rested {:.2f} off the middle of its range, as if a thumb lay on it: "
+                    "once more, hands off",
+                    glm::length(*s.centre))};
   }
   if (unseen.empty()) return {};
   if (seen == 0) return {"it was never turned to the rim"};
@@ -311,6 +351,11 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
     advice.verdict = Verdict::good;
     advice.reason = sentence("", {good(s)});
   }
+  const bool is_blamed = advice.verdict == Verdict::replace || advice.verdict == Verdict::worn;
+  const bool looks_held =
+      s.wander > kWornWander || s.drift_per_s.value_or(0.0) > 0.0 || off_middle(s) >= kHeldCentre;
+  if (is_blamed && looks_held) advice.reason += "; or a thumb lay on it: once more, hands off";
+  if (s.stuck > 0 && s.stuck < kUselessStuck) advice.reason += "; " + stuck(s);
   if (advice.verdict == Verdict::good && single_jumps(s) > 0)
     advice.reason += "; it jumped for a single report, so its reports are filtered";
   if (s.displaced == 1) {
@@ -349,6 +394,8 @@ StickAdvice stick_advice(const StickStatistics& statistics, const StickFrame& fr
     c.x = axis_of(statistics.centre->x, statistics.min_x, statistics.max_x);
     c.y = axis_of(statistics.centre->y, statistics.min_y, statistics.max_y);
     add_zones(statistics, advice);
+    advice.has_centre = !may_be_held(statistics);
+    advice.has_range = advice.has_centre && is_turned(statistics) && !statistics.unpressed;
   } else {
     advice.inner_zone = c.inner;
     advice.outer_zone = c.outer;
@@ -369,10 +416,6 @@ TriggerCalibration trigger_advice(const TriggerStatistics& statistics) noexcept 
   const double slack = kSlack * (high - low);
   return {statistics.released ? low + slack : plain.released,
           statistics.pressed ? high - slack : plain.pressed};
-}
-
-bool is_turned(const StickStatistics& s) noexcept {
-  return s.min_x && s.max_x && s.min_y && s.max_y;
 }
 
 namespace {
@@ -404,8 +447,8 @@ vec2 step_in_frame(const PadLayout& layout, int side, const StickFrame& frame) {
   return glm::abs(in_frame(frame, vec2(declared_step(layout, x), declared_step(layout, y))));
 }
 
-// Takes the new centre and inner zone of a stick that was never turned, and keeps the range of the
-// earlier calibration if it surrounds the new centre.
+// Takes the new centre and inner zone of a stick whose range is not known, and keeps the range of
+// the earlier calibration if it surrounds the new centre.
 void update_centre(const StickCalibration& advice, StickCalibration& calibration) {
   const auto take = [](double centre, AxisCalibration& axis) {
     constexpr double kLeastHalfRange = 0.25;
@@ -472,7 +515,7 @@ PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
 }
 
 bool is_useful(const PadAnalysis& analysis) noexcept {
-  const auto is_known = [](const auto& stick) { return stick && stick->statistics.centre; };
+  const auto is_known = [](const auto& stick) { return stick && stick->advice.has_centre; };
   return is_known(analysis.stick[0]) || is_known(analysis.stick[1]);
 }
 
@@ -482,8 +525,8 @@ void take_advice(const PadAnalysis& analysis, CalibrationFile& file) {
                                           &file.calibration.right_trigger};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
-    if (stick && stick->statistics.centre) {
-      if (is_turned(stick->statistics)) {
+    if (stick && stick->advice.has_centre) {
+      if (stick->advice.has_range) {
         *sticks[i] = stick->advice.calibration;
       } else {
         update_centre(stick->advice.calibration, *sticks[i]);

@@ -20,6 +20,8 @@ struct StickAdvice {
   double outer_zone = 0.0;       // raw
   Verdict verdict = Verdict::unknown;
   std::string reason;  // one sentence with its numbers
+  // Parts of `calibration` that were seen and are not doubted: what a file may take over.
+  bool has_centre = false, has_range = false;
 };
 // `statistics` are in `frame`.
 StickAdvice stick_advice(const StickStatistics& statistics, const StickFrame& frame);
@@ -39,13 +41,11 @@ struct PadAnalysis {  // left, right; none if the pad has no such control
 PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
                         const std::array<StickFrame, 2>& frames);
 
-// Whether its range was seen to all four sides; else range and outer zone are not known.
-bool is_turned(const StickStatistics& statistics) noexcept;
-// Whether it can calibrate anything: at least one centre is known.
+// Whether it can calibrate anything: the advice for a stick has a centre.
 bool is_useful(const PadAnalysis& analysis) noexcept;
 // Writes the advice into `file`. The calibration that `file` holds stays where nothing was
-// measured: a stick without a known centre, the range of a stick that was never turned, a trigger
-// that was never pressed.
+// measured: a stick without a sure centre, the range of a stick that was not turned along its rim,
+// a trigger that was never pressed.
 void take_advice(const PadAnalysis& analysis, CalibrationFile& file);
 
 }  // namespace gaitpad

@@ -762,6 +762,7 @@ RestStatistics rest_statistics(std::span<const StickTrack> tracks, const vec2& s
   const std::span<const Still> rests = found.rests;
   RestStatistics result;
   result.hands_off = std::move(found.hands_off);
+  for (const Still& push : found.pushes) result.pushes.push_back(push.mean);
   if (rests.empty()) {
     // It never stood still: its centre is the middle of where it was by itself.
     std::vector<vec2> places;

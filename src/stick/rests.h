@@ -27,6 +27,7 @@ struct RestStatistics {
   std::vector<HandsOff> hands_off;  // that time
   int displaced = 0;                // releases after which it rested far from where it mostly rests
   double displaced_by = 0.0;        // the farthest of them
+  std::vector<vec2> pushes;         // where it was held far out
 };
 // `tracks`: clean ones (clean_tracks). `step`: of x and y, 0 if not known. `interval_s`:
 // typical_interval_s of the tracks.

@@ -21,6 +21,7 @@ struct StickStatistics : RestStatistics {
   Outline outline;  // about `centre`; about 0 if that is none
   std::optional<double> min_x, max_x, min_y, max_y;
   std::optional<double> circularity_error;  // percent
+  std::optional<int> unpressed;             // see unpressed_direction()
   std::int64_t rim_samples = 0;
   int turns = 0;  // whole ones, either way
 

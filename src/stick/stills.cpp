@@ -286,8 +286,8 @@ vec2 side_of_return(std::span<const Cell> way, const vec2& place) noexcept {
 // Shares of the reach. A spring brings the stick from the farther place to the nearer one within
 // kSpringCells; a hand that leads it back is slower.
 constexpr double kPushed = 0.5, kFar = 0.7, kBack = 0.45;
-constexpr std::size_t kSpringCells = 7, kSettlingCells = 15;
-constexpr std::size_t kBlockCells = 5, kFewestBlocks = 2;
+constexpr std::size_t kSpringCells = 7, kSettlingCells = 15, kLeastSettlingCells = 8;
+constexpr std::size_t kBlockCells = 5;
 constexpr double kOutwards = 0.012;       // raw in 60 ms: a push may have begun
 constexpr std::size_t kLongestPush = 25;  // cells
 
@@ -326,7 +326,10 @@ void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& h
         if ((away(last - 1) - away(last - 4)) * reach < kOutwards) break;
       }
     }
-    if (last < first + kFewestBlocks * kBlockCells) continue;
+    // Of a short time the end counts, though it may not have settled quite.
+    if (is_released && last < first + kBlockCells)
+      first = std::max(begin + kLeastSettlingCells, last - std::min(last, kBlockCells));
+    if (last < first + kBlockCells) continue;
     HandsOff& time = found.emplace_back();
     time.track = track;
     time.is_released = is_released;

@@ -17,6 +17,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kCalibrationWidth = 900.0, kCalibrationHeight = 600.0;  // at scale 1
+constexpr double kWaitingHeight = 150.0;
 constexpr double kPlane = 150.0;  // side of a control's picture, at scale 1
 constexpr const char* kTitles[] = {"Left stick", "Right stick"};
 
@@ -114,7 +115,9 @@ void CalibrationView::finish(std::vector<std::string>& messages) {
   pad_ = guided_->finish();
   guided_.reset();
   analysis_ = analysis_of(pad_.layout, pad_.tracks, pad_.frame);
-  if (!is_useful(*analysis_)) problem_ = "no stick was seen at rest, so no centre is known";
+  for (std::string& question : axes_questions(pad_)) messages.push_back(std::move(question));
+  if (!is_useful(*analysis_))
+    problem_ = "no stick was seen at rest with hands off, so no centre is known";
   file_ = calibration_for(pad_.info, pad_.has_factory_sticks);
   const std::string own = options_.calibration_folder.empty()
                               ? ""
@@ -210,17 +213,14 @@ void CalibrationView::draw_result(Ui& ui, float height_px) {
 }
 
 void CalibrationView::draw_guide_buttons(Ui& ui, CalibrationGuide& guide) {
-  const auto is_key = [](int key) {
-    return !ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(key, false);
-  };
   ButtonLook next;
   next.is_primary = true;
-  const bool is_entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
-  if (button(ui, "calibration skip", "Next  (Enter)", next) || is_entered) guide.skip();
+  if (button(ui, "calibration skip", "Next  (Enter)", next) || is_typed(ui, SDLK_RETURN))
+    guide.skip();
   ImGui::SameLine();
-  if (button(ui, "calibration repeat", "Repeat  (R)") || is_key(SDL_SCANCODE_R)) guide.repeat();
+  if (button(ui, "calibration repeat", "Repeat  (R)") || is_typed(ui, SDLK_r)) guide.repeat();
   ImGui::SameLine();
-  if (button(ui, "calibration back", "Back  (B)") || is_key(SDL_SCANCODE_B)) guide.back();
+  if (button(ui, "calibration back", "Back  (B)") || is_typed(ui, SDLK_b)) guide.back();
 }
 
 void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& messages) {
@@ -240,9 +240,10 @@ void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& mess
 PadDialog::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
                                        std::vector<std::string>& messages) {
   read_pad(messages);
-  const ImVec2 size =
-      begin_modal(ui, "calibration", kCalibrationWidth, kCalibrationHeight, window_px);
   CalibrationGuide* guide = guided_ ? guided_->guide() : nullptr;
+  const bool is_waiting = guide == nullptr && !analysis_;  // for a pad
+  const ImVec2 size = begin_modal(ui, "calibration", kCalibrationWidth,
+                                  is_waiting ? kWaitingHeight : kCalibrationHeight, window_px);
   const float buttons_y = size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y;
   if (guide != nullptr) {
     draw_guide(ui, *guide);

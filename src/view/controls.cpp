@@ -46,7 +46,7 @@ constexpr ActionInfo kActions[] = {
     {Action::next_walker, SDLK_TAB, kNoKey, kButtonY, "next walker", kStyles,
      "choose the next character, then all"},
     {Action::record, SDLK_F9, kNoKey, kButtonDpadUp, "record", kFiles,
-     "restart and record, or stop"},
+     "restart and record; again: end"},
     {Action::screenshot, SDLK_F12, SDLK_PRINTSCREEN, kButtonX, "screenshot", kFiles,
      "save a picture"},
     {Action::open_file, SDLK_o, kNoKey, kNoButton, "open", kFiles,
@@ -68,6 +68,8 @@ constexpr ActionInfo kActions[] = {
     {Action::panel_solver, SDLK_F6, kNoKey, kNoButton, "solver panel", kPanelGroup,
      "panel: solver"},
     {Action::panel_loop, SDLK_F7, kNoKey, kNoButton, "loop panel", kPanelGroup, "panel: loop"},
+    {Action::navigate, SDLK_RETURN, SDLK_KP_ENTER, kButtonGuide, "navigate", kWindow,
+     "keys to the panels: arrows, Enter"},
     {Action::help, SDLK_F1, SDLK_h, kButtonBack, "help", kWindow, "this page"},
     {Action::fullscreen, SDLK_F11, kNoKey, kNoButton, "full screen", kWindow,
      "full screen, on and off"},
@@ -238,6 +240,10 @@ void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken)
         wishes_.actions.push_back(chord.action);
     }
   }
+  if (is_down && !taken.keys && !is_chord) {
+    if (key.repeat == 0) wishes_.keys.push_back(code);
+    if (navigate(code, (key.keysym.mod & KMOD_SHIFT) != 0, taken)) return;
+  }
   const auto walking = std::ranges::find(kWalkingKeys, code);
   if (walking != std::end(kWalkingKeys)) {
     const auto index = static_cast<std::size_t>(walking - std::begin(kWalkingKeys));
@@ -249,6 +255,32 @@ void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken)
     if (info.key != code && info.second_key != code) continue;
     if (key.repeat == 0 || info.action == Action::step) wishes_.actions.push_back(info.action);
     return;
+  }
+}
+
+// Whether the key moves between buttons and sliders, and is no more than that.
+bool Controls::navigate(SDL_Keycode key, bool is_back, const TakenInput& taken) {
+  if (!taken.navigates && !(taken.is_modal && key == SDLK_TAB)) return false;
+  NavigationInput& wish = wishes_.navigation;
+  switch (key) {
+    case SDLK_TAB:
+      wish.steps += is_back ? -1 : 1;
+      return true;
+    case SDLK_DOWN:
+    case SDLK_UP:
+      wish.steps += key == SDLK_UP ? -1 : 1;
+      return true;
+    case SDLK_LEFT:
+    case SDLK_RIGHT:
+      wish.sideways += key == SDLK_LEFT ? -1 : 1;
+      return true;
+    case SDLK_SPACE:
+    case SDLK_RETURN:
+    case SDLK_KP_ENTER:
+      wish.press = true;
+      return true;
+    default:
+      return false;
   }
 }
 

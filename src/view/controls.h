@@ -52,6 +52,7 @@ enum class Action : std::uint8_t {
   panel_graphs,
   panel_solver,
   panel_loop,
+  navigate,  // keys and pad go to buttons and sliders
   help,
   fullscreen,
   quit,
@@ -98,14 +99,25 @@ struct Mouse {
 
 // Input that the panels used in the frame before.
 struct TakenInput {
-  bool keys = false;   // text is being typed
-  bool mouse = false;  // the pointer is over a panel
+  bool keys = false;       // text is being typed
+  bool mouse = false;      // the pointer is over a panel
+  bool navigates = false;  // arrows, Tab, Enter and Space go to the panels
+  bool is_modal = false;   // Tab begins that
+};
+
+// Moves between buttons and sliders, and what is done to the one that was reached.
+struct NavigationInput {
+  int steps = 0;     // to the next ones; negative: to those before
+  int sideways = 0;  // of a slider: to the right
+  bool press = false;
 };
 
 // What was asked for since the last call of take_wishes().
 struct Wishes {
   std::vector<Action> actions;
   std::vector<std::string> files;  // dropped
+  std::vector<SDL_Keycode> keys;   // pressed, by what is engraved on them, but not typed as text
+  NavigationInput navigation;
   vec2 orbit_px{0.0}, pan_px{0.0};
   double dolly = 1.0;  // factor for the camera's distance
 };
@@ -123,6 +135,7 @@ class Controls {
  private:
   enum class Drag { none, orbit, pan };
   void handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken);
+  bool navigate(SDL_Keycode key, bool is_back, const TakenInput& taken);
   void handle_mouse_button(const SDL_MouseButtonEvent& button, const TakenInput& taken);
   void handle_mouse_motion(const SDL_MouseMotionEvent& motion);
   void handle_window_event(const SDL_WindowEvent& window);

@@ -14,12 +14,14 @@
 
 #include "base/files.h"
 #include "draw/theme.h"
+#include "view/ui.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr double kBodyPixels = 14.5, kSmallPixels = 12.0, kTickPixels = 10.5, kTitlePixels = 17.0;
-constexpr double kLeastScale = 0.5, kMaxScale = 4.0;
+constexpr double kLeastScale = 0.5, kMaxWish = 4.0;
+constexpr double kMaxScale = kMaxWish * kMostTypeSize;
 constexpr double kMaxDisplayScale = 3.0;  // a higher value from the display is taken as wrong
 constexpr double kUsualDotsPerInch = 96.0;
 constexpr std::size_t kMaxFontBytes = 64 << 20;
@@ -157,9 +159,10 @@ void apply_style(const Theme& theme, double scale) {
 }
 
 double display_scale(double wish, double dots_per_inch) noexcept {
-  if (wish > 0.0) return bounded(wish);
+  if (wish > 0.0) return std::min(bounded(wish), kMaxWish);
   if (const char* text = std::getenv("GDK_SCALE"); text != nullptr) {
-    if (const double scale = std::strtod(text, nullptr); scale > 0.0) return bounded(scale);
+    if (const double scale = std::strtod(text, nullptr); scale > 0.0)
+      return std::min(bounded(scale), kMaxWish);
   }
   if (!(dots_per_inch > 0.0) || !std::isfinite(dots_per_inch)) return 1.0;
   return std::clamp(dots_per_inch / kUsualDotsPerInch, 1.0, kMaxDisplayScale);

@@ -72,8 +72,8 @@ PadDialog::State MapView::draw(Ui& ui, const ImVec2& window_px,
   const ImVec2 size = begin_modal(ui, "map", kMapWidth, kMapHeight, window_px);
   draw_step(ui);
   ImGui::SetCursorPosY(size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y);
-  const bool is_entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
-  if (button(ui, "map skip", "The pad has none  (Enter)") || is_entered) mapping_->skip();
+  if (button(ui, "map skip", "The pad has none  (Enter)") || is_typed(ui, SDLK_RETURN))
+    mapping_->skip();
   ImGui::SameLine();
   if (mapping_->has_left_stick()) {
     ButtonLook look;

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "session/script.h"
 #include "view/history.h"
 #include "view/panels.h"
 
@@ -23,18 +26,31 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::string text = fmt::format("{} ({})", title, unit);
   put_text(list, ui.fonts.small, ui.theme.text, at, text, width);
-  float x = at.x + width;
-  const float left = at.x + text_width(ui.fonts.small, text) + ui.px(8);
-  for (std::size_t i = plot.series.size(); i-- > 0;) {
-    const PlotSeries& series = plot.series[i];
+  struct Value {
+    std::string text;
+    Colour colour;
+  };
+  std::vector<Value> values;
+  float needed = 0.0f;
+  const float gap = ui.px(8);
+  for (const PlotSeries& series : plot.series) {
     if (series.points.empty() || !std::isfinite(series.points.back().y)) continue;
-    const std::string value =
-        fmt::format("{} {:.{}f}", series.letter, series.points.back().y, decimals);
-    x -= text_width(ui.fonts.tick, value);
-    if (x < left) return;
-    put_text(list, ui.fonts.tick, with_alpha(series.colour, 1.0), {x, at.y + ui.px(1)}, value,
-             width);
-    x -= ui.px(8);
+    values.push_back({fmt::format("{}{}{:.{}f}", series.letter, series.letter.empty() ? "" : ": ",
+                                  series.points.back().y, decimals),
+                      with_alpha(series.colour, 1.0)});
+    needed += text_width(ui.fonts.tick, values.back().text) + gap;
+  }
+  const float room = width - text_width(ui.fonts.small, text);
+  if (values.size() > 1 && needed > room) {  // the first one's, and how many there are
+    const auto one = static_cast<std::size_t>(std::max(ui.state.walker, 0));
+    const Value& shown = values[std::min(one, values.size() - 1)];
+    values = {{fmt::format("{}  of {}", shown.text, values.size()), shown.colour}};
+  }
+  float x = at.x + width;
+  for (std::size_t i = values.size(); i-- > 0;) {
+    x -= text_width(ui.fonts.tick, values[i].text);
+    put_text(list, ui.fonts.tick, values[i].colour, {x, at.y + ui.px(1)}, values[i].text, width);
+    x -= gap;
   }
 }
 
@@ -203,6 +219,29 @@ void draw_table(Ui& ui) {
   for (int i = 0; i < ui.in.frame.walker_count; ++i) draw_walker(ui, i);
 }
 
+// Which solver walks, live and recorded, and what differs.
+void draw_mode(Ui& ui) {
+  const float gap = std::round(ui.px(6)), width = ImGui::GetContentRegionAvail().x;
+  ButtonLook look;
+  look.width = std::floor((width - gap) / 2.0f);
+  look.height = std::round(ui.px(22));
+  look.is_enabled = ui.is_live();
+  for (const IkMode mode : {IkMode::paper, IkMode::robust}) {
+    look.is_on = ui.in.frame.ik == mode;
+    if (mode == IkMode::robust) ImGui::SameLine(0.0f, gap);
+    if (button(ui, mode == IkMode::paper ? "ik paper" : "ik robust",
+               kIkNames[static_cast<std::size_t>(mode)], look))
+      ui.out.commands.push_back(fmt::format("ik {}", kIkNames[static_cast<std::size_t>(mode)]));
+  }
+  note(
+      ui,
+      ui.in.frame.ik == IkMode::paper
+          ? "The paper's steps 1 to 7 and equation (5) with raw weights, without limits of joints."
+          : "Damped and within the limits of joints; only ratios of weights count, and a weight of "
+            "0.2 takes 2 iterations where the paper's takes 16.",
+      4);
+}
+
 void draw_tick_times(Ui& ui) {
   text_line(
       ui, ui.fonts.small, ui.theme.text,
@@ -232,9 +271,9 @@ void draw_live(Ui& ui, const LiveStatus& status) {
               fmt::format("{:.1f}, {:.1f} ms", status.frame_us_p50 / 1000.0,
                           status.frame_us_p99 / 1000.0));
   }
-  count_row(ui, "standstills", status.standstills);
-  count_row(ui, "too slow for the time", status.overloads);
-  value_row(ui, "skipped by these", fmt::format("{:.1f} s", status.skipped_s));
+  count_row(ui, "program stood still", status.standstills);
+  count_row(ui, "ticks took too long", status.overloads);
+  value_row(ui, "clock set forward by", fmt::format("{:.1f} s", status.skipped_s));
   value_row(ui, "scheduled as", status.time_policy.empty() ? "-" : status.time_policy);
   count_row(ui, "reports lost", status.pads.lost);
   value_row(ui, "plugged, unplugged",
@@ -266,6 +305,7 @@ void draw_solver_panel(Ui& ui) {
   const int walker = ui.walker();
   if (walker < 0) return note(ui, "no character yet");
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(4)});
+  draw_mode(ui);
   draw_table(ui);
   const GraphSpan span = graph_span(ui.in.history, walker, ui.in.cast.rate_hz);
   text_line(ui, ui.fonts.small, ui.theme.text, "Iterations of a tick");

@@ -19,6 +19,7 @@ void draw_stick_plane(Ui& ui, const ImVec2& min, float side_px, Side side,
 constexpr double kHalfHeight = 1.15;  // of the plane, in fractions of the logical range
 constexpr int kCirclePoints = 40, kBandPoints = 12;
 constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kLeastReach = 0.2;  // of a direction that counts; dualshock-tools'
 
 struct StickPlane {
   ImVec2 min;
@@ -90,6 +91,20 @@ void draw_trail(Ui& ui, ImDrawList& list, const StickPlane& plane, Side side) {
   }
 }
 
+// The outline reached in the last ten seconds.
+void draw_reached(Ui& ui, ImDrawList& list, const StickPlane& plane, Side side) {
+  const auto& reached = ui.state.memory.reached[side];
+  const auto point = [&](std::size_t k) {
+    const double angle = kTurn * static_cast<double>(k) / UiMemory::kDirections;
+    return plane.pixel(reached[k].radius * vec2(std::cos(angle), std::sin(angle)));
+  };
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    const std::size_t next = (k + 1) % reached.size();
+    if (std::min(reached[k].radius, reached[next].radius) < kLeastReach) continue;
+    list.AddLine(point(k), point(next), packed(with_alpha(ui.theme.warning, 0.9)), ui.px(1.4));
+  }
+}
+
 void draw_stick_plane(Ui& ui, const ImVec2& min, float side_px, Side side,
                       const StickCalibration& calibration) {
   const StickPlane plane{min, side_px};
@@ -98,6 +113,7 @@ void draw_stick_plane(Ui& ui, const ImVec2& min, float side_px, Side side,
   list.AddRectFilled(min, max, packed(ui.theme.plot), ui.px(4));
   list.PushClipRect(min, max, true);
   draw_zones(ui, list, plane, calibration);
+  draw_reached(ui, list, plane, side);
   draw_trail(ui, list, plane, side);
   const PadState& pad = ui.in.frame.pad.state;
   const vec2 raw =
@@ -197,6 +213,22 @@ void draw_shoulders(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
   }
 }
 
+// Those of the buttons that are too small for a letter, as most pads engrave them.
+void draw_pad_words(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
+  const auto word = [&](std::string_view text, float x, float y, float align) {
+    const float width = text_width(ui.fonts.tick, text);
+    put_text(list, ui.fonts.tick, ui.theme.secondary, {at.x + x * w - align * width, at.y + y * w},
+             text, width + 1.0f);
+  };
+  const float line = ui.fonts.tick->FontSize / w;
+  word("LT", 0.195f, 0.018f - 0.6f * line, 1.0f);
+  word("LB", 0.195f, 0.056f - 0.4f * line, 1.0f);
+  word("RT", 0.805f, 0.018f - 0.6f * line, 0.0f);
+  word("RB", 0.805f, 0.056f - 0.4f * line, 0.0f);
+  word("back", 0.425f, 0.190f, 0.5f);
+  word("start", 0.575f, 0.190f, 0.5f);
+}
+
 void draw_leaning_stick(Ui& ui, ImDrawList& list, const ImVec2& middle, float w, const vec2& raw,
                         bool is_pressed) {
   const float r = kStickRadius * w;
@@ -218,6 +250,7 @@ void draw_pad_picture(Ui& ui) {
   const PadState& pad = ui.in.frame.pad.state;
   draw_body(ui, list, corner, w);
   draw_shoulders(ui, list, corner, w);
+  draw_pad_words(ui, list, corner, w);
   const UiMemory::StickPlace place = place_of(ui.in.frame);
   draw_leaning_stick(ui, list, {corner.x + 0.265f * w, corner.y + 0.195f * w}, w,
                      place.raw[kLeftSide], pressed(pad, kButtonLeftStick));
@@ -249,9 +282,16 @@ void keep_trail(Ui& ui) {
   UiMemory& memory = ui.state.memory;
   const std::int64_t tick = ui.in.frame.tick;
   if (tick == memory.stick_tick) return;
-  if (tick < memory.stick_tick) memory.stick_trail.clear();
+  if (tick < memory.stick_tick) {
+    memory.stick_trail.clear();
+    memory.reached = {};
+  }
   memory.stick_tick = tick;
-  memory.stick_trail.push_back(place_of(ui.in.frame));
+  const UiMemory::StickPlace now = place_of(ui.in.frame);
+  const UiMemory::StickPlace before = memory.stick_trail.empty() ? now : memory.stick_trail.back();
+  for (const Side side : {kLeftSide, kRightSide})
+    add_reached(before.raw[side], now.raw[side], tick, ui.in.cast.rate_hz, memory.reached[side]);
+  memory.stick_trail.push_back(now);
   if (memory.stick_trail.size() > kTrailPlaces) {
     memory.stick_trail.erase(memory.stick_trail.begin());
   }
@@ -310,8 +350,13 @@ void draw_sticks(Ui& ui) {
     put_text(list, ui.fonts.tick, ui.theme.tick, {min.x, y + line}, "stick", label);
     put_text(list, ui.fonts.tick, ui.theme.text, {min.x + label, y + line},
              signed_pair(place.calibrated[s]), side - label);
+    const auto error = reached_error(ui.state.memory.reached[s]);
+    put_text(list, ui.fonts.tick, ui.theme.tick, {min.x, y + 2.0f * line}, "circle", label);
+    put_text(list, ui.fonts.tick, error ? ui.theme.text : ui.theme.secondary,
+             {min.x + label, y + 2.0f * line},
+             error ? fmt::format("{:.1f} % off", *error) : "turn it round", side - label);
   }
-  ImGui::Dummy({width, side + ui.px(6) + 2.0f * (ui.fonts.tick->FontSize + ui.px(2))});
+  ImGui::Dummy({width, side + ui.px(6) + 3.0f * (ui.fonts.tick->FontSize + ui.px(2))});
 }
 
 void draw_trigger(Ui& ui, const ImVec2& at, float width, std::string_view label, double value) {
@@ -392,6 +437,43 @@ void draw_waits(Ui& ui) {
 }
 
 }  // namespace
+
+void add_reached(const vec2& before, const vec2& now, std::int64_t tick, int rate_hz,
+                 std::array<UiMemory::Reached, UiMemory::kDirections>& reached) noexcept {
+  constexpr std::int64_t kKept_s = 10;
+  constexpr int kParts = 8;
+  constexpr double kMostTurn_rad = 1.0;  // between two frames; more is no turn along the rim
+  for (UiMemory::Reached& r : reached)
+    if (tick - r.tick > kKept_s * rate_hz) r.radius = 0.0;
+  if (!std::isfinite(before.x + before.y + now.x + now.y)) return;
+  const double from = std::atan2(before.y, before.x), radius = glm::length(now);
+  double turn = std::remainder(std::atan2(now.y, now.x) - from, kTurn);
+  const bool is_along = std::fabs(turn) < kMostTurn_rad && glm::length(before) > kLeastReach;
+  for (int part = is_along ? 1 : kParts; part <= kParts; ++part) {
+    const double share = static_cast<double>(part) / kParts;
+    const double angle = from + share * turn;
+    const double r = glm::length(before) + share * (radius - glm::length(before));
+    const auto count = static_cast<long>(UiMemory::kDirections);
+    const long k = std::lround(angle / kTurn * static_cast<double>(count));
+    UiMemory::Reached& to = reached[static_cast<std::size_t>(((k % count) + count) % count)];
+    if (r < to.radius) continue;
+    to = {r, tick};
+  }
+}
+
+std::optional<double> reached_error(
+    const std::array<UiMemory::Reached, UiMemory::kDirections>& reached) noexcept {
+  constexpr int kFewest = 44;  // of 48
+  double sum = 0.0;
+  int count = 0;
+  for (const UiMemory::Reached& r : reached) {
+    if (r.radius <= kLeastReach) continue;
+    sum += (r.radius - 1.0) * (r.radius - 1.0);
+    ++count;
+  }
+  if (count < kFewest) return std::nullopt;
+  return 100.0 * std::sqrt(sum / count);
+}
 
 void draw_pad_panel(Ui& ui) {
   keep_trail(ui);

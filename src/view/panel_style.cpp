@@ -349,10 +349,11 @@ void draw_choice(Ui& ui) {
     const float row = std::round(ui.px(19) + line * static_cast<float>(lines.size()) + ui.px(4));
     ImGui::PushID(static_cast<int>(i));
     ImGui::BeginDisabled(!ui.is_live());
-    const bool is_pressed = ImGui::InvisibleButton("style", {width, row});
+    bool is_pressed = ImGui::InvisibleButton("style", {width, row});
     ImGui::EndDisabled();
     ImGui::PopID();
     if (ui.is_live()) keep_item(id);
+    if (ui.is_live() && is_focused(ui, id)) is_pressed |= ui.in.navigation.press;
     explain(ui, id);
     const std::string who = who_walks_so(ui, name);
     const bool is_on = !who.empty();
@@ -403,6 +404,7 @@ void draw_save(Ui& ui) {
       "##style name", "name of a new style", name.data(), name.size(),
       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCharFilter, &accept);
   keep_item("style name");
+  if (is_focused(ui, "style name") && ui.in.navigation.press) ImGui::SetKeyboardFocusHere(-1);
   ImGui::PopStyleVar();
   ImGui::PopFont();
   ImGui::SameLine(0.0f, gap);
@@ -412,6 +414,56 @@ void draw_save(Ui& ui) {
   look.is_enabled = name[0] != '\0';
   const bool is_pressed = button(ui, "save style", "Save", look);
   if ((is_pressed || is_entered) && name[0] != '\0') ui.out.save_style = std::string(name.data());
+}
+
+constexpr double kMostExaggerated = 3.0;
+
+// The keys in which a style differs from an even walk, each once.
+template <class Visit>
+void each_deviation(const Ui& ui, const WalkerFrame& walker, Visit visit) {
+  static const StyleValues kEven;
+  for (const StyleKey& key : style_keys()) {
+    if (begins_with_one(kOfBoth, key.name)) continue;
+    const auto own = own_value(ui, walker, key), even = value_of(kEven, key.name);
+    if (own && even && *own != *even) visit(key, *own, *even);
+  }
+}
+
+// How many times its style's deviation from an even walk a character shows, by the key that
+// deviates most; none: it walks evenly.
+std::optional<double> exaggeration(const Ui& ui, const WalkerFrame& walker) {
+  std::optional<double> times;
+  double most = 0.0;
+  each_deviation(ui, walker, [&](const StyleKey& key, double own, double even) {
+    const double share = std::fabs(own - even) / (key.max - key.min);
+    if (share <= most) return;
+    most = share;
+    times = (value_of(walker.style, key.name).value_or(own) - even) / (own - even);
+  });
+  return times;
+}
+
+void draw_exaggerate(Ui& ui) {
+  const auto walkers = ui.selected();
+  const auto deviates = [&](const WalkerFrame& w) { return exaggeration(ui, w).has_value(); };
+  const auto one = std::ranges::find_if(walkers, deviates);
+  text_line(ui, ui.fonts.small, ui.theme.text, "exaggerate (times what differs from even)");
+  SliderLook look;
+  look.min = 1.0;
+  look.max = kMostExaggerated;
+  look.decimals = 1;
+  look.is_enabled = ui.is_live() && one != walkers.end();
+  const double now = one == walkers.end() ? 1.0 : exaggeration(ui, *one).value_or(1.0);
+  double times = wished_value(ui, "exaggerate", std::clamp(now, look.min, look.max)).value_or(1.0);
+  if (!slider(ui, "exaggerate", times, look)) return;
+  remember_wish(ui, "exaggerate", times);
+  for (const WalkerFrame& walker : walkers) {
+    each_deviation(ui, walker, [&](const StyleKey& key, double own, double even) {
+      const double value = std::clamp(even + times * (own - even), key.min, key.max);
+      ui.out.commands.push_back(
+          fmt::format("set {} {} {}", number_of(ui, walker), key.name, value));
+    });
+  }
 }
 
 void draw_buttons(Ui& ui) {
@@ -475,6 +527,7 @@ void draw_style_panel(Ui& ui) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), ui.px(3)});
   draw_choice(ui);
   draw_save(ui);
+  draw_exaggerate(ui);
   for (const StyleRow& row : rows_of(ui.state.memory)) draw_row(ui, row);
   draw_buttons(ui);
   ImGui::PopStyleVar();

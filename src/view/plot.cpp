@@ -133,7 +133,7 @@ struct EndLabel {
   const PlotSeries* series = nullptr;
 };
 
-// Letters at the curves' ends, moved apart where they would overlap.
+// Letters at the curves' ends, moved apart where they would overlap; none where there is no room.
 void draw_ends(ImDrawList& list, const PlotArea& area, const Plot& plot, const PlotStyle& style) {
   std::vector<EndLabel> ends;
   for (const PlotSeries& series : plot.series) {
@@ -145,8 +145,11 @@ void draw_ends(ImDrawList& list, const PlotArea& area, const Plot& plot, const P
   }
   std::stable_sort(ends.begin(), ends.end(),
                    [](const EndLabel& a, const EndLabel& b) { return a.y < b.y; });
-  const float height = style.fonts->tick->FontSize;
-  const float bottom = area.max.y - height * 0.4f;
+  constexpr float kClosest = 0.8f;  // of a line's height
+  const float line = style.fonts->tick->FontSize;
+  const float height = std::min(line, area.height() / static_cast<float>(ends.size()));
+  if (height < kClosest * line) return;
+  const float bottom = area.max.y - line * 0.4f;
   for (std::size_t i = 1; i < ends.size(); ++i) {
     ends[i].y = std::max(ends[i].y, ends[i - 1].y + height);
   }
@@ -155,8 +158,8 @@ void draw_ends(ImDrawList& list, const PlotArea& area, const Plot& plot, const P
     ends[i].y = std::min(ends[i].y, limit);
   }
   for (const EndLabel& end : ends) {
-    tick_label(list, style, {area.max.x + 5.0f * style.scale, end.y - height / 2.0f},
-               TextPlace::left, end.series->letter, faint(end.series->colour, 1.0));
+    tick_label(list, style, {area.max.x + 5.0f * style.scale, end.y - line / 2.0f}, TextPlace::left,
+               end.series->letter, faint(end.series->colour, 1.0));
   }
 }
 

@@ -116,18 +116,16 @@ PadDialog::State SelfTestView::draw(Ui& ui, const ImVec2& window_px,
   note(ui, drawable(prompt.seen), 4);
 
   ImGui::SetCursorPosY(size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y);
-  const auto is_key = [](int key) { return ImGui::IsKeyPressed(key, false); };
-  const bool is_entered = is_key(ImGui::GetKeyIndex(ImGuiKey_Enter));
   if (prompt.is_question) {
-    if (button(ui, "self test yes", "Yes  (Y)") || is_key(SDL_SCANCODE_Y))
+    if (button(ui, "self test yes", "Yes  (Y)") || is_typed(ui, SDLK_y))
       person_.answer(SelfTestPerson::Answer::yes);
     ImGui::SameLine();
   }
   if (button(ui, "self test no", prompt.is_question ? "No  (N)" : "It shows something else  (N)") ||
-      is_key(SDL_SCANCODE_N))
+      is_typed(ui, SDLK_n))
     person_.answer(SelfTestPerson::Answer::no);
   ImGui::SameLine();
-  if (button(ui, "self test next", "The pad cannot do it  (Enter)") || is_entered)
+  if (button(ui, "self test next", "The pad cannot do it  (Enter)") || is_typed(ui, SDLK_RETURN))
     person_.answer(SelfTestPerson::Answer::next);
   ImGui::SameLine();
   if (button(ui, "self test give up", "Give up  (Esc)"))

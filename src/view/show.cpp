@@ -59,6 +59,10 @@ class LiveShow final : public Show {
   void command(std::string_view text) override { session_->command(text); }
   void add_style(const Style& style) override { session_->add_style(style); }
   void rumble() override { session_->rumble(); }
+  std::optional<Error> end_recording() override {
+    options_.live.record.clear();
+    return session_->end_recording();
+  }
   bool has_ended() const noexcept override { return session_->has_ended(); }
   const LiveStatus* status() override {
     status_ = session_->status();

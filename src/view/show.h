@@ -56,6 +56,7 @@ class Show {
   virtual void command(std::string_view) {}
   virtual void add_style(const Style&) {}
   virtual void rumble() {}
+  virtual std::optional<Error> end_recording() { return std::nullopt; }
   virtual bool has_ended() const noexcept { return false; }  // of a recording that plays as the pad
   virtual const LiveStatus* status() { return nullptr; }
   // Playback only.

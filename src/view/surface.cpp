@@ -71,9 +71,9 @@ void set_gl_attributes() {
   SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
 }
 
-double scale_of_display(const SurfaceOptions& options) {
+double scale_of_display(const SurfaceOptions& options, int display) {
   float dots_per_inch = 0.0f;
-  if (options.is_hidden || SDL_GetDisplayDPI(0, &dots_per_inch, nullptr, nullptr) != 0) {
+  if (options.is_hidden || SDL_GetDisplayDPI(display, &dots_per_inch, nullptr, nullptr) != 0) {
     dots_per_inch = 0.0f;
   }
   return display_scale(options.scale, static_cast<double>(dots_per_inch));
@@ -118,7 +118,8 @@ Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions&
   if (std::string problem = display_problem(options); !problem.empty()) {
     return Error{std::move(problem)};
   }
-  surface->scale_ = scale_of_display(options);
+  surface->options_ = options;
+  surface->scale_ = scale_of_display(options, 0);
   set_gl_attributes();
   surface->window_ = new_window(options, surface->scale_);
   if (!surface->window_) return gl_problem("no window");
@@ -136,6 +137,12 @@ Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions&
   // Swaps in step with the display; if that is not possible, the caller limits the rate.
   SDL_GL_SetSwapInterval(options.is_hidden ? 0 : 1);
   return surface;
+}
+
+bool WindowSurface::follow_display() noexcept {
+  const double before = scale_;
+  scale_ = scale_of_display(options_, std::max(SDL_GetWindowDisplayIndex(window_), 0));
+  return scale_ != before;
 }
 
 // After an I/O error Xlib ends the program, in the error handler or right after it. Both handlers

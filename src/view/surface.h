@@ -40,6 +40,8 @@ class WindowSurface {
   SDL_Window* window() const noexcept { return window_; }
   SDL_GLContext context() const noexcept { return context_; }
   double scale() const noexcept { return scale_; }
+  // After the window was moved: takes the scale of the display that it is on. True: it is another.
+  bool follow_display() noexcept;
   void size(int& width_px, int& height_px) const noexcept;  // drawable pixels
   // Call it before drawing a frame: binds the frame buffer to draw into, which has that size. It is
   // the window's own or, because SDL's offscreen windows cannot grow, one in memory.
@@ -55,6 +57,7 @@ class WindowSurface {
   void outlive_x_server();
   SDL_Window* window_ = nullptr;
   SDL_GLContext context_ = nullptr;
+  SurfaceOptions options_;
   double scale_ = 1.0;
   // Offscreen: the frame buffer, its render buffer and their size.
   unsigned frame_buffer_ = 0, picture_ = 0;

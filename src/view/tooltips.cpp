@@ -34,7 +34,10 @@ constexpr Tip kTips[] = {
     {"menu", "More buttons, for which the window is too narrow."},
     {"trails", "The paths of the heels over the last steps."},
     {"source", "The motion that the walk is made of, as a stick figure."},
-    {"grid", "Lines every metre and every 20 cm."},
+    {"grid",
+     "Lines every metre and every 20 cm; from the start the blue one leads ahead, the orange one "
+     "to "
+     "the left."},
     {"shadows", "Shadows on the ground."},
     {"names", "Names above heads."},
     {"theme", "Dark or light."},
@@ -49,6 +52,11 @@ constexpr Tip kTips[] = {
     {"leg right", "Show the right leg."},
     {"rumble", "Let the motors of the pad beat once."},
     {"give back all", "Let the stick and the style set all values again."},
+    {"ik paper", "Everybody walks by the paper's solver; recorded."},
+    {"ik robust", "Everybody walks by the robust solver; recorded."},
+    {"exaggerate",
+     "Shows more of what the style changes, 1 to 3 times; the values below follow. all back: as it "
+     "was."},
     {"save style", "Keep these values as a style of yours, to be used at once."},
     {"style name", "Letters, digits, blanks, _ and -."},
     {"own all", "Undo every change of this style."},
@@ -79,8 +87,12 @@ constexpr Tip kTips[] = {
     {"graph ticks", "How long each tick took."},
     {"graph waits", "How long reports waited for the tick that used them."},
     {"pad picture", "The pad: what is pressed is lit, the sticks lean as they are pushed."},
-    {"pad stick left", "Orange: as the pad reports it. Blue: calibrated, as the walk uses it."},
-    {"pad stick right", "Orange: as the pad reports it. Blue: calibrated. It turns the camera."},
+    {"pad stick left",
+     "Orange: as the pad reports it, and the outline of the last ten seconds. Blue: calibrated, as "
+     "the walk uses it."},
+    {"pad stick right",
+     "Orange: as the pad reports it, and the outline of the last ten seconds. Blue: calibrated. It "
+     "turns the camera."},
 };
 
 // Items whose name begins like this.

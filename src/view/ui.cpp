@@ -125,6 +125,8 @@ void draw_message_card(Ui& ui, float width) {
     if (i + 1 < all.size()) ImGui::Dummy({1.0f, ui.px(2)});
   }
   if (all.size() > shown) note(ui, fmt::format("and {} before", all.size() - shown), 1);
+  if (!ui.in.finished_recording.empty() && button(ui, "replay recording", "Replay it"))
+    ui.out.replays = true;
   const ImVec2 end = ImGui::GetCursorScreenPos();
   ImGui::SetCursorScreenPos({begin.x + width - close, begin.y - ui.px(2)});
   ButtonLook look;
@@ -693,6 +695,8 @@ void draw_track(Ui& ui, const UiRect& rect) {
     shown = track.tick_at(ImGui::GetIO().MousePos.x);
     if (shown != timeline.tick) ui.out.seek_tick = shown;
   }
+  if (is_focused(ui, "timeline") && ui.in.navigation.sideways != 0)
+    ui.out.seek_tick = timeline.tick + ui.in.navigation.sideways * ui.in.cast.rate_hz;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float y = std::round(rect.y + rect.height / 2.0f), half = ui.px(3);
   if (rect.height >= ui.px(kTrackWithSeconds)) draw_seconds(ui, track);

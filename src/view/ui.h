@@ -40,10 +40,20 @@ struct UiMemory {
   struct StickPlace {
     std::array<vec2, 2> raw{}, calibrated{};  // left, right; raw in the stick's frame
   };
+  std::string focus;          // the item that keys and pad press; empty: they do not navigate
+  bool is_focus_new = false;  // it has to come into sight
   std::vector<Wish> wishes;
   double held = 0.0;                    // the last value of the slider being dragged
   std::vector<StickPlace> stick_trail;  // oldest first
   std::int64_t stick_tick = -1;
+  // The farthest that each stick was seen in 48 directions about the raw middle, within the last
+  // ten seconds.
+  static constexpr std::size_t kDirections = 48;
+  struct Reached {
+    double radius = 0.0;  // raw; 0: nowhere
+    std::int64_t tick = 0;
+  };
+  std::array<std::array<Reached, kDirections>, 2> reached{};  // left, right
   std::array<bool, kPanels> was_open{};
   bool has_drawn = false;
   std::array<char, 64> style_name{};
@@ -104,12 +114,15 @@ struct UiInput {
   std::vector<UiLabel> labels{};
   std::vector<std::string> messages{};         // errors and remarks, newest last
   std::vector<std::string> style_summaries{};  // of Cast::styles: what each does
-  std::string change{};     // what was changed last, and of whom; empty: nothing lately
-  std::string hint{};       // over the scene until somebody walks
-  std::string pad_hint{};   // why a pad may not be seen, and what to do
-  bool can_leave = false;   // the playback, for the live session before it
-  bool can_rumble = false;  // the pad that steers
-  bool is_modal = false;    // calibration or browser is open, so panels take no input
+  std::string change{};              // what was changed last, and of whom; empty: nothing lately
+  std::string finished_recording{};  // a message offers to replay it; empty: none
+  std::string hint{};                // over the scene until somebody walks
+  std::string pad_hint{};            // why a pad may not be seen, and what to do
+  bool can_leave = false;            // the playback, for the live session before it
+  bool can_rumble = false;           // the pad that steers
+  NavigationInput navigation{};
+  std::span<const SDL_Keycode> keys{};  // pressed in this frame
+  bool is_modal = false;                // calibration or browser is open, so panels take no input
 };
 struct UiOutput {
   std::vector<Action> actions;
@@ -120,6 +133,7 @@ struct UiOutput {
   std::optional<std::string> save_style;  // saves the chosen character's style by this name
   bool dismisses_messages = false;
   std::optional<double> type_size;
+  bool replays = false;  // UiInput::finished_recording
   bool rumbles = false;  // asks for one beat of the pad's motors
 };
 
@@ -136,6 +150,17 @@ Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, i
 // actions, not in here.
 UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, double scale,
                  UiState& state);
+
+// Moves UiMemory::focus; after everything was drawn.
+void move_focus(const UiInput& input, UiMemory& memory);
+
+// Takes the raw place of a stick into what it reached; the way from `before` counts too.
+void add_reached(const vec2& before, const vec2& now, std::int64_t tick, int rate_hz,
+                 std::array<UiMemory::Reached, UiMemory::kDirections>& reached) noexcept;
+// Percent, 100 sqrt(mean((r - 1)^2)) as gamepad testers count it; none until nearly all directions
+// were reached.
+std::optional<double> reached_error(
+    const std::array<UiMemory::Reached, UiMemory::kDirections>& reached) noexcept;
 
 // For tests and scripts: rectangles of what can be clicked in the frame drawn last, in window
 // pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"). Items that are scrolled

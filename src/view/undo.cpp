@@ -62,6 +62,7 @@ void give_back(const Command& command, int walker, const WalkerFrame& before, co
     case Verb::steers:
     case Verb::points:
     case Verb::restart:
+    case Verb::ik:
       return;
   }
 }
@@ -80,6 +81,8 @@ std::vector<std::string> opposite_of(std::string_view text, const SessionFrame& 
   std::vector<std::string> back;
   const auto command = parsed_command(text);
   if (!command) return back;
+  if (command->verb == Verb::ik)
+    return {fmt::format("ik {}", kIkNames[static_cast<std::size_t>(frame.ik)])};
   for (int walker = 1; walker <= frame.walker_count; ++walker) {
     if (command->walker != 0 && command->walker != walker) continue;
     give_back(*command, walker, frame.walkers[static_cast<std::size_t>(walker - 1)], cast, back);

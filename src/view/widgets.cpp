@@ -32,6 +32,7 @@ std::string_view fitting(const ImFont* font, std::string_view text, float width)
 // Of the frame drawn last; only one window draws, from one thread.
 std::vector<UiItem> items;
 std::vector<std::string> cut, drawn;
+std::vector<std::string> focusable;  // in the order of drawing, those out of sight too
 
 void keep(std::string_view name, const ImVec2& min, const ImVec2& max, const ImRect& clip) {
   ImRect rect(min, max);
@@ -252,6 +253,7 @@ void clear_items() {
   items.clear();
   cut.clear();
   drawn.clear();
+  focusable.clear();
 }
 
 void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max) {
@@ -271,6 +273,41 @@ void keep_item(std::string_view name) {
 const std::vector<UiItem>& ui_items() noexcept { return items; }
 const std::vector<std::string>& drawn_texts() noexcept { return drawn; }
 const std::vector<std::string>& cut_texts() noexcept { return cut; }
+
+bool is_focused(Ui& ui, std::string_view name) {
+  ImGuiWindow& window = *ImGui::GetCurrentWindow();
+  const bool is_in_menu = (window.Flags & ImGuiWindowFlags_Popup) != 0;
+  // Behind an open box or menu nothing is reached.
+  const bool is_behind = (window.RootWindow->Flags & ImGuiWindowFlags_NoMouseInputs) != 0;
+  if (is_behind || is_menu_open() != is_in_menu) return false;
+  focusable.emplace_back(name);
+  if (ui.state.memory.focus != name) return false;
+  const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
+  const float out = ui.px(2);
+  window.DrawList->AddRect({min.x - out, min.y - out}, {max.x + out, max.y + out},
+                           packed(ui.theme.left), ui.px(6), 0, ui.px(2));
+  if (!window.InnerRect.Contains(ImRect(min, max)) && ui.state.memory.is_focus_new)
+    ImGui::SetScrollHereY(0.5f);
+  return true;
+}
+
+bool is_typed(const Ui& ui, SDL_Keycode key) {
+  if (key == SDLK_RETURN && !ui.state.memory.focus.empty()) return false;
+  return std::ranges::count(ui.in.keys, key) > 0;
+}
+
+void move_focus(const UiInput& input, UiMemory& memory) {
+  memory.is_focus_new = false;
+  const int steps = input.navigation.steps;
+  if (focusable.empty() || (memory.focus.empty() && steps == 0)) return;
+  const auto at = std::ranges::find(focusable, memory.focus);
+  const auto count = static_cast<std::ptrdiff_t>(focusable.size());
+  std::ptrdiff_t next = at - focusable.begin() + steps;
+  if (at == focusable.end()) next = steps < 0 ? count - 1 : 0;
+  std::string wanted = focusable[static_cast<std::size_t>(((next % count) + count) % count)];
+  memory.is_focus_new = wanted != memory.focus;
+  memory.focus = std::move(wanted);
+}
 
 namespace {
 
@@ -373,8 +410,9 @@ bool button(Ui& ui, std::string_view id, std::string_view label, const ButtonLoo
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
   draw_button_back(ui, min, max, look);
   draw_button_face(ui, min, max, label, look);
+  const bool is_reached = look.is_enabled && is_focused(ui, id);
   explain(ui, id);
-  return is_pressed;
+  return is_pressed || (is_reached && ui.in.navigation.press);
 }
 
 void send(Ui& ui, std::string_view verb, std::string_view rest) {
@@ -424,6 +462,15 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
     const double wanted = value_under_mouse(ui, min.x, max.x, look);
     is_moved = wanted != held;
     held = value = wanted;
+  }
+  const bool is_reached = look.is_enabled && is_focused(ui, id);
+  if (is_reached && ui.in.navigation.sideways != 0 && look.max > look.min) {
+    constexpr double kKeySteps = 40.0;  // from end to end
+    const double unit = std::pow(10.0, look.decimals);
+    const double step = std::max((look.max - look.min) / kKeySteps, 1.0 / unit);
+    const double wanted = std::round((value + ui.in.navigation.sideways * step) * unit) / unit;
+    value = std::clamp(wanted, look.min, look.max);
+    is_moved = true;
   }
   draw_slider(ui, min, max, value, look);
   explain(ui, id);

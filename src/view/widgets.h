@@ -60,6 +60,10 @@ void clear_items();
 void keep_item(std::string_view name);
 void keep_item(std::string_view name, const ImVec2& min, const ImVec2& max);
 void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max);  // not a widget
+// Keys and pad reach the last widget by this name. True: they are there; it is outlined.
+bool is_focused(Ui& ui, std::string_view name);
+// Whether the key was pressed (by what is engraved on it); Enter only while nothing is focused.
+bool is_typed(const Ui& ui, SDL_Keycode key);
 // Explains the last widget while the pointer rests on it (view/tooltips.h).
 void explain(Ui& ui, std::string_view item);
 void show_tip(Ui& ui, std::string_view text);  // the same with another text

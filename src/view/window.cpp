@@ -152,6 +152,7 @@ class WindowLoop {
   void handle_events();
   void follow_wishes(Wishes wishes);
   void add_button_actions(std::vector<Action>& wanted);
+  bool navigates(Action action);
   void move_camera(const Wishes& wishes);
   void call_script();
   void apply_layout(const UiState& layout);
@@ -203,6 +204,7 @@ class WindowLoop {
   void open_file(const std::string& path);
   void choose_next_terrain();
   void toggle_recording();
+  void end_recording();
   void begin_calibration();
   using PadDialogStart = Result<std::unique_ptr<PadDialog>>(const PadDialogOptions&);
   void begin_pad_dialog(PadDialogStart& start);
@@ -231,12 +233,15 @@ class WindowLoop {
   SceneContent content_;
   Controls controls_;
   ButtonPresses presses_;
+  std::vector<SDL_Keycode> keys_;  // of this frame, like the next
+  NavigationInput navigation_;
   FileBrowser browser_;
   Messages messages_;
   UndoList undo_;
   std::string change_;  // what was changed last, and of whom
   std::int64_t change_ns_ = 0;
   std::vector<std::string> style_summaries_;  // of the show's styles
+  std::string finished_recording_;            // that a message offers to replay
   std::string pad_hint_;
   std::int64_t pad_hint_ns_ = 0;
   FrameClock clock_;
@@ -256,6 +261,8 @@ WindowLoop::WindowLoop(const WindowOptions& options)
     : options_(options), browser_(options.recent_file) {
   // Without a pad the keyboard steers. For pictures the session's time is that of the frames.
   options_.session.live.keyboard = true;
+  if (const std::string& record = options_.session.live.record; !record.empty())
+    options_.record_folder = std::filesystem::path(record).parent_path();
   if (makes_pictures()) options_.session.live.clock = SessionSpec::Live::Clock::by_hand;
 }
 
@@ -409,12 +416,20 @@ void WindowLoop::call_script() {
 void WindowLoop::handle_events() {
   for (SDL_Event event; !surface_->is_lost() && SDL_PollEvent(&event) != 0;) {
     gui_->handle_event(event);
-    controls_.handle_event(event, gui_->taken_input());
+    TakenInput taken = gui_->taken_input();
+    taken.navigates = !state_.memory.focus.empty();
+    taken.is_modal = is_modal();
+    controls_.handle_event(event, taken);
     if (event.type == SDL_DROPFILE) SDL_free(event.drop.file);
+    const bool is_moved =
+        event.type == SDL_WINDOWEVENT && (event.window.event == SDL_WINDOWEVENT_MOVED ||
+                                          event.window.event == SDL_WINDOWEVENT_DISPLAY_CHANGED);
+    if (is_moved && surface_->follow_display()) set_type_size(state_.type_size);
   }
 }
 
 void WindowLoop::follow_wishes(Wishes wishes) {
+  navigation_ = {};
   if (show_->is_live() && !makes_pictures()) add_button_actions(wishes.actions);
   for (const Action action : wishes.actions) {
     const bool is_always = action == Action::back || action == Action::quit ||
@@ -425,6 +440,10 @@ void WindowLoop::follow_wishes(Wishes wishes) {
   if (is_modal()) controls_.release_all();
   show_->steer(controls_.walk());
   move_camera(wishes);
+  keys_ = std::move(wishes.keys);
+  navigation_.steps += wishes.navigation.steps;
+  navigation_.sideways += wishes.navigation.sideways;
+  navigation_.press |= wishes.navigation.press;
 }
 
 // A recording that plays as the pad steers and moves the camera as it did, but its buttons cannot
@@ -438,7 +457,18 @@ void WindowLoop::add_button_actions(std::vector<Action>& wanted) {
              action == Action::open_file || action == Action::calibrate || action == Action::quit;
     });
   }
+  if (!state_.memory.focus.empty())
+    std::erase_if(pressed, [this](Action a) { return navigates(a); });
   wanted.insert(wanted.end(), pressed.begin(), pressed.end());
+}
+
+// While the pad is in the panels its D-pad and its lower button have no other meaning.
+bool WindowLoop::navigates(Action action) {
+  const int button = info_of(action).button;
+  navigation_.steps += (button == kButtonDpadDown) - (button == kButtonDpadUp);
+  navigation_.sideways += (button == kButtonDpadRight) - (button == kButtonDpadLeft);
+  navigation_.press |= button == kButtonA;
+  return button == kButtonA || (button >= kButtonDpadUp && button <= kButtonDpadRight);
 }
 
 void WindowLoop::move_camera(const Wishes& wishes) {
@@ -465,6 +495,7 @@ void WindowLoop::update_show() {
   } else {
     show_->update(clock_.passed_s());
     messages_.forget_before(clock_.now_ns() - kMessage_ns);
+    if (messages_.sentences().empty()) finished_recording_.clear();
   }
   show_remarks();
   if (!show_->has_ended() || std::exchange(is_end_told_, true) || makes_pictures()) return;
@@ -637,7 +668,10 @@ UiInput WindowLoop::ui_input() {
              .labels = {},
              .messages = messages_.sentences(),
              .style_summaries = style_summaries_,
+             .finished_recording = finished_recording_,
              .can_leave = live_before_.has_value(),
+             .navigation = navigation_,
+             .keys = keys_,
              .is_modal = is_modal()};
   has_walked_ = has_walked_ || has_walked();
   const LiveStatus* status = show_->is_live() ? show_->status() : nullptr;
@@ -674,6 +708,7 @@ UiOutput WindowLoop::draw_panels(int width_px, int height_px, bool is_drawn) {
   Ui ui{in, theme, gui_->fonts(), static_cast<float>(scale()), state_, out};
   draw_browser(ui, window_px);
   draw_pad_dialog(ui, window_px);
+  move_focus(in, state_.memory);
   if (is_drawn) gui_->end();
   if (!is_drawn) gui_->end_undrawn();
   return out;
@@ -718,6 +753,7 @@ void WindowLoop::run_actions(const UiOutput& out) {
   if (out.is_looping) show_->set_looping(*out.is_looping);
   if (out.save_style) save_walkers_style(*out.save_style);
   if (out.dismisses_messages) messages_.clear();
+  if (out.replays) open_file(std::exchange(finished_recording_, {}));
   if (const auto file = std::exchange(chosen_file_, std::nullopt)) open_file(*file);
   if (pad_dialog_ && pad_dialog_state_ != PadDialog::State::goes_on)
     end_pad_dialog(pad_dialog_state_);
@@ -789,6 +825,9 @@ bool WindowLoop::run_view_action(Action action) {
       return true;
     case Action::source:
       state_.has_source = !state_.has_source;
+      return true;
+    case Action::navigate:
+      state_.memory.focus = state_.memory.focus.empty() ? "play" : "";
       return true;
     case Action::help:
       state_.is_help_open = !state_.is_help_open;
@@ -902,6 +941,8 @@ void WindowLoop::send_command(const std::string& command) {
       return say_change(fmt::format("{} by the stick for {}", words_of_key(parsed->name), whom));
     case Command::Verb::stick:
       return say_change(fmt::format("everything by the stick for {}", whom));
+    case Command::Verb::ik:
+      return say_change(fmt::format("the {} solver for everybody", parsed->name));
     default:
       return;
   }
@@ -923,6 +964,8 @@ void WindowLoop::say_change(std::string what) {
 void WindowLoop::go_back() {
   if (is_menu_open()) {
     close_menus();
+  } else if (!state_.memory.focus.empty()) {
+    state_.memory.focus.clear();
   } else if (state_.is_help_open) {
     state_.is_help_open = false;
   } else if (browser_.is_open()) {
@@ -956,11 +999,13 @@ void WindowLoop::save_walkers_style(const std::string& name) {
 constexpr std::size_t kMostRemarks = 200;
 constexpr int kMostOfOneName = 100;
 
-// A new name such as gaitpad-20240229-235959.hid in the working directory; empty if none is free.
-std::string new_file(const char* ending) {
-  const std::string name =
-      fmt::format("gaitpad-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
+// A new name such as gaitpad-20240229-235959.hid in the folder; empty if none is free.
+std::string new_file(const std::string& folder, const char* ending) {
   std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  const std::string name =
+      std::filesystem::path(folder) /
+      fmt::format("gaitpad-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
   for (int n = 1; n < kMostOfOneName; ++n) {
     const std::string path = n == 1 ? name + ending : fmt::format("{}-{}{}", name, n, ending);
     if (!std::filesystem::exists(path, error) && !std::filesystem::exists(path + ".part", error))
@@ -1090,11 +1135,27 @@ void WindowLoop::toggle_recording() {
   if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
   if (makes_pictures()) return show_message("no recording can be started while pictures are made");
   SessionSpec next = show_->options();
-  const bool is_recorded = !next.live.record.empty();
-  next.live.record = is_recorded ? "" : new_file(".hid");
-  if (!is_recorded && next.live.record.empty())
-    return show_message("no name is free for a recording");
-  if (switch_to(next) && !is_recorded) show_message("recording to " + next.live.record);
+  if (!next.live.record.empty()) return end_recording();
+  next.live.record = new_file(options_.record_folder, ".hid");
+  if (next.live.record.empty()) return show_message("no name is free for a recording");
+  // A recording begins with its session, which walks in the styles of the one before.
+  const auto styles = [this] {
+    return opposite_of("style " + show_->cast().styles.front(), show_->frame(), show_->cast());
+  };
+  const std::vector<std::string> before = styles();
+  if (!switch_to(next)) return;
+  if (const auto now = styles(); now != before)
+    for (const std::string& command : before) show_->command(command);
+  show_message("recording to " + next.live.record);
+}
+
+// The session goes on.
+void WindowLoop::end_recording() {
+  const std::string path = show_->options().live.record;
+  if (auto problem = show_->end_recording()) return show_message(problem->message);
+  show_remarks();
+  finished_recording_ = path;
+  show_message("the recording " + path + " is complete");
 }
 
 void WindowLoop::begin_calibration() {
@@ -1130,7 +1191,7 @@ void WindowLoop::end_pad_dialog(PadDialog::State state) {
 }
 
 void WindowLoop::take_screenshot(int width_px, int height_px) {
-  const std::string path = new_file(".png");
+  const std::string path = new_file(options_.record_folder, ".png");
   if (path.empty()) return show_message("no name is free for a picture");
   const auto problem = write_png(path, read_pixels(width_px, height_px));
   show_message(problem ? problem->message : "written to " + path);

@@ -32,7 +32,10 @@ struct WindowOptions {
   SessionSpec session;  // live, or a playback if session.replay.trace is not empty
   std::string without_display = "play --no-window walks without one";  // for the error
   std::string program = "gaitpad";  // its name and version, for the report of a self-test
-  std::string calibration_folder;   // where calibrations are kept (calibration_store.h)
+  // Where new recordings and pictures go, made when missing; empty: the working directory. A
+  // recording that the session begins with (session.live.record) says where the next ones go.
+  std::string record_folder;
+  std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
   std::string layout_file;  // remembers the window from one start to the next; empty: nothing does
   std::string recent_file;  // remembers the files that were opened; empty: nothing does
   // Ends after so many; 0: when closed, or with the trace if pictures are made of one.

@@ -3,6 +3,8 @@ import json
 
 import pytest
 
+from support import program as programs
+
 JOINTS = ["UpLeg", "Leg", "Foot", "ToeBase"]
 
 
@@ -34,7 +36,7 @@ def told(run):
 
 def test_says_what_a_motion_holds(run, told, walk):
     got = told(walk)
-    assert set(got) == {"metres_per_unit", "frame_rate_hz", "frames", "joints", "legs", "flight", "flight_paper", "gait"}
+    assert set(got) == {"metres_per_unit", "frame_rate_hz", "frames", "joints", "legs", "flight", "flight_paper", "gait", "reason"}
     assert got["metres_per_unit"] == 0.01 and got["frames"] == 2 and abs(got["frame_rate_hz"] - 100) < 1e-9
     assert got["joints"] == ["Hips"] + [s + j for s in ("Left", "Right") for j in JOINTS]
     left = got["legs"]["left"]
@@ -42,7 +44,8 @@ def test_says_what_a_motion_holds(run, told, walk):
         hip="LeftUpLeg", knee="LeftLeg", ankle="LeftFoot", toe="LeftToeBase")
     assert abs(left["length_m"] - 0.8) < 1e-12
     assert got["flight"] == got["flight_paper"] == {"left": None, "right": None}
-    assert got["gait"] is None and "gait          none, walk.bvh: has fewer than 6 frames" in run("motion", walk).stdout
+    assert got["gait"] is None and got["reason"].startswith("walk.bvh: has fewer than 6 frames")
+    assert "gait          none, walk.bvh: has fewer than 6 frames" in run("motion", walk).stdout
     assert "LeftUpLeg - LeftLeg - LeftFoot - LeftToeBase" in run("motion", walk).stdout
 
 
@@ -121,3 +124,12 @@ def test_an_amc_file_finds_its_asf_or_is_told_of_it(refuse, told, tmp_path):
 def test_a_key_framed_walk_goes_by_its_name_and_an_unknown_name_lists_the_known_ones(refuse, told):
     assert all(told("keyframe_walk")["flight"].values())
     refuse("motion", "moonwalk", says=('no "moonwalk" in config/motions (known: ', "keyframe_walk"))
+
+
+def test_feet_of_a_walk_on_the_spot_do_not_fly(run, told):
+    clip = programs.ROOT.parent / "shared/data/mocap/makehuman_walk1.bvh"
+    if not clip.exists():
+        pytest.skip("the shared motions are not here")
+    got = told(clip)
+    assert got["flight"] == got["flight_paper"] == {"left": None, "right": None}
+    assert "walks on the spot" in got["reason"] and got["gait"] is None

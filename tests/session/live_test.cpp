@@ -131,6 +131,18 @@ TEST_F(Live, DestroyingASessionCompletesItsRecording) {
   EXPECT_TRUE(read_trace(options_.live.record));
 }
 
+TEST_F(Live, TheSessionGoesOnWhenItsRecordingIsEnded) {
+  auto session = started();
+  EXPECT_TRUE(comes_true([&] { return session->status().pads.reports > 10; }));
+  EXPECT_FALSE(session->end_recording());
+  const std::int64_t ticks = session->status().ticks;
+  EXPECT_GT(replayed().ticks, 0);
+  EXPECT_LE(replayed().ticks, ticks);
+  EXPECT_TRUE(comes_true([&] { return session->status().ticks > ticks + 10; }));
+  EXPECT_FALSE(session->end_recording());  // there is none
+  EXPECT_TRUE(session->stop());
+}
+
 TEST_F(Live, InvalidOptionsAreRefused) {
   options_.rate_hz = 0;
   EXPECT_EQ(LiveSession::start(options_).error().message,

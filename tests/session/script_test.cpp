@@ -39,6 +39,8 @@ TEST(Commands, AreForAllOrForOne) {
   expect("stick points", Verb::points, 0, "points", 0);
   expect("stick points -90.5", Verb::points, 0, "points", -90.5);
   expect("reset", Verb::restart, 0, "", 0);
+  expect("ik paper", Verb::ik, 0, "paper", 0);
+  expect("ik robust", Verb::ik, 0, "robust", 0);
   expect("mark", Verb::mark, 0, "", 0);
   expect("mark  what ever 1 2 3", Verb::mark, 0, "", 0);
 }
@@ -61,7 +63,7 @@ TEST(Commands, WhatIsWrongIsNamedWithWhatIsKnown) {
   }
   EXPECT_EQ(problem("style limp"), "unknown style \"limp\"; known: even, my walk");
   EXPECT_EQ(problem("foo 1"),
-            "unknown command \"foo\"; known: style, set, gait, stick, reset, mark");
+            "unknown command \"foo\"; known: style, set, gait, stick, reset, ik, mark");
   EXPECT_EQ(problem("style 3 even"), "there is no character 3; they are numbered 1 to 2");
   EXPECT_EQ(problem("set hip_sway 9"), "hip_sway of 9 is not within 0 .. 3");
   EXPECT_EQ(problem("set hip_swya 1"),
@@ -79,7 +81,8 @@ TEST(Commands, MalformedOnesAreRejected) {
       "set fatigue 1e999\nset fatigue 0.5 0.5\nset 0 fatigue 0.5\nset 1 2 fatigue 0.5\n"
       "set 99999999999 fatigue 0.5\ngait\ngait 1\ngait speed_m_s\ngait speed_m_s 1 2\n"
       "gait stick stick 1\nstick\nstick turns\nstick steers 1\nstick points here\nstick points 1 "
-      "2\ngait stick 1\ngait stick stick\nreset 1\nreset now\nresets\nsing");
+      "2\ngait stick 1\ngait stick stick\nreset 1\nreset now\nresets\nsing\nik\nik both\n"
+      "ik 1 paper\nik paper 1");
   for (std::string text; std::getline(lines, text);) EXPECT_FALSE(parsed_command(text)) << text;
 }
 
@@ -145,7 +148,8 @@ class Scripted : public Live {
 
 TEST_F(Scripted, EventsAreRecordedAndAReplayNeedsNoScript) {
   options_.walk.script =
-      write("walk.toml", event("1", "style stiff_knee") + event("0.2", "gait speed_m_s 1.2"));
+      write("walk.toml", event("1", "style stiff_knee") + event("0.2", "gait speed_m_s 1.2") +
+                             event("2", "ik paper") + event("3", "ik robust"));
   const std::uint64_t live = hash_of_live(1200);
   EXPECT_EQ(style_, "stiff_knee");
   options_.walk.script.clear();

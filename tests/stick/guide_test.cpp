@@ -393,6 +393,49 @@ TEST(CalibrationGuide, APushMustBeHeldAndReleased) {
   EXPECT_EQ(hand.guide.step(), GuideStep::right);
 }
 
+TEST(CalibrationGuide, AShortPushIsToldToBeHeldLonger) {
+  MadeHand hand(Controls::one_stick);
+  hand.wait(0.2);
+  hand.skip_to(GuideStep::forward);
+  hand.push(0, vec2(0, 1), 0.05);
+  EXPECT_EQ(hand.text(), "that was short: hold it a little longer");
+  hand.push(0, vec2(0, 1));
+  EXPECT_EQ(hand.guide.step(), GuideStep::right);
+  EXPECT_EQ(hand.text(), "waiting for it");
+}
+
+TEST(CalibrationGuide, ATurnThatItsPushesGoBeyondIsAskedForOnceMore) {
+  MadeHand hand(Controls::two_sticks);
+  for (int side = 0; side < 2; ++side) hand.rest_step(side);
+  hand.turn(0, 3.0, 0.8 * hand.reach);  // along the rim, but not pressed to it
+  hand.move(0, vec2(0.0), 0.05);
+  hand.full_turns(1);
+  const std::array<vec2, 4> sides = {vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(-1, 0)};
+  for (const vec2& to : sides)
+    for (int side = 0; side < 2; ++side) hand.push(side, to);
+  ASSERT_EQ(hand.guide.step(), GuideStep::turn);
+  EXPECT_TRUE(hand.text().starts_with("it was not pressed to its rim, once more: 0 of 48"))
+      << hand.text();
+  EXPECT_TRUE(hand.text(1).starts_with("48 of 48")) << hand.text(1);
+  hand.full_turns(0);
+  hand.wait(0.1);
+  EXPECT_EQ(hand.guide.step(), GuideStep::done);  // the pushes stay
+}
+
+TEST(CalibrationGuide, AStickThatRestsAsideIsLetGoMoreOften) {
+  MadeHand hand(Controls::one_stick);
+  hand.centre = vec2(0.12, 0.0);
+  hand.reach = 0.85;
+  hand.release_around(0, 8);
+  hand.wait(2.0);
+  EXPECT_EQ(hand.guide.step(), GuideStep::rest);
+  EXPECT_EQ(hand.text(),
+            "8 of 10 releases; it rests 0.12 off its middle: take your thumb right off");
+  hand.release_around(0, 3);
+  hand.wait(2.0);
+  EXPECT_EQ(hand.guide.step(), GuideStep::turn);
+}
+
 TEST(CalibrationGuide, WhatIsHeldWhenAStepBeginsDoesNotCountForIt) {
   MadeHand hand(Controls::one_stick);
   hand.skip_to(GuideStep::turn);

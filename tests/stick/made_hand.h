@@ -130,7 +130,7 @@ struct MadeHand {
   }
   // Does the whole first step, with the rest at its end.
   void rest_step(int side) {
-    release_around(side, 8);
+    release_around(side, kWantedReleasesAside);
     wait(2.0);
   }
   void turn(int side, double turns, double radius, double start_turn = 0.0) {

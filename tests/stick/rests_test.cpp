@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "stick/made_stick.h"
+#include "stick/pad_analysis.h"
 
 namespace gaitpad {
 namespace {
@@ -254,6 +255,19 @@ TEST(RestStatistics, DisplacedRestsAreCounted) {
     EXPECT_NEAR(s.displaced_by, 0.15, 0.05) << seed;
   }
   EXPECT_GE(found, 8);
+}
+
+// Of twelve releases, the last one at the end of the recording, two are displaced.
+TEST(RestStatistics, TheLastHandsOffTimeCountsToo) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    MadeStick stick = usual_stick(seed);
+    stick.displaced = 0.1 + 0.005 * seed;
+    stick.displaced_times = 2;
+    stick.reports_changes_only = seed % 3 == 0;
+    const StickStatistics s = statistics_of(stick, made_track(stick, 7));
+    EXPECT_GE(s.displaced, 1) << seed;
+    EXPECT_NE(stick_advice(s, {}).verdict, Verdict::good) << seed << stick_advice(s, {}).reason;
+  }
 }
 
 }  // namespace

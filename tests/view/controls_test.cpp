@@ -210,6 +210,39 @@ TEST(Controls, TheWheelGoesNearerAndBackToWhereItWas) {
   EXPECT_NEAR(nearer * controls.take_wishes().dolly, 1.0, 1e-12);
 }
 
+// On a QWERTZ keyboard Y is where Z is on QWERTY: what is engraved counts.
+TEST(Controls, KeysAreTakenByWhatIsEngravedOnThem) {
+  SDL_Event event = {};
+  event.type = SDL_KEYDOWN;
+  event.key.keysym.sym = SDLK_y;
+  event.key.keysym.scancode = SDL_SCANCODE_Z;
+  Controls controls;
+  controls.handle_event(event, {});
+  EXPECT_EQ(controls.take_wishes().keys, std::vector<SDL_Keycode>{SDLK_y});
+  TakenInput typing;
+  typing.keys = true;
+  controls.handle_event(event, typing);
+  EXPECT_TRUE(controls.take_wishes().keys.empty());
+}
+
+TEST(Controls, WhileKeysNavigateTheyNeitherWalkNorAct) {
+  TakenInput taken;
+  taken.navigates = true;
+  Controls controls;
+  for (const SDL_Keycode code : {SDLK_DOWN, SDLK_TAB, SDLK_RIGHT, SDLK_RIGHT, SDLK_SPACE}) {
+    SDL_Event event = {};
+    event.type = SDL_KEYDOWN;
+    event.key.keysym.sym = code;
+    controls.handle_event(event, taken);
+  }
+  EXPECT_EQ(controls.walk(), vec2(0.0));
+  const Wishes wishes = controls.take_wishes();
+  EXPECT_TRUE(wishes.actions.empty());
+  EXPECT_EQ(wishes.navigation.steps, 2);
+  EXPECT_EQ(wishes.navigation.sideways, 2);
+  EXPECT_TRUE(wishes.navigation.press);
+}
+
 SessionFrame pressed_times(int button, std::uint32_t times) {
   SessionFrame frame;
   frame.presses[static_cast<std::size_t>(button)] = times;

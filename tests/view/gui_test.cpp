@@ -60,6 +60,10 @@ TEST_F(FontTest, TheUsersOwnFontComesFirst) {
   EXPECT_EQ(load_fonts(1.0).family, dejavu);
 }
 
+TEST_F(FontTest, TypeGrowsAsFarAsItsScale) {
+  EXPECT_EQ(load_fonts(6.4).body->FontSize, std::round(14.5 * 6.4));  // 4 and type at 160 %
+}
+
 TEST_F(FontTest, StyleIsScaledFromItsBeginningEachTime) {
   apply_style(theme_of(ThemeName::dark), 2.0);
   apply_style(theme_of(ThemeName::light), 2.0);

@@ -130,6 +130,15 @@ class Script {
     }
     wait(1);
   }
+  // By Tab, from item to item.
+  void reach(const std::string& item) {
+    until("\"" + item + "\" is reached", [item](const Glance& glance) {
+      if (glance.ui.memory.focus == item) return true;
+      SDL_Event event = key(SDLK_TAB, SDL_KEYDOWN);
+      SDL_PushEvent(&event);
+      return false;
+    });
+  }
   static const UiItem* find(const std::string& name) {
     for (const UiItem& item : ui_items())
       if (item.name == name) return &item;
@@ -337,6 +346,8 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   script.turn(Action::source, [](const Glance& g) { return g.ui.has_source; });
   for (std::size_t i = 0; i < kPanels; ++i)
     script.turn(after(Action::panel_pad, i), [i](const Glance& g) { return g.ui.is_open[i]; });
+  script.turn(Action::navigate, Action::back,
+              [](const Glance& g) { return !g.ui.memory.focus.empty(); });
   script.turn(Action::help, [](const Glance& g) { return g.ui.is_help_open; });
   script.turn(Action::help, Action::back, [](const Glance& g) { return g.ui.is_help_open; });
   // Of a window in memory it changes nothing to be seen.
@@ -512,6 +523,118 @@ TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
   EXPECT_EQ(result.summary.ticks, again->summary.ticks);
   EXPECT_EQ(result.summary.pose_hash, again->summary.pose_hash);
   EXPECT_EQ(result.summary.bad_commands, 0);
+}
+
+TEST_F(Window, KeysReachWhatTheMouseReaches) {
+  options_.are_panels_given = true;
+  options_.panels = {Panel::control, Panel::style};
+  Script script;
+  script.until("it runs", runs);
+  script.tap(SDLK_RETURN);
+  script.reach("view");
+  script.tap(SDLK_RETURN);
+  for (const char* part : {"grid", "shadows", "type larger"}) {
+    script.reach(part);
+    script.tap(SDLK_SPACE);
+  }
+  script.until("the grid and shadows are hidden and the type is larger", [](const Glance& g) {
+    return !g.ui.has_grid && !g.ui.has_shadows && g.ui.type_size > 1.05;
+  });
+  script.tap(SDLK_ESCAPE);  // closes the menu
+  script.reach("slider speed_m_s");
+  script.tap(SDLK_RIGHT);
+  script.until("the speed is set", [](const Glance& g) {
+    return g.session.walkers[0].overrides.is_set[static_cast<int>(GaitKey::speed_m_s)];
+  });
+  script.reach("style 4");
+  script.tap(SDLK_RETURN);
+  script.until("all limp", [](const Glance& g) { return style_of(g, 3) == "limp_left"; });
+  script.reach("style name");
+  script.tap(SDLK_RETURN);
+  script.wait(2);
+  script.type("mine");
+  script.wait(2);
+  script.press(SDLK_RETURN);  // Dear ImGui sees keys that are down in a frame
+  script.wait(2);
+  script.release(SDLK_RETURN);
+  script.until("it is saved", [](const Glance& g) { return says(g, "saved as"); });
+  script.wait(2);
+  script.tap(SDLK_ESCAPE);
+  script.until("the keys walk again", [](const Glance& g) { return g.ui.memory.focus.empty(); });
+  script.press(SDLK_UP);
+  script.until("they walk", [](const Glance& g) { return forward_m(g) > 0.1; });
+  run(script);
+}
+
+TEST_F(Window, AStyleCanBeExaggerated) {
+  options_.are_panels_given = true;
+  options_.panels = {Panel::style};
+  Script script;
+  script.until("it runs", runs);
+  script.tap(SDLK_TAB);
+  script.tap(SDLK_TAB);  // the second one, stiff_hip
+  script.tap(SDLK_RETURN);
+  script.reach("exaggerate");
+  script.tap(SDLK_RIGHT);
+  script.until("it differs from even by 1.1 times as much", [](const Glance& g) {
+    const WalkerFrame& walker = g.session.walkers[1];
+    const StyleValues& own = g.cast.style_values[static_cast<std::size_t>(walker.style_index)];
+    int deviating = 0;
+    for (const StyleKey& key : style_keys()) {
+      const double even = *value_of(StyleValues(), key.name), as_loaded = *value_of(own, key.name);
+      deviating += as_loaded != even;
+      const double wanted = std::clamp(even + 1.1 * (as_loaded - even), key.min, key.max);
+      if (std::abs(*value_of(walker.style, key.name) - wanted) > 1e-9) return false;
+    }
+    return deviating > 0;
+  });
+  script.then([](const Glance& g) {  // nobody else
+    EXPECT_EQ(g.session.walkers[2].style,
+              g.cast.style_values[static_cast<std::size_t>(g.session.walkers[2].style_index)]);
+  });
+  run(script);
+}
+
+// Recordings go to a folder of their own. A recording begins a session in the styles of the one
+// before; when it ends, the session goes on.
+TEST_F(Window, TheSessionGoesOnWhenItsRecordingEnds) {
+  options_.record_folder = (folder_ / "takes").string();
+  Script script;
+  std::int64_t tick = 0;
+  double z_m = 0.0;
+  std::string recording;
+  script.until("it runs", runs);
+  script.tap(SDLK_TAB);
+  script.tap(SDLK_4);
+  script.until("the first one limps",
+               [](const Glance& g) { return style_of(g, 0) == "limp_left"; });
+  script.tap(SDLK_F9);
+  script.until("it records", [&](const Glance& g) {
+    recording = g.recording;
+    return recording.starts_with(options_.record_folder + "/gaitpad-");
+  });
+  script.until("it still limps", [](const Glance& g) {
+    return style_of(g, 0) == "limp_left" && style_of(g, 1) == "stiff_hip";
+  });
+  script.press(SDLK_w);
+  script.until("they walk", [](const Glance& g) { return forward_m(g) > 0.5; });
+  script.then([&](const Glance& g) { tick = g.session.tick, z_m = forward_m(g); });
+  script.tap(SDLK_F9);
+  script.until("it is told", [&](const Glance& g) { return says(g, recording + " is complete"); });
+  script.then([&](const Glance& g) {
+    EXPECT_TRUE(g.recording.empty());
+    EXPECT_GE(g.session.tick, tick);
+    EXPECT_GE(forward_m(g), z_m);
+    EXPECT_EQ(style_of(g, 0), "limp_left");
+    EXPECT_TRUE(fs::exists(recording));
+  });
+  script.until("they walk on", [&](const Glance& g) { return forward_m(g) > z_m + 0.2; });
+  script.release(SDLK_w);
+  script.click("replay recording");
+  script.until("it plays", [](const Glance& g) { return g.is_playback && runs(g); });
+  script.until("in that style", [](const Glance& g) { return style_of(g, 0) == "limp_left"; });
+  run(script);
+  EXPECT_TRUE(files(".hid").empty());
 }
 
 TEST_F(Window, FramesAreCountedAndEndedFromOutside) {

@@ -256,7 +256,7 @@ void print_advice(const StickAnalysis& stick) {
   const StickCalibration& c = a.calibration;
   print_row("inner zone", fmt::format("{:>9.3f}", a.inner_zone),
             fmt::format("{:.3f} of the deflection", c.inner));
-  if (is_turned(stick.statistics)) {
+  if (a.has_range) {
     print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
               fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
   } else {
@@ -295,8 +295,9 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"drift_per_s", value_or_null(s.drift_per_s)},
           {"rate_hz", value_or_null(s.rate_hz)},
           {"inner_zone", is_known ? nlohmann::ordered_json(stick.advice.inner_zone) : nullptr},
-          {"outer_zone",
-           is_known && is_turned(s) ? nlohmann::ordered_json(stick.advice.outer_zone) : nullptr},
+          {"outer_zone", is_known && stick.advice.has_range
+                             ? nlohmann::ordered_json(stick.advice.outer_zone)
+                             : nullptr},
           {"verdict", name_of(stick.advice.verdict)},
           {"reason", stick.advice.reason},
           {"samples", s.samples},
@@ -600,7 +601,7 @@ std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& 
     if (auto problem = draw(arguments, pad, analysis)) return problem;
   }
   if (is_useful(analysis)) return std::nullopt;
-  return Error{"no stick was seen at rest, so no centre is known; nothing written"};
+  return Error{"no stick was seen at rest with hands off, so no centre is known; nothing written"};
 }
 
 int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAnalysis& analysis) {
@@ -644,6 +645,7 @@ int keep(const CalibrateArguments& arguments, const PadFiles& files, const Guide
 int finish(const CalibrateArguments& arguments, const PadFiles& files, const GuidedPad& pad,
            RunEnd* asked) {
   const PadAnalysis analysis = analysis_of(pad.layout, pad.tracks, pad.frame);
+  print_remarks(kCalibrateCommand, axes_questions(pad));
   return arguments.check.empty() ? keep(arguments, files, pad, analysis, asked)
                                  : check(arguments, pad, analysis);
 }

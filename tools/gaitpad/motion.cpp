@@ -84,13 +84,16 @@ ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
   out["frame_rate_hz"] = 1.0 / motion.frame_time_s;
   out["frames"] = motion.frames.size();
   out["joints"] = joint_names(motion);
+  // Feet that go nowhere do not fly.
+  const bool stays = !cycle && cycle.error().message.find("walks on the spot") != std::string::npos;
   for (const Side side : {kLeftSide, kRightSide}) {
     const char* name = kLegNames[side];
     out["legs"][name] = leg_json(motion, side);
-    out["flight"][name] = flight_json(robust_flight(motion, side));
-    out["flight_paper"][name] = paper_json(paper_flight(motion, side));
+    out["flight"][name] = stays ? nullptr : flight_json(robust_flight(motion, side));
+    out["flight_paper"][name] = stays ? nullptr : paper_json(paper_flight(motion, side));
   }
   out["gait"] = gait_json(cycle);
+  if (!cycle) out["reason"] = cycle.error().message;
   return out;
 }
 

@@ -105,6 +105,8 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
   options.is_clean = arguments.is_clean;
   options.program = "gaitpad " GAITPAD_VERSION;
   options.calibration_folder = user_calibration_folder();
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+    options.record_folder = std::string(home) + "/gaitpad";
   // Somebody who asks SDL for a video driver gets that one.
   const char* driver = std::getenv("SDL_VIDEODRIVER");
   options.is_hidden =

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -105,7 +106,10 @@ class LiveSession {
   // A style that commands may name from now on, in cast() too; one of the same name is replaced.
   // From the viewing thread.
   void add_style(const Style& style);
-  void rumble() noexcept;           // one beat of the driving pad's motors
+  void rumble() noexcept;  // one beat of the driving pad's motors
+  // Ends the recording, if there is one; the session goes on. From the viewing thread; waits for
+  // the tick that runs. Error: the file could not be written.
+  std::optional<Error> end_recording();
   bool has_ended() const noexcept;  // the pad is a recording that ended a second ago
   LiveStatus status() const noexcept;
   // What users should know (pads that cannot be opened, real-time scheduling that was refused),

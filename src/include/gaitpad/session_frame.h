@@ -67,6 +67,7 @@ struct SessionFrame {
   // Presses of each button since the beginning (Pads::presses()): none is missed between frames.
   PressCounts presses{};
   SimulationCounts counts;
+  IkMode ik = IkMode::robust;  // of the walkers
   int walker_count = 0;
   std::array<WalkerFrame, kMaxWalkers> walkers;
   FollowerPoses crowd;  // by Cast::crowd

@@ -122,6 +122,7 @@ class Simulation {
   double terrain_scale() const { return terrain_scale_; }
   const Stick& stick() const { return stick_; }  // of the last tick
   StickMeans stick_means() const { return stick_means_; }
+  IkMode ik() const { return ik_; }  // of the walkers; `ik` commands change it
   const Pads& pads() const { return pads_; }
   // Whether a heel of the first character struck the ground in the last tick.
   bool heel_struck() const { return heel_struck_; }

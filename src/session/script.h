@@ -23,6 +23,8 @@ struct Command {
     gait,     // name, value: a gait parameter
     release,  // `gait KEY stick`: name
     stick,    // `gait stick`: all parameters
+    steers,   // `stick steers`
+    points,   // `stick points`; value: the camera's heading, degrees
     restart,  // `reset`
   } verb = Verb::mark;
   int walker = 0;         // from 1; 0: all

@@ -202,29 +202,27 @@ def test_flood_of_four_pads_with_a_paused_reader(driver):
         session.wait_quiet()
     found = numbers_of(session, at)
     assert len(found) == 4, found.keys()
-    gaps = 0
+    gaps = stretches = 0
     for (name, numbers), count in zip(sorted(found.items()), sent):
         numbers = numbers[numbers.index(0):] if 0 in numbers else numbers
-        # After a pause the pad is asked for its state: that repeats the newest number.
-        assert all(b >= a for a, b in zip(numbers, numbers[1:]) if b != 0), f"{name}: out of order"
+        assert all(b > a for a, b in zip(numbers, numbers[1:]) if b != 0), f"{name}: out of order"
         assert numbers[-1] == count - 1, f"{name}: the last report is {numbers[-1]} of {count}"
         gaps += count - len(set(numbers) & set(range(count)))
-    assert session.summary["lost"] >= gaps, f"{session.summary['lost']} counted as lost, {gaps} are missing"
+        stretches += sum(b > a + 1 for a, b in zip(numbers, numbers[1:]))
+    assert session.summary["lost"] >= stretches, f"{session.summary['lost']} losses counted, there are {stretches} gaps"
     remark(f"flood, {driver}: 4 x {rate_hz} Hz x {seconds} s, {sum(sent)} sent, {gaps} lost while the reader was stopped "
-           f"three times, {session.summary['lost']} of them known to the program")
+           f"three times in {stretches} gaps, {session.summary['lost']} losses counted")
 
 
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("driver", ["hidraw", "usb", "evdev"])
 def test_the_last_state_is_right_after_a_burst_with_a_stopped_reader(driver):
-    """Of a pad that says only once what has changed. Stopped for longer than the kernel keeps reports."""
+    """Of a pad that says only once what has changed. Stopped for longer than the kernel keeps reports: hidraw drops the
+    newest, and the next one is the state."""
     rate_hz, seconds = 250, 1.5
-    get_input_report = bytes.fromhex("a10100010000")
-    lost = 0
     with Pad("generic") as pad, Session(IDS["generic"], "--driver", driver, "--no-rumble", name=f"last-{driver}") as session:
         for turn in range(TIMES if LONG else 2):
             time.sleep(0.3)
-            asked = [packet.data[:6] for packet in pad.setups()].count(get_input_report)
             ends = len(pad.lines("burst_end"))
             pad.burst(rate_hz, seconds, at=0)  # the sticks show the number
             time.sleep(0.5)
@@ -232,13 +230,13 @@ def test_the_last_state_is_right_after_a_burst_with_a_stopped_reader(driver):
             time.sleep(seconds)
             session.process.send_signal(signal.SIGCONT)
             wait_for(lambda: len(pad.lines("burst_end")) > ends, 20, "the burst's end")
+            if driver == "hidraw":
+                pad.set(ry=turn + 1)
             session.wait_quiet()
             state = dict(zip(("lx", "ly", "rx", "ry"), pad.sent()[-1].data))
             wanted = {NAMES[name]: expected_stick("generic", driver, name, value) for name, value in state.items()}
             row = decoded_last(session)
             assert all(abs(row[name] - value) < 0.002 for name, value in wanted.items()), (turn, state, row, wanted)
-            asked = [packet.data[:6] for packet in pad.setups()].count(get_input_report) - asked
-            assert asked == (driver == "hidraw"), f"asked {asked} times for its state"
         pad.set(ly=128, lx=128)
     if driver == "hidraw":
         assert session.summary["lost"] >= turn + 1, session.summary

@@ -416,8 +416,8 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
       const double y = in(-0.3, 1.0), x = chance() % 2 ? 0.0 : in(-0.6, 0.6);
       hiker.walk(x, y, ticks);
     }
-    // Now and then a foot lands hard that was sent somewhere else in mid-flight, and the corner of a
-    // heel passes an edge by half a millimetre less.
+    // Now and then a foot lands hard that was sent somewhere else in mid-flight, and the corner of
+    // a heel passes an edge by half a millimetre less.
     expect_sound(hiker.worst(), "random sticks, leg " + std::to_string(ratio), 1.1, 1.5);
   }
 }

@@ -98,4 +98,4 @@ def test_the_wall_clock_only_names_new_files():
     asks = re.compile(r"system_clock|CLOCK_REALTIME|gettimeofday|\btime\(nullptr\)")
     found = {str(path.relative_to(ROOT)) for folder in ("src", "drivers", "tools/gaitpad")
              for path in (ROOT / folder).rglob("*.[ch]*") if asks.search(path.read_text())}
-    assert found == {"src/session/self_test.cpp", "src/view/window.cpp", "src/pads/guided_calibration.cpp"}
+    assert found == {"src/selftest/self_test.cpp", "src/view/window.cpp", "src/pads/guided_calibration.cpp"}

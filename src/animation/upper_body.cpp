@@ -58,7 +58,7 @@ void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
   const double scale = tick.model.body.shoulder_height_m / kReferenceShoulder_m;
   const double smoothing_s = kRailSmoothing * tick.model.time_scale;
   const vec3 forward = heading_direction(state.path.heading_rad), left = glm::cross(kUp, forward);
-  const vec3 under = state.path.hips_m + state.path.hips_velocity_m_s * (2.0 * smoothing_s) +
+  const vec3 under = state.path.hips_m + state.path.pelvis_m.v * (2.0 * smoothing_s / tick.dt_s) +
                      left * (scale * (side == kLeftSide ? hand.rail_side_m : -hand.rail_side_m));
   double sum = 0.0, weights = 0.0;
   for (int i = -kRailProbes; i <= kRailProbes && !tick.flat; ++i) {
@@ -95,7 +95,7 @@ void hold_posture(const Tick& tick, WalkState& state) noexcept {
   body.out_rad = {};
   if (tick.mode == IkMode::paper) return;
   for (int side : {0, 1}) body.out_rad[side] = body.now.arm_out_deg[side] * kDegree;
-  body.forward_rad = trunk.lean_deg * kDegree;
+  body.forward_rad = trunk.lean_deg * kDegree + body.push_rad.x;
   if (trunk.over_left_deg == 0.0 && trunk.over_right_deg == 0.0) return;
   body.left_rad = presence(state) * kDegree *
                   (trunk.over_left_deg * stands_alone(tick.model, state, kLeftSide) -
@@ -121,9 +121,11 @@ void turn_joint(const Skeleton& skeleton, double heading_rad, const quat& turn, 
 void lean_trunk(const WalkModel& model, const WalkState& state, const PosePart& pose) noexcept {
   const UpperBodyState& body = state.body;
   const std::vector<int>& spine = model.body.joints.spine;
-  if (spine.empty() || (body.forward_rad == 0.0 && body.left_rad == 0.0)) return;
+  const double ahead = body.chest_ahead_rad.x;
+  if (spine.empty() || (body.forward_rad == 0.0 && body.left_rad == 0.0 && ahead == 0.0)) return;
   const double share = 1.0 / static_cast<double>(spine.size());
-  const quat turn = rotation_z(-share * body.left_rad) * rotation_x(share * body.forward_rad);
+  const quat turn = rotation_y(share * ahead) * rotation_z(-share * body.left_rad) *
+                    rotation_x(share * body.forward_rad);
   for (const int joint : spine)
     turn_joint(model.cycle.skeleton, state.path.heading_rad, turn, joint, pose);
   const quat back = rotation_x(-body.forward_rad) * rotation_z(body.left_rad);
@@ -541,6 +543,8 @@ void turn_head(const UpperBodyModel& body, const Skeleton& skeleton, const quat&
   }
 }
 
+constexpr double kHeadStays = 0.8;  // of the lean into a change: the head stays so upright
+
 bool is_head_free(const HeadParams& head) noexcept {
   return head.look <= 0.0 && head.look_at <= 0.0 && head.lead <= 0.0;
 }
@@ -560,6 +564,14 @@ void pose_head(const WalkModel& model, const WalkState& state, const PosePart& p
     const quat wanted = nlerp(own, to.head, std::clamp(share, 0.0, 1.0) * to.share);
     turn_head(body, skeleton, wanted * glm::conjugate(own), pose, world);
   };
+  const UpperBodyState& ahead_of = state.body;
+  const double turns = ahead_of.head_ahead_rad.x - ahead_of.chest_ahead_rad.x,
+               nods = kHeadStays * ahead_of.push_rad.x;
+  if (turns != 0.0 || nods != 0.0) {
+    const quat to = rotation_y(state.path.heading_rad);
+    turn_head(body, skeleton, to * rotation_y(turns) * rotation_x(-nods) * glm::conjugate(to), pose,
+              world);
+  }
   if (now.lead > 0.0) {
     const quat ahead = rotation_y(now.lead * kLead_s * state.gait.turn_rate.x);
     turn_head(body, skeleton, ahead, pose, world);
@@ -579,9 +591,50 @@ void pose_head(const WalkModel& model, const WalkState& state, const PosePart& p
 
 }  // namespace
 
+namespace {
+
+// A trunk leans into a speed that it does not have yet, and back from one that it is to lose; head
+// and chest turn before the pelvis does (people: by 0.3 s and less). Times in seconds at the
+// reference leg.
+constexpr double kPush = 3.0 * kDegree;  // for 1 m/s
+constexpr double kCalm = 0.25, kSoftCalm_m_s = 0.1;
+constexpr double kPushSmoothing = 0.07, kSpeedSmoothing = 0.15;
+constexpr double kHeadAhead_s = 0.30, kHeadSmoothing = 0.07;
+constexpr double kChestAhead_s = 0.13, kChestSmoothing = 0.10;
+constexpr double kStill_rad = 1e-7;
+
+void settle(double goal, double time_s, double dt_s, Damped<double>& value) noexcept {
+  value.advance(goal, time_s, dt_s);
+  if (goal == 0.0 && std::abs(value.x) < kStill_rad) value = {};
+}
+
+void look_and_lean_ahead(const Tick& tick, WalkState& state) noexcept {
+  UpperBodyState& body = state.body;
+  const GaitParams& params = tick.params;
+  const double scale = tick.model.time_scale, dt = tick.dt_s;
+  const bool walks = walks_on(params, state);
+  const std::array<StrideParams, 2>& stride = params.stride;
+  const double pace = (stride[0].length_m + stride[1].length_m) /
+                      std::max(stride[0].time_s + stride[1].time_s, 0.2);
+  const double asked = walks ? params.backward ? -pace : pace : 0.0;
+  const vec3 forward = heading_direction(state.path.heading_rad);
+  body.speed_m_s.advance(glm::dot(state.path.pelvis_m.v, forward) / dt, kSpeedSmoothing * scale,
+                         dt);
+  const double lacks = asked - body.speed_m_s.x;
+  const double calm = kCalm * std::max(std::abs(asked), std::abs(body.speed_m_s.x));
+  const double size = soft_positive(std::abs(lacks) - calm - kSoftCalm_m_s, kSoftCalm_m_s);
+  settle(kPush * (lacks < 0.0 ? -size : size), kPushSmoothing * scale, dt, body.push_rad);
+  const double turn = walks ? params.turn_rate_rad_s : 0.0;
+  settle(kChestAhead_s * turn, kChestSmoothing * scale, dt, body.chest_ahead_rad);
+  settle(kHeadAhead_s * turn, kHeadSmoothing * scale, dt, body.head_ahead_rad);
+}
+
+}  // namespace
+
 void smooth_upper_body(const Tick& tick, WalkState& state) noexcept {
   UpperBodyState& body = state.body;
   settle_values(tick, body);
+  if (tick.mode != IkMode::paper) look_and_lean_ahead(tick, state);
   for (const Side side : {kLeftSide, kRightSide}) {
     if (body.now.hand[side].rail > 0.0 || body.goal.hand[side].rail > 0.0)
       follow_rail(tick, side, state);
@@ -599,7 +652,10 @@ void pose_upper_body(const Tick& tick, WalkState& state, const PosePart& pose) n
   std::array<bool, 2> moves_arm;
   for (const Side side : {kLeftSide, kRightSide})
     moves_arm[side] = model.body.arm[side].is_there && !is_arm_free(now, side);
-  const bool moves_head = !model.body.head_path.empty() && !is_head_free(now.head);
+  const bool moves_head =
+      !model.body.head_path.empty() &&
+      (!is_head_free(now.head) || state.body.push_rad.x != 0.0 ||
+       state.body.head_ahead_rad.x != 0.0 || state.body.chest_ahead_rad.x != 0.0);
   if (!moves_spine && !moves_arm[0] && !moves_arm[1] && !moves_head) return;
 
   JointFrames world;

@@ -61,7 +61,12 @@ Moment moment_of(const WalkModel& model, const WalkState& state) noexcept {
   at.flies = clock.stage == Stage::flight;
   at.rolls = clock.stage == Stage::roll;
   at.started = clock.started;
+  at.starting = clock.starting;
+  at.stopping = clock.stopping;
   at.closing = clock.closing;
+  at.led = clock.led;
+  at.was_led = clock.was_led;
+  at.replanned = clock.replanned;
   at.backward = clock.backward;
   at.right_steps = step_foot(state) == kRightSide;
   for (int side : {0, 1}) {
@@ -79,6 +84,17 @@ Moment moment_of(const WalkModel& model, const WalkState& state) noexcept {
   at.stage_phase = clock.stage_phase;
   at.stage_end = stage_end_phase(model, state);
   at.end_rate = clock.end_rate;
+  at.strike_rate = clock.strike_rate;
+  at.strike_phase = at.stage_end;
+  at.step_phase = clock.stage_phase;
+  if (clock.stage == Stage::roll)
+    at.strike_phase += stage_share(model, Stage::flight, other(clock.swing));
+  if (clock.stage == Stage::flight)
+    at.step_phase -= stage_share(model, Stage::roll, other(clock.swing));
+  at.rest_ticks = clock.rest_ticks;
+  at.closing_ticks = clock.closing_ticks;
+  at.fade_ticks = clock.fade_ticks;
+  at.led_from = clock.led_from;
   return at;
 }
 
@@ -90,10 +106,16 @@ namespace {
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
 constexpr double kSlowerBack = 2.05;
-constexpr double kBraking = 2.4;  // way over speed and time of a stop with little jerk
-constexpr double kQuickestClosing = 0.8, kSlowestClosing = 1.6;  // of a step's time
-constexpr double kStillAmplitude = 0.003;  // a walk starts when the last one has faded
-constexpr double kHesitation = 0.2;        // for next to nothing; less for more, none from
+// A start: from the stick to the lift-off, and the first flight, in seconds and of a steady one.
+constexpr double kFirstRoll_s = 0.25, kFirstRollOn_s = 0.13, kLeastFirstFlight_s = 0.38,
+                 kMostFirstFlight_s = 0.62, kFirstFlight = 0.9;
+// A closing foot lands so long before the hips rest; its flight, of a steady one.
+constexpr double kLandsBefore_s = 0.04, kLeastClosing_s = 0.30, kMostClosing = 1.25;
+constexpr double kLongestClosingRoll = 1.6, kLeastClosingRoll_s = 0.11, kLeastRollLeft_s = 0.05;
+constexpr double kOtherPace = 0.02;    // ratios that differ by more take a step that leads over
+constexpr double kLastRoll_s = 0.17;   // until both feet are flat
+constexpr double kShownAtRest = 0.08;  // so little of the tables shows that another step may begin
+constexpr double kHesitation = 0.2;    // for next to nothing; less for more, none from
 constexpr double kSureRatio = 0.3, kSureTurn = 0.15;  // this stride ratio or turn (rad/s) on
 
 // Share of the cycle's time.
@@ -117,7 +139,7 @@ int stage_length(const WalkModel& model, const WalkState& state, Stage stage, Si
 void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept {
   state.clock.stage = stage;
   state.clock.swing = swing;
-  state.clock.tick = 0;
+  state.clock.tick = state.clock.led_from = 0;
   state.clock.stage_ticks = ticks;
 }
 
@@ -132,6 +154,13 @@ void aim_phase(const Tick& tick, WalkState& state) noexcept {
   const double there = stage_share(tick.model, next, next_swing) /
                        stage_length(tick.model, state, next, next_swing, tick.dt_s);
   state.clock.end_rate = 0.5 * (here + there);
+  state.clock.strike_rate = state.clock.end_rate;
+  if (!rolls) return;
+  const double flight =
+      stage_share(tick.model, Stage::flight, next_swing) / std::max(1, state.clock.flight_ticks);
+  const double roll = stage_share(tick.model, Stage::roll, next_swing) /
+                      stage_length(tick.model, state, Stage::roll, next_swing, tick.dt_s);
+  state.clock.strike_rate = 0.5 * (flight + roll);
 }
 
 // On stairs a step takes longer, and at least as long as a person takes for a stair. On stairs both
@@ -147,22 +176,10 @@ double slowness_of_step(const WalkModel& model, const WalkState& state, Side swi
   return std::max(level * (1.0 + kSlowerOnStairs * rise), slower * stair) / own;
 }
 
-// The last step brings the hips to rest over both feet, in the time in which they need no harder
-// braking than this way asks for.
-double slowness_of_rest(const Tick& tick, const WalkState& state, Side swing) noexcept {
-  const vec3 forward = heading_direction(state.path.heading_rad);
-  const double way_m = std::abs(glm::dot(state.path.landing_m - state.path.hips_m, forward) +
-                                tick.model.rest_lead_m),
-               speed_m_s = horizontal_length(state.path.hips_velocity_m_s);
-  return std::clamp(kBraking * way_m / std::max(speed_m_s * state.gait.time_s[swing], 1e-6),
-                    kQuickestClosing, kSlowestClosing);
-}
-
 // Begins a step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   state.clock.last_step_ticks = state.clock.roll_ticks + state.clock.flight_ticks;
   state.clock.slowness = slowness_of_step(tick.model, state, other(rolling));
-  if (state.clock.closing) state.clock.slowness *= slowness_of_rest(tick, state, other(rolling));
   state.clock.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
   state.clock.flight_ticks =
       stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
@@ -173,47 +190,104 @@ void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   aim_phase(tick, state);
 }
 
+int ticks_of(double time_s, double dt_s) noexcept { return static_cast<int>(time_s / dt_s + 0.5); }
+
+// The first flight follows the stick until the foot lifts off: a thumb takes some time.
+void time_first_flight(const Tick& tick, WalkState& state) noexcept {
+  const double scale = tick.model.time_scale;
+  const Side first = other(state.clock.swing);
+  const double steady_s =
+      tick.dt_s * stage_length(tick.model, state, Stage::flight, first, tick.dt_s);
+  state.clock.flight_ticks = ticks_of(
+      std::clamp(kFirstFlight * steady_s, kLeastFirstFlight_s * scale, kMostFirstFlight_s * scale),
+      tick.dt_s);
+  aim_phase(tick, state);
+}
+
 void begin_walk(const Tick& tick, WalkState& state) noexcept {
   // The first foot follows the turn, so that a mirrored stick gives a mirrored walk.
-  const Side first = tick.params.turn_rate_rad_s < 0.0 ? kRightSide : kLeftSide;
-  state.clock.started = true;
-  state.clock.closing = false;
+  // While the last foot to land still rolls down the other one goes.
+  const Side turns_to = tick.params.turn_rate_rad_s < 0.0 ? kRightSide : kLeftSide,
+             first = state.clock.stage == Stage::roll ? other(state.clock.swing) : turns_to;
+  const bool moves = state.clock.stage == Stage::roll;
+  state.clock.started = state.clock.starting = true;
+  state.clock.stopping = state.clock.closing = false;
   state.clock.backward = tick.params.backward;
   state.gait.ratio_behind = 0.0;
   state.clock.flight_ticks = 0;
   state.clock.roll_ticks = 0;
   begin_step(tick, other(first), state);
   state.clock.stage_ticks = state.clock.roll_ticks =
-      2 * state.clock.roll_ticks;  // from rest: a longer first lean
-  aim_phase(tick, state);
+      ticks_of((moves ? kFirstRollOn_s : kFirstRoll_s) * tick.model.time_scale, tick.dt_s);
+  time_first_flight(tick, state);
   state.clock.phase_rate = 0.0;
+  state.clock.led = true;
+  replan(0.5 * kFirstRoll_s, tick, state);
+  // The tables' hips are over the foot that stands in the middle of its support.
+  state.gait.phase_rate = 0.0;
+  state.gait.phase = state.clock.stage_phase +
+                     0.5 * stage_share(tick.model, Stage::roll, other(first)) +
+                     0.5 * stage_share(tick.model, Stage::flight, first);
+  for (Damped<double>& length_m : state.gait.length_m) length_m = {};
   state.foot[other(first)].mode = FootMode::roll;
 }
 
 void begin_idle(WalkState& state) noexcept {
   begin_stage(Stage::idle, state.clock.swing, 1, state);
-  state.clock.started = false;
+  state.clock.started = state.clock.stopping = state.clock.led = false;
   state.clock.roll_ticks = state.clock.flight_ticks = 0;
   state.path.foothold.next_rise = 0.0;
 }
 
+// Feet together: the toe comes down, then rest.
+void begin_settling(const Tick& tick, Side landed, WalkState& state) noexcept {
+  const int flat = ticks_of(kLastRoll_s * tick.model.time_scale, tick.dt_s);
+  begin_stage(Stage::roll, landed, std::max(flat, state.clock.rest_ticks + 1), state);
+  state.clock.stage_phase = state.clock.phase;
+  state.clock.started = state.clock.closing = false;
+  begin_roll(tick, state, landed);
+  FootState& stays = state.foot[other(landed)];
+  stays.fade_begin = stays.mode_ticks;
+  stays.pitch_fade = {stays.pose.pitch_rad, 0.0, static_cast<double>(flat)};
+}
+
 void land_foot(const Tick& tick, WalkState& state) noexcept {
-  const Side landed = state.clock.swing;
-  const bool closed = state.clock.closing;
-  state.clock.closing = !walks_on(tick.params, state);
-  state.gait.ratio_behind = ratio_ahead<double>(tick.model, moment_of(tick.model, state), state);
-  if (closed && state.clock.closing) {  // feet together: the toe comes down, then rest
-    const int ticks = state.clock.roll_ticks;
-    begin_stage(Stage::roll, landed, std::max(ticks, 12), state);
-    state.clock.stage_phase = state.clock.phase;
-    state.clock.started = false;
-    begin_roll(tick, state, landed);
-    FootState& stays = state.foot[other(landed)];
-    stays.mode_ticks = 0;
-    stays.pitch_fade = {stays.pose.pitch_rad, 0.0, static_cast<double>(state.clock.stage_ticks)};
+  StepClock& clock = state.clock;
+  const Side landed = clock.swing;
+  // A step that was walked on with may not have come over to its own stride.
+  const double change = std::clamp(state.gait.change, 0.0, 1.0);
+  if (!clock.closing)
+    state.gait.ratio_behind =
+        mix(state.gait.ratio_behind,
+            ratio_ahead<double>(tick.model, moment_of(tick.model, state), state), change);
+  state.gait.off_ahead = {};
+  plant_foot(state, landed);
+  if (clock.closing) {
+    begin_settling(tick, landed, state);
     return;
   }
+  const bool begins = clock.starting;
+  clock.was_led = clock.led;
+  clock.starting = false;
+  if (clock.stopping && clock.further_steps-- <= 0) clock.closing = true;
   begin_step(tick, landed, state);
+  if (clock.closing) {
+    // The hips rest between the feet as they then are, and no sooner than the foot can be there.
+    clock.rest_ticks =
+        std::max(clock.rest_ticks,
+                 ticks_of((kLeastClosing_s + kLeastRollLeft_s) * tick.model.time_scale, tick.dt_s));
+    clock.closing_ticks = clock.rest_ticks;
+    plan_rest_place(tick, state);
+    time_closing_step(tick, state);
+  }
+  const double own_m = tick.model.own_step_m[clock.backward ? landed : other(landed)];
+  const double asked = tick.params.stride[other(landed)].length_m / own_m;
+  // A limp's steps differ from each other, and uneven ground shortens them: the pace changes where
+  // what is asked for does.
+  const double last =
+      begins && tick.flat ? state.gait.ratio_behind : state.gait.length_m[other(landed)].x / own_m;
+  clock.led = clock.stopping || std::abs(asked - last) > kOtherPace;
+  if (clock.led || clock.was_led) replan(kCarry_s, tick, state);
   begin_roll(tick, state, landed);
 }
 
@@ -241,6 +315,7 @@ bool is_meant(const Tick& tick, WalkState& state) noexcept {
 // Moves the clocks on by one tick.
 void advance_clock(const Tick& tick, WalkState& state) noexcept {
   for (FootState& foot : state.foot) ++foot.mode_ticks;
+  if (state.clock.rest_ticks > 0) --state.clock.rest_ticks;
   if (state.clock.stage == Stage::idle) return;
   const bool resting = !state.clock.started;  // in the last roll the data's clock stands still
   const double remaining = state.clock.stage_ticks - state.clock.tick;
@@ -267,6 +342,46 @@ void finish_stage(const Tick& tick, WalkState& state) noexcept {
     begin_flight(tick, state, other(swing));
   }
 }
+
+}  // namespace
+
+void time_step_again(const Tick& tick, WalkState& state) noexcept {
+  StepClock& clock = state.clock;
+  const bool flies = clock.stage == Stage::flight;
+  const Side swing = step_foot(state);
+  if (!flies) {
+    const int rolls = stage_length(tick.model, state, Stage::roll, other(swing), tick.dt_s);
+    clock.roll_ticks = clock.stage_ticks = std::max(clock.tick + 1, rolls);
+  }
+  clock.flight_ticks = stage_length(tick.model, state, Stage::flight, swing, tick.dt_s);
+  if (flies) clock.stage_ticks = clock.flight_ticks;
+  aim_phase(tick, state);
+}
+
+// Its foot lifts off where the hips are as far ahead of the standing foot as in a walk.
+void time_closing_step(const Tick& tick, WalkState& state) noexcept {
+  StepClock& clock = state.clock;
+  const double scale = tick.model.time_scale;
+  // On stairs it takes as long as any other.
+  const int least = state.path.foothold.next_rise > 0.0
+                        ? clock.flight_ticks
+                        : ticks_of(kLeastClosing_s * scale, tick.dt_s),
+            left = clock.rest_ticks - ticks_of(kLandsBefore_s * scale, tick.dt_s),
+            longest = std::max(least, static_cast<int>(kMostClosing * clock.flight_ticks)),
+            least_roll = std::max(
+                std::min(ticks_of(kLeastClosingRoll_s * scale, tick.dt_s), clock.roll_ticks) -
+                    clock.tick,
+                ticks_of(kLeastRollLeft_s * scale, tick.dt_s)),
+            most_roll =
+                std::min(left - least, static_cast<int>(kLongestClosingRoll * clock.roll_ticks));
+  const int rolls =
+      std::clamp(ticks_to_lift_off(tick.model, state), least_roll, std::max(least_roll, most_roll));
+  clock.roll_ticks = clock.stage_ticks = clock.tick + rolls;
+  clock.flight_ticks = std::clamp(left - rolls, least, longest);
+  aim_phase(tick, state);
+}
+
+namespace {
 
 // --- Report --------------------------------------------------------------------------------------
 
@@ -314,6 +429,7 @@ void fill_report(const vec3& pelvis_m, double dt_s, WalkState& state) noexcept {
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept {
   WalkState state;
   state.path.hips_m = vec3(place_m.x, 0.0, place_m.z);
+  state.path.pelvis_m.x = state.path.last_pelvis_m = state.path.hips_m;
   state.gait.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
   state.gait.bounce.x = state.gait.sway.x = state.gait.ground_share.x = 1.0;
   state.gait.step_time_s.x = 0.5;
@@ -339,6 +455,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   state.path.base.height_m = state.path.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
+  state.path.eased_height.rate = state.path.eased_height.bend = 0.0;
   state.legs.mean_rad = state.legs.lagging_rad = state.legs.even_rad;
   return state;
 }
@@ -346,9 +463,12 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
 // Starts a walk from standing when the parameters ask for one.
 void begin_tick(const Tick& tick, WalkState& state, Moment& at) noexcept {
   const GaitParams& params = tick.params;
-  const bool stood = state.clock.stage == Stage::idle && state.frame.stage == Stage::idle;
+  // A walk may begin when both feet stand, also while the hips still come to rest.
+  const bool stands = !state.clock.started && state.gait.shown <= kShownAtRest &&
+                      state.frame.stage != Stage::flight &&
+                      (tick.flat || state.clock.stage == Stage::idle);
   bool hesitates = false;
-  if (stood && params.walking && state.gait.amplitude.x < kStillAmplitude) {
+  if (stands && params.walking) {
     ask_for(params, tick.model, state);
     hesitates = !is_meant(tick, state);
     if (!hesitates) begin_walk(tick, state);
@@ -357,17 +477,21 @@ void begin_tick(const Tick& tick, WalkState& state, Moment& at) noexcept {
   }
   const bool walks = walks_on(params, state);
   if (walks) ask_for(params, tick.model, state);
+  if (state.clock.started && !walks && !state.clock.stopping) plan_rest(tick, state);
+  if (state.clock.started && walks && state.clock.stopping) walk_on(tick, state);
+  if (state.clock.starting && state.clock.stage == Stage::roll) time_first_flight(tick, state);
   smooth_upper_body(tick, state);
   if (!tick.flat && tick.mode != IkMode::paper) lean_into_slope(tick, state);
   advance_clock(tick, state);
   at = moment_of(tick.model, state);
-  at.walking = walks && !state.clock.closing && !hesitates;
+  at.walking = walks && !state.clock.stopping && !hesitates;
   at.finishes = state.clock.started && !state.clock.closing && !at.walking;
 }
 
 void end_tick(const Tick& tick, const vec3& pelvis_m, WalkState& state) noexcept {
   fill_report(pelvis_m, tick.dt_s, state);
   report_ground(tick, state.frame);
+  state.clock.replanned = false;
   finish_stage(tick, state);
   remember_feet(tick.model, state);
 }

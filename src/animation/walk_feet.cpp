@@ -13,8 +13,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kPitchFade = 0.2;
-constexpr double kRollEnd = 0.9;  // of the roll: the toe is down
+constexpr double kPitchFade = 0.2, kShortPitchFade = 0.6;
 
 }  // namespace
 
@@ -44,12 +43,12 @@ void remember_feet(const WalkModel& model, WalkState& state) noexcept {
 void begin_support(FootState& foot) noexcept {
   foot.mode = FootMode::support;
   foot.mode_ticks = 0;
+  foot.fade_begin = 0.0;
   foot.pitch_fade = {};
 }
 
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   const WalkModel& model = tick.model;
-  const Moment at = moment_of(model, state);
   FootState& foot = state.foot[side];
   const double ticks = state.clock.stage_ticks;
   const FootPose lifts = planned_pose(model, state, side);
@@ -58,14 +57,20 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
       end_slope(foot.last_pitch_rad[1], foot.last_pitch_rad[0], lifts.pitch_rad);
   foot.mode = FootMode::flight;
   foot.mode_ticks = 0;
+  foot.fade_begin = 0.0;
+  const Moment at = moment_of(model, state);
   foot.lift_m = lifts.heel_m;
   foot.crosses_riser =
       !tick.flat && crosses_riser(*model.terrain, foot.plane, state.path.landing_plane);
   // In a turn the foot pivots on its planted toe as its heel rises.
   foot.lift_turn_rad =
       state.gait.turn_rate.x * heel_rise<double>(model, at, side) * tick.dt_s * ticks;
+  foot.eased_heel = {.value = lifts.heel_m, .rate = slope_m / ticks, .bend = {}, .off = {}};
+  foot.eased_pitch = {.value = lifts.pitch_rad, .rate = pitch_rate, .bend = {}, .off = {}};
   // What this foot differs by from the tables fades away.
   foot.gap_m = foot.gap_slope_m = vec3(0.0);
+  foot.gap_begin = 0.0;
+  foot.gap_lasts = kLiftFade;
   foot.pitch_fade = {};
   const double step = 1.0 / (state.clock.roll_ticks + state.clock.flight_ticks);
   const double share = state.clock.roll_ticks * step;
@@ -81,19 +86,27 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.gap_m.y -= foot.rise_m;
   foot.gap_slope_m.y -= end_slope(foot.last_rise_m[1], foot.last_rise_m[0], foot.rise_m) * ticks;
   const double pitch = table_pitch<double>(at, state, now, side);
-  foot.pitch_fade = {lifts.pitch_rad - pitch,
-                     pitch_rate - (table_pitch<double>(at, state, next, side) - pitch),
-                     kPitchFade * ticks};
+  foot.pitch_fade = {
+      lifts.pitch_rad - pitch, pitch_rate - (table_pitch<double>(at, state, next, side) - pitch),
+      (state.clock.starting || state.clock.closing ? kShortPitchFade : kPitchFade) * ticks};
   if (!tick.flat) plan_room(tick, state, side);
+}
+
+void plant_foot(WalkState& state, Side side) noexcept {
+  FootState& foot = state.foot[side];
+  foot.heel_anchor_m = state.path.landing_m;
+  foot.lift_yaw_rad = state.path.landing_heading_rad;
+  foot.plane = state.path.landing_plane;
+  state.path.wider_m = state.path.next_wider_m;
 }
 
 void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept {
   FootState& foot = state.foot[side];
   foot.mode = FootMode::roll;
   foot.mode_ticks = 0;
-  foot.heel_anchor_m = state.path.landing_m;
-  foot.lift_yaw_rad = state.path.landing_heading_rad;
-  foot.plane = state.path.landing_plane;
+  foot.fade_begin = 0.0;
+  foot.eased_pitch.ticks = 0.0;
+  foot.eased_pitch.value = foot.pose.pitch_rad;
   StridePlan plan;
   const Moment at = moment_of(tick.model, state);
   plan_stride<double>(tick, at, state, plan);

@@ -73,18 +73,16 @@ inline ParamsOf<double> params_of(const GaitParams& params,
 // --- The parameters, smoothed --------------------------------------------------------------------
 
 // Time constants in seconds at the reference leg; they scale with pendulum time.
-inline constexpr double kStepSmoothing = 0.12;
-inline constexpr double kTurnGoalSmoothing = 0.03;
-inline constexpr double kTurnSmoothing = 0.12;
+inline constexpr double kStepSmoothing = 0.12, kFirstStepSmoothing = 0.05;
+inline constexpr double kFirstStep = 0.9;  // of the length asked for
+inline constexpr double kTurnGoalSmoothing = 0.02;
+inline constexpr double kTurnSmoothing = 0.10;
 inline constexpr double kBounceSmoothing = 0.30;
-inline constexpr double kAmplitudeSmoothing = 0.18, kAmplitudeFading = 0.07;
 inline constexpr double kWeightSmoothing = 0.15;
-inline constexpr double kSettling = 0.35;
-inline constexpr double kLeanSmoothing = 0.12;
+inline constexpr double kLeanSmoothing = 0.12, kPostureSmoothing = 0.06;
 inline constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
-inline constexpr double kAllShown = 1.0 - 1e-9;  // from here on nothing is mixed with the stand
-inline constexpr double kStillTurn = 1e-5;       // rad/s: slower than this is straight ahead
-inline constexpr double kMostExtraSwing = 0.4;   // swing beyond the data's that pace alone can give
+inline constexpr double kStillTurn = 1e-5;      // rad/s: slower than this is straight ahead
+inline constexpr double kMostExtraSwing = 0.4;  // swing beyond the data's that pace alone can give
 inline constexpr double kLeastPace =
     0.5;  // below it the data's posture fades, and the swing with it
 
@@ -106,16 +104,26 @@ void settle_still(const V& goal, Damped<V>& value_of) noexcept {
 }
 
 template <class V>
+Damped<V> chosen_damped(const MaskOf<V>& mask, const Damped<V>& a, const Damped<V>& b) noexcept {
+  return {mask ? a.x : b.x, mask ? a.v : b.v};
+}
+
+template <class V>
 void smooth_parameters(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V>& params,
                        StateOf<V>& state) noexcept {
   GaitFlow<V>& gait = state.gait;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
   // A walk that is to end takes the running step as it was begun, and one that closes it.
-  const Damping step(kStepSmoothing * scale, dt), weights(kWeightSmoothing * scale, dt),
-      hips(kBounceSmoothing * scale, dt);
+  const Damping step(kStepSmoothing * scale, dt), first_step(kFirstStepSmoothing * scale, dt),
+      weights(kWeightSmoothing * scale, dt), hips(kBounceSmoothing * scale, dt);
   for (int side : {0, 1}) {
     const V kept_m = value<V>(at.finishes, gait.length_m[side].x, V{});
-    gait.length_m[side].advance(value<V>(at.walking, params.length_m[side], kept_m), step);
+    const V goal_m = value<V>(at.walking, params.length_m[side], kept_m);
+    // The first step goes as far as the push that is still on its way asks.
+    Damped<V> first = gait.length_m[side];
+    first.advance(at.steps(static_cast<Side>(side)) ? kFirstStep * goal_m : goal_m, first_step);
+    gait.length_m[side].advance(goal_m, step);
+    gait.length_m[side] = chosen_damped<V>(at.starting, first, gait.length_m[side]);
     gait.flight_height[side].advance(params.flight_height[side], step);
     for (int j = 0; j < kLegDofs; ++j)
       gait.weight[side][j].advance(params.weight[side][j], weights);
@@ -126,19 +134,12 @@ void smooth_parameters(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V
   settle_still(turn, gait.turn_goal);
   gait.turn_rate.advance(gait.turn_goal.x, Damping(kTurnSmoothing * scale, dt));
   settle_still(gait.turn_goal.x, gait.turn_rate);
-  Damped<V> shown = gait.amplitude, fading = gait.amplitude;
-  shown.advance(all_of<V>(1.0), Damping(kAmplitudeSmoothing * scale, dt));
-  fading.advance(V{}, Damping(kAmplitudeFading * scale, dt));
-  const auto all_shown = at.started & (shown.x > all_of<V>(kAllShown));
-  gait.amplitude.x = at.started ? shown.x : fading.x;
-  gait.amplitude.v = at.started ? shown.v : fading.v;
-  gait.amplitude.x = all_shown ? all_of<V>(1.0) : gait.amplitude.x;
-  gait.amplitude.v = all_shown ? V{} : gait.amplitude.v;
   gait.bounce.advance(params.hip_bounce, hips);
   gait.sway.advance(params.hip_sway, hips);
   const V mean = 0.5 * (gait.length_m[0].x + gait.length_m[1].x);
   gait.pace.advance(mean * gait.ground_share.x / tick.model.source_step_m, step);
-  gait.settled_pace.advance(gait.pace.x, Damping(kSettling * scale, dt));
+  gait.posture.advance(within(V(2.0 * gait.pace.x), 0.0, 1.0),
+                       Damping(kPostureSmoothing * scale, dt));
   // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
   const V speed_m_s = (gait.length_m[0].x + gait.length_m[1].x) /
                       max_of(gait.time_s[0] + gait.time_s[1], all_of<V>(kLeastCycle_s));
@@ -154,7 +155,7 @@ void smooth_parameters(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V
 // on.
 template <class V>
 V presence_of(const GaitFlow<V>& gait) noexcept {
-  return within(gait.amplitude.x, 0.0, 1.0) * within(V(2.0 * gait.pace.x), 0.0, 1.0);
+  return within(gait.shown, 0.0, 1.0) * within(gait.posture.x, 0.0, 1.0);
 }
 
 // True where a leg's weights are not all 1.
@@ -199,7 +200,11 @@ V ratio_of_step(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>&
 }
 template <class V>
 V ratio_ahead(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state) noexcept {
-  return max_of(V{}, V(ratio_of_step<V>(model, at, state) + state.gait.off_ratio.x));
+  // A step that closes keeps what is left of the last one, and one that is taken back its own.
+  return (at.closing | not_of(at.started))
+             ? state.path.last_ratio
+             : max_of(V{}, V(ratio_of_step<V>(model, at, state) + state.gait.off_ratio.x +
+                             state.gait.off_ahead.x));
 }
 
 // A walk limps from the one difference of both feet's strides on, wholly from the other.
@@ -213,8 +218,7 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
                         const TablesOf<V>& tables, const KnotsOf<V>& knots, const V& ahead,
                         PlanOf<V>& plan) noexcept {
   const WalkModel& model = tick.model;
-  const auto& foot = plan.cell.foot;
-  plan.heel_up_m = at.right_steps ? foot[kRightSide].heel_m.y : foot[kLeftSide].heel_m.y;
+  plan.heel_up_m = plan.flying.heel_m.y;
   // Even styles ask for equal steps, or for the data's own, which may differ.
   std::array<V, 2> asked;
   std::array<V, 2> length_m;
@@ -237,7 +241,7 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
   const Vec<V> heel_m =
       heel_at<V>(ratios_at<V>(tables, V(ahead * longer / max_of(own, all_of<V>(kLeastAsked)))),
                  knots, at.right_steps);
-  const V high_m = max_of(plan.heel_up_m, V(plan.shown * model.stride_scale.length * heel_m.y));
+  const V high_m = max_of(plan.heel_up_m, V(model.stride_scale.length * heel_m.y));
   plan.heel_up_m = is_limping ? mix(plan.heel_up_m, high_m, limps) : plan.heel_up_m;
 }
 
@@ -255,13 +259,74 @@ V bounced(const GaitFlow<V>& gait, const PlanOf<V>& plan) noexcept {
   return bounces ? y + more * (y - stays) : y;
 }
 
+inline constexpr double kShownAfter = 0.55;  // of a first step: all of the tables shows
+
+// How much of the tables shows by the plan: of the first step more and more, when stopping as much
+// as is left of the way to rest.
+template <class V>
+V planned_share(const MomentOf<V>& at, const V& step_share, const V& rest_ticks) noexcept {
+  const V begins = at.starting ? smootherstep(V(step_share / kShownAfter)) : all_of<V>(1.0);
+  const V ends = smootherstep(V(rest_ticks / at.closing_ticks));
+  return (at.stopping & (at.closing | not_of(at.started))) ? ends : at.started ? begins : V{};
+}
+// From the stride behind, at 0, to the one ahead, at 1: a first step has none behind, a closing one
+// none ahead.
+template <class V>
+V planned_change(const MomentOf<V>& at, const V& step_share) noexcept {
+  const V walks = at.starting ? all_of<V>(1.0) : smootherstep(step_share);
+  return at.closing ? V{} : walks;
+}
+
+template <class V>
+StrideFootOf<V> chosen_foot(const MaskOf<V>& mask, const StrideFootOf<V>& a,
+                            const StrideFootOf<V>& b) noexcept {
+  return {chosen(mask, a.heel_m, b.heel_m), mask ? a.pitch_rad : b.pitch_rad,
+          mask ? a.twist_rad : b.twist_rad, mask ? a.roll_rad : b.roll_rad};
+}
+
+// The foot of a step that begins or ends at rest flies as in strides of its own length, which is
+// that of half a stride, and a closing one lands flat.
+template <class V>
+void plan_short_flight(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
+                       const TablesOf<V>& tables, const V& ahead, const V& phase,
+                       PlanOf<V>& plan) noexcept {
+  const WalkModel& model = tick.model;
+  const auto& left = state.foot[kLeftSide];
+  const auto& right = state.foot[kRightSide];
+  const Vec<V> way =
+      state.path.landing_m - chosen(at.right_steps, right.heel_anchor_m, left.heel_anchor_m);
+  const V length_m = sqrt_of(V(way.x * way.x + way.z * way.z));
+  const V ratio = length_m / (model.own_step_m[0] + model.own_step_m[1]);
+  const RatiosOf<V> own = ratios_at<V>(tables, ratio), next = ratios_at<V>(tables, ahead);
+  // Before it lifts off, as it will then be.
+  const V at_phase = at.flies ? phase : at.stage_end;
+  const V u = at.flies ? at.flight_progress() : V{};
+  const KnotsOf<V> knots = knots_at<V>(at_phase);
+  StrideCellOf<V> cell;
+  stride_between<V>(own, next, at.closing ? V{} : smootherstep(u), knots, cell);
+  StrideFootOf<V> flying =
+      chosen_foot<V>(at.right_steps, cell.foot[kRightSide], cell.foot[kLeftSide]);
+  const V flat = at.closing ? 1.0 - smootherstep(u) : all_of<V>(1.0);
+  flying.pitch_rad = flying.pitch_rad * flat;
+  flying.twist_rad = flying.twist_rad * flat;
+  flying.roll_rad = flying.roll_rad * flat;
+  const Vec<V> heel_m = heel_at<V>(own, knots, at.right_steps);
+  flying.heel_m = chosen(at.right_steps, scaled_heel<V>(model.stride_scale, heel_m, kRightSide),
+                         scaled_heel<V>(model.stride_scale, heel_m, kLeftSide));
+  const auto is_short = at.starting | at.closing;
+  track_at<V>(own, plan.short_track);
+  scale_track<V>(model.stride_scale, plan.short_track);
+  plan.flying = chosen_foot<V>(is_short, flying, plan.flying);
+  plan.heel_up_m = is_short ? flying.heel_m.y : plan.heel_up_m;
+}
+
 // At a phase of the walk and a share of the running step's time.
 template <class V>
 void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state, const V& phase,
                  const V& step_share, PlanOf<V>& plan) noexcept {
   plan.phase = phase;
-  plan.change = smootherstep(step_share);
-  plan.shown = within(state.gait.amplitude.x, 0.0, 1.0);
+  plan.change = planned_change<V>(at, step_share) + state.gait.off_change.x;
+  plan.shown = planned_share<V>(at, step_share, at.rest_ticks) + state.gait.off_shown.x;
   const KnotsOf<V> knots = knots_at<V>(phase);
   const V behind = state.gait.ratio_behind, ahead = ratio_ahead<V>(tick.model, at, state);
   const TablesOf<V> tables = tables_of<V>(tick.model, at.backward);
@@ -279,21 +344,22 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
   }
   stride_between<V>(ratios[0], ratios[1], plan.change, knots, plan.cell);
   scale_stride<V>(scale, plan.cell);
+  // A foot that flies does so whatever else shows of the tables.
+  const auto& feet = plan.cell.foot;
+  plan.flying = chosen_foot<V>(at.right_steps, feet[kRightSide], feet[kLeftSide]);
   constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
   auto* to = reinterpret_cast<V*>(&plan.cell);
   for (int k = 0; k < kNumbers; ++k) to[k] = plan.shown * to[k];
   raise_limping_heel<V>(tick, at, state, tables, knots, ahead, plan);
+  if (any(at.starting | at.closing))
+    plan_short_flight<V>(tick, at, state, tables, ahead, phase, plan);
   plan.cell.pelvis_m.y = bounced<V>(state.gait, plan);
 }
 // Now.
 template <class V>
 void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                  PlanOf<V>& plan) noexcept {
-  const V begun = at.tick + (at.flies ? at.roll_ticks : V{});
-  // A walk that has closed fades from the stride of its last step.
-  const V share =
-      at.started ? begun / max_of(V(at.roll_ticks + at.flight_ticks), all_of<V>(1.0)) : V{};
-  plan_stride<V>(tick, at, state, at.phase, share, plan);
+  plan_stride<V>(tick, at, state, at.phase, at.step_share(), plan);
 }
 
 // Where a point of the travel frame of a stride is, seen from the footprint of `side` in the
@@ -313,8 +379,8 @@ Vec<V> from_footprint(const MomentOf<V>& at, const StrideTrackOf<V>& track, cons
 // --- Hips and landing place ----------------------------------------------------------------------
 
 // Lengths in metres at the reference leg.
-inline constexpr double kChangeDrop_m = 0.012, kChange = 0.2;
-inline constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees
+inline constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees,
+inline constexpr double kUnsteadyReach = 0.997, kUnsteadySoft_m = 0.016;  // and by 11
 inline constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6,
                         kWidest_m = 0.06;
 inline constexpr double kFreeze = 0.55;  // of the flight: after it the landing place is settled
@@ -357,31 +423,77 @@ V step_length(const MomentOf<V>& at, const V& length_m) noexcept {
 }
 
 template <class V>
+Vec<V> direction_of(const V& heading_rad) noexcept {
+  V sine, cosine;
+  sin_cos_of(heading_rad, sine, cosine);
+  return {sine, V{}, cosine};
+}
+template <class V>
+Vec<V> side_of(const Vec<V>& forward) noexcept {
+  return {forward.z, V{}, V{} - forward.x};
+}
+
+// How far the walk turns in the time of the running step.
+template <class V>
+V turn_ahead(const Tick& tick, const StateOf<V>& state, const MomentOf<V>& at) noexcept {
+  return state.gait.turn_goal.x * (at.roll_ticks + at.flight_ticks) * tick.dt_s;
+}
+
+// Feet land on both sides of the path: in a turn that is an arc. Turning on the spot they stand
+// wider apart, and point where the body will face.
+// Of the turn between two footprints: the way between them leads so far round.
+inline constexpr double kWayTurns = 0.82;
+inline constexpr double kInPlaceLength_m = 0.2, kFootAhead = 0.45;
+inline constexpr double kWiderInTurns_s = 0.045, kWidestInTurns_m = 0.045, kStance_m = 0.105,
+                        kLeastWider_m = 0.03;
+
+template <class V>
 void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) noexcept {
   const auto on_way = at.on_way();
   if (!any(on_way)) return;
   PathFlow<V>& path = state.path;
-  const V heading = heading_ahead<V>(tick, state, at.ticks_to_strike() + 1.0);
-  V sine, cosine;
-  sin_cos_of(heading, sine, cosine);
-  const Vec<V> forward{sine, V{}, cosine}, left = cross_of(all_of<V>(kUp), forward);
+  const V ticks = at.ticks_to_strike() + 1.0, heading = heading_ahead<V>(tick, state, ticks);
   const Vec<V> standing = chosen(at.right_steps, state.foot[kLeftSide].heel_anchor_m,
                                  state.foot[kRightSide].heel_anchor_m);
-  const auto open = on_way & (at.flight_progress() <= all_of<V>(kFreeze));
+  const V stands_rad =
+      at.right_steps ? state.foot[kLeftSide].lift_yaw_rad : state.foot[kRightSide].lift_yaw_rad;
+  const auto open = on_way & (at.replanned | (at.flight_progress() <= all_of<V>(kFreeze)));
   if (any(open)) {
     const double track_m[] = {tick.model.leg[0].track_m, tick.model.leg[1].track_m};
-    const V width = value<V>(at.right_steps, track_m[1] - track_m[0], track_m[0] - track_m[1]);
-    const V length_m = value<V>(at.right_steps, state.gait.length_m[kRightSide].x,
-                                state.gait.length_m[kLeftSide].x);
-    path.landing_heading_rad = open ? heading : path.landing_heading_rad;
-    path.landing_m = chosen(open, standing + forward * step_length<V>(at, length_m) + left * width,
-                            path.landing_m);
+    const V length_m =
+        step_length<V>(at, value<V>(at.right_steps, state.gait.length_m[kRightSide].x,
+                                    state.gait.length_m[kLeftSide].x));
+    const V lands_m = value<V>(at.right_steps, track_m[kRightSide], track_m[kLeftSide]),
+            stands_m = value<V>(at.right_steps, track_m[kLeftSide], track_m[kRightSide]);
+    // The path runs between the footprints, on an arc from the one's direction to the other's.
+    const V turn = heading - stands_rad, round = abs_of(state.gait.turn_goal.x);
+    const V in_place = 1.0 - smoothstep(0.0, kInPlaceLength_m * tick.model.size, abs_of(length_m));
+    const V outwards = value<V>(at.right_steps, -1.0, 1.0);
+    const double size = tick.model.size;
+    const V wider =
+        mix(min_of(V(size * kWiderInTurns_s * round), all_of<V>(size * kWidestInTurns_m)),
+            max_of(V(size * kStance_m - abs_of(lands_m)), all_of<V>(size * kLeastWider_m)) *
+                min_of(round, all_of<V>(1.0)),
+            in_place);
+    const auto steps_on = not_of(at.closing);
+    const V asides_m = lands_m + (steps_on ? outwards * max_of(wider, V{}) : V{});
+    const V stood_m = stands_m - (steps_on ? outwards * state.path.wider_m : V{});
+    const V lands_rad =
+        heading + (steps_on ? in_place * kFootAhead * turn_ahead<V>(tick, state, at) : V{});
+    const Vec<V> along = direction_of<V>(V(stands_rad + kWayTurns * turn)),
+                 from = direction_of<V>(stands_rad), to = direction_of<V>(heading);
+    const V lead_m = in_place * tick.model.rest_lead_m;
+    const Vec<V> across =
+        side_of<V>(to) * asides_m - side_of<V>(from) * stood_m + (from - to) * lead_m;
+    path.landing_heading_rad = open ? lands_rad : path.landing_heading_rad;
+    path.landing_m = chosen(open, standing + along * length_m + across, path.landing_m);
+    path.next_wider_m = open ? (steps_on ? max_of(wider, V{}) : V{}) : path.next_wider_m;
     if constexpr (kAlone<V>) {
-      if (!tick.flat) choose_foothold(tick, state, forward, left * width);
+      if (!tick.flat) choose_foothold(tick, state, along, across);
     }
   }
-  // Along the heading at the landing, which may still turn after the place is settled.
-  const V step_m = dot_of(path.landing_m - standing, forward);
+  // Along the heading, which may still turn after the place is settled.
+  const V step_m = dot_of(path.landing_m - standing, direction_of<V>(heading));
   for (const Side side : {kLeftSide, kRightSide})
     path.stride_m[side] = (on_way & at.steps(side)) ? step_m : path.stride_m[side];
   if constexpr (kAlone<V>) {
@@ -410,7 +522,29 @@ Vec<V> path_to_landing(const MomentOf<V>& at, const StrideTrackOf<V>& track, con
   return landing_m + rotation_about_y(heading_rad) * seen;
 }
 
-// A step takes the hips from the path of the stride before it over to its own.
+// How far the pelvis is off the hips' path in the tables, over the ground.
+template <class V>
+Vec<V> over_ground(const V& heading_rad, const Vec<V>& pelvis_m) noexcept {
+  V sine, cosine;
+  sin_cos_of(heading_rad, sine, cosine);
+  return {cosine * pelvis_m.x + sine * pelvis_m.z, V{}, cosine * pelvis_m.z - sine * pelvis_m.x};
+}
+
+// Where the tables of one ratio have the pelvis on its way to the landing.
+template <class V>
+Vec<V> pelvis_to_landing(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
+                         const RatiosOf<V>& ratio, const StrideTrackOf<V>& track,
+                         const V& phase) noexcept {
+  StrideCellOf<V> cell;
+  stride_between<V>(ratio, ratio, V{}, knots_at<V>(phase), cell);
+  scale_stride<V>(model.stride_scale, cell);
+  const PathFlow<V>& path = state.path;
+  return path_to_landing<V>(at, track, phase, path.landing_m, path.landing_heading_rad) +
+         over_ground<V>(path.landing_heading_rad, cell.pelvis_m);
+}
+
+// A step takes the hips from the path of the stride before it over to its own. After a step in
+// which they led they go on from where they are.
 template <class V>
 SmoothFade<Vec<V>> path_at_strike(const WalkModel& model, const MomentOf<V>& at,
                                   const StateOf<V>& state, const V& ratio) noexcept {
@@ -421,11 +555,20 @@ SmoothFade<Vec<V>> path_at_strike(const WalkModel& model, const MomentOf<V>& at,
   std::array<Vec<V>, 3> off;
   for (int k : {0, 1, 2}) {
     Vec<V> from = path_from_standing<V>(at, state, behind, phase);
-    const auto at_rest = at.last_step_ticks == V{};
-    from.x = at_rest ? path.hips_m.x : from.x;
-    from.z = at_rest ? path.hips_m.z : from.z;
+    if (any(at.was_led)) {
+      StrideCellOf<V> cell;
+      const RatiosOf<V> ratios =
+          ratios_at<V>(tables_of<V>(model, at.backward), state.gait.ratio_behind);
+      stride_between<V>(ratios, ratios, V{}, knots_at<V>(phase), cell);
+      scale_stride<V>(model.stride_scale, cell);
+      const Vec<V> goes = path.pelvis_m.x + path.pelvis_m.v * all_of<V>(k) +
+                          path.pelvis_m.a * all_of<V>(0.5 * k * k);
+      from = chosen(at.was_led, goes - over_ground<V>(path.heading_rad, cell.pelvis_m), from);
+    }
     off[k] = from - path_to_landing<V>(at, ahead, phase, path.landing_m, path.landing_heading_rad);
-    approach(phase, rate, at.stage_end, at.end_rate, V(at.stage_ticks - double(k)), 1.0);
+    // A walk beside it that stands has no ticks left.
+    const V left = max_of(V(at.stage_ticks - double(k)), all_of<V>(1.0));
+    approach(phase, rate, at.stage_end, at.end_rate, left, 1.0);
   }
   return {off[0], 0.5 * (4.0 * off[1] - 3.0 * off[0] - off[2]), off[0] - 2.0 * off[1] + off[2]};
 }
@@ -446,7 +589,6 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
   }
   PathFlow<V>& path = state.path;
   const auto on_way = at.on_way();
-  path.hips_velocity_m_s = chosen(on_way, path.hips_velocity_m_s, Vec<V>{});
   if (!any(on_way)) return;
   const Vec<V> before = path.hips_m;
   const Vec<V> to =
@@ -480,7 +622,298 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
   Vec<V> hips = to + off.x;
   hips.y = V{};
   path.hips_m = chosen(on_way, hips, before);
-  path.hips_velocity_m_s = chosen(on_way, (hips - before) / tick.dt_s, path.hips_velocity_m_s);
+}
+
+// --- The hips lead, the phase follows ------------------------------------------------------------
+
+// Where a walk begins, ends, or changes its pace, the pelvis goes along a quintic from where it is,
+// with its rate and acceleration, to where the tables have it at the coming strike, or to rest. The
+// tables are read at the phase at which they have the pelvis there, so that at every tick the
+// posture is that of a steady walk with its hips at that place: a start is the second half of a
+// step, a stop the first half.
+
+inline constexpr double kPhaseStep = 1e-3, kAimTicks = 4.0, kMostBend_m_s2 = 15.0;
+// How much a phase that is a cycle off the clock counts, against hips that are off their place:
+// metres at the reference leg. It keeps heights in time with the landing.
+inline constexpr double kGoesSomewhere =
+    0.2;  // of the data's stride: a shorter one keeps to the clock
+inline constexpr double kInTime_m = 1.2, kLeastWay_m2 = 0.02;
+inline constexpr double kBeforeStep = 0.1, kAfterStep = 0.14;  // phases around the step's own
+inline constexpr int kPhaseTries = 6, kFewTries = 2;
+inline constexpr double kFastestPhase = 2.5;  // of the clock's
+
+// The pelvis' place by the tables at a phase.
+template <class V>
+Vec<V> pelvis_by_tables(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
+                        const std::array<RatiosOf<V>, 2>& ratios, const PlanOf<V>& plan,
+                        const V& phase) noexcept {
+  StrideCellOf<V> cell;
+  stride_between<V>(ratios[0], ratios[1], plan.change, knots_at<V>(phase), cell);
+  scale_stride<V>(model.stride_scale, cell);
+  const PathFlow<V>& path = state.path;
+  const Vec<V> from = path_from_standing<V>(at, state, plan.track[0], phase),
+               to = path_to_landing<V>(at, plan.track[1], phase, path.landing_m,
+                                       path.landing_heading_rad);
+  return from * (1.0 - plan.change) + to * plan.change +
+         over_ground<V>(path.landing_heading_rad, cell.pelvis_m);
+}
+
+// Moves the pelvis by one tick.
+template <class V>
+void move_pelvis(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state,
+                 const std::array<RatiosOf<V>, 2>& ratios, const PlanOf<V>& plan) noexcept {
+  PathFlow<V>& path = state.path;
+  Vec<V> place = path.rest_m, rate{}, bend{};
+  V ticks = at.rest_ticks + 1.0;
+  const auto strides = at.led & not_of(at.stopping);
+  if (any(strides)) {
+    std::array<Vec<V>, 3> around;
+    const V step = kAimTicks * at.strike_rate;
+    for (int k : {0, 1, 2})
+      around[k] = pelvis_to_landing<V>(model, at, state, ratios[1], plan.track[1],
+                                       V(at.strike_phase + double(k - 1) * step));
+    place = chosen(strides, around[1], place);
+    rate = chosen(strides, (around[2] - around[0]) * all_of<V>(0.5 / kAimTicks), rate);
+    bend = chosen(strides,
+                  (around[2] - around[1] * all_of<V>(2.0) + around[0]) *
+                      all_of<V>(0.5 / (kAimTicks * kAimTicks)),
+                  bend);
+    ticks = strides ? at.ticks_to_strike() + 1.0 : ticks;
+  }
+  const auto goal = [&](const V& left) {
+    return SmoothFade<Vec<V>>{place - rate * left + bend * (0.5 * left * left), rate - bend * left,
+                              bend};
+  };
+  const SmoothFade<Vec<V>> was = goal(ticks), is = goal(V(ticks - 1.0));
+  const SmoothFade<Vec<V>>& pelvis = path.pelvis_m;
+  SmoothFade<Vec<V>> off{pelvis.x - was.x, pelvis.v - was.v, pelvis.a - was.a};
+  off.move(max_of(ticks, all_of<V>(1.0)));
+  off = chosen_fade<V>(ticks > all_of<V>(1.0), off, SmoothFade<Vec<V>>{});
+  path.pelvis_m = chosen_fade<V>(at.led, {is.x + off.x, is.v + off.v, is.a + off.a}, pelvis);
+}
+
+// The phase at which the tables have the pelvis where it is.
+template <class V>
+V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
+                  const std::array<RatiosOf<V>, 2>& ratios, const PlanOf<V>& plan,
+                  V& rate) noexcept {
+  const PathFlow<V>& path = state.path;
+  V sine, cosine;
+  sin_cos_of(path.landing_heading_rad, sine, cosine);
+  const auto along = [&](const Vec<V>& p) { return V(p.x * sine + p.z * cosine); };
+  const V wanted = along(path.pelvis_m.x);
+  const double least = kLeastWay_m2 * model.size * model.size,
+               time = kInTime_m * kInTime_m * model.size * model.size;
+  const V goes = smoothstep(0.0, kGoesSomewhere, ratio_ahead<V>(model, at, state));
+  const V in_time = (at.starting | at.closing) ? V(time * (1.0 - goes)) : all_of<V>(time);
+  const V low = at.step_phase - kBeforeStep, high = at.strike_phase + kAfterStep;
+  // The phase counts from the running step's own strike; it may fall far behind the clock.
+  V phase = state.gait.phase - state.gait.off_phase.x;
+  phase = phase - floor_of(V(phase - 0.5 * (low + high) + 0.5));
+  phase = min_of(max_of(phase, low), high);
+  const auto all_tries = at.replanned | at.strikes();
+  const V last = phase;
+  for (int n = 0; n < (any(all_tries) ? kPhaseTries : kFewTries); ++n) {
+    const V here = along(pelvis_by_tables<V>(model, at, state, ratios, plan, phase)),
+            there =
+                along(pelvis_by_tables<V>(model, at, state, ratios, plan, V(phase + kPhaseStep)));
+    const V slope = (there - here) / kPhaseStep;
+    const V step = ((here - wanted) * slope + in_time * (phase - at.phase)) /
+                   (slope * slope + in_time + least);
+    const V next = min_of(max_of(V(phase - step), low), high);
+    const V moves = (along(path.pelvis_m.v) * slope + in_time * at.phase_rate) /
+                    (slope * slope + in_time + least);
+    const auto tries = all_tries | (all_of<V>(n) < all_of<V>(kFewTries));
+    phase = tries ? next : phase;
+    rate = tries ? moves : rate;
+  }
+  // Hips that hardly move are at no certain phase.
+  const V most = kFastestPhase * at.strike_rate;
+  return all_tries ? phase : min_of(max_of(phase, V(last - most)), V(last + most));
+}
+
+// Reads the tables again at another phase; the foot that flies keeps to the clock.
+template <class V>
+void read_at(const WalkModel& model, const StateOf<V>& state,
+             const std::array<RatiosOf<V>, 2>& ratios, const MaskOf<V>& where, const V& phase,
+             PlanOf<V>& plan) noexcept {
+  StrideCellOf<V> cell;
+  stride_between<V>(ratios[0], ratios[1], plan.change, knots_at<V>(phase), cell);
+  scale_stride<V>(model.stride_scale, cell);
+  constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
+  const auto* from = reinterpret_cast<const V*>(&cell);
+  auto* to = reinterpret_cast<V*>(&plan.cell);
+  for (int k = 0; k < kNumbers; ++k) to[k] = where ? V(plan.shown * from[k]) : to[k];
+  const V bounces = bounced<V>(state.gait, plan);
+  plan.cell.pelvis_m.y = where ? bounces : plan.cell.pelvis_m.y;
+}
+
+// What a changed plan left of the last one fades: of `value` now, which by the plan is `planned`
+// with its rate.
+template <class V>
+void carry_over(const MaskOf<V>& changed, const V& value, const V& rate, const V& planned,
+                const V& planned_rate, SmoothFade<V>& off) noexcept {
+  off.x = changed ? value + rate - planned : off.x;
+  off.v = changed ? rate - planned_rate : off.v;
+  off.a = changed ? V{} : off.a;
+}
+
+// The pelvis' place in this tick, and the phase that goes with it.
+template <class V>
+void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& plan) noexcept {
+  PathFlow<V>& path = state.path;
+  GaitFlow<V>& gait = state.gait;
+  const Vec<V> by_tables = path.hips_m + over_ground<V>(path.heading_rad, plan.cell.pelvis_m);
+  const Vec<V> last = path.pelvis_m.x;
+  const auto off_clock = at.led | (gait.off_phase.x != V{}) | at.replanned;
+  V phase = at.phase, rate = at.phase_rate;
+  std::array<RatiosOf<V>, 2> ratios;
+  if (any(off_clock)) {
+    const TablesOf<V> tables = tables_of<V>(tick.model, at.backward);
+    ratios = {ratios_at<V>(tables, gait.ratio_behind),
+              ratios_at<V>(tables, ratio_ahead<V>(tick.model, at, state))};
+  }
+  if (any(at.led)) {
+    move_pelvis<V>(tick.model, at, state, ratios, plan);
+    V moves{};
+    const V found = phase_of_pelvis<V>(tick.model, at, state, ratios, plan, moves);
+    phase = (at.led & at.started) ? found : phase;
+    rate = (at.led & at.started) ? moves : rate;
+    // While the hips come to rest over both feet the data stand still.
+    const auto settles = at.led & not_of(at.started);
+    phase = settles ? gait.phase - gait.off_phase.x : phase;
+    rate = settles ? V{} : rate;
+  }
+  // Not led: the tables' place, its rate and acceleration by differences.
+  const Vec<V> moved = by_tables - last, before = last - path.last_pelvis_m;
+  // Bounded, for a landing that jumps to another tread moves the path.
+  const double most = kMostBend_m_s2 * tick.dt_s * tick.dt_s;
+  Vec<V> bend = moved - before;
+  bend = bend * min_of(V(most / max_of(length_of(bend), all_of<V>(most))), all_of<V>(1.0));
+  path.pelvis_m = chosen_fade<V>(
+      at.led, path.pelvis_m, {by_tables, moved * all_of<V>(1.5) - before * all_of<V>(0.5), bend});
+  path.last_pelvis_m = last;
+  if (!any(off_clock)) {
+    gait.phase = at.phase;
+    gait.phase_rate = at.phase_rate;
+    return;
+  }
+  const V lasts = gait.phase - floor_of(V(gait.phase - phase + 0.5));
+  carry_over<V>(at.replanned, lasts, gait.phase_rate, phase, rate, gait.off_phase);
+  phase = phase + gait.off_phase.x;
+  const V goes = at.replanned ? rate + gait.off_phase.v : phase - lasts;
+  gait.phase_rate = off_clock ? goes : at.phase_rate;
+  gait.phase = off_clock ? phase : at.phase;
+  read_at<V>(tick.model, state, ratios, off_clock, phase, plan);
+  at.phase = off_clock ? phase : at.phase;
+  const Vec<V> off = over_ground<V>(path.heading_rad, plan.cell.pelvis_m);
+  path.hips_m = chosen(at.led, path.pelvis_m.x - off, path.hips_m);
+}
+
+// Moves on what changed plans have left.
+template <class V>
+void fade_changes(const MomentOf<V>& at, const V& step_share, const V& share_a_tick,
+                  GaitFlow<V>& gait) noexcept {
+  const V share = planned_share<V>(at, step_share, at.rest_ticks),
+          next_share = planned_share<V>(at, V(step_share + share_a_tick), V(at.rest_ticks - 1.0)),
+          change = planned_change<V>(at, step_share),
+          next_change = planned_change<V>(at, V(step_share + share_a_tick));
+  const auto lasts = gait.off_ticks > all_of<V>(1.0);
+  for (SmoothFade<V>* off : {&gait.off_shown, &gait.off_change, &gait.off_phase}) {
+    SmoothFade<V> moved = *off;
+    moved.move(max_of(gait.off_ticks, all_of<V>(1.0)));
+    off->x = lasts ? moved.x : V{};
+    off->v = lasts ? moved.v : V{};
+    off->a = lasts ? moved.a : V{};
+  }
+  SmoothFade<V> ahead = gait.off_ahead;
+  ahead.move(max_of(gait.off_ticks, all_of<V>(1.0)));
+  gait.off_ahead.x = at.replanned ? gait.off_ahead.x : lasts ? ahead.x : V{};
+  gait.off_ahead.v = at.replanned ? gait.off_ahead.v : lasts ? ahead.v : V{};
+  gait.off_ahead.a = at.replanned ? gait.off_ahead.a : lasts ? ahead.a : V{};
+  gait.off_ticks = max_of(V(gait.off_ticks - 1.0), V{});
+  if (any(at.replanned)) {
+    carry_over<V>(at.replanned, gait.shown, gait.shown_rate, share, V(next_share - share),
+                  gait.off_shown);
+    // At a strike what is reached becomes the stride behind; a first step has none.
+    const auto first = at.starting & at.strikes();
+    const V last = at.strikes() ? V{} : gait.change;
+    carry_over<V>(at.replanned, first ? change : last, at.strikes() ? V{} : gait.change_rate,
+                  change, V(next_change - change), gait.off_change);
+    gait.off_ticks = at.replanned ? at.fade_ticks : gait.off_ticks;
+  }
+  const V shown = share + gait.off_shown.x, changed = change + gait.off_change.x;
+  gait.shown_rate = at.replanned ? next_share - share + gait.off_shown.v : shown - gait.shown;
+  const auto refits = at.replanned | at.strikes();
+  gait.change_rate = refits ? next_change - change + gait.off_change.v : changed - gait.change;
+  gait.shown = shown;
+  gait.change = changed;
+}
+
+// --- What is not steady does not jump ------------------------------------------------------------
+
+// Seconds at the reference leg: a walk counts as unsteady, and as steady again, in these; what is
+// planned and may not jump is back at its plan in the others.
+inline constexpr double kUnsteady_s = 0.10, kSteady_s = 0.3, kEases_s = 0.12, kHeaveEases_s = 0.07,
+                        kRises_s = 0.05;
+// The greatest second differences over time, and how fast the heel's may grow: a flying foot brakes
+// harder in every step than a pelvis may.
+inline constexpr double kMostHeave_m_s2 = 45.0, kMostHeel_m_s3 = 7000.0, kMostPitch_s2 = 300.0,
+                        kMostEdge_s2 = 150.0;
+inline constexpr double kLeastFade = 6.0;  // ticks: over fewer a fade is a jump
+
+inline double size_of(double x) noexcept { return abs_of(x); }
+template <class V>
+V size_of(const V& x) noexcept {
+  return abs_of(x);
+}
+template <class V>
+V size_of(const Vec3Of<V>& x) noexcept {
+  return length_of(x);
+}
+inline double size_of(const vec3& x) noexcept { return length_of(x); }
+
+// Follows a goal. While the walk is not steady the second difference is at most `most` or, where
+// `grows` is not 0, by that greater than in the last tick. What that keeps the value off its goal
+// by is gone after `lasts` ticks. In a steady walk the goal comes back as it is.
+template <class V, class T>
+T ease(const T& goal, double most, double grows, const V& lasts, const V& unsteady,
+       EasedOf<T, V>& eased) noexcept {
+  const MaskOf<V> runs = eased.ticks > all_of<V>(1.0);
+  const MaskOf<V> eases = (unsteady > V{}) & (lasts > all_of<V>(kLeastFade));
+  if (!any(runs | eases)) return goal;
+  SmoothFade<T> off = eased.off;
+  const V left = min_of(eased.ticks, lasts);
+  off.move(max_of(left, all_of<V>(1.0)));
+  const auto fades = runs & (left > all_of<V>(1.0));
+  off = {chosen(fades, off.x, T{}), chosen(fades, off.v, T{}), chosen(fades, off.a, T{})};
+  const T bend = goal + off.x - eased.value - eased.rate;
+  const V size = size_of(bend),
+          grown = max_of(all_of<V>(most), grows > 0.0 ? V(size_of(eased.bend) + grows) : V{});
+  const auto clamps = eases & (size > grown);
+  const T less = bend * V((clamps ? grown / size : all_of<V>(1.0)) - 1.0);
+  off.x = off.x + less;
+  off.v = off.v + less;
+  eased.off = off;
+  eased.ticks = clamps ? lasts : max_of(V(left - 1.0), V{});
+  return chosen(runs | clamps, goal + off.x, goal);
+}
+// What it came to in this tick.
+template <class T, class V>
+void keep(const T& value, EasedOf<T, V>& eased) noexcept {
+  const T rate = value - eased.value;
+  eased.bend = rate - eased.rate;
+  eased.rate = rate;
+  eased.value = value;
+}
+
+// How much of the walk is not steady: rises where hips lead and in the step after that.
+template <class V>
+void advance_unsteady(const Tick& tick, const MomentOf<V>& at, PathFlow<V>& path) noexcept {
+  const double scale = tick.model.time_scale;
+  const V step = value<V>(at.led | at.was_led | at.replanned, tick.dt_s / (kUnsteady_s * scale),
+                          -tick.dt_s / (kSteady_s * scale));
+  if (tick.mode != IkMode::paper) path.unsteady = within(V(path.unsteady + step), 0.0, 1.0);
 }
 
 // --- Feet: their place, direction and pitch ------------------------------------------------------
@@ -500,6 +933,13 @@ inline constexpr double kMaxPitch = 85.0 * kDegree, kWidePitch = 25.0 * kDegree;
 // only so far.
 inline constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
 inline constexpr double kLiftFade = 0.5;  // of the flight: the lift-off's own motion has faded
+inline constexpr double kRollEnd = 0.9;   // of the roll: the toe is down
+inline constexpr double kInPlaceStride_m = 0.02, kLikeAStep = 0.4, kWalksFrom = 0.3;
+inline constexpr double kSoftFloor_m = 0.02, kFirstLift_m = 0.03, kLastLift_m = 0.025,
+                        kEdgeGoes = 0.4;
+inline constexpr double kSoftFrom = 0.3;  // of a changed flight: from it on the floor is soft
+// Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
+inline constexpr double kHeelStays = 0.25, kFirstPitch = 0.8;
 inline constexpr double kEdgeUp = 0.25,
                         kEdgeDown = 0.9;  // of the flight: between them soles clear the floor
 inline constexpr double kLiftGround =
@@ -514,8 +954,11 @@ V heel_rise(const WalkModel& model, const MomentOf<V>& at, Side side) noexcept {
   const double strike = side == kRightSide ? 0.0 : model.share[0] + model.share[1];
   const V p = at.phase - strike, own = p - floor_of(p);
   const double begin = std::max(kRiseBegin, model.share[side == kRightSide ? 0 : 2]);
-  const auto stays = not_of(at.on_way()) | (at.closing & not_of(at.steps(side)));
-  return stays ? V{} : smoothstep(begin, begin + kHeelRiseLasts, own);  // after the roll
+  // After the roll; less and less where a walk comes to rest.
+  const V rises = smoothstep(begin, begin + kHeelRiseLasts, own),
+          left = smootherstep(V(at.rest_ticks / at.closing_ticks));
+  const auto rests = at.stopping & (not_of(at.started) | (at.closing & not_of(at.steps(side))));
+  return rests ? rises * left : at.on_way() ? rises : V{};
 }
 
 template <class V>
@@ -579,7 +1022,23 @@ V table_pitch(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& p
               Side side) noexcept {
   // The foot that stands when a walk begins has not landed: its toe is down.
   const auto stands = at.in_roll[side] & (at.last_step_ticks == V{});
-  const V pitch = (at.started & not_of(stands)) ? plan.cell.foot[side].pitch_rad : V{};
+  const V own = at.in_flight[side] ? plan.flying.pitch_rad : plan.cell.foot[side].pitch_rad;
+  V pitch = (at.started & not_of(stands)) ? own : V{};
+  const auto begins = at.starting & at.rolls & at.steps(side);
+  if (any(begins)) {
+    const V lifts = smootherstep(V((at.tick / at.stage_ticks - kHeelStays) / (1.0 - kHeelStays)));
+    pitch = begins ? kFirstPitch * plan.flying.pitch_rad * lifts : pitch;
+  }
+  // The foot in front stays flat while the other one closes.
+  const auto flat =
+      at.closing & not_of(at.in_flight[side]) & not_of(at.in_roll[side]) & not_of(at.steps(side));
+  pitch = flat ? V{} : pitch;
+  // Where the hips lead, the toe of a foot that has landed is down when the other one lifts off.
+  const auto stops = at.in_roll[side] & at.led;
+  if (any(stops)) {
+    const V down = (at.tick - at.led_from) / (kRollEnd * (at.stage_ticks - at.led_from));
+    pitch = stops ? pitch * (1.0 - smootherstep(down)) : pitch;
+  }
   const V low = low_lift<V>(state, side);
   const auto is_low = not_of(at.in_roll[side]) & (low != all_of<V>(1.0));
   if (!any(is_low)) return pitch;
@@ -587,11 +1046,37 @@ V table_pitch(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& p
   return is_low ? pitch * mix(low, 1.0, smootherstep(V(u / kLowPitch))) : pitch;
 }
 
-// How much of the tables' twist and roll a foot on the ground shows: when standing it is flat.
+// How much of the tables' twist and roll a foot on the ground shows: when standing it is flat, and
+// one that closes lands so.
 template <class V>
-V on_its_edges(const MomentOf<V>& at) noexcept {
-  const V fading = at.idle ? V{} : 1.0 - smootherstep(V(at.tick / at.stage_ticks));
+V on_its_edges(const MomentOf<V>& at, Side side) noexcept {
+  const V fading =
+      (at.idle | at.in_roll[side]) ? V{} : 1.0 - smootherstep(V(at.tick / at.stage_ticks));
   return at.started ? all_of<V>(1.0) : fading;
+}
+
+// Of a foot that starts from rest, or comes to rest: from its footprint to the next one as far as
+// strides of that length have it.
+template <class V>
+Vec<V> short_flight(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& plan,
+                    Side side, const V& u) noexcept {
+  const auto& foot = state.foot[side];
+  const PathFlow<V>& path = state.path;
+  const StrideTrackOf<V>& track = plan.short_track;
+  const Vec<V> ahead = from_footprint<V>(at, track, plan.phase, side, 1, plan.flying.heel_m);
+  const auto in_place = abs_of(track.stride_m) < all_of<V>(kInPlaceStride_m);
+  const V gone =
+      in_place ? smootherstep(u) : 1.0 + ahead.z / (in_place ? all_of<V>(1.0) : track.stride_m);
+  const Vec<V> aside = rotation_about_y(path.landing_heading_rad) * Vec<V>{ahead.x, V{}, V{}};
+  return foot.heel_anchor_m + (path.landing_m - foot.heel_anchor_m) * gone + aside;
+}
+
+// Its heel goes a little higher than in such strides, so that the toe leaves the floor at once.
+template <class V>
+V short_lift(const WalkModel& model, const MomentOf<V>& at, const V& u) noexcept {
+  const V x = 1.0 - u;
+  const V high_m = value<V>(at.starting, kFirstLift_m, kLastLift_m);
+  return model.size * high_m * 16.0 * (u * u) * (x * x);
 }
 
 // The heel's place, and the height of the ground line below it: the tables' path from the footprint
@@ -610,6 +1095,30 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
                    from_footprint<V>(at, plan.track[1], plan.phase, side, 1, plan.flying_m[1]);
   Vec<V> p = (foot.heel_anchor_m + old * from_old) * (1.0 - gone) +
              (path.landing_m + next * from_next) * gone;
+  const auto is_short = at.starting | at.closing;
+  if (any(is_short)) {
+    // Before it lands a first step is one of the walk.
+    const V lands =
+        at.starting ? kLikeAStep * smootherstep(V((u - kWalksFrom) / (1.0 - kWalksFrom))) : V{};
+    const Vec<V> short_m = short_flight<V>(at, state, plan, side, u),
+                 walks = path.landing_m + next * from_next;
+    p = chosen(is_short, short_m * (1.0 - lands) + walks * lands, p);
+  }
+  // On an arc: not on its chord, which leads through the standing leg, nor on both directions
+  // mixed, which lead far out.
+  const V turns = path.landing_heading_rad - foot.lift_yaw_rad;
+  if (any(turns != V{})) {
+    const Vec<V> way = path.landing_m - foot.heel_anchor_m;
+    const V square = way.x * way.x + way.z * way.z,
+            share = within(
+                V(((p.x - foot.heel_anchor_m.x) * way.x + (p.z - foot.heel_anchor_m.z) * way.z) /
+                  max_of(square, all_of<V>(1e-6))),
+                0.0, 1.0);
+    const Vec<V> left = side_of<V>(direction_of<V>(V(foot.lift_yaw_rad + 0.5 * turns)));
+    const V arc = share * (1.0 - share), mixed = (1.0 - gone) * share + gone * (1.0 - share);
+    const V out = is_short ? arc : arc - mixed;
+    p -= left * (turns * sqrt_of(square) * 0.5 * out);
+  }
   // A greater factor acts while the foot is high, a smaller one from the lift-off on.
   const V one = all_of<V>(1.0), factor = state.gait.flight_height[side].x;
   const V more = mix(1.0, max_of(factor, one), V(1.0 - smoothstep(kLiftFalls, kLiftEnds, u)));
@@ -624,12 +1133,42 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
   }
   const V height = min_of(factor, one) * mix(1.0, lifted, smootherstep(V(u / kLiftGrown)));
   p.y = base_m + plan.heel_up_m * height;
-  const V s = u / kLiftFade;
-  const auto fading = u < all_of<V>(kLiftFade);
-  const V of_gap = fading ? h00(s) : V{}, of_slope = fading ? h10(s) * kLiftFade : V{};
-  p += foot.gap_m * of_gap + foot.gap_slope_m * of_slope;
-  p.y = max_of(p.y, base_m);
+  const V s = (u - foot.gap_begin) / foot.gap_lasts;
+  const auto changed = foot.gap_begin > V{};
+  p.y = is_short ? p.y + short_lift<V>(tick.model, at, u) : p.y;
+  p.y = changed ? p.y + short_lift<V>(tick.model, at, s) * foot.gap_lasts : p.y;
+  const auto fading = s < all_of<V>(1.0);
+  // A changed flight may come down fast: a quintic then stays higher.
+  const V w = 1.0 - s, w3 = w * w * w;
+  const V value_of = changed ? w3 * (1.0 + s * (3.0 + 6.0 * s)) : h00(s),
+          slope_of = changed ? w3 * s * (1.0 + 3.0 * s) : h10(s);
+  const V of_gap = fading ? value_of : V{}, of_slope = fading ? slope_of * foot.gap_lasts : V{};
+  const V high = p.y - base_m,
+          falls = (changed & (foot.gap_m.y < V{})) ? V(high / foot.gap_high_m) : all_of<V>(1.0);
+  p.x += foot.gap_m.x * of_gap + foot.gap_slope_m.x * of_slope;
+  p.z += foot.gap_m.z * of_gap + foot.gap_slope_m.z * of_slope;
+  p.y += foot.gap_m.y * of_gap * falls + foot.gap_slope_m.y * of_slope;
+  const V soft_m = kSoftFloor_m * tick.model.size * smootherstep(V(s / kSoftFrom)) *
+                   (1.0 - smootherstep(V((u - 0.7) / 0.3)));
+  const V above = max_of(V(p.y - base_m), V{}),
+          softly = soft_positive(V(p.y - base_m), max_of(soft_m, all_of<V>(1e-6)));
+  p.y = base_m + (changed ? softly : above);
   return p;
+}
+
+// Twist and roll of a foot in flight.
+template <class V>
+Vec<V> flying_edges(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& plan,
+                    Side side, const V& u) noexcept {
+  // Where the hips lead, the foot stood, and will stand, at another phase than it flies at.
+  const V lands = at.closing ? V{} : smootherstep(V((u - 1.0 + kEdgeGoes) / kEdgeGoes));
+  const V goes = at.led ? smootherstep(V(u / kEdgeGoes)) * (1.0 - lands) : all_of<V>(1.0);
+  const StrideFootOf<V>& stands = plan.cell.foot[side];
+  // A lame foot that hardly leaves the floor does not roll onto an edge.
+  const V low = mix(1.0, low_lift<V>(state, side),
+                    V(smootherstep(V(u / 0.5)) * (1.0 - smootherstep(V((u - 0.6) / 0.4)))));
+  return {low * mix(stands.twist_rad, plan.flying.twist_rad, goes),
+          low * mix(stands.roll_rad, plan.flying.roll_rad, goes), V{}};
 }
 
 // Where the foot flies, still without its pitch.
@@ -637,17 +1176,20 @@ template <class V>
 FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                          const PlanOf<V>& plan, Side side, const V& u) noexcept {
   const auto& foot = state.foot[side];
-  const StrideFootOf<V>& cell = plan.cell.foot[side];
   FlightOf<V> point;
   auto& pose = point.pose;
   pose.heel_m = flight_heel<V>(tick, at, state, plan, side, u, point.base_m);
   const V gone = 1.0 - h00(u);
   const V turn = state.path.landing_heading_rad - foot.lift_yaw_rad;
-  pose.yaw = rotation_about_y(V(foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u)));
-  // A lame foot that hardly leaves the floor does not roll onto an edge.
-  const V low = mix(1.0, low_lift<V>(state, side),
-                    V(smootherstep(V(u / 0.5)) * (1.0 - smootherstep(V((u - 0.6) / 0.4)))));
-  pose.edge = edge_of<V>(tick.model.leg[side], low * cell.twist_rad, low * cell.roll_rad);
+  // A landing that has changed its direction in mid-flight.
+  const V s = (u - foot.gap_begin) / foot.gap_lasts;
+  const V off = ((foot.gap_begin > V{}) & (s < all_of<V>(1.0)))
+                    ? foot.gap_yaw_rad * (1.0 - smootherstep(s))
+                    : V{};
+  pose.yaw =
+      rotation_about_y(V(foot.lift_yaw_rad + turn * gone + foot.lift_turn_rad * h10(u) + off));
+  const Vec<V> edges = flying_edges<V>(at, state, plan, side, u);
+  pose.edge = edge_of<V>(tick.model.leg[side], edges.x, edges.y);
   point.lifted_m = V{};
   if constexpr (kAlone<V>) {
     if (!tick.flat) tilt_in_flight(state, side, gone, point);
@@ -655,19 +1197,17 @@ FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<
   return point;
 }
 
-// Its pitch: the tables', as far as the toe stays off that ground.
+// Its pitch: what is planned, as far as the toe stays off that ground. `off_rad`: by how much that
+// is not the tables'.
 template <class V>
-void pitch_in_flight(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
-                     const PlanOf<V>& plan, Side side, const V& u, FlightOf<V>& point) noexcept {
+void pitch_in_flight(const WalkModel& model, const StateOf<V>& state, Side side, const V& u,
+                     const V& pitch, const V& off_rad, FlightOf<V>& point) noexcept {
   const LegBuild& leg = model.leg[side];
   const auto& foot = state.foot[side];
   // The toe leaves the plane that it stood on, which may be another one than the line over ground.
   const V ground_m = point.base_m + point.lifted_m * (1.0 - smootherstep(V(u / kLiftGround)));
   V height = point.pose.heel_m.y - ground_m;
   if constexpr (kAlone<V>) height *= foot.plane.normal.y;
-  // The tables keep the toe off the floor. What differs from them must do so itself.
-  const V fade = foot.pitch_fade.at(u * at.stage_ticks);
-  const V pitch = table_pitch<V>(at, state, plan, side) + fade;
   // A low foot that rolls onto its edge keeps this edge off the floor.
   point.pose.pitch_rad = pitch;
   const Vec<V> across = foot_rotation<V>(leg, point.pose) * all_of<V>(leg.side);
@@ -677,8 +1217,9 @@ void pitch_in_flight(const WalkModel& model, const MomentOf<V>& at, const StateO
                    (1.0 - smoothstep(kEdgeDown, 1.0, u));
   const V limit =
       highest_pitch<V>(leg, height, edge_m - kMostSink_m) + rolled_elevation<V>(leg, point.pose);
+  // The tables keep the toe off the floor. What differs from them must do so itself.
   const V soft =
-      kSoftPitch + kWiderPitch * abs_of(fade) * smoothstep(0.0, 0.1, u) + edge_m / leg.foot_m;
+      kSoftPitch + kWiderPitch * abs_of(off_rad) * smoothstep(0.0, 0.1, u) + edge_m / leg.foot_m;
   const MaskOf<V> on_toe{};  // none
   set_pitch<V>(leg, soft_min(pitch, limit, soft), on_toe, point.pose);
 }
@@ -696,23 +1237,47 @@ void plan_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state, const
     pose.tilt = foot.plane.tilt;
     foot.base_m = foot.plane.place_m.y;
   }
+  const double tick_s = tick.dt_s / model.time_scale, per_tick2 = tick_s * tick_s;
+  const V eases = all_of<V>(kEases_s * model.time_scale / tick.dt_s),
+          unsteady = state.path.unsteady;
+  const V fade = foot.pitch_fade.at(at.mode_ticks[side] - foot.fade_begin),
+          planned = table_pitch<V>(at, state, plan, side) + fade;
+  const auto on_ground = [&](const V& pitch) {
+    const V stands = supports ? max_of(V{}, pitch) : min_of(V{}, pitch);
+    return V(flies ? pitch : stands);
+  };
+  const V flat_in = at.in_roll[side] ? max_of(V(kRollEnd * at.stage_ticks - at.tick), V{}) : eases;
+  const V goal = on_ground(planned);
+  const V pitch = on_ground(ease<V>(goal, kMostPitch_s2 * per_tick2, 0.0, V(min_of(eases, flat_in)),
+                                    unsteady, foot.eased_pitch));
+  keep(pitch, foot.eased_pitch);
+  const V u = flies ? at.flight_progress() : V{}, shows = on_its_edges<V>(at, side);
+  const StrideFootOf<V>& stands = plan.cell.foot[side];
+  const Vec<V> edges = chosen(flies, flying_edges<V>(at, state, plan, side, u),
+                              Vec<V>{shows * stands.twist_rad, shows * stands.roll_rad, V{}});
+  const Vec<V> edge_rad =
+      ease<V>(edges, kMostEdge_s2 * per_tick2, 0.0, eases, unsteady, foot.eased_edge);
+  keep(edge_rad, foot.eased_edge);
+  const Quat<V> edge = edge_of<V>(leg, edge_rad.x, edge_rad.y);
   if (any(not_of(flies))) {
-    const StrideFootOf<V>& cell = plan.cell.foot[side];
-    const V pitch = table_pitch<V>(at, state, plan, side) + foot.pitch_fade.at(at.mode_ticks[side]);
-    const V shows = on_its_edges<V>(at);
-    pose.edge = edge_of<V>(leg, shows * cell.twist_rad, shows * cell.roll_rad);
+    pose.edge = edge;
     pose.toe_m = chosen(supports, foot.toe_anchor_m, pose.toe_m);
     pose.heel_m = chosen(supports, pose.heel_m, foot.heel_anchor_m);
-    set_pitch<V>(leg, supports ? max_of(V{}, pitch) : min_of(V{}, pitch), supports, pose);
+    set_pitch<V>(leg, pitch, supports, pose);
   }
   if (any(flies)) {
-    const V u = flies ? at.flight_progress() : V{};
     FlightOf<V> point = flight_point<V>(tick, at, state, plan, side, u);
+    point.pose.edge = edge;
     if constexpr (kAlone<V>) {
       if (!tick.flat) clear_ground(tick, state, plan, side, u, point);
       foot.base_m = point.base_m;
     }
-    pitch_in_flight<V>(model, at, state, plan, side, u, point);
+    const V left = flies ? at.ticks_to_strike() : V{};
+    point.pose.heel_m =
+        ease<V>(point.pose.heel_m, 0.0, kMostHeel_m_s3 * model.size * per_tick2 * tick_s,
+                V(min_of(eases, left)), flies ? unsteady : V{}, foot.eased_heel);
+    point.pose.heel_m.y = max_of(point.pose.heel_m.y, point.base_m);
+    pitch_in_flight<V>(model, state, side, u, pitch, V(fade + (pitch - goal)), point);
     point.pose.toe_rad = foot.pose.toe_rad;
     pose = chosen_pose(flies, point.pose, pose);
   }
@@ -720,6 +1285,7 @@ void plan_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state, const
   if constexpr (kAlone<V>) {
     if (!tick.flat && supports) rise_on_toe(tick, state, plan, side);
   }
+  keep(foot.pose.heel_m, foot.eased_heel);
 }
 
 // The pitch at which the ankle, turning about the planted toe, is as far from the hip as the leg
@@ -757,6 +1323,33 @@ void reach_with_toe(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& s
   set_pitch<V>(leg, max_of(pose.pitch_rad, pitch_in_reach<V>(leg, pose, hip_m, reach)), short_of,
                pose);
   foot.pose = chosen_pose(short_of, pose, foot.pose);
+}
+
+// So far a leg reaches: less where the walk is not steady, for a straight knee would turn fast.
+template <class V>
+V reach_of(const LegBuild& leg, const PathFlow<V>& path) noexcept {
+  return leg.model.length_m() * mix(kReach, kUnsteadyReach, V(smootherstep(path.unsteady)));
+}
+
+// A foot in flight keeps within the reach of its leg.
+template <class V>
+void keep_in_reach(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state, Side side,
+                   const Vec<V>& hip_m) noexcept {
+  auto& foot = state.foot[side];
+  const LegBuild& leg = model.leg[side];
+  const Vec<V> way = hip_m - (foot.pose.heel_m - foot.pose.rotation * all_of<V>(leg.model.heel_m));
+  const V span = length_of(way), beyond = span - reach_of<V>(leg, state.path);
+  const double soft = kSoftReach_m * model.size;
+  const MaskOf<V> pulls =
+      at.in_flight[side] & (state.path.unsteady > V{}) & (beyond > all_of<V>(-soft));
+  if (!any(pulls)) return;
+  const V shorter = soft_positive(beyond, soft) * smootherstep(state.path.unsteady) *
+                    smootherstep(V(at.flight_progress() / 0.1)) *
+                    (1.0 - smootherstep(V((at.flight_progress() - 0.7) / 0.3)));
+  auto pose = foot.pose;
+  pose.heel_m += way * (shorter / span);
+  pose.toe_m += way * (shorter / span);
+  foot.pose = chosen_pose(pulls, pose, foot.pose);
 }
 
 // How much a foot whose heel stays low asks of the hips and of its own pitch: from its rise on, and
@@ -800,10 +1393,9 @@ PelvisOf<V> pelvis_over_ground(const WalkModel& model, const StateOf<V>& state,
   const StrideCellOf<V>& cell = plan.cell;
   PelvisOf<V> pelvis;
   const Quat<V>& heading = pelvis.heading = rotation_about_y(state.path.heading_rad);
-  const Vec<V> forward{2.0 * heading.w * heading.y, V{},
-                       heading.w * heading.w - heading.y * heading.y},
-      left = cross_of(all_of<V>(kUp), forward);
-  pelvis.position_m = state.path.hips_m + left * cell.pelvis_m.x + forward * cell.pelvis_m.z;
+  const Vec<V> left{heading.w * heading.w - heading.y * heading.y, V{},
+                    -2.0 * heading.w * heading.y};
+  pelvis.position_m = state.path.pelvis_m.x;
   // In a turn the body leans as a whole, about the ground below the hips.
   const V height_m = model.stand_m + cell.pelvis_m.y;
   V sine, cosine;
@@ -839,20 +1431,18 @@ V span_of(const LegModel& leg, const V& knee_rad) noexcept {
 
 // The pelvis' height: the tables', lowered where ground or turn ask more of a leg than they know.
 template <class V>
-V pelvis_height(const WalkModel& model, const StateOf<V>& state, const PlanOf<V>& plan,
+V pelvis_height(const WalkModel& model, double tick_s, StateOf<V>& state, const PlanOf<V>& plan,
                 const PelvisOf<V>& pelvis) noexcept {
-  // Legs that are about to change their pace are bent a little, so that they have room.
-  const V one = all_of<V>(1.0), change = state.gait.pace.x - state.gait.settled_pace.x;
-  V y = pelvis.position_m.y;
-  y -= kChangeDrop_m * model.size * min_of(one, V(2.0 * state.gait.pace.x)) * change * change /
-       (change * change + kChange * kChange);
+  const V y = pelvis.position_m.y;
   V squares{};
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
-    const V table =
-        span_of<V>(leg.model, V(model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX]));
-    const V known =
-        mix(all_of<V>(kLowReach * leg.model.length_m()), table, low_lift<V>(state, side));
+    const V knee = model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
+    // Between the tables of two strides a knee may be straighter than in both.
+    const V table = span_of<V>(leg.model, knee);
+    const V low = kLowReach * leg.model.length_m() + V{},
+            known = mix(low, table,
+                        low_lift<V>(state, side) * (1.0 - smootherstep(state.path.unsteady)));
     const auto& pose = state.foot[side].pose;
     const Vec<V> ankle = pose.heel_m - pose.rotation * all_of<V>(leg.model.heel_m),
                  hip = pelvis.hip(leg);
@@ -861,26 +1451,44 @@ V pelvis_height(const WalkModel& model, const StateOf<V>& state, const PlanOf<V>
     const V beyond = (span - known) / model.size;
     const auto asked = beyond > V{};
     if (!any(asked)) continue;
-    const V soft = model.size * (kSoftReach_m + kWiderReach * min_of(beyond, all_of<V>(kWidest_m)));
-    const double longest = kReach * leg.model.length_m();
+    const V soft =
+        model.size * (kSoftReach_m + kUnsteadySoft_m * smootherstep(state.path.unsteady) +
+                      kWiderReach * min_of(beyond, all_of<V>(kWidest_m)));
+    const V longest = reach_of<V>(leg, state.path);
     const V times = beyond / kKnown_m;
     const V excess = soft_positive(V(span - longest), soft) * times * times / (1.0 + times * times);
     const V upright = max_of(V(0.3 * span), V(hip.y - ankle.y)) / span;
     squares += asked ? excess * excess / (upright * upright) : V{};
   }
-  return y - sqrt_of(squares);
+  // What a foot asked that has just left the ground fades.
+  PathFlow<V>& path = state.path;
+  const V drop = sqrt_of(squares);
+  path.sunk_m.advance(drop, Damping(kRises_s * model.time_scale, tick_s));
+  const auto holds = (path.unsteady > V{}) & (path.sunk_m.x > drop);
+  path.sunk_m.x = holds ? path.sunk_m.x : drop;
+  path.sunk_m.v = holds ? path.sunk_m.v : V{};
+  const V height = y - mix(drop, path.sunk_m.x, V(smootherstep(path.unsteady)));
+  const V eased = ease<V>(height, kMostHeave_m_s2 * tick_s * tick_s, 0.0,
+                          all_of<V>(kHeaveEases_s * model.time_scale / tick_s), path.unsteady,
+                          path.eased_height);
+  keep(eased, path.eased_height);
+  return eased;
 }
 
 // --- The whole plan ------------------------------------------------------------------------------
 
 template <class V>
-void plan_walks(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V>& params,
-                StateOf<V>& state, PlanOf<V>& plan, PelvisOf<V>& pelvis) noexcept {
+void plan_walks(const Tick& tick, MomentOf<V>& at, const ParamsOf<V>& params, StateOf<V>& state,
+                PlanOf<V>& plan, PelvisOf<V>& pelvis) noexcept {
   smooth_parameters<V>(tick, at, params, state);
   state.path.heading_rad += state.gait.turn_rate.x * tick.dt_s;
   plan_landing<V>(tick, at, state);
+  const V share = at.step_share();
+  fade_changes<V>(at, share, V(at.step_share_ahead() - share), state.gait);
   plan_stride<V>(tick, at, state, plan);
   advance_hips<V>(tick, at, state, plan);
+  lead_hips<V>(tick, at, state, plan);
+  advance_unsteady<V>(tick, at, state.path);
   for (const Side side : {kLeftSide, kRightSide}) plan_foot<V>(tick, at, state, plan, side);
   pelvis = pelvis_over_ground<V>(tick.model, state, plan);
   for (const Side side : {kLeftSide, kRightSide}) {
@@ -890,9 +1498,12 @@ void plan_walks(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V>& para
   }
   for (const Side side : {kLeftSide, kRightSide})
     rise_as_asked<V>(tick.model, at, state, side, pelvis.hip(tick.model.leg[side]));
-  pelvis.position_m.y = pelvis_height<V>(tick.model, state, plan, pelvis);
-  for (const Side side : {kLeftSide, kRightSide})
-    reach_with_toe<V>(tick.model, at, state, side, pelvis.hip(tick.model.leg[side]));
+  pelvis.position_m.y = pelvis_height<V>(tick.model, tick.dt_s, state, plan, pelvis);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const Vec<V> hip_m = pelvis.hip(tick.model.leg[side]);
+    reach_with_toe<V>(tick.model, at, state, side, hip_m);
+    keep_in_reach<V>(tick.model, at, state, side, hip_m);
+  }
 }
 
 }  // namespace

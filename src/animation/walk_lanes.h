@@ -17,7 +17,12 @@ void set_lanes(const Moment& one, int lane, MomentOf<V>& at) noexcept {
   mask(&One::flies, &All::flies);
   mask(&One::rolls, &All::rolls);
   mask(&One::started, &All::started);
+  mask(&One::starting, &All::starting);
+  mask(&One::stopping, &All::stopping);
   mask(&One::closing, &All::closing);
+  mask(&One::led, &All::led);
+  mask(&One::replanned, &All::replanned);
+  mask(&One::was_led, &All::was_led);
   mask(&One::backward, &All::backward);
   mask(&One::right_steps, &All::right_steps);
   mask(&One::walking, &All::walking);
@@ -146,6 +151,8 @@ void advance_lanes(const WalkModel& model, double dt_s, std::span<const Walking>
   plan_walks<V>(tick, at, params, state, plan, pelvis);
   store<V>(state.gait, count, states, gait_of);
   store<V>(state.path, count, states, path_of);
+  store<V>(static_cast<const FootFlow<V>&>(state.foot[0]), count, states, foot_of<0>);
+  store<V>(static_cast<const FootFlow<V>&>(state.foot[1]), count, states, foot_of<1>);
   store<V>(state.foot[0].pose, count, states, pose_of<0>);
   store<V>(state.foot[1].pose, count, states, pose_of<1>);
   for (const Side side : {kLeftSide, kRightSide}) {

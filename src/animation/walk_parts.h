@@ -28,11 +28,14 @@ struct CountsOf {
   std::array<V, 2> mode_ticks;
   V tick, stage_ticks, roll_ticks, flight_ticks, last_step_ticks;
   V phase, phase_rate, stage_phase, stage_end, end_rate;
+  V step_phase, strike_phase, strike_rate;  // where the step begins and ends
+  V rest_ticks, closing_ticks, fade_ticks, led_from;
 };
 template <class V>
 struct MomentOf : CountsOf<V> {
   using Mask = MaskOf<V>;
-  Mask idle, flies, rolls, started, closing, backward;
+  Mask idle, flies, rolls, started, starting, stopping, closing, led, replanned, backward;
+  Mask was_led;            // the step before
   Mask right_steps;        // which foot flies in this step (also during the roll before its flight)
   Mask walking, finishes;  // what the parameters ask for
   std::array<Mask, 2> in_flight, in_roll;  // modes of the feet, by Side; else they support
@@ -44,6 +47,14 @@ struct MomentOf : CountsOf<V> {
   }
   // 0 outside of flights.
   V flight_progress() const noexcept { return flies ? this->tick / this->stage_ticks : V{}; }
+  // Of the running step's time that is over; of a walk that has closed none.
+  V step_share() const noexcept { return share_at(V{}); }
+  V step_share_ahead() const noexcept { return share_at(V{} + 1.0); }
+  V share_at(const V& ahead) const noexcept {
+    const V begun = this->tick + ahead + (flies ? this->roll_ticks : V{});
+    const V ticks = this->roll_ticks + this->flight_ticks;
+    return started ? begun / (ticks < 1.0 ? V{} + 1.0 : ticks) : V{};
+  }
   V ticks_to_strike() const noexcept {
     const V left = this->stage_ticks - this->tick;
     return flies ? left : left + this->flight_ticks;
@@ -96,7 +107,9 @@ struct PlanOf {
   std::array<StrideTrackOf<V>, 2> track;  // of the two strides,
   std::array<Vec<V>, 2> flying_m;         // and where the heel that flies is in each of them
   StrideCellOf<V> cell;                   // both, mixed by `change` and `shown`
-  V heel_up_m{};                          // the flying heel's height
+  StrideFootOf<V> flying;                 // the foot that flies, or is about to
+  V heel_up_m{};                          // its heel's height,
+  StrideTrackOf<V> short_track;           // and the stride that it flies in at a start or stop
 };
 
 template <class V>
@@ -146,6 +159,26 @@ bool walks_on(const GaitParams& params, const WalkState& state) noexcept;
 // Signed length of that foot's step on level ground: negative backwards, 0 when closing a walk.
 double step_length(const WalkState& state, Side side) noexcept;
 
+// The share of the cycle that a stage takes: of the roll of `swing`, or of its flight.
+double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept;
+
+// --- walk_changes.cpp: how a walk comes to rest, and goes on -------------------------------------
+inline constexpr double kCarry_s = 0.15;  // what a changed plan left of the last one fades in it
+// The plan of this tick is another one than the last tick's: what is left of that one fades.
+void replan(double time_s, const Tick& tick, WalkState& state) noexcept;
+// The stick was let go, or asks for the other direction: where and when the hips come to rest.
+void plan_rest(const Tick& tick, WalkState& state) noexcept;
+// Where they rest, as soon as the foot that closes is known.
+void plan_rest_place(const Tick& tick, WalkState& state) noexcept;
+// The stick came back: a step that has not come far is one of the walk again.
+void walk_on(const Tick& tick, WalkState& state) noexcept;
+// Gives the running step the time that steps are to take now.
+void time_step_again(const Tick& tick, WalkState& state) noexcept;
+// When the foot that closes lifts off and lands. While it still stands.
+void time_closing_step(const Tick& tick, WalkState& state) noexcept;
+// Ticks until the hips are as far over the standing foot as they are at the lift-off of the other.
+int ticks_to_lift_off(const WalkModel& model, const WalkState& state) noexcept;
+
 // --- walk_terrain.cpp: footholds, and flights over what lies between them ------------------------
 // Height of the plane at a place.
 double height_on(const FootPlane& plane, const vec3& place_m) noexcept;
@@ -189,6 +222,8 @@ void pitch_foot(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode 
 void remember_feet(const WalkModel& model, WalkState& state) noexcept;
 void begin_support(FootState& foot) noexcept;
 void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
+// A foot that lands stands on its heel from now on.
+void plant_foot(WalkState& state, Side side) noexcept;
 void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept;
 
 // --- upper_body.cpp: what is above the hips ------------------------------------------------------

@@ -276,7 +276,8 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   const Side swing = step_foot(state), stand = other(swing);
   Foothold& landing = state.path.foothold;
   const bool flies = state.clock.stage == Stage::flight,
-             first = state.clock.stage == Stage::roll && state.clock.tick <= 1;
+             first = state.clock.stage == Stage::roll &&
+                     (state.clock.tick <= 1 || state.clock.replanned);
   Step step;
   step.from_m = state.foot[stand].plane.place_m;
   step.lift_m = state.foot[swing].plane.place_m;
@@ -300,8 +301,8 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   if (moved) {
     landing.wanted_m = step.wanted_m;
     landing.yaw_rad = yaw;
-    if (state.clock.stage == Stage::roll &&
-        state.clock.tick <= kPieceSettles * state.clock.stage_ticks)
+    if (first || (state.clock.stage == Stage::roll &&
+                  state.clock.tick <= kPieceSettles * state.clock.stage_ticks))
       landing.piece = best_piece(terrain, step, first ? nullptr : &landing.piece);
     const vec3 place = place_on(step, landing.piece, landing.fits);
     state.path.landing_plane =
@@ -323,7 +324,8 @@ constexpr double kSlopeLeanSmoothing = 0.3;
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
-constexpr double kRatioJump = 0.01;  // a tick: sticks are slower
+constexpr double kRatioJump = 0.01;       // a tick: sticks are slower,
+constexpr double kFirstRatioJump = 0.06;  // but for a first step
 
 // A step that is to end on another tread than it was has another ratio at once. The tables are read
 // for one that goes there until the flight begins.
@@ -333,7 +335,7 @@ void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
   state.gait.step_ratio = ratio;
   if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
     state.gait.off_ratio = {};
-  } else if (std::abs(change) > kRatioJump) {
+  } else if (std::abs(change) > (state.clock.starting ? kFirstRatioJump : kRatioJump)) {
     state.gait.off_ratio.x -= change;
   }
   state.gait.off_ratio.advance(
@@ -378,6 +380,8 @@ namespace {
 constexpr double kRiseLasts = 0.9;                         // of the step
 constexpr double kSinkBegin = 0.5, kSinkBeginBack = 0.35;  // of the flight
 constexpr double kSinkEnd = 0.25;                          // of the roll
+constexpr double kSinkBeginClosing =
+    0.15;  // both feet then stand, with straight knees, at the landing
 // How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
 // half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
 // The other leg's knee is bent by kBentBefore of it, for a straight knee cannot yield smoothly.
@@ -386,16 +390,19 @@ constexpr double kYield = 0.0255, kHalfYield = 0.01;
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
 constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
 constexpr double kMostOnToe = 0.5, kSoftOnToe = 0.3;
+constexpr double kFirstRise = 0.4;  // of the first flight: a standing foot has risen with the hips
 
 struct Sinking {
   double ticks = 1.0;
   double share = 0.0;  // of the ticks
 };
 Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
-  const double begin =
-      (state.clock.backward ? kSinkBeginBack : kSinkBegin) * state.clock.flight_ticks;
+  const StepClock& clock = state.clock;
+  const double begin = clock.flight_ticks * (clock.closing    ? kSinkBeginClosing
+                                             : clock.backward ? kSinkBeginBack
+                                                              : kSinkBegin);
   Sinking s;
-  s.ticks = state.clock.flight_ticks - begin + kSinkEnd * state.clock.roll_ticks;
+  s.ticks = clock.flight_ticks - begin + (clock.closing ? 0.0 : kSinkEnd * clock.roll_ticks);
   s.share = std::max(0.0, flight_ticks - begin) / s.ticks;
   return s;
 }
@@ -518,6 +525,9 @@ void pitch_to_rise(const LegBuild& leg, double rise_m, FootState& foot) noexcept
 void rise_on_toe(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept {
   FootState& foot = state.foot[side];
   foot.rise_m = rise_with_hips(tick.model, state, plan, side, foot.base_m);
+  // The foot that stands when a walk begins has not risen yet when the other one lifts off.
+  if (state.clock.starting)
+    foot.rise_m *= smootherstep(moment_of(tick.model, state).flight_progress() / kFirstRise);
   pitch_to_rise(tick.model.leg[side], foot.rise_m, foot);
 }
 
@@ -719,7 +729,10 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
     StridePlan plan;
     plan_stride<double>(tick, at, state, phase, share, plan);
     flight.point[i] = flight_point<double>(tick, at, state, plan, side, u);
-    pitch_in_flight<double>(model, at, state, plan, side, u, flight.point[i]);
+    const double fade = state.foot[side].pitch_fade.at(u * at.stage_ticks);
+    pitch_in_flight<double>(model, state, side, u,
+                            table_pitch<double>(at, state, plan, side) + fade, fade,
+                            flight.point[i]);
     flight.sole[i] = sole_of(model.leg[side], flight.point[i].pose);
     flight.left[i] = state.path.landing_m.z - flight.point[i].pose.heel_m.z;
   }

@@ -148,6 +148,11 @@ void read_options(TomlTable& options, Expectation& e) {
       options.reject("ik", fmt::format("{} is neither paper nor robust", in_quotes(*ik)));
     walk.ik = *ik == "paper" ? IkMode::paper : IkMode::robust;
   }
+  if (const auto stick = options.string("stick")) {
+    if (*stick != "steers" && *stick != "points")
+      options.reject("stick", fmt::format("{} is neither steers nor points", in_quotes(*stick)));
+    walk.stick = *stick == "points" ? StickMeans::points : StickMeans::steers;
+  }
   e.pad.calibration = options.string("calibration").value_or("");
   e.pad.map = options.string("map").value_or("");
   if (const auto rate = options.integer("rate", 1, kMaxRateHz)) e.rate_hz = static_cast<int>(*rate);
@@ -225,6 +230,7 @@ std::string options_text(const Expectation& e) {
   add("terrain", walk.terrain);
   add("script", walk.script);
   if (walk.ik == IkMode::paper) add("ik", "paper");
+  if (walk.stick == StickMeans::points) add("stick", "points");
   add("calibration", e.pad.calibration);
   add("map", e.pad.map);
   if (e.rate_hz) text += fmt::format("rate = {}\n", *e.rate_hz);

@@ -16,6 +16,12 @@ double finite_or_zero(double x) noexcept {
   return std::isfinite(x) ? std::clamp(x, -1.0, 1.0) : 0.0;
 }
 
+// On the spot a turn is quicker than in a walk.
+double greatest_turn_rad_s(double forward, const GaitLimits& limits) noexcept {
+  return limits.max_turn_rate_rad_s *
+         mix(kQuickerInPlace, 1.0, smoothstep(0.0, kNotInPlace, forward));
+}
+
 // The longest step time in a turn at this share of the greatest rate.
 double turning_step_time_s(double share, const GaitLimits& limits) noexcept {
   constexpr double kStraight = 1e-3;  // below it any step is short enough
@@ -72,7 +78,7 @@ double deflection_of(double speed_m_s, double sideways, double fatigue,
 
 // The longest step time that a speed may stretch a step to.
 double slowest_step_s(double turn_rate_rad_s, const GaitLimits& limits) noexcept {
-  const double share = std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s;
+  const double share = std::min(std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s, 1.0);
   return std::min(kSlowest * limits.max_step_time_s, turning_step_time_s(share, limits));
 }
 
@@ -131,7 +137,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   params.walking = along > 0.0 || sideways != 0.0;
   params.backward = back > 0.0;
   // 0 - x and not -x: neutral must be +0, since a hash tells +0 and -0 apart.
-  params.turn_rate_rad_s = 0.0 - sideways * limits.max_turn_rate_rad_s;
+  params.turn_rate_rad_s = 0.0 - sideways * greatest_turn_rad_s(std::max(ahead, back), limits);
   for (const Side side : {kLeftSide, kRightSide}) {
     const StrideFactors& factors = style.stride[side];
     params.stride[side].length_m = step.length_m * limits.step_share[side] * factors.length;
@@ -145,6 +151,23 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   return params;
 }
 
+Stick pointed_stick(const Stick& stick, double heading_rad, double camera_rad,
+                    const GaitLimits& limits) noexcept {
+  constexpr double kTurns_per_s = 3.0;  // rate for the angle that is left
+  Stick steers = stick;
+  const double right = finite_or_zero(stick.left.x), ahead = finite_or_zero(stick.left.y);
+  const double pushed = std::min(std::sqrt(right * right + ahead * ahead), 1.0);
+  steers.left = vec2(0.0);
+  if (pushed == 0.0) return steers;
+  const double aim = camera_rad + gaitpad::atan2(0.0 - right, ahead) - heading_rad;
+  const double off = aim - 2.0 * kPi * std::floor(aim / (2.0 * kPi) + 0.5);
+  const double along = std::max(0.0, sin_cos(off).cos);
+  steers.left.y = pushed * along * along;
+  steers.left.x =
+      std::clamp(0.0 - kTurns_per_s * off / greatest_turn_rad_s(steers.left.y, limits), -1.0, 1.0);
+  return steers;
+}
+
 GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept {
   const GaitKeyInfo& info = info_of(key);
   switch (key) {
@@ -155,8 +178,8 @@ GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept {
     case GaitKey::stride_right_m:
       return {info.min, std::min(info.max, kLongestStride * limits.max_step_m)};
     case GaitKey::turn_rate_rad_s:
-      return {std::max(info.min, -limits.max_turn_rate_rad_s),
-              std::min(info.max, limits.max_turn_rate_rad_s)};
+      return {std::max(info.min, -kQuickerInPlace * limits.max_turn_rate_rad_s),
+              std::min(info.max, kQuickerInPlace * limits.max_turn_rate_rad_s)};
     default:
       return {info.min, info.max};
   }
@@ -167,13 +190,20 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitO
   const auto speed_m_s = given(overrides, GaitKey::speed_m_s, limits);
   const auto turn_rate_rad_s = given(overrides, GaitKey::turn_rate_rad_s, limits);
   Stick in_force = stick;  // the stick that would give what is overridden
-  if (turn_rate_rad_s) in_force.left.x = 0.0 - *turn_rate_rad_s / limits.max_turn_rate_rad_s;
+  if (turn_rate_rad_s) {
+    const double forward = speed_m_s ? deflection_of(*speed_m_s, 0.0, style.fatigue, limits)
+                                     : finite_or_zero(stick.left.y);
+    in_force.left.x = 0.0 - *turn_rate_rad_s / greatest_turn_rad_s(std::fabs(forward), limits);
+  }
   if (speed_m_s)
     in_force.left.y = deflection_of(*speed_m_s, in_force.left.x, style.fatigue, limits);
   if (speed_m_s && *speed_m_s == 0.0) in_force = Stick{};
 
   GaitParams params = gait_params(in_force, style, limits);
-  if (turn_rate_rad_s && params.walking) params.turn_rate_rad_s = *turn_rate_rad_s + 0.0;
+  if (turn_rate_rad_s && params.walking) {
+    const double greatest = greatest_turn_rad_s(std::fabs(in_force.left.y), limits);
+    params.turn_rate_rad_s = std::clamp(*turn_rate_rad_s, -greatest, greatest) + 0.0;
+  }
   const bool asks_for_strides =
       params.backward || (std::isfinite(in_force.left.y) && in_force.left.y > 0.0);
   for (const Side side : {kLeftSide, kRightSide}) {

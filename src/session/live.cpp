@@ -91,6 +91,8 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 }
 
 void LiveSession::Impl::start_loop() {
+  // In the recording, too, which then needs no option.
+  if (spec.walk.stick == StickMeans::points) pads->command("stick points");
   const LiveLoop::Options options = {rate_hz, spec.live.rumble, spec.live.report_times,
                                      stream ? &stream->newest() : nullptr,
                                      forward ? &forward->newest() : nullptr};

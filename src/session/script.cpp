@@ -19,6 +19,7 @@ namespace {
 using Verb = Command::Verb;
 
 constexpr std::string_view kGaps = " \t";  // between the words of a command
+constexpr double kMostCamera_deg = 1e6;
 
 std::string_view next_word(std::string_view& text) noexcept { return take_word(text, kGaps); }
 
@@ -49,13 +50,25 @@ std::optional<Command> gait_command(Command command, std::string_view second) no
   return command;
 }
 
+// `steers` or `points [DEGREES]`; `command` has the word.
+std::optional<Command> stick_command(Command command, std::string_view camera_deg) noexcept {
+  if (command.name == "steers" && camera_deg.empty()) {
+    command.verb = Verb::steers;
+    return command;
+  }
+  if (command.name != "points") return std::nullopt;
+  command.verb = Verb::points;
+  const auto given = camera_deg.empty() ? command : with_value(command, camera_deg);
+  return given && std::abs(given->value) <= kMostCamera_deg ? given : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Command> parsed_command(std::string_view text) noexcept {
   const std::string_view verb = next_word(text);
   Command command;
   if (verb == "mark") return command;
-  if (verb != "reset") command.walker = next_walker(text);
+  if (verb != "reset" && verb != "stick") command.walker = next_walker(text);
   if (verb == "style") {  // the rest is its name, which may have blanks
     command.verb = Verb::style;
     command.name = trimmed(text, kGaps);
@@ -64,6 +77,7 @@ std::optional<Command> parsed_command(std::string_view text) noexcept {
   command.name = next_word(text);
   const std::string_view second = next_word(text);
   if (!next_word(text).empty()) return std::nullopt;
+  if (verb == "stick") return stick_command(command, second);
   if (verb == "reset") {
     command.verb = Verb::restart;
     return command.name.empty() ? std::optional(command) : std::nullopt;
@@ -82,10 +96,11 @@ std::optional<Command> parsed_command(std::string_view text) noexcept {
 
 namespace {
 
-constexpr std::string_view kVerbs[] = {"style", "set", "gait", "reset", "ik", "mark"};
+constexpr std::string_view kVerbs[] = {"style", "set", "gait", "stick", "reset", "ik", "mark"};
 constexpr std::string_view kForms =
     "style [CHARACTER] NAME, set [CHARACTER] KEY VALUE, gait [CHARACTER] KEY VALUE|stick, gait "
-    "[CHARACTER] stick, reset [CHARACTER], ik paper|robust, mark";
+    "[CHARACTER] stick, stick steers, stick points [CAMERA_DEGREES], reset [CHARACTER], ik "
+    "paper|robust, mark";
 
 std::optional<std::string> range_problem(std::string_view key, double value, double min,
                                          double max) {

@@ -24,6 +24,8 @@ struct Command {
     gait,     // name, value: a gait parameter
     release,  // `gait KEY stick`: name
     stick,    // `gait stick`: all parameters
+    steers,   // `stick steers`
+    points,   // `stick points`; value: the camera's heading, degrees
     restart,  // `reset`
     ik,       // name: paper or robust, for all walkers
   } verb = Verb::mark;

@@ -115,6 +115,7 @@ Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz)
   SimulationConfig config;
   config.rate_hz = rate_hz;
   config.ik = spec.walk.ik;
+  config.stick = spec.walk.stick;
   config.crowd = spec.walk.crowd;
   config.crowd_threads = crowd_threads(spec);
   config.shows_crowd = spec.walk.shows_crowd;

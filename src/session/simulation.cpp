@@ -161,6 +161,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   Simulation s;
   s.dt_s_ = 1.0 / config.rate_hz;
   s.ik_ = config.ik;
+  s.stick_means_ = config.stick;
   s.pads_ = Pads(config.pads, config.rate_hz, config.pad_rules);
   s.styles_ = std::make_shared<const std::vector<Style>>(config.styles);
   s.walkers_.reserve(config.walkers.size());
@@ -236,7 +237,10 @@ void Simulation::step(std::span<const Report> reports) noexcept {
   for (Walker& w : walkers_) {
     copy_pose(w.pose, w.before);
     follow_zones(w, *terrain_, *zone_styles_, styles());
-    w.params = gait_params(stick_, advance_style(w, dt_s_), w.overrides, w.limits);
+    const Stick stick = stick_means_ == StickMeans::points
+                            ? pointed_stick(stick_, w.state.path.heading_rad, camera_rad_, w.limits)
+                            : stick_;
+    w.params = gait_params(stick, advance_style(w, dt_s_), w.overrides, w.limits);
     const vec3 before_m = w.state.path.hips_m;
     advance(*w.model, w.params, ik_, dt_s_, w.state, w.pose);
     const vec3 way_m = w.state.path.hips_m - before_m;
@@ -294,6 +298,13 @@ bool Simulation::obey(std::string_view text) noexcept {
       return give_back(walkers, command->name);
     case Verb::stick:
       for (Walker& w : walkers) w.overrides = {};
+      return true;
+    case Verb::steers:
+      stick_means_ = StickMeans::steers;
+      return true;
+    case Verb::points:
+      stick_means_ = StickMeans::points;
+      camera_rad_ = command->value * kPi / 180.0;
       return true;
     case Verb::restart:
       for (Walker& w : walkers) restart(styles(), w);

@@ -59,6 +59,8 @@ void give_back(const Command& command, int walker, const WalkerFrame& before, co
       }
       return;
     case Verb::mark:
+    case Verb::steers:
+    case Verb::points:
     case Verb::restart:
     case Verb::ik:
       return;

@@ -77,7 +77,8 @@ TEST(GaitParams, ContinuousInTheStickAndRisingWithItsForwardDeflection) {
 }
 
 TEST(GaitParams, SidewaysTurnsAgainstTheStickAndMirrors) {
-  EXPECT_EQ(at(1.0, 0.0).turn_rate_rad_s, -kMaxTurnRate_rad_s);
+  EXPECT_EQ(at(1.0, 0.0).turn_rate_rad_s, -kQuickerInPlace * kMaxTurnRate_rad_s);
+  EXPECT_EQ(at(1.0, kNotInPlace).turn_rate_rad_s, -kMaxTurnRate_rad_s);
   for (double x = 0.01; x <= 1.0; x += 0.01) {
     const GaitParams right = at(x, 0.5), left = at(-x, 0.5);
     EXPECT_LT(right.turn_rate_rad_s, 0.0);
@@ -170,7 +171,7 @@ TEST(OwnPace, TheLongestStepIsAsMuchLongerAsTheOwnOne) {
 TEST(OwnPace, TurnsAsTheAdultDoes) {
   const GaitLimits adult = gait_limits(0.9);
   const GaitParams turn = at(-1.0, 0.0, {}, kOwn);
-  EXPECT_EQ(turn.turn_rate_rad_s, kMaxTurnRate_rad_s);
+  EXPECT_EQ(turn.turn_rate_rad_s, kQuickerInPlace * kMaxTurnRate_rad_s);
   EXPECT_EQ(turn.stride[kLeftSide].time_s, adult.turn_step_time_s);
   EXPECT_EQ(turn.stride[kLeftSide].length_m, 0.0);
   for (double y = 0.01; y <= 1.0; y += 0.01) {
@@ -220,7 +221,7 @@ TEST(OwnPace, TheAdultsIsUnchanged) {
       }
     }
   }
-  EXPECT_EQ(bits, 0x5e2e50110de68c05u);
+  EXPECT_EQ(bits, 0x3ccf454ad9e1a481u);
 }
 
 TEST(Fatigue, LowersMaximumSpeedAndStrideLinearly) {
@@ -392,7 +393,7 @@ TEST(GaitOverrides, AStrideWithoutSpeedKeepsTheSticksTimeAndWaitsForTheStick) {
 }
 
 TEST(GaitOverrides, ATurnRateAloneTurnsInPlaceAsTheStickSidewaysDoes) {
-  expect_same(with(pushed(0.0, 0.0), {{GaitKey::turn_rate_rad_s, 0.25}}),
+  expect_same(with(pushed(0.0, 0.0), {{GaitKey::turn_rate_rad_s, kQuickerInPlace * 0.25}}),
               with(pushed(-0.25, 0.0), {}));
   expect_same(with(pushed(-1.0, 0.0), {{GaitKey::turn_rate_rad_s, 0.0}}),
               with(pushed(0.0, 0.0), {}));
@@ -432,7 +433,7 @@ void expect_sane(const GaitParams& p, const GaitLimits& limits) {
     EXPECT_TRUE(step.time_s >= 0.1 && step.time_s <= 2.0 * limits.max_step_time_s);
     EXPECT_TRUE(step.flight_height >= 0.0 && step.flight_height <= 3.0);
   }
-  EXPECT_TRUE(std::fabs(p.turn_rate_rad_s) <= limits.max_turn_rate_rad_s);
+  EXPECT_TRUE(std::fabs(p.turn_rate_rad_s) <= kQuickerInPlace * limits.max_turn_rate_rad_s);
   EXPECT_TRUE(p.hip_sway >= 0.0 && p.hip_sway <= 3.0);
   EXPECT_TRUE(p.hip_bounce >= 0.0 && p.hip_bounce <= 3.0);
 }

@@ -97,7 +97,7 @@ JOINT_FAULTS = {
     "largest knee angle": lambda s: s.files.channel("LeftLeg", "Xrotation").__setitem__(s.fly, 155),
     "leg d2, steady": lambda s: s.add("LeftLeg", "Xrotation", 0.6, s.fly),
     "toe joint d2, steady": lambda s: s.add("LeftToeBase", "Xrotation", 0.6, s.fly),
-    "leg d2, changing": lambda s: s.add("LeftLeg", "Xrotation", 1.1, 100),
+    "leg d2, changing": lambda s: s.add("LeftLeg", "Xrotation", 1.3, 100),
     "hips and above d2 over the capture's": lambda s: s.add("Spine", "Yrotation", 0.5, -700),
     "strides 10 and last differ": lambda s: s.add("Spine", "Xrotation", 0.2, -700),
 }

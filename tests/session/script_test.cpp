@@ -35,6 +35,9 @@ TEST(Commands, AreForAllOrForOne) {
   expect("gait 1 speed_m_s stick", Verb::release, 1, "speed_m_s", 0);
   expect("gait stick", Verb::stick, 0, "stick", 0);
   expect("gait 4 stick", Verb::stick, 4, "stick", 0);
+  expect("stick steers", Verb::steers, 0, "steers", 0);
+  expect("stick points", Verb::points, 0, "points", 0);
+  expect("stick points -90.5", Verb::points, 0, "points", -90.5);
   expect("reset", Verb::restart, 0, "", 0);
   expect("ik paper", Verb::ik, 0, "paper", 0);
   expect("ik robust", Verb::ik, 0, "robust", 0);
@@ -55,11 +58,12 @@ TEST(Commands, WhatIsWrongIsNamedWithWhatIsKnown) {
   };
   for (const char* sound :
        {"style my walk", "style 2 even", "set hip_sway 1.5", "gait 1 speed_m_s 1", "gait stick",
-        "gait speed_m_s stick", "reset", "mark x"}) {
+        "gait speed_m_s stick", "stick points 90", "reset", "mark x"}) {
     EXPECT_EQ(problem(sound), "none") << sound;
   }
   EXPECT_EQ(problem("style limp"), "unknown style \"limp\"; known: even, my walk");
-  EXPECT_EQ(problem("foo 1"), "unknown command \"foo\"; known: style, set, gait, reset, ik, mark");
+  EXPECT_EQ(problem("foo 1"),
+            "unknown command \"foo\"; known: style, set, gait, stick, reset, ik, mark");
   EXPECT_EQ(problem("style 3 even"), "there is no character 3; they are numbered 1 to 2");
   EXPECT_EQ(problem("set hip_sway 9"), "hip_sway of 9 is not within 0 .. 3");
   EXPECT_EQ(problem("set hip_swya 1"),
@@ -76,7 +80,8 @@ TEST(Commands, MalformedOnesAreRejected) {
       "set fatigue 0.5x\nset fatigue +0.5\nset fatigue 0,5\nset fatigue nan\nset fatigue inf\n"
       "set fatigue 1e999\nset fatigue 0.5 0.5\nset 0 fatigue 0.5\nset 1 2 fatigue 0.5\n"
       "set 99999999999 fatigue 0.5\ngait\ngait 1\ngait speed_m_s\ngait speed_m_s 1 2\n"
-      "gait stick stick 1\ngait stick 1\ngait stick stick\nreset 1\nreset now\nresets\nsing\n"
+      "gait stick stick 1\nstick\nstick turns\nstick steers 1\nstick points here\nstick points 1 "
+      "2\ngait stick 1\ngait stick stick\nreset 1\nreset now\nresets\nsing\n"
       "ik\nik both\nik 1 paper\nik paper 1");
   for (std::string text; std::getline(lines, text);) EXPECT_FALSE(parsed_command(text)) << text;
 }

@@ -27,6 +27,32 @@ TEST(Simulation, AForwardStickWalksStraight) {
   EXPECT_EQ(frame.heading_rad, 0.0);
 }
 
+// Seen from a camera that looks along +z, and from one that looks to the left.
+TEST(Simulation, AStickThatPointsLeadsThereWhereverTheCharacterFaces) {
+  struct Case {
+    int x, y;
+    const char* command;
+    double heading_deg;
+  };
+  for (const Case& c :
+       {Case{0xff, 0x80, "stick points", -90.0}, Case{0x00, 0x00, "stick points", 45.0},
+        Case{0x80, 0xff, "stick points", 180.0}, Case{0x80, 0x00, "stick points 90", 90.0}}) {
+    Simulation s = made_simulation(made_config(1));
+    step(s, {made_command(c.command)});
+    step(s, {made_report(c.x, c.y)}, 5 * 240);
+    const vec3 from_m = s.walkers()[0].state.frame.pelvis_m;
+    step(s, {}, 240);
+    const WalkFrame& frame = s.walkers()[0].state.frame;
+    const SinCos aim = sin_cos(c.heading_deg * kPi / 180.0);
+    const vec3 way_m = frame.pelvis_m - from_m;
+    EXPECT_GT(way_m.x * aim.sin + way_m.z * aim.cos, 1.0) << c.command << " " << c.x << " " << c.y;
+    EXPECT_LT(std::abs(way_m.x * aim.cos - way_m.z * aim.sin), 0.05) << c.command;
+    EXPECT_GT(sin_cos(frame.heading_rad - c.heading_deg * kPi / 180.0).cos, 0.999) << c.command;
+    step(s, {made_command("stick steers")});
+    EXPECT_EQ(s.stick_means(), StickMeans::steers);
+  }
+}
+
 TEST(Simulation, UnpluggingFinishesTheStepAndStands) {
   Simulation s = walked(made_config(1), 0x80, 0x00, 700);
   step(s, {made_plug(ReportKind::removed)}, 480);

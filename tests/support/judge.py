@@ -334,14 +334,14 @@ def leg_checks(w):
 
 
 def _leg_bounds(w):
-    """Per tick: 0.5 steady default, 1.0 changes and captured, 5 captured and faster than the limit."""
-    bound = np.where(w.steady, 0.5, 1.0)
+    """Per tick: 0.5 steady default, 1.0 steady captured, 1.2 changes, 5 captured and faster than the limit."""
+    bound = np.where(w.steady, 0.5, 1.2)
     if w.captured():
         limit = FAST_M_S * np.sqrt(w.leg_length / FAST_LEG_M)
         fast = w.col["speed_m_s"] > limit
         reach = int(1.5 * w.rate)
         near = np.convolve(fast.astype(int), np.ones(2 * reach + 1, dtype=int), "same")[:w.ticks] > 0
-        bound = np.where(near, 5.0, 1.0)
+        bound = np.where(near, 5.0, np.where(w.steady, 1.0, 1.2))
     return bound, " (fast)"
 
 

@@ -141,6 +141,15 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
           "paper or robust")
       ->check(CLI::IsMember({"paper", "robust"}))
       ->default_str("robust");
+  command
+      .add_option_function<std::string>(
+          "--stick",
+          [&walk](const std::string& means) {
+            walk.stick = means == "points" ? StickMeans::points : StickMeans::steers;
+          },
+          "what the stick means: steers (sideways turns) or points (the direction to go)")
+      ->check(CLI::IsMember({"steers", "points"}))
+      ->default_str("steers");
   command.add_option("--calibration", spec.pad.calibration, "calibration file of the stick");
   command.add_option("--map", spec.pad.map, "pad file that overrides config/pads");
   command

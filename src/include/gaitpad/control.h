@@ -22,8 +22,10 @@ namespace gaitpad {
 inline constexpr double kMaxSpeed_m_s = 1.5;
 inline constexpr double kWalkRatio_m_min = 0.0058;  // metres per step a minute
 inline constexpr double kMaxStepTime_s = 1.1;       // slower walks shorten the step instead
-inline constexpr double kTurnInPlaceStepTime_s = 0.6;
+inline constexpr double kTurnInPlaceStepTime_s = 0.48;
 inline constexpr double kMaxTurnRate_rad_s = 1.0;
+// On the spot a turn is quicker by this factor, from this forward deflection on it is not.
+inline constexpr double kQuickerInPlace = 1.65, kNotInPlace = 0.15;
 // Walking backwards: the share of the forward speed, and the factor on the length that a forward
 // step has at the same speed.
 inline constexpr double kBackwardShare = 0.45;
@@ -71,6 +73,16 @@ double vigour(double fatigue) noexcept;
 GaitParams gait_params(const Stick& stick, const StyleValues& style,
                        const GaitLimits& limits) noexcept;
 
+// What a deflection means: how far ahead and how quickly round, as in a car; or the direction in
+// which to go, seen along `camera_rad` (a heading, 0 along +z, to the left positive).
+enum class StickMeans : std::uint8_t { steers, points };
+
+// The stick that steers a walker with this heading to where `stick` points: as far as it is pushed
+// and in that direction, at once within 60 degrees of the heading, beyond that with slower steps,
+// and from 90 degrees on by a turn on the spot. Only stick.left is read and written.
+Stick pointed_stick(const Stick& stick, double heading_rad, double camera_rad,
+                    const GaitLimits& limits) noexcept;
+
 // Gait parameters that are set in place of what the stick gives, one by one: by the window's
 // sliders or by a `gait` command of a script.
 enum class GaitKey : std::uint8_t {
@@ -113,7 +125,8 @@ struct GaitOverrides {
 //   both step times stretched by the same factor until the speed is met, or until a foot would step
 //   faster or slower than any stick and style let it (in the sharpest turn: than a stick). Speed 0
 //   stands, whatever else is set.
-// - The turn rate replaces the sideways deflection. Without speed and with a neutral stick it turns
+// - The turn rate replaces the sideways deflection, and is bounded as that is. Without speed and
+// with a neutral stick it turns
 //   in place.
 // - A stride length counts only when stick or speed ask for strides; standing and turning in place
 // do

@@ -22,6 +22,7 @@ struct SessionSpec {
     std::string terrain;              // FILE|NAME; empty: flat
     std::string script;               // FILE with commands at given times
     IkMode ik = IkMode::robust;
+    StickMeans stick = StickMeans::steers;
     int crowd = 0;            // so many more walk behind the first character
     bool shows_crowd = true;  // frames hold the crowd's poses; false saves their copies in a tick
     // None: in a replay the trace's, else what the motion's description says, else its own. The

@@ -35,7 +35,8 @@ struct WalkerConfig {
 struct SimulationConfig {
   int rate_hz = 240;
   IkMode ik = IkMode::robust;
-  std::vector<PadConfig> pads;  // a report's device is the index here
+  StickMeans stick = StickMeans::steers;  // until a command says otherwise
+  std::vector<PadConfig> pads;            // a report's device is the index here
   PadRules pad_rules = PadRules::version_2;
   std::vector<Style> styles;  // that commands may name; of equal names the first one counts
   GaitCycle cycle;            // its pace is the one in force
@@ -120,6 +121,7 @@ class Simulation {
   double terrain_scale() const { return terrain_scale_; }
   const Stick& stick() const { return stick_; }  // of the last tick
   IkMode ik() const { return ik_; }              // of the walkers; `ik` commands change it
+  StickMeans stick_means() const { return stick_means_; }
   const Pads& pads() const { return pads_; }
   // Whether a heel of the first character struck the ground in the last tick.
   bool heel_struck() const { return heel_struck_; }
@@ -147,6 +149,8 @@ class Simulation {
   std::shared_ptr<const Terrain> terrain_;
   double terrain_scale_ = 1.0;
   Stick stick_;
+  StickMeans stick_means_ = StickMeans::steers;
+  double camera_rad_ = 0.0;  // that a stick which points is seen along
   bool heel_struck_ = false;
   SimulationCounts counts_;
   WordHash hash_;

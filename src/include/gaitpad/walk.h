@@ -96,16 +96,32 @@ struct FlightRoom {
   vec3 planned_for_m{0.0};                                    // the landing that it is planned for
 };
 
+// A value that may not jump: it, and its first and second differences; by what it is kept off its
+// goal, and for how many ticks still.
+template <class T, class V>
+struct EasedOf {
+  T value{}, rate{}, bend{};
+  SmoothFade<T> off;
+  V ticks{};
+};
+
 template <class V>
 struct FootFlow {
   Vec<V> heel_anchor_m{}, toe_anchor_m{};  // where they were planted last
   std::array<Vec<V>, 2> last_heel_m{};     // one and two ticks ago
   std::array<V, 2> last_pitch_rad{};
-  FadeOf<V> pitch_fade;  // over the running mode, argument in ticks
+  FadeOf<V> pitch_fade;  // over the running mode, argument in ticks of it
+  V fade_begin{};        // from this one on
   Vec<V> lift_m{};       // heel at lift-off
   // What the heel's place at lift-off differs by from the tables', and its slope per flight.
   Vec<V> gap_m{}, gap_slope_m{};
+  V gap_begin{}, gap_lasts{};  // in shares of the flight
+  V gap_yaw_rad{};
+  V gap_high_m{};  // the tables' height there: a foot that was lower stays off the ground
   V lift_yaw_rad{}, lift_turn_rad{};  // yaw at lift-off and its slope per flight
+  EasedOf<Vec<V>, V> eased_heel;
+  EasedOf<V, V> eased_pitch;
+  EasedOf<Vec<V>, V> eased_edge;  // twist and roll
 };
 struct FootState : FootFlow<double> {
   FootPose pose;
@@ -148,6 +164,9 @@ struct UpperBodyState {
   int unsettled_ticks = 0;  // until `now` is `goal`
   // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
   double forward_rad = 0.0, left_rad = 0.0;
+  // What is seen of a change before the feet can follow: the mean speed, the lean into another one,
+  // and how far chest and head are turned ahead, to the left positive.
+  Damped<double> speed_m_s, push_rad, chest_ahead_rad, head_ahead_rad;
   std::array<double, 2> out_rad{};
   // Height of the ground under a rail, smoothed, and its rate.
   std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};
@@ -160,15 +179,25 @@ struct StepClock {
   Side swing = kLeftSide;
   int tick = 0, stage_ticks = 1;  // in the stage
   int roll_ticks = 0, flight_ticks = 0;
-  int last_step_ticks = 0;               // of the step before
-  bool closing = false;                  // the running step brings the feet together
-  bool started = false;                  // between the first lean and the last landing
-  int asked_ticks = 0;                   // how long a stand has been asked to walk
-  bool backward = false;                 // the running walk's steps lead backwards
-  double slowness = 1.0;                 // factor on the running step's times on steep ground
-  double phase = 0.0, phase_rate = 0.0;  // per tick
-  double stage_phase = 0.0;              // where the running stage began
-  double end_rate = 0.0;                 // phase_rate at its end
+  int last_step_ticks = 0;                // of the step before
+  bool started = false;                   // between the first lean and the last landing
+  bool starting = false;                  // the running step is the first one
+  bool stopping = false;                  // the hips are on their way to rest
+  bool closing = false;                   // the running step brings the feet together
+  bool led = false;                       // the hips lead, and the tables' phase follows them
+  bool was_led = false;                   // in the step before
+  bool replanned = false;                 // in this tick
+  int further_steps = 0;                  // of a stop, before the one that closes
+  int rest_ticks = 0, closing_ticks = 1;  // until the hips rest: now, and when closing began
+  int fade_ticks = 0;                     // in which what the last plan left fades
+  int led_from = 0;                       // tick of the stage in which the hips began to lead
+  double strike_rate = 0.0;               // phase_rate at the coming strike
+  int asked_ticks = 0;                    // how long a stand has been asked to walk
+  bool backward = false;                  // the running walk's steps lead backwards
+  double slowness = 1.0;                  // factor on the running step's times on steep ground
+  double phase = 0.0, phase_rate = 0.0;   // per tick
+  double stage_phase = 0.0;               // where the running stage began
+  double end_rate = 0.0;                  // phase_rate at its end
 };
 
 // How it walks: the parameters, smoothed, and the stride ratios that follow from them.
@@ -179,14 +208,21 @@ struct GaitFlow {
   V asked_ratio{};        // of the strides, by the parameters
   Damped<V> step_time_s;  // mean of both feet
   Damped<V> turn_goal,    // what turn_rate follows: a landing is planned with it
-      turn_rate, amplitude, bounce, sway;
-  Damped<V> pace, settled_pace;  // step length over the data's; the same, slower
-  Damped<V> ground_share;        // of the wanted lengths that the ground leaves
+      turn_rate, bounce, sway;
+  Damped<V> pace, posture;  // step length over the data's; the share of the data's posture
+  Damped<V> ground_share;   // of the wanted lengths that the ground leaves
   std::array<std::array<Damped<V>, kLegDofs>, 2> weight;
-  V ratio_behind{};              // of the step before: the stride ratio at the last strike
-  V step_ratio{};                // of the running step,
-  SmoothFade<V> off_ratio;       // and how far the tables' is off it
-  std::array<V, 2> arm_swing{};  // factor on the data's in this tick, by Side
+  V ratio_behind{};         // of the step before: the stride ratio at the last strike
+  V step_ratio{};           // of the running step,
+  SmoothFade<V> off_ratio;  // and how far the tables' is off it
+  // What a changed plan left of the last one's share of the tables, change from the stride behind
+  // to the one ahead, and phase; gone after so many ticks.
+  SmoothFade<V> off_shown, off_change, off_phase;
+  V off_ticks{};
+  V shown{}, change{}, phase{};                 // in force,
+  V shown_rate{}, change_rate{}, phase_rate{};  // and per tick
+  std::array<V, 2> arm_swing{};                 // factor on the data's in this tick, by Side
+  SmoothFade<V> off_ahead;  // of the ratio that the last plan had for the running step
 };
 using GaitState = GaitFlow<double>;
 
@@ -194,7 +230,17 @@ using GaitState = GaitFlow<double>;
 template <class V>
 struct PathFlow {
   V heading_rad{};
-  Vec<V> hips_m{}, hips_velocity_m_s{};  // on the ground, without the data's oscillations
+  Vec<V> hips_m{};  // on the ground, without the data's oscillations
+  // The pelvis' place on the ground, upright, with its rate and acceleration per tick; and as it
+  // was a tick before.
+  SmoothFade<Vec<V>> pelvis_m;
+  Vec<V> last_pelvis_m{};
+  Vec<V> rest_m{};  // where it comes to rest when stopping
+  // How much of the walk is not steady: 0 none .. 1 all. Then nothing that is planned may jump.
+  V unsteady{};
+  EasedOf<V, V> eased_height;   // of the pelvis
+  Damped<V> sunk_m;             // how much lower it is than the tables have it
+  V wider_m{}, next_wider_m{};  // the footprint that stands, and the next one, in a turn
   // What the hips' place differs by from the tables' path to the landing; it fades in the step.
   SmoothFade<Vec<V>> off_m;
   // What that path led to a tick ago.

@@ -1,0 +1,285 @@
+#!/usr/bin/python3
+"""Measures what is not steady in a walk: starts, stops, reversals and turns, from what `gaitpad replay` exports.
+
+  transitions.py PROGRAM [MOTION ...] [--stick Y ...] [--json]
+
+Thumbs move in 60 ms (minimum jerk). One row a motion and stick (no motion: the built-in one). Each stop is repeated at
+twelve moments of a cycle.
+
+- First response: the hips have moved by 5 mm, or chest or head have turned by 1 degree. First foot off: its toe is 1 cm
+  above its rest. 90 % of speed: of the steady walk's mean.
+- Accelerations of the hips along the heading at 60 Hz: over four ticks to either side.
+- Below, back, faster: the hips below the steady walk's lowest place, how far they go back, and their greatest speed over
+  the steady walk's greatest.
+- Stopped: the hips are within 1 cm of where they end. The way counts from the moment at which the thumb begins.
+- Shins: the least distance of both shanks' axes from knee to ankle; feet: of the lines from heel to toe.
+- Second difference of all joints, degrees a tick^2 at 240 Hz, of the ticks of the change; chest and head: their angular
+  acceleration at 60 Hz over the steady walk's greatest.
+"""
+import argparse
+import dataclasses
+import json
+import pathlib
+import sys
+import tempfile
+
+import numpy as np
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import program as programs
+from support.traces import EXACT_CALIBRATION, write_trace
+from support.walk import Walk
+
+RATE = 240
+THUMB_S = 0.06
+COARSE = 4  # ticks: 60 Hz
+MOMENTS = 12
+
+
+# ---- a hand ----------------------------------------------------------------------------------
+def thumb(*moves):
+    """Reports of a stick that goes to (x, y) from each time on, in 60 ms: moves are (time_s, x, y)."""
+    place, timeline = (0.0, 0.0), [(0.0, 0.0, 0.0)]
+    for time_s, x, y in moves:
+        for i in range(1, 16):
+            u = i / 15
+            s = u ** 3 * (10 - 15 * u + 6 * u * u)
+            timeline.append((time_s + u * THUMB_S, place[0] + s * (x - place[0]), place[1] + s * (y - place[1])))
+        place = (x, y)
+    return timeline
+
+
+class Player:
+    """Replays moves of a thumb, each in a folder of its own."""
+
+    def __init__(self, program, folder, motion=None, options=()):
+        self.program, self.folder, self.count = program, pathlib.Path(folder), 0
+        self.options = [*options, *(["--motion", motion] if motion else [])]
+        self.calibration = self.folder / "exact.toml"
+        self.calibration.write_text(EXACT_CALIBRATION)
+
+    def walk(self, *moves, end_s):
+        self.count += 1
+        out = self.folder / f"walk{self.count}"
+        trace = write_trace(self.folder / "moves.hid", thumb(*moves), (), end_s)
+        programs.run(self.program, "replay", trace, "--out", out, "--calibration", self.calibration, *self.options)
+        return Walk(out)
+
+
+# ---- one walk --------------------------------------------------------------------------------
+def at_60_hz(x):
+    """First and second derivative of (ticks, ...), the same length, 0 at the ends."""
+    rate, bend = np.zeros_like(x), np.zeros_like(x)
+    h = COARSE / RATE
+    rate[COARSE:-COARSE] = (x[2 * COARSE:] - x[:-2 * COARSE]) / (2 * h)
+    bend[COARSE:-COARSE] = (x[2 * COARSE:] - 2 * x[COARSE:-COARSE] + x[:-2 * COARSE]) / h ** 2
+    return rate, bend
+
+
+def along(walk):
+    """Way of the hips along the heading that the walk has when it begins to change."""
+    return walk.root[:, 2]
+
+
+def turned(rotation, since):
+    """Degrees by which a segment has turned since a tick."""
+    relative = np.einsum("ji,njk->nik", rotation[since], rotation)
+    return np.degrees(np.arccos(np.clip((np.trace(relative, axis1=1, axis2=2) - 1) / 2, -1, 1)))
+
+
+def angular_acceleration(rotation):
+    """Degrees/s2 at 60 Hz, from the rotation vectors between neighbours four ticks apart."""
+    def vector(r):
+        axis = np.stack([r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]], -1) / 2
+        size = np.linalg.norm(axis, axis=-1, keepdims=True)
+        angle = np.arctan2(size[:, 0], (np.trace(r, axis1=1, axis2=2) - 1) / 2)[:, None]
+        return np.where(size > 1e-9, axis / np.maximum(size, 1e-12) * angle, axis)
+    step = np.einsum("nij,nkj->nik", rotation[COARSE:], rotation[:-COARSE])
+    rate = vector(step) * RATE / COARSE
+    result = np.zeros(len(rotation))
+    bend = np.linalg.norm(rate[COARSE:] - rate[:-COARSE], axis=-1) * RATE / COARSE
+    result[COARSE:COARSE + len(bend)] = np.degrees(bend)
+    return result
+
+
+def chest_and_head(walk):
+    b = walk.bvh
+    lowered = [name.lower() for name in b.names]
+    def find(*words):
+        for word in words:
+            for j, name in enumerate(lowered):
+                if word in name and not b.end_site[j]:
+                    return j
+        return None
+    head = find("head")
+    neck = find("neck")
+    chest = b.parents[neck if neck is not None else head] if head is not None else find("chest", "spine")
+    return chest, head if head is not None else chest
+
+
+def distance_of_lines(a0, a1, b0, b1):
+    """(ticks,) least distance of two segments, by points along both."""
+    shares = np.linspace(0, 1, 9)[:, None, None]
+    a, b = a0 + (a1 - a0) * shares, b0 + (b1 - b0) * shares
+    least = np.full(len(a0), np.inf)
+    for p in a:
+        for q in b:
+            least = np.minimum(least, np.linalg.norm(p - q, axis=-1))
+    return least
+
+
+def apart(walk):
+    """Least distance of shins and of feet, millimetres."""
+    shins = distance_of_lines(*(walk.position[:, j] for i in (0, 1) for j in (walk.knee[i], walk.ankle[i])))
+    flat = [p * [1, 0, 1] for i in (0, 1) for p in (walk.heel_fk[i], walk.toe_fk[i])]
+    feet = distance_of_lines(*flat)
+    return shins * 1000, feet * 1000
+
+
+@dataclasses.dataclass
+class Steady:
+    """What the steady walk at this stick does by itself."""
+    speed: float
+    cycle_s: float
+    fastest: float
+    lowest: float
+    acceleration: float
+    chest: float
+    head: float
+
+
+def steady_of(walk, from_s):
+    at = slice(int(from_s * RATE), walk.ticks - COARSE)
+    z, marks = along(walk), walk.landings[0]
+    marks = marks[marks >= at.start]
+    rate, bend = at_60_hz(z)
+    chest, head = (angular_acceleration(walk.rotation[:, j]) for j in chest_and_head(walk))
+    return Steady(speed=(z[marks[-1]] - z[marks[0]]) / (marks[-1] - marks[0]) * RATE,
+                  cycle_s=(marks[-1] - marks[0]) / (len(marks) - 1) / RATE,
+                  fastest=rate[at].max(), lowest=walk.root[at, 1].min(), acceleration=np.abs(bend[at]).max(),
+                  chest=chest[at].max(), head=head[at].max())
+
+
+def first_after(condition, since):
+    ticks = np.nonzero(condition[since:])[0]
+    return ticks[0] / RATE if len(ticks) else np.nan
+
+
+def change(walk, since, until, steady):
+    """What starts and stops have in common."""
+    at = slice(since, until)
+    z = along(walk)
+    rate, bend = at_60_hz(z)
+    chest, head = (angular_acceleration(walk.rotation[:, j]) for j in chest_and_head(walk))
+    back = np.max(np.maximum.accumulate(z[at]) - z[at])
+    return {"acc": np.abs(bend[at]).max(), "brake": -bend[at].min(), "below": 100 * (steady.lowest - walk.root[at, 1].min()),
+            "back": 100 * back, "faster": rate[at].max() / steady.fastest,
+            "d2": walk.second_differences[at].max(),
+            "chest": chest[at].max() / steady.chest, "head": head[at].max() / steady.head}
+
+
+def start_of(walk, since_s, steady):
+    since = int(since_s * RATE)
+    root, rest = walk.root, walk.root[since]
+    chest, head = chest_and_head(walk)
+    moved = np.linalg.norm((root - rest)[:, [0, 2]], axis=-1) > 0.005
+    response = moved | (turned(walk.rotation[:, chest], since) > 1) | (turned(walk.rotation[:, head], since) > 1)
+    off = np.zeros(walk.ticks, bool)
+    for i in (0, 1):
+        off |= walk.toe_fk[i][:, 1] - walk.toe_rest[i] > 0.01
+    rate, _ = at_60_hz(along(walk))
+    return {"response": first_after(response, since), "off": first_after(off, since),
+            "speed90": first_after(rate >= 0.9 * steady.speed, since),
+            **change(walk, since, since + int(1.5 * RATE), steady)}
+
+
+def stop_of(walk, since_s, steady):
+    since = int(since_s * RATE)
+    root = walk.root[:, [0, 2]]
+    away = np.linalg.norm(root - root[-1], axis=-1)
+    time = (np.nonzero(away > 0.01)[0].max() + 1 - since) / RATE
+    return {"time": time, "way": np.linalg.norm(root[-1] - root[since]), "stands": walk.col["stage"][-1] == "idle",
+            **change(walk, since, min(walk.ticks - COARSE, since + int(3.0 * RATE)), steady)}
+
+
+# ---- a motion --------------------------------------------------------------------------------
+def measure(player, stick):
+    began = 0.5
+    started = player.walk((began, 0, stick), end_s=9.0)
+    steady = steady_of(started, 5.0)
+    row = {"steady": dataclasses.asdict(steady), "start": start_of(started, began, steady)}
+    row["stops"] = [stop_of(player.walk((began, 0, stick), (4.0 + steady.cycle_s * k / MOMENTS, 0, 0), end_s=9.0),
+                            4.0 + steady.cycle_s * k / MOMENTS, steady) for k in range(MOMENTS)]
+    return row
+
+
+def reversal(player, stick=1.0):
+    """Time from the thumb's way back until the hips go back at half the speed that they then have."""
+    times = []
+    for k in range(4):
+        walk = player.walk((0.5, 0, stick), (4.0 + 0.27 * k, 0, -stick), end_s=10.0)
+        rate, _ = at_60_hz(along(walk))
+        since = int((4.0 + 0.27 * k) * RATE)
+        steady = np.median(rate[-3 * RATE:-RATE])
+        times.append(first_after(rate < 0.9 * steady, since))
+    return float(np.median(times)), float(np.max(times))
+
+
+TURNS = {"circle": [(0.5, 0.7, 0.7)], "sharp": [(0.5, 0, 0.9), (3.0, 0.95, 0.3)], "in place": [(0.5, 1, 0)],
+         "zigzag": [(0.5, 0.6, 0.8), (2.0, -0.6, 0.8), (3.1, 0.6, 0.8), (4.3, -0.9, 0.4), (5.2, 0.9, 0.4)]}
+
+
+def turn_of(player, moves):
+    walk = player.walk(*moves, end_s=8.0)
+    shins, feet = apart(walk)
+    heading = np.abs(np.degrees(walk.col["heading_rad"]))
+    return {"shins": shins.min(), "feet": feet.min(), "stand": feet[:60].min(), "d2": walk.second_differences.max(),
+            "turn_s": 360 / max(1e-6, (heading[-1] - heading[4 * RATE]) / (walk.ticks - 4 * RATE) * RATE)}
+
+
+def summary(row):
+    """Medians and worst of a motion's row, as the issue's table has them."""
+    s, stops = row["start"], row["stops"]
+    of = lambda key: np.array([stop[key] for stop in stops], float)
+    most = lambda key: max(s[key], of(key).max())
+    return {"response": s["response"], "off": s["off"], "90 %": s["speed90"], "start acc": s["acc"],
+            "steady acc": row["steady"]["acceleration"], "brake med": np.median(of("brake")), "brake": of("brake").max(),
+            "below cm": most("below"), "back cm": most("back"), "faster": most("faster"),
+            "stop s": np.median(of("time")), "worst s": of("time").max(), "way m": np.median(of("way")),
+            "way worst": of("way").max(), "d2": most("d2"), "chest x": most("chest"), "head x": most("head"),
+            "stands": min(of("stands"))}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("motions", nargs="*")
+    parser.add_argument("--stick", type=float, nargs="*", default=[0.3, 0.8, 1.0])
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--turns", action="store_true")
+    options = parser.parse_args()
+    rows = {}
+    for motion in [None, *options.motions]:
+        name = pathlib.Path(motion).stem if motion else "built-in"
+        with tempfile.TemporaryDirectory() as folder:
+            player = Player(options.program.resolve(), folder, motion and pathlib.Path(motion).resolve())
+            for stick in options.stick:
+                rows[f"{name} {stick}"] = summary(measure(player, stick))
+            if options.turns:
+                for turn, moves in TURNS.items():
+                    rows[f"{name} {turn}"] = turn_of(player, moves)
+                rows[f"{name} reversal"] = dict(zip(("median", "worst"), reversal(player)))
+    if options.json:
+        print(json.dumps({name: {k: float(v) for k, v in row.items()} for name, row in rows.items()}, indent=1))
+        return
+    last = None
+    for name, row in rows.items():
+        if list(row) != last:
+            print(f"{'':22}" + " ".join(f"{k:>10}" for k in row))
+            last = list(row)
+        print(f"{name:22}" + " ".join(f"{v:10.2f}" for v in row.values()))
+
+
+if __name__ == "__main__":
+    main()

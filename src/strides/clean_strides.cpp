@@ -176,6 +176,7 @@ struct Builder {
     if (cycle.stride_m < 0.0) {
       p.least_knee_rad = kLeastKneeBack;
       p.soft_toe *= kSmootherBack;
+      p.forward_speed = 0.0;
       p.smoothness = kSmootherBack;
       for (LegAngles& weight : p.leg_weight)
         weight = {kHipBack, kHipBack, kHipBack, 1.0, kAnkleBack, kAnkleBack, kAnkleBack};

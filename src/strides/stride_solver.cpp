@@ -22,15 +22,13 @@ constexpr double kHip = 1.8, kAnkle = 1.8;
 constexpr double kSmooth = 20.0;  // of second differences between samples,
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // times this for the pelvis
 constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;         // per square metre, radian
-constexpr double kLevel = 5e2;  // the sole is level and points ahead, per square metre
+constexpr double kLevel = 5e2;   // the sole is level and points ahead, per square metre
+constexpr double kSide_m = 0.1;  // lever of that
 // A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
 constexpr double kSoftStrike = 3e4, kSoftToeDown = 1.3e4;
 constexpr int kLanding = 3;  // samples over which this fades
-// People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square
-// metre of a second difference.
-constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
-constexpr double kSoftHeave_m_s2 = 2.0;  // up and down
-constexpr double kSide_m = 0.1;          // lever of that
+// How hard the hips rise and fall: of second differences beyond a bound, per square metre.
+constexpr double kSoftHeave_m_s2 = 2.0, kHeave = 1e7;
 // How far the edge of a heel may be in the floor.
 constexpr double kMostSink_m = 0.002, kSoftEdge_m = 0.0015;
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
@@ -250,32 +248,31 @@ struct StrideSolver::System {
     }
   }
 
-  // Keeps the pelvis' acceleration along an axis below a bound, rounded; in metres per sample, as
-  // if the samples were evenly spaced in time.
-  void add_surge(int sample, int axis, const std::vector<StrideSample>& x,
-                 const std::vector<double>& time, double stride_m, double most_m, double soft_m) {
-    std::array<double, 3> when, place;
-    std::array<Mirrored, 3> where;
+  // Keeps the pelvis' acceleration up and down below a bound, rounded; in metres per sample, as if
+  // the samples were evenly spaced in time.
+  void add_heave(int sample, const std::vector<StrideSample>& x, const std::vector<double>& time,
+                 double most_m, double soft_m) {
+    std::array<double, 3> when, height;
+    std::array<int, 3> where;
     for (int d : {0, 1, 2}) {
       const int at = sample + d - 1, j = (at + samples) % samples;
       when[d] = time[j] + (at < 0 ? -1.0 : at >= samples ? 1.0 : 0.0);
-      place[d] = x[j].pelvis_m[axis] + (axis == 2 ? stride_m * when[d] : 0.0);
-      where[d] = place_of(at, axis);
+      height[d] = x[j].pelvis_m.y;
+      where[d] = place_of(at, 1).unknown;
     }
     const double begin = when[1] - when[0], end = when[2] - when[1];
     const double even = 2.0 / (double(samples) * samples * (begin + end));
     const std::array<double, 3> slope_of = {even / begin, -even / begin - even / end, even / end};
     double bend = 0.0;
-    for (int d : {0, 1, 2}) bend += slope_of[d] * place[d];
+    for (int d : {0, 1, 2}) bend += slope_of[d] * height[d];
     const double over = std::abs(bend) - most_m;
     if (over <= -soft_m) return;
     const double share = std::min(1.0, 0.5 * (over + soft_m) / soft_m);
     const double error = std::copysign(soft_positive(over, soft_m), bend);
     for (int d : {0, 1, 2}) {
-      const double slope = share * slope_of[d];
-      gradient[where[d].unknown] += kSurge * slope * error;
-      for (int e = 0; e <= d; ++e)
-        at(where[d].unknown, where[e].unknown) += kSurge * slope * share * slope_of[e];
+      const double slope = kHeave * share * slope_of[d];
+      gradient[where[d]] += slope * error;
+      for (int e = 0; e <= d; ++e) at(where[d], where[e]) += slope * share * slope_of[e];
     }
   }
 
@@ -358,25 +355,25 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       }
       s.at(at, at) += weight;
       s.gradient[at] += weight * change[1];
-      constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
-      const double bend = change[0] - 2.0 * change[1] + change[2];
-      for (int d : {0, 1, 2}) {
-        const double slope = smooth * kBend[d] * where[d].factor;
-        s.gradient[where[d].unknown] += slope * bend;
-        for (int e = 0; e <= d; ++e) {
-          s.at(where[d].unknown, where[e].unknown) += slope * kBend[e] * where[e].factor;
+      const auto keep = [&](const std::array<double, 3>& stencil, double cost) {
+        const double off = stencil[0] * change[0] + stencil[1] * change[1] + stencil[2] * change[2];
+        for (int d : {0, 1, 2}) {
+          const double slope = cost * stencil[d] * where[d].factor;
+          s.gradient[where[d].unknown] += slope * off;
+          for (int e = 0; e <= d; ++e) {
+            s.at(where[d].unknown, where[e].unknown) += slope * stencil[e] * where[e].factor;
+          }
         }
-      }
+      };
+      keep({1.0, -2.0, 1.0}, smooth);
+      if (k == 2) keep({-1.0, 1.0, 0.0}, problem.forward_speed);
     }
   }
   std::vector<double> path_m(n);
   for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
   const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
   for (int i = 0; i < solved; ++i) {
-    s.add_surge(i, 2, x, problem.time, problem.stride_m, kMostSurge_m_s2 * tick2,
-                kSoftSurge_m_s2 * tick2);
-    s.add_surge(i, 1, x, problem.time, problem.stride_m, problem.most_heave_m_s2 * tick2,
-                kSoftHeave_m_s2 * tick2);
+    s.add_heave(i, x, problem.time, problem.most_heave_m_s2 * tick2, kSoftHeave_m_s2 * tick2);
   }
   // Feet.
   std::array<std::vector<LegFrames>, 2> all_frames;

@@ -40,6 +40,8 @@ struct StrideProblem {
   double least_knee_rad = 2.0 * kDegree;
   double soft_toe =
       3e3;  // how smoothly a toe begins to move: per square metre of second differences
+  // How much the hips' speed along the path is the data's: per square metre of first differences.
+  double forward_speed = 2e4;
   double most_heave_m_s2 = 7.0;  // how hard the hips rise and fall, about
 };
 // Whether half a stride later everything is the mirror image.

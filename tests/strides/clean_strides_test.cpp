@@ -8,11 +8,13 @@
 #include <functional>
 #include <limits>
 
+#include "gaitpad/motion_file.h"
 #include "gaitpad/stride_family.h"
 #include "motion/leg_pose.h"
 #include "strides/solver_input.h"
 #include "tests/clean_cycle.h"
 #include "tests/motion/made_walk.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -239,6 +241,60 @@ TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
     EXPECT_LT(change(side, kHipX, best_shift), 3.0 * kDegree);
     EXPECT_LT(change(side, kKneeX, best_shift), 3.0 * kDegree);
     EXPECT_LT(change(side, kAnkleX, best_shift), 3.5 * kDegree);
+  }
+}
+
+// The clean stride speeds its hips up and slows them down within a step as the data do: their
+// speed differs by 4 % of the mean (RMS), and its maximum, of both steps' mean, by a tenth of a
+// step.
+void expect_the_datas_forward_speed(const GaitCycle& data) {
+  const GaitCycle cycle = clean_cycle(data);
+  const StrideTable& own = cycle.strides->table[static_cast<std::size_t>(1.0 / kRatioStep + 0.5)];
+  const auto table_m = [&own](int i) { return sample_of(own, i).pelvis_m.z; };
+  const auto data_m = [&cycle](int i) {
+    return cycle.samples[(i + kCycleSamples) % kCycleSamples].pelvis_m.z;
+  };
+  // Shares of the mean, of every sample.
+  const auto speed_of = [&cycle](const std::function<double(int)>& place_m) {
+    std::vector<double> speed;
+    for (int i = 0; i < kCycleSamples; ++i) {
+      const double gains_m =
+          place_m((i + 1) % kCycleSamples) - place_m(i - 1 + (i == 0) * kCycleSamples);
+      speed.push_back(1.0 + 0.5 * kCycleSamples * gains_m / cycle.stride_m);
+    }
+    return speed;
+  };
+  const std::vector<double> wanted = speed_of(data_m), got = speed_of(table_m);
+  double squares = 0.0;
+  for (int i = 0; i < kCycleSamples; ++i) squares += std::pow(got[i] - wanted[i], 2);
+  EXPECT_LT(std::sqrt(squares / kCycleSamples), 0.04) << cycle.name;
+  // Where within a step, 0 at its strike and 1 at the next.
+  const auto fastest = [&cycle](const std::vector<double>& speed) {
+    const auto at = [&speed](double phase) {
+      return speed[static_cast<std::size_t>(fraction(phase) * kCycleSamples)];
+    };
+    const double left = cycle.strike[kLeftSide];
+    double best = 0.0, most = 0.0;
+    for (double u = 0.0; u < 1.0; u += 1.0 / kCycleSamples) {
+      const double now = at(u * left) + at(left + u * (1.0 - left));
+      if (now > most) best = u, most = now;
+    }
+    return best;
+  };
+  const double later = fastest(got) - fastest(wanted);
+  EXPECT_NEAR(later - std::round(later), 0.0, 0.1) << cycle.name;
+}
+
+TEST(StrideFamily, KeepsTheBuiltInWalksForwardSpeed) {
+  expect_the_datas_forward_speed(procedural_gait());
+}
+
+TEST(StrideFamily, KeepsTheForwardSpeedOfCaptures) {
+  GAITPAD_NEEDS(kCapturedMotions);
+  for (const char* file : {"cmu_m21_walk.bvh", "bvhtoolbox_walk01.bvh", "cmu_07_01.amc",
+                           "cmu_007_04_iclone.bvh", "cmu_12_01_walk.bvh", "cmu_02_walk.amc"}) {
+    expect_the_datas_forward_speed(
+        value_of(gait_cycle(value_of(load_motion(kCapturedMotions + file)))));
   }
 }
 

@@ -221,9 +221,8 @@ void fill_angles(GaitCycle& cycle) {
   }
 }
 
-// The pelvis is as high as the lower foot asks. Fore and aft it swings by 70 % of what would let
-// the standing foot slide least (least squares over heel and ball), so it is slowest over that
-// foot. (Boulic's fore-aft curve, as ported, runs the other way and makes the foot slide.)
+// The pelvis is as high as the lower foot asks. Fore and aft it swings as people's does: fastest
+// at the strikes, slowest over the standing foot, by 7 % of the speed either way.
 void fill_pelvis_path(GaitCycle& cycle) {
   std::array<double, kHalf> height;
   for (int i = 0; i < kHalf; ++i) {
@@ -232,10 +231,9 @@ void fill_pelvis_path(GaitCycle& cycle) {
   }
   height = smoothed(height, 3);  // the even ones up to 6: it repeats every half cycle
   for (int i = 0; i < kHalf; ++i) {
-    const SinCos s = sin_cos(2.0 * kPi * i / kHalf);
     for (const int at : {i, i + kHalf}) {
       cycle.samples[at].pelvis_m.y = height[i];
-      cycle.samples[at].pelvis_m.z = -0.005 * s.cos - 0.004 * s.sin;
+      cycle.samples[at].pelvis_m.z = 0.008 * sin_cos(2.0 * kPi * i / kHalf).sin;
     }
   }
   for (CycleSample& at : cycle.samples) {

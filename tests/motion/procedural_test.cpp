@@ -59,6 +59,25 @@ TEST(ProceduralGait, LegIsAnAdultsAndSpeedIsTheChosenOne) {
   EXPECT_NEAR(c.step_m[kLeftSide] + c.step_m[kRightSide], c.stride_m, 1e-12);
 }
 
+// People's hips are fastest at the strikes and slowest over the standing foot, by 5 to 20 % of
+// their speed either way.
+TEST(ProceduralGait, HipsAreFastestAtTheStrikes) {
+  const auto speed = [](double phase) {
+    constexpr double kStep = 0.01;
+    return 1.0 + (sample_at(walk(), phase + kStep).pelvis_m.z -
+                  sample_at(walk(), phase - kStep).pelvis_m.z) /
+                     (2.0 * kStep * walk().stride_m);
+  };
+  for (const double strike : walk().strike) {
+    EXPECT_GT(speed(strike), 1.05);
+    EXPECT_LT(speed(strike), 1.20);
+    EXPECT_LT(speed(strike + 0.25), 0.95);
+    EXPECT_GT(speed(strike + 0.25), 0.80);
+    for (double later = 0.05; later < 0.46; later += 0.01)
+      EXPECT_LT(speed(strike + later), speed(strike)) << later;
+  }
+}
+
 TEST(ProceduralGait, HeelStrikesFirstAndTheStandingFootStays) {
   const LegPose strike = pose_at(walk(), kRightSide, 0.0);
   EXPECT_LT(strike.heel_m.y, 0.015);
@@ -67,7 +86,7 @@ TEST(ProceduralGait, HeelStrikesFirstAndTheStandingFootStays) {
   const double stood = pose_at(walk(), kRightSide, 0.25).heel_m.z + 0.25 * stride_m;
   for (double phase = 0.06; phase < 0.40; phase += 0.02) {
     const LegPose p = pose_at(walk(), kRightSide, phase);
-    EXPECT_NEAR(p.heel_m.z + phase * stride_m, stood, 0.015) << phase;
+    EXPECT_NEAR(p.heel_m.z + phase * stride_m, stood, 0.025) << phase;
     EXPECT_LT(p.heel_m.y, 0.010) << phase;
   }
 }

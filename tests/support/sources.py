@@ -155,7 +155,7 @@ def _pelvis(phase, leg_m):
     """Place without its height, rotation."""
     place = np.zeros((len(phase), 3))
     place[:, 0] = -0.032 * leg_m * np.sin(2 * np.pi * (phase - 0.1))
-    place[:, 2] = -0.005 * np.cos(4 * np.pi * phase) - 0.004 * np.sin(4 * np.pi * phase)
+    place[:, 2] = 0.008 * np.sin(4 * np.pi * phase)
     x, y, z = (lambda v, a=a: bvhs.axis_matrices(a, v) for a in "XYZ")
     return place, y(curve("turn", phase)) @ z(-curve("list", phase)) @ x(curve("tilt", phase) - CURVES["tilt"][0])
 

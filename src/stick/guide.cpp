@@ -605,11 +605,14 @@ std::string CalibrationGuide::instruction() const {
   };
   const std::string sticks = which(sticks_, true);
   switch (step()) {
-    case GuideStep::rest:
+    case GuideStep::rest: {
+      int releases = kWantedReleases;
+      for (const Stick& stick : sticks_) releases = std::max(releases, stick.release.wanted());
       return fmt::format(
           "Push {} to its rim, let it snap back and wait a second; {} times, to different sides. "
           "Then leave it alone.",
-          sticks, kWantedReleases);
+          sticks, releases);
+    }
     case GuideStep::turn:
       return fmt::format(
           "Turn {} in full circles, pressed outwards along its rim, slowly, until "

@@ -156,7 +156,7 @@ class ReattachWatcherTest : public testing::Test {
   }
   static bool has_child() { return ::waitpid(-1, nullptr, WNOHANG) != -1 || errno != ECHILD; }
 
-  const OwnFolder folder_;
+  OwnFolder folder_;
   const std::string fifo_ = (folder_.path / "node").string();
   OwnedFd reader_;
 };

@@ -431,6 +431,8 @@ TEST(CalibrationGuide, AStickThatRestsAsideIsLetGoMoreOften) {
   EXPECT_EQ(hand.guide.step(), GuideStep::rest);
   EXPECT_EQ(hand.text(),
             "8 of 10 releases; it rests 0.12 off its middle: take your thumb right off");
+  EXPECT_NE(hand.guide.instruction().find("; 10 times, "), std::string::npos)
+      << hand.guide.instruction();
   hand.release_around(0, 3);
   hand.wait(2.0);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);

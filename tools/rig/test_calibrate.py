@@ -1,6 +1,7 @@
 """A worn virtual pad is calibrated at a terminal, unplugged in the middle; its file is then used by record and play."""
 import os
 import random
+import re
 import signal
 import tempfile
 import time
@@ -72,17 +73,17 @@ def guide_through(pad, driver, mounted):
         hand.hold(0.5)
         hand.releases(0, 3)
         hand.do()
-        terminal.wait_for("3 of 6 releases", 10)
+        terminal.wait_for("3 of 10 releases", 10)  # the left one rests so far off that more are asked
         pad.unplug()
         terminal.wait_for("UNPLUGGED", 10)
         pad.plug()
         at = len(terminal.text)
         hand.hold(0.5)
-        hand.releases(3, 4)
+        hand.releases(3, 8)
         hand.hold(2.2)
         hand.do()
         at = terminal.wait_for("Step 2 of 7: turning", 10, at).end()
-        assert "0 of 6 releases" not in terminal.text[terminal.text.index("UNPLUGGED"):], "what was seen is lost"
+        assert not re.search(r"\b0 of \d+ releases", terminal.text[terminal.text.index("UNPLUGGED"):]), "what was seen is lost"
         hand.turns(3)
         hand.pushes()
         hand.triggers()

@@ -86,7 +86,7 @@ class Person:
 
     def calibrate(self):
         self.hand.hold(0.5)
-        self.hand.releases(0, 7)
+        self.hand.releases(0, 11)  # the left one rests so far off that ten are asked
         self.hand.hold(2.6)
         self.hand.turns(3)
         self.hand.pushes()

@@ -55,6 +55,13 @@ class Live : public testing::Test {
   }
 
   std::unique_ptr<LiveSession> started() { return value_of(LiveSession::start(options_)); }
+  // Waits until a tick has taken a report, so that there is something to record.
+  static bool comes_to_be_driven(LiveSession& session) {
+    return comes_true([&] {
+      bool is_new = false;
+      return session.latest(is_new).pad.device == 0;
+    });
+  }
   // Ends the session and checks that its recording replays to the same summary.
   RunSummary stopped(LiveSession& session) const {
     const RunSummary run = value_of(session.stop());

@@ -126,14 +126,15 @@ TEST_F(Live, WithoutAPadItStandsAndNothingIsRecorded) {
 TEST_F(Live, DestroyingASessionCompletesItsRecording) {
   {
     auto session = started();
-    EXPECT_TRUE(comes_true([&] { return session->status().pads.reports > 10; }));
+    EXPECT_TRUE(comes_to_be_driven(*session));
   }
-  EXPECT_TRUE(read_trace(options_.live.record));
+  const auto trace = read_trace(options_.live.record);
+  EXPECT_TRUE(trace) << trace.error().message;
 }
 
 TEST_F(Live, TheSessionGoesOnWhenItsRecordingIsEnded) {
   auto session = started();
-  EXPECT_TRUE(comes_true([&] { return session->status().pads.reports > 10; }));
+  EXPECT_TRUE(comes_to_be_driven(*session));
   EXPECT_FALSE(session->end_recording());
   const std::int64_t ticks = session->status().ticks;
   EXPECT_GT(replayed().ticks, 0);

@@ -94,14 +94,17 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
   const LegSolution<V> solution = solve_lanes<V, false>(goals, LegShares<V>{}, even);
   PosedLegOf<V> posed = posed_leg<V>(solution, state.foot[side].pose.pitch_rad);
   const MaskOf<V> mends = needs_mending<V>(tick.model, at, side, even[kAnkleX], posed.failed);
-  for (std::size_t i = 0; any(mends) && i < walks.size(); ++i) {
-    const int lane = static_cast<int>(i);
+  PosedLeg one;
+  const int count = static_cast<int>(walks.size());
+  for (int lane = 0; any(mends) && lane < kWidthOf<V>; ++lane) {
     if (!is_set(mends, lane)) continue;
-    WalkState& walk = *walks[i].state;
-    PosedLeg one;
-    get_lane(even, lane, walk.legs.even_rad[side]);
-    get_lane(posed, lane, one);
-    set_lanes(mended_leg(tick, walk, pelvis_of(pelvis, lane), side, one), lane, posed);
+    WalkState& walk = *walks[std::min(lane, count - 1)].state;
+    if (lane < count) {  // those left over are the last walk again, and write its pose again
+      get_lane(even, lane, walk.legs.even_rad[side]);
+      get_lane(posed, lane, one);
+      one = mended_leg(tick, walk, pelvis_of(pelvis, lane), side, one);
+    }
+    set_lanes(one, lane, posed);
     set_lanes(walk.legs.even_rad[side], lane, even);
     set_lanes(static_cast<const FootPoseOf<double>&>(walk.foot[side].pose), lane,
               state.foot[side].pose);

@@ -54,6 +54,26 @@ TEST(Crowd, WalksAsItsMembersWouldAlone) {
   }
 }
 
+// Three of them leave lanes over, which are the last one again: also where its ankle bends up so far
+// that its foot is mended, here in an abrupt stop after a turn.
+TEST(Crowd, WalksAsItsMembersWouldAloneWhereABlockIsNotFull) {
+  const auto model =
+      std::make_shared<const WalkModel>(value_of(walk_model(clean_cycle(procedural_gait()), {})));
+  const std::vector<CrowdMember> members(3, CrowdMember{model, vec3(0.0)});
+  Crowd crowd(members);
+  Pose pose;
+  WalkState state = standing(*model, vec3(0.0), pose);
+  for (int tick = 0; tick < 12 * kCrowdRate && !HasFailure(); ++tick) {
+    Stick stick;
+    if (tick % (3 * kCrowdRate) < 2 * kCrowdRate) stick.left = vec2(0.3, 0.6 + tick / 2400.0);
+    const GaitParams params = gait_params(stick, StyleValues{}, gait_limits(*model));
+    for (GaitParams& of : crowd.params()) of = params;
+    crowd.advance(kCrowdDt);
+    advance(*model, params, IkMode::robust, kCrowdDt, state, pose);
+    for (int i = 0; i < 3; ++i) expect_same_pose(pose, crowd.local(i), crowd.root_m(i), i, tick);
+  }
+}
+
 // The members are in all stages at once: some stand, others walk, turn, limp, climb.
 TEST(Crowd, ItsMembersDoDifferentThings) {
   MadeCrowd made(kMembers);

@@ -54,8 +54,8 @@ TEST(Crowd, WalksAsItsMembersWouldAlone) {
   }
 }
 
-// Three of them leave lanes over, which are the last one again: also where its ankle bends up so far
-// that its foot is mended, here in an abrupt stop after a turn.
+// Three of them leave lanes over, which are the last one again: also where its ankle bends up so
+// far that its foot is mended, here in an abrupt stop after a turn.
 TEST(Crowd, WalksAsItsMembersWouldAloneWhereABlockIsNotFull) {
   const auto model =
       std::make_shared<const WalkModel>(value_of(walk_model(clean_cycle(procedural_gait()), {})));

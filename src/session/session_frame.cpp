@@ -60,6 +60,7 @@ Cast cast_of(const Simulation& simulation, const SimulationConfig& config) {
 
 void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept {
   frame.ik = simulation.ik();
+  frame.stick_means = simulation.stick_means();
   frame.counts = simulation.counts();
   frame.tick = frame.counts.ticks - 1;
   frame.stick = simulation.stick();

@@ -26,6 +26,8 @@ constexpr ActionInfo kActions[] = {
      "slow motion, on and off"},
     {Action::reset, SDLK_BACKSPACE, kNoKey, kButtonDpadDown, "reset", kSession,
      "all characters back to the start"},
+    {Action::stick, SDLK_k, kNoKey, kNoButton, "stick", kSession,
+     "stick: steers, or points as seen from the camera"},
     {Action::style_1, SDLK_1, SDLK_KP_1, kNoButton, "style 1", kStyles, "first style of the list"},
     {Action::style_2, SDLK_2, SDLK_KP_2, kNoButton, "style 2", kStyles, "second style"},
     {Action::style_3, SDLK_3, SDLK_KP_3, kNoButton, "style 3", kStyles, "third style"},

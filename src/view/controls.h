@@ -22,6 +22,7 @@ enum class Action : std::uint8_t {
   step,         // one tick; pauses first
   slow_motion,  // on and off
   reset,
+  stick,    // steers, or points where to go
   style_1,  // the first style of the session's list ...
   style_2,
   style_3,

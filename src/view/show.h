@@ -35,6 +35,7 @@ class Show {
   const SessionSpec& options() const noexcept { return options_; }
   // Used by shows that are opened with these options later.
   void add_config_folder(const std::string& folder);
+  void set_stick(StickMeans means) noexcept { options_.walk.stick = means; }
   bool is_live() const noexcept { return options_.replay.trace.empty(); }
 
   // Takes over what is new; call it once for each drawn frame. `passed_s`: wall time since the last

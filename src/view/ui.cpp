@@ -80,6 +80,8 @@ std::string session_text(const Ui& ui) {
   std::string text = fmt::format("motion {}", ui.in.cast.motion);
   const int count = ui.in.frame.walker_count;
   text += fmt::format("  \u00b7  {} character{}", count, count == 1 ? "" : "s");
+  const bool steers = ui.in.frame.stick_means == StickMeans::steers;
+  text += steers ? "  \u00b7  stick steers" : "  \u00b7  stick points";
   if (!ui.in.source.empty()) text += "  \u00b7  " + file_name(ui.in.source);
   if (!ui.in.recording.empty()) text += "  \u00b7  recording to " + file_name(ui.in.recording);
   return text;

@@ -188,6 +188,8 @@ class WindowLoop {
   void toggle_panel(Panel panel);
   void step_once();
   void reset_session();
+  void toggle_stick();
+  void aim_stick();
   void go_back();
   void save_walkers_style(const std::string& name);
 
@@ -254,6 +256,8 @@ class WindowLoop {
   bool wants_screenshot_ = false, is_quitting_ = false;
   bool is_end_told_ = false, is_untouched_told_ = false;  // to the person
   bool is_camera_moved_ = false;  // by the person: it turns by itself no more
+  std::optional<int> aimed_deg_;  // the camera's heading that the session was told last
+  std::int64_t aimed_tick_ = 0;
   bool has_walked_ = false;       // somebody, since the show began
 };
 
@@ -578,6 +582,7 @@ void WindowLoop::draw_window(bool is_last) {
   follow(camera_, ensemble_->focus_m(-1), passed_s);
   approach(camera_, wished_framing(viewport), passed_s);
   turn_to_risers(passed_s);
+  aim_stick();
   ensemble_->stand_on_ground(camera_);
   if (is_drawn && viewport.width > 0 && viewport.height > 0)
     scene_->draw(content_, camera_, theme, viewport, height_px, scale());
@@ -617,7 +622,9 @@ void WindowLoop::reset_camera(const Viewport& viewport) {
 }
 
 void WindowLoop::turn_to_risers(double passed_s) {
-  const bool is_free = !is_camera_moved_ && camera_.is_following && options_.camera_deg.empty();
+  // A stick that points is seen from the camera: turned by itself, it would turn the walkers, too.
+  const bool is_free = !is_camera_moved_ && camera_.is_following && options_.camera_deg.empty() &&
+                       show_->options().walk.stick == StickMeans::steers;
   if (!is_free || !ensemble_->is_on_uneven_ground()) return;
   const double rise_m = ensemble_->rise_ahead_m(state_.walker);
   if (std::abs(rise_m) < kLeastRise_m) return;
@@ -783,6 +790,9 @@ bool WindowLoop::run_session_action(Action action) {
     case Action::reset:
       reset_session();
       return true;
+    case Action::stick:
+      toggle_stick();
+      return true;
     case Action::next_style:
       choose_style_after(1);
       return true;
@@ -892,6 +902,33 @@ void WindowLoop::reset_session() {
   } else {
     show_->seek(0);
   }
+}
+
+void WindowLoop::toggle_stick() {
+  if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
+  const bool points = show_->options().walk.stick == StickMeans::steers;
+  show_->set_stick(points ? StickMeans::points : StickMeans::steers);
+  aimed_deg_.reset();
+  if (points) aim_stick();
+  if (!points) show_->command("stick steers");
+  say_change(points ? "the stick points, seen from the camera" : "the stick steers");
+}
+
+constexpr int kMostAims_per_s = 20;
+
+// Tells the session where the camera looks, in whole degrees, if the stick points: as commands, so
+// that a replay needs no camera. The direction from a script holds until the camera turns.
+void WindowLoop::aim_stick() {
+  const std::int64_t tick = show_->frame().tick;
+  const bool points = show_->is_live() && show_->options().walk.stick == StickMeans::points;
+  if (!points || pad_dialog_ || tick < 0) return;
+  const double heading_deg = std::remainder(camera_.yaw_rad / kDegree + 180.0, 360.0);
+  const int aim_deg = static_cast<int>(std::lround(heading_deg));
+  const bool is_soon = tick < aimed_tick_ + show_->cast().rate_hz / kMostAims_per_s;
+  if (aimed_deg_ && (*aimed_deg_ == aim_deg || is_soon)) return;
+  show_->command(fmt::format("stick points {}", aim_deg));
+  aimed_deg_ = aim_deg;
+  aimed_tick_ = tick;
 }
 
 void WindowLoop::choose_style(const std::string& name) {
@@ -1037,6 +1074,7 @@ void WindowLoop::install_show(std::unique_ptr<Show> show) {
   is_end_told_ = false;
   is_untouched_told_ = false;
   has_walked_ = false;
+  aimed_deg_.reset();
   undo_.clear();
   style_summaries_.clear();
   for (const std::string& style : show_->cast().styles) {
@@ -1073,8 +1111,11 @@ bool WindowLoop::switch_to(const SessionSpec& next) {
     end_show();
     return restart((*start)(), otherwise);
   }
-  // A playback needs no pad, so the running session goes on until it is open.
-  auto playback = Show::open(next);
+  // A playback needs no pad, so the running session goes on until it is open. What its stick means
+  // is in the recording.
+  SessionSpec recorded = next;
+  recorded.walk.stick = StickMeans::steers;
+  auto playback = Show::open(recorded);
   if (!playback) {
     show_message(playback.error().message);
     return false;

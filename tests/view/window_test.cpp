@@ -323,6 +323,8 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   script.expect(Action::previous_style, walk_in(styles.size() - 1));  // before the first the last
   script.expect(Action::undo, walk_in(0));
   script.expect(Action::redo, walk_in(styles.size() - 1));
+  script.turn(Action::stick,
+              [](const Glance& g) { return g.session.stick_means == StickMeans::points; });
   script.expect(Action::next_terrain,
                 [](const Glance& g) { return g.cast.terrain->name == "rough" && runs(g); });
   for (const int walker : {0, 1, 2, 3, -1})
@@ -597,6 +599,74 @@ TEST_F(Window, AStyleCanBeExaggerated) {
 
 // Recordings go to a folder of their own. A recording begins a session in the styles of the one
 // before; when it ends, the session goes on.
+bool points(const Glance& g) { return g.session.stick_means == StickMeans::points; }
+
+// Whether the first character goes where the camera looks, turned by so much to the left.
+bool goes_along(const Glance& g, double left_rad) {
+  const vec3 seen = g.camera.target_m - g.camera.eye_m();
+  const double along_rad = std::atan2(seen.x, seen.z) + left_rad;
+  const double off_rad = g.session.walkers[0].walk.heading_rad - along_rad;
+  return std::abs(std::remainder(off_rad, 2.0 * kPi)) < 2.0 * kDegree;
+}
+
+TEST_F(Window, AStickThatPointsIsSeenFromTheCameraAndReplaysWithoutOne) {
+  options_.session.live.record = (folder_ / "session.hid").string();
+  Script script;
+  script.until("it runs", runs);
+  script.tap(SDLK_k);
+  script.until("the stick points", points);
+  script.until("the status line says so", [](const Glance&) {
+    return std::ranges::any_of(drawn_texts(), [](const std::string& text) {
+      return text.find("stick points") != std::string::npos;
+    });
+  });
+  script.press(SDLK_w);
+  script.until("forward is away from the camera",
+               [](const Glance& g) { return goes_along(g, 0.0); });
+  script.drag(SDL_BUTTON_LEFT, 500, 300, 700, 300);
+  script.until("it turns with the camera", [](const Glance& g) {
+    return std::abs(g.camera.yaw_rad) > 0.5 && goes_along(g, 0.0);
+  });
+  script.release(SDLK_w);
+  script.press(SDLK_a);
+  script.until("left is left of that", [](const Glance& g) { return goes_along(g, kPi / 2.0); });
+  script.tap(SDLK_k);
+  script.until("it steers", [](const Glance& g) { return !points(g); });
+  const WindowResult result = run(script);
+
+  SessionSpec replayed = options_.session;
+  replayed.replay.trace = options_.session.live.record;
+  EXPECT_EQ(value_of(replay(replayed)).summary.pose_hash, result.summary.pose_hash);
+  EXPECT_EQ(result.summary.bad_commands, 0);
+  // A drag of two frames turns the camera: at most 20 directions a second, and no more once it rests.
+  const Trace trace = value_of(read_trace(replayed.replay.trace));
+  std::vector<std::int64_t> aims;
+  for (const TraceEvent& event : trace.events) {
+    if (event.kind == ReportKind::command &&
+        text_of(report_of(trace, event)).starts_with("stick points"))
+      aims.push_back(event.tick);
+  }
+  ASSERT_GE(aims.size(), 2u);
+  EXPECT_LE(aims.size(), 10u);
+  for (std::size_t i = 1; i < aims.size(); ++i) EXPECT_GE(aims[i] - aims[i - 1], 10);
+}
+
+TEST_F(Window, AStickThatPointsDoesSoOnTheNextGround) {
+  options_.session.walk.stick = StickMeans::points;
+  Script script;
+  script.until("it points", points);
+  script.tap(SDLK_m);  // begins a new session
+  script.until("it points on the next ground, too",
+               [](const Glance& g) { return g.cast.terrain->name == "rough" && points(g); });
+  script.tap(SDLK_k);
+  script.until("it steers", [](const Glance& g) { return !points(g); });
+  script.tap(SDLK_m);
+  script.until("it steers there", [](const Glance& g) {
+    return g.cast.terrain->name != "rough" && runs(g) && !points(g);
+  });
+  run(script);
+}
+
 TEST_F(Window, TheSessionGoesOnWhenItsRecordingEnds) {
   options_.record_folder = (folder_ / "takes").string();
   Script script;

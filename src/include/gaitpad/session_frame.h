@@ -68,6 +68,7 @@ struct SessionFrame {
   PressCounts presses{};
   SimulationCounts counts;
   IkMode ik = IkMode::robust;  // of the walkers
+  StickMeans stick_means = StickMeans::steers;
   int walker_count = 0;
   std::array<WalkerFrame, kMaxWalkers> walkers;
   FollowerPoses crowd;  // by Cast::crowd

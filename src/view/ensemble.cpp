@@ -43,6 +43,13 @@ std::string label_text(const WalkerFrame& walker, const Cast& cast, std::size_t 
   return fmt::format("{}, {}", with_blanks(cast.members[index].character), name);
 }
 
+// The two, if both are among so many; else nobody.
+std::vector<int> overlaid_of(const UiState& state, std::size_t characters) {
+  const auto is_there = [=](int i) { return i >= 0 && static_cast<std::size_t>(i) < characters; };
+  const bool is_pair = state.overlaid.size() == 2 && std::ranges::all_of(state.overlaid, is_there);
+  return is_pair ? state.overlaid : std::vector<int>();
+}
+
 }  // namespace
 
 Ensemble::Ensemble(const Cast& cast)
@@ -70,9 +77,20 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
   for (std::size_t i = 0; i < count; ++i) {
     const WalkerFrame& walker = frame.walkers[i];
     interpolate(walker.before, walker.pose, share, shown_[i]);
+  }
+  const std::vector<int> overlaid = overlaid_of(state, count);
+  stand_in_one_place(frame, overlaid);
+  for (std::size_t i = 0; i < count; ++i) {
     const Colour& colour = series_colour(theme, i);
+    const std::size_t first = content.capsules.size();
     add_mannequin(mannequins_[i], shown_[i], terrain_.get(), colour, content);
-    if (state.has_trails) add_trails(history, static_cast<int>(i), colour, content);
+    const auto mark = std::ranges::find(overlaid, static_cast<int>(i));
+    const int layer = mark == overlaid.end() ? 0 : static_cast<int>(mark - overlaid.begin()) + 1;
+    for (std::size_t c = first; c < content.capsules.size(); ++c)
+      content.capsules[c].layer = layer;
+    // The trails of the one that is moved are elsewhere.
+    if (state.has_trails && layer != 2)
+      add_trails(history, static_cast<int>(i), colour, content);
   }
   has_source_ = state.has_source && cast.source != nullptr && count > 0;
   if (has_source_) add_source(frame, share, cast, theme, content);
@@ -82,6 +100,21 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
   content.terrain = terrain_;
   content.focus_m = focus_m(-1);
   crowd_.fill(frame.crowd, share, theme, terrain_.get(), content.focus_m, content);
+}
+
+// The second one stands where the first one is and faces the same way.
+void Ensemble::stand_in_one_place(const SessionFrame& frame,
+                                  const std::vector<int>& overlaid) noexcept {
+  if (overlaid.empty()) return;
+  const auto first = static_cast<std::size_t>(overlaid[0]),
+             second = static_cast<std::size_t>(overlaid[1]);
+  const vec3& there_m = shown_[first].root_m;
+  Pose& moved = shown_[second];
+  const double height_m = moved.root_m.y - ground_m(moved.root_m);
+  moved.root_m = vec3(there_m.x, ground_m(there_m) + height_m, there_m.z);
+  moved.local[0] = rotation_y(frame.walkers[first].walk.heading_rad -
+                              frame.walkers[second].walk.heading_rad) *
+                   moved.local[0];
 }
 
 void Ensemble::add_trails(const History& history, int walker, const Colour& colour,

@@ -40,6 +40,7 @@ class Ensemble {
                               const Theme& theme) const;
 
  private:
+  void stand_in_one_place(const SessionFrame& frame, const std::vector<int>& overlaid) noexcept;
   void add_trails(const History& history, int walker, const Colour& colour, SceneContent& content);
   void add_source(const SessionFrame& frame, double share, const Cast& cast, const Theme& theme,
                   SceneContent& content);

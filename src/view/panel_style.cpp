@@ -466,6 +466,31 @@ void draw_exaggerate(Ui& ui) {
   }
 }
 
+// A chip for each character: two that are marked stand in one place.
+void draw_overlay(Ui& ui) {
+  const int count = ui.in.frame.walker_count;
+  if (count < 2) return;
+  text_line(ui, ui.fonts.small, ui.theme.text, "overlay (any two in one place)");
+  std::vector<int>& overlaid = ui.state.overlaid;
+  const float gap = std::round(ui.px(4)), chips = static_cast<float>(count);
+  ButtonLook look;
+  look.height = std::round(ui.px(22));
+  look.width = std::floor((ImGui::GetContentRegionAvail().x - gap * (chips - 1.0f)) / chips);
+  for (int i = 0; i < count; ++i) {
+    if (i > 0) ImGui::SameLine(0.0f, gap);
+    const auto mark = std::ranges::find(overlaid, i);
+    look.is_on = mark != overlaid.end();
+    look.dot = walker_colour(ui, i);
+    if (!button(ui, fmt::format("overlay {}", i + 1), fmt::format("{}", i + 1), look)) continue;
+    if (look.is_on) {
+      overlaid.erase(mark);
+    } else {
+      if (overlaid.size() == 2) overlaid.pop_back();
+      overlaid.push_back(i);
+    }
+  }
+}
+
 void draw_buttons(Ui& ui) {
   const float width = ImGui::GetContentRegionAvail().x, gap = std::round(ui.px(6));
   const float cell = std::floor((width - gap) / 2.0f);
@@ -528,6 +553,7 @@ void draw_style_panel(Ui& ui) {
   draw_choice(ui);
   draw_save(ui);
   draw_exaggerate(ui);
+  draw_overlay(ui);
   for (const StyleRow& row : rows_of(ui.state.memory)) draw_row(ui, row);
   draw_buttons(ui);
   ImGui::PopStyleVar();

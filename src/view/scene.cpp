@@ -54,7 +54,8 @@ class CapsuleScene {
   void load(const SceneContent& content, const SceneView& view);
   // Binds a frame buffer of its own and changes the viewport.
   ShadowPlace draw_shadows();
-  void draw(const SceneView& view) const;
+  void draw(const SceneView& view, int samples) const;
+  bool has_layers() const noexcept { return has_layers_; }
   GLuint shadow_texture() const noexcept { return shadow_.get(); }
 
  private:
@@ -65,7 +66,7 @@ class CapsuleScene {
 
   struct Instance {
     glm::vec4 a_radius, b_radius, across_width_a, colour_width_b;
-    glm::vec2 ground;  // below a, below b
+    glm::vec3 ground_layer;  // height of the floor below a, below b
   };
   GlProgram program_, shadow_program_;
   GlVertexArray vertices_;
@@ -78,6 +79,7 @@ class CapsuleScene {
   std::vector<Instance> rows_;       // bodies near the floor, the others, lines
   std::vector<Instance> high_rows_;  // the others, while rows_ is filled
   std::size_t low_capsules_ = 0, capsules_ = 0;
+  bool has_layers_ = false;
 };
 
 constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's lines for their shadow
@@ -165,7 +167,7 @@ void CapsuleScene::make_mesh(const MeshDetail& detail) {
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 2), indices.data(),
                GL_STATIC_DRAW);
   glBindBuffer(GL_ARRAY_BUFFER, instances_.get());
-  constexpr VertexPart kInstance[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 2}};
+  constexpr VertexPart kInstance[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 3}};
   set_vertex_parts(kInstance, 5, 1);
   glBindVertexArray(0);
 }
@@ -187,17 +189,19 @@ void CapsuleScene::make_shadow_target(int size_px) {
 void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
   rows_.clear();
   high_rows_.clear();
+  has_layers_ = false;
   for (const Capsule& c : content.capsules) {
     if (!is_drawable(c)) continue;
     const vec2 ground(floor_below(content, c.a_m), floor_below(content, c.b_m));
     const double low_m =
         std::min(c.a_m.y - c.radius_a_m - ground.x, c.b_m.y - c.radius_b_m - ground.y);
     const vec3 colour(c.colour.red, c.colour.green, c.colour.blue);
+    has_layers_ = has_layers_ || c.layer != 0;
     (low_m < kContact_m ? rows_ : high_rows_)
         .push_back({row(c.a_m - view.origin_m, c.radius_a_m),
                     row(c.b_m - view.origin_m, c.radius_b_m),
                     row(across(c.b_m - c.a_m, c.wide), c.width_a), row(colour, c.width_b),
-                    glm::vec2(ground)});
+                    glm::vec3(ground.x, ground.y, c.layer)});
   }
   low_capsules_ = rows_.size();
   rows_.insert(rows_.end(), high_rows_.begin(), high_rows_.end());
@@ -207,7 +211,7 @@ void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
     rows_.push_back({row(l.a_m - view.origin_m, kLineShadow_m),
                      row(l.b_m - view.origin_m, kLineShadow_m), row(kLeft, 1.0),
                      row(vec3(0.0), 1.0),
-                     glm::vec2(floor_below(content, l.a_m), floor_below(content, l.b_m))});
+                     glm::vec3(floor_below(content, l.a_m), floor_below(content, l.b_m), 0.0)});
   }
   upload(instances_, rows_.data(), rows_.size() * sizeof(Instance));
 }
@@ -218,7 +222,7 @@ ShadowPlace CapsuleScene::shadow_place() const noexcept {
   vec2 low(1e9), high(-1e9);
   for (const Instance& i : rows_) {
     for (const auto& [end, ground] :
-         {std::pair(i.a_radius, i.ground.x), {i.b_radius, i.ground.y}}) {
+         {std::pair(i.a_radius, i.ground_layer.x), {i.b_radius, i.ground_layer.y}}) {
       const vec2 down(end.x, end.z);
       const vec2 thrown = down - vec2(kLightDirection.x, kLightDirection.z) *
                                      ((double{end.y} - ground) / kLightDirection.y);
@@ -282,14 +286,24 @@ void light_bodies(const GlProgram& program, const SceneView& view) {
   program.set("rim_strength", view.is_light() ? 0.10 : 0.34);
 }
 
-void CapsuleScene::draw(const SceneView& view) const {
+// Of half transparent bodies one layer has one half of a pixel's samples, the other layer the other
+// half: each hides nothing of the other, whichever is in front.
+void CapsuleScene::draw(const SceneView& view, int samples) const {
   light_bodies(program_, view);
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   glFrontFace(GL_CCW);
   glBindVertexArray(vertices_.get());
-  glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_SHORT, nullptr,
-                          static_cast<GLsizei>(capsules_));
+  const GLbitfield half = (1u << (samples / 2)) - 1u, all = (1u << samples) - 1u;
+  const std::array<GLbitfield, 3> shares = {all, half, all & ~half};
+  if (has_layers_ && samples > 1) glEnable(GL_SAMPLE_MASK);
+  for (std::size_t layer = 0; layer < (has_layers_ ? shares.size() : 1); ++layer) {
+    program_.set("layer", static_cast<double>(layer));
+    glSampleMaski(0, shares[layer]);
+    glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_SHORT, nullptr,
+                            static_cast<GLsizei>(capsules_));
+  }
+  glDisable(GL_SAMPLE_MASK);
   glDisable(GL_CULL_FACE);
 }
 
@@ -773,7 +787,7 @@ struct Scene::Impl {
   StrokeScene strokes;
   Target target, resolved;
   std::string renderer;
-  int samples = 1;
+  int samples = 1, most_samples = 1;  // of a pixel: otherwise; where bodies are half transparent
   bool is_software = false, has_bands = false;
 };
 
@@ -800,7 +814,8 @@ Result<std::unique_ptr<Scene>> Scene::create(Quality quality) {
   std::unique_ptr<Scene> scene(new Scene);
   scene->impl_ = std::make_unique<Impl>(std::move(*capsules), std::move(*crowd), std::move(*floor),
                                         std::move(*strokes));
-  scene->impl_->samples = is_fine ? std::clamp(most, 1, kSamples) : 1;
+  scene->impl_->most_samples = std::clamp(most, 1, kSamples);
+  scene->impl_->samples = is_fine ? scene->impl_->most_samples : 1;
   scene->impl_->is_software = is_software;
   scene->impl_->has_bands = quality == Quality::high;
   const int version = epoxy_gl_version();
@@ -823,11 +838,12 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
   glDisable(GL_SCISSOR_TEST);
   const int band =
       s.has_bands ? std::min(height, std::max(kBandArea_px / width, kLowestBand_px)) : height;
+  SceneView view = view_of(camera, content, theme, viewport, scale);
+  s.capsules.load(content, view);
+  int samples = s.capsules.has_layers() ? s.most_samples : s.samples;
   // If memory does not suffice for several samples per pixel, one is tried.
-  if (!s.target.resize(width, band, s.samples)) s.samples = 1;
-  if (s.target.resize(width, band, s.samples)) {
-    SceneView view = view_of(camera, content, theme, viewport, scale);
-    s.capsules.load(content, view);
+  if (!s.target.resize(width, band, samples)) samples = s.samples = s.most_samples = 1;
+  if (s.target.resize(width, band, samples)) {
     const ShadowPlace shadow = content.has_shadows ? s.capsules.draw_shadows() : ShadowPlace{};
     for (int begin = 0; begin < height; begin += band) {
       view.band_px = begin;
@@ -837,15 +853,15 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
       glDepthFunc(GL_LEQUAL);
       glDepthMask(GL_TRUE);
       glClear(GL_DEPTH_BUFFER_BIT);
-      s.capsules.draw(view);
-      s.crowd.draw(content, view, s.samples);
+      s.capsules.draw(view, samples);
+      s.crowd.draw(content, view, samples);
       s.floor.draw(content, view, shadow, s.capsules.shadow_texture());
       s.crowd.draw_shades(content, view);
       s.strokes.draw(content, view);
       glDisable(GL_DEPTH_TEST);
       GLuint ready = s.target.name();
       const int rows = std::min(band, height - begin);
-      if (s.samples > 1 && s.resolved.resize(width, band, 1)) {
+      if (samples > 1 && s.resolved.resize(width, band, 1)) {
         blit(ready, s.resolved.name(), width, rows, 0, 0);
         ready = s.resolved.name();
       }

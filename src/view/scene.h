@@ -22,6 +22,8 @@ struct Capsule {
   vec3 wide{0.0};  // zero: round
   double width_a = 1.0, width_b = 1.0;
   Colour colour;
+  // 1, 2: half transparent, one body over the other. Bodies of the same layer hide each other.
+  int layer = 0;
 };
 struct SceneLine {  // of constant width in pixels, for stick figures; casts a faint shadow
   vec3 a_m{0.0}, b_m{0.0};

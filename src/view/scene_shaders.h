@@ -12,8 +12,9 @@ layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
 layout(location = 3) in vec4 across_width_a;
 layout(location = 4) in vec4 colour_width_b;
-layout(location = 5) in vec2 ground;  // height of the floor below a, below b
+layout(location = 5) in vec3 ground_layer;  // height of the floor below a, below b
 uniform mat4 to_clip;
+uniform float layer;  // that is drawn
 out vec3 place;
 out vec3 normal;
 out float above;  // the floor
@@ -33,9 +34,9 @@ void main() {
   place = (at_b ? b_radius.xyz : a_radius.xyz) +
           radius * (side * (round.x * width) + deep * round.y + axis * round.z);
   normal = side * (round.x / width) + deep * round.y + axis * round.z;
-  above = place.y - (at_b ? ground.y : ground.x);
+  above = place.y - (at_b ? ground_layer.y : ground_layer.x);
   colour = colour_width_b.rgb;
-  gl_Position = to_clip * vec4(place, 1.0);
+  gl_Position = ground_layer.z == layer ? to_clip * vec4(place, 1.0) : vec4(0.0, 0.0, 2.0, 1.0);
 }
 )";
 

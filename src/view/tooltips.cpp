@@ -100,6 +100,8 @@ constexpr Tip kBeginnings[] = {
     {"close ", "Close this panel."},
     {"walker ", "Select this character: styles and sliders then change it alone."},
     {"give back ", "Let the stick and the style set this value again."},
+    {"overlay ",
+     "Two that are marked stand in one place, half transparent, the second where the first walks."},
     {"own ", "The value of the style as it was loaded."},
     {"style slider ", ""},  // by its key
     {"slider ", ""},

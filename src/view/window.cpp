@@ -1075,6 +1075,7 @@ void WindowLoop::install_show(std::unique_ptr<Show> show) {
   is_untouched_told_ = false;
   has_walked_ = false;
   aimed_deg_.reset();
+  state_.overlaid.clear();
   undo_.clear();
   style_summaries_.clear();
   for (const std::string& style : show_->cast().styles) {

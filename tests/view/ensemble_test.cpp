@@ -91,6 +91,41 @@ TEST_F(Walking, AMomentBetweenTwoTicksIsDrawnBetweenTheirPoses) {
 }
 
 // Every end of every drawn bone and line, on level ground, on a slope and on stairs.
+TEST_F(Walking, TwoThatAreOverlaidStandInOnePlaceHalfTransparent) {
+  begin({"even", "limp_left", "stiff_knee"});
+  run(600);
+  step(400, {"gait 3 turn_rate_rad_s 0.5"});
+  fill();
+  const std::vector<Capsule> apart = content_.capsules;
+  const std::size_t bones = apart.size() / 3;
+  const auto middle_m = [&](std::size_t walker) {
+    vec3 sum(0.0);
+    for (std::size_t i = walker * bones; i < (walker + 1) * bones; ++i)
+      sum += 0.5 * (content_.capsules[i].a_m + content_.capsules[i].b_m) / double(bones);
+    return sum;
+  };
+  EXPECT_GT(glm::distance(middle_m(0), middle_m(2)), 1.0);
+  state_.overlaid = {2, 0};  // the first one marked is the one that stays
+  fill();
+  ASSERT_EQ(content_.capsules.size(), apart.size());
+  EXPECT_LT(glm::distance(middle_m(0), middle_m(2)), 0.15);
+  for (std::size_t i = 0; i < apart.size(); ++i) {
+    EXPECT_EQ(content_.capsules[i].layer, i < bones ? 2 : i < 2 * bones ? 0 : 1);
+    if (i >= bones) EXPECT_EQ(content_.capsules[i].a_m, apart[i].a_m);
+  }
+  EXPECT_EQ(content_.trails.size(), 4u);  // of those that are on their paths
+  // The first bone is the pelvis, from hip to hip. It faces the same way.
+  const auto turned_rad = [](const Capsule& pelvis) {
+    return std::atan2(pelvis.b_m.z - pelvis.a_m.z, pelvis.b_m.x - pelvis.a_m.x);
+  };
+  const double there_rad = turned_rad(apart[2 * bones]);
+  EXPECT_GT(std::abs(std::remainder(turned_rad(apart[0]) - there_rad, 2.0 * kPi)), 0.5);
+  EXPECT_LT(std::abs(std::remainder(turned_rad(content_.capsules[0]) - there_rad, 2.0 * kPi)), 0.3);
+  state_.overlaid = {0, 7};  // there is no such character
+  fill();
+  EXPECT_EQ(content_.capsules[0].layer, 0);
+}
+
 TEST_F(Walking, InItsFramingTheCameraSeesEverybodyWithTheirNames) {
   struct Size {
     Viewport viewport;

@@ -476,6 +476,35 @@ TEST_F(SceneTest, BodiesHideFlatCapsulesBehindThemAndAreHiddenByThoseInFront) {
   EXPECT_TRUE(differs(drawn(content_), alone, kWidth / 2, kHeight / 2));
 }
 
+TEST_F(SceneTest, OfTwoLayersEachIsHalfTransparentWhicheverIsInFront) {
+  const vec3 there_m = camera_.target_m;
+  const vec3 nearer_m = glm::normalize(camera_.eye_m() - there_m) * 0.8;
+  Capsule red = bone(there_m, there_m, 0.3), green = bone(there_m + nearer_m, there_m + nearer_m, 0.3);
+  green.colour = rgb(0x20d020);
+  const auto picture = [&](const std::vector<Capsule>& capsules) {
+    SceneContent content = content_;
+    content.capsules = capsules;
+    return drawn(content);
+  };
+  const Pixels nobody = picture({}), only_red = picture({red}), only_green = picture({green});
+  const auto expect_mean = [&](const Pixels& seen, const Pixels& a, const Pixels& b) {
+    const vec3 at = place(there_m);
+    const std::size_t first =
+        4 * (static_cast<std::size_t>(at.y) * kWidth + static_cast<std::size_t>(at.x));
+    for (std::size_t c = first; c < first + 3; ++c)
+      EXPECT_NEAR(seen.rgba[c], 0.5 * (a.rgba[c] + b.rgba[c]), 3.0);
+  };
+  red.layer = 1;
+  expect_mean(picture({red}), only_red, nobody);
+  for (const int layer : {1, 2}) {
+    red.layer = layer;
+    green.layer = 3 - layer;
+    expect_mean(picture({red, green}), only_red, only_green);
+  }
+  green.layer = 0;  // is whole, in front
+  expect_mean(picture({red, green}), only_green, only_green);
+}
+
 TEST_F(SceneTest, AFloorShadeDarkensTheFloorWhereItLies) {
   look_down();
   content_.has_shadows = true;

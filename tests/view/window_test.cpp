@@ -597,6 +597,27 @@ TEST_F(Window, AStyleCanBeExaggerated) {
   run(script);
 }
 
+TEST_F(Window, TwoCharactersAreMarkedForAnOverlayAndAThirdReplacesOne) {
+  options_.are_panels_given = true;
+  options_.panels = {Panel::style};
+  Script script;
+  const auto expect = [&script](const std::vector<int>& wanted) {
+    script.until(fmt::format("{} are marked", wanted),
+                 [wanted](const Glance& g) { return g.ui.overlaid == wanted; });
+  };
+  script.click("overlay 1");
+  expect({0});
+  script.click("overlay 4");
+  expect({0, 3});
+  script.click("overlay 3");
+  expect({0, 2});
+  script.click("overlay 1");
+  expect({2});
+  script.tap(SDLK_m);  // others walk there
+  expect({});
+  run(script);
+}
+
 // Recordings go to a folder of their own. A recording begins a session in the styles of the one
 // before; when it ends, the session goes on.
 bool points(const Glance& g) { return g.session.stick_means == StickMeans::points; }

@@ -12,13 +12,15 @@ namespace {
 
 constexpr double kAdultTrunk_m = 0.50;  // hip joints to shoulder joints
 constexpr double kAdultArm_m = 0.57;    // shoulder to elbow to wrist
-// A trunk's half depth and its width over its depth, from the hips (0) to the shoulders (1).
+// A trunk's half depth, its width over its depth, and how far its middle is ahead of the spine's
+// joints, from the hips (0) to the shoulders (1). Proportions: tests/view/mannequin_test.cpp.
 struct Girth {
-  double height, radius_m, width;
+  double height, radius_m, width, ahead_m;
 };
-constexpr Girth kTrunk[] = {{-0.02, 0.094, 1.62}, {0.18, 0.091, 1.48}, {0.40, 0.086, 1.38},
-                            {0.70, 0.106, 1.54},  {0.90, 0.090, 1.70}, {1.02, 0.054, 1.40},
-                            {1.14, 0.047, 1.0}};
+constexpr Girth kTrunk[] = {{-0.02, 0.098, 1.68, -0.010}, {0.18, 0.093, 1.62, 0.000},
+                            {0.40, 0.090, 1.56, 0.010},   {0.70, 0.106, 1.43, 0.006},
+                            {0.90, 0.100, 1.42, -0.006},  {1.02, 0.060, 1.15, -0.012},
+                            {1.10, 0.056, 1.0, -0.006}};
 
 Girth girth_at(double height) {
   if (height <= kTrunk[0].height) return kTrunk[0];
@@ -27,7 +29,7 @@ Girth girth_at(double height) {
     if (height > above.height) continue;
     const double share = (height - below.height) / (above.height - below.height);
     return {height, mix(below.radius_m, above.radius_m, share),
-            mix(below.width, above.width, share)};
+            mix(below.width, above.width, share), mix(below.ahead_m, above.ahead_m, share)};
   }
   return kTrunk[std::size(kTrunk) - 1];
 }
@@ -141,6 +143,7 @@ MannequinBone& Builder::add(const Held& from, const Held& to, double radius_from
   bone.radius_from_m = radius_from_m;
   bone.radius_to_m = radius_to_m;
   bone.wide = glm::conjugate(standing_.rotation[from.joint]) * wide;
+  bone.wide_to = glm::conjugate(standing_.rotation[to.joint]) * wide;
   bone.width_from = bone.width_to = width;
   return mannequin_.bones.emplace_back(bone);
 }
@@ -156,11 +159,12 @@ void Builder::add_leg(Side side) {
   const LegModel& leg = model_.leg[side].model;
   const Held hip = held(leg.joints.hip), knee = held(leg.joints.knee),
              ankle = held(leg.joints.ankle);
-  add(hip, knee, 0.082 * leg_, 0.049 * leg_);
-  const vec3 behind(0.0, 0.0, -0.010 * leg_);
+  const double inwards_m = std::copysign(0.010 * leg_, hips_m_.x - hip.at_m.x);
+  add({hip.joint, hip.at_m + vec3(inwards_m, 0.0, 0.0)}, knee, 0.085 * leg_, 0.051 * leg_);
+  const vec3 behind(0.0, 0.0, -0.016 * leg_);
   const Held calf{leg.joints.knee, knee.at_m + (ankle.at_m - knee.at_m) * 0.30 + behind};
-  add(knee, calf, 0.047 * leg_, 0.053 * leg_);
-  add(calf, ankle, 0.053 * leg_, 0.034 * leg_);
+  add(knee, calf, 0.049 * leg_, 0.060 * leg_);
+  add(calf, ankle, 0.060 * leg_, 0.034 * leg_);
   add_foot(leg);
 }
 
@@ -183,8 +187,7 @@ void Builder::add_foot(const LegModel& leg) {
   add(back, ball, heel_m, ball_m, side, 1.0).width_to = 1.55;
   const Held instep{j.ankle, at(j.ankle) + vec3(0.0, -0.012 * leg_, 0.0) + ahead * (0.012 * leg_)};
   add(instep, ball, 0.036 * leg_, 0.026 * leg_, side, 1.0).width_to = 1.45;
-  add(instep, back, 0.034 * leg_, heel_m);
-  make_pale(3);
+  make_pale(2);
   const vec3 tip = on_floor(end - ahead * tip_m, tip_m);
   if (glm::dot(tip - ball.at_m, ahead) < 0.01 * leg_) return;  // no toes, or toes that end nowhere
   MannequinBone& toes = add({j.toe, ball.at_m}, {j.toe, tip}, ball_m, tip_m, side, 1.55);
@@ -193,12 +196,12 @@ void Builder::add_foot(const LegModel& leg) {
 }
 
 void Builder::add_pelvis() {
-  const vec3 up(0.0, 0.026 * size_, 0.0);
+  const vec3 off(0.0, -0.014 * size_, -0.006 * size_);
   const int pelvis = model_.cycle.pelvis;
   const auto hip = [&](Side side) {
-    return Held{pelvis, at(model_.leg[side].model.joints.hip) + up};
+    return Held{pelvis, at(model_.leg[side].model.joints.hip) + off};
   };
-  const double radius_m = 0.5 * (leg_ + size_) * 0.084;
+  const double radius_m = 0.5 * (leg_ + size_) * 0.080;
   add(hip(kLeftSide), hip(kRightSide), radius_m, radius_m);
 }
 
@@ -208,7 +211,10 @@ void Builder::add_trunk() {
   const double shortest_m = 0.05 * size_;
   const auto add_piece = [&](const Held& from, const Held& to) {
     const Girth a = girth_at(height_of(from.at_m)), b = girth_at(height_of(to.at_m));
-    add(from, to, a.radius_m * size_, b.radius_m * size_, kLeft, a.width).width_to = b.width;
+    const vec3 ahead_a = kForward * (a.ahead_m * size_), ahead_b = kForward * (b.ahead_m * size_);
+    add({from.joint, from.at_m + ahead_a}, {to.joint, to.at_m + ahead_b}, a.radius_m * size_,
+        b.radius_m * size_, kLeft, a.width)
+        .width_to = b.width;
   };
   Held from = held(trunk_.front());
   for (std::size_t i = 1; i < trunk_.size(); ++i) {
@@ -238,16 +244,18 @@ void Builder::add_head() {
   constexpr double kHeight_m = 0.224;
   const double wish_m = at(joints_.head_top).y - at(joints_.head).y;
   const bool is_likely = wish_m > 0.16 * size_ && wish_m < 0.27 * size_;
-  const double part = (is_likely ? wish_m : 0.222 * size_) / kHeight_m;
+  // Skeletons measure it from the joint below the skull. The chin is lower.
+  const double from_joint = (is_likely ? wish_m : 0.222 * size_) / kHeight_m;
+  const double part = 1.13 * from_joint;
   vec3 base = at(joints_.head);
-  base.y = std::max(base.y, shoulders_m_.y + 0.075 * size_);
+  base.y = std::max(base.y, shoulders_m_.y + 0.075 * size_) - (part - from_joint) * kHeight_m;
   const auto place = [&](double y, double z) {
     return Held{joints_.head, base + vec3(0.0, y, z) * part};
   };
   const Held jaw = place(0.050, 0.034), skull = place(0.130, 0.010);
-  add(held(joints_.head), place(0.045, 0.004), 0.047 * size_, 0.045 * size_);
-  add(jaw, skull, 0.054 * part, 0.094 * part, kLeft, 0.92).width_to = 0.86;
-  add(place(0.095, 0.088), place(0.080, 0.102), 0.008 * part, 0.011 * part);
+  add(held(joints_.head), place(0.060, 0.000), 0.056 * size_, 0.053 * size_);
+  add(jaw, skull, 0.054 * part, 0.094 * part, kLeft, 0.90).width_to = 0.81;
+  add(place(0.112, 0.088), place(0.080, 0.092), 0.010 * part, 0.016 * part);
   make_pale(3);
   mannequin_.top = joints_.head;
   const vec3 top = base + vec3(0.0, kHeight_m * part, 0.0);
@@ -266,16 +274,18 @@ void Builder::add_arm(Side side) {
   }
   // Most skeletons place the shoulder joint on the skin, so the flesh is drawn inwards of it.
   vec3 inwards = shoulders_m_ - at(arm.shoulder);
-  inwards *= 0.016 * size_ / std::max(glm::length(inwards), 0.016 * size_);
+  inwards *= 0.036 * size_ / std::max(glm::length(inwards), 0.036 * size_);
   const Held shoulder = held(arm.shoulder, inwards - kUp * (0.008 * size_));
-  const vec3 neck = between(at(chest), shoulder.at_m, 0.28);
+  const vec3 neck = between(at(chest), shoulder.at_m, 0.20);
   const Held collar{
-      chest, vec3(neck.x, shoulder.at_m.y + 0.026 * size_, 0.5 * (neck.z + shoulder.at_m.z))};
-  add(collar, shoulder, 0.046 * size_, 0.050 * size_);
-  add(shoulder, elbow, 0.050 * size_, 0.036 * size_);
+      chest, vec3(neck.x, shoulder.at_m.y + 0.052 * size_, 0.5 * (neck.z + shoulder.at_m.z))};
+  add(collar, shoulder, 0.046 * size_, 0.054 * size_);
+  const Held deltoid{arm.shoulder, between(shoulder.at_m, elbow.at_m, 0.18)};
+  add(shoulder, deltoid, 0.058 * size_, 0.062 * size_);
+  add(deltoid, elbow, 0.062 * size_, 0.040 * size_);
   const Held bulge{arm.elbow, between(elbow.at_m, wrist.at_m, 0.26)};
-  add(elbow, bulge, 0.035 * size_, 0.038 * size_).is_pale = true;
-  add(bulge, wrist, 0.038 * size_, 0.025 * size_).is_pale = true;
+  add(elbow, bulge, 0.039 * size_, 0.043 * size_).is_pale = true;
+  add(bulge, wrist, 0.043 * size_, 0.027 * size_).is_pale = true;
   add_hand(arm);
 }
 
@@ -294,8 +304,15 @@ void Builder::add_hand(const ArmChain& arm) {
   const auto spot = [&](double share, double aside_m) {
     return Held{arm.wrist, wrist.at_m + along * (share * length_m) + wide * (aside_m * size_)};
   };
-  add(spot(0.08, 0.0), spot(0.50, 0.0), 0.020 * size_, 0.021 * size_, wide, 1.5).width_to = 1.95;
-  add(spot(0.50, 0.0), spot(0.93, -0.004), 0.020 * size_, 0.012 * size_, wide, 1.95).width_to = 2.1;
+  const Held knuckles = spot(0.50, 0.0);
+  // Fingers at rest are bent by 20 degrees, towards the body.
+  vec3 palmwards = shoulders_m_ - at(arm.shoulder);
+  palmwards -= along * glm::dot(palmwards, along) + wide * glm::dot(palmwards, wide);
+  if (glm::length(palmwards) > 1e-6) palmwards = glm::normalize(palmwards);
+  const Held tips{arm.wrist, knuckles.at_m + (along * 0.940 + palmwards * 0.342) *
+                                                (0.43 * length_m)};
+  add(spot(0.0, 0.0), knuckles, 0.022 * size_, 0.021 * size_, wide, 1.3).width_to = 1.95;
+  add(knuckles, tips, 0.020 * size_, 0.012 * size_, wide, 1.95).width_to = 2.1;
   add(spot(0.18, 0.014), spot(0.55, 0.048), 0.015 * size_, 0.0105 * size_);
   make_pale(3);
 }
@@ -339,7 +356,7 @@ void Builder::build_coarsely() {
   }
   for (const ArmChain& arm : joints_.arm) {
     if (!arm.is_found()) continue;
-    add(held(arm.shoulder), held(arm.elbow), 0.052 * size_, 0.036 * size_);
+    add(held(arm.shoulder), held(arm.elbow), 0.058 * size_, 0.040 * size_);
     const vec3 forearm = at(arm.wrist) - at(arm.elbow);
     add(held(arm.elbow), held(arm.wrist, 0.5 * forearm), 0.038 * size_, 0.024 * size_);
     make_pale(1);
@@ -424,11 +441,12 @@ void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Terrain* 
     c.radius_a_m = bone.radius_from_m;
     c.radius_b_m = bone.radius_to_m;
     c.wide = frames.rotation[bone.from] * bone.wide;
+    c.wide_b = frames.rotation[bone.to] * bone.wide_to;
     c.width_a = bone.width_from;
     c.width_b = bone.width_to;
     c.colour = bone.is_pale ? pale : colour;
     put_on_ground(terrain, c.a_m, c.radius_a_m, c.wide, c.width_a);
-    put_on_ground(terrain, c.b_m, c.radius_b_m, c.wide, c.width_b);
+    put_on_ground(terrain, c.b_m, c.radius_b_m, c.wide_b, c.width_b);
     content.capsules.push_back(c);
   }
 }

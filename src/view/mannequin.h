@@ -17,7 +17,7 @@ struct MannequinBone {
   int from = 0, to = 0;         // joints
   vec3 from_m{0.0}, to_m{0.0};  // in these joints' frames
   double radius_from_m = 0.05, radius_to_m = 0.05;
-  vec3 wide{0.0};  // in the frame of `from`
+  vec3 wide{0.0}, wide_to{0.0};  // the same direction in the frames of `from` and `to`, standing
   double width_from = 1.0, width_to = 1.0;
   bool is_pale = false;  // forearm, hand, head, foot: mixed with grey, so that they stand out
 };

@@ -67,6 +67,7 @@ class CapsuleScene {
   struct Instance {
     glm::vec4 a_radius, b_radius, across_width_a, colour_width_b;
     glm::vec3 ground_layer;  // height of the floor below a, below b
+    glm::vec3 across_b;
   };
   GlProgram program_, shadow_program_;
   GlVertexArray vertices_;
@@ -167,8 +168,8 @@ void CapsuleScene::make_mesh(const MeshDetail& detail) {
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 2), indices.data(),
                GL_STATIC_DRAW);
   glBindBuffer(GL_ARRAY_BUFFER, instances_.get());
-  constexpr VertexPart kInstance[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 3}};
-  set_vertex_parts(kInstance, 5, 1);
+  constexpr VertexPart kInstance[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 3}, {6, 3}};
+  set_vertex_parts(kInstance, 6, 1);
   glBindVertexArray(0);
 }
 
@@ -197,11 +198,12 @@ void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
         std::min(c.a_m.y - c.radius_a_m - ground.x, c.b_m.y - c.radius_b_m - ground.y);
     const vec3 colour(c.colour.red, c.colour.green, c.colour.blue);
     has_layers_ = has_layers_ || c.layer != 0;
+    const vec3 side = across(c.b_m - c.a_m, c.wide);
     (low_m < kContact_m ? rows_ : high_rows_)
         .push_back({row(c.a_m - view.origin_m, c.radius_a_m),
-                    row(c.b_m - view.origin_m, c.radius_b_m),
-                    row(across(c.b_m - c.a_m, c.wide), c.width_a), row(colour, c.width_b),
-                    glm::vec3(ground.x, ground.y, c.layer)});
+                    row(c.b_m - view.origin_m, c.radius_b_m), row(side, c.width_a),
+                    row(colour, c.width_b), glm::vec3(ground.x, ground.y, c.layer),
+                    glm::vec3(c.wide_b == vec3(0.0) ? side : across(c.b_m - c.a_m, c.wide_b))});
   }
   low_capsules_ = rows_.size();
   rows_.insert(rows_.end(), high_rows_.begin(), high_rows_.end());
@@ -211,7 +213,8 @@ void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
     rows_.push_back({row(l.a_m - view.origin_m, kLineShadow_m),
                      row(l.b_m - view.origin_m, kLineShadow_m), row(kLeft, 1.0),
                      row(vec3(0.0), 1.0),
-                     glm::vec3(floor_below(content, l.a_m), floor_below(content, l.b_m), 0.0)});
+                     glm::vec3(floor_below(content, l.a_m), floor_below(content, l.b_m), 0.0),
+                     glm::vec3(kLeft)});
   }
   upload(instances_, rows_.data(), rows_.size() * sizeof(Instance));
 }

@@ -24,6 +24,7 @@ struct Capsule {
   Colour colour;
   // 1, 2: half transparent, one body over the other. Bodies of the same layer hide each other.
   int layer = 0;
+  vec3 wide_b{0.0};  // `wide` of the end b, so that two capsules meet in one seam; zero: as at a
 };
 struct SceneLine {  // of constant width in pixels, for stick figures; casts a faint shadow
   vec3 a_m{0.0}, b_m{0.0};

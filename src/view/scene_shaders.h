@@ -13,6 +13,7 @@ layout(location = 2) in vec4 b_radius;
 layout(location = 3) in vec4 across_width_a;
 layout(location = 4) in vec4 colour_width_b;
 layout(location = 5) in vec3 ground_layer;  // height of the floor below a, below b
+layout(location = 6) in vec3 across_b;
 uniform mat4 to_clip;
 uniform float layer;  // that is drawn
 out vec3 place;
@@ -23,10 +24,10 @@ void main() {
   vec3 along = b_radius.xyz - a_radius.xyz;
   float span = length(along);
   vec3 axis = span > 1e-6 ? along / span : vec3(0.0, 1.0, 0.0);
-  vec3 side = across_width_a.xyz;
+  bool at_b = spot.w > 0.5;
+  vec3 side = at_b ? across_b : across_width_a.xyz;
   vec3 deep = cross(axis, side);
   float seam = asin(clamp((a_radius.w - b_radius.w) / max(span, 1e-6), -1.0, 1.0));
-  bool at_b = spot.w > 0.5;
   float latitude = at_b ? mix(1.5707963, seam, spot.z) : mix(-1.5707963, seam, spot.z);
   vec3 round = vec3(cos(latitude) * spot.xy, sin(latitude));
   float radius = at_b ? b_radius.w : a_radius.w;

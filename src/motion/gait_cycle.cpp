@@ -186,7 +186,8 @@ double walk_ratio_m_min(const GaitCycle& cycle) {
 // ratio, step length over cadence, is 0.6 cm per step/min in adults at all speeds, and up to 1 in
 // captures of slow long steps. All of an adult's leg: speeds go with its root.
 std::string why_no_pace(const GaitCycle& cycle) {
-  constexpr double kFastest_m_s = 3.0, kMostSteps_min = 200.0, kMostRatio_m_min = 0.015;
+  constexpr double kFastest_m_s = 3.0, kMostSteps_min = 200.0, kMostRatio_m_min = 0.015,
+                   kRunsFrom_min = 140.0;
   const double legs = mean_leg_m(cycle) / kAdultLeg_m, root = std::sqrt(legs);
   const double speed_m_s = cycle.stride_m / cycle.duration_s;
   const double steps_min = 120.0 / cycle.duration_s;
@@ -194,9 +195,23 @@ std::string why_no_pace(const GaitCycle& cycle) {
       walk_ratio_m_min(cycle) <= kMostRatio_m_min * legs * root) {
     return "";
   }
+  const bool may_run = speed_m_s > kFastest_m_s * root && steps_min >= kRunsFrom_min / root;
   return "nobody walks at " + fixed(speed_m_s, 2) + " m/s with " + fixed(steps_min, 0) +
-         " steps a minute: if the file's " + fixed(cycle.frames / cycle.duration_s, 0) +
-         " frames a second are wrong, give frame_rate_hz";
+         " steps a minute: " + (may_run ? "it is a run, or " : "") + "if the file's " +
+         fixed(cycle.frames / cycle.duration_s, 0) + " frames a second are wrong, give frame_rate_hz";
+}
+
+// In a step-to limp one foot is only brought up to the other. The walk scales steps and has to
+// divide by them, so the shorter one gets a tenth of the stride, by which both feet are moved
+// equally. With less a backward turn drives joints at 2000 degrees/s, with a tenth at 500.
+constexpr double kLeastStep = 0.1, kMostBehind = 0.1;  // of the stride
+void lengthen_short_step(GaitCycle& cycle) {
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const double least_m = kLeastStep * cycle.stride_m;
+    if (cycle.step_m[side] >= least_m) continue;
+    cycle.step_m[side] = least_m;
+    cycle.step_m[other(side)] = cycle.stride_m - least_m;
+  }
 }
 
 // The end of an error sentence; empty if it is a walk.
@@ -207,7 +222,8 @@ std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
       return std::string("holds no walk: the ") + (side == kLeftSide ? "left" : "right") +
              " foot slides " + fixed(slides_m, 2) + " m while it should stand";
     }
-    if (!(cycle.step_m[side] > 0.0)) return "holds no walk: one foot never passes the other";
+    if (!(cycle.step_m[side] >= -kMostBehind * cycle.stride_m))
+      return "holds no walk: one foot stays " + fixed(-cycle.step_m[side], 2) + " m behind the other";
   }
   const vec3 across = cycle.leg[kLeftSide].hip_m - cycle.leg[kRightSide].hip_m;
   if (heading_direction(heading_of(glm::cross(across, kUp))).z < kBackwards) {
@@ -263,6 +279,7 @@ Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   measure_steps(second->captured, cycle);
   const std::string reason = why_no_walk(second->captured, cycle);
   if (!reason.empty()) return Error{reason};
+  lengthen_short_step(cycle);
   return std::move(cycle);
 }
 

@@ -447,6 +447,8 @@ namespace {
 // --- A closed stride -----------------------------------------------------------------------------
 
 constexpr int kCopies = 3;  // in a row, so that the middle one is not cut
+// Both feet in the air, twice a stride: shorter or slower than people run it is an error of events.
+constexpr double kLeastFlight_s = 0.03, kSlowestRun_legs_s = 2.1;
 
 FeetTracks in_a_row(const FeetTracks& stride, const vec3& travel_m) {
   FeetTracks row = stride;
@@ -494,13 +496,21 @@ Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_
       events.strike[side] = fraction(*swing->strike / samples);
     }
     if (!problem.empty()) continue;
+    std::array<double, 2> roll_s;  // from a strike to the other toe's leaving
     for (const Side side : {kLeftSide, kRightSide}) {
-      const Side rival = other(side);
-      const double roll = fraction(events.toe_off[rival] - events.strike[side] + 0.5) - 0.5;
-      if (roll > 0.0) continue;
-      return Error{std::string("holds no walk whose events are in order: the ") + kNames[rival] +
-                   " toe leaves " + fixed(-roll * samples * stride.sample_s, 2) + " s before the " +
-                   kNames[side] + " heel strikes"};
+      const double roll = events.toe_off[other(side)] - events.strike[side];
+      roll_s[side] = (fraction(roll + 0.5) - 0.5) * samples * stride.sample_s;
+    }
+    const double flight_s = -std::ranges::max(roll_s);
+    const double legs_s = glm::length(travel_m) / (samples * stride.sample_s) / stride.leg_m;
+    if (flight_s > kLeastFlight_s && legs_s > kSlowestRun_legs_s)
+      return Error{"holds no walk: both feet are in the air for " + fixed(flight_s, 2) +
+                   " s before a strike, it is a run"};
+    for (const Side side : {kLeftSide, kRightSide}) {
+      if (roll_s[side] > 0.0) continue;
+      return Error{std::string("holds no walk whose events are in order: the ") +
+                   kNames[other(side)] + " toe leaves " + fixed(-roll_s[side], 2) +
+                   " s before the " + kNames[side] + " heel strikes"};
     }
     return events;
   }

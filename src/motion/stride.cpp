@@ -252,22 +252,26 @@ int steps_in_place(const WalkTrack& track, const SampleRange& range) {
 
 // The error sentence. Its numbers tell a motion too short for a stride from other motions.
 std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
-  double moved_m = 0.0, time_s = 0.0;
+  constexpr double kFastestWalk_legs_s = 3.6;  // 3 m/s
+  double moved_m = -1.0, time_s = 0.0;         // of the range in which the hips go farthest
   int steps = 0;
   for (const SampleRange& range : feet.ranges) {
-    time_s = std::max(time_s, (range.last - range.first + 1) * feet.sample_s);
-    for (int f = range.first; f <= range.last; ++f) {
-      moved_m =
-          std::max(moved_m, horizontal_length(track.pelvis_m[f] - track.pelvis_m[range.first]));
+    double here_m = 0.0;
+    for (int f = range.first; f <= range.last; ++f)
+      here_m = std::max(here_m, horizontal_length(track.pelvis_m[f] - track.pelvis_m[range.first]));
+    if (here_m > moved_m) {
+      moved_m = here_m;
+      time_s = (range.last - range.first + 1) * feet.sample_s;
     }
     steps = std::max(steps, steps_in_place(track, range));
   }
   const std::string numbers =
-      "the hips go " + fixed(moved_m, 2) + " m in " + fixed(time_s, 1) + " s";
+      "the hips go " + fixed(std::max(moved_m, 0.0), 2) + " m in " + fixed(time_s, 2) + " s";
   if (steps >= 2 && moved_m < kSlowest_legs_s * track.leg_m * time_s) {
     return "walks on the spot: " + numbers + ", and a stride has to travel";
   }
-  return "holds no full walking stride of both feet: " + numbers;
+  const bool runs = moved_m > kFastestWalk_legs_s * track.leg_m * time_s;
+  return "holds no full walking stride of both feet: " + numbers + (runs ? ", it is a run" : "");
 }
 
 // How much farther one half of the stride goes than the other, as a share of the stride.

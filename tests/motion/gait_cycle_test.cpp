@@ -8,11 +8,14 @@
 #include <functional>
 #include <memory>
 
+#include "gaitpad/control.h"
 #include "gaitpad/motion.h"
 #include "gaitpad/motion_file.h"
+#include "gaitpad/walk.h"
 #include "motion/leg_pose.h"
 #include "motion/made_motion.h"
 #include "motion/made_walk.h"
+#include "tests/clean_cycle.h"
 #include "tests/shared_data.h"
 #include "tests/value_of.h"
 
@@ -227,6 +230,47 @@ TEST(GaitCycle, ALowSlowShuffleIsAWalk) {
   EXPECT_NEAR(cycle->toe_off[kLeftSide], 0.72 - 0.5 + 0.043 / 1.4, 0.015);
 }
 
+// Its left foot is brought up to the right one, and no farther. The walk passes by a tenth of the
+// stride, each foot by half of that away from where it was captured.
+TEST(GaitCycle, AStepToLimpIsAWalk) {
+  for (const double past_m : {0.0, -0.05}) {
+    const MadeWalk made{.stride_m = 0.7, .stride_s = 1.6, .stance = 0.65,
+                        .left_behind_m = 0.35 - past_m, .lift_m = 0.06, .end_s = 8.0};
+    const auto cycle = gait_cycle(made_walk(made));
+    ASSERT_TRUE(cycle) << cycle.error().message;
+    EXPECT_NEAR(cycle->stride_m, 0.7, 0.01);
+    EXPECT_NEAR(cycle->step_m[kLeftSide], 0.07, 0.002);
+    EXPECT_NEAR(cycle->step_m[kRightSide], 0.63, 0.01);
+  }
+  // What passes farther by itself is as it was captured.
+  const auto longer = gait_cycle(made_walk({.stride_m = 0.7, .stride_s = 1.6, .stance = 0.65,
+                                            .left_behind_m = 0.25, .lift_m = 0.06, .end_s = 8.0}));
+  EXPECT_NEAR(value_of(longer).step_m[kLeftSide], 0.10, 0.005);
+}
+
+TEST(GaitCycle, AStepToLimpWalksBackwardsInACurveWithoutSuddenJoints) {
+  const auto cycle = gait_cycle(made_walk({.stride_m = 0.7, .stride_s = 1.6, .stance = 0.65,
+                                           .left_behind_m = 0.35, .lift_m = 0.06, .end_s = 8.0}));
+  const WalkModel model = value_of(walk_model(clean_cycle(value_of(cycle)), {}));
+  Pose pose, before;
+  WalkState state = standing(model, vec3(0.0), pose);
+  double fastest_deg = 0.0;  // in a tick
+  for (int tick = 0; tick < 240 * 6; ++tick) {
+    Stick stick;
+    stick.left = {tick % 700 < 350 ? 0.6 : -0.6, -0.5};
+    before = pose;
+    advance(model, gait_params(stick, StyleValues{}, gait_limits(model)), IkMode::robust,
+            1.0 / 240.0, state, pose);
+    EXPECT_FALSE(state.frame.ik_failed[kLeftSide] || state.frame.ik_failed[kRightSide]) << tick;
+    for (int j = 0; j < pose.joint_count; ++j) {
+      const double cosine = std::min(std::abs(glm::dot(before.local[j], pose.local[j])), 1.0);
+      fastest_deg = std::max(fastest_deg, 2.0 * std::acos(cosine) / kDegree);
+    }
+  }
+  EXPECT_LT(pose.root_m.z, -0.4);
+  EXPECT_LT(fastest_deg * 240.0, 700.0);  // people's knees and ankles: 400 to 700 degrees/s
+}
+
 TEST(GaitCycle, WhatIsNoWalkSaysWhyInOneSentence) {
   const auto bent = [](Motion m, const std::function<void(Motion&)>& bend) {
     bend(m);
@@ -254,6 +298,13 @@ TEST(GaitCycle, WhatIsNoWalkSaysWhyInOneSentence) {
       // As low as a shuffle, so that no height tells that both feet have left.
       {made_walk({.stride_s = 0.9, .stance = 0.35, .lift_m = 0.005}),
        "made.bvh: holds no walk whose events are in order: the "},
+      // Faster it is a run, for the same reason.
+      {made_walk({.stride_m = 1.6, .stride_s = 0.65, .stance = 0.35, .lift_m = 0.005}),
+       "made.bvh: holds no walk: both feet are in the air for 0."},
+      {bent(cut(0, 60), [](Motion& m) { m.frame_time_s *= 0.25; }), " s, it is a run"},
+      // One foot is not even brought up to the other.
+      {made_walk({.stride_m = 0.7, .stride_s = 1.6, .left_behind_m = 0.35 + 0.12}),
+       "made.bvh: holds no walk: one foot stays 0.12 m behind the other"},
       // A wrong frame time names the key that mends it.
       {bent(procedural_motion(), [](Motion& m) { m.frame_time_s *= 0.5; }), "frame_rate_hz"},
       {bent(procedural_motion(), [](Motion& m) { m.frame_time_s *= 3.0; }), "frame_rate_hz"},

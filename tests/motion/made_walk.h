@@ -18,7 +18,8 @@ struct MadeWalk {
   double stride_m = 1.2, stride_s = 1.2;
   double stance = 0.62;  // of the stride
   double left_at = 0.5;  // the left foot's strike; the right one's is at 0, 1, 2 strides
-  double lift_m = 0.08;  // of the swinging foot
+  double left_behind_m = 0.0;  // the left foot's places, behind those that its strikes would have
+  double lift_m = 0.08;        // of the swinging foot
   double start_s = 0.0;  // of the first frame
   double end_s = 5.0;
   double rate_hz = 120.0;
@@ -68,7 +69,8 @@ inline Motion made_walk(const MadeWalk& walk) {
       const double shift = side == kLeftSide ? walk.left_at : 0.0;
       const MadeFoot foot = foot_at(walk, strides - shift);
       const double down_m = walk.hips_m - foot.height_m;
-      const double ahead_m = foot.z_m + shift * walk.stride_m - frame.root_m.z;
+      const double behind_m = side == kLeftSide ? walk.left_behind_m : 0.0;
+      const double ahead_m = foot.z_m + shift * walk.stride_m - behind_m - frame.root_m.z;
       const double reach_m = std::min(std::hypot(down_m, ahead_m), 1.999 * kBone_m);
       const double knee = 2.0 * std::acos(reach_m / (2.0 * kBone_m));
       const double thigh = std::atan2(ahead_m, down_m) + 0.5 * knee;

@@ -145,6 +145,7 @@ constexpr HelpLine kWalkingHelp[] = {
     {"W A S D, arrows", "walk and turn, like a stick"}, {"left stick", "walk and turn"},
     {"right stick", "camera round the scene"},          {"drag", "camera round the scene"},
     {"right drag", "camera sideways and up"},           {"wheel", "camera nearer, farther"},
+    {"blue floor line", "ahead from the start, 1 m"},   {"orange floor line", "to the left, 1 m"},
 };
 
 constexpr double kDollyAStep = 0.9;

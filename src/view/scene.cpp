@@ -510,6 +510,8 @@ void FloorScene::draw_ground(const SceneContent& content, const SceneView& view,
   set_floor(ground_, content, view, place);
   ground_.set("moved", mesh_origin_m_ - view.origin_m);
   ground_.set("light", kLightDirection);
+  ground_.set("tone", view.is_light() ? 0.92 : 1.0);  // leaves room above for what is lighter
+  ground_.set("relief", view.is_light() ? 5.0 : 10.0);
   ground_.set("level", mesh_origin_m_.y - view.origin_m.y);
   ground_.set("behind_m", kBehind_m);
   glBindVertexArray(mesh_.get());

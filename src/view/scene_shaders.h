@@ -389,7 +389,7 @@ void main() {
 )";
 
 // Treads and risers have two tones, and what lies higher is lighter, so that steps read at a
-// glance. A riser shows only the grid's lines across it; lines along it would lie at arbitrary
+// glance. Gentle slopes are shaded more than the light would, so that humps of 6 cm show. A riser shows only the grid's lines across it; lines along it would lie at arbitrary
 // heights.
 inline constexpr const char* kGroundFragment = R"(
 in vec3 place;
@@ -397,11 +397,16 @@ in vec3 normal;
 in vec2 edges;
 uniform vec3 light;
 uniform float level;  // height of the ground below the focus
+uniform float tone;
+uniform float relief;  // of slopes, over what the light would do
 void main() {
   vec3 n = normalize(normal);
   bool is_riser = abs(n.z) > 0.8;
-  float lit = mix(is_riser ? 0.8 : 0.38, 1.0, clamp(dot(n, light) / light.y, 0.0, 1.0));
-  lit *= 1.0 + 0.14 * clamp(place.y - level, -1.2, 1.2);
+  float facing = dot(n, light) / light.y;
+  float slope = relief * (facing - 1.0);
+  float lit = is_riser ? mix(0.8, 1.0, clamp(facing, 0.0, 1.0))
+                       : 1.0 + slope / (1.0 + 1.2 * abs(slope));
+  lit *= tone * (1.0 + 0.14 * clamp(place.y - level, -1.2, 1.2));
   lit *= 1.0 - 0.4 * exp(-edges.y * 14.0);  // what a riser keeps of the sky's light
   float edge_px = edges.x / max(fwidth(edges.x), 1e-6);
   float mark = 0.8 * clamp(1.6 * pixel + 0.5 - edge_px, 0.0, 1.0);

@@ -35,9 +35,8 @@ constexpr Tip kTips[] = {
     {"trails", "The paths of the heels over the last steps."},
     {"source", "The motion that the walk is made of, as a stick figure."},
     {"grid",
-     "Lines every metre and every 20 cm; from the start the blue one leads ahead, the orange one "
-     "to "
-     "the left."},
+     "Lines every metre and every 20 cm; from the start the blue one leads 1 m ahead, the orange "
+     "one 1 m to the left."},
     {"shadows", "Shadows on the ground."},
     {"names", "Names above heads."},
     {"theme", "Dark or light."},

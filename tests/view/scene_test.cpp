@@ -10,6 +10,9 @@
 #include <limits>
 #include <memory>
 
+#include "gaitpad/config_files.h"
+#include "tests/folders.h"
+#include "tests/value_of.h"
 #include "view/gl_program.h"
 #include "view/offscreen.h"
 
@@ -163,6 +166,29 @@ TEST_F(SceneTest, RisersAndTreadsHaveTwoTonesAndHigherGroundIsLighter) {
     EXPECT_GT(std::abs(riser - upper), 12.0);
     EXPECT_GT(upper, lower + 2.0);
     EXPECT_GT(riser, 40.0) << "a riser can be seen in the dark";
+  }
+}
+
+// Humps and hollows of 6 cm, without the grid.
+TEST_F(SceneTest, RoughGroundLooksRough) {
+  const auto terrain = std::make_shared<const Terrain>(
+      value_of(load_terrain(kSourceFolder + "/config/terrain/rough.toml")));
+  content_.has_grid = false;
+  content_.focus_m = camera_.target_m = {0.0, 0.0, 8.0};
+  camera_.pitch_rad = 1.2;
+  for (const ThemeName theme : {ThemeName::dark, ThemeName::light}) {
+    theme_ = theme;
+    const auto contrast = [&](std::shared_ptr<const Terrain> ground) {
+      content_.terrain = std::move(ground);
+      const Pixels seen = drawn(content_);
+      std::vector<double> all;
+      for (int y = kHeight / 4; y < kHeight * 3 / 4; y += 3)
+        for (int x = kWidth / 4; x < kWidth * 3 / 4; x += 3) all.push_back(brightness(seen, x, y));
+      std::ranges::sort(all);
+      return all[all.size() * 9 / 10] / all[all.size() / 10];
+    };
+    EXPECT_LT(contrast(nullptr), 1.08);
+    EXPECT_GT(contrast(terrain), 1.2);
   }
 }
 

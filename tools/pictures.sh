@@ -3,12 +3,12 @@
 # each time. FOLDER is docs by default. One of them needs captured motions, which are no part of this repository.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-bash "$root/tools/install.sh" fonts-inter ffmpeg
+bash "$root/tools/install.sh" ffmpeg
 bash "$root/tools/build.sh" "$root/build" gaitpad -DCMAKE_BUILD_TYPE=Release
 folder=${1:-$root/docs}
 gaitpad=$root/build/gaitpad
 mkdir -p "$folder"
-unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG
+unset SDL_VIDEODRIVER XDG_CONFIG_HOME GAITPAD_CONFIG GAITPAD_FONT
 
 # The paper's four on the same stick, 7.5 s into the recording: a curve to the right.
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 450 --theme dark \

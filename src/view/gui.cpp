@@ -30,14 +30,13 @@ struct FontFiles {
   std::string family, regular, semibold;
 };
 
-// The user's own font first, then those of Debian's packages.
+// The user's own font first, then that of Debian's fonts-dejavu-core. No other that may happen to be
+// installed: the window looks the same on every machine.
 std::vector<FontFiles> candidates() {
   std::vector<FontFiles> all;
   if (const char* own = std::getenv("GAITPAD_FONT"); own != nullptr && *own != '\0') {
     all.push_back({own, own, own});
   }
-  const std::string inter = "/usr/share/fonts/opentype/inter/Inter-";
-  all.push_back({"Inter", inter + "Regular.otf", inter + "SemiBold.otf"});
   const std::string dejavu = "/usr/share/fonts/truetype/dejavu/DejaVuSans";
   all.push_back({"DejaVu Sans", dejavu + ".ttf", dejavu + "-Bold.ttf"});
   return all;

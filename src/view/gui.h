@@ -19,7 +19,7 @@ struct Fonts {
   ImFont* tick = nullptr;
   ImFont* heading = nullptr;  // of a panel: as high as body, bolder
   ImFont* title = nullptr;
-  std::string family;  // the one that was found: "Inter", "DejaVu Sans", "built in"
+  std::string family;  // the one that was found: "DejaVu Sans", "built in"
 };
 // Loads the fonts into the current ImGui context. Call it before the context's first frame, or
 // between frames and then rebuild the font texture. Without a font file ImGui's own font is used.

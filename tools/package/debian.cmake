@@ -26,6 +26,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME gaitpad)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "ffmpeg, hid-tools")
+if(GAITPAD_WINDOW)
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS fonts-dejavu-core) # the window's, beside what SHLIBDEPS finds
+endif()
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "walking character and gamepads as a C++ library

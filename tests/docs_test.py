@@ -182,6 +182,20 @@ def test_what_is_not_run_is_known():
                 assert known or "gaitpad" not in statement, f"{page.name}: {statement}"
 
 
+def test_every_sentence_of_a_verdict_is_explained():
+    """Reasons in src/stick/pad_analysis.cpp; what stands in their places is N or SIDE on the page."""
+    source = (ROOT / "src/stick/pad_analysis.cpp").read_text()
+    source = source[source.index("// Reasons for which a side"):source.index("// `opening`")]
+    source = re.sub(r'"\n\s*"', "", source)
+    page = " ".join((ROOT / "docs/calibration.md").read_text().split())
+    texts = [t for t in re.findall(r'"((?:[^"\\]|\\.)*)"', source) if len(t.split()) > 3]
+    assert len(texts) > 20
+    for text in texts:
+        for words in re.split(r"\{[^}]*\}", text):
+            words = words.strip(" ,(%)")
+            assert len(words.split()) < 2 or words in page, f"{text!r}: no {words!r} in docs/calibration.md"
+
+
 def test_the_measured_page_is_what_the_script_writes():
     assert subprocess.run([sys.executable, ROOT / "tools" / "measured.py", "--check"]).returncode == 0
 

@@ -470,12 +470,16 @@ void draw_exaggerate(Ui& ui) {
 void draw_overlay(Ui& ui) {
   const int count = ui.in.frame.walker_count;
   if (count < 2) return;
-  text_line(ui, ui.fonts.small, ui.theme.text, "overlay (any two in one place)");
   std::vector<int>& overlaid = ui.state.overlaid;
   const float gap = std::round(ui.px(4)), chips = static_cast<float>(count);
+  const float label = text_width(ui.fonts.small, "overlay") + ui.px(8);
+  const ImVec2 begin = ImGui::GetCursorScreenPos();
   ButtonLook look;
   look.height = std::round(ui.px(22));
-  look.width = std::floor((ImGui::GetContentRegionAvail().x - gap * (chips - 1.0f)) / chips);
+  look.width = std::floor((ImGui::GetContentRegionAvail().x - label - gap * (chips - 1)) / chips);
+  put_text(*ImGui::GetWindowDrawList(), ui.fonts.small, ui.theme.text,
+           {begin.x, begin.y + (look.height - ui.fonts.small->FontSize) / 2.0f}, "overlay", label);
+  ImGui::SetCursorScreenPos({begin.x + label, begin.y});
   for (int i = 0; i < count; ++i) {
     if (i > 0) ImGui::SameLine(0.0f, gap);
     const auto mark = std::ranges::find(overlaid, i);

@@ -1027,6 +1027,7 @@ TEST_F(WindowFiles, ACalibrationIsGivenUp) {
 }
 
 TEST_F(WindowFiles, ASavedStyleKeepsItsNameAndIsUsedAtOnceAndInTheNextSession) {
+  options_.height = 640;  // its slider is in sight
   options_.are_panels_given = true;
   options_.panels = {Panel::style};
   Script script;

@@ -1,5 +1,6 @@
 """`gaitpad motion FILE`: exit status, the JSON's keys and types, overrides, refusals."""
 import json
+import re
 
 import pytest
 
@@ -73,6 +74,14 @@ def test_wrong_usage_is_2(run, walk, options):
 def test_the_built_in_walk_swings_its_feet_in_order(told):
     for foot in told("procedural")["flight"].values():
         assert foot["heel_off_frame"] < foot["lift_frame"] < foot["peak_frame"] < foot["land_frame"], foot
+
+
+def test_the_feet_swing_in_the_stride_that_is_walked(run):
+    """Of four key-framed strides the one that is walked; what does not fit in the file is in the next round of its loop."""
+    text = run("motion", "keyframe_walk").stdout
+    frames, first = (float(word) for word in re.search(r"gait +([\d.]+) frames from frame ([\d.]+)", text).groups())
+    lifts = [int(word) for word in re.findall(r"flight +heel off .*?, lift (\d+)", text)]
+    assert len(lifts) == 2 and all(first <= lift < first + frames for lift in lifts), text
 
 
 def test_the_stride_that_is_walked_is_told(run, told):

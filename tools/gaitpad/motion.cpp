@@ -97,9 +97,27 @@ ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
   return out;
 }
 
-std::string flight_text(const std::optional<Swing>& swing) {
+// A frame of the file. In a loop a swing may go on in the next round.
+std::string frame_text(int frame, std::size_t frames) {
+  const int last = static_cast<int>(frames) - 1;
+  return frame <= last ? fmt::format("{}", frame) : fmt::format("{} of the next round", frame - last);
+}
+
+std::string flight_text(const std::optional<Swing>& swing, std::size_t frames) {
   if (!swing) return "none found";
-  return fmt::format("lift {}, peak {}, land {}", swing->lift, swing->peak, swing->land);
+  return fmt::format("lift {}, peak {}, land {}", frame_text(swing->lift, frames),
+                     frame_text(swing->peak, frames), frame_text(swing->land, frames));
+}
+
+// The swing that begins in the stride that is walked; the most typical one where there is no
+// stride.
+std::optional<Swing> walked_flight(const Motion& motion, Side side,
+                                   const Result<GaitCycle>& cycle) {
+  if (!cycle) return robust_flight(motion, side);
+  const double first = cycle->first_frame, end = first + cycle->frames;
+  for (const Swing& swing : swings(motion, side))
+    if (swing.lift >= first && swing.lift < end) return swing;
+  return robust_flight(motion, side);
 }
 
 std::string stick_text(const GaitCycle& cycle) {
@@ -136,10 +154,11 @@ void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {
         name(leg.knee), name(leg.ankle), name(leg.toe), leg_length_m(motion, leg));
   }
   for (const Side side : {kLeftSide, kRightSide}) {
-    const auto flight = robust_flight(motion, side);
-    const std::string heel_off = flight ? fmt::format("heel off {}, ", flight->heel_off) : "";
+    const auto flight = walked_flight(motion, side, cycle);
+    const std::string heel_off =
+        flight ? fmt::format("heel off {}, ", frame_text(flight->heel_off, frames)) : "";
     say("{:<5} flight  {}{}; by the paper's rule {}\n", kLegNames[side], heel_off,
-        flight_text(flight), flight_text(paper_flight(motion, side)));
+        flight_text(flight, frames), flight_text(paper_flight(motion, side), frames));
   }
   say("gait          {}\n", printable(gait_text(cycle)));
 }

@@ -198,7 +198,8 @@ std::string why_no_pace(const GaitCycle& cycle) {
   const bool may_run = speed_m_s > kFastest_m_s * root && steps_min >= kRunsFrom_min / root;
   return "nobody walks at " + fixed(speed_m_s, 2) + " m/s with " + fixed(steps_min, 0) +
          " steps a minute: " + (may_run ? "it is a run, or " : "") + "if the file's " +
-         fixed(cycle.frames / cycle.duration_s, 0) + " frames a second are wrong, give frame_rate_hz";
+         fixed(cycle.frames / cycle.duration_s, 0) +
+         " frames a second are wrong, give frame_rate_hz";
 }
 
 // In a step-to limp one foot is only brought up to the other. The walk scales steps and has to
@@ -223,7 +224,8 @@ std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
              " foot slides " + fixed(slides_m, 2) + " m while it should stand";
     }
     if (!(cycle.step_m[side] >= -kMostBehind * cycle.stride_m))
-      return "holds no walk: one foot stays " + fixed(-cycle.step_m[side], 2) + " m behind the other";
+      return "holds no walk: one foot stays " + fixed(-cycle.step_m[side], 2) +
+             " m behind the other";
   }
   const vec3 across = cycle.leg[kLeftSide].hip_m - cycle.leg[kRightSide].hip_m;
   if (heading_direction(heading_of(glm::cross(across, kUp))).z < kBackwards) {

@@ -86,11 +86,9 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
     add_mannequin(mannequins_[i], shown_[i], terrain_.get(), colour, content);
     const auto mark = std::ranges::find(overlaid, static_cast<int>(i));
     const int layer = mark == overlaid.end() ? 0 : static_cast<int>(mark - overlaid.begin()) + 1;
-    for (std::size_t c = first; c < content.capsules.size(); ++c)
-      content.capsules[c].layer = layer;
+    for (std::size_t c = first; c < content.capsules.size(); ++c) content.capsules[c].layer = layer;
     // The trails of the one that is moved are elsewhere.
-    if (state.has_trails && layer != 2)
-      add_trails(history, static_cast<int>(i), colour, content);
+    if (state.has_trails && layer != 2) add_trails(history, static_cast<int>(i), colour, content);
   }
   has_source_ = state.has_source && cast.source != nullptr && count > 0;
   if (has_source_) add_source(frame, share, cast, theme, content);
@@ -112,9 +110,9 @@ void Ensemble::stand_in_one_place(const SessionFrame& frame,
   Pose& moved = shown_[second];
   const double height_m = moved.root_m.y - ground_m(moved.root_m);
   moved.root_m = vec3(there_m.x, ground_m(there_m) + height_m, there_m.z);
-  moved.local[0] = rotation_y(frame.walkers[first].walk.heading_rad -
-                              frame.walkers[second].walk.heading_rad) *
-                   moved.local[0];
+  moved.local[0] =
+      rotation_y(frame.walkers[first].walk.heading_rad - frame.walkers[second].walk.heading_rad) *
+      moved.local[0];
 }
 
 void Ensemble::add_trails(const History& history, int walker, const Colour& colour,

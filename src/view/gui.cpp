@@ -30,8 +30,8 @@ struct FontFiles {
   std::string family, regular, semibold;
 };
 
-// The user's own font first, then that of Debian's fonts-dejavu-core. No other that may happen to be
-// installed: the window looks the same on every machine.
+// The user's own font first, then that of Debian's fonts-dejavu-core. No other that may happen to
+// be installed: the window looks the same on every machine.
 std::vector<FontFiles> candidates() {
   std::vector<FontFiles> all;
   if (const char* own = std::getenv("GAITPAD_FONT"); own != nullptr && *own != '\0') {

@@ -309,8 +309,8 @@ void Builder::add_hand(const ArmChain& arm) {
   vec3 palmwards = shoulders_m_ - at(arm.shoulder);
   palmwards -= along * glm::dot(palmwards, along) + wide * glm::dot(palmwards, wide);
   if (glm::length(palmwards) > 1e-6) palmwards = glm::normalize(palmwards);
-  const Held tips{arm.wrist, knuckles.at_m + (along * 0.940 + palmwards * 0.342) *
-                                                (0.43 * length_m)};
+  const Held tips{arm.wrist,
+                  knuckles.at_m + (along * 0.940 + palmwards * 0.342) * (0.43 * length_m)};
   add(spot(0.0, 0.0), knuckles, 0.022 * size_, 0.021 * size_, wide, 1.3).width_to = 1.95;
   add(knuckles, tips, 0.020 * size_, 0.012 * size_, wide, 1.95).width_to = 2.1;
   add(spot(0.18, 0.014), spot(0.55, 0.048), 0.015 * size_, 0.0105 * size_);

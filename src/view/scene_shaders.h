@@ -389,8 +389,8 @@ void main() {
 )";
 
 // Treads and risers have two tones, and what lies higher is lighter, so that steps read at a
-// glance. Gentle slopes are shaded more than the light would, so that humps of 6 cm show. A riser shows only the grid's lines across it; lines along it would lie at arbitrary
-// heights.
+// glance. Gentle slopes are shaded more than the light would, so that humps of 6 cm show. A riser
+// shows only the grid's lines across it; lines along it would lie at arbitrary heights.
 inline constexpr const char* kGroundFragment = R"(
 in vec3 place;
 in vec3 normal;

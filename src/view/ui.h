@@ -67,9 +67,9 @@ struct UiState {
   ThemeName theme = ThemeName::dark;
   bool has_trails = true, has_grid = true, has_shadows = true, has_source = true, has_names = true;
   Side graph_leg = kLeftSide;
-  int walker = -1;         // chosen for panels and camera; -1: all, with the numbers of the first
+  int walker = -1;  // chosen for panels and camera; -1: all, with the numbers of the first
   std::vector<int> overlaid;  // two characters in one place, half transparent; else nobody is
-  double type_size = 1.0;  // factor on the display's scale: of type, buttons and columns
+  double type_size = 1.0;     // factor on the display's scale: of type, buttons and columns
   bool is_help_open = false;
   bool is_clean = false;  // the scene alone, without bars
   UiMemory memory;

@@ -258,7 +258,7 @@ class WindowLoop {
   bool is_camera_moved_ = false;  // by the person: it turns by itself no more
   std::optional<int> aimed_deg_;  // the camera's heading that the session was told last
   std::int64_t aimed_tick_ = 0;
-  bool has_walked_ = false;       // somebody, since the show began
+  bool has_walked_ = false;  // somebody, since the show began
 };
 
 WindowLoop::WindowLoop(const WindowOptions& options)

@@ -234,8 +234,12 @@ TEST(GaitCycle, ALowSlowShuffleIsAWalk) {
 // stride, each foot by half of that away from where it was captured.
 TEST(GaitCycle, AStepToLimpIsAWalk) {
   for (const double past_m : {0.0, -0.05}) {
-    const MadeWalk made{.stride_m = 0.7, .stride_s = 1.6, .stance = 0.65,
-                        .left_behind_m = 0.35 - past_m, .lift_m = 0.06, .end_s = 8.0};
+    const MadeWalk made{.stride_m = 0.7,
+                        .stride_s = 1.6,
+                        .stance = 0.65,
+                        .left_behind_m = 0.35 - past_m,
+                        .lift_m = 0.06,
+                        .end_s = 8.0};
     const auto cycle = gait_cycle(made_walk(made));
     ASSERT_TRUE(cycle) << cycle.error().message;
     EXPECT_NEAR(cycle->stride_m, 0.7, 0.01);
@@ -243,14 +247,22 @@ TEST(GaitCycle, AStepToLimpIsAWalk) {
     EXPECT_NEAR(cycle->step_m[kRightSide], 0.63, 0.01);
   }
   // What passes farther by itself is as it was captured.
-  const auto longer = gait_cycle(made_walk({.stride_m = 0.7, .stride_s = 1.6, .stance = 0.65,
-                                            .left_behind_m = 0.25, .lift_m = 0.06, .end_s = 8.0}));
+  const auto longer = gait_cycle(made_walk({.stride_m = 0.7,
+                                            .stride_s = 1.6,
+                                            .stance = 0.65,
+                                            .left_behind_m = 0.25,
+                                            .lift_m = 0.06,
+                                            .end_s = 8.0}));
   EXPECT_NEAR(value_of(longer).step_m[kLeftSide], 0.10, 0.005);
 }
 
 TEST(GaitCycle, AStepToLimpWalksBackwardsInACurveWithoutSuddenJoints) {
-  const auto cycle = gait_cycle(made_walk({.stride_m = 0.7, .stride_s = 1.6, .stance = 0.65,
-                                           .left_behind_m = 0.35, .lift_m = 0.06, .end_s = 8.0}));
+  const auto cycle = gait_cycle(made_walk({.stride_m = 0.7,
+                                           .stride_s = 1.6,
+                                           .stance = 0.65,
+                                           .left_behind_m = 0.35,
+                                           .lift_m = 0.06,
+                                           .end_s = 8.0}));
   const WalkModel model = value_of(walk_model(clean_cycle(value_of(cycle)), {}));
   Pose pose, before;
   WalkState state = standing(model, vec3(0.0), pose);

@@ -16,11 +16,11 @@ constexpr const char* kCapturedWalks[] = {
 
 struct MadeWalk {
   double stride_m = 1.2, stride_s = 1.2;
-  double stance = 0.62;  // of the stride
-  double left_at = 0.5;  // the left foot's strike; the right one's is at 0, 1, 2 strides
+  double stance = 0.62;        // of the stride
+  double left_at = 0.5;        // the left foot's strike; the right one's is at 0, 1, 2 strides
   double left_behind_m = 0.0;  // the left foot's places, behind those that its strikes would have
   double lift_m = 0.08;        // of the swinging foot
-  double start_s = 0.0;  // of the first frame
+  double start_s = 0.0;        // of the first frame
   double end_s = 5.0;
   double rate_hz = 120.0;
   double slide_m_s = 0.0;  // of a standing foot

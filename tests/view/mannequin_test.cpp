@@ -255,7 +255,9 @@ TEST(Mannequin, PartsOfATwistedTrunkMeetInOneSeam) {
   for (std::size_t i = 0; i + 1 < capsules.size(); ++i) {
     const Capsule &below = capsules[i], &above = capsules[i + 1];
     const MannequinBone &a = mannequin.bones[i], &b = mannequin.bones[i + 1];
-    if (!is_trunk(a.from) || !is_trunk(a.to) || a.to != b.from || glm::distance(below.b_m, above.a_m) > 1e-9) continue;
+    if (!is_trunk(a.from) || !is_trunk(a.to) || a.to != b.from ||
+        glm::distance(below.b_m, above.a_m) > 1e-9)
+      continue;
     EXPECT_NEAR(below.radius_b_m, above.radius_a_m, 1e-12);
     EXPECT_NEAR(below.width_b, above.width_a, 1e-12);
     EXPECT_LT(glm::distance(below.wide_b, above.wide), 1e-9);

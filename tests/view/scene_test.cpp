@@ -505,7 +505,8 @@ TEST_F(SceneTest, BodiesHideFlatCapsulesBehindThemAndAreHiddenByThoseInFront) {
 TEST_F(SceneTest, OfTwoLayersEachIsHalfTransparentWhicheverIsInFront) {
   const vec3 there_m = camera_.target_m;
   const vec3 nearer_m = glm::normalize(camera_.eye_m() - there_m) * 0.8;
-  Capsule red = bone(there_m, there_m, 0.3), green = bone(there_m + nearer_m, there_m + nearer_m, 0.3);
+  Capsule red = bone(there_m, there_m, 0.3),
+          green = bone(there_m + nearer_m, there_m + nearer_m, 0.3);
   green.colour = rgb(0x20d020);
   const auto picture = [&](const std::vector<Capsule>& capsules) {
     SceneContent content = content_;

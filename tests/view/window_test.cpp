@@ -659,7 +659,8 @@ TEST_F(Window, AStickThatPointsIsSeenFromTheCameraAndReplaysWithoutOne) {
   replayed.replay.trace = options_.session.live.record;
   EXPECT_EQ(value_of(replay(replayed)).summary.pose_hash, result.summary.pose_hash);
   EXPECT_EQ(result.summary.bad_commands, 0);
-  // A drag of two frames turns the camera: at most 20 directions a second, and no more once it rests.
+  // A drag of two frames turns the camera: at most 20 directions a second, and no more once it
+  // rests.
   const Trace trace = value_of(read_trace(replayed.replay.trace));
   std::vector<std::int64_t> aims;
   for (const TraceEvent& event : trace.events) {

@@ -100,7 +100,8 @@ ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
 // A frame of the file. In a loop a swing may go on in the next round.
 std::string frame_text(int frame, std::size_t frames) {
   const int last = static_cast<int>(frames) - 1;
-  return frame <= last ? fmt::format("{}", frame) : fmt::format("{} of the next round", frame - last);
+  return frame <= last ? fmt::format("{}", frame)
+                       : fmt::format("{} of the next round", frame - last);
 }
 
 std::string flight_text(const std::optional<Swing>& swing, std::size_t frames) {

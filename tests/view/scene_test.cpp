@@ -387,7 +387,7 @@ TEST_F(SceneTest, ATrailFadesTowardsItsOldEnd) {
   content_.has_grid = false;
   const Pixels without = drawn(content_);
   Trail trail;
-  for (int i = 0; i <= 40; ++i) trail.points_m.push_back({-1.0 + i * 0.05, 0.01, 0.0});
+  for (int i = 0; i <= 40; ++i) trail.points_m.emplace_back(-1.0 + i * 0.05, 0.01, 0.0);
   trail.colour = rgb(0xffffff);
   content_.trails = {trail};
   const Pixels with = drawn(content_);

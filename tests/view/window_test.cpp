@@ -41,7 +41,7 @@ class Script {
   void until(const std::string& what, std::function<bool(const Glance&)> is_so) {
     steps_.push_back({what, std::move(is_so)});
   }
-  void then(std::function<void(const Glance&)> act) {
+  void then(const std::function<void(const Glance&)>& act) {
     steps_.push_back({"", [act](const Glance& glance) {
                         act(glance);
                         return true;
@@ -833,7 +833,7 @@ TEST_F(WindowFiles, DroppedFilesChangeTheSessionAndDamagedOnesDoNot) {
     return g.cast.members.size() == 1 && g.cast.members[0].style == "own";
   });
   script.drop(build);
-  script.until("it is small", [](const Glance& g) { return g.cast.members[0].character != ""; });
+  script.until("it is small", [](const Glance& g) { return !g.cast.members[0].character.empty(); });
   script.until("it runs", runs);
   script.then([](const Glance& g) {
     EXPECT_NEAR(g.cast.members[0].model->leg_length_m,

@@ -194,7 +194,7 @@ void append_fixed(std::string& out, double value, int decimals) {
     std::array<char, 512> digits;  // a double has up to 309 before the point
     const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value,
                                        std::chars_format::fixed, std::clamp(decimals, 0, 100));
-    out.append(digits.data(), written.ptr);
+    out.append(digits.data(), static_cast<std::size_t>(written.ptr - digits.data()));
     return;
   }
   std::array<char, 24> digits;  // sign, 10 digits, point, 9 digits; from the last on
@@ -217,7 +217,7 @@ void append_fixed(std::string& out, double value, int decimals) {
     *--begin = static_cast<char>('0' + rest);
   }
   if (std::signbit(value)) *--begin = '-';
-  out.append(begin, end);
+  out.append(begin, static_cast<std::size_t>(end - begin));
 }
 
 std::string fixed(double value, int decimals) {

@@ -20,9 +20,9 @@
 #include "base/lanes.h"
 #include "tools/gaitpad/bench_work.h"
 #include "tools/gaitpad/run_end.h"
+#include "tools/gaitpad/window_module.h"
 #ifdef GAITPAD_HAS_WINDOW
-#include "draw/plot.h"
-#include "paper/page.h"
+#include "draw/theme.h"
 #endif
 
 namespace gaitpad {
@@ -327,70 +327,37 @@ std::string plot_problem(const std::string& path) {
   return path.ends_with(".png") ? "" : "the picture is a PNG: its name ends with .png";
 }
 
-// A character's time over the size of its crowd, both axes logarithmic, for each width, with bare
-// playback as lines across.
+// A character's time over the size of its crowd, for each width, with bare playback as lines
+// across.
 std::optional<Error> write_plot(const std::string& path, const std::vector<BenchRow>& rows,
                                 const std::string& processor) {
   constexpr std::array kColours = {colour::kBlue, colour::kGreen, colour::kOrange, colour::kPurple};
-  constexpr int kWidth = 900, kHeight = 620;
-  Plot plot;
-  plot.x_label = "characters in the crowd";
-  plot.y_label = "ns a character and tick";
-  plot.x.is_log10 = plot.y.is_log10 = true;
-  std::vector<LegendEntry> legend;
-  double least = 1e12, most = 0.0, largest = 1.0;
-  const auto add = [&](const std::string& text, unsigned colour, bool is_dashed,
-                       std::vector<PlotPoint> points) {
-    for (PlotPoint& p : points) {
-      least = std::min(least, p.y);
-      most = std::max(most, p.y);
-      p = PlotPoint(std::log10(p.x), std::log10(p.y));
-    }
-    PlotSeries& series = plot.series.emplace_back();
-    series.colour = rgb(colour);
-    series.is_dashed = is_dashed;
-    series.points = std::move(points);
-    legend.push_back(
-        {is_dashed ? LegendEntry::Mark::dashed : LegendEntry::Mark::line, colour, text});
-  };
+  const auto module = window_module();
+  if (!module) return module.error();
+  double largest = 1.0;
   for (const BenchRow& row : rows)
     if (row.work->name == "crowd") largest = std::max(largest, double(row.work->characters));
-  std::size_t next_colour = 0;
+  std::vector<CrowdCurve> curves;
   for (int lanes = widest_lanes(); lanes >= 1; lanes /= 2) {
-    std::vector<PlotPoint> points;
+    CrowdCurve& curve = curves.emplace_back();
+    curve.name = lanes_text(lanes);
+    curve.colour = kColours[(curves.size() - 1) % kColours.size()];
     for (const BenchRow& row : rows)
       if (row.work->name == "crowd" && row.work->width == lanes)
-        points.emplace_back(row.work->characters, row.median());
-    add(lanes_text(lanes), kColours[next_colour++ % kColours.size()], false, std::move(points));
+        curve.points.emplace_back(row.work->characters, row.median());
   }
-  std::vector<PlotPoint> all_cores;
+  CrowdCurve all_cores = {"all cores", colour::kVermilion, false, {}};
   for (const BenchRow& row : rows)
     if (row.work->name == "crowd_all_cores")
-      all_cores.emplace_back(row.work->characters, row.median());
-  if (!all_cores.empty()) add("all cores", colour::kVermilion, false, std::move(all_cores));
-  for (const auto& [name, text] : {std::pair("playback", "bare playback, scalar"),
-                                   {"playback_world", "the same with world frames"}}) {
-    const double ns = median_of(rows, name, 0, 0);
-    add(text, name == std::string("playback") ? colour::kInk : colour::kFaint, true,
-        {{1.0, ns}, {largest, ns}});
-  }
-  plot.x.max = std::max(1.0, std::log10(largest));
-  plot.y.min = std::log10(least / 1.5);
-  plot.y.max = std::log10(most * 1.5);
-
-  const Page page = blank_page(kWidth, kHeight, "A crowd's time, a character and tick",
-                               processor + ", one core where nothing else is said, medians");
-  cairo_t* cr = page.cr.get();
-  const Box box = {kPageMargin + 62.0, kPageTop + 54.0, kWidth - 2.0 * kPageMargin - 82.0,
-                   kHeight - kPageTop - 124.0};
-  draw_plot(cr, box, plot);
-  for (const PlotSeries& series : plot.series) {
-    if (series.is_dashed) continue;
-    for (const PlotPoint& p : series.points)
-      draw_dot(cr, pixel_in(box, plot, p), 3.0, series.colour);
-  }
-  draw_legend(cr, {kPageMargin, kPageTop, kWidth - 2.0 * kPageMargin, 40.0}, legend);
-  return write_png(path, page.surface.get());
+      all_cores.points.emplace_back(row.work->characters, row.median());
+  if (!all_cores.points.empty()) curves.push_back(std::move(all_cores));
+  const auto add_line = [&](const char* work, const char* name, unsigned colour) {
+    const double ns = median_of(rows, work, 0, 0);
+    curves.push_back({name, colour, true, {{1.0, ns}, {largest, ns}}});
+  };
+  add_line("playback", "bare playback, scalar", colour::kInk);
+  add_line("playback_world", "the same with world frames", colour::kFaint);
+  return (*module)->draw_crowd(curves, processor, path);
 }
 #else
 std::string plot_problem(const std::string&) { return missing_window(); }

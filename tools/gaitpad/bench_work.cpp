@@ -244,8 +244,8 @@ void play_back(const GaitCycle& cycle, double phase, Pose& pose) {
   }
 }
 
-enum class Playback { local, world };
-Work playback_work(const Session& session, Playback kind) {
+enum class PlaybackFrames { local, world };
+Work playback_work(const Session& session, PlaybackFrames kind) {
   struct State {
     GaitCycle cycle;
     double phase = 0.0;
@@ -256,13 +256,13 @@ Work playback_work(const Session& session, Playback kind) {
   s->cycle = session.config.cycle;
   const double step = session.dt_s() / s->cycle.duration_s;
   Work work;
-  work.name = kind == Playback::local ? "playback" : "playback_world";
+  work.name = kind == PlaybackFrames::local ? "playback" : "playback_world";
   work.label =
-      kind == Playback::local ? "local rotations (the peer)" : "and world frames of all joints";
+      kind == PlaybackFrames::local ? "local rotations (the peer)" : "and world frames of all joints";
   work.notes["joints"] = s->cycle.standing_local.size();
   work.pass = [s, step, kind] {
     play_back(s->cycle, s->phase, s->pose);
-    if (kind == Playback::world) forward_kinematics(s->cycle.skeleton, s->pose, s->frames);
+    if (kind == PlaybackFrames::world) forward_kinematics(s->cycle.skeleton, s->pose, s->frames);
     s->phase += step;
     benchmark::DoNotOptimize(s->pose);
     benchmark::DoNotOptimize(s->frames);
@@ -646,8 +646,8 @@ Result<std::vector<Work>> bench_work(int most_characters) {
   list.push_back(leg_work("leg_robust_weighted", "robust, stiff hip or knee",
                           solves_of<RobustLegs>(*four, *four_walk, {1, 2})));
 
-  list.push_back(playback_work(*one, Playback::local));
-  list.push_back(playback_work(*one, Playback::world));
+  list.push_back(playback_work(*one, PlaybackFrames::local));
+  list.push_back(playback_work(*one, PlaybackFrames::world));
 
   list.push_back(stage_work(*one, *one_walks, sticks));
   const auto live = [&](const Session& session, const Simulation& simulation,

@@ -24,7 +24,7 @@ struct Work {
   std::string over;         // the name of its peer; empty: none
   double most_ns = 0.0;     // bounds on a unit's time, 0: none
   double most_ratio = 0.0;  // and on that time over the peer's
-  bool is_on_all_cores = false;
+  bool is_on_all_cores = false;  // measured by elapsed time; else by the thread's processor time
   int every = 1;  // it takes part in each so many-th round
   std::function<void()> pass;
   std::shared_ptr<StageTimes> stages;  // of the work that splits its time
@@ -32,7 +32,7 @@ struct Work {
 };
 
 // A leg's inverse kinematics, one character and four, bare playback, crowds of 1 to
-// `most_characters`, and loading. Error where the bundled trace or a style cannot be read.
+// `most_characters` and their members alone, loading and replays. Error where the bundled trace or a style cannot be read.
 Result<std::vector<Work>> bench_work(int most_characters);
 
 }  // namespace gaitpad

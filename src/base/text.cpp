@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace gaitpad {
 
@@ -165,7 +166,7 @@ constexpr auto kDigitPairs = [] {
 
 // |value| times 10^decimals, rounded to the nearest integer, a tie to the even one. The product of
 // the 53-bit significand and the power of ten has at most 83 bits, so nothing is lost before that.
-std::uint64_t scaled(double value, int decimals) noexcept {
+std::uint64_t scaled_exactly(double value, int decimals) noexcept {
   __extension__ using Product = unsigned __int128;
   constexpr int kSignificand = 52, kBias = 1023 + kSignificand;
   const auto bits = std::bit_cast<std::uint64_t>(value);
@@ -181,10 +182,20 @@ std::uint64_t scaled(double value, int decimals) noexcept {
   return whole + (rest > half || (rest == half && whole % 2 == 1));
 }
 
+// The same. A product below 2^40 is off by at most 2^-14, which matters only near a tie.
+std::uint64_t scaled(double value, int decimals) noexcept {
+  constexpr double kMostProduct = 1099511627776.0, kNearTie = 1.0 / 4096.0;
+  const double product = std::abs(value) * static_cast<double>(kPowersOfTen[decimals]);
+  if (!(product < kMostProduct)) return scaled_exactly(value, decimals);
+  const auto whole = static_cast<std::int64_t>(product);
+  const double above_half = product - static_cast<double>(whole) - 0.5;
+  if (std::abs(above_half) < kNearTie) return scaled_exactly(value, decimals);
+  return static_cast<std::uint64_t>(whole + (above_half > 0.0));
+}
+
 char* put_pair(std::uint64_t pair, char* end) noexcept {
-  *--end = kDigitPairs[2 * pair + 1];
-  *--end = kDigitPairs[2 * pair];
-  return end;
+  std::memcpy(end - 2, &kDigitPairs[2 * pair], 2);
+  return end - 2;
 }
 
 }  // namespace

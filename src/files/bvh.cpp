@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 
@@ -414,7 +416,8 @@ namespace {
 // 0 and -0 are written differently.
 template <class T>
 bool has_same_bits(const T& a, const T& b) noexcept {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
+  using Bits = std::array<std::uint64_t, sizeof(T) / sizeof(double)>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
 }  // namespace

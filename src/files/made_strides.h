@@ -1,4 +1,5 @@
-// The strides of the built-in walk, solved while gaitpad was built (tools/strides/made_strides.cpp).
+// The strides of the built-in walk, solved while gaitpad was built
+// (tools/strides/made_strides.cpp).
 #pragma once
 #include <cstdint>
 #include <span>

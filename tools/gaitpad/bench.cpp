@@ -332,8 +332,9 @@ void print_bench(const std::vector<BenchRow>& rows, const ordered_json& list, co
     const double state = row["state_bytes"];
     say("a character's state {:.0f} bytes (bound {}, {}), parameters {}, pose {}; "
         "a build's model {:.0f} KB, shared\n",
-        state, kMostStateBytes, state <= kMostStateBytes ? "met" : "MISSED", row["params_bytes"].get<int>(),
-        row["pose_bytes"].get<int>(), row["model_bytes"].get<double>() / 1e3);
+        state, kMostStateBytes, state <= kMostStateBytes ? "met" : "MISSED",
+        row["params_bytes"].get<int>(), row["pose_bytes"].get<int>(),
+        row["model_bytes"].get<double>() / 1e3);
   }
 }
 

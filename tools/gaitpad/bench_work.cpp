@@ -258,8 +258,8 @@ Work playback_work(const Session& session, PlaybackFrames kind) {
   const double step = session.dt_s() / s->cycle.duration_s;
   Work work;
   work.name = kind == PlaybackFrames::local ? "playback" : "playback_world";
-  work.label =
-      kind == PlaybackFrames::local ? "local rotations (the peer)" : "and world frames of all joints";
+  work.label = kind == PlaybackFrames::local ? "local rotations (the peer)"
+                                             : "and world frames of all joints";
   work.notes["joints"] = s->cycle.standing_local.size();
   work.pass = [s, step, kind] {
     play_back(s->cycle, s->phase, s->pose);
@@ -334,8 +334,8 @@ double thread_s() {
 Work stage_work(const Session& session, const Simulation& simulation,
                 const std::vector<Stick>& sticks) {
   constexpr std::size_t kTogether = 16;
-  const auto walkers =
-      std::make_shared<LiveWalkers>(session.dt_s(), simulation, std::vector<int>(kTogether, 0), sticks);
+  const auto walkers = std::make_shared<LiveWalkers>(session.dt_s(), simulation,
+                                                     std::vector<int>(kTogether, 0), sticks);
   Work work;
   work.name = "stage";
   work.characters = 1;

@@ -19,7 +19,6 @@
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 #include "tools/gaitpad/run_end.h"
-
 #include "tools/gaitpad/window_module.h"
 
 namespace gaitpad {

@@ -1,6 +1,6 @@
-// What of the program draws: the window, pictures of sticks, plots and the paper's figures. It is in
-// a module of its own, gaitpad-window.so beside the program or in lib/gaitpad, because loading it
-// with SDL, OpenGL and cairo takes longer than to replay a recording. The program and its module
+// What of the program draws: the window, pictures of sticks, plots and the paper's figures. It is
+// in a module of its own, gaitpad-window.so beside the program or in lib/gaitpad, because loading
+// it with SDL, OpenGL and cairo takes longer than to replay a recording. The program and its module
 // are built and installed together.
 #pragma once
 #ifdef GAITPAD_HAS_WINDOW

@@ -96,7 +96,7 @@ class BvhWriter {
   std::ostream& out_;
   const Skeleton& skeleton_;
   BvhLayout layout_;
-  std::vector<int> joints_;  // with channels, in the order of the file
+  std::vector<int> joints_;       // with channels, in the order of the file
   std::vector<Written> written_;  // of each joint
   std::string line_;
   std::ostream::pos_type count_at_;

@@ -1,4 +1,6 @@
 // The paper's figures and claims, drawn and printed.
+#include "paper/figures.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 
 #include "gaitpad/config_files.h"
 #include "paper/claims.h"
-#include "paper/figures.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 #include "tools/gaitpad/window/drawings.h"

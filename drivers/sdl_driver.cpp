@@ -29,6 +29,57 @@ namespace {
 
 constexpr std::size_t kMaxAxes = 64, kMaxButtons = 255, kMaxHats = 4;
 
+// SDL's functions under their own names. Its library is loaded when this driver is first asked for:
+// with the forty that it needs, that takes longer than to replay a recording.
+#define GAITPAD_SDL_FUNCTIONS(each)                                                               \
+  each(SDL_AddEventWatch) each(SDL_DelEventWatch) each(SDL_Delay) each(SDL_FilterEvents)          \
+      each(SDL_GameControllerMappingForDeviceIndex) each(SDL_GetError) each(SDL_GetRevision)      \
+          each(SDL_InitSubSystem) each(SDL_JoystickClose) each(SDL_JoystickFromInstanceID)        \
+              each(SDL_JoystickGetAxis) each(SDL_JoystickGetAxisInitialState)                     \
+                  each(SDL_JoystickGetButton) each(SDL_JoystickGetDeviceGUID) each(               \
+                      SDL_JoystickGetDeviceInstanceID) each(SDL_JoystickGetDeviceProduct)         \
+                      each(SDL_JoystickGetDeviceProductVersion) each(SDL_JoystickGetDeviceVendor) \
+                          each(SDL_JoystickGetHat) each(SDL_JoystickInstanceID)                   \
+                              each(SDL_JoystickNameForIndex) each(SDL_JoystickNumAxes)            \
+                                  each(SDL_JoystickNumButtons) each(SDL_JoystickNumHats)          \
+                                      each(SDL_JoystickOpen) each(SDL_JoystickPathForIndex)       \
+                                          each(SDL_JoystickRumble) each(SDL_JoystickUpdate)       \
+                                              each(SDL_LockJoysticks) each(SDL_NumJoysticks)      \
+                                                  each(SDL_QuitSubSystem) each(SDL_SetHint)       \
+                                                      each(SDL_TLSCleanup)                        \
+                                                          each(SDL_UnlockJoysticks)               \
+                                                              each(SDL_WasInit) each(SDL_free)
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a declared name
+#define GAITPAD_SDL_POINTER(name) decltype(&::name) name = nullptr;
+GAITPAD_SDL_FUNCTIONS(GAITPAD_SDL_POINTER)
+#undef GAITPAD_SDL_POINTER
+
+// What prevents it; empty: all functions can be called. A program that has SDL already keeps its
+// own.
+std::string load_library() {
+  constexpr const char* kLibrary = "libSDL2-2.0.so.0";
+  void* library = RTLD_DEFAULT;  // a null pointer
+  if (::dlsym(RTLD_DEFAULT, "SDL_GetRevision") == nullptr) {
+    library = ::dlopen(kLibrary, RTLD_NOW | RTLD_NODELETE);
+    if (library == nullptr) return fmt::format("{} cannot be loaded", kLibrary);
+  }
+  std::string missing;
+  const auto find = [&](const char* name) {
+    void* function = ::dlsym(library, name);
+    if (function == nullptr) missing = fmt::format("{} has no {}", kLibrary, name);
+    return function;
+  };
+#define GAITPAD_SDL_FIND(name) name = reinterpret_cast<decltype(name)>(find(#name));
+  GAITPAD_SDL_FUNCTIONS(GAITPAD_SDL_FIND)
+#undef GAITPAD_SDL_FIND
+#undef GAITPAD_SDL_FUNCTIONS
+  return missing;
+}
+const std::string& library_problem() {
+  static const std::string problem = load_library();
+  return problem;
+}
+
 using Change = JoystickReports::Change;
 using Control = JoystickReports::Control;
 
@@ -68,7 +119,9 @@ class Sdl {
  private:
   struct ThreadStorage {  // SDL allocates some for each thread that it did not start
     ThreadStorage() = default;
-    ~ThreadStorage() { SDL_TLSCleanup(); }
+    ~ThreadStorage() {
+      if (library_problem().empty()) SDL_TLSCleanup();
+    }
   };
   Sdl();
   static int SDLCALL watch(void* self, SDL_Event* event);
@@ -80,7 +133,9 @@ class Sdl {
 // Joysticks only. HIDAPI is off because its drivers send packets to pads while they look for them.
 // Buttons are named by position: the one that Nintendo labels A is our b. A program that has
 // started SDL's joysticks itself keeps its own hints.
-Sdl::Sdl() : has_host_(SDL_WasInit(SDL_INIT_EVENTS) != 0) {
+Sdl::Sdl() : problem_(library_problem()) {
+  if (!problem_.empty()) return;
+  has_host_ = SDL_WasInit(SDL_INIT_EVENTS) != 0;
   constexpr std::pair<const char*, const char*> kHints[] = {
       {SDL_HINT_JOYSTICK_HIDAPI, "0"},
       {SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1"},
@@ -374,7 +429,9 @@ Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, De
 
 std::vector<std::string> sdl_library_lines() {
   Dl_info library{};
-  if (::dladdr(reinterpret_cast<const void*>(&SDL_GetRevision), &library) == 0) return {};
+  if (!library_problem().empty() ||
+      ::dladdr(reinterpret_cast<const void*>(SDL_GetRevision), &library) == 0)
+    return {};
   constexpr std::size_t kMaxLibraryBytes = std::size_t{64} << 20;
   auto text = file_text(library.dli_fname, kMaxLibraryBytes);
   if (!text) return {};

@@ -69,6 +69,7 @@ DRIVER_VENDORS = {
     "tools/rig/plain_sdl.cpp": ["SDL2/"],
     "tools/soak/soak.cpp": ["SDL2/", "malloc.h"],
     "tools/gaitpad/bench_work.cpp": ["malloc.h"],
+    "tools/gaitpad/window_module.cpp": ["dlfcn.h"],
 }
 TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/", "benchmark/"]
 SYSTEM_HEADERS = ("sys/", "unistd.h", "fcntl.h", "dirent.h", "errno.h", "poll.h", "signal.h",

@@ -198,8 +198,8 @@ def measure_bench(options, text=None):
                 continue
             if any(b.get(k) != v for k, v in others.items()):
                 continue
-            bound = b.get({"ns": "bound_ns", "ratio": "bound_ratio", "growth": "bound_growth"}[key])
-            if b["name"].startswith("load"):
+            bound = b.get({"ns": "bound_ns", "ratio": "bound_ratio", "growth": "bound_growth"}.get(key, ""))
+            if b["name"].startswith(("load", "replay")):
                 rows.append(row(label, b["ns"] / 1e6, f"<= {bound / 1e6:g}" if bound else "", "ms"))
             else:
                 rows.append(row(label, b[key], f"<= {bound:g}" if bound else "",
@@ -217,10 +217,13 @@ def measure_bench(options, text=None):
     add("character_even", "the same over bare playback", "ratio")
     add("characters_styled", "four characters with styles, each")
     add("characters_styled", "the same over four even ones", "ratio")
+    add("character_even_60_hz", "one character, even, at 60 Hz")
     add("step", "four characters with the session around them, each", characters=4)
+    add("crowd_alone", "a member of the crowd, mixed builds and styles, at 60 Hz, alone")
     for width in (8, 4, 2, 1):
         add("crowd", f"crowd of 1,000 in {width} lanes, each", characters=1000, width=width)
         add("crowd", "the same over bare playback", "ratio", characters=1000, width=width)
+        add("crowd", "the same over its members alone", "ratio_alone", characters=1000, width=width)
     for size in (10000, 100000):
         add("crowd", f"crowd of {size:,}, each", characters=size, width=widest)
         if any(b["characters"] == size and "growth" in b for b in found):
@@ -230,6 +233,8 @@ def measure_bench(options, text=None):
     add("load_built_in", "loading the built-in motion the first time")
     add("load_clip", "loading a clip the first time")
     add("load_cached", "loading it again")
+    add("replay", "a replay of 20 s in a running program, without files")
+    add("replay_files", "the same with files")
     return {"rows": rows, "note": f"{found[0]['processor']}, {widest} lanes."}
 
 
@@ -506,9 +511,9 @@ course from its beginning to a stop after its end and judges every tick by a gri
 each sole: the built-in motion and those three, all styles, legs of 0.6, 1 and 1.6, sticks of 0.4,
 0.7 and 1.""", """\
 [walk.md](walk.md) says which walks miss a bound, and why."""),
-    "bench": (measure_bench, bounds_rows, "Time of a tick, and of loading", True, """\
-`build/gaitpad bench`, one core of the machine that wrote this page; yours prints its own. A tick
-comes every 4167 us. [crowd.md](crowd.md) says what each row holds. A motion that was loaded before
+    "bench": (measure_bench, bounds_rows, "Time of a tick, of loading and of a replay", True, """\
+`build/gaitpad bench`, processor time on one core of the machine that wrote this page (elapsed time
+where threads work together: loading, all cores); yours prints its own. A tick comes every 4167 us. [crowd.md](crowd.md) says what each row holds. A motion that was loaded before
 has its strides in the cache.""",
               ""),
     "window": (measure_window, bounds_rows, "The window", True, """\

@@ -47,6 +47,7 @@ install_program() {
 }
 try_program() {
   inside gaitpad replay /usr/share/gaitpad/traces/round.hid --style limp_left --out /tmp/out
+  inside gaitpad calibrate --trace /usr/share/gaitpad/traces/worn.hid --out /tmp/worn.toml --plot /tmp/worn.png >/dev/null
   inside gaitpad check --update /tmp/out/none 2>/dev/null && return 1
   local there here
   there=$(inside gaitpad replay /usr/share/gaitpad/traces/round.hid --style limp_left --json)

@@ -35,6 +35,7 @@ double acos(double x) noexcept {
 }
 
 double wrapped(double angle_rad) noexcept {
+  if (std::abs(angle_rad) < 3.0) return angle_rad;  // no turn: the same bits without the work
   const double turns = std::floor((angle_rad + kPi) / (2.0 * kPi));
   return angle_rad - turns * 2.0 * kPi;
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace gaitpad {
 
@@ -145,11 +148,93 @@ std::string in_quotes(std::string_view text) {
   return "\"" + printable(text.substr(0, size)) + (is_cut ? "...\"" : "\"");
 }
 
+namespace {
+
+constexpr int kMostShortDecimals = 9;
+constexpr double kShortBelow = 1e9;  // times 10^9 it fits in 64 bits
+constexpr std::array<std::uint64_t, kMostShortDecimals + 1> kPowersOfTen = {
+    1, 10, 100, 1000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
+
+constexpr auto kDigitPairs = [] {
+  std::array<char, 200> pairs{};
+  for (std::size_t i = 0; i < 100; ++i) {
+    pairs[2 * i] = static_cast<char>('0' + i / 10);
+    pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+  }
+  return pairs;
+}();
+
+// |value| times 10^decimals, rounded to the nearest integer, a tie to the even one. The product of
+// the 53-bit significand and the power of ten has at most 83 bits, so nothing is lost before that.
+std::uint64_t scaled_exactly(double value, int decimals) noexcept {
+  __extension__ using Product = unsigned __int128;
+  constexpr int kSignificand = 52, kBias = 1023 + kSignificand;
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const int biased = static_cast<int>(bits >> kSignificand & 0x7ff);
+  const std::uint64_t fraction = bits & ((std::uint64_t{1} << kSignificand) - 1);
+  const std::uint64_t significand =
+      biased == 0 ? fraction : fraction | std::uint64_t{1} << kSignificand;
+  const int shift = kBias - std::max(biased, 1);  // at least 23, since the value is below 1e9
+  if (shift > 100) return 0;                      // less than half
+  const Product product = Product{significand} * kPowersOfTen[decimals];
+  const auto whole = static_cast<std::uint64_t>(product >> shift);
+  const Product rest = product & ((Product{1} << shift) - 1), half = Product{1} << (shift - 1);
+  return whole + (rest > half || (rest == half && whole % 2 == 1));
+}
+
+// The same. A product below 2^40 is off by at most 2^-14, which matters only near a tie.
+std::uint64_t scaled(double value, int decimals) noexcept {
+  constexpr double kMostProduct = 1099511627776.0, kNearTie = 1.0 / 4096.0;
+  const double product = std::abs(value) * static_cast<double>(kPowersOfTen[decimals]);
+  if (!(product < kMostProduct)) return scaled_exactly(value, decimals);
+  const auto whole = static_cast<std::int64_t>(product);
+  const double above_half = product - static_cast<double>(whole) - 0.5;
+  if (std::abs(above_half) < kNearTie) return scaled_exactly(value, decimals);
+  return static_cast<std::uint64_t>(whole + (above_half > 0.0));
+}
+
+char* put_pair(std::uint64_t pair, char* end) noexcept {
+  std::memcpy(end - 2, &kDigitPairs[2 * pair], 2);
+  return end - 2;
+}
+
+}  // namespace
+
+void append_fixed(std::string& out, double value, int decimals) {
+  if (!(std::abs(value) < kShortBelow) || decimals < 0 || decimals > kMostShortDecimals) {
+    std::array<char, 512> digits;  // a double has up to 309 before the point
+    const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                       std::chars_format::fixed, std::clamp(decimals, 0, 100));
+    out.append(digits.data(), static_cast<std::size_t>(written.ptr - digits.data()));
+    return;
+  }
+  std::array<char, 24> digits;  // sign, 10 digits, point, 9 digits; from the last on
+  char* const end = digits.data() + digits.size();
+  char* begin = end;
+  std::uint64_t rest = scaled(value, decimals);
+  for (int left = decimals; left >= 2; left -= 2) {
+    begin = put_pair(rest % 100, begin);
+    rest /= 100;
+  }
+  if (decimals % 2 == 1) {
+    *--begin = static_cast<char>('0' + rest % 10);
+    rest /= 10;
+  }
+  if (decimals > 0) *--begin = '.';
+  for (; rest >= 100; rest /= 100) begin = put_pair(rest % 100, begin);
+  if (rest >= 10) {
+    begin = put_pair(rest, begin);
+  } else {
+    *--begin = static_cast<char>('0' + rest);
+  }
+  if (std::signbit(value)) *--begin = '-';
+  out.append(begin, static_cast<std::size_t>(end - begin));
+}
+
 std::string fixed(double value, int decimals) {
-  std::array<char, 512> digits;  // a double has up to 309 before the point
-  const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                     std::chars_format::fixed, std::clamp(decimals, 0, 100));
-  return std::string(digits.data(), written.ptr);
+  std::string text;
+  append_fixed(text, value, decimals);
+  return text;
 }
 
 }  // namespace gaitpad

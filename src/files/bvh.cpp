@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 
@@ -339,7 +342,7 @@ BvhWriter::BvhWriter(std::ostream& out, const Skeleton& skeleton, const BvhLayou
     layout_.orders.assign(skeleton.joints.size(), kEulerZyx);
     layout_.orders[0] = kEulerYxz;
   }
-  previous_rad_.assign(skeleton.joints.size(), EulerAngles{});
+  written_.resize(skeleton.joints.size());
   write_hierarchy();
 }
 
@@ -393,17 +396,45 @@ void BvhWriter::write_joint(int joint, int depth) {
 void BvhWriter::write(const Pose& pose) {
   const vec3 root = pose.root_m / layout_.metres_per_unit;
   line_.clear();
-  auto end = std::back_inserter(line_);
-  fmt::format_to(end, "{:.8f} {:.8f} {:.8f}", root.x, root.y, root.z);
+  append_fixed(line_, root.x, 8);
+  for (const double value : {root.y, root.z}) {
+    line_ += ' ';
+    append_fixed(line_, value, 8);
+  }
   for (const int joint : joints_) {
-    EulerAngles& angles = previous_rad_[joint];
-    angles = nearest_euler(layout_.orders[joint], pose.local[joint], angles);
-    fmt::format_to(end, " {:.7f} {:.7f} {:.7f}", angles[0] / kDegree, angles[1] / kDegree,
-                   angles[2] / kDegree);
+    Written& written = written_[joint];
+    written.turn_to(layout_.orders[joint], pose.local[joint]);
+    line_ += written.text;
   }
   line_ += '\n';
-  out_ << line_;
+  out_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
   ++frames_;
+}
+
+namespace {
+
+// 0 and -0 are written differently.
+template <class T>
+bool has_same_bits(const T& a, const T& b) noexcept {
+  using Bits = std::array<std::uint64_t, sizeof(T) / sizeof(double)>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
+
+}  // namespace
+
+// The angles depend on the rotation and the angles before alone: where neither has changed, as in
+// joints that do not move, they stay.
+void BvhWriter::Written::turn_to(const BvhOrder& order, const quat& turned) {
+  if (is_settled && has_same_bits(turned, rotation)) return;
+  const EulerAngles next_rad = nearest_euler(order, turned, angles_rad);
+  is_settled = has_same_bits(next_rad, angles_rad) && has_same_bits(turned, rotation);
+  rotation = turned;
+  angles_rad = next_rad;
+  text.clear();
+  for (const double angle_rad : angles_rad) {
+    text += ' ';
+    append_fixed(text, angle_rad / kDegree, 7);
+  }
 }
 
 bool BvhWriter::finish() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/files.h"
+#include "files/made_strides.h"
 #include "gaitpad/clean_strides.h"
 #include "gaitpad/hash.h"
 #include "strides/solver_input.h"
@@ -51,10 +52,31 @@ std::string path_in(const std::string& folder, const std::vector<double>& input)
   return (fs::path(folder) / (name + kEnding)).string();
 }
 
-std::optional<StrideFamily> read_family(const std::string& path, const std::vector<double>& input) {
+StrideFamily empty_family() {
   StrideFamily family;
   family.table.resize(kStrideRatios);
   family.back.resize(kBackRatios);
+  return family;
+}
+
+// Those of the built-in walk, if that is what is to be solved.
+std::optional<StrideFamily> made_family([[maybe_unused]] const std::vector<double>& input) {
+#ifdef GAITPAD_HAS_MADE_STRIDES
+  const std::span<const std::uint64_t> made = made_strides();
+  if (made.size() < input.size() ||
+      std::memcmp(made.data(), input.data(), input.size() * sizeof(double)) != 0)
+    return std::nullopt;
+  StrideFamily family = empty_family();
+  const std::uint64_t* next = made.data() + input.size();
+  for_each_number(family, [&next](double& number) { number = std::bit_cast<double>(*next++); });
+  return family;
+#else
+  return std::nullopt;
+#endif
+}
+
+std::optional<StrideFamily> read_family(const std::string& path, const std::vector<double>& input) {
+  StrideFamily family = empty_family();
   const std::size_t size = file_numbers(input, family).size() * sizeof(double);
   const auto bytes = file_text(path, size);
   if (!bytes || bytes->size() != size) return std::nullopt;
@@ -104,8 +126,12 @@ std::string stride_cache_folder() {
 }
 
 Result<GaitCycle> cached_clean_strides(GaitCycle cycle, const std::string& folder) {
-  if (folder.empty() || kVersion == 0) return with_clean_strides(std::move(cycle));
   const std::vector<double> input = solver_input(cycle);
+  if (auto family = made_family(input)) {
+    cycle.strides = std::make_shared<const StrideFamily>(std::move(*family));
+    return cycle;
+  }
+  if (folder.empty() || kVersion == 0) return with_clean_strides(std::move(cycle));
   const std::string path = path_in(folder, input);
   if (auto family = read_family(path, input)) {
     cycle.strides = std::make_shared<const StrideFamily>(std::move(*family));

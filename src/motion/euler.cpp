@@ -71,6 +71,8 @@ EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
   const EulerAngles one = {nearest_turn(first, previous_rad[0]),
                            nearest_turn(middle, previous_rad[1]),
                            nearest_turn(third, previous_rad[2])};
+  // The outer angles of the other triple are half a turn away from these.
+  if (distance(one, previous_rad) < 1.0) return one;
   const EulerAngles two = {nearest_turn(first + kPi, previous_rad[0]),
                            nearest_turn(kPi - middle, previous_rad[1]),
                            nearest_turn(third + kPi, previous_rad[2])};

@@ -4,11 +4,11 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "base/files.h"
+#include "base/text.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
@@ -76,26 +76,29 @@ std::string_view swing_name(const WalkFrame& frame) {
   return frame.swing == kLeftSide ? "left" : "right";
 }
 
-void append_number(double value, fmt::memory_buffer& out) {
-  fmt::format_to(std::back_inserter(out), ",{:.9f}", value + 0.0);  // + 0.0: no "-0"
+void append_number(double value, std::string& out) {
+  out += ',';
+  append_fixed(out, value + 0.0, 9);  // + 0.0: no "-0"
 }
 
-void append_place(const vec3& place_m, fmt::memory_buffer& out) {
+void append_place(const vec3& place_m, std::string& out) {
   append_number(place_m.x, out);
   append_number(place_m.y, out);
   append_number(place_m.z, out);
 }
 
-}  // namespace
-
-void append_frames_header(fmt::memory_buffer& out) {
-  out.append(kHeader.data(), kHeader.data() + kHeader.size());
+void append_word(std::string_view word, std::string& out) {
+  out += ',';
+  out += word;
 }
 
+}  // namespace
+
+void append_frames_header(std::string& out) { out += kHeader; }
+
 void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const WalkFrame& frame,
-                       fmt::memory_buffer& out) {
-  const auto end = std::back_inserter(out);
-  fmt::format_to(end, "{}", tick);
+                       std::string& out) {
+  out += std::to_string(tick);
   append_number(static_cast<double>(tick) / rate_hz, out);
   append_number(stick.left.x, out);
   append_number(stick.left.y, out);
@@ -105,22 +108,25 @@ void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const
   append_number(frame.turn_rate_rad_s, out);
   append_number(frame.heading_rad, out);
   append_place(frame.pelvis_m, out);
-  fmt::format_to(end, ",{},{}", kStageNames[static_cast<int>(frame.stage)], swing_name(frame));
+  append_word(kStageNames[static_cast<int>(frame.stage)], out);
+  append_word(swing_name(frame), out);
   for (const Side side : {kLeftSide, kRightSide}) {
-    fmt::format_to(end, ",{:d},{:d}", frame.heel_planted[side], frame.toe_planted[side]);
+    append_word(frame.heel_planted[side] ? "1" : "0", out);
+    append_word(frame.toe_planted[side] ? "1" : "0", out);
   }
   for (const Side side : {kLeftSide, kRightSide}) {
     append_place(frame.heel_m[side], out);
     append_place(frame.toe_m[side], out);
   }
-  fmt::format_to(end, ",{},{}", frame.ik_iterations[kLeftSide], frame.ik_iterations[kRightSide]);
+  for (const Side side : {kLeftSide, kRightSide})
+    append_word(std::to_string(frame.ik_iterations[side]), out);
   append_number(frame.ik_error_m[kLeftSide], out);
   append_number(frame.ik_error_m[kRightSide], out);
   for (const Side side : {kLeftSide, kRightSide}) {
     append_number(frame.heel_ground_m[side], out);
     append_number(frame.toe_ground_m[side], out);
   }
-  out.push_back('\n');
+  out += '\n';
 }
 
 namespace {

@@ -1,7 +1,5 @@
 // What a run leaves behind: files that appear in their folder together and complete, or not at all.
 #pragma once
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <fstream>
 #include <memory>
@@ -49,10 +47,10 @@ class OutputFiles {
 
 // frames.csv: one row a tick with what a character did, in metres, seconds and radians, world
 // frame.
-void append_frames_header(fmt::memory_buffer& out);
+void append_frames_header(std::string& out);
 // The row of `tick`: its stick and the state after it.
 void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const WalkFrame& frame,
-                       fmt::memory_buffer& out);
+                       std::string& out);
 
 // `pose.bvh` for the first character, `pose-2.bvh` ... for further ones.
 std::string numbered_name(const std::string& stem, const std::string& extension,
@@ -86,7 +84,7 @@ class WalkExport {
   std::unique_ptr<BvhWriter> poses_;
   std::unique_ptr<GltfWriter> gltf_;  // null: not asked for
   std::string gltf_path_;
-  fmt::memory_buffer row_;
+  std::string row_;
 };
 
 // summary.json of one character: the numbers of the run and its own. The keys are in interface.md's

@@ -104,15 +104,23 @@ TEST(Text, FixedDigitsAreThoseOfPrintf) {
   std::mt19937_64 random(3);
   std::array<char, 512> digits;
   const auto expect_same = [&](double value) {
-    for (const int decimals : {0, 1, 3, 9}) {
+    for (const int decimals : {0, 1, 3, 7, 8, 9, 12}) {
       std::snprintf(digits.data(), digits.size(), "%.*f", decimals, value);
       EXPECT_EQ(fixed(value, decimals), digits.data());
     }
   };
   for (int i = 0; i < 1000; ++i)
     expect_same((std::generate_canonical<double, 53>(random) - 0.5) * std::pow(10.0, i % 12));
-  for (const double value : {0.0, -0.0, 0.5, 2.5, -0.0005, 1e300, -1.7976931348623157e308})
+  for (const double value :
+       {0.0, -0.0, 0.5, 2.5, -0.0005, 1e300, -1.7976931348623157e308, 1e-10, -1e-10, 5e-324,
+        4.9999999999e-10, 9.9999999995, 999999999.9999999, 1e9, 1e-30})
     expect_same(value);
+  // Ties have few binary digits behind the point.
+  for (int i = 0; i < 2000; ++i)
+    expect_same(std::ldexp(static_cast<double>(random() % 100'000) - 50'000.0, -(i % 30)));
+  for (int i = 0; i < 1000; ++i)  // a decimal's neighbours
+    expect_same(
+        std::nextafter(static_cast<double>(random() % 1'000'000) * 5e-10, i % 2 ? 0.0 : 1.0));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-"""Without any driver the program still builds and replays, and says what is missing. SDL2 stays, the window's.
+"""Without any driver the program still builds and replays, and says what is missing. SDL2 is never linked: its driver
+loads it.
 
 The repository is configured without the drivers' libraries, in `without_libraries` beside the program. One source alone knows
 which drivers there are: it is compiled there and linked before the program's own objects, so that the linker takes no driver.

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 
+#include "files/made_strides.h"
 #include "gaitpad/clean_strides.h"
 #include "strides/solver_input.h"
 #include "tests/own_folder.h"
@@ -23,16 +25,23 @@ std::vector<double> numbers_of(const GaitCycle& cycle) {
   return numbers;
 }
 
+// A motion that is not built in.
+GaitCycle loaded_cycle() {
+  GaitCycle cycle = procedural_gait();
+  cycle.samples[7].leg[1].angles[kKneeX] += 1e-12;
+  return cycle;
+}
+
 class StrideCache : public testing::Test {
  protected:
-  std::vector<double> loaded(const GaitCycle& cycle = procedural_gait()) const {
+  std::vector<double> loaded(const GaitCycle& cycle = loaded_cycle()) const {
     return numbers_of(value_of(cached_clean_strides(cycle, cache())));
   }
   std::string cache() const { return folder_.at("cache"); }
   fs::path only_file() const { return fs::directory_iterator(cache())->path(); }
 
   static const std::vector<double>& solved() {
-    static const auto numbers = numbers_of(value_of(with_clean_strides(procedural_gait())));
+    static const auto numbers = numbers_of(value_of(with_clean_strides(loaded_cycle())));
     return numbers;
   }
 
@@ -46,7 +55,7 @@ TEST_F(StrideCache, GivesTheSameBitsAsSolvingAndKeepsEachCycleApart) {
   EXPECT_EQ(loaded(), solved());
   EXPECT_EQ(entries_in(cache()), 1);
   EXPECT_EQ(fs::last_write_time(only_file()), written);
-  GaitCycle other = procedural_gait();
+  GaitCycle other = loaded_cycle();
   other.samples[5].leg[0].angles[kKneeX] += 1e-12;
   const auto second = loaded(other);
   EXPECT_EQ(entries_in(cache()), 2);
@@ -77,8 +86,8 @@ TEST_F(StrideCache, SolvesAgainAndMendsWhereAFileIsDamaged) {
 
 TEST_F(StrideCache, DoesWithoutAFolder) {
   const std::string file = folder_.write("file");
-  EXPECT_EQ(numbers_of(value_of(cached_clean_strides(procedural_gait(), file + "/in"))), solved());
-  EXPECT_EQ(numbers_of(value_of(cached_clean_strides(procedural_gait(), ""))), solved());
+  EXPECT_EQ(numbers_of(value_of(cached_clean_strides(loaded_cycle(), file + "/in"))), solved());
+  EXPECT_EQ(numbers_of(value_of(cached_clean_strides(loaded_cycle(), ""))), solved());
 }
 
 TEST_F(StrideCache, DeletesTheOldestOfManyFilesAndNothingElse) {
@@ -92,6 +101,20 @@ TEST_F(StrideCache, DeletesTheOldestOfManyFilesAndNothingElse) {
   EXPECT_FALSE(fs::exists(folder_.at("cache/6.strides")));
   EXPECT_TRUE(fs::exists(folder_.at("cache/7.strides")));
   EXPECT_TRUE(fs::exists(folder_.at("cache/notes.txt")));
+}
+
+// Bit by bit: they were solved while gaitpad was built.
+TEST_F(StrideCache, BuiltInStridesAreThoseThatSolvingGivesAndAreNotKeptAgain) {
+  const GaitCycle cycle = procedural_gait();
+  std::vector<double> made;
+  for (const std::uint64_t bits : made_strides()) made.push_back(std::bit_cast<double>(bits));
+  std::vector<double> expected = solver_input(cycle);
+  const auto solved_now = numbers_of(value_of(with_clean_strides(cycle)));
+  expected.insert(expected.end(), solved_now.begin(), solved_now.end());
+  ASSERT_EQ(made.size(), expected.size());
+  EXPECT_EQ(std::memcmp(made.data(), expected.data(), made.size() * sizeof(double)), 0);
+  EXPECT_EQ(loaded(cycle), solved_now);
+  EXPECT_FALSE(fs::exists(cache()));
 }
 
 TEST_F(StrideCache, KeepsNoErrors) {

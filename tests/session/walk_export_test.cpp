@@ -86,16 +86,16 @@ TEST_F(OutputFolder, AFullDiskIsReportedAtPublishing) {
 // --- frames.csv
 
 std::string row(const WalkFrame& frame) {
-  fmt::memory_buffer out;
+  std::string out;
   append_frames_row(480, 240, Stick{vec2(-0.25, 0.5), vec2(0.0)}, frame, out);
-  return fmt::to_string(out);
+  return out;
 }
 
 TEST(FramesCsv, ARowHasAsManyColumnsAsTheHeader) {
-  fmt::memory_buffer header;
+  std::string header;
   append_frames_header(header);
-  const std::string names = fmt::to_string(header), values = row(WalkFrame());
-  EXPECT_EQ(std::ranges::count(names, ','), std::ranges::count(values, ','));
+  const std::string values = row(WalkFrame());
+  EXPECT_EQ(std::ranges::count(header, ','), std::ranges::count(values, ','));
 }
 
 TEST(FramesCsv, TimeIsTheTickOverTheRateAndTheStickFollows) {

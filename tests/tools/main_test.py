@@ -87,8 +87,8 @@ def benched(run, tmp_path_factory):
 def test_bench_lists_each_measurement(benched):
     names = [r["name"] for r in benched]
     assert set(names) == {"leg_paper", "leg_robust_even", "leg_robust_weighted", "leg_ik", "playback", "playback_world", "stage",
-                          "character_even", "characters_even", "characters_styled", "step", "crowd", "crowd_memory", "load_built_in",
-                          "load_clip", "load_cached", "load"}
+                          "character_even", "characters_even", "characters_styled", "character_even_60_hz", "step", "crowd", "crowd_alone",
+                          "crowd_memory", "load_built_in", "load_clip", "load_cached", "load", "replay", "replay_files"}
     assert all(0 < r["ns_low"] <= r["ns"] <= r["ns_high"] for r in benched if r["name"] != "stage")
     assert all(r["processor"] and r["lanes"] in (2, 4, 8) for r in benched)
     assert {r["stage"] for r in benched if r["name"] == "stage"} == {"clock and plan", "sampling", "ik", "pose"}
@@ -96,6 +96,10 @@ def test_bench_lists_each_measurement(benched):
     assert {(r["characters"], r["width"]) for r in benched if r["name"] == "crowd"} == {
         (n, width) for n in (1, 8, 64) for width in (1, 2, 4, 8) if width <= widest}
     assert [r["characters"] for r in benched if r["name"] == "step"] == [1, 4]
+    # What other programs do meanwhile counts only where threads work together.
+    elapsed = {r["name"] for r in benched if r["clock"] == "elapsed"}
+    assert elapsed == {"load_built_in", "load_clip", "load_cached", "load"}
+    assert all(r["clock"] == "thread" for r in benched if r["name"] not in elapsed)
 
 
 def test_bench_counts_in_its_peers(benched):
@@ -105,16 +109,21 @@ def test_bench_counts_in_its_peers(benched):
         if "ratio" in row:
             assert row["over"] == ("characters_even" if row["name"] == "characters_styled" else "playback")
             assert row["ratio"] == pytest.approx(row["ns"] / ns[row["over"]])
+        if row["name"] == "crowd":  # of the same builds and styles, at the same rate
+            alone = next(r["ns"] for r in benched if r["name"] == "crowd_alone")
+            assert row["ratio_alone"] == pytest.approx(row["ns"] / alone)
         if "at_60_hz" in row:
             assert row["at_60_hz"] == pytest.approx(1e9 / 60 / row["ns"], abs=1)
         assert row.get("bytes", 1000) >= 1000
     assert {r["name"] for r in benched if "ratio" in r} == {"character_even", "characters_even", "characters_styled", "step",
-                                                         "crowd", "crowd_memory"}
-    assert ns["load"] == ns["load_clip"] > ns["load_cached"]
+                                                         "character_even_60_hz", "crowd", "crowd_alone", "crowd_memory"}
+    assert ns["load"] == ns["load_clip"] > ns["load_cached"] > ns["load_built_in"]
+    assert ns["replay_files"] > ns["replay"]
 
 
 def test_bench_says_which_bounds_are_met(benched):
-    assert {r["name"] for r in benched if "bound_ns" in r} == {"leg_robust_even", "step", "load_built_in", "load_clip", "load"}
+    assert {r["name"] for r in benched if "bound_ns" in r} == {"leg_robust_even", "step", "load_built_in", "load_clip", "load", "replay",
+                                                          "replay_files"}
     for row in benched:
         met = [row[value] <= row[bound] for value, bound in (("ns", "bound_ns"), ("ratio", "bound_ratio")) if bound in row]
         assert row.get("met", True) == all(met)
@@ -126,7 +135,7 @@ def test_bench_prints_a_table_and_refuses_a_picture_it_cannot_write(program):
                           capture_output=True, text=True, check=False)
     assert done.returncode == 1 and done.stderr.startswith("gaitpad bench: /proc/mine.png")
     assert len(done.stderr.splitlines()) == 1
-    assert "bound 2048" in done.stdout and "local rotations (the peer)" in done.stdout
+    assert "bound 1024" in done.stdout and "local rotations (the peer)" in done.stdout
 
 
 @pytest.mark.parametrize("arguments", [["--crowd", "0"], ["--rounds", "0"], ["--plot", "cost.jpg"]])

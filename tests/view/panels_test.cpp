@@ -258,10 +258,10 @@ bool is_drawn(const std::string& text) { return std::ranges::count(drawn_texts()
 
 // The row of `frames.csv` of the tick that a frame shows, by column.
 std::map<std::string, double> file_row(const SessionFrame& frame, int rate_hz) {
-  fmt::memory_buffer text;
+  std::string text;
   append_frames_header(text);
   append_frames_row(frame.tick, rate_hz, frame.stick, frame.walkers[0].walk, text);
-  std::istringstream lines(fmt::to_string(text));
+  std::istringstream lines(text);
   std::string header, row, name, value;
   std::getline(lines, header);
   std::getline(lines, row);

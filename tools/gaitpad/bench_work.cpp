@@ -4,10 +4,10 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <random>
 
@@ -17,6 +17,7 @@
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/crowd.h"
+#include "gaitpad/replay.h"
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
 #include "session/workers.h"
@@ -244,8 +245,8 @@ void play_back(const GaitCycle& cycle, double phase, Pose& pose) {
   }
 }
 
-enum class Playback { local, world };
-Work playback_work(const Session& session, Playback kind) {
+enum class PlaybackFrames { local, world };
+Work playback_work(const Session& session, PlaybackFrames kind) {
   struct State {
     GaitCycle cycle;
     double phase = 0.0;
@@ -256,13 +257,13 @@ Work playback_work(const Session& session, Playback kind) {
   s->cycle = session.config.cycle;
   const double step = session.dt_s() / s->cycle.duration_s;
   Work work;
-  work.name = kind == Playback::local ? "playback" : "playback_world";
-  work.label =
-      kind == Playback::local ? "local rotations (the peer)" : "and world frames of all joints";
+  work.name = kind == PlaybackFrames::local ? "playback" : "playback_world";
+  work.label = kind == PlaybackFrames::local ? "local rotations (the peer)"
+                                             : "and world frames of all joints";
   work.notes["joints"] = s->cycle.standing_local.size();
   work.pass = [s, step, kind] {
     play_back(s->cycle, s->phase, s->pose);
-    if (kind == Playback::world) forward_kinematics(s->cycle.skeleton, s->pose, s->frames);
+    if (kind == PlaybackFrames::world) forward_kinematics(s->cycle.skeleton, s->pose, s->frames);
     s->phase += step;
     benchmark::DoNotOptimize(s->pose);
     benchmark::DoNotOptimize(s->frames);
@@ -289,9 +290,9 @@ struct LiveWalkers {
   double dt_s = 0.0;
 
   // `from` are the walkers' places in `simulation`; each begins in another part of the trace.
-  LiveWalkers(const Session& session, const Simulation& simulation, const std::vector<int>& from,
+  LiveWalkers(double tick_s, const Simulation& simulation, const std::vector<int>& from,
               const std::vector<Stick>& led_by)
-      : sticks(led_by), dt_s(session.dt_s()) {
+      : sticks(led_by), dt_s(tick_s) {
     for (const int i : from) {
       const Walker& w = simulation.walkers()[i];
       const std::size_t begin = all.size() * 149 % sticks.size();
@@ -320,15 +321,21 @@ Work character_work(const char* name, const char* label,
   return work;
 }
 
+// The processor time that this thread has had.
+double thread_s() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 // The tick in parts. Sixteen characters go through each part together, so that reading the clock
 // costs little, and live on: no state is copied. What the plan and the pose read from the tables is
 // read once more for itself and taken off them.
 Work stage_work(const Session& session, const Simulation& simulation,
                 const std::vector<Stick>& sticks) {
   constexpr std::size_t kTogether = 16;
-  using Clock = std::chrono::steady_clock;
-  const auto walkers =
-      std::make_shared<LiveWalkers>(session, simulation, std::vector<int>(kTogether, 0), sticks);
+  const auto walkers = std::make_shared<LiveWalkers>(session.dt_s(), simulation,
+                                                     std::vector<int>(kTogether, 0), sticks);
   Work work;
   work.name = "stage";
   work.characters = 1;
@@ -338,32 +345,30 @@ Work stage_work(const Session& session, const Simulation& simulation,
   work.pass = [walkers, planned, times = work.stages] {
     walkers->read_sticks();
     std::vector<LiveWalkers::One>& all = walkers->all;
-    std::array<Clock::time_point, 6> at;
+    std::array<double, 6> at;
     std::array<std::optional<Tick>, kTogether> ticks;
-    at[0] = Clock::now();
+    at[0] = thread_s();
     for (std::size_t i = 0; i < kTogether; ++i) {
       ticks[i].emplace(Tick{*all[i].model, all[i].params, IkMode::robust, walkers->dt_s, true});
       plan_tick(*ticks[i], all[i].state, (*planned)[i]);
     }
-    at[1] = Clock::now();
+    at[1] = thread_s();
     for (const PlannedTick& one : *planned) {
       StridePlan plan;
       plan_stride<double>(*one.tick, one.at, *one.state, plan);
       benchmark::DoNotOptimize(plan);
     }
-    at[2] = Clock::now();
+    at[2] = thread_s();
     for (const PlannedTick& one : *planned) pose_legs(one);
-    at[3] = Clock::now();
+    at[3] = thread_s();
     for (std::size_t i = 0; i < kTogether; ++i) {
       const PlannedTick& one = (*planned)[i];
       write_data<double>(one.tick->model, one.at, one.state->gait, {all[i].pose.local.data()});
     }
-    at[4] = Clock::now();
+    at[4] = thread_s();
     for (std::size_t i = 0; i < kTogether; ++i) finish_tick((*planned)[i], all[i].pose);
-    at[5] = Clock::now();
-    const auto took = [&at](int i) {
-      return std::chrono::duration<double>(at[i + 1] - at[i]).count();
-    };
+    at[5] = thread_s();
+    const auto took = [&at](int i) { return at[i + 1] - at[i]; };
     (*times)[0] += took(0) - took(1);
     (*times)[1] += took(1) + took(3);
     (*times)[2] += took(2);
@@ -472,8 +477,39 @@ class LedCrowd {
   }
   double bytes_each() const { return bytes_each_; }
 
+  // Member after member, each as if it walked alone.
+  void advance_each() {
+    lead();
+    for (int i = 0; i < crowd_.size(); ++i) {
+      const Part& part = parts_[i];
+      advance(*cast_->models[part.model], crowd_.params()[i], IkMode::robust, kCrowdDt_s,
+              alone_[i].first, alone_[i].second);
+    }
+  }
+  // Makes advance_each() go on from where the crowd is.
+  void leave() {
+    for (int i = 0; i < crowd_.size(); ++i) {
+      alone_.emplace_back(crowd_.state(i), Pose());
+      crowd_.copy_pose(i, alone_.back().second);
+    }
+  }
+
   // With workers: by all of them.
-  void advance(Workers* workers) {
+  void advance_all(Workers* workers) {
+    lead();
+    if (workers) {
+      workers->for_each(crowd_.blocks(), [this](int b) { crowd_.advance_block(b, kCrowdDt_s); });
+    } else {
+      crowd_.advance(kCrowdDt_s);
+    }
+  }
+
+ private:
+  struct Part {
+    int model, style, stick, start;
+  };
+  // Gives members their sticks of this tick.
+  void lead() {
     for (int i = tick_ % kStickTicks; i < crowd_.size(); i += kStickTicks) {
       const Part& part = parts_[i];
       if (tick_ < part.start) continue;
@@ -482,21 +518,13 @@ class LedCrowd {
       crowd_.params()[i] =
           gait_params(cast_->sticks[at], cast_->styles[part.style], cast_->limits[part.model]);
     }
-    if (workers) {
-      workers->for_each(crowd_.blocks(), [this](int b) { crowd_.advance_block(b, kCrowdDt_s); });
-    } else {
-      crowd_.advance(kCrowdDt_s);
-    }
     ++tick_;
   }
 
- private:
-  struct Part {
-    int model, style, stick, start;
-  };
   std::shared_ptr<const CrowdCast> cast_;
   std::vector<Part> parts_;
   Crowd crowd_;
+  std::vector<std::pair<WalkState, Pose>> alone_;
   double bytes_each_ = 0.0;
   int tick_ = 0;
 };
@@ -507,7 +535,7 @@ Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, Crow
   use_lanes(lanes);
   const auto crowd = std::make_shared<LedCrowd>(std::move(cast), size);
   const int warm = size >= kLarge ? kFewWarmTicks : kWarmTicks;
-  for (int tick = 0; tick < warm; ++tick) crowd->advance(workers.get());
+  for (int tick = 0; tick < warm; ++tick) crowd->advance_all(workers.get());
   Work work;
   work.name = "crowd";
   work.label = lanes == 1 ? fmt::format("{:6}   one after another", size)
@@ -524,14 +552,29 @@ Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, Crow
     work.is_on_all_cores = true;
     work.label += fmt::format(", {} threads", workers->threads());
     work.notes["threads"] = workers->threads();
-    work.pass = [crowd, workers] { crowd->advance(workers.get()); };
+    work.pass = [crowd, workers] { crowd->advance_all(workers.get()); };
     return work;
   }
   if (size == 1000) {
     work.most_ratio = lanes >= 8 ? 0.6 : lanes >= 4 ? 0.9 : lanes >= 2 ? 1.5 : 0.0;
-    work.most_ns = lanes >= 8 ? 600.0 : 0.0;
   }
-  work.pass = [crowd] { crowd->advance(nullptr); };
+  work.pass = [crowd] { crowd->advance_all(nullptr); };
+  return work;
+}
+
+// The peer of a crowd: so many of its members, with the same builds, styles, sticks and rate, by a
+// tick of each. The first members of crowds of different sizes are the same.
+Work alone_work(std::shared_ptr<const CrowdCast> cast, int size) {
+  const auto crowd = std::make_shared<LedCrowd>(std::move(cast), size);
+  for (int tick = 0; tick < kWarmTicks; ++tick) crowd->advance_all(nullptr);
+  crowd->leave();
+  Work work;
+  work.name = "crowd_alone";
+  work.label = fmt::format("{:6}   mixed builds and styles, 60 Hz", size);
+  work.characters = size;
+  work.units = size;
+  work.over = "playback";
+  work.pass = [crowd] { crowd->advance_each(); };
   return work;
 }
 
@@ -571,12 +614,12 @@ Work memory_work(const CrowdCast& cast, int size) {
 
 // --- Loading -------------------------------------------------------------------------------------
 
-// A folder for a cache of strides, deleted with the last work that uses it.
-std::shared_ptr<const std::filesystem::path> cache_folder() {
+// A folder that is deleted with the last work that uses it.
+std::shared_ptr<const std::filesystem::path> cache_folder(std::string_view what) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   const fs::path path =
-      fs::temp_directory_path(ignored) / fmt::format("gaitpad_bench_{}", ::getpid());
+      fs::temp_directory_path(ignored) / fmt::format("gaitpad_bench_{}_{}", what, ::getpid());
   return {new fs::path(path), [](const fs::path* p) {
             std::error_code unused;
             fs::remove_all(*p, unused);
@@ -597,16 +640,16 @@ std::optional<Error> load(Result<GaitCycle> cycle, const std::string& cache) {
 // are solved on several cores.
 Result<std::vector<Work>> load_work() {
   const auto clip = std::make_shared<const Motion>(procedural_motion());
-  const auto cache = cache_folder();
+  const auto cache = cache_folder("strides");
   if (auto problem = load(gait_cycle(*clip), cache->string())) return *problem;
   std::vector<Work> list(3);
   list[0].name = "load_built_in";
   list[0].label = "the built-in motion";
-  list[0].most_ns = 150e6;
+  list[0].most_ns = 10e6;
   list[0].pass = [] { load(procedural_gait(), ""); };
   list[1].name = "load_clip";
   list[1].label = "a clip";
-  list[1].most_ns = 800e6;
+  list[1].most_ns = 150e6;
   list[1].pass = [clip] { load(gait_cycle(*clip), ""); };
   list[2].name = "load_cached";
   list[2].label = "with its strides in the cache";
@@ -614,6 +657,31 @@ Result<std::vector<Work>> load_work() {
   for (Work& work : list) {
     work.is_on_all_cores = true;
     work.every = 3;
+  }
+  return list;
+}
+
+// --- Replays -------------------------------------------------------------------------------------
+
+// The bundled trace from reading it to its summary, as `replay` and `check` do it, and with all
+// files of --out. Bounds hold for the whole program, whose start is not in it.
+Result<std::vector<Work>> replay_work() {
+  SessionSpec spec;
+  spec.config_folders = config_folders();
+  spec.replay.trace = bundled_trace(spec.config_folders);
+  const auto folder = cache_folder("replay");
+  std::vector<Work> list(2);
+  list[0].name = "replay";
+  list[0].label = "without files";
+  list[0].most_ns = 9e6;
+  list[1].name = "replay_files";
+  list[1].label = "with files";
+  list[1].most_ns = 20e6;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (i == 1) spec.replay.out = folder->string();
+    if (const auto result = replay(spec); !result) return result.error();
+    list[i].pass = [spec, folder] { static_cast<void>(replay(spec)); };
+    list[i].every = 3;
   }
   return list;
 }
@@ -642,22 +710,22 @@ Result<std::vector<Work>> bench_work(int most_characters) {
   list.push_back(leg_work("leg_paper", "paper", solves_of<PaperLeg>(*paper, *paper_walks, {0})));
   list.push_back(leg_work("leg_robust_even", "robust, even weights",
                           solves_of<RobustLegs>(*one, *one_walks, {0})));
-  list.back().most_ns = 250.0;
+  list.back().most_ns = 90.0;
   list.push_back(leg_work("leg_robust_weighted", "robust, stiff hip or knee",
                           solves_of<RobustLegs>(*four, *four_walk, {1, 2})));
 
-  list.push_back(playback_work(*one, Playback::local));
-  list.push_back(playback_work(*one, Playback::world));
+  list.push_back(playback_work(*one, PlaybackFrames::local));
+  list.push_back(playback_work(*one, PlaybackFrames::world));
 
   list.push_back(stage_work(*one, *one_walks, sticks));
   const auto live = [&](const Session& session, const Simulation& simulation,
                         const std::vector<int>& from) {
-    return std::make_shared<LiveWalkers>(session, simulation, from, sticks);
+    return std::make_shared<LiveWalkers>(session.dt_s(), simulation, from, sticks);
   };
   Work& even =
       list.emplace_back(character_work("character_even", "1, even", live(*one, *one_walks, {0})));
   even.over = "playback";
-  even.most_ratio = 2.5;
+  even.most_ratio = 2.2;
   list.push_back(
       character_work("characters_even", "4, even", live(*even_four, *even_walk, {0, 1, 2, 3})));
   list.back().over = "playback";
@@ -670,6 +738,10 @@ Result<std::vector<Work>> bench_work(int most_characters) {
   list.back().most_ns = 5000.0;
   for (Work& work : list)
     if (work.name == "step") work.over = "playback";
+  list.push_back(character_work(
+      "character_even_60_hz", "1, even",
+      std::make_shared<LiveWalkers>(kCrowdDt_s, *one_walks, std::vector<int>{0}, sticks)));
+  list.back().over = "playback";
 
   auto found = crowd_cast(*cast_session, sticks);
   if (!found) return found.error();
@@ -682,6 +754,7 @@ Result<std::vector<Work>> bench_work(int most_characters) {
         sizeof(vec3) + one->config.cycle.standing_local.size() * sizeof(quat);
     work.notes["model_bytes"] = cast->model_bytes;
   }
+  list.push_back(alone_work(cast, std::min(most_characters, 64)));
   std::vector<int> sizes;
   for (const int size : {1, 8, 64, 1000, 10000, 100000})
     if (size < most_characters) sizes.push_back(size);
@@ -702,6 +775,9 @@ Result<std::vector<Work>> bench_work(int most_characters) {
   auto loads = load_work();
   if (!loads) return loads.error();
   for (Work& work : *loads) list.push_back(std::move(work));
+  auto replays = replay_work();
+  if (!replays) return replays.error();
+  for (Work& work : *replays) list.push_back(std::move(work));
   return list;
 }
 

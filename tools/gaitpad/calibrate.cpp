@@ -28,9 +28,7 @@
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
-#ifdef GAITPAD_HAS_WINDOW
-#include "draw/stick_picture.h"
-#endif
+#include "tools/gaitpad/window_module.h"
 
 namespace gaitpad {
 namespace {
@@ -510,7 +508,9 @@ std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& 
     if (!stick) continue;
     pictures.push_back({kTitles[i], stick->tracks, &stick->statistics, &stick->advice});
   }
-  return write_stick_picture(arguments.plot, printable(pad.info.name) + date, pictures);
+  const auto module = window_module();
+  if (!module) return module.error();
+  return (*module)->write_stick_picture(arguments.plot, printable(pad.info.name) + date, pictures);
 }
 
 std::optional<Error> draw_comparison(const std::string& path, const ComparedFiles& files) {
@@ -525,7 +525,9 @@ std::optional<Error> draw_comparison(const std::string& path, const ComparedFile
       stick.calibrations[i] = side == 0 ? &c.left : &c.right;
     }
   }
-  return write_comparison(path, files.names[0] + " and " + files.names[1], sticks);
+  const auto module = window_module();
+  if (!module) return module.error();
+  return (*module)->write_comparison(path, files.names[0] + " and " + files.names[1], sticks);
 }
 #else
 std::optional<Error> draw(const CalibrateArguments&, const GuidedPad&, const PadAnalysis&) {

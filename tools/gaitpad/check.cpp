@@ -19,10 +19,7 @@
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 #include "tools/gaitpad/run_end.h"
-
-#ifdef GAITPAD_HAS_WINDOW
-#include "paper/page.h"
-#endif
+#include "tools/gaitpad/window_module.h"
 
 namespace gaitpad {
 namespace {
@@ -167,56 +164,8 @@ class JunitReport {
 #ifdef GAITPAD_HAS_WINDOW
 std::optional<Error> draw_curves(const JointCurves& curves, const std::string& title,
                                  const std::string& path) {
-  constexpr int kWidth = 1000, kHeight = 640, kColumns = 900;
-  constexpr std::array kColours = {colour::kVermilion, colour::kGreen, colour::kBlue};
-  constexpr std::array kNames = {"x", "y", "z"};
-  const double tick_s = 1.0 / curves.rate_hz;
-  const double end_s = std::max(tick_s, tick_s * static_cast<double>(curves.distance.size() - 1));
-  const auto unit = curves.is_angle ? "degrees" : "m";
-  std::vector<LegendEntry> legend = {{LegendEntry::Mark::line, colour::kInk, "this run"},
-                                     {LegendEntry::Mark::dashed, colour::kInk, "expected"}};
-  const auto series_of = [&](const std::vector<double>& values, const PlotRange& x) {
-    std::vector<PlotPoint> points;
-    for (std::size_t tick = 0; tick < values.size(); ++tick)
-      points.emplace_back(tick_s * static_cast<double>(tick), values[tick]);
-    PlotSeries series;
-    decimate(points, x, kColumns, series.points);
-    return series;
-  };
-  Plot both, apart;
-  both.x = apart.x = {0.0, end_s, false};
-  both.has_x_ticks = false;
-  both.y_label = unit;
-  both.title = curves.is_angle ? "rotation vector in the parent's frame" : "place";
-  apart.x_label = "s";
-  apart.y_label = unit;
-  apart.title = "distance between the two";
-  for (std::size_t k = 0; k < kNames.size(); ++k) {
-    for (const bool is_before : {false, true}) {
-      PlotSeries series = series_of(is_before ? curves.before[k] : curves.after[k], both.x);
-      series.colour = rgb(kColours[k]);
-      series.is_dashed = is_before;
-      both.series.push_back(std::move(series));
-    }
-    legend.push_back({LegendEntry::Mark::area, kColours[k], kNames[k]});
-  }
-  apart.series.push_back(series_of(curves.distance, apart.x));
-  apart.series.back().colour = rgb(colour::kInk);
-  const double first_s = tick_s * static_cast<double>(curves.first_tick);
-  for (Plot* plot : {&both, &apart}) {
-    plot->bands.push_back({first_s, end_s, rgb(colour::kOrange, 0.12), ""});
-    fit_y(*plot, curves.is_angle ? 0.1 : 0.001);
-  }
-  apart.y.min = 0.0;
-  const Page page = blank_page(kWidth, kHeight, curves.joint,
-                               fmt::format("{}: the first different tick is {} ({:.3f} s)", title,
-                                           curves.first_tick, first_s));
-  cairo_t* cr = page.cr.get();
-  const double left = kPageMargin + 62.0, width = kWidth - 2.0 * kPageMargin - 82.0;
-  draw_legend(cr, {kPageMargin, kPageTop, kWidth - 2.0 * kPageMargin, 40.0}, legend);
-  draw_plot(cr, {left, kPageTop + 52.0, width, 270.0}, both);
-  draw_plot(cr, {left, kPageTop + 372.0, width, 130.0}, apart);
-  return write_png(path, page.surface.get());
+  const auto module = window_module();
+  return module ? (*module)->draw_curves(curves, title, path) : module.error();
 }
 std::string joints_plot_problem(const std::string&) { return ""; }
 #else

@@ -120,10 +120,12 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
 
 int show_window(std::string_view command, WindowOptions options, RunEnd& end,
                 WindowResult& result) {
+  const auto module = window_module();
+  if (!module) return fail(command, module.error().message);
   Progress progress(command);
   options.is_ended_from_outside = [&end] { return end.is_reached(); };
   options.show_progress = [&progress](double share) { progress.show(share); };
-  auto shown = run_window(options);
+  auto shown = (*module)->run_window(options);
   progress.clear();
   if (!shown) return fail(command, shown.error().message);
   result = std::move(*shown);

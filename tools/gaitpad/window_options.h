@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "tools/gaitpad/run_end.h"
-#ifdef GAITPAD_HAS_WINDOW
-#include "view/window.h"
-#endif
+#include "tools/gaitpad/window_module.h"
 
 namespace gaitpad {
 

@@ -81,6 +81,14 @@ class BvhWriter {
   bool finish();                 // returns false if anything could not be written
 
  private:
+  // A joint in the last frame.
+  struct Written {
+    quat rotation{1.0, 0.0, 0.0, 0.0};
+    std::array<double, 3> angles_rad{};
+    std::string text;         // its angles, a blank before each
+    bool is_settled = false;  // the same rotation again gives the same angles
+    void turn_to(const BvhOrder& order, const quat& turned);
+  };
   void write_hierarchy();
   void write_joint(int joint, int depth);
   bool is_joint(int joint) const;
@@ -88,8 +96,8 @@ class BvhWriter {
   std::ostream& out_;
   const Skeleton& skeleton_;
   BvhLayout layout_;
-  std::vector<int> joints_;  // with channels, in the order of the file
-  std::vector<std::array<double, 3>> previous_rad_;
+  std::vector<int> joints_;       // with channels, in the order of the file
+  std::vector<Written> written_;  // of each joint
   std::string line_;
   std::ostream::pos_type count_at_;
   long long frames_ = 0;

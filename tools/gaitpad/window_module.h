@@ -1,0 +1,54 @@
+// What of the program draws: the window, pictures of sticks, plots and the paper's figures. It is
+// in a module of its own, gaitpad-window.so beside the program or in lib/gaitpad, because loading
+// it with SDL, OpenGL and cairo takes longer than to replay a recording. The program and its module
+// are built and installed together.
+#pragma once
+#ifdef GAITPAD_HAS_WINDOW
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "check/trace_check.h"
+#include "draw/stick_picture.h"
+#include "gaitpad/gait_cycle.h"
+#include "gaitpad/result.h"
+#include "view/window.h"
+
+namespace gaitpad {
+
+struct FiguresArguments {
+  std::string folder, motion;
+  std::optional<Pace> pace;
+  bool as_json = false;
+};
+
+struct CrowdCurve {  // of `bench --plot`
+  std::string name;
+  unsigned colour = 0;
+  bool is_dashed = false;
+  std::vector<std::pair<double, double>> points;  // characters, ns a character and tick
+};
+
+struct WindowModule {
+  const char* version = nullptr;  // the program's
+  Result<WindowResult> (*run_window)(const WindowOptions& options) = nullptr;
+  std::optional<Error> (*write_stick_picture)(const std::string& path, const std::string& heading,
+                                              std::span<const StickPicture> sticks) = nullptr;
+  std::optional<Error> (*write_comparison)(const std::string& path, const std::string& heading,
+                                           std::span<const ComparedStick> sticks) = nullptr;
+  // Both courses of a joint that `check` found to differ.
+  std::optional<Error> (*draw_curves)(const JointCurves& curves, const std::string& title,
+                                      const std::string& path) = nullptr;
+  std::optional<Error> (*draw_crowd)(const std::vector<CrowdCurve>& curves,
+                                     const std::string& processor,
+                                     const std::string& path) = nullptr;
+  int (*run_figures)(const FiguresArguments& arguments) = nullptr;  // returns the exit status
+};
+
+// Loaded at the first call. Error: the module is missing, damaged or of another version.
+Result<const WindowModule*> window_module();
+
+}  // namespace gaitpad
+#endif

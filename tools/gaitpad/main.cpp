@@ -17,6 +17,7 @@
 
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "draw/sanitizer_hooks.h"
 #include "gaitpad/drivers.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"

@@ -235,9 +235,3 @@ Pixels read_pixels(int width, int height) {
 }
 
 }  // namespace gaitpad
-
-// Renderers keep some allocations until the process ends. SDL unloads them with the display, and
-// the leak checker then no longer finds the pointers.
-#ifdef GAITPAD_SANITIZED
-extern "C" int dlclose(void*) { return 0; }
-#endif

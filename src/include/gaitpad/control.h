@@ -17,10 +17,12 @@
 
 namespace gaitpad {
 
-// An adult with a leg of 0.84 m at full deflection. The walk ratio, step length over cadence, is
-// constant over speed (adults: 0.52 to 0.64 cm per step/min): length = sqrt(60 s * ratio * speed).
+// An adult with a leg of 0.84 m at full deflection. From 1 m/s on the walk ratio, step length over
+// cadence, is constant (adults: 0.52 to 0.64 cm per step/min): length = sqrt(60 s * ratio * speed).
+// Slower walks keep more of their cadence: it goes with the speed to the 3/8, the length with 5/8.
 inline constexpr double kMaxSpeed_m_s = 1.5;
 inline constexpr double kWalkRatio_m_min = 0.0058;  // metres per step a minute
+inline constexpr double kEvenRatioFrom_m_s = 1.0;   // that walk ratio
 inline constexpr double kMaxStepTime_s = 1.1;       // slower walks shorten the step instead
 inline constexpr double kTurnInPlaceStepTime_s = 0.48;
 inline constexpr double kMaxTurnRate_rad_s = 1.0;
@@ -39,6 +41,7 @@ inline constexpr double kFullFatigueLeaves = 0.4;  // of maximum speed and of ma
 struct GaitLimits {
   double max_speed_m_s = kMaxSpeed_m_s;
   double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);  // mean of both feet
+  double even_ratio_from = kEvenRatioFrom_m_s / kMaxSpeed_m_s;  // this share of the greatest speed
   std::array<double, 2> step_share{1.0, 1.0};  // by Side: of a foot's step over the mean of both
   double max_step_time_s = kMaxStepTime_s;     // straight ahead
   // At the greatest turn rate, less of it in proportion more: the foot of a slower step would land
@@ -60,7 +63,8 @@ struct OwnGait {
   double step_time_s = 0.5;                // half a cycle
 };
 // The limits of a walk with this gait: at `stick` the parameters are exactly those, at others speed
-// goes with the stick and the step with its root, so the walk's own walk ratio stays constant. A
+// goes with the stick and the step with its root, so the walk's own walk ratio stays constant, down
+// to the adult's 1 m/s or, if it is slower, to its own speed. Below, cadence falls as the adult's. A
 // slow walk is slow at every stick: its longest step lasts as many times longer than the adult's as
 // its own step. How fast it turns, and its steps while it turns, are the adult's.
 GaitLimits gait_limits(double leg_length_m, const OwnGait& own) noexcept;

@@ -31,24 +31,21 @@ constexpr std::size_t kMaxAxes = 64, kMaxButtons = 255, kMaxHats = 4;
 
 // SDL's functions under their own names. Its library is loaded when this driver is first asked for:
 // with the forty that it needs, that takes longer than to replay a recording.
-#define GAITPAD_SDL_FUNCTIONS(each)                                                               \
-  each(SDL_AddEventWatch) each(SDL_DelEventWatch) each(SDL_Delay) each(SDL_FilterEvents)          \
-      each(SDL_GameControllerMappingForDeviceIndex) each(SDL_GetError) each(SDL_GetRevision)      \
-          each(SDL_InitSubSystem) each(SDL_JoystickClose) each(SDL_JoystickFromInstanceID)        \
-              each(SDL_JoystickGetAxis) each(SDL_JoystickGetAxisInitialState)                     \
-                  each(SDL_JoystickGetButton) each(SDL_JoystickGetDeviceGUID) each(               \
-                      SDL_JoystickGetDeviceInstanceID) each(SDL_JoystickGetDeviceProduct)         \
-                      each(SDL_JoystickGetDeviceProductVersion) each(SDL_JoystickGetDeviceVendor) \
-                          each(SDL_JoystickGetHat) each(SDL_JoystickInstanceID)                   \
-                              each(SDL_JoystickNameForIndex) each(SDL_JoystickNumAxes)            \
-                                  each(SDL_JoystickNumButtons) each(SDL_JoystickNumHats)          \
-                                      each(SDL_JoystickOpen) each(SDL_JoystickPathForIndex)       \
-                                          each(SDL_JoystickRumble) each(SDL_JoystickUpdate)       \
-                                              each(SDL_LockJoysticks) each(SDL_NumJoysticks)      \
-                                                  each(SDL_QuitSubSystem) each(SDL_SetHint)       \
-                                                      each(SDL_TLSCleanup)                        \
-                                                          each(SDL_UnlockJoysticks)               \
-                                                              each(SDL_WasInit) each(SDL_free)
+// clang-format off
+#define GAITPAD_SDL_FUNCTIONS(each) \
+  each(SDL_AddEventWatch) each(SDL_DelEventWatch) each(SDL_Delay) each(SDL_FilterEvents) \
+  each(SDL_GameControllerMappingForDeviceIndex) each(SDL_GetError) each(SDL_GetRevision) \
+  each(SDL_InitSubSystem) each(SDL_JoystickClose) each(SDL_JoystickFromInstanceID) \
+  each(SDL_JoystickGetAxis) each(SDL_JoystickGetAxisInitialState) each(SDL_JoystickGetButton) \
+  each(SDL_JoystickGetDeviceGUID) each(SDL_JoystickGetDeviceInstanceID) \
+  each(SDL_JoystickGetDeviceProduct) each(SDL_JoystickGetDeviceProductVersion) \
+  each(SDL_JoystickGetDeviceVendor) each(SDL_JoystickGetHat) each(SDL_JoystickInstanceID) \
+  each(SDL_JoystickNameForIndex) each(SDL_JoystickNumAxes) each(SDL_JoystickNumButtons) \
+  each(SDL_JoystickNumHats) each(SDL_JoystickOpen) each(SDL_JoystickPathForIndex) \
+  each(SDL_JoystickRumble) each(SDL_JoystickUpdate) each(SDL_LockJoysticks) \
+  each(SDL_NumJoysticks) each(SDL_QuitSubSystem) each(SDL_SetHint) each(SDL_TLSCleanup) \
+  each(SDL_UnlockJoysticks) each(SDL_WasInit) each(SDL_free)
+// clang-format on
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a declared name
 #define GAITPAD_SDL_POINTER(name) decltype(&::name) name = nullptr;
 GAITPAD_SDL_FUNCTIONS(GAITPAD_SDL_POINTER)

@@ -1395,7 +1395,7 @@ PelvisOf<V> pelvis_over_ground(const WalkModel& model, const StateOf<V>& state,
   const Quat<V>& heading = pelvis.heading = rotation_about_y(state.path.heading_rad);
   const Vec<V> left{heading.w * heading.w - heading.y * heading.y, V{},
                     -2.0 * heading.w * heading.y};
-  pelvis.position_m = state.path.pelvis_m.x;
+  pelvis.position_m = state.path.pelvis_m.x + state.path.sway_m;
   // In a turn the body leans as a whole, about the ground below the hips.
   const V height_m = model.stand_m + cell.pelvis_m.y;
   V sine, cosine;

@@ -226,6 +226,9 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
 void plant_foot(WalkState& state, Side side) noexcept;
 void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept;
 
+// --- idle.cpp: breath, sway and glances of a person who stands -----------------------------------
+void advance_idle(const Tick& tick, WalkState& state) noexcept;
+
 // --- upper_body.cpp: what is above the hips ------------------------------------------------------
 // Where a pose is written: the root's place, and the local rotations by joint.
 struct PosePart {

@@ -26,11 +26,17 @@ StyleValues with_hip_weight(double weight) {
   return style;
 }
 
+StyleValues statue() {
+  StyleValues style;
+  style.body.idle = 0.0;
+  return style;
+}
+
 TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
   for (int ticks = 300; ticks < 420; ticks += 13) {  // in every part of a step
     MadeWalker walker;
-    walker.walk(0, 0.8, ticks);
-    walker.walk(0, 0, 700);
+    walker.walk(0, 0.8, ticks, statue());
+    walker.walk(0, 0, 700, statue());
     const WalkFrame& end = walker.last();
     EXPECT_EQ(end.stage, Stage::idle);
     EXPECT_EQ(end.speed_m_s, 0.0);
@@ -72,9 +78,9 @@ TEST(Walk, ALittleStickThatIsHeldBeginsAWalk) {
 
 TEST(Walk, StandingStillChangesNothing) {
   MadeWalker walker;
-  walker.walk(0, 0, 2);
+  walker.walk(0, 0, 10 * kRate, statue());  // the style is in force
   const WalkFrame first = walker.last();
-  walker.walk(0, 0, 480);
+  walker.walk(0, 0, 480, statue());
   EXPECT_LT(glm::distance(walker.last().pelvis_m, first.pelvis_m), 1e-9);
   EXPECT_EQ(walker.last().stage, Stage::idle);
 }

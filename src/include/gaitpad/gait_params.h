@@ -63,6 +63,7 @@ struct UpperBodyParams {
   TrunkParams trunk;
   std::array<HandParams, 2> hand;
   HeadParams head;
+  double idle = 1.0;  // how much of breath, sway and glances a stand shows: 0 none .. 1
   bool operator==(const UpperBodyParams&) const = default;
 };
 

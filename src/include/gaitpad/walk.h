@@ -162,6 +162,7 @@ struct UpperBodyState {
   std::array<double, sizeof(UpperBodyParams) / sizeof(double)>
       per_s{};              // rates of `now`, per second
   int unsettled_ticks = 0;  // until `now` is `goal`
+  EasedOf<vec3, double> eased_chest, eased_head;  // turns in the walker's axes, rotation vectors
   // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
   double forward_rad = 0.0, left_rad = 0.0;
   // What is seen of a change before the feet can follow: the mean speed, the lean into another one,
@@ -170,6 +171,15 @@ struct UpperBodyState {
   std::array<double, 2> out_rad{};
   // Height of the ground under a rail, smoothed, and its rate.
   std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};
+};
+
+// A person who stands: for how long, how much of it shows, and how far the trunk rises with the
+// breath and the head is turned by a glance, to the left and down positive. The hips' sway is of the
+// path.
+struct IdleState {
+  int ticks = 0;
+  double share = 0.0;  // 0 none .. 1 all
+  double breath_rad = 0.0, glance_rad = 0.0, nod_rad = 0.0;
 };
 
 // Where the walk is in its step, in ticks. A step is a roll and the flight after it; phases count
@@ -250,6 +260,7 @@ struct PathFlow {
   V landing_heading_rad{};
   std::array<V, 2> stride_m{};  // as in WalkFrame
   Damped<V> lean_rad;           // of the whole body into a turn, to the left positive
+  Vec<V> sway_m{};              // of the hips of one who stands, on the ground
 };
 struct PathState : PathFlow<double> {
   FootPlane landing_plane;
@@ -281,6 +292,7 @@ struct WalkState {
   std::array<FootState, 2> foot;
   LegState legs;
   UpperBodyState body;
+  IdleState idle;
 };
 
 // A character that stands at `place_m`, facing +z, on its terrain; the height of `place_m` does not

@@ -455,7 +455,10 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   state.path.base.height_m = state.path.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
+  // What may not jump has come to its place in that tick, without a rate.
   state.path.eased_height.rate = state.path.eased_height.bend = 0.0;
+  for (auto* turn : {&state.body.eased_chest, &state.body.eased_head})
+    turn->rate = turn->bend = vec3(0.0);
   state.legs.mean_rad = state.legs.lagging_rad = state.legs.even_rad;
   return state;
 }

@@ -36,7 +36,7 @@ struct Behind {
 };
 
 // The time in which hips come to rest most softly, neither beyond their place nor back, and not
-// before their feet.
+// before their feet. Hips that move away from it turn round soon.
 double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scale,
                    std::span<const Behind> landings) noexcept {
   constexpr int kTimes = 20, kPoints = 40;
@@ -45,7 +45,7 @@ double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scal
   double best_s = kLeastRest_s * scale, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kTimes; ++k) {
     const double share = kLeastShare + kShare * k;
-    const double time_s = std::clamp(way_m / (share * std::max(speed_m_s, 0.05)),
+    const double time_s = std::clamp(way_m / (share * std::max(std::abs(speed_m_s), 0.05)),
                                      kLeastRest_s * scale, kMostRest_s * scale);
     const double point_s = time_s / kPoints;
     SmoothFade<double> off{-way_m, speed_m_s * point_s, bend_m_s2 * point_s * point_s};
@@ -53,7 +53,7 @@ double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scal
     for (int n = kPoints; n > 1; --n) {
       off.move(static_cast<double>(n));
       brakes = std::max(brakes, std::abs(off.a) / (point_s * point_s));
-      over = std::max(over, off.x);
+      over = std::max({over, off.x, -way_m - off.x});
       back = std::max(back, -off.v / point_s);
       const double now_s = (kPoints - n + 1) * point_s;
       for (const Behind& landing : landings) {

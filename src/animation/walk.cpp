@@ -14,6 +14,7 @@
 // 3.3.2), and everything else comes from the data at this phase.
 #include "gaitpad/walk.h"
 
+#include "animation/sound_input.h"
 #include "animation/walk_figure.h"
 
 namespace gaitpad {
@@ -428,7 +429,7 @@ void fill_report(const vec3& pelvis_m, double dt_s, WalkState& state) noexcept {
 
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept {
   WalkState state;
-  state.path.hips_m = vec3(place_m.x, 0.0, place_m.z);
+  state.path.hips_m = vec3(mended_place(place_m.x, state), 0.0, mended_place(place_m.z, state));
   state.path.pelvis_m.x = state.path.last_pelvis_m = state.path.hips_m;
   state.gait.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
   state.gait.bounce.x = state.gait.sway.x = state.gait.ground_share.x = 1.0;
@@ -569,6 +570,10 @@ void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {
 
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept {
+  if (!is_sound_tick(dt_s)) return advance(model, params, mode, mended_tick(state), state, pose);
+  if (!is_sound(params))
+    return advance(model, mended_params(params, state), mode, dt_s, state, pose);
+  state.clock.tick_s = dt_s;
   const Tick tick = {model, params, mode, dt_s, is_flat(*model.terrain)};
   static thread_local PlannedTick planned;  // kept, for clearing it costs more than a leg
   plan_tick(tick, state, planned);

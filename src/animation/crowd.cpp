@@ -109,12 +109,15 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
                 first_joint_[member + 1] - first};
   }
   const std::span<const Walking> all(walks.data(), block.size());
-  if (lanes_in_use() >= 8) {
-    advance_all<8>(model, dt_s, all);
-  } else if (lanes_in_use() >= 4) {
-    advance_all<4>(model, dt_s, all);
-  } else {
-    advance_all<2>(model, dt_s, all);
+  const int parts = tick_parts(dt_s);
+  for (int part = 0; part < parts; ++part) {
+    if (lanes_in_use() >= 8) {
+      advance_all<8>(model, dt_s / parts, all);
+    } else if (lanes_in_use() >= 4) {
+      advance_all<4>(model, dt_s / parts, all);
+    } else {
+      advance_all<2>(model, dt_s / parts, all);
+    }
   }
 }
 

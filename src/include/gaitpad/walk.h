@@ -204,7 +204,12 @@ struct StepClock {
   double phase = 0.0, phase_rate = 0.0;   // per tick
   double stage_phase = 0.0;               // where the running stage began
   double end_rate = 0.0;                  // phase_rate at its end
-  double tick_s = 1.0 / 240.0;            // length of the last tick
+  // The running roll and step as planned, not rounded to ticks; how many ticks the step was given;
+  // and by how much the steps so far were too short.
+  double roll_s = 0.0, step_s = 0.0;
+  int step_ticks = 0;
+  double late_s = 0.0;
+  double tick_s = 1.0 / 240.0;  // length of the last tick
 };
 
 // How it walks: the parameters, smoothed, and the stride ratios that follow from them.
@@ -294,7 +299,8 @@ struct WalkState {
 // matter. Sets `pose`.
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept;
 
-// Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose.
+// Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose. The
+// walk is the same at every rate; a tick longer than 1/60 s is computed in equal parts.
 // Never fails: what the inverse kinematics could not reach is flagged in state.frame.ik_failed. A
 // parameter that is not finite or that check() refuses counts as what is in force instead, and so
 // does such a tick length; state.frame.bad_inputs counts them.

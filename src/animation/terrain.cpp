@@ -438,6 +438,26 @@ std::optional<Error> add_section(Terrain& terrain, const SectionShape& shape) {
   return std::nullopt;
 }
 
+std::optional<Error> check(const Terrain& terrain) {
+  Terrain laid;
+  for (std::size_t i = 0; i < terrain.sections.size(); ++i) {
+    const std::string what = terrain.name + ": sections[" + std::to_string(i) + "]";
+    const TerrainSection& is = terrain.sections[i];
+    if (auto problem = add_section(laid, is.shape)) return Error{what + ": " + problem->message};
+    const TerrainSection& should = laid.sections.back();
+    if (is.begin_m != should.begin_m || is.length_m != should.length_m ||
+        is.base_m != should.base_m || is.end_m != should.end_m || is.piece != should.piece)
+      return Error{what + " does not begin where the one before ends: lay it with add_section()"};
+  }
+  if (terrain.zones.size() > static_cast<std::size_t>(kMaxZones))
+    return Error{terrain.name + ": there are too many zones"};
+  for (const TerrainZone& zone : terrain.zones) {
+    if (!(zone.from_m <= zone.to_m && zone.right_m <= zone.left_m))
+      return Error{terrain.name + ": a zone ends before it begins, or a bound is not a number"};
+  }
+  return std::nullopt;
+}
+
 Terrain scaled(const Terrain& terrain, double factor) {
   Terrain t = terrain;
   for (TerrainSection& s : t.sections) {

@@ -595,11 +595,11 @@ void pose_head(const Tick& tick, WalkState& state, const PosePart& pose,
   const int head = body.head_path.back();
   const int chest = skeleton.joints[body.head_path[body.neck_at]].parent;
   const quat trunk = world.rotation[chest] * glm::conjugate(body.chest_standing);
-  const auto look = [&](const vec3& direction, double share) {
+  // `from`: the head's rotation without this look.
+  const auto look = [&](const quat& from, const vec3& direction, double share) {
     const Gaze to = gaze(body, trunk, direction);
-    const quat& own = world.rotation[head];
-    const quat wanted = nlerp(own, to.head, std::clamp(share, 0.0, 1.0) * to.share);
-    turn_head(body, skeleton, wanted * glm::conjugate(own), pose, world);
+    const quat wanted = nlerp(from, to.head, std::clamp(share, 0.0, 1.0) * to.share);
+    turn_head(body, skeleton, wanted * glm::conjugate(world.rotation[head]), pose, world);
   };
   const UpperBodyState& ahead_of = state.body;
   const IdleState& idle = state.idle;
@@ -627,14 +627,16 @@ void pose_head(const Tick& tick, WalkState& state, const PosePart& pose,
   }
   if (now.look > 0.0) {
     const SinCos p = sin_cos(now.pitch_deg * kDegree);
-    look(rotation_y(state.path.heading_rad + now.yaw_deg * kDegree) * vec3(0.0, p.sin, p.cos),
+    look(world.rotation[head],
+         rotation_y(state.path.heading_rad + now.yaw_deg * kDegree) * vec3(0.0, p.sin, p.cos),
          now.look);
   }
   // The head moves as it turns, so a near place is aimed at twice.
+  const quat own = world.rotation[head];
   for (int pass = 0; now.look_at > 0.0 && pass < 2; ++pass) {
     const vec3 way = vec3(now.x_m, now.y_m, now.z_m) - world.position_m[head];
     const double far = glm::length(way);
-    if (far > 1e-3) look(way / far, pass == 0 || now.look_at >= 1.0 ? now.look_at : 0.0);
+    if (far > 1e-3) look(own, way / far, now.look_at);
   }
 }
 

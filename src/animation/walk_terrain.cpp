@@ -324,8 +324,8 @@ constexpr double kSlopeLeanSmoothing = 0.3;
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
-constexpr double kRatioJump = 0.01;       // a tick: sticks are slower,
-constexpr double kFirstRatioJump = 0.06;  // but for a first step
+constexpr double kRatioJump_1_s = 2.4;        // sticks change the ratio slower,
+constexpr double kFirstRatioJump_1_s = 14.4;  // but for a first step
 
 // A step that is to end on another tread than it was has another ratio at once. The tables are read
 // for one that goes there until the flight begins.
@@ -335,7 +335,8 @@ void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
   state.gait.step_ratio = ratio;
   if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
     state.gait.off_ratio = {};
-  } else if (std::abs(change) > (state.clock.starting ? kFirstRatioJump : kRatioJump)) {
+  } else if (std::abs(change) >
+             tick.dt_s * (state.clock.starting ? kFirstRatioJump_1_s : kRatioJump_1_s)) {
     state.gait.off_ratio.x -= change;
   }
   state.gait.off_ratio.advance(

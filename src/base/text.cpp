@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/ranges.h"
+
 namespace gaitpad {
 
 std::string_view trimmed(std::string_view text, std::string_view blanks) noexcept {
@@ -235,6 +237,13 @@ std::string fixed(double value, int decimals) {
   std::string text;
   append_fixed(text, value, decimals);
   return text;
+}
+
+std::string short_number(double value) {
+  std::array<char, 32> text;
+  const auto written =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
+  return {text.data(), written.ptr};
 }
 
 }  // namespace gaitpad

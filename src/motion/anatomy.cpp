@@ -417,6 +417,7 @@ int pelvis_of(const Skeleton& skeleton, const std::array<LegJoints, 2>& legs) {
 
 Result<std::array<LegJoints, 2>> find_legs(const Motion& motion,
                                            const std::array<LegNames, 2>& given) {
+  if (auto problem = check(motion)) return *problem;
   const std::vector<JointFrames> frames = spread_frames(motion);
   const Figure figure{motion.skeleton, frames[frames.size() / 2].position_m};
   Legs legs;

@@ -79,6 +79,44 @@ TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   EXPECT_GT(w.state.frame.pelvis_m.z, 4.0);
 }
 
+TEST(Simulation, AConfigurationThatCannotRunIsRefusedWithOneSentence) {
+  const auto said_of = [](const auto& spoil) {
+    SimulationConfig config = made_config(2);
+    spoil(config);
+    const auto simulation = Simulation::create(config);
+    return simulation ? "" : simulation.error().message;
+  };
+  using Config = SimulationConfig;
+  EXPECT_EQ(said_of([](Config&) {}), "");
+  EXPECT_EQ(said_of([](Config& c) { c.styles.clear(); }),
+            "SimulationConfig: styles is empty, one is needed");
+  EXPECT_EQ(said_of([](Config& c) { c.walkers[1].style = 5; }),
+            "SimulationConfig: walkers[1].style is 5, outside [0, 1]");
+  EXPECT_EQ(said_of([](Config& c) { c.walkers[0].style = -1; }),
+            "SimulationConfig: walkers[0].style is -1, outside [0, 1]");
+  for (const int rate_hz : {0, -60, 1, 1'000'000}) {
+    EXPECT_NE(said_of([&](Config& c) { c.rate_hz = rate_hz; }).find("rate_hz is "),
+              std::string::npos)
+        << rate_hz;
+  }
+  EXPECT_EQ(said_of([](Config& c) { c.styles[1].hip_sway = -2.0; }),
+            "style \"limp\": StyleValues: hip_sway is -2, outside [0, 3]");
+  EXPECT_EQ(said_of([](Config& c) { c.terrain = nullptr; }),
+            "SimulationConfig: terrain is null, see flat_terrain()");
+  EXPECT_EQ(said_of([](Config& c) { c.walkers.clear(); }), "0 characters: 1 to 16 can walk");
+  EXPECT_EQ(said_of([](Config& c) { c.walkers[0].character.scale = 0.0; }),
+            "as in the motion file: scale is 0, outside [0.05, 20]");
+  EXPECT_EQ(
+      said_of([](Config& c) {
+        Terrain torn;
+        add_section(torn, FlatSection{2.0});
+        add_section(torn, FlatSection{2.0});
+        torn.sections[1].begin_m = 3.0;
+        c.terrain = std::make_shared<const Terrain>(torn);
+      }),
+      "flat: sections[1] does not begin where the one before ends: lay it with add_section()");
+}
+
 TEST(Simulation, OneGroundForAllGrowsWithTheLongestFoot) {
   SimulationConfig config = made_config(2);
   auto stairs = std::make_shared<Terrain>();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gaitpad/gait_params.h"
+#include "gaitpad/result.h"
 #include "gaitpad/walk.h"
 
 namespace gaitpad {
@@ -24,6 +25,8 @@ struct CrowdMember {
 class Crowd {
  public:
   Crowd() = default;  // nobody
+  // The same, or `members[3].model is null`.
+  static Result<Crowd> create(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
   // Everybody stands.
   explicit Crowd(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
 

@@ -97,6 +97,8 @@ struct Terrain {
   std::vector<TerrainSection> sections;
   std::vector<TerrainZone> zones;  // where zones overlap the last one counts
 };
+// Whether all sections are as add_section() lays them out, and the zones' numbers are numbers.
+std::optional<Error> check(const Terrain& terrain);
 
 // The ground at a place. Every place has one, NaN too. The line of a riser belongs to the upper
 // tread. No heap.

@@ -23,6 +23,11 @@
 
 namespace gaitpad {
 
+// A tick lasts at least and at most so long.
+inline constexpr double kLeastTick_s = 1e-4, kMostTick_s = 0.1;
+// A place in the world has coordinates of at most so much.
+inline constexpr double kFarthest_m = 1e6;
+
 // paper: the paper's steps 1-7 to the letter; no joint limits, and the solver may fail.
 // robust: damped, within joint limits, continuous; for characters that people look at.
 enum class IkMode : std::uint8_t { paper, robust };
@@ -51,7 +56,8 @@ struct WalkFrame {
   std::array<int, 2> steps{};          // landings so far
   // Height of the ground under heel and toe, planted or not.
   std::array<double, 2> heel_ground_m{}, toe_ground_m{};
-  int overhangs = 0;  // landings so far on a tread too short for the foot
+  int overhangs = 0;   // landings so far on a tread too short for the foot
+  int bad_inputs = 0;  // numbers so far that advance() or standing() did not take
 };
 
 // support: on its toe; flight: in the air; roll: landed on its heel, the toe comes down.
@@ -208,6 +214,12 @@ struct StepClock {
   double phase = 0.0, phase_rate = 0.0;   // per tick
   double stage_phase = 0.0;               // where the running stage began
   double end_rate = 0.0;                  // phase_rate at its end
+  // The running roll and step as planned, not rounded to ticks; how many ticks the step was given;
+  // and by how much the steps so far were too short.
+  double roll_s = 0.0, step_s = 0.0;
+  int step_ticks = 0;
+  double late_s = 0.0;
+  double tick_s = 1.0 / 240.0;  // length of the last tick
 };
 
 // How it walks: the parameters, smoothed, and the stride ratios that follow from them.
@@ -299,8 +311,11 @@ struct WalkState {
 // matter. Sets `pose`.
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept;
 
-// Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose.
-// Never fails: what the inverse kinematics could not reach is flagged in state.frame.ik_failed.
+// Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose. The
+// walk is the same at every rate; a tick longer than 1/60 s is computed in equal parts.
+// Never fails: what the inverse kinematics could not reach is flagged in state.frame.ik_failed. A
+// parameter that is not finite or that check() refuses counts as what is in force instead, and so
+// does such a tick length; state.frame.bad_inputs counts them.
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept;
 

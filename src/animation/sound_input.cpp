@@ -1,5 +1,6 @@
 #include "animation/sound_input.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/lanes.h"
@@ -9,7 +10,6 @@ namespace gaitpad {
 
 bool is_sound(const GaitParams& params) noexcept {
   using Pair = Lanes<2>;
-  static_assert(kParamsNumbers % 2 == 0);
   const ParamsRange& range = params_range();
   const auto pair = [](const GaitParams& of, std::size_t k) {
     Pair two;
@@ -18,8 +18,9 @@ bool is_sound(const GaitParams& params) noexcept {
   };
   MaskOf<Pair> outside{};
   for (std::size_t k = 0; k < kParamsNumbers; k += 2) {
-    const Pair x = pair(params, k);
-    outside |= ~((x >= pair(range.least, k)) & (x <= pair(range.most, k)));
+    const std::size_t at = std::min(k, kParamsNumbers - 2);
+    const Pair x = pair(params, at);
+    outside |= ~((x >= pair(range.least, at)) & (x <= pair(range.most, at)));
   }
   return !any(outside);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "animation/placement.h"
 #include "animation/sound_input.h"
 #include "animation/walk_parts.h"
 #include "base/ranges.h"
@@ -66,6 +67,20 @@ void Crowd::restart(int member, const vec3& place_m) noexcept {
   store_pose(member, pose);
 }
 
+void Crowd::move(int member, const Placement& by) noexcept {
+  Pose pose;
+  copy_pose(member, pose);
+  move_walk(by, states_[member], pose);
+  store_pose(member, pose);
+}
+
+void Crowd::put(int member, const vec3& place_m, double heading_rad) noexcept {
+  Pose pose;
+  copy_pose(member, pose);
+  put_walk(place_m, heading_rad, states_[member], pose);
+  store_pose(member, pose);
+}
+
 void Crowd::store_pose(int member, const Pose& pose) noexcept {
   roots_m_[member] = pose.root_m;
   std::copy_n(pose.local.begin(), pose.joint_count,
@@ -110,6 +125,8 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
   }
   const std::span<const Walking> all(walks.data(), block.size());
   const int parts = tick_parts(dt_s);
+  std::array<RootBefore, kTogether> before;
+  for (std::size_t i = 0; i < block.size(); ++i) before[i] = root_of(*walks[i].state);
   for (int part = 0; part < parts; ++part) {
     if (lanes_in_use() >= 8) {
       advance_all<8>(model, dt_s / parts, all);
@@ -118,6 +135,11 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
     } else {
       advance_all<2>(model, dt_s / parts, all);
     }
+  }
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    WalkState& state = *walks[i].state;
+    report_root(before[i], state);
+    place_in_world(state.placed, state.frame, *walks[i].root_m, walks[i].local[0]);
   }
 }
 

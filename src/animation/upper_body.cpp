@@ -633,8 +633,10 @@ void pose_head(const Tick& tick, WalkState& state, const PosePart& pose,
   }
   // The head moves as it turns, so a near place is aimed at twice.
   const quat own = world.rotation[head];
+  vec3 place_m(now.x_m, now.y_m, now.z_m);
+  if (state.placed != Placement{}) place_m = from_world(state.placed, place_m);
   for (int pass = 0; now.look_at > 0.0 && pass < 2; ++pass) {
-    const vec3 way = vec3(now.x_m, now.y_m, now.z_m) - world.position_m[head];
+    const vec3 way = place_m - world.position_m[head];
     const double far = glm::length(way);
     if (far > 1e-3) look(own, way / far, now.look_at);
   }

@@ -14,6 +14,7 @@
 // 3.3.2), and everything else comes from the data at this phase.
 #include "gaitpad/walk.h"
 
+#include "animation/placement.h"
 #include "animation/sound_input.h"
 #include "animation/walk_figure.h"
 
@@ -458,7 +459,15 @@ void fill_report(const vec3& pelvis_m, double dt_s, WalkState& state) noexcept {
 }  // namespace
 
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept {
+  return standing(model, place_m, 0.0, pose);
+}
+
+WalkState standing(const WalkModel& model, const vec3& place_m, double heading_rad,
+                   Pose& pose) noexcept {
   WalkState state;
+  const double yaw_rad = wrapped(mended_place(heading_rad, state));
+  const quat yaw = rotation_y(yaw_rad);
+  state.path.heading_rad = state.path.landing_heading_rad = state.path.last_heading_rad = yaw_rad;
   state.path.hips_m = vec3(mended_place(place_m.x, state), 0.0, mended_place(place_m.z, state));
   state.path.pelvis_m.x = state.path.last_pelvis_m = state.path.hips_m;
   state.gait.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
@@ -469,9 +478,11 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     FootState& foot = state.foot[side];
     for (Damped<double>& w : state.gait.weight[side]) w.x = 1.0;
     state.gait.time_s[side] = 0.5;
-    foot.heel_anchor_m = state.path.hips_m + vec3(leg.track_m, 0.0, -model.rest_lead_m);
+    foot.lift_yaw_rad = yaw_rad;
+    foot.pose.yaw = yaw;
+    foot.heel_anchor_m = state.path.hips_m + yaw * vec3(leg.track_m, 0.0, -model.rest_lead_m);
     if (!is_flat(*model.terrain)) {
-      foot.plane = standing_plane(model, side, foot.heel_anchor_m, 0.0);
+      foot.plane = standing_plane(model, side, foot.heel_anchor_m, yaw_rad);
       foot.heel_anchor_m = foot.plane.place_m;
       foot.pose.tilt = foot.plane.tilt;
     }
@@ -610,12 +621,15 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   state.clock.tick_s = dt_s;
   const int parts = tick_parts(dt_s);
   const Tick tick = {model, params, mode, dt_s / parts, is_flat(*model.terrain)};
+  const RootBefore before = root_of(state);
   static thread_local PlannedTick planned;  // kept, for clearing it costs more than a leg
   for (int part = 0; part < parts; ++part) {
     plan_tick(tick, state, planned);
     pose_legs(planned);
     finish_tick(planned, pose);
   }
+  report_root(before, state);
+  place_in_world(state.placed, state.frame, pose.root_m, pose.local[0]);
 }
 
 }  // namespace gaitpad

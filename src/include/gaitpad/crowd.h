@@ -50,6 +50,9 @@ class Crowd {
   void copy_pose(int member, Pose& pose) const noexcept;
   // Puts a member back to where it stands at first.
   void restart(int member, const vec3& place_m) noexcept;
+  // move_walk() and put_walk() of gaitpad/walk.h.
+  void move(int member, const Placement& by) noexcept;
+  void put(int member, const vec3& place_m, double heading_rad) noexcept;
 
  private:
   void store_pose(int member, const Pose& pose) noexcept;

@@ -37,6 +37,19 @@ enum class Stage : std::uint8_t {
   roll,    // Table I (b): the landed heel and the other foot's toe are planted
 };
 
+// Where coordinates lie in the world: turned by `heading_rad` about the vertical through their
+// origin, which is at `place_m`.
+struct Placement {
+  vec3 place_m{0.0};
+  double heading_rad = 0.0;  // to the left positive
+  bool operator==(const Placement&) const = default;
+};
+// A place in the world, and back.
+vec3 to_world(const Placement& placed, const vec3& place_m) noexcept;
+vec3 from_world(const Placement& placed, const vec3& world_m) noexcept;
+// Where `placed` lies after the world has been turned and shifted by `by`.
+Placement moved(const Placement& by, const Placement& placed) noexcept;
+
 // What one tick did, for export, tests and panels. World frame, metres: y up, floor 0, heading 0
 // along +z, x to the left at heading 0. Arrays are indexed by Side.
 struct WalkFrame {
@@ -46,6 +59,10 @@ struct WalkFrame {
   double turn_rate_rad_s = 0.0;
   double speed_m_s = 0.0;  // (left + right step) / cycle time of the running cycle; 0 when idle
   vec3 pelvis_m{0.0};
+  // Root motion: the hips' place on the ground; what the tick has added to it, in axes of the
+  // heading before (x left, z ahead); and to the heading. For engines that move their own capsule.
+  vec3 root_m{0.0}, root_moved_m{0.0};
+  double root_turned_rad = 0.0;
   std::array<double, 2>
       stride_m{};  // length of that foot's running or last step; backwards negative
   std::array<bool, 2> heel_planted{true, true}, toe_planted{true, true};
@@ -298,6 +315,12 @@ using LegState = LegFlow<double>;
 // All that a walk remembers. Plain, trivially copyable.
 struct WalkState {
   WalkFrame frame;
+  // A walk counts in coordinates of its own, in which the sections of its terrain lie, too. Poses
+  // and `frame` are in the world, where these coordinates lie so: writing it between two ticks
+  // moves the walk and its ground rigidly, and every bit of the rest stays. For a platform it is
+  // the platform's place in each tick; for a shifted origin and a teleport see move_walk() and
+  // put_walk().
+  Placement placed;
   StepClock clock;
   GaitState gait;
   PathState path;
@@ -310,6 +333,28 @@ struct WalkState {
 // A character that stands at `place_m`, facing +z, on its terrain; the height of `place_m` does not
 // matter. Sets `pose`.
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept;
+
+// The same, facing `heading_rad`.
+WalkState standing(const WalkModel& model, const vec3& place_m, double heading_rad,
+                   Pose& pose) noexcept;
+
+// Turns the walk about the world's vertical through the origin and shifts it, in the middle of a
+// step, too. Planted feet stay where they are in the moved frame.
+void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept;
+// The same, so that the hips come to be over a place and face a heading.
+void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept;
+
+// Where an engine has moved a character's capsule to, and how it goes on there. World.
+struct Capsule {
+  vec3 place_m{0.0};
+  double heading_rad = 0.0;  // that it is to have when it stands
+  vec3 velocity_m_s{0.0};
+  double turn_rate_rad_s = 0.0;
+};
+// The parameters by which a walk follows it, in steps of its own: feet stay planted, so the walk is
+// some centimetres off its capsule. It turns to where the capsule goes.
+GaitParams following(const Capsule& capsule, const WalkState& state, const StyleValues& style,
+                     const GaitLimits& limits) noexcept;
 
 // Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose. The
 // walk is the same at every rate; a tick longer than 1/60 s is computed in equal parts.

@@ -116,8 +116,7 @@ void CalibrationView::finish(std::vector<std::string>& messages) {
   guided_.reset();
   analysis_ = analysis_of(pad_.layout, pad_.tracks, pad_.frame);
   for (std::string& question : axes_questions(pad_)) messages.push_back(std::move(question));
-  if (!is_useful(*analysis_))
-    problem_ = "no stick was seen at rest with hands off, so no centre is known";
+  if (!is_useful(*analysis_)) problem_ = "no stick is known well enough: nothing to save";
   file_ = calibration_for(pad_.info, pad_.has_factory_sticks);
   const std::string own = options_.calibration_folder.empty()
                               ? ""

@@ -47,7 +47,7 @@ void GuidedCalibration::take_report(const Report& report) {
 void GuidedCalibration::end_recording() {
   has_ended_ = true;
   if (!guide_ || guide_->step() == GuideStep::done) return;
-  remarks_.emplace_back("the recording has ended: what it did not show is left out");
+  remarks_.emplace_back("the recording has ended: the steps that it does not show are skipped");
   while (guide_->step() != GuideStep::done) guide_->skip();
 }
 

@@ -129,11 +129,9 @@ struct GaitOverrides {
 //   faster or slower than any stick and style let it (in the sharpest turn: than a stick). Speed 0
 //   stands, whatever else is set.
 // - The turn rate replaces the sideways deflection, and is bounded as that is. Without speed and
-// with a neutral stick it turns
-//   in place.
+//   with a neutral stick it turns in place.
 // - A stride length counts only when stick or speed ask for strides; standing and turning in place
-// do
-//   not. Without a speed the step keeps the stick's time.
+//   do not. Without a speed the step keeps the stick's time.
 // - Parameters that are not overridden pass through bit-identically.
 GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitOverrides& overrides,
                        const GaitLimits& limits) noexcept;

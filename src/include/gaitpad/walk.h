@@ -80,8 +80,7 @@ struct WalkFrame {
 // support: on its toe; flight: in the air; roll: landed on its heel, the toe comes down.
 enum class FootMode : std::uint8_t { support, flight, roll };
 
-// --- What a walk remembers
-// ----------------------------------------------------------------------
+// --- What a walk remembers -----------------------------------------------------------------------
 // A tick computes several walks side by side, one in each lane of the processor's registers
 // (gaitpad/math.h). What all of them compute alike is a template of the number V: a double, or a
 // register of as many as it holds. The structs of V hold numbers alone.

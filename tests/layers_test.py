@@ -68,6 +68,7 @@ DRIVER_VENDORS = {
     "tools/rig/latency.cpp": ["linux/"],
     "tools/rig/plain_sdl.cpp": ["SDL2/"],
     "tools/soak/soak.cpp": ["SDL2/", "malloc.h"],
+    "tools/fuzz/fuzz_stream.cpp": ["lo/"],
     "tools/gaitpad/bench_work.cpp": ["malloc.h"],
     "tools/gaitpad/window_module.cpp": ["dlfcn.h"],
 }

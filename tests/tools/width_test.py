@@ -7,7 +7,7 @@ import pytest
 from support.program import ROOT, ROUND
 from support.terminal import Terminal
 
-COMMANDS = ("play", "replay", "record", "pads", "doctor", "decode", "monitor", "calibrate", "selftest", "motion", "ik", "figures",
+COMMANDS = ("play", "replay", "record", "pads", "doctor", "decode", "monitor", "calibrate", "forward", "selftest", "motion", "ik", "figures",
             "bench", "check", "list", "map")
 WALK, WORN = ROOT / "config/motions/keyframe_walk.toml", ROOT / "config/traces/worn.hid"
 OUTPUTS = (

@@ -349,6 +349,10 @@ double random_share(std::uint32_t seed) noexcept {
 }  // namespace
 
 Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept {
+  if (terrain.asked.ask != nullptr) {
+    const Ground ground = terrain.asked.ask(terrain.asked.game, x_m, z_m);
+    return std::isfinite(ground.height_m) ? ground : Ground{};
+  }
   const double z = bounded_place(z_m);
   const TerrainSection* s = section_at(terrain, z);
   if (!s) return {};
@@ -377,6 +381,7 @@ Stretch piece_at(const Terrain& terrain, double z_m) noexcept {
 }
 
 bool is_flat(const Terrain& terrain) noexcept {
+  if (terrain.asked.ask != nullptr) return false;
   return std::all_of(terrain.sections.begin(), terrain.sections.end(), [](const TerrainSection& s) {
     return std::holds_alternative<FlatSection>(s.shape);
   });
@@ -439,6 +444,8 @@ std::optional<Error> add_section(Terrain& terrain, const SectionShape& shape) {
 }
 
 std::optional<Error> check(const Terrain& terrain) {
+  if (terrain.asked.ask != nullptr && !terrain.sections.empty())
+    return Error{terrain.name + ": has sections and a ground that is asked for: one of them"};
   Terrain laid;
   for (std::size_t i = 0; i < terrain.sections.size(); ++i) {
     const std::string what = terrain.name + ": sections[" + std::to_string(i) + "]";

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "animation/floor.h"
 #include "animation/walk_figure.h"
 #include "motion/leg_pose.h"
 
@@ -60,11 +61,12 @@ void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
   const vec3 forward = heading_direction(state.path.heading_rad), left = glm::cross(kUp, forward);
   const vec3 under = state.path.hips_m + state.path.pelvis_m.v * (2.0 * smoothing_s / tick.dt_s) +
                      left * (scale * (side == kLeftSide ? hand.rail_side_m : -hand.rail_side_m));
+  const Floor floor{*tick.model.terrain, tick.placed};
   double sum = 0.0, weights = 0.0;
   for (int i = -kRailProbes; i <= kRailProbes && !tick.flat; ++i) {
     const vec3 at = under + forward * (i * kRailProbe_m * tick.model.size);
     const double weight = kRailProbes + 1.0 - std::abs(i);
-    sum += weight * ground_at(*tick.model.terrain, at.x, at.z).height_m;
+    sum += weight * ground_at(floor, at.x, at.z).height_m;
     weights += weight;
   }
   const double mean_m = tick.flat ? 0.0 : sum / weights;

@@ -14,6 +14,7 @@
 // 3.3.2), and everything else comes from the data at this phase.
 #include "gaitpad/walk.h"
 
+#include "animation/floor.h"
 #include "animation/placement.h"
 #include "animation/sound_input.h"
 #include "animation/walk_figure.h"
@@ -419,7 +420,7 @@ namespace {
 
 void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
   if (tick.flat) return;
-  const Terrain& terrain = *tick.model.terrain;
+  const Floor terrain{*tick.model.terrain, tick.placed};
   for (int side : {0, 1}) {
     const vec3 &heel = frame.heel_m[side], &toe = frame.toe_m[side];
     frame.heel_ground_m[side] = ground_at(terrain, heel.x, heel.z).height_m;
@@ -620,7 +621,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
     return advance(model, mended_params(params, state), mode, dt_s, state, pose);
   state.clock.tick_s = dt_s;
   const int parts = tick_parts(dt_s);
-  const Tick tick = {model, params, mode, dt_s / parts, is_flat(*model.terrain)};
+  const Tick tick = {model, params, mode, dt_s / parts, is_flat(*model.terrain), state.placed};
   const RootBefore before = root_of(state);
   static thread_local PlannedTick planned;  // kept, for clearing it costs more than a leg
   for (int part = 0; part < parts; ++part) {

@@ -13,7 +13,8 @@ struct Tick {
   const GaitParams& params;
   IkMode mode;
   double dt_s;
-  bool flat;  // no terrain: all that walk_terrain.cpp does is left out
+  bool flat;              // no terrain: all that walk_terrain.cpp does is left out
+  Placement placed = {};  // of the walk
 };
 
 // --- One walk, or several side by side -----------------------------------------------------------

@@ -52,7 +52,7 @@ void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& p
   move_walk(by, state, pose);
 }
 
-GaitParams following(const Capsule& capsule, const WalkState& state, const StyleValues& style,
+GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
                      const GaitLimits& limits) noexcept {
   constexpr double kCatchUp_s = 0.6, kTurns_s = 0.35;
   constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;  // so slow and so near, it has arrived

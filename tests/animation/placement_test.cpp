@@ -157,7 +157,7 @@ TEST(Placement, AWalkFollowsWhatAnEngineMoves) {
   const GaitLimits limits = gait_limits(adult());
   const double radius_m = 4.0, speed_m_s = 1.0;
   double worst_m = 0.0, drift_m = 0.0;
-  Capsule capsule;
+  CapsuleMotion capsule;
   std::array<vec3, 2> toe_m{};
   std::array<bool, 2> planted{};
   for (int tick = 0; tick < 30 * kRate; ++tick) {

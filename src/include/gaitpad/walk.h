@@ -344,7 +344,7 @@ void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept;
 void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept;
 
 // Where an engine has moved a character's capsule to, and how it goes on there. World.
-struct Capsule {
+struct CapsuleMotion {
   vec3 place_m{0.0};
   double heading_rad = 0.0;  // that it is to have when it stands
   vec3 velocity_m_s{0.0};
@@ -352,7 +352,7 @@ struct Capsule {
 };
 // The parameters by which a walk follows it, in steps of its own: feet stay planted, so the walk is
 // some centimetres off its capsule. It turns to where the capsule goes.
-GaitParams following(const Capsule& capsule, const WalkState& state, const StyleValues& style,
+GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
                      const GaitLimits& limits) noexcept;
 
 // Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose. The

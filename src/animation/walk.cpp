@@ -430,6 +430,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   WalkState state;
   state.path.hips_m = vec3(place_m.x, 0.0, place_m.z);
   state.path.pelvis_m.x = state.path.last_pelvis_m = state.path.hips_m;
+  state.path.wider_m = model.rest_wider_m;
   state.gait.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
   state.gait.bounce.x = state.gait.sway.x = state.gait.ground_share.x = 1.0;
   state.gait.step_time_s.x = 0.5;
@@ -438,7 +439,8 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     FootState& foot = state.foot[side];
     for (Damped<double>& w : state.gait.weight[side]) w.x = 1.0;
     state.gait.time_s[side] = 0.5;
-    foot.heel_anchor_m = state.path.hips_m + vec3(leg.track_m, 0.0, -model.rest_lead_m);
+    foot.heel_anchor_m =
+        state.path.hips_m + vec3(standing_track_m(model, side), 0.0, -model.rest_lead_m);
     if (!is_flat(*model.terrain)) {
       foot.plane = standing_plane(model, side, foot.heel_anchor_m, 0.0);
       foot.heel_anchor_m = foot.plane.place_m;

@@ -171,7 +171,7 @@ void plan_rest_place(const Tick& tick, WalkState& state) noexcept {
   const FootState& foot = state.foot[stands];
   state.path.rest_m = foot.heel_anchor_m +
                       heading_direction(foot.lift_yaw_rad) * model.rest_lead_m -
-                      left_of(foot.lift_yaw_rad) * model.leg[stands].track_m;
+                      left_of(foot.lift_yaw_rad) * standing_track_m(model, stands);
   state.path.rest_m.y = 0.0;
 }
 
@@ -272,8 +272,11 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
     state.gait.length_m[swing] = {step, 0.0};
     if (further > 0.0) state.gait.length_m[stands] = {further, 0.0};
   });
-  path.rest_m = path.landing_m + ahead * further + forward * model.rest_lead_m -
-                left * model.leg[swing].track_m;
+  // Beside the foot that stands while the last one closes.
+  const double aside_m = further > 0.0 ? model.leg[swing].track_m - model.leg[stands].track_m +
+                                             standing_track_m(model, stands)
+                                       : standing_track_m(model, swing);
+  path.rest_m = path.landing_m + ahead * further + forward * model.rest_lead_m - left * aside_m;
   path.rest_m.y = 0.0;
 }
 

@@ -7,7 +7,7 @@
 
 namespace gaitpad {
 
-bool is_sound(const GaitParams& params) noexcept {
+bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
   using Pair = Lanes<2>;
   static_assert(kParamsNumbers % 2 == 0);
   const ParamsRange& range = params_range();
@@ -16,8 +16,12 @@ bool is_sound(const GaitParams& params) noexcept {
     std::memcpy(&two, numbers_of(of).data() + k, sizeof two);
     return two;
   };
+  // The body's numbers, which stand last, are many and seldom change.
+  constexpr std::size_t kBody = sizeof(UpperBodyParams) / sizeof(double);
+  const bool same = std::memcmp(&params.body, &state.body.goal, sizeof params.body) == 0;
+  const std::size_t count = same ? kParamsNumbers - kBody + 1 : kParamsNumbers;
   MaskOf<Pair> outside{};
-  for (std::size_t k = 0; k < kParamsNumbers; k += 2) {
+  for (std::size_t k = 0; k + 1 < count; k += 2) {
     const Pair x = pair(params, k);
     outside |= ~((x >= pair(range.least, k)) & (x <= pair(range.most, k)));
   }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -922,8 +923,8 @@ void add_reports(std::string& text, int& ms, const std::array<int, 6>& bytes, in
   }
 }
 
-// A pad with one stick that is let go four times from all sides, at once and often enough to be
-// measured: sooner than any thumb. At rest it trembles by one count.
+// A pad whose left stick is let go four times from all sides and turned round twice, sooner than by
+// any thumb. At rest it trembles by one count.
 std::string thumb_trace() {
   std::string text =
       "R: 54 05 01 09 05 a1 01 15 00 26 ff 00 75 08 95 04 09 30 09 31 09 32 09 35 81 02 15 00 25 "
@@ -939,6 +940,13 @@ std::string thumb_trace() {
     add_reports(text, ms, {x, y, 0x80, 0x80, 8, 0}, 25, 8);
     rest(100);
   }
+  for (int degrees = 0; degrees <= 720; degrees += 4) {
+    const auto place = [degrees](double (*of)(double)) {
+      return static_cast<int>(std::lround(127.5 + 127.5 * of(degrees * kDegree)));
+    };
+    add_reports(text, ms, {place(&std::cos), place(&std::sin), 0x80, 0x80, 8, 0}, 1, 8);
+  }
+  rest(100);
   return text;
 }
 

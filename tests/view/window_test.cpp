@@ -1022,6 +1022,41 @@ TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
   EXPECT_NEAR(file->calibration.left.x.centre, (128.5 - 127.5) / 127.5, 0.004);
 }
 
+TEST_F(WindowFiles, TheGuideOfACalibrationFitsInASmallWindow) {
+  options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
+  options_.width = 640;
+  options_.height = 400;
+  Script script;
+  script.until("it runs", runs);
+  script.tap(SDLK_F8);
+  script.until("the guide is there",
+               [](const Glance&) { return Script::find("calibration of the right stick"); });
+  std::vector<UiItem> items;
+  script.until("it is looked at", [&items](const Glance&) {
+    items.assign(ui_items().begin(), ui_items().end());
+    return true;
+  });
+  run(script);
+  const auto found = [&items](const std::string& name) {
+    const auto item = std::ranges::find(items, name, &UiItem::name);
+    EXPECT_NE(item, items.end()) << name;
+    return item == items.end() ? UiItem{} : *item;
+  };
+  // Items are as large as they are seen: nothing is cut, and no stick lies below the buttons.
+  const float buttons_y = found("calibration skip").min.y;
+  for (const char* name : {"calibration of the left stick", "calibration of the right stick"}) {
+    const UiItem stick = found(name);
+    EXPECT_LE(stick.max.y, buttons_y) << name;
+    EXPECT_GE(stick.max.y - stick.min.y, 55.0f) << name;  // its name, its bar, a line of text
+  }
+  for (const auto& [name, width] :
+       {std::pair("calibration map", 140.0f), {"calibration test", 100.0f}}) {
+    const UiItem button = found(name);
+    EXPECT_GE(button.max.x - button.min.x, width) << name;
+    EXPECT_GE(button.max.y - button.min.y, 25.0f) << name;
+  }
+}
+
 TEST_F(WindowFiles, ACalibrationIsGivenUp) {
   Script script;
   script.until("it runs", [](const Glance& g) { return g.session.tick > 20; });

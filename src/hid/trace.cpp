@@ -231,8 +231,9 @@ Cause TraceReader::version(Words words) {
     constexpr std::string_view kRate = "rate_hz=";
     if (!word.starts_with(kRate)) continue;
     const auto rate = decimal(word.substr(kRate.size()), kMaxRateHz);
-    if (!rate || *rate < 1) {
-      return fmt::format("{} is no rate within 1 .. {}", in_quotes(word), kMaxRateHz);
+    if (!rate || *rate < kLeastRateHz) {
+      return fmt::format("{} is no rate within {} .. {}", in_quotes(word), kLeastRateHz,
+                         kMaxRateHz);
     }
     rate_hz = static_cast<int>(*rate);
   }
@@ -829,9 +830,9 @@ Result<std::int64_t> write_trace(const Trace& trace, const std::string& path) {
 // ---- Replaying
 
 Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz) {
-  if (rate_hz < 1 || rate_hz > kMaxRateHz) {
-    return Error{
-        fmt::format("{}: a rate of {} Hz is not within 1 .. {}", trace.path, rate_hz, kMaxRateHz)};
+  if (rate_hz < kLeastRateHz || rate_hz > kMaxRateHz) {
+    return Error{fmt::format("{}: a rate of {} Hz is not within {} .. {}", trace.path, rate_hz,
+                             kLeastRateHz, kMaxRateHz)};
   }
   if (trace.rate_hz && *trace.rate_hz != rate_hz) {
     return Error{fmt::format("{}: was recorded at {} Hz and cannot be replayed at {} Hz",

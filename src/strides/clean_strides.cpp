@@ -304,6 +304,7 @@ struct Builder {
 
 // What forbids to solve for this cycle, so that the solver meets nothing but walks.
 std::optional<std::string> fault_of(const GaitCycle& cycle) {
+  if (cycle.samples.size() != kCycleSamples) return "has no samples of a whole cycle";
   for (const double number : solver_input(cycle)) {
     if (!std::isfinite(number)) return "holds a number that is not finite";
   }
@@ -360,8 +361,8 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
 }
 
 Result<StrideFamily> stride_family(const GaitCycle& cycle) {
-  if (auto problem = check(cycle)) return *problem;
   if (const auto fault = fault_of(cycle)) return Error{cycle.name + ": " + *fault};
+  if (auto problem = check(cycle)) return *problem;
   const GaitCycle backwards = run_back(cycle);
   Builder builder(cycle), back(backwards);
   back.family.stand_rad = builder.family.stand_rad;

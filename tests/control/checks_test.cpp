@@ -49,9 +49,9 @@ TEST(Check, ASentenceNamesFieldValueAndRange) {
 // Their order is that of the fields: a number that is set through a field is found there.
 TEST(Check, TheNumbersOfParametersAreAllOfThem) {
   GaitParams params;
-  EXPECT_EQ(numbers_of(params).size(), 66u);
+  EXPECT_EQ(numbers_of(params).size(), 67u);
   params.stride[0].length_m = 3.0;
-  params.body.head.lead = 7.0;
+  params.body.idle = 7.0;
   EXPECT_EQ(numbers_of(params).front(), 3.0);
   EXPECT_EQ(numbers_of(params).back(), 7.0);
   for (std::size_t k = 0; k < kParamsNumbers; ++k)

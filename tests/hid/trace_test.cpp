@@ -200,8 +200,8 @@ TEST(Trace, DamageIsRefusedWithFileAndLine) {
   for (const char* version : {"0", "3", "x", ""})
     EXPECT_EQ(cause(std::string("V: ") + version + " rate_hz=240\n"),
               "t.hid:1: this version of the format is not known, 1 and 2 are");
-  EXPECT_EQ(cause("V: 1 rate_hz=0\n"), "t.hid:1: \"rate_hz=0\" is no rate within 1 .. 10000");
-  EXPECT_EQ(cause("R: 1 c0\nT: 5\nV: 1 rate_hz=1\n"), "t.hid:3: a V: line stands first, once");
+  EXPECT_EQ(cause("V: 1 rate_hz=0\n"), "t.hid:1: \"rate_hz=0\" is no rate within 10 .. 10000");
+  EXPECT_EQ(cause("R: 1 c0\nT: 5\nV: 1 rate_hz=10\n"), "t.hid:3: a V: line stands first, once");
   EXPECT_EQ(cause("R: 1 c0\nT: 5\nT: 4\n"), "t.hid:3: tick 4 comes after tick 5");
   EXPECT_EQ(cause("R: 1 c0\nT: 144001\n"),
             "t.hid:2: a gap of more than ten minutes: tick 144001 after tick 0");

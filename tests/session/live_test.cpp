@@ -384,13 +384,13 @@ TEST_F(LivePace, NotANumberAndNegativePacesStandStill) {
 
 TEST_F(LivePace, StoppingDoesNotWaitForADistantTick) {
   options_.live.record.clear();
-  options_.rate_hz = 1;
+  options_.rate_hz = kLeastRateHz;
   auto session = started();
   session->set_pace(1.0 / 1024.0);
   sleep_for(100);
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_TRUE(session->stop());
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, kPatience) << "not 17 minutes";
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kPatience) << "not 100 s";
 }
 
 TEST_F(LivePace, ARecordingOfCommandsPausesStepsAndSlowMotionReplaysToTheSamePoses) {
@@ -534,7 +534,7 @@ TEST_F(LivePace, ByHandOnlyRequestedTicksRun) {
 
 TEST_F(LivePace, AdvanceDoesNothingWhileTheClockRunsTicks) {
   options_.live.record.clear();
-  options_.rate_hz = 1;
+  options_.rate_hz = kLeastRateHz;
   auto session = started();
   session->advance(1000);
   EXPECT_LT(session->status().ticks, 100);

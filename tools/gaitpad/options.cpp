@@ -161,7 +161,7 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
   command.add_option("--map", spec.pad.map, "pad file that overrides config/pads");
   command
       .add_option("--rate", spec.rate_hz, fmt::format("ticks a second (default: {})", default_rate))
-      ->check(CLI::Range(1, kMaxRateHz));
+      ->check(CLI::Range(kLeastRateHz, kMaxRateHz));
 }
 
 std::string missing_window() {

@@ -125,7 +125,7 @@ SABOTAGES = [  # page, what it says, what is false
     ("docs/pads.md", "`model_of()`", "`model_for()`"),
     ("docs/pads.md", "`sony.cpp`", "`dualshock.cpp`"),
     ("docs/library.md", "`PadWish::driver`", "`PadWish::drivers`"),
-    ("docs/library.md", "`gaitpad::session`", "`gaitpad::sessions`"),
+    ("docs/library.md", "`gaitpad::session`", "`gaitpad::sitting`"),
     ("docs/ci.md", "`GAITPAD_SHARD_TOTAL`", "`GAITPAD_SHARD_COUNT`"),
     ("docs/ci.md", "`--strict`", "`--severe`"),
     ("docs/replay.md", "`play --commands`", "`play --max-hours`"),  # an option of another command

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "session/history.h"
 #include "view/camera.h"
 #include "view/crowd_bodies.h"
-#include "view/history.h"
 #include "view/mannequin.h"
 #include "view/ui.h"
 

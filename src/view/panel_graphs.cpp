@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "session/script.h"
-#include "view/history.h"
+#include "view/history_plots.h"
 #include "view/panels.h"
 
 namespace gaitpad {

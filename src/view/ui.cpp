@@ -624,7 +624,7 @@ double seconds_of(const Ui& ui, std::int64_t tick) {
   return static_cast<double>(tick) / std::max(ui.in.cast.rate_hz, 1);
 }
 
-std::int64_t last_tick(const UiTimeline& timeline) {
+std::int64_t last_tick(const Timeline& timeline) {
   return std::max<std::int64_t>(timeline.ticks - 1, 0);
 }
 
@@ -686,7 +686,7 @@ void draw_marks(Ui& ui, const Track& track, float y) {
 }
 
 void draw_track(Ui& ui, const UiRect& rect) {
-  const UiTimeline& timeline = *ui.in.timeline;
+  const Timeline& timeline = *ui.in.timeline;
   const Track track{rect, last_tick(timeline)};
   const float reach = ui.px(8);
   ImGui::SetCursorScreenPos({rect.x - reach, rect.y});
@@ -726,7 +726,7 @@ void icon_button(Ui& ui, std::string_view id, Icon icon, const ImVec2& at,
 
 // Draws the buttons and the time; returns the x behind them.
 float draw_transport(Ui& ui, float x, float y, bool is_full) {
-  const UiTimeline& timeline = *ui.in.timeline;
+  const Timeline& timeline = *ui.in.timeline;
   ButtonLook primary;
   primary.is_primary = true;
   icon_button(ui, "to begin", Icon::to_begin, {x, y});

@@ -22,10 +22,14 @@
 
 #include "base/files.h"
 #include "draw/picture.h"
+#include "draw/video.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
+#include "session/file_kind.h"
 #include "session/script.h"
+#include "session/show.h"
+#include "session/undo.h"
 #include "view/controls.h"
 #include "view/ensemble.h"
 #include "view/file_browser.h"
@@ -34,11 +38,8 @@
 #include "view/layout.h"
 #include "view/pad_dialog.h"
 #include "view/scene.h"
-#include "view/show.h"
 #include "view/surface.h"
 #include "view/tooltips.h"
-#include "view/undo.h"
-#include "view/video.h"
 #include "view/widgets.h"
 
 namespace gaitpad {
@@ -391,13 +392,13 @@ bool WindowLoop::is_ended() {
     return true;
   }
   if (options_.frames > 0) return result_.frames + 1 >= options_.frames;
-  const UiTimeline* timeline = show_->timeline();
+  const Timeline* timeline = show_->timeline();
   return makes_pictures() && timeline != nullptr && timeline->tick + 1 >= timeline->ticks;
 }
 
 void WindowLoop::show_progress() const {
   if (!options_.show_progress || !makes_pictures()) return;
-  const UiTimeline* timeline = show_->timeline();
+  const Timeline* timeline = show_->timeline();
   if (options_.frames > 0) {
     options_.show_progress(static_cast<double>(result_.frames) / options_.frames);
   } else if (timeline != nullptr) {
@@ -661,7 +662,7 @@ const LiveStatus* WindowLoop::shown_status() {
 
 UiInput WindowLoop::ui_input() {
   const SessionFrame& frame = show_->frame();
-  const UiTimeline* timeline = show_->timeline();
+  const Timeline* timeline = show_->timeline();
   UiInput in{.frame = frame,
              .cast = show_->cast(),
              .history = show_->history(),

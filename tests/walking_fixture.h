@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "gaitpad/session_frame.h"
 #include "gaitpad/session_spec.h"
+#include "gaitpad/simulation.h"
+#include "session/history.h"
 #include "tests/folders.h"
 #include "tests/value_of.h"
-#include "view/ui.h"
 
 namespace gaitpad {
 

@@ -1,4 +1,4 @@
-#include "view/show.h"
+#include "session/show.h"
 
 #include <algorithm>
 #include <cmath>
@@ -132,7 +132,7 @@ class PlaybackShow final : public Show {
   void set_pace(double pace) override { pace_ = pace; }
   void step() override { seek(tick() + 1); }
 
-  const UiTimeline* timeline() override {
+  const Timeline* timeline() override {
     timeline_.tick = is_there_ ? playback_->frame().tick : tick();
     timeline_.ticks = playback_->ticks();
     timeline_.marks = playback_->marks();
@@ -173,7 +173,7 @@ class PlaybackShow final : public Show {
   double position_ = 0.0;  // ticks; where the playback is to be
   bool is_there_ = true;
   bool is_for_pictures_ = false, are_remarks_taken_ = false;
-  UiTimeline timeline_;
+  Timeline timeline_;
 };
 
 // The last state of a show that has ended.

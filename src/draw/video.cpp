@@ -1,4 +1,4 @@
-#include "view/video.h"
+#include "draw/video.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -23,7 +23,6 @@
 #include <vector>
 
 #include "base/files.h"
-#include "draw/picture.h"
 
 namespace gaitpad {
 namespace {

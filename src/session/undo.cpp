@@ -1,4 +1,4 @@
-#include "view/undo.h"
+#include "session/undo.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "draw/picture.h"
 #include "gaitpad/result.h"
-#include "view/surface.h"
 
 namespace gaitpad {
 

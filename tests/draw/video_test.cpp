@@ -1,6 +1,6 @@
 // Videos are looked at by ffprobe and ffmpeg; where they are not installed, the tests of the file
 // are skipped. What goes wrong is played by small scripts in ffmpeg's place.
-#include "view/video.h"
+#include "draw/video.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
-#include "view/undo.h"
+#include "session/undo.h"
 
-#include "tests/view/ui_fixture.h"
+#include "tests/walking_fixture.h"
 
 namespace gaitpad {
 namespace {
@@ -8,10 +8,9 @@ namespace {
 using Commands = std::vector<std::string>;
 
 // Two characters; what is sent goes through the list, as in the window.
-class Undo : public UiTest {
+class Undo : public WalkingTest {
  protected:
   void SetUp() override {
-    UiTest::SetUp();
     start({"even", "limp_left"});
     step(2);
   }

@@ -1,22 +1,30 @@
-// What the window shows: a live session, or a trace on a time line, behind one interface.
+// What a viewer shows: a live session, or a trace on a time line, behind one interface.
 #pragma once
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "gaitpad/live.h"
 #include "gaitpad/result.h"
+#include "session/history.h"
 #include "session/playback.h"
-#include "view/history.h"
-#include "view/ui.h"
 
 namespace gaitpad {
 
 inline constexpr int kPictureRateHz = 60;  // frames per second of the session in pictures
+
+// The time line of a playback.
+struct Timeline {
+  std::int64_t tick = 0, ticks = 0;
+  std::span<const PlaybackMark> marks;
+  double pace = 1.0;
+  bool is_looping = false, is_computing = false;
+};
 
 class Show {
  public:
@@ -61,7 +69,7 @@ class Show {
   virtual bool has_ended() const noexcept { return false; }  // of a recording that plays as the pad
   virtual const LiveStatus* status() { return nullptr; }
   // Playback only.
-  virtual const UiTimeline* timeline() { return nullptr; }
+  virtual const Timeline* timeline() { return nullptr; }
   virtual void seek(std::int64_t) {}
   virtual void set_looping(bool) {}
 

@@ -1,4 +1,4 @@
-#include "view/history.h"
+#include "session/history.h"
 
 #include <gtest/gtest.h>
 

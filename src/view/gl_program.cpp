@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <vector>
 
 namespace gaitpad {
 namespace {
@@ -42,45 +42,79 @@ Name generated(void (*generate)(GLsizei, GLuint*)) {
 
 }  // namespace
 
-GlBuffer new_buffer() { return generated<GlBuffer>(glGenBuffers); }
 GlVertexArray new_vertex_array() { return generated<GlVertexArray>(glGenVertexArrays); }
 GlFrameBuffer new_frame_buffer() { return generated<GlFrameBuffer>(glGenFramebuffers); }
 GlRenderBuffer new_render_buffer() { return generated<GlRenderBuffer>(glGenRenderbuffers); }
 GlTexture new_texture() { return generated<GlTexture>(glGenTextures); }
 
-void set_vertex_parts(const VertexPart* parts, int count, GLuint divisor) {
-  GLsizei stride = 0;
-  for (int i = 0; i < count; ++i) stride += parts[i].floats * GLsizei{sizeof(float)};
+void GlRows::add(Of of, std::initializer_list<RowPart> parts) {
+  const auto kind = static_cast<std::size_t>(of);
+  if (vertices_.get() == 0) vertices_ = new_vertex_array();
+  buffer_[kind] = generated<GlBuffer>(glGenBuffers);
+  glBindVertexArray(vertices_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, buffer_[kind].get());
+  GLsizei row_bytes = 0;
+  for (const RowPart& part : parts) row_bytes += part.floats * GLsizei{sizeof(float)};
   std::size_t offset = 0;
-  for (int i = 0; i < count; ++i) {
-    glEnableVertexAttribArray(parts[i].location);
-    glVertexAttribPointer(parts[i].location, parts[i].floats, GL_FLOAT, GL_FALSE, stride,
+  for (const RowPart& part : parts) {
+    glEnableVertexAttribArray(part.location);
+    glVertexAttribPointer(part.location, part.floats, GL_FLOAT, GL_FALSE, row_bytes,
                           reinterpret_cast<const void*>(offset));
-    glVertexAttribDivisor(parts[i].location, divisor);
-    offset += static_cast<std::size_t>(parts[i].floats) * sizeof(float);
+    glVertexAttribDivisor(part.location, of == Of::instance ? 1 : 0);
+    offset += static_cast<std::size_t>(part.floats) * sizeof(float);
+  }
+  glBindVertexArray(0);
+}
+
+void GlRows::load(Of of, const void* data, std::size_t count, std::size_t row_bytes) {
+  const auto kind = static_cast<std::size_t>(of);
+  glBindBuffer(GL_ARRAY_BUFFER, buffer_[kind].get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(count * row_bytes), data, GL_STREAM_DRAW);
+  count_[kind] = static_cast<GLsizei>(count);
+}
+
+void GlRows::load_triangles(const std::vector<std::uint32_t>& indices) {
+  if (indices_.get() == 0) indices_ = generated<GlBuffer>(glGenBuffers);
+  glBindVertexArray(vertices_.get());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.get());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(GLuint)),
+               indices.data(), GL_DYNAMIC_DRAW);
+  index_count_ = static_cast<GLsizei>(indices.size());
+}
+
+void GlRows::draw_squares(GLsizei count) const {
+  glBindVertexArray(vertices_.get());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count);
+}
+
+void GlRows::draw_triangles() const {
+  glBindVertexArray(vertices_.get());
+  if (index_count_ > 0) {
+    glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  } else {
+    glDrawArrays(GL_TRIANGLES, 0, count_[0]);
   }
 }
 
-void upload(const GlBuffer& buffer, const void* data, std::size_t bytes) {
-  glBindBuffer(GL_ARRAY_BUFFER, buffer.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
+void GlRows::draw_triangles_of(GLsizei instances) const {
+  glBindVertexArray(vertices_.get());
+  glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr, instances);
 }
 
-Result<GlProgram> GlProgram::link(const char* name, const std::string& vertex,
-                                  const std::string& fragment) {
+std::optional<Error> GlProgram::link(const char* name, const std::string& vertex,
+                                     const std::string& fragment) {
   const auto first = compiled(name, GL_VERTEX_SHADER, vertex);
   if (!first) return first.error();
   const auto second = compiled(name, GL_FRAGMENT_SHADER, fragment);
   if (!second) return second.error();
-  GlProgram program;
-  program.name_ = GlName<FreeProgram>(glCreateProgram());
-  const GLuint id = program.name_.get();
+  name_ = GlName<FreeProgram>(glCreateProgram());
+  const GLuint id = name_.get();
   for (const Shader* shader : {&*first, &*second}) glAttachShader(id, shader->get());
   glLinkProgram(id);
   for (const Shader* shader : {&*first, &*second}) glDetachShader(id, shader->get());
   GLint is_good = GL_FALSE;
   glGetProgramiv(id, GL_LINK_STATUS, &is_good);
-  if (is_good == GL_TRUE) return program;
+  if (is_good == GL_TRUE) return std::nullopt;
   return Error{fmt::format("OpenGL: the shaders of the {}: {}", name,
                            log_of(id, glGetProgramiv, glGetProgramInfoLog))};
 }

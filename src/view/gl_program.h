@@ -3,8 +3,13 @@
 #pragma once
 #include <epoxy/gl.h>
 
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "draw/picture.h"
 #include "gaitpad/math.h"
@@ -57,30 +62,51 @@ using GlFrameBuffer = GlName<FreeFrameBuffer>;
 using GlRenderBuffer = GlName<FreeRenderBuffer>;
 using GlTexture = GlName<FreeTexture>;
 
-GlBuffer new_buffer();
 GlVertexArray new_vertex_array();
 GlFrameBuffer new_frame_buffer();
 GlRenderBuffer new_render_buffer();
 GlTexture new_texture();
 
-// A part of a row of floats, one row for each vertex or instance: `floats` numbers for attribute
-// `location`.
-struct VertexPart {
+// A part of a row of floats: `floats` numbers for attribute `location`.
+struct RowPart {
   GLuint location;
   GLint floats;
 };
-// Applies to the bound vertex array and buffer. `divisor` 1: one row for each instance, 0: for each
-// vertex.
-void set_vertex_parts(const VertexPart* parts, int count, GLuint divisor);
-// Replaces the buffer's content.
-void upload(const GlBuffer& buffer, const void* data, std::size_t bytes);
+// What a program draws: rows of floats, one for each vertex or one for each instance, and triangles
+// as indices of vertices.
+class GlRows {
+ public:
+  enum class Of : std::uint8_t { vertex, instance };
+  // What such a row holds; call it before load().
+  void add(Of of, std::initializer_list<RowPart> parts);
+  // Replaces the rows, and the indices.
+  template <class Row>
+  void load(Of of, const std::vector<Row>& rows) {
+    load(of, rows.data(), rows.size(), sizeof(Row));
+  }
+  void load_triangles(const std::vector<std::uint32_t>& indices);
+
+  // Every instance, or the first `count`, as a square whose corners the vertex shader places.
+  void draw_squares() const { draw_squares(count_[1]); }
+  void draw_squares(GLsizei count) const;
+  // The triangles of the indices or, without indices, of each three vertices.
+  void draw_triangles() const;
+  void draw_triangles_of(GLsizei instances) const;
+
+ private:
+  void load(Of of, const void* data, std::size_t count, std::size_t row_bytes);
+  GlVertexArray vertices_;
+  std::array<GlBuffer, 2> buffer_;  // of Of
+  std::array<GLsizei, 2> count_ = {};
+  GlBuffer indices_;
+  GLsizei index_count_ = 0;
+};
 
 class GlProgram {
  public:
-  GlProgram() = default;
   // `name` identifies the program in the error if a shader does not compile.
-  static Result<GlProgram> link(const char* name, const std::string& vertex,
-                                const std::string& fragment);
+  std::optional<Error> link(const char* name, const std::string& vertex,
+                            const std::string& fragment);
   void use() const { glUseProgram(name_.get()); }
   // The program has to be in use. A name that the shaders do not use is ignored.
   void set(const char* uniform, double value) const;

@@ -49,7 +49,7 @@ struct ShadowPlace {
 // Draws bodies of capsules, instanced, and their shadows into a texture of the floor.
 class CapsuleScene {
  public:
-  static Result<CapsuleScene> create(const MeshDetail& detail);
+  std::optional<Error> open(const MeshDetail& detail);
   // Uploads the bodies and lines of a picture; those that are not finite are left out.
   void load(const SceneContent& content, const SceneView& view);
   // Binds a frame buffer of its own and changes the viewport.
@@ -59,7 +59,6 @@ class CapsuleScene {
   GLuint shadow_texture() const noexcept { return shadow_.get(); }
 
  private:
-  CapsuleScene() = default;
   void make_mesh(const MeshDetail& detail);
   void make_shadow_target(int size_px);
   ShadowPlace shadow_place() const noexcept;
@@ -70,11 +69,9 @@ class CapsuleScene {
     glm::vec3 across_b;
   };
   GlProgram program_, shadow_program_;
-  GlVertexArray vertices_;
-  GlBuffer mesh_, indices_, instances_;
+  GlRows bodies_;
   GlTexture shadow_;
   GlFrameBuffer shadow_target_;
-  GLsizei index_count_ = 0;
   int shadow_px_ = 0;
 
   std::vector<Instance> rows_;       // bodies near the floor, the others, lines
@@ -114,21 +111,19 @@ double floor_below(const SceneContent& content, const vec3& place_m) {
   return mean_ground_m(*content.terrain, place_m.x, place_m.z);
 }
 
-Result<CapsuleScene> CapsuleScene::create(const MeshDetail& detail) {
-  CapsuleScene capsules;
-  auto body = GlProgram::link("bodies", shader::kBodyVertex, shader::kBodyFragment);
-  if (!body) return body.error();
-  auto shadow = GlProgram::link("shadows", shader::kShadowVertex, shader::kShadowFragment);
-  if (!shadow) return shadow.error();
-  capsules.program_ = std::move(*body);
-  capsules.shadow_program_ = std::move(*shadow);
-  capsules.make_mesh(detail);
-  capsules.make_shadow_target(detail.shadow_px);
-  glBindFramebuffer(GL_FRAMEBUFFER, capsules.shadow_target_.get());
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+std::optional<Error> CapsuleScene::open(const MeshDetail& detail) {
+  if (auto problem = program_.link("bodies", shader::kBodyVertex,
+                                   std::string(shader::kLight) + shader::kBodyFragment))
+    return problem;
+  if (auto problem =
+          shadow_program_.link("shadows", shader::kShadowVertex, shader::kShadowFragment))
+    return problem;
+  make_mesh(detail);
+  make_shadow_target(detail.shadow_px);
+  glBindFramebuffer(GL_FRAMEBUFFER, shadow_target_.get());
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     return Error{"OpenGL: the renderer cannot draw into a picture of two colours"};
-  }
-  return capsules;
+  return std::nullopt;
 }
 
 // Rows of latitude from one pole to the seam, then from the seam to the other pole. The triangles
@@ -146,31 +141,18 @@ void CapsuleScene::make_mesh(const MeshDetail& detail) {
                        at_b ? 1.0f : 0.0f});
     }
   }
-  std::vector<std::uint16_t> indices;
+  std::vector<std::uint32_t> indices;
   for (int r = 0; r + 1 < rows; ++r) {
     for (int c = 0; c < columns; ++c) {
       const int a = r * columns + c, b = r * columns + (c + 1) % columns;
-      for (const int i : {a, b, b + columns, a, b + columns, a + columns}) {
-        indices.push_back(static_cast<std::uint16_t>(i));
-      }
+      for (const int i : {a, b, b + columns, a, b + columns, a + columns})
+        indices.push_back(static_cast<std::uint32_t>(i));
     }
   }
-  index_count_ = static_cast<GLsizei>(indices.size());
-  mesh_ = new_buffer();
-  indices_ = new_buffer();
-  instances_ = new_buffer();
-  vertices_ = new_vertex_array();
-  glBindVertexArray(vertices_.get());
-  upload(mesh_, spots.data(), spots.size() * sizeof(spots[0]));
-  constexpr VertexPart kSpot[] = {{0, 4}};
-  set_vertex_parts(kSpot, 1, 0);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.get());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 2), indices.data(),
-               GL_STATIC_DRAW);
-  glBindBuffer(GL_ARRAY_BUFFER, instances_.get());
-  constexpr VertexPart kInstance[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 3}, {6, 3}};
-  set_vertex_parts(kInstance, 6, 1);
-  glBindVertexArray(0);
+  bodies_.add(GlRows::Of::vertex, {{0, 4}});
+  bodies_.add(GlRows::Of::instance, {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 3}, {6, 3}});
+  bodies_.load(GlRows::Of::vertex, spots);
+  bodies_.load_triangles(indices);
 }
 
 void CapsuleScene::make_shadow_target(int size_px) {
@@ -216,7 +198,7 @@ void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
                      glm::vec3(floor_below(content, l.a_m), floor_below(content, l.b_m), 0.0),
                      glm::vec3(kLeft)});
   }
-  upload(instances_, rows_.data(), rows_.size() * sizeof(Instance));
+  bodies_.load(GlRows::Of::instance, rows_);
 }
 
 // Around all bodies and their shadows, in whole texels, so that shadows do not swim.
@@ -255,7 +237,6 @@ ShadowPlace CapsuleScene::draw_shadows() {
   glClear(GL_COLOR_BUFFER_BIT);
   glEnable(GL_BLEND);
   glBlendEquation(GL_MAX);
-  glBindVertexArray(vertices_.get());
   shadow_program_.use();
   shadow_program_.set("centre", place.centre_m);
   shadow_program_.set("half_size", place.half_m);
@@ -264,7 +245,7 @@ ShadowPlace CapsuleScene::draw_shadows() {
     shadow_program_.set("slide", slide);
     shadow_program_.set("softness", softness);
     shadow_program_.set("fading", fading);
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
+    bodies_.draw_squares(static_cast<GLsizei>(count));
   };
   glColorMask(GL_TRUE, GL_FALSE, GL_FALSE, GL_FALSE);
   draw(vec2(kLightDirection.x, kLightDirection.z) / kLightDirection.y, {0.02, 0.075}, 0.0,
@@ -296,15 +277,13 @@ void CapsuleScene::draw(const SceneView& view, int samples) const {
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   glFrontFace(GL_CCW);
-  glBindVertexArray(vertices_.get());
   const GLbitfield half = (1u << (samples / 2)) - 1u, all = (1u << samples) - 1u;
   const std::array<GLbitfield, 3> shares = {all, half, all & ~half};
   if (has_layers_ && samples > 1) glEnable(GL_SAMPLE_MASK);
   for (std::size_t layer = 0; layer < (has_layers_ ? shares.size() : 1); ++layer) {
     program_.set("layer", static_cast<double>(layer));
     glSampleMaski(0, shares[layer]);
-    glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_SHORT, nullptr,
-                            static_cast<GLsizei>(capsules_));
+    bodies_.draw_triangles_of(static_cast<GLsizei>(capsules_));
   }
   glDisable(GL_SAMPLE_MASK);
   glDisable(GL_CULL_FACE);
@@ -313,66 +292,46 @@ void CapsuleScene::draw(const SceneView& view, int samples) const {
 // Draws the bodies of a crowd, instanced, each capsule as one rectangle, and their shades.
 class CrowdScene {
  public:
-  static Result<CrowdScene> create();
-  void draw(const SceneContent& content, const SceneView& view, int samples) const;
+  std::optional<Error> open();
+  void draw(const SceneContent& content, const SceneView& view, int samples);
   // Call it when the floor is drawn.
-  void draw_shades(const SceneContent& content, const SceneView& view) const;
+  void draw_shades(const SceneContent& content, const SceneView& view);
 
  private:
-  CrowdScene() = default;
   GlProgram body_, shade_;
-  GlVertexArray body_vertices_, shade_vertices_;
-  GlBuffer body_rows_, shade_rows_;
+  GlRows bodies_, shades_;
 };
 
-Result<CrowdScene> CrowdScene::create() {
-  CrowdScene crowd;
-  auto body = GlProgram::link("crowd", shader::kFlatVertex, shader::kFlatFragment);
-  if (!body) return body.error();
-  auto shade = GlProgram::link("crowd's shades", shader::kShadeVertex, shader::kShadeFragment);
-  if (!shade) return shade.error();
-  crowd.body_ = std::move(*body);
-  crowd.shade_ = std::move(*shade);
-  crowd.body_vertices_ = new_vertex_array();
-  crowd.body_rows_ = new_buffer();
-  glBindVertexArray(crowd.body_vertices_.get());
-  glBindBuffer(GL_ARRAY_BUFFER, crowd.body_rows_.get());
-  constexpr VertexPart kBody[] = {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 1}};
-  set_vertex_parts(kBody, 5, 1);
-  crowd.shade_vertices_ = new_vertex_array();
-  crowd.shade_rows_ = new_buffer();
-  glBindVertexArray(crowd.shade_vertices_.get());
-  glBindBuffer(GL_ARRAY_BUFFER, crowd.shade_rows_.get());
-  constexpr VertexPart kShade[] = {{1, 4}, {2, 4}, {3, 1}};
-  set_vertex_parts(kShade, 3, 1);
-  glBindVertexArray(0);
-  return crowd;
+std::optional<Error> CrowdScene::open() {
+  bodies_.add(GlRows::Of::instance, {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 1}});
+  shades_.add(GlRows::Of::instance, {{1, 4}, {2, 4}, {3, 1}});
+  if (auto problem = body_.link("crowd", shader::kFlatVertex,
+                                std::string(shader::kLight) + shader::kFlatFragment))
+    return problem;
+  return shade_.link("crowd's shades", shader::kShadeVertex, shader::kShadeFragment);
 }
 
-void CrowdScene::draw(const SceneContent& content, const SceneView& view, int samples) const {
+void CrowdScene::draw(const SceneContent& content, const SceneView& view, int samples) {
   if (content.crowd.empty()) return;
-  upload(body_rows_, content.crowd.data(), content.crowd.size() * sizeof(FlatCapsule));
+  bodies_.load(GlRows::Of::instance, content.crowd);
   light_bodies(body_, view);
   body_.set("moved", content.crowd_origin_m - view.origin_m);
   body_.set("samples", static_cast<double>(samples));
   if (samples > 1) glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
-  glBindVertexArray(body_vertices_.get());
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(content.crowd.size()));
+  bodies_.draw_squares();
   if (samples > 1) glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 }
 
-void CrowdScene::draw_shades(const SceneContent& content, const SceneView& view) const {
+void CrowdScene::draw_shades(const SceneContent& content, const SceneView& view) {
   if (content.crowd_shades.empty() || !content.has_shadows) return;
-  upload(shade_rows_, content.crowd_shades.data(),
-         content.crowd_shades.size() * sizeof(FloorShade));
+  shades_.load(GlRows::Of::instance, content.crowd_shades);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
   shade_.use();
   shade_.set("to_clip", view.to_clip);
   shade_.set("moved", content.crowd_origin_m - view.origin_m);
-  glBindVertexArray(shade_vertices_.get());
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(content.crowd_shades.size()));
+  shades_.draw_squares();
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
 }
@@ -380,13 +339,12 @@ void CrowdScene::draw_shades(const SceneContent& content, const SceneView& view)
 // Draws the floor with its grid and shadows, and the background that it fades into.
 class FloorScene {
  public:
-  static Result<FloorScene> create();
+  std::optional<Error> open();
   // Call it after the bodies are drawn. Without shadows `place.half_m` is 0.
   void draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
             GLuint shadow_texture);
 
  private:
-  FloorScene() = default;
   void draw_floor(const SceneContent& content, const SceneView& view,
                   const ShadowPlace& place) const;
   void draw_ground(const SceneContent& content, const SceneView& view, const ShadowPlace& place);
@@ -396,9 +354,7 @@ class FloorScene {
   GlProgram floor_, ground_, sky_;
   GlVertexArray nothing_;  // the shader computes the corners
   // Uneven ground, rebuilt when the focus has moved far enough.
-  GlVertexArray mesh_;
-  GlBuffer mesh_rows_, mesh_indices_;
-  GLsizei mesh_count_ = 0;
+  GlRows mesh_;
   std::shared_ptr<const Terrain> terrain_;
   vec3 mesh_origin_m_{0.0};
   vec2 mesh_centre_m_{0.0};
@@ -447,31 +403,16 @@ void set_floor(const GlProgram& program, const SceneContent& content, const Scen
   program.set("shadow_depth", has_shadows ? depth : vec2(0.0));
 }
 
-Result<FloorScene> FloorScene::create() {
-  FloorScene floor;
+std::optional<Error> FloorScene::open() {
+  nothing_ = new_vertex_array();
+  mesh_.add(GlRows::Of::vertex, {{0, 3}, {1, 3}, {2, 2}});
   const std::string background = shader::kBackground;
-  const std::string floor_text = background + shader::kFloorColour;
-  auto level = GlProgram::link("floor", shader::kFloorVertex, floor_text + shader::kFloorFragment);
-  if (!level) return level.error();
-  auto ground =
-      GlProgram::link("ground", shader::kGroundVertex, floor_text + shader::kGroundFragment);
-  if (!ground) return ground.error();
-  auto sky = GlProgram::link("background", shader::kSkyVertex, background + shader::kSkyFragment);
-  if (!sky) return sky.error();
-  floor.floor_ = std::move(*level);
-  floor.ground_ = std::move(*ground);
-  floor.sky_ = std::move(*sky);
-  floor.nothing_ = new_vertex_array();
-  floor.mesh_ = new_vertex_array();
-  floor.mesh_rows_ = new_buffer();
-  floor.mesh_indices_ = new_buffer();
-  glBindVertexArray(floor.mesh_.get());
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, floor.mesh_indices_.get());
-  glBindBuffer(GL_ARRAY_BUFFER, floor.mesh_rows_.get());
-  constexpr VertexPart kVertex[] = {{0, 3}, {1, 3}, {2, 2}};
-  set_vertex_parts(kVertex, 3, 0);
-  glBindVertexArray(0);
-  return floor;
+  const std::string floor = background + shader::kFloorColour;
+  if (auto problem = floor_.link("floor", shader::kFloorVertex, floor + shader::kFloorFragment))
+    return problem;
+  if (auto problem = ground_.link("ground", shader::kGroundVertex, floor + shader::kGroundFragment))
+    return problem;
+  return sky_.link("background", shader::kSkyVertex, background + shader::kSkyFragment);
 }
 
 // A square around the focus. It is behind all bodies, because they stand on it.
@@ -488,11 +429,8 @@ void FloorScene::make_ground(const std::shared_ptr<const Terrain>& terrain, cons
   if (terrain == terrain_ && centre_m == mesh_centre_m_ && half_m == mesh_half_m_) return;
   const double step_m = kMeshStep_m * std::max(1.0, half_m / (kFadesTo_m + kMeshMoves_m));
   const GroundMesh mesh = ground_mesh(*terrain, centre_m, half_m, step_m);
-  upload(mesh_rows_, mesh.vertices.data(), mesh.vertices.size() * sizeof(GroundVertex));
-  glBindVertexArray(mesh_.get());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * 4),
-               mesh.indices.data(), GL_DYNAMIC_DRAW);
-  mesh_count_ = static_cast<GLsizei>(mesh.indices.size());
+  mesh_.load(GlRows::Of::vertex, mesh.vertices);
+  mesh_.load_triangles(mesh.indices);
   mesh_origin_m_ = mesh.origin_m;
   terrain_ = terrain;
   mesh_centre_m_ = centre_m;
@@ -514,8 +452,7 @@ void FloorScene::draw_ground(const SceneContent& content, const SceneView& view,
   ground_.set("relief", view.is_light() ? 5.0 : 10.0);
   ground_.set("level", mesh_origin_m_.y - view.origin_m.y);
   ground_.set("behind_m", kBehind_m);
-  glBindVertexArray(mesh_.get());
-  glDrawElements(GL_TRIANGLES, mesh_count_, GL_UNSIGNED_INT, nullptr);
+  mesh_.draw_triangles();
 }
 
 void FloorScene::draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
@@ -538,11 +475,10 @@ void FloorScene::draw(const SceneContent& content, const SceneView& view, const 
 // smooth edges, hidden by bodies in front of them.
 class StrokeScene {
  public:
-  static Result<StrokeScene> create();
+  std::optional<Error> open();
   void draw(const SceneContent& content, const SceneView& view);
 
  private:
-  StrokeScene() = default;
   void draw_trails(const std::vector<Trail>& trails, const SceneView& view);
   void draw_lines(const SceneContent& content, const SceneView& view);
 
@@ -558,8 +494,7 @@ class StrokeScene {
   void add_ribbon(const Trail& trail, const SceneView& view);
 
   GlProgram line_, trail_;
-  GlVertexArray line_vertices_, trail_vertices_;
-  GlBuffer line_rows_, trail_rows_;
+  GlRows line_rows_, trail_rows_;
   std::vector<Stroke> strokes_;
   std::vector<Edge> ribbon_;  // pairs of edges as separate triangles
 };
@@ -599,28 +534,12 @@ vec2 direction(const vec2& from, const vec2& to, const vec2& otherwise) {
   return length > 1e-3 ? d / length : otherwise;
 }
 
-Result<StrokeScene> StrokeScene::create() {
-  StrokeScene strokes;
-  auto line = GlProgram::link("lines", shader::kLineVertex, shader::kLineFragment);
-  if (!line) return line.error();
-  auto trail = GlProgram::link("trails", shader::kTrailVertex, shader::kTrailFragment);
-  if (!trail) return trail.error();
-  strokes.line_ = std::move(*line);
-  strokes.trail_ = std::move(*trail);
-  strokes.line_vertices_ = new_vertex_array();
-  strokes.line_rows_ = new_buffer();
-  glBindVertexArray(strokes.line_vertices_.get());
-  glBindBuffer(GL_ARRAY_BUFFER, strokes.line_rows_.get());
-  constexpr VertexPart kStroke[] = {{1, 4}, {2, 3}, {3, 4}};
-  set_vertex_parts(kStroke, 3, 1);
-  strokes.trail_vertices_ = new_vertex_array();
-  strokes.trail_rows_ = new_buffer();
-  glBindVertexArray(strokes.trail_vertices_.get());
-  glBindBuffer(GL_ARRAY_BUFFER, strokes.trail_rows_.get());
-  constexpr VertexPart kEdge[] = {{0, 4}, {1, 3}, {2, 3}};
-  set_vertex_parts(kEdge, 3, 0);
-  glBindVertexArray(0);
-  return strokes;
+std::optional<Error> StrokeScene::open() {
+  line_rows_.add(GlRows::Of::instance, {{1, 4}, {2, 3}, {3, 4}});
+  trail_rows_.add(GlRows::Of::vertex, {{0, 4}, {1, 3}, {2, 3}});
+  if (auto problem = line_.link("lines", shader::kLineVertex, shader::kLineFragment))
+    return problem;
+  return trail_.link("trails", shader::kTrailVertex, shader::kTrailFragment);
 }
 
 void StrokeScene::draw(const SceneContent& content, const SceneView& view) {
@@ -677,10 +596,9 @@ void StrokeScene::draw_trails(const std::vector<Trail>& trails, const SceneView&
   ribbon_.clear();
   for (const Trail& trail : trails) add_ribbon(trail, view);
   if (ribbon_.empty()) return;
-  upload(trail_rows_, ribbon_.data(), ribbon_.size() * sizeof(Edge));
+  trail_rows_.load(GlRows::Of::vertex, ribbon_);
   trail_.use();
-  glBindVertexArray(trail_vertices_.get());
-  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(ribbon_.size()));
+  trail_rows_.draw_triangles();
 }
 
 void StrokeScene::draw_lines(const SceneContent& content, const SceneView& view) {
@@ -700,12 +618,11 @@ void StrokeScene::draw_lines(const SceneContent& content, const SceneView& view)
     add(joint, joint, kDotRadius_px, content.joint_colour);
   }
   if (strokes_.empty()) return;
-  upload(line_rows_, strokes_.data(), strokes_.size() * sizeof(Stroke));
+  line_rows_.load(GlRows::Of::instance, strokes_);
   line_.use();
   line_.set("to_clip", view.to_clip);
   line_.set("size_px", view.size_px);
-  glBindVertexArray(line_vertices_.get());
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(strokes_.size()));
+  line_rows_.draw_squares();
 }
 
 constexpr int kSamples = 4;
@@ -783,9 +700,6 @@ SceneView view_of(const Camera& camera, const SceneContent& content, const Theme
 }  // namespace
 
 struct Scene::Impl {
-  Impl(CapsuleScene&& b, CrowdScene&& c, FloorScene&& f, StrokeScene&& s)
-      : capsules(std::move(b)), crowd(std::move(c)), floor(std::move(f)), strokes(std::move(s)) {}
-
   CapsuleScene capsules;
   CrowdScene crowd;
   FloorScene floor;
@@ -808,26 +722,21 @@ Result<std::unique_ptr<Scene>> Scene::create(Quality quality) {
   const bool is_fine = quality == Quality::high || (quality == Quality::automatic && !is_software);
   GLint most = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
-  auto capsules = CapsuleScene::create(is_fine ? MeshDetail{36, 8, 1024} : MeshDetail{16, 4, 384});
-  if (!capsules) return capsules.error();
-  auto crowd = CrowdScene::create();
-  if (!crowd) return crowd.error();
-  auto strokes = StrokeScene::create();
-  if (!strokes) return strokes.error();
-  auto floor = FloorScene::create();
-  if (!floor) return floor.error();
   std::unique_ptr<Scene> scene(new Scene);
-  scene->impl_ = std::make_unique<Impl>(std::move(*capsules), std::move(*crowd), std::move(*floor),
-                                        std::move(*strokes));
-  scene->impl_->most_samples = std::clamp(most, 1, kSamples);
-  scene->impl_->samples = is_fine ? scene->impl_->most_samples : 1;
-  scene->impl_->is_software = is_software;
-  scene->impl_->has_bands = quality == Quality::high;
+  scene->impl_ = std::make_unique<Impl>();
+  Impl& s = *scene->impl_;
+  if (auto problem = s.capsules.open(is_fine ? MeshDetail{36, 8, 1024} : MeshDetail{16, 4, 384}))
+    return *problem;
+  if (auto problem = s.crowd.open()) return *problem;
+  if (auto problem = s.strokes.open()) return *problem;
+  if (auto problem = s.floor.open()) return *problem;
+  s.most_samples = std::clamp(most, 1, kSamples);
+  s.samples = is_fine ? s.most_samples : 1;
+  s.is_software = is_software;
+  s.has_bands = quality == Quality::high;
   const int version = epoxy_gl_version();
-  const std::string smoothing =
-      scene->impl_->samples > 1 ? fmt::format("{}x", scene->impl_->samples) : "no";
-  scene->impl_->renderer = fmt::format("{}, OpenGL {}.{}, {} anti-aliasing", drawable(name),
-                                       version / 10, version % 10, smoothing);
+  s.renderer = fmt::format("{}, OpenGL {}.{}, {} anti-aliasing", drawable(name), version / 10,
+                           version % 10, s.samples > 1 ? fmt::format("{}x", s.samples) : "no");
   return scene;
 }
 

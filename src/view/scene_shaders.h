@@ -41,31 +41,39 @@ void main() {
 }
 )";
 
-inline constexpr const char* kBodyFragment = R"(#version 330 core
-in vec3 place;
-in vec3 normal;
-in float above;
-flat in vec3 colour;
-uniform vec3 eye;
+// The light on bodies, before either of the two fragment shaders that use it: `facing` is 1 where
+// the surface faces the eye.
+inline constexpr const char* kLight = R"(#version 330 core
 uniform vec3 light;
 uniform vec3 sky_light;
 uniform vec3 ground_light;
 uniform float key_strength;
 uniform float rim_strength;
 out vec4 shown;
+vec3 lit(vec3 base, vec3 n, float facing, float near_floor, float gloss) {
+  vec3 ambient = mix(ground_light, sky_light, 0.5 + 0.5 * n.y) * near_floor;
+  float key = smoothstep(-0.25, 1.0, dot(n, light)) * key_strength;
+  float edge = 1.0 - facing;
+  float rim = edge * edge * edge * rim_strength * near_floor;
+  return base * (ambient + key * vec3(1.0, 0.975, 0.93)) + rim * vec3(0.55, 0.68, 0.85) +
+         gloss * key;
+}
+)";
+
+inline constexpr const char* kBodyFragment = R"(
+in vec3 place;
+in vec3 normal;
+in float above;
+flat in vec3 colour;
+uniform vec3 eye;
 void main() {
   vec3 n = normalize(normal);
   vec3 to_eye = normalize(eye - place);
   float near_floor = mix(0.55, 1.0, smoothstep(0.0, 0.35, above));
-  vec3 ambient = mix(ground_light, sky_light, 0.5 + 0.5 * n.y) * near_floor;
-  float key = smoothstep(-0.25, 1.0, dot(n, light)) * key_strength;
-  float edge = 1.0 - max(dot(n, to_eye), 0.0);
-  float rim = edge * edge * edge * rim_strength * near_floor;
   float gloss = 0.16 * pow(max(dot(n, normalize(light + to_eye)), 0.0), 46.0);
   vec3 base = colour * colour * (0.25 + 0.75 * colour);  // nearly the power 2.2
-  vec3 lit = base * (ambient + key * vec3(1.0, 0.975, 0.93)) +
-             rim * vec3(0.55, 0.68, 0.85) + gloss * key;
-  shown = vec4(pow(lit, vec3(1.0 / 2.2)), 1.0);
+  vec3 seen = lit(base, n, max(dot(n, to_eye), 0.0), near_floor, gloss);
+  shown = vec4(pow(seen, vec3(1.0 / 2.2)), 1.0);
 }
 )";
 
@@ -119,8 +127,8 @@ void main() {
 }
 )";
 
-// The light of the bodies, with cheap powers.
-inline constexpr const char* kFlatFragment = R"(#version 330 core
+// The same light, with cheap powers.
+inline constexpr const char* kFlatFragment = R"(
 in float height;
 in vec2 spot;
 flat in vec3 aside;
@@ -129,12 +137,6 @@ flat in vec3 radii;
 flat in vec3 base;
 flat in vec3 half_way;
 flat in float cap;
-uniform vec3 light;
-uniform vec3 sky_light;
-uniform vec3 ground_light;
-uniform float key_strength;
-uniform float rim_strength;
-out vec4 shown;
 uniform float samples;  // more than 1: the cover becomes samples
 void main() {
   float along = clamp(spot.y, 0.0, radii.z);
@@ -154,19 +156,13 @@ void main() {
   float facing = sqrt(max(1.0 - off.x * off.x - bent * bent, 0.0));
   vec3 n = aside * off.x + upwards * bent + to_eye * facing;
   float near_floor = mix(0.55, 1.0, clamp(height * 3.0, 0.0, 1.0));
-  vec3 ambient = mix(ground_light, sky_light, 0.5 + 0.5 * n.y) * near_floor;
-  float key = smoothstep(-0.25, 1.0, dot(n, light)) * key_strength;
-  float edge = 1.0 - facing;
-  float rim = edge * edge * edge * rim_strength * near_floor;
   float gloss = max(dot(n, half_way), 0.0);
   gloss *= gloss;
   gloss *= gloss;
   gloss *= gloss;
   gloss *= gloss;
   gloss *= gloss;  // the power 32
-  vec3 lit = base * (ambient + key * vec3(1.0, 0.975, 0.93)) + rim * vec3(0.55, 0.68, 0.85) +
-             0.12 * gloss * key;
-  vec3 root = sqrt(lit);
+  vec3 root = sqrt(lit(base, n, facing, near_floor, 0.12 * gloss));
   shown = vec4(mix(root, sqrt(root), 0.15), cover);  // nearly the power 1 / 2.2
 }
 )";

@@ -25,10 +25,7 @@ Colour colour_of(const Theme& theme, int style, std::size_t member) {
           std::min(tone.blue * light, 1.0), 1.0};
 }
 
-quat between(const std::array<float, 4>& a, const std::array<float, 4>& b, double share) {
-  const quat from(a[3], a[0], a[1], a[2]), to(b[3], b[0], b[1], b[2]);
-  return glm::normalize(from * (1.0 - share) + (glm::dot(from, to) < 0.0 ? -to : to) * share);
-}
+quat quat_of(const std::array<float, 4>& q) { return {q[3], q[0], q[1], q[2]}; }
 
 double floor_m(const Terrain* terrain, const vec3& place_m) {
   return terrain == nullptr ? 0.0 : ground_at(*terrain, place_m.x, place_m.z).height_m;
@@ -67,7 +64,7 @@ void CrowdBodies::fill(const FollowerPoses& poses, double share, const Theme& th
     for (int j = 0; j < member.joints; ++j) {
       const std::size_t joint = first_joint + static_cast<std::size_t>(j);
       pose_.local[static_cast<std::size_t>(j)] =
-          between(poses.before[joint], poses.local[joint], t);
+          between(quat_of(poses.before[joint]), quat_of(poses.local[joint]), t);
     }
     first_joint += static_cast<std::size_t>(member.joints);
     const bool is_near = glm::distance(pose_.root_m, eye_m_) < kFull_m;
@@ -89,14 +86,13 @@ void CrowdBodies::add(const Mannequin& mannequin, const Colour& colour, const Te
   const vec3 below = vec3(pose_.root_m.x, floor_m(terrain, pose_.root_m), pose_.root_m.z);
   const auto ground_m = static_cast<float>(below.y - origin_m.y);
   for (const MannequinBone& bone : mannequin.bones) {
-    const quat& turn = frames_.rotation[bone.from];
-    const vec3 a = frames_.position_m[bone.from] + turn * bone.from_m - origin_m;
-    const vec3 b = frames_.position_m[bone.to] + frames_.rotation[bone.to] * bone.to_m - origin_m;
+    const BonePlace place = place_of(bone, frames_);
+    const vec3 a = place.from_m - origin_m, b = place.to_m - origin_m;
     // Trunk and upper limbs end in one another.
     const double width = bone.is_pale ? bone.width_to : -bone.width_to;
     const Colour& paint = bone.is_pale ? pale : colour;
     content.crowd.push_back({row(a, bone.radius_from_m), row(b, bone.radius_to_m),
-                             row(turn * bone.wide, bone.width_from),
+                             row(frames_.rotation[bone.from] * bone.wide, bone.width_from),
                              row(vec3(paint.red, paint.green, paint.blue), width), ground_m});
   }
   const auto on_floor = [&](vec3 place_m) {

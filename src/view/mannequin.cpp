@@ -386,14 +386,6 @@ constexpr double kDeepest_m = 0.05;   // of a foot's bone in the ground; deeper 
 constexpr double kShortestLine = 0.015,
                  kShortestDotted = 0.045;  // in leg lengths; fingers are left out
 
-// Takes the shorter way round. The poses are a tick apart, so a normalised sum is exact enough.
-quat between(const quat& a, const quat& b, double share) noexcept {
-  const quat near = glm::dot(a, b) < 0.0 ? -b : b;
-  const quat sum = a * (1.0 - share) + near * share;
-  const double length = glm::length(sum);
-  return length > 1e-9 ? sum * (1.0 / length) : a;
-}
-
 // Lifts an end that would sink into the ground below it. An end that is deeper in the ground is
 // beside a riser, not on its tread, and stays where it is.
 void put_on_ground(const Terrain* terrain, vec3& end_m, double radius_m, const vec3& wide,
@@ -420,6 +412,19 @@ Mannequin mannequin_of(std::shared_ptr<const WalkModel> model, MannequinDetail d
   return mannequin;
 }
 
+BonePlace place_of(const MannequinBone& bone, const JointFrames& frames) noexcept {
+  return {frames.position_m[bone.from] + frames.rotation[bone.from] * bone.from_m,
+          frames.position_m[bone.to] + frames.rotation[bone.to] * bone.to_m};
+}
+
+// The poses are a tick apart, so a normalised sum is exact enough.
+quat between(const quat& a, const quat& b, double share) noexcept {
+  const quat near = glm::dot(a, b) < 0.0 ? -b : b;
+  const quat sum = a * (1.0 - share) + near * share;
+  const double length = glm::length(sum);
+  return length > 1e-9 ? sum * (1.0 / length) : a;
+}
+
 void interpolate(const Pose& before, const Pose& pose, double share, Pose& shown) noexcept {
   const double t = std::clamp(share, 0.0, 1.0);
   shown.joint_count = pose.joint_count;
@@ -436,8 +441,9 @@ void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Terrain* 
   const Colour pale = mixed(colour, kPale, kPaleShare);
   for (const MannequinBone& bone : mannequin.bones) {
     Capsule c;
-    c.a_m = frames.position_m[bone.from] + frames.rotation[bone.from] * bone.from_m;
-    c.b_m = frames.position_m[bone.to] + frames.rotation[bone.to] * bone.to_m;
+    const BonePlace place = place_of(bone, frames);
+    c.a_m = place.from_m;
+    c.b_m = place.to_m;
     c.radius_a_m = bone.radius_from_m;
     c.radius_b_m = bone.radius_to_m;
     c.wide = frames.rotation[bone.from] * bone.wide;

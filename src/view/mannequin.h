@@ -34,6 +34,14 @@ enum class MannequinDetail { full, coarse };
 Mannequin mannequin_of(std::shared_ptr<const WalkModel> model,
                        MannequinDetail detail = MannequinDetail::full);
 
+// A bone's ends in the world of these frames.
+struct BonePlace {
+  vec3 from_m{0.0}, to_m{0.0};
+};
+BonePlace place_of(const MannequinBone& bone, const JointFrames& frames) noexcept;
+
+// Between two rotations a tick apart, the shorter way round.
+quat between(const quat& a, const quat& b, double share) noexcept;
 // Between the two latest poses; share 0 gives the earlier one.
 void interpolate(const Pose& before, const Pose& pose, double share, Pose& shown) noexcept;
 // Nothing of it is drawn in the ground that it stands on; null: level at height 0.

@@ -70,14 +70,14 @@ struct UiState {
 
 // The parts of the scene that can be hidden, by the names that options and the layout file use.
 struct ScenePart {
-  std::string_view name;
+  std::string_view name, label;  // an action that shows and hides it is called like it
   bool UiState::*is_shown;
 };
-inline constexpr ScenePart kSceneParts[] = {{"trails", &UiState::has_trails},
-                                            {"grid", &UiState::has_grid},
-                                            {"shadows", &UiState::has_shadows},
-                                            {"source", &UiState::has_source},
-                                            {"names", &UiState::has_names}};
+inline constexpr ScenePart kSceneParts[] = {{"trails", "Trails", &UiState::has_trails},
+                                            {"source", "Source figure", &UiState::has_source},
+                                            {"grid", "Grid", &UiState::has_grid},
+                                            {"shadows", "Shadows", &UiState::has_shadows},
+                                            {"names", "Names", &UiState::has_names}};
 
 struct UiLabel {  // a name above a head
   vec2 place_px{0.0};

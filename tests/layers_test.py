@@ -12,7 +12,7 @@ LIBRARIES = {
     "files": ["src/files"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
-    "program": ["src/draw", "src/view", "src/paper", "src/check", "src/selftest"],
+    "program": ["src/draw", "src/view", "src/paper", "src/check", "src/selftest", "src/bench"],
 }
 # room: (rooms of its own library that it may include, vendor headers)
 ROOMS = {
@@ -34,6 +34,7 @@ ROOMS = {
     "src/paper": (["draw"], ["fmt/", "cairo/", "nlohmann/"]),
     "src/check": ([], ["fmt/"]),
     "src/selftest": ([], ["fmt/", "nlohmann/"]),
+    "src/bench": ([], ["fmt/", "nlohmann/", "benchmark/"]),
 }
 # The public headers, src/include/gaitpad/NAME.h, by the room whose functions they declare.
 PUBLIC = {
@@ -68,10 +69,10 @@ DRIVER_VENDORS = {
     "tools/rig/latency.cpp": ["linux/"],
     "tools/rig/plain_sdl.cpp": ["SDL2/"],
     "tools/soak/soak.cpp": ["SDL2/", "malloc.h"],
-    "tools/gaitpad/bench_work.cpp": ["malloc.h"],
+    "src/bench/bench_work.cpp": ["malloc.h"],
     "tools/gaitpad/window_module.cpp": ["dlfcn.h"],
 }
-TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/", "benchmark/"]
+TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/"]
 SYSTEM_HEADERS = ("sys/", "unistd.h", "fcntl.h", "dirent.h", "errno.h", "poll.h", "signal.h",
                   "pthread.h", "sched.h", "spawn.h", "termios.h", "time.h", "pwd.h", "grp.h", "netdb.h")
 C_PROGRAM = "tools/rig/pad_"  # the virtual pads: a C program that includes nothing of ours

@@ -1,5 +1,4 @@
-// What `gaitpad bench` measures: pieces of work of known size. bench.cpp lets them take turns and
-// prints what they took.
+// What `gaitpad bench` measures: pieces of work of known size. measured.h lets them take turns.
 #pragma once
 #include <array>
 #include <functional>
@@ -34,6 +33,7 @@ struct Work {
 // A leg's inverse kinematics, one character and four, bare playback, crowds of 1 to
 // `most_characters` and their members alone, loading and replays. Error where the bundled trace or
 // a style cannot be read.
-Result<std::vector<Work>> bench_work(int most_characters);
+Result<std::vector<Work>> bench_work(int most_characters,
+                                     const std::vector<std::string>& config_folders);
 
 }  // namespace gaitpad

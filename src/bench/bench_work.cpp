@@ -1,5 +1,4 @@
-#ifdef GAITPAD_HAS_BENCH
-#include "tools/gaitpad/bench_work.h"
+#include "bench/bench_work.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -21,7 +20,6 @@
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
 #include "session/workers.h"
-#include "tools/gaitpad/options.h"
 
 namespace gaitpad {
 namespace {
@@ -48,9 +46,10 @@ struct Session {
   double dt_s() const { return 1.0 / config.rate_hz; }
 };
 
-Result<Session> bench_session(const std::vector<std::string>& styles, IkMode ik) {
+Result<Session> bench_session(const std::vector<std::string>& config_folders,
+                              const std::vector<std::string>& styles, IkMode ik) {
   SessionSpec spec;
-  spec.config_folders = config_folders();
+  spec.config_folders = config_folders;
   spec.walk.styles = styles;
   spec.walk.ik = ik;
   auto trace = read_trace(bundled_trace(spec.config_folders));
@@ -665,9 +664,9 @@ Result<std::vector<Work>> load_work() {
 
 // The bundled trace from reading it to its summary, as `replay` and `check` do it, and with all
 // files of --out. Bounds hold for the whole program, whose start is not in it.
-Result<std::vector<Work>> replay_work() {
+Result<std::vector<Work>> replay_work(const std::vector<std::string>& config_folders) {
   SessionSpec spec;
-  spec.config_folders = config_folders();
+  spec.config_folders = config_folders;
   spec.replay.trace = bundled_trace(spec.config_folders);
   const auto folder = cache_folder("replay");
   std::vector<Work> list(2);
@@ -688,17 +687,19 @@ Result<std::vector<Work>> replay_work() {
 
 }  // namespace
 
-Result<std::vector<Work>> bench_work(int most_characters) {
+Result<std::vector<Work>> bench_work(int most_characters,
+                                     const std::vector<std::string>& config_folders) {
   const std::vector<std::string> styled = {"even", "stiff_hip", "stiff_knee", "limp_left"};
-  const auto one = bench_session({"even"}, IkMode::robust);
+  const auto one = bench_session(config_folders, {"even"}, IkMode::robust);
   if (!one) return one.error();
-  const auto paper = bench_session({"even"}, IkMode::paper);
+  const auto paper = bench_session(config_folders, {"even"}, IkMode::paper);
   if (!paper) return paper.error();
-  const auto four = bench_session(styled, IkMode::robust);
+  const auto four = bench_session(config_folders, styled, IkMode::robust);
   if (!four) return four.error();
-  const auto even_four = bench_session({"even", "even", "even", "even"}, IkMode::robust);
+  const auto even_four =
+      bench_session(config_folders, {"even", "even", "even", "even"}, IkMode::robust);
   if (!even_four) return even_four.error();
-  const auto cast_session = bench_session(kCrowdStyles, IkMode::robust);
+  const auto cast_session = bench_session(config_folders, kCrowdStyles, IkMode::robust);
   if (!cast_session) return cast_session.error();
   const auto one_walks = walking(*one), paper_walks = walking(*paper), four_walk = walking(*four),
              even_walk = walking(*even_four);
@@ -775,11 +776,10 @@ Result<std::vector<Work>> bench_work(int most_characters) {
   auto loads = load_work();
   if (!loads) return loads.error();
   for (Work& work : *loads) list.push_back(std::move(work));
-  auto replays = replay_work();
+  auto replays = replay_work(config_folders);
   if (!replays) return replays.error();
   for (Work& work : *replays) list.push_back(std::move(work));
   return list;
 }
 
 }  // namespace gaitpad
-#endif

@@ -9,10 +9,11 @@ import re
 # The libraries, lowest first: a library includes its own headers and those of the libraries before it.
 LIBRARIES = {
     "core": ["src/base", "src/motion", "src/strides", "src/control", "src/animation"],
+    "pictures": ["src/draw"],
     "files": ["src/files"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
-    "program": ["src/draw", "src/view", "src/paper", "src/check", "src/selftest", "src/bench"],
+    "program": ["src/stick_picture", "src/scene", "src/view", "src/paper", "src/check", "src/selftest", "src/bench"],
 }
 # room: (rooms of its own library that it may include, vendor headers)
 ROOMS = {
@@ -28,10 +29,13 @@ ROOMS = {
     "drivers/pads": (["hid"], ["fmt/"]),
     "src/pads": (["hid", "stick", "drivers"], ["fmt/"]),
     "src/session": ([], ["fmt/", "nlohmann/", "tbb/"]),
-    # Drawing needs cairo alone; the paper's figures are drawn without a window.
+    # Drawing needs cairo alone and knows no pads; the paper's figures are drawn without a window.
     "src/draw": ([], ["fmt/", "cairo/"]),
-    "src/view": (["draw", "selftest"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
-    "src/paper": (["draw"], ["fmt/", "cairo/", "nlohmann/"]),
+    "src/stick_picture": ([], ["fmt/", "cairo/"]),
+    # The scene knows no window: no SDL, no Dear ImGui.
+    "src/scene": ([], ["fmt/", "epoxy/", "glm/"]),
+    "src/view": (["scene", "stick_picture", "selftest"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
+    "src/paper": ([], ["fmt/", "cairo/", "nlohmann/"]),
     "src/check": ([], ["fmt/"]),
     "src/selftest": ([], ["fmt/", "nlohmann/"]),
     "src/bench": ([], ["fmt/", "nlohmann/", "benchmark/"]),

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <optional>
 
-#include "draw/stick_picture.h"
 #include "pads/calibration_store.h"
 #include "pads/guided_calibration.h"
+#include "stick_picture/stick_picture.h"
 #include "view/pad_dialog.h"
 
 namespace gaitpad {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "draw/stick_picture.h"
+#include "stick_picture/stick_picture.h"
 #include "view/panels.h"
 #include "view/widgets.h"
 

@@ -14,10 +14,10 @@
 #include "draw/theme.h"
 #include "gaitpad/live.h"
 #include "gaitpad/session_frame.h"
+#include "scene/scene.h"
 #include "session/show.h"
 #include "stick/reached_outline.h"
 #include "view/controls.h"
-#include "view/scene.h"
 
 namespace gaitpad {
 

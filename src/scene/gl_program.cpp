@@ -1,4 +1,4 @@
-#include "view/gl_program.h"
+#include "scene/gl_program.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include "gaitpad/math.h"
 #include "gaitpad/result.h"
 #include "gaitpad/terrain.h"
-#include "view/camera.h"
+#include "scene/camera.h"
 
 namespace gaitpad {
 

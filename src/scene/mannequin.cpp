@@ -1,4 +1,4 @@
-#include "view/mannequin.h"
+#include "scene/mannequin.h"
 
 #include <algorithm>
 #include <cmath>

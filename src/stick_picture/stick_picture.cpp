@@ -1,4 +1,4 @@
-#include "draw/stick_picture.h"
+#include "stick_picture/stick_picture.h"
 
 #include <fmt/format.h>
 

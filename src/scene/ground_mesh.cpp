@@ -1,4 +1,4 @@
-#include "view/ground_mesh.h"
+#include "scene/ground_mesh.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,6 @@
 // The PNG is read again and looked at pixel by pixel. Where the planes lie is not assumed: one
 // known outline tells their scale, another one is then looked for.
-#include "draw/stick_picture.h"
+#include "stick_picture/stick_picture.h"
 
 #include <cairo/cairo.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // A mannequin's measures are judged by what is known of people and of the skeleton; where it is, by
 // forward kinematics and by the samples of the walk, which the drawing does not read.
-#include "view/mannequin.h"
+#include "scene/mannequin.h"
 
 #include <gtest/gtest.h>
 

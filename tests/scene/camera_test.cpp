@@ -1,5 +1,5 @@
 // Projection is derived here a second time, by similar triangles.
-#include "view/camera.h"
+#include "scene/camera.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "view/scene.h"
+#include "scene/scene.h"
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "draw/theme.h"
-#include "view/camera.h"
-#include "view/gl_program.h"
-#include "view/ground_mesh.h"
-#include "view/scene_shaders.h"
+#include "scene/camera.h"
+#include "scene/gl_program.h"
+#include "scene/ground_mesh.h"
+#include "scene/scene_shaders.h"
 
 namespace gaitpad {
 namespace {

@@ -1,4 +1,4 @@
-#include "view/crowd_bodies.h"
+#include "scene/crowd_bodies.h"
 
 #include <algorithm>
 #include <cmath>

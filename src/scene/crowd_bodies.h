@@ -4,8 +4,8 @@
 
 #include "draw/theme.h"
 #include "gaitpad/session_frame.h"
-#include "view/mannequin.h"
-#include "view/scene.h"
+#include "scene/mannequin.h"
+#include "scene/scene.h"
 
 namespace gaitpad {
 

@@ -7,7 +7,7 @@
 
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/walk_model.h"
-#include "view/scene.h"
+#include "scene/scene.h"
 
 namespace gaitpad {
 

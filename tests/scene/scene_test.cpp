@@ -1,6 +1,6 @@
 // A scene drawn without a display, looked at pixel by pixel: what is drawn is where the camera
 // projects it, and does what the header says.
-#include "view/scene.h"
+#include "scene/scene.h"
 
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <memory>
 
 #include "gaitpad/config_files.h"
+#include "scene/gl_program.h"
 #include "tests/folders.h"
 #include "tests/value_of.h"
-#include "view/gl_program.h"
 #include "view/offscreen.h"
 
 namespace gaitpad {
